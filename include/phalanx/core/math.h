@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The linear algebra of the whole program: SI units, radians, double precision.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace phalanx {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// Rigid pose X_AB of frame B in frame A:  p_A = R p_B + p.  R is orthonormal, p is in metres.
+/// Real-time: plain values, no allocation.
+struct Pose {
+  Mat3 R = Mat3::Identity();
+  Vec3 p = Vec3::Zero();
+
+  /// The point x given in frame B, expressed in frame A [m].
+  [[nodiscard]] Vec3 operator*(const Vec3& x) const noexcept { return R * x + p; }
+
+  /// X_AC = X_AB X_BC.
+  [[nodiscard]] Pose operator*(const Pose& other) const noexcept {
+    return Pose{R * other.R, R * other.p + p};
+  }
+
+  /// X_BA.
+  [[nodiscard]] Pose inverse() const noexcept { return Pose{R.transpose(), -(R.transpose() * p)}; }
+};
+
+/// Rotation by `angle` [rad] about the unit vector `axis` (right-handed).
+[[nodiscard]] inline Mat3 rotation_about(const Vec3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+}  // namespace phalanx

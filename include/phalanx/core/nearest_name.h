@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// "Did you mean ...?": for messages about names that nobody knows.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace phalanx {
+
+/// Levenshtein distance: the least number of inserted, deleted and replaced characters that turns `a` into
+/// `b`. Set-up only.
+[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({above + 1, row[j - 1] + 1, replaced});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+/// How far a known name is from what somebody wrote: the edit distance, or, where that is less, 1 + the
+/// distance to as much of the known name's beginning ("torque_rate" for "torque_rate_nm_per_s"), or 1 or 2 +
+/// the same for what follows its last dot. Set-up only.
+[[nodiscard]] inline std::size_t name_distance(std::string_view written, std::string_view known) {
+  const auto with_beginning = [&](std::string_view name) {
+    return std::min(edit_distance(written, name), 1 + edit_distance(written, name.substr(0, written.size())));
+  };
+  const std::size_t whole = with_beginning(known);
+  const std::size_t dot = known.rfind('.');
+  return dot == std::string_view::npos ? whole : std::min(whole, 1 + with_beginning(known.substr(dot + 1)));
+}
+
+/// The member of `known` with the smallest name_distance() to `name`, the first of several; empty if `known`
+/// is. Only the first 200 characters of `name` are compared, so that a hostile input costs nothing. Set-up
+/// only.
+template <typename Names>
+[[nodiscard]] std::string nearest_name(std::string_view name, const Names& known) {
+  std::string best;
+  std::size_t best_distance = static_cast<std::size_t>(-1);
+  for (const auto& candidate : known) {
+    const std::size_t distance = name_distance(name.substr(0, 200), std::string_view(candidate));
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = std::string(candidate);
+    }
+  }
+  return best;
+}
+
+}  // namespace phalanx

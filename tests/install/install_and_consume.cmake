@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+# Installs BUILD_DIR into a fresh prefix under WORK_DIR, moves that prefix (a package must not remember where it was installed), builds
+# CONSUMER_DIR against it and runs what came out.
+function(must)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  message("${output}")
+  if(NOT result EQUAL 0)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "failed (${result}): ${command}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+must(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/first)
+file(RENAME ${WORK_DIR}/first ${WORK_DIR}/prefix)
+
+foreach(expected bin/phalanx include/phalanx/step/haptic_step.h share/phalanx/assets share/phalanx/scenes)
+  if(NOT EXISTS ${WORK_DIR}/prefix/${expected})
+    message(FATAL_ERROR "not installed: ${expected}")
+  endif()
+endforeach()
+
+must(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+     -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+must(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
+must(${WORK_DIR}/build/consumer)
+must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${WORK_DIR}/build/station_consumer)
