@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever bytes a scene, hand or mapping file holds, reading it ends in a description or in an error with a
+// message. The first byte chooses what the rest is; a line that begins with `set ` becomes an override.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+#include "phalanx/scene/hand_file.h"
+#include "phalanx/scene/mapping_file.h"
+#include "phalanx/scene/scene.h"
+
+namespace {
+
+void require(bool ok) {
+  if (!ok) std::abort();
+}
+
+void read_scene(std::string text) {
+  phalanx::Overrides overrides;
+  constexpr std::string_view kSet = "set ";
+  while (text.substr(0, kSet.size()) == kSet && overrides.size() < 8) {
+    const std::size_t end = text.find('\n');
+    overrides.push_back(phalanx::parse_override(
+        text.substr(kSet.size(), end == std::string::npos ? end : end - kSet.size())));
+    text = end == std::string::npos ? std::string() : text.substr(end + 1);
+  }
+  const phalanx::SceneDescription scene = phalanx::parse_scene(text, "fuzz.toml", "/", overrides);
+  require(scene.rate_hz >= 1.0 && scene.rate_hz <= 4000.0);
+  require(std::isfinite(scene.force.stiffness) && scene.force.stiffness >= 0.0);
+  require(scene.smoothing.min_rate < 0.0 && scene.smoothing.max_rate > 0.0);
+  require(scene.limits.fingertip_force > 0.0 && scene.limits.fingertip_force <= 15.0);
+  for (const phalanx::ObjectDescription& object : scene.objects)
+    require(object.pose.p.allFinite() && object.pose.R.allFinite());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string text(data + 1, data + size);
+  try {
+    if (data[0] == 'h') {
+      static_cast<void>(phalanx::parse_hand(text, "fuzz.toml"));
+    } else if (data[0] == 'm') {
+      phalanx::check_mapping(phalanx::parse_mapping(text, "fuzz.toml"));
+    } else {
+      read_scene(text);
+    }
+  } catch (const phalanx::SceneError& error) {
+    require(error.what()[0] != '\0');
+  }
+  return 0;
+}

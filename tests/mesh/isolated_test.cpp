@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/isolated.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx::mesh {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string refusal(const std::function<TriangleMesh()>& read) {
+  try {
+    (void)run_isolated(read, "cup.3ds", {.cpu_seconds = 1});
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(RunIsolated, HandsTheMeshBackBitByBit) {
+  const TriangleMesh made = make_torus(0.1, 0.03, 50'000);  // more than a pipe holds
+  const TriangleMesh got = run_isolated([&] { return made; }, "torus", {});
+  EXPECT_EQ(got.vertices, made.vertices);
+  EXPECT_EQ(got.triangles, made.triangles);
+}
+
+TEST(RunIsolated, PassesARefusalOnWordByWord) {
+  EXPECT_EQ(refusal([]() -> TriangleMesh { throw std::invalid_argument("cup.3ds: too pretty"); }),
+            "cup.3ds: too pretty");
+}
+
+TEST(RunIsolated, TurnsACrashIntoARefusal) {
+  EXPECT_THAT(refusal([]() -> TriangleMesh { std::abort(); }),
+              AllOf(StartsWith("cup.3ds: "), HasSubstr("crashed")));
+  EXPECT_THAT(refusal([]() -> TriangleMesh {
+                std::raise(SIGSEGV);
+                return {};
+              }),
+              HasSubstr("crashed"));
+  EXPECT_THAT(refusal([]() -> TriangleMesh { std::_Exit(0); }), HasSubstr("crashed"));
+}
+
+TEST(RunIsolated, StopsALoop) {
+  EXPECT_THAT(refusal([]() -> TriangleMesh {
+                for (std::atomic<unsigned> i = 0;; ++i) {
+                }
+              }),
+              AllOf(StartsWith("cup.3ds: "), HasSubstr("not done after 1 s")));
+}
+
+TEST(RunIsolated, SaysWhenMemoryRunsOut) {
+  EXPECT_THAT(refusal([]() -> TriangleMesh { throw std::bad_alloc(); }), HasSubstr("memory"));
+}
+
+}  // namespace
+}  // namespace phalanx::mesh

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mug and the teapot: bodies with handles and spout stitched into holes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "mesh/mesh_checks.h"
+#include "mesh/mug_shape.h"
+#include "mesh/newell_teapot.h"
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx {
+namespace {
+
+using mesh::RevolvedSurface;
+using mesh::Tube;
+
+TriangleMesh mug(int n) { return make_mug(0.082, 0.095, n); }
+TriangleMesh teapot(int n) { return make_teapot(0.25, n); }
+
+class StitchedSolid : public ::testing::TestWithParam<TriangleMesh (*)(int)> {};
+
+TEST_P(StitchedSolid, IsOneClosedManifoldOfGenusOneFrom300TrianglesOn) {
+  for (double n = 300; n < 70'000; n *= 1.13) {
+    const TriangleMesh mesh = GetParam()(static_cast<int>(n));
+    ASSERT_EQ(test::manifold_flaw(mesh), "") << n;
+    ASSERT_EQ(test::euler_characteristic(mesh), 0) << n;
+    ASSERT_GT(test::worst_shape(mesh), 0.05) << n;
+  }
+}
+
+TEST_P(StitchedSolid, HasAboutAsManyTrianglesAsAskedUpToAMillion) {
+  for (double n = 300; n < 1'000'001; n *= 1.5) {
+    const TriangleMesh mesh = GetParam()(static_cast<int>(n));
+    EXPECT_NEAR(static_cast<double>(mesh.triangles.size()) / n, 1.0, 0.15) << n;
+  }
+  const TriangleMesh million = GetParam()(1'000'000);
+  EXPECT_NEAR(static_cast<double>(million.triangles.size()), 1e6, 0.02e6);
+  EXPECT_TRUE(is_closed(million));
+  EXPECT_GT(test::worst_shape(million), 0.02);
+}
+
+TEST_P(StitchedSolid, DoesNotCrossItself) {
+  for (double n = 300; n < 20'000; n *= 1.31)
+    ASSERT_EQ(test::self_intersections(GetParam()(static_cast<int>(n))), 0U) << n;
+}
+
+TEST_P(StitchedSolid, VolumeIsPositiveAndConverges) {
+  const double coarse = signed_volume(GetParam()(2'000));
+  const double middle = signed_volume(GetParam()(16'000));
+  const double fine = signed_volume(GetParam()(128'000));
+  EXPECT_GT(coarse, 0.0);
+  EXPECT_LT(std::abs(fine - middle), 0.6 * std::abs(middle - coarse));
+  EXPECT_LT(std::abs(fine / middle - 1.0), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StitchedSolid, ::testing::Values(&mug, &teapot),
+                         [](const auto& each) { return each.param == &mug ? "Mug" : "Teapot"; });
+
+/// Distance from p to the surface f over [0, 1] x [v0, v1]: a dense scan, then shrinking pattern search from
+/// the best few samples.
+double distance(const Vec3& p, const std::function<Vec3(double, double)>& f, double v0, double v1) {
+  struct Sample {
+    double d, u, v;
+  };
+  constexpr int kU = 64;
+  constexpr int kV = 48;
+  std::vector<Sample> samples;
+  for (int i = 0; i <= kU; ++i) {
+    for (int j = 0; j <= kV; ++j) {
+      const double u = static_cast<double>(i) / kU;
+      const double v = v0 + (v1 - v0) * j / kV;
+      samples.push_back({(f(u, v) - p).squaredNorm(), u, v});
+    }
+  }
+  std::partial_sort(samples.begin(), samples.begin() + 3, samples.end(),
+                    [](auto& a, auto& b) { return a.d < b.d; });
+  double best = samples[0].d;
+  for (int s = 0; s < 3; ++s) {
+    Sample at = samples[static_cast<std::size_t>(s)];
+    double du = 1.0 / kU;
+    double dv = (v1 - v0) / kV;
+    for (int k = 0; k < 400 && du > 1e-15; ++k) {
+      bool moved = false;
+      for (const auto& [su, sv] :
+           {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}) {
+        const double u = std::clamp(at.u + su * du, 0.0, 1.0);
+        const double v = std::clamp(at.v + sv * dv, v0, v1);
+        const double d = (f(u, v) - p).squaredNorm();
+        if (d < at.d) {
+          at = {d, u, v};
+          moved = true;
+        }
+      }
+      if (!moved) {
+        du *= 0.5;
+        dv *= 0.5;
+      }
+    }
+    best = std::min(best, at.d);
+  }
+  return std::sqrt(best);
+}
+
+double distance_to_body(const Vec3& p, const RevolvedSurface& body) {
+  double best = 1e9;
+  for (std::size_t piece = 0; piece < body.least_bands.size(); ++piece) {
+    const auto t = static_cast<double>(piece);
+    best = std::min(
+        best, distance(p, [&](double w, double v) { return body.point(w == 1.0 ? 0.0 : w, v); }, t, t + 1.0));
+  }
+  return best;
+}
+
+double distance_to_tube(const Vec3& p, const Tube& tube) {
+  const auto f = [&](double a, double v) { return tube.point(a, v); };
+  return std::min(distance(p, f, 0.0, 0.5), distance(p, f, 0.5, 1.0));
+}
+
+TEST(Mug, HasItsExactDiameterAndHeightAndItsHandleOnTheXSide) {
+  for (const int n : {300, 1000, 10000}) {
+    const TriangleMesh mesh = mug(n);
+    const Bounds b = bounds(mesh);
+    EXPECT_DOUBLE_EQ(b.max.z(), 0.0475) << n;
+    EXPECT_DOUBLE_EQ(b.min.z(), -0.0475) << n;
+    EXPECT_DOUBLE_EQ(b.max.y(), 0.041) << n;
+    EXPECT_DOUBLE_EQ(b.min.y(), -0.041) << n;
+    EXPECT_DOUBLE_EQ(b.min.x(), -0.041) << n;
+    const mesh::MugShape shape = mesh::mug_shape(0.082, 0.095);
+    EXPECT_DOUBLE_EQ(b.max.x(), 0.041 + shape.handle_reach + shape.handle_half_thickness) << n;
+  }
+}
+
+TEST(Mug, HasEveryVertexOnItsBodyOrItsHandle) {
+  const mesh::MugShape shape = mesh::mug_shape(0.082, 0.095);
+  const RevolvedSurface body = mesh::mug_body(shape);
+  const Tube handle = mesh::mug_handle(shape);
+  for (const Vec3& v : mug(700).vertices)
+    ASSERT_LT(std::min(distance_to_body(v, body), distance_to_tube(v, handle)), 1e-9) << v.transpose();
+}
+
+// A hand's finger must fit through the handle, and the wall between inside and outside must be there.
+TEST(Mug, IsMadeForTheWholeRangeOfProportions) {
+  for (const double ratio : {0.5, 0.8, 1.0, 1.5, 2.0, 3.0}) {
+    for (const int n : {500, 3000}) {
+      const TriangleMesh mesh = make_mug(0.08, 0.08 * ratio, n);
+      EXPECT_EQ(test::manifold_flaw(mesh), "") << ratio;
+      EXPECT_EQ(test::euler_characteristic(mesh), 0) << ratio;
+      EXPECT_EQ(test::self_intersections(mesh), 0U) << ratio;
+    }
+  }
+}
+
+TEST(Teapot, HasItsExactLengthAndIsCentred) {
+  for (const int n : {300, 2000, 10000}) {
+    const Bounds b = bounds(teapot(n));
+    EXPECT_NEAR(b.max.x(), 0.125, 1e-12) << n;
+    EXPECT_NEAR(b.min.x(), -0.125, 1e-12) << n;
+    EXPECT_NEAR(b.max.z() + b.min.z(), 0.0, 1e-12) << n;
+    EXPECT_NEAR((b.max.z() - b.min.z()) / 0.25, 0.4896, 1e-4) << n;
+    EXPECT_NEAR(b.max.y() + b.min.y(), 0.0, 1e-12) << n;
+  }
+}
+
+TEST(Teapot, HasEveryVertexOnANewellPatchOrOnTheBridgeOrInTheSpoutsMouth) {
+  const RevolvedSurface body = mesh::newell_body();
+  const Tube handle = mesh::newell_handle();
+  const Tube spout = mesh::newell_spout();
+  // Back to Newell's units: z = 0 .. 3.15 and the ends of handle and spout.
+  const double rear = handle.point(0.5, *handle.keep).x();
+  const double front = spout.point(0.5, *spout.keep).x();
+  int in_mouth = 0;
+  for (const Vec3& v : make_teapot(front - rear, 700).vertices) {
+    const Vec3 p = v + Vec3{0.5 * (front + rear), 0.0, 0.5 * mesh::kNewellHeight};
+    const bool mouth = std::abs(p.z() - 2.4) < 1e-12 && std::abs(p.x() - 3.0) < 0.2 && std::abs(p.y()) < 0.12;
+    if (mouth) ++in_mouth;
+    ASSERT_TRUE(mouth || std::min({distance_to_body(p, body), distance_to_tube(p, handle),
+                                   distance_to_tube(p, spout)}) < 1e-9)
+        << p.transpose();
+  }
+  EXPECT_GE(in_mouth, 5);  // at the least its centre and the rim but for the two ends
+}
+
+// Newell's own control points at the patches' corners, by hand.
+TEST(Teapot, SurfacesPassThroughNewellsCornerPoints) {
+  const RevolvedSurface body = mesh::newell_body();
+  EXPECT_LT((body.point(0.0, 3.0) - Vec3(1.5, 0, 2.4)).norm(), 1e-15);
+  EXPECT_LT((body.point(0.25, 2.0) - Vec3(0, 2.0, 0.9)).norm(), 1e-15);
+  EXPECT_LT((body.point(0.5, 1.0) - Vec3(-1.5, 0, 0.15)).norm(), 1e-15);
+  EXPECT_LT((body.point(0.0, 7.0) - Vec3(0, 0, 3.15)).norm(), 1e-15);
+  EXPECT_LT((mesh::newell_handle().point(0.0, 0.0) - Vec3(-1.6, 0, 2.025)).norm(), 1e-15);
+  EXPECT_LT((mesh::newell_handle().point(0.5, 0.5) - Vec3(-3.0, 0, 1.8)).norm(), 1e-15);
+  EXPECT_LT((mesh::newell_spout().point(0.5, 1.0) - Vec3(3.2, 0, 2.4)).norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/mesh/triangle_mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace phalanx {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TriangleMesh unit_tetrahedron() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+std::string refusal(const TriangleMesh& mesh) {
+  try {
+    check_mesh(mesh, "cup.obj");
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(TriangleMesh, TetrahedronOfThreeUnitEdgesHasASixthOfTheirCube) {
+  EXPECT_DOUBLE_EQ(signed_volume(unit_tetrahedron()), 1.0 / 6.0);
+}
+
+TEST(TriangleMesh, VolumeChangesSignWhenTheTrianglesAreTurnedOver) {
+  TriangleMesh mesh = unit_tetrahedron();
+  for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+  EXPECT_DOUBLE_EQ(signed_volume(mesh), -1.0 / 6.0);
+}
+
+TEST(TriangleMesh, IsClosedUntilATriangleIsMissingTurnedOrDoubled) {
+  EXPECT_TRUE(is_closed(unit_tetrahedron()));
+  EXPECT_FALSE(is_closed(TriangleMesh{}));
+  TriangleMesh missing = unit_tetrahedron();
+  missing.triangles.pop_back();
+  EXPECT_FALSE(is_closed(missing));
+  TriangleMesh turned = unit_tetrahedron();
+  std::swap(turned.triangles[0][0], turned.triangles[0][1]);
+  EXPECT_FALSE(is_closed(turned));
+  TriangleMesh doubled = unit_tetrahedron();
+  doubled.triangles.push_back(doubled.triangles[0]);
+  EXPECT_FALSE(is_closed(doubled));
+}
+
+TEST(TriangleMesh, AppendMapsThePartByItsPose) {
+  TriangleMesh mesh = unit_tetrahedron();
+  append(mesh, unit_tetrahedron(), Pose{rotation_about(Vec3::UnitZ(), std::acos(-1.0) / 2.0), Vec3{5, 0, 0}});
+  ASSERT_EQ(mesh.vertices.size(), 8U);
+  EXPECT_LT((mesh.vertices[5] - Vec3(5, 1, 0)).norm(), 1e-15);
+  EXPECT_EQ(mesh.triangles[4], (Triangle{4, 6, 5}));
+  EXPECT_TRUE(is_closed(mesh));
+}
+
+TEST(TriangleMesh, AppendTakesItself) {
+  TriangleMesh mesh = unit_tetrahedron();
+  append(mesh, mesh, Pose{Mat3::Identity(), Vec3{2, 0, 0}});
+  EXPECT_EQ(mesh.triangles.size(), 8U);
+  EXPECT_DOUBLE_EQ(signed_volume(mesh), 2.0 / 6.0);
+}
+
+TEST(TriangleMesh, BoundsAreTheExtremeCoordinates) {
+  const Bounds b = bounds({{{1, -2, 3}, {-4, 5, -6}}, {}});
+  EXPECT_EQ(b.min, Vec3(-4, -2, -6));
+  EXPECT_EQ(b.max, Vec3(1, 5, 3));
+}
+
+TEST(TriangleMesh, CheckNamesTheMeshThePlaceAndTheValue) {
+  EXPECT_EQ(refusal(unit_tetrahedron()), "accepted");
+  EXPECT_THAT(refusal({}), AllOf(StartsWith("cup.obj: "), HasSubstr("no triangle")));
+  TriangleMesh nan = unit_tetrahedron();
+  nan.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal(nan),
+              AllOf(StartsWith("cup.obj: vertex 2"), HasSubstr("nan"), HasSubstr("not finite")));
+  TriangleMesh high = unit_tetrahedron();
+  high.triangles[3][1] = 4;
+  EXPECT_THAT(refusal(high),
+              AllOf(StartsWith("cup.obj: triangle 3"), HasSubstr("vertex 4"), HasSubstr("4 vertices")));
+  TriangleMesh negative = unit_tetrahedron();
+  negative.triangles[1][0] = -1;
+  EXPECT_THAT(refusal(negative), AllOf(StartsWith("cup.obj: triangle 1"), HasSubstr("vertex -1")));
+}
+
+}  // namespace
+}  // namespace phalanx
