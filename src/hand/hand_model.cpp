@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/hand/hand_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+/// x distal, z the flexion axis: right-hand frame of a digit's first joint at q = 0, in H.
+Pose base_frame(const DigitParameters& digit) {
+  const Vec3 x = digit.distal.normalized();
+  const Vec3 z = digit.dorsal.cross(x).normalized();
+  Pose pose;
+  pose.R.col(0) = x;
+  pose.R.col(1) = z.cross(x);
+  pose.R.col(2) = z;
+  pose.p = digit.base;
+  return pose;
+}
+
+void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
+  const std::string name = "hand '" + parameters.name + "': ";
+  for (int j = 0; j < kJoints; ++j) {
+    const double low = parameters.min_angle[at(j)];
+    const double high = parameters.max_angle[at(j)];
+    const double open = parameters.open_angle[at(j)];
+    if (!(std::isfinite(low) && std::isfinite(high) && low < high)) {
+      throw std::invalid_argument(name + "joint " + std::string(joint_name(j)) +
+                                  " has an empty range of motion; its minimum must be below its maximum");
+    }
+    if (!(open >= low && open <= high)) {
+      throw std::invalid_argument(name + "joint " + std::string(joint_name(j)) +
+                                  " is open outside its range of motion; move the open angle inside");
+    }
+  }
+  for (int d = 0; d < kDigits; ++d) {
+    const DigitParameters& digit = parameters.digits[at(d)];
+    bool finite = digit.base.allFinite() && digit.distal.allFinite() && digit.dorsal.allFinite();
+    for (const DhRow& row : digit.dh) {
+      finite = finite && std::isfinite(row.a) && std::isfinite(row.alpha) && std::isfinite(row.d) &&
+               std::isfinite(row.theta);
+    }
+    if (!finite || digit.distal.cross(digit.dorsal).norm() < 1e-6) {
+      throw std::invalid_argument(
+          name + "digit " + std::string(digit_name(d)) +
+          " has a number that is not finite, or parallel distal and dorsal directions");
+    }
+  }
+  for (int s = 0; s < kSegments; ++s) {
+    check_mesh(meshes[at(s)], (name + "segment " + std::string(segment_name(s))).c_str());
+  }
+}
+
+/// The mirror image in the plane x = 0, exactly: only signs change.
+Vec3 mirrored(const Vec3& v) noexcept { return {-v.x(), v.y(), v.z()}; }
+
+void mirror(DigitPose& pose) noexcept {
+  for (Pose& X : pose.segment) {
+    X.p.x() = -X.p.x();
+    X.R(0, 1) = -X.R(0, 1);
+    X.R(0, 2) = -X.R(0, 2);
+    X.R(1, 0) = -X.R(1, 0);
+    X.R(2, 0) = -X.R(2, 0);
+  }
+  for (JointAxis& joint : pose.joint) {
+    joint.axis =
+        -mirrored(joint.axis);  // an axis is a pseudovector: positive angles stay flexion and spreading
+    joint.centre = mirrored(joint.centre);
+  }
+}
+
+/// The transform of one D-H row at joint angle q, appended to X.
+Pose after_joint(const Pose& X, const DhRow& row, double q) noexcept {
+  const double ct = std::cos(row.theta + q);
+  const double st = std::sin(row.theta + q);
+  const double ca = std::cos(row.alpha);
+  const double sa = std::sin(row.alpha);
+  Pose T;
+  T.R << ct, -st * ca, st * sa,  //
+      st, ct * ca, -ct * sa,     //
+      0.0, sa, ca;
+  T.p << row.a * ct, row.a * st, row.d;
+  return X * T;
+}
+
+/// The segment's WebXR frame from the D-H frame at its far end: origin back at the joint, -Z along the link,
+/// -X the flexion axis.
+Pose segment_frame(const Pose& X_dh, const DhRow& row) noexcept {
+  Pose X;
+  X.R.col(0) = -X_dh.R.col(2);
+  X.R.col(1) = -X_dh.R.col(1);
+  X.R.col(2) = -X_dh.R.col(0);
+  X.p = X_dh.p - row.a * X_dh.R.col(0);
+  return X;
+}
+
+}  // namespace
+
+HandModel::HandModel(HandParameters parameters, Handedness handedness, const Pose& X_WH, SegmentMeshes meshes)
+    : parameters_(std::move(parameters)), handedness_(handedness), X_WH_(X_WH), meshes_(std::move(meshes)) {
+  check(parameters_, meshes_);
+  for (int d = 0; d < kDigits; ++d) {
+    const DigitParameters& digit = parameters_.digits[at(d)];
+    X_HB_[at(d)] = base_frame(digit);
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      double radius = 0.0;  // of the segment's mesh around its own joint
+      for (const Vec3& v : mesh(segment_index(d, k)).vertices) radius = std::max(radius, v.norm());
+      // Distances between successive D-H origins do not depend on the angles; the segment's own joint is k
+      // + 1.
+      for (int i = k + 1; i >= 0; --i) {
+        reach_[at(d)][at(i)][at(k)] = radius;
+        if (i > 0) radius += std::hypot(digit.dh[at(i - 1)].a, digit.dh[at(i - 1)].d);
+      }
+    }
+  }
+}
+
+int HandModel::triangle_count() const noexcept {
+  std::size_t count = 0;
+  for (const TriangleMesh& mesh : meshes_) count += mesh.triangles.size();
+  return static_cast<int>(count);
+}
+
+void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose) const noexcept {
+  const DigitParameters& chain = parameters_.digits[at(digit)];
+  Pose X = X_HB_[at(digit)];
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    pose.joint[at(i)].axis = X.R.col(2);
+    pose.joint[at(i)].centre = X.p;
+    const DhRow& row = chain.dh[at(i)];
+    X = after_joint(X, row, angle[at(i)]);
+    if (i > 0) pose.segment[at(i - 1)] = segment_frame(X, row);
+  }
+  if (handedness_ == Handedness::kLeft) mirror(pose);
+  for (Pose& segment : pose.segment) segment = X_WH_ * segment;
+  for (JointAxis& joint : pose.joint) {
+    joint.axis = X_WH_.R * joint.axis;
+    joint.centre = X_WH_ * joint.centre;
+  }
+}
+
+void HandModel::poses(const JointArray& angle, HandPoses& poses) const noexcept {
+  for (int d = 0; d < kDigits; ++d) digit_pose(d, digit_angles(angle, d), poses.digit[at(d)]);
+}
+
+DigitAngles digit_angles(const JointArray& angle, int digit) noexcept {
+  DigitAngles out{};
+  for (int i = 0; i < kJointsPerDigit; ++i) out[at(i)] = angle[at(joint_index(digit, i))];
+  return out;
+}
+
+PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept {
+  PointJacobian J;
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    const JointAxis& joint = pose.joint[at(i)];
+    const bool moves = i < joints_that_move(k);
+    J.linear[at(i)] = moves ? Vec3(joint.axis.cross(p_W - joint.centre)) : Vec3(Vec3::Zero());
+    J.angular[at(i)] = moves ? joint.axis : Vec3(Vec3::Zero());
+  }
+  return J;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/hand/hand_model.h"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+using test::at;
+using test::simple_hand;
+using test::simple_parameters;
+
+JointArray random_angles(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> u(-0.5, 1.8);
+  JointArray q{};
+  for (double& angle : q) angle = u(random);
+  return q;
+}
+
+Pose somewhere(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  return Pose{rotation_about(Vec3(u(random), u(random), u(random)).normalized(), 3.0 * u(random)),
+              Vec3(u(random), u(random), u(random))};
+}
+
+/// Independent kinematics: a digit as a product of homogeneous 4x4 transforms written from the hand's
+/// description (hinges about -X for flexion and +Y for abduction in the segment's own WebXR frame), without
+/// any D-H table.
+Eigen::Matrix4d rotate(const Vec3& axis, double angle) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  Mat3 K;
+  K << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  T.topLeftCorner<3, 3>() += std::sin(angle) * K + (1.0 - std::cos(angle)) * K * K;  // Rodrigues
+  return T;
+}
+Eigen::Matrix4d translate(const Vec3& v) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T.topRightCorner<3, 1>() = v;
+  return T;
+}
+std::array<Eigen::Matrix4d, 3> homogeneous_chain(const DigitParameters& digit, const DigitAngles& q) {
+  const Vec3 z = -digit.distal.normalized();
+  const Vec3 x = digit.dorsal.cross(z).normalized();
+  Eigen::Matrix4d T = translate(digit.base);
+  T.col(0).head<3>() = x;
+  T.col(1).head<3>() = z.cross(x);
+  T.col(2).head<3>() = z;
+  T = T * rotate(-Vec3::UnitX(), q[0]) * rotate(Vec3::UnitY(), q[1]);
+  std::array<Eigen::Matrix4d, 3> out;
+  out[0] = T;
+  T = T * translate(Vec3(0, 0, -digit.dh[1].a)) * rotate(-Vec3::UnitX(), q[2]);
+  out[1] = T;
+  T = T * translate(Vec3(0, 0, -digit.dh[2].a)) * rotate(-Vec3::UnitX(), q[3]);
+  out[2] = T;
+  return out;
+}
+
+TEST(HandModel, ForwardKinematicsEqualTheProductOfHomogeneousTransforms) {
+  std::mt19937_64 random(1);
+  for (int n = 0; n < 200; ++n) {
+    const Pose X_WH = somewhere(random);
+    const HandModel hand = simple_hand(Handedness::kRight, X_WH, 800);
+    const JointArray q = random_angles(random);
+    HandPoses poses;
+    hand.poses(q, poses);
+    Eigen::Matrix4d W = translate(X_WH.p);
+    W.topLeftCorner<3, 3>() = X_WH.R;
+    for (int d = 0; d < kDigits; ++d) {
+      const auto expected =
+          homogeneous_chain(hand.parameters().digits[static_cast<std::size_t>(d)], digit_angles(q, d));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Matrix4d T = W * expected[k];
+        const Pose& X = poses.digit[static_cast<std::size_t>(d)].segment[k];
+        EXPECT_LT((T.topLeftCorner<3, 3>() - X.R).norm(), 1e-13) << "seed 1 case " << n;
+        EXPECT_LT((T.topRightCorner<3, 1>() - X.p).norm(), 1e-13) << "seed 1 case " << n;
+      }
+    }
+  }
+}
+
+TEST(HandModel, AFlexedFingerIsWhereTrigonometryPutsIt) {
+  const HandModel hand = simple_hand();
+  HandPoses poses;
+  hand.poses(test::index_angles(0.5, 0.4, 0.3), poses);
+  const auto& index = poses.digit[test::kIndex].segment;
+  const Vec3 pip(0.0, -0.040 * std::sin(0.5), -0.040 * std::cos(0.5));
+  const Vec3 dip = pip + Vec3(0.0, -0.025 * std::sin(0.9), -0.025 * std::cos(0.9));
+  EXPECT_LT((index[1].p - pip).norm(), 1e-15);
+  EXPECT_LT((index[2].p - dip).norm(), 1e-15);
+  EXPECT_LT(
+      (index[2] * Vec3(0, 0, -0.02) - dip - Vec3(0.0, -0.02 * std::sin(1.2), -0.02 * std::cos(1.2))).norm(),
+      1e-15);
+}
+
+TEST(HandModel, JacobiansEqualFiniteDifferences) {
+  std::mt19937_64 random(2);
+  const HandModel hand = simple_hand(Handedness::kLeft, somewhere(random), 800);
+  for (int n = 0; n < 50; ++n) {
+    const JointArray q = random_angles(random);
+    const Vec3 p_S(0.003, -0.004, -0.01);
+    for (int d = 0; d < kDigits; ++d) {
+      DigitPose pose;
+      hand.digit_pose(d, digit_angles(q, d), pose);
+      for (int k = 0; k < kSegmentsPerDigit; ++k) {
+        const PointJacobian J = point_jacobian(pose, k, pose.segment[static_cast<std::size_t>(k)] * p_S);
+        for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
+          constexpr double h = 1e-6;
+          DigitAngles up = digit_angles(q, d);
+          DigitAngles down = up;
+          up[i] += h;
+          down[i] -= h;
+          DigitPose a;
+          DigitPose b;
+          hand.digit_pose(d, up, a);
+          hand.digit_pose(d, down, b);
+          const Pose& Xa = a.segment[static_cast<std::size_t>(k)];
+          const Pose& Xb = b.segment[static_cast<std::size_t>(k)];
+          EXPECT_LT(((Xa * p_S - Xb * p_S) / (2.0 * h) - J.linear[i]).norm(), 1e-9);
+          const Mat3 spin =
+              (Xa.R - Xb.R) / (2.0 * h) * pose.segment[static_cast<std::size_t>(k)].R.transpose();
+          EXPECT_LT((Vec3(spin(2, 1), spin(0, 2), spin(1, 0)) - J.angular[i]).norm(), 1e-8);
+        }
+      }
+    }
+  }
+}
+
+TEST(HandModel, ALeftHandMirrorsARightHandExactly) {
+  std::mt19937_64 random(3);
+  const HandModel right = simple_hand(Handedness::kRight);
+  const HandModel left = simple_hand(Handedness::kLeft);
+  const Vec3 mirror(-1.0, 1.0, 1.0);
+  for (int n = 0; n < 50; ++n) {
+    const JointArray q = random_angles(random);
+    HandPoses r;
+    HandPoses l;
+    right.poses(q, r);
+    left.poses(q, l);
+    for (int s = 0; s < kSegments; ++s) {
+      const bool palm = s == kPalm;
+      const std::size_t d = static_cast<std::size_t>(palm ? 0 : digit_of_segment(s));
+      const std::size_t k = static_cast<std::size_t>(s % kSegmentsPerDigit);
+      const Pose X_r = palm ? right.palm_pose() : r.digit[d].segment[k];
+      const Pose X_l = palm ? left.palm_pose() : l.digit[d].segment[k];
+      for (std::size_t v = 0; v < right.mesh(s).vertices.size(); ++v) {
+        const Vec3 expected = mirror.cwiseProduct(X_r * right.mesh(s).vertices[v]);
+        EXPECT_EQ(expected, X_l * left.mesh(s).vertices[v]);  // to the last bit
+      }
+    }
+  }
+  for (int s = 0; s < kSegments; ++s) EXPECT_GT(signed_volume(left.mesh(s)), 0.0) << segment_name(s);
+}
+
+TEST(HandModel, ReachBoundsEveryPointOfTheSegmentAtEveryAngle) {
+  std::mt19937_64 random(4);
+  const HandModel hand = simple_hand();
+  for (int n = 0; n < 100; ++n) {
+    const JointArray q = random_angles(random);
+    for (int d = 0; d < kDigits; ++d) {
+      DigitPose pose;
+      hand.digit_pose(d, digit_angles(q, d), pose);
+      for (int k = 0; k < kSegmentsPerDigit; ++k) {
+        for (int i = 0; i < joints_that_move(k); ++i) {
+          for (const Vec3& v : hand.mesh(segment_index(d, k)).vertices) {
+            const double r = (pose.segment[static_cast<std::size_t>(k)] * v -
+                              pose.joint[static_cast<std::size_t>(i)].centre)
+                                 .norm();
+            ASSERT_LE(r, hand.reach(d, i, k) + 1e-15);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(HandModel, EverySegmentIsOneClosedMeshAndTheCountIsNearWhatWasAsked) {
+  for (const int asked : {800, 2250, 20000}) {
+    const HandModel hand = simple_hand(Handedness::kRight, {}, asked);
+    EXPECT_NEAR(hand.triangle_count(), asked, 0.1 * asked);
+    for (int s = 0; s < kSegments; ++s) {
+      EXPECT_TRUE(is_closed(hand.mesh(s))) << segment_name(s);
+      EXPECT_GT(signed_volume(hand.mesh(s)), 0.0) << segment_name(s);
+    }
+  }
+}
+
+TEST(HandModel, RefusesAnEmptyRangeOfMotion) {
+  HandParameters bad = simple_parameters();
+  bad.max_angle[5] = bad.min_angle[5];
+  EXPECT_THAT([&] { (void)make_hand_model(bad, Handedness::kRight, {}, 2250); },
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("index_mcp_abduction")));
+}
+
+TEST(Joints, NamesAndNumbersAgree) {
+  EXPECT_EQ(joint_name(joint_index(1, 0)), "index_mcp_flexion");
+  EXPECT_EQ(joint_name(joint_index(0, 1)), "thumb_cmc_abduction");
+  EXPECT_EQ(joint_name(19), "little_dip_flexion");
+  EXPECT_EQ(segment_name(segment_index(1, 0)), "index-finger-phalanx-proximal");
+  EXPECT_EQ(segment_name(kPalm), "wrist");
+  for (int j = 0; j < kJoints; ++j) EXPECT_EQ(find_joint(joint_name(j)), j);
+  for (int s = 0; s < kSegments; ++s) EXPECT_EQ(find_segment(segment_name(s)), s);
+  EXPECT_FALSE(find_joint("index_mcp").has_value());
+}
+
+}  // namespace
+}  // namespace phalanx
