@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace phalanx {
+
+/// How the GDP is found.
+enum class GdpMethod {
+  kContinuous,  ///< first time of contact along the path, docs/architecture.md "The GDP, exactly"
+  kTrajectory,  ///< S1 fig. 4 to the letter: sampled test, back through the recorded angles
+};
+
+/// Where a contact's depth is counted from.
+enum class DepthOrigin {
+  kContinuous,  ///< a contact that begins while a nearer segment pushes starts from zero depth
+  kS1,          ///< S1's formula as printed: always from the GDP
+};
+
+/// The direction of the force.
+enum class ForceNormal {
+  kInterpolated,  ///< the object's normal, interpolated over smooth edges, within 30 degrees of n_c
+  kContact,       ///< n_c, from the object to the segment at closest approach
+};
+
+struct ContactParameters {
+  double margin = 50e-6;        ///< clearance of a stopped segment [m], > 0
+  double slid_distance = 5e-3;  ///< tangential offset beyond which a contact reports `slid` [m]
+  GdpMethod method = GdpMethod::kContinuous;
+  DepthOrigin depth = DepthOrigin::kContinuous;
+  ForceNormal normal = ForceNormal::kInterpolated;
+};
+
+}  // namespace phalanx

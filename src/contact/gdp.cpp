@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/contact/gdp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "contact/containment.h"
+#include "contact/gdp_digit.h"
+
+namespace phalanx {
+namespace {
+
+/// n, turned towards n_c until it is within 30 degrees of it.                              "The GDP,
+/// exactly": normal of the force
+Vec3 within_cone(const Vec3& n, const Vec3& n_c) noexcept {
+  constexpr double kCos = 0.86602540378443865;  // 30 degrees
+  constexpr double kSin = 0.5;
+  const double along = n.dot(n_c);
+  if (along >= kCos) return n;
+  const Vec3 across = n - along * n_c;
+  const double length = across.norm();
+  if (!(length > 1e-12)) return n_c;
+  return kCos * n_c + (kSin / length) * across;
+}
+
+std::string millimetres(double metres) { return std::to_string(metres * 1e3) + " mm"; }
+
+}  // namespace
+
+void AngleRing::push(const DigitAngles& angle) noexcept {
+  angle_[idx(next_)] = angle;
+  next_ = (next_ + 1) % kCapacity;
+  size_ = std::min(size_ + 1, kCapacity);
+}
+
+const DigitAngles& AngleRing::back(int age) const noexcept {
+  return angle_[idx((next_ - 1 - age + 2 * kCapacity) % kCapacity)];
+}
+
+SegmentTrees make_segment_trees(const HandModel& hand) {
+  SegmentTrees trees;
+  for (int s = 0; s < kSegments; ++s) trees[idx(s)] = TriangleTree(hand.mesh(s), 1);
+  return trees;
+}
+
+GdpState::GdpState(const ContactModel& model)
+    : angle(model.hand.parameters().open_angle), hcp_angle(angle), placed(model.trees) {
+  model.hand.poses(angle, poses);
+  const double margin = model.parameters.margin;
+  for (int s = 0; s < kSegments; ++s) {
+    const bool palm = s == kPalm;
+    const Pose& X = palm ? model.hand.palm_pose()
+                         : poses.digit[idx(digit_of_segment(s))].segment[idx(s % kSegmentsPerDigit)];
+    placed[idx(s)].place(model.trees[idx(s)], X);
+    const std::string name =
+        std::string(palm ? "the palm (" : "the open hand (") + std::string(segment_name(s)) + ")";
+    const std::string remedy =
+        "; move the object or the hand (objects.N.position_mm, hand.position_mm) so that they are apart";
+    const double clearance = distance(placed[idx(s)], model.object.tree(), 2.0 * margin);
+    if (!(clearance > 0.0) || one_contains_the_other(model.hand.mesh(s), X, model.object.mesh())) {
+      throw std::invalid_argument(name + " goes through the object" + remedy);
+    }
+    if (!palm && clearance <= margin) {
+      throw std::invalid_argument(name + " is " + millimetres(clearance) +
+                                  " from the object, within the margin of " + millimetres(margin) + remedy);
+    }
+    if (palm && clearance <= margin) {
+      const ContactPatch patch = contact_patch(placed[idx(s)], model.object, 2.0 * margin);
+      ContactRecord& touching = record[idx(s)];
+      touching.active = true;
+      touching.p_S = X.inverse() * patch.on_segment;
+      touching.p_gdp = touching.p_hcp = patch.on_segment;
+      touching.n_c = touching.force_normal = patch.direction;
+    }
+  }
+}
+
+void measure(ContactRecord& record, const Pose& gdp, const Pose& hcp) noexcept {
+  record.p_gdp = gdp * record.p_S;
+  record.p_hcp = hcp * record.p_S;
+  record.depth = (record.p_gdp - record.p_hcp).dot(record.n_c) - record.offset;
+}
+
+int joints_held(GdpState& state, const DigitTick& tick) noexcept {
+  int held = 0;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    ContactRecord& record = record_of(state, tick, k);
+    if (!record.active) continue;
+    measure(record, tick.pose.segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+    if (record.depth > 0.0) held = joints_that_move(k);
+  }
+  return held;
+}
+
+void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
+                 GdpState& state) noexcept {
+  const ContactPatch patch =
+      contact_patch(state.placed[idx(segment_index(tick.digit, k))], model.object, cap);
+  if (patch.pairs == 0) return;
+  const Pose& gdp = tick.pose.segment[idx(k)];
+  ContactRecord record;
+  record.active = true;
+  record.p_S = gdp.R.transpose() * (patch.on_segment - gdp.p);
+  record.n_c = patch.direction;
+  record.force_normal = model.parameters.normal == ForceNormal::kContact
+                            ? patch.direction
+                            : within_cone(patch.object_normal, patch.direction);
+  record.silent = state.inside[idx(tick.digit)];
+  if (model.parameters.depth == DepthOrigin::kContinuous && k > 0) {
+    // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes.
+    DigitAngles hcp_angle{};
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      hcp_angle[idx(i)] = tick.hcp_from[idx(i)] + s * (tick.hcp[idx(i)] - tick.hcp_from[idx(i)]);
+    }
+    DigitPose hcp;
+    model.hand.digit_pose(tick.digit, hcp_angle, hcp);
+    bool pushed = false;
+    for (int nearer = 0; nearer < k; ++nearer) {
+      ContactRecord other = record_of(state, tick, nearer);
+      if (!other.active) continue;
+      measure(other, tick.pose.segment[idx(nearer)], hcp.segment[idx(nearer)]);
+      pushed = pushed || other.depth > 0.0;
+    }
+    if (pushed) {
+      measure(record, gdp, hcp.segment[idx(k)]);
+      record.offset = record.depth;
+    }
+  }
+  record_of(state, tick, k) = record;
+}
+
+void place_digit(const ContactModel& model, int first, DigitTick& tick, GdpState& state) noexcept {
+  model.hand.digit_pose(tick.digit, tick.angle, tick.pose);
+  for (int k = first; k < kSegmentsPerDigit; ++k) {
+    const std::size_t s = idx(segment_index(tick.digit, k));
+    state.placed[s].place(model.trees[s], tick.pose.segment[idx(k)]);
+  }
+}
+
+Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const HandPoses& hcp,
+                   GdpState& state) noexcept {
+  Status status = Status::kOk;
+  for (int d = 0; d < kDigits; ++d) {
+    DigitTick tick{.digit = d,
+                   .hcp_from = digit_angles(state.started ? state.hcp_angle : hcp_angle, d),
+                   .hcp = digit_angles(hcp_angle, d),
+                   .hcp_pose = hcp.digit[idx(d)],
+                   .angle = digit_angles(state.angle, d),
+                   .pose = state.poses.digit[idx(d)]};
+    tick.fixed = joints_held(state, tick);
+    if (model.parameters.method == GdpMethod::kContinuous) {
+      advance_continuous(model, tick, state);
+    } else {
+      advance_trajectory(model, tick, state);
+    }
+    model.hand.digit_pose(d, tick.angle, state.poses.digit[idx(d)]);
+    for (int i = 0; i < kJointsPerDigit; ++i) state.angle[idx(joint_index(d, i))] = tick.angle[idx(i)];
+
+    const bool clear = tick.angle == tick.hcp;
+    state.inside[idx(d)] = !clear && (state.inside[idx(d)] || !state.started);
+    if (state.inside[idx(d)]) tick.status |= Status::kStartInside;
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      ContactRecord& record = record_of(state, tick, k);
+      if (!record.active) continue;
+      measure(record, state.poses.digit[idx(d)].segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+      record.silent = state.inside[idx(d)];
+      const Vec3 apart = record.p_hcp - record.p_gdp;
+      const double slid = (apart - apart.dot(record.n_c) * record.n_c).norm();
+      if (slid > model.parameters.slid_distance) tick.status |= Status::kSlid;
+    }
+    status |= tick.status;
+  }
+  state.hcp_angle = hcp_angle;
+  state.started = true;
+  return status;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What both ways of finding the GDP share: one digit's view of the state.
+#pragma once
+
+#include "phalanx/contact/gdp.h"
+#include "phalanx/contact/proximity.h"
+
+namespace phalanx {
+
+inline constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
+
+/// One digit while its tick is being worked out.
+struct DigitTick {
+  int digit;
+  DigitAngles hcp_from;  ///< q_hcp of the last tick [rad]
+  DigitAngles hcp;       ///< q_hcp of this tick [rad]
+  const DigitPose& hcp_pose;
+  DigitAngles angle;  ///< q_gdp [rad]
+  DigitPose pose;     ///< at `angle`
+  int fixed = 0;      ///< joints counted from the palm that may not move any more in this tick
+  Status status = Status::kOk;
+};
+
+[[nodiscard]] inline ContactRecord& record_of(GdpState& state, const DigitTick& tick, int k) noexcept {
+  return state.record[idx(segment_index(tick.digit, k))];
+}
+
+/// Depth and points of a record between the pose `gdp` and the pose `hcp` of its segment.
+void measure(ContactRecord& record, const Pose& gdp, const Pose& hcp) noexcept;
+
+/// The joints that a pushing record (d > 0) holds: up to the most distal such segment.       "The GDP,
+/// exactly", 1
+[[nodiscard]] int joints_held(GdpState& state, const DigitTick& tick) noexcept;
+
+/// Gives the segment k a record of its contact at `tick.pose`, if anything is closer than `cap`.
+/// @param s  when in the tick this happens: 0 at its start, 1 at its end; decides the offset d0
+void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
+                 GdpState& state) noexcept;
+
+/// Sets tick.pose from tick.angle and the placed trees of the segments from `first` on.
+void place_digit(const ContactModel& model, int first, DigitTick& tick, GdpState& state) noexcept;
+
+/// Moves one digit. "The GDP, exactly", 2-4.
+void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
+
+/// Moves one digit as S1 fig. 4 says.
+void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
+
+}  // namespace phalanx

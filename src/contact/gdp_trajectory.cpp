@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// S1's literal method, as the papers' row and as a comparator: samples the pose of each tick and can step
+// over what is thin.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/gdp_digit.h"
+
+namespace phalanx {
+namespace {
+
+/// Whether the segment k, at tick.pose, touches the object.
+bool touches(const ContactModel& model, const DigitTick& tick, int k, const GdpState& state) noexcept {
+  const double cap = std::nextafter(model.parameters.margin, 1.0);
+  return distance(state.placed[idx(segment_index(tick.digit, k))], model.object.tree(), cap) < cap;
+}
+
+/// The pose of the digit with the joints from tick.fixed on at `angle`.
+void pose_at(const ContactModel& model, const DigitAngles& angle, DigitTick& tick, GdpState& state) noexcept {
+  std::copy(angle.begin() + tick.fixed, angle.end(), tick.angle.begin() + tick.fixed);
+  place_digit(model, 0, tick, state);
+}
+
+}  // namespace
+
+void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
+  AngleRing& recorded = state.recorded[idx(tick.digit)];
+  const DigitAngles before = tick.angle;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    // What no pushing record holds follows the HCP, and its record is gone.
+    if (joints_that_move(k) > tick.fixed) record_of(state, tick, k).active = false;
+  }
+  while (tick.fixed < kJointsPerDigit) {
+    pose_at(model, tick.hcp, tick, state);
+    int hit = -1;  // S1 fig. 4: distal first, then middle, then proximal
+    for (int k = kSegmentsPerDigit - 1; k >= 0 && hit < 0; --k) {
+      if (joints_that_move(k) > tick.fixed && touches(model, tick, k, state)) hit = k;
+    }
+    if (hit < 0) break;
+
+    bool found = false;
+    for (int age = 0; age < recorded.size() && !found; ++age) {
+      pose_at(model, recorded.back(age), tick, state);
+      found = !touches(model, tick, hit, state);
+    }
+    if (!found) {
+      pose_at(model, before, tick, state);
+      tick.status |= Status::kTrajectoryExhausted;
+    }
+    // The point of contact is where the two are closest at that pose, however far apart a tick has left them.
+    make_record(model, tick, hit, 1.0, 1.0, state);
+    tick.fixed = joints_that_move(hit);
+  }
+  recorded.push(tick.hcp);
+}
+
+}  // namespace phalanx
