@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "phalanx/force/force_parameters.h"
+
+namespace phalanx {
+
+/// Magnitude of one contact's force [N], >= 0: how hard the object pushes the finger out. 0 for d <= 0.
+///   Hooke              k d                                        S1 eq. (1), S2 eq. (1)
+///   Kelvin-Voigt       max(0, k d + b v)
+///   Hunt-Crossley      max(0, K d^n (1 + a v)),  K = k (1 mm)^(1-n), so that F = k d at d = 1 mm, v = 0
+///   Duffing            k d + k3 d^3                               Cui's spring, as S2 cites it
+///   linear-then-cubic  k d for d <= d1, else k d + k3 (d - d1)^3  Stepp's two pieces; continuous with its
+///   slope
+/// @param law    parameters, SI
+/// @param depth  d [m]
+/// @param speed  v = closing speed of the contact's material point on the HCP, low-passed [m/s]
+/// @returns finite for finite arguments
+/// Real-time: O(1), no allocation, lock, throw or I/O.
+[[nodiscard]] double law_force(const ForceLawParameters& law, double depth, double speed) noexcept;
+
+/// Gain of one step of a first-order low-pass of corner `corner_hz` at period T [s], discretised exactly: 1 -
+/// exp(-2 pi f T). Set-up or real-time.
+[[nodiscard]] double lowpass_gain(double corner_hz, double period) noexcept;
+
+}  // namespace phalanx

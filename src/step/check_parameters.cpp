@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step/check_parameters.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace phalanx {
+namespace {
+
+constexpr double kAny = std::numeric_limits<double>::max();
+constexpr double kTiny = std::numeric_limits<double>::min();
+
+void within(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return;  // false for NaN
+  throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) + " is outside " +
+                              std::to_string(low) + " .. " +
+                              (high == kAny ? "any finite number" : std::to_string(high)));
+}
+
+}  // namespace
+
+void check_parameters(const HapticModel& model) {
+  within("rate_hz", model.rate_hz, 1.0, 4000.0);
+  within("contact.margin [m]", model.contact.margin, 1e-6, 1e-3);
+  within("contact.slid_distance [m]", model.contact.slid_distance, 0.0, kAny);
+  const ForceLawParameters& law = model.force;
+  within("force.stiffness [N/m]", law.stiffness, 0.0, 1e6);
+  within("force.damping [N s/m]", law.damping, 0.0, 1e6);
+  within("force.velocity_lowpass_hz", law.velocity_lowpass_hz, 1e-3, 1e6);
+  within("force.hunt_crossley_exponent", law.hunt_crossley_exponent, 1.0, 5.0);
+  within("force.hunt_crossley_damping [s/m]", law.hunt_crossley_damping, 0.0, 1e3);
+  within("force.cubic [N/m^3]", law.cubic, 0.0, 1e15);
+  within("force.linear_depth [m]", law.linear_depth, 0.0, 1.0);
+  if (model.smoothing.enabled) {
+    within("-smoothing.min_rate [N/s]", -model.smoothing.min_rate, kTiny,
+           std::numeric_limits<double>::infinity());
+    within("smoothing.max_rate [N/s]", model.smoothing.max_rate, kTiny,
+           std::numeric_limits<double>::infinity());
+  }
+  const LimitParameters& limits = model.limits;
+  if (limits.fingertip_force_enabled)
+    within("limits.fingertip_force [N]", limits.fingertip_force, kTiny, 15.0);
+  if (limits.joint_torque_enabled) within("limits.joint_torque [Nm]", limits.joint_torque, kTiny, 5.0);
+  if (limits.torque_rate_enabled) within("limits.torque_rate [Nm/s]", limits.torque_rate, kTiny, 1e4);
+  within("limits.joint_speed [rad/s]", limits.joint_speed, kTiny, 1e4);
+}
+
+}  // namespace phalanx

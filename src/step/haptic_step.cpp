@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/step/haptic_step.h"
+
+#include "step/check_parameters.h"
+
+namespace phalanx {
+namespace {
+
+ContactModel contact_model(const HapticModel& model) noexcept {
+  return {model.hand, model.trees, model.object, model.contact};
+}
+
+/// Writes down what the stages have left behind.
+void record(const HapticModel& model, const Sample& sample, const HandPoses& hcp, const GdpState& gdp,
+            const ForceState& force, Status status, Snapshot& out) noexcept {
+  ++out.tick;
+  out.time_s = sample.time_s;
+  out.status = status;
+  out.hcp_angle = gdp.hcp_angle;
+  out.gdp_angle = gdp.angle;
+  out.torque = force.torque;
+  for (std::size_t s = 0; s < kSegments; ++s) {
+    const bool palm = s == kPalm;
+    const std::size_t d = s / kSegmentsPerDigit;
+    const std::size_t k = s % kSegmentsPerDigit;
+    out.hcp_pose[s] = palm ? model.hand.palm_pose() : hcp.digit[d].segment[k];
+    out.gdp_pose[s] = palm ? model.hand.palm_pose() : gdp.poses.digit[d].segment[k];
+
+    const ContactRecord& contact = gdp.record[s];
+    const SegmentForce& sent = force.segment[s];
+    SegmentSnapshot& segment = out.segment[s];
+    segment = {};
+    segment.contact = contact.active;
+    segment.force_raw = sent.raw;
+    segment.force = sent.sent;
+    if (contact.active) {
+      segment.depth = contact.depth > 0.0 ? contact.depth : 0.0;
+      segment.point = contact.p_gdp;
+      segment.normal = contact.force_normal;
+      const Vec3 apart = contact.p_hcp - contact.p_gdp;
+      segment.slid = (apart - apart.dot(contact.n_c) * contact.n_c).norm();
+    } else if (sent.sent > 0.0) {
+      segment.point = out.gdp_pose[s] * sent.p_S;
+      segment.normal = sent.normal;
+    }
+  }
+}
+
+}  // namespace
+
+HapticState::HapticState(const HapticModel& model)
+    : guard_((check_parameters(model), model.hand.parameters().open_angle)), gdp_(contact_model(model)) {
+  model.hand.poses(model.hand.parameters().open_angle, hcp_);
+  force_.hcp_before = hcp_;
+  record(model, Sample{}, hcp_, gdp_, force_, Status::kOk, snapshot_);
+  snapshot_.tick = 0;
+}
+
+Status step(const HapticModel& model, const Sample& sample, HapticState& state) noexcept {
+  const double period = 1.0 / model.rate_hz;
+  Status status = state.guard_.accept(sample, model.hand.parameters(), model.limits, period);
+  model.hand.poses(state.guard_.angle(), state.hcp_);
+  status |= advance_gdp(contact_model(model), state.guard_.angle(), state.hcp_, state.gdp_);
+  status |= compute_command({model.hand, model.force, model.smoothing, model.limits, period}, state.gdp_,
+                            state.hcp_, state.force_);
+  record(model, sample, state.hcp_, state.gdp_, state.force_, status, state.snapshot_);
+  return status;
+}
+
+}  // namespace phalanx

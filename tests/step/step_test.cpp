@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/step/haptic_step.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "phalanx/mesh/primitives.h"
+#include "support/count_allocations.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+using test::at;
+using test::index_angles;
+using test::index_gdp;
+using test::index_segment;
+using test::index_torque;
+using test::moved;
+using test::Runner;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A slab 20 mm below the straight index finger.
+HapticModel floor_model() {
+  return HapticModel(test::simple_hand(),
+                     ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
+}
+/// A ball under the proximal phalanx, which the whole finger can close around.
+HapticModel ball_model() {
+  return HapticModel(test::simple_hand(),
+                     ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
+}
+
+TEST(Step, FreeMotionGivesNoTorqueAnywhere) {
+  const HapticModel model = ball_model();
+  Runner hand(model);
+  const Snapshot& s = hand.move(index_angles(-0.4, 0.3, 0.2), 20);
+  for (const double torque : s.torque) EXPECT_EQ(torque, 0.0);
+  EXPECT_EQ(s.status, Status::kOk);
+}
+
+TEST(Step, TorquesAreTheVirtualWorkOfTheForces) {
+  HapticModel model = ball_model();
+  test::turn_limits_off(model);
+  Runner hand(model);
+  const Snapshot& s = hand.move(index_angles(0.8, 1.3, 1.5, 0.05), 100);
+  ASSERT_TRUE(index_segment(s, 0).contact && index_segment(s, 1).contact);
+  DigitPose pose;
+  model.hand.digit_pose(1, digit_angles(s.gdp_angle, 1), pose);
+  for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
+    double work = 0.0;  // of all forces on the finger, for a virtual turn of joint i: sum J' f
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const SegmentSnapshot& contact = index_segment(s, k);
+      work += point_jacobian(pose, k, contact.point).linear[i].dot(contact.force * contact.normal);
+    }
+    EXPECT_NEAR(index_torque(s, static_cast<int>(i)), work, 1e-15);
+  }
+  EXPECT_NE(index_torque(s, 1), 0.0) << "abduction carries torque too";
+}
+
+TEST(Step, ALeftHandFeelsTheMirrorImageOfARightHand) {
+  HapticModel right = ball_model();
+  TriangleMesh mirrored = right.object.mesh();
+  for (Vec3& v : mirrored.vertices) v.x() = -v.x();
+  for (Triangle& t : mirrored.triangles) std::swap(t[1], t[2]);
+  HapticModel left(test::simple_hand(Handedness::kLeft), ObjectModel(mirrored));
+  Runner r(right);
+  Runner l(left);
+  for (int n = 0; n <= 60; ++n) {
+    const JointArray q = index_angles(0.012 * n, 0.02 * n, 0.01 * n, 0.002 * n);
+    const Snapshot& a = r.tick(q);
+    const Snapshot& b = l.tick(q);
+    for (std::size_t j = 0; j < kJoints; ++j)
+      ASSERT_NEAR(a.torque[j], b.torque[j], 1e-9) << joint_name(static_cast<int>(j));
+  }
+  EXPECT_GT(std::abs(index_torque(r.now(), 0)), 1e-3);
+}
+
+TEST(Step, LimitsAreOnByDefault) {
+  HapticModel model = floor_model();
+  model.force.stiffness = 5000.0;
+  Runner hand(model);
+  double last = 0.0;
+  bool limited = false;
+  for (int n = 0; n < 400; ++n) {
+    const Snapshot& s = hand.tick(index_angles(std::min(1.5, 0.01 * n)));
+    EXPECT_LE(index_segment(s, 2).force, 5.0);
+    EXPECT_LE(std::abs(index_torque(s, 0)), 0.5);
+    EXPECT_LE(std::abs(index_torque(s, 0) - last), 10.0 / 200.0 + 1e-15);
+    last = index_torque(s, 0);
+    limited = limited || has(s.status, Status::kForceLimited);
+  }
+  EXPECT_TRUE(limited);
+  EXPECT_NEAR(index_segment(hand.now(), 2).force, 5.0, 1e-12);
+  EXPECT_GT(index_segment(hand.now(), 2).force_raw, 100.0);
+}
+
+TEST(Step, TheCapHoldsForTheVectorSumOfADigit) {
+  HapticModel model = ball_model();
+  model.force.stiffness = 3000.0;
+  Runner hand(model);
+  double largest = 0.0;
+  int contacts = 0;
+  for (int n = 0; n <= 300; ++n) {
+    const double close = n <= 150 ? n / 150.0 : (300 - n) / 150.0;
+    const Snapshot& s = hand.tick(index_angles(1.0 * close, 1.6 * close, 1.6 * close));
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      sum += index_segment(s, k).force * index_segment(s, k).normal;
+      contacts += index_segment(s, k).contact ? 1 : 0;
+    }
+    largest = std::max(largest, sum.norm());
+  }
+  EXPECT_GT(contacts, 100);
+  EXPECT_LE(largest, 5.0 + 1e-12);
+  EXPECT_GT(largest, 4.9);
+}
+
+TEST(Step, TheTorqueLimitAndItsRateActAlone) {
+  HapticModel model = floor_model();
+  model.force.stiffness = 5000.0;
+  model.smoothing.enabled = false;
+  model.limits.fingertip_force_enabled = false;
+  model.limits.joint_torque = 0.3;
+  Runner hand(model);
+  double last = 0.0;
+  int rate_limited = 0;
+  for (int n = 0; n < 100; ++n) {
+    const Snapshot& s = hand.tick(index_angles(std::min(1.0, 0.02 * n)));
+    EXPECT_LE(std::abs(index_torque(s, 0)), 0.3);
+    EXPECT_LE(std::abs(index_torque(s, 0) - last), 0.05 + 1e-15);
+    rate_limited += has(s.status, Status::kTorqueRateLimited) ? 1 : 0;
+    last = index_torque(s, 0);
+  }
+  EXPECT_NEAR(last, -0.3, 1e-15) << "the floor opens the finger: against flexion";
+  EXPECT_GE(rate_limited, 5);
+  EXPECT_TRUE(has(hand.now().status, Status::kTorqueLimited));
+}
+
+TEST(Step, SmoothingSurvivesAContactThatHops) {
+  // Press with the fingertip, then curl so that another point of the same segment touches: the force sent
+  // never jumps.
+  HapticModel model = floor_model();
+  model.limits.joint_speed = 1e4;
+  Runner hand(model);
+  hand.move(index_angles(0.5), 60);
+  hand.move(index_angles(0.5), 60);
+  double last = index_segment(hand.now(), 2).force;
+  ASSERT_GT(last, 1.0);
+  Vec3 first_point = index_segment(hand.now(), 2).point;
+  double moved_by = 0.0;
+  for (int n = 0; n < 120; ++n) {
+    const double lift = n < 40 ? 0.5 - 0.5 * n / 40.0 : 0.5 * (n - 40) / 80.0;
+    const SegmentSnapshot& tip = index_segment(hand.tick(index_angles(lift, 0.0, n < 40 ? 0.0 : 0.6)), 2);
+    EXPECT_LE(std::abs(tip.force - last), 0.1 + 1e-12) << "tick " << n;
+    last = tip.force;
+    if (tip.contact) moved_by = std::max(moved_by, (tip.point - first_point).norm());
+  }
+  EXPECT_GT(moved_by, 1e-3) << "the contact did hop";
+}
+
+TEST(Step, WithoutContactTheForceDecaysByTheLowerBoundAtItsLastPoint) {
+  HapticModel model = floor_model();
+  model.smoothing = {.enabled = true, .min_rate = -10.0, .max_rate = 40.0};  // 0.05 N down, 0.2 N up a step
+  model.limits.joint_speed = 1e4;
+  Runner hand(model);
+  hand.move(index_angles(0.6), 60);
+  const double force = index_segment(hand.move(index_angles(0.6), 60), 2).force;
+  const Vec3 normal = index_segment(hand.now(), 2).normal;
+  ASSERT_GT(force, 2.0);
+  double expected = force;
+  int steps = 0;
+  while (expected > 0.0) {
+    const Snapshot& s = hand.tick(index_angles(0.0));
+    expected = std::max(0.0, expected - 0.05);
+    EXPECT_FALSE(index_segment(s, 2).contact);
+    EXPECT_NEAR(index_segment(s, 2).force, expected, 1e-12);
+    if (expected > 0.0) {
+      EXPECT_EQ(index_segment(s, 2).normal, normal);
+      EXPECT_NE(index_torque(s, 0), 0.0);
+    }
+    ASSERT_LT(++steps, 200);
+  }
+  hand.tick(index_angles(0.0));
+  EXPECT_EQ(index_segment(hand.now(), 2).force, 0.0);
+  EXPECT_EQ(index_torque(hand.now(), 0), 0.0) << "zero torque in free motion, after the decay";
+}
+
+TEST(Step, ANanOrInfiniteAngleHoldsItsLastGoodValue) {
+  const HapticModel model = floor_model();
+  Runner hand(model);
+  hand.move(index_angles(0.2), 20);
+  JointArray bad = index_angles(0.2);
+  bad[joint_index(1, 0)] = kNan;
+  bad[joint_index(2, 2)] = kInfinity;
+  const Snapshot& s = hand.tick(bad);
+  EXPECT_TRUE(has(s.status, Status::kSampleNotFinite));
+  EXPECT_EQ(s.hcp_angle, index_angles(0.2));
+}
+
+TEST(Step, AJumpIsSlewedAtTheFastestThatAJointMoves) {
+  const HapticModel model = floor_model();  // 40 rad/s at 200 Hz: 0.2 rad a tick
+  Runner hand(model);
+  hand.tick(index_angles(0.0, 0.1));
+  const Snapshot& s = hand.tick(index_angles(0.0, 1.4));
+  EXPECT_TRUE(has(s.status, Status::kSampleJump));
+  EXPECT_NEAR(s.hcp_angle[joint_index(1, 2)], 0.3, 1e-15);
+}
+
+TEST(Step, AnAngleOutsideTheAnatomyIsClamped) {
+  const HapticModel model = floor_model();
+  Runner hand(model);
+  const Snapshot& s = hand.move(index_angles(-3.0), 50);
+  EXPECT_TRUE(has(s.status, Status::kSampleOutOfRange));
+  EXPECT_EQ(s.hcp_angle[joint_index(1, 0)], -0.5);
+}
+
+TEST(Step, TimeThatDoesNotIncreaseIsReportedAndTheSampleNotUsed) {
+  const HapticModel model = floor_model();
+  HapticState state(model);
+  step(model, Sample{1.0, index_angles(0.1)}, state);
+  for (const double time : {1.0, 0.5, kNan, -kInfinity}) {
+    const Status status = step(model, Sample{time, index_angles(0.15)}, state);
+    EXPECT_TRUE(has(status, Status::kTimeNotIncreasing));
+    EXPECT_EQ(state.snapshot().hcp_angle, index_angles(0.1));
+  }
+}
+
+TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> u(-2.0, 3.0);
+  HapticModel model = ball_model();
+  model.force.stiffness = 1e5;
+  const std::array<double, 6> wild = {kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
+  for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kKelvinVoigt, ForceLaw::kHuntCrossley,
+                             ForceLaw::kDuffing, ForceLaw::kLinearThenCubic}) {
+    model.force.law = law;
+    HapticState state(model);
+    JointArray last{};
+    double time = 0.0;
+    for (int n = 0; n < 400; ++n) {
+      Sample sample{time += 0.005, {}};
+      for (double& angle : sample.angle) angle = random() % 8 == 0 ? wild[random() % wild.size()] : u(random);
+      if (random() % 10 == 0) sample.time_s = wild[random() % wild.size()];
+      step(model, sample, state);
+      for (std::size_t j = 0; j < kJoints; ++j) {
+        const double torque = state.snapshot().torque[j];
+        ASSERT_TRUE(std::isfinite(torque)) << "seed 13 tick " << n;
+        ASSERT_LE(std::abs(torque), model.limits.joint_torque);
+        ASSERT_LE(std::abs(torque - last[j]), model.limits.torque_rate / model.rate_hz + 1e-15);
+        ASSERT_TRUE(std::isfinite(state.snapshot().gdp_angle[j]));
+      }
+      last = state.snapshot().torque;
+      if (time > 1e100 || !std::isfinite(time)) time = 0.0;
+    }
+  }
+}
+
+TEST(Step, AllocatesNothing) {
+  for (const GdpMethod method : {GdpMethod::kContinuous, GdpMethod::kTrajectory}) {
+    HapticModel model = ball_model();
+    model.contact.method = method;
+    HapticState state(model);
+    double time = 0.0;
+    std::size_t contacts = 0;
+    const std::size_t before = test::allocations();
+    for (int n = 0; n <= 400; ++n) {
+      const double close = n <= 200 ? n / 200.0 : (400 - n) / 200.0;
+      step(model, Sample{time += 0.005, index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close)},
+           state);
+      contacts += index_segment(state.snapshot(), 0).contact ? 1U : 0U;
+    }
+    EXPECT_EQ(test::allocations() - before, 0U);
+    EXPECT_GT(contacts, 50U);
+  }
+  const std::size_t before = test::allocations();
+  auto probe = std::make_unique<int>(1);
+  EXPECT_GT(test::allocations(), before) << "the counter counts";
+}
+
+TEST(Step, SameSamplesSameBits) {
+  const HapticModel model = ball_model();
+  Runner a(model);
+  Runner b(model);
+  for (int n = 0; n < 100; ++n) {
+    const JointArray q = index_angles(0.012 * n, 0.016 * n, 0.016 * n, 0.001 * n);
+    EXPECT_EQ(a.tick(q).torque, b.tick(q).torque);
+    EXPECT_EQ(a.now().gdp_angle, b.now().gdp_angle);
+  }
+}
+
+TEST(HapticState, RefusesParametersOutOfRangeByName) {
+  HapticModel model = floor_model();
+  model.force.stiffness = -1.0;
+  EXPECT_THAT([&] { HapticState state(model); },
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("force.stiffness")));
+  model = floor_model();
+  model.rate_hz = 0.0;
+  EXPECT_THAT([&] { HapticState state(model); },
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("rate_hz")));
+  model = floor_model();
+  model.limits.fingertip_force = 20.0;
+  EXPECT_THROW(HapticState state(model), std::invalid_argument);
+  model = floor_model();
+  model.smoothing.min_rate = 1.0;
+  EXPECT_THROW(HapticState state(model), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace phalanx
