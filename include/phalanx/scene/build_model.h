@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a scene's description to what step() and a simulation need.
+#pragma once
+
+#include "phalanx/device/motion.h"
+#include "phalanx/mesh/triangle_mesh.h"
+#include "phalanx/scene/scene.h"
+#include "phalanx/step/haptic_step.h"
+
+namespace phalanx {
+
+/// One object's mesh in its own frame O [m].
+/// @throws SceneError or std::invalid_argument naming the file or the size and the remedy. Set-up only.
+[[nodiscard]] TriangleMesh make_object_mesh(const ObjectDescription& object);
+
+/// Every object of the scene in the world frame, merged [m]; empty if it has none.
+[[nodiscard]] TriangleMesh make_world_mesh(const SceneDescription& scene);
+
+/// The scene's hand at its pose, its objects merged into one, and its parameters.
+/// @throws SceneError or std::invalid_argument: hand file, mesh file, sizes. Whether the open hand is clear
+/// of the object is for HapticState
+///         to say. Set-up only.
+[[nodiscard]] HapticModel build_model(const SceneDescription& scene);
+
+/// The scene's motion: its file through its mapping if it names one, else the script.
+/// @throws SceneError or std::invalid_argument. Set-up only.
+[[nodiscard]] Motion build_motion(const SceneDescription& scene);
+
+/// How long a simulation of the scene takes [s]: scene.seconds, or the motion's duration if that is 0.
+[[nodiscard]] double simulation_seconds(const SceneDescription& scene, const Motion& motion);
+
+}  // namespace phalanx

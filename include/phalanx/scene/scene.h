@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as a file states it, checked, in SI units: which hand, which objects, which forces, which motion.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "phalanx/contact/contact_parameters.h"
+#include "phalanx/core/math.h"
+#include "phalanx/device/motion.h"
+#include "phalanx/force/force_parameters.h"
+#include "phalanx/hand/joints.h"
+#include "phalanx/scene/scene_error.h"
+
+namespace phalanx {
+
+/// One object of a scene. Which sizes count depends on its kind (docs/scenes.md); a scene that states another
+/// is refused.
+struct ObjectDescription {
+  std::string kind = "teapot";  ///< sphere box cylinder torus mug teapot file
+  std::filesystem::path
+      file;  ///< file: the mesh; a scene file's relative path is resolved against the scene's folder
+  double size =
+      0.1;  ///< teapot: from handle to spout; file: largest extent, 0 keeps the file's numbers as metres [m]
+  double diameter = 0.06;              ///< sphere, cylinder, mug [m]
+  double length = 0.1;                 ///< cylinder; mug: height [m]
+  double ring_diameter = 0.08;         ///< torus: of the tube's centre line [m]
+  double tube_diameter = 0.02;         ///< torus [m]
+  Vec3 extent = Vec3::Constant(0.05);  ///< box: full edge lengths [m]
+  int triangles = 1000;                ///< about how many the program's own objects get
+  Pose pose;                           ///< X_WO
+};
+
+struct HandDescription {
+  std::string file = "adult";  ///< a hand file's name in assets/hands, or a path
+  Handedness handedness = Handedness::kRight;
+  int triangles = 2250;  ///< about how many over all segments (S2: 2,248)
+  Pose pose;             ///< X_WH
+};
+
+struct MotionDescription {
+  ScriptedMotion script;
+  std::filesystem::path file;  ///< if not empty: play this CSV instead of the script
+  std::string
+      mapping;  ///< mapping file's name in assets/mappings, or a path; empty: columns are joint names in rad
+  std::optional<int> trial;  ///< which trial of a file whose time runs backwards, counted from 1
+};
+
+struct SceneDescription {
+  std::string name;
+  std::string description;  ///< one line
+  double rate_hz = 200.0;   ///< [Hz], 1 .. 4000
+  double seconds = 0.0;     ///< length of a simulation [s]; 0: the motion's
+  std::uint64_t seed = 1;
+  HandDescription hand;
+  std::vector<ObjectDescription> objects;
+  ContactParameters contact;
+  ForceLawParameters force;
+  SmoothingParameters smoothing;
+  LimitParameters limits;  ///< a limit turned "off" has its flag cleared; joint_speed "off" is infinite
+  MotionDescription motion;
+};
+
+/// `key=value` as on the command line, in order: `rate_hz`, `force.law`, `objects.0.size_mm`; an index one
+/// past the end appends. The value is read as TOML if it parses as TOML, else as a string. Relative paths in
+/// it are relative to the working directory.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+/// Reads a scene: `scene` is a name in scenes/, or a path (contains `/` or ends with .toml). Overrides are
+/// applied to the file's tree before it is checked, by the same code. Every number is finite and in the range
+/// of its row in scene_keys().
+/// @throws SceneError naming file:line (or the override), key, value and remedy; an unknown key is answered
+/// with the nearest known one. Set-up only.
+[[nodiscard]] SceneDescription load_scene(const std::string& scene, const Overrides& overrides = {});
+
+/// The same from text; `origin` names it in messages, relative files resolve against `folder`. For fuzzing
+/// and uploads.
+[[nodiscard]] SceneDescription parse_scene(const std::string& text, const std::string& origin,
+                                           const std::filesystem::path& folder,
+                                           const Overrides& overrides = {});
+
+/// "side_n=3" -> {"side_n", "3"}. @throws SceneError if there is no `=` or nothing before it.
+[[nodiscard]] std::pair<std::string, std::string> parse_override(const std::string& key_and_value);
+
+struct SceneInfo {
+  std::string name;
+  std::string description;  ///< the scene's own line; if it cannot be read, what is wrong with it
+  bool readable = true;
+};
+
+/// The scenes in scenes/, by name. @throws SceneError if the folder is not found.
+[[nodiscard]] std::vector<SceneInfo> list_scenes();
+
+}  // namespace phalanx

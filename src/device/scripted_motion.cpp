@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "phalanx/core/nearest_name.h"
+#include "phalanx/device/motion.h"
+
+namespace phalanx {
+namespace {
+
+/// How far each joint of a digit (flexion, abduction, hinge, hinge) goes towards the end of its range at
+/// closure 1.
+using DigitWeights = std::array<double, kJointsPerDigit>;
+constexpr DigitWeights kStill = {0.0, 0.0, 0.0, 0.0};
+constexpr DigitWeights kFingerCloses = {1.0, 0.0, 1.0, 0.7};
+constexpr DigitWeights kThumbOpposes = {1.0, 1.0, 0.6, 0.6};
+
+struct Grip {
+  std::array<DigitWeights, kDigits> weight;
+  bool ripple;  ///< the digits move one after another, the little finger first
+};
+
+constexpr Grip kPress = {{kStill, kFingerCloses, kStill, kStill, kStill}, false};
+constexpr Grip kPinch = {{kThumbOpposes, kFingerCloses, kStill, kStill, kStill}, false};
+constexpr Grip kTripod = {{kThumbOpposes, kFingerCloses, kFingerCloses, kStill, kStill}, false};
+constexpr Grip kPower = {{kThumbOpposes, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, false};
+constexpr Grip kWave = {{kStill, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, true};
+
+const Grip& grip_of(const std::string& name) {
+  static constexpr std::array<const Grip*, 5> kGrips = {&kPress, &kPinch, &kTripod, &kPower, &kWave};
+  const auto& names = scripted_motion_names();
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it == names.end()) {
+    throw std::invalid_argument(
+        fmt::format("motion.name = \"{}\" is not a scripted motion; did you mean \"{}\"? Known: {}", name,
+                    nearest_name(name, names), fmt::join(names, ", ")));
+  }
+  return *kGrips[static_cast<std::size_t>(it - names.begin())];
+}
+
+/// Position along a point-to-point movement at the fraction u of its time: least jerk from rest to rest.
+double minimum_jerk(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+}
+
+/// The part of a ripple's closing (or opening) in which `digit` moves: half of it, the little finger first.
+double ripple_fraction(double u, int digit) {
+  const double begin = 0.5 * (kDigits - 1 - digit) / (kDigits - 1);
+  return (u - begin) / 0.5;
+}
+
+/// How closed a digit is (0..1) at time `t` of one cycle.
+double closed_at(const ScriptedMotion& script, bool ripple, int digit, double t) {
+  const auto progress = [&](double u) { return minimum_jerk(ripple ? ripple_fraction(u, digit) : u); };
+  const double closing = progress((t - script.start_s) / script.close_s);
+  const double opening = progress((t - script.start_s - script.close_s - script.hold_s) / script.open_s);
+  return closing - opening;
+}
+
+/// SplitMix64 (Steele, Lea & Flood 2014), so that a seed means the same tremor with every standard library.
+double uniform(std::uint64_t& state) {
+  state += 0x9e3779b97f4a7c15ULL;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+  z ^= z >> 31U;
+  return static_cast<double>(z >> 11U) * 0x1.0p-53;
+}
+
+/// Physiological and pathological tremors lie between 5 and 12 Hz: three sines of seeded frequency and phase
+/// a joint.
+class Tremor {
+ public:
+  explicit Tremor(const ScriptedMotion& script) : amplitude_(script.tremor_rad) {
+    std::uint64_t state = script.seed;
+    for (auto& joint : waves_) {
+      for (Wave& wave : joint) {
+        wave.frequency_hz = 5.0 + 7.0 * uniform(state);
+        wave.phase = 2.0 * std::numbers::pi * uniform(state);
+      }
+    }
+  }
+  [[nodiscard]] double at(int joint, double t) const {
+    if (amplitude_ == 0.0) return 0.0;
+    double sum = 0.0;
+    for (const Wave& wave : waves_[static_cast<std::size_t>(joint)]) {
+      sum += std::sin(2.0 * std::numbers::pi * wave.frequency_hz * t + wave.phase);
+    }
+    return amplitude_ * sum / static_cast<double>(kWaves);
+  }
+
+ private:
+  static constexpr std::size_t kWaves = 3;
+  struct Wave {
+    double frequency_hz = 0.0;
+    double phase = 0.0;
+  };
+  double amplitude_;
+  std::array<std::array<Wave, kWaves>, kJoints> waves_{};
+};
+
+void require(bool ok, const char* key, double value, const char* rule) {
+  if (!ok) throw std::invalid_argument(fmt::format("motion.{} = {}: must be {}", key, value, rule));
+}
+
+constexpr double kMaxKeys = 2e6;
+/// A tremor swells and fades within this time, so that a motion starts and ends at the open hand [s].
+constexpr double kTremorFade = 0.1;
+
+void check(const ScriptedMotion& script, double total) {
+  const auto not_negative = [](double x) { return std::isfinite(x) && x >= 0.0; };
+  require(not_negative(script.start_s), "start_s", script.start_s, "finite and not negative");
+  require(not_negative(script.close_s) && script.close_s > 0.0, "close_s", script.close_s,
+          "finite and above 0");
+  require(not_negative(script.hold_s), "hold_s", script.hold_s, "finite and not negative");
+  require(not_negative(script.open_s) && script.open_s > 0.0, "open_s", script.open_s, "finite and above 0");
+  require(script.repeat >= 1, "repeat", script.repeat, "at least 1");
+  require(script.closure >= 0.0 && script.closure <= 1.0, "closure", script.closure,
+          "between 0 (open) and 1 (closed)");
+  for (const double share : script.digit_closure)
+    require(not_negative(share), "digit_closure", share, "finite and not negative");
+  require(not_negative(script.tremor_rad), "tremor_rad", script.tremor_rad, "finite and not negative");
+  require(not_negative(script.key_rate_hz) && script.key_rate_hz > 0.0, "key_rate_hz", script.key_rate_hz,
+          "finite and above 0");
+  require(
+      total * script.key_rate_hz <= kMaxKeys, "repeat", script.repeat,
+      "small enough that the motion has at most two million keys; shorten the motion or lower its key rate");
+}
+
+}  // namespace
+
+const std::vector<std::string>& scripted_motion_names() {
+  static const std::vector<std::string> kNames = {"press", "pinch", "tripod", "power_grasp", "wave"};
+  return kNames;
+}
+
+Motion make_motion(const ScriptedMotion& script, const HandParameters& hand) {
+  const Grip& grip = grip_of(script.name);
+  const double cycle = script.start_s + script.close_s + script.hold_s + script.open_s;
+  const double total = cycle * script.repeat;
+  check(script, total);
+  const Tremor tremor(script);
+
+  Motion motion;
+  const auto steps = static_cast<std::size_t>(std::ceil(total * script.key_rate_hz));
+  motion.time_s.reserve(steps + 1);
+  motion.angle.reserve(steps + 1);
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const double t = k < steps ? static_cast<double>(k) / script.key_rate_hz : total;
+    if (!motion.time_s.empty() && t <= motion.time_s.back())
+      break;  // total * rate was a whole number but for rounding
+    const double t_cycle = k < steps ? t - cycle * std::floor(t / cycle) : cycle;
+    const double fade = minimum_jerk(t / kTremorFade) * minimum_jerk((total - t) / kTremorFade);
+    JointArray angle = hand.open_angle;
+    for (int joint = 0; joint < kJoints; ++joint) {
+      const int digit = digit_of_joint(joint);
+      const auto j = static_cast<std::size_t>(joint);
+      const double weight = grip.weight[static_cast<std::size_t>(digit)][j % kJointsPerDigit];
+      if (weight == 0.0) continue;
+      const double reach = weight * script.closure * script.digit_closure[static_cast<std::size_t>(digit)] *
+                           (hand.max_angle[j] - hand.open_angle[j]);
+      angle[j] += reach * closed_at(script, grip.ripple, digit, t_cycle) + fade * tremor.at(joint, t);
+      angle[j] = std::clamp(angle[j], hand.min_angle[j], hand.max_angle[j]);
+    }
+    motion.time_s.push_back(t);
+    motion.angle.push_back(angle);
+  }
+  return motion;
+}
+
+}  // namespace phalanx

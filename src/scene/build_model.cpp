@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/build_model.h"
+
+#include <fmt/format.h>
+
+#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/primitives.h"
+#include "phalanx/scene/hand_file.h"
+#include "phalanx/scene/mapping_file.h"
+#include "phalanx/scene/motion_file.h"
+
+namespace phalanx {
+
+TriangleMesh make_object_mesh(const ObjectDescription& object) {
+  if (object.kind == "sphere") return make_sphere(object.diameter, object.triangles);
+  if (object.kind == "box") return make_box(object.extent, object.triangles);
+  if (object.kind == "cylinder") return make_cylinder(object.diameter, object.length, object.triangles);
+  if (object.kind == "torus") return make_torus(object.ring_diameter, object.tube_diameter, object.triangles);
+  if (object.kind == "mug") return make_mug(object.diameter, object.length, object.triangles);
+  if (object.kind == "teapot") return make_teapot(object.size, object.triangles);
+  if (object.kind == "file") return import_mesh(object.file, object.size);
+  throw SceneError(
+      fmt::format("objects[].kind = \"{}\": nobody knows this kind; see `phalanx scene keys`", object.kind));
+}
+
+TriangleMesh make_world_mesh(const SceneDescription& scene) {
+  TriangleMesh world;
+  for (const ObjectDescription& object : scene.objects) append(world, make_object_mesh(object), object.pose);
+  return world;
+}
+
+HapticModel build_model(const SceneDescription& scene) {
+  const HandParameters parameters = load_hand_file(scene.hand.file);
+  HapticModel model(make_hand_model(parameters, scene.hand.handedness, scene.hand.pose, scene.hand.triangles),
+                    scene.objects.empty() ? ObjectModel() : ObjectModel(make_world_mesh(scene)));
+  model.contact = scene.contact;
+  model.force = scene.force;
+  model.smoothing = scene.smoothing;
+  model.limits = scene.limits;
+  model.rate_hz = scene.rate_hz;
+  return model;
+}
+
+Motion build_motion(const SceneDescription& scene) {
+  const HandParameters hand = load_hand_file(scene.hand.file);
+  const MotionDescription& motion = scene.motion;
+  if (motion.file.empty()) return make_motion(motion.script, hand);
+  std::optional<SensorMapping> mapping;
+  if (!motion.mapping.empty()) mapping = load_mapping_file(motion.mapping);
+  return load_motion(motion.file, mapping, motion.trial, hand.open_angle);
+}
+
+double simulation_seconds(const SceneDescription& scene, const Motion& motion) {
+  return scene.seconds > 0.0 ? scene.seconds : motion.duration();
+}
+
+}  // namespace phalanx

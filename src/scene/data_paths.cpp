@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/data_paths.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <system_error>
+#include <vector>
+
+#include "phalanx/core/nearest_name.h"
+#include "phalanx/scene/scene_error.h"
+#include "scene/folder_names.h"
+
+namespace phalanx {
+namespace fs = std::filesystem;
+namespace {
+
+bool holds_data(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_directory(folder / "scenes", ignored) && fs::is_directory(folder / "assets", ignored);
+}
+
+}  // namespace
+
+fs::path data_folder() {
+  if (const char* given = std::getenv("PHALANX_DATA"); given != nullptr && *given != '\0') {
+    if (holds_data(given)) return given;
+    throw SceneError(fmt::format(
+        "PHALANX_DATA = {}: this folder has no scenes/ and assets/; name one that has, or unset it", given));
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed =
+      error ? fs::path() : (program.parent_path() / "../share/phalanx").lexically_normal();
+  if (!installed.empty() && holds_data(installed)) return installed;
+  const fs::path source = PHALANX_SOURCE_TREE;
+  if (holds_data(source)) return source;
+  throw SceneError(fmt::format(
+      "found no scenes/ and assets/ in {} nor in {}; set PHALANX_DATA to the folder that holds them",
+      installed.string(), source.string()));
+}
+
+fs::path find_data_file(const std::string& what, const std::string& name, const std::string& folder,
+                        const std::string& extension, const fs::path& base) {
+  if (name.empty())
+    throw SceneError(fmt::format("{} \"\": the name is empty; give a name in {} or a path", what, folder));
+  if (name.find('\0') != std::string::npos)
+    throw SceneError(fmt::format("{}: the name holds a zero byte; remove it", what));
+  std::error_code ignored;
+  const bool is_path = name.find('/') != std::string::npos || fs::path(name).extension() == extension;
+  if (is_path) {
+    const fs::path file = base / name;
+    if (fs::is_regular_file(file, ignored)) return file;
+    throw SceneError(
+        fmt::format("{} \"{}\": there is no file {}; check the path", what, name, file.string()));
+  }
+  const fs::path root = data_folder() / folder;
+  const fs::path file = root / (name + extension);
+  if (fs::is_regular_file(file, ignored)) return file;
+  const auto known = names_in_folder(root, extension);
+  throw SceneError(fmt::format("{} \"{}\": there is no {}; did you mean \"{}\"? Known: {}", what, name,
+                               file.string(), nearest_name(name, known), fmt::join(known, ", ")));
+}
+
+std::vector<std::string> names_in_folder(const fs::path& folder, const std::string& extension) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == extension) names.push_back(it->path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one checker: every key of the tree against the table of keys, then what concerns several keys at once.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "phalanx/core/nearest_name.h"
+#include "phalanx/scene/data_paths.h"
+#include "scene/folder_names.h"
+#include "scene/key_table.h"
+#include "scene/scene_tree.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool starts_with_part(std::string_view path, std::string_view prefix) {
+  return path.size() > prefix.size() && path.substr(0, prefix.size()) == prefix &&
+         (path[prefix.size()] == '.' || path[prefix.size()] == '[');
+}
+
+/// Refuses every key that is in no row of the table.
+void refuse_unknown_keys(const SceneTree& tree, const toml::node& node, const std::string& path) {
+  const auto& keys = key_table();
+  if (!path.empty()) {
+    const std::string pattern = pattern_of(path);
+    if (std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.path == pattern; }))
+      return;
+    const bool holds_keys = std::any_of(
+        keys.begin(), keys.end(), [&](const KeySpec& key) { return starts_with_part(key.path, pattern); });
+    if (!holds_keys) {
+      std::vector<std::string> known;
+      for (const KeySpec& key : keys) known.push_back(key.path);
+      tree.fail(
+          path,
+          fmt::format("nobody knows this key; the nearest known one is {} (`phalanx scene keys` lists all)",
+                      nearest_name(pattern, known)));
+    }
+    if (pattern == "objects" && !node.is_array())
+      tree.fail(path, "is not an array; start each object with a line [[objects]]");
+    if (pattern != "objects" && !node.is_table()) {
+      tree.fail(path, fmt::format("is {}, but {} is a table; write its keys below a line [{}]",
+                                  type_name(node), path, path));
+    }
+  }
+  const auto child_path = [&](std::string_view part) {
+    return path.empty() ? std::string(part) : fmt::format("{}.{}", path, part);
+  };
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, child] : *table) refuse_unknown_keys(tree, child, child_path(key.str()));
+  } else if (const toml::array* array = node.as_array()) {
+    for (std::size_t i = 0; i < array->size(); ++i)
+      refuse_unknown_keys(tree, (*array)[i], child_path(std::to_string(i)));
+  }
+}
+
+class Reader {
+ public:
+  Reader(const SceneTree& tree, fs::path folder) : tree_(tree), folder_(std::move(folder)) {}
+
+  /// The value of one key, checked.
+  [[nodiscard]] KeyValue read(const KeySpec& key, const std::string& path, const toml::node& node) const {
+    KeyValue value;
+    const auto wants = [&](std::string_view form) {
+      tree_.fail(path, fmt::format("is {}; write {}{}", type_name(node), form, help(key)));
+    };
+    switch (key.type) {
+      case KeyType::kNumberOrOff:
+        if (node.is_string() && *node.value<std::string>() == "off") {
+          value.off = true;
+          return value;
+        }
+        [[fallthrough]];
+      case KeyType::kNumber:
+        if (!node.is_number()) wants("a number");
+        value.number = checked(key, path, node);
+        return value;
+      case KeyType::kInteger:
+        if (!node.is_integer()) wants("a whole number");
+        static_cast<void>(checked(key, path, node));
+        value.integer = *node.value<std::int64_t>();
+        return value;
+      case KeyType::kFlag:
+        if (!node.is_boolean()) wants("true or false");
+        value.flag = *node.value<bool>();
+        return value;
+      case KeyType::kVector: {
+        const toml::array* array = node.as_array();
+        if (array == nullptr || array->size() != 3) wants("three numbers: [x, y, z]");
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (!(*array)[i].is_number()) wants("three numbers: [x, y, z]");
+          value.vector[static_cast<Eigen::Index>(i)] = checked(key, path, (*array)[i]);
+        }
+        return value;
+      }
+      case KeyType::kChoice: {
+        if (!node.is_string()) wants("one of the words");
+        value.text = *node.value<std::string>();
+        const auto it = std::find(key.choices.begin(), key.choices.end(), value.text);
+        if (it == key.choices.end()) {
+          tree_.fail(path, fmt::format("did you mean \"{}\"? Known: {}",
+                                       nearest_name(value.text, key.choices), range_text(key)));
+        }
+        value.integer = it - key.choices.begin();
+        return value;
+      }
+      case KeyType::kText:
+      case KeyType::kFile:
+      case KeyType::kName:
+        if (!node.is_string()) wants("a string in quotes");
+        value.text = *node.value<std::string>();
+        if (value.text.find('\0') != std::string::npos) tree_.fail(path, "holds a zero byte; remove it");
+        if (key.type != KeyType::kText) value.text = resolved(key, value.text);
+        return value;
+    }
+    return value;
+  }
+
+ private:
+  [[nodiscard]] double checked(const KeySpec& key, const std::string& path, const toml::node& node) const {
+    const double number = *node.value<double>();
+    if (!key.range.contains(number)) {
+      tree_.fail(path, fmt::format("must be {}{}{}{}", range_text(key), key.unit.empty() ? "" : " ", key.unit,
+                                   help(key)));
+    }
+    return number;
+  }
+
+  static std::string help(const KeySpec& key) {
+    const std::string range = range_text(key);
+    const std::string fallback =
+        key.default_toml.empty() ? "leave it out" : fmt::format("the default is {}", key.default_toml);
+    return fmt::format("{}; {}", range.empty() ? "" : fmt::format(" ({})", range), fallback);
+  }
+
+  /// A relative path in a scene file is relative to that file.
+  [[nodiscard]] std::string resolved(const KeySpec& key, const std::string& text) const {
+    const bool is_path = key.type == KeyType::kFile || text.find('/') != std::string::npos ||
+                         fs::path(text).extension() == ".toml";
+    return text.empty() || !is_path ? text : (folder_ / text).lexically_normal().string();
+  }
+
+  const SceneTree& tree_;
+  fs::path folder_;
+};
+
+bool has_word(const std::string& words, const std::string& word) {
+  return fmt::format(" {} ", words).find(fmt::format(" {} ", word)) != std::string::npos;
+}
+
+constexpr std::string_view kObjectPrefix = "objects[].";
+bool is_object_key(const KeySpec& key) {
+  return std::string_view(key.path).substr(0, kObjectPrefix.size()) == kObjectPrefix;
+}
+
+/// The value of a key: from the tree if it is there, else the table's default.
+void apply_key(const SceneTree& tree, const Reader& reader, const KeySpec& key, const std::string& path,
+               const KeyTarget& target) {
+  if (const toml::node* node = tree.find(path)) {
+    key.store(target, reader.read(key, path, *node));
+  } else if (!key.default_toml.empty()) {
+    const toml::table fallback = toml::parse("v = " + key.default_toml);
+    key.store(target, reader.read(key, path, *fallback.get("v")));
+  }
+}
+
+ObjectDescription read_object(const SceneTree& tree, const Reader& reader, std::size_t index,
+                              SceneDescription& scene) {
+  ObjectDescription object;
+  const std::string prefix = fmt::format("objects.{}", index);
+  for (const KeySpec& key : key_table()) {
+    if (!is_object_key(key)) continue;
+    const std::string path = fmt::format("{}.{}", prefix, key.path.substr(kObjectPrefix.size()));
+    const bool fits =
+        key.kinds.empty() || has_word(key.kinds, object.kind);  // objects[].kind is the first of its keys
+    if (!fits && tree.find(path) != nullptr) {
+      tree.fail(path, fmt::format("means nothing for a {}; it belongs to: {}. Remove it or change {}.kind",
+                                  object.kind, key.kinds, prefix));
+    }
+    if (fits) apply_key(tree, reader, key, path, {scene, object});
+  }
+  if (object.kind == "teapot" && object.size <= 0.0)
+    tree.fail(prefix + ".size_mm", "must be > 0 for a teapot; give its length");
+  if (object.kind == "file" && object.file.empty())
+    tree.fail(prefix + ".file", "is missing; name the mesh file");
+  if (object.kind == "torus" && object.tube_diameter >= object.ring_diameter) {
+    tree.fail(prefix + ".tube_diameter_mm", "the tube is as thick as its ring is wide; make it thinner");
+  }
+  return object;
+}
+
+void refuse_both_smoothing_forms(const SceneTree& tree) {
+  for (const char* per_step : {"smoothing.min_n", "smoothing.max_n"}) {
+    for (const char* per_second : {"smoothing.min_n_per_s", "smoothing.max_n_per_s"}) {
+      if (tree.find(per_step) == nullptr || tree.find(per_second) == nullptr) continue;
+      tree.fail(
+          per_step,
+          fmt::format("{} is stated too ({}); state both bounds per tick (_n) or both per second (_n_per_s)",
+                      per_second, tree.place(per_second)));
+    }
+  }
+}
+
+}  // namespace
+
+SceneDescription parse_scene(const std::string& text, const std::string& origin, const fs::path& folder,
+                             const Overrides& overrides) {
+  const SceneTree tree(text, origin, overrides);
+  refuse_unknown_keys(tree, tree.root(), "");
+  refuse_both_smoothing_forms(tree);
+
+  SceneDescription scene;
+  scene.name = fs::path(origin).stem().string();
+  const Reader reader(tree, folder);
+  ObjectDescription unused;
+  for (const KeySpec& key : key_table()) {
+    if (!is_object_key(key)) apply_key(tree, reader, key, key.path, {scene, unused});
+  }
+  if (const toml::node* objects = tree.find("objects")) {
+    for (std::size_t i = 0; i < objects->as_array()->size(); ++i)
+      scene.objects.push_back(read_object(tree, reader, i, scene));
+  }
+  return scene;
+}
+
+SceneDescription load_scene(const std::string& scene, const Overrides& overrides) {
+  const fs::path file = find_data_file("scene", scene, "scenes", ".toml", fs::current_path());
+  return parse_scene(read_text_file(file.string(), "scene"), file.string(), file.parent_path(), overrides);
+}
+
+std::pair<std::string, std::string> parse_override(const std::string& key_and_value) {
+  const std::size_t equals = key_and_value.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw SceneError(
+        fmt::format("--set {}: is not KEY=VALUE; write e.g. force.stiffness_n_per_mm=0.9", key_and_value));
+  }
+  const auto trim = [](std::string text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin == std::string::npos) return std::string();
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+  };
+  return {trim(key_and_value.substr(0, equals)), trim(key_and_value.substr(equals + 1))};
+}
+
+std::vector<SceneInfo> list_scenes() {
+  std::vector<SceneInfo> scenes;
+  for (const std::string& name : names_in_folder(data_folder() / "scenes", ".toml")) {
+    try {
+      scenes.push_back({name, load_scene(name).description, true});
+    } catch (const SceneError& error) {
+      scenes.push_back({name, error.what(), false});
+    }
+  }
+  return scenes;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene file's tree with the command line's overrides applied: where each value stands, and where it came
+// from.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "phalanx/scene/scene.h"
+#include "scene/toml_reader.h"
+
+namespace phalanx {
+
+class SceneTree {
+ public:
+  /// Parses `text` and applies the overrides in order. @throws SceneError.
+  SceneTree(const std::string& text, std::string origin, const Overrides& overrides);
+
+  [[nodiscard]] const toml::table& root() const noexcept { return root_; }
+  /// The value at a path such as "objects.0.size_mm"; null if there is none.
+  [[nodiscard]] const toml::node* find(std::string_view path) const;
+  /// "grasp.toml:12" or "--set objects.0.size_mm=80"; for a missing value, of the innermost table that is
+  /// there.
+  [[nodiscard]] std::string place(std::string_view path) const;
+  /// @throws SceneError "PLACE: PATH = VALUE: PROBLEM".
+  [[noreturn]] void fail(std::string_view path, const std::string& problem) const;
+
+ private:
+  void apply(const std::string& key, const std::string& value);
+
+  std::string origin_;
+  toml::table root_;
+  Overrides overrides_;
+};
+
+/// "objects.0.size_mm" -> "objects[].size_mm".
+[[nodiscard]] std::string pattern_of(std::string_view path);
+
+}  // namespace phalanx

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/toml_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "phalanx/core/nearest_name.h"
+#include "phalanx/scene/scene_error.h"
+
+namespace phalanx {
+
+bool NumberRange::contains(double value) const noexcept {
+  if (allows_minus_infinity && value == -std::numeric_limits<double>::infinity()) return true;
+  if (!std::isfinite(value)) return false;
+  return (min_open ? value > min : value >= min) && (max_open ? value < max : value <= max);
+}
+
+std::string NumberRange::text() const {
+  std::string text;
+  if (std::isfinite(min)) text = fmt::format("{} {}", min_open ? ">" : ">=", min);
+  if (std::isfinite(max))
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", max_open ? "<" : "<=", max);
+  if (text.empty()) text = "any finite number";
+  if (allows_minus_infinity) text += ", or -inf";
+  return text;
+}
+
+std::string read_text_file(const std::string& path, const std::string& what) {
+  constexpr std::size_t kMaxBytes = 16U << 20U;
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw SceneError(
+        fmt::format("{}: cannot be opened as a {}; check the path and its permissions", path, what));
+  std::string text(kMaxBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) throw SceneError(fmt::format("{}: cannot be read as a {}; is it a folder?", path, what));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMaxBytes) {
+    throw SceneError(
+        fmt::format("{}: is larger than 16 MB; a {} file is a few kilobytes of TOML", path, what));
+  }
+  return text;
+}
+
+toml::table parse_toml(const std::string& text, const std::string& origin) {
+  try {
+    return toml::parse(text, origin);
+  } catch (const toml::parse_error& error) {
+    throw SceneError(fmt::format("{}:{}: not valid TOML: {}; correct this line", origin,
+                                 error.source().begin.line, error.description()));
+  }
+}
+
+std::string show(const toml::node& node) {
+  // The shortest digits that read back the same, where the library prints all seventeen.
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  std::ostringstream out;
+  node.visit([&](const auto& value) { out << value; });
+  std::string text = out.str();
+  if (text.size() > 80) text = text.substr(0, 77) + "...";
+  return text;
+}
+
+std::string_view type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+std::string TomlTable::full(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+void TomlTable::fail(std::string_view key, const std::string& problem) const {
+  const toml::node* found = table_->get(key);
+  if (found == nullptr) {
+    throw SceneError(fmt::format("{}:{}: {}: {}", origin_, table_->source().begin.line, full(key), problem));
+  }
+  throw SceneError(fmt::format("{}:{}: {} = {}: {}", origin_, found->source().begin.line, full(key),
+                               show(*found), problem));
+}
+
+bool TomlTable::has(std::string_view key) {
+  known_.emplace_back(key);
+  return table_->contains(key);
+}
+
+const toml::node& TomlTable::node(std::string_view key) {
+  if (!has(key)) fail(key, "is missing; add it");
+  return *table_->get(key);
+}
+
+double TomlTable::number(std::string_view key, const NumberRange& range) {
+  const toml::node& found = node(key);
+  if (!found.is_number()) fail(key, fmt::format("is {}; write a number, {}", type_name(found), range.text()));
+  const double value = *found.value<double>();
+  if (!range.contains(value)) fail(key, fmt::format("must be {}; change the value", range.text()));
+  return value;
+}
+
+double TomlTable::number_or(std::string_view key, const NumberRange& range, double fallback) {
+  return has(key) ? number(key, range) : fallback;
+}
+
+std::string TomlTable::text(std::string_view key) {
+  const toml::node& found = node(key);
+  if (!found.is_string()) fail(key, fmt::format("is {}; write a string in quotes", type_name(found)));
+  return *found.value<std::string>();
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, const NumberRange& range, std::size_t size) {
+  const toml::node& found = node(key);
+  const toml::array* array = found.as_array();
+  if (array == nullptr || array->size() != size)
+    fail(key, fmt::format("write {} numbers in square brackets", size));
+  std::vector<double> result;
+  for (std::size_t i = 0; i < size; ++i) {
+    const toml::node& element = (*array)[i];
+    if (!element.is_number())
+      fail(key, fmt::format("element {} is {}; write a number", i, type_name(element)));
+    result.push_back(*element.value<double>());
+    if (!range.contains(result.back()))
+      fail(key, fmt::format("element {} must be {}; change the value", i, range.text()));
+  }
+  return result;
+}
+
+Vec3 TomlTable::vector(std::string_view key, const NumberRange& range) {
+  const auto v = numbers(key, range, 3);
+  return {v[0], v[1], v[2]};
+}
+
+std::pair<double, double> TomlTable::pair(std::string_view key, const NumberRange& range) {
+  const auto v = numbers(key, range, 2);
+  return {v[0], v[1]};
+}
+
+TomlTable TomlTable::table(std::string_view key) {
+  const toml::node& found = node(key);
+  if (!found.is_table()) fail(key, fmt::format("is {}; write a table: [{}]", type_name(found), full(key)));
+  return {*found.as_table(), origin_, full(key)};
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key, int size) {
+  const toml::node& found = node(key);
+  const toml::array* array = found.as_array();
+  if (array == nullptr)
+    fail(key, fmt::format("is {}; write an array of tables: [{{ ... }}, ...]", type_name(found)));
+  if (size >= 0 && array->size() != static_cast<std::size_t>(size)) {
+    fail(key, fmt::format("has {} elements; write exactly {}", array->size(), size));
+  }
+  std::vector<TomlTable> result;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::node& element = (*array)[i];
+    if (!element.is_table()) fail(key, fmt::format("element {} is {}; write a table", i, type_name(element)));
+    result.emplace_back(*element.as_table(), origin_, fmt::format("{}.{}", full(key), i));
+  }
+  return result;
+}
+
+void TomlTable::finish() const {
+  for (const auto& [key, value] : *table_) {
+    const std::string_view name = key.str();
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    fail(name,
+         fmt::format("nobody knows this key; the nearest known one is {}", full(nearest_name(name, known_))));
+  }
+}
+
+}  // namespace phalanx

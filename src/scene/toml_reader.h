@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading TOML so that every complaint names file, line, key, value and remedy.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "phalanx/core/math.h"
+
+namespace phalanx {
+
+/// The allowed values of a number.
+struct NumberRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_open = false;  ///< min itself is refused
+  bool max_open = false;  ///< max itself is refused
+  bool allows_minus_infinity = false;
+
+  [[nodiscard]] bool contains(double value) const noexcept;
+  /// "> 0, <= 15", "any finite number"
+  [[nodiscard]] std::string text() const;
+};
+
+/// The text of a file. @throws SceneError if it cannot be read or is larger than 16 MB (no TOML file of ours
+/// is).
+[[nodiscard]] std::string read_text_file(const std::string& path, const std::string& what);
+
+/// Parses TOML. @throws SceneError with file, line and what is wrong.
+[[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& origin);
+
+/// A value as it would stand in a file, shortened.
+[[nodiscard]] std::string show(const toml::node& node);
+/// "a string", "an integer", ...
+[[nodiscard]] std::string_view type_name(const toml::node& node);
+
+/// One table of a TOML file. Every read marks the key as known; finish() complains about the others.
+class TomlTable {
+ public:
+  TomlTable(const toml::table& table, std::string origin, std::string path)
+      : table_(&table), origin_(std::move(origin)), path_(std::move(path)) {}
+
+  [[nodiscard]] bool has(std::string_view key);
+  [[nodiscard]] double number(std::string_view key, const NumberRange& range);
+  [[nodiscard]] double number_or(std::string_view key, const NumberRange& range, double fallback);
+  [[nodiscard]] std::string text(std::string_view key);
+  [[nodiscard]] Vec3 vector(std::string_view key, const NumberRange& range);
+  /// An array of two numbers.
+  [[nodiscard]] std::pair<double, double> pair(std::string_view key, const NumberRange& range);
+  [[nodiscard]] TomlTable table(std::string_view key);
+  /// An array of tables of exactly `size` elements (any number if it is negative).
+  [[nodiscard]] std::vector<TomlTable> tables(std::string_view key, int size);
+  /// @throws SceneError for the first key that nobody asked for, naming the nearest known one.
+  void finish() const;
+
+  /// @throws SceneError about `key`'s value at its place.
+  [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
+
+ private:
+  [[nodiscard]] const toml::node& node(std::string_view key);
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, const NumberRange& range, std::size_t size);
+  [[nodiscard]] std::string full(std::string_view key) const;
+
+  const toml::table* table_;
+  std::string origin_;
+  std::string path_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace phalanx

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/device/motion.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace phalanx {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+JointArray all(double angle) {
+  JointArray result;
+  result.fill(angle);
+  return result;
+}
+
+Motion two_keys() { return {{4.0, 6.0}, {all(1.0), all(2.0)}}; }
+
+TEST(Motion, CountsTimeFromItsFirstKey) {
+  EXPECT_EQ(two_keys().duration(), 2.0);
+  EXPECT_EQ(two_keys().at(0.0), all(1.0));
+}
+
+TEST(Motion, IsLinearBetweenTwoKeys) { EXPECT_EQ(two_keys().at(0.5), all(1.25)); }
+
+TEST(Motion, HoldsTheFirstAngleBeforeAndTheLastAfter) {
+  EXPECT_EQ(two_keys().at(-1.0), all(1.0));
+  EXPECT_EQ(two_keys().at(2.0), all(2.0));
+  EXPECT_EQ(two_keys().at(std::numeric_limits<double>::infinity()), all(2.0));
+}
+
+TEST(Motion, MeetsEachKeyExactly) {
+  Motion motion;
+  for (int k = 0; k < 100; ++k) {
+    motion.time_s.push_back(0.25 * k);
+    motion.angle.push_back(all(0.01 * k * k));
+  }
+  for (std::size_t k = 0; k < 100; ++k)
+    EXPECT_EQ(motion.at(motion.time_s[k]), motion.angle[k]) << "key " << k;
+}
+
+TEST(Motion, TakesATimeThatIsNoNumberAsItsBegin) { EXPECT_EQ(two_keys().at(kNan), all(1.0)); }
+
+TEST(Motion, OfOneKeyStandsStill) {
+  const Motion motion{{3.0}, {all(0.5)}};
+  EXPECT_EQ(motion.duration(), 0.0);
+  EXPECT_EQ(motion.at(7.0), all(0.5));
+}
+
+void expect_refused(const Motion& motion, const char* words) {
+  try {
+    check_motion(motion);
+    ADD_FAILURE() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(words));
+  }
+}
+
+TEST(CheckMotion, RefusesWhatBreaksTheInvariant) {
+  EXPECT_NO_THROW(check_motion(two_keys()));
+  expect_refused({}, "no keys");
+  expect_refused({{0.0, 1.0}, {all(0.0)}}, "2 times");
+  expect_refused({{0.0, 0.0}, {all(0.0), all(0.0)}}, "key 1: time 0 s does not come after");
+  expect_refused({{0.0, kNan}, {all(0.0), all(0.0)}}, "not finite");
+  Motion nan = two_keys();
+  nan.angle[1][5] = kNan;
+  expect_refused(nan, "key 1: index_mcp_abduction = nan");
+}
+
+}  // namespace
+}  // namespace phalanx

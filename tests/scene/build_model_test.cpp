@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/build_model.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "expect_error.h"
+#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+SceneDescription parse(const std::string& text) { return parse_scene(text, "test.toml", PHALANX_SOURCE_DIR); }
+
+Vec3 extent(const TriangleMesh& mesh) {
+  const Bounds box = bounds(mesh);
+  return box.max - box.min;
+}
+
+TEST(BuildModel, MakesEveryKindInItsSize) {
+  const auto size = [](const std::string& keys) {
+    return extent(make_world_mesh(parse("[[objects]]\n" + keys)));
+  };
+  EXPECT_NEAR(size("kind = \"teapot\"\nsize_mm = 110").x(), 0.110, 1e-9);
+  EXPECT_NEAR(size("kind = \"sphere\"\ndiameter_mm = 40").z(), 0.040, 1e-9);
+  EXPECT_TRUE(size("kind = \"box\"\nextent_mm = [10, 20, 30]").isApprox(Vec3(0.01, 0.02, 0.03), 1e-12));
+  EXPECT_NEAR(size("kind = \"cylinder\"\nlength_mm = 70").z(), 0.070, 1e-9);
+  EXPECT_NEAR(size("kind = \"torus\"\nring_diameter_mm = 80\ntube_diameter_mm = 20\ntriangles = 5000").x(),
+              0.100, 1e-4);
+  EXPECT_NEAR(size("kind = \"mug\"\nlength_mm = 95").z(), 0.095, 1e-9);
+}
+
+TEST(BuildModel, ImportsAFileInItsSize) {
+  const fs::path file =
+      fs::temp_directory_path() / ("phalanx_build_model_" + std::to_string(getpid()) + ".obj");
+  write_obj(make_box({1.0, 2.0, 4.0}, 12), file, "box");
+  const SceneDescription scene =
+      parse("[[objects]]\nkind = \"file\"\nsize_mm = 80\nfile = \"" + file.string() + "\"");
+  EXPECT_TRUE(extent(make_world_mesh(scene)).isApprox(Vec3(0.02, 0.04, 0.08), 1e-9));
+  fs::remove(file);
+}
+
+TEST(BuildModel, NamesAMeshFileThatIsMissing) {
+  const SceneDescription scene = parse("[[objects]]\nkind = \"file\"\nfile = \"none.obj\"");
+  try {
+    static_cast<void>(build_model(scene));
+    ADD_FAILURE() << "built";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("none.obj"));
+  }
+}
+
+TEST(BuildModel, PutsObjectsWhereTheSceneSays) {
+  const SceneDescription scene = parse(R"(
+    [[objects]]
+    kind = "box"
+    extent_mm = [10, 20, 30]
+    position_mm = [100, 0, 0]
+    rotation_deg = [0, 0, 90]
+    [[objects]]
+    kind = "sphere"
+    diameter_mm = 2
+    position_mm = [0, 0, 500])");
+  const Bounds box = bounds(make_world_mesh(scene));
+  EXPECT_NEAR(box.max.x(), 0.110, 1e-12) << "the box's y edge of 20 mm, turned to x";
+  EXPECT_NEAR(box.max.z(), 0.501, 1e-12);
+}
+
+TEST(BuildModel, PassesTheScenesParametersOn) {
+  const SceneDescription scene = parse(R"(
+    rate_hz = 500
+    hand.side = "left"
+    hand.position_mm = [0, 0, 7]
+    force.stiffness_n_per_mm = 0.9
+    limits.joint_torque_nm = 0.25
+    smoothing.enabled = false
+    contact.margin_mm = 0.1
+    [[objects]]
+    kind = "sphere"
+    position_mm = [0, 0, 900])");
+  const HapticModel model = build_model(scene);
+  EXPECT_EQ(model.rate_hz, 500.0);
+  EXPECT_EQ(model.hand.handedness(), Handedness::kLeft);
+  EXPECT_EQ(model.hand.palm_pose().p, Vec3(0, 0, 0.007));
+  EXPECT_DOUBLE_EQ(model.force.stiffness, 900.0);
+  EXPECT_EQ(model.limits.joint_torque, 0.25);
+  EXPECT_FALSE(model.smoothing.enabled);
+  EXPECT_DOUBLE_EQ(model.contact.margin, 1e-4);
+  EXPECT_GT(model.object.triangle_count(), 500);
+}
+
+TEST(BuildModel, WorksWithoutAnyObject) { EXPECT_EQ(build_model(parse("")).object.triangle_count(), 0); }
+
+TEST(BuildMotion, PlaysTheScriptUnlessThereIsAFile) {
+  const SceneDescription script = parse("motion.name = \"press\"\nmotion.hold_s = 2");
+  EXPECT_DOUBLE_EQ(build_motion(script).duration(), 4.2);
+  EXPECT_EQ(simulation_seconds(script, build_motion(script)), build_motion(script).duration());
+  const SceneDescription file = parse(R"(
+    seconds = 0.5
+    [motion]
+    file = "assets/motions/glove_two_trials.csv"
+    mapping = "cyberglove"
+    trial = 1)");
+  EXPECT_NEAR(build_motion(file).duration(), 1.5, 1e-3);
+  EXPECT_EQ(simulation_seconds(file, build_motion(file)), 0.5);
+}
+
+TEST(BuildMotion, NamesAMotionFileThatIsMissing) {
+  expect_scene_error([] { static_cast<void>(build_motion(parse("motion.file = \"none.csv\""))); },
+                     {"none.csv", "no such file"});
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/hand_file.h"
+
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "expect_error.h"
+
+namespace phalanx {
+namespace {
+
+std::string adult_text() {
+  std::ifstream file(PHALANX_SOURCE_DIR "/assets/hands/adult.toml");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// adult.toml with one piece of text replaced by another.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = adult_text();
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+  expect_scene_error([&] { static_cast<void>(parse_hand(text, "bad.toml")); }, words);
+}
+
+// Buryanov & Kotiuk 2010, mm: metacarpal (thumb) or proximal, middle or proximal (thumb), distal; soft tip.
+TEST(AdultHand, HasThePublishedBoneLengths) {
+  constexpr double kPublished[kDigits][4] = {{46.22, 31.57, 21.67, 5.67},
+                                             {39.78, 22.38, 15.82, 3.84},
+                                             {44.63, 26.33, 17.40, 3.95},
+                                             {41.37, 25.65, 17.30, 3.95},
+                                             {32.74, 18.11, 15.96, 3.73}};
+  const HandParameters hand = load_hand_file("adult");
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const auto d = static_cast<std::size_t>(digit);
+    EXPECT_EQ(hand.digits[d].dh[0].a, 0.0);
+    for (std::size_t bone = 0; bone < 3; ++bone) {
+      EXPECT_NEAR(hand.digits[d].dh[bone + 1].a, kPublished[d][bone] * 1e-3, 1e-12)
+          << digit_name(digit) << " " << bone;
+    }
+    const SegmentShape& distal = hand.segments[d * 3 + 2];
+    EXPECT_NEAR(distal.length + distal.radius_tip, (kPublished[d][2] + kPublished[d][3]) * 1e-3, 2e-5)
+        << digit_name(digit);
+  }
+}
+
+// Base + metacarpal length along base -> knuckle, computed here from the numbers that the file's comment
+// states.
+TEST(AdultHand, HasItsKnucklesAMetacarpalFromTheirBases) {
+  struct Metacarpal {
+    Vec3 base, knuckle;
+    double length;
+  };
+  const Metacarpal metacarpals[] = {{{-10.17, -7.07, -29.22}, {-23.55, -7.32, -88.55}, 68.12},
+                                    {{-3.43, -6.06, -29.11}, {-1.73, -2.55, -91.65}, 64.60},
+                                    {{8.09, -6.06, -27.00}, {17.46, -6.53, -84.70}, 58.00},
+                                    {{23.00, -9.42, -34.08}, {35.05, -13.70, -73.90}, 53.69}};
+  const HandParameters hand = load_hand_file("adult");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Metacarpal& m = metacarpals[i];
+    const Vec3 expected = (m.base + m.length * (m.knuckle - m.base).normalized()) * 1e-3;
+    EXPECT_LT((hand.digits[i + 1].base - expected).norm(), 1e-5) << digit_name(static_cast<int>(i) + 1);
+  }
+}
+
+TEST(AdultHand, HasOrthonormalDirections) {
+  for (const DigitParameters& digit : load_hand_file("adult").digits) {
+    EXPECT_NEAR(digit.distal.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(digit.dorsal.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(digit.dorsal.dot(digit.distal), 0.0, 1e-12);
+  }
+}
+
+TEST(AdultHand, OpensWithinItsRangeOfMotion) {
+  const HandParameters hand = load_hand_file("adult");
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    EXPECT_LE(hand.min_angle[j], hand.open_angle[j]);
+    EXPECT_GE(hand.max_angle[j], hand.open_angle[j]);
+  }
+  EXPECT_NEAR(hand.max_angle[6], 100.0 * std::numbers::pi / 180.0, 1e-12) << "index PIP";
+}
+
+// Neighbouring straight fingers: the least distance of their centre lines against the sum of the radii there.
+TEST(AdultHand, KeepsItsOpenFingersApart) {
+  const HandParameters hand = load_hand_file("adult");
+  const auto along = [&](std::size_t digit, double s) {
+    return Vec3(hand.digits[digit].base + s * hand.digits[digit].distal);
+  };
+  const auto radius = [&](std::size_t digit, double s) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const SegmentShape& shape = hand.segments[digit * 3 + k];
+      const double bone = hand.digits[digit].dh[k + 1].a;
+      if (s <= bone || k == 2)
+        return shape.radius_base + (shape.radius_tip - shape.radius_base) * std::min(1.0, s / shape.length);
+      s -= bone;
+    }
+    return 0.0;
+  };
+  for (std::size_t digit = 1; digit < 4; ++digit) {
+    for (double s = 0.0; s < 0.07; s += 0.005) {
+      for (double t = 0.0; t < 0.07; t += 0.005) {
+        const double gap =
+            (along(digit, s) - along(digit + 1, t)).norm() - radius(digit, s) - radius(digit + 1, t);
+        EXPECT_GT(gap, -1e-3) << digit_name(static_cast<int>(digit)) << " at " << s << " m, next at " << t
+                              << " m";
+      }
+    }
+  }
+}
+
+TEST(HandFile, WithALineThatNobodyKnows) {
+  expect_refused(changed("offset_mm", "offsett_mm = [0, 0, 0]\noffset_mm"),
+                 {"bad.toml:", "palm.offsett_mm", "nearest known one is palm.offset_mm"});
+}
+
+TEST(HandFile, WithoutADigit) { expect_refused("name = \"x\"", {"bad.toml", "thumb", "is missing"}); }
+
+TEST(HandFile, WithANumberThatIsNotFinite) {
+  expect_refused(changed("a_mm = 46.22", "a_mm = nan"), {"a_mm = nan", "must be"});
+}
+
+TEST(HandFile, WithANegativeRadius) {
+  expect_refused(changed("radius_tip_mm = 11.5", "radius_tip_mm = -11.5"),
+                 {"thumb.segments.0.radius_tip_mm = -11.5", "> 0"});
+}
+
+TEST(HandFile, WithAnEmptyRangeOfMotion) {
+  expect_refused(changed("max_deg = 35.0", "max_deg = -18.0"), {"thumb.joints.0.max_deg = -18", "> -18"});
+}
+
+TEST(HandFile, WithAnOpenAngleOutsideItsRange) {
+  expect_refused(changed("open_deg = 0.0", "open_deg = 36.0"), {"thumb.joints.0.open_deg = 36", "<= 35"});
+}
+
+TEST(HandFile, WithTwoJointsSwapped) {
+  expect_refused(changed("thumb_cmc_flexion", "thumb_cmc_abduction"),
+                 {"thumb.joints.0.name", "\"thumb_cmc_flexion\""});
+}
+
+TEST(HandFile, WithABackAlongTheFinger) {
+  expect_refused(changed("dorsal = [-0.852, 0.207, 0.481]", "dorsal = [-0.519, -0.462, -0.719]"),
+                 {"thumb.dorsal", "parallel"});
+}
+
+TEST(HandFile, ThatIsMissing) {
+  expect_scene_error([] { static_cast<void>(load_hand_file("adlt")); },
+                     {"hand \"adlt\"", "did you mean \"adult\"?"});
+  expect_scene_error([] { static_cast<void>(load_hand_file("none.toml", "/nowhere")); },
+                     {"/nowhere/none.toml", "there is no file"});
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace phalanx {
+namespace {
+
+SceneDescription parse(const std::string& text, const Overrides& overrides = {}) {
+  return parse_scene(text, "test.toml", "/somewhere", overrides);
+}
+
+// The defaults that the key table states are those of the structs.
+TEST(Scene, OfAnEmptyFileIsTheDefaultScene) {
+  const SceneDescription scene = parse("");
+  const SceneDescription expected;
+  EXPECT_EQ(scene.name, "test");
+  EXPECT_EQ(scene.rate_hz, expected.rate_hz);
+  EXPECT_EQ(scene.seconds, expected.seconds);
+  EXPECT_EQ(scene.seed, expected.seed);
+  EXPECT_EQ(scene.hand.file, expected.hand.file);
+  EXPECT_EQ(scene.hand.handedness, expected.hand.handedness);
+  EXPECT_EQ(scene.hand.triangles, expected.hand.triangles);
+  EXPECT_EQ(scene.hand.pose.R, expected.hand.pose.R);
+  EXPECT_EQ(scene.hand.pose.p, expected.hand.pose.p);
+  EXPECT_TRUE(scene.objects.empty());
+  EXPECT_DOUBLE_EQ(scene.contact.margin, expected.contact.margin);
+  EXPECT_DOUBLE_EQ(scene.contact.slid_distance, expected.contact.slid_distance);
+  EXPECT_EQ(scene.contact.method, expected.contact.method);
+  EXPECT_EQ(scene.contact.depth, expected.contact.depth);
+  EXPECT_EQ(scene.contact.normal, expected.contact.normal);
+  EXPECT_EQ(scene.force.law, expected.force.law);
+  EXPECT_DOUBLE_EQ(scene.force.stiffness, expected.force.stiffness);
+  EXPECT_DOUBLE_EQ(scene.force.damping, expected.force.damping);
+  EXPECT_DOUBLE_EQ(scene.force.velocity_lowpass_hz, expected.force.velocity_lowpass_hz);
+  EXPECT_DOUBLE_EQ(scene.force.hunt_crossley_exponent, expected.force.hunt_crossley_exponent);
+  EXPECT_DOUBLE_EQ(scene.force.hunt_crossley_damping, expected.force.hunt_crossley_damping);
+  EXPECT_DOUBLE_EQ(scene.force.cubic, expected.force.cubic);
+  EXPECT_DOUBLE_EQ(scene.force.linear_depth, expected.force.linear_depth);
+  EXPECT_EQ(scene.smoothing.enabled, expected.smoothing.enabled);
+  EXPECT_EQ(scene.smoothing.min_rate, expected.smoothing.min_rate);
+  EXPECT_EQ(scene.smoothing.max_rate, expected.smoothing.max_rate);
+  EXPECT_TRUE(scene.limits.fingertip_force_enabled && scene.limits.joint_torque_enabled &&
+              scene.limits.torque_rate_enabled);
+  EXPECT_EQ(scene.limits.fingertip_force, expected.limits.fingertip_force);
+  EXPECT_EQ(scene.limits.joint_torque, expected.limits.joint_torque);
+  EXPECT_EQ(scene.limits.torque_rate, expected.limits.torque_rate);
+  EXPECT_EQ(scene.limits.joint_speed, expected.limits.joint_speed);
+  EXPECT_EQ(scene.motion.script.name, expected.motion.script.name);
+  EXPECT_EQ(scene.motion.script.start_s, expected.motion.script.start_s);
+  EXPECT_EQ(scene.motion.script.close_s, expected.motion.script.close_s);
+  EXPECT_EQ(scene.motion.script.hold_s, expected.motion.script.hold_s);
+  EXPECT_EQ(scene.motion.script.open_s, expected.motion.script.open_s);
+  EXPECT_EQ(scene.motion.script.repeat, expected.motion.script.repeat);
+  EXPECT_EQ(scene.motion.script.closure, expected.motion.script.closure);
+  EXPECT_EQ(scene.motion.script.digit_closure, expected.motion.script.digit_closure);
+  EXPECT_EQ(scene.motion.script.tremor_rad, expected.motion.script.tremor_rad);
+  EXPECT_TRUE(scene.motion.file.empty());
+  EXPECT_FALSE(scene.motion.trial.has_value());
+}
+
+TEST(Scene, OfAnObjectWithoutSizesHasTheDefaultOnes) {
+  for (const char* kind : {"teapot", "sphere", "box", "cylinder", "torus", "mug"}) {
+    const SceneDescription scene = parse("[[objects]]\nkind = \"" + std::string(kind) + "\"");
+    ASSERT_EQ(scene.objects.size(), 1U);
+    const ObjectDescription& object = scene.objects[0];
+    const ObjectDescription expected;
+    EXPECT_EQ(object.kind, kind);
+    EXPECT_DOUBLE_EQ(object.size, expected.size);
+    EXPECT_DOUBLE_EQ(object.diameter, expected.diameter);
+    EXPECT_DOUBLE_EQ(object.length, expected.length);
+    EXPECT_DOUBLE_EQ(object.ring_diameter, expected.ring_diameter);
+    EXPECT_DOUBLE_EQ(object.tube_diameter, expected.tube_diameter);
+    EXPECT_EQ(object.extent, expected.extent);
+    EXPECT_EQ(object.triangles, expected.triangles);
+  }
+}
+
+TEST(Scene, ConvertsItsUnitsToSi) {
+  const SceneDescription scene = parse(R"(
+    [contact]
+    margin_mm = 0.1
+    [force]
+    stiffness_n_per_mm = 0.9
+    cubic_n_per_mm3 = 2
+    [motion]
+    tremor_deg = 9
+    [[objects]]
+    kind = "sphere"
+    diameter_mm = 40
+    position_mm = [1, -2.5, 3])");
+  EXPECT_DOUBLE_EQ(scene.contact.margin, 1e-4);
+  EXPECT_DOUBLE_EQ(scene.force.stiffness, 900.0);
+  EXPECT_DOUBLE_EQ(scene.force.cubic, 2e9);
+  EXPECT_DOUBLE_EQ(scene.motion.script.tremor_rad, std::numbers::pi / 20.0);
+  EXPECT_DOUBLE_EQ(scene.objects[0].diameter, 0.04);
+  EXPECT_TRUE(scene.objects[0].pose.p.isApprox(Vec3(0.001, -0.0025, 0.003), 1e-15));
+}
+
+// Rz(90) Ry(90) Rx(90): x goes by Rx to x, by Ry to -z, by Rz to -z; y goes to z, to x, to y.
+TEST(Scene, TurnsByRollThenPitchThenYaw) {
+  const SceneDescription scene = parse("hand.rotation_deg = [90, 90, 90]");
+  const Mat3& R = scene.hand.pose.R;
+  EXPECT_TRUE((R * Vec3::UnitX()).isApprox(-Vec3::UnitZ(), 1e-12));
+  EXPECT_TRUE((R * Vec3::UnitY()).isApprox(Vec3::UnitY(), 1e-12));
+}
+
+TEST(Scene, ReadsEveryChoice) {
+  const SceneDescription scene = parse(R"(
+    hand.side = "left"
+    gdp.method = "trajectory"
+    force.law = "linear_then_cubic"
+    force.depth = "s1"
+    force.normal = "contact")");
+  EXPECT_EQ(scene.hand.handedness, Handedness::kLeft);
+  EXPECT_EQ(scene.contact.method, GdpMethod::kTrajectory);
+  EXPECT_EQ(scene.force.law, ForceLaw::kLinearThenCubic);
+  EXPECT_EQ(scene.contact.depth, DepthOrigin::kS1);
+  EXPECT_EQ(scene.contact.normal, ForceNormal::kContact);
+  EXPECT_EQ(parse("force.law = \"kelvin_voigt\"").force.law, ForceLaw::kKelvinVoigt);
+  EXPECT_EQ(parse("force.law = \"hunt_crossley\"").force.law, ForceLaw::kHuntCrossley);
+  EXPECT_EQ(parse("force.law = \"duffing\"").force.law, ForceLaw::kDuffing);
+}
+
+// S2: [-0.05, 0.05] N a step; at 400 Hz that is 20 N/s.
+TEST(Scene, TurnsSmoothingBoundsPerStepIntoBoundsPerSecond) {
+  const SceneDescription scene = parse("smoothing.max_n = 0.05\nsmoothing.min_n = -0.1\nrate_hz = 400");
+  EXPECT_DOUBLE_EQ(scene.smoothing.max_rate, 20.0);
+  EXPECT_DOUBLE_EQ(scene.smoothing.min_rate, -40.0);
+}
+
+TEST(Scene, AllowsRiseOnlySmoothing) {
+  const double minus_infinity = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(parse("smoothing.min_n = -inf").smoothing.min_rate, minus_infinity);
+  EXPECT_EQ(parse("smoothing.min_n_per_s = -inf").smoothing.min_rate, minus_infinity);
+}
+
+TEST(Scene, TurnsALimitOffOnlyByName) {
+  const SceneDescription scene = parse("limits.torque_rate_nm_per_s = \"off\"");
+  EXPECT_FALSE(scene.limits.torque_rate_enabled);
+  EXPECT_TRUE(scene.limits.fingertip_force_enabled);
+  EXPECT_TRUE(scene.limits.joint_torque_enabled);
+  EXPECT_FALSE(parse("limits.fingertip_force_n = \"off\"").limits.fingertip_force_enabled);
+  EXPECT_FALSE(parse("limits.joint_torque_nm = \"off\"").limits.joint_torque_enabled);
+  EXPECT_TRUE(std::isinf(parse("limits.joint_speed_rad_per_s = \"off\"").limits.joint_speed));
+}
+
+TEST(Scene, ResolvesFilesAgainstItsOwnFolder) {
+  const SceneDescription scene = parse(R"(
+    motion.file = "a/b.csv"
+    motion.mapping = "cyberglove"
+    hand.file = "hands/me.toml"
+    [[objects]]
+    kind = "file"
+    file = "mesh.obj")");
+  EXPECT_EQ(scene.motion.file, "/somewhere/a/b.csv");
+  EXPECT_EQ(scene.motion.mapping, "cyberglove") << "a bare name is no path";
+  EXPECT_EQ(scene.hand.file, "/somewhere/hands/me.toml");
+  EXPECT_EQ(scene.objects[0].file, "/somewhere/mesh.obj");
+}
+
+TEST(Scene, GivesItsSeedToTheTremor) { EXPECT_EQ(parse("seed = 7").motion.script.seed, 7U); }
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every scene that ships: it can be read, starts clear, and each grasp really touches with the digits that it
+// names.
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "expect_error.h"
+#include "phalanx/scene/build_model.h"
+#include "phalanx/step/haptic_step.h"
+
+namespace phalanx {
+namespace {
+
+struct Outcome {
+  std::set<int> digits;  ///< in contact at the end of the hold
+  double deepest = 0.0;  ///< [m]
+  double slid = 0.0;     ///< [m]
+  double weakest = 1e9;  ///< smallest of the digits' largest forces [N]
+  Status status = Status::kOk;
+};
+
+/// Plays a scene up to the end of its hold.
+Outcome play(const SceneDescription& scene) {
+  const HapticModel model = build_model(scene);
+  const Motion motion = build_motion(scene);
+  HapticState state(model);
+  Outcome outcome;
+  const ScriptedMotion& script = scene.motion.script;
+  const auto ticks =
+      static_cast<int>((script.start_s + script.close_s + 0.9 * script.hold_s) * scene.rate_hz);
+  for (int tick = 0; tick < ticks; ++tick) {
+    const double time = tick / scene.rate_hz;
+    outcome.status |= step(model, {time, motion.at(time)}, state);
+  }
+  for (int digit = 0; digit < kDigits; ++digit) {
+    double force = 0.0;
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const SegmentSnapshot& segment =
+          state.snapshot().segment[static_cast<std::size_t>(segment_index(digit, k))];
+      if (!segment.contact) continue;
+      outcome.digits.insert(digit);
+      outcome.deepest = std::max(outcome.deepest, segment.depth);
+      outcome.slid = std::max(outcome.slid, segment.slid);
+      force = std::max(force, segment.force);
+    }
+    if (outcome.digits.count(digit) != 0) outcome.weakest = std::min(outcome.weakest, force);
+  }
+  return outcome;
+}
+
+const std::map<std::string, std::set<int>>& expected_digits() {
+  static const std::map<std::string, std::set<int>> kDigitsOf = {
+      {"grasp_box", {0, 1, 2, 3, 4}},   {"grasp_cylinder", {0, 1, 2, 3, 4}},
+      {"grasp_mug", {0, 1, 2, 3, 4}},   {"grasp_teapot", {0, 1, 2, 3, 4}},
+      {"grasp_torus", {0, 1, 2, 3, 4}}, {"index_ball", {1}},
+      {"pinch_ball", {0, 1}},           {"press_teapot", {1}},
+      {"tripod_ball", {0, 1, 2}},       {"wave", {}}};
+  return kDigitsOf;
+}
+
+TEST(ShippedScenes, CanAllBeReadAndAreAllTestedHere) {
+  std::set<std::string> names;
+  for (const SceneInfo& info : list_scenes()) {
+    EXPECT_TRUE(info.readable) << info.name << ": " << info.description;
+    EXPECT_FALSE(info.description.empty()) << info.name;
+    EXPECT_EQ(info.description.find('\n'), std::string::npos) << info.name;
+    names.insert(info.name);
+  }
+  for (const auto& [name, digits] : expected_digits()) EXPECT_EQ(names.count(name), 1U) << name;
+}
+
+class ShippedScene : public testing::TestWithParam<std::string> {};
+
+// The contact stays put within 5 mm (static grasping), the fingers go in a few mm, and every digit is felt.
+TEST_P(ShippedScene, TouchesWithTheDigitsOfItsGraspAndGently) {
+  const SceneDescription scene = load_scene(GetParam());
+  const Outcome outcome = play(scene);
+  EXPECT_EQ(outcome.digits, expected_digits().at(GetParam()));
+  EXPECT_EQ(outcome.status, Status::kOk);
+  EXPECT_LT(outcome.deepest, 8e-3);
+  EXPECT_LT(outcome.slid, scene.contact.slid_distance);
+  EXPECT_GT(outcome.weakest, 0.3) << "N";
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const auto& [name, digits] : expected_digits()) result.push_back(name);
+  return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(names()),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace phalanx
