@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run_outputs.h"
+
+#include <fmt/format.h>
+
+#include "phalanx/mesh/import.h"
+#include "phalanx/record/output_file.h"
+#include "phalanx/study/picture.h"
+
+namespace phalanx {
+namespace {
+
+void prepare_folder_of(const std::filesystem::path& file) {
+  if (file.empty()) return;
+  if (std::filesystem::is_directory(file)) {
+    throw std::invalid_argument(fmt::format("'{}' is a folder; name a file in it", file.string()));
+  }
+  if (file.has_parent_path()) prepare_output_folder(file.parent_path());
+}
+
+}  // namespace
+
+RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model) : plan_(std::move(plan)), model_(model) {
+  if (!plan_.folder.empty()) {
+    prepare_output_folder(plan_.folder);
+    prepare_output_folder(plan_.folder / "hand");
+    // Of an earlier run: what this one does not write anew must not stay beside it.
+    for (const char* name : {"summary.json", "ticks.csv", "poses.csv"})
+      std::filesystem::remove(plan_.folder / name);
+    ticks_.emplace(plan_.folder / "ticks.csv");
+    if (plan_.poses) poses_.emplace(plan_.folder / "poses.csv");
+  }
+  prepare_folder_of(plan_.plot);
+  prepare_folder_of(plan_.picture);
+}
+
+void RunOutputs::add(const Snapshot& snapshot) {
+  if (ticks_) ticks_->write(snapshot);
+  if (poses_) poses_->write(snapshot);
+  if (!plan_.plot.empty()) trace_.push_back(trace_tick(snapshot));
+  if (const double force = total_force(snapshot); force > peak_force_) {
+    peak_force_ = force;
+    peak_ = snapshot;
+  }
+}
+
+void RunOutputs::finish(const Summary& summary, const PlotText& text) {
+  if (!plan_.plot.empty()) write_text_file(plan_.plot, plot_svg(trace_, text));
+  if (!plan_.picture.empty()) {
+    const Image image = render_picture(model_.hand, model_.object.mesh(), peak_);
+    write_then_rename(plan_.picture, [&](const std::filesystem::path& file) { write_png(image, file); });
+  }
+  if (plan_.folder.empty()) return;
+  write_meshes();
+  ticks_->commit();
+  if (poses_) poses_->commit();
+  write_text_file(plan_.folder / "summary.json", summary_json(summary));
+}
+
+void RunOutputs::write_meshes() const {
+  write_then_rename(plan_.folder / "object.obj", [&](const std::filesystem::path& file) {
+    write_obj(model_.object.mesh(), file, "object");
+  });
+  for (int segment = 0; segment < kSegments; ++segment) {
+    const std::string name(segment_name(segment));
+    write_then_rename(plan_.folder / "hand" / (name + ".obj"), [&](const std::filesystem::path& file) {
+      write_obj(model_.hand.mesh(segment), file, name);
+    });
+  }
+}
+
+}  // namespace phalanx

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files of `phalanx simulate`.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "phalanx/record/poses_csv.h"
+#include "phalanx/record/summary.h"
+#include "phalanx/record/ticks_csv.h"
+#include "phalanx/step/haptic_step.h"
+#include "phalanx/study/plot.h"
+#include "phalanx/study/trace.h"
+
+namespace phalanx {
+
+/// Where what goes; empty: not wanted.
+struct OutputPlan {
+  std::filesystem::path folder;
+  bool poses = false;
+  std::filesystem::path plot;
+  std::filesystem::path picture;
+};
+
+/// Takes every tick and writes what the plan asks for. summary.json is removed at the start and written last:
+/// a folder that has one is complete.
+class RunOutputs {
+ public:
+  /// @throws std::invalid_argument if a folder cannot be used; std::runtime_error if a file cannot be
+  /// written.
+  RunOutputs(OutputPlan plan, const HapticModel& model);
+  void add(const Snapshot& snapshot);
+  /// @param text  the plot's heading
+  void finish(const Summary& summary, const PlotText& text);
+
+ private:
+  void write_meshes() const;
+
+  OutputPlan plan_;
+  const HapticModel& model_;
+  std::optional<TicksCsv> ticks_;
+  std::optional<PosesCsv> poses_;
+  Trace trace_;
+  Snapshot peak_;
+  double peak_force_ = -1.0;
+};
+
+}  // namespace phalanx

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// phalanx simulate [SCENE]: a motion through the step, as fast as it goes.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "phalanx/scene/build_model.h"
+#include "phalanx/scene/scene.h"
+#include "phalanx/study/simulate.h"
+#include "progress_bar.h"
+#include "run_outputs.h"
+#include "summary_table.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  std::string scene = "grasp_teapot";
+  std::vector<std::string> set;
+  std::string object, motion, mapping;
+  double object_size_mm = 0.0;
+  std::optional<int> trial;
+  std::optional<double> seconds, rate_hz;
+  std::optional<std::uint64_t> seed;
+  std::string out, plot, picture;
+  CLI::Option* plot_asked = nullptr;
+  bool poses = false;
+  bool quiet = false;
+};
+
+/// A TOML basic string; JSON's escapes are a subset of TOML's.
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+Overrides overrides(const SimulateOptions& options) {
+  Overrides result;
+  for (const std::string& pair : options.set) result.push_back(parse_override(pair));
+  if (!options.motion.empty()) result.emplace_back("motion.file", quoted(options.motion));
+  if (!options.mapping.empty()) result.emplace_back("motion.mapping", quoted(options.mapping));
+  if (options.trial) result.emplace_back("motion.trial", std::to_string(*options.trial));
+  if (options.seconds) result.emplace_back("seconds", fmt::format("{:#}", *options.seconds));
+  if (options.rate_hz) result.emplace_back("rate_hz", fmt::format("{:#}", *options.rate_hz));
+  if (options.seed) result.emplace_back("seed", std::to_string(*options.seed));
+  return result;
+}
+
+SceneDescription described(const SimulateOptions& options) {
+  SceneDescription scene = load_scene(options.scene, overrides(options));
+  if (options.object.empty()) {
+    if (options.object_size_mm > 0.0) throw std::invalid_argument("--object-size-mm needs --object FILE");
+    return scene;
+  }
+  // The file takes the place and pose of the scene's first object.
+  ObjectDescription object;
+  object.kind = "file";
+  object.file = fs::absolute(options.object);
+  object.size = 1e-3 * options.object_size_mm;
+  if (!scene.objects.empty()) object.pose = scene.objects.front().pose;
+  scene.objects = {object};
+  return scene;
+}
+
+OutputPlan plan(const SimulateOptions& options) {
+  OutputPlan result{
+      .folder = options.out, .poses = options.poses, .plot = options.plot, .picture = options.picture};
+  if (options.plot_asked->count() > 0 && options.plot.empty()) {
+    if (options.out.empty())
+      throw std::invalid_argument("--plot needs a FILE.svg, or --out DIR to put plot.svg into");
+    result.plot = result.folder / "plot.svg";
+  }
+  const auto must_end = [](const char* option, const fs::path& file, const char* extension) {
+    if (!file.empty() && file.extension() != extension) {
+      throw std::invalid_argument(
+          fmt::format("{} '{}': the file's name must end in {}", option, file.string(), extension));
+    }
+  };
+  must_end("--plot", result.plot, ".svg");
+  must_end("--picture", result.picture, ".png");
+  if (options.poses && options.out.empty()) throw std::invalid_argument("--poses needs --out DIR");
+  return result;
+}
+
+std::string law_text(const ForceLawParameters& law) {
+  static constexpr std::array<const char*, 5> kNames = {"Hooke", "Kelvin-Voigt", "Hunt-Crossley", "Duffing",
+                                                        "linear then cubic"};
+  return fmt::format("{}, k = {:.6g} N/mm", kNames[static_cast<std::size_t>(law.law)], 1e-3 * law.stiffness);
+}
+
+std::string parameters(const SceneDescription& scene, std::uint64_t ticks) {
+  const SmoothingParameters& s = scene.smoothing;
+  const std::string smoothing =
+      s.enabled ? fmt::format("smoothing \u2212{:.6g} to +{:.6g} N/s", -s.min_rate, s.max_rate)
+                : "no smoothing";
+  const std::string cap = scene.limits.fingertip_force_enabled
+                              ? fmt::format("fingertip limit {:.6g} N", scene.limits.fingertip_force)
+                              : "no fingertip limit";
+  return fmt::format("{}; {}; {}; {:.6g} Hz, {} ticks", law_text(scene.force), smoothing, cap, scene.rate_hz,
+                     ticks);
+}
+
+int simulate_scene(const SimulateOptions& options) {
+  const OutputPlan output_plan = plan(options);
+  const SceneDescription scene = described(options);
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  const Motion motion = build_motion(scene);
+  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);
+
+  Summary summary;
+  summary.scene = scene.name;
+  summary.rate_hz = scene.rate_hz;
+  summary.seconds = static_cast<double>(ticks) / scene.rate_hz;
+  summary.hand_triangles = model->hand.triangle_count();
+  summary.object_triangles = model->object.triangle_count();
+  {
+    const HapticState checked(*model);
+  }  // a hand that starts inside is reported before any file is touched
+  RunOutputs outputs(output_plan, *model);
+  {
+    ProgressBar bar("simulating", !options.quiet);
+    summary.step_us =
+        simulate(*model, motion, ticks,
+                 {.tick =
+                      [&](const Snapshot& snapshot) {
+                        add_tick(summary, snapshot);
+                        outputs.add(snapshot);
+                      },
+                  .progress = [&](std::uint64_t done, std::uint64_t total) { bar.show(done, total); }});
+  }
+  summary.made = made_here();
+  outputs.finish(
+      summary, {.title = scene.name, .subtitle = scene.description, .parameters = parameters(scene, ticks)});
+  if (options.quiet) return kDone;
+  if (options.out.empty()) {
+    fmt::print("{}", summary_table(summary));
+  } else {
+    for (const std::string& warning : warnings(summary)) fmt::print("warning  {}\n", warning);
+    fmt::print("wrote    {} ({} ticks, peak {:.2f} N in all at {:.3f} s)\n", options.out, ticks,
+               summary.peak_total_force, summary.peak_total_force_time_s);
+  }
+  if (!output_plan.plot.empty()) fmt::print("wrote    {}\n", output_plan.plot.string());
+  if (!output_plan.picture.empty()) fmt::print("wrote    {}\n", output_plan.picture.string());
+  return kDone;
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, Job& job) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command = app.add_subcommand(
+      "simulate", "Run a motion of the hand against the scene's object and report forces and torques");
+  command->footer(
+      "Without --out a table of peak forces and torques is printed. Outputs: docs/outputs.md.\n"
+      "Exit codes: 0 done, 1 failed, 2 wrong usage or input.");
+  command->add_option("SCENE", options->scene,
+                      "a name in scenes/ (see `phalanx scene list`) or a .toml file [grasp_teapot]");
+  command
+      ->add_option("--out", options->out,
+                   "write summary.json, ticks.csv, object.obj and hand/*.obj into this folder")
+      ->type_name("DIR");
+  command->add_flag("--poses", options->poses, "with --out: poses.csv too");
+  options->plot_asked =
+      command->add_option("--plot", options->plot, "draw forces, torques and angles [DIR/plot.svg]")
+          ->expected(0, 1)
+          ->type_name("FILE.svg");
+  command->add_option("--picture", options->picture, "render hand and object at peak force")
+      ->type_name("FILE.png");
+  command
+      ->add_option("--set", options->set,
+                   "override a scene key, e.g. force.stiffness_n_per_mm=0.9; repeatable")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_option("--object", options->object,
+                   "a mesh in place of the scene's objects: .obj .3ds .stl .ply .glb")
+      ->type_name("FILE");
+  command
+      ->add_option("--object-size-mm", options->object_size_mm,
+                   "its largest extent; without it the file's numbers are metres")
+      ->check(CLI::Range(0.1, 10000.0))
+      ->type_name("MM");
+  command->add_option("--motion", options->motion, "a CSV of joint angles in place of the scene's motion")
+      ->type_name("FILE");
+  command
+      ->add_option("--mapping", options->mapping,
+                   "how its columns become joint angles: a name in assets/mappings or a file")
+      ->type_name("NAME");
+  command
+      ->add_option("--trial", options->trial,
+                   "which trial of a motion file whose time runs backwards, from 1")
+      ->type_name("N");
+  command->add_option("--seconds", options->seconds, "how long [the motion's length]")->type_name("S");
+  command->add_option("--rate-hz", options->rate_hz, "steps per second [the scene's]")->type_name("HZ");
+  command->add_option("--seed", options->seed, "of everything random in the motion")->type_name("N");
+  command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  command->callback([options, &job] { job = [options] { return simulate_scene(*options); }; });
+}
+
+}  // namespace phalanx

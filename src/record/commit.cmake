@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+cmake_minimum_required(VERSION 3.25)
+# Writes HEADER with the commit that SOURCE_DIR is at, "-dirty" appended if tracked files differ from it; "unknown" outside git.
+# Leaves the file alone if nothing changed, so that nothing is compiled again.
+set(commit "")
+find_program(GIT git)
+if(GIT)
+  execute_process(
+    COMMAND ${GIT} -C ${SOURCE_DIR} describe --always --dirty --tags --abbrev=12
+    OUTPUT_VARIABLE commit
+    OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT commit)
+  set(commit "unknown")
+endif()
+file(CONFIGURE OUTPUT ${HEADER} CONTENT "// Written by src/record/commit.cmake.\n#pragma once\n#define PHALANX_COMMIT \"@commit@\"\n" @ONLY)

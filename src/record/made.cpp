@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/made.h"
+
+#include <array>
+#include <ctime>
+#include <fstream>
+
+#include "phalanx_commit.h"
+
+namespace phalanx {
+namespace {
+
+std::string cpu_name() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t start = line.find_first_not_of(" \t", line.find(':') + 1);
+    if (start != std::string::npos) return line.substr(start);
+  }
+  return "unknown";
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text;
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return {text.data(), length};
+}
+
+std::string compiler_name() {
+#if defined(__clang__)
+  return "Clang " __clang_version__;
+#else
+  return "GCC " __VERSION__;
+#endif
+}
+
+std::string build_type() {
+  std::string type = PHALANX_BUILD_TYPE;
+  if (type.empty()) type = "none";
+  const std::string sanitizers = PHALANX_SANITIZERS;
+  return sanitizers.empty() ? type : type + "+" + sanitizers;
+}
+
+}  // namespace
+
+Made made_here() {
+  return {.commit = built_from_commit(),
+          .cpu = cpu_name(),
+          .compiler = compiler_name(),
+          .build_type = build_type(),
+          .date = utc_now()};
+}
+
+const char* built_from_commit() noexcept { return PHALANX_COMMIT; }
+
+}  // namespace phalanx

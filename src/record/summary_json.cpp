@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "phalanx/record/summary.h"
+
+namespace phalanx {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// {"<name>": value, ...} in index order.
+template <class Values, class Name>
+Json by_name(const Values& values, Name name) {
+  Json json = Json::object();
+  int i = 0;
+  for (const auto& value : values) json[std::string(name(i++))] = value;
+  return json;
+}
+
+}  // namespace
+
+std::string summary_json(const Summary& summary) {
+  Json json;
+  json["scene"] = summary.scene;
+  json["ticks"] = summary.ticks;
+  json["rate_hz"] = summary.rate_hz;
+  json["seconds"] = summary.seconds;
+  json["triangles"] = {{"hand", summary.hand_triangles}, {"object", summary.object_triangles}};
+  const StepTimes& t = summary.step_us;
+  json["step_us"] = {{"p50", t.p50}, {"p90", t.p90}, {"p99", t.p99}, {"p999", t.p999}, {"max", t.max}};
+  json["contact_ticks"] = by_name(summary.contact_ticks, segment_name);
+  json["peak_force_n"] = by_name(summary.peak_force, segment_name);
+  json["peak_torque_nm"] = by_name(summary.peak_torque, joint_name);
+  json["peak_total_force"] = {{"force_n", summary.peak_total_force},
+                              {"time_s", summary.peak_total_force_time_s}};
+  Json& limiter_ticks = json["limiter_ticks"] = Json::object();
+  for (const LimiterActivity& limiter : limiters(summary)) limiter_ticks[limiter.name] = limiter.ticks;
+  json["status_ticks"] = by_name(summary.status_ticks, status_name);
+  json["warnings"] = warnings(summary);
+  json["made"] = {{"commit", summary.made.commit},
+                  {"cpu", summary.made.cpu},
+                  {"compiler", summary.made.compiler},
+                  {"build_type", summary.made.build_type},
+                  {"date", summary.made.date}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace phalanx

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/output_file.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "record/temporary_folder.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::read_file;
+using testing::TemporaryFolder;
+
+TEST(OutputFile, AppearsUnderItsNameOnlyWhenCommitted) {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.txt";
+  OutputFile out(file);
+  out.text("tick");
+  EXPECT_FALSE(std::filesystem::exists(file));
+  out.commit();
+  EXPECT_EQ(read_file(file), "tick");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.partial"));
+}
+
+TEST(OutputFile, LeavesNothingAndTheOldFileUntouchedWithoutACommit) {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.txt";
+  write_text_file(file, "old");
+  {
+    OutputFile out(file);
+    out.text("new");
+  }
+  EXPECT_EQ(read_file(file), "old");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.partial"));
+}
+
+TEST(OutputFile, WritesTheShortestDecimals) {
+  const TemporaryFolder folder;
+  OutputFile out(folder / "a.txt");
+  for (const double value : {0.1, 0.0, -0.0, 1.0 / 3.0, 1e-300, 5e-324}) {
+    out.number(value);
+    out.text(" ");
+  }
+  out.integer(18446744073709551615U);
+  out.commit();
+  EXPECT_EQ(read_file(folder / "a.txt"), "0.1 0 -0 0.3333333333333333 1e-300 5e-324 18446744073709551615");
+}
+
+TEST(OutputFile, WritesNumbersThatReadBackToTheSameBits) {
+  const TemporaryFolder folder;
+  constexpr std::uint64_t kSeed = 20101;
+  std::mt19937_64 random(kSeed);
+  std::vector<double> values;
+  while (values.size() < 100'000) {
+    const auto value = std::bit_cast<double>(random());
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  OutputFile out(folder / "a.txt");
+  for (const double value : values) {
+    out.number(value);
+    out.text("\n");
+  }
+  out.commit();
+  std::istringstream lines(read_file(folder / "a.txt"));
+  std::string line;
+  for (const double value : values) {
+    ASSERT_TRUE(std::getline(lines, line));
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(std::strtod(line.c_str(), nullptr)),
+              std::bit_cast<std::uint64_t>(value))
+        << "seed " << kSeed << ", line '" << line << "'";
+  }
+}
+
+TEST(OutputFile, SaysWhichFileCannotBeWritten) {
+  try {
+    const OutputFile out("/no/such/folder/a.txt");
+    FAIL() << "opened";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/no/such/folder/a.txt"));
+  }
+}
+
+TEST(OutputFile, FailsWhenTheDeviceIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/full", folder / "a.txt.partial");
+  OutputFile out(folder / "a.txt");
+  out.text("tick");
+  EXPECT_THROW(out.commit(), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+}
+
+TEST(WriteThenRename, RemovesThePartWhenTheWriterThrows) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_then_rename(folder / "a.obj",
+                                 [](const std::filesystem::path& partial) {
+                                   write_text_file(partial, "half");
+                                   throw std::runtime_error("stop");
+                                 }),
+               std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(PrepareOutputFolder, MakesParents) {
+  const TemporaryFolder folder;
+  prepare_output_folder(folder.path() / "a" / "b");
+  EXPECT_TRUE(std::filesystem::is_directory(folder.path() / "a" / "b"));
+}
+
+TEST(PrepareOutputFolder, RefusesAFileByName) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "out", "");
+  try {
+    prepare_output_folder(folder / "out");
+    FAIL() << "accepted a file";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is a file"));
+    EXPECT_THAT(error.what(), HasSubstr((folder / "out").string()));
+  }
+}
+
+TEST(PrepareOutputFolder, RefusesAFolderBelowAFile) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "out", "");
+  EXPECT_THROW(prepare_output_folder(folder / "out/deeper"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace phalanx

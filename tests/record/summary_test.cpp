@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/summary.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+namespace phalanx {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr std::size_t kIndexDistal = 5;
+
+Summary two_ticks() {
+  Summary summary;
+  Snapshot a;
+  a.time_s = 0.0;
+  a.segment[kIndexDistal] = {.contact = true, .depth = 2e-3, .force = 1.5};
+  a.segment[0] = {.contact = true, .force = 1.0};
+  a.torque[4] = -0.08;
+  a.status = Status::kForceLimited | Status::kSampleJump;
+  Snapshot b;
+  b.time_s = 0.005;
+  b.segment[kIndexDistal] = {.contact = true, .depth = 1e-3, .force = 2.0, .slid = 6e-3};
+  b.torque[4] = 0.05;
+  b.status = Status::kSlid | Status::kForceLimited;
+  add_tick(summary, a);
+  add_tick(summary, b);
+  return summary;
+}
+
+TEST(Summary, CountsTicksAndKeepsPeaks) {
+  const Summary summary = two_ticks();
+  EXPECT_EQ(summary.ticks, 2U);
+  EXPECT_EQ(summary.contact_ticks[kIndexDistal], 2U);
+  EXPECT_EQ(summary.contact_ticks[0], 1U);
+  EXPECT_EQ(summary.peak_force[kIndexDistal], 2.0);
+  EXPECT_EQ(summary.peak_depth[kIndexDistal], 2e-3);
+  EXPECT_EQ(summary.peak_torque[4], 0.08);
+  EXPECT_EQ(summary.peak_total_force, 2.5);
+  EXPECT_EQ(summary.peak_total_force_time_s, 0.0);
+}
+
+TEST(Summary, ReportsLimitersByTheTicksInWhichTheyActed) {
+  const auto activity = limiters(two_ticks());
+  EXPECT_STREQ(activity[0].name, "fingertip_force");
+  EXPECT_EQ(activity[0].ticks, 2U);
+  EXPECT_STREQ(activity[3].name, "joint_speed");
+  EXPECT_EQ(activity[3].ticks, 1U);
+  EXPECT_EQ(activity[1].ticks + activity[2].ticks, 0U);
+}
+
+TEST(Summary, WarnsOfWhatMakesTheResultLessThanItLooks) {
+  EXPECT_THAT(warnings(two_ticks()), ElementsAre(HasSubstr("1 tick: a measured angle moved faster"),
+                                                 HasSubstr("slid, up to 6.0 mm")));
+}
+
+TEST(Summary, WarnsOfNothingInACleanRun) {
+  Summary summary;
+  add_tick(summary, Snapshot{});
+  EXPECT_THAT(warnings(summary), IsEmpty());
+}
+
+// A limit that acts does its work; every other bit has a sentence.
+TEST(Summary, HasAWarningForEveryStatusThatIsNotALimit) {
+  for (int bit = 0; bit < kStatusBits; ++bit) {
+    Summary summary;
+    Snapshot snapshot;
+    snapshot.status = static_cast<Status>(1U << bit);
+    add_tick(summary, snapshot);
+    const bool limit =
+        has(snapshot.status, Status::kForceLimited | Status::kTorqueLimited | Status::kTorqueRateLimited);
+    EXPECT_EQ(warnings(summary).size(), limit ? 0U : 1U) << status_name(bit);
+  }
+}
+
+TEST(SummaryJson, HoldsWhatTheDocumentationPromises) {
+  Summary summary = two_ticks();
+  summary.scene = "grasp \"teapot\"";
+  summary.rate_hz = 200.0;
+  summary.seconds = 0.01;
+  summary.hand_triangles = 2248;
+  summary.object_triangles = 992;
+  summary.step_us = {.p50 = 1, .p90 = 2, .p99 = 3, .p999 = 4, .max = 5};
+  summary.notes = {"a note"};
+  summary.made = {.commit = "c", .cpu = "x", .compiler = "g", .build_type = "Release", .date = "d"};
+  const auto json = nlohmann::json::parse(summary_json(summary));
+  EXPECT_EQ(json["scene"], "grasp \"teapot\"");
+  EXPECT_EQ(json["ticks"], 2);
+  EXPECT_EQ(json["rate_hz"], 200.0);
+  EXPECT_EQ(json["triangles"]["hand"], 2248);
+  EXPECT_EQ(json["triangles"]["object"], 992);
+  EXPECT_EQ(json["step_us"]["p999"], 4.0);
+  EXPECT_EQ(json["contact_ticks"].size(), static_cast<std::size_t>(kSegments));
+  EXPECT_EQ(json["contact_ticks"]["index-finger-phalanx-distal"], 2);
+  EXPECT_EQ(json["peak_force_n"]["index-finger-phalanx-distal"], 2.0);
+  EXPECT_EQ(json["peak_torque_nm"].size(), static_cast<std::size_t>(kJoints));
+  EXPECT_EQ(json["peak_torque_nm"]["index_mcp_flexion"], 0.08);
+  EXPECT_EQ(json["limiter_ticks"]["fingertip_force"], 2);
+  EXPECT_EQ(json["status_ticks"]["slid"], 1);
+  EXPECT_EQ(json["status_ticks"].size(), static_cast<std::size_t>(kStatusBits));
+  EXPECT_EQ(json["warnings"].size(), 3U);
+  EXPECT_EQ(json["made"]["commit"], "c");
+}
+
+TEST(MadeHere, FillsEveryField) {
+  const Made made = made_here();
+  EXPECT_FALSE(made.commit.empty());
+  EXPECT_FALSE(made.cpu.empty());
+  EXPECT_THAT(made.compiler, ::testing::AnyOf(HasSubstr("GCC "), HasSubstr("Clang ")));
+  EXPECT_THAT(made.date, ::testing::MatchesRegex("20[0-9]+-[0-9]+-[0-9]+T[0-9]+:[0-9]+:[0-9]+Z"));
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line itself: help, version, exit codes, misspelt words.
+#include <gmock/gmock.h>
+
+#include "study/run_program.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::run_program;
+using testing::TemporaryFolder;
+
+TEST(CliUsage, HelpNamesTheCommandsAndTheExitCodes) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "--help");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* word : {"simulate", "experiment", "scene", "0 done, 1 failed, 2 wrong usage or input"}) {
+    EXPECT_THAT(result.out, HasSubstr(word));
+  }
+}
+
+TEST(CliUsage, SimulateHelpNamesEveryOption) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "simulate --help");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* option :
+       {"--out", "--poses", "--plot", "--picture", "--set", "--object", "--object-size-mm", "--motion",
+        "--mapping", "--trial", "--seconds", "--rate-hz", "--seed", "--quiet"}) {
+    EXPECT_THAT(result.out, HasSubstr(option));
+  }
+}
+
+TEST(CliUsage, VersionIsOneLine) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "--version");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, ::testing::StartsWith("phalanx 0."));
+}
+
+struct Case {
+  const char* arguments;
+  const char* message;
+};
+class CliWrongUsage : public ::testing::TestWithParam<Case> {};
+
+TEST_P(CliWrongUsage, ExitsWithTwoAndOneClearLine) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, GetParam().arguments);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, ::testing::StartsWith("phalanx"));
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CliWrongUsage,
+    ::testing::Values(
+        Case{"", "say what to do: simulate"}, Case{"simulat", "did you mean 'simulate'"},
+        Case{"simulate --rate 3", "did you mean '--rate-hz'"},
+        Case{"simulate --pictur a.png", "did you mean '--picture'"}, Case{"scene lst", "did you mean 'list'"},
+        Case{"experiment s1-fig9", "did you mean 's1-fig8'"}, Case{"experiment", "say what to do: s1-fig8"},
+        Case{"simulate a b", "'b' is one argument too many"}, Case{"simulate --seconds abc", "--seconds"},
+        Case{"simulate --plot", "--plot needs"}, Case{"simulate --plot wave", "must end in .svg"},
+        Case{"simulate --picture a.jpg", "must end in .png"}, Case{"simulate --poses", "--poses needs --out"},
+        Case{"simulate --object-size-mm 80", "needs --object"}, Case{"simulate --set force.law", "force.law"},
+        Case{"simulate nope", "did you mean"}));
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/study/plot.h"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "study/plot/panel.h"
+#include "study/plot/polyline.h"
+#include "study/plot/ticks.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Whether every element is closed by its own end tag, in order, and no bare & or < is left in text.
+bool well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t i = 0; i < xml.size();) {
+    if (xml[i] == '&') {
+      const std::size_t end = xml.find(';', i);
+      if (end == std::string::npos || end - i > 6) return false;
+    }
+    if (xml[i] != '<') {
+      ++i;
+      continue;
+    }
+    const std::size_t end = xml.find('>', i);
+    if (end == std::string::npos) return false;
+    const std::string tag = xml.substr(i + 1, end - i - 1);
+    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return false;
+    const std::string name =
+        tag.substr(tag[0] == '/' ? 1 : 0, tag.find_first_of(" /", 1) - (tag[0] == '/' ? 1 : 0));
+    if (tag[0] == '/') {
+      if (open.empty() || open.back() != tag.substr(1)) return false;
+      open.pop_back();
+    } else if (tag[0] != '?' && tag.back() != '/') {
+      open.push_back(name);
+    }
+    i = end + 1;
+  }
+  return open.empty();
+}
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
+  return n;
+}
+
+/// One second in which `segments` segments carry 1, 2, ... N and MCP flexion of the index finger 0.1 Nm and
+/// 30 degrees.
+Trace trace_with(std::size_t segments) {
+  Trace trace;
+  for (int i = 0; i <= 100; ++i) {
+    TraceTick tick;
+    tick.time_s = 0.01 * i;
+    const double share = 0.01 * i;
+    for (std::size_t s = 0; s < segments; ++s) {
+      tick.force_raw[s] = 1.5 * share * static_cast<double>(s + 1);
+      tick.force[s] = share * static_cast<double>(s + 1);
+    }
+    tick.torque[4] = -0.1 * share;
+    tick.hcp_angle[4] = 0.6 * share;
+    tick.gdp_angle[4] = 0.5 * share;
+    trace.push_back(tick);
+  }
+  return trace;
+}
+
+TEST(PlotSvg, IsWellFormedWhateverTheTitle) {
+  const std::string svg =
+      plot_svg(trace_with(3),
+               {.title = "a <b> & \"c\"", .subtitle = "k < 1 & more", .parameters = std::string(400, 'x')});
+  EXPECT_TRUE(well_formed(svg));
+  EXPECT_THAT(svg, HasSubstr("a &lt;b&gt; &amp; &quot;c&quot;"));
+  EXPECT_THAT(svg, HasSubstr("width=\"180mm\""));
+  EXPECT_THAT(svg, HasSubstr("x\u2026<"));
+}
+
+TEST(PlotSvg, DrawsSentAndLawOfEveryTouchingSegmentAndNothingElse) {
+  const std::string svg = plot_svg(trace_with(3), {});
+  // Three forces, one torque, one angle; dashed: three laws and the measured angle.
+  EXPECT_EQ(count(svg, "class=\"solid\""), 5U);
+  EXPECT_EQ(count(svg, "class=\"dashed\""), 4U);
+  EXPECT_THAT(svg, HasSubstr(">thumb metacarpal<"));
+  EXPECT_THAT(svg, HasSubstr(">index MCP flexion<"));
+  EXPECT_THAT(svg, Not(HasSubstr("index distal")));
+  EXPECT_THAT(svg, Not(HasSubstr(" shown<")));
+}
+
+TEST(PlotSvg, SaysHowManyOfManyCurvesItShows) {
+  const std::string svg = plot_svg(trace_with(14), {});
+  EXPECT_THAT(svg, HasSubstr(">8 of 14 shown<"));
+  EXPECT_EQ(count(svg, "class=\"solid\""), 10U);
+  // The largest are shown: segments 6 to 13.
+  EXPECT_THAT(svg, Not(HasSubstr(">index distal<")));
+  EXPECT_THAT(svg, HasSubstr(">middle proximal<"));
+}
+
+TEST(PlotSvg, SaysWhenNothingTouched) {
+  const Trace rest(10);
+  const std::string svg = plot_svg(rest, {});
+  EXPECT_TRUE(well_formed(svg));
+  EXPECT_THAT(svg, HasSubstr("no segment touched"));
+  EXPECT_THAT(svg, HasSubstr("no joint carried torque"));
+}
+
+TEST(PlotSvg, SurvivesNumbersThatAreNotFinite) {
+  Trace trace = trace_with(2);
+  trace[50].force[0] = std::numeric_limits<double>::quiet_NaN();
+  trace[51].force_raw[0] = std::numeric_limits<double>::infinity();
+  const std::string svg = plot_svg(trace, {});
+  EXPECT_TRUE(well_formed(svg));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(PlotSvg, RefusesARunWithoutTicks) { EXPECT_THROW((void)plot_svg({}, {}), std::invalid_argument); }
+
+TEST(NiceTicks, AreRoundNumbersAroundTheData) {
+  EXPECT_THAT(nice_ticks(0.0, 3.9, 5), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(nice_ticks(-0.3, 0.0, 4), ElementsAre(::testing::DoubleEq(-0.3), ::testing::DoubleEq(-0.2),
+                                                    ::testing::DoubleEq(-0.1), 0));
+  EXPECT_THAT(nice_ticks(0.0, 640.0, 5), ElementsAre(0, 200, 400, 600, 800));
+}
+
+TEST(TickLabel, HasTheDecimalsThatTheSpacingNeeds) {
+  EXPECT_EQ(tick_label(0.30000000000000004, 0.1), "0.3");
+  EXPECT_EQ(tick_label(-0.02, 0.02), "\u22120.02");
+  EXPECT_EQ(tick_label(200.0, 50.0), "200");
+  EXPECT_EQ(tick_label(-1e-17, 0.5), "0");
+}
+
+TEST(Thinned, KeepsEveryExtreme) {
+  std::vector<double> values(100'000, 0.0);
+  values[12'345] = 7.0;
+  values[54'321] = -7.0;
+  const auto kept = thinned(values, 100);
+  EXPECT_LE(kept.size(), 400U);
+  EXPECT_NE(std::find(kept.begin(), kept.end(), 12'345U), kept.end());
+  EXPECT_NE(std::find(kept.begin(), kept.end(), 54'321U), kept.end());
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  EXPECT_EQ(kept.front(), 0U);
+  EXPECT_EQ(kept.back(), 99'999U);
+}
+
+TEST(Thinned, DropsOnlyTheInsideOfLevelStretchesOfAShortCurve) {
+  EXPECT_THAT(thinned({1, 1, 1, 2, 3, 3, 3}, 10), ElementsAre(0, 2, 3, 4, 6));
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "record/temporary_folder.h"
+
+namespace phalanx::testing {
+
+struct ProgramResult {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+/// Runs the built program in a folder; `arguments` as a shell reads them.
+inline ProgramResult run_program(const TemporaryFolder& folder, const std::string& arguments) {
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM "' " +
+                              arguments + " >.out 2>.err </dev/null";
+  const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / ".out"),
+          read_file(folder / ".err")};
+}
+
+inline void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file) << text;
+}
+
+}  // namespace phalanx::testing
