@@ -59,8 +59,9 @@ function(phalanx_test name)
       ${prefix}
       TEST_FILTER "Soak*"
       TEST_LIST ${name}_SOAK
+      NO_PRETTY_VALUES
       DISCOVERY_TIMEOUT 60
       PROPERTIES TIMEOUT 7200 LABELS soak)
   endif()
-  gtest_discover_tests(${name} ${prefix} ${ordinary} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${label})
+  gtest_discover_tests(${name} ${prefix} ${ordinary} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${label})
 endfunction()

@@ -50,6 +50,9 @@ configure() {
     rm -rf "$build"
   fi
   local needed=false
+  local -a fresh=()
+  # Changed presets may name another compiler, which an old cache would only half take over.
+  if [ "$root/CMakePresets.json" -nt "$build/build.ninja" ]; then fresh=(--fresh); fi
   if [ ! -f "$cache" ] || [ ! -f "$build/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$build/build.ninja" ]; then needed=true; fi
   if ! $needed; then
     for define in "$@"; do
@@ -60,7 +63,7 @@ configure() {
   $needed || return 0
   say "phalanx: configuring build/$preset"
   local log=$root/build/configure-$preset.log
-  local -a cmake=(cmake -S "$root" --preset "$preset" "$@")
+  local -a cmake=(cmake "${fresh[@]}" -S "$root" --preset "$preset" "$@")
   if (cd "$root" && "${cmake[@]}") >"$log" 2>&1; then return 0; fi
   # A half-written cache, or one that remembers a package that is gone: once more from nothing.
   if [ -f "$cache" ] && (cd "$root" && cmake --fresh "${cmake[@]:1}") >"$log" 2>&1; then return 0; fi

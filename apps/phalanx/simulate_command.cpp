@@ -109,7 +109,9 @@ std::string parameters(const SceneDescription& scene, std::uint64_t ticks) {
 
 int simulate_scene(const SimulateOptions& options) {
   const OutputPlan output_plan = plan(options);
-  const SceneDescription scene = described(options);
+  SceneDescription scene = described(options);
+  // What the scene's line says of its own motion and objects is not true of others.
+  if (!options.motion.empty() || !options.object.empty()) scene.description.clear();
   const auto model = std::make_unique<HapticModel>(build_model(scene));
   const Motion motion = build_motion(scene);
   const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);

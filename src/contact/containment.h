@@ -1,19 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx {
 
-/// Whether, their surfaces being apart, a closed segment mesh (placed by X_WS) lies inside the object, or
-/// part of the object lies inside the segment. Inside: the triangles' solid angles, seen from the point, add
-/// up to more than half the sphere (generalised winding number). Set-up only: O(vertices x triangles) at
+/// Whether, their surfaces being apart, a segment lies inside the object or part of the object lies inside
+/// the segment. Only the object's closed parts contain anything; inside means that the triangles' solid
+/// angles, seen from the point, add up to more than half the sphere. Set-up only: O(vertices x triangles) at
 /// worst.
-[[nodiscard]] bool one_contains_the_other(const TriangleMesh& segment, const Pose& X_WS,
-                                          const TriangleMesh& object);
+class Containment {
+ public:
+  /// `object` must outlive this.
+  explicit Containment(const TriangleMesh& object);
 
-/// The generalised winding number of a mesh around a point: 1 inside a closed mesh, 0 outside, fractions near
-/// open ones.
+  /// @param segment  closed, in its own frame; placed in the world by X_WS
+  [[nodiscard]] bool with(const TriangleMesh& segment, const Pose& X_WS) const;
+
+ private:
+  const TriangleMesh& object_;
+  std::vector<TriangleMesh> closed_;
+};
+
+/// The generalised winding number of a mesh around a point: +-1 inside a closed mesh, 0 outside, fractions
+/// near open ones.
 [[nodiscard]] double winding_number(const TriangleMesh& mesh, const Vec3& point);
 
 }  // namespace phalanx

@@ -40,6 +40,9 @@ inline Face face_of(const Corners& t) noexcept {
   face.corner = t[0];
   face.normal = (t[1] - t[0]).cross(t[2] - t[0]);
   face.normal_squared = face.normal.squaredNorm();
+  // A sliver's normal is rounding noise: its edges, which are as near to within its width, say it all.
+  const double edges_squared = (t[1] - t[0]).squaredNorm() * (t[2] - t[0]).squaredNorm();
+  if (!(face.normal_squared > 1e-18 * edges_squared)) face.normal_squared = 0.0;
   for (std::size_t i = 0; i < 3; ++i) face.inward[i] = face.normal.cross(t[(i + 1) % 3] - t[i]);
   return face;
 }

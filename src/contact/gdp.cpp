@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -49,6 +50,7 @@ GdpState::GdpState(const ContactModel& model)
     : angle(model.hand.parameters().open_angle), hcp_angle(angle), placed(model.trees) {
   model.hand.poses(angle, poses);
   const double margin = model.parameters.margin;
+  const Containment containment(model.object.mesh());
   for (int s = 0; s < kSegments; ++s) {
     const bool palm = s == kPalm;
     const Pose& X = palm ? model.hand.palm_pose()
@@ -59,7 +61,7 @@ GdpState::GdpState(const ContactModel& model)
     const std::string remedy =
         "; move the object or the hand (objects.N.position_mm, hand.position_mm) so that they are apart";
     const double clearance = distance(placed[idx(s)], model.object.tree(), 2.0 * margin);
-    if (!(clearance > 0.0) || one_contains_the_other(model.hand.mesh(s), X, model.object.mesh())) {
+    if (!(clearance > 0.0) || containment.with(model.hand.mesh(s), X)) {
       throw std::invalid_argument(name + " goes through the object" + remedy);
     }
     if (!palm && clearance <= margin) {
@@ -95,9 +97,9 @@ int joints_held(GdpState& state, const DigitTick& tick) noexcept {
 }
 
 void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
-                 GdpState& state) noexcept {
+                 const SegmentMotion* motion, GdpState& state) noexcept {
   const ContactPatch patch =
-      contact_patch(state.placed[idx(segment_index(tick.digit, k))], model.object, cap);
+      contact_patch(state.placed[idx(segment_index(tick.digit, k))], model.object, cap, motion);
   if (patch.pairs == 0) return;
   const Pose& gdp = tick.pose.segment[idx(k)];
   ContactRecord record;
@@ -125,8 +127,13 @@ void make_record(const ContactModel& model, const DigitTick& tick, int k, double
     }
     if (pushed) {
       measure(record, gdp, hcp.segment[idx(k)]);
-      record.offset = record.depth;
+      record.offset = std::max(0.0, record.depth);
     }
+  }
+  // A search that gave up before anything was near: the record only says so, it neither pushes nor holds, and
+  // the next tick goes on.
+  if (has(tick.status, Status::kSearchExhausted) && patch.distance > model.parameters.margin) {
+    record.offset = std::numeric_limits<double>::infinity();
   }
   record_of(state, tick, k) = record;
 }
@@ -140,11 +147,11 @@ void place_digit(const ContactModel& model, int first, DigitTick& tick, GdpState
 }
 
 Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const HandPoses& hcp,
-                   GdpState& state) noexcept {
+                   const std::array<bool, kDigits>& measured, GdpState& state) noexcept {
   Status status = Status::kOk;
   for (int d = 0; d < kDigits; ++d) {
     DigitTick tick{.digit = d,
-                   .hcp_from = digit_angles(state.started ? state.hcp_angle : hcp_angle, d),
+                   .hcp_from = digit_angles(state.started[idx(d)] ? state.hcp_angle : hcp_angle, d),
                    .hcp = digit_angles(hcp_angle, d),
                    .hcp_pose = hcp.digit[idx(d)],
                    .angle = digit_angles(state.angle, d),
@@ -159,7 +166,8 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
     for (int i = 0; i < kJointsPerDigit; ++i) state.angle[idx(joint_index(d, i))] = tick.angle[idx(i)];
 
     const bool clear = tick.angle == tick.hcp;
-    state.inside[idx(d)] = !clear && (state.inside[idx(d)] || !state.started);
+    state.inside[idx(d)] = !clear && (state.inside[idx(d)] || !state.started[idx(d)]);
+    state.started[idx(d)] = state.started[idx(d)] || measured[idx(d)];
     if (state.inside[idx(d)]) tick.status |= Status::kStartInside;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       ContactRecord& record = record_of(state, tick, k);
@@ -173,7 +181,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
     status |= tick.status;
   }
   state.hcp_angle = hcp_angle;
-  state.started = true;
+
   return status;
 }
 

@@ -8,9 +8,9 @@
 namespace phalanx {
 namespace {
 
-/// Enough for any motion seen (a dozen is common, grazing takes a hundred); beyond it the digit stops early
-/// and says so.
-constexpr int kMaxIterations = 2000;
+/// For all stops of a digit in one tick. A dozen is common, grazing takes a hundred; beyond it the digit
+/// stops early and says so.
+constexpr int kMaxIterations = 1000;
 
 /// The straight line in joint space that the free joints follow; fixed joints have rate 0.
 struct Path {
@@ -66,11 +66,11 @@ struct Stop {
 };
 
 /// Advances tick.angle from s to the first stop.
-Stop next_stop(const ContactModel& model, const Path& path, double s, DigitTick& tick,
+Stop next_stop(const ContactModel& model, const Path& path, double s, int& iterations, DigitTick& tick,
                GdpState& state) noexcept {
   const StopBand band = stop_band(model.parameters.margin);
   const int first = first_moving(path.rate);
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  while (iterations++ < kMaxIterations) {
     place_digit(model, first, tick, state);
     double step = 1.0 - s;
     bool near = false;
@@ -105,13 +105,14 @@ Stop next_stop(const ContactModel& model, const Path& path, double s, DigitTick&
 void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
   const double margin = model.parameters.margin;
   double s = 0.0;
+  int iterations = 0;
   Path path{tick.angle, {}};
   for (int i = 0; i < kJointsPerDigit; ++i) path.rate[idx(i)] = tick.hcp[idx(i)] - tick.angle[idx(i)];
   while (tick.fixed < kJointsPerDigit) {
     for (int i = 0; i < tick.fixed; ++i) path.rate[idx(i)] = 0.0;
     if (first_moving(path.rate) == kSegmentsPerDigit) break;
 
-    const Stop stop = next_stop(model, path, s, tick, state);
+    const Stop stop = next_stop(model, path, s, iterations, tick, state);
     if (stop.segment < 0) break;
     s = stop.s;
     place_digit(model, 0, tick, state);
@@ -123,11 +124,14 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
       if (record.depth + record.offset <= 0.0) record.active = false;
     }
     const bool exhausted = has(tick.status, Status::kSearchExhausted);
+    const SegmentMotion motion = motion_of(model.hand, tick, path.rate, stop.segment);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      if (record_of(state, tick, k).active) continue;
       // Within the margin; the stopping segment itself in any case, wherever a search that gave up has left
       // it.
-      const double cap = k == stop.segment && exhausted ? 1.0 : std::nextafter(margin, 1.0);
-      if (!record_of(state, tick, k).active) make_record(model, tick, k, s, cap, state);
+      const bool stopped = k == stop.segment;
+      const double cap = stopped && exhausted ? 1.0 : std::nextafter(margin, 1.0);
+      make_record(model, tick, k, s, cap, stopped ? &motion : nullptr, state);
     }
     tick.fixed = joints_that_move(stop.segment);
   }

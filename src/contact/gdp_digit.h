@@ -34,8 +34,9 @@ void measure(ContactRecord& record, const Pose& gdp, const Pose& hcp) noexcept;
 
 /// Gives the segment k a record of its contact at `tick.pose`, if anything is closer than `cap`.
 /// @param s  when in the tick this happens: 0 at its start, 1 at its end; decides the offset d0
+/// @param motion  how the segment was moving, for the one that stopped: what it moves into decides; else null
 void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
-                 GdpState& state) noexcept;
+                 const SegmentMotion* motion, GdpState& state) noexcept;
 
 /// Sets tick.pose from tick.angle and the placed trees of the segments from `first` on.
 void place_digit(const ContactModel& model, int first, DigitTick& tick, GdpState& state) noexcept;

@@ -48,7 +48,7 @@ void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& st
       tick.status |= Status::kTrajectoryExhausted;
     }
     // The point of contact is where the two are closest at that pose, however far apart a tick has left them.
-    make_record(model, tick, hit, 1.0, 1.0, state);
+    make_record(model, tick, hit, 1.0, 1.0, nullptr, state);
     tick.fixed = joints_that_move(hit);
   }
   recorded.push(tick.hcp);

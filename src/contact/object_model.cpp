@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/object_model.h"
 
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "phalanx/mesh/corner_normals.h"
@@ -9,6 +11,15 @@ namespace phalanx {
 
 ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) : mesh_(std::move(mesh)) {
   check_mesh(mesh_, "object");
+  constexpr double kFarthest =
+      1e4;  // squares and products of larger numbers lose the micrometres that contacts are made of
+  for (const Vec3& v : mesh_.vertices) {
+    if (v.cwiseAbs().maxCoeff() > kFarthest) {
+      throw std::invalid_argument(
+          "object: a vertex is " + std::to_string(v.cwiseAbs().maxCoeff()) +
+          " m from the world's origin, more than 10 km; give the object's size (size_mm)");
+    }
+  }
   tree_ = TriangleTree(mesh_, 1);
   corner_normal_ = corner_normals(mesh_, crease_angle);
 }

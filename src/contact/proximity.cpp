@@ -150,9 +150,69 @@ double distance(const TriangleTree& segment, const TriangleTree& object, double 
   return std::sqrt(best);
 }
 
-ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& object, double cap) noexcept {
+namespace {
+
+/// The pair within the cap that closes fastest, and which others count beside it.
+struct Lead {
+  const SegmentMotion* motion = nullptr;
+  Vec3 direction = Vec3::Zero();
+  double speed = 0.0;  ///< 0: nothing closes, every pair counts
+
+  [[nodiscard]] double closing_speed(const Vec3& n, const Vec3& x) const noexcept {
+    return -n.dot(motion->angular.cross(x) + motion->linear);
+  }
+  [[nodiscard]] bool admits(const Vec3& n, const Vec3& on_segment) const noexcept {
+    constexpr double kCos = 0.86602540378443865;  // 30 degrees
+    return !(speed > 0.0) || n.dot(direction) >= kCos || closing_speed(n, on_segment) >= 0.5 * speed;
+  }
+};
+
+Vec3 direction_of(const TriangleDistance& closest) noexcept {
+  const double d = std::sqrt(closest.squared);
+  return d > 0.0 ? Vec3((closest.on_a - closest.on_b) / d) : Vec3(Vec3::Zero());
+}
+
+Lead find_lead(const TriangleTree& segment, const TriangleTree& object, double cap,
+               const SegmentMotion& motion) noexcept {
+  Lead lead{.motion = &motion};
+  const double cap_squared = cap * cap;
+  for_each_pair<Order::kFixed>(
+      segment, object,
+      [&](const Aabb&, const Aabb&, double box_squared) { return box_squared < cap_squared; },
+      [&](int i, int j) {
+        const TriangleDistance closest = triangle_distance(segment.corners(i), object.corners(j));
+        if (closest.squared >= cap_squared) return;
+        const Vec3 n = direction_of(closest);
+        const double speed = lead.closing_speed(n, closest.on_a);
+        if (speed <= lead.speed) return;
+        lead.speed = speed;
+        lead.direction = n;
+      });
+  return lead;
+}
+
+/// The smallest distance below `cap` of the pairs that count.
+double distance_of_admitted(const TriangleTree& segment, const TriangleTree& object, double cap,
+                            const Lead& lead) noexcept {
+  if (!(lead.speed > 0.0)) return distance(segment, object, cap);
+  double best = cap * cap;
+  for_each_pair<Order::kNearest>(
+      segment, object, [&](const Aabb&, const Aabb&, double box_squared) { return box_squared < best; },
+      [&](int i, int j) {
+        const TriangleDistance closest = triangle_distance(segment.corners(i), object.corners(j));
+        if (closest.squared < best && lead.admits(direction_of(closest), closest.on_a))
+          best = closest.squared;
+      });
+  return std::sqrt(best);
+}
+
+}  // namespace
+
+ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& object, double cap,
+                           const SegmentMotion* motion) noexcept {
   ContactPatch patch;
-  patch.distance = distance(segment, object.tree(), cap);
+  const Lead lead = motion == nullptr ? Lead{} : find_lead(segment, object.tree(), cap, *motion);
+  patch.distance = distance_of_admitted(segment, object.tree(), cap, lead);
   if (!(patch.distance < cap)) return patch;
   const double limit = patch.distance + kPatchBand;
   const double limit_squared = limit * limit;
@@ -168,7 +228,8 @@ ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& objec
         const TriangleDistance closest = triangle_distance(segment.corners(i), corners);
         if (closest.squared > limit_squared) return;
         const double d = std::sqrt(closest.squared);
-        const Vec3 n = d > 0.0 ? Vec3((closest.on_a - closest.on_b) / d) : Vec3(Vec3::Zero());
+        const Vec3 n = direction_of(closest);
+        if (!lead.admits(n, closest.on_a)) return;
         Vec3 normal = object.normal_at(object.tree().source(j), barycentric(corners, closest.on_b));
         if (normal.dot(n) < 0.0) normal = -normal;  // a sheet is met from both sides
         const TiedRegion region = tied_region(segment.corners(i), corners, closest, limit, kPatchBand);

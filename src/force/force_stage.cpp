@@ -37,7 +37,7 @@ double sum_factor(const std::array<double, kSegmentsPerDigit>& magnitude, int di
 }
 
 /// The forces of one digit: law -> fingertip cap -> smoothing.
-Status digit_forces(const ForceModel& model, const GdpState& contacts, int digit,
+Status digit_forces(const ForceModel& model, const GdpState& contacts, int digit, bool stale,
                     ForceState& state) noexcept {
   Status status = Status::kOk;
   const bool capped = model.limits.fingertip_force_enabled;
@@ -51,7 +51,7 @@ Status digit_forces(const ForceModel& model, const GdpState& contacts, int digit
     if (record.active) {
       force.p_S = record.p_S;
       force.normal = record.force_normal;
-      if (!record.silent) force.raw = law_force(model.law, record.depth, force.speed);
+      if (!record.silent && !stale) force.raw = law_force(model.law, record.depth, force.speed);
     }
     target[idx(k)] = std::isfinite(force.raw) ? force.raw : 0.0;
     if (!std::isfinite(force.raw)) status |= Status::kCommandNotFinite;
@@ -112,12 +112,12 @@ void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const
   }
 }
 
-Status compute_command(const ForceModel& model, const GdpState& contacts, const HandPoses& hcp,
+Status compute_command(const ForceModel& model, const GdpState& contacts, const HandPoses& hcp, bool stale,
                        ForceState& state) noexcept {
   Status status = Status::kOk;
   JointArray wanted{};
   for (int d = 0; d < kDigits; ++d) {
-    status |= digit_forces(model, contacts, d, state);
+    status |= digit_forces(model, contacts, d, stale, state);
     const DigitPose& gdp = contacts.poses.digit[idx(d)];
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const SegmentForce& force = force_of(state, d, k);

@@ -105,12 +105,21 @@ Pose segment_frame(const Pose& X_dh, const DhRow& row) noexcept {
 HandModel::HandModel(HandParameters parameters, Handedness handedness, const Pose& X_WH, SegmentMeshes meshes)
     : parameters_(std::move(parameters)), handedness_(handedness), X_WH_(X_WH), meshes_(std::move(meshes)) {
   check(parameters_, meshes_);
+  const bool rigid = X_WH.p.allFinite() && X_WH.R.allFinite() &&
+                     (X_WH.R.transpose() * X_WH.R - Mat3::Identity()).norm() < 1e-9 &&
+                     X_WH.R.determinant() > 0.0;
+  if (!rigid) {
+    throw std::invalid_argument("hand '" + parameters_.name +
+                                "': its pose in the world is not a finite rotation and translation");
+  }
   for (int d = 0; d < kDigits; ++d) {
     const DigitParameters& digit = parameters_.digits[at(d)];
     X_HB_[at(d)] = base_frame(digit);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       double radius = 0.0;  // of the segment's mesh around its own joint
       for (const Vec3& v : mesh(segment_index(d, k)).vertices) radius = std::max(radius, v.norm());
+      radius += std::abs(
+          digit.dh[at(k + 1)].d);  // the segment's origin is this far along the axis from the joint's centre
       // Distances between successive D-H origins do not depend on the angles; the segment's own joint is k
       // + 1.
       for (int i = k + 1; i >= 0; --i) {

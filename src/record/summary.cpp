@@ -66,6 +66,8 @@ std::vector<std::string> warnings(const Summary& summary) {
   warn(Status::kSampleJump,
        "a measured angle moved faster than limits.joint_speed_rad_per_s and was slewed at that speed");
   warn(Status::kTimeNotIncreasing, "a sample's time did not increase; its angles were not used");
+  warn(Status::kSampleStale,
+       "no sample had been wholly good for 50 ms; forces decay to zero until one comes");
   warn(Status::kStartInside,
        "a digit that started inside the object gives no force until it has once been clear; start from a "
        "more open hand");

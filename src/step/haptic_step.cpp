@@ -11,10 +11,10 @@ ContactModel contact_model(const HapticModel& model) noexcept {
 }
 
 /// Writes down what the stages have left behind.
-void record(const HapticModel& model, const Sample& sample, const HandPoses& hcp, const GdpState& gdp,
+void record(const HapticModel& model, double time_s, const HandPoses& hcp, const GdpState& gdp,
             const ForceState& force, Status status, Snapshot& out) noexcept {
   ++out.tick;
-  out.time_s = sample.time_s;
+  out.time_s = time_s;
   out.status = status;
   out.hcp_angle = gdp.hcp_angle;
   out.gdp_angle = gdp.angle;
@@ -52,7 +52,7 @@ HapticState::HapticState(const HapticModel& model)
     : guard_((check_parameters(model), model.hand.parameters().open_angle)), gdp_(contact_model(model)) {
   model.hand.poses(model.hand.parameters().open_angle, hcp_);
   force_.hcp_before = hcp_;
-  record(model, Sample{}, hcp_, gdp_, force_, Status::kOk, snapshot_);
+  record(model, 0.0, hcp_, gdp_, force_, Status::kOk, snapshot_);
   snapshot_.tick = 0;
 }
 
@@ -60,10 +60,11 @@ Status step(const HapticModel& model, const Sample& sample, HapticState& state) 
   const double period = 1.0 / model.rate_hz;
   Status status = state.guard_.accept(sample, model.hand.parameters(), model.limits, period);
   model.hand.poses(state.guard_.angle(), state.hcp_);
-  status |= advance_gdp(contact_model(model), state.guard_.angle(), state.hcp_, state.gdp_);
+  status |= advance_gdp(contact_model(model), state.guard_.angle(), state.hcp_, state.guard_.measured(),
+                        state.gdp_);
   status |= compute_command({model.hand, model.force, model.smoothing, model.limits, period}, state.gdp_,
-                            state.hcp_, state.force_);
-  record(model, sample, state.hcp_, state.gdp_, state.force_, status, state.snapshot_);
+                            state.hcp_, state.guard_.stale(), state.force_);
+  record(model, state.guard_.time_s(), state.hcp_, state.gdp_, state.force_, status, state.snapshot_);
   return status;
 }
 

@@ -6,14 +6,36 @@
 
 namespace phalanx {
 
+bool SampleGuard::takes_time(double time_s) noexcept {
+  const bool later = std::isfinite(time_s) && (!started_ || time_s > time_s_);
+  if (!later) {
+    const bool in_order = std::isfinite(time_s) && (refused_ == 0 || time_s > refused_time_s_);
+    refused_ = in_order ? refused_ + 1 : 0;
+    refused_time_s_ = time_s;
+    if (refused_ < kRestartedAfter) return false;
+  }
+  refused_ = 0;
+  started_ = true;
+  time_s_ = time_s;
+  return true;
+}
+
+std::array<bool, kDigits> SampleGuard::measured() const noexcept {
+  std::array<bool, kDigits> out{};
+  for (std::size_t d = 0; d < kDigits; ++d) {
+    out[d] = std::all_of(seen_.begin() + d * kJointsPerDigit, seen_.begin() + (d + 1) * kJointsPerDigit,
+                         [](bool seen) { return seen; });
+  }
+  return out;
+}
+
 Status SampleGuard::accept(const Sample& sample, const HandParameters& hand, const LimitParameters& limits,
                            double period) noexcept {
-  if (!std::isfinite(sample.time_s) || (started_ && sample.time_s <= time_s_))
-    return Status::kTimeNotIncreasing;
-  started_ = true;
-  time_s_ = sample.time_s;
-
   Status status = Status::kOk;
+  bad_for_ += period;
+  if (!takes_time(sample.time_s))
+    return Status::kTimeNotIncreasing | (stale() ? Status::kSampleStale : Status::kOk);
+
   const double longest = limits.joint_speed * period;
   for (std::size_t j = 0; j < kJoints; ++j) {
     const double measured = sample.angle[j];
@@ -31,6 +53,8 @@ Status SampleGuard::accept(const Sample& sample, const HandParameters& hand, con
     seen_[j] = true;
     angle_[j] = angle;
   }
+  if (!has(status, Status::kSampleNotFinite)) bad_for_ = 0.0;
+  if (stale()) status |= Status::kSampleStale;
   return status;
 }
 

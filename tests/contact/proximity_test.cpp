@@ -155,12 +155,25 @@ TEST(WindingNumber, IsOneInsideZeroOutside) {
   EXPECT_NEAR(winding_number(torus, Vec3(0.2, 0.1, 0)), 0.0, 1e-9);
 }
 
-TEST(OneContainsTheOther, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
+TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
   const TriangleMesh small = make_sphere(0.01, 100);
   const TriangleMesh large = make_sphere(0.1, 400);
-  EXPECT_TRUE(one_contains_the_other(small, Pose{}, large));
-  EXPECT_TRUE(one_contains_the_other(large, Pose{}, small));
-  EXPECT_FALSE(one_contains_the_other(small, Pose{Mat3::Identity(), Vec3(0.2, 0, 0)}, large));
+  EXPECT_TRUE(Containment(large).with(small, Pose{}));
+  EXPECT_TRUE(Containment(small).with(large, Pose{}));
+  EXPECT_FALSE(Containment(large).with(small, Pose{Mat3::Identity(), Vec3(0.2, 0, 0)}));
+}
+
+TEST(Containment, SeesThroughAnInsideOutSolidAndDuplicateFaces) {
+  const TriangleMesh small = make_sphere(0.01, 100);
+  TriangleMesh inside_out = make_sphere(0.1, 400);
+  for (Triangle& t : inside_out.triangles) std::swap(t[1], t[2]);
+  EXPECT_TRUE(Containment(inside_out).with(small, Pose{}));
+  TriangleMesh sheet;  // a large table, every triangle twice, 3 cm away: contains nothing
+  sheet.vertices = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}};
+  for (const double side : {0.03, -0.03}) {
+    EXPECT_FALSE(Containment(sheet).with(small, Pose{Mat3::Identity(), Vec3(0, 0, side)}));
+  }
 }
 
 }  // namespace

@@ -177,6 +177,40 @@ TEST(HandModel, ReachBoundsEveryPointOfTheSegmentAtEveryAngle) {
   }
 }
 
+TEST(HandModel, ReachHoldsForLinkOffsetsToo) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> u(-0.05, 0.08);
+  for (int n = 0; n < 20; ++n) {
+    HandParameters parameters = simple_parameters();
+    for (DhRow& row : parameters.digits[1].dh) {
+      row.d = u(random);
+      row.a += 0.2 * std::abs(u(random));
+      row.theta = u(random);
+    }
+    const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
+    DigitPose pose;
+    hand.digit_pose(1, digit_angles(random_angles(random), 1), pose);
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      for (int i = 0; i < joints_that_move(k); ++i) {
+        for (const Vec3& v : hand.mesh(segment_index(1, k)).vertices) {
+          const Vec3 p = pose.segment[static_cast<std::size_t>(k)] * v;
+          ASSERT_LE((p - pose.joint[static_cast<std::size_t>(i)].centre).norm(), hand.reach(1, i, k) + 1e-15)
+              << "seed 6 case " << n;
+        }
+      }
+    }
+  }
+}
+
+TEST(HandModel, RefusesAPoseThatIsNotRigid) {
+  Pose nan;
+  nan.p.x() = std::nan("");
+  EXPECT_THROW((void)simple_hand(Handedness::kRight, nan), std::invalid_argument);
+  Pose scaled;
+  scaled.R *= 2.0;
+  EXPECT_THROW((void)simple_hand(Handedness::kRight, scaled), std::invalid_argument);
+}
+
 TEST(HandModel, EverySegmentIsOneClosedMeshAndTheCountIsNearWhatWasAsked) {
   for (const int asked : {800, 2250, 20000}) {
     const HandModel hand = simple_hand(Handedness::kRight, {}, asked);

@@ -231,23 +231,79 @@ TEST(Step, TimeThatDoesNotIncreaseIsReportedAndTheSampleNotUsed) {
   }
 }
 
+TEST(Step, AClockThatRestartsIsFollowedAgainAfterFiveSamples) {
+  const HapticModel model = floor_model();
+  HapticState state(model);
+  step(model, Sample{1e9, index_angles(0.0)}, state);  // one stamp far in the future
+  for (int n = 1; n <= 4; ++n)
+    EXPECT_TRUE(has(step(model, Sample{0.005 * n, index_angles(0.1)}, state), Status::kTimeNotIncreasing));
+  for (int n = 5; n <= 10; ++n)
+    EXPECT_FALSE(has(step(model, Sample{0.005 * n, index_angles(0.1)}, state), Status::kTimeNotIncreasing));
+  EXPECT_EQ(state.snapshot().hcp_angle, index_angles(0.1));
+}
+
+TEST(Step, WithoutAGoodSampleForFiftyMillisecondsForcesDecayToZero) {
+  const HapticModel model = floor_model();
+  for (const bool bad_clock : {true, false}) {
+    HapticState state(model);
+    double time = 0.0;
+    for (int n = 0; n <= 120; ++n)
+      step(model, Sample{time += 0.005, index_angles(std::min(0.5, 0.01 * n))}, state);
+    ASSERT_GT(index_segment(state.snapshot(), 2).force, 2.0);
+    const double before = index_segment(state.snapshot(), 2).force;
+    for (int n = 1; n <= 200; ++n) {
+      JointArray angle = index_angles(0.5);
+      if (!bad_clock) angle[joint_index(1, 3)] = kNan;
+      const Status status = step(model, Sample{bad_clock ? 0.0 : time += 0.005, angle}, state);
+      EXPECT_EQ(has(status, Status::kSampleStale), n > 10) << "tick " << n;
+      if (n > 10) continue;
+      EXPECT_EQ(index_segment(state.snapshot(), 2).force, before);
+    }
+    EXPECT_EQ(index_segment(state.snapshot(), 2).force, 0.0);
+    for (const double torque : state.snapshot().torque) EXPECT_EQ(torque, 0.0);
+  }
+}
+
+TEST(Step, ABadFirstSampleDoesNotHideThatADigitStartsInside) {
+  const HapticModel model = floor_model();
+  JointArray one_nan = index_angles(0.5);
+  one_nan[joint_index(1, 3)] = kNan;
+  JointArray all_nan;
+  all_nan.fill(kNan);
+  for (const Sample& first :
+       {Sample{0.005, all_nan}, Sample{kNan, index_angles(0.5)}, Sample{0.005, one_nan}}) {
+    HapticState state(model);
+    step(model, first, state);
+    for (int n = 2; n < 50; ++n) {
+      const Status status = step(model, Sample{0.005 * n, index_angles(0.5)}, state);
+      EXPECT_TRUE(has(status, Status::kStartInside)) << n;
+      EXPECT_EQ(index_segment(state.snapshot(), 2).force, 0.0) << n;
+    }
+  }
+}
+
 TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> u(-2.0, 3.0);
   HapticModel model = ball_model();
   model.force.stiffness = 1e5;
   const std::array<double, 6> wild = {kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
+  const std::array<double, 5> wild_times = {kNan, kInfinity, -kInfinity, -1.0, 0.0};
   for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kKelvinVoigt, ForceLaw::kHuntCrossley,
                              ForceLaw::kDuffing, ForceLaw::kLinearThenCubic}) {
     model.force.law = law;
     HapticState state(model);
     JointArray last{};
-    double time = 0.0;
-    for (int n = 0; n < 400; ++n) {
-      Sample sample{time += 0.005, {}};
-      for (double& angle : sample.angle) angle = random() % 8 == 0 ? wild[random() % wild.size()] : u(random);
-      if (random() % 10 == 0) sample.time_s = wild[random() % wild.size()];
-      step(model, sample, state);
+    int used = 0;
+    int pushed = 0;
+    for (int n = 1; n <= 400; ++n) {
+      Sample sample{0.005 * n, {}};
+      for (double& angle : sample.angle)
+        angle = random() % 64 == 0 ? wild[random() % wild.size()] : u(random);
+      if (random() % 10 == 0) sample.time_s = wild_times[random() % wild_times.size()];
+      const Status status = step(model, sample, state);
+      used += has(status, Status::kTimeNotIncreasing) ? 0 : 1;
+      for (const SegmentSnapshot& segment : state.snapshot().segment) pushed += segment.force > 0.0 ? 1 : 0;
       for (std::size_t j = 0; j < kJoints; ++j) {
         const double torque = state.snapshot().torque[j];
         ASSERT_TRUE(std::isfinite(torque)) << "seed 13 tick " << n;
@@ -256,8 +312,9 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
         ASSERT_TRUE(std::isfinite(state.snapshot().gdp_angle[j]));
       }
       last = state.snapshot().torque;
-      if (time > 1e100 || !std::isfinite(time)) time = 0.0;
     }
+    EXPECT_GT(used, 300);
+    EXPECT_GT(pushed, 0);
   }
 }
 

@@ -63,11 +63,11 @@ struct GdpState {
   /// through it.
   explicit GdpState(const ContactModel& model);
 
-  JointArray angle{};                  ///< q_gdp [rad]
-  HandPoses poses;                     ///< at q_gdp
-  JointArray hcp_angle{};              ///< q_hcp of the last tick [rad]
-  bool started = false;                ///< a tick has been made
-  std::array<bool, kDigits> inside{};  ///< start_inside: no force until the digit has once been clear
+  JointArray angle{};                   ///< q_gdp [rad]
+  HandPoses poses;                      ///< at q_gdp
+  JointArray hcp_angle{};               ///< q_hcp of the last tick [rad]
+  std::array<bool, kDigits> started{};  ///< the digit has had a tick with measured angles
+  std::array<bool, kDigits> inside{};   ///< start_inside: no force until the digit has once been clear
   std::array<ContactRecord, kSegments> record;
   SegmentTrees placed;                      ///< scratch: the segments' trees at the pose being searched
   std::array<AngleRing, kDigits> recorded;  ///< for GdpMethod::kTrajectory
@@ -76,9 +76,10 @@ struct GdpState {
 /// Moves the GDP towards the HCP for one tick and updates the contact records.
 /// @param hcp_angle  this tick's measured angles, finite [rad]
 /// @param hcp        the hand at `hcp_angle`
+/// @param measured   whether all angles of a digit come from the device yet, rather than from the open hand
 /// @returns kStartInside, kSlid, kSearchExhausted or kTrajectoryExhausted where they hold
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const HandPoses& hcp,
-                   GdpState& state) noexcept;
+                   const std::array<bool, kDigits>& measured, GdpState& state) noexcept;
 
 }  // namespace phalanx

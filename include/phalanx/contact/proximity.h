@@ -61,7 +61,11 @@ struct ContactPatch {
 /// Pairs whose distance is within `kPatchBand` of the least, in the trees' fixed order, so that a flat touch
 /// does not pick a corner by chance.
 inline constexpr double kPatchBand = 5e-6;
-[[nodiscard]] ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& object,
-                                         double cap) noexcept;
+/// @param motion  null, or the motion that the contact stops: then walls that the segment does not run into
+/// do not count beside the one that it
+///                does. A pair counts if it faces within 30 degrees of the fastest closing one, or closes at
+///                least half as fast.
+[[nodiscard]] ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& object, double cap,
+                                         const SegmentMotion* motion = nullptr) noexcept;
 
 }  // namespace phalanx

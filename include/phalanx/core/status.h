@@ -27,10 +27,11 @@ enum class Status : std::uint32_t {
   kTorqueLimited = 1U << 8,      ///< the joint torque limit acted
   kTorqueRateLimited = 1U << 9,  ///< the torque-rate limit acted
   kCommandNotFinite = 1U << 10,  ///< a torque came out not finite and was set to zero
+  kSampleStale = 1U << 12,       ///< no wholly good sample for 50 ms; forces decay to zero until one comes
   kTrajectoryExhausted =
       1U << 11,  ///< gdp.method "trajectory": no free pose among the recorded angles; the GDP held
 };
-inline constexpr int kStatusBits = 12;
+inline constexpr int kStatusBits = 13;
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {
   return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -47,7 +48,8 @@ constexpr Status& operator|=(Status& a, Status b) noexcept { return a = a | b; }
       "sample_not_finite",   "sample_out_of_range", "sample_jump",
       "time_not_increasing", "start_inside",        "slid",
       "search_exhausted",    "force_limited",       "torque_limited",
-      "torque_rate_limited", "command_not_finite",  "trajectory_exhausted"};
+      "torque_rate_limited", "command_not_finite",  "trajectory_exhausted",
+      "sample_stale"};
   return kNames[static_cast<std::size_t>(bit)];
 }
 

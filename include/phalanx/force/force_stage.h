@@ -42,9 +42,10 @@ struct ForceModel {
 /// more after smoothing, since forces that fall slowly and others that rise may add up to more than either.
 /// @param contacts  the GDP after this tick, with its records
 /// @param hcp       the HCP at this tick
+/// @param stale     the measured hand is no longer known: no contact pushes, what was sent decays
 /// @returns which limiter acted, kCommandNotFinite if something had to be set to zero
 /// Real-time: O(1), no allocation, lock, throw or I/O.
-Status compute_command(const ForceModel& model, const GdpState& contacts, const HandPoses& hcp,
+Status compute_command(const ForceModel& model, const GdpState& contacts, const HandPoses& hcp, bool stale,
                        ForceState& state) noexcept;
 
 /// Torques of one force f_W acting at p_W on the digit's segment k, added to `torque`:  tau_i = axis_i . ((p

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/picture/camera.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +13,9 @@ namespace {
 
 constexpr float kDeg = std::numbers::pi_v<float> / 180.0F;
 constexpr float kFieldOfView = 19.0F * kDeg;  // vertical; long enough a lens to keep proportions
-constexpr float kFill = 0.86F;                // share of the image that the scene fills
+constexpr float kLeft = 0.10F,
+                kRight = 0.95F;  // the scene's share of the width: the force scale is left of it
+constexpr float kFill = 0.86F;   // its share of the height
 
 /// A camera that looks along `forward` and just holds all vertices.
 Camera fitted(const std::vector<const RenderMesh*>& meshes, const Vec3f& forward, int width, int height) {
@@ -21,12 +24,12 @@ Camera fitted(const std::vector<const RenderMesh*>& meshes, const Vec3f& forward
   camera.right = forward.cross(Vec3f::UnitZ()).normalized();
   camera.up = camera.right.cross(forward);
   camera.focal = 0.5F * static_cast<float>(height) / std::tan(0.5F * kFieldOfView);
-  camera.centre_x = 0.5F * static_cast<float>(width);
+  camera.centre_x = 0.5F * (kLeft + kRight) * static_cast<float>(width);
   camera.centre_y = 0.5F * static_cast<float>(height);
   // In the camera's axes a vertex (x, y, z) is inside if |x - ex| <= tx (z - ez): the nearest apex for each
   // pair of planes.
-  const float tx = kFill * camera.centre_x / camera.focal;
-  const float ty = kFill * camera.centre_y / camera.focal;
+  const float tx = 0.5F * (kRight - kLeft) * static_cast<float>(width) / camera.focal;
+  const float ty = 0.5F * kFill * static_cast<float>(height) / camera.focal;
   float x_high = -1e9F, x_low = -1e9F, y_high = -1e9F, y_low = -1e9F;
   for (const RenderMesh* mesh : meshes) {
     for (const Vec3f& v : mesh->vertices) {
@@ -44,8 +47,9 @@ Camera fitted(const std::vector<const RenderMesh*>& meshes, const Vec3f& forward
   return camera;
 }
 
-float score(const RayScene& scene, const Camera& camera, const std::vector<Sight>& contacts, int width,
-            int height, float elevation) {
+/// Weighted share of the contacts that the camera sees, from 0 to 1; a force towards or away from the camera
+/// counts less.
+float contacts_seen(const RayScene& scene, const Camera& camera, const std::vector<Sight>& contacts) {
   float seen = 0.0F, weight = 0.0F;
   for (const Sight& contact : contacts) {
     const Vec3f to_point = contact.point - camera.eye;
@@ -56,40 +60,94 @@ float score(const RayScene& scene, const Camera& camera, const std::vector<Sight
     const float clearance = hit ? std::max(0.0F, distance - hit->distance) : 0.0F;
     const float visible = std::clamp(1.0F - (clearance - 0.010F) / 0.015F, 0.0F, 1.0F);
     const float along = direction.dot(contact.normal);
-    seen += contact.weight * visible * (1.0F - 0.7F * along * along);
+    seen += contact.weight * visible * (1.0F - along * along);
     weight += contact.weight;
   }
+  return weight > 0.0F ? seen / weight : 0.0F;
+}
+
+/// Points at the object's ends, where its handles and spouts are: of its vertices those at four fifths of the
+/// largest distance from their middle or farther, thinned out.
+std::vector<Vec3f> object_ends(const RenderMesh& mesh) {
+  constexpr std::size_t kMost = 96;
+  std::vector<Vec3f> points;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (mesh.part[t] >= kSegments) points.push_back(mesh.vertices[mesh.triangles[t][0]]);
+  if (points.empty()) return points;
+  Eigen::AlignedBox3f box;
+  for (const Vec3f& p : points) box.extend(p);
+  float largest = 0.0F;
+  for (const Vec3f& p : points) largest = std::max(largest, (p - box.center()).norm());
+  std::erase_if(points, [&](const Vec3f& p) { return (p - box.center()).norm() < 0.8F * largest; });
+  const std::size_t stride = (points.size() + kMost - 1) / kMost;
+  std::vector<Vec3f> thinned;
+  for (std::size_t i = 0; i < points.size(); i += stride) thinned.push_back(points[i]);
+  return thinned;
+}
+
+/// Share of the points that the camera sees, or that a few millimetres of their own object hide.
+float share_seen(const RayScene& scene, const Camera& camera, const std::vector<Vec3f>& points) {
+  if (points.empty()) return 0.0F;
+  int seen = 0;
+  for (const Vec3f& point : points) {
+    const float distance = (point - camera.eye).norm();
+    const auto hit = scene.closest({.origin = camera.eye, .direction = (point - camera.eye) / distance});
+    if (!hit || (hit->part >= kSegments && distance - hit->distance < 0.008F)) ++seen;
+  }
+  return static_cast<float>(seen) / static_cast<float>(points.size());
+}
+
+/// What the image shows of the parts: square roots of their shares of it, and how far the object's visible
+/// pixels spread from left to right (standard deviation over the image's width): a long thing seen end-on is
+/// hard to tell.
+struct Shown {
+  float fingers, palm, object, object_spread;
+};
+Shown shown(const RayScene& scene, const Camera& camera, int width, int height) {
   constexpr int kColumns = 40, kRows = 30;
   int fingers = 0, palm = 0, object = 0;
+  float sum = 0.0F, squares = 0.0F;
   for (int j = 0; j < kRows; ++j) {
     for (int i = 0; i < kColumns; ++i) {
+      const float x = (static_cast<float>(i) + 0.5F) / kColumns;
+      const float y = (static_cast<float>(j) + 0.5F) / kRows;
       const auto hit =
-          scene.closest(camera.ray((static_cast<float>(i) + 0.5F) * static_cast<float>(width) / kColumns,
-                                   (static_cast<float>(j) + 0.5F) * static_cast<float>(height) / kRows));
-      if (hit) ++(hit->part >= kSegments ? object : hit->part == kPalm ? palm : fingers);
+          scene.closest(camera.ray(x * static_cast<float>(width), y * static_cast<float>(height)));
+      if (!hit) continue;
+      ++(hit->part >= kSegments ? object : hit->part == kPalm ? palm : fingers);
+      if (hit->part < kSegments) continue;
+      sum += x;
+      squares += x * x;
     }
   }
   const auto share = [](int count) { return std::sqrt(static_cast<float>(count) / (kColumns * kRows)); };
-  const float tilt = (elevation - 25.0F) / 60.0F;
-  return (weight > 0.0F ? 2.5F * seen / weight : 0.0F) + share(fingers) + share(object) - 0.5F * share(palm) -
-         0.5F * tilt * tilt;
+  const float n = static_cast<float>(std::max(object, 1));
+  return {.fingers = share(fingers),
+          .palm = share(palm),
+          .object = share(object),
+          .object_spread = std::sqrt(std::max(0.0F, squares / n - (sum / n) * (sum / n)))};
 }
 
 }  // namespace
 
 Camera choose_camera(const RayScene& scene, const std::vector<const RenderMesh*>& also,
-                     const std::vector<Sight>& contacts, int width, int height) {
+                     const std::vector<Sight>& contacts, const Vec3f& thumb_side, int width, int height) {
   std::vector<const RenderMesh*> all = also;
   all.push_back(&scene.mesh());
+  const std::vector<Vec3f> ends = object_ends(scene.mesh());
   Camera best{};
   float best_score = -1e9F;
-  for (const float elevation : {12.0F, 25.0F, 40.0F, 55.0F}) {
-    for (int i = 0; i < 24; ++i) {
-      const float azimuth = static_cast<float>(i) * 15.0F * kDeg;
+  for (const float elevation : {17.0F, 26.0F, 38.0F, 52.0F}) {
+    for (int i = 0; i < 48; ++i) {
+      const float azimuth = static_cast<float>(i) * 7.5F * kDeg;
       const Vec3f forward(-std::cos(elevation * kDeg) * std::cos(azimuth),
                           -std::cos(elevation * kDeg) * std::sin(azimuth), -std::sin(elevation * kDeg));
       const Camera camera = fitted(all, forward, width, height);
-      const float value = score(scene, camera, contacts, width, height, elevation);
+      const Shown image = shown(scene, camera, width, height);
+      const float tilt = (elevation - 20.0F) / 60.0F;
+      const float value = contacts_seen(scene, camera, contacts) + 2.0F * share_seen(scene, camera, ends) +
+                          image.fingers + image.object - 0.5F * image.palm + 4.0F * image.object_spread -
+                          forward.dot(thumb_side) - 4.0F * tilt * tilt;
       if (value > best_score) {
         best_score = value;
         best = camera;

@@ -34,11 +34,15 @@ struct Sight {
   float weight;
 };
 
-/// Of 24 azimuths x 4 elevations, each as near as lets everything fit the image, the one that sees most of
-/// the contacts from the side, then most of the fingers and the object.
-/// @param scene  hand and object; parts as in RenderMesh: segment numbers, then the object
-/// @param also   what else has to fit
+/// Of 48 azimuths x 4 elevations, each as near as lets everything fit the image, the one that best shows what
+/// happens: most of the contacts, with their forces across the image; much of the fingers and of the object,
+/// little of the palm; the object's long side and its ends; and the hand from the thumb's side, where thumb
+/// and fingers stand out.
+/// @param scene       hand and object; parts as in RenderMesh: segment numbers, then the object
+/// @param also        what else has to fit
+/// @param thumb_side  unit vector across the palm, from the little finger to the thumb
 [[nodiscard]] Camera choose_camera(const RayScene& scene, const std::vector<const RenderMesh*>& also,
-                                   const std::vector<Sight>& contacts, int width, int height);
+                                   const std::vector<Sight>& contacts, const Vec3f& thumb_side, int width,
+                                   int height);
 
 }  // namespace phalanx::picture

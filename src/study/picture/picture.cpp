@@ -89,6 +89,13 @@ Contents collect(const HandModel& hand, const TriangleMesh& object, const Snapsh
   return contents;
 }
 
+/// Across the palm, from the little finger's knuckle to the index finger's; so it is for either hand.
+Vec3f thumb_side(const std::array<Pose, kSegments>& pose) {
+  const auto knuckle = [&](int digit) { return pose[static_cast<std::size_t>(segment_index(digit, 0))].p; };
+  const Vec3 across = knuckle(1) - knuckle(kDigits - 1);
+  return across.stableNormalized().cast<float>();
+}
+
 class Renderer {
  public:
   Renderer(Contents contents, const PictureOptions& options)
@@ -101,8 +108,8 @@ class Renderer {
         solid_(device_.get(), std::move(contents.solid)),
         ghost_(device_.get(), std::move(contents.ghost)),
         arrows_(device_.get(), std::move(contents.arrows)),
-        camera_(choose_camera(solid_, {&ghost_.mesh(), &arrows_.mesh()}, contents.contacts, options.width,
-                              options.height)) {
+        camera_(choose_camera(solid_, {&ghost_.mesh(), &arrows_.mesh()}, contents.contacts,
+                              thumb_side(contents.pose), options.width, options.height)) {
     float low = 1e9F, high = -1e9F;
     for (const Vec3f& v : solid_.mesh().vertices) {
       low = std::min(low, v.z());
@@ -181,7 +188,7 @@ class Renderer {
     if (const auto arrow = arrows_.closest(ray)) {
       const bool in_front = !hit || arrow->distance < hit->distance;
       const float lit = 0.6F + 0.8F * std::max(0.0F, arrow->normal.dot(studio_.key_direction));
-      colour += (in_front ? 1.0F : 0.42F) * (kArrow * lit - colour);
+      colour += (in_front ? 1.0F : 0.50F) * (kArrow * lit - colour);
     }
     return colour;
   }

@@ -62,6 +62,10 @@ Vec3f shade(const RayScene& scene, const Studio& studio, const Vec3f& point, con
             const Vec3f& view, const Material& material, Sampler& sampler) {
   Vec3f normal = hit.normal;
   if (normal.dot(hit.geometric) < 0.0F) normal = -normal;
+  // Near a silhouette the interpolated normal may look away from the eye, and would mirror all of the sky.
+  constexpr float kLeastFacing = 0.05F;
+  if (const float facing_eye = -view.dot(normal); facing_eye < kLeastFacing)
+    normal = (normal - (kLeastFacing - facing_eye) * view).normalized();
   const Vec3f start = point + kSkin * hit.geometric;
 
   const Vec3f to_key = key_sample(studio, sampler.next());
@@ -84,7 +88,14 @@ Vec3f shade(const RayScene& scene, const Studio& studio, const Vec3f& point, con
   const float highlight =
       key > 0.0F ? std::pow(std::max(0.0F, half.dot(normal)), sharpness) * (sharpness + 8.0F) / 60.0F : 0.0F;
   const Vec3f mirrored = view - 2.0F * view.dot(normal) * normal;
-  light += material.gloss * (0.16F * highlight * kKeyColour + 0.7F * fresnel * sky(mirrored));
+  Vec3f reflected = sky(mirrored);
+  if (mirrored.dot(hit.geometric) <= 0.0F ||
+      scene.occluded({.origin = start, .direction = mirrored, .far = studio.ambient_reach})) {
+    reflected = 0.30F * material.albedo.cwiseProduct(reflected);
+  } else if (mirrored.z() < 0.0F) {
+    reflected *= 1.0F + 0.6F * mirrored.z();  // the floor under an object lies in its shadow
+  }
+  light += material.gloss * (0.16F * highlight * kKeyColour + 0.7F * fresnel * reflected);
   return light;
 }
 
