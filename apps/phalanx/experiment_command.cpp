@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/study/experiments.h"
+#include "usage.h"
 
 namespace phalanx {
 namespace {
@@ -47,7 +48,10 @@ void add_experiment_command(CLI::App& app, Job& job) {
     CLI::App* sub = command->add_subcommand(name, help);
     sub->add_option("--out", *out, "write summary.json and " + name + ".csv into this folder")
         ->type_name("DIR");
-    sub->callback([=, &job] { job = [=] { return run_experiment(name, experiment, *out); }; });
+    sub->callback([=, &job] {
+      refuse_empty_values(*sub);
+      job = [=] { return run_experiment(name, experiment, *out); };
+    });
   };
   add("s1-fig8", "Seven situations of the index finger and a ball: which joints carry torque", s1_fig8);
   add("s1-timing", "S1's 1,489 triangles: time of a step beside S1's 4.2 ms", s1_timing);

@@ -3,15 +3,28 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
 #include <stdexcept>
+#include <string>
 
 #include "commands.h"
 #include "phalanx/record/made.h"
 #include "usage.h"
 
 namespace {
+
+/// One line, whatever was typed or read.
+void complain(std::string message) {
+  std::replace_if(
+      message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; },
+      ' ');
+  fmt::print(stderr, "{}\n", message);
+}
 
 int run(int argc, char** argv) {
   using namespace phalanx;
@@ -29,22 +42,42 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked) == 0 ? kDone : kFailed;
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}\n", usage_message(app, error));
+    complain(usage_message(app, error));
     return kWrongInput;
   }
   return job();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_and_report(int argc, char** argv) {
+  using namespace phalanx;
   try {
     return run(argc, argv);
   } catch (const std::invalid_argument& error) {
-    fmt::print(stderr, "phalanx: {}\n", error.what());
-    return phalanx::kWrongInput;
+    complain(fmt::format("phalanx: {}", error.what()));
+    return kWrongInput;
+  } catch (const std::bad_alloc&) {
+    complain("phalanx: out of memory; ask for fewer ticks (--seconds, --rate-hz) or triangles");
+    return kFailed;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "phalanx: {}\n", error.what());
-    return phalanx::kFailed;
+    // A failed write to standard output is main's to report.
+    if (std::ferror(stdout) == 0) complain(fmt::format("phalanx: {}", error.what()));
+    return kFailed;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = run_and_report(argc, argv);
+  if (code == phalanx::kWrongInput) return code;
+  // What is still buffered can fail only here: a full disk must not look like success.
+  int reason = std::ferror(stdout) != 0 ? errno : 0;
+  if (std::fflush(stdout) != 0) {
+    reason = errno;
+  } else if (std::ferror(stdout) == 0) {
+    return code;
+  }
+  complain(fmt::format("phalanx: cannot write to standard output: {}",
+                       reason != 0 ? std::strerror(reason) : "some of it was lost"));
+  return phalanx::kFailed;
 }

@@ -24,4 +24,10 @@ void ProgressBar::show(std::uint64_t done, std::uint64_t total) {
   std::fflush(stderr);
 }
 
+void ProgressBar::show(const char* doing) {
+  if (!on_) return;
+  fmt::print(stderr, "\r\033[K{} ...", doing);
+  std::fflush(stderr);
+}
+
 }  // namespace phalanx

@@ -15,6 +15,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(std::uint64_t done, std::uint64_t total);
+  /// Work of unknown length, in place of the bar.
+  void show(const char* doing);
 
  private:
   std::string what_;

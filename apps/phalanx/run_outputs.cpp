@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "phalanx/mesh/import.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/study/picture.h"
@@ -15,12 +17,20 @@ void prepare_folder_of(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) {
     throw std::invalid_argument(fmt::format("'{}' is a folder; name a file in it", file.string()));
   }
-  if (file.has_parent_path()) prepare_output_folder(file.parent_path());
+  prepare_output_folder(file.has_parent_path() ? file.parent_path() : ".");
+  try {
+    const OutputFile probe(file);  // removed again: it is not committed
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(
+        fmt::format("{}; name a file in a folder that you may write to", error.what()));
+  }
 }
 
 }  // namespace
 
 RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model) : plan_(std::move(plan)), model_(model) {
+  prepare_folder_of(plan_.plot);
+  prepare_folder_of(plan_.picture);
   if (!plan_.folder.empty()) {
     prepare_output_folder(plan_.folder);
     prepare_output_folder(plan_.folder / "hand");
@@ -30,8 +40,6 @@ RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model) : plan_(std::m
     ticks_.emplace(plan_.folder / "ticks.csv");
     if (plan_.poses) poses_.emplace(plan_.folder / "poses.csv");
   }
-  prepare_folder_of(plan_.plot);
-  prepare_folder_of(plan_.picture);
 }
 
 void RunOutputs::add(const Snapshot& snapshot) {

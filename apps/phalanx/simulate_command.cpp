@@ -18,6 +18,7 @@
 #include "progress_bar.h"
 #include "run_outputs.h"
 #include "summary_table.h"
+#include "usage.h"
 
 namespace phalanx {
 namespace {
@@ -28,42 +29,103 @@ struct SimulateOptions {
   std::string scene = "grasp_teapot";
   std::vector<std::string> set;
   std::string object, motion, mapping;
-  double object_size_mm = 0.0;
   std::optional<int> trial;
-  std::optional<double> seconds, rate_hz;
-  std::optional<std::uint64_t> seed;
+  std::optional<double> object_size_mm, seconds, rate_hz;
+  std::optional<std::int64_t> seed;
   std::string out, plot, picture;
   CLI::Option* plot_asked = nullptr;
   bool poses = false;
   bool quiet = false;
 };
 
-/// A TOML basic string; JSON's escapes are a subset of TOML's.
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+/// An option by its own name that stands for a scene key.
+struct KeyOption {
+  std::string option;  ///< as typed: "--seconds -1"
+  std::string key;
+  std::string value;  ///< TOML
+};
 
-Overrides overrides(const SimulateOptions& options) {
-  Overrides result;
-  for (const std::string& pair : options.set) result.push_back(parse_override(pair));
-  if (!options.motion.empty()) result.emplace_back("motion.file", quoted(options.motion));
-  if (!options.mapping.empty()) result.emplace_back("motion.mapping", quoted(options.mapping));
-  if (options.trial) result.emplace_back("motion.trial", std::to_string(*options.trial));
-  if (options.seconds) result.emplace_back("seconds", fmt::format("{:#}", *options.seconds));
-  if (options.rate_hz) result.emplace_back("rate_hz", fmt::format("{:#}", *options.rate_hz));
-  if (options.seed) result.emplace_back("seed", std::to_string(*options.seed));
+/// A TOML basic string; JSON's escapes are a subset of TOML's.
+KeyOption text_option(const std::string& option, const std::string& key, const std::string& text) {
+  try {
+    return {fmt::format("{} {}", option, text), key, nlohmann::json(text).dump()};
+  } catch (const nlohmann::json::type_error&) {
+    const auto replace = nlohmann::json::error_handler_t::replace;
+    throw std::invalid_argument(fmt::format("{} {}: the name is not valid UTF-8; rename the file", option,
+                                            nlohmann::json(text).dump(-1, ' ', false, replace)));
+  }
+}
+
+/// A TOML float: one with neither point nor exponent would be an integer.
+KeyOption number_option(const std::string& option, const std::string& key, double number) {
+  const std::string text = fmt::format("{}", number);
+  const bool is_float = text.find_first_of(".en") != std::string::npos;  // also of inf and nan
+  return {fmt::format("{} {}", option, text), key, is_float ? text : text + ".0"};
+}
+
+KeyOption integer_option(const std::string& option, const std::string& key, std::int64_t number) {
+  return {fmt::format("{} {}", option, number), key, std::to_string(number)};
+}
+
+std::vector<KeyOption> key_options(const SimulateOptions& o) {
+  std::vector<KeyOption> result;
+  if (!o.motion.empty()) result.push_back(text_option("--motion", "motion.file", o.motion));
+  if (!o.mapping.empty()) result.push_back(text_option("--mapping", "motion.mapping", o.mapping));
+  if (o.trial) result.push_back(integer_option("--trial", "motion.trial", *o.trial));
+  if (o.seconds) result.push_back(number_option("--seconds", "seconds", *o.seconds));
+  if (o.rate_hz) result.push_back(number_option("--rate-hz", "rate_hz", *o.rate_hz));
+  if (o.seed) result.push_back(integer_option("--seed", "seed", *o.seed));
   return result;
 }
 
+/// Calls `read` with the overrides; a refusal names the option that was typed, not the --set it stands for.
+template <typename Read>
+SceneDescription read_with(Overrides overrides, const std::vector<KeyOption>& options, const Read& read) {
+  for (const KeyOption& option : options) overrides.emplace_back(option.key, option.value);
+  try {
+    return read(overrides);
+  } catch (const SceneError& error) {
+    const std::string message = error.what();
+    for (const KeyOption& option : options) {
+      const std::string stands_for = fmt::format("--set {}={}: ", option.key, option.value);
+      if (message.starts_with(stands_for))
+        throw SceneError(fmt::format("{}: {}", option.option, message.substr(stands_for.size())));
+    }
+    throw;
+  }
+}
+
+/// In metres, checked as a scene's objects[].size_mm is.
+double object_size(double size_mm) {
+  const auto scene =
+      read_with({{"objects.0.kind", "\"file\""}, {"objects.0.file", "\"mesh.obj\""}},
+                {number_option("--object-size-mm", "objects.0.size_mm", size_mm)},
+                [](const Overrides& o) { return parse_scene("", "--object", fs::current_path(), o); });
+  return scene.objects.front().size;
+}
+
 SceneDescription described(const SimulateOptions& options) {
-  SceneDescription scene = load_scene(options.scene, overrides(options));
+  Overrides set;
+  for (const std::string& pair : options.set) set.push_back(parse_override(pair));
+  SceneDescription scene = read_with(set, key_options(options),
+                                     [&](const Overrides& all) { return load_scene(options.scene, all); });
+  if (scene.motion.file.empty()) {
+    const auto refuse = [](const std::string& option) {
+      throw std::invalid_argument(
+          fmt::format("{}: the scene plays no motion file; add --motion FILE or leave it out", option));
+    };
+    if (options.trial) refuse(fmt::format("--trial {}", *options.trial));
+    if (!options.mapping.empty()) refuse(fmt::format("--mapping {}", options.mapping));
+  }
   if (options.object.empty()) {
-    if (options.object_size_mm > 0.0) throw std::invalid_argument("--object-size-mm needs --object FILE");
+    if (options.object_size_mm) throw std::invalid_argument("--object-size-mm needs --object FILE");
     return scene;
   }
   // The file takes the place and pose of the scene's first object.
   ObjectDescription object;
   object.kind = "file";
   object.file = fs::absolute(options.object);
-  object.size = 1e-3 * options.object_size_mm;
+  object.size = options.object_size_mm ? object_size(*options.object_size_mm) : 0.0;
   if (!scene.objects.empty()) object.pose = scene.objects.front().pose;
   scene.objects = {object};
   return scene;
@@ -136,10 +198,12 @@ int simulate_scene(const SimulateOptions& options) {
                         outputs.add(snapshot);
                       },
                   .progress = [&](std::uint64_t done, std::uint64_t total) { bar.show(done, total); }});
+    if (!output_plan.picture.empty()) bar.show("rendering");
+    summary.made = made_here();
+    outputs.finish(
+        summary,
+        {.title = scene.name, .subtitle = scene.description, .parameters = parameters(scene, ticks)});
   }
-  summary.made = made_here();
-  outputs.finish(
-      summary, {.title = scene.name, .subtitle = scene.description, .parameters = parameters(scene, ticks)});
   if (options.quiet) return kDone;
   if (options.out.empty()) {
     fmt::print("{}", summary_table(summary));
@@ -188,7 +252,6 @@ void add_simulate_command(CLI::App& app, Job& job) {
   command
       ->add_option("--object-size-mm", options->object_size_mm,
                    "its largest extent; without it the file's numbers are metres")
-      ->check(CLI::Range(0.1, 10000.0))
       ->type_name("MM");
   command->add_option("--motion", options->motion, "a CSV of joint angles in place of the scene's motion")
       ->type_name("FILE");
@@ -204,7 +267,10 @@ void add_simulate_command(CLI::App& app, Job& job) {
   command->add_option("--rate-hz", options->rate_hz, "steps per second [the scene's]")->type_name("HZ");
   command->add_option("--seed", options->seed, "of everything random in the motion")->type_name("N");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
-  command->callback([options, &job] { job = [options] { return simulate_scene(*options); }; });
+  command->callback([options, command, &job] {
+    refuse_empty_values(*command);
+    job = [options] { return simulate_scene(*options); };
+  });
 }
 
 }  // namespace phalanx

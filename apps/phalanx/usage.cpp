@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 #include "phalanx/core/nearest_name.h"
@@ -45,6 +47,17 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 }
 
 }  // namespace
+
+void refuse_empty_values(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty() || option->get_expected_min() == 0) continue;
+    const auto& values = option->results();
+    if (std::find(values.begin(), values.end(), "") != values.end()) {
+      throw std::invalid_argument(
+          fmt::format("{} \"\": the value is empty; give one or leave the option out", option->get_name()));
+    }
+  }
+}
 
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = innermost(app);

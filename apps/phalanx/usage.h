@@ -6,6 +6,10 @@
 
 namespace phalanx {
 
+/// @throws std::invalid_argument naming the option if one that takes a value was given an empty one. `--plot`
+/// may stand without a value.
+void refuse_empty_values(const CLI::App& command);
+
 /// One line that says what is wrong with the command line and what to type instead: an unknown command or
 /// option is answered with the nearest known one.
 [[nodiscard]] std::string usage_message(const CLI::App& app, const CLI::ParseError& error);

@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/mapping_file.h"
 #include "phalanx/scene/motion_file.h"
+#include "scene/folder_names.h"
 
 namespace phalanx {
 
@@ -18,7 +22,12 @@ TriangleMesh make_object_mesh(const ObjectDescription& object) {
   if (object.kind == "torus") return make_torus(object.ring_diameter, object.tube_diameter, object.triangles);
   if (object.kind == "mug") return make_mug(object.diameter, object.length, object.triangles);
   if (object.kind == "teapot") return make_teapot(object.size, object.triangles);
-  if (object.kind == "file") return import_mesh(object.file, object.size);
+  if (object.kind == "file") {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(object.file, ignored))
+      throw SceneError("object file: " + why_no_file(object.file));
+    return import_mesh(object.file, object.size);
+  }
   throw SceneError(
       fmt::format("objects[].kind = \"{}\": nobody knows this kind; see `phalanx scene keys`", object.kind));
 }

@@ -51,8 +51,7 @@ fs::path find_data_file(const std::string& what, const std::string& name, const 
   if (is_path) {
     const fs::path file = base / name;
     if (fs::is_regular_file(file, ignored)) return file;
-    throw SceneError(
-        fmt::format("{} \"{}\": there is no file {}; check the path", what, name, file.string()));
+    throw SceneError(fmt::format("{} \"{}\": {}", what, name, why_no_file(file)));
   }
   const fs::path root = data_folder() / folder;
   const fs::path file = root / (name + extension);
@@ -60,6 +59,14 @@ fs::path find_data_file(const std::string& what, const std::string& name, const 
   const auto known = names_in_folder(root, extension);
   throw SceneError(fmt::format("{} \"{}\": there is no {}; did you mean \"{}\"? Known: {}", what, name,
                                file.string(), nearest_name(name, known), fmt::join(known, ", ")));
+}
+
+std::string why_no_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) return file.string() + " is a folder; name a file in it";
+  if (fs::exists(file, ignored))
+    return file.string() + " is not a regular file; copy what it holds into a file";
+  return fmt::format("there is no file {}; check the path", file.string());
 }
 
 std::vector<std::string> names_in_folder(const fs::path& folder, const std::string& extension) {

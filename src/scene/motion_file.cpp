@@ -13,6 +13,7 @@
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/csv_lines.h"
+#include "scene/folder_names.h"
 
 namespace phalanx {
 namespace {
@@ -177,7 +178,7 @@ Motion load_motion(const std::filesystem::path& file, const std::optional<Sensor
                    std::optional<int> trial, const JointArray& open_angle) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw SceneError(fmt::format("motion file {}: there is no such file; check the path", file.string()));
+    throw SceneError("motion file: " + why_no_file(file));
   }
   std::ifstream stream(file, std::ios::binary);
   std::string text(static_cast<std::size_t>(std::filesystem::file_size(file, ignored)), '\0');

@@ -123,16 +123,19 @@ class Reader {
     const double number = *node.value<double>();
     if (!key.range.contains(number)) {
       tree_.fail(path, fmt::format("must be {}{}{}{}", range_text(key), key.unit.empty() ? "" : " ", key.unit,
-                                   help(key)));
+                                   fallback(key)));
     }
     return number;
   }
 
+  static std::string fallback(const KeySpec& key) {
+    return key.default_toml.empty() ? "; or leave it out"
+                                    : fmt::format("; the default is {}", key.default_toml);
+  }
+
   static std::string help(const KeySpec& key) {
     const std::string range = range_text(key);
-    const std::string fallback =
-        key.default_toml.empty() ? "leave it out" : fmt::format("the default is {}", key.default_toml);
-    return fmt::format("{}; {}", range.empty() ? "" : fmt::format(" ({})", range), fallback);
+    return (range.empty() ? "" : fmt::format(" ({})", range)) + fallback(key);
   }
 
   /// A relative path in a scene file is relative to that file.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -55,12 +56,33 @@ toml::table parse_toml(const std::string& text, const std::string& origin) {
   }
 }
 
-std::string show(const toml::node& node) {
+namespace {
+
+/// On one line, where the library breaks long arrays and every table.
+std::string one_line(const toml::node& node) {
+  std::string text;
+  if (const toml::array* array = node.as_array()) {
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + one_line(element);
+    return "[" + text + "]";
+  }
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table)
+      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key.str(), one_line(value));
+    return "{" + text + "}";
+  }
   // The shortest digits that read back the same, where the library prints all seventeen.
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   std::ostringstream out;
   node.visit([&](const auto& value) { out << value; });
-  std::string text = out.str();
+  text = out.str();
+  std::replace_if(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+std::string show(const toml::node& node) {
+  std::string text = one_line(node);
   if (text.size() > 80) text = text.substr(0, 77) + "...";
   return text;
 }

@@ -110,7 +110,7 @@ TEST(BuildMotion, PlaysTheScriptUnlessThereIsAFile) {
 
 TEST(BuildMotion, NamesAMotionFileThatIsMissing) {
   expect_scene_error([] { static_cast<void>(build_motion(parse("motion.file = \"none.csv\""))); },
-                     {"none.csv", "no such file"});
+                     {"none.csv", "there is no file"});
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(MotionFile, ThatIsEmpty) {
 
 TEST(MotionFile, ThatIsMissing) {
   expect_scene_error([] { static_cast<void>(load_motion("/nowhere/m.csv")); },
-                     {"/nowhere/m.csv", "no such file"});
+                     {"/nowhere/m.csv", "there is no file"});
 }
 
 TEST(MotionFile, WithATimeTwice) {

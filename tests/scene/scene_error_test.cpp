@@ -128,8 +128,7 @@ TEST(SceneErrors, MissingSceneIsAnsweredWithTheNearestOne) {
 }
 
 TEST(SceneErrors, SceneThatIsAFolder) {
-  expect_scene_error([] { static_cast<void>(load_scene(PHALANX_SOURCE_DIR "/scenes")); },
-                     {"there is no file"});
+  expect_scene_error([] { static_cast<void>(load_scene(PHALANX_SOURCE_DIR "/scenes")); }, {"is a folder"});
 }
 
 }  // namespace

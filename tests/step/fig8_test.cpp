@@ -3,6 +3,7 @@
 // against a planar closed form.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "phalanx/mesh/primitives.h"
@@ -91,6 +92,23 @@ void expect_closed_form(const Snapshot& s) {
   EXPECT_NEAR(index_torque(s, 0), torque[0], 1e-9);
   EXPECT_NEAR(index_torque(s, 2), torque[1], 1e-9);
   EXPECT_NEAR(index_torque(s, 3), torque[2], 1e-9);
+  // Abduction: zero where the contact's normal lies in the plane of flexion, as a true ball's does; a facet's
+  // may lean out of it by a little.
+  const double mcp = s.gdp_angle[joint_index(test::kIndex, 0)];
+  double abduction = 0.0;
+  double leaning = 0.0;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    const SegmentSnapshot& contact = index_segment(s, k);
+    const Vec3 f = contact.force * contact.normal;
+    const Vec3 r = contact.point;
+    abduction +=
+        std::cos(mcp) * (r.z() * f.x() - r.x() * f.z()) - std::sin(mcp) * (r.x() * f.y() - r.y() * f.x());
+    leaning = std::max({leaning, std::abs(f.x()), std::abs(r.x())});
+  }
+  EXPECT_NEAR(index_torque(s, 1), abduction, 1e-12);
+  if (leaning < 1e-12) {
+    EXPECT_LT(std::abs(index_torque(s, 1)), 1e-12);
+  }
   for (int j = 0; j < kJoints; ++j) {
     if (digit_of_joint(j) == test::kIndex) continue;
     EXPECT_EQ(s.torque[static_cast<std::size_t>(j)], 0.0);
@@ -176,6 +194,50 @@ TEST(S1Fig8, GTheMiddlePhalanxAloneLoadsMcpAndPip) {
   EXPECT_LT(index_torque(s, 0), -1e-3);
   EXPECT_LT(index_torque(s, 2), -1e-4);
   EXPECT_LT(std::abs(index_torque(s, 3)), kNone);
+}
+
+/// The same from nothing but paper: a finger of thin bars comes down on a horizontal floor. Where it stops,
+/// how deep the HCP goes, the force and the torques follow from the lengths, without any number of the
+/// program's. A stop is exact to 10 nm.
+TEST(S1Fig8, ABarOnAFloorStopsAndPushesAsTrigonometrySays) {
+  constexpr double kHalf = 0.004;    // half the bars' thickness
+  constexpr double kFloor = -0.020;  // height of the floor
+  constexpr double kMargin = 50e-6;
+  HandParameters parameters = test::simple_parameters();
+  SegmentMeshes meshes = make_capsule_meshes(parameters, Handedness::kRight, 2250);
+  const std::array<double, 3> length = {test::kLength1, test::kLength2, test::kLength3};
+  for (std::size_t k = 0; k < 3; ++k) {
+    meshes[3 * test::kIndex + k] =
+        moved(make_box(Vec3(0.01, 2.0 * kHalf, length[k]), 12), at(0.0, 0.0, -0.5 * length[k]));
+  }
+  HapticModel model(HandModel(parameters, Handedness::kRight, Pose{}, meshes),
+                    ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, kFloor - 0.01, 0.0))));
+  test::turn_limits_off(model);
+  model.force.stiffness = kStiffness;
+  Runner hand(model);
+  const double hcp = 0.35;
+  const Snapshot& s = hand.move(index_angles(hcp), 60);
+  expect_contacts(s, false, false, true);
+
+  // The lower far edge is at a = 85 mm along, 4 mm below the straight finger's axis: its height at angle q is
+  // -(a sin q + c cos q).
+  const double a = test::kLength1 + test::kLength2 + test::kLength3;
+  const double c = kHalf;
+  const double stop = std::asin((-kFloor - kMargin) / std::hypot(a, c)) - std::atan2(c, a);
+  const double depth = a * std::sin(hcp) + c * std::cos(hcp) + kFloor + kMargin;
+  const double force = kStiffness * depth;
+  const auto back = [&](double along) {
+    return along * std::cos(stop);
+  };  // distance of a joint from the plane x-y
+  const double edge = a * std::cos(stop) - c * std::sin(stop);
+  constexpr double kForceTolerance = kStiffness * 10e-9;
+  EXPECT_NEAR(test::index_gdp(s, 0), stop, 10e-9 / (0.9 * a));
+  EXPECT_NEAR(index_segment(s, 2).depth, depth, 10e-9);
+  EXPECT_NEAR(index_segment(s, 2).force, force, kForceTolerance);
+  EXPECT_NEAR(index_torque(s, 0), -force * edge, kForceTolerance * a);
+  EXPECT_NEAR(index_torque(s, 2), -force * (edge - back(test::kLength1)), kForceTolerance * a);
+  EXPECT_NEAR(index_torque(s, 3), -force * (edge - back(test::kLength1 + test::kLength2)),
+              kForceTolerance * a);
 }
 
 }  // namespace

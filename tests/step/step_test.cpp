@@ -303,7 +303,19 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
       if (random() % 10 == 0) sample.time_s = wild_times[random() % wild_times.size()];
       const Status status = step(model, sample, state);
       used += has(status, Status::kTimeNotIncreasing) ? 0 : 1;
-      for (const SegmentSnapshot& segment : state.snapshot().segment) pushed += segment.force > 0.0 ? 1 : 0;
+      for (int d = 0; d < kDigits; ++d) {
+        Vec3 sum = Vec3::Zero();
+        for (int k = 0; k < kSegmentsPerDigit; ++k) {
+          const SegmentSnapshot& segment =
+              state.snapshot().segment[static_cast<std::size_t>(segment_index(d, k))];
+          ASSERT_TRUE(std::isfinite(segment.force)) << "seed 13 tick " << n;
+          ASSERT_GE(segment.force, 0.0);
+          ASSERT_LE(segment.force, model.limits.fingertip_force);
+          sum += segment.force * segment.normal;
+          pushed += segment.force > 0.0 ? 1 : 0;
+        }
+        ASSERT_LE(sum.norm(), model.limits.fingertip_force + 1e-12) << "seed 13 tick " << n;
+      }
       for (std::size_t j = 0; j < kJoints; ++j) {
         const double torque = state.snapshot().torque[j];
         ASSERT_TRUE(std::isfinite(torque)) << "seed 13 tick " << n;

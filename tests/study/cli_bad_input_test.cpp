@@ -84,5 +84,25 @@ TEST_F(CliBadInput, OutputFolderThatIsAFile) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("taken"), HasSubstr("is a file")));
 }
 
+TEST_F(CliBadInput, FoldersAndDevicesAreCalledWhatTheyAre) {
+  std::filesystem::create_directory(folder / "d");
+  refuses("--motion d", {"motion file", "d is a folder"});
+  refuses("./d", {"d is a folder"});
+  refuses("--object d", {"object file", "d is a folder"});
+  refuses("/dev/null", {"/dev/null is not a regular file"});
+  refuses("--motion /dev/null", {"/dev/null is not a regular file"});
+}
+
+TEST_F(CliBadInput, NameThatIsNoUtf8) { refuses("--motion '\xff.csv'", {"--motion", "not valid UTF-8"}); }
+
+TEST_F(CliBadInput, PictureOrPlotInAFolderThatCannotBeWritten) {
+  write_file(folder / "taken", "");
+  refuses("--picture taken/x.png", {"output folder 'taken' is a file"});
+  refuses("--plot taken/x.svg", {"output folder 'taken' is a file"});
+  if (!std::filesystem::exists("/proc/self")) return;
+  refuses("--picture /proc/x.png", {"/proc"});  // not even root can
+  refuses("--plot /proc/x.svg", {"/proc"});
+}
+
 }  // namespace
 }  // namespace phalanx

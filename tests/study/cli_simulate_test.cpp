@@ -120,6 +120,15 @@ TEST(CliSimulate, FailsWithOneWhenAFileCannotBeWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a/summary.json"));
 }
 
+TEST(CliSimulate, TakesNumbersHoweverShortTheyAreWritten) {
+  const TemporaryFolder folder;
+  for (const char* seconds : {"1e-9", "1e-1", ".1", "1"}) {
+    const auto result =
+        run_program(folder, std::string("simulate wave --quiet --rate-hz 1e2 --seed 7 --seconds ") + seconds);
+    EXPECT_EQ(result.exit_code, 0) << seconds << ": " << result.err;
+  }
+}
+
 TEST(CliScene, ListsChecksAndDocumentsScenes) {
   const TemporaryFolder folder;
   EXPECT_THAT(run_program(folder, "scene list").out, HasSubstr("grasp_teapot"));

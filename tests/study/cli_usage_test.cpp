@@ -66,7 +66,32 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"simulate --plot", "--plot needs"}, Case{"simulate --plot wave", "must end in .svg"},
         Case{"simulate --picture a.jpg", "must end in .png"}, Case{"simulate --poses", "--poses needs --out"},
         Case{"simulate --object-size-mm 80", "needs --object"}, Case{"simulate --set force.law", "force.law"},
-        Case{"simulate nope", "did you mean"}));
+        Case{"simulate nope", "did you mean"},
+        Case{"simulate wave --out ''", "--out \"\": the value is empty"},
+        Case{"simulate wave --seconds ''", "--seconds"},
+        Case{"experiment s1-fig8 --out ''", "--out \"\": the value is empty"},
+        Case{"simulate wave --trial 99", "--trial 99: the scene plays no motion file"},
+        Case{"simulate wave --mapping cyberglove", "--mapping cyberglove: the scene plays no motion file"},
+        Case{"simulate --seed -1", "--seed -1: seed = -1: must be >= 0"},
+        Case{"simulate --seconds -1", "--seconds -1: seconds = -1: must be >= 0, <= 86400 s; the default"},
+        Case{"simulate --seconds nan", "--seconds nan: seconds = nan: must be"},
+        Case{"simulate --object a.obj --object-size-mm nan", "--object-size-mm nan: objects.0.size_mm = nan"},
+        Case{"simulate --object a.obj --object-size-mm 2001", "must be >= 0, <= 2000 mm"},
+        Case{"simulate --set 'hand.position_mm=[1,2,nan]'", "hand.position_mm = [1, 2, nan]: must be"}));
+
+class CliFullDisk : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CliFullDisk, IsNoSuccess) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, GetParam(), "/dev/full");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "phalanx: cannot write to standard output: No space left on device\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CliFullDisk,
+                         ::testing::Values("--help", "--version", "simulate --help", "scene keys",
+                                           "simulate wave --seconds 0.1", "experiment s1-fig8"));
 
 }  // namespace
 }  // namespace phalanx
