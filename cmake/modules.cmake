@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# phalanx_module(NAME SOURCES ... [USES module ...] [LIBRARIES external ...])
+# phalanx_module(NAME SOURCES ... [LIBRARIES external ...])
 # One folder of src/ as an object library `phalanx_NAME`, so that its tests link it and what it uses and nothing else.
 function(phalanx_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(phalanx_${name} OBJECT ${ARG_SOURCES})
   target_include_directories(phalanx_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(phalanx_${name} PUBLIC Eigen3::Eigen PRIVATE phalanx_options ${ARG_LIBRARIES})

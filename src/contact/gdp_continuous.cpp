@@ -128,10 +128,10 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       if (record_of(state, tick, k).active) continue;
       // Within the margin; the stopping segment itself in any case, wherever a search that gave up has left
-      // it.
+      // it: then by its nearest pair alone, for what it runs into would have to be sought among all pairs.
       const bool stopped = k == stop.segment;
       const double cap = stopped && exhausted ? 1.0 : std::nextafter(margin, 1.0);
-      make_record(model, tick, k, s, cap, stopped ? &motion : nullptr, state);
+      make_record(model, tick, k, s, cap, stopped && !exhausted ? &motion : nullptr, state);
     }
     tick.fixed = joints_that_move(stop.segment);
   }

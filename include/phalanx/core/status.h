@@ -27,9 +27,9 @@ enum class Status : std::uint32_t {
   kTorqueLimited = 1U << 8,      ///< the joint torque limit acted
   kTorqueRateLimited = 1U << 9,  ///< the torque-rate limit acted
   kCommandNotFinite = 1U << 10,  ///< a torque came out not finite and was set to zero
-  kSampleStale = 1U << 12,       ///< no wholly good sample for 50 ms; forces decay to zero until one comes
   kTrajectoryExhausted =
-      1U << 11,  ///< gdp.method "trajectory": no free pose among the recorded angles; the GDP held
+      1U << 11,             ///< gdp.method "trajectory": no free pose among the recorded angles; the GDP held
+  kSampleStale = 1U << 12,  ///< no wholly good sample for 50 ms; forces decay to zero until one comes
 };
 inline constexpr int kStatusBits = 13;
 
