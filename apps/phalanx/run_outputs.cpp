@@ -55,7 +55,7 @@ void RunOutputs::add(const Snapshot& snapshot) {
 void RunOutputs::finish(const Summary& summary, const PlotText& text) {
   if (!plan_.plot.empty()) write_text_file(plan_.plot, plot_svg(trace_, text));
   if (!plan_.picture.empty()) {
-    const Image image = render_picture(model_.hand, model_.object.mesh(), peak_);
+    const Image image = render_picture(model_.hand.meshes(), model_.object.mesh(), peak_);
     write_then_rename(plan_.picture, [&](const std::filesystem::path& file) { write_png(image, file); });
   }
   if (plan_.folder.empty()) return;

@@ -56,7 +56,7 @@ bool hot(int r, int g, int b) { return r > g + 60 && r > b + 60; }
 
 TEST(Picture, ShowsHandObjectAndForce) {
   const Scene scene;
-  const Image image = render_picture(scene.hand, scene.object, scene.snapshot, kSmall);
+  const Image image = render_picture(scene.hand.meshes(), scene.object, scene.snapshot, kSmall);
   ASSERT_EQ(image.rgb.size(), 160U * 120U * 3U);
   EXPECT_GT(count(image, teal), 100);
   EXPECT_GT(count(image, bone), 500);
@@ -67,7 +67,7 @@ TEST(Picture, OfNoObjectShowsTheHandAlone) {
   Scene scene;
   scene.snapshot.segment = {};
   scene.snapshot.hcp_pose = scene.snapshot.gdp_pose;
-  const Image image = render_picture(scene.hand, {}, scene.snapshot, kSmall);
+  const Image image = render_picture(scene.hand.meshes(), {}, scene.snapshot, kSmall);
   EXPECT_EQ(count(image, teal), 0);
   EXPECT_EQ(count(image, hot), 0);
   EXPECT_GT(count(image, bone), 500);
@@ -75,8 +75,8 @@ TEST(Picture, OfNoObjectShowsTheHandAlone) {
 
 TEST(Picture, IsTheSameEveryTime) {
   const Scene scene;
-  EXPECT_EQ(render_picture(scene.hand, scene.object, scene.snapshot, kSmall).rgb,
-            render_picture(scene.hand, scene.object, scene.snapshot, kSmall).rgb);
+  EXPECT_EQ(render_picture(scene.hand.meshes(), scene.object, scene.snapshot, kSmall).rgb,
+            render_picture(scene.hand.meshes(), scene.object, scene.snapshot, kSmall).rgb);
 }
 
 TEST(Picture, IsWrittenAsAPngThatReadsBack) {
@@ -108,9 +108,9 @@ TEST(Picture, SaysWhichFileCannotBeWritten) {
 
 TEST(Picture, RefusesASizeThatMakesNoSense) {
   const Scene scene;
-  EXPECT_THROW((void)render_picture(scene.hand, scene.object, scene.snapshot, {.width = 0}),
+  EXPECT_THROW((void)render_picture(scene.hand.meshes(), scene.object, scene.snapshot, {.width = 0}),
                std::invalid_argument);
-  EXPECT_THROW((void)render_picture(scene.hand, scene.object, scene.snapshot, {.samples = 0}),
+  EXPECT_THROW((void)render_picture(scene.hand.meshes(), scene.object, scene.snapshot, {.samples = 0}),
                std::invalid_argument);
 }
 

@@ -49,6 +49,8 @@ class HandModel {
   [[nodiscard]] const TriangleMesh& mesh(int segment) const noexcept {
     return meshes_[static_cast<std::size_t>(segment)];
   }
+  /// All of them, in the segments' frames.
+  [[nodiscard]] const SegmentMeshes& meshes() const noexcept { return meshes_; }
   [[nodiscard]] int triangle_count() const noexcept;
 
   /// Pose of the palm, X_WS; it does not move.

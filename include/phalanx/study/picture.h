@@ -32,12 +32,12 @@ struct PictureOptions {
 /// a colour scale. The meshes are drawn with their edges rounded by their own normals. The camera is the one,
 /// of a fixed set around the scene, that sees most of the contacts. World z is up. Same input and options,
 /// same pixels, for any number of threads.
-/// @param hand    only its meshes are used; the poses come from `snapshot`
+/// @param hand    what is drawn of each segment, in its frame; the poses come from `snapshot`
 /// @param object  in world frame [m]; may be empty
 /// @throws std::invalid_argument for a size below 16 or above 16384 pixels, or samples outside 1..32;
 /// std::runtime_error if
 ///         the ray tracer cannot start.
-[[nodiscard]] Image render_picture(const HandModel& hand, const TriangleMesh& object,
+[[nodiscard]] Image render_picture(const SegmentMeshes& hand, const TriangleMesh& object,
                                    const Snapshot& snapshot, const PictureOptions& options = {});
 
 /// @throws std::runtime_error naming the file if it cannot be written.

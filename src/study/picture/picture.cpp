@@ -46,7 +46,7 @@ struct Contents {
   std::vector<Sight> contacts;
   std::array<Material, kSegments + 1> material;
   std::array<Pose, kSegments> pose;       ///< X_WS of the shown hand
-  std::array<float, kSegments> length{};  ///< of the bones [m]; the palm's stays 0
+  std::array<float, kSegments> length{};  ///< to the next joint [m]; 0 where there is none
   double full_force = 0.0;
 };
 
@@ -60,7 +60,7 @@ float share_beyond(float beyond) {
   return t * t * (3.0F - 2.0F * t);
 }
 
-Contents collect(const HandModel& hand, const TriangleMesh& object, const Snapshot& snapshot,
+Contents collect(const SegmentMeshes& hand, const TriangleMesh& object, const Snapshot& snapshot,
                  double full_force) {
   Contents contents;
   double peak = 0.0;
@@ -69,13 +69,14 @@ Contents collect(const HandModel& hand, const TriangleMesh& object, const Snapsh
   for (std::size_t s = 0; s < kSegments; ++s) {
     const auto part = static_cast<int>(s);
     const SegmentSnapshot& segment = snapshot.segment[s];
-    append_curved(contents.solid, hand.mesh(part), snapshot.gdp_pose[s], part, kLevel);
+    append_curved(contents.solid, hand[s], snapshot.gdp_pose[s], part, kLevel);
     if (ghost_distance(snapshot, s) > static_cast<double>(kLeastGhost)) {
-      append_curved(contents.ghost, hand.mesh(part), snapshot.hcp_pose[s], part, kLevel);
+      append_curved(contents.ghost, hand[s], snapshot.hcp_pose[s], part, kLevel);
     }
     const double share = contents.full_force > 0.0 ? segment.force / contents.full_force : 0.0;
     contents.pose[s] = snapshot.gdp_pose[s];
-    if (part != kPalm) contents.length[s] = static_cast<float>(hand.parameters().segments[s].length);
+    if (part != kPalm && part % kSegmentsPerDigit < kSegmentsPerDigit - 1)
+      contents.length[s] = static_cast<float>((snapshot.gdp_pose[s + 1].p - snapshot.gdp_pose[s].p).norm());
     contents.material[s] = {.albedo = force_colour(static_cast<float>(share)), .gloss = 0.35F};
     if (!(segment.force > 0.0)) continue;
     append_arrow(contents.arrows, segment.point, segment.normal, kArrowAtFull * share, kShaft, part);
@@ -254,7 +255,7 @@ class Renderer {
 }  // namespace
 }  // namespace picture
 
-Image render_picture(const HandModel& hand, const TriangleMesh& object, const Snapshot& snapshot,
+Image render_picture(const SegmentMeshes& hand, const TriangleMesh& object, const Snapshot& snapshot,
                      const PictureOptions& options) {
   if (std::min(options.width, options.height) < 16 || std::max(options.width, options.height) > 16384) {
     throw std::invalid_argument(fmt::format("picture of {} x {} pixels: each must be from 16 to 16384",
