@@ -48,8 +48,37 @@ class Groups {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Edges between exactly two triangles, as pairs of half edges in a fixed order.
-std::vector<std::pair<Corner, Corner>> shared_edges(const TriangleMesh& mesh) {
+/// Unit normals of the faces; zero where a face is so low that rounding would turn it.
+std::vector<Vec3> face_normals(const TriangleMesh& mesh) {
+  std::vector<Vec3> face(mesh.triangles.size(), Vec3::Zero());
+  const Bounds box = bounds(mesh);
+  const double noise = 0x1p-22 * (box.max - box.min).maxCoeff();  // files have single precision
+  for (std::size_t t = 0; t < face.size(); ++t) {
+    const auto point = [&](std::size_t k) -> const Vec3& {
+      return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
+    };
+    Vec3 e1 = point(1) - point(0);
+    Vec3 e2 = point(2) - point(0);
+    const double longest = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
+    if (!(longest > 0.0)) continue;
+    e1 /= longest;  // scaled, so that the product of a small triangle's edges does not vanish
+    e2 /= longest;
+    const Vec3 normal = e1.cross(e2);
+    const double twice_area = normal.norm();
+    if (twice_area > std::max(1e-6, noise / longest)) face[t] = normal / twice_area;
+  }
+  return face;
+}
+
+/// Pairs of half edges in a fixed order.
+struct SharedEdges {
+  std::vector<std::pair<Corner, Corner>>
+      two;  ///< of edges that two triangles share, leaving out those without area
+  std::vector<std::pair<Corner, Corner>>
+      hanging;  ///< a triangle without area that lies in such an edge, and one of the two
+};
+
+SharedEdges shared_edges(const TriangleMesh& mesh, const std::vector<Vec3>& face) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -60,49 +89,33 @@ std::vector<std::pair<Corner, Corner>> shared_edges(const TriangleMesh& mesh) {
     }
   }
   std::sort(edges.begin(), edges.end());
-  std::vector<std::pair<Corner, Corner>> pairs;
+  SharedEdges out;
+  std::vector<Corner> solid;
+  std::vector<Corner> flat;
   for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
-    if (end - i == 2) pairs.emplace_back(edges[i].start, edges[i + 1].start);
+    solid.clear();
+    flat.clear();
+    std::size_t end = i;
+    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
+      (face[edges[end].start / 3].isZero(0.0) ? flat : solid).push_back(edges[end].start);
+    if (end - i == 2) {
+      out.two.emplace_back(edges[i].start, edges[i + 1].start);
+    } else if (solid.size() == 2) {
+      out.two.emplace_back(solid[0], solid[1]);
+      for (const Corner c : flat) out.hanging.emplace_back(c, solid[0]);
+    }
     i = end;
   }
-  return pairs;
+  return out;
 }
 
-}  // namespace
-
-std::vector<std::array<Vec3, 3>> corner_normals(const TriangleMesh& mesh, double crease_angle) {
-  check_mesh(mesh, "corner_normals");
-  if (!(crease_angle >= 0.0 && crease_angle <= std::numbers::pi))
-    throw std::invalid_argument("corner_normals: crease_angle is " + std::to_string(crease_angle) +
-                                " rad; give 0 to pi");
-  const std::size_t count = mesh.triangles.size();
-  const auto vertex_of = [&](Corner c) { return mesh.triangles[c / 3][c % 3]; };
-  const auto point = [&](Corner c) -> const Vec3& {
-    return mesh.vertices[static_cast<std::size_t>(vertex_of(c))];
-  };
-
-  std::vector<Vec3> face(count, Vec3::Zero());
-  for (std::size_t t = 0; t < count; ++t) {
-    Vec3 e1 = point(3 * t + 1) - point(3 * t);
-    Vec3 e2 = point(3 * t + 2) - point(3 * t);
-    const double longest = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
-    if (!(longest > 0.0)) continue;
-    e1 /= longest;  // scaled, so that the product of a small triangle's edges does not vanish
-    e2 /= longest;
-    const Vec3 normal = e1.cross(e2);
-    const double twice_area = normal.norm();
-    if (twice_area > 1e-14) face[t] = normal / twice_area;
-  }
-
-  // A degenerate triangle has no normal of its own: spread the neighbours' into it, front by front.
-  const auto edges = shared_edges(mesh);
-  const std::vector<Vec3> own = face;
+/// A triangle without a normal of its own takes a neighbour's: spread front by front.
+void spread_normals(const SharedEdges& edges, std::vector<Vec3>& face) {
+  for (const auto& [hanging, solid] : edges.hanging) face[hanging / 3] = face[solid / 3];
   for (bool changed = true; changed;) {
     changed = false;
     std::vector<std::pair<std::size_t, Vec3>> found;
-    for (const auto& [a, b] : edges) {
+    for (const auto& [a, b] : edges.two) {
       const bool has_a = !face[a / 3].isZero(0.0);
       const bool has_b = !face[b / 3].isZero(0.0);
       if (has_a && !has_b) found.emplace_back(b / 3, face[a / 3]);
@@ -114,14 +127,50 @@ std::vector<std::array<Vec3, 3>> corner_normals(const TriangleMesh& mesh, double
       changed = true;
     }
   }
+}
+
+}  // namespace
+
+SurfaceNormals surface_normals(const TriangleMesh& mesh, double crease_angle) {
+  check_mesh(mesh, "surface_normals");
+  if (!(crease_angle >= 0.0 && crease_angle <= std::numbers::pi))
+    throw std::invalid_argument("surface_normals: crease_angle is " + std::to_string(crease_angle) +
+                                " rad; give 0 to pi");
+  // A tube of twelve sides is folded by 30 degrees to rounding: without some room, noise would pick its
+  // creases.
+  const double smooth_below = crease_angle > 0.0 ? crease_angle + 1e-6 : 0.0;
+  constexpr double kFoldedBack = 91.0 * std::numbers::pi / 180.0;
+  const std::size_t count = mesh.triangles.size();
+  const auto vertex_of = [&](Corner c) { return mesh.triangles[c / 3][c % 3]; };
+  const auto point = [&](Corner c) -> const Vec3& {
+    return mesh.vertices[static_cast<std::size_t>(vertex_of(c))];
+  };
+  const std::vector<Vec3> own = face_normals(mesh);
+  const SharedEdges edges = shared_edges(mesh, own);
+  std::vector<Vec3> face = own;
+  spread_normals(edges, face);
 
   // Corners of one vertex that a smooth edge connects belong together.
+  SurfaceNormals out{.corner = std::vector<std::array<Vec3, 3>>(count),
+                     .open_edges = std::vector<std::uint8_t>(count, 7)};
   Groups groups(3 * count);
-  for (const auto& [a, b] : edges) {
-    const bool opposite = vertex_of(a) == vertex_of(next(b));  // as on an oriented surface
-    if (!opposite || !(angle_between(face[a / 3], face[b / 3]) < crease_angle)) continue;
+  for (const auto& [a, b] : edges.two) {
+    if (vertex_of(a) != vertex_of(next(b))) continue;  // not as on an oriented surface
+    const double angle = angle_between(face[a / 3], face[b / 3]);
+    if (!(angle > kFoldedBack)) {
+      for (const Corner c : {a, b}) out.open_edges[c / 3] &= static_cast<std::uint8_t>(~(1U << c % 3));
+    }
+    if (!(angle < smooth_below)) continue;
     groups.join(a, next(b));
     groups.join(next(a), b);
+  }
+  for (const auto& [a, b] : edges.hanging) {
+    const bool alike = vertex_of(a) == vertex_of(b);
+    groups.join(a, alike ? b : next(b));
+    groups.join(next(a), alike ? next(b) : b);
+  }
+  for (std::size_t t = 0; t < count; ++t) {
+    if (own[t].isZero(0.0)) out.open_edges[t] = 0;  // nothing ends where nothing is
   }
   std::vector<Vec3> sum(3 * count, Vec3::Zero());
   for (Corner c = 0; c < 3 * count; ++c) {
@@ -129,18 +178,21 @@ std::vector<std::array<Vec3, 3>> corner_normals(const TriangleMesh& mesh, double
     const double angle = angle_between(point(next(c)) - point(c), point(next(next(c))) - point(c));
     sum[groups.root(c)] += angle * face[c / 3];
   }
-  std::vector<std::array<Vec3, 3>> normals(count);
   for (Corner c = 0; c < 3 * count; ++c) {
     const Vec3& s = sum[groups.root(c)];
     const double length = s.norm();
     const Vec3& fallback = face[c / 3];
     if (length > 1e-12) {
-      normals[c / 3][c % 3] = s / length;
+      out.corner[c / 3][c % 3] = s / length;
     } else {
-      normals[c / 3][c % 3] = fallback.isZero(0.0) ? Vec3(Vec3::UnitZ()) : fallback;
+      out.corner[c / 3][c % 3] = fallback.isZero(0.0) ? Vec3(Vec3::UnitZ()) : fallback;
     }
   }
-  return normals;
+  return out;
+}
+
+std::vector<std::array<Vec3, 3>> corner_normals(const TriangleMesh& mesh, double crease_angle) {
+  return surface_normals(mesh, crease_angle).corner;
 }
 
 }  // namespace phalanx

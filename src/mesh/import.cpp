@@ -9,13 +9,16 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "mesh/assimp_reader.h"
+#include "mesh/decimate.h"
+#include "mesh/deviation.h"
 #include "mesh/index_check.h"
 #include "mesh/isolated.h"
 #include "mesh/obj_reduce.h"
-#include "mesh/weld.h"
+#include "mesh/repair.h"
 
 namespace phalanx {
 namespace {
@@ -33,63 +36,111 @@ void check_format(const std::string& format, const std::string& origin) {
                               "'; known are .obj .3ds .stl .ply .glb, so convert the file to one of these");
 }
 
-void check_size(double size, const std::string& origin) {
-  if (std::isfinite(size) && size >= 0.0) return;
+void check_options(const ImportOptions& options, const std::string& origin) {
   std::ostringstream message;
-  message << origin << ": size is " << size << " m; give a finite length, or 0 to keep the file's own size";
+  message << origin << ": ";
+  if (!std::isfinite(options.size) || options.size < 0.0) {
+    message << "size is " << options.size << " m; give a finite length, or 0 to keep the file's own size";
+  } else if (!std::isfinite(options.unit) || options.unit <= 0.0) {
+    message << "unit is " << options.unit
+            << " m; give the metres that one unit of the file is, such as 0.001";
+  } else if (options.triangles < 0) {
+    message << options.triangles << " triangles asked for; give a count, or 0 to keep the file's own";
+  } else {
+    return;
+  }
   throw std::invalid_argument(message.str());
 }
 
-/// Scales about the box's centre so that the largest extent is `size`, and moves the centre to the origin.
-void resize(TriangleMesh& mesh, double size) {
-  const Bounds box = bounds(mesh);
-  const double largest =
-      (box.max - box.min).maxCoeff();  // > 0: some triangle has corners at different places
-  const Vec3 centre = 0.5 * (box.min + box.max);
-  for (Vec3& v : mesh.vertices) v = (v - centre) * (size / largest);
-}
+/// What a reader made of a file.
+struct Soup {
+  TriangleMesh mesh;
+  std::size_t positions =
+      0;  ///< vertices that the file has, where the reader gives every corner its own; else 0
+};
 
-TriangleMesh import_bytes(const void* data, std::size_t bytes, const std::string& format, double size,
-                          const std::string& origin) {
-  check_format(format, origin);
-  check_size(size, origin);
+Soup read_soup(const void* data, std::size_t bytes, const std::string& format, const std::string& origin) {
   if (bytes == 0) throw std::invalid_argument(origin + ": the file is empty; export the mesh again");
   if (format == "ply" &&
       std::string_view(static_cast<const char*>(data), bytes).find("end_header") == std::string_view::npos)
     throw std::invalid_argument(
         origin + ": the header has no end_header line; the file is cut off or no .ply, export it again");
-  // Generous for honest files (Assimp reads some 10 MB/s and takes some 20 times a file's size), soon over
-  // for a loop.
+  // Assimp reads some 10 MB/s and takes up to 7 times a file's size of memory (docs/meshes.md); a file that
+  // claims a thousand million vertices gets no farther than this.
   const mesh::IsolationLimits limits{.cpu_seconds = 2 + bytes / 1'000'000,
-                                     .memory_bytes = (std::uint64_t{1} << 30) + 100 * std::uint64_t{bytes}};
+                                     .memory_bytes = (std::uint64_t{256} << 20) + 16 * std::uint64_t{bytes},
+                                     .wall_seconds = 60.0 + 1e-5 * static_cast<double>(bytes)};
   const std::string_view text(static_cast<const char*>(data), bytes);
   const auto read = [&] {
     if (format == "obj") {
-      const std::string reduced = mesh::reduce_obj(text, origin);
-      return mesh::read_with_assimp(reduced.data(), reduced.size(), format, origin);
+      mesh::ReducedObj reduced = mesh::reduce_obj(text, origin);
+      TriangleMesh soup = mesh::read_with_assimp(reduced.text.data(), reduced.text.size(), format, origin);
+      // Assimp leaves them out without a word; the report is to count them.
+      soup.vertices.resize(soup.vertices.size() + reduced.unreferenced, Vec3::Zero());
+      return soup;
     }
     if (format == "3ds") mesh::check_3ds_indices(text, origin);
     if (format == "glb") mesh::check_glb_indices(text, origin);
     return mesh::read_with_assimp(data, bytes, format, origin);
   };
-  const TriangleMesh soup = mesh::run_isolated(read, origin, limits);
-  check_mesh(soup, origin.c_str());
-  TriangleMesh mesh = mesh::weld(soup);
-  check_mesh(mesh, origin.c_str());
-  if (size > 0.0) {
-    resize(mesh, size);
-    check_mesh(mesh, origin.c_str());
-  }
-  return mesh;
+  Soup soup;
+  soup.mesh = mesh::run_isolated(read, origin, limits);
+  if (format == "obj") soup.positions = mesh::count_obj_positions(text);
+  return soup;
 }
 
-}  // namespace
+/// Decimates, checks again what has come out of it, and measures how far it is from the original.
+void decimate_to(const ImportOptions& options, const std::string& origin, ImportedMesh& imported) {
+  DecimationReport decimation;
+  decimation.asked = options.triangles;
+  decimation.before = imported.mesh.triangles.size();
+  decimation.was_closed = imported.report.closed;
+  MeshReport after;
+  TriangleMesh decimated =
+      mesh::repair(mesh::decimate(imported.mesh, options.triangles, origin), {}, origin, after);
+  if (decimation.was_closed && !after.closed)
+    throw std::invalid_argument(
+        origin + ": decimated to " + std::to_string(options.triangles) +
+        " triangles, the closed solid would open; ask for more, or for 0 to keep them all");
+  decimation.after = decimated.triangles.size();
+  decimation.deviation = mesh::measure_deviation(imported.mesh, decimated);
+  imported.mesh = std::move(decimated);
+  MeshReport& report = imported.report;
+  report.triangles = after.triangles;
+  report.vertices = after.vertices;
+  report.extent = after.extent;
+  report.closed = after.closed;
+  report.volume = after.volume;
+  report.solids = after.solids;
+  report.cavities = after.cavities;
+  report.sheets = after.sheets;
+  // What the file had counts for what was repaired, what there is now for what remains.
+  for (const FindingKind kind : {FindingKind::kNonManifoldEdges, FindingKind::kPinchVertices,
+                                 FindingKind::kHoles, FindingKind::kSheets, FindingKind::kNonOrientable,
+                                 FindingKind::kSelfIntersections, FindingKind::kManyTriangles}) {
+    std::erase_if(report.findings, [&](const MeshFinding& f) { return f.kind == kind; });
+    const MeshFinding now = after.finding(kind);
+    if (now.found > 0) report.findings.push_back(now);
+  }
+  std::sort(report.findings.begin(), report.findings.end(),
+            [](const MeshFinding& a, const MeshFinding& b) { return a.kind < b.kind; });
+  report.decimation = decimation;
+}
 
-TriangleMesh import_mesh(const std::filesystem::path& file, double size) {
-  const std::string origin = file.string();
-  std::string format = lower(file.extension().string());
-  if (!format.empty()) format.erase(0, 1);
-  check_format(format, origin);
+ImportedMesh check_soup(Soup soup, const ImportOptions& options, const std::string& origin) {
+  check_mesh(soup.mesh, origin.c_str());
+  ImportedMesh imported;
+  imported.mesh = mesh::repair(std::move(soup.mesh),
+                               {.size = options.size, .unit = options.unit, .positions = soup.positions},
+                               origin, imported.report);
+  check_mesh(imported.mesh, origin.c_str());
+  const auto wanted = static_cast<std::size_t>(options.triangles);
+  if (options.triangles > 0 && wanted < imported.mesh.triangles.size())
+    decimate_to(options, origin, imported);
+  return imported;
+}
+
+std::vector<char> read_file(const std::filesystem::path& file, const std::string& origin) {
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw std::invalid_argument(origin + ": there is no such file; check the path");
@@ -104,12 +155,40 @@ TriangleMesh import_mesh(const std::filesystem::path& file, double size) {
   std::ifstream in(file, std::ios::binary);
   if (!in || !in.read(data.data(), static_cast<std::streamsize>(data.size())))
     throw std::invalid_argument(origin + ": the file cannot be read; check its permissions");
-  return import_bytes(data.data(), data.size(), format, size, origin);
+  return data;
+}
+
+}  // namespace
+
+ImportedMesh import_and_check(const std::filesystem::path& file, const ImportOptions& options) {
+  const std::string origin = file.string();
+  std::string format = lower(file.extension().string());
+  if (!format.empty()) format.erase(0, 1);
+  check_format(format, origin);
+  check_options(options, origin);
+  Soup soup;
+  {
+    const std::vector<char> data = read_file(file, origin);
+    soup = read_soup(data.data(), data.size(), format, origin);
+  }
+  return check_soup(std::move(soup), options, origin);
+}
+
+ImportedMesh import_and_check_from_memory(const void* data, std::size_t bytes, const std::string& format,
+                                          const ImportOptions& options) {
+  const std::string origin = "mesh in memory";
+  check_format(lower(format), origin);
+  check_options(options, origin);
+  return check_soup(read_soup(data, bytes, lower(format), origin), options, origin);
+}
+
+TriangleMesh import_mesh(const std::filesystem::path& file, double size) {
+  return import_and_check(file, {.size = size}).mesh;
 }
 
 TriangleMesh import_mesh_from_memory(const void* data, std::size_t bytes, const std::string& format,
                                      double size) {
-  return import_bytes(data, bytes, lower(format), size, "mesh in memory");
+  return import_and_check_from_memory(data, bytes, format, {.size = size}).mesh;
 }
 
 }  // namespace phalanx

@@ -77,6 +77,8 @@ void check_3ds_indices(std::string_view bytes, const std::string& origin) {
 
 void check_glb_indices(std::string_view bytes, const std::string& origin) {
   using Json = nlohmann::json;
+  if (value_at<std::uint32_t>(bytes, 4) == 1U)
+    throw std::invalid_argument(origin + ": this is glTF 1.0; export it as glTF 2.0 (.glb)");
   const auto json_length = value_at<std::uint32_t>(bytes, 12);
   if (!json_length || bytes.size() < 20 || *json_length > bytes.size() - 20) return;
   const Json root = Json::parse(bytes.substr(20, *json_length), nullptr, false);

@@ -2,6 +2,7 @@
 #include "mesh/isolated.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,10 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <stdexcept>
 #include <system_error>
@@ -55,9 +58,21 @@ bool write_all(int fd, const void* data, std::size_t bytes) {
   return true;
 }
 
-bool read_all(int fd, void* data, std::size_t bytes) {
+using Clock = std::chrono::steady_clock;
+
+/// Milliseconds until then, for poll(); 0 if it is past.
+int left_until(Clock::time_point deadline) {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+  return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000));
+}
+
+bool read_all(int fd, void* data, std::size_t bytes, Clock::time_point deadline) {
   auto* at = static_cast<char*>(data);
   while (bytes > 0) {
+    pollfd ready{.fd = fd, .events = POLLIN, .revents = 0};
+    const int events = ::poll(&ready, 1, left_until(deadline));
+    if (events < 0 && errno == EINTR) continue;
+    if (events <= 0) return false;
     const ssize_t done = ::read(fd, at, bytes);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) return false;
@@ -73,16 +88,18 @@ bool write_vector(int fd, const std::vector<T>& values) {
   return write_all(fd, &count, sizeof count) && write_all(fd, values.data(), values.size() * sizeof(T));
 }
 
-/// Grows with what arrives: a child gone wild may claim any count.
+/// A child gone wild may claim any count, but not more than the memory that it has.
 template <typename T>
-bool read_vector(int fd, std::vector<T>& values) {
+bool read_vector(int fd, std::vector<T>& values, std::uint64_t most_bytes, Clock::time_point deadline) {
   std::uint64_t count = 0;
-  if (!read_all(fd, &count, sizeof count)) return false;
+  if (!read_all(fd, &count, sizeof count, deadline) || count > most_bytes / sizeof(T)) return false;
+  values.reserve(static_cast<std::size_t>(count));  // of address space; memory follows as it is filled
   constexpr std::uint64_t kChunk = 1 << 16;
   for (std::uint64_t have = 0; have < count;) {
     const std::uint64_t more = std::min(kChunk, count - have);
     values.resize(static_cast<std::size_t>(have + more));
-    if (!read_all(fd, values.data() + have, static_cast<std::size_t>(more) * sizeof(T))) return false;
+    if (!read_all(fd, values.data() + have, static_cast<std::size_t>(more) * sizeof(T), deadline))
+      return false;
     have += more;
   }
   return true;
@@ -142,15 +159,34 @@ struct Received {
   std::vector<char> refusal;
 };
 
-Received receive(int fd) {
+Received receive(int fd, std::uint64_t most, Clock::time_point deadline) {
   Received r;
   std::uint8_t kind = 0;
-  if (!read_all(fd, &kind, 1)) return r;
+  if (!read_all(fd, &kind, 1, deadline)) return r;
   bool whole = kind == kOutOfMemory;
-  if (kind == kMesh) whole = read_vector(fd, r.mesh.vertices) && read_vector(fd, r.mesh.triangles);
-  if (kind == kRefusal) whole = read_vector(fd, r.refusal);
+  if (kind == kMesh)
+    whole =
+        read_vector(fd, r.mesh.vertices, most, deadline) && read_vector(fd, r.mesh.triangles, most, deadline);
+  if (kind == kRefusal) whole = read_vector(fd, r.refusal, 1 << 16, deadline);
   if (whole) r.kind = kind;
   return r;
+}
+
+/// Waits for the child's end, and ends it itself at the deadline.
+/// @returns its status
+int reap(pid_t child, Clock::time_point deadline) {
+  int status = 0;
+  for (;;) {
+    const pid_t done = ::waitpid(child, &status, WNOHANG);
+    if (done == child || (done < 0 && errno != EINTR)) return status;
+    if (Clock::now() >= deadline) break;
+    constexpr timespec kShort{.tv_sec = 0, .tv_nsec = 200'000};
+    ::nanosleep(&kShort, nullptr);
+  }
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
 }
 
 }  // namespace
@@ -167,24 +203,29 @@ TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::
     throw std::system_error(errno, std::generic_category(), origin + ": no process for the reader");
   if (child == 0) run_child(read, to_parent.get(), origin, limits);
   to_parent.close();
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(limits.wall_seconds));
   Received received;
   std::exception_ptr failure;
   try {
-    received = receive(from_child.get());
+    received = receive(from_child.get(), limits.memory_bytes, deadline);
   } catch (...) {
     failure = std::current_exception();
   }
   from_child.close();
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  // What has sent all it had to say is not waited for.
+  const int status = reap(child, failure || received.kind != 0 ? Clock::now() : deadline);
   if (failure) std::rethrow_exception(failure);
   if (received.kind == kMesh) return std::move(received.mesh);
   if (received.kind == kRefusal)
     throw std::invalid_argument(std::string(received.refusal.begin(), received.refusal.end()));
   std::string what = "crashed on it";
-  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
-    what = "was not done after " + std::to_string(limits.cpu_seconds) + " s";
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)) {
+    const bool slept = Clock::now() >= deadline;
+    what = "was not done after " +
+           std::to_string(slept ? static_cast<std::uint64_t>(limits.wall_seconds) : limits.cpu_seconds) +
+           " s";
+  }
   if (received.kind == kOutOfMemory)
     what = "wanted more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory for it";
   throw std::invalid_argument(origin + ": the file is damaged or far too large: its reader " + what +

@@ -13,6 +13,7 @@ namespace phalanx::mesh {
 struct IsolationLimits {
   std::uint64_t cpu_seconds = 3;
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;  ///< of address space, beyond this process' own
+  double wall_seconds = 60.0;                           ///< also for a reader that sleeps or blocks
 };
 
 /// Runs `read` in a forked child process and hands its mesh back, bit by bit the same. Third-party file

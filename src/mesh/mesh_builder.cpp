@@ -90,6 +90,18 @@ void require_positive(double value, const char* maker, const char* name) {
   throw std::invalid_argument(message.str());
 }
 
+void require_ratio(double value, double reference, RatioRange range, const char* maker, const char* name,
+                   const char* reference_name) {
+  const double ratio = value / reference;
+  constexpr double kRounding = 1e-12;
+  if (ratio >= range.min * (1.0 - kRounding) && ratio <= range.max * (1.0 + kRounding)) return;
+  std::ostringstream message;
+  message << maker << ": a " << name << " of " << value << " m is " << ratio << " times the "
+          << reference_name << " of " << reference << " m; give " << range.min << " to " << range.max
+          << " times";
+  throw std::invalid_argument(message.str());
+}
+
 void require_triangles(int triangles, const char* maker) {
   constexpr int kMost = 50'000'000;
   if (triangles >= 1 && triangles <= kMost) return;

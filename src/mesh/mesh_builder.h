@@ -46,6 +46,14 @@ class MeshBuilder {
 /// Throws std::invalid_argument unless `value` is finite and above 0. `maker` and `name` go into the message.
 void require_positive(double value, const char* maker, const char* name);
 
+/// Throws std::invalid_argument unless `value` is within [range.min, range.max] times `reference`.
+struct RatioRange {
+  double min;
+  double max;
+};
+void require_ratio(double value, double reference, RatioRange range, const char* maker, const char* name,
+                   const char* reference_name);
+
 /// Throws std::invalid_argument unless 1 <= triangles <= 50,000,000.
 void require_triangles(int triangles, const char* maker);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/obj_reduce.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace phalanx::mesh {
 namespace {
@@ -44,12 +46,13 @@ class ObjReducer {
     if (keyword == "f") face(text);
   }
 
-  std::string take() {
+  ReducedObj take() {
     if (polygons_ == 0)
       throw std::invalid_argument(
           std::string(origin_) + ": no triangle in " + std::to_string(line_) +
           " lines; check that it is a .obj file and export a surface, not points or lines");
-    return std::move(out_);
+    const auto used = static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true));
+    return {std::move(out_), used_.size() - used};
   }
 
  private:
@@ -76,18 +79,27 @@ class ObjReducer {
         refuse("the coordinate " + quoted(whole) + " is not a number; repair the mesh or export it again");
       if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
         refuse("the coordinate " + quoted(whole) + " is not finite; repair the mesh or export it again");
-      out_.append(" ").append(whole);
+      // Assimp takes no number for one that starts with a point.
+      if (whole.starts_with('.')) {
+        out_.append(" 0").append(whole);
+      } else if (whole.starts_with("-.") || whole.starts_with("+.")) {
+        out_.append(" ").append(whole.substr(0, 1)).append("0").append(whole.substr(1));
+      } else {
+        out_.append(" ").append(whole);
+      }
     }
     // A fourth number alone is a weight, which divides; three more are a colour.
     const std::string_view weight = next_word(rest);
     if (!weight.empty() && next_word(rest).empty()) out_.append(" ").append(weight);
     out_ += '\n';
     ++positions_;
+    used_.push_back(false);
   }
 
   void face(std::string_view rest) {
     std::string polygon = "f";
     int corners = 0;
+    named_.clear();
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
       const std::string_view digits = word.substr(0, word.find('/'));
       std::int64_t index = 0;
@@ -97,11 +109,14 @@ class ObjReducer {
                " does not start with a vertex number; export the mesh again");
       // Assimp, too, takes only what stands before the face.
       if (index == 0 || index < -positions_ || index > positions_) no_such_vertex(std::to_string(index));
-      polygon.append(" ").append(std::to_string(index > 0 ? index : positions_ + 1 + index));
+      const std::int64_t number = index > 0 ? index : positions_ + 1 + index;
+      polygon.append(" ").append(std::to_string(number));
+      named_.push_back(static_cast<std::size_t>(number - 1));
       ++corners;
     }
     if (corners < 3) return;
     out_.append(polygon).append("\n");
+    for (const std::size_t i : named_) used_[i] = true;
     ++polygons_;
   }
 
@@ -110,11 +125,15 @@ class ObjReducer {
   std::int64_t positions_ = 0;
   std::int64_t polygons_ = 0;
   std::string out_;
+  std::vector<bool> used_;          ///< each position: by a face
+  std::vector<std::size_t> named_;  ///< by the face at hand
 };
 
 }  // namespace
 
-std::string reduce_obj(std::string_view text, std::string_view origin) {
+ReducedObj reduce_obj(std::string_view text, std::string_view origin) {
+  if (text.starts_with("\xFE\xFF") || text.starts_with("\xFF\xFE"))
+    throw std::invalid_argument(std::string(origin) + ": the file is UTF-16 text; save it as UTF-8 or ASCII");
   ObjReducer reducer(origin);
   std::int64_t number = 0;
   std::string joined;  // of lines that end with a backslash
@@ -138,6 +157,16 @@ std::string reduce_obj(std::string_view text, std::string_view origin) {
   }
   if (!joined.empty()) reducer.line(joined, number);
   return reducer.take();
+}
+
+std::size_t count_obj_positions(std::string_view text) {
+  std::size_t count = 0;
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (next_word(line) == "v") ++count;
+  }
+  return count;
 }
 
 }  // namespace phalanx::mesh

@@ -83,6 +83,90 @@ TEST(CornerNormals, OfADegenerateTriangleAreItsNeighbours) {
   EXPECT_EQ(alone[0][0], Vec3(Vec3::UnitZ()));
 }
 
+TEST(CornerNormals, AreNeverSmoothedOverAnEdgeOfThreeFaces) {
+  // Two faces 10 degrees apart, and a third that stands on their common edge.
+  TriangleMesh mesh = folded(10.0 * kDegree);
+  mesh.vertices.push_back({0, 0, 1});
+  mesh.triangles.push_back({1, 2, 6});
+  const SurfaceNormals normals = surface_normals(mesh, 30.0 * kDegree);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const Vec3& n : normals.corner[t])
+      ASSERT_LT((n - face_normal(mesh, mesh.triangles[t])).norm(), 1e-12) << t;
+  EXPECT_EQ(normals.open_edges[0] & 2, 2) << "the edge from corner 1 to corner 2";
+}
+
+TEST(CornerNormals, OfFacesThatStandTwiceAreTheirOwn) {
+  TriangleMesh mesh = folded(10.0 * kDegree);
+  for (std::size_t t = 0; t < 4; ++t)
+    mesh.triangles.push_back({mesh.triangles[t][1], mesh.triangles[t][0], mesh.triangles[t][2]});
+  const auto normals = corner_normals(mesh, 30.0 * kDegree);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const Vec3& n : normals[t]) ASSERT_LT((n - face_normal(mesh, mesh.triangles[t])).norm(), 1e-12) << t;
+}
+
+TEST(CornerNormals, OfNeighboursThatWindApartDoNotCancelOut) {
+  TriangleMesh mesh = folded(10.0 * kDegree);
+  std::swap(mesh.triangles[2][1], mesh.triangles[2][2]);
+  std::swap(mesh.triangles[3][1], mesh.triangles[3][2]);
+  const auto normals = corner_normals(mesh, 30.0 * kDegree);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const Vec3& n : normals[t]) ASSERT_GT(n.dot(face_normal(mesh, mesh.triangles[t])), 0.99) << t;
+}
+
+// A tube of twelve sides is folded by 30 degrees to rounding: no rounding may pick its creases.
+TEST(CornerNormals, OverFoldsOfExactlyTheCreaseAngleAreSmooth) {
+  TriangleMesh tube;
+  const Mat3 aslant = rotation_about(Vec3(1, 2, 3).normalized(), 0.7);  // so that there is rounding
+  for (int i = 0; i < 12; ++i) {
+    const Vec3 radial(std::cos(i * 30.0 * kDegree), std::sin(i * 30.0 * kDegree), 0.0);
+    tube.vertices.push_back(aslant * (radial - Vec3::UnitZ()));
+    tube.vertices.push_back(aslant * (radial + Vec3::UnitZ()));
+    const int a = 2 * i;
+    const int b = 2 * ((i + 1) % 12);
+    tube.triangles.push_back({a, b, b + 1});
+    tube.triangles.push_back({a, b + 1, a + 1});
+  }
+  const auto normals = corner_normals(tube, 30.0 * kDegree);
+  for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3 radial = aslant.transpose() * tube.vertices[static_cast<std::size_t>(tube.triangles[t][k])];
+      radial.z() = 0.0;
+      // One side gives two triangles with 90 degrees at a corner in all, so that both sides weigh the same.
+      ASSERT_LT((aslant.transpose() * normals[t][k] - radial).norm(), 1e-12) << t;
+    }
+  }
+}
+
+TEST(CornerNormals, AreNotDisturbedByATriangleWithoutAreaInASharedEdge) {
+  TriangleMesh mesh = folded(20.0 * kDegree);
+  const SurfaceNormals clean = surface_normals(mesh, 30.0 * kDegree);
+  mesh.vertices.push_back({1e-9, 0.5, 0});
+  mesh.triangles.push_back({1, 2, 6});
+  const SurfaceNormals hung = surface_normals(mesh, 30.0 * kDegree);
+  for (std::size_t t = 0; t < 4; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((hung.corner[t][k] - clean.corner[t][k]).norm(), 1e-12);
+    EXPECT_EQ(hung.open_edges[t], clean.open_edges[t]);
+  }
+  EXPECT_EQ(hung.open_edges[4], 0);
+  EXPECT_GT(hung.corner[4][0].dot(clean.corner[0][1]), 0.98);
+}
+
+TEST(CornerNormals, TellWhichEdgesEndTheSurface) {
+  // 20 degrees: smooth. 60: a crease that the second face carries on. 120: folded back. Counted by hand: 6 of
+  // the squares' 8 outer edges are those of one triangle only; the diagonals are shared.
+  const auto open = [](double fold) {
+    int count = 0;
+    for (const std::uint8_t bits : surface_normals(folded(fold * kDegree), 30.0 * kDegree).open_edges)
+      for (int k = 0; k < 3; ++k) count += bits >> k & 1;
+    return count;
+  };
+  EXPECT_EQ(open(20.0), 6);
+  EXPECT_EQ(open(60.0), 6);
+  EXPECT_EQ(open(120.0), 8);
+  const SurfaceNormals cube = surface_normals(make_box({1, 1, 1}, 48), 30.0 * kDegree);
+  for (const std::uint8_t bits : cube.open_edges) EXPECT_EQ(bits, 0) << "right angles";
+}
+
 TEST(CornerNormals, RefuseAnInvalidAngleOrMesh) {
   EXPECT_THROW((void)corner_normals(make_box({1, 1, 1}, 12), -0.1), std::invalid_argument);
   EXPECT_THROW((void)corner_normals(make_box({1, 1, 1}, 12), std::nan("")), std::invalid_argument);

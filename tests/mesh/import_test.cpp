@@ -97,15 +97,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Import, AppliesTheTransformsOfNestedNodes) {
   const TriangleMesh made = sample();
-  // Root moves by (1, 0, 0) and holds a child scaled by 2 and another turned half a turn about z.
+  // Root moves by (1, 0, 0) and holds a child scaled by 2 and another turned half a turn about z, 3 beyond
+  // it: one inside the other would be taken for its hollow.
   const std::string nodes =
-      R"({"translation":[1,0,0],"children":[1,2]},{"mesh":0,"scale":[2,2,2]},{"mesh":0,"rotation":[0,0,1,0]})";
+      R"({"translation":[1,0,0],"children":[1,2]},{"mesh":0,"scale":[2,2,2]},{"mesh":0,"rotation":[0,0,1,0],"translation":[3,0,0]})";
   const TriangleMesh got = import_text(test::to_glb(made, nodes), "glb");
   TriangleMesh expected;
   TriangleMesh doubled = made;
   for (Vec3& v : doubled.vertices) v *= 2.0;
   append(expected, doubled, Pose{Mat3::Identity(), Vec3::UnitX()});
-  append(expected, made, Pose{Vec3(-1, -1, 1).asDiagonal(), Vec3::UnitX()});
+  append(expected, made, Pose{Vec3(-1, -1, 1).asDiagonal(), Vec3(4, 0, 0)});
   EXPECT_EQ(got.triangles.size(), expected.triangles.size());
   EXPECT_LT((bounds(got).min - bounds(expected).min).norm(), 1e-6);
   EXPECT_LT((bounds(got).max - bounds(expected).max).norm(), 1e-6);
@@ -147,6 +148,15 @@ TEST(Import, TakesNegativeIndicesContinuedLinesCommentsAndMissingTextures) {
   EXPECT_EQ(
       import_text("v 0 0 0\nv 1 0 0\nv 0 \\\n1 0\nf 1/1 2//2 \\\n3 # the last\n", "obj").triangles.size(),
       1U);
+}
+
+// Assimp alone counts ".5" for no number and then misses the vertex.
+TEST(Import, TakesNumbersThatStartWithAPoint) {
+  const TriangleMesh got = import_text("v .5 -.25 0\nv 1 +.5 0\nv 0 1 .125\nf 1 2 3\n", "obj");
+  ASSERT_EQ(got.vertices.size(), 3U);
+  EXPECT_EQ(got.vertices[0], Vec3(0.5, -0.25, 0));
+  EXPECT_EQ(got.vertices[1], Vec3(1, 0.5, 0));
+  EXPECT_EQ(got.vertices[2], Vec3(0, 1, 0.125));
 }
 
 TEST(Import, TakesAnOpenMesh) {

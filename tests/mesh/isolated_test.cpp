@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
@@ -23,7 +25,7 @@ using ::testing::StartsWith;
 
 std::string refusal(const std::function<TriangleMesh()>& read) {
   try {
-    (void)run_isolated(read, "cup.3ds", {.cpu_seconds = 1});
+    (void)run_isolated(read, "cup.3ds", {.cpu_seconds = 1, .wall_seconds = 30.0});
   } catch (const std::invalid_argument& e) {
     return e.what();
   }
@@ -59,6 +61,20 @@ TEST(RunIsolated, StopsALoop) {
                 }
               }),
               AllOf(StartsWith("cup.3ds: "), HasSubstr("not done after 1 s")));
+}
+
+// Sleeping takes no time on the processor.
+TEST(RunIsolated, EndsAReaderThatSleeps) {
+  try {
+    (void)run_isolated(
+        []() -> TriangleMesh {
+          for (;;) ::pause();
+        },
+        "cup.3ds", {.cpu_seconds = 1, .wall_seconds = 1.0});
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), AllOf(StartsWith("cup.3ds: "), HasSubstr("not done after 1 s")));
+  }
 }
 
 TEST(RunIsolated, SaysWhenMemoryRunsOut) {

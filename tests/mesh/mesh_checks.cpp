@@ -149,6 +149,13 @@ std::size_t self_intersections(const TriangleMesh& mesh) {
   return count;
 }
 
+std::vector<Vec3> corner_positions(const TriangleMesh& mesh) {
+  std::vector<Vec3> all;
+  for (const Triangle& t : mesh.triangles)
+    for (const std::int32_t v : t) all.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  return all;
+}
+
 Vec3 extents(const TriangleMesh& mesh) {
   Vec3 low = mesh.vertices.front();
   Vec3 high = low;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "phalanx/mesh/triangle_mesh.h"
 
@@ -22,6 +23,9 @@ namespace phalanx::test {
 /// Pairs of triangles that cross each other beyond the vertices and edges they share, or that are folded onto
 /// each other.
 [[nodiscard]] std::size_t self_intersections(const TriangleMesh& mesh);
+
+/// Where all triangles' corners are, whatever the vertices' numbers.
+[[nodiscard]] std::vector<Vec3> corner_positions(const TriangleMesh& mesh);
 
 /// Largest coordinate minus the smallest, per axis.
 [[nodiscard]] Vec3 extents(const TriangleMesh& mesh);

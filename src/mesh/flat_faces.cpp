@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/flat_faces.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "mesh/edge_table.h"
+#include "mesh/weld.h"
+
+namespace phalanx::mesh {
+namespace {
+
+const Vec3& point(const TriangleMesh& mesh, std::int32_t v) { return mesh.vertices[idx(v)]; }
+
+double height(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
+}
+
+/// The corner from which the triangle's longest edge starts.
+Corner longest_edge(const TriangleMesh& mesh, Corner triangle) {
+  Corner best = 3 * triangle;
+  double length = -1.0;
+  for (Corner c = 3 * triangle; c < 3 * triangle + 3; ++c) {
+    const double l =
+        (point(mesh, vertex_at(mesh, next_corner(c))) - point(mesh, vertex_at(mesh, c))).squaredNorm();
+    if (l > length) {
+      length = l;
+      best = c;
+    }
+  }
+  return best;
+}
+
+/// One pass over the flat triangles; what a change touches is left alone until the next.
+class Round {
+ public:
+  Round(TriangleMesh& mesh, double flat, double tolerance)
+      : mesh_(mesh), flat_(flat), tolerance_(tolerance), edges_(mesh), first_(mesh.vertices.size() + 1, 0) {
+    for (const Triangle& t : mesh.triangles)
+      for (const std::int32_t v : t) ++first_[idx(v) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    around_.resize(3 * mesh.triangles.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const std::int32_t v : mesh.triangles[t]) around_[next[idx(v)]++] = static_cast<std::uint32_t>(t);
+    touched_.assign(mesh.vertices.size(), false);
+    to_.resize(mesh.vertices.size());
+    std::iota(to_.begin(), to_.end(), 0);
+  }
+
+  Mended run() {
+    const auto count = static_cast<Corner>(mesh_.triangles.size());
+    for (Corner t = 0; t < count; ++t) {
+      if (height_of(mesh_, t) >= flat_ || is_touched(mesh_.triangles[t])) continue;
+      if (!flip(t)) collapse(t);
+    }
+    if (renamed_) rename_vertices(mesh_, to_);
+    return mended_;
+  }
+
+ private:
+  [[nodiscard]] bool is_touched(const Triangle& t) const {
+    return std::any_of(t.begin(), t.end(), [&](std::int32_t v) { return touched_[idx(v)]; });
+  }
+  void touch(const Triangle& t) {
+    for (const std::int32_t v : t) touched_[idx(v)] = true;
+  }
+
+  /// c lies on ab: the flat triangle and the one beyond ab share the area of the latter.
+  bool flip(Corner t) {
+    const Corner c0 = longest_edge(mesh_, t);
+    const std::int32_t a = vertex_at(mesh_, c0);
+    const std::int32_t b = vertex_at(mesh_, next_corner(c0));
+    const std::int32_t c = vertex_at(mesh_, next_corner(next_corner(c0)));
+    if ((point(mesh_, c) - point(mesh_, a)).norm() <= tolerance_ ||
+        (point(mesh_, c) - point(mesh_, b)).norm() <= tolerance_)
+      return false;
+    const auto pair = edges_.at(a, b);
+    if (pair.size() != 2) return false;
+    const Corner other = pair[0].start / 3 == t ? pair[1].start / 3 : pair[0].start / 3;
+    const Triangle beyond = mesh_.triangles[other];
+    if (other == t || is_touched(beyond) || height_of(mesh_, other) < flat_) return false;
+    const std::int32_t d = beyond[0] + beyond[1] + beyond[2] - a - b;
+    if (d == c || !edges_.at(c, d).empty()) return false;
+    Triangle one = beyond;
+    Triangle two = beyond;
+    std::replace(one.begin(), one.end(), a, c);
+    std::replace(two.begin(), two.end(), b, c);
+    const double h = height_of(mesh_, t);
+    touch(beyond);
+    touch(mesh_.triangles[t]);
+    mesh_.triangles[other] = one;
+    mesh_.triangles[t] = two;
+    ++mended_.count;
+    mended_.moved = std::max(mended_.moved, h);
+    return true;
+  }
+
+  /// Vertices that an edge joins to v, sorted.
+  [[nodiscard]] std::vector<std::int32_t> neighbours(std::int32_t v) const {
+    std::vector<std::int32_t> ring;
+    for (std::uint32_t i = first_[idx(v)]; i < first_[idx(v) + 1]; ++i)
+      for (const std::int32_t w : mesh_.triangles[around_[i]])
+        if (w != v) ring.push_back(w);
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    return ring;
+  }
+
+  /// Whether a triangle other than those at edge ab lies along the line from a (or b) to x.
+  [[nodiscard]] bool is_covered(std::int32_t a, std::int32_t b, std::int32_t x) const {
+    for (const std::int32_t v : {a, b}) {
+      for (const HalfEdge& e : edges_.at(v, x)) {
+        const Triangle& t = mesh_.triangles[e.start / 3];
+        if (std::find(t.begin(), t.end(), v == a ? b : a) == t.end()) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Two corners are nearly one: they become one if that pinches nothing and turns no triangle over.
+  void collapse(Corner t) {
+    std::int32_t a = -1;
+    std::int32_t b = -1;
+    double least = tolerance_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t p = mesh_.triangles[t][k];
+      const std::int32_t q = mesh_.triangles[t][(k + 1) % 3];
+      const double gap = (point(mesh_, p) - point(mesh_, q)).norm();
+      if (gap > least) continue;
+      least = gap;
+      const Vec3& at_p = point(mesh_, p);
+      const Vec3& at_q = point(mesh_, q);
+      // By place, not by number: numbers change when a mesh is read again.
+      const bool p_first = std::lexicographical_compare(at_p.begin(), at_p.end(), at_q.begin(), at_q.end());
+      a = p_first ? p : q;
+      b = p_first ? q : p;
+    }
+    if (a < 0) return;
+    const auto pair = edges_.at(a, b);
+    if (pair.size() != 2) return;
+    const auto ring_a = neighbours(a);
+    const auto ring_b = neighbours(b);
+    std::vector<std::int32_t> common;
+    std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
+                          std::back_inserter(common));
+    if (common.size() != 2 || !is_covered(a, b, common[0]) || !is_covered(a, b, common[1])) return;
+    for (const auto* ring : {&ring_a, &ring_b})
+      for (const std::int32_t v : *ring)
+        if (touched_[idx(v)]) return;
+    for (std::uint32_t i = first_[idx(b)]; i < first_[idx(b) + 1]; ++i) {
+      const Triangle& old = mesh_.triangles[around_[i]];
+      if (std::find(old.begin(), old.end(), a) != old.end()) continue;
+      Triangle turned = old;
+      std::replace(turned.begin(), turned.end(), b, a);
+      if (normal(turned).dot(normal(old)) <= 0.0) return;
+    }
+    for (const std::int32_t v : {a, b})
+      for (std::uint32_t i = first_[idx(v)]; i < first_[idx(v) + 1]; ++i) touch(mesh_.triangles[around_[i]]);
+    to_[idx(b)] = a;
+    renamed_ = true;
+    ++mended_.count;
+    mended_.moved = std::max(mended_.moved, least);
+  }
+  [[nodiscard]] Vec3 normal(const Triangle& t) const {
+    return (point(mesh_, t[1]) - point(mesh_, t[0])).cross(point(mesh_, t[2]) - point(mesh_, t[0]));
+  }
+
+  TriangleMesh& mesh_;
+  double flat_;
+  double tolerance_;
+  EdgeTable edges_;
+  std::vector<std::uint32_t> first_;   ///< of each vertex in around_
+  std::vector<std::uint32_t> around_;  ///< triangles at each vertex
+  std::vector<bool> touched_;
+  std::vector<std::int32_t> to_;
+  bool renamed_ = false;
+  Mended mended_;
+};
+
+}  // namespace
+
+double height_of(const TriangleMesh& mesh, std::size_t triangle) noexcept {
+  const Triangle& t = mesh.triangles[triangle];
+  return height(point(mesh, t[0]), point(mesh, t[1]), point(mesh, t[2]));
+}
+
+std::size_t count_flat_faces(const TriangleMesh& mesh, double flat) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (height_of(mesh, t) < flat) ++count;
+  return count;
+}
+
+Mended remove_flat_faces(TriangleMesh& mesh, double flat, double tolerance) {
+  Mended mended;
+  constexpr int kRounds = 32;
+  for (int round = 0; round < kRounds && count_flat_faces(mesh, flat) > 0; ++round) {
+    const Mended now = Round(mesh, flat, tolerance).run();
+    if (now.count == 0) break;
+    mended.count += now.count;
+    mended.moved = std::max(mended.moved, now.moved);
+  }
+  return mended;
+}
+
+}  // namespace phalanx::mesh

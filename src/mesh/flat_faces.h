@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "mesh/near_vertices.h"
+
+namespace phalanx::mesh {
+
+/// Height of a triangle over its longest edge [m].
+[[nodiscard]] double height_of(const TriangleMesh& mesh, std::size_t triangle) noexcept;
+[[nodiscard]] std::size_t count_flat_faces(const TriangleMesh& mesh, double flat);
+
+/// Takes triangles lower than `flat` [m] out of manifold surfaces without opening them: where the third
+/// corner lies on the longest edge, that edge is flipped with the triangle beyond it; where two corners are
+/// nearly one, they become one. What cannot be done without changing how the surface hangs together stays.
+/// @param tolerance  two corners this close may become one [m]
+/// @returns how many flat triangles went
+Mended remove_flat_faces(TriangleMesh& mesh, double flat, double tolerance);
+
+}  // namespace phalanx::mesh

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/mesh/mesh_report.h"
+
+#include <cstdio>
+
+namespace phalanx {
+namespace {
+
+struct Words {
+  const char* name;
+  const char* repaired;  ///< what it means for the forces where it has been repaired
+  const char* remains;   ///< and where it remains
+};
+
+constexpr std::array<Words, kFindingKinds> kWords = {{
+    {"unreferenced_vertices", "none: left out, also for the size", ""},
+    {"duplicate_vertices", "none: made one, so that neighbours know each other", ""},
+    {"near_vertices", "a crack is closed; nothing can catch in it", ""},
+    {"degenerate_faces", "none: a triangle without area has no normal and is covered by its neighbours",
+     "met as thin lines; the force's normal there is the neighbours'"},
+    {"duplicate_faces", "none: one of them is kept", ""},
+    {"t_junctions", "a long edge is split at its neighbours' vertices; the surface stays where it is", ""},
+    {"inconsistent_winding", "normals of neighbours agree, so that they can be interpolated", ""},
+    {"inside_out", "normals point out of the solid", ""},
+    {"non_manifold_edges", "", "met where they are; normals are not interpolated over these edges"},
+    {"pinch_vertices", "", "met where they are; normals are not interpolated across"},
+    {"holes", "",
+     "not filled: a finger narrower than the hole goes through; the surface is met from both sides"},
+    {"sheets", "",
+     "met from both sides; nothing is inside, so that a hand that starts behind it is not noticed"},
+    {"non_orientable", "", "left as it is and met from both sides; flat normals where it joins itself"},
+    {"self_intersections", "", "whichever surface comes first is met; where two cross is a crease"},
+    {"units", "", ""},
+    {"coarse_numbers", "", "the surface is right to this step only; move it to the origin before exporting"},
+    {"many_triangles", "", "right, but slow and large in memory; consider --decimate"},
+}};
+
+const Words& words_of(FindingKind kind) { return kWords[static_cast<std::size_t>(kind)]; }
+
+std::string length_text(double metres) {
+  std::array<char, 64> text{};
+  const char* form = metres >= 1.0 ? "%.4g m" : "%.4g mm";
+  std::snprintf(text.data(), text.size(), form, metres >= 1.0 ? metres : metres * 1e3);
+  return text.data();
+}
+
+}  // namespace
+
+MeshFinding MeshReport::finding(FindingKind kind) const {
+  for (const MeshFinding& f : findings)
+    if (f.kind == kind) return f;
+  return {kind, 0, 0, 0.0, 0.0};
+}
+
+const char* finding_name(FindingKind kind) noexcept { return words_of(kind).name; }
+
+std::string finding_meaning(const MeshFinding& finding) {
+  if (finding.kind == FindingKind::kUnits)
+    return "too " + std::string(finding.size < 1.0 ? "small" : "large") +
+           " for a hand; give the file's unit (mm, cm, in) or a size";
+  const Words& words = words_of(finding.kind);
+  if (finding.kind == FindingKind::kHoles)
+    return std::string(words.remains) + " (the widest is " + length_text(finding.width) + ")";
+  if (finding.repaired == finding.found) return words.repaired;
+  if (finding.repaired == 0) return words.remains;
+  return std::string(words.repaired) + "; those that remain: " + words.remains;
+}
+
+std::string unit_advice(double largest, double scale) {
+  constexpr double kSmallest = 3e-3;
+  constexpr double kLargest = 3.0;
+  if (largest >= kSmallest && largest <= kLargest) return "";
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  // What people hold is some 5 to 50 cm wide; the first unit that makes it so.
+  for (const Unit unit : {Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"in", 0.0254}, Unit{"m", 1.0}}) {
+    const double would_be = largest / scale * unit.metres;
+    if (unit.metres != scale && would_be >= 0.02 && would_be <= 1.0)
+      return "it is " + length_text(largest) + " wide; probably its numbers are " + unit.name + " (" +
+             length_text(would_be) + "): give unit \"" + unit.name + "\" with size_mm 0, or the size in mm";
+  }
+  return "it is " + length_text(largest) + " wide, no object for a hand; give its size in mm";
+}
+
+}  // namespace phalanx

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+
+namespace phalanx::mesh {
+namespace {
+
+using Points = std::array<Vec3, 3>;
+
+Points points_of(const TriangleMesh& mesh, std::size_t t) {
+  const Triangle& c = mesh.triangles[t];
+  return {mesh.vertices[idx(c[0])], mesh.vertices[idx(c[1])], mesh.vertices[idx(c[2])]};
+}
+
+bool has(const Triangle& t, std::int32_t v) { return t[0] == v || t[1] == v || t[2] == v; }
+
+/// Six times the signed volume of a tetrahedron.
+double orient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+/// A triangle with the heights of the other's corners above its plane.
+struct Sided {
+  Points corner;
+  std::array<double, 3> height;  ///< of the other triangle's corners [m]
+};
+
+/// False if the other triangle is wholly on one side.
+bool measure(Sided& s, const Points& other, double tolerance) {
+  const Vec3 normal = (s.corner[1] - s.corner[0]).cross(s.corner[2] - s.corner[0]);
+  const double length = normal.norm();
+  if (!(length > 0.0)) return false;
+  for (std::size_t k = 0; k < 3; ++k) s.height[k] = normal.dot(other[k] - s.corner[0]) / length;
+  const auto [low, high] = std::minmax_element(s.height.begin(), s.height.end());
+  return *low < -tolerance && *high > tolerance;
+}
+
+/// Whether edge k of `other` goes through the triangle.
+bool pierced(const Sided& s, const Points& other, std::size_t k, double tolerance) {
+  const std::size_t n = (k + 1) % 3;
+  const double from = s.height[k];
+  const double to = s.height[n];
+  if (!((from > tolerance && to < -tolerance) || (from < -tolerance && to > tolerance))) return false;
+  const Vec3& p = other[k];
+  const Vec3& q = other[n];
+  const double a = orient(p, q, s.corner[0], s.corner[1]);
+  const double b = orient(p, q, s.corner[1], s.corner[2]);
+  const double c = orient(p, q, s.corner[2], s.corner[0]);
+  return (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
+}
+
+bool cross(const TriangleMesh& mesh, std::size_t i, std::size_t j, double tolerance) {
+  const Triangle& ti = mesh.triangles[i];
+  const Triangle& tj = mesh.triangles[j];
+  int shared = 0;
+  for (const std::int32_t v : ti) shared += has(tj, v) ? 1 : 0;
+  if (shared >= 2) return false;
+  Sided a{points_of(mesh, i), {}};
+  Sided b{points_of(mesh, j), {}};
+  // A crossing needs both to reach over the other's plane, unless they hang together in a vertex of it.
+  const bool over_a = measure(a, b.corner, tolerance);
+  if (!over_a && shared == 0 && !measure(b, a.corner, tolerance)) return false;
+  const bool over_b = measure(b, a.corner, tolerance);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t n = (k + 1) % 3;
+    if (over_a && !has(ti, tj[k]) && !has(ti, tj[n]) && pierced(a, b.corner, k, tolerance)) return true;
+    if (over_b && !has(tj, ti[k]) && !has(tj, ti[n]) && pierced(b, a.corner, k, tolerance)) return true;
+  }
+  return false;
+}
+
+void make_unique(ShellPairs& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+}  // namespace
+
+SelfIntersections find_self_intersections(const TriangleMesh& mesh, const Shells& shells, const BoxTree& tree,
+                                          double tolerance) {
+  SelfIntersections found;
+  std::size_t room = 1024;
+  // An ordinary mesh has some 7 pairs a triangle; a heap of long triangles, all that there are.
+  const std::size_t most_pairs = 3'000'000 + 20 * mesh.triangles.size();
+  std::size_t looked_at = 0;
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (looked_at > most_pairs) {
+      found.complete = false;
+      break;
+    }
+    tree.overlapping(tree.box(i), [&](std::uint32_t j) {
+      if (j <= i || looked_at > most_pairs) return;
+      ++looked_at;
+      if (!cross(mesh, i, j, tolerance)) return;
+      ++found.pairs;
+      if (shells.of[i] == shells.of[j]) return;
+      found.between_shells.emplace_back(std::minmax(shells.of[i], shells.of[j]));
+      if (found.between_shells.size() < room) return;
+      make_unique(found.between_shells);
+      room = std::max(room, 2 * found.between_shells.size());
+    });
+  }
+  make_unique(found.between_shells);
+  return found;
+}
+
+}  // namespace phalanx::mesh

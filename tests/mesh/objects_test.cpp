@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every object of daily life and therapy at many resolutions.
+#include "phalanx/mesh/objects.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/mesh_checks.h"
+#include "mesh/object_shapes.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+using mesh::SpunShape;
+
+struct Thing {
+  std::string name;
+  std::function<TriangleMesh(int)> make;
+  int least;   ///< from this count on it is met within 15 %
+  int smooth;  ///< from this count on only the edges that are meant turn by 30 degrees or more
+  int euler;
+  double volume;                           ///< exact [m^3]
+  Vec3 extents;                            ///< exact [m]
+  std::function<double(const Vec3&)> off;  ///< distance of a point from the exact surface [m]
+};
+
+void PrintTo(const Thing& thing, std::ostream* out) { *out << thing.name; }
+
+/// pi r^2 dz along the profile; with lobes of depth d the section's area is pi r^2 ((1 - d/2)^2 + d^2/8).
+double spun_volume(const SpunShape& shape) {
+  double volume = 0.0;
+  for (const mesh::ProfilePiece& piece : shape.pieces()) {
+    constexpr int kParts = 20'000;
+    const auto area = [&](double f) {
+      const double d = piece.lobes_from + f * (piece.lobes_to - piece.lobes_from);
+      const double r = piece.rz(f).x();
+      return kPi * r * r * ((1.0 - 0.5 * d) * (1.0 - 0.5 * d) + d * d / 8.0);
+    };
+    for (int i = 0; i < kParts; ++i) {
+      const double f0 = static_cast<double>(i) / kParts;
+      const double f1 = static_cast<double>(i + 1) / kParts;
+      volume += 0.5 * (area(f0) + area(f1)) * (piece.rz(f1).y() - piece.rz(f0).y());
+    }
+  }
+  return volume;
+}
+
+/// Distance from p to the curve that the surface cuts out of the half plane through z and p.
+double off_spun(const SpunShape& shape, const Vec3& p) {
+  const double r = p.head<2>().norm();
+  const Eigen::Vector2d c = r > 0.0 ? Eigen::Vector2d(p.head<2>() / r) : Eigen::Vector2d(1.0, 0.0);
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t piece = 0; piece < shape.pieces().size(); ++piece) {
+    const auto distance = [&](double f) { return (shape.point(c, piece, f) - p).norm(); };
+    constexpr int kParts = 200;
+    int nearest = 0;
+    for (int i = 1; i <= kParts; ++i)
+      if (distance(static_cast<double>(i) / kParts) < distance(static_cast<double>(nearest) / kParts))
+        nearest = i;
+    double low = std::max(0.0, (nearest - 1.0) / kParts);
+    double high = std::min(1.0, (nearest + 1.0) / kParts);
+    for (int i = 0; i < 80; ++i) {
+      const double a = low + (high - low) / 3.0;
+      const double b = high - (high - low) / 3.0;
+      (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+    }
+    best = std::min({best, distance(0.5 * (low + high)), distance(0.0), distance(1.0)});
+  }
+  return best;
+}
+
+Thing spun(std::string name, std::function<TriangleMesh(int)> make, int least, int smooth,
+           const SpunShape& shape, const Vec3& extents) {
+  return {std::move(name),
+          std::move(make),
+          least,
+          smooth,
+          2,
+          spun_volume(shape),
+          extents,
+          [shape](const Vec3& p) { return off_spun(shape, p); }};
+}
+
+constexpr double kKeyLength = 0.057;
+constexpr double kKeyBreadth = 0.025;
+constexpr double kKeyThickness = 0.0022;
+
+/// Both edges as straight lines between their corners: trapezia, less the piece of the bow's disc inside.
+double key_volume() {
+  const double bow = 0.5 * kKeyBreadth;
+  const double blade = mesh::kKeyBlade * bow;  // half its breadth
+  const double length = kKeyLength - kKeyBreadth;
+  const auto cut_away = [&](const std::vector<mesh::KeyCut>& edge) {
+    double area = 0.0;
+    for (std::size_t i = 0; i + 1 < edge.size(); ++i)
+      area += 0.5 * (edge[i].depth + edge[i + 1].depth) * (edge[i + 1].along - edge[i].along);
+    return area * 2.0 * blade * length;
+  };
+  // Between the rim and the line x = bow that the blade's length counts from.
+  const double angle = std::asin(mesh::kKeyBlade);
+  const double beside_disc = 2.0 * blade * bow - blade * bow * std::cos(angle) - bow * bow * angle;
+  const double hole = mesh::kKeyHole * bow;
+  return kKeyThickness * (kPi * (bow * bow - hole * hole) + beside_disc + 2.0 * blade * length -
+                          cut_away(mesh::key_lower_edge()) - cut_away(mesh::key_upper_edge()));
+}
+
+/// A vertex of the key is on its two flat sides or on its walls; the walls stand on the outline.
+double off_key(const Vec3& v) {
+  const double flat = std::abs(std::abs(v.z()) - 0.5 * kKeyThickness);
+  const double bow = 0.5 * kKeyBreadth;
+  const Eigen::Vector2d p(v.x() + 0.5 * kKeyLength - bow, v.y());
+  double wall = std::min(std::abs(p.norm() - bow), std::abs(p.norm() - mesh::kKeyHole * bow));
+  const double half = mesh::kKeyBlade * bow;
+  const auto line = [&](const std::vector<mesh::KeyCut>& edge, double sign) {
+    for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
+      const auto at = [&](const mesh::KeyCut& cut) {
+        const double x = i == 0 && &cut == &edge[0] ? bow * std::sqrt(1.0 - mesh::kKeyBlade * mesh::kKeyBlade)
+                                                    : bow + cut.along * (kKeyLength - kKeyBreadth);
+        return Eigen::Vector2d(x, sign * half * (1.0 - 2.0 * cut.depth));
+      };
+      const Eigen::Vector2d a = at(edge[i]);
+      const Eigen::Vector2d ab = at(edge[i + 1]) - a;
+      const double t = std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+      wall = std::min(wall, (p - a - t * ab).norm());
+    }
+  };
+  line(mesh::key_lower_edge(), -1.0);
+  line(mesh::key_upper_edge(), 1.0);
+  wall = std::min(wall, std::abs(v.x() - 0.5 * kKeyLength));  // the tip
+  return std::min(flat, wall);
+}
+
+/// Each bump adds  2 pi  integral of (R(s)^3 - low^3) / 3  sin s ds  to the ball between the bumps.
+double ball_volume(double diameter, double bump) {
+  const double low = 0.5 * diameter - bump;
+  double volume = 4.0 / 3.0 * kPi * low * low * low;
+  constexpr int kParts = 20'000;
+  for (int i = 0; i < kParts; ++i) {
+    const double u = (i + 0.5) / kParts;
+    const double s = u * mesh::kBallBumpAngle;
+    const double r = low + bump * (1.0 - u * u) * (1.0 - u * u);
+    volume += mesh::kBallBumps * 2.0 * kPi / 3.0 * (r * r * r - low * low * low) * std::sin(s) *
+              mesh::kBallBumpAngle / kParts;
+  }
+  return volume;
+}
+
+/// Steiner: box, slabs over its sides, quarter cylinders over its edges, the corners' ball.
+double bar_volume(const Vec3& size) {
+  const double r = mesh::kBarFillet * size.minCoeff();
+  const Vec3 a = size.array() - 2.0 * r;
+  return a.prod() + 2.0 * r * (a.x() * a.y() + a.y() * a.z() + a.z() * a.x()) + kPi * r * r * a.sum() +
+         4.0 / 3.0 * kPi * r * r * r;
+}
+
+double off_bar(const Vec3& size, const Vec3& p) {
+  const double r = mesh::kBarFillet * size.minCoeff();
+  const Vec3 core = 0.5 * size.array() - r;
+  return std::abs((p - p.cwiseMax(-core).cwiseMin(core)).norm() - r);
+}
+
+const Vec3 kBar{0.1, 0.035, 0.03};
+
+const std::vector<Thing>& things() {
+  static const std::vector<Thing> kThings = {
+      spun("bottle", [](int n) { return make_bottle(0.065, 0.205, n); }, 300, 1000,
+           mesh::bottle_shape(0.065, 0.205), {0.065, 0.065, 0.205}),
+      spun("cup", [](int n) { return make_cup(0.075, 0.09, n); }, 500, 1500, mesh::cup_shape(0.075, 0.09),
+           {0.075, 0.075, 0.09}),
+      spun("pen", [](int n) { return make_pen(0.01, 0.14, n); }, 300, 1000, mesh::pen_shape(0.01, 0.14),
+           {0.01, 0.01, 0.14}),
+      spun("dowel", [](int n) { return make_peg(0.009, 0.032, 0.0, n); }, 300, 300,
+           mesh::peg_shape(0.009, 0.032, 0.0), {0.009, 0.009, 0.032}),
+      spun("peg", [](int n) { return make_peg(0.01, 0.05, 0.024, n); }, 300, 300,
+           mesh::peg_shape(0.01, 0.05, 0.024), {0.024, 0.024, 0.05}),
+      spun("jar", [](int n) { return make_jar(0.08, 0.11, 0.07, n); }, 300, 1000,
+           mesh::jar_shape(0.08, 0.11, 0.07), {0.08, 0.08, 0.11}),
+      spun("tap_handle", [](int n) { return make_tap_handle(0.06, 0.05, n); }, 400, 2500,
+           mesh::tap_handle_shape(0.06, 0.05), {0.06, 0.06, 0.05}),
+      {"key",
+       [](int n) { return make_key(kKeyLength, kKeyBreadth, kKeyThickness, n); },
+       500,
+       500,
+       0,
+       key_volume(),
+       {kKeyLength, kKeyBreadth, kKeyThickness},
+       off_key},
+      {"therapy_ball", [](int n) { return make_therapy_ball(0.07, 0.004, n); }, 300, 40'000, 2,
+       ball_volume(0.07, 0.004), Vec3::Constant(0.07),
+       [](const Vec3& p) { return p.norm() - mesh::ball_radius(0.07, 0.004, p.normalized()); }},
+      {"smooth_ball", [](int n) { return make_therapy_ball(0.07, 0.0, n); }, 300, 1000, 2,
+       kPi / 6.0 * 0.07 * 0.07 * 0.07, Vec3::Constant(0.07), [](const Vec3& p) { return p.norm() - 0.035; }},
+      {"putty_bar", [](int n) { return make_putty_bar(kBar, n); }, 500, 500, 2, bar_volume(kBar), kBar,
+       [](const Vec3& p) { return off_bar(kBar, p); }},
+  };
+  return kThings;
+}
+
+/// Length of all edges whose triangles meet at 30 degrees or more [m].
+double crease_length(const TriangleMesh& mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> of_edge;
+  std::vector<Vec3> normal;
+  const auto at = [&](std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    normal.push_back((at(b) - at(a)).cross(at(c) - at(a)).normalized());
+    for (const auto& edge : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) of_edge[edge] = t;
+  }
+  double length = 0.0;
+  for (const auto& [edge, t] : of_edge) {
+    if (edge.first > edge.second) continue;
+    const std::size_t other = of_edge.at({edge.second, edge.first});
+    if (normal[t].dot(normal[other]) <= std::cos(kPi / 6.0))
+      length += (at(edge.first) - at(edge.second)).norm();
+  }
+  return length;
+}
+
+class Object : public ::testing::TestWithParam<Thing> {};
+
+TEST_P(Object, IsOneClosedManifoldOfItsGenusAtAnyResolution) {
+  for (double n = 1; n < 120'000; n = std::max(n * 1.9, n + 60.0)) {
+    const TriangleMesh mesh = GetParam().make(static_cast<int>(n));
+    ASSERT_EQ(test::manifold_flaw(mesh), "") << n;
+    ASSERT_EQ(test::euler_characteristic(mesh), GetParam().euler) << n;
+    ASSERT_GT(signed_volume(mesh), 0.0) << n;
+    ASSERT_GT(test::worst_shape(mesh), 0.005) << n;
+  }
+}
+
+TEST_P(Object, HasAboutAsManyTrianglesAsAskedUpToAMillion) {
+  for (double n = GetParam().least; n < 300'000; n *= 1.11) {
+    const auto count = static_cast<double>(GetParam().make(static_cast<int>(n)).triangles.size());
+    EXPECT_NEAR(count / n, 1.0, 0.15) << n;
+  }
+  const TriangleMesh million = GetParam().make(1'000'000);
+  EXPECT_NEAR(static_cast<double>(million.triangles.size()), 1e6, 0.05e6);
+  EXPECT_TRUE(is_closed(million));
+  EXPECT_GT(test::worst_shape(million), 0.005);
+}
+
+TEST_P(Object, HasItsExactExtentsAndIsCentred) {
+  for (const int n : {1, 300, 777, 1000, 10'000, 100'000}) {
+    const Bounds b = bounds(GetParam().make(n));
+    EXPECT_LT((b.max - b.min - GetParam().extents).cwiseAbs().maxCoeff(), 1e-12) << n;
+    EXPECT_LT((b.max + b.min).cwiseAbs().maxCoeff(), 1e-12) << n;
+  }
+}
+
+TEST_P(Object, HasEveryVertexOnItsSurface) {
+  for (const int n : {300, 3000})
+    for (const Vec3& v : GetParam().make(n).vertices)
+      ASSERT_LT(std::abs(GetParam().off(v)), 1e-9) << n << ": " << v.transpose();
+}
+
+// Chords miss the surface by O(h^2), and h^2 goes with 1/n.
+TEST_P(Object, VolumeConvergesToTheExactOne) {
+  const auto miss = [&](int n) {
+    return std::abs(signed_volume(GetParam().make(n)) / GetParam().volume - 1.0);
+  };
+  EXPECT_LT(miss(1000), 0.10);
+  EXPECT_LT(miss(10'000), 0.02);
+  EXPECT_LT(miss(100'000), 0.002);
+  EXPECT_LT(miss(1'000'000), 2.5e-4);
+}
+
+TEST_P(Object, DoesNotCrossItself) {
+  for (const int n : {1, 100, 300, 500, 1000, 2000, 8000})
+    EXPECT_EQ(test::self_intersections(GetParam().make(n)), 0U) << n;
+}
+
+TEST_P(Object, HasItsEdgesAsCreasesAndNothingElse) {
+  const double exact = crease_length(GetParam().make(200'000));
+  for (const int n : {GetParam().smooth, 2 * GetParam().smooth, 7 * GetParam().smooth})
+    EXPECT_NEAR(crease_length(GetParam().make(n)), exact, 0.05 * exact + 1e-12) << n;
+}
+
+TEST_P(Object, IsTheSameBitsEachTime) {
+  for (const int n : {300, 5000}) {
+    const TriangleMesh a = GetParam().make(n);
+    const TriangleMesh b = GetParam().make(n);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_TRUE(a.vertices == b.vertices);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Object, ::testing::ValuesIn(things()),
+                         [](const auto& each) { return each.param.name; });
+
+// By hand: cylinder of 9 mm between two frusta from 9 to 6.84 mm (chamfer 0.12 * 9 mm = 1.08 mm).
+TEST(Peg, HasTheVolumeOfADowelWithChamfers) {
+  const double r = 4.5;
+  const double s = 4.5 - 1.08;
+  const double volume = kPi * r * r * (32.0 - 2.16) + 2.0 * kPi * 1.08 / 3.0 * (r * r + r * s + s * s);
+  EXPECT_NEAR(signed_volume(make_peg(0.009, 0.032, 0.0, 200'000)) / (volume * 1e-9), 1.0, 1e-3);
+}
+
+TEST(Cup, IsHollow) {
+  // The point halfway up on the axis is outside the material: the cup's volume is far below its hull's.
+  const double hull = kPi / 12.0 * 0.09 * (0.075 * 0.075 + 0.075 * 0.0525 + 0.0525 * 0.0525);
+  EXPECT_LT(signed_volume(make_cup(0.075, 0.09, 20'000)), 0.3 * hull);
+}
+
+TEST(Objects, AreMadeForTheWholeRangeOfProportions) {
+  std::vector<TriangleMesh> made;
+  for (const int n : {700, 4000}) {
+    for (const double ratio : {1.5, 3.0, 8.0}) made.push_back(make_bottle(0.06, 0.06 * ratio, n));
+    for (const double ratio : {0.5, 1.0, 3.0}) made.push_back(make_cup(0.07, 0.07 * ratio, n));
+    for (const double ratio : {4.0, 15.0, 40.0}) made.push_back(make_pen(0.01, 0.01 * ratio, n));
+    for (const double ratio : {1.0, 4.0, 20.0})
+      for (const double head : {0.0, 1.2, 6.0}) made.push_back(make_peg(0.01, 0.01 * ratio, 0.01 * head, n));
+    for (const double ratio : {0.7, 1.5, 5.0})
+      for (const double lid : {0.5, 0.8, 1.05}) made.push_back(make_jar(0.08, 0.08 * ratio, 0.08 * lid, n));
+    for (const double ratio : {0.3, 1.0, 2.0}) made.push_back(make_tap_handle(0.06, 0.06 * ratio, n));
+    for (const double bump : {0.0, 0.001, 0.0105}) made.push_back(make_therapy_ball(0.07, bump, n));
+    for (const double ratio : {1.8, 2.3, 4.0})
+      for (const double thick : {0.02, 0.1, 0.3})
+        made.push_back(make_key(0.025 * ratio, 0.025, 0.025 * thick, n));
+    for (const Vec3& size : {Vec3(0.05, 0.05, 0.05), Vec3(0.02, 0.2, 0.2), Vec3(0.02, 0.02, 0.2)})
+      made.push_back(make_putty_bar(size, n));
+  }
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    EXPECT_EQ(test::manifold_flaw(made[i]), "") << i;
+    EXPECT_EQ(test::self_intersections(made[i]), 0U) << i;
+    EXPECT_GT(signed_volume(made[i]), 0.0) << i;
+  }
+}
+
+std::string refusal(const std::function<void()>& make) {
+  try {
+    make();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(ObjectRefusals, NameTheMakerTheValueAndTheRemedy) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal([] { (void)make_bottle(-0.1, 0.2, 100); }),
+            "make_bottle: diameter is -0.1 m; give a finite length above 0");
+  EXPECT_EQ(refusal([] { (void)make_bottle(0.1, 0.1, 100); }),
+            "make_bottle: a length of 0.1 m is 1 times the diameter of 0.1 m; give 1.5 to 8 times");
+  EXPECT_EQ(refusal([] { (void)make_pen(0.01, 0.1, 0); }), "make_pen: triangles is 0; give 1 to 50000000");
+  EXPECT_EQ(refusal([&] { (void)make_cup(0.1, kNan, 100); }),
+            "make_cup: length is nan m; give a finite length above 0");
+  EXPECT_EQ(refusal([] { (void)make_therapy_ball(0.07, 0.02, 100); }),
+            "make_therapy_ball: bump is 0.02 m; give 0 (smooth) to 0.15 of the diameter of 0.07 m");
+  EXPECT_NE(refusal([&] { (void)make_therapy_ball(0.07, kNan, 100); }).find("bump is nan"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_key(0.1, 0.02, 0.002, 100); }).find("1.8 to 4 times"), std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_key(0.05, 0.02, 0.02, 100); }).find("thickness"), std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_putty_bar({0.1, 0.0, 0.1}, 100); }).find("a length is 0 m"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_putty_bar({0.2, 0.01, 0.1}, 100); }).find("1 to 10 times"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_peg(0.01, 0.05, 0.011, 100); }).find("head_diameter"), std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_peg(0.01, 0.05, -0.02, 100); }).find("head_diameter is -0.02"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_jar(0.08, 0.1, 0.1, 100); }).find("0.5 to 1.05 times"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)make_tap_handle(0.05, 0.2, 100); }).find("0.3 to 2 times"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small meshes with one thing wrong with each, counted by hand.
+#include "mesh/repair.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/mesh_checks.h"
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx::mesh {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Twelve triangles of a cube with this edge, its least corner at `at`.
+TriangleMesh cube(double edge, const Vec3& at = Vec3::Zero()) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.vertices.push_back(at + edge * Vec3(i & 1, (i >> 1) & 1, (i >> 2) & 1));
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+void turn(Triangle& t) { std::swap(t[1], t[2]); }
+TriangleMesh turned(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) turn(t);
+  return mesh;
+}
+
+struct Repaired {
+  TriangleMesh mesh;
+  MeshReport report;
+  [[nodiscard]] std::size_t found(FindingKind kind) const { return report.finding(kind).found; }
+  [[nodiscard]] std::size_t repaired(FindingKind kind) const { return report.finding(kind).repaired; }
+};
+
+Repaired repaired(const TriangleMesh& soup, const RepairOptions& options = {}) {
+  Repaired r;
+  r.mesh = repair(soup, options, "test", r.report);
+  check_mesh(r.mesh, "repaired");
+  return r;
+}
+
+std::string refusal(const TriangleMesh& soup, const RepairOptions& options = {}) {
+  try {
+    MeshReport report;
+    (void)repair(soup, options, "test", report);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+/// All that was found, as words: what a test expects, and nothing else.
+std::string findings(const Repaired& r) {
+  std::string text;
+  for (const MeshFinding& f : r.report.findings)
+    text += (text.empty() ? "" : ", ") + std::string(finding_name(f.kind)) + " " + std::to_string(f.found) +
+            "/" + std::to_string(f.repaired);
+  return text;
+}
+
+constexpr double kEdge = 0.05;
+constexpr double kVolume = kEdge * kEdge * kEdge;
+
+TEST(Repair, FindsNothingInACleanCubeAndLeavesItBitByBit) {
+  const TriangleMesh made = cube(kEdge);
+  const Repaired r = repaired(made);
+  EXPECT_EQ(findings(r), "");
+  EXPECT_TRUE(test::corner_positions(r.mesh) == test::corner_positions(made));
+  EXPECT_TRUE(r.report.closed);
+  EXPECT_EQ(r.report.solids, 1U);
+  EXPECT_NEAR(r.report.volume, kVolume, 1e-15);
+  EXPECT_EQ(r.report.moved, 0.0);
+}
+
+TEST(Repair, CountsUnreferencedVertices) {
+  TriangleMesh mesh = cube(kEdge);
+  mesh.vertices.emplace_back(9, 9, 9);
+  mesh.vertices.emplace_back(8, 8, 8);
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "unreferenced_vertices 2/2");
+  EXPECT_EQ(r.mesh.vertices.size(), 8U);
+}
+
+TEST(Repair, WeldsEqualVertices) {
+  TriangleMesh soup;  // as an .stl: 36 corners of 8 vertices
+  for (const Triangle& t : cube(kEdge).triangles) {
+    const auto first = static_cast<std::int32_t>(soup.vertices.size());
+    for (const std::int32_t v : t) soup.vertices.push_back(cube(kEdge).vertices[static_cast<std::size_t>(v)]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  const Repaired r = repaired(soup);
+  EXPECT_EQ(findings(r), "duplicate_vertices 28/28");
+  EXPECT_TRUE(r.report.closed);
+}
+
+TEST(Repair, ClosesACrackNarrowerThanTheTolerance) {
+  TriangleMesh mesh = cube(kEdge);
+  // The last face gets corners of its own, up to 0.4 um off: tolerance 0.5 um for 50 mm.
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const int v : {1, 3, 7, 5})
+    mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)] + Vec3(0.4e-6, 0, 0));
+  mesh.triangles[10] = {first, first + 1, first + 3};
+  mesh.triangles[11] = {first + 1, first + 2, first + 3};
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "near_vertices 4/4");
+  EXPECT_NEAR(r.report.finding(FindingKind::kNearVertices).size, 0.4e-6, 1e-12);
+  EXPECT_NEAR(r.report.moved, 0.4e-6, 1e-12);
+  EXPECT_TRUE(r.report.closed);
+  EXPECT_EQ(r.mesh.vertices.size(), 8U);
+}
+
+TEST(Repair, LeavesAWiderCrackOpen) {
+  TriangleMesh mesh = cube(kEdge);
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const int v : {1, 3, 7, 5})
+    mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)] + Vec3(5e-6, 0, 0));
+  mesh.triangles[10] = {first, first + 1, first + 3};
+  mesh.triangles[11] = {first + 1, first + 2, first + 3};
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "holes 2/0, sheets 2/0");
+  EXPECT_EQ(r.report.moved, 0.0);
+}
+
+TEST(Repair, KeepsVerticesOfAClosedSurfaceHoweverNear) {
+  const Repaired r = repaired(make_sphere(0.02, 200'000));
+  EXPECT_EQ(r.found(FindingKind::kNearVertices), 0U);
+  EXPECT_EQ(r.report.moved, 0.0);
+  EXPECT_TRUE(r.report.closed);
+}
+
+TEST(Repair, DropsTrianglesWithTwoEqualCorners) {
+  TriangleMesh mesh = cube(kEdge);
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.triangles.push_back({4, 5, 4});
+  EXPECT_EQ(findings(repaired(mesh)), "degenerate_faces 2/2");
+}
+
+// A corner on the long edge of its own triangle: the flat triangle and the one beyond the edge share the
+// latter's area.
+TEST(Repair, FlipsAFlatTriangleAway) {
+  TriangleMesh mesh = cube(kEdge);
+  // Vertex 8 in the middle of edge 1-2; of its two triangles {0,2,1} becomes {0,2,8}, {0,8,1}, while {1,2,3}
+  // stays and the flat {1,8,2} fills the gap.
+  mesh.vertices.push_back(0.5 * (mesh.vertices[1] + mesh.vertices[2]));
+  mesh.triangles[0] = {0, 2, 8};
+  mesh.triangles.push_back({0, 8, 1});
+  mesh.triangles.push_back({1, 8, 2});
+  ASSERT_TRUE(is_closed(mesh));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "degenerate_faces 1/1");
+  EXPECT_TRUE(r.report.closed);
+  EXPECT_EQ(r.mesh.triangles.size(), 14U);
+  EXPECT_NEAR(r.report.volume, kVolume, 1e-15);
+}
+
+TEST(Repair, CollapsesANeedle) {
+  // Vertex 8 is 2 nm from vertex 7 along the cube's upper edge and splits the edge's two triangles.
+  TriangleMesh mesh = cube(kEdge);
+  mesh.vertices.push_back(mesh.vertices[7] - Vec3(2e-9, 0, 0));
+  // Edge 6-7 belongs to {5,7,6} and {3,6,7}.
+  mesh.triangles[3] = {5, 7, 8};
+  mesh.triangles.push_back({5, 8, 6});
+  mesh.triangles[7] = {3, 6, 8};
+  mesh.triangles.push_back({3, 8, 7});
+  ASSERT_TRUE(is_closed(mesh));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 1U) << "one goes, the other goes with it";
+  EXPECT_TRUE(r.report.closed);
+  EXPECT_EQ(r.mesh.triangles.size(), 12U);
+  EXPECT_NEAR(r.report.moved, 2e-9, 1e-12);
+}
+
+TEST(Repair, KeepsAFlatTriangleThatNothingCovers) {
+  TriangleMesh mesh = cube(kEdge);
+  for (const double x : {0.1, 0.11, 0.12}) mesh.vertices.emplace_back(x, 0, 0);
+  mesh.triangles.push_back({8, 9, 10});
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 1U);
+  EXPECT_EQ(r.repaired(FindingKind::kDegenerateFaces), 0U);
+  EXPECT_EQ(r.mesh.triangles.size(), 13U) << "it can be met, so it stays";
+}
+
+TEST(Repair, DropsDuplicateFacesInEitherWinding) {
+  TriangleMesh mesh = cube(kEdge);
+  mesh.triangles.push_back({1, 0, 2});  // {0, 2, 1} started elsewhere
+  mesh.triangles.push_back({1, 3, 2});  // {1, 2, 3} from behind
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "duplicate_faces 2/2");
+  EXPECT_TRUE(r.report.closed);
+}
+
+TEST(Repair, TurnsOneFaceThatWindsAgainstItsNeighbours) {
+  TriangleMesh mesh = cube(kEdge);
+  turn(mesh.triangles[4]);
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "inconsistent_winding 1/1");
+  EXPECT_TRUE(test::corner_positions(r.mesh) == test::corner_positions(cube(kEdge)));
+}
+
+TEST(Repair, TurnsAnInsideOutSolidOutward) {
+  const Repaired r = repaired(turned(cube(kEdge)));
+  EXPECT_EQ(findings(r), "inside_out 1/1");
+  EXPECT_NEAR(r.report.volume, kVolume, 1e-15);
+  EXPECT_GT(signed_volume(r.mesh), 0.0);
+}
+
+// A hollow cube: the inner wall's normals point into the hollow, whatever the file says.
+TEST(Repair, KnowsTheWallOfAHollow) {
+  for (const bool inner_is_turned : {false, true}) {
+    for (const bool outer_is_turned : {false, true}) {
+      const TriangleMesh outer = cube(kEdge);
+      const TriangleMesh inner = cube(0.02, Vec3::Constant(0.015));
+      TriangleMesh mesh = outer_is_turned ? turned(outer) : outer;
+      append(mesh, inner_is_turned ? turned(inner) : inner);
+      const Repaired r = repaired(mesh);
+      const std::size_t wrong = (outer_is_turned ? 1U : 0U) + (inner_is_turned ? 0U : 1U);
+      EXPECT_EQ(r.found(FindingKind::kInsideOut), wrong);
+      EXPECT_EQ(r.report.solids, 1U);
+      EXPECT_EQ(r.report.cavities, 1U);
+      EXPECT_NEAR(r.report.volume, kVolume - 8e-6, 1e-14);
+      EXPECT_NEAR(signed_volume(r.mesh), kVolume - 8e-6, 1e-14);
+    }
+  }
+}
+
+TEST(Repair, KnowsASolidWithinAHollow) {
+  TriangleMesh mesh = cube(0.05);
+  append(mesh, cube(0.03, Vec3::Constant(0.01)));
+  append(mesh, cube(0.01, Vec3::Constant(0.02)));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.report.solids, 2U);
+  EXPECT_EQ(r.report.cavities, 1U);
+  EXPECT_NEAR(r.report.volume, 125e-6 - 27e-6 + 1e-6, 1e-13);
+}
+
+TEST(Repair, TakesNeitherOfTwoCrossingSolidsForAHollow) {
+  TriangleMesh mesh = cube(0.05);
+  append(mesh, turned(cube(0.05, Vec3::Constant(0.02))));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.report.solids, 2U);
+  EXPECT_EQ(r.found(FindingKind::kInsideOut), 1U);
+  EXPECT_GT(r.found(FindingKind::kSelfIntersections), 0U);
+}
+
+// 2 x 4 triangles around the open side; the rim is the face's outline.
+TEST(Repair, MeasuresAHoleAndLeavesItOpen) {
+  TriangleMesh mesh = cube(kEdge);
+  mesh.triangles.resize(10);
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "holes 1/0, sheets 1/0");
+  EXPECT_NEAR(r.report.finding(FindingKind::kHoles).size, 4 * kEdge, 1e-12);
+  EXPECT_NEAR(r.report.finding(FindingKind::kHoles).width, kEdge, 1e-12);
+  EXPECT_NEAR(r.report.finding(FindingKind::kSheets).size, kEdge, 1e-12);
+  EXPECT_EQ(r.report.solids, 0U);
+  EXPECT_FALSE(r.report.closed);
+  EXPECT_EQ(r.mesh.triangles.size(), 10U);
+}
+
+TEST(Repair, KeepsTwoCubesThatShareAnEdgeAsTwoSolids) {
+  TriangleMesh mesh = cube(kEdge);
+  append(mesh, turned(cube(kEdge, Vec3(kEdge, kEdge, 0))));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "duplicate_vertices 2/2, inside_out 1/1, non_manifold_edges 1/0");
+  EXPECT_EQ(r.report.solids, 2U);
+  EXPECT_NEAR(signed_volume(r.mesh), 2 * kVolume, 1e-14);
+}
+
+TEST(Repair, CountsAPinchVertex) {
+  TriangleMesh mesh = cube(kEdge);
+  append(mesh, cube(kEdge, Vec3::Constant(kEdge)));  // corner to corner
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "duplicate_vertices 1/1, pinch_vertices 1/0");
+  EXPECT_EQ(r.report.solids, 2U);
+}
+
+// Two triangles meet one across their common long edge.
+TEST(Repair, SplitsATJunction) {
+  TriangleMesh strip;
+  strip.vertices = {{0, 0, 0},       {0.02, 0, 0},     {0.04, 0, 0},
+                    {0.02, 0.02, 0}, {0.01, -0.02, 0}, {0.03, -0.02, 0}};
+  strip.triangles = {{0, 2, 3}, {0, 4, 1}, {1, 5, 2}};
+  const Repaired r = repaired(strip);
+  EXPECT_EQ(findings(r), "t_junctions 1/1, holes 1/0, sheets 1/0");
+  EXPECT_EQ(r.mesh.triangles.size(), 4U);
+  EXPECT_EQ(r.report.sheets, 1U) << "three triangles became one surface";
+}
+
+TEST(Repair, SplitsAllThreeEdgesOfATriangle) {
+  // A tetrahedron of which one face is one triangle and the others are cut at the middles of its edges.
+  const std::vector<Vec3> p = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}};
+  TriangleMesh mesh;
+  mesh.vertices = {p[0], p[1], p[2], p[3], 0.5 * (p[1] + p[2]), 0.5 * (p[2] + p[3]), 0.5 * (p[3] + p[1])};
+  mesh.triangles = {{1, 2, 3}, {0, 2, 4}, {0, 4, 1}, {0, 3, 5}, {0, 5, 2}, {0, 1, 6}, {0, 6, 3}};
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "t_junctions 3/3");
+  EXPECT_TRUE(r.report.closed);
+  EXPECT_EQ(r.mesh.triangles.size(), 10U);
+  EXPECT_NEAR(r.report.volume, 0.05 * 0.05 * 0.05 / 6, 1e-15);
+}
+
+// Two tetrahedra, the tip of one through the base of the other: three triangles cross the base, whose own
+// edges stay clear of them.
+TEST(Repair, CountsTrianglesThatCross) {
+  TriangleMesh mesh;
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const auto i = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
+    mesh.triangles.insert(mesh.triangles.end(),
+                          {{i, i + 2, i + 1}, {i, i + 1, i + 3}, {i + 1, i + 2, i + 3}, {i + 2, i, i + 3}});
+  };
+  add({-0.05, -0.04, 0}, {0.05, -0.04, 0}, {0, 0.05, 0}, {0, 0, 0.06});
+  add({-0.01, -0.01, -0.03}, {0, 0.012, -0.03}, {0.01, -0.01, -0.03}, {0, 0, 0.01});
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.found(FindingKind::kSelfIntersections), 3U);
+  EXPECT_EQ(r.report.solids, 2U) << "not one within the other";
+  EXPECT_EQ(test::self_intersections(r.mesh), 3U);
+}
+
+TEST(Repair, AgreesWithBruteForceOnCrossings) {
+  TriangleMesh mesh = make_sphere(0.05, 400);
+  append(mesh, make_torus(0.05, 0.02, 500),
+         Pose{rotation_about(Vec3(1, 2, 3).normalized(), 0.7), Vec3(0.011, 0.007, 0.003)});
+  append(mesh, make_box({0.04, 0.03, 0.09}, 100),
+         Pose{rotation_about(Vec3(3, 1, 2).normalized(), 0.4), Vec3(0.004, 0.009, 0.013)});
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.found(FindingKind::kSelfIntersections), test::self_intersections(r.mesh));
+  EXPECT_GT(r.found(FindingKind::kSelfIntersections), 100U);
+}
+
+TEST(Repair, LeavesAMoebiusStripOneSided) {
+  TriangleMesh strip;
+  constexpr int kCuts = 12;
+  for (int i = 0; i < kCuts; ++i) {
+    const double u = 2 * std::numbers::pi * i / kCuts;
+    for (const double w : {-0.01, 0.01})
+      strip.vertices.emplace_back((0.04 + w * std::cos(u / 2)) * std::cos(u),
+                                  (0.04 + w * std::cos(u / 2)) * std::sin(u), w * std::sin(u / 2));
+  }
+  for (int i = 0; i < kCuts; ++i) {
+    const std::int32_t a = 2 * i;
+    // At the seam the two rims change places.
+    const std::int32_t c = i + 1 < kCuts ? a + 2 : 1;
+    const std::int32_t d = i + 1 < kCuts ? a + 3 : 0;
+    strip.triangles.push_back({a, c, a + 1});
+    strip.triangles.push_back({a + 1, c, d});
+  }
+  const Repaired r = repaired(strip);
+  EXPECT_EQ(findings(r), "holes 1/0, sheets 1/0, non_orientable 1/0");
+  EXPECT_TRUE(test::corner_positions(r.mesh) == test::corner_positions(strip)) << "left as it is";
+}
+
+TEST(Repair, SaysWhichUnitTheNumbersProbablyAre) {
+  const Repaired r = repaired(cube(90));
+  EXPECT_EQ(findings(r), "units 1/0, coarse_numbers 1/0");
+  EXPECT_DOUBLE_EQ(r.report.finding(FindingKind::kUnits).size, 90);
+  EXPECT_THAT(unit_advice(90, 1.0), HasSubstr("mm (90 mm)"));
+  EXPECT_THAT(unit_advice(0.0012, 0.001), HasSubstr("in (30.48 mm)"));
+  EXPECT_EQ(unit_advice(0.09, 1.0), "");
+  EXPECT_EQ(findings(repaired(cube(90), {.unit = 1e-3})), "");
+  EXPECT_EQ(findings(repaired(cube(90), {.size = 0.1})), "");
+}
+
+TEST(Repair, RefusesNumbersTooLargeForSinglePrecision) {
+  // 90 mm at 10 km: a float's step there is 2^-23 x 10 km = 1.2 mm.
+  EXPECT_THAT(refusal(cube(0.09, Vec3(9000, 0, 0))),
+              AllOf(HasSubstr("test: "), HasSubstr("1.07"), HasSubstr("mm")));
+  EXPECT_THAT(refusal(cube(0.09, Vec3(9000, 0, 0)), {.size = 0.09}), HasSubstr("origin"));
+  const Repaired r = repaired(cube(0.09, Vec3(100, 0, 0)));
+  EXPECT_NEAR(r.report.finding(FindingKind::kCoarseNumbers).size, 100.09 * std::pow(2.0, -23), 1e-9);
+}
+
+TEST(Repair, RefusesWhatIsFartherThanTenKilometres) {
+  EXPECT_THAT(refusal(cube(20'000)), HasSubstr("10 km"));
+  EXPECT_THAT(refusal(cube(20'000)), HasSubstr("in mm"));
+  EXPECT_EQ(refusal(cube(20'000), {.size = 0.1}), "accepted");
+}
+
+TEST(Repair, RefusesTrianglesWithoutAnyArea) {
+  TriangleMesh line;
+  for (const double x : {0.0, 0.01, 0.05}) line.vertices.emplace_back(x, 0, 0);
+  line.triangles = {{0, 1, 2}};
+  EXPECT_THAT(refusal(line), HasSubstr("area"));
+}
+
+TEST(FindingWords, AreThereForEveryKind) {
+  for (std::size_t k = 0; k < kFindingKinds; ++k) {
+    const auto kind = static_cast<FindingKind>(k);
+    EXPECT_NE(std::string(finding_name(kind)), "");
+    EXPECT_TRUE(!finding_meaning({kind, 1, 0, 5.0, 0.1}).empty() ||
+                !finding_meaning({kind, 1, 1, 5.0, 0.1}).empty());
+  }
+}
+
+}  // namespace
+}  // namespace phalanx::mesh
