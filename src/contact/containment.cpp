@@ -68,10 +68,18 @@ double winding_number(const TriangleMesh& mesh, const Vec3& point) {
   return sum / (4.0 * std::numbers::pi);
 }
 
-Containment::Containment(const TriangleMesh& object) : object_(object), closed_(closed_parts(object)) {}
+Containment::Containment(const TriangleMesh& object) : closed_(closed_parts(object)) {
+  std::vector<bool> used(object.vertices.size(), false);
+  for (const Triangle& t : object.triangles) {
+    for (const std::int32_t v : t) used[idx(v)] = true;
+  }
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v]) points_.push_back(object.vertices[v]);
+  }
+}
 
 bool Containment::with(const TriangleMesh& segment, const Pose& X_WS) const {
-  if (object_.triangles.empty()) return false;
+  if (points_.empty()) return false;
   // The surfaces do not cross, so that one vertex of the connected segment speaks for it. An inside-out solid
   // counts like any other.
   for (const TriangleMesh& part : closed_) {
@@ -79,7 +87,7 @@ bool Containment::with(const TriangleMesh& segment, const Pose& X_WS) const {
   }
   const Pose X_SW = X_WS.inverse();
   const Bounds box = bounds(segment);
-  for (const Vec3& v : object_.vertices) {
+  for (const Vec3& v : points_) {
     const Vec3 p = X_SW * v;
     const bool in_box = (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
     if (in_box && std::abs(winding_number(segment, p)) > 0.5) return true;

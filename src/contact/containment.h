@@ -13,14 +13,13 @@ namespace phalanx {
 /// worst.
 class Containment {
  public:
-  /// `object` must outlive this.
   explicit Containment(const TriangleMesh& object);
 
   /// @param segment  closed, in its own frame; placed in the world by X_WS
   [[nodiscard]] bool with(const TriangleMesh& segment, const Pose& X_WS) const;
 
  private:
-  const TriangleMesh& object_;
+  std::vector<Vec3> points_;  ///< the object's vertices that a triangle uses
   std::vector<TriangleMesh> closed_;
 };
 

@@ -5,8 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "phalanx/mesh/corner_normals.h"
-
 namespace phalanx {
 
 ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) : mesh_(std::move(mesh)) {
@@ -21,11 +19,11 @@ ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) : mesh_(std::mo
     }
   }
   tree_ = TriangleTree(mesh_, 1);
-  corner_normal_ = corner_normals(mesh_, crease_angle);
+  normals_ = surface_normals(mesh_, crease_angle);
 }
 
 Vec3 ObjectModel::normal_at(int triangle, const Vec3& weight) const noexcept {
-  const auto& normal = corner_normal_[static_cast<std::size_t>(triangle)];
+  const auto& normal = normals_.corner[static_cast<std::size_t>(triangle)];
   const Vec3 sum = weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2];
   const double length = sum.norm();
   return length > 1e-9 ? Vec3(sum / length) : normal[0];

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "contact/normal_fan.h"
 #include "phalanx/contact/triangle_distance.h"
 
 namespace phalanx {
@@ -216,9 +217,8 @@ ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& objec
   if (!(patch.distance < cap)) return patch;
   const double limit = patch.distance + kPatchBand;
   const double limit_squared = limit * limit;
-  Vec3 first_direction = Vec3::Zero();
-  Vec3 first_normal = Vec3::Zero();
-  double least = std::numeric_limits<double>::infinity();
+  MeanDirection direction(std::sqrt(limit_squared - patch.distance * patch.distance));
+  TiedTriangles tied;
   double weight = 0.0;
   for_each_pair<Order::kFixed>(
       segment, object.tree(),
@@ -227,33 +227,21 @@ ContactPatch contact_patch(const TriangleTree& segment, const ObjectModel& objec
         const Corners& corners = object.tree().corners(j);
         const TriangleDistance closest = triangle_distance(segment.corners(i), corners);
         if (closest.squared > limit_squared) return;
-        const double d = std::sqrt(closest.squared);
         const Vec3 n = direction_of(closest);
         if (!lead.admits(n, closest.on_a)) return;
-        Vec3 normal = object.normal_at(object.tree().source(j), barycentric(corners, closest.on_b));
-        if (normal.dot(n) < 0.0) normal = -normal;  // a sheet is met from both sides
-        const TiedRegion region = tied_region(segment.corners(i), corners, closest, limit, kPatchBand);
+        TiedRegion region = tied_region(segment.corners(i), corners, closest, limit, kPatchBand);
+        region.weight *= (limit - std::sqrt(closest.squared)) / kPatchBand;
         patch.on_segment += region.weight * region.on_a;
         patch.on_object += region.weight * region.on_b;
-        patch.direction += region.weight * n;
-        patch.object_normal += region.weight * normal;
+        direction.add(closest, n, region.weight);
         weight += region.weight;
         ++patch.pairs;
-        if (d < least) {
-          least = d;
-          first_direction = n;
-          first_normal = normal;
-        }
+        tied.add(j);
       });
   patch.on_segment /= weight;
   patch.on_object /= weight;
-  // Opposite walls at the same distance cancel out: then the nearest pair speaks for all.
-  const auto unit_or = [weight](const Vec3& sum, const Vec3& fallback) {
-    const double length = sum.norm();
-    return length > 0.1 * weight ? Vec3(sum / length) : fallback;
-  };
-  patch.direction = unit_or(patch.direction, first_direction);
-  patch.object_normal = unit_or(patch.object_normal, first_normal);
+  patch.direction = direction.unit();
+  patch.object_normal = normal_at_contact(object, tied, patch.on_object, patch.direction);
   return patch;
 }
 

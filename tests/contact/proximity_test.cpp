@@ -163,6 +163,13 @@ TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
   EXPECT_FALSE(Containment(large).with(small, Pose{Mat3::Identity(), Vec3(0.2, 0, 0)}));
 }
 
+TEST(Containment, DoesNotCountVerticesThatNoTriangleUses) {
+  TriangleMesh sheet;  // 5 cm below the ball, and a stray vertex inside it
+  sheet.vertices = {Vec3(-1, -1, -0.05), Vec3(1, -1, -0.05), Vec3(0, 1, -0.05), Vec3(0, 0, 0)};
+  sheet.triangles = {{0, 1, 2}};
+  EXPECT_FALSE(Containment(sheet).with(make_sphere(0.01, 100), Pose{}));
+}
+
 TEST(Containment, SeesThroughAnInsideOutSolidAndDuplicateFaces) {
   const TriangleMesh small = make_sphere(0.01, 100);
   TriangleMesh inside_out = make_sphere(0.1, 400);

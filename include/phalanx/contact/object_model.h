@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "phalanx/contact/triangle_tree.h"
+#include "phalanx/mesh/corner_normals.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx {
@@ -32,10 +33,16 @@ class ObjectModel {
   /// triangle's own where the corner normals cancel). Real-time.
   [[nodiscard]] Vec3 normal_at(int triangle, const Vec3& weight) const noexcept;
 
+  /// Which edges of the triangle no second face continues: bit k for the edge from corner k to the next one
+  /// (SurfaceNormals::open_edges). Real-time.
+  [[nodiscard]] int open_edges(int triangle) const noexcept {
+    return normals_.open_edges[static_cast<std::size_t>(triangle)];
+  }
+
  private:
   TriangleMesh mesh_;
   TriangleTree tree_;
-  std::vector<std::array<Vec3, 3>> corner_normal_;
+  SurfaceNormals normals_;
 };
 
 }  // namespace phalanx

@@ -54,7 +54,8 @@ struct ContactPatch {
   Vec3 direction =
       Vec3::Zero();  ///< unit vector from the object to the segment: mean of the pairs' directions, W
   Vec3 object_normal =
-      Vec3::Zero();  ///< mean of the object's interpolated normals there, on the side of `direction`, unit; W
+      Vec3::Zero();  ///< the object's interpolated normal there, on the side of `direction`, unit; at a
+                     ///< crease the direction between its faces' normals that is nearest to `direction`; W
   int pairs = 0;     ///< 0: nothing is within the cap
 };
 

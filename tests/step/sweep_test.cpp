@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// A fingertip goes slowly over an object: the force changes no faster than the object's own surface turns.
+//
+// Contacts do not slide, so that the surface is felt place by place: at places 0.1 mm apart the finger comes
+// from free space, touches, and presses 1 mm on (D, at most 1.1 mm at the contact, whose lever is at most 1.1
+// times the fingertip's). With Hooke's law alone f = k (D . n_c) n. From one place to the next, n_c is one of
+// the directions in which the facets there face, and n the normal interpolated over them, so that
+//   |f' - f| <= k |D| (turn of n_c + turn of n + |x' - x| / lever)
+//   turn of n_c <= the largest angle between facets at the two places (SurfaceBound::spread)
+//   turn of n   <= |x' - x| times the steepest turn of the interpolated normal there
+//   (SurfaceBound::turn_near); at a crease its fold more
+// with x the place of the contact on the object. All of it is read off the mesh. However sharp the crease,
+// both forces push D back: (D . n) n lies on the sphere over D, so that two of them differ by at most |D|,
+// and n, within 30 degrees of n_c, leaves it by at most 2 sin(15 deg) |D|.
+#include <gmock/gmock.h>
+
+#include <cstdio>
+
+#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/primitives.h"
+#include "support/dirty_mesh.h"
+#include "support/lone_finger.h"
+#include "support/sheets.h"
+#include "support/surface_bound.h"
+
+namespace phalanx {
+namespace {
+
+using test::Approach;
+using test::LoneFinger;
+using test::Press;
+using test::SurfaceBound;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kCrease = ObjectModel::kDefaultCreaseAngle;
+constexpr double kPitch = 1e-4;
+constexpr double kDepth = 1e-3;
+constexpr double kStiffness = 1000.0;  // LoneFinger's
+/// Round a contact, what is within the margin and the 10 um over which the normals of a crease fade in.
+constexpr double kAround = 50e-6 + 30e-6;
+
+struct Sweep {
+  const char* name;
+  TriangleMesh mesh;
+  Approach first;
+  Vec3 direction;
+  int places;
+};
+
+/// What a sweep came to.
+struct Felt {
+  int presses = 0;
+  int compared = 0;
+  double largest_jump = 0.0;   ///< of the force [N]
+  double allowed_there = 0.0;  ///< [N]
+  double median_jump = 0.0;    ///< [N]
+  double largest_turn = 0.0;   ///< of the normal of the force, away from creases [rad]
+  double largest_share = 0.0;  ///< of what is allowed
+};
+
+/// The finger feels `object`; which creases are allowed is read off s.mesh.
+Felt sweep(const Sweep& s, const ObjectModel& object) {
+  LoneFinger finger(object);
+  const SurfaceBound surface(s.mesh, kCrease);
+  const SurfaceBound own(object.mesh(), kCrease);  // an import may have cut the triangles again
+  Felt felt;
+  std::vector<double> jumps;
+  std::optional<Press> last;
+  for (int i = 0; i < s.places; ++i) {
+    Approach approach = s.first;
+    approach.from += i * kPitch * s.direction;
+    const std::optional<Press> press = finger.press(approach, kDepth);
+    if (press) ++felt.presses;
+    // One finger segment against another: two places at once have no turn to compare.
+    if (press && last && press->contacts == 1 && last->contacts == 1 && press->segment == last->segment) {
+      const double moved = (press->point - last->point).norm();
+      const double radius = kAround + moved;
+      const double crease =
+          std::max(surface.crease_near(press->point, radius), surface.crease_near(last->point, radius));
+      const double steepest =
+          std::max({surface.turn_near(press->point, radius), surface.turn_near(last->point, radius),
+                    own.turn_near(press->point, radius), own.turn_near(last->point, radius)});
+      const double turn = std::min(crease + steepest * moved, std::numbers::pi);
+      const double turn_of_n_c = std::max(crease, surface.spread(press->point, last->point, radius));
+      const double share = std::min(turn + turn_of_n_c, 1.0 + 2.0 * std::sin(15.0 * kDegree));
+      const double allowed = kStiffness * 1.1 * kDepth * (share + moved / LoneFinger::lever()) + 1e-3;
+      const double jump = (press->force - last->force).norm();
+      EXPECT_LE(jump, allowed) << s.name << ", place " << i << ": contact from "
+                               << last->point.transpose() * 1e3 << " to " << press->point.transpose() * 1e3
+                               << " mm, normal from " << last->normal.transpose() << " to "
+                               << press->normal.transpose();
+      if (crease == 0.0) {
+        const double turned = test::angle_of(press->normal, last->normal);
+        // What is measured is the contact's point on the finger, the margin away: a thousandth of a radian
+        // covers it.
+        EXPECT_LE(turned, 1.02 * steepest * moved + 2e-3) << s.name << ", place " << i;
+        felt.largest_turn = std::max(felt.largest_turn, turned);
+      }
+      ++felt.compared;
+      jumps.push_back(jump);
+      felt.largest_share = std::max(felt.largest_share, jump / allowed);
+      if (jump > felt.largest_jump) {
+        felt.largest_jump = jump;
+        felt.allowed_there = allowed;
+      }
+    }
+    last = press;
+  }
+  if (!jumps.empty()) {
+    std::nth_element(jumps.begin(), jumps.begin() + static_cast<std::ptrdiff_t>(jumps.size() / 2),
+                     jumps.end());
+    felt.median_jump = jumps[jumps.size() / 2];
+  }
+  std::printf(
+      "%s: %d presses, %d pairs, force jumps by %.4f N (median), %.4f N at most where %.4f N is allowed, at "
+      "most %.0f %% of it; normal turns by %.2f deg at most away from creases\n",
+      s.name, felt.presses, felt.compared, felt.median_jump, felt.largest_jump, felt.allowed_there,
+      100.0 * felt.largest_share, felt.largest_turn / kDegree);
+  return felt;
+}
+
+Felt sweep(const Sweep& s) { return sweep(s, ObjectModel(s.mesh)); }
+
+Sweep over(const char* name, TriangleMesh mesh, const Vec3& from, const Vec3& direction, const Vec3& along,
+           const Vec3& heading, int places, double reach = 0.04) {
+  return {name,
+          std::move(mesh),
+          {.from = from, .along = along, .heading = heading, .reach = reach},
+          direction,
+          places};
+}
+
+/// How fast the direction of the force turns as the contact goes over an object, and how far it is off the
+/// radius there.
+struct Turning {
+  double most =
+      0.0;  ///< per length of the contact's way on the object, over at least a millimetre of it [rad/m]
+  double off_radial = 0.0;  ///< [rad]
+};
+
+Turning turning_over(const Sweep& s, double crease_angle, int hand_triangles) {
+  LoneFinger finger(ObjectModel(s.mesh, crease_angle), hand_triangles);
+  std::vector<Press> presses;
+  for (int i = 0; i < s.places; ++i) {
+    Approach approach = s.first;
+    approach.from += i * kPitch * s.direction;
+    if (const std::optional<Press> press = finger.press(approach, kDepth)) presses.push_back(*press);
+  }
+  Turning turning;
+  for (std::size_t i = 0; i < presses.size(); ++i) {
+    turning.off_radial = std::max(turning.off_radial, test::angle_of(presses[i].force, presses[i].point));
+    double way = 0.0;
+    for (std::size_t j = i + 1; j < presses.size() && way < 1e-3; ++j) {
+      way += (presses[j].point - presses[j - 1].point).norm();
+      if (way >= 1e-3)
+        turning.most = std::max(turning.most, test::angle_of(presses[i].force, presses[j].force) / way);
+    }
+  }
+  return turning;
+}
+
+const Vec3 kX = Vec3::UnitX();
+const Vec3 kY = Vec3::UnitY();
+const Vec3 kZ = Vec3::UnitZ();
+
+class SweepOverSphere : public ::testing::TestWithParam<int> {
+ protected:
+  static constexpr double kRadius = 0.03;
+  Sweep line() const {
+    const TriangleMesh sphere = make_sphere(2.0 * kRadius, 1000);
+    // Over a pole, where the triangles are thin; along the equator; across both.
+    const Vec3 down = Vec3(0.3, 0.5, -0.8).normalized();
+    const Vec3 heading = down.cross(Vec3(0.2, -0.7, 0.4)).normalized();
+    const Vec3 aslant = (down.cross(heading) + 0.3 * heading).normalized();
+    switch (GetParam()) {
+      case 0:
+        return over("sphere, over the pole", sphere, Vec3(-0.02, 0.0007, 0.045), kX, -kZ, kY, 400);
+      case 1:
+        return over("sphere, along the equator", sphere, Vec3(0.05, -0.02, 0.0007), kY, -kX, kZ, 400);
+      default:
+        return over("sphere, aslant", sphere, -0.045 * down - 0.02 * aslant, aslant, down, heading, 400);
+    }
+  }
+};
+
+TEST_P(SweepOverSphere, JumpsNoMoreThanItsFacetsTurn) {
+  const Felt felt = sweep(line());
+  EXPECT_EQ(felt.compared, 399);
+}
+
+// The ideal is 1 / r: 1.91 degrees per millimetre of the contact's way on a sphere of 30 mm.
+TEST_P(SweepOverSphere, TheForceTurnsByAtMostATwentiethMorePerMillimetreThanOnAnIdealSphere) {
+  for (const int hand_triangles : {2250, 20000}) {
+    const Turning turning = turning_over(line(), kCrease, hand_triangles);
+    std::printf("%s, hand of %d triangles: %.4f of 1/r at most, %.3f deg off radial\n", line().name,
+                hand_triangles, turning.most * kRadius, turning.off_radial / kDegree);
+    EXPECT_LE(turning.most * kRadius, 1.05);
+    EXPECT_LE(turning.off_radial, 0.5 * kDegree);
+  }
+  const Turning flat = turning_over(line(), 0.0, 2250);
+  std::printf("%s, flat: %.4f of 1/r at most %.3f off\n", line().name, flat.most * kRadius,
+              flat.off_radial / kDegree);
+  EXPECT_GE(flat.most * kRadius, 4.0) << "the facets' own normals must fail by far";
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, SweepOverSphere, ::testing::Values(0, 1, 2));
+
+TEST(Sweep, OverTheSmoothSideOfATeapotJumpsNoMoreThanItsFacetsTurn) {
+  const Felt felt =
+      sweep(over("teapot, side", make_teapot(0.15, 1000), Vec3(-0.02, -0.07, 0.0), kX, kY, -kZ, 300, 0.055));
+  EXPECT_EQ(felt.compared, 299);
+}
+// What the import makes of a spoilt file turns no faster than the surface before it was spoilt.
+TEST(Sweep, OverAnImportedDirtyTeapotJumpsNoMoreThanTheCleanOnesFacetsTurn) {
+  using namespace test::dirt;
+  const test::TemporaryFolder folder;
+  const TriangleMesh clean = make_teapot(0.15, 1000);
+  for (const unsigned kinds :
+       {unsigned{kSoup | kFlipped | kUnreferenced}, unsigned{kInsideOut | kDuplicated | kDegenerate},
+        unsigned{kTJunctions | kFlipped}, 255U - kHoles - kInsideOut}) {
+    test::write_dirty(clean, kinds, 7, folder / "teapot.obj");
+    const ObjectModel object(import_mesh(folder / "teapot.obj", 0.0));
+    const Felt felt =
+        sweep(over("dirty teapot, side", clean, Vec3(-0.02, -0.07, 0.0), kX, kY, -kZ, 300, 0.055), object);
+    EXPECT_EQ(felt.compared, 299) << "kinds " << kinds;
+  }
+}
+TEST(Sweep, OverTheLidAndKnobOfATeapotJumpsNoMoreThanItsCreasesTurn) {
+  const Felt felt =
+      sweep(over("teapot, lid", make_teapot(0.15, 2000), Vec3(-0.03, 0.004, 0.05), kX, -kZ, kY, 400, 0.055));
+  EXPECT_GE(felt.compared, 350);
+}
+TEST(Sweep, OverATorusJumpsNoMoreThanItsFacetsTurn) {
+  const Felt felt =
+      sweep(over("torus", make_torus(0.08, 0.03, 2000), Vec3(0.025, 0.003, 0.03), kX, -kZ, kY, 280));
+  EXPECT_GE(felt.compared, 250);
+}
+TEST(Sweep, OverTheRimOfAMugJumpsNoMoreThanItsCreasesTurn) {
+  const Felt felt =
+      sweep(over("mug, rim", make_mug(0.08, 0.09, 2000), Vec3(0.03, 0.003, 0.055), kX, -kZ, kY, 150));
+  EXPECT_GE(felt.compared, 100);
+}
+TEST(Sweep, OverTheEdgeOfABoxJumpsNoMoreThanARightAngleTurns) {
+  const Felt felt = sweep(
+      over("box, edge", make_box(Vec3(0.06, 0.06, 0.06), 300), Vec3(0.01, 0.003, 0.045), kX, -kZ, kY, 245));
+  EXPECT_GE(felt.compared, 230);
+}
+TEST(Sweep, OverTheRimOfACylinderJumpsNoMoreThanARightAngleTurns) {
+  const Felt felt = sweep(
+      over("cylinder, rim", make_cylinder(0.06, 0.06, 1000), Vec3(0.01, 0.003, 0.045), kX, -kZ, kY, 240));
+  EXPECT_GE(felt.compared, 230);
+}
+
+TEST(Sweep, OverAnOpenSheetAndOffItsRimJumpsNoMoreThanItsFacetsTurn) {
+  for (const double side : {1.0, -1.0}) {
+    const Felt flat =
+        sweep(over(side > 0 ? "flat sheet, from above" : "flat sheet, from below", test::grid_sheet(10, 0.0),
+                   Vec3(0.01, 0.003, side * 0.02), kX, -side * kZ, kY, 245));
+    EXPECT_GE(flat.compared, 200);
+    const Felt arch =
+        sweep(over(side > 0 ? "arched sheet, from outside" : "arched sheet, from inside",
+                   test::grid_sheet(16, 0.05), Vec3(-0.015, 0.003, side * 0.02), kX, -side * kZ, kY, 300));
+    EXPECT_GE(arch.compared, 200);
+  }
+}
+
+}  // namespace
+}  // namespace phalanx
