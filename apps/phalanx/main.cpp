@@ -37,6 +37,8 @@ int run(int argc, char** argv) {
   add_simulate_command(app, job);
   add_experiment_command(app, job);
   add_scene_command(app, job);
+  add_hand_command(app, job);
+  add_mesh_command(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

@@ -28,7 +28,8 @@ void prepare_folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model) : plan_(std::move(plan)), model_(model) {
+RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, SegmentMeshes display)
+    : plan_(std::move(plan)), model_(model), display_(std::move(display)) {
   prepare_folder_of(plan_.plot);
   prepare_folder_of(plan_.picture);
   if (!plan_.folder.empty()) {
@@ -55,7 +56,7 @@ void RunOutputs::add(const Snapshot& snapshot) {
 void RunOutputs::finish(const Summary& summary, const PlotText& text) {
   if (!plan_.plot.empty()) write_text_file(plan_.plot, plot_svg(trace_, text));
   if (!plan_.picture.empty()) {
-    const Image image = render_picture(model_.hand.meshes(), model_.object.mesh(), peak_);
+    const Image image = render_picture(display_, model_.object.mesh(), peak_);
     write_then_rename(plan_.picture, [&](const std::filesystem::path& file) { write_png(image, file); });
   }
   if (plan_.folder.empty()) return;

@@ -28,7 +28,8 @@ class RunOutputs {
  public:
   /// @throws std::invalid_argument if a folder cannot be used; std::runtime_error if a file cannot be
   /// written.
-  RunOutputs(OutputPlan plan, const HapticModel& model);
+  /// @param display  what the picture shows of the hand; not used without a picture
+  RunOutputs(OutputPlan plan, const HapticModel& model, SegmentMeshes display);
   void add(const Snapshot& snapshot);
   /// @param text  the plot's heading
   void finish(const Summary& summary, const PlotText& text);
@@ -38,6 +39,7 @@ class RunOutputs {
 
   OutputPlan plan_;
   const HapticModel& model_;
+  SegmentMeshes display_;
   std::optional<TicksCsv> ticks_;
   std::optional<PosesCsv> poses_;
   Trace trace_;

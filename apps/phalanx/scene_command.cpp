@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx scene list|check|keys
+// phalanx scene list|check|keys|pictures
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,12 +11,17 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
+#include "scene_pictures.h"
+#include "usage.h"
 
 namespace phalanx {
 namespace {
 
 int print_scenes() {
-  for (const SceneInfo& scene : list_scenes()) fmt::print("{:<20} {}\n", scene.name, scene.description);
+  const std::vector<SceneInfo> scenes = list_scenes();
+  std::size_t width = 0;
+  for (const SceneInfo& scene : scenes) width = std::max(width, scene.name.size());
+  for (const SceneInfo& scene : scenes) fmt::print("{:<{}}  {}\n", scene.name, width, scene.description);
   return kDone;
 }
 
@@ -66,6 +72,25 @@ void add_scene_command(CLI::App& app, Job& job) {
       scene->add_subcommand("keys", "List every key of a scene file with unit, range and default");
   keys->add_flag("--markdown", *markdown, "as the table of docs/scenes.md");
   keys->callback([markdown, &job] { job = [markdown] { return print_keys(*markdown); }; });
+
+  auto pictures = std::make_shared<ScenePicturesOptions>();
+  CLI::App* draw = scene->add_subcommand(
+      "pictures", "Draw scenes at the moment of their largest force, one by one and on one sheet");
+  draw->add_option("SCENE", pictures->scenes, "names in scenes/ or .toml files [all in scenes/]");
+  draw->add_option("--out", pictures->folder,
+                   "writes NAME.png for each scene and scenes.png into this folder")
+      ->required()
+      ->type_name("DIR");
+  draw->add_option("--width", pictures->width, "of one picture in pixels; its height is 3/4 of it")
+      ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
+  draw->add_option("--columns", pictures->columns, "pictures in a row of the sheet")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  draw->callback([pictures, draw, &job] {
+    refuse_empty_values(*draw);
+    job = [pictures] { return draw_scenes(*pictures); };
+  });
 }
 
 }  // namespace phalanx

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "phalanx/scene/build_model.h"
+#include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/study/simulate.h"
 #include "progress_bar.h"
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 struct SimulateOptions {
   std::string scene = "grasp_teapot";
   std::vector<std::string> set;
-  std::string object, motion, mapping;
+  std::string object, motion, mapping, profile;
   std::optional<int> trial;
   std::optional<double> object_size_mm, seconds, rate_hz;
   std::optional<std::int64_t> seed;
@@ -69,6 +70,7 @@ KeyOption integer_option(const std::string& option, const std::string& key, std:
 
 std::vector<KeyOption> key_options(const SimulateOptions& o) {
   std::vector<KeyOption> result;
+  if (!o.profile.empty()) result.push_back(text_option("--profile", "hand.profile", o.profile));
   if (!o.motion.empty()) result.push_back(text_option("--motion", "motion.file", o.motion));
   if (!o.mapping.empty()) result.push_back(text_option("--mapping", "motion.mapping", o.mapping));
   if (o.trial) result.push_back(integer_option("--trial", "motion.trial", *o.trial));
@@ -187,7 +189,8 @@ int simulate_scene(const SimulateOptions& options) {
   {
     const HapticState checked(*model);
   }  // a hand that starts inside is reported before any file is touched
-  RunOutputs outputs(output_plan, *model);
+  RunOutputs outputs(output_plan, *model,
+                     output_plan.picture.empty() ? SegmentMeshes() : load_display_meshes(scene.hand));
   {
     ProgressBar bar("simulating", !options.quiet);
     summary.step_us =
@@ -253,6 +256,10 @@ void add_simulate_command(CLI::App& app, Job& job) {
       ->add_option("--object-size-mm", options->object_size_mm,
                    "its largest extent; without it the file's numbers are metres")
       ->type_name("MM");
+  command
+      ->add_option("--profile", options->profile,
+                   "the patient's profile: a name in assets/profiles or a file")
+      ->type_name("NAME");
   command->add_option("--motion", options->motion, "a CSV of joint angles in place of the scene's motion")
       ->type_name("FILE");
   command

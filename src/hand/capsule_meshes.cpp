@@ -3,8 +3,8 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
+#include "phalanx/hand/hand_meshes.h"
 #include "phalanx/hand/hand_model.h"
 #include "phalanx/mesh/primitives.h"
 
@@ -42,11 +42,6 @@ Grid grid_for(int triangles) {
   return best;
 }
 
-void mirror(TriangleMesh& mesh) {
-  for (Vec3& v : mesh.vertices) v.x() = -v.x();
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-}
-
 }  // namespace
 
 SegmentMeshes make_capsule_meshes(const HandParameters& parameters, Handedness handedness, int triangles) {
@@ -69,9 +64,7 @@ SegmentMeshes make_capsule_meshes(const HandParameters& parameters, Handedness h
                            {palm.knuckle_breadth, palm.knuckle_thickness}, palm_grid.around,
                            palm_grid.cap_rings, palm_grid.side_rings),
          Pose{Mat3::Identity(), palm.offset});
-  if (handedness == Handedness::kLeft) {
-    for (TriangleMesh& mesh : meshes) mirror(mesh);
-  }
+  if (handedness == Handedness::kLeft) mirror(meshes);
   return meshes;
 }
 

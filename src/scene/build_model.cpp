@@ -5,10 +5,12 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "phalanx/mesh/import.h"
+#include "phalanx/mesh/objects.h"
 #include "phalanx/mesh/primitives.h"
-#include "phalanx/scene/hand_file.h"
+#include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/mapping_file.h"
 #include "phalanx/scene/motion_file.h"
 #include "scene/folder_names.h"
@@ -22,11 +24,28 @@ TriangleMesh make_object_mesh(const ObjectDescription& object) {
   if (object.kind == "torus") return make_torus(object.ring_diameter, object.tube_diameter, object.triangles);
   if (object.kind == "mug") return make_mug(object.diameter, object.length, object.triangles);
   if (object.kind == "teapot") return make_teapot(object.size, object.triangles);
+  if (object.kind == "bottle") return make_bottle(object.diameter, object.length, object.triangles);
+  if (object.kind == "key")
+    return make_key(object.length, object.breadth, object.thickness, object.triangles);
+  if (object.kind == "pen") return make_pen(object.diameter, object.length, object.triangles);
+  if (object.kind == "cup") return make_cup(object.diameter, object.length, object.triangles);
+  if (object.kind == "therapy_ball") return make_therapy_ball(object.diameter, object.bump, object.triangles);
+  if (object.kind == "putty_bar") return make_putty_bar(object.extent, object.triangles);
+  if (object.kind == "peg")
+    return make_peg(object.diameter, object.length, object.head_diameter, object.triangles);
+  if (object.kind == "jar")
+    return make_jar(object.diameter, object.length, object.lid_diameter, object.triangles);
+  if (object.kind == "tap_handle") return make_tap_handle(object.diameter, object.length, object.triangles);
   if (object.kind == "file") {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(object.file, ignored))
       throw SceneError("object file: " + why_no_file(object.file));
-    return import_mesh(object.file, object.size);
+    ImportedMesh imported = import_and_check(
+        object.file, {.size = object.size, .unit = object.unit, .triangles = object.decimate_to});
+    if (const MeshFinding units = imported.report.finding(FindingKind::kUnits); units.found > 0)
+      throw SceneError(
+          fmt::format("{}: {}", object.file.string(), unit_advice(units.size, imported.report.scale)));
+    return std::move(imported.mesh);
   }
   throw SceneError(
       fmt::format("objects[].kind = \"{}\": nobody knows this kind; see `phalanx scene keys`", object.kind));
@@ -39,9 +58,10 @@ TriangleMesh make_world_mesh(const SceneDescription& scene) {
 }
 
 HapticModel build_model(const SceneDescription& scene) {
-  const HandParameters parameters = load_hand_file(scene.hand.file);
-  HapticModel model(make_hand_model(parameters, scene.hand.handedness, scene.hand.pose, scene.hand.triangles),
-                    scene.objects.empty() ? ObjectModel() : ObjectModel(make_world_mesh(scene)));
+  const HandNumbers hand = load_hand_numbers(scene.hand);
+  HapticModel model(
+      HandModel(hand.parameters, hand.handedness, scene.hand.pose, load_collision_meshes(scene.hand)),
+      scene.objects.empty() ? ObjectModel() : ObjectModel(make_world_mesh(scene)));
   model.contact = scene.contact;
   model.force = scene.force;
   model.smoothing = scene.smoothing;
@@ -51,7 +71,7 @@ HapticModel build_model(const SceneDescription& scene) {
 }
 
 Motion build_motion(const SceneDescription& scene) {
-  const HandParameters hand = load_hand_file(scene.hand.file);
+  const HandParameters hand = load_hand_numbers(scene.hand).parameters;
   const MotionDescription& motion = scene.motion;
   if (motion.file.empty()) return make_motion(motion.script, hand);
   std::optional<SensorMapping> mapping;

@@ -95,22 +95,73 @@ PalmShape read_palm(TomlTable table) {
   return palm;
 }
 
+constexpr std::string_view kSegmentWord = "{segment}";
+/// From a hundredth of a millimetre to a kilometre: nobody exports in another unit.
+constexpr NumberRange kUnitMm = {.min = 1e-2, .max = 1e6};
+
+/// A path with one `{segment}`, relative to `folder`.
+std::filesystem::path read_pattern(TomlTable& table, std::string_view key,
+                                   const std::filesystem::path& folder) {
+  const std::string text = table.text(key);
+  const std::size_t first = text.find(kSegmentWord);
+  if (first == std::string::npos || text.find(kSegmentWord, first + 1) != std::string::npos) {
+    table.fail(key,
+               "must hold {segment} once, where the segment's name stands in the files' names: "
+               "\"meshes/{segment}.obj\"");
+  }
+  if (text.find('\0') != std::string::npos) table.fail(key, "holds a zero byte; remove it");
+  return folder / text;
+}
+
+HandMeshFiles read_meshes(TomlTable table, const std::filesystem::path& folder) {
+  HandMeshFiles meshes;
+  meshes.place = table.place();
+  meshes.collision = read_pattern(table, "collision", folder);
+  if (table.has("display")) meshes.display = read_pattern(table, "display", folder);
+  meshes.unit = table.number("unit_mm", kUnitMm) * kMm;
+  if (table.has("handedness")) {
+    const std::string word = table.text("handedness");
+    if (word != "right" && word != "left")
+      table.fail("handedness", "must be \"right\" or \"left\": which hand the mesh files show");
+    if (word == "left") meshes.handedness = Handedness::kLeft;
+  }
+  table.finish();
+  return meshes;
+}
+
 }  // namespace
 
-HandParameters parse_hand(const std::string& text, const std::string& origin) {
+std::filesystem::path HandMeshFiles::of_segment(const std::filesystem::path& pattern, int segment) {
+  std::string text = pattern.string();
+  text.replace(text.rfind(kSegmentWord), kSegmentWord.size(), segment_name(segment));
+  return text;
+}
+
+HandFile parse_hand_file(const std::string& text, const std::string& origin,
+                         const std::filesystem::path& folder) {
   const toml::table root = parse_toml(text, origin);
   TomlTable table(root, origin, "");
-  HandParameters hand;
+  HandFile file;
+  HandParameters& hand = file.parameters;
   hand.name = table.text("name");
   for (int digit = 0; digit < kDigits; ++digit) read_digit(table.table(digit_name(digit)), digit, hand);
   hand.palm = read_palm(table.table("palm"));
+  if (table.has("meshes")) file.meshes = read_meshes(table.table("meshes"), folder);
   table.finish();
-  return hand;
+  return file;
+}
+
+HandFile read_hand_file(const std::string& name_or_path, const std::filesystem::path& base) {
+  const auto file = find_data_file("hand", name_or_path, "assets/hands", ".toml", base);
+  return parse_hand_file(read_text_file(file.string(), "hand"), file.string(), file.parent_path());
+}
+
+HandParameters parse_hand(const std::string& text, const std::string& origin) {
+  return parse_hand_file(text, origin).parameters;
 }
 
 HandParameters load_hand_file(const std::string& name_or_path, const std::filesystem::path& base) {
-  const auto file = find_data_file("hand", name_or_path, "assets/hands", ".toml", base);
-  return parse_hand(read_text_file(file.string(), "hand"), file.string());
+  return read_hand_file(name_or_path, base).parameters;
 }
 
 }  // namespace phalanx

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "phalanx/scene/scene.h"
@@ -49,6 +50,11 @@ struct KeySpec {
   std::string meaning;
   std::function<void(const KeyTarget&, const KeyValue&)> store;
   std::string kinds;  ///< objects[] only: the kinds that have this key; empty: all
+  /// objects[] only: {kind, default} where a kind's default is not default_toml.
+  std::vector<std::pair<std::string, std::string>> kind_defaults = {};
+
+  /// What counts where a file does not state the key, for an object of this kind.
+  [[nodiscard]] const std::string& default_for(const std::string& kind) const;
 };
 
 /// In the order in which values are read: `rate_hz` comes before what depends on it.

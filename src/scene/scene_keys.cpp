@@ -37,8 +37,11 @@ std::string type_text(KeyType type) {
 std::vector<SceneKey> scene_keys() {
   std::vector<SceneKey> rows;
   for (const KeySpec& key : key_table()) {
-    const std::string meaning =
-        key.kinds.empty() ? key.meaning : fmt::format("({}) {}", key.kinds, key.meaning);
+    std::string meaning = key.kinds.empty() ? key.meaning : fmt::format("({}) {}", key.kinds, key.meaning);
+    for (std::size_t i = 0; i < key.kind_defaults.size(); ++i) {
+      const auto& [kind, value] = key.kind_defaults[i];
+      meaning += fmt::format("{}{} {}", i == 0 ? "; default of " : ", ", kind, value);
+    }
     rows.push_back({key.path, type_text(key.type), key.unit, range_text(key), key.default_toml, meaning});
   }
   return rows;

@@ -182,12 +182,18 @@ ObjectDescription read_object(const SceneTree& tree, const Reader& reader, std::
       tree.fail(path, fmt::format("means nothing for a {}; it belongs to: {}. Remove it or change {}.kind",
                                   object.kind, key.kinds, prefix));
     }
-    if (fits) apply_key(tree, reader, key, path, {scene, object});
+    if (!fits) continue;
+    KeySpec of_kind = key;
+    of_kind.default_toml = key.default_for(object.kind);
+    apply_key(tree, reader, of_kind, path, {scene, object});
   }
   if (object.kind == "teapot" && object.size <= 0.0)
     tree.fail(prefix + ".size_mm", "must be > 0 for a teapot; give its length");
   if (object.kind == "file" && object.file.empty())
     tree.fail(prefix + ".file", "is missing; name the mesh file");
+  if (object.kind == "file" && object.unit != 1.0 && object.size > 0.0)
+    tree.fail(prefix + ".unit",
+              "size_mm scales the file whatever its unit; give size_mm = 0 or leave the unit out");
   if (object.kind == "torus" && object.tube_diameter >= object.ring_diameter) {
     tree.fail(prefix + ".tube_diameter_mm", "the tube is as thick as its ring is wide; make it thinner");
   }
@@ -206,6 +212,15 @@ void refuse_both_smoothing_forms(const SceneTree& tree) {
   }
 }
 
+void refuse_what_the_profile_says(const SceneTree& tree) {
+  if (tree.find("hand.profile") == nullptr) return;
+  for (const char* key : {"hand.file", "hand.side"}) {
+    if (tree.find(key) == nullptr) continue;
+    tree.fail(key, fmt::format("the profile says this ({}); remove it, or remove hand.profile",
+                               tree.statement("hand.profile")));
+  }
+}
+
 }  // namespace
 
 SceneDescription parse_scene(const std::string& text, const std::string& origin, const fs::path& folder,
@@ -213,6 +228,7 @@ SceneDescription parse_scene(const std::string& text, const std::string& origin,
   const SceneTree tree(text, origin, overrides);
   refuse_unknown_keys(tree, tree.root(), "");
   refuse_both_smoothing_forms(tree);
+  refuse_what_the_profile_says(tree);
 
   SceneDescription scene;
   scene.name = fs::path(origin).stem().string();
@@ -221,6 +237,8 @@ SceneDescription parse_scene(const std::string& text, const std::string& origin,
   for (const KeySpec& key : key_table()) {
     if (!is_object_key(key)) apply_key(tree, reader, key, key.path, {scene, unused});
   }
+  if (tree.find("hand.triangles") != nullptr)
+    scene.hand.triangles_stated_at = tree.statement("hand.triangles");
   if (const toml::node* objects = tree.find("objects")) {
     for (std::size_t i = 0; i < objects->as_array()->size(); ++i)
       scene.objects.push_back(read_object(tree, reader, i, scene));

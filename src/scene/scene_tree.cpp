@@ -159,11 +159,14 @@ std::string SceneTree::place(std::string_view path) const {
   return origin_;
 }
 
-void SceneTree::fail(std::string_view path, const std::string& problem) const {
+std::string SceneTree::statement(std::string_view path) const {
   const toml::node* node = find(path);
-  if (node == nullptr || node->is_table())
-    throw SceneError(fmt::format("{}: {}: {}", place(path), path, problem));
-  throw SceneError(fmt::format("{}: {} = {}: {}", place(path), path, show(*node), problem));
+  if (node == nullptr || node->is_table()) return fmt::format("{}: {}", place(path), path);
+  return fmt::format("{}: {} = {}", place(path), path, show(*node));
+}
+
+void SceneTree::fail(std::string_view path, const std::string& problem) const {
+  throw SceneError(fmt::format("{}: {}", statement(path), problem));
 }
 
 }  // namespace phalanx

@@ -23,6 +23,8 @@ class SceneTree {
   /// "grasp.toml:12" or "--set objects.0.size_mm=80"; for a missing value, of the innermost table that is
   /// there.
   [[nodiscard]] std::string place(std::string_view path) const;
+  /// "PLACE: PATH = VALUE", for messages about it later; without the value if there is none.
+  [[nodiscard]] std::string statement(std::string_view path) const;
   /// @throws SceneError "PLACE: PATH = VALUE: PROBLEM".
   [[noreturn]] void fail(std::string_view path, const std::string& problem) const;
 

@@ -110,6 +110,10 @@ std::string TomlTable::full(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+std::string TomlTable::place() const {
+  return fmt::format("{}:{}: {}", origin_, table_->source().begin.line, path_);
+}
+
 void TomlTable::fail(std::string_view key, const std::string& problem) const {
   const toml::node* found = table_->get(key);
   if (found == nullptr) {

@@ -58,6 +58,9 @@ class TomlTable {
   /// @throws SceneError for the first key that nobody asked for, naming the nearest known one.
   void finish() const;
 
+  /// "FILE:LINE: PATH" of this table, for messages about it later.
+  [[nodiscard]] std::string place() const;
+
   /// @throws SceneError about `key`'s value at its place.
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 

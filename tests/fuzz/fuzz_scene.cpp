@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever bytes a scene, hand or mapping file holds, reading it ends in a description or in an error with a
-// message. The first byte chooses what the rest is; a line that begins with `set ` becomes an override.
+// Whatever bytes a scene, hand, profile or mapping file holds, reading it ends in a description or in an
+// error with a message. The first byte chooses what the rest is; a line that begins with `set ` becomes an
+// override.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,7 @@
 
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/mapping_file.h"
+#include "phalanx/scene/profile_file.h"
 #include "phalanx/scene/scene.h"
 
 namespace {
@@ -36,6 +38,18 @@ void read_scene(std::string text) {
     require(object.pose.p.allFinite() && object.pose.R.allFinite());
 }
 
+/// A profile that is accepted makes a hand of finite numbers.
+void read_profile(const std::string& text) {
+  static const phalanx::HandParameters base = phalanx::load_hand_file("adult");
+  const phalanx::FittedHand hand = phalanx::fit_profile(phalanx::parse_profile(text, "fuzz.toml", "/"), base);
+  require(std::isfinite(phalanx::hand_length(hand.parameters)));
+  for (std::size_t j = 0; j < phalanx::kJoints; ++j) {
+    require(hand.parameters.min_angle[j] < hand.parameters.max_angle[j]);
+    require(hand.parameters.open_angle[j] >= hand.parameters.min_angle[j] &&
+            hand.parameters.open_angle[j] <= hand.parameters.max_angle[j]);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -44,6 +58,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     if (data[0] == 'h') {
       static_cast<void>(phalanx::parse_hand(text, "fuzz.toml"));
+    } else if (data[0] == 'p') {
+      read_profile(text);
     } else if (data[0] == 'm') {
       phalanx::check_mapping(phalanx::parse_mapping(text, "fuzz.toml"));
     } else {

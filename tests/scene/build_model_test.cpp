@@ -43,6 +43,30 @@ TEST(BuildModel, ImportsAFileInItsSize) {
   fs::remove(file);
 }
 
+TEST(BuildModel, ImportsAFileInTheUnitOrRefusesItsSizeWithTheRemedy) {
+  const fs::path file = fs::temp_directory_path() / ("phalanx_unit_" + std::to_string(getpid()) + ".obj");
+  write_obj(make_box({20, 40, 80}, 1200), file, "box");
+  const std::string object = "[[objects]]\nkind = \"file\"\nfile = \"" + file.string() + "\"\nsize_mm = 0\n";
+  EXPECT_TRUE(
+      extent(make_world_mesh(parse(object + "unit = \"mm\""))).isApprox(Vec3(0.02, 0.04, 0.08), 1e-9));
+  EXPECT_LE(make_world_mesh(parse(object + "unit = \"mm\"\ndecimate_to = 100")).triangles.size(), 100U);
+  try {
+    static_cast<void>(make_world_mesh(parse(object)));
+    ADD_FAILURE() << "80 m wide";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr(file.string()),
+                                             testing::HasSubstr("80 m wide"), testing::HasSubstr("\"mm\"")));
+  }
+  try {
+    static_cast<void>(
+        parse("[[objects]]\nkind = \"file\"\nfile = \"" + file.string() + "\"\nsize_mm = 90\nunit = \"mm\""));
+    ADD_FAILURE() << "a size and a unit";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("size_mm = 0"));
+  }
+  fs::remove(file);
+}
+
 TEST(BuildModel, NamesAMeshFileThatIsMissing) {
   const SceneDescription scene = parse("[[objects]]\nkind = \"file\"\nfile = \"none.obj\"");
   try {

@@ -16,7 +16,8 @@ TEST(CliUsage, HelpNamesTheCommandsAndTheExitCodes) {
   const TemporaryFolder folder;
   const auto result = run_program(folder, "--help");
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* word : {"simulate", "experiment", "scene", "0 done, 1 failed, 2 wrong usage or input"}) {
+  for (const char* word :
+       {"simulate", "experiment", "scene", "hand", "0 done, 1 failed, 2 wrong usage or input"}) {
     EXPECT_THAT(result.out, HasSubstr(word));
   }
 }
@@ -26,8 +27,8 @@ TEST(CliUsage, SimulateHelpNamesEveryOption) {
   const auto result = run_program(folder, "simulate --help");
   EXPECT_EQ(result.exit_code, 0);
   for (const char* option :
-       {"--out", "--poses", "--plot", "--picture", "--set", "--object", "--object-size-mm", "--motion",
-        "--mapping", "--trial", "--seconds", "--rate-hz", "--seed", "--quiet"}) {
+       {"--out", "--poses", "--plot", "--picture", "--set", "--object", "--object-size-mm", "--profile",
+        "--motion", "--mapping", "--trial", "--seconds", "--rate-hz", "--seed", "--quiet"}) {
     EXPECT_THAT(result.out, HasSubstr(option));
   }
 }

@@ -21,25 +21,42 @@ namespace phalanx {
 /// One object of a scene. Which sizes count depends on its kind (docs/scenes.md); a scene that states another
 /// is refused.
 struct ObjectDescription {
-  std::string kind = "teapot";  ///< sphere box cylinder torus mug teapot file
+  std::string kind = "teapot";  ///< sphere box cylinder torus mug teapot file, or an object of mesh/objects.h
   std::filesystem::path
       file;  ///< file: the mesh; a scene file's relative path is resolved against the scene's folder
   double size =
       0.1;  ///< teapot: from handle to spout; file: largest extent, 0 keeps the file's numbers as metres [m]
-  double diameter = 0.06;              ///< sphere, cylinder, mug [m]
-  double length = 0.1;                 ///< cylinder; mug: height [m]
-  double ring_diameter = 0.08;         ///< torus: of the tube's centre line [m]
-  double tube_diameter = 0.02;         ///< torus [m]
-  Vec3 extent = Vec3::Constant(0.05);  ///< box: full edge lengths [m]
+  double unit = 1.0;            ///< file with size 0: metres per unit of its numbers
+  int decimate_to = 0;          ///< file: about how many triangles it is simplified to; 0: keeps its own
+  double diameter = 0.06;       ///< whatever is round, over all [m]
+  double length = 0.1;          ///< along the axis; key: along x [m]
+  double breadth = 0.025;       ///< key [m]
+  double thickness = 0.0022;    ///< key [m]
+  double bump = 0.004;          ///< therapy_ball [m]
+  double head_diameter = 0.0;   ///< peg; 0: none [m]
+  double lid_diameter = 0.07;   ///< jar [m]
+  double ring_diameter = 0.08;  ///< torus: of the tube's centre line [m]
+  double tube_diameter = 0.02;  ///< torus [m]
+  Vec3 extent = Vec3::Constant(0.05);  ///< box, putty_bar: full edge lengths [m]
   int triangles = 1000;                ///< about how many the program's own objects get
   Pose pose;                           ///< X_WO
+};
+
+/// Where the hand's meshes come from.
+enum class HandMeshSource {
+  kFile,      ///< the hand file's; capsules if it names none
+  kCapsules,  ///< capsules whatever the hand file names
 };
 
 struct HandDescription {
   std::string file = "adult";  ///< a hand file's name in assets/hands, or a path
   Handedness handedness = Handedness::kRight;
-  int triangles = 2250;  ///< about how many over all segments (S2: 2,248)
-  Pose pose;             ///< X_WH
+  std::string profile;  ///< if not empty: a profile's name in assets/profiles, or a path; then it says file
+                        ///< and handedness, and what they say here does not count
+  HandMeshSource mesh_source = HandMeshSource::kFile;
+  int triangles = 2250;             ///< capsules: about how many over all segments (S2: 2,248)
+  std::string triangles_stated_at;  ///< where a scene states them, "FILE:LINE: KEY = VALUE"; empty: nowhere
+  Pose pose;                        ///< X_WH
 };
 
 struct MotionDescription {

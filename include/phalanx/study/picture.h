@@ -25,6 +25,7 @@ struct PictureOptions {
   int samples = 5;  ///< per pixel and direction: samples * samples rays a pixel
   double full_force =
       0.0;  ///< force at the hot end of the colour scale [N]; 0: the largest in the snapshot, rounded up
+  bool force_scale = true;  ///< draw the scale at the left edge, where there is a force
 };
 
 /// Ray-traced on the CPU, no display or GPU: the GDP hand tinted by the force on each segment, the HCP hand

@@ -92,6 +92,7 @@ Vec3 ball_centre(const HandModel& hand, const Plan& plan, const JointArray& post
 SceneDescription scene_with_ball(double diameter, const Vec3& centre) {
   SceneDescription scene;
   scene.name = "s1-fig8";
+  scene.hand.mesh_source = HandMeshSource::kCapsules;  // the ball is placed against capsules
   ObjectDescription ball;
   ball.kind = "sphere";
   ball.diameter = diameter;
@@ -179,6 +180,7 @@ Fig8Situation play(const Plan& plan, const HapticModel& empty_handed) {
 std::vector<Fig8Situation> run_s1_fig8() {
   SceneDescription scene;
   scene.name = "s1-fig8";
+  scene.hand.mesh_source = HandMeshSource::kCapsules;  // the ball is placed against capsules
   const auto empty_handed = std::make_unique<HapticModel>(build_model(scene));
   std::vector<Fig8Situation> situations;
   for (const Plan& plan : plans()) situations.push_back(play(plan, *empty_handed));

@@ -7,7 +7,7 @@ namespace phalanx {
 
 TimingResult run_s1_timing() {
   constexpr int kTotal = 1489;  // S1 sec. V
-  SceneDescription scene = load_scene("index_ball", {{"motion.repeat", "5"}});
+  SceneDescription scene = load_scene("index_ball", {{"motion.repeat", "5"}, {"hand.meshes", "capsules"}});
   // The coarsest whole hands that the maker knows; the ball gets the rest.
   SceneDescription nearest = scene;
   int least = kTotal;

@@ -4,7 +4,7 @@
 namespace phalanx {
 
 TimingResult run_s2_timing() {
-  SceneDescription scene = load_scene("grasp_teapot", {{"motion.repeat", "5"}});
+  SceneDescription scene = load_scene("grasp_teapot", {{"motion.repeat", "5"}, {"hand.meshes", "capsules"}});
   scene.hand.triangles = best_request(2248, hand_triangles, scene);
   scene.objects.front().triangles = best_request(992, object_triangles, scene);
   TimingResult result{.name = "s2-timing",

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "study/picture/letters.h"
+
 namespace phalanx::picture {
 namespace {
 
@@ -78,11 +80,15 @@ void glyph(char c, std::vector<std::pair<Vec2f, Vec2f>>& lines) {
       line(0.6F, 0.1F, 0.6F, 0.15F);
       break;
     default:
+      letter_strokes(c, lines);
       break;
   }
 }
 
-float advance(char c) { return c == '.' ? 2.2F : c == ' ' ? 2.6F : 5.6F; }
+float advance(char c) {
+  if (const float letter = letter_advance(c); letter > 0.0F) return letter;
+  return c == '.' ? 2.2F : c == ' ' ? 2.6F : 5.6F;
+}
 
 }  // namespace
 

@@ -23,8 +23,8 @@ struct Canvas {
 void draw_stroke(Canvas& canvas, const Eigen::Vector2f& a, const Eigen::Vector2f& b, float width,
                  const Vec3f& colour);
 
-/// Digits, '.', ' ' and the letter N, as strokes; (x, y) is the left end of the base line, `size` a digit's
-/// height [pixels].
+/// Digits, small letters, '_', '.', ' ' and the letter N, as strokes; (x, y) is the left end of the base
+/// line, `size` a digit's height [pixels].
 /// @returns the text's width
 float draw_text(Canvas& canvas, float x, float y, float size, std::string_view text, const Vec3f& colour);
 

@@ -141,7 +141,7 @@ class Renderer {
       threads.emplace_back(work);
     work();
     threads.clear();
-    if (full_force_ > 0.0) draw_force_scale(canvas_, full_force_);
+    if (options_.force_scale && full_force_ > 0.0) draw_force_scale(canvas_, full_force_);
     return developed();
   }
 

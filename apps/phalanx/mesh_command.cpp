@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// phalanx mesh check
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "phalanx/mesh/import.h"
+#include "usage.h"
+
+namespace phalanx {
+namespace {
+
+struct MeshCheck {
+  std::vector<std::string> files;
+  double size_mm = 0.0;
+  std::string unit = "m";
+  int triangles = 0;
+  std::string out;
+  bool json = false;
+};
+
+std::string millimetres(double metres) { return fmt::format("{:.4g} mm", metres * 1e3); }
+
+std::string length(double metres) {
+  if (metres == 0.0) return "";
+  if (metres < 1e-3) return fmt::format("{:.3g} um", metres * 1e6);
+  return metres < 10.0 ? millimetres(metres) : fmt::format("{:.4g} m", metres);
+}
+
+/// Usable or not, in a sentence.
+std::string verdict(const MeshReport& report) {
+  if (const MeshFinding units = report.finding(FindingKind::kUnits); units.found > 0)
+    return "refused in a scene as it stands: " + unit_advice(units.size, report.scale);
+  std::string text = report.closed ? "usable: a closed solid"
+                     : report.sheets > 0
+                         ? "usable: open, so that its sheets are met from both sides"
+                         : "usable: closed, though edges are shared by more than two triangles";
+  if (report.solids > 1 && report.sheets == 0)
+    text += fmt::format(" in {} pieces", report.solids + report.cavities);
+  return text;
+}
+
+void print_decimation(const DecimationReport& d) {
+  fmt::print(
+      "  decimated    {} -> {} triangles ({} asked for); at least {} from the original (measured at {} "
+      "points)\n",
+      d.before, d.after, d.asked, length(std::max(d.deviation.outward, d.deviation.inward)),
+      d.deviation.probes);
+}
+
+void print_report(const std::string& file, const MeshReport& r) {
+  fmt::print("{}\n", file);
+  fmt::print("  triangles    {} in the file, {} after the repair\n", r.triangles_in_file, r.triangles);
+  fmt::print("  vertices     {} in the file, {} after the repair\n", r.vertices_in_file, r.vertices);
+  fmt::print("  extent       {} x {} x {}\n", millimetres(r.extent.x()), millimetres(r.extent.y()),
+             millimetres(r.extent.z()));
+  fmt::print("  closed       {}; shells: {} solid, {} hollow, {} sheet\n", r.closed ? "yes" : "no", r.solids,
+             r.cavities, r.sheets);
+  if (r.solids > 0) fmt::print("  volume       {:.6g} cm^3\n", r.volume * 1e6);
+  fmt::print("  moved        {} at most (tolerance {})\n", r.moved > 0.0 ? length(r.moved) : "0",
+             length(r.tolerance));
+  if (r.decimation) print_decimation(*r.decimation);
+  if (!r.complete)
+    fmt::print("  note         too many triangles lie over each other: counts are lower bounds\n");
+  if (!r.findings.empty())
+    fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<10} {}\n", "finding", "found", "repaired", "remains", "size",
+               "for the forces");
+  for (const MeshFinding& f : r.findings) {
+    fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<10} {}\n", finding_name(f.kind), f.found, f.repaired,
+               f.found - f.repaired, length(f.size), finding_meaning(f));
+  }
+  fmt::print("  {}\n", verdict(r));
+}
+
+nlohmann::ordered_json to_json(const std::string& file, const MeshReport& r) {
+  nlohmann::ordered_json j;
+  j["file"] = file;
+  j["usable"] = r.finding(FindingKind::kUnits).found == 0;
+  j["verdict"] = verdict(r);
+  j["triangles_in_file"] = r.triangles_in_file;
+  j["vertices_in_file"] = r.vertices_in_file;
+  j["triangles"] = r.triangles;
+  j["vertices"] = r.vertices;
+  j["extent_m"] = {r.extent.x(), r.extent.y(), r.extent.z()};
+  j["metres_per_unit"] = r.scale;
+  j["closed"] = r.closed;
+  j["volume_m3"] = r.volume;
+  j["solids"] = r.solids;
+  j["hollows"] = r.cavities;
+  j["sheets"] = r.sheets;
+  j["tolerance_m"] = r.tolerance;
+  j["moved_m"] = r.moved;
+  j["complete"] = r.complete;
+  j["findings"] = nlohmann::ordered_json::array();
+  for (const MeshFinding& f : r.findings) {
+    j["findings"].push_back({{"kind", finding_name(f.kind)},
+                             {"found", f.found},
+                             {"repaired", f.repaired},
+                             {"remains", f.found - f.repaired},
+                             {"size_m", f.size},
+                             {"width_m", f.width},
+                             {"meaning", finding_meaning(f)}});
+  }
+  if (r.decimation) {
+    const DecimationReport& d = *r.decimation;
+    j["decimation"] = {{"asked", d.asked},
+                       {"before", d.before},
+                       {"after", d.after},
+                       {"was_closed", d.was_closed},
+                       {"original_to_decimated_m", d.deviation.outward},
+                       {"decimated_to_original_m", d.deviation.inward},
+                       {"points", d.deviation.probes}};
+  }
+  return j;
+}
+
+double metres_per(const std::string& unit) {
+  if (unit == "mm") return 1e-3;
+  if (unit == "cm") return 1e-2;
+  if (unit == "in") return 0.0254;
+  return 1.0;
+}
+
+int check_meshes(const MeshCheck& check) {
+  if (!check.out.empty() && check.files.size() != 1)
+    throw std::invalid_argument(
+        fmt::format("--out: {} files were named; write one repaired mesh at a time", check.files.size()));
+  if (check.size_mm > 0.0 && check.unit != "m")
+    throw std::invalid_argument("--unit: --size-mm decides the size by itself; give one of the two");
+  const ImportOptions options{
+      .size = check.size_mm * 1e-3, .unit = metres_per(check.unit), .triangles = check.triangles};
+  auto all = nlohmann::ordered_json::array();
+  int code = kDone;
+  for (const std::string& file : check.files) {
+    try {
+      const ImportedMesh imported = import_and_check(file, options);
+      if (imported.report.finding(FindingKind::kUnits).found > 0) code = kWrongInput;
+      if (check.json) {
+        all.push_back(to_json(file, imported.report));
+      } else {
+        print_report(file, imported.report);
+      }
+      if (!check.out.empty()) write_obj(imported.mesh, check.out, "repaired");
+    } catch (const std::invalid_argument& refusal) {
+      code = kWrongInput;
+      if (check.json) {
+        all.push_back({{"file", file}, {"usable", false}, {"verdict", refusal.what()}});
+      } else {
+        fmt::print("{}\n  refused: {}\n", file, refusal.what());
+      }
+    }
+  }
+  if (check.json) fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  return code;
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, Job& job) {
+  CLI::App* mesh = app.add_subcommand("mesh", "What is wrong with a mesh file and what becomes of it");
+  mesh->require_subcommand(1);
+  auto what = std::make_shared<MeshCheck>();
+  CLI::App* check = mesh->add_subcommand(
+      "check", "Import mesh files and report what was found, repaired and left (docs/meshes.md)");
+  check->add_option("FILE", what->files, ".obj .3ds .stl .ply .glb")->required();
+  check
+      ->add_option("--size-mm", what->size_mm,
+                   "scale so that the largest extent is this; 0: the file's own size")
+      ->check(CLI::Range(0.0, 2000.0));
+  check->add_option("--unit", what->unit, "what the file's numbers are: m, mm, cm or in")
+      ->check(CLI::IsMember({"m", "mm", "cm", "in"}));
+  check->add_option("--decimate", what->triangles, "simplify to about this many triangles; 0: keep all")
+      ->check(CLI::Range(0, 10'000'000));
+  check->add_option("--out", what->out, "write the repaired mesh as .obj, in metres");
+  check->add_flag("--json", what->json, "the reports as one JSON array");
+  check->callback([what, check, &job] {
+    refuse_empty_values(*check);
+    job = [what] { return check_meshes(*what); };
+  });
+}
+
+}  // namespace phalanx

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "commands.h"
+#include "phalanx/record/output_file.h"
+#include "phalanx/record/summary.h"
+#include "phalanx/scene/build_model.h"
+#include "phalanx/scene/hand_meshes.h"
+#include "phalanx/study/contact_sheet.h"
+#include "phalanx/study/simulate.h"
+#include "progress_bar.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What one picture shows.
+struct Sitting {
+  std::string name;
+  SegmentMeshes hand;
+  TriangleMesh object;
+  Snapshot snapshot;
+  double largest_force = 0.0;  ///< of a segment [N]
+};
+
+/// The tick of the largest total force; without any force, the one in the middle of the motion.
+Sitting sit(const std::string& name) {
+  const SceneDescription scene = load_scene(name);
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  const Motion motion = build_motion(scene);
+  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);
+  Sitting sitting{.name = scene.name,
+                  .hand = load_display_meshes(scene.hand),
+                  .object = model->object.mesh(),
+                  .snapshot = {},
+                  .largest_force = 0.0};
+  double peak = 0.0;
+  std::uint64_t tick = 0;
+  simulate(*model, motion, ticks,
+           {.tick =
+                [&](const Snapshot& snapshot) {
+                  const double force = total_force(snapshot);
+                  if (force > peak || (peak == 0.0 && tick == ticks / 2)) {
+                    peak = force;
+                    sitting.snapshot = snapshot;
+                  }
+                  ++tick;
+                },
+            .progress = {}});
+  for (const SegmentSnapshot& segment : sitting.snapshot.segment)
+    sitting.largest_force = std::max(sitting.largest_force, segment.force);
+  return sitting;
+}
+
+void save(const Image& image, const fs::path& file) {
+  write_then_rename(file, [&](const fs::path& temporary) { write_png(image, temporary); });
+}
+
+}  // namespace
+
+int draw_scenes(const ScenePicturesOptions& options) {
+  std::vector<std::string> names = options.scenes;
+  if (names.empty())
+    for (const SceneInfo& info : list_scenes()) names.push_back(info.name);
+  std::vector<Sitting> sittings;
+  double full_force = 0.0;
+  for (const std::string& name : names) {
+    sittings.push_back(sit(name));
+    full_force = std::max(full_force, sittings.back().largest_force);
+  }
+  prepare_output_folder(options.folder);
+  ProgressBar bar("rendering", true);
+  std::vector<SheetTile> tiles;
+  for (const Sitting& sitting : sittings) {
+    bar.show(tiles.size(), sittings.size());
+    const PictureOptions picture{.width = options.width,
+                                 .height = options.width * 3 / 4,
+                                 .full_force = full_force,
+                                 .force_scale = false};
+    Image image = render_picture(sitting.hand, sitting.object, sitting.snapshot, picture);
+    save(image, options.folder / (sitting.name + ".png"));
+    tiles.push_back({std::move(image), fmt::format("{}  {:.1f} N", sitting.name, sitting.largest_force)});
+  }
+  bar.show(tiles.size(), sittings.size());
+  save(contact_sheet(tiles, options.columns), options.folder / "scenes.png");
+  return kDone;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "phalanx/hand/fit.h"
+
+namespace phalanx {
+namespace {
+
+/// Within this distance of a digit's first joint the palm is scaled alike in all directions; beyond the other
+/// one it is scaled as a whole [m].
+constexpr double kJointZone = 0.010;
+constexpr double kPalmZone = 0.035;
+/// A cubic whose end slopes are at most three times its mean slope does not turn back; some way below that.
+constexpr double kSteepest = 2.5;
+
+/// 0 below 0, 1 above 1, smooth between.
+double smooth_step(double x) noexcept {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+double breadth_at(const SegmentFit& fit, double t) noexcept {
+  if (t < 0.5) return fit.breadth_base + (fit.breadth_middle - fit.breadth_base) * smooth_step(2.0 * t);
+  return fit.breadth_middle + (fit.breadth_end - fit.breadth_middle) * smooth_step(2.0 * t - 1.0);
+}
+
+/// Where the share t of a bone goes, in lengths of the base hand's bone: 0 to 0, 1 to `length`.
+double along(double t, double length, double slope_base, double slope_end) noexcept {
+  if (t <= 0.0) return slope_base * t;
+  if (t >= 1.0) return length + slope_end * (t - 1.0);
+  const double u = 1.0 - t;
+  return length * t * t * (3.0 - 2.0 * t) + slope_base * t * u * u - slope_end * t * t * u;
+}
+
+void fit_segment(TriangleMesh& mesh, double bone, const SegmentFit& fit, bool distal) {
+  const double steepest = kSteepest * fit.length;
+  const double slope_base = std::min(fit.breadth_base, steepest);
+  // Beyond a distal bone the soft tip grows with the bone.
+  const double slope_end = distal ? fit.length : std::min(fit.breadth_end, steepest);
+  for (Vec3& v : mesh.vertices) {
+    const double t = -v.z() / bone;
+    const double breadth = breadth_at(fit, t);
+    v = Vec3(breadth * v.x(), breadth * v.y(), -bone * along(t, fit.length, slope_base, slope_end));
+  }
+}
+
+/// The mean height of the digits' first joints as seen from a point: each weighs by the inverse fourth power
+/// of its distance, so that at a joint it is that joint's. `nearest` becomes the distance of the nearest one.
+double joint_height(const HandParameters& base, const Vec3& p, double& nearest) noexcept {
+  double sum = 0.0;
+  double weights = 0.0;
+  double nearest_squared = std::numeric_limits<double>::infinity();
+  for (const DigitParameters& digit : base.digits) {
+    const double squared = std::max((p - digit.base).squaredNorm(), 1e-12);
+    nearest_squared = std::min(nearest_squared, squared);
+    const double weight = 1.0 / (squared * squared);
+    sum += weight * digit.base.z();
+    weights += weight;
+  }
+  nearest = std::sqrt(nearest_squared);
+  return sum / weights;
+}
+
+void fit_palm(TriangleMesh& mesh, const HandParameters& base, const HandFit& fit) {
+  for (Vec3& v : mesh.vertices) {
+    double nearest = 0.0;
+    const double height = joint_height(base, v, nearest);
+    const double share = 1.0 - smooth_step((nearest - kJointZone) / (kPalmZone - kJointZone));
+    const double z =
+        fit.palm_length * v.z() + (fit.palm_breadth - fit.palm_length) * share * (v.z() - height);
+    v = Vec3(fit.palm_breadth * v.x(), fit.palm_breadth * v.y(), z);
+  }
+}
+
+}  // namespace
+
+SegmentMeshes fitted_meshes(const HandParameters& base, const HandFit& fit, SegmentMeshes meshes) {
+  for (int s = 0; s < kSegments - 1; ++s) {
+    const auto i = static_cast<std::size_t>(s);
+    fit_segment(meshes[i], segment_length(base, s), fit.segment[i],
+                s % kSegmentsPerDigit == kSegmentsPerDigit - 1);
+  }
+  fit_palm(meshes[kPalm], base, fit);
+  return meshes;
+}
+
+}  // namespace phalanx

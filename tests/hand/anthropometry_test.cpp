@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/hand/anthropometry.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace phalanx {
+namespace {
+
+// 180.5 - 4 x 9.7 (women) and 193.8 + 4 x 9.8 (men);  79.4 - 4 x 3.8 and 90.4 + 4 x 4.2.
+TEST(Anthropometry, RangesReachFromTheSmallestGroupsToTheLargestGroupsFourDeviations) {
+  EXPECT_NEAR(plausible_hand_length().min, 0.1417, 1e-12);
+  EXPECT_NEAR(plausible_hand_length().max, 0.2330, 1e-12);
+  EXPECT_NEAR(plausible_hand_breadth().min, 0.0642, 1e-12);
+  EXPECT_NEAR(plausible_hand_breadth().max, 0.1072, 1e-12);
+}
+
+// The middle finger's middle phalanx: 26.33 +- 4 x 3.00;  its metacarpal: 64.60 +- 4 x 5.38.
+TEST(Anthropometry, SegmentsAreInTheOrderOfTheirNames) {
+  const int segment = find_segment("middle-finger-phalanx-intermediate").value();
+  EXPECT_NEAR(plausible_segment_length(segment).min, 0.01433, 1e-12);
+  EXPECT_NEAR(plausible_segment_length(segment).max, 0.03833, 1e-12);
+  EXPECT_NEAR(plausible_palm_ratio().max, 1.0 + 4.0 * 5.38 / 64.60, 1e-12);
+  EXPECT_EQ(segment_length_norm(find_segment("thumb-metacarpal").value()).mean,
+            metacarpal_length_norm(0).mean);
+}
+
+// In every finger each bone is shorter than the one before it, as in every human hand.
+TEST(Anthropometry, BonesGetShorterTowardsTheTip) {
+  for (int digit = 0; digit < kDigits; ++digit) {
+    for (int k = 0; k + 1 < kSegmentsPerDigit; ++k) {
+      EXPECT_GT(segment_length_norm(segment_index(digit, k)).mean,
+                segment_length_norm(segment_index(digit, k + 1)).mean);
+    }
+    EXPECT_GE(metacarpal_length_norm(digit).mean, segment_length_norm(segment_index(digit, 0)).mean);
+  }
+}
+
+TEST(Anthropometry, AnglesHoldTheTypicalRangeOfEveryJoint) {
+  const auto holds = [](const char* joint, double min_deg, double max_deg) {
+    const PlausibleRange range = plausible_angle(find_joint(joint).value());
+    EXPECT_LT(range.min, min_deg * std::numbers::pi / 180.0) << joint;
+    EXPECT_GT(range.max, max_deg * std::numbers::pi / 180.0) << joint;
+  };
+  // AAOS 1965 and Eaton, as in assets/hands/adult.toml.
+  holds("index_mcp_flexion", -45, 90);
+  holds("ring_mcp_abduction", -20, 20);
+  holds("little_pip_flexion", 0, 100);
+  holds("middle_dip_flexion", 0, 90);
+  holds("thumb_mcp_flexion", -10, 55);
+  holds("thumb_ip_flexion", -20, 80);
+}
+
+}  // namespace
+}  // namespace phalanx
