@@ -97,20 +97,39 @@ SceneDescription read_with(Overrides overrides, const std::vector<KeyOption>& op
   }
 }
 
-/// In metres, checked as a scene's objects[].size_mm is.
-double object_size(double size_mm) {
-  const auto scene =
-      read_with({{"objects.0.kind", "\"file\""}, {"objects.0.file", "\"mesh.obj\""}},
-                {number_option("--object-size-mm", "objects.0.size_mm", size_mm)},
-                [](const Overrides& o) { return parse_scene("", "--object", fs::current_path(), o); });
-  return scene.objects.front().size;
+/// The scene with the file in the place of its objects, at the pose of the first: what --set says of
+/// objects.0 then concerns the file, and its pose.
+SceneDescription with_object(const SimulateOptions& options, const Overrides& set) {
+  Overrides of_scene;
+  for (const auto& [key, value] : set) {
+    const bool of_file =
+        key.starts_with("objects.") && key != "objects.0.position_mm" && key != "objects.0.rotation_deg";
+    if (!of_file) of_scene.emplace_back(key, value);
+  }
+  const SceneDescription scene = read_with(
+      of_scene, key_options(options), [&](const Overrides& all) { return load_scene(options.scene, all); });
+  Overrides of_file = {{"objects", "[{ kind = \"file\", size_mm = 0 }]"}};
+  of_file.insert(of_file.end(), set.begin(), set.end());
+  std::vector<KeyOption> keys = key_options(options);
+  keys.push_back(text_option("--object", "objects.0.file", options.object));
+  if (options.object_size_mm)
+    keys.push_back(number_option("--object-size-mm", "objects.0.size_mm", *options.object_size_mm));
+  SceneDescription replaced =
+      read_with(of_file, keys, [&](const Overrides& all) { return load_scene(options.scene, all); });
+  if (!scene.objects.empty()) replaced.objects.front().pose = scene.objects.front().pose;
+  return replaced;
 }
 
 SceneDescription described(const SimulateOptions& options) {
   Overrides set;
   for (const std::string& pair : options.set) set.push_back(parse_override(pair));
-  SceneDescription scene = read_with(set, key_options(options),
-                                     [&](const Overrides& all) { return load_scene(options.scene, all); });
+  if (options.object.empty() && options.object_size_mm)
+    throw std::invalid_argument("--object-size-mm needs --object FILE");
+  SceneDescription scene = !options.object.empty()
+                               ? with_object(options, set)
+                               : read_with(set, key_options(options), [&](const Overrides& all) {
+                                   return load_scene(options.scene, all);
+                                 });
   if (scene.motion.file.empty()) {
     const auto refuse = [](const std::string& option) {
       throw std::invalid_argument(
@@ -119,17 +138,6 @@ SceneDescription described(const SimulateOptions& options) {
     if (options.trial) refuse(fmt::format("--trial {}", *options.trial));
     if (!options.mapping.empty()) refuse(fmt::format("--mapping {}", options.mapping));
   }
-  if (options.object.empty()) {
-    if (options.object_size_mm) throw std::invalid_argument("--object-size-mm needs --object FILE");
-    return scene;
-  }
-  // The file takes the place and pose of the scene's first object.
-  ObjectDescription object;
-  object.kind = "file";
-  object.file = fs::absolute(options.object);
-  object.size = options.object_size_mm ? object_size(*options.object_size_mm) : 0.0;
-  if (!scene.objects.empty()) object.pose = scene.objects.front().pose;
-  scene.objects = {object};
   return scene;
 }
 

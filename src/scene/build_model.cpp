@@ -51,17 +51,37 @@ TriangleMesh make_object_mesh(const ObjectDescription& object) {
       fmt::format("objects[].kind = \"{}\": nobody knows this kind; see `phalanx scene keys`", object.kind));
 }
 
+namespace {
+
+/// Scenes with a profile are laid out for a right hand.
+bool is_mirrored(const SceneDescription& scene) {
+  if (scene.hand.profile.empty()) return scene.mirror;
+  return load_hand_numbers(scene.hand).handedness == Handedness::kLeft;
+}
+
+/// M X M with M = diag(-1, 1, 1): only signs change.
+Pose mirrored(Pose X) {
+  X.p.x() = -X.p.x();
+  for (const auto& [row, column] : {std::pair{0, 1}, {0, 2}, {1, 0}, {2, 0}})
+    X.R(row, column) = -X.R(row, column);
+  return X;
+}
+
+}  // namespace
+
 TriangleMesh make_world_mesh(const SceneDescription& scene) {
   TriangleMesh world;
   for (const ObjectDescription& object : scene.objects) append(world, make_object_mesh(object), object.pose);
+  if (is_mirrored(scene)) mirror(world);
   return world;
 }
 
 HapticModel build_model(const SceneDescription& scene) {
   const HandNumbers hand = load_hand_numbers(scene.hand);
-  HapticModel model(
-      HandModel(hand.parameters, hand.handedness, scene.hand.pose, load_collision_meshes(scene.hand)),
-      scene.objects.empty() ? ObjectModel() : ObjectModel(make_world_mesh(scene)));
+  TriangleMesh world = make_world_mesh(scene);
+  const Pose pose = is_mirrored(scene) ? mirrored(scene.hand.pose) : scene.hand.pose;
+  HapticModel model(HandModel(hand.parameters, hand.handedness, pose, load_collision_meshes(scene.hand)),
+                    world.triangles.empty() ? ObjectModel() : ObjectModel(std::move(world)));
   model.contact = scene.contact;
   model.force = scene.force;
   model.smoothing = scene.smoothing;

@@ -89,6 +89,10 @@ void add_general_and_hand(std::vector<KeySpec>& keys) {
                            t.scene.seed = static_cast<std::uint64_t>(v.integer);
                            t.scene.motion.script.seed = t.scene.seed;
                          }));
+  keys.push_back(
+      flag("mirror", "false",
+           "the whole scene mirrored in the plane x = 0: the other hand, its place and every object",
+           [](T t, V v) { t.scene.mirror = v.flag; }));
   keys.push_back(word(KeyType::kName, "hand.file", "\"adult\"", "the hand: a name in assets/hands, or a path",
                       [](T t, V v) { t.scene.hand.file = v.text; }));
   keys.push_back(choice(
@@ -96,7 +100,7 @@ void add_general_and_hand(std::vector<KeySpec>& keys) {
       [](T t, V v) { t.scene.hand.handedness = v.integer == 0 ? Handedness::kRight : Handedness::kLeft; }));
   keys.push_back(word(KeyType::kName, "hand.profile", "",
                       "a patient's profile: a name in assets/profiles, or a path; it says hand.file and "
-                      "hand.side, which may not be given beside it",
+                      "hand.side, which may not be given beside it; a left hand's mirrors the scene",
                       [](T t, V v) { t.scene.hand.profile = v.text; }));
   keys.push_back(choice("hand.meshes", {"file", "capsules"}, "\"file\"",
                         "what the hand is made of: the hand file's meshes (capsules if it names none), or "

@@ -48,7 +48,8 @@ Handedness read_handedness(TomlTable& table) {
   return word == "right" ? Handedness::kRight : Handedness::kLeft;
 }
 
-void read_segment(TomlTable table, HandSize& size, std::array<bool, kSegments - 1>& seen) {
+void read_segment(TomlTable table, Profile& profile, std::array<bool, kSegments - 1>& seen) {
+  HandSize& size = profile.size;
   const std::string name = table.text("name");
   const auto segment = find_segment(name);
   if (!segment || *segment == kPalm) {
@@ -64,8 +65,10 @@ void read_segment(TomlTable table, HandSize& size, std::array<bool, kSegments - 
   if (table.has("length_mm"))
     size.segment[s].length = plausible_mm(table, "length_mm", plausible_segment_length(*segment));
   // Whether a breadth is plausible depends on the base hand's: fit_profile() says so.
-  if (table.has("breadth_mm"))
+  if (table.has("breadth_mm")) {
     size.segment[s].breadth = table.number("breadth_mm", {.min = 0.0, .max = 200.0, .min_open = true}) * kMm;
+    profile.breadth_stated_at[s] = table.place() + ".breadth_mm";
+  }
   if (!size.segment[s].length && !size.segment[s].breadth)
     table.fail("name", "states neither length_mm nor breadth_mm; add one, or remove the line");
   table.finish();
@@ -95,24 +98,29 @@ void read_ranges(TomlTable table, Profile& profile) {
 
 /// Sizes that only follow from what is stated, and breadths, which are judged against the base hand's.
 void check_fit(const Profile& profile, const HandParameters& base, const HandFit& fit) {
+  std::string stated_at;
   const auto fail = [&](std::string_view what, double value, double unit, std::string_view unit_name,
                         const PlausibleRange& range) {
-    throw SceneError(fmt::format(
-        "{}: {} comes to {:.4g} {}, which is implausible: {} ({}); correct the sizes that "
-        "the profile states",
-        profile.origin, what, value / unit, unit_name, in_words(range, unit, unit_name), range.source));
+    const std::string& place = stated_at.empty() ? profile.origin : stated_at;
+    throw SceneError(
+        fmt::format("{}: {} comes to {:.4g} {}, which is implausible: {} ({}); correct the sizes that "
+                    "the profile states",
+                    place, what, value / unit, unit_name, in_words(range, unit, unit_name), range.source));
   };
   for (int s = 0; s < kSegments - 1; ++s) {
     const SegmentFit& own = fit.segment[static_cast<std::size_t>(s)];
+    stated_at.clear();
     const double length = own.length * segment_length(base, s);
     if (const auto range = plausible_segment_length(s); !within(range, length))
       fail(fmt::format("the length of {}", segment_name(s)), length, kMm, "mm", range);
     PlausibleRange breadth = plausible_breadth_ratio();
     breadth.min *= segment_breadth(base, s);
     breadth.max *= segment_breadth(base, s);
+    stated_at = profile.breadth_stated_at[static_cast<std::size_t>(s)];
     if (const double value = own.breadth_middle * segment_breadth(base, s); !within(breadth, value))
       fail(fmt::format("the breadth of {}", segment_name(s)), value, kMm, "mm", breadth);
   }
+  stated_at.clear();
   if (const auto range = plausible_palm_ratio(); !within(range, fit.palm_length))
     fail("the palm's length relative to the base hand's", fit.palm_length, 1.0, "", range);
   const double length = hand_length(fitted_parameters(base, fit));
@@ -140,7 +148,7 @@ Profile parse_profile(const std::string& text, const std::string& origin,
     profile.size.hand_breadth = plausible_mm(table, "hand_breadth_mm", plausible_hand_breadth());
   if (table.has("segments")) {
     std::array<bool, kSegments - 1> seen{};
-    for (TomlTable& segment : table.tables("segments", -1)) read_segment(segment, profile.size, seen);
+    for (TomlTable& segment : table.tables("segments", -1)) read_segment(segment, profile, seen);
   }
   if (table.has("range_of_motion")) read_ranges(table.table("range_of_motion"), profile);
   table.finish();

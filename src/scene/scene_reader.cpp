@@ -214,7 +214,7 @@ void refuse_both_smoothing_forms(const SceneTree& tree) {
 
 void refuse_what_the_profile_says(const SceneTree& tree) {
   if (tree.find("hand.profile") == nullptr) return;
-  for (const char* key : {"hand.file", "hand.side"}) {
+  for (const char* key : {"hand.file", "hand.side", "mirror"}) {
     if (tree.find(key) == nullptr) continue;
     tree.fail(key, fmt::format("the profile says this ({}); remove it, or remove hand.profile",
                                tree.statement("hand.profile")));
@@ -239,6 +239,10 @@ SceneDescription parse_scene(const std::string& text, const std::string& origin,
   }
   if (tree.find("hand.triangles") != nullptr)
     scene.hand.triangles_stated_at = tree.statement("hand.triangles");
+  if (scene.mirror) {
+    Handedness& side = scene.hand.handedness;
+    side = side == Handedness::kRight ? Handedness::kLeft : Handedness::kRight;
+  }
   if (const toml::node* objects = tree.find("objects")) {
     for (std::size_t i = 0; i < objects->as_array()->size(); ++i)
       scene.objects.push_back(read_object(tree, reader, i, scene));

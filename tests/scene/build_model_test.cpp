@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 #include "expect_error.h"
+#include "phalanx/hand/hand_meshes.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
 
@@ -135,6 +137,49 @@ TEST(BuildMotion, PlaysTheScriptUnlessThereIsAFile) {
 TEST(BuildMotion, NamesAMotionFileThatIsMissing) {
   expect_scene_error([] { static_cast<void>(build_motion(parse("motion.file = \"none.csv\""))); },
                      {"none.csv", "there is no file"});
+}
+
+/// The last tick of half the scene's motion.
+Snapshot half_way(const SceneDescription& scene) {
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  const Motion motion = build_motion(scene);
+  HapticState state(*model);
+  const int ticks = static_cast<int>(0.5 * motion.duration() * model->rate_hz);
+  for (int n = 0; n <= ticks; ++n) {
+    const double t = n / model->rate_hz;
+    step(*model, Sample{t, motion.at(t)}, state);
+  }
+  return state.snapshot();
+}
+
+// Whoever grasps with the left hand what stands mirrored feels the same. The search meets the triangles in
+// another order, so that sums differ in their last digits.
+TEST(BuildModel, MirrorsHandAndObjectsTogether) {
+  const Snapshot right = half_way(load_scene("grasp_mug"));
+  const SceneDescription scene = load_scene("grasp_mug", {{"mirror", "true"}});
+  EXPECT_EQ(scene.hand.handedness, Handedness::kLeft);
+  const Snapshot left = half_way(scene);
+  int contacts = 0;
+  for (std::size_t s = 0; s < kSegments; ++s) {
+    contacts += right.segment[s].contact ? 1 : 0;
+    EXPECT_EQ(left.segment[s].contact, right.segment[s].contact);
+    EXPECT_NEAR(left.segment[s].force, right.segment[s].force, 1e-6);
+    const Vec3 mirrored(-right.segment[s].normal.x(), right.segment[s].normal.y(),
+                        right.segment[s].normal.z());
+    EXPECT_LT((left.segment[s].normal - mirrored).norm(), 1e-6) << segment_name(static_cast<int>(s));
+  }
+  EXPECT_GE(contacts, 3);
+}
+
+TEST(BuildModel, MirrorsTheSceneForTheProfileOfALeftHand) {
+  const SceneDescription scene = load_scene("grasp_mug", {{"hand.profile", "large-man"}});
+  const HapticModel model = build_model(scene);
+  EXPECT_EQ(model.hand.handedness(), Handedness::kLeft);
+  EXPECT_EQ(model.hand.palm_pose().p.x(), -scene.hand.pose.p.x());
+  TriangleMesh expected = make_world_mesh(load_scene("grasp_mug"));
+  mirror(expected);
+  EXPECT_EQ(model.object.mesh().vertices, expected.vertices);
+  EXPECT_EQ(model.object.mesh().triangles, expected.triangles);
 }
 
 }  // namespace

@@ -84,8 +84,10 @@ TEST(Profile, RefusesSizesBeyondFourDeviationsWithTheRangeAndItsSource) {
   // Index proximal: 39.78 +- 4 x 4.94 mm.
   expect_refused("segments = [{ name = \"index-finger-phalanx-proximal\", length_mm = 60 }]",
                  {"segments.0.length_mm = 60", "20.02 to 59.54 mm", "Buryanov"});
-  expect_refused("segments = [{ name = \"index-finger-phalanx-proximal\", breadth_mm = 40 }]",
-                 {"breadth of index-finger-phalanx-proximal comes to 40 mm", "our own bounds"});
+  expect_refused(
+      "segments = [{ name = \"index-finger-phalanx-proximal\", breadth_mm = 40 }]",
+      {"p.toml:3: segments.0.breadth_mm: the breadth of index-finger-phalanx-proximal comes to 40 mm",
+       "our own bounds"});
 }
 
 TEST(Profile, AcceptsTheVeryEndsOfTheRanges) {

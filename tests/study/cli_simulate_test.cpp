@@ -103,6 +103,22 @@ TEST(CliSimulate, TakesAnObjectFromAFile) {
   EXPECT_EQ(summary["triangles"]["object"], 4);
 }
 
+// The scene's ball has a diameter; the file in its place has a unit and no diameter.
+TEST(CliSimulate, TakesWhatSetSaysOfTheFileInTheObjectsPlace) {
+  const TemporaryFolder folder;
+  write_file(folder / "tetra.obj",
+             "v 0 0 0\nv 7 0 0\nv 0 7 0\nv 0 0 7\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::string command = "simulate index_ball --seconds 0.1 --object tetra.obj --quiet --out a";
+  const auto refused = run_program(folder, command);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("give unit"));
+  const auto result =
+      run_program(folder, command + " --set objects.0.unit=cm --set objects.0.position_mm=[1,2,-500]");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(read_file(folder / "a/object.obj"), ::testing::HasSubstr("0.001 0.002 -0.5\n"));
+  EXPECT_EQ(run_program(folder, command + " --set objects.0.diameter_mm=3").exit_code, 2);
+}
+
 TEST(CliSimulate, RendersAPicture) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_program(folder, "simulate index_ball --seconds 1 --quiet --picture a.png").exit_code, 0);

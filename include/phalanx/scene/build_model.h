@@ -13,10 +13,13 @@ namespace phalanx {
 /// @throws SceneError or std::invalid_argument naming the file or the size and the remedy. Set-up only.
 [[nodiscard]] TriangleMesh make_object_mesh(const ObjectDescription& object);
 
-/// Every object of the scene in the world frame, merged [m]; empty if it has none.
+/// Every object of the scene in the world frame, merged [m], mirrored in x = 0 if the scene is (its key
+/// `mirror`, or the profile of a left hand); empty if it has none. Throws as make_object_mesh() and
+/// load_hand_numbers().
 [[nodiscard]] TriangleMesh make_world_mesh(const SceneDescription& scene);
 
-/// The scene's hand at its pose, its objects merged into one, and its parameters.
+/// The scene's hand at its pose, its objects merged into one, and its parameters; hand and objects mirrored
+/// as in make_world_mesh().
 /// @throws SceneError or std::invalid_argument: hand file, mesh file, sizes. Whether the open hand is clear
 /// of the object is for HapticState
 ///         to say. Set-up only.

@@ -21,6 +21,8 @@ struct Profile {
   std::string origin;            ///< the profile's file, for messages
   Handedness handedness = Handedness::kRight;
   HandSize size;
+  std::array<std::string, kSegments - 1>
+      breadth_stated_at;  ///< "FILE:LINE: KEY", for messages; empty: nowhere
   std::array<std::optional<std::pair<double, double>>, kJoints> range;  ///< of motion, where stated [rad]
 };
 

@@ -73,6 +73,7 @@ struct SceneDescription {
   double rate_hz = 200.0;   ///< [Hz], 1 .. 4000
   double seconds = 0.0;     ///< length of a simulation [s]; 0: the motion's
   std::uint64_t seed = 1;
+  bool mirror = false;  ///< the world is mirrored in x = 0; hand.handedness is already the mirrored one
   HandDescription hand;
   std::vector<ObjectDescription> objects;
   ContactParameters contact;
