@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.h"
@@ -33,6 +35,15 @@ std::string length(double metres) {
   return metres < 10.0 ? millimetres(metres) : fmt::format("{:.4g} m", metres);
 }
 
+/// "200 mm, 25 cm^2"
+std::string size_text(const MeshFinding& f) {
+  return length(f.size) + (f.area > 0.0 ? fmt::format(", {:.3g} cm^2", f.area * 1e4) : "");
+}
+
+std::string place_text(const MeshFinding& f) {
+  return f.at ? fmt::format("({:.6g}, {:.6g}, {:.6g})", f.at->x(), f.at->y(), f.at->z()) : "";
+}
+
 /// Usable or not, in a sentence.
 std::string verdict(const MeshReport& report) {
   if (const MeshFinding units = report.finding(FindingKind::kUnits); units.found > 0)
@@ -56,8 +67,15 @@ void print_decimation(const DecimationReport& d) {
 
 void print_report(const std::string& file, const MeshReport& r) {
   fmt::print("{}\n", file);
-  fmt::print("  triangles    {} in the file, {} after the repair\n", r.triangles_in_file, r.triangles);
-  fmt::print("  vertices     {} in the file, {} after the repair\n", r.vertices_in_file, r.vertices);
+  if (r.decimation) {
+    fmt::print("  triangles    {} in the file, {} after the repair, {} after decimation\n",
+               r.triangles_in_file, r.decimation->before, r.triangles);
+    fmt::print("  vertices     {} in the file, {} after repair and decimation\n", r.vertices_in_file,
+               r.vertices);
+  } else {
+    fmt::print("  triangles    {} in the file, {} after the repair\n", r.triangles_in_file, r.triangles);
+    fmt::print("  vertices     {} in the file, {} after the repair\n", r.vertices_in_file, r.vertices);
+  }
   fmt::print("  extent       {} x {} x {}\n", millimetres(r.extent.x()), millimetres(r.extent.y()),
              millimetres(r.extent.z()));
   fmt::print("  closed       {}; shells: {} solid, {} hollow, {} sheet\n", r.closed ? "yes" : "no", r.solids,
@@ -69,11 +87,11 @@ void print_report(const std::string& file, const MeshReport& r) {
   if (!r.complete)
     fmt::print("  note         too many triangles lie over each other: counts are lower bounds\n");
   if (!r.findings.empty())
-    fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<10} {}\n", "finding", "found", "repaired", "remains", "size",
-               "for the forces");
+    fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<22} {:<30} {}\n", "finding", "found", "repaired", "remains",
+               "size", "at, in the file's units", "for the forces");
   for (const MeshFinding& f : r.findings) {
-    fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<10} {}\n", finding_name(f.kind), f.found, f.repaired,
-               f.found - f.repaired, length(f.size), finding_meaning(f));
+    fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<22} {:<30} {}\n", finding_name(f.kind), f.found, f.repaired,
+               f.found - f.repaired, size_text(f), place_text(f), finding_meaning(f));
   }
   fmt::print("  {}\n", verdict(r));
 }
@@ -97,7 +115,8 @@ nlohmann::ordered_json to_json(const std::string& file, const MeshReport& r) {
   j["tolerance_m"] = r.tolerance;
   j["moved_m"] = r.moved;
   j["complete"] = r.complete;
-  j["findings"] = nlohmann::ordered_json::array();
+  using Json = nlohmann::ordered_json;
+  j["findings"] = Json::array();
   for (const MeshFinding& f : r.findings) {
     j["findings"].push_back({{"kind", finding_name(f.kind)},
                              {"found", f.found},
@@ -105,6 +124,8 @@ nlohmann::ordered_json to_json(const std::string& file, const MeshReport& r) {
                              {"remains", f.found - f.repaired},
                              {"size_m", f.size},
                              {"width_m", f.width},
+                             {"area_m2", f.area},
+                             {"at", f.at ? Json{f.at->x(), f.at->y(), f.at->z()} : Json()},
                              {"meaning", finding_meaning(f)}});
   }
   if (r.decimation) {
@@ -127,10 +148,20 @@ double metres_per(const std::string& unit) {
   return 1.0;
 }
 
+void check_out(const std::string& out, const std::string& file) {
+  const std::filesystem::path path(out);
+  std::error_code error;  // a file that does not exist is no other's equal
+  if (std::filesystem::equivalent(path, file, error))
+    throw std::invalid_argument(fmt::format("--out: {} is the file that is read; name another", out));
+  if (path.extension() != ".obj")
+    throw std::invalid_argument(fmt::format("--out: {} does not end with .obj, the format written", out));
+}
+
 int check_meshes(const MeshCheck& check) {
   if (!check.out.empty() && check.files.size() != 1)
     throw std::invalid_argument(
         fmt::format("--out: {} files were named; write one repaired mesh at a time", check.files.size()));
+  if (!check.out.empty()) check_out(check.out, check.files.front());
   if (check.size_mm > 0.0 && check.unit != "m")
     throw std::invalid_argument("--unit: --size-mm decides the size by itself; give one of the two");
   const ImportOptions options{

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/assimp_reader.h"
 
+#include "mesh/polygon_cut.h"
+
 #include <assimp/BaseImporter.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/importerdesc.h>
@@ -90,6 +92,12 @@ std::vector<Placed> place_meshes(const aiScene& scene, bool skip_root) {
   return placed;
 }
 
+bool has_triangle(const aiMesh& mesh) {
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i)
+    if (mesh.mFaces[i].mNumIndices >= 3) return true;
+  return false;
+}
+
 class Collector {
  public:
   explicit Collector(const std::string& origin) : origin_(origin) {}
@@ -107,8 +115,9 @@ class Collector {
       const Vec3 q = (placed.X * p).head<3>();
       if (!q.allFinite()) {
         std::ostringstream what;
-        what << "vertex " << i << " of mesh '" << mesh.mName.C_Str() << "' is (" << q.x() << ", " << q.y()
-             << ", " << q.z() << "), not finite; repair the mesh or export it again";
+        const auto number = [](double x) { return std::isnan(x) ? std::abs(x) : x; };  // no "-nan"
+        what << "vertex " << i << " of mesh '" << mesh.mName.C_Str() << "' is (" << number(q.x()) << ", "
+             << number(q.y()) << ", " << number(q.z()) << "), not finite; repair the mesh or export it again";
         refuse(what.str());
       }
       out_.vertices.push_back(q);
@@ -116,11 +125,17 @@ class Collector {
     const bool mirrored = placed.X.topLeftCorner<3, 3>().determinant() < 0.0;
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       const aiFace& face = mesh.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // points and lines; polygons have been cut
-      Triangle t{};
-      for (unsigned k = 0; k < 3; ++k) t[k] = static_cast<std::int32_t>(first + face.mIndices[k]);
-      if (mirrored) std::swap(t[1], t[2]);
-      out_.triangles.push_back(t);
+      if (face.mNumIndices < 3) continue;  // points and lines
+      corners_.clear();
+      for (unsigned k = 0; k < face.mNumIndices; ++k)
+        corners_.push_back(out_.vertices[first + face.mIndices[k]]);
+      for (const auto& cut : cut_polygon(corners_)) {
+        Triangle t{};
+        for (std::size_t k = 0; k < 3; ++k)
+          t[k] = static_cast<std::int32_t>(first + face.mIndices[static_cast<unsigned>(cut[k])]);
+        if (mirrored) std::swap(t[1], t[2]);
+        out_.triangles.push_back(t);
+      }
     }
   }
 
@@ -133,9 +148,10 @@ class Collector {
 
   const std::string& origin_;
   TriangleMesh out_;
+  std::vector<Vec3> corners_;  ///< scratch: of one face
 };
 
-/// Before Assimp cuts the polygons, and we read the triangles: no index beyond its array.
+/// Before we read the faces: no index beyond its array.
 void check_faces(const aiMesh& mesh, const std::string& origin) {
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
@@ -173,12 +189,14 @@ TriangleMesh read_with_assimp(const void* data, std::size_t bytes, const std::st
   const aiScene* scene = importer.ReadFile(name, 0);
   require(scene);
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) check_faces(*scene->mMeshes[i], origin);
-  scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-  require(scene);
   // Assimp's 3DS reader turns the scene from the format's z up to y up at the root; here z is up, so the
   // file's numbers stay.
+  const std::vector<Placed> all = place_meshes(*scene, format == "3ds");
+  // Before the vertices: nothing is to be said of points that bear no surface.
+  if (std::none_of(all.begin(), all.end(), [](const Placed& placed) { return has_triangle(*placed.mesh); }))
+    throw std::invalid_argument(origin + ": the mesh has no triangle; export a surface, not points or lines");
   Collector collector(origin);
-  for (const Placed& placed : place_meshes(*scene, format == "3ds")) collector.add(placed);
+  for (const Placed& placed : all) collector.add(placed);
   return collector.take();
 }
 

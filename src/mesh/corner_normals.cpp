@@ -109,23 +109,37 @@ SharedEdges shared_edges(const TriangleMesh& mesh, const std::vector<Vec3>& face
   return out;
 }
 
-/// A triangle without a normal of its own takes a neighbour's: spread front by front.
+/// A triangle without a normal of its own takes a neighbour's: spread front by front, each front in the
+/// edges' order. O(n log n).
 void spread_normals(const SharedEdges& edges, std::vector<Vec3>& face) {
   for (const auto& [hanging, solid] : edges.hanging) face[hanging / 3] = face[solid / 3];
-  for (bool changed = true; changed;) {
-    changed = false;
-    std::vector<std::pair<std::size_t, Vec3>> found;
-    for (const auto& [a, b] : edges.two) {
-      const bool has_a = !face[a / 3].isZero(0.0);
-      const bool has_b = !face[b / 3].isZero(0.0);
-      if (has_a && !has_b) found.emplace_back(b / 3, face[a / 3]);
-      if (has_b && !has_a) found.emplace_back(a / 3, face[b / 3]);
+  const auto has_normal = [&](Corner c) { return !face[c / 3].isZero(0.0); };
+  std::vector<std::size_t> front;                            // edges with a normal on one side only
+  std::vector<std::pair<std::size_t, std::size_t>> waiting;  // triangles without one, and their edges
+  for (std::size_t e = 0; e < edges.two.size(); ++e) {
+    const auto& [a, b] = edges.two[e];
+    if (!has_normal(a)) waiting.emplace_back(a / 3, e);
+    if (!has_normal(b)) waiting.emplace_back(b / 3, e);
+    if (has_normal(a) != has_normal(b)) front.push_back(e);
+  }
+  std::sort(waiting.begin(), waiting.end());
+  std::vector<std::pair<std::size_t, Vec3>> found;
+  while (!front.empty()) {
+    found.clear();
+    for (const std::size_t e : front) {
+      const auto& [a, b] = edges.two[e];
+      if (has_normal(a) && !has_normal(b)) found.emplace_back(b / 3, face[a / 3]);
+      if (has_normal(b) && !has_normal(a)) found.emplace_back(a / 3, face[b / 3]);
     }
+    front.clear();
     for (const auto& [t, normal] : found) {
       if (!face[t].isZero(0.0)) continue;
       face[t] = normal;
-      changed = true;
+      const auto first = std::lower_bound(waiting.begin(), waiting.end(), std::pair{t, std::size_t{0}});
+      for (auto own = first; own != waiting.end() && own->first == t; ++own) front.push_back(own->second);
     }
+    std::sort(front.begin(), front.end());
+    front.erase(std::unique(front.begin(), front.end()), front.end());
   }
 }
 

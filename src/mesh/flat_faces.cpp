@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/edge_table.h"
+#include "mesh/measured_faces.h"
 #include "mesh/weld.h"
 
 namespace phalanx::mesh {
@@ -19,6 +20,10 @@ const Vec3& point(const TriangleMesh& mesh, std::int32_t v) { return mesh.vertic
 double height(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
   return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
+}
+
+double height_at(const TriangleMesh& mesh, const Triangle& t) noexcept {
+  return height(point(mesh, t[0]), point(mesh, t[1]), point(mesh, t[2]));
 }
 
 /// The corner from which the triangle's longest edge starts.
@@ -36,11 +41,11 @@ Corner longest_edge(const TriangleMesh& mesh, Corner triangle) {
   return best;
 }
 
-/// One pass over the flat triangles; what a change touches is left alone until the next.
+/// One pass over the flat triangles; a triangle that a change touches is left alone until the next.
 class Round {
  public:
-  Round(TriangleMesh& mesh, double flat, double tolerance)
-      : mesh_(mesh), flat_(flat), tolerance_(tolerance), edges_(mesh), first_(mesh.vertices.size() + 1, 0) {
+  Round(TriangleMesh& mesh, double flat, Allowance& allowance)
+      : mesh_(mesh), flat_(flat), allowance_(allowance), edges_(mesh), first_(mesh.vertices.size() + 1, 0) {
     for (const Triangle& t : mesh.triangles)
       for (const std::int32_t v : t) ++first_[idx(v) + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -48,7 +53,7 @@ class Round {
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (const std::int32_t v : mesh.triangles[t]) around_[next[idx(v)]++] = static_cast<std::uint32_t>(t);
-    touched_.assign(mesh.vertices.size(), false);
+    touched_.assign(mesh.triangles.size(), false);
     to_.resize(mesh.vertices.size());
     std::iota(to_.begin(), to_.end(), 0);
   }
@@ -56,44 +61,44 @@ class Round {
   Mended run() {
     const auto count = static_cast<Corner>(mesh_.triangles.size());
     for (Corner t = 0; t < count; ++t) {
-      if (height_of(mesh_, t) >= flat_ || is_touched(mesh_.triangles[t])) continue;
+      if (touched_[t] || height_of(mesh_, t) >= flat_) continue;
       if (!flip(t)) collapse(t);
     }
-    if (renamed_) rename_vertices(mesh_, to_);
+    if (renamed_) rename_vertices(mesh_, to_, &allowance_.spent);
     return mended_;
   }
 
  private:
-  [[nodiscard]] bool is_touched(const Triangle& t) const {
-    return std::any_of(t.begin(), t.end(), [&](std::int32_t v) { return touched_[idx(v)]; });
-  }
-  void touch(const Triangle& t) {
-    for (const std::int32_t v : t) touched_[idx(v)] = true;
-  }
-
   /// c lies on ab: the flat triangle and the one beyond ab share the area of the latter.
   bool flip(Corner t) {
     const Corner c0 = longest_edge(mesh_, t);
     const std::int32_t a = vertex_at(mesh_, c0);
     const std::int32_t b = vertex_at(mesh_, next_corner(c0));
     const std::int32_t c = vertex_at(mesh_, next_corner(next_corner(c0)));
-    if ((point(mesh_, c) - point(mesh_, a)).norm() <= tolerance_ ||
-        (point(mesh_, c) - point(mesh_, b)).norm() <= tolerance_)
+    if ((point(mesh_, c) - point(mesh_, a)).norm() <= allowance_.reach ||
+        (point(mesh_, c) - point(mesh_, b)).norm() <= allowance_.reach)
       return false;
     const auto pair = edges_.at(a, b);
     if (pair.size() != 2) return false;
     const Corner other = pair[0].start / 3 == t ? pair[1].start / 3 : pair[0].start / 3;
     const Triangle beyond = mesh_.triangles[other];
-    if (other == t || is_touched(beyond) || height_of(mesh_, other) < flat_) return false;
+    if (other == t || touched_[other] || height_of(mesh_, other) < flat_) return false;
     const std::int32_t d = beyond[0] + beyond[1] + beyond[2] - a - b;
-    if (d == c || !edges_.at(c, d).empty()) return false;
+    const std::pair<std::int32_t, std::int32_t> across = std::minmax(c, d);
+    if (d == c || !edges_.at(c, d).empty() || new_edges_.count(across) > 0) return false;
     Triangle one = beyond;
     Triangle two = beyond;
     std::replace(one.begin(), one.end(), a, c);
     std::replace(two.begin(), two.end(), b, c);
+    if (height_at(mesh_, one) < flat_ || height_at(mesh_, two) < flat_) return false;
+    std::vector<double>& spent = allowance_.spent;
     const double h = height_of(mesh_, t);
-    touch(beyond);
-    touch(mesh_.triangles[t]);
+    const double moved = std::max(spent[idx(a)], spent[idx(b)]) + h;
+    if (!allowance_.allows(moved)) return false;
+    spent[idx(c)] = std::max(spent[idx(c)], moved);
+    mended_.worst.take(longest_edge_of(mesh_, mesh_.triangles[t]));
+    touched_[t] = touched_[other] = true;
+    new_edges_.insert(across);
     mesh_.triangles[other] = one;
     mesh_.triangles[t] = two;
     ++mended_.count;
@@ -127,7 +132,7 @@ class Round {
   void collapse(Corner t) {
     std::int32_t a = -1;
     std::int32_t b = -1;
-    double least = tolerance_;
+    double least = allowance_.reach;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t p = mesh_.triangles[t][k];
       const std::int32_t q = mesh_.triangles[t][(k + 1) % 3];
@@ -142,6 +147,16 @@ class Round {
       b = p_first ? q : p;
     }
     if (a < 0) return;
+    const double moved = allowance_.spent[idx(b)] + least;
+    if (!allowance_.allows(moved)) return;
+    for (const std::int32_t v : {a, b}) {
+      if (first_[idx(v) + 1] - first_[idx(v)] > kMostAround) {
+        mended_.complete = false;
+        return;
+      }
+      for (std::uint32_t i = first_[idx(v)]; i < first_[idx(v) + 1]; ++i)
+        if (touched_[around_[i]]) return;
+    }
     const auto pair = edges_.at(a, b);
     if (pair.size() != 2) return;
     const auto ring_a = neighbours(a);
@@ -150,9 +165,6 @@ class Round {
     std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
                           std::back_inserter(common));
     if (common.size() != 2 || !is_covered(a, b, common[0]) || !is_covered(a, b, common[1])) return;
-    for (const auto* ring : {&ring_a, &ring_b})
-      for (const std::int32_t v : *ring)
-        if (touched_[idx(v)]) return;
     for (std::uint32_t i = first_[idx(b)]; i < first_[idx(b) + 1]; ++i) {
       const Triangle& old = mesh_.triangles[around_[i]];
       if (std::find(old.begin(), old.end(), a) != old.end()) continue;
@@ -161,9 +173,11 @@ class Round {
       if (normal(turned).dot(normal(old)) <= 0.0) return;
     }
     for (const std::int32_t v : {a, b})
-      for (std::uint32_t i = first_[idx(v)]; i < first_[idx(v) + 1]; ++i) touch(mesh_.triangles[around_[i]]);
+      for (std::uint32_t i = first_[idx(v)]; i < first_[idx(v) + 1]; ++i) touched_[around_[i]] = true;
+    allowance_.spent[idx(a)] = std::max(allowance_.spent[idx(a)], moved);
     to_[idx(b)] = a;
     renamed_ = true;
+    mended_.worst.take(longest_edge_of(mesh_, mesh_.triangles[t]));
     ++mended_.count;
     mended_.moved = std::max(mended_.moved, least);
   }
@@ -171,13 +185,17 @@ class Round {
     return (point(mesh_, t[1]) - point(mesh_, t[0])).cross(point(mesh_, t[2]) - point(mesh_, t[0]));
   }
 
+  /// More would be gathered again for every flat triangle there.
+  static constexpr std::uint32_t kMostAround = 256;
+
   TriangleMesh& mesh_;
   double flat_;
-  double tolerance_;
+  Allowance& allowance_;
   EdgeTable edges_;
   std::vector<std::uint32_t> first_;   ///< of each vertex in around_
-  std::vector<std::uint32_t> around_;  ///< triangles at each vertex
-  std::vector<bool> touched_;
+  std::vector<std::uint32_t> around_;  ///< triangles at each vertex, before the pass
+  std::vector<bool> touched_;          ///< triangles
+  std::set<std::pair<std::int32_t, std::int32_t>> new_edges_;
   std::vector<std::int32_t> to_;
   bool renamed_ = false;
   Mended mended_;
@@ -186,8 +204,7 @@ class Round {
 }  // namespace
 
 double height_of(const TriangleMesh& mesh, std::size_t triangle) noexcept {
-  const Triangle& t = mesh.triangles[triangle];
-  return height(point(mesh, t[0]), point(mesh, t[1]), point(mesh, t[2]));
+  return height_at(mesh, mesh.triangles[triangle]);
 }
 
 std::size_t count_flat_faces(const TriangleMesh& mesh, double flat) {
@@ -197,15 +214,33 @@ std::size_t count_flat_faces(const TriangleMesh& mesh, double flat) {
   return count;
 }
 
-Mended remove_flat_faces(TriangleMesh& mesh, double flat, double tolerance) {
+Spot longest_flat_face(const TriangleMesh& mesh, double flat) {
+  Spot longest;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (height_of(mesh, t) < flat) longest.take(longest_edge_of(mesh, mesh.triangles[t]));
+  return longest;
+}
+
+Mended remove_flat_faces(TriangleMesh& mesh, double flat, Allowance& allowance) {
   Mended mended;
-  constexpr int kRounds = 32;
-  for (int round = 0; round < kRounds && count_flat_faces(mesh, flat) > 0; ++round) {
-    const Mended now = Round(mesh, flat, tolerance).run();
+  constexpr std::size_t kMostLookedAt = 20'000'000;  // triangles, over all passes but the first
+  std::size_t looked_at = 0;
+  std::size_t left = count_flat_faces(mesh, flat);
+  const std::size_t before = left;
+  while (left > 0) {
+    if (looked_at > kMostLookedAt) {
+      mended.complete = false;
+      break;
+    }
+    const Mended now = Round(mesh, flat, allowance).run();
+    mended.complete = mended.complete && now.complete;
     if (now.count == 0) break;
-    mended.count += now.count;
     mended.moved = std::max(mended.moved, now.moved);
+    mended.worst.take(now.worst);
+    left = count_flat_faces(mesh, flat);
+    looked_at += mesh.triangles.size();
   }
+  mended.count = before - std::min(before, left);
   return mended;
 }
 

@@ -115,11 +115,13 @@ void decimate_to(const ImportOptions& options, const std::string& origin, Import
   report.cavities = after.cavities;
   report.sheets = after.sheets;
   // What the file had counts for what was repaired, what there is now for what remains.
-  for (const FindingKind kind : {FindingKind::kNonManifoldEdges, FindingKind::kPinchVertices,
-                                 FindingKind::kHoles, FindingKind::kSheets, FindingKind::kNonOrientable,
-                                 FindingKind::kSelfIntersections, FindingKind::kManyTriangles}) {
+  for (const FindingKind kind :
+       {FindingKind::kNonManifoldEdges, FindingKind::kPinchVertices, FindingKind::kHoles, FindingKind::kSlits,
+        FindingKind::kOutlines, FindingKind::kSheets, FindingKind::kNonOrientable,
+        FindingKind::kSelfIntersections, FindingKind::kManyTriangles}) {
     std::erase_if(report.findings, [&](const MeshFinding& f) { return f.kind == kind; });
-    const MeshFinding now = after.finding(kind);
+    MeshFinding now = after.finding(kind);
+    if (now.at) now.at = Vec3(*now.at / report.scale + report.origin);  // was of the placed mesh
     if (now.found > 0) report.findings.push_back(now);
   }
   std::sort(report.findings.begin(), report.findings.end(),

@@ -53,6 +53,40 @@ void check_3ds_mesh(std::string_view mesh, const std::string& origin) {
   }
 }
 
+/// What a reader must know to see the surface as it is; looks, which are not read here, do not count.
+void check_extensions(const nlohmann::json& root, const std::string& origin) {
+  for (const nlohmann::json& entry : root.value("extensionsRequired", nlohmann::json::array())) {
+    const auto name = entry.get<std::string>();
+    if (name == "KHR_draco_mesh_compression") continue;
+    if (name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+        name.starts_with("EXT_texture_") || name.starts_with("KHR_lights_"))
+      continue;
+    throw std::invalid_argument(origin + ": the file requires the glTF extension '" + name.substr(0, 60) +
+                                "', which is not read; export it without quantisation or compression");
+  }
+}
+
+/// Positions are floats, and corners come in threes where each three are a triangle.
+void check_primitive(const nlohmann::json& root, const nlohmann::json& primitive, const std::string& origin) {
+  const auto accessor = [&](const nlohmann::json& index) -> const nlohmann::json& {
+    return root.at("accessors").at(index.get<std::size_t>());
+  };
+  const nlohmann::json& positions = accessor(primitive.at("attributes").at("POSITION"));
+  constexpr int kFloat = 5126;
+  const int type = positions.at("componentType").get<int>();
+  if (type != kFloat)
+    throw std::invalid_argument(origin + ": the positions have component type " + std::to_string(type) +
+                                ", not 5126 (float); export the mesh without quantisation");
+  constexpr int kTriangles = 4;
+  if (primitive.value("mode", kTriangles) != kTriangles) return;
+  const auto corners = (primitive.contains("indices") ? accessor(primitive.at("indices")) : positions)
+                           .at("count")
+                           .get<std::uint64_t>();
+  if (corners % 3 != 0)
+    throw std::invalid_argument(origin + ": a mesh of triangles has " + std::to_string(corners) +
+                                " corners, which 3 does not divide; export it again");
+}
+
 }  // namespace
 
 void check_3ds_indices(std::string_view bytes, const std::string& origin) {
@@ -83,6 +117,7 @@ void check_glb_indices(std::string_view bytes, const std::string& origin) {
   if (!json_length || bytes.size() < 20 || *json_length > bytes.size() - 20) return;
   const Json root = Json::parse(bytes.substr(20, *json_length), nullptr, false);
   if (!root.is_object()) return;
+  check_extensions(root, origin);
   // The BIN chunk follows the JSON chunk, each behind 8 bytes of length and type.
   const std::size_t bin = 20 + std::size_t{*json_length} + 8;
   const std::string_view buffer = bin < bytes.size() ? bytes.substr(bin) : std::string_view();
@@ -91,7 +126,9 @@ void check_glb_indices(std::string_view bytes, const std::string& origin) {
   };
   for (const Json& mesh : root.value("meshes", Json::array())) {
     for (const Json& primitive : mesh.value("primitives", Json::array())) {
-      if (!primitive.contains("indices") || !primitive.at("attributes").contains("POSITION")) continue;
+      if (!primitive.at("attributes").contains("POSITION")) continue;
+      check_primitive(root, primitive, origin);
+      if (!primitive.contains("indices")) continue;
       const auto vertices =
           element("accessors", primitive.at("attributes").at("POSITION")).at("count").get<std::uint64_t>();
       const Json& accessor = element("accessors", primitive.at("indices"));

@@ -24,8 +24,9 @@ constexpr std::array<Words, kFindingKinds> kWords = {{
     {"inside_out", "normals point out of the solid", ""},
     {"non_manifold_edges", "", "met where they are; normals are not interpolated over these edges"},
     {"pinch_vertices", "", "met where they are; normals are not interpolated across"},
-    {"holes", "",
-     "not filled: a finger narrower than the hole goes through; the surface is met from both sides"},
+    {"holes", "", "not filled: what is narrower goes through; the surface is met from both sides"},
+    {"slits", "", "left open: no fingertip goes through, but its edges are met one by one"},
+    {"outlines", "", "a sheet ends there: nothing to go through; met as an edge"},
     {"sheets", "",
      "met from both sides; nothing is inside, so that a hand that starts behind it is not noticed"},
     {"non_orientable", "", "left as it is and met from both sides; flat normals where it joins itself"},
@@ -39,8 +40,8 @@ const Words& words_of(FindingKind kind) { return kWords[static_cast<std::size_t>
 
 std::string length_text(double metres) {
   std::array<char, 64> text{};
-  const char* form = metres >= 1.0 ? "%.4g m" : "%.4g mm";
-  std::snprintf(text.data(), text.size(), form, metres >= 1.0 ? metres : metres * 1e3);
+  const char* form = metres >= 1.0 ? "%.4g m" : metres < 1e-4 ? "%.3g um" : "%.4g mm";
+  std::snprintf(text.data(), text.size(), form, metres * (metres >= 1.0 ? 1.0 : metres < 1e-4 ? 1e6 : 1e3));
   return text.data();
 }
 
@@ -49,7 +50,7 @@ std::string length_text(double metres) {
 MeshFinding MeshReport::finding(FindingKind kind) const {
   for (const MeshFinding& f : findings)
     if (f.kind == kind) return f;
-  return {kind, 0, 0, 0.0, 0.0};
+  return {.kind = kind};
 }
 
 const char* finding_name(FindingKind kind) noexcept { return words_of(kind).name; }
@@ -60,6 +61,8 @@ std::string finding_meaning(const MeshFinding& finding) {
            " for a hand; give the file's unit (mm, cm, in) or a size";
   const Words& words = words_of(finding.kind);
   if (finding.kind == FindingKind::kHoles)
+    return std::string(words.remains) + " (the widest is " + length_text(finding.width) + " across at most)";
+  if (finding.kind == FindingKind::kSlits)
     return std::string(words.remains) + " (the widest is " + length_text(finding.width) + ")";
   if (finding.repaired == finding.found) return words.repaired;
   if (finding.repaired == 0) return words.remains;

@@ -38,7 +38,8 @@ using Edge = std::pair<std::int32_t, std::int32_t>;
 
 /// A triangle that the renaming would make a line, or a point, may go only if an edge, or a corner, of one
 /// that stays lies there: a needle that hangs in the air can be met. The renaming of its corners is undone.
-void keep_what_nothing_covers(const TriangleMesh& mesh, std::vector<std::int32_t>& to) {
+/// @returns whether any was, which may uncover others
+bool undo_what_nothing_covers(const TriangleMesh& mesh, std::vector<std::int32_t>& to) {
   std::vector<std::size_t> thin;
   const auto renamed = [&](const Triangle& t) {
     return Triangle{to[idx(t[0])], to[idx(t[1])], to[idx(t[2])]};
@@ -46,7 +47,7 @@ void keep_what_nothing_covers(const TriangleMesh& mesh, std::vector<std::int32_t
   const auto is_thin = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     if (is_thin(renamed(mesh.triangles[t]))) thin.push_back(t);
-  if (thin.empty()) return;
+  if (thin.empty()) return false;
   std::vector<Edge> edges;  // of the triangles that stay
   edges.reserve(3 * (mesh.triangles.size() - thin.size()));
   std::vector<bool> used(mesh.vertices.size(), false);
@@ -68,11 +69,14 @@ void keep_what_nothing_covers(const TriangleMesh& mesh, std::vector<std::int32_t
     if (!covered) undo.insert(undo.end(), mesh.triangles[i].begin(), mesh.triangles[i].end());
   }
   for (const std::int32_t v : undo) to[idx(v)] = v;
+  return !undo.empty();
 }
 
 }  // namespace
 
-Mended merge_near_vertices(TriangleMesh& mesh, double tolerance) {
+Mended merge_near_vertices(TriangleMesh& mesh, Allowance& allowance) {
+  const double tolerance = allowance.reach;
+  std::vector<double>& spent = allowance.spent;
   // A grid of cells as wide as the tolerance: whoever is near stands in one of 27.
   std::vector<Placed> placed;
   {
@@ -101,7 +105,6 @@ Mended merge_near_vertices(TriangleMesh& mesh, double tolerance) {
   };
   std::sort(in_order.begin(), in_order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return before(placed[a].vertex, placed[b].vertex); });
-  std::vector<bool> is_target(mesh.vertices.size(), false);
   for (const std::uint32_t p : in_order) {
     const std::int32_t v = placed[p].vertex;
     if (to[idx(v)] != v) continue;  // has moved itself
@@ -113,25 +116,29 @@ Mended merge_near_vertices(TriangleMesh& mesh, double tolerance) {
         for (auto other = std::lower_bound(placed.begin(), placed.end(), first);
              other != placed.end() && other->cell <= last; ++other) {
           const std::int32_t w = other->vertex;
-          if (!before(v, w) || to[idx(w)] != w || is_target[idx(w)]) continue;
+          if (!before(v, w) || to[idx(w)] != w) continue;
           const double gap = (mesh.vertices[idx(w)] - mesh.vertices[idx(v)]).norm();
-          if (gap > tolerance) continue;
+          if (gap > tolerance || !allowance.allows(spent[idx(w)] + gap)) continue;
           to[idx(w)] = v;
-          is_target[idx(v)] = true;
           ++mended.count;
         }
       }
     }
   }
   if (mended.count == 0) return mended;
-  keep_what_nothing_covers(mesh, to);
+  constexpr int kRounds = 64;
+  for (int round = 0; undo_what_nothing_covers(mesh, to); ++round)
+    if (round == kRounds) return {.complete = false};
   mended = {};
   for (std::size_t v = 0; v < to.size(); ++v) {
     if (idx(to[v]) == v) continue;
     ++mended.count;
-    mended.moved = std::max(mended.moved, (mesh.vertices[v] - mesh.vertices[idx(to[v])]).norm());
+    const double gap = (mesh.vertices[v] - mesh.vertices[idx(to[v])]).norm();
+    mended.moved = std::max(mended.moved, gap);
+    mended.worst.take(gap, mesh.vertices[v]);
+    spent[idx(to[v])] = std::max(spent[idx(to[v])], spent[v] + gap);
   }
-  if (mended.count > 0) rename_vertices(mesh, to);
+  if (mended.count > 0) rename_vertices(mesh, to, &spent);
   return mended;
 }
 

@@ -69,12 +69,13 @@ Patches orient_patches(TriangleMesh& mesh, const EdgeTable& edges) {
       walk.against[t] = false;  // each triangle is of one patch only: the flag has served
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
       ++patches.turned;
+      patches.turned_faces.add(mesh, mesh.triangles[t]);
     }
   }
   return patches;
 }
 
-std::size_t count_pinch_vertices(const TriangleMesh& mesh, const EdgeTable& edges) {
+PinchVertices find_pinch_vertices(const TriangleMesh& mesh, const EdgeTable& edges) {
   const std::size_t corners = 3 * mesh.triangles.size();
   DisjointSets fans(corners);
   std::vector<bool> on_crowded_edge(mesh.vertices.size(), false);
@@ -92,10 +93,18 @@ std::size_t count_pinch_vertices(const TriangleMesh& mesh, const EdgeTable& edge
     std::uint8_t& fans_here = seen[idx(vertex_at(mesh, c))];
     if (fans.root(c) == c && fans_here < 2) ++fans_here;
   }
-  std::size_t count = 0;
+  PinchVertices pinch;
+  const auto is_pinch = [&](std::int32_t v) { return seen[idx(v)] > 1 && !on_crowded_edge[idx(v)]; };
   for (std::size_t v = 0; v < seen.size(); ++v)
-    if (seen[v] > 1 && !on_crowded_edge[v]) ++count;
-  return count;
+    if (is_pinch(static_cast<std::int32_t>(v))) ++pinch.count;
+  if (pinch.count == 0) return pinch;
+  edges.for_each([&](std::span<const HalfEdge> edge) {
+    const Vec3& low = mesh.vertices[idx(edge[0].low)];
+    const Vec3& high = mesh.vertices[idx(edge[0].high)];
+    if (is_pinch(edge[0].low)) pinch.longest.take((high - low).norm(), low);
+    if (is_pinch(edge[0].high)) pinch.longest.take((high - low).norm(), high);
+  });
+  return pinch;
 }
 
 }  // namespace phalanx::mesh

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "mesh/box_tree.h"
 #include "mesh/edge_table.h"
@@ -44,7 +45,7 @@ class Repair {
     add(FindingKind::kDuplicateVertices, welded.duplicates, welded.duplicates);
     check_mesh(mesh_, origin_.c_str());
     scale();
-    close_cracks(welded.degenerate);
+    close_cracks(welded);
     orient();
     finish();
     return std::move(mesh_);
@@ -60,8 +61,24 @@ class Repair {
     throw std::invalid_argument(message.str());
   }
 
-  void add(FindingKind kind, std::size_t found, std::size_t repaired, double size = 0.0, double width = 0.0) {
-    if (found > 0) report_.findings.push_back({kind, found, repaired, size, width});
+  struct Measured {
+    double size = 0.0;
+    double width = 0.0;
+    double area = 0.0;
+    Spot place = {};  ///< in the mesh's frame; its own size does not count
+  };
+  void add(FindingKind kind, std::size_t found, std::size_t repaired, const Measured& m) {
+    if (found == 0) return;
+    MeshFinding finding{kind, found, repaired, m.size, m.width, m.area, std::nullopt};
+    if (m.place.known()) finding.at = m.place.at / report_.scale + report_.origin;
+    report_.findings.push_back(finding);
+  }
+  void add(FindingKind kind, std::size_t found, std::size_t repaired) {
+    add(kind, found, repaired, Measured());
+  }
+  void add(FindingKind kind, const OpenLines& lines) {
+    const double width = kind == FindingKind::kOutlines ? 0.0 : lines.widest.size;
+    add(kind, lines.count, 0, {.size = lines.longest, .width = width, .place = lines.widest});
   }
 
   /// To metres and the size wanted, if the numbers allow it.
@@ -87,6 +104,7 @@ class Repair {
     if (options_.size > 0.0) {
       const Vec3 centre = 0.5 * (box.min + box.max);
       for (Vec3& v : mesh_.vertices) v = (v - centre) * report_.scale;
+      report_.origin = centre;
     } else if (options_.unit != 1.0) {
       for (Vec3& v : mesh_.vertices) v *= options_.unit;
     }
@@ -95,47 +113,75 @@ class Repair {
     report_.tolerance = std::min(kMostMoved, 1e-5 * extent.maxCoeff());
     if (!(report_.tolerance > 0.0)) refuse("its largest extent is 0; export it again");
     if (!unit_advice(extent.maxCoeff(), report_.scale).empty())
-      add(FindingKind::kUnits, 1, 0, extent.maxCoeff());
-    if (step > report_.tolerance) add(FindingKind::kCoarseNumbers, 1, 0, step);
-  }
-
-  void note(const Mended& mended) {
-    report_.moved = std::max(report_.moved, mended.moved);
-    report_.complete = report_.complete && mended.complete;
+      add(FindingKind::kUnits, 1, 0, {.size = extent.maxCoeff()});
+    if (step > report_.tolerance) add(FindingKind::kCoarseNumbers, 1, 0, {.size = step});
   }
 
   /// Degenerate and duplicate triangles go, cracks are closed, until nothing is left to do. A later step may
   /// bring what an earlier one looks for: two sides of a crack become one edge.
-  void close_cracks(std::size_t degenerate) {
+  void close_cracks(const WeldCounts& welded) {
     const double tolerance = report_.tolerance;
     const double flat = 0.01 * tolerance;
+    // So many steps in one place are rare: what their sum holds back, a second repair would do.
+    Allowance allowance{tolerance / 6.0, tolerance, std::vector<double>(mesh_.vertices.size(), 0.0)};
     std::size_t duplicates = 0;
+    MeasuredFaces dropped_faces;
     Mended near;
     Mended junctions;
     Mended flats;
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
-      const std::size_t dropped = drop_duplicate_faces(mesh_);
-      const Mended n = merge_near_vertices(mesh_, tolerance);
-      const Mended t = split_t_junctions(mesh_, tolerance);
-      const Mended f = remove_flat_faces(mesh_, flat, tolerance);
+      const std::size_t dropped = drop_duplicate_faces(mesh_, &dropped_faces);
+      const Mended n = merge_near_vertices(mesh_, allowance);
+      const Mended t = split_t_junctions(mesh_, allowance);
+      const Mended f = remove_flat_faces(mesh_, flat, allowance);
       duplicates += dropped;
       near.count += n.count;
-      near.moved = std::max(near.moved, n.moved);
+      near.worst.take(n.worst);
       junctions.count += t.count;
-      junctions.moved = std::max(junctions.moved, t.moved);
+      junctions.worst.take(t.worst);
       flats.count += f.count;
-      for (const Mended& m : {n, t, f}) note(m);
+      flats.worst.take(f.worst);
+      for (const Mended& m : {n, t, f}) report_.complete = report_.complete && m.complete;
+      for (const double moved : allowance.spent) report_.moved = std::max(report_.moved, moved);
       if (mesh_.triangles.empty()) refuse("all its triangles are without area; export a surface");
       if (n.count + t.count + f.count == 0) break;
+      report_.complete = report_.complete && round + 1 < kRounds;
     }
     const std::size_t still_flat = count_flat_faces(mesh_, flat);
     if (still_flat == mesh_.triangles.size())
       refuse("none of its ", still_flat, " triangles has an area; export a surface");
-    add(FindingKind::kNearVertices, near.count, near.count, near.moved);
-    add(FindingKind::kDegenerateFaces, degenerate + flats.count + still_flat, degenerate + flats.count);
-    add(FindingKind::kDuplicateFaces, duplicates, duplicates);
-    add(FindingKind::kTJunctions, junctions.count, junctions.count, junctions.moved);
+    // A flat triangle that remains is where to look; else the longest of those that went.
+    Spot flattest = longest_flat_face(mesh_, flat);
+    if (!flattest.known()) {
+      flattest = flats.worst;
+      const Spot& w = welded.longest_degenerate;
+      if (w.known()) flattest.take(w.size * report_.scale, (w.at - report_.origin) * report_.scale);
+    }
+    const std::size_t gone = welded.degenerate + flats.count;
+    add(FindingKind::kNearVertices, near.count, near.count, {.size = near.worst.size, .place = near.worst});
+    add(FindingKind::kDegenerateFaces, gone + still_flat, gone, {.size = flattest.size, .place = flattest});
+    add(FindingKind::kDuplicateFaces, duplicates, duplicates, measured(dropped_faces));
+    add(FindingKind::kTJunctions, junctions.count, junctions.count,
+        {.size = junctions.worst.size, .place = junctions.worst});
+  }
+
+  static Measured measured(const MeasuredFaces& faces) {
+    return {.size = faces.longest.size, .area = faces.area, .place = faces.longest};
+  }
+
+  /// The largest of the shells that `is_one` names.
+  template <typename IsOne>
+  [[nodiscard]] Measured largest_shell(const Shells& shells, const IsOne& is_one) const {
+    Measured m;
+    for (const Shell& shell : shells.shell)
+      if (is_one(shell))
+        m.place.take((shell.box.max - shell.box.min).maxCoeff(),
+                     centroid(mesh_, mesh_.triangles[shell.first]));
+    for (std::size_t t = 0; t < shells.of.size(); ++t)
+      if (is_one(shells.shell[shells.of[t]])) m.area += area_of(mesh_, mesh_.triangles[t]);
+    m.size = m.place.size;
+    return m;
   }
 
   void orient() {
@@ -143,16 +189,17 @@ class Repair {
     const Patches patches = orient_patches(mesh_, *edges);
     if (patches.turned > 0) edges.emplace(mesh_);  // a turned triangle's edges start from other corners
     Shells shells = find_shells(mesh_, *edges, patches);
-    const std::size_t crowded = count_crowded_edges(*edges);
-    const std::size_t pinched = count_pinch_vertices(mesh_, *edges);
-    const OpenEdges open = find_open_edges(mesh_, *edges);
+    const CrowdedEdges crowded = find_crowded_edges(mesh_, *edges);
+    const PinchVertices pinched = find_pinch_vertices(mesh_, *edges);
+    const OpenEdges open = find_open_edges(mesh_, *edges, shells);
     edges.reset();
     const BoxTree tree = triangle_boxes(mesh_);
     const SelfIntersections crossing = find_self_intersections(mesh_, shells, tree, report_.tolerance);
-    report_.complete = report_.complete && crossing.complete;
-    const std::size_t turned = turn_shells_outward(mesh_, shells, tree, crossing.between_shells);
+    report_.complete = report_.complete && crossing.complete && open.complete;
+    const TurnedShells turned =
+        turn_shells_outward(mesh_, shells, tree, crossing.between_shells, report_.tolerance);
+    report_.complete = report_.complete && turned.complete;
     std::size_t one_sided = 0;
-    double widest = 0.0;
     for (const Shell& shell : shells.shell) {
       if (!shell.two_sided) ++one_sided;
       if (shell.closed) {
@@ -160,17 +207,23 @@ class Repair {
         ++(shell.cavity ? report_.cavities : report_.solids);
       } else {
         ++report_.sheets;
-        widest = std::max(widest, (shell.box.max - shell.box.min).maxCoeff());
       }
     }
-    add(FindingKind::kInconsistentWinding, patches.turned, patches.turned);
-    add(FindingKind::kInsideOut, turned, turned);
-    add(FindingKind::kNonManifoldEdges, crowded, 0);
-    add(FindingKind::kPinchVertices, pinched, 0);
-    add(FindingKind::kHoles, open.lines, 0, open.longest, open.widest);
-    add(FindingKind::kSheets, report_.sheets, 0, widest);
-    add(FindingKind::kNonOrientable, one_sided, 0);
-    add(FindingKind::kSelfIntersections, crossing.pairs, 0);
+    add(FindingKind::kInconsistentWinding, patches.turned, patches.turned, measured(patches.turned_faces));
+    add(FindingKind::kInsideOut, turned.count, turned.count,
+        {.size = turned.largest.size, .area = turned.area, .place = turned.largest});
+    add(FindingKind::kNonManifoldEdges, crowded.count, 0, {.size = crowded.length, .place = crowded.longest});
+    add(FindingKind::kPinchVertices, pinched.count, 0,
+        {.size = pinched.longest.size, .place = pinched.longest});
+    add(FindingKind::kHoles, open.holes);
+    add(FindingKind::kSlits, open.slits);
+    add(FindingKind::kOutlines, open.outlines);
+    add(FindingKind::kSheets, report_.sheets, 0,
+        largest_shell(shells, [](const Shell& shell) { return !shell.closed; }));
+    add(FindingKind::kNonOrientable, one_sided, 0,
+        largest_shell(shells, [](const Shell& shell) { return !shell.two_sided; }));
+    add(FindingKind::kSelfIntersections, crossing.pairs, 0,
+        {.size = crossing.longest.size, .place = crossing.longest});
   }
 
   void finish() {

@@ -59,16 +59,57 @@ bool cross(const TriangleMesh& mesh, std::size_t i, std::size_t j, double tolera
   if (shared >= 2) return false;
   Sided a{points_of(mesh, i), {}};
   Sided b{points_of(mesh, j), {}};
-  // A crossing needs both to reach over the other's plane, unless they hang together in a vertex of it.
+  // A crossing needs both to reach over the other's plane, unless they hang together in a vertex of it: what
+  // only touches does not cross.
   const bool over_a = measure(a, b.corner, tolerance);
-  if (!over_a && shared == 0 && !measure(b, a.corner, tolerance)) return false;
   const bool over_b = measure(b, a.corner, tolerance);
+  if (shared == 0 && !(over_a && over_b)) return false;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t n = (k + 1) % 3;
     if (over_a && !has(ti, tj[k]) && !has(ti, tj[n]) && pierced(a, b.corner, k, tolerance)) return true;
     if (over_b && !has(tj, ti[k]) && !has(tj, ti[n]) && pierced(b, a.corner, k, tolerance)) return true;
   }
   return false;
+}
+
+/// Where the triangle's edges meet the plane over which its corners have these heights.
+std::array<Vec3, 2> cut(const Points& corner, const std::array<double, 3>& height) {
+  std::array<Vec3, 2> ends{corner[0], corner[0]};
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < 3 && found < 2; ++k) {
+    const std::size_t n = (k + 1) % 3;
+    if ((height[k] < 0.0) == (height[n] < 0.0)) continue;
+    ends[found++] = corner[k] + (corner[n] - corner[k]) * (height[k] / (height[k] - height[n]));
+  }
+  if (found == 1) ends[1] = ends[0];
+  return ends;
+}
+
+/// The line along which two triangles that cross do so: the part that their cuts with each other's plane
+/// share.
+Spot line_of_crossing(const TriangleMesh& mesh, std::size_t i, std::size_t j) {
+  Sided a{points_of(mesh, i), {}};
+  Sided b{points_of(mesh, j), {}};
+  (void)measure(a, b.corner, 0.0);
+  (void)measure(b, a.corner, 0.0);
+  const std::array<Vec3, 2> of_b = cut(b.corner, a.height);
+  const std::array<Vec3, 2> of_a = cut(a.corner, b.height);
+  const Vec3 step = of_b[1] - of_b[0];
+  const double length = step.norm();
+  Spot spot;
+  if (!(length > 0.0)) {
+    spot.take(0.0, of_b[0]);
+    return spot;
+  }
+  const auto along = [&](const Vec3& p) { return (p - of_b[0]).dot(step) / length; };
+  const double one = along(of_a[0]);
+  const double two = along(of_a[1]);
+  const double low = std::min(one, two);
+  const double high = std::max(one, two);
+  const double from = std::clamp(low, 0.0, length);
+  const double to = std::clamp(high, from, length);
+  spot.take(to - from, of_b[0] + step * (0.5 * (from + to) / length));
+  return spot;
 }
 
 void make_unique(ShellPairs& pairs) {
@@ -96,6 +137,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, const Shells
       ++looked_at;
       if (!cross(mesh, i, j, tolerance)) return;
       ++found.pairs;
+      found.longest.take(line_of_crossing(mesh, i, j));
       if (shells.of[i] == shells.of[j]) return;
       found.between_shells.emplace_back(std::minmax(shells.of[i], shells.of[j]));
       if (found.between_shells.size() < room) return;

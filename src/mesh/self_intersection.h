@@ -4,12 +4,14 @@
 #include <cstddef>
 
 #include "mesh/shells.h"
+#include "mesh/spot.h"
 
 namespace phalanx::mesh {
 
 struct SelfIntersections {
   std::size_t pairs = 0;      ///< of triangles that cross
   ShellPairs between_shells;  ///< different shells that cross
+  Spot longest;               ///< the longest line of crossing of one pair [m], and its middle
   bool complete = true;       ///< false: more pairs lie near each other than are looked at
 };
 

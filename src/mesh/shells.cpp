@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+
+#include "mesh/deviation.h"
 
 namespace phalanx::mesh {
 namespace {
@@ -36,91 +39,164 @@ std::vector<bool> closed_groups(const TriangleMesh& mesh, const EdgeTable& edges
   return closed;
 }
 
-/// Where a ray from `from` crosses shells: +1 a crossing outwards, -1 inwards, summed by shell. Nothing if it
-/// grazes an edge.
-std::optional<std::vector<std::pair<std::uint32_t, int>>> crossings(const TriangleMesh& mesh,
-                                                                    const Shells& shells, const BoxTree& tree,
-                                                                    std::uint32_t own, const Vec3& from,
-                                                                    const Vec3& along) {
-  std::vector<std::pair<std::uint32_t, int>> sums;
-  bool grazed = false;
-  const Vec3 inverse = along.cwiseInverse();
-  const auto may_hit = [&](const FloatBox& b) {
-    double enter = 0.0;
-    double leave = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const double s = (static_cast<double>(b.min[i]) - from[k]) * inverse[k];
-      const double e = (static_cast<double>(b.max[i]) - from[k]) * inverse[k];
-      enter = std::max(enter, std::min(s, e));
-      leave = std::min(leave, std::max(s, e));
-    }
-    return enter <= leave * (1.0 + 1e-12) && !grazed;
-  };
-  tree.walk(may_hit, [&](std::uint32_t t) {
-    const std::uint32_t shell = shells.of[t];
-    if (shell == own || !shells.shell[shell].closed) return;
-    const Triangle& corner = mesh.triangles[t];
-    const Vec3& a = mesh.vertices[idx(corner[0])];
-    const Vec3 u = mesh.vertices[idx(corner[1])] - a;
-    const Vec3 v = mesh.vertices[idx(corner[2])] - a;
-    const Vec3 normal = u.cross(v);
-    const double area = normal.norm();
-    const double slope = normal.dot(along);
-    if (area == 0.0) return;
-    constexpr double kGrazing = 1e-9;
-    if (std::abs(slope) <= kGrazing * area) {
-      // In the triangle's plane: harmless unless it runs through the triangle.
-      grazed = std::abs((from - a).dot(normal)) <= kGrazing * area * std::sqrt(area);
-      return;
-    }
-    const double distance = (a - from).dot(normal) / slope;
-    if (distance < 0.0) return;
-    const Vec3 at = from + distance * along - a;
-    const double b1 = at.cross(v).dot(normal) / (area * area);
-    const double b2 = u.cross(at).dot(normal) / (area * area);
-    const double least = std::min({b1, b2, 1.0 - b1 - b2});
-    if (least < -kGrazing) return;
-    if (least < kGrazing) {
-      grazed = true;
-      return;
-    }
-    const int sign = slope > 0.0 ? 1 : -1;
-    const auto known =
-        std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == shell; });
-    if (known == sums.end()) {
-      sums.emplace_back(shell, sign);
-    } else {
-      known->second += sign;
-    }
-  });
-  if (grazed) return std::nullopt;
-  return sums;
-}
-
-/// How many closed shells the shell lies within.
-int depth_of(const TriangleMesh& mesh, const Shells& shells, const BoxTree& tree, std::uint32_t shell,
-             const ShellPairs& crossing) {
-  const Triangle& t = mesh.triangles[shells.shell[shell].first];
-  const Vec3 from = (mesh.vertices[idx(t[0])] + mesh.vertices[idx(t[1])] + mesh.vertices[idx(t[2])]) / 3.0;
-  // Directions askew to everything that people draw; the next one if one grazes an edge.
-  constexpr std::array<std::array<double, 3>, 5> kDirections = {{{0.61803, 0.37139, 0.69317},
-                                                                 {-0.29413, 0.83147, 0.47129},
-                                                                 {0.17321, -0.59237, 0.78683},
-                                                                 {-0.71317, -0.22361, -0.66433},
-                                                                 {0.44721, 0.13579, -0.88411}}};
-  for (const auto& d : kDirections) {
-    const auto sums = crossings(mesh, shells, tree, shell, from, Vec3(d[0], d[1], d[2]).normalized());
-    if (!sums) continue;
-    int depth = 0;
-    for (const auto& [other, sum] : *sums) {
-      const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax(shell, other);
-      if (sum != 0 && !std::binary_search(crossing.begin(), crossing.end(), pair)) ++depth;
-    }
-    return depth;
+/// In how many others a shell lies.
+class Containment {
+ public:
+  Containment(const TriangleMesh& mesh, const Shells& shells, const BoxTree& tree, const ShellPairs& crossing,
+              double tolerance)
+      : mesh_(mesh), shells_(shells), tree_(tree), crossing_(crossing), tolerance_(tolerance) {
+    std::vector<std::uint32_t> next(shells.shell.size() + 1, 0);
+    for (const std::uint32_t s : shells.of) ++next[s + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    first_ = next;
+    triangles_.resize(shells.of.size());
+    for (std::size_t t = 0; t < shells.of.size(); ++t)
+      triangles_[next[shells.of[t]]++] = static_cast<std::uint32_t>(t);
   }
-  return 0;
-}
+
+  /// How many closed shells the shell lies within; nothing if that takes too long.
+  std::optional<int> depth(std::uint32_t shell) {
+    if (work_ > kMostWork) return std::nullopt;
+    const Start start = find_start(shell);
+    // Directions askew to everything that people draw; the next one if one grazes an edge.
+    constexpr std::array<std::array<double, 3>, 5> kDirections = {{{0.61803, 0.37139, 0.69317},
+                                                                   {-0.29413, 0.83147, 0.47129},
+                                                                   {0.17321, -0.59237, 0.78683},
+                                                                   {-0.71317, -0.22361, -0.66433},
+                                                                   {0.44721, 0.13579, -0.88411}}};
+    for (const auto& d : kDirections) {
+      if (work_ > kMostWork) return std::nullopt;
+      const auto hits = crossings(shell, start.at, Vec3(d[0], d[1], d[2]).normalized());
+      if (!hits) continue;
+      int depth = 0;
+      for (std::size_t i = 0; i < hits->size();) {
+        const std::uint32_t other = (*hits)[i].first;
+        int sum = 0;
+        for (; i < hits->size() && (*hits)[i].first == other; ++i) sum += (*hits)[i].second;
+        const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax(shell, other);
+        if (sum != 0 && !std::binary_search(start.touched.begin(), start.touched.end(), other) &&
+            !std::binary_search(crossing_.begin(), crossing_.end(), pair))
+          ++depth;
+      }
+      return depth;
+    }
+    return 0;
+  }
+
+ private:
+  /// A point of a shell, and the closed shells that are within the tolerance of it, sorted.
+  struct Start {
+    Vec3 at;
+    std::vector<std::uint32_t> touched;
+  };
+
+  [[nodiscard]] const Vec3& corner(std::uint32_t triangle, std::size_t k) const {
+    return mesh_.vertices[idx(mesh_.triangles[triangle][k])];
+  }
+
+  std::vector<std::uint32_t> touched_at(std::uint32_t own, const Vec3& p) {
+    std::vector<std::uint32_t> touched;
+    const Vec3 wider = Vec3::Constant(tolerance_);
+    tree_.overlapping(outward(p - wider, p + wider), [&](std::uint32_t t) {
+      const std::uint32_t shell = shells_.of[t];
+      ++work_;
+      if (shell == own || !shells_.shell[shell].closed) return;
+      const Vec3 nearest = nearest_on_triangle(p, corner(t, 0), corner(t, 1), corner(t, 2));
+      if ((nearest - p).norm() <= tolerance_) touched.push_back(shell);
+    });
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    return touched;
+  }
+
+  /// The middle, or else a corner, of a triangle that touches no other shell, or of those tried the one that
+  /// touches the fewest.
+  Start find_start(std::uint32_t shell) {
+    constexpr std::uint32_t kTried = 64;
+    const std::uint32_t count = first_[shell + 1] - first_[shell];
+    const std::uint32_t tried = std::min(count, kTried);
+    std::optional<Start> best;
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::uint32_t i = 0; i < tried; ++i) {
+        // Spread over the shell.
+        const std::uint32_t t =
+            triangles_[first_[shell] + static_cast<std::uint32_t>(std::uint64_t{i} * count / tried)];
+        const Vec3 at = k == 0 ? Vec3((corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0) : corner(t, k - 1);
+        std::vector<std::uint32_t> touched = touched_at(shell, at);
+        if (best && touched.size() >= best->touched.size()) continue;
+        best = Start{at, std::move(touched)};
+        if (best->touched.empty() || work_ > kMostWork) return *best;
+      }
+    }
+    return *best;
+  }
+
+  /// Closed shells that a ray crosses: +1 for each crossing outwards, -1 inwards, sorted by shell. Nothing if
+  /// it grazes an edge.
+  std::optional<std::vector<std::pair<std::uint32_t, int>>> crossings(std::uint32_t own, const Vec3& from,
+                                                                      const Vec3& along) {
+    std::vector<std::pair<std::uint32_t, int>> hits;
+    bool grazed = false;
+    const Vec3 inverse = along.cwiseInverse();
+    const auto may_hit = [&](const FloatBox& b) {
+      double enter = 0.0;
+      double leave = std::numeric_limits<double>::infinity();
+      for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        const double s = (static_cast<double>(b.min[i]) - from[k]) * inverse[k];
+        const double e = (static_cast<double>(b.max[i]) - from[k]) * inverse[k];
+        enter = std::max(enter, std::min(s, e));
+        leave = std::min(leave, std::max(s, e));
+      }
+      return enter <= leave * (1.0 + 1e-12) && !grazed;
+    };
+    tree_.walk(may_hit, [&](std::uint32_t t) {
+      const std::uint32_t shell = shells_.of[t];
+      ++work_;
+      if (shell == own || !shells_.shell[shell].closed) return;
+      const Vec3& a = corner(t, 0);
+      const Vec3 u = corner(t, 1) - a;
+      const Vec3 v = corner(t, 2) - a;
+      const Vec3 normal = u.cross(v);
+      const double area = normal.norm();
+      const double slope = normal.dot(along);
+      if (area == 0.0) return;
+      constexpr double kGrazing = 1e-9;
+      if (std::abs(slope) <= kGrazing * area) {
+        // In the triangle's plane: harmless unless it runs through the triangle.
+        grazed = std::abs((from - a).dot(normal)) <= kGrazing * area * std::sqrt(area);
+        return;
+      }
+      const double distance = (a - from).dot(normal) / slope;
+      if (distance < 0.0) return;
+      const Vec3 at = from + distance * along - a;
+      const double b1 = at.cross(v).dot(normal) / (area * area);
+      const double b2 = u.cross(at).dot(normal) / (area * area);
+      const double least = std::min({b1, b2, 1.0 - b1 - b2});
+      if (least < -kGrazing) return;
+      if (least < kGrazing) {
+        grazed = true;
+        return;
+      }
+      hits.emplace_back(shell, slope > 0.0 ? 1 : -1);
+    });
+    if (grazed) return std::nullopt;
+    std::sort(hits.begin(), hits.end());
+    return hits;
+  }
+
+  /// Triangles looked at, of all shells together: some seconds.
+  static constexpr std::size_t kMostWork = 30'000'000;
+
+  const TriangleMesh& mesh_;
+  const Shells& shells_;
+  const BoxTree& tree_;
+  const ShellPairs& crossing_;
+  double tolerance_;
+  std::vector<std::uint32_t> first_;      ///< of each shell in triangles_
+  std::vector<std::uint32_t> triangles_;  ///< by shell
+  std::size_t work_ = 0;
+};
 
 }  // namespace
 
@@ -174,26 +250,40 @@ Shells find_shells(const TriangleMesh& mesh, const EdgeTable& edges, const Patch
   return shells;
 }
 
-std::size_t turn_shells_outward(TriangleMesh& mesh, Shells& shells, const BoxTree& tree,
-                                const ShellPairs& crossing) {
+TurnedShells turn_shells_outward(TriangleMesh& mesh, Shells& shells, const BoxTree& tree,
+                                 const ShellPairs& crossing, double tolerance) {
+  TurnedShells turned;
   std::vector<bool> turn(shells.shell.size(), false);
   const auto closed =
       std::count_if(shells.shell.begin(), shells.shell.end(), [](const Shell& s) { return s.closed; });
+  std::optional<Containment> containment;
+  if (closed > 1) containment.emplace(mesh, shells, tree, crossing, tolerance);
   for (std::uint32_t s = 0; s < turn.size(); ++s) {
     Shell& shell = shells.shell[s];
     if (!shell.closed) continue;
-    if (closed > 1) shell.cavity = depth_of(mesh, shells, tree, s, crossing) % 2 == 1;
+    const std::optional<int> depth = containment ? containment->depth(s) : 0;
+    if (!depth) {
+      shell.cavity = shell.volume < 0.0;  // as it is said to be
+      turned.complete = false;
+      continue;
+    }
+    shell.cavity = *depth % 2 == 1;
     turn[s] = shell.cavity ? shell.volume > 0.0 : shell.volume < 0.0;
   }
-  std::size_t turned = 0;
   for (std::size_t s = 0; s < turn.size(); ++s) {
     if (!turn[s]) continue;
     shells.shell[s].volume = -shells.shell[s].volume;
-    ++turned;
+    ++turned.count;
+    const Shell& shell = shells.shell[s];
+    turned.largest.take((shell.box.max - shell.box.min).maxCoeff(),
+                        centroid(mesh, mesh.triangles[shell.first]));
   }
-  if (turned == 0) return 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (turn[shells.of[t]]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  if (turned.count == 0) return turned;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!turn[shells.of[t]]) continue;
+    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    turned.area += area_of(mesh, mesh.triangles[t]);
+  }
   return turned;
 }
 

@@ -8,6 +8,7 @@
 #include "mesh/box_tree.h"
 #include "mesh/edge_table.h"
 #include "mesh/patches.h"
+#include "mesh/spot.h"
 
 namespace phalanx::mesh {
 
@@ -33,11 +34,19 @@ struct Shells {
 /// Pairs of shells, lower number first, sorted.
 using ShellPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
+struct TurnedShells {
+  std::size_t count = 0;
+  double area = 0.0;     ///< of all of them [m^2]
+  Spot largest;          ///< largest extent of one, and a place on it
+  bool complete = true;  ///< false: more shells lie within each other than are looked at
+};
+
 /// Turns closed shells so that their normals point out of the solid: outwards, or, for a shell that lies
 /// within an odd number of others, into the hollow that it encloses. Shells that cross (`crossing`) do not
-/// lie within each other. Containment by signed crossings of a ray.
-/// @returns how many shells were turned
-std::size_t turn_shells_outward(TriangleMesh& mesh, Shells& shells, const BoxTree& tree,
-                                const ShellPairs& crossing);
+/// lie within each other, nor does one that has no place off the other: they touch. Containment by signed
+/// crossings of a ray from a place farther than `tolerance` [m] from the other shells. Shells that are not
+/// looked at stay as they are.
+TurnedShells turn_shells_outward(TriangleMesh& mesh, Shells& shells, const BoxTree& tree,
+                                 const ShellPairs& crossing, double tolerance);
 
 }  // namespace phalanx::mesh

@@ -34,7 +34,13 @@ std::vector<Corner> open_edges(const TriangleMesh& mesh) {
   return open;
 }
 
-std::vector<Hit> find_hits(const TriangleMesh& mesh, double tolerance, bool& complete) {
+/// What the edge's point at this share of its length has moved already, at most [m].
+double spent_at(const Allowance& allowance, std::int32_t a, std::int32_t b, double share) {
+  return (1.0 - share) * allowance.spent[idx(a)] + share * allowance.spent[idx(b)];
+}
+
+std::vector<Hit> find_hits(const TriangleMesh& mesh, const Allowance& allowance, bool& complete) {
+  const double tolerance = allowance.reach;
   std::vector<Corner> open = open_edges(mesh);
   const auto point = [&](std::int32_t v) -> const Vec3& { return mesh.vertices[idx(v)]; };
   std::vector<FloatBox> boxes;
@@ -74,7 +80,9 @@ std::vector<Hit> find_hits(const TriangleMesh& mesh, double tolerance, bool& com
       if (!(length > 2.0 * tolerance)) return;
       const double along = (p - a).dot(edge) / length;
       const double off = (p - a - edge * (along / length)).norm();
-      if (along > tolerance && along < length - tolerance && off <= tolerance)
+      if (along > tolerance && along < length - tolerance && off <= tolerance &&
+          allowance.allows(
+              off + spent_at(allowance, vertex_at(mesh, c), vertex_at(mesh, next_corner(c)), along / length)))
         hits.push_back({c, along, off, v});
     });
   }
@@ -84,12 +92,12 @@ std::vector<Hit> find_hits(const TriangleMesh& mesh, double tolerance, bool& com
 
 }  // namespace
 
-Mended split_t_junctions(TriangleMesh& mesh, double tolerance) {
+Mended split_t_junctions(TriangleMesh& mesh, Allowance& allowance) {
   Mended mended;
   // A triangle's second and third edge are split in later passes, when its corners have new numbers.
   constexpr int kPasses = 8;
   for (int pass = 0; pass < kPasses; ++pass) {
-    const std::vector<Hit> hits = find_hits(mesh, tolerance, mended.complete);
+    const std::vector<Hit> hits = find_hits(mesh, allowance, mended.complete);
     if (hits.empty()) break;
     Corner done = 0;  // 1 + the triangle of the last edge that was split
     for (std::size_t i = 0; i < hits.size();) {
@@ -101,10 +109,13 @@ Mended split_t_junctions(TriangleMesh& mesh, double tolerance) {
         const std::int32_t last = vertex_at(mesh, next_corner(c));
         const std::int32_t apex = vertex_at(mesh, next_corner(next_corner(c)));
         const std::int32_t first = vertex_at(mesh, c);
+        const double length = (mesh.vertices[idx(last)] - mesh.vertices[idx(first)]).norm();
         std::int32_t from = first;
         double at = 0.0;
         for (std::size_t h = i; h < end; ++h) {
-          if (hits[h].along - at <= tolerance) continue;  // no shorter pieces than that
+          const double moved = hits[h].off + spent_at(allowance, first, last, hits[h].along / length);
+          if (!allowance.allows(moved)) continue;               // an end has taken in others since
+          if (hits[h].along - at <= allowance.reach) continue;  // no shorter pieces than that
           const Triangle piece = {from, hits[h].vertex, apex};
           if (from == first) {
             mesh.triangles[c / 3] = piece;
@@ -115,6 +126,9 @@ Mended split_t_junctions(TriangleMesh& mesh, double tolerance) {
           at = hits[h].along;
           ++mended.count;
           mended.moved = std::max(mended.moved, hits[h].off);
+          mended.worst.take(hits[h].off, mesh.vertices[idx(hits[h].vertex)]);
+          double& spent = allowance.spent[idx(hits[h].vertex)];
+          spent = std::max(spent, moved);
         }
         mesh.triangles.push_back({from, last, apex});
       }

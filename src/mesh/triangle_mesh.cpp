@@ -84,10 +84,11 @@ void check_mesh(const TriangleMesh& mesh, const char* name) {
     (message << ... << parts);
     throw std::invalid_argument(message.str());
   };
+  const auto number = [](double x) { return std::isnan(x) ? std::abs(x) : x; };  // no "-nan"
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vec3& v = mesh.vertices[i];
     if (!v.allFinite())
-      refuse("vertex ", i, " is (", v.x(), ", ", v.y(), ", ", v.z(),
+      refuse("vertex ", i, " is (", number(v.x()), ", ", number(v.y()), ", ", number(v.z()),
              "), not finite; repair the mesh or export it again");
   }
   const std::size_t count = mesh.vertices.size();

@@ -49,6 +49,7 @@ TriangleMesh weld(const TriangleMesh& soup, WeldCounts* counts) {
     for (std::size_t k = 0; k < 3; ++k) welded[k] = same[idx(t[k])];
     if (welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0]) {
       ++counted.degenerate;
+      counted.longest_degenerate.take(longest_edge_of(soup, t));
       continue;
     }
     for (std::int32_t& i : welded) {
@@ -65,7 +66,8 @@ TriangleMesh weld(const TriangleMesh& soup, WeldCounts* counts) {
   return out;
 }
 
-std::size_t rename_vertices(TriangleMesh& mesh, const std::vector<std::int32_t>& to) {
+std::size_t rename_vertices(TriangleMesh& mesh, const std::vector<std::int32_t>& to,
+                            std::vector<double>* values) {
   const std::size_t before = mesh.triangles.size();
   std::vector<bool> used(mesh.vertices.size(), false);
   std::size_t kept = 0;
@@ -81,15 +83,17 @@ std::size_t rename_vertices(TriangleMesh& mesh, const std::vector<std::int32_t>&
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
     mesh.vertices[idx(vertices)] = mesh.vertices[v];
+    if (values != nullptr) (*values)[idx(vertices)] = (*values)[v];
     number[v] = vertices++;
   }
   mesh.vertices.resize(idx(vertices));
+  if (values != nullptr) values->resize(idx(vertices));
   for (Triangle& t : mesh.triangles)
     for (std::int32_t& v : t) v = number[idx(v)];
   return before - kept;
 }
 
-std::size_t drop_duplicate_faces(TriangleMesh& mesh) {
+std::size_t drop_duplicate_faces(TriangleMesh& mesh, MeasuredFaces* dropped) {
   const std::size_t n = mesh.triangles.size();
   const auto sorted = [&](std::uint32_t t) {
     Triangle key = mesh.triangles[t];
@@ -106,8 +110,13 @@ std::size_t drop_duplicate_faces(TriangleMesh& mesh) {
   std::vector<bool> drop(n, false);
   for (std::size_t i = 1; i < n; ++i) drop[order[i]] = sorted(order[i - 1]) == sorted(order[i]);
   std::size_t kept = 0;
-  for (std::size_t t = 0; t < n; ++t)
-    if (!drop[t]) mesh.triangles[kept++] = mesh.triangles[t];
+  for (std::size_t t = 0; t < n; ++t) {
+    if (drop[t]) {
+      if (dropped != nullptr) dropped->add(mesh, mesh.triangles[t]);
+      continue;
+    }
+    mesh.triangles[kept++] = mesh.triangles[t];
+  }
   mesh.triangles.resize(kept);
   return n - kept;
 }

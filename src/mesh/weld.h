@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/measured_faces.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx::mesh {
@@ -13,6 +14,7 @@ struct WeldCounts {
   std::size_t unreferenced = 0;  ///< vertices that no triangle used
   std::size_t duplicates = 0;    ///< vertices that another one at the same place now stands for
   std::size_t degenerate = 0;    ///< triangles two of whose corners fell on one vertex
+  Spot longest_degenerate;       ///< longest edge of one and its middle, in the soup's numbers
 };
 
 /// Makes vertices at exactly equal positions one, in the order of their first use by a triangle; drops
@@ -22,11 +24,14 @@ struct WeldCounts {
 
 /// Renames every vertex v to `to[v]`, drops triangles that this leaves without three corners, and then
 /// vertices that no triangle uses, keeping both in order.
+/// @param values  one for each vertex, if not null: those of the vertices that stay are kept
 /// @returns how many triangles were dropped
-std::size_t rename_vertices(TriangleMesh& mesh, const std::vector<std::int32_t>& to);
+std::size_t rename_vertices(TriangleMesh& mesh, const std::vector<std::int32_t>& to,
+                            std::vector<double>* values = nullptr);
 
 /// Drops triangles that have the same three corners as an earlier one, in either winding.
+/// @param dropped  if not null: those are added to it
 /// @returns how many
-std::size_t drop_duplicate_faces(TriangleMesh& mesh);
+std::size_t drop_duplicate_faces(TriangleMesh& mesh, MeasuredFaces* dropped = nullptr);
 
 }  // namespace phalanx::mesh

@@ -132,6 +132,22 @@ TEST(ImportRefuses, ANanOrInfiniteVertexInBinary) {
   }
 }
 
+/// `content` with the first `from` replaced by as many characters, so that no length in it changes.
+std::string with(std::string content, const std::string& from, const std::string& to) {
+  const std::size_t at = content.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  EXPECT_EQ(from.size(), to.size());
+  return at == std::string::npos ? content : content.replace(at, from.size(), to);
+}
+
+// Assimp reads the whole numbers as floats: garbage of 1e-33 mm.
+TEST(ImportRefuses, AGlbWithQuantisedPositions) {
+  const std::string good = test::to_glb(make_sphere(0.1, 40));
+  EXPECT_EQ(refusal(good, "glb"), "accepted");
+  EXPECT_THAT(refusal(with(good, "5126", "5123"), "glb"),
+              AllOf(HasSubstr("component type 5123"), HasSubstr("without quantisation")));
+}
+
 TEST(ImportRefuses, ANegativeOrNonFiniteSize) {
   const std::string good = test::to_obj(make_sphere(0.1, 40));
   EXPECT_THAT(refusal(good, "obj", -0.1), HasSubstr("size is -0.1 m"));

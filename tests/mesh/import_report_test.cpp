@@ -85,6 +85,32 @@ TEST(ImportRefuses, AnObjectThatSinglePrecisionCannotHold) {
         << format;
 }
 
+// Points alone, one of them NaN: what lacks is a surface.
+TEST(ImportRefuses, PointsWithoutASurface) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n0 0 0\nnan nan nan\n1 0 0\n";
+  EXPECT_THAT(refusal(text, "ply", {}), HasSubstr("no triangle"));
+}
+
+// Decimation moves no finding to another frame.
+TEST(ImportReport, SaysWhereInTheFileAfterDecimationToo) {
+  TriangleMesh ball = make_sphere(20, 2000);
+  for (Vec3& v : ball.vertices) v += Vec3(100, 200, 300);
+  std::erase_if(ball.triangles, [&](const Triangle& t) {
+    return ball.vertices[static_cast<std::size_t>(t[0])].z() > 306;  // no cap: 16 mm across
+  });
+  const std::string text = test::to_ply_text(ball);
+  for (const int triangles : {0, 500}) {
+    const MeshReport r = import_text(text, "ply", {.size = 0.05, .triangles = triangles}).report;
+    const MeshFinding hole = r.finding(FindingKind::kHoles);
+    ASSERT_EQ(hole.found, 1U);
+    ASSERT_TRUE(hole.at);
+    EXPECT_LT((*hole.at - Vec3(100, 200, 306)).norm(), 1.5) << hole.at->transpose();
+    EXPECT_NEAR(hole.width, 16 * r.scale, 2.5 * r.scale);
+  }
+}
+
 TEST(ImportRefuses, AnOptionThatMakesNoSense) {
   const std::string text = test::to_obj(make_box({0.1, 0.1, 0.1}, 12));
   EXPECT_THAT(refusal(text, "obj", {.unit = 0.0}), HasSubstr("unit is 0 m"));

@@ -48,9 +48,8 @@ void expect_covered(const TriangleMesh& soup) {
   MeshReport report;
   const TriangleMesh mesh = repair(soup, {}, "test", report);
   const SurfaceDeviation off = measure_deviation(without_equal_corners(soup), mesh);
-  // A vertex may be drawn to a neighbour and then have its edge drawn to another.
-  EXPECT_LE(off.outward, 2.0 * report.tolerance);
-  EXPECT_LE(off.inward, 2.0 * report.tolerance);
+  EXPECT_LE(off.outward, report.tolerance);
+  EXPECT_LE(off.inward, report.tolerance);
   EXPECT_LE(report.moved, report.tolerance);
   EXPECT_LE(report.tolerance, 1e-6);
 }

@@ -104,18 +104,18 @@ TEST(Repair, WeldsEqualVertices) {
   EXPECT_TRUE(r.report.closed);
 }
 
-TEST(Repair, ClosesACrackNarrowerThanTheTolerance) {
+TEST(Repair, ClosesACrackNarrowerThanASixthOfTheTolerance) {
   TriangleMesh mesh = cube(kEdge);
-  // The last face gets corners of its own, up to 0.4 um off: tolerance 0.5 um for 50 mm.
+  // The last face gets corners of its own, 0.05 um off: tolerance 0.5 um for 50 mm.
   const auto first = static_cast<std::int32_t>(mesh.vertices.size());
   for (const int v : {1, 3, 7, 5})
-    mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)] + Vec3(0.4e-6, 0, 0));
+    mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)] + Vec3(0.05e-6, 0, 0));
   mesh.triangles[10] = {first, first + 1, first + 3};
   mesh.triangles[11] = {first + 1, first + 2, first + 3};
   const Repaired r = repaired(mesh);
   EXPECT_EQ(findings(r), "near_vertices 4/4");
-  EXPECT_NEAR(r.report.finding(FindingKind::kNearVertices).size, 0.4e-6, 1e-12);
-  EXPECT_NEAR(r.report.moved, 0.4e-6, 1e-12);
+  EXPECT_NEAR(r.report.finding(FindingKind::kNearVertices).size, 0.05e-6, 1e-12);
+  EXPECT_NEAR(r.report.moved, 0.05e-6, 1e-12);
   EXPECT_TRUE(r.report.closed);
   EXPECT_EQ(r.mesh.vertices.size(), 8U);
 }
@@ -128,7 +128,9 @@ TEST(Repair, LeavesAWiderCrackOpen) {
   mesh.triangles[10] = {first, first + 1, first + 3};
   mesh.triangles[11] = {first + 1, first + 2, first + 3};
   const Repaired r = repaired(mesh);
-  EXPECT_EQ(findings(r), "holes 2/0, sheets 2/0");
+  EXPECT_EQ(findings(r), "slits 1/0, sheets 2/0");
+  EXPECT_NEAR(r.report.finding(FindingKind::kSlits).width, 5e-6, 1e-12);
+  EXPECT_NEAR(r.report.finding(FindingKind::kSlits).size, 8 * kEdge, 1e-12) << "both sides of the crack";
   EXPECT_EQ(r.report.moved, 0.0);
 }
 
@@ -175,7 +177,7 @@ TEST(Repair, CollapsesANeedle) {
   mesh.triangles.push_back({3, 8, 7});
   ASSERT_TRUE(is_closed(mesh));
   const Repaired r = repaired(mesh);
-  EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 1U) << "one goes, the other goes with it";
+  EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 2U);
   EXPECT_TRUE(r.report.closed);
   EXPECT_EQ(r.mesh.triangles.size(), 12U);
   EXPECT_NEAR(r.report.moved, 2e-9, 1e-12);
@@ -267,11 +269,98 @@ TEST(Repair, MeasuresAHoleAndLeavesItOpen) {
   EXPECT_EQ(r.mesh.triangles.size(), 10U);
 }
 
+// Every triangle by itself, shrunk so that 10 um lie between neighbours: nothing for a finger to go through.
+TEST(Repair, TellsCracksFromHoles) {
+  TriangleMesh mesh;
+  const TriangleMesh whole = cube(kEdge);
+  for (const Triangle& t : whole.triangles) {
+    const Vec3 a = whole.vertices[static_cast<std::size_t>(t[0])];
+    const Vec3 b = whole.vertices[static_cast<std::size_t>(t[1])];
+    const Vec3 c = whole.vertices[static_cast<std::size_t>(t[2])];
+    // Every edge 5 um inwards: towards the centre of the inscribed circle, by 5 um of its radius.
+    const double la = (b - c).norm(), lb = (c - a).norm(), lc = (a - b).norm();
+    const Vec3 centre = (la * a + lb * b + lc * c) / (la + lb + lc);
+    const double radius = (b - a).cross(c - a).norm() / (la + lb + lc);
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    for (const Vec3& p : {a, b, c}) mesh.vertices.push_back(p + (centre - p) * (5e-6 / radius));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(findings(r), "slits 1/0, sheets 12/0");
+  const MeshFinding slits = r.report.finding(FindingKind::kSlits);
+  EXPECT_NEAR(slits.width, 10e-6, 0.1e-6) << "across a face; 7 um over the cube's edges";
+  EXPECT_THAT(finding_meaning(slits), HasSubstr("no fingertip goes through"));
+  mesh.triangles.resize(10);  // and one face away: 50 mm wide
+  const Repaired open = repaired(mesh);
+  EXPECT_EQ(open.found(FindingKind::kSlits), 1U);
+  const MeshFinding hole = open.report.finding(FindingKind::kHoles);
+  EXPECT_EQ(hole.found, 1U);
+  EXPECT_NEAR(hole.width, kEdge, 20e-6);
+  ASSERT_TRUE(hole.at);
+  EXPECT_LT((*hole.at - Vec3(kEdge, kEdge / 2, kEdge / 2)).norm(), 20e-6);
+}
+
+TEST(Repair, FindsNoHoleInALoneTriangle) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.03, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_EQ(findings(repaired(mesh)), "outlines 1/0, sheets 1/0");
+}
+
+// A plate of 60 x 60 mm with an opening of 40 x `width` in the middle: the rim outside and the one inside.
+TEST(Repair, TellsAPlatesOutlineFromTheHoleInIt) {
+  for (const double width : {0.01, 0.002}) {
+    TriangleMesh mesh;
+    const double h = width / 2;
+    mesh.vertices = {{-0.03, -0.03, 0}, {0.03, -0.03, 0}, {0.03, 0.03, 0}, {-0.03, 0.03, 0},
+                     {-0.02, -h, 0},    {0.02, -h, 0},    {0.02, h, 0},    {-0.02, h, 0}};
+    mesh.triangles = {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+    const Repaired r = repaired(mesh);
+    EXPECT_NEAR(r.report.finding(FindingKind::kOutlines).size, 0.24, 1e-12);
+    EXPECT_EQ(r.found(FindingKind::kHoles), width > 0.003 ? 1U : 0U);
+    const MeshFinding opening = r.report.finding(width > 0.003 ? FindingKind::kHoles : FindingKind::kSlits);
+    EXPECT_GE(opening.found, 1U);
+    EXPECT_NEAR(opening.width, width, 1e-12);
+  }
+}
+
+// In the file's own units and axes, whatever size is asked for.
+TEST(Repair, SaysWhereInTheFilesNumbers) {
+  TriangleMesh mesh = cube(50, Vec3(100, 200, 300));
+  mesh.triangles.resize(10);                         // the face x = 150 is open
+  mesh.triangles.push_back({0, 0, 1});               // no area
+  mesh.triangles.push_back(mesh.triangles.front());  // twice
+  turn(mesh.triangles[4]);
+  for (const RepairOptions& options : {RepairOptions{.unit = 1e-3}, RepairOptions{.size = 0.09}}) {
+    const Repaired r = repaired(mesh, options);
+    const double mm = r.report.scale;
+    const auto expect = [&](FindingKind kind, double size, const Vec3& at) {
+      const MeshFinding f = r.report.finding(kind);
+      SCOPED_TRACE(finding_name(kind));
+      EXPECT_NEAR(f.size, size * mm, 1e-9);
+      ASSERT_TRUE(f.at);
+      EXPECT_LT((*f.at - at).norm(), 1e-9) << f.at->transpose();
+    };
+    expect(FindingKind::kHoles, 200, Vec3(150, 225, 325));
+    expect(FindingKind::kDegenerateFaces, 50, Vec3(125, 200, 300));
+    const double diagonal = 50 * std::numbers::sqrt2;
+    expect(FindingKind::kDuplicateFaces, diagonal, Vec3(100 + 50 / 3.0, 200 + 50 / 3.0, 300));
+    expect(FindingKind::kInconsistentWinding, diagonal, Vec3(100 + 50 / 3.0, 200, 300 + 50 / 3.0));
+    EXPECT_NEAR(r.report.finding(FindingKind::kInconsistentWinding).area, 1250 * mm * mm, 1e-12);
+  }
+}
+
 TEST(Repair, KeepsTwoCubesThatShareAnEdgeAsTwoSolids) {
   TriangleMesh mesh = cube(kEdge);
   append(mesh, turned(cube(kEdge, Vec3(kEdge, kEdge, 0))));
   const Repaired r = repaired(mesh);
   EXPECT_EQ(findings(r), "duplicate_vertices 2/2, inside_out 1/1, non_manifold_edges 1/0");
+  const MeshFinding edge = r.report.finding(FindingKind::kNonManifoldEdges);
+  EXPECT_NEAR(edge.size, kEdge, 1e-12);
+  ASSERT_TRUE(edge.at);
+  EXPECT_LT((*edge.at - Vec3(kEdge, kEdge, kEdge / 2)).norm(), 1e-12);
+  EXPECT_NEAR(r.report.finding(FindingKind::kInsideOut).size, kEdge, 1e-12);
+  EXPECT_NEAR(r.report.finding(FindingKind::kInsideOut).area, 6 * kEdge * kEdge, 1e-12);
   EXPECT_EQ(r.report.solids, 2U);
   EXPECT_NEAR(signed_volume(r.mesh), 2 * kVolume, 1e-14);
 }
@@ -281,6 +370,10 @@ TEST(Repair, CountsAPinchVertex) {
   append(mesh, cube(kEdge, Vec3::Constant(kEdge)));  // corner to corner
   const Repaired r = repaired(mesh);
   EXPECT_EQ(findings(r), "duplicate_vertices 1/1, pinch_vertices 1/0");
+  const MeshFinding pinch = r.report.finding(FindingKind::kPinchVertices);
+  EXPECT_NEAR(pinch.size, kEdge, 1e-12) << "no diagonal ends there";
+  ASSERT_TRUE(pinch.at);
+  EXPECT_EQ(*pinch.at, Vec3(Vec3::Constant(kEdge)));
   EXPECT_EQ(r.report.solids, 2U);
 }
 
@@ -291,7 +384,7 @@ TEST(Repair, SplitsATJunction) {
                     {0.02, 0.02, 0}, {0.01, -0.02, 0}, {0.03, -0.02, 0}};
   strip.triangles = {{0, 2, 3}, {0, 4, 1}, {1, 5, 2}};
   const Repaired r = repaired(strip);
-  EXPECT_EQ(findings(r), "t_junctions 1/1, holes 1/0, sheets 1/0");
+  EXPECT_EQ(findings(r), "t_junctions 1/1, outlines 1/0, sheets 1/0");
   EXPECT_EQ(r.mesh.triangles.size(), 4U);
   EXPECT_EQ(r.report.sheets, 1U) << "three triangles became one surface";
 }
@@ -323,6 +416,13 @@ TEST(Repair, CountsTrianglesThatCross) {
   add({-0.01, -0.01, -0.03}, {0, 0.012, -0.03}, {0.01, -0.01, -0.03}, {0, 0, 0.01});
   const Repaired r = repaired(mesh);
   EXPECT_EQ(r.found(FindingKind::kSelfIntersections), 3U);
+  const MeshFinding crossing = r.report.finding(FindingKind::kSelfIntersections);
+  // A quarter of the way from the tip at z = 0.01 to the base at -0.03: a quarter of its longest side.
+  EXPECT_NEAR(crossing.size, std::hypot(0.01, 0.022) / 4, 1e-9);
+  ASSERT_TRUE(crossing.at);
+  EXPECT_NEAR(crossing.at->z(), 0.0, 1e-12);
+  EXPECT_NEAR(std::abs(crossing.at->x()), 0.005 / 4, 1e-9);
+  EXPECT_NEAR(crossing.at->y(), 0.001 / 4, 1e-9);
   EXPECT_EQ(r.report.solids, 2U) << "not one within the other";
   EXPECT_EQ(test::self_intersections(r.mesh), 3U);
 }
@@ -356,7 +456,7 @@ TEST(Repair, LeavesAMoebiusStripOneSided) {
     strip.triangles.push_back({a + 1, c, d});
   }
   const Repaired r = repaired(strip);
-  EXPECT_EQ(findings(r), "holes 1/0, sheets 1/0, non_orientable 1/0");
+  EXPECT_EQ(findings(r), "outlines 1/0, sheets 1/0, non_orientable 1/0");
   EXPECT_TRUE(test::corner_positions(r.mesh) == test::corner_positions(strip)) << "left as it is";
 }
 
@@ -364,7 +464,9 @@ TEST(Repair, SaysWhichUnitTheNumbersProbablyAre) {
   const Repaired r = repaired(cube(90));
   EXPECT_EQ(findings(r), "units 1/0, coarse_numbers 1/0");
   EXPECT_DOUBLE_EQ(r.report.finding(FindingKind::kUnits).size, 90);
-  EXPECT_THAT(unit_advice(90, 1.0), HasSubstr("mm (90 mm)"));
+  EXPECT_EQ(unit_advice(90, 1.0),
+            "it is 90 m wide; probably its numbers are mm (90 mm): give unit \"mm\" with size_mm 0, or the "
+            "size in mm");
   EXPECT_THAT(unit_advice(0.0012, 0.001), HasSubstr("in (30.48 mm)"));
   EXPECT_EQ(unit_advice(0.09, 1.0), "");
   EXPECT_EQ(findings(repaired(cube(90), {.unit = 1e-3})), "");

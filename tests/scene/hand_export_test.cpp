@@ -234,7 +234,7 @@ TEST_P(HandExport, AsMjcfKeepsItsMeshesAndMassesInPlace) {
     Bounds box{Vec3::Constant(1.0), Vec3::Constant(-1.0)};
     for (int v = 0; v < m.mesh_vertnum[data]; ++v) {
       const float* vertex = m.mesh_vert + 3 * (m.mesh_vertadr[data] + v);
-      const Vec3 placed = R * Vec3(vertex[0], vertex[1], vertex[2]) + p;
+      const Vec3 placed = R * Eigen::Vector3f(vertex[0], vertex[1], vertex[2]).cast<double>() + p;
       box.min = box.min.cwiseMin(placed);
       box.max = box.max.cwiseMax(placed);
     }

@@ -2,6 +2,7 @@
 // What `phalanx mesh check` prints, writes and returns.
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -30,8 +31,9 @@ TEST(CliMesh, SaysWhatRemainsAndWhatItMeans) {
   write_file(folder / "cube.obj", kOpenCube);
   const auto result = run_program(folder, "mesh check cube.obj");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("cube.obj"), HasSubstr("closed       no"), HasSubstr("holes"),
-                                HasSubstr("200 mm"), HasSubstr("both sides")));
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("cube.obj"), HasSubstr("closed       no"), HasSubstr("holes"),
+                    HasSubstr("200 mm"), HasSubstr("(0.05, 0.025, 0.025)"), HasSubstr("both sides")));
 }
 
 TEST(CliMesh, PrintsTheSameAsJson) {
@@ -47,6 +49,8 @@ TEST(CliMesh, PrintsTheSameAsJson) {
   EXPECT_EQ(reports[0]["sheets"], 1);
   EXPECT_EQ(reports[0]["findings"][0]["kind"], "holes");
   EXPECT_NEAR(reports[0]["findings"][0]["size_m"].get<double>(), 0.2, 1e-7);
+  EXPECT_NEAR(reports[0]["findings"][0]["width_m"].get<double>(), 0.05, 1e-7);
+  EXPECT_NEAR(reports[0]["findings"][0]["at"][0].get<double>(), 0.05, 1e-7);
   EXPECT_EQ(reports[1]["usable"], false);
   EXPECT_THAT(reports[1]["verdict"].get<std::string>(), HasSubstr("empty"));
 }
@@ -66,10 +70,20 @@ TEST(CliMesh, WritesTheDecimatedMesh) {
   write_obj(make_sphere(0.09, 5000), folder / "ball.obj", "ball");
   const auto result = run_program(folder, "mesh check ball.obj --decimate 500 --out small.obj");
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("500 asked for"));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("500 asked for"), HasSubstr("after the repair, "),
+                                HasSubstr(" after decimation\n")));
   const TriangleMesh small = import_mesh(folder / "small.obj", 0.0);
   EXPECT_LE(small.triangles.size(), 500U);
   EXPECT_TRUE(is_closed(small));
+}
+
+TEST(CliMesh, NeverWritesOverItsInputAndWritesObjOnly) {
+  const TemporaryFolder folder;
+  write_file(folder / "cube.obj", kOpenCube);
+  for (const char* line : {"mesh check cube.obj --out ./cube.obj", "mesh check cube.obj --out cube.stl"})
+    EXPECT_EQ(run_program(folder, line).exit_code, 2) << line;
+  EXPECT_EQ(read_file(folder / "cube.obj"), kOpenCube);
+  EXPECT_FALSE(std::filesystem::exists(folder / "cube.stl"));
 }
 
 TEST(CliMesh, RefusesWhatContradictsItself) {

@@ -1,96 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second, plain reader of triangle files and a second, plain distance of triangles, in double precision and
-// without any tree: what the program is held against. Nothing is welded, dropped or turned.
+// A second, plain distance of triangles, in double precision and without any tree: what the program is held
+// against.
 #pragma once
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "phalanx/mesh/triangle_mesh.h"
+#include "support/raw_file.h"
 #include "support/surface_bound.h"
 
 namespace phalanx::test {
-
-using RawTriangle = std::array<Vec3, 3>;
-
-/// The faces of an OBJ (v and f lines) or text STL or PLY file, polygons cut into fans.
-inline std::vector<RawTriangle> read_raw(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error("cannot read " + file.string());
-  std::vector<RawTriangle> out;
-  std::vector<Vec3> points;
-  const auto fan = [&](const std::vector<long>& index) {
-    for (std::size_t k = 2; k < index.size(); ++k) {
-      out.push_back({points.at(static_cast<std::size_t>(index[0])),
-                     points.at(static_cast<std::size_t>(index[k - 1])),
-                     points.at(static_cast<std::size_t>(index[k]))});
-    }
-  };
-  std::string line;
-  const std::string kind = file.extension().string();
-  if (kind == ".ply") {
-    std::size_t vertices = 0;
-    std::size_t faces = 0;
-    while (std::getline(in, line) && line.rfind("end_header", 0) != 0) {
-      std::istringstream words(line);
-      std::string element;
-      std::string name;
-      std::size_t count = 0;
-      words >> element >> name >> count;
-      if (element == "format" && name != "ascii")
-        throw std::runtime_error(file.string() + " is not a text PLY");
-      if (element == "element" && name == "vertex") vertices = count;
-      if (element == "element" && name == "face") faces = count;
-    }
-    for (std::size_t i = 0; i < vertices && std::getline(in, line); ++i) {
-      std::istringstream words(line);
-      Vec3 v;
-      words >> v.x() >> v.y() >> v.z();
-      points.push_back(v);
-    }
-    for (std::size_t i = 0; i < faces && std::getline(in, line); ++i) {
-      std::istringstream words(line);
-      std::size_t corners = 0;
-      words >> corners;
-      std::vector<long> index(corners);
-      for (long& v : index) words >> v;
-      fan(index);
-    }
-    return out;
-  }
-  RawTriangle facet;
-  std::size_t corner = 0;
-  while (std::getline(in, line)) {
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (word == "v") {
-      Vec3 v;
-      words >> v.x() >> v.y() >> v.z();
-      points.push_back(v);
-    } else if (word == "vertex") {
-      words >> facet[corner].x() >> facet[corner].y() >> facet[corner].z();
-      if (++corner == 3) {
-        out.push_back(facet);
-        corner = 0;
-      }
-    } else if (word == "f") {
-      std::vector<long> index;
-      while (words >> word) {
-        const long i = std::stol(word);  // up to the first slash
-        index.push_back(i > 0 ? i - 1 : static_cast<long>(points.size()) + i);
-      }
-      fan(index);
-    }
-  }
-  return out;
-}
 
 inline std::vector<RawTriangle> raw_of(const TriangleMesh& mesh, const Pose& X = {}) {
   std::vector<RawTriangle> out;

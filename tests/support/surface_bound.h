@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,10 @@ inline Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
 class SurfaceBound {
  public:
   explicit SurfaceBound(const TriangleMesh& mesh, double crease_angle) : mesh_(mesh) {
-    const auto corner = corner_normals(mesh, crease_angle);
+    corner_ = corner_normals(mesh, crease_angle);
+    const auto& corner = corner_;
+    patch_.resize(mesh.triangles.size());
+    std::iota(patch_.begin(), patch_.end(), std::size_t{0});
     std::map<std::pair<int, int>, std::vector<std::size_t>> edges;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto v = points(t);
@@ -72,7 +76,11 @@ class SurfaceBound {
     }
     for (const auto& [edge, faces] : edges) {
       const double fold = faces.size() == 2 ? angle_of(face_[faces[0]], face_[faces[1]]) : std::numbers::pi;
-      if (fold <= crease_angle + 1e-6) continue;
+      if (fold <= crease_angle + 1e-6) {
+        patch_[patch_of(faces[0])] = patch_of(faces[1]);
+        continue;
+      }
+      if (faces.size() == 1) add_rim(edge, faces[0]);
       creases_.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)],
                           mesh.vertices[static_cast<std::size_t>(edge.second)], fold});
     }
@@ -84,12 +92,18 @@ class SurfaceBound {
     for_each_near(p, radius, [&](std::size_t t) { most = std::max(most, turn_[t]); });
     return most;
   }
-  /// Greatest fold of an edge over which normals are not interpolated, within `radius` of p [rad]; pi at a
-  /// rim.
+  /// Greatest fold within `radius` of p over which normals are not interpolated [rad]: of an edge, pi at a
+  /// rim, or between faces there that no smooth way joins, such as shells that run through each other.
   [[nodiscard]] double crease_near(const Vec3& p, double radius) const {
     double most = 0.0;
     for (const Crease& c : creases_) {
       if (c.fold > most && (nearest_on_triangle(p, c.a, c.b, c.b) - p).norm() <= radius) most = c.fold;
+    }
+    std::vector<std::size_t> near;
+    for_each_near(p, radius, [&](std::size_t t) { near.push_back(t); });
+    for (const std::size_t a : near) {
+      for (const std::size_t b : near)
+        if (patch_of(a) != patch_of(b)) most = std::max(most, angle_of(face_[a], face_[b]));
     }
     return most;
   }
@@ -105,7 +119,57 @@ class SurfaceBound {
     return most;
   }
 
+  /// The object's point nearest to p.
+  [[nodiscard]] Vec3 nearest(const Vec3& p) const { return nearest_of(p).second; }
+  /// The plane's normal of the face nearest to p, on the side of `side`.
+  [[nodiscard]] Vec3 face_nearest(const Vec3& p, const Vec3& side) const {
+    return towards(face_[nearest_of(p).first], side);
+  }
+  /// What the surface offers within `radius` of p, on the side of `side`: each face's interpolated normal at
+  /// its point nearest to p, and out of a rim the direction across it.
+  [[nodiscard]] std::vector<Vec3> fan(const Vec3& p, double radius, const Vec3& side) const {
+    std::vector<Vec3> out;
+    for_each_near(p, radius, [&](std::size_t t) {
+      const auto v = points(t);
+      const Vec3 foot = nearest_on_triangle(p, v[0], v[1], v[2]);
+      const Vec3 area = (v[1] - v[0]).cross(v[2] - v[0]);
+      Vec3 n = Vec3::Zero();
+      for (std::size_t i = 0; i < 3; ++i)
+        n += corner_[t][i] * area.dot((v[(i + 2) % 3] - v[(i + 1) % 3]).cross(foot - v[(i + 1) % 3]));
+      if (n.norm() > 0.0) out.push_back(towards(n.normalized(), side));
+    });
+    for (const Rim& rim : rims_)
+      if ((nearest_on_triangle(p, rim.a, rim.b, rim.b) - p).norm() <= radius) out.push_back(rim.out);
+    return out;
+  }
+
  private:
+  struct Rim {
+    Vec3 a, b, out;
+  };
+  static Vec3 towards(const Vec3& n, const Vec3& side) { return n.dot(side) < 0.0 ? Vec3(-n) : n; }
+  [[nodiscard]] std::pair<std::size_t, Vec3> nearest_of(const Vec3& p) const {
+    std::pair<std::size_t, Vec3> best{0, Vec3::Constant(1e9)};
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const auto v = points(t);
+      const Vec3 foot = nearest_on_triangle(p, v[0], v[1], v[2]);
+      if ((foot - p).squaredNorm() < (best.second - p).squaredNorm()) best = {t, foot};
+    }
+    return best;
+  }
+  void add_rim(const std::pair<int, int>& edge, std::size_t face) {
+    const Vec3& a = mesh_.vertices[static_cast<std::size_t>(edge.first)];
+    const Vec3& b = mesh_.vertices[static_cast<std::size_t>(edge.second)];
+    const auto v = points(face);
+    Vec3 out = (b - a).cross(face_[face]).normalized();
+    if (out.dot(v[0] + v[1] + v[2] - 3.0 * a) > 0.0) out = -out;
+    rims_.push_back({a, b, out});
+  }
+  /// Faces that smooth edges join share one.
+  [[nodiscard]] std::size_t patch_of(std::size_t t) const {
+    while (patch_[t] != t) t = patch_[t];
+    return t;
+  }
   struct Crease {
     Vec3 a, b;
     double fold;
@@ -128,6 +192,9 @@ class SurfaceBound {
   std::vector<Vec3> face_;
   std::vector<double> turn_;
   std::vector<Crease> creases_;
+  std::vector<Rim> rims_;
+  std::vector<std::array<Vec3, 3>> corner_;
+  std::vector<std::size_t> patch_;
 };
 
 }  // namespace phalanx::test

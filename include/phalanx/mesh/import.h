@@ -43,13 +43,19 @@ struct ImportedMesh {
                                             const ImportOptions& options = {});
 
 /// The same from memory; `format` is the extension without the dot. For fuzzing and uploads.
+/// @throws std::invalid_argument as import_and_check(), the message starting with "mesh in memory". Set-up
+/// only: forks, allocates, throws.
 [[nodiscard]] ImportedMesh import_and_check_from_memory(const void* data, std::size_t bytes,
                                                         const std::string& format,
                                                         const ImportOptions& options = {});
 
-/// The mesh alone.
+/// The mesh alone, in metres, in the file's axes.
 /// @param size  ImportOptions::size [m]
+/// @throws std::invalid_argument as import_and_check(). Set-up only: forks, allocates, throws.
 [[nodiscard]] TriangleMesh import_mesh(const std::filesystem::path& file, double size);
+
+/// import_mesh() from memory; `format` is the extension without the dot.
+/// @throws std::invalid_argument as import_and_check_from_memory(). Set-up only: forks, allocates, throws.
 [[nodiscard]] TriangleMesh import_mesh_from_memory(const void* data, std::size_t bytes,
                                                    const std::string& format, double size);
 

@@ -12,27 +12,29 @@
 
 namespace phalanx {
 
-/// What can be odd about a mesh. `MeshFinding::size` is the length named here.
+/// What can be odd about a mesh, with what `MeshFinding::size` is; `at` is where that one is.
 enum class FindingKind {
   kUnreferencedVertices,  ///< no triangle uses them
   kDuplicateVertices,    ///< at exactly the same place as another; an .stl has three a triangle by its format
-  kNearVertices,         ///< on open edges, within the tolerance of another; size: largest gap
-  kDegenerateFaces,      ///< no area, or flatter than a hundredth of the tolerance
-  kDuplicateFaces,       ///< the same three corners as another, in either winding
-  kTJunctions,           ///< a vertex on another triangle's open edge; size: largest gap
-  kInconsistentWinding,  ///< triangles that wind against the rest of their surface
-  kInsideOut,            ///< closed shells whose normals point the wrong way
-  kNonManifoldEdges,     ///< three or more triangles at an edge
-  kPinchVertices,        ///< surfaces that meet in one vertex only
-  kHoles,                ///< connected lines of open edges; size: the longest line's length
+  kNearVertices,         ///< on open edges, within a sixth of the tolerance of another; size: largest gap
+  kDegenerateFaces,      ///< no area, or flatter than a hundredth of the tolerance; size: longest edge of one
+  kDuplicateFaces,       ///< the same three corners as another, either winding; size: longest edge of one
+  kTJunctions,           ///< a vertex on another triangle's open edge; size: widest gap
+  kInconsistentWinding,  ///< triangles that wind against their surface; size: longest edge of one
+  kInsideOut,            ///< closed shells whose normals point the wrong way; size: largest extent of one
+  kNonManifoldEdges,     ///< three or more triangles at an edge; size: length of all together
+  kPinchVertices,        ///< surfaces that meet in one vertex only; size: longest edge that ends in one
+  kHoles,                ///< lines of open edges around an opening; size: the longest line's length
+  kSlits,                ///< open edges that face each other nearer than 3 mm; size: length of the longest
+  kOutlines,             ///< lines of open edges where a sheet ends; size: the longest line's length
   kSheets,               ///< surfaces that enclose nothing; size: largest extent of one
-  kNonOrientable,        ///< sheets without two sides, such as a Moebius strip
-  kSelfIntersections,    ///< pairs of triangles that cross deeper than the tolerance
+  kNonOrientable,        ///< sheets without two sides (Moebius strip); size: largest extent of one
+  kSelfIntersections,    ///< pairs that cross deeper than the tolerance; size: longest line of crossing
   kUnits,                ///< largest extent below 3 mm or above 3 m; size: that extent
   kCoarseNumbers,        ///< single precision is coarser than the tolerance here; size: its step
   kManyTriangles,        ///< more than a step's search is quick on
 };
-inline constexpr std::size_t kFindingKinds = 17;
+inline constexpr std::size_t kFindingKinds = 19;
 
 /// One row of the report.
 struct MeshFinding {
@@ -40,7 +42,15 @@ struct MeshFinding {
   std::size_t found = 0;
   std::size_t repaired = 0;  ///< the others remain
   double size = 0.0;         ///< [m], see FindingKind; 0: has none
-  double width = 0.0;        ///< kHoles: extent of the widest line's box [m]
+  /// kSlits: the largest distance of the edges that face each other [m]. kHoles: of the widest hole, the
+  /// least extent of its line over directions across its area vector, 5 degrees apart [m]: what passes is no
+  /// wider if the line is flat. 0: has none.
+  double width = 0.0;
+  double area = 0.0;  ///< of all the faces or shells found, where the finding is of those [m^2]; 0: has none
+  /// A place, in the file's own units and axes (its nodes' transforms applied): the middle of the widest hole
+  /// or slit, of the longest outline, edge or line of crossing, a point on the largest shell; of what
+  /// remains, if any does.
+  std::optional<Vec3> at = std::nullopt;
 };
 
 /// How far two surfaces are apart, by measurement: a lower bound of their Hausdorff distance.
@@ -65,8 +75,9 @@ struct MeshReport {
   std::size_t triangles = 0;          ///< of the mesh handed back
   Vec3 extent = Vec3::Zero();         ///< of its bounding box [m]
   double scale = 1.0;                 ///< metres per unit of the file
+  Vec3 origin = Vec3::Zero();         ///< point of the file, in its units, that is the mesh's origin
   double tolerance = 0.0;             ///< no point of the surface was moved farther by the repair [m]
-  double moved = 0.0;                 ///< largest movement that the repair made [m]
+  double moved = 0.0;                 ///< the surface moved at most so far, all steps together [m]
   bool closed = false;                ///< is_closed() of the mesh handed back
   double volume = 0.0;                ///< of its closed shells, cavities taken off [m^3]
   std::size_t solids = 0;             ///< closed shells that bound a solid from outside
@@ -87,9 +98,9 @@ struct MeshReport {
 [[nodiscard]] std::string finding_meaning(const MeshFinding& finding);
 
 /// Largest extent below 3 mm or above 3 m: no object for a hand, and probably another unit.
-/// @returns empty if the extent is plausible, else what unit the file probably has and what to give, e.g.
-/// "probably in mm: give unit mm, or a size". `scale`: metres per unit of the file that `largest` [m] rests
-/// on.
+/// @returns empty if the extent is plausible, else what unit the file probably has and what to give, e.g. for
+/// 90 m: `it is 90 m wide; probably its numbers are mm (90 mm): give unit "mm" with size_mm 0, or the size in
+/// mm`. `scale`: metres per unit of the file that `largest` [m] rests on.
 [[nodiscard]] std::string unit_advice(double largest, double scale);
 
 }  // namespace phalanx

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes made to break the repair: solids that touch, heaps that take for ever, faces that can be flipped
+// back and forth, and steps that add up.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "mesh/deviation.h"
+#include "mesh/mesh_checks.h"
+#include "mesh/repair.h"
+#include "mesh/weld.h"
+#include "phalanx/mesh/corner_normals.h"
+
+namespace phalanx::mesh {
+namespace {
+
+struct Repaired {
+  TriangleMesh mesh;
+  MeshReport report;
+};
+
+Repaired repaired(const TriangleMesh& soup) {
+  Repaired r;
+  r.mesh = repair(soup, {}, "test", r.report);
+  return r;
+}
+
+void expect_no_second_repair(const TriangleMesh& once) {
+  const Repaired r = repaired(once);
+  for (const MeshFinding& f : r.report.findings) EXPECT_EQ(f.repaired, 0U) << finding_name(f.kind);
+  EXPECT_TRUE(test::corner_positions(once) == test::corner_positions(r.mesh));
+}
+
+void add_to(TriangleMesh& mesh, const TriangleMesh& more) {
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const Triangle& t : more.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+TriangleMesh block(const Vec3& size, const Vec3& centre) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.push_back(centre +
+                            size.cwiseProduct(Vec3(i & 1, (i >> 1) & 1, (i >> 2) & 1) - Vec3::Constant(0.5)));
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+TriangleMesh turned(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+// On a table top, apart, exactly on it, and less than the tolerance into it.
+TEST(RepairAttack, PartsThatStandOnAnotherStaySolids) {
+  for (const double into : {-1e-7, 0.0, 0.5e-6}) {
+    SCOPED_TRACE(::testing::Message() << "into " << into << " m");
+    TriangleMesh mesh = block({0.2, 0.2, 0.02}, {0, 0, -0.01});
+    for (const double x : {-0.06, 0.0, 0.055})
+      add_to(mesh, block({0.02, 0.03, 0.04}, {x, 0.3 * x + 0.01, 0.02 - into}));
+    const Repaired r = repaired(mesh);
+    EXPECT_EQ(r.report.solids, 4U);
+    EXPECT_EQ(r.report.cavities, 0U);
+    EXPECT_EQ(r.report.finding(FindingKind::kInsideOut).found, 0U);
+    EXPECT_NEAR(r.report.volume, 8e-4 + 3 * 2.4e-5, 1e-12);
+  }
+}
+
+// Whichever of a block's sides touches, whichever is first in the file, and whichever is inside out.
+TEST(RepairAttack, ABlockOnAnySideOfAnotherIsTurnedAsIfAlone) {
+  for (int side = 0; side < 6; ++side) {
+    for (int kind = 0; kind < 4; ++kind) {
+      SCOPED_TRACE(::testing::Message() << "side " << side << " kind " << kind);
+      Vec3 centre(0.013, 0.017, 0.011);
+      centre[side / 2] = side % 2 == 0 ? 0.06 : -0.06;
+      const TriangleMesh small = block(Vec3::Constant(0.02), centre);
+      const TriangleMesh big = block(Vec3::Constant(0.1), Vec3::Zero());
+      TriangleMesh mesh = kind % 2 == 0 ? big : small;
+      add_to(mesh, kind % 2 == 0 ? small : big);
+      const Repaired r = repaired(kind < 2 ? mesh : turned(mesh));
+      EXPECT_EQ(r.report.solids, 2U);
+      EXPECT_EQ(r.report.finding(FindingKind::kInsideOut).repaired, kind < 2 ? 0U : 2U);
+      EXPECT_NEAR(r.report.volume, 1e-3 + 8e-6, 1e-12);
+    }
+  }
+}
+
+// One wall of the hollow touches the outer wall: it is inside all the same.
+TEST(RepairAttack, AHollowThatTouchesItsOuterWallStaysAHollow) {
+  TriangleMesh mesh = block(Vec3::Constant(0.1), Vec3::Zero());
+  add_to(mesh, block(Vec3::Constant(0.02), {0.04, 0.003, 0.005}));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.report.solids, 1U);
+  EXPECT_EQ(r.report.cavities, 1U);
+  EXPECT_NEAR(r.report.volume, 1e-3 - 8e-6, 1e-12);
+}
+
+TriangleMesh nested(int count) {
+  TriangleMesh mesh;
+  for (int i = 1; i <= count; ++i) {
+    const double s = 0.05 * i / count;
+    const auto v = static_cast<std::int32_t>(mesh.vertices.size());
+    for (const Vec3& p : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)})
+      mesh.vertices.push_back(s * p);
+    for (const Triangle& t : {Triangle{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
+      mesh.triangles.push_back({t[0] + v, t[1] + v, t[2] + v});
+  }
+  return mesh;
+}
+
+TEST(RepairAttack, NestedShellsAreSolidAndHollowInTurn) {
+  const Repaired r = repaired(nested(101));
+  EXPECT_EQ(r.report.solids, 51U);
+  EXPECT_EQ(r.report.cavities, 50U);
+  EXPECT_TRUE(r.report.complete);
+}
+
+// Work that grows with the square of their number stops: it says so and leaves the rest as it was.
+TEST(RepairAttack, TooManyNestedShellsAreSaidToBe) {
+  const Repaired r = repaired(nested(20000));
+  EXPECT_FALSE(r.report.complete);
+  EXPECT_EQ(r.report.solids + r.report.cavities, 20000U);
+}
+
+/// A convex polygon cut into a fan from its first corner.
+TriangleMesh disc(int corners) {
+  TriangleMesh mesh;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / corners;
+    mesh.vertices.emplace_back(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.0);
+  }
+  for (int i = 1; i + 1 < corners; ++i) mesh.triangles.push_back({0, i, i + 1});
+  return mesh;
+}
+
+TEST(RepairAttack, FlipsAreNotUndoneByFlips) {
+  const TriangleMesh fan = disc(8000);
+  const Repaired r = repaired(fan);
+  EXPECT_LE(r.report.finding(FindingKind::kDegenerateFaces).found, fan.triangles.size());
+  EXPECT_LE(r.report.moved, r.report.tolerance);
+  expect_no_second_repair(r.mesh);
+}
+
+// Flat triangles around one vertex: every one of them would gather all the others.
+TEST(RepairAttack, AHubOfFlatTrianglesComesToAnEnd) {
+  TriangleMesh mesh;
+  constexpr int kCount = 20000;
+  mesh.vertices.emplace_back(0, 0, 0);
+  for (int i = 0; i < kCount; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kCount;
+    mesh.vertices.emplace_back(1e-8 * std::cos(angle), 1e-8 * std::sin(angle), 0.0);
+  }
+  for (int i = 0; i < kCount; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % kCount});
+  add_to(mesh, block(Vec3::Constant(0.1), {0.2, 0, 0}));
+  const Repaired r = repaired(mesh);
+  EXPECT_LE(r.report.finding(FindingKind::kDegenerateFaces).found, mesh.triangles.size());
+  EXPECT_EQ(r.report.solids, 1U);
+}
+
+// A strip of triangles too low to have a normal, longer than any that a scan of all edges for each of them
+// would get through; the one at its end has one.
+TEST(RepairAttack, ANormalSpreadsThroughALongStrip) {
+  constexpr int kCount = 100000;
+  TriangleMesh mesh;
+  for (int i = 0; i < kCount + 2; ++i) mesh.vertices.emplace_back(2e-5 * i, i % 2 == 0 ? 0.0 : 1e-12, 0.0);
+  for (int i = 0; i < kCount; ++i)
+    mesh.triangles.push_back(i % 2 == 0 ? Triangle{i, i + 2, i + 1} : Triangle{i, i + 1, i + 2});
+  mesh.vertices.emplace_back(0, -0.3, 0);
+  mesh.triangles.push_back({0, kCount + 2, 2});
+  for (const auto& corners : corner_normals(mesh, 0.5))
+    for (const Vec3& n : corners) ASSERT_EQ(n, Vec3(0, 0, 1));
+}
+
+/// A block whose triangles are apart, cut and folded, every corner off by 1 nm to 1 um.
+TriangleMesh rattled(std::mt19937_64& random) {
+  const auto real = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  const auto off = [&] {
+    const double most = std::pow(10.0, -9.0 + 0.9 * static_cast<double>(random() % 4));
+    const double x = real();
+    const double y = real();
+    return Vec3(most * (2 * x - 1), most * (2 * y - 1), most * (2 * real() - 1));
+  };
+  TriangleMesh mesh;
+  for (int cut = 0; cut < 8; ++cut) {
+    const TriangleMesh whole = block({0.05, 0.04, 0.03}, Vec3::Zero());
+    for (const Triangle& t : whole.triangles) {
+      const auto k = static_cast<std::size_t>(random() % 3);
+      const auto at = [&](std::size_t i) { return whole.vertices[static_cast<std::size_t>(t[(k + i) % 3])]; };
+      const auto o = static_cast<std::int32_t>(mesh.vertices.size());
+      const double s = real();
+      for (const Vec3& p : {at(0), at(1), at(2), Vec3(at(0) + s * (at(1) - at(0)))})
+        mesh.vertices.push_back(p + off());
+      const auto kind = random() % 3;
+      if (kind == 0) mesh.triangles.push_back({o, o + 1, o + 2});
+      if (kind == 1) mesh.triangles.insert(mesh.triangles.end(), {{o, o + 3, o + 2}, {o + 3, o + 1, o + 2}});
+      if (kind == 2) mesh.triangles.insert(mesh.triangles.end(), {{o, o + 1, o + 2}, {o, o + 3, o + 1}});
+    }
+  }
+  return mesh;
+}
+
+TEST(RepairAttack, AllStepsTogetherStayWithinTheTolerance) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    std::mt19937_64 random(seed);
+    const TriangleMesh soup = rattled(random);
+    const Repaired r = repaired(soup);
+    EXPECT_GT(r.report.moved, 0.0);
+    EXPECT_LE(r.report.moved, r.report.tolerance);
+    const SurfaceDeviation off = measure_deviation(weld(soup), r.mesh);
+    EXPECT_LE(off.outward, r.report.moved * (1.0 + 1e-6) + 1e-15);
+    EXPECT_LE(off.inward, r.report.moved * (1.0 + 1e-6) + 1e-15);
+    expect_no_second_repair(r.mesh);
+  }
+}
+
+}  // namespace
+}  // namespace phalanx::mesh
