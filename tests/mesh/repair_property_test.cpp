@@ -74,7 +74,7 @@ TEST_P(DamagedMesh, IsClosedAgainWhenEveryCornerIsALittleOff) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937 random(seed);
     MeshReport report;
-    const TriangleMesh mesh = repair(damage(made, 0.03e-6, random), {}, "test", report);
+    const TriangleMesh mesh = repair(damage(made, 0.05e-6, random), {}, "test", report);
     EXPECT_TRUE(is_closed(mesh));
     EXPECT_NEAR(signed_volume(mesh), signed_volume(made), 1e-5 * signed_volume(made));
     EXPECT_GT(report.finding(FindingKind::kNearVertices).repaired, made.vertices.size());
