@@ -36,6 +36,15 @@ double sum_factor(const std::array<double, kSegmentsPerDigit>& magnitude, int di
   return size > cap ? cap / size : 1.0;
 }
 
+/// Nothing touches the digit, and what was sent has decayed.
+bool is_free(const GdpState& contacts, int digit, ForceState& state) noexcept {
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    if (contacts.record[idx(segment_index(digit, k))].active || force_of(state, digit, k).sent != 0.0)
+      return false;
+  }
+  return true;
+}
+
 /// The forces of one digit: law -> fingertip cap -> smoothing.
 Status digit_forces(const ForceModel& model, const GdpState& contacts, int digit, bool stale,
                     ForceState& state) noexcept {
@@ -117,6 +126,10 @@ Status compute_command(const ForceModel& model, const GdpState& contacts, const 
   Status status = Status::kOk;
   JointArray wanted{};
   for (int d = 0; d < kDigits; ++d) {
+    if (is_free(contacts, d, state)) {  // most digits at most ticks
+      for (int k = 0; k < kSegmentsPerDigit; ++k) force_of(state, d, k) = {};
+      continue;
+    }
     status |= digit_forces(model, contacts, d, stale, state);
     const DigitPose& gdp = contacts.poses.digit[idx(d)];
     for (int k = 0; k < kSegmentsPerDigit; ++k) {

@@ -57,48 +57,8 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
   }
 }
 
-/// The mirror image in the plane x = 0, exactly: only signs change.
-Vec3 mirrored(const Vec3& v) noexcept { return {-v.x(), v.y(), v.z()}; }
-
-void mirror(DigitPose& pose) noexcept {
-  for (Pose& X : pose.segment) {
-    X.p.x() = -X.p.x();
-    X.R(0, 1) = -X.R(0, 1);
-    X.R(0, 2) = -X.R(0, 2);
-    X.R(1, 0) = -X.R(1, 0);
-    X.R(2, 0) = -X.R(2, 0);
-  }
-  for (JointAxis& joint : pose.joint) {
-    joint.axis =
-        -mirrored(joint.axis);  // an axis is a pseudovector: positive angles stay flexion and spreading
-    joint.centre = mirrored(joint.centre);
-  }
-}
-
-/// The transform of one D-H row at joint angle q, appended to X.
-Pose after_joint(const Pose& X, const DhRow& row, double q) noexcept {
-  const double ct = std::cos(row.theta + q);
-  const double st = std::sin(row.theta + q);
-  const double ca = std::cos(row.alpha);
-  const double sa = std::sin(row.alpha);
-  Pose T;
-  T.R << ct, -st * ca, st * sa,  //
-      st, ct * ca, -ct * sa,     //
-      0.0, sa, ca;
-  T.p << row.a * ct, row.a * st, row.d;
-  return X * T;
-}
-
-/// The segment's WebXR frame from the D-H frame at its far end: origin back at the joint, -Z along the link,
-/// -X the flexion axis.
-Pose segment_frame(const Pose& X_dh, const DhRow& row) noexcept {
-  Pose X;
-  X.R.col(0) = -X_dh.R.col(2);
-  X.R.col(1) = -X_dh.R.col(1);
-  X.R.col(2) = -X_dh.R.col(0);
-  X.p = X_dh.p - row.a * X_dh.R.col(0);
-  return X;
-}
+/// Reflects vectors of H in its x = 0 plane.
+Mat3 reflection() { return Vec3(-1.0, 1.0, 1.0).asDiagonal(); }
 
 }  // namespace
 
@@ -112,9 +72,14 @@ HandModel::HandModel(HandParameters parameters, Handedness handedness, const Pos
     throw std::invalid_argument("hand '" + parameters_.name +
                                 "': its pose in the world is not a finite rotation and translation");
   }
+  const bool mirrored = handedness == Handedness::kLeft;
   for (int d = 0; d < kDigits; ++d) {
     const DigitParameters& digit = parameters_.digits[at(d)];
-    X_HB_[at(d)] = base_frame(digit);
+    X_WB_[at(d)] = X_WH * (mirrored ? Pose{reflection()} * base_frame(digit) : base_frame(digit));
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const DhRow& row = digit.dh[at(i)];
+      joint_[at(d)][at(i)] = {row.a, row.d, row.theta, std::cos(row.alpha), std::sin(row.alpha)};
+    }
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       double radius = 0.0;  // of the segment's mesh around its own joint
       for (const Vec3& v : mesh(segment_index(d, k)).vertices) radius = std::max(radius, v.norm());
@@ -137,20 +102,37 @@ int HandModel::triangle_count() const noexcept {
 }
 
 void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose) const noexcept {
-  const DigitParameters& chain = parameters_.digits[at(digit)];
-  Pose X = X_HB_[at(digit)];
+  // The right hand's chain, from a base that is reflected for a left hand: it then carries the reflected
+  // frames, in which the third axis is the negative of the axis that flexes, for an axis is a pseudovector.
+  const double flexion = handedness_ == Handedness::kLeft ? -1.0 : 1.0;
+  const Pose& base = X_WB_[at(digit)];
+  Vec3 x = base.R.col(0);
+  Vec3 y = base.R.col(1);
+  Vec3 z = base.R.col(2);
+  Vec3 p = base.p;
   for (int i = 0; i < kJointsPerDigit; ++i) {
-    pose.joint[at(i)].axis = X.R.col(2);
-    pose.joint[at(i)].centre = X.p;
-    const DhRow& row = chain.dh[at(i)];
-    X = after_joint(X, row, angle[at(i)]);
-    if (i > 0) pose.segment[at(i - 1)] = segment_frame(X, row);
-  }
-  if (handedness_ == Handedness::kLeft) mirror(pose);
-  for (Pose& segment : pose.segment) segment = X_WH_ * segment;
-  for (JointAxis& joint : pose.joint) {
-    joint.axis = X_WH_.R * joint.axis;
-    joint.centre = X_WH_ * joint.centre;
+    const ChainJoint& joint = joint_[at(digit)][at(i)];
+    const double c = std::cos(joint.theta + angle[at(i)]);
+    const double s = std::sin(joint.theta + angle[at(i)]);
+    const Vec3 axis = flexion * z;
+    pose.joint[at(i)] = {axis, p};
+    // Rz(theta + q) Tz(d): `across` is at right angles to the link and to z.
+    const Vec3 link = c * x + s * y;
+    const Vec3 across = c * y - s * x;
+    const Vec3 start = p + joint.d * z;
+    // Tx(a) Rx(alpha).
+    p = start + joint.a * link;
+    x = link;
+    y = joint.cos_alpha * across + joint.sin_alpha * z;
+    z = joint.cos_alpha * z - joint.sin_alpha * across;
+    if (i == 0) continue;
+    // WebXR's frame, from the one at the link's far end: origin back at the joint, -Z along the link, -X the
+    // axis that flexes.
+    Pose& segment = pose.segment[at(i - 1)];
+    segment.R.col(0) = -flexion * z;
+    segment.R.col(1) = -y;
+    segment.R.col(2) = -x;
+    segment.p = start;
   }
 }
 

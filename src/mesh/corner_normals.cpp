@@ -14,14 +14,12 @@ namespace {
 /// A triangle's corner: 3 * triangle + k.
 using Corner = std::size_t;
 
+/// A half edge, filed under the lower of its two vertices.
 struct HalfEdge {
-  std::int32_t low;
-  std::int32_t high;
-  Corner start;  // runs from this corner to the next one of its triangle
+  std::int32_t high;  // the other vertex
+  Corner start;       // runs from this corner to the next one of its triangle
   friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.start < b.start;
+    return a.high != b.high ? a.high < b.high : a.start < b.start;
   }
 };
 
@@ -29,14 +27,17 @@ Corner next(Corner c) { return c % 3 == 2 ? c - 2 : c + 1; }
 
 class Groups {
  public:
-  explicit Groups(std::size_t n) : parent_(n) {
+  explicit Groups(std::size_t n) : parent_(n), alone_(n, true) {
     for (std::size_t i = 0; i < n; ++i) parent_[i] = i;
   }
   std::size_t root(std::size_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
+  /// Never joined with any.
+  [[nodiscard]] bool alone(std::size_t i) const { return alone_[i]; }
   void join(std::size_t a, std::size_t b) {
+    alone_[a] = alone_[b] = false;
     a = root(a);
     b = root(b);
     parent_[std::max(a, b)] = std::min(a, b);
@@ -44,6 +45,7 @@ class Groups {
 
  private:
   std::vector<std::size_t> parent_;
+  std::vector<bool> alone_;
 };
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -78,33 +80,56 @@ struct SharedEdges {
       hanging;  ///< a triangle without area that lies in such an edge, and one of the two
 };
 
-SharedEdges shared_edges(const TriangleMesh& mesh, const std::vector<Vec3>& face) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t a = mesh.triangles[t][k];
-      const std::int32_t b = mesh.triangles[t][(k + 1) % 3];
-      if (a != b) edges.push_back({std::min(a, b), std::max(a, b), 3 * t + k});
+/// Half edges in the order of their lower vertex, higher vertex and corner; those of lower vertex v are
+/// [first[v], first[v + 1]).
+struct SortedHalfEdges {
+  std::vector<std::size_t> first;
+  std::vector<HalfEdge> edge;
+};
+
+/// Filed by counting, then sorted vertex by vertex, which is faster than one large sort.
+SortedHalfEdges sorted_half_edges(const TriangleMesh& mesh) {
+  const auto for_each = [&](const auto& visit) {
+    for (Corner c = 0; c < 3 * mesh.triangles.size(); ++c) {
+      const std::int32_t a = mesh.triangles[c / 3][c % 3];
+      const std::int32_t b = mesh.triangles[c / 3][next(c) % 3];
+      if (a != b) visit(static_cast<std::size_t>(std::min(a, b)), HalfEdge{std::max(a, b), c});
     }
-  }
-  std::sort(edges.begin(), edges.end());
+  };
+  SortedHalfEdges out;
+  // Counts stand two places up, so that filling moves first[v + 1] from the start to the end of v.
+  out.first.assign(mesh.vertices.size() + 2, 0);
+  for_each([&](std::size_t low, const HalfEdge&) { ++out.first[low + 2]; });
+  for (std::size_t v = 2; v < out.first.size(); ++v) out.first[v] += out.first[v - 1];
+  out.edge.resize(out.first.back());
+  for_each([&](std::size_t low, const HalfEdge& e) { out.edge[out.first[low + 1]++] = e; });
+  out.first.pop_back();
+  const auto edge = [&](std::size_t i) { return out.edge.begin() + static_cast<std::ptrdiff_t>(i); };
+  for (std::size_t v = 0; v + 1 < out.first.size(); ++v)
+    std::sort(edge(out.first[v]), edge(out.first[v + 1]));
+  return out;
+}
+
+SharedEdges shared_edges(const TriangleMesh& mesh, const std::vector<Vec3>& face) {
+  const auto [first, edges] = sorted_half_edges(mesh);
   SharedEdges out;
   std::vector<Corner> solid;
   std::vector<Corner> flat;
-  for (std::size_t i = 0; i < edges.size();) {
-    solid.clear();
-    flat.clear();
-    std::size_t end = i;
-    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
-      (face[edges[end].start / 3].isZero(0.0) ? flat : solid).push_back(edges[end].start);
-    if (end - i == 2) {
-      out.two.emplace_back(edges[i].start, edges[i + 1].start);
-    } else if (solid.size() == 2) {
-      out.two.emplace_back(solid[0], solid[1]);
-      for (const Corner c : flat) out.hanging.emplace_back(c, solid[0]);
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    for (std::size_t i = first[v]; i < first[v + 1];) {
+      solid.clear();
+      flat.clear();
+      std::size_t end = i;
+      for (; end < first[v + 1] && edges[end].high == edges[i].high; ++end)
+        (face[edges[end].start / 3].isZero(0.0) ? flat : solid).push_back(edges[end].start);
+      if (end - i == 2) {
+        out.two.emplace_back(edges[i].start, edges[i + 1].start);
+      } else if (solid.size() == 2) {
+        out.two.emplace_back(solid[0], solid[1]);
+        for (const Corner c : flat) out.hanging.emplace_back(c, solid[0]);
+      }
+      i = end;
     }
-    i = end;
   }
   return out;
 }
@@ -196,7 +221,7 @@ SurfaceNormals surface_normals(const TriangleMesh& mesh, double crease_angle) {
     const Vec3& s = sum[groups.root(c)];
     const double length = s.norm();
     const Vec3& fallback = face[c / 3];
-    if (length > 1e-12) {
+    if (length > 1e-12 && !groups.alone(c)) {  // alone: the face's own normal, to the last bit
       out.corner[c / 3][c % 3] = s / length;
     } else {
       out.corner[c / 3][c % 3] = fallback.isZero(0.0) ? Vec3(Vec3::UnitZ()) : fallback;

@@ -155,6 +155,31 @@ TEST(HandModel, ALeftHandMirrorsARightHandExactly) {
   for (int s = 0; s < kSegments; ++s) EXPECT_GT(signed_volume(left.mesh(s)), 0.0) << segment_name(s);
 }
 
+TEST(HandModel, OfEitherSideMovesWithItsPoseInTheWorld) {
+  std::mt19937_64 random(5);
+  for (const Handedness side : {Handedness::kRight, Handedness::kLeft}) {
+    const Pose X_WH = somewhere(random);
+    const HandModel here = simple_hand(side, {}, 800);
+    const HandModel there = simple_hand(side, X_WH, 800);
+    const JointArray q = random_angles(random);
+    for (int d = 0; d < kDigits; ++d) {
+      DigitPose a;
+      DigitPose b;
+      here.digit_pose(d, digit_angles(q, d), a);
+      there.digit_pose(d, digit_angles(q, d), b);
+      for (std::size_t k = 0; k < kSegmentsPerDigit; ++k) {
+        EXPECT_LT((X_WH.R * a.segment[k].R - b.segment[k].R).norm(), 1e-13) << "seed 5";
+        EXPECT_LT((X_WH * a.segment[k].p - b.segment[k].p).norm(), 1e-13) << "seed 5";
+        EXPECT_NEAR(b.segment[k].R.determinant(), 1.0, 1e-13) << "seed 5: not a reflection";
+      }
+      for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
+        EXPECT_LT((X_WH.R * a.joint[i].axis - b.joint[i].axis).norm(), 1e-13) << "seed 5";
+        EXPECT_LT((X_WH * a.joint[i].centre - b.joint[i].centre).norm(), 1e-13) << "seed 5";
+      }
+    }
+  }
+}
+
 TEST(HandModel, ReachBoundsEveryPointOfTheSegmentAtEveryAngle) {
   std::mt19937_64 random(4);
   const HandModel hand = simple_hand();

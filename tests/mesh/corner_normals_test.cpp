@@ -167,6 +167,25 @@ TEST(CornerNormals, TellWhichEdgesEndTheSurface) {
   for (const std::uint8_t bits : cube.open_edges) EXPECT_EQ(bits, 0) << "right angles";
 }
 
+// Corners of one smooth group have the same bits, so that they can be kept once; so have those of a face that
+// is smooth with none.
+TEST(CornerNormals, OfOneGroupAreTheSameToTheLastBit) {
+  const TriangleMesh sphere = make_sphere(2.0, 5000);
+  std::vector<const Vec3*> of_vertex(sphere.vertices.size(), nullptr);
+  const auto normals = corner_normals(sphere, 30.0 * kDegree);
+  for (std::size_t t = 0; t < sphere.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3*& first = of_vertex[static_cast<std::size_t>(sphere.triangles[t][k])];
+      if (first == nullptr) first = &normals[t][k];
+      ASSERT_EQ(*first, normals[t][k]) << t;
+    }
+  }
+  for (const auto& n : corner_normals(sphere, 0.0)) {
+    ASSERT_EQ(n[0], n[1]);
+    ASSERT_EQ(n[0], n[2]);
+  }
+}
+
 TEST(CornerNormals, RefuseAnInvalidAngleOrMesh) {
   EXPECT_THROW((void)corner_normals(make_box({1, 1, 1}, 12), -0.1), std::invalid_argument);
   EXPECT_THROW((void)corner_normals(make_box({1, 1, 1}, 12), std::nan("")), std::invalid_argument);

@@ -75,8 +75,19 @@ class HandModel {
   Handedness handedness_;
   Pose X_WH_;
   SegmentMeshes meshes_;
-  std::array<Pose, kDigits>
-      X_HB_;  ///< right-hand frame of each digit's first joint before it turns (x distal, z flexion axis)
+  /// A D-H row, with what does not depend on the angle worked out.
+  struct ChainJoint {
+    double a = 0.0;
+    double d = 0.0;
+    double theta = 0.0;
+    double cos_alpha = 1.0;
+    double sin_alpha = 0.0;
+  };
+
+  /// In W, each digit's first joint before it turns: x distal, z flexion axis. A right hand's frame; of a
+  /// left hand, that frame's reflection in H's x = 0 plane, which is left-handed.
+  std::array<Pose, kDigits> X_WB_;
+  std::array<std::array<ChainJoint, kJointsPerDigit>, kDigits> joint_{};
   std::array<std::array<std::array<double, kSegmentsPerDigit>, kJointsPerDigit>, kDigits> reach_{};
 };
 
