@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "phalanx/contact/triangle_tree.h"
+#include "phalanx/contact/triangle_distance.h"
 
 namespace phalanx {
 

@@ -42,12 +42,12 @@ const DigitAngles& AngleRing::back(int age) const noexcept {
 
 SegmentTrees make_segment_trees(const HandModel& hand) {
   SegmentTrees trees;
-  for (int s = 0; s < kSegments; ++s) trees[idx(s)] = TriangleTree(hand.mesh(s), 1);
+  for (int s = 0; s < kSegments; ++s) trees[idx(s)] = SegmentTree(hand.mesh(s));
   return trees;
 }
 
 GdpState::GdpState(const ContactModel& model)
-    : angle(model.hand.parameters().open_angle), hcp_angle(angle), placed(model.trees) {
+    : angle(model.hand.parameters().open_angle), hcp_angle(angle), scratch(model.trees) {
   model.hand.poses(angle, poses);
   const double margin = model.parameters.margin;
   const Containment containment(model.object.mesh());
@@ -55,21 +55,21 @@ GdpState::GdpState(const ContactModel& model)
     const bool palm = s == kPalm;
     const Pose& X = palm ? model.hand.palm_pose()
                          : poses.digit[idx(digit_of_segment(s))].segment[idx(s % kSegmentsPerDigit)];
-    placed[idx(s)].place(model.trees[idx(s)], X);
+    const PlacedSegment placed{model.trees[idx(s)], X, scratch};
     const std::string name =
         std::string(palm ? "the palm (" : "the open hand (") + std::string(segment_name(s)) + ")";
     const std::string remedy =
         "; move the object or the hand (objects.N.position_mm, hand.position_mm) so that they are apart";
-    const double clearance = distance(placed[idx(s)], model.object.tree(), 2.0 * margin);
-    if (!(clearance > 0.0) || containment.with(model.hand.mesh(s), X)) {
+    const double apart = distance(placed, model.object.tree(), 2.0 * margin);
+    if (!(apart > 0.0) || containment.with(model.hand.mesh(s), X)) {
       throw std::invalid_argument(name + " goes through the object" + remedy);
     }
-    if (!palm && clearance <= margin) {
-      throw std::invalid_argument(name + " is " + millimetres(clearance) +
+    if (!palm && apart <= margin) {
+      throw std::invalid_argument(name + " is " + millimetres(apart) +
                                   " from the object, within the margin of " + millimetres(margin) + remedy);
     }
-    if (palm && clearance <= margin) {
-      const ContactPatch patch = contact_patch(placed[idx(s)], model.object, 2.0 * margin);
+    if (palm && apart <= margin) {
+      const ContactPatch patch = contact_patch(placed, model.object, 2.0 * margin);
       ContactRecord& touching = record[idx(s)];
       touching.active = true;
       touching.p_S = X.inverse() * patch.on_segment;
@@ -98,10 +98,10 @@ int joints_held(GdpState& state, const DigitTick& tick) noexcept {
 
 void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
                  const SegmentMotion* motion, GdpState& state) noexcept {
-  const ContactPatch patch =
-      contact_patch(state.placed[idx(segment_index(tick.digit, k))], model.object, cap, motion);
-  if (patch.pairs == 0) return;
   const Pose& gdp = tick.pose.segment[idx(k)];
+  const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], gdp, state.scratch};
+  const ContactPatch patch = contact_patch(placed, model.object, cap, motion);
+  if (patch.pairs == 0) return;
   ContactRecord record;
   record.active = true;
   record.p_S = gdp.R.transpose() * (patch.on_segment - gdp.p);
@@ -138,14 +138,6 @@ void make_record(const ContactModel& model, const DigitTick& tick, int k, double
   record_of(state, tick, k) = record;
 }
 
-void place_digit(const ContactModel& model, int first, DigitTick& tick, GdpState& state) noexcept {
-  model.hand.digit_pose(tick.digit, tick.angle, tick.pose);
-  for (int k = first; k < kSegmentsPerDigit; ++k) {
-    const std::size_t s = idx(segment_index(tick.digit, k));
-    state.placed[s].place(model.trees[s], tick.pose.segment[idx(k)]);
-  }
-}
-
 Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const HandPoses& hcp,
                    const std::array<bool, kDigits>& measured, GdpState& state) noexcept {
   Status status = Status::kOk;
@@ -162,7 +154,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
     } else {
       advance_trajectory(model, tick, state);
     }
-    model.hand.digit_pose(d, tick.angle, state.poses.digit[idx(d)]);
+    state.poses.digit[idx(d)] = tick.pose;
     for (int i = 0; i < kJointsPerDigit; ++i) state.angle[idx(joint_index(d, i))] = tick.angle[idx(i)];
 
     const bool clear = tick.angle == tick.hcp;

@@ -38,9 +38,6 @@ void measure(ContactRecord& record, const Pose& gdp, const Pose& hcp) noexcept;
 void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
                  const SegmentMotion* motion, GdpState& state) noexcept;
 
-/// Sets tick.pose from tick.angle and the placed trees of the segments from `first` on.
-void place_digit(const ContactModel& model, int first, DigitTick& tick, GdpState& state) noexcept;
-
 /// Moves one digit. "The GDP, exactly", 2-4.
 void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
 

@@ -10,15 +10,17 @@ namespace phalanx {
 namespace {
 
 /// Whether the segment k, at tick.pose, touches the object.
-bool touches(const ContactModel& model, const DigitTick& tick, int k, const GdpState& state) noexcept {
+bool touches(const ContactModel& model, const DigitTick& tick, int k, GdpState& state) noexcept {
   const double cap = std::nextafter(model.parameters.margin, 1.0);
-  return distance(state.placed[idx(segment_index(tick.digit, k))], model.object.tree(), cap) < cap;
+  const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], tick.pose.segment[idx(k)],
+                             state.scratch};
+  return distance(placed, model.object.tree(), cap) < cap;
 }
 
 /// The pose of the digit with the joints from tick.fixed on at `angle`.
-void pose_at(const ContactModel& model, const DigitAngles& angle, DigitTick& tick, GdpState& state) noexcept {
+void pose_at(const ContactModel& model, const DigitAngles& angle, DigitTick& tick) noexcept {
   std::copy(angle.begin() + tick.fixed, angle.end(), tick.angle.begin() + tick.fixed);
-  place_digit(model, 0, tick, state);
+  model.hand.digit_pose(tick.digit, tick.angle, tick.pose);
 }
 
 }  // namespace
@@ -31,7 +33,7 @@ void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& st
     if (joints_that_move(k) > tick.fixed) record_of(state, tick, k).active = false;
   }
   while (tick.fixed < kJointsPerDigit) {
-    pose_at(model, tick.hcp, tick, state);
+    pose_at(model, tick.hcp, tick);
     int hit = -1;  // S1 fig. 4: distal first, then middle, then proximal
     for (int k = kSegmentsPerDigit - 1; k >= 0 && hit < 0; --k) {
       if (joints_that_move(k) > tick.fixed && touches(model, tick, k, state)) hit = k;
@@ -40,11 +42,11 @@ void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& st
 
     bool found = false;
     for (int age = 0; age < recorded.size() && !found; ++age) {
-      pose_at(model, recorded.back(age), tick, state);
+      pose_at(model, recorded.back(age), tick);
       found = !touches(model, tick, hit, state);
     }
     if (!found) {
-      pose_at(model, before, tick, state);
+      pose_at(model, before, tick);
       tick.status |= Status::kTrajectoryExhausted;
     }
     // The point of contact is where the two are closest at that pose, however far apart a tick has left them.

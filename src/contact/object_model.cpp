@@ -18,15 +18,16 @@ ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) : mesh_(std::mo
           " m from the world's origin, more than 10 km; give the object's size (size_mm)");
     }
   }
-  tree_ = TriangleTree(mesh_, 1);
-  normals_ = surface_normals(mesh_, crease_angle);
+  tree_ = ObjectTree(mesh_);
+  normals_ = CompactNormals(surface_normals(mesh_, crease_angle));
 }
 
 Vec3 ObjectModel::normal_at(int triangle, const Vec3& weight) const noexcept {
-  const auto& normal = normals_.corner[static_cast<std::size_t>(triangle)];
-  const Vec3 sum = weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2];
+  const Vec3 first = normals_.normal(triangle, 0);
+  const Vec3 sum =
+      weight[0] * first + weight[1] * normals_.normal(triangle, 1) + weight[2] * normals_.normal(triangle, 2);
   const double length = sum.norm();
-  return length > 1e-9 ? Vec3(sum / length) : normal[0];
+  return length > 1e-9 ? Vec3(sum / length) : first;
 }
 
 }  // namespace phalanx

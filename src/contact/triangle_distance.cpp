@@ -4,16 +4,23 @@
 #include <algorithm>
 
 #include "contact/feature_pairs.h"
+#include "contact/search/search_functions.h"
 
 namespace phalanx {
 
 TriangleDistance triangle_distance(const Corners& a, const Corners& b) noexcept {
-  TriangleDistance best{(a[0] - b[0]).squaredNorm(), a[0], b[0]};
-  for_each_feature_pair(a, b, [&](const Vec3& on_a, const Vec3& on_b) {
-    const double squared = (on_a - on_b).squaredNorm();
-    if (squared < best.squared) best = {squared, on_a, on_b};
-  });
-  return best;
+  double corner_a[3][3];
+  double corner_b[3][3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (int i = 0; i < 3; ++i) {
+      corner_a[c][i] = a[c][i];
+      corner_b[c][i] = b[c][i];
+    }
+  }
+  search::PairDistance found;
+  search::functions().closest(corner_a, corner_b, found);
+  return {found.squared, Vec3(found.on_segment[0], found.on_segment[1], found.on_segment[2]),
+          Vec3(found.on_object[0], found.on_object[1], found.on_object[2])};
 }
 
 Vec3 barycentric(const Corners& t, const Vec3& p) noexcept {

@@ -36,9 +36,9 @@ HapticModel model_of(const TriangleMesh& object) {
 TriangleMesh floor_below() { return moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0)); }
 
 double clearance(const HapticModel& model, const Snapshot& s, int segment) {
-  TriangleTree placed(model.trees[static_cast<std::size_t>(segment)]);
-  placed.place(model.trees[static_cast<std::size_t>(segment)], s.gdp_pose[static_cast<std::size_t>(segment)]);
-  return distance(placed, model.object.tree(), 1e-3);
+  const SegmentTree& tree = model.trees[static_cast<std::size_t>(segment)];
+  SearchScratch scratch(tree);
+  return distance({tree, s.gdp_pose[static_cast<std::size_t>(segment)], scratch}, model.object.tree(), 1e-3);
 }
 
 /// How far the contact's material point on the HCP lies behind the contact, along the force.
@@ -271,8 +271,8 @@ double index_clearance(const HapticModel& model, const JointArray& angle) {
   double least = 1e-3;
   for (int k = 1; k < kSegmentsPerDigit; ++k) {
     const std::size_t s = static_cast<std::size_t>(segment_index(1, k));
-    TriangleTree placed(model.trees[s]);
-    placed.place(model.trees[s], poses.digit[1].segment[static_cast<std::size_t>(k)]);
+    SearchScratch scratch(model.trees[s]);
+    const PlacedSegment placed{model.trees[s], poses.digit[1].segment[static_cast<std::size_t>(k)], scratch};
     least = std::min(least, distance(placed, model.object.tree(), 1e-3));
   }
   return least;

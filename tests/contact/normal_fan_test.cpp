@@ -28,13 +28,12 @@ class Ball {
  public:
   static constexpr double kRadius = 5e-3;
   ContactPatch at(const Vec3& centre, const ObjectModel& object) {
-    placed_.place(at_rest_, Pose{turned_, centre});
-    return contact_patch(placed_, object, 1.0);
+    return contact_patch({ball_, Pose{turned_, centre}, scratch_}, object, 1.0);
   }
 
  private:
-  TriangleTree at_rest_{make_sphere(2.0 * kRadius, 14000), 1};
-  TriangleTree placed_{at_rest_};
+  SegmentTree ball_{make_sphere(2.0 * kRadius, 14000)};
+  SearchScratch scratch_{ball_};
   Mat3 turned_ =
       rotation_about(Vec3(0.3, -0.5, 0.8).normalized(), 0.7);  // no edge of it parallel to the object's
 };
@@ -103,14 +102,14 @@ TEST(ContactPatch, OnAFlatPlateDoesNotFeelWhereTheTrianglesMeet) {
   const ObjectModel object(plate);
   Ball ball;
   // A cube on its corner has one nearest point; of the ball, facets that fold by 3 degrees may tie.
-  const TriangleTree cube(make_box(Vec3::Constant(6e-3), 12), 1);
-  TriangleTree placed(cube);
+  const SegmentTree cube(make_box(Vec3::Constant(6e-3), 12));
+  SearchScratch scratch(cube);
   const Mat3 on_corner = Eigen::Quaterniond::FromTwoVectors(Vec3(1, 1, 1), -Vec3::UnitZ()).toRotationMatrix();
   const double height = 3e-3 * std::numbers::sqrt3;
   for (int n = 0; n < 400; ++n) {
     const Vec3 place(8.5e-3 + n * 5e-6, 9.3e-3 + n * 1e-6, kMargin);
-    placed.place(cube, Pose{on_corner, place + Vec3(0, 0, height)});
-    const ContactPatch corner = contact_patch(placed, object, 1.0);
+    const ContactPatch corner =
+        contact_patch({cube, Pose{on_corner, place + Vec3(0, 0, height)}, scratch}, object, 1.0);
     ASSERT_LT(angle_of(corner.direction, Vec3::UnitZ()), 1e-9) << n;
     ASSERT_LT(angle_of(corner.object_normal, Vec3::UnitZ()), 1e-9) << n;
     const ContactPatch patch = ball.at(place + Vec3(0, 0, Ball::kRadius), object);

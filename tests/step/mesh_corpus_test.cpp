@@ -128,6 +128,10 @@ std::vector<test::RawTriangle> own_triangles(const fs::path& file, const Vec3& w
   return raw;
 }
 
+double squared_distance(const Bounds& a, const Bounds& b) {
+  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
+}
+
 /// Least distance of the segment from the object over all pairs of triangles [m]; `cap` if it is not below.
 double clearance(const TriangleMesh& segment, const Pose& X, const TriangleMesh& object, double cap) {
   const std::vector<Vec3> points = placed(segment, X);
@@ -136,14 +140,14 @@ double clearance(const TriangleMesh& segment, const Pose& X, const TriangleMesh&
                    p[static_cast<std::size_t>(t[2])]};
   };
   const auto box_of = [](const Corners& c) {
-    return Aabb{c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])};
+    return Bounds{c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])};
   };
-  Aabb whole{points.front(), points.front()};
+  Bounds whole{points.front(), points.front()};
   for (const Vec3& p : points) whole = {whole.min.cwiseMin(p), whole.max.cwiseMax(p)};
   double least = cap * cap;
   for (const Triangle& t : object.triangles) {
     const Corners c = corners(object.vertices, t);
-    const Aabb box = box_of(c);
+    const Bounds box = box_of(c);
     if (squared_distance(box, whole) >= least) continue;
     for (const Triangle& s : segment.triangles) {
       const Corners d = corners(points, s);

@@ -6,9 +6,11 @@
 #include <array>
 #include <vector>
 
+#include "phalanx/contact/clearance.h"
 #include "phalanx/contact/contact_parameters.h"
 #include "phalanx/contact/object_model.h"
-#include "phalanx/contact/triangle_tree.h"
+#include "phalanx/contact/pair_list.h"
+#include "phalanx/contact/segment_tree.h"
 #include "phalanx/core/status.h"
 #include "phalanx/hand/hand_model.h"
 
@@ -44,8 +46,7 @@ class AngleRing {
   int size_ = 0;
 };
 
-/// Each segment's search tree, in the segment's frame. Constant.
-using SegmentTrees = std::array<TriangleTree, kSegments>;
+/// Each segment's search tree.
 [[nodiscard]] SegmentTrees make_segment_trees(const HandModel& hand);
 
 /// The constant side of the search, by reference.
@@ -69,8 +70,10 @@ struct GdpState {
   std::array<bool, kDigits> started{};  ///< the digit has had a tick with measured angles
   std::array<bool, kDigits> inside{};   ///< start_inside: no force until the digit has once been clear
   std::array<ContactRecord, kSegments> record;
-  SegmentTrees placed;                      ///< scratch: the segments' trees at the pose being searched
-  std::array<AngleRing, kDigits> recorded;  ///< for GdpMethod::kTrajectory
+  std::array<Clearance, kSegments> clearance;  ///< of the GDP's segments
+  SearchScratch scratch;                       ///< what one search writes on
+  PairList pairs;                              ///< scratch: what a digit may meet in this tick
+  std::array<AngleRing, kDigits> recorded;     ///< for GdpMethod::kTrajectory
 };
 
 /// Moves the GDP towards the HCP for one tick and updates the contact records.

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "phalanx/contact/triangle_tree.h"
-#include "phalanx/mesh/corner_normals.h"
+#include "phalanx/contact/compact_normals.h"
+#include "phalanx/contact/object_tree.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx {
@@ -26,7 +26,7 @@ class ObjectModel {
   static constexpr double kDefaultCreaseAngle = 0.523598775598299;  // 30 degrees
 
   [[nodiscard]] const TriangleMesh& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] const TriangleTree& tree() const noexcept { return tree_; }
+  [[nodiscard]] const ObjectTree& tree() const noexcept { return tree_; }
   [[nodiscard]] int triangle_count() const noexcept { return static_cast<int>(mesh_.triangles.size()); }
 
   /// The surface normal at the point with barycentric coordinates `weight` on a triangle, unit length (or the
@@ -35,14 +35,12 @@ class ObjectModel {
 
   /// Which edges of the triangle no second face continues: bit k for the edge from corner k to the next one
   /// (SurfaceNormals::open_edges). Real-time.
-  [[nodiscard]] int open_edges(int triangle) const noexcept {
-    return normals_.open_edges[static_cast<std::size_t>(triangle)];
-  }
+  [[nodiscard]] int open_edges(int triangle) const noexcept { return normals_.open_edges(triangle); }
 
  private:
   TriangleMesh mesh_;
-  TriangleTree tree_;
-  SurfaceNormals normals_;
+  ObjectTree tree_;
+  CompactNormals normals_;
 };
 
 }  // namespace phalanx

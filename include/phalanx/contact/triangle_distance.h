@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "phalanx/contact/triangle_tree.h"
+#include <array>
+
+#include "phalanx/core/math.h"
 
 namespace phalanx {
+
+/// The three corners of a triangle [m].
+using Corners = std::array<Vec3, 3>;
 
 /// The closest points of two triangles.
 struct TriangleDistance {

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/first_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/pair_search.h"
+
+namespace phalanx {
+
+DigitAngles Path::at(double s, const DigitAngles& end, const DigitAngles& now, int fixed) const noexcept {
+  DigitAngles q = now;
+  for (int i = fixed; i < kJointsPerDigit; ++i)
+    q[idx(i)] = s >= 1.0 ? end[idx(i)] : from[idx(i)] + s * rate[idx(i)];
+  return q;
+}
+
+int Path::first_moving() const noexcept {
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    if (rate[idx(i)] != 0.0) return segment_in_digit_of_joint(i);
+  }
+  return kSegmentsPerDigit;
+}
+
+namespace {
+
+class Search {
+ public:
+  Search(const ContactModel& model, const Path& path, double s, DigitTick& tick, GdpState& state) noexcept
+      : model_(model), path_(path), tick_(tick), state_(state), first_(path.first_moving()), s_(s) {
+    for (int k = first_; k < kSegmentsPerDigit; ++k)
+      speed_[idx(k)] = segment_speed(model.hand, tick.digit, path.rate, k);
+  }
+
+  Stop run(int& evaluations) noexcept {
+    while (evaluations < kMaxEvaluations) {
+      const double horizon = gather();
+      const bool crowded = s_ < 1.0 && !(horizon > s_);  // more pairs than can be listed, all about to be met
+      for (bool reached = false; !reached && evaluations < kMaxEvaluations; ++evaluations) {
+        const int blocked = evaluate(horizon);
+        if (blocked >= 0) return {s_, blocked};
+        if (crowded) return exhausted();
+        const double next = std::min(horizon, least_until(state_.pairs));
+        reached = s_ >= horizon || (next >= horizon && !any_near(state_.pairs));
+        if (!reached && !(next > s_)) return exhausted();  // a step below the resolution of s
+        move_to(next);
+        if (reached && s_ >= 1.0) return {};
+      }
+    }
+    return exhausted();
+  }
+
+ private:
+  Stop exhausted() noexcept {
+    tick_.status |= Status::kSearchExhausted;
+    return {s_, kSegmentsPerDigit - 1};
+  }
+
+  [[nodiscard]] PlacedSegment placed(int k) noexcept {
+    return {model_.trees[idx(segment_index(tick_.digit, k))], tick_.pose.segment[idx(k)], state_.scratch};
+  }
+  [[nodiscard]] Clearance& clearance(int k) noexcept {
+    return state_.clearance[idx(segment_index(tick_.digit, k))];
+  }
+  [[nodiscard]] SegmentMotion motion(int k) const noexcept {
+    return segment_motion(model_.hand, tick_.digit, tick_.pose, path_.rate, k);
+  }
+
+  /// Lists the pairs that may be met before s reaches the horizon.
+  /// @returns the horizon: 1, or less where there are too many to list
+  double gather() noexcept {
+    PairList& list = state_.pairs;
+    list.count = 0;
+    list.begin = {};
+    double horizon = 1.0;
+    for (int k = first_; k < kSegmentsPerDigit; ++k) {
+      list.begin[idx(k)] = list.count;
+      if (!is_clear(k, horizon)) {
+        horizon =
+            gather_pairs({placed(k), model_.object.tree(), motion(k), stop_band(model_.parameters.margin)},
+                         s_, horizon, k, list);
+      }
+      for (int later = k + 1; later <= kSegmentsPerDigit; ++later) list.begin[idx(later)] = list.count;
+    }
+    return horizon;
+  }
+
+  /// Whether what is known of the segment's distance, or can be known soon, spares the search.
+  bool is_clear(int k, double horizon) noexcept {
+    constexpr double kTicks = 16.0;  // at this speed, that a new bound is worth
+    const double margin = model_.parameters.margin;
+    const double reach = speed_[idx(k)] * (horizon - s_);
+    Clearance& known = clearance(k);
+    if (known.bound() > margin + reach) return true;
+    if (!known.worth_asking()) return false;
+    const double bound = distance_bound(placed(k), model_.object.tree(), margin + kTicks * reach);
+    known.learn(bound, bound > margin + reach);
+    return bound > margin + reach;
+  }
+
+  /// Looks at the pairs that are due at s.
+  /// @returns the most distal segment that is blocked, or -1
+  int evaluate(double horizon) noexcept {
+    int blocked = -1;
+    for (int k = first_; k < kSegmentsPerDigit; ++k) {
+      // A pair that is not due may be within the margin too: above a blocked segment all are looked at.
+      const bool all = blocked >= 0 || s_ >= horizon;
+      if (state_.pairs.begin[idx(k)] == state_.pairs.begin[idx(k + 1)]) continue;
+      const PairSearch search{placed(k), model_.object.tree(), motion(k),
+                              stop_band(model_.parameters.margin)};
+      if (evaluate_pairs(search, s_, horizon, k, all, state_.pairs)) blocked = k;
+    }
+    return blocked;
+  }
+
+  void move_to(double s) noexcept {
+    if (!(s > s_)) return;
+    for (int k = first_; k < kSegmentsPerDigit; ++k) {
+      clearance(k).spend(speed_[idx(k)] * (s - s_));
+      record_of(state_, tick_, k).active = false;  // it has moved
+    }
+    s_ = s;
+    tick_.angle = path_.at(s, tick_.hcp, tick_.angle, tick_.fixed);
+    if (s >= 1.0 && tick_.fixed == 0) {
+      tick_.pose = tick_.hcp_pose;
+    } else {
+      model_.hand.digit_pose(tick_.digit, tick_.angle, tick_.pose);
+    }
+  }
+
+  const ContactModel& model_;
+  const Path& path_;
+  DigitTick& tick_;
+  GdpState& state_;
+  const int first_;
+  double s_;
+  std::array<double, kSegmentsPerDigit> speed_{};
+};
+
+}  // namespace
+
+Stop first_contact(const ContactModel& model, const Path& path, double s, int& evaluations, DigitTick& tick,
+                   GdpState& state) noexcept {
+  return Search(model, path, s, tick, state).run(evaluations);
+}
+
+}  // namespace phalanx

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/contact/pair_list.h"
+
+#include <algorithm>
+
+#include "contact/pair_search.h"
+#include "contact/search/views.h"
+
+namespace phalanx {
+namespace {
+
+constexpr int kBatch = 64;
+
+/// Pairs on their way through the search's inner loop.
+struct Batch {
+  std::array<search::PairIndex, kBatch> pair;
+  std::array<search::PairStep, kBatch> step;
+  std::array<int, kBatch> at;  ///< in the list
+  int count = 0;
+};
+
+/// Everything that the inner loop needs, for one segment at one pose.
+struct Views {
+  Views(const PairSearch& search, double s_now, double s_end) noexcept
+      : segment(search::view_of(search.segment, search.object)),
+        object(search::view_of(search.object)),
+        motion(search::view_of(search.motion)),
+        band(search.band),
+        s(s_now),
+        horizon(s_end) {}
+  search::SegmentView segment;
+  search::ObjectView object;
+  search::MotionView motion;
+  StopBand band;
+  double s;
+  double horizon;
+};
+
+/// @returns whether a pair of the batch is blocked
+bool advance_batch(const Views& v, Batch& batch, PairList& list) noexcept {
+  search::functions().advance(v.segment, v.object, v.motion, v.horizon - v.s, v.band.margin, v.band.floor,
+                              batch.pair.data(), batch.count, batch.step.data());
+  bool blocked = false;
+  for (int i = 0; i < batch.count; ++i) {
+    PairList::Pair& pair = list.pair[idx(batch.at[idx(i)])];
+    const search::PairStep& step = batch.step[idx(i)];
+    pair.until = v.s + step.step;
+    pair.near = step.near;
+    blocked = blocked || step.blocked;
+  }
+  batch.count = 0;
+  return blocked;
+}
+
+bool evaluate_range(const Views& v, int begin, int end, double due, PairList& list) noexcept {
+  Batch batch;
+  bool blocked = false;
+  for (int i = begin; i < end; ++i) {
+    const PairList::Pair& pair = list.pair[idx(i)];
+    if (pair.until > due) continue;
+    batch.at[idx(batch.count)] = i;
+    batch.pair[idx(batch.count++)] = {pair.triangle, pair.slot};
+    if (batch.count == kBatch) blocked = advance_batch(v, batch, list) || blocked;
+  }
+  if (batch.count > 0) blocked = advance_batch(v, batch, list) || blocked;
+  return blocked;
+}
+
+}  // namespace
+
+double gather_pairs(const PairSearch& search, double s, double horizon, int k, PairList& list) noexcept {
+  if (search.segment.tree.empty() || search.object.empty()) return horizon;
+  // The list is filled through a buffer, so that the inner loop knows nothing of it.
+  struct Context {
+    const PairSearch& search;
+    Views views;
+    int k;
+    PairList& list;
+    search::PairStore store;
+    std::array<search::PairIndex, 256> buffer;
+
+    void flush() noexcept {
+      for (int i = 0; i < store.count; ++i) {
+        if (list.count - list.begin[idx(k)] == PairList::kMostOfASegment) thin_out();
+        list.pair[idx(list.count++)] = {buffer[idx(i)].triangle, buffer[idx(i)].slot, views.s, true};
+      }
+      store.count = 0;
+    }
+
+    /// Drops pairs of this segment that cannot be met before the horizon; if that leaves too many, those that
+    /// are safe for longest, and the horizon comes nearer.
+    void thin_out() noexcept {
+      const auto begin = list.pair.begin() + list.begin[idx(k)];
+      (void)evaluate_range(views, list.begin[idx(k)], list.count, views.s, list);
+      const double end = views.horizon;
+      auto kept = std::remove_if(begin, list.pair.begin() + list.count,
+                                 [&](const PairList::Pair& pair) { return pair.until >= end && !pair.near; });
+      if (kept - begin > PairList::kMostOfASegment / 2) {
+        const auto half = begin + (kept - begin) / 2;
+        std::nth_element(begin, half, kept, [](const PairList::Pair& a, const PairList::Pair& b) {
+          if (a.until != b.until) return a.until < b.until;
+          return a.triangle != b.triangle ? a.triangle < b.triangle : a.slot < b.slot;
+        });
+        views.horizon = std::min(views.horizon, half->until);
+        store.horizon = views.horizon - views.s;
+        kept = half;
+      }
+      list.count = static_cast<int>(kept - list.pair.begin());
+    }
+  };
+  Context context{search, Views(search, s, horizon), k, list, {}, {}};
+  context.store = {context.buffer.data(),
+                   0,
+                   static_cast<int>(context.buffer.size()),
+                   horizon - s,
+                   [](void* self) { static_cast<Context*>(self)->flush(); },
+                   &context};
+  search::functions().gather(context.views.segment, context.views.object, context.views.motion,
+                             search.motion.speed, search.band.margin, context.store);
+  context.flush();
+  return context.views.horizon;
+}
+
+bool evaluate_pairs(const PairSearch& search, double s, double horizon, int k, bool all,
+                    PairList& list) noexcept {
+  // What is due soon is looked at now: a pose costs more than a pair.
+  const double due = all ? 1e300 : s + (horizon - s) / 16.0;
+  return evaluate_range(Views(search, s, horizon), list.begin[idx(k)], list.begin[idx(k + 1)], due, list);
+}
+
+double least_until(const PairList& list) noexcept {
+  double least = 1e300;
+  for (int i = 0; i < list.count; ++i) least = std::min(least, list.pair[idx(i)].until);
+  return least;
+}
+
+bool any_near(const PairList& list) noexcept {
+  return std::any_of(list.pair.begin(), list.pair.begin() + list.count,
+                     [](const PairList::Pair& pair) { return pair.near; });
+}
+
+}  // namespace phalanx

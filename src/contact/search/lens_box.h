@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lenses of the segment against boxes of the object, eight at a time, and the walk over pairs of them.
+#pragma once
+
+#include "contact/search/pack.h"
+#include "contact/search/search_functions.h"
+
+namespace phalanx::search::PHALANX_SEARCH_SET {
+
+/// Moves a node's lenses to the pose of the query, once.
+PHALANX_INLINE const PlacedLenses& placed_lenses(const SegmentView& segment, std::int32_t node) noexcept {
+  PlacedLenses& placed = segment.lenses[node];
+  if (placed.query == segment.query) return placed;
+  placed.query = segment.query;
+  const LensNode& rest = segment.nodes[node];
+  for (int i = 0; i < kWide; i += kFloats) {
+    const Floats c[3] = {load(rest.centre[0] + i), load(rest.centre[1] + i), load(rest.centre[2] + i)};
+    const Floats a[3] = {load(rest.axis[0] + i), load(rest.axis[1] + i), load(rest.axis[2] + i)};
+    for (int k = 0; k < 3; ++k) {
+      const float(&row)[3] = segment.lens_R[k];
+      store(row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + segment.lens_p[k], placed.centre[k] + i);
+      store(row[0] * a[0] + row[1] * a[1] + row[2] * a[2], placed.axis[k] + i);
+    }
+  }
+  return placed;
+}
+
+/// A pair of a lens and a box, each named by node * kWide + lane, that are no farther apart than the cap.
+struct LensBox {
+  std::int32_t lens;
+  std::int32_t box;
+  float bound;  ///< they are at least so far apart [m]
+};
+
+/// Lower bounds on the distance of lenses and boxes: of the sphere, and of the slab, whichever says more.
+/// c, a: centre and axis; low, high: the box.
+PHALANX_INLINE Floats lens_box_bound(const Floats (&c)[3], const Floats (&a)[3], const Floats& radius,
+                                     const Floats& half, const Floats (&low)[3],
+                                     const Floats (&high)[3]) noexcept {
+  Floats squared = all(0.0F);
+  Floats along = all(0.0F);
+  Floats spread = all(0.0F);
+  for (int k = 0; k < 3; ++k) {
+    const Floats outside = most(most(low[k] - c[k], c[k] - high[k]), all(0.0F));
+    squared += outside * outside;
+    along += a[k] * ((low[k] + high[k]) * 0.5F - c[k]);
+    spread += magnitude(a[k]) * ((high[k] - low[k]) * 0.5F);
+  }
+#if PHALANX_FLOATS == 8
+  const Floats root = static_cast<Floats>(_mm256_sqrt_ps(static_cast<__m256>(squared)));
+#elif defined(__SSE2__)
+  const Floats root = static_cast<Floats>(_mm_sqrt_ps(static_cast<__m128>(squared)));
+#else
+  Floats root;
+  for (int i = 0; i < kFloats; ++i) root[i] = __builtin_sqrtf(squared[i]);
+#endif
+  return most(root * 0.9999990F - radius, magnitude(along) - spread - half);
+}
+
+/// The pairs still to be looked at. Both trees have at most 8 levels below 2^24 triangles and 11 at all; each
+/// step takes one pair off and puts at most 8 on.
+class Walk {
+ public:
+  Walk(const SegmentView& segment, const ObjectView& object) noexcept : segment_(segment), object_(object) {}
+
+  /// Hands pairs (triangle, block, bound) whose bound is at most cap to leaf(). leaf() may lower `cap`.
+  /// @param wanted  whether a pair with this bound is still of interest
+  template <bool kNearestFirst, class Wanted, class Leaf>
+  PHALANX_INLINE void run(const float& cap, Wanted&& wanted, Leaf&& leaf) noexcept {
+    push_boxes<false>(0, 0, 1U, cap);
+    while (top_ > 0) {
+      const LensBox pair = stack_[--top_];
+      if (!wanted(pair.bound)) continue;
+      const std::int32_t inner = segment_.nodes[pair.lens / kWide].child[pair.lens % kWide];
+      const std::int32_t child = object_.nodes[pair.box / kWide].child[pair.box % kWide];
+      if (inner < 0 && child < 0) {
+        leaf(~inner, ~child, pair.bound);
+      } else if (inner < 0 || (child >= 0 && box_is_larger(pair))) {
+        push_boxes<kNearestFirst>(pair.lens, child, ~0U, cap);
+      } else {
+        push_lenses<kNearestFirst>(inner, pair.box, cap);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kCapacity = 2 * 11 * (kWide - 1) + kWide + 2;
+
+  [[nodiscard]] PHALANX_INLINE bool box_is_larger(const LensBox& pair) const noexcept {
+    const BoxNode& node = object_.nodes[pair.box / kWide];
+    const int lane = pair.box % kWide;
+    float longest = 0.0F;
+    for (int k = 0; k < 3; ++k) {
+      const float edge = node.max[k][lane] - node.min[k][lane];
+      longest = edge > longest ? edge : longest;
+    }
+    return longest > 2.0F * segment_.nodes[pair.lens / kWide].radius[pair.lens % kWide];
+  }
+
+  /// One lens against the boxes of a node; `lanes`: which of them.
+  template <bool kSort>
+  PHALANX_INLINE void push_boxes(std::int32_t lens, std::int32_t node, unsigned lanes, float cap) noexcept {
+    const PlacedLenses& placed = placed_lenses(segment_, lens / kWide);
+    const LensNode& rest = segment_.nodes[lens / kWide];
+    const int at = lens % kWide;
+    const Floats c[3] = {all(placed.centre[0][at]), all(placed.centre[1][at]), all(placed.centre[2][at])};
+    const Floats a[3] = {all(placed.axis[0][at]), all(placed.axis[1][at]), all(placed.axis[2][at])};
+    const BoxNode& boxes = object_.nodes[node];
+    alignas(32) float bound[kWide];
+    unsigned hits = 0;
+    for (int i = 0; i < kWide; i += kFloats) {
+      const Floats low[3] = {load(boxes.min[0] + i), load(boxes.min[1] + i), load(boxes.min[2] + i)};
+      const Floats high[3] = {load(boxes.max[0] + i), load(boxes.max[1] + i), load(boxes.max[2] + i)};
+      const Floats b =
+          lens_box_bound(c, a, all(rest.radius[at]), all(rest.half[at]), low, high) - segment_.slack;
+      hits |= float_bits(b <= cap) << i;
+      store(b, bound + i);
+    }
+    push<kSort>(hits & lanes, bound, [&](int i) { return LensBox{lens, node * kWide + i, bound[i]}; });
+  }
+
+  /// The lenses of a node against one box.
+  template <bool kSort>
+  PHALANX_INLINE void push_lenses(std::int32_t node, std::int32_t box, float cap) noexcept {
+    const PlacedLenses& placed = placed_lenses(segment_, node);
+    const LensNode& rest = segment_.nodes[node];
+    const BoxNode& boxes = object_.nodes[box / kWide];
+    const int at = box % kWide;
+    const Floats low[3] = {all(boxes.min[0][at]), all(boxes.min[1][at]), all(boxes.min[2][at])};
+    const Floats high[3] = {all(boxes.max[0][at]), all(boxes.max[1][at]), all(boxes.max[2][at])};
+    alignas(32) float bound[kWide];
+    unsigned hits = 0;
+    for (int i = 0; i < kWide; i += kFloats) {
+      const Floats c[3] = {load(placed.centre[0] + i), load(placed.centre[1] + i),
+                           load(placed.centre[2] + i)};
+      const Floats a[3] = {load(placed.axis[0] + i), load(placed.axis[1] + i), load(placed.axis[2] + i)};
+      const Floats b =
+          lens_box_bound(c, a, load(rest.radius + i), load(rest.half + i), low, high) - segment_.slack;
+      hits |= float_bits(b <= cap) << i;
+      store(b, bound + i);
+    }
+    push<kSort>(hits, bound, [&](int i) { return LensBox{node * kWide + i, box, bound[i]}; });
+  }
+
+  /// Puts the hits on the stack so that lane 0, or the nearest, comes off first.
+  template <bool kSort, class Make>
+  PHALANX_INLINE void push(unsigned hits, const float* bound, Make&& make) noexcept {
+    if constexpr (kSort) {
+      const int bottom = top_;
+      for (unsigned left = hits; left != 0; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        int at = top_++;
+        for (; at > bottom && stack_[at - 1].bound < bound[i]; --at) stack_[at] = stack_[at - 1];
+        stack_[at] = make(i);
+      }
+    } else {
+      for (unsigned left = hits; left != 0;) {
+        const int i = 31 - __builtin_clz(left);
+        left &= ~(1U << i);
+        stack_[top_++] = make(i);
+      }
+    }
+  }
+
+  const SegmentView& segment_;
+  const ObjectView& object_;
+  LensBox stack_[kCapacity];
+  int top_ = 0;
+};
+
+}  // namespace phalanx::search::PHALANX_SEARCH_SET

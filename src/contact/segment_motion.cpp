@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/contact/segment_motion.h"
+
+#include <cmath>
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+double segment_speed(const HandModel& hand, int digit, const DigitAngles& rate, int k) noexcept {
+  double speed = 0.0;
+  for (int j = 0; j < joints_that_move(k); ++j) speed += std::abs(rate[idx(j)]) * hand.reach(digit, j, k);
+  return speed;
+}
+
+SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& pose, const DigitAngles& rate,
+                             int k) noexcept {
+  SegmentMotion motion;
+  double turned = 0.0;
+  for (int j = 0; j < joints_that_move(k); ++j) {
+    const double w = rate[idx(j)];
+    if (w == 0.0) continue;
+    const JointAxis& joint = pose.joint[idx(j)];
+    const Vec3 moment = joint.centre.cross(joint.axis);
+    // The axis is carried by the links before it, whose motion has been summed up so far.
+    motion.angular_rate += w * motion.angular.cross(joint.axis);
+    motion.linear_rate += w * (motion.angular.cross(moment) + motion.linear.cross(joint.axis));
+    motion.angular += w * joint.axis;
+    motion.linear += w * moment;
+
+    const double reach = hand.reach(digit, j, k);
+    const double turning = turned + std::abs(w);
+    motion.speed += std::abs(w) * reach;
+    motion.jerk += (turning * turning * turning - turned * turned * turned) * reach;
+    turned = turning;
+  }
+  return motion;
+}
+
+}  // namespace phalanx

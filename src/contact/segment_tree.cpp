@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/contact/segment_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/search/wide_ranges.h"
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t idx(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
+
+struct Lens {
+  Vec3 centre;
+  Vec3 axis;
+};
+
+/// The middle of the triangle's smallest circle: of its circumscribed one or, if a corner is right or obtuse,
+/// of the opposite edge.
+Vec3 middle_of(const Corners& t) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 u = t[(i + 1) % 3] - t[i];
+    const Vec3 v = t[(i + 2) % 3] - t[i];
+    if (u.dot(v) <= 0.0) return 0.5 * (t[(i + 1) % 3] + t[(i + 2) % 3]);
+  }
+  const Vec3 u = t[1] - t[0];
+  const Vec3 v = t[2] - t[0];
+  const Vec3 n = u.cross(v);
+  const double squared = n.squaredNorm();
+  if (!(squared > 0.0)) return (t[0] + t[1] + t[2]) / 3.0;
+  return t[0] + (u.squaredNorm() * v.cross(n) + v.squaredNorm() * n.cross(u)) / (2.0 * squared);
+}
+
+Vec3 normal_of(const Corners& t) noexcept { return (t[1] - t[0]).cross(t[2] - t[0]); }
+
+/// Across the triangles' mean normal the middle of their box, along it halfway between the outermost.
+Lens lens_around(const SegmentTree& tree, const std::vector<std::int32_t>& order,
+                 const WideRanges::Lane& lane) {
+  Vec3 axis = Vec3::Zero();
+  for (std::int32_t i = lane.first; i < lane.first + lane.count; ++i)
+    axis += normal_of(tree.corners(order[idx(i)]));
+  const double length = axis.norm();
+  axis = length > 0.0 ? Vec3(axis / length) : Vec3(Vec3::UnitZ());
+  if (lane.count == 1) return {middle_of(tree.corners(order[idx(lane.first)])), axis};
+  const Vec3 u = axis.unitOrthogonal();
+  const Vec3 v = axis.cross(u);
+  Vec3 low = Vec3::Constant(1e300);
+  Vec3 high = -low;
+  for (std::int32_t i = lane.first; i < lane.first + lane.count; ++i) {
+    for (const Vec3& x : tree.corners(order[idx(i)])) {
+      const Vec3 local(x.dot(u), x.dot(v), x.dot(axis));
+      low = low.cwiseMin(local);
+      high = high.cwiseMax(local);
+    }
+  }
+  const Vec3 middle = 0.5 * (low + high);
+  return {middle.x() * u + middle.y() * v + middle.z() * axis, axis};
+}
+
+/// Writes the lens in single precision, and as large as single precision needs.
+void set_lens(const SegmentTree& tree, const std::vector<std::int32_t>& order, const WideRanges::Lane& lane,
+              LensNode& node, int at) {
+  const Lens lens = lens_around(tree, order, lane);
+  const Eigen::Vector3f centre = lens.centre.cast<float>();
+  const Eigen::Vector3f axis = lens.axis.cast<float>();
+  double radius = 0.0;
+  double half = 0.0;
+  for (std::int32_t i = lane.first; i < lane.first + lane.count; ++i) {
+    for (const Vec3& x : tree.corners(order[idx(i)])) {
+      const Vec3 r = x - centre.cast<double>();
+      radius = std::max(radius, r.norm());
+      half = std::max(half, std::abs(r.dot(axis.cast<double>())));
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    node.centre[i][at] = centre[i];
+    node.axis[i][at] = axis[i];
+  }
+  node.radius[at] = static_cast<float>(radius * (1.0 + 1e-6));
+  node.half[at] = static_cast<float>(half * (1.0 + 1e-6));
+  node.child[at] = lane.child >= 0 ? lane.child : ~order[idx(lane.first)];
+}
+
+void set_empty(LensNode& node, int at) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    node.centre[i][at] = 0.0F;
+    node.axis[i][at] = 0.0F;
+  }
+  node.radius[at] = -1e15F;  // its square is finite; radius + cap stays negative
+  node.half[at] = -1e15F;
+  node.child[at] = 0;
+}
+
+}  // namespace
+
+SegmentTree::SegmentTree(const TriangleMesh& mesh) {
+  triangles_.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    SegmentTriangle& triangle = triangles_.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3& v = mesh.vertices[idx(t[c])];
+      extent_ = std::max(extent_, v.norm());
+      for (int i = 0; i < 3; ++i) triangle.corner[c][i] = v[i];
+    }
+  }
+  const WideRanges ranges = wide_ranges(mesh, 1);
+  nodes_.resize(ranges.nodes.size());
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    for (int i = 0; i < kWide; ++i) {
+      const WideRanges::Lane& lane = ranges.nodes[n][static_cast<std::size_t>(i)];
+      if (lane.count == 0) {
+        set_empty(nodes_[n], i);
+      } else {
+        set_lens(*this, ranges.order, lane, nodes_[n], i);
+      }
+    }
+  }
+}
+
+Corners SegmentTree::corners(int i) const noexcept {
+  const SegmentTriangle& t = triangles_[idx(i)];
+  Corners corners;
+  for (std::size_t c = 0; c < 3; ++c) corners[c] = Vec3(t.corner[c][0], t.corner[c][1], t.corner[c][2]);
+  return corners;
+}
+
+SearchScratch::SearchScratch(const SegmentTrees& trees) {
+  for (const SegmentTree& tree : trees) grow(tree);
+}
+
+void SearchScratch::grow(const SegmentTree& tree) {
+  const auto nodes = static_cast<std::size_t>(tree.node_count());
+  const auto triangles = static_cast<std::size_t>(tree.size());
+  if (lenses_.size() < nodes) lenses_.resize(nodes);
+  if (triangles_.size() < triangles) triangles_.resize(triangles);
+}
+
+}  // namespace phalanx
