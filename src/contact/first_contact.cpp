@@ -24,6 +24,10 @@ int Path::first_moving() const noexcept {
 
 namespace {
 
+/// How far a segment may go before the pairs that it may meet are listed anew [m]: what is listed at once
+/// stays few, however far the hand has jumped.
+constexpr double kLongestReach = 1e-3;
+
 class Search {
  public:
   Search(const ContactModel& model, const Path& path, double s, DigitTick& tick, GdpState& state) noexcept
@@ -67,12 +71,12 @@ class Search {
   }
 
   /// Lists the pairs that may be met before s reaches the horizon.
-  /// @returns the horizon: 1, or less where there are too many to list
+  /// @returns the horizon: 1, or less where the way is long or there are too many to list
   double gather() noexcept {
     PairList& list = state_.pairs;
     list.count = 0;
     list.begin = {};
-    double horizon = 1.0;
+    double horizon = std::min(1.0, s_ + kLongestReach / speed_.back());
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
       list.begin[idx(k)] = list.count;
       if (!is_clear(k, horizon)) {
@@ -87,13 +91,15 @@ class Search {
 
   /// Whether what is known of the segment's distance, or can be known soon, spares the search.
   bool is_clear(int k, double horizon) noexcept {
-    constexpr double kTicks = 16.0;  // at this speed, that a new bound is worth
+    constexpr double kTicks = 16.0;         // at this speed, that a new bound is worth
+    constexpr double kLeastAhead = 0.3e-3;  // however slow it is [m]
     const double margin = model_.parameters.margin;
     const double reach = speed_[idx(k)] * (horizon - s_);
     Clearance& known = clearance(k);
     if (known.bound() > margin + reach) return true;
     if (!known.worth_asking()) return false;
-    const double bound = distance_bound(placed(k), model_.object.tree(), margin + kTicks * reach);
+    const double ahead = margin + std::max(kTicks * reach, kLeastAhead);
+    const double bound = distance_bound(placed(k), model_.object.tree(), ahead);
     known.learn(bound, bound > margin + reach);
     return bound > margin + reach;
   }

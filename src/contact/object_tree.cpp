@@ -36,33 +36,77 @@ void set_empty(BoxNode& node, int lane) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     node.min[axis][lane] = 1e30F;
     node.max[axis][lane] = -1e30F;
+    node.axis[axis][lane] = 0.0F;
   }
+  node.low[lane] = node.high[lane] = 0.0F;
   node.child[lane] = 0;
 }
 
-void set_box_of_block(const TriangleBlock& block, const Vec3& centre, BoxNode& node, int lane) noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    double low = block.corner[0][axis][0];
-    double high = low;
-    for (int c = 0; c < 3; ++c) {
+/// Fills the nodes' lanes with the bounds of what is below them.
+class Bounder {
+ public:
+  Bounder(const std::vector<TriangleBlock>& blocks, const Vec3& centre) : blocks_(blocks), centre_(centre) {}
+
+  /// @param first, last  the lane's blocks, [first, last)
+  void set(BoxNode& node, int lane, std::size_t first, std::size_t last) const {
+    Vec3 low = Vec3::Constant(1e300);
+    Vec3 high = -low;
+    Vec3 normal = Vec3::Zero();
+    for (std::size_t b = first; b < last; ++b) {
       for (int i = 0; i < kWide; ++i) {
-        low = std::min(low, block.corner[c][axis][i]);
-        high = std::max(high, block.corner[c][axis][i]);
+        const Corners t = triangle(blocks_[b], i);
+        for (const Vec3& x : t) {
+          low = low.cwiseMin(x);
+          high = high.cwiseMax(x);
+        }
+        normal += (t[1] - t[0]).cross(t[2] - t[0]);
       }
     }
-    // The difference is rounded once more: away from the box by a step more than that.
-    const double slack = 1e-15 * (std::abs(low) + std::abs(high) + std::abs(centre[axis]));
-    node.min[axis][lane] = below(low - centre[axis] - slack);
-    node.max[axis][lane] = above(high - centre[axis] + slack);
+    for (int k = 0; k < 3; ++k) {
+      // The difference is rounded once more: away from the box by a step more than that.
+      const double slack = rounding(low[k], high[k]);
+      node.min[k][lane] = below(low[k] - centre_[k] - slack);
+      node.max[k][lane] = above(high[k] - centre_[k] + slack);
+    }
+    set_slab(node, lane, first, last, normal);
   }
-}
 
-void set_box_of_node(const BoxNode& child, BoxNode& node, int lane) noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    node.min[axis][lane] = *std::min_element(child.min[axis], child.min[axis] + kWide);
-    node.max[axis][lane] = *std::max_element(child.max[axis], child.max[axis] + kWide);
+ private:
+  static Corners triangle(const TriangleBlock& block, int lane) noexcept {
+    Corners t;
+    for (std::size_t c = 0; c < 3; ++c)
+      t[c] = Vec3(block.corner[c][0][lane], block.corner[c][1][lane], block.corner[c][2][lane]);
+    return t;
   }
-}
+  double rounding(double low, double high) const noexcept {
+    return 1e-15 * (std::abs(low) + std::abs(high) + centre_.cwiseAbs().maxCoeff());
+  }
+
+  void set_slab(BoxNode& node, int lane, std::size_t first, std::size_t last, const Vec3& normal) const {
+    const double length = normal.norm();
+    const Eigen::Vector3f single =
+        length > 0.0 ? Eigen::Vector3f((normal / length).cast<float>()) : Eigen::Vector3f::UnitZ();
+    const Vec3 axis = single.cast<double>();
+    double low = 1e300;
+    double high = -low;
+    for (std::size_t b = first; b < last; ++b) {
+      for (int i = 0; i < kWide; ++i) {
+        for (const Vec3& x : triangle(blocks_[b], i)) {
+          const double height = axis.dot(x - centre_);
+          low = std::min(low, height);
+          high = std::max(high, height);
+        }
+      }
+    }
+    const double slack = 4.0 * rounding(low, high);
+    for (int k = 0; k < 3; ++k) node.axis[k][lane] = single[k];
+    node.low[lane] = below(low - slack);
+    node.high[lane] = above(high + slack);
+  }
+
+  const std::vector<TriangleBlock>& blocks_;
+  const Vec3& centre_;
+};
 
 }  // namespace
 
@@ -74,7 +118,13 @@ ObjectTree::ObjectTree(const TriangleMesh& mesh) {
   extent_ = 0.5 * (box.max - box.min).maxCoeff();
   nodes_.resize(ranges.nodes.size());
   blocks_.resize((mesh.triangles.size() + kWide - 1) / kWide);
-  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parent
+  for (const WideRanges::Node& node : ranges.nodes) {
+    for (const WideRanges::Lane& lane : node) {
+      if (lane.count > 0 && lane.child < 0) blocks_[idx(~lane.child)] = block_of(mesh, ranges, lane);
+    }
+  }
+  const Bounder bounder(blocks_, centre_);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
     for (int i = 0; i < kWide; ++i) {
       const WideRanges::Lane& lane = ranges.nodes[n][static_cast<std::size_t>(i)];
       if (lane.count == 0) {
@@ -82,12 +132,7 @@ ObjectTree::ObjectTree(const TriangleMesh& mesh) {
         continue;
       }
       nodes_[n].child[i] = lane.child;
-      if (lane.child < 0) {
-        blocks_[idx(~lane.child)] = block_of(mesh, ranges, lane);
-        set_box_of_block(blocks_[idx(~lane.child)], centre_, nodes_[n], i);
-      } else {
-        set_box_of_node(nodes_[idx(lane.child)], nodes_[n], i);
-      }
+      bounder.set(nodes_[n], i, idx(lane.first) / kWide, (idx(lane.first + lane.count) + kWide - 1) / kWide);
     }
   }
   source_ = std::move(ranges.order);

@@ -50,7 +50,13 @@ Outcome play(const SceneDescription& scene) {
 }
 
 const std::map<std::string, std::set<int>>& expected_digits() {
-  static const std::map<std::string, std::set<int>> kDigitsOf = {{"grasp_bottle", {0, 1, 2, 3, 4}},
+  static const std::map<std::string, std::set<int>> kDigitsOf = {{"bench_ball_100k", {0, 1, 2, 3, 4}},
+                                                                 {"bench_ball_10k", {0, 1, 2, 3, 4}},
+                                                                 {"bench_ball_1k", {0, 1, 2, 3, 4}},
+                                                                 {"bench_mug_100k", {0, 1, 2, 3, 4}},
+                                                                 {"bench_mug_10k", {0, 1, 2, 3, 4}},
+                                                                 {"bench_mug_1k", {0, 1, 2, 3, 4}},
+                                                                 {"grasp_bottle", {0, 1, 2, 3, 4}},
                                                                  {"grasp_box", {0, 1, 2, 3, 4}},
                                                                  {"grasp_cup", {0, 1, 2, 3, 4}},
                                                                  {"grasp_cylinder", {0, 1, 2, 3, 4}},

@@ -11,11 +11,16 @@ namespace phalanx {
 /// Children of a node and triangles of a block.
 inline constexpr int kWide = 8;
 
-/// Eight boxes of the object, in single precision, rounded outwards, relative to ObjectTree::centre() [m].
-/// Lane 0 of node 0 is the root's box. An empty lane's box is inside out and meets nothing.
+/// Eight boxes of the object, in single precision, rounded outwards, relative to ObjectTree::centre() [m],
+/// and eight slabs: what is in the box is also between the heights `low` and `high` along `axis`, which for a
+/// patch of surface is much thinner. Lane 0 of node 0 is the root. An empty lane's box is inside out and
+/// meets nothing.
 struct alignas(32) BoxNode {
   float min[3][kWide];
   float max[3][kWide];
+  float axis[3][kWide];  ///< unit
+  float low[kWide];
+  float high[kWide];
   std::int32_t child[kWide];  ///< >= 0: a node; < 0: ~block
 };
 

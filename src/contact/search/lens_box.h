@@ -32,29 +32,55 @@ struct LensBox {
   float bound;  ///< they are at least so far apart [m]
 };
 
-/// Lower bounds on the distance of lenses and boxes: of the sphere, and of the slab, whichever says more.
-/// c, a: centre and axis; low, high: the box.
-PHALANX_INLINE Floats lens_box_bound(const Floats (&c)[3], const Floats (&a)[3], const Floats& radius,
-                                     const Floats& half, const Floats (&low)[3],
-                                     const Floats (&high)[3]) noexcept {
+PHALANX_INLINE Floats square_root(const Floats& a) noexcept {
+#if PHALANX_FLOATS == 8
+  return static_cast<Floats>(_mm256_sqrt_ps(static_cast<__m256>(a)));
+#elif defined(__SSE2__)
+  return static_cast<Floats>(_mm_sqrt_ps(static_cast<__m128>(a)));
+#else
+  Floats r;
+  for (int i = 0; i < kFloats; ++i) r[i] = __builtin_sqrtf(a[i]);
+  return r;
+#endif
+}
+
+struct Lenses {
+  Floats centre[3];
+  Floats axis[3];
+  Floats radius;
+  Floats half;
+};
+struct Boxes {
+  Floats min[3];
+  Floats max[3];
+  Floats axis[3];
+  Floats low;
+  Floats high;
+};
+
+/// Lower bounds on the distance of lenses and boxes: the largest of what separates the sphere from the box,
+/// the box from the lens's slab, and the lens from the box's slab.
+PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box) noexcept {
   Floats squared = all(0.0F);
   Floats along = all(0.0F);
   Floats spread = all(0.0F);
+  Floats height = all(0.0F);
+  Floats cosine = all(0.0F);
   for (int k = 0; k < 3; ++k) {
-    const Floats outside = most(most(low[k] - c[k], c[k] - high[k]), all(0.0F));
+    const Floats outside = most(most(box.min[k] - lens.centre[k], lens.centre[k] - box.max[k]), all(0.0F));
     squared += outside * outside;
-    along += a[k] * ((low[k] + high[k]) * 0.5F - c[k]);
-    spread += magnitude(a[k]) * ((high[k] - low[k]) * 0.5F);
+    along += lens.axis[k] * ((box.min[k] + box.max[k]) * 0.5F - lens.centre[k]);
+    spread += magnitude(lens.axis[k]) * ((box.max[k] - box.min[k]) * 0.5F);
+    height += box.axis[k] * lens.centre[k];
+    cosine += box.axis[k] * lens.axis[k];
   }
-#if PHALANX_FLOATS == 8
-  const Floats root = static_cast<Floats>(_mm256_sqrt_ps(static_cast<__m256>(squared)));
-#elif defined(__SSE2__)
-  const Floats root = static_cast<Floats>(_mm_sqrt_ps(static_cast<__m128>(squared)));
-#else
-  Floats root;
-  for (int i = 0; i < kFloats; ++i) root[i] = __builtin_sqrtf(squared[i]);
-#endif
-  return most(root * 0.9999990F - radius, magnitude(along) - spread - half);
+  const Floats sphere = square_root(squared) * 0.9999990F - lens.radius;
+  const Floats slab = magnitude(along) - spread - lens.half;
+  // How far the lens reaches along the box's axis: as a disc with a rim, or as the sphere around it.
+  const Floats sine = square_root(most(1.000001F - cosine * cosine, all(0.0F)));
+  const Floats reach = least(lens.radius, lens.half * magnitude(cosine) + lens.radius * sine);
+  const Floats sheet = most(box.low - height, height - box.high) - reach;
+  return most(sphere, most(slab, sheet));
 }
 
 /// The pairs still to be looked at. Both trees have at most 8 levels below 2^24 triangles and 11 at all; each
@@ -103,18 +129,22 @@ class Walk {
     const PlacedLenses& placed = placed_lenses(segment_, lens / kWide);
     const LensNode& rest = segment_.nodes[lens / kWide];
     const int at = lens % kWide;
-    const Floats c[3] = {all(placed.centre[0][at]), all(placed.centre[1][at]), all(placed.centre[2][at])};
-    const Floats a[3] = {all(placed.axis[0][at]), all(placed.axis[1][at]), all(placed.axis[2][at])};
-    const BoxNode& boxes = object_.nodes[node];
+    const Lenses one{{all(placed.centre[0][at]), all(placed.centre[1][at]), all(placed.centre[2][at])},
+                     {all(placed.axis[0][at]), all(placed.axis[1][at]), all(placed.axis[2][at])},
+                     all(rest.radius[at]),
+                     all(rest.half[at])};
+    const BoxNode& b = object_.nodes[node];
     alignas(32) float bound[kWide];
     unsigned hits = 0;
     for (int i = 0; i < kWide; i += kFloats) {
-      const Floats low[3] = {load(boxes.min[0] + i), load(boxes.min[1] + i), load(boxes.min[2] + i)};
-      const Floats high[3] = {load(boxes.max[0] + i), load(boxes.max[1] + i), load(boxes.max[2] + i)};
-      const Floats b =
-          lens_box_bound(c, a, all(rest.radius[at]), all(rest.half[at]), low, high) - segment_.slack;
-      hits |= float_bits(b <= cap) << i;
-      store(b, bound + i);
+      const Boxes boxes{{load(b.min[0] + i), load(b.min[1] + i), load(b.min[2] + i)},
+                        {load(b.max[0] + i), load(b.max[1] + i), load(b.max[2] + i)},
+                        {load(b.axis[0] + i), load(b.axis[1] + i), load(b.axis[2] + i)},
+                        load(b.low + i),
+                        load(b.high + i)};
+      const Floats apart = lens_box_bound(one, boxes) - segment_.slack;
+      hits |= float_bits(apart <= cap) << i;
+      store(apart, bound + i);
     }
     push<kSort>(hits & lanes, bound, [&](int i) { return LensBox{lens, node * kWide + i, bound[i]}; });
   }
@@ -124,20 +154,24 @@ class Walk {
   PHALANX_INLINE void push_lenses(std::int32_t node, std::int32_t box, float cap) noexcept {
     const PlacedLenses& placed = placed_lenses(segment_, node);
     const LensNode& rest = segment_.nodes[node];
-    const BoxNode& boxes = object_.nodes[box / kWide];
+    const BoxNode& b = object_.nodes[box / kWide];
     const int at = box % kWide;
-    const Floats low[3] = {all(boxes.min[0][at]), all(boxes.min[1][at]), all(boxes.min[2][at])};
-    const Floats high[3] = {all(boxes.max[0][at]), all(boxes.max[1][at]), all(boxes.max[2][at])};
+    const Boxes one{{all(b.min[0][at]), all(b.min[1][at]), all(b.min[2][at])},
+                    {all(b.max[0][at]), all(b.max[1][at]), all(b.max[2][at])},
+                    {all(b.axis[0][at]), all(b.axis[1][at]), all(b.axis[2][at])},
+                    all(b.low[at]),
+                    all(b.high[at])};
     alignas(32) float bound[kWide];
     unsigned hits = 0;
     for (int i = 0; i < kWide; i += kFloats) {
-      const Floats c[3] = {load(placed.centre[0] + i), load(placed.centre[1] + i),
-                           load(placed.centre[2] + i)};
-      const Floats a[3] = {load(placed.axis[0] + i), load(placed.axis[1] + i), load(placed.axis[2] + i)};
-      const Floats b =
-          lens_box_bound(c, a, load(rest.radius + i), load(rest.half + i), low, high) - segment_.slack;
-      hits |= float_bits(b <= cap) << i;
-      store(b, bound + i);
+      const Lenses lenses{
+          {load(placed.centre[0] + i), load(placed.centre[1] + i), load(placed.centre[2] + i)},
+          {load(placed.axis[0] + i), load(placed.axis[1] + i), load(placed.axis[2] + i)},
+          load(rest.radius + i),
+          load(rest.half + i)};
+      const Floats apart = lens_box_bound(lenses, one) - segment_.slack;
+      hits |= float_bits(apart <= cap) << i;
+      store(apart, bound + i);
     }
     push<kSort>(hits, bound, [&](int i) { return LensBox{node * kWide + i, box, bound[i]}; });
   }

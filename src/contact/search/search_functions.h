@@ -77,7 +77,8 @@ struct SearchFunctions {
   /// Every pair whose squared distance is at most the cap.
   void (*visit)(const SegmentView& segment, const ObjectView& object, double cap_squared, bool nearest_first,
                 PairSink sink, void* context);
-  /// A lower bound on the distance, at most `cap` [m]; at least 0.8 of what boxes and planes can tell.
+  /// A lower bound on the distance, at most `cap` [m]; 0.8 of it or more unless very many pairs are about as
+  /// near.
   double (*lower_bound)(const SegmentView& segment, const ObjectView& object, double cap);
   /// All pairs that might come within `margin` before the parameter has grown by store.horizon, and some
   /// more.

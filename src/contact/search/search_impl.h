@@ -161,16 +161,19 @@ PHALANX_INLINE Triangles object_triangles(const ObjectView& object, const PairIn
 /// Pairs on their way to the exact distance: it is found for as many as there are lanes at once.
 class Waiting {
  public:
-  Waiting(const SegmentView& segment, const ObjectView& object, PairSink sink, void* context) noexcept
-      : segment_(segment), object_(object), sink_(sink), context_(context) {}
+  Waiting(const SegmentView& segment, const ObjectView& object) noexcept
+      : segment_(segment), object_(object) {}
 
+  /// The pair's segment triangle is placed. @returns whether as many wait as can be taken at once
   PHALANX_INLINE bool add(const PairIndex& pair) noexcept {
     pair_[count_++] = pair;
     return count_ == kDoubles;
   }
-  /// Hands those within the cap on, in the order in which they came. Their triangles are placed.
-  void flush(double& cap_squared) noexcept {
-    if (count_ == 0) return;
+  [[nodiscard]] int count() const noexcept { return count_; }
+  [[nodiscard]] const PairIndex& pair(int i) const noexcept { return pair_[i]; }
+
+  /// The closest points of those that wait, in the order in which they came; then none waits.
+  PHALANX_INLINE Closest take() noexcept {
     for (int l = count_; l < kDoubles; ++l) pair_[l] = pair_[count_ - 1];
     Triangles mine;
     for (int c = 0; c < 3; ++c) {
@@ -179,25 +182,13 @@ class Waiting {
       };
       mine.corner[c] = {axis(0), axis(1), axis(2)};
     }
-    const Closest closest = closest_points(mine, object_triangles(object_, pair_));
-    for (unsigned left = double_bits(closest.squared <= cap_squared) & ((1U << count_) - 1); left != 0;
-         left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      if (!(closest.squared[l] <= cap_squared)) continue;  // the cap has come down
-      const PairDistance found{pair_[l],
-                               closest.squared[l],
-                               {closest.on_a.x[l], closest.on_a.y[l], closest.on_a.z[l]},
-                               {closest.on_b.x[l], closest.on_b.y[l], closest.on_b.z[l]}};
-      sink_(context_, found, cap_squared);
-    }
     count_ = 0;
+    return closest_points(mine, object_triangles(object_, pair_));
   }
 
  private:
   const SegmentView& segment_;
   const ObjectView& object_;
-  PairSink sink_;
-  void* context_;
   PairIndex pair_[kDoubles];
   int count_ = 0;
 };
@@ -212,7 +203,21 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
     box_cap = single_cap(cap);
   };
   look_no_farther();
-  Waiting waiting(segment, object, sink, context);
+  Waiting waiting(segment, object);
+  const auto flush = [&] {
+    const int count = waiting.count();
+    if (count == 0) return;
+    const Closest closest = waiting.take();
+    for (int l = 0; l < count; ++l) {
+      if (!(closest.squared[l] <= cap_squared)) continue;
+      const PairDistance found{waiting.pair(l),
+                               closest.squared[l],
+                               {closest.on_a.x[l], closest.on_a.y[l], closest.on_a.z[l]},
+                               {closest.on_b.x[l], closest.on_b.y[l], closest.on_b.z[l]}};
+      sink(context, found, cap_squared);
+    }
+    look_no_farther();
+  };
   const auto leaf = [&](std::int32_t triangle, std::int32_t block, float) {
     const PlacedTriangle& s = placed_triangle(segment, triangle, still);
     for (int i = 0; i < kWide; i += kDoubles) {
@@ -220,9 +225,7 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
       for (unsigned left = double_bits(apart <= cap); left != 0; left &= left - 1) {
         const std::int32_t slot = block * kWide + i + __builtin_ctz(left);
         if (slot >= object.size) break;
-        if (!waiting.add({triangle, slot})) continue;
-        waiting.flush(cap_squared);
-        look_no_farther();
+        if (waiting.add({triangle, slot})) flush();
       }
     }
   };
@@ -233,30 +236,49 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
   } else {
     walk.run<false>(box_cap, wanted, leaf);
   }
-  waiting.flush(cap_squared);
+  flush();
 }
 
+/// Nearest first, and what is not nearer than kEnough of the best so far is believed and not looked into;
+/// after kMostExact pairs nothing is: a bound need not be tight, but it must come soon.
 inline double lower_bound(const SegmentView& segment, const ObjectView& object, double cap) noexcept {
+  constexpr double kEnough = 0.8;
+  constexpr int kMostExact = 256;
   const Sweep still{nullptr, 0.0, 0.0};
   double best = cap;
-  double passed_over = cap;
+  double believed = cap;
   float box_cap = single_cap(cap);
-  const auto wanted = [&](float bound) {
-    if (static_cast<double>(bound) < 0.8 * best) return true;
-    passed_over = static_cast<double>(bound) < passed_over ? static_cast<double>(bound) : passed_over;
-    return false;
+  int looked_into = 0;
+  const auto is_enough = [&](double bound) {
+    if (bound < kEnough * best && looked_into < kMostExact) return false;
+    believed = bound < believed ? bound : believed;
+    return true;
+  };
+  Waiting waiting(segment, object);
+  const auto flush = [&] {
+    const int count = waiting.count();
+    if (count == 0) return;
+    looked_into += count;
+    const Doubles exact = square_root(waiting.take().squared);
+    for (int l = 0; l < count; ++l) best = exact[l] < best ? exact[l] : best;
+    box_cap = single_cap(best);
   };
   Walk walk(segment, object);
-  walk.run<true>(box_cap, wanted, [&](std::int32_t triangle, std::int32_t block, float bound) {
-    const PlacedTriangle& s = placed_triangle(segment, triangle, still);
-    for (int i = 0; i < kWide; i += kDoubles) {
-      const Doubles apart = most(separation(s, block_triangles(object.blocks[block], i), still),
-                                 all(static_cast<double>(bound)));
-      for (int l = 0; l < kDoubles; ++l) best = apart[l] < best ? apart[l] : best;
-    }
-    box_cap = single_cap(best);
-  });
-  const double found = best < passed_over ? best : passed_over;
+  walk.run<true>(
+      box_cap, [&](float bound) { return !is_enough(static_cast<double>(bound)); },
+      [&](std::int32_t triangle, std::int32_t block, float bound) {
+        const PlacedTriangle& s = placed_triangle(segment, triangle, still);
+        for (int i = 0; i < kWide; i += kDoubles) {
+          const Doubles apart = most(separation(s, block_triangles(object.blocks[block], i), still),
+                                     all(static_cast<double>(bound)));
+          for (int l = 0; l < kDoubles && block * kWide + i + l < object.size; ++l) {
+            if (is_enough(apart[l])) continue;
+            if (waiting.add({triangle, block * kWide + i + l})) flush();
+          }
+        }
+      });
+  flush();
+  const double found = best < believed ? best : believed;
   return found < cap ? greater(found * 0.999999999, 0.0) : cap;
 }
 

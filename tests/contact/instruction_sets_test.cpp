@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every instruction set that this processor has gives the same bits as the portable one.
+#include "phalanx/contact/instruction_set.h"
+
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cstdint>
+#include <iostream>
+
+#include "phalanx/contact/proximity.h"
+#include "support/count_allocations.h"
+#include "support/search_cases.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+/// The best set is in use again when a test ends, however it ends.
+class UsedSet {
+ public:
+  explicit UsedSet(InstructionSet set) { use_instruction_set(set); }
+  ~UsedSet() { use_instruction_set(best_instruction_set()); }
+  UsedSet(const UsedSet&) = delete;
+  UsedSet& operator=(const UsedSet&) = delete;
+};
+
+/// Bits of results, one after the other.
+class Bits {
+ public:
+  void add(double x) { bits_.push_back(std::bit_cast<std::uint64_t>(x)); }
+  void add(std::uint64_t x) { bits_.push_back(x); }
+  void add(const Vec3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  void add(const Pose& X) {
+    for (int i = 0; i < 9; ++i) add(X.R.data()[i]);
+    add(X.p);
+  }
+  void add(const JointArray& q) {
+    for (const double x : q) add(x);
+  }
+  [[nodiscard]] std::size_t size() const { return bits_.size(); }
+  /// The first place at which they differ; size() if they do not.
+  [[nodiscard]] std::size_t first_difference(const Bits& other) const {
+    std::size_t i = 0;
+    while (i < std::min(size(), other.size()) && bits_[i] == other.bits_[i]) ++i;
+    return size() == other.size() ? i : std::min(i, std::min(size(), other.size()) - 1);
+  }
+
+ private:
+  std::vector<std::uint64_t> bits_;
+};
+
+void expect_same_bits(const Bits& portable, const Bits& wide) {
+  ASSERT_EQ(portable.size(), wide.size());
+  EXPECT_EQ(portable.first_difference(wide), portable.size()) << "place of the first different number";
+}
+
+Bits searched(std::uint64_t seed, int poses) {
+  test::Random random(seed);
+  Bits out;
+  for (const test::SearchCase& shapes : test::search_cases(random)) {
+    const ObjectModel object(shapes.object);
+    const SegmentTree segment(shapes.segment);
+    SearchScratch scratch(segment);
+    for (int i = 0; i < poses; ++i) {
+      const Pose X = shapes.pose(random);
+      const PlacedSegment placed{segment, X, scratch};
+      const double found = distance(placed, object.tree(), 1.0);
+      out.add(found);
+      out.add(distance_bound(placed, object.tree(), 1.0));
+      out.add(distance_bound(placed, object.tree(), 0.3 * found));
+      const ContactPatch patch = contact_patch(placed, object, found + 1e-4);
+      out.add(patch.distance);
+      out.add(patch.on_segment);
+      out.add(patch.on_object);
+      out.add(patch.direction);
+      out.add(patch.object_normal);
+      out.add(static_cast<std::uint64_t>(patch.pairs));
+    }
+  }
+  return out;
+}
+
+void add_snapshot(const Snapshot& s, Bits& out) {
+  out.add(static_cast<std::uint64_t>(s.status));
+  out.add(s.hcp_angle);
+  out.add(s.gdp_angle);
+  out.add(s.torque);
+  for (std::size_t i = 0; i < kSegments; ++i) {
+    const SegmentSnapshot& segment = s.segment[i];
+    out.add(static_cast<std::uint64_t>(segment.contact));
+    for (const double x : {segment.depth, segment.force_raw, segment.force, segment.slid}) out.add(x);
+    out.add(segment.point);
+    out.add(segment.normal);
+    out.add(s.hcp_pose[i]);
+    out.add(s.gdp_pose[i]);
+  }
+}
+
+JointArray any_hand(test::Random& random, const HandParameters& hand, double reach) {
+  JointArray q{};
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const double target = test::between(random, hand.min_angle[j], hand.max_angle[j]);
+    q[j] = hand.open_angle[j] + reach * (target - hand.open_angle[j]);
+  }
+  return q;
+}
+
+/// A hand that grasps and lets go at random.
+Bits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks) {
+  test::Random random(seed);
+  HapticModel model(test::simple_hand(), ObjectModel(object));
+  model.limits.joint_speed = 1e4;
+  test::Runner runner(model);
+  Bits out;
+  for (int n = 0; n < grasps; ++n) {
+    const JointArray from = runner.now().hcp_angle;
+    const JointArray to = any_hand(random, model.hand.parameters(), n % 3 == 2 ? 0.0 : 1.0);
+    for (int i = 1; i <= ticks; ++i) {
+      JointArray q{};
+      for (std::size_t j = 0; j < kJoints; ++j) q[j] = from[j] + (to[j] - from[j]) * i / ticks;
+      add_snapshot(runner.tick(q), out);
+    }
+  }
+  return out;
+}
+
+std::vector<TriangleMesh> grasped_objects() {
+  const Pose X = test::at(0.0, -0.03, -0.05);
+  return {test::moved(make_sphere(0.03, 2000), X), test::moved(make_box(Vec3(0.3, 0.03, 0.03), 600), X),
+          test::moved(test::meridians(300), test::at(0.0, -0.07, -0.05))};
+}
+
+class EverySet : public ::testing::TestWithParam<InstructionSet> {
+ protected:
+  void SetUp() override {
+    std::cout << "this processor and this build have:";
+    for (const InstructionSet set :
+         {InstructionSet::kPortable, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+      if (has_instruction_set(set)) std::cout << " " << instruction_set_name(set);
+    }
+    std::cout << "\n";
+    if (!has_instruction_set(GetParam()))
+      GTEST_SKIP() << "no " << instruction_set_name(GetParam()) << " here: not tested";
+  }
+
+  template <class Run>
+  void expect_same_as_portable(Run&& run) const {
+    Bits portable;
+    {
+      const UsedSet used(InstructionSet::kPortable);
+      portable = run();
+    }
+    const UsedSet used(GetParam());
+    expect_same_bits(portable, run());
+    EXPECT_GT(portable.size(), 1000U);
+  }
+};
+
+TEST_P(EverySet, DistancesBoundsAndPatchesAreTheSameBits) {
+  std::cout << "seed 31\n";
+  expect_same_as_portable([] { return searched(31, 12); });
+}
+
+TEST_P(EverySet, WholeStepsAreTheSameBits) {
+  std::cout << "seed 32\n";
+  for (const TriangleMesh& object : grasped_objects())
+    expect_same_as_portable([&] { return stepped(32, object, 6, 20); });
+}
+
+TEST_P(EverySet, AllocatesNothingWhereTheListRunsOver) {
+  HapticModel model(test::simple_hand(),
+                    ObjectModel(test::moved(make_sphere(0.03, 4000), test::at(0.0, -0.03, -0.05))));
+  model.limits.joint_speed = 1e4;
+  test::Random random(33);
+  const UsedSet used(GetParam());
+  HapticState state(model);
+  double time = 0.0;
+  int contacts = 0;
+  const std::size_t before = test::allocations();
+  for (int n = 0; n < 8; ++n) {  // the whole way in one tick, there and back
+    const JointArray q = any_hand(random, model.hand.parameters(), n % 2 == 0 ? 1.0 : 0.0);
+    step(model, Sample{time += 1.0 / model.rate_hz, q}, state);
+    for (const SegmentSnapshot& segment : state.snapshot().segment) contacts += segment.contact ? 1 : 0;
+  }
+  EXPECT_EQ(test::allocations() - before, 0U);
+  EXPECT_GT(contacts, 2);
+}
+
+std::string name_of(const ::testing::TestParamInfo<InstructionSet>& info) {
+  return std::string(instruction_set_name(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Sets, EverySet,
+                         ::testing::Values(InstructionSet::kPortable, InstructionSet::kAvx2,
+                                           InstructionSet::kAvx512),
+                         name_of);
+
+class SoakEverySet : public EverySet {};
+
+TEST_P(SoakEverySet, SearchesAndStepsAreTheSameBits) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    expect_same_as_portable([&] { return searched(seed, 50); });
+    for (const TriangleMesh& object : grasped_objects())
+      expect_same_as_portable([&] { return stepped(seed, object, 20, 20); });
+  }
+}
+INSTANTIATE_TEST_SUITE_P(SoakSets, SoakEverySet,
+                         ::testing::Values(InstructionSet::kAvx2, InstructionSet::kAvx512), name_of);
+
+TEST(InstructionSet, ThePortableOneIsEverywhereAndAnUnknownOneIsRefused) {
+  EXPECT_TRUE(has_instruction_set(InstructionSet::kPortable));
+  EXPECT_TRUE(has_instruction_set(best_instruction_set()));
+  EXPECT_EQ(instruction_set(), best_instruction_set());
+  EXPECT_THROW(use_instruction_set(static_cast<InstructionSet>(99)), std::invalid_argument);
+  EXPECT_EQ(instruction_set(), best_instruction_set()) << "a refused one changes nothing";
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// A segment's velocity and acceleration along a straight way in joint space against differences of the hand's
+// poses, and the bounds on its speed and jerk against what its points do all along the way.
+#include "phalanx/contact/segment_motion.h"
+
+#include <gmock/gmock.h>
+
+#include <iostream>
+
+#include "support/search_cases.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+using test::between;
+using test::Random;
+
+/// A straight way of one digit of one hand, and a point of its segment k.
+struct Way {
+  const HandModel& hand;
+  int digit;
+  int k;
+  DigitAngles angle;
+  DigitAngles rate;
+  Vec3 point;  ///< in the segment's frame
+
+  [[nodiscard]] DigitPose pose(double s) const {
+    DigitAngles q = angle;
+    for (std::size_t i = 0; i < kJointsPerDigit; ++i) q[i] += s * rate[i];
+    DigitPose out;
+    hand.digit_pose(digit, q, out);
+    return out;
+  }
+  [[nodiscard]] Vec3 place(double s) const { return pose(s).segment[static_cast<std::size_t>(k)] * point; }
+  [[nodiscard]] SegmentMotion motion(double s) const { return segment_motion(hand, digit, pose(s), rate, k); }
+};
+
+Way any_way(Random& random, const HandModel& hand) {
+  const int digit = static_cast<int>(between(random, 0.0, 4.999));
+  const int k = static_cast<int>(between(random, 0.0, 2.999));
+  Way way{hand, digit, k, {}, {}, Vec3::Zero()};
+  for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
+    way.angle[i] = between(random, -1.0, 1.5);
+    way.rate[i] = between(random, 0.0, 1.0) < 0.2 ? 0.0 : between(random, -1.5, 1.5);
+  }
+  const std::vector<Vec3>& vertices = hand.mesh(segment_index(digit, k)).vertices;
+  way.point =
+      vertices[static_cast<std::size_t>(between(random, 0.0, static_cast<double>(vertices.size()) - 0.001))];
+  return way;
+}
+
+std::vector<HandModel> hands(Random& random) {
+  std::vector<HandModel> out;
+  for (const Handedness side : {Handedness::kRight, Handedness::kLeft}) {
+    out.push_back(test::simple_hand(side, test::any_pose(random, 0.5), 800));
+    HandParameters crooked = test::simple_parameters();
+    for (DigitParameters& digit : crooked.digits) {
+      for (DhRow& row : digit.dh) {
+        row.alpha += between(random, -0.3, 0.3);
+        row.d += between(random, -0.01, 0.01);
+        row.theta += between(random, -0.5, 0.5);
+      }
+    }
+    out.push_back(make_hand_model(crooked, side, test::any_pose(random, 0.5), 800));
+  }
+  return out;
+}
+
+template <class Check>
+void for_each_way(std::uint64_t seed, Check&& check) {
+  std::cout << "seed " << seed << "\n";
+  Random random(seed);
+  for (const HandModel& hand : hands(random)) {
+    for (int n = 0; n < 250; ++n) {
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << " way " << n);
+      ASSERT_NO_FATAL_FAILURE(check(random, any_way(random, hand)));
+    }
+  }
+}
+
+// The differences' own error: h^2 / 6 of the third derivative, h^2 / 12 of the fourth, and an ulp of 1 m / h.
+TEST(SegmentMotion, VelocityAndAccelerationAreTheDifferencesOfThePoses) {
+  for_each_way(11, [](Random&, const Way& way) {
+    const SegmentMotion motion = way.motion(0.0);
+    const Vec3 x = way.place(0.0);
+    double turned = 0.0;
+    for (const double w : way.rate) turned += std::abs(w);
+    const double h = 1e-4;
+    const Vec3 v = (way.place(h) - way.place(-h)) / (2.0 * h);
+    ASSERT_LE((v - motion.velocity(x)).norm(), motion.jerk * h * h / 6.0 + 1e-11);
+    const double g = 1e-3;
+    const Vec3 a = (way.place(g) - 2.0 * x + way.place(-g)) / (g * g);
+    const Vec3 expected =
+        motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(motion.velocity(x));
+    ASSERT_LE((a - expected).norm(), motion.jerk * turned * g * g / 12.0 + 4e-9);
+  });
+}
+
+TEST(SegmentMotion, SpeedAndJerkBoundEveryPointAllAlongTheWay) {
+  double most_speed = 0.0;
+  double most_jerk = 0.0;
+  for_each_way(12, [&](Random& random, const Way& way) {
+    const SegmentMotion motion = way.motion(0.0);
+    ASSERT_EQ(motion.speed, segment_speed(way.hand, way.digit, way.rate, way.k));
+    const double s = between(random, -1.0, 1.0);
+    const SegmentMotion there = way.motion(s);
+    const double speed = there.velocity(way.place(s)).norm();
+    ASSERT_LE(speed, motion.speed * (1.0 + 1e-12));
+    // The exact acceleration's difference: its error is h^2 / 6 of the fifth derivative.
+    const double h = 1e-4;
+    const auto acceleration = [&](double at) {
+      const SegmentMotion m = way.motion(at);
+      const Vec3 x = way.place(at);
+      return Vec3(m.angular_rate.cross(x) + m.linear_rate + m.angular.cross(m.velocity(x)));
+    };
+    const double jerk = (acceleration(s + h) - acceleration(s - h)).norm() / (2.0 * h);
+    ASSERT_LE(jerk, motion.jerk * (1.0 + 1e-6) + 1e-10);
+    if (motion.speed > 0.0) most_speed = std::max(most_speed, speed / motion.speed);
+    if (motion.jerk > 0.0) most_jerk = std::max(most_jerk, jerk / motion.jerk);
+  });
+  EXPECT_GT(most_speed, 0.5) << "a bound, not a wall far away";
+  EXPECT_GT(most_jerk, 0.3);
+}
+
+}  // namespace
+}  // namespace phalanx
