@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The motions that are measured: seeded grasps from free space to the whole hand pressing, and a long
+// squeeze.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "phalanx/step/haptic_step.h"
+
+namespace phalanx::bench {
+
+/// Measured joint angles, one a tick [rad], all within the range of motion.
+struct BenchMotion {
+  std::string name;
+  std::vector<JointArray> angle;
+};
+
+inline constexpr int kGraspTicks = 400;
+inline constexpr double kPressDepth = 5e-3;  ///< of the deepest segment of every digit [m]
+
+/// A grasp of 400 ticks: from an open posture, each digit along a straight line in joint space with a
+/// minimum-jerk profile of its own timing, to where its deepest segment presses kPressDepth deep (or to the
+/// end of its range if the object is out of its reach). Posture and timing come from the seed alone;
+/// how far each digit closes is found by playing it slowly. Set-up only.
+/// @throws std::invalid_argument if the open hand touches the object.
+[[nodiscard]] BenchMotion make_grasp(const HapticModel& model, std::uint64_t seed);
+
+/// 1.5 s of closing like the grasp of that seed and opening again while every joint trembles by itself, up to
+/// 9 degrees at 2 to 12 Hz: contacts come and go at all angles. Not timed; what the peers are compared on
+/// beside the other motions. Set-up only.
+[[nodiscard]] BenchMotion make_restless(const HapticModel& model, std::uint64_t seed);
+
+/// The grasp of that seed, then 4 s in which every digit twice lets go until it is up to 2 mm off the object
+/// and presses again, one after another, so that the hand stays in contact all the time. Set-up only.
+[[nodiscard]] BenchMotion make_squeeze(const HapticModel& model, std::uint64_t seed);
+
+}  // namespace phalanx::bench

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace phalanx::bench {
+
+bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
+  CLI::App app{"Times the whole haptic step, and holds it against FCL and brute force. See bench/README.md."};
+  app.set_help_flag("--help", "This text");
+  app.add_option("--scene", options.scenes, "Scene in scenes/, or a path; may be repeated (default: all six)")
+      ->take_all();
+  app.add_option("--motions", options.grasps, "Seeded grasps a scene, beside the squeeze (default 20)")
+      ->check(CLI::Range(1, 10000));
+  app.add_flag("--peers,!--no-peers", options.peers, "Run FCL and brute force and compare (default)");
+  app.add_flag("--cold,!--no-cold", options.cold, "Time steps with flushed caches too (default)");
+  app.add_flag("--large,!--no-large", options.large, "Build an object of a million triangles too (default)");
+  app.add_option("--cold-every", options.cold_every, "Ticks from one flushed step to the next (default 10)")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--naive-every", options.naive_every,
+                 "Ticks from one that naive FCL runs to the next (default 10)")
+      ->check(CLI::Range(1, 100000));
+  app.add_flag("--record", options.record,
+               "Take this run's forces as those that bench/expected_hashes.txt holds");
+  app.add_option("--json", options.json, "File for all figures");
+  app.add_option("--markdown", options.markdown, "File for the tables");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = app.exit(error) == 0 ? 0 : 2;
+    return false;
+  }
+  return true;
+}
+
+}  // namespace phalanx::bench

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace phalanx::bench {
+
+struct Options {
+  std::vector<std::string> scenes = {"bench_ball_1k", "bench_ball_10k", "bench_ball_100k",
+                                     "bench_mug_1k",  "bench_mug_10k",  "bench_mug_100k"};
+  int grasps = 20;  ///< a scene, beside the one squeeze
+  bool peers = true;
+  bool cold = true;
+  bool large = true;     ///< build the object of a million triangles
+  bool record = false;   ///< write expected_hashes.txt anew
+  int cold_every = 10;   ///< ticks from one flush of the caches to the next
+  int naive_every = 10;  ///< ticks from one that naive FCL runs to the next
+  std::string json;      ///< file to write; empty: none
+  std::string markdown;  ///< file to write; empty: none
+};
+
+/// @param exit_code  set if the program is to end here: --help, or a wrong option, which has been answered
+/// @returns whether to go on
+[[nodiscard]] bool parse_options(int argc, char** argv, Options& options, int& exit_code);
+
+}  // namespace phalanx::bench

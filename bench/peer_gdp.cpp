@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "peer_gdp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "peer_record.h"
+
+namespace phalanx::bench {
+namespace {
+
+constexpr int kMostSteps = 1000;
+/// A stopped segment's clearance lies between the margin and this much below it [m].
+constexpr double kBand = 5e-9;
+/// Pairs this near are followed one by one: a pair along which the segment slides must not stop it [m].
+constexpr double kNearWindow = 50e-6;
+
+/// The pairs are farther apart than the margin, or they are within it and may not come nearer.
+struct Floors {
+  double margin;
+  double of(double distance) const {
+    const double floor = margin - kBand;
+    return distance <= margin ? std::min(floor, distance - 5e-10) : floor;
+  }
+  /// Less than a nanometre a tick is no motion, as long as there is room for it.
+  double creep(double distance) const { return distance > margin - kBand ? 1e-9 : 0.0; }
+};
+
+}  // namespace
+
+struct PeerGdp::Tick {
+  int digit;
+  DigitAngles from;     ///< where the path begins [rad]
+  DigitAngles rate;     ///< along the path [rad]
+  DigitAngles hcp_was;  ///< the last tick's measured angles [rad]
+  DigitAngles hcp;      ///< this tick's [rad]
+  const DigitPose& hcp_pose;
+  DigitAngles angle;
+  DigitPose pose;
+  double s = 0.0;
+  int fixed = 0;
+  int steps = 0;
+  bool exhausted = false;
+
+  [[nodiscard]] int first_moving() const {
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      if (rate[at(i)] != 0.0) return segment_in_digit_of_joint(i);
+    }
+    return kSegmentsPerDigit;
+  }
+  void go_to(const HandModel& hand, double to) {
+    s = to;
+    for (int i = fixed; i < kJointsPerDigit; ++i)
+      angle[at(i)] = s < 1.0 ? from[at(i)] + s * rate[at(i)] : hcp[at(i)];
+    hand.digit_pose(digit, angle, pose);
+  }
+};
+
+struct PeerGdp::Stop {
+  int segment = -1;  ///< -1: came to the end of the path
+};
+
+struct PeerGdp::Step {
+  double length = 0.0;
+  bool blocked = false;
+  bool near = false;  ///< may be within the margin after the step
+};
+
+void measure_record(ContactRecord& record, const Pose& gdp, const Pose& hcp) {
+  record.p_gdp = gdp * record.p_S;
+  record.p_hcp = hcp * record.p_S;
+  record.depth = (record.p_gdp - record.p_hcp).dot(record.n_c) - record.offset;
+}
+
+PeerGdp::PeerGdp(const HapticModel& model, DistanceEngine& engine, Pruning pruning)
+    : model_(model),
+      engine_(engine),
+      pruning_(pruning),
+      clearance_(model.hand, model.object.mesh(), engine, pruning) {}
+
+Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
+                        const std::array<bool, kDigits>& measured, GdpState& state) {
+  Status status = Status::kOk;
+  for (std::vector<ClosePair>& tied : tied_) tied.clear();
+  for (int d = 0; d < kDigits; ++d) {
+    Tick tick{.digit = d,
+              .from = digit_angles(state.angle, d),
+              .rate = {},
+              .hcp_was = digit_angles(state.started[at(d)] ? state.hcp_angle : hcp_angle, d),
+              .hcp = digit_angles(hcp_angle, d),
+              .hcp_pose = hcp.digit[at(d)],
+              .angle = digit_angles(state.angle, d),
+              .pose = state.poses.digit[at(d)]};
+    advance_digit(tick, state);
+    state.poses.digit[at(d)] = tick.pose;
+    for (int i = 0; i < kJointsPerDigit; ++i) state.angle[at(joint_index(d, i))] = tick.angle[at(i)];
+
+    const bool clear = tick.angle == tick.hcp;
+    state.inside[at(d)] = !clear && (state.inside[at(d)] || !state.started[at(d)]);
+    state.started[at(d)] = state.started[at(d)] || measured[at(d)];
+    if (tick.exhausted) status |= Status::kSearchExhausted;
+    if (state.inside[at(d)]) status |= Status::kStartInside;
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      ContactRecord& record = state.record[at(segment_index(d, k))];
+      if (!record.active) continue;
+      measure_record(record, tick.pose.segment[at(k)], tick.hcp_pose.segment[at(k)]);
+      record.silent = state.inside[at(d)];
+    }
+  }
+  state.hcp_angle = hcp_angle;
+  return status;
+}
+
+// Rule 1.
+int PeerGdp::held_joints(const Tick& tick, GdpState& state) const {
+  int held = 0;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    ContactRecord& record = state.record[at(segment_index(tick.digit, k))];
+    if (!record.active) continue;
+    measure_record(record, tick.pose.segment[at(k)], tick.hcp_pose.segment[at(k)]);
+    if (record.depth > 0.0) held = joints_that_move(k);
+  }
+  return held;
+}
+
+// Rules 2 to 4.
+void PeerGdp::advance_digit(Tick& tick, GdpState& state) {
+  const double margin = model_.contact.margin;
+  tick.fixed = held_joints(tick, state);
+  for (int i = 0; i < kJointsPerDigit; ++i) tick.rate[at(i)] = tick.hcp[at(i)] - tick.angle[at(i)];
+  bool asked = false;
+  while (tick.fixed < kJointsPerDigit) {
+    for (int i = 0; i < tick.fixed; ++i) tick.rate[at(i)] = 0.0;
+    if (tick.first_moving() == kSegmentsPerDigit) break;
+    asked = true;
+    const Stop stop = next_stop(tick, state);
+    if (stop.segment < 0) break;
+    ContactRecord& record = state.record[at(segment_index(tick.digit, stop.segment))];
+    if (record.active) {
+      measure_record(record, tick.pose.segment[at(stop.segment)], tick.hcp_pose.segment[at(stop.segment)]);
+      if (record.depth + record.offset <= 0.0) record.active = false;
+    }
+    const SegmentField field = field_of(model_.hand, tick.digit, stop.segment, tick.pose, tick.rate);
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const int segment = segment_index(tick.digit, k);
+      if (state.record[at(segment)].active) continue;
+      if (k != stop.segment &&
+          clearance_.of(tick.digit, k, tick.angle, tick.pose.segment[at(k)], margin) > margin) {
+        continue;
+      }
+      make_record(tick, k, k == stop.segment ? &field : nullptr, state);
+    }
+    tick.fixed = joints_that_move(stop.segment);
+  }
+  if (!asked && pruning_ == Pruning::kNone) {  // does not know that nothing moves
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      static_cast<void>(clearance_.of(tick.digit, k, tick.angle, tick.pose.segment[at(k)], margin));
+    }
+  }
+}
+
+PeerGdp::Stop PeerGdp::next_stop(Tick& tick, GdpState& state) {
+  const int first = tick.first_moving();
+  while (tick.steps++ < kMostSteps) {
+    double length = 1.0 - tick.s;
+    bool near = false;
+    int blocked = -1;
+    for (int k = pruning_ == Pruning::kNone ? 0 : first; k < kSegmentsPerDigit; ++k) {
+      const Step step = step_of(tick, k, length);
+      if (k < first) continue;
+      if (step.blocked) {
+        blocked = k;
+      } else {
+        length = std::min(length, step.length);
+      }
+      near = near || step.near;
+    }
+    if (blocked >= 0) return {blocked};
+    if (tick.s >= 1.0) return {};
+    const bool last = length >= 1.0 - tick.s;
+    const double from = tick.s;
+    tick.go_to(model_.hand, last ? 1.0 : tick.s + length);
+    for (int k = first; k < kSegmentsPerDigit; ++k)
+      state.record[at(segment_index(tick.digit, k))].active = false;
+    if (last && !near) return {};
+    if (!last && !(tick.s > from)) break;
+  }
+  tick.exhausted = true;
+  return {kSegmentsPerDigit - 1};
+}
+
+PeerGdp::Step PeerGdp::step_of(const Tick& tick, int k, double longest) {
+  const Floors floors{model_.contact.margin};
+  const SegmentField field = field_of(model_.hand, tick.digit, k, tick.pose, tick.rate);
+  const Pose& X_WS = tick.pose.segment[at(k)];
+  const double needed = floors.margin + field.speed * longest;
+  const double distance = clearance_.of(tick.digit, k, tick.angle, X_WS, needed);
+  if (distance > needed) return {.length = longest};
+  const double window = floors.margin + kNearWindow;
+  // Whatever is farther away than `apart` comes no nearer than the floor in this step.
+  const double apart = std::max(distance, window);
+  const double straight = (apart - floors.of(apart)) / field.speed;
+  Step step{.length = std::min(longest, straight), .near = straight <= longest || apart <= needed};
+  if (distance > window) return step;
+
+  const int segment = segment_index(tick.digit, k);
+  list_pairs(segment, X_WS, window);
+  const TriangleMesh& mesh = model_.hand.mesh(segment);
+  for (const ClosePair& pair : pairs_) {
+    const Vec3 n = pair.direction();
+    if (!(pair.distance > 0.0) ||
+        (pair.distance <= floors.margin && field.closing(n, pair.on_segment) > floors.creep(pair.distance))) {
+      return {.length = 0.0, .blocked = true, .near = true};
+    }
+    for (const std::int32_t corner : mesh.triangles[at(pair.segment_triangle)]) {
+      const Vec3 x = X_WS * mesh.vertices[at(corner)];
+      const double height = n.dot(x - pair.on_object);
+      const double v = field.closing(n, x);
+      step.length = std::min(step.length, safe_step(height, v, field.acceleration, floors.of(pair.distance)));
+    }
+    step.near = true;
+  }
+  return step;
+}
+
+void PeerGdp::list_pairs(int segment, const Pose& X_WS, double limit) {
+  ++lists_;
+  engine_.pairs_within(segment, X_WS, limit, pairs_);
+}
+
+void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, GdpState& state) {
+  const int segment = segment_index(tick.digit, k);
+  const Pose& X_WS = tick.pose.segment[at(k)];
+  const double margin = model_.contact.margin;
+  // A search that gave up stops wherever it is; what is nearest there may be far away.
+  const double cap =
+      field != nullptr && tick.exhausted
+          ? std::max(margin, clearance_.of(tick.digit, k, tick.angle, X_WS, 1.0) * (1.0 + 1e-12))
+          : margin;
+  list_pairs(segment, X_WS, cap + kTie);
+  std::vector<ClosePair>& tied = tied_[at(segment)];
+  if (!choose_contact(pairs_, cap, tick.exhausted ? nullptr : field, tied)) return;
+  const ClosePair& nearest = tied.front();
+  ContactRecord record;
+  record.active = true;
+  record.p_S = X_WS.R.transpose() * (nearest.on_segment - X_WS.p);
+  record.n_c = nearest.direction();
+  record.force_normal = record.n_c;
+  record.silent = state.inside[at(tick.digit)];
+  record.offset = tick.exhausted && nearest.distance > margin ? std::numeric_limits<double>::infinity()
+                                                              : offset_of(tick, k, record, state);
+  state.record[at(segment)] = record;
+}
+
+// Rule 3's d0.
+double PeerGdp::offset_of(const Tick& tick, int k, ContactRecord record, const GdpState& state) const {
+  if (model_.contact.depth != DepthOrigin::kContinuous) return 0.0;
+  DigitAngles hcp_angle{};
+  for (std::size_t i = 0; i < hcp_angle.size(); ++i)
+    hcp_angle[i] = tick.hcp_was[i] + tick.s * (tick.hcp[i] - tick.hcp_was[i]);
+  DigitPose hcp;
+  model_.hand.digit_pose(tick.digit, hcp_angle, hcp);
+  bool pushed = false;
+  for (int nearer = 0; nearer < k; ++nearer) {
+    ContactRecord other = state.record[at(segment_index(tick.digit, nearer))];
+    if (!other.active) continue;
+    measure_record(other, tick.pose.segment[at(nearer)], hcp.segment[at(nearer)]);
+    pushed = pushed || other.depth > 0.0;
+  }
+  if (!pushed) return 0.0;
+  measure_record(record, tick.pose.segment[at(k)], hcp.segment[at(k)]);
+  return std::max(0.0, record.depth);
+}
+
+}  // namespace phalanx::bench

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tick of the GDP by the rules of docs/architecture.md ("The GDP, exactly"), written anew on top of plain
+// distance queries: what a lab would build from a collision library.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "peer_clearance.h"
+#include "peer_engine.h"
+#include "peer_motion.h"
+#include "phalanx/step/haptic_step.h"
+
+namespace phalanx::bench {
+
+class PeerGdp {
+ public:
+  PeerGdp(const HapticModel& model, DistanceEngine& engine, Pruning pruning);
+
+  /// What advance_gdp() does, for GdpMethod::kContinuous. The force's direction is n_c: the peers leave the
+  /// interpolated normals out, which are not compared.
+  Status advance(const JointArray& hcp_angle, const HandPoses& hcp, const std::array<bool, kDigits>& measured,
+                 GdpState& state);
+
+  /// Drops what has been remembered from tick to tick.
+  void forget() { clearance_.forget(); }
+
+  /// The pairs that tie for the record that a segment got in the last tick, the one that gave its point
+  /// first; empty if it got none.
+  [[nodiscard]] const std::vector<ClosePair>& tied(int segment) const { return tied_[at(segment)]; }
+
+  /// Questions of distance that the engine has been asked.
+  [[nodiscard]] long questions() const { return clearance_.questions() + lists_; }
+
+ private:
+  struct Tick;
+  struct Stop;
+  struct Step;
+
+  [[nodiscard]] int held_joints(const Tick& tick, GdpState& state) const;
+  void advance_digit(Tick& tick, GdpState& state);
+  [[nodiscard]] Stop next_stop(Tick& tick, GdpState& state);
+  [[nodiscard]] Step step_of(const Tick& tick, int k, double longest);
+  void list_pairs(int segment, const Pose& X_WS, double limit);
+  void make_record(const Tick& tick, int k, const SegmentField* field, GdpState& state);
+  [[nodiscard]] double offset_of(const Tick& tick, int k, ContactRecord record, const GdpState& state) const;
+
+  const HapticModel& model_;
+  DistanceEngine& engine_;
+  Pruning pruning_;
+  Clearance clearance_;
+  std::vector<ClosePair> pairs_;  ///< scratch
+  std::array<std::vector<ClosePair>, kSegments> tied_;
+  long lists_ = 0;
+};
+
+/// Depth and points of a record between two poses of its segment.
+void measure_record(ContactRecord& record, const Pose& gdp, const Pose& hcp);
+
+}  // namespace phalanx::bench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phases.h"
+
+#include "peer_clearance.h"
+#include "peer_fcl.h"
+#include "peer_motion.h"
+
+namespace phalanx::bench {
+
+std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValues>& states) {
+  FclEngine engine(model.hand, model.object.mesh());
+  Clearance clearance(model.hand, model.object.mesh(), engine, Pruning::kLikeOurs);
+  const auto is_free = [&](const GdpValues& state) {
+    for (int s = 0; s < kPalm; ++s) {
+      const int d = digit_of_segment(s);
+      const int k = s % kSegmentsPerDigit;
+      const Pose& X_WS = state.poses.digit[at(d)].segment[at(k)];
+      if (!(clearance.of(d, k, digit_angles(state.angle, d), X_WS, kFreeDistance) > kFreeDistance))
+        return false;
+    }
+    return true;
+  };
+  std::vector<Phase> phases;
+  for (std::size_t tick = 1; tick < states.size(); ++tick) {
+    bool touches = false;
+    bool deep = false;
+    for (int s = 0; s < kPalm; ++s) {
+      const ContactRecord& record = states[tick].record[at(s)];
+      touches = touches || record.active;
+      deep = deep || (record.active && record.depth > kDeepDepth);
+    }
+    phases.push_back(deep                    ? Phase::kDeep
+                     : touches               ? Phase::kTouching
+                     : is_free(states[tick]) ? Phase::kFree
+                                             : Phase::kNear);
+  }
+  return phases;
+}
+
+}  // namespace phalanx::bench

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run of the benchmark found, as numbers, and as the text, Markdown and JSON that show it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "compare.h"
+#include "object_cost.h"
+#include "phalanx/record/made.h"
+#include "phalanx/record/step_times.h"
+#include "phases.h"
+#include "time_ours.h"
+#include "time_peer.h"
+
+namespace phalanx::bench {
+
+/// Times of some ticks of our step.
+struct TimesRow {
+  std::string phase;
+  std::size_t ticks = 0;
+  StepTimes us;        ///< of the ticks' least times
+  double raw_max = 0;  ///< greatest single time [us]; cold: the same as max
+};
+
+/// One peer beside ours, at the same ticks, both the least of as many repeats [us].
+struct PeerRow {
+  PeerPlan plan;
+  std::size_t ticks = 0;              ///< run
+  std::size_t with_queries = 0;       ///< of them, those in which pruned FCL had to ask for a distance
+  double p50 = 0.0, our_p50 = 0.0;    ///< of the ticks with queries
+  double p999 = 0.0, our_p999 = 0.0;  ///< of all ticks that were run
+  double idle_p50 = 0.0, our_idle_p50 = 0.0;  ///< of the ticks without queries
+  Agreement agreement;
+};
+
+enum class HashCheck { kMatches, kNotOnRecord, kRecorded };
+
+struct SceneReport {
+  std::string scene;
+  int object_triangles = 0;
+  int hand_triangles = 0;
+  std::size_t motions = 0;
+  std::size_t ticks = 0;
+  std::uint64_t hash = 0;
+  HashCheck hash_check = HashCheck::kMatches;
+  std::vector<TimesRow> warm;
+  std::vector<TimesRow> cold;
+  std::vector<PeerRow> peers;
+  ObjectCost cost;
+};
+
+struct Report {
+  Made made;
+  std::vector<SceneReport> scenes;
+  ObjectCost million;  ///< 0 triangles if it was not measured
+};
+
+/// One row a phase that occurs, and one for all ticks.
+[[nodiscard]] std::vector<TimesRow> warm_rows(const std::vector<Phase>& phases, const OurTimes& times);
+[[nodiscard]] std::vector<TimesRow> cold_rows(const std::vector<Phase>& phases,
+                                              const std::vector<ColdTime>& times);
+
+/// @param pruned  the ticks of pruned FCL, in order, one for every tick: which ticks have queries
+[[nodiscard]] PeerRow peer_row(const PeerTimes& peer, const OurTimes& ours,
+                               const std::vector<PeerTick>& pruned);
+
+[[nodiscard]] std::string scene_text(const SceneReport& scene);
+[[nodiscard]] std::string cost_text(const ObjectCost& cost);
+[[nodiscard]] std::string markdown(const Report& report);
+[[nodiscard]] nlohmann::json json(const Report& report);
+
+}  // namespace phalanx::bench
