@@ -47,7 +47,7 @@ struct SceneReport {
   std::size_t ticks = 0;
   std::uint64_t hash = 0;
   HashCheck hash_check = HashCheck::kMatches;
-  std::vector<TimesRow> warm;
+  std::vector<TimesRow> warm;  ///< by phase, all, and all with other instruction sets
   std::vector<TimesRow> cold;
   std::vector<PeerRow> peers;
   ObjectCost cost;
@@ -55,6 +55,7 @@ struct SceneReport {
 
 struct Report {
   Made made;
+  std::string instructions;  ///< the set that the contact search used
   std::vector<SceneReport> scenes;
   ObjectCost million;  ///< 0 triangles if it was not measured
 };

@@ -75,9 +75,13 @@ Json json_of(const SceneReport& scene) {
 Json json(const Report& report) {
   Json scenes = Json::array();
   for (const SceneReport& scene : report.scenes) scenes.push_back(json_of(scene));
-  Json out = {{"commit", report.made.commit},     {"cpu", report.made.cpu},
-              {"compiler", report.made.compiler}, {"build_type", report.made.build_type},
-              {"date", report.made.date},         {"scenes", scenes}};
+  Json out = {{"commit", report.made.commit},
+              {"cpu", report.made.cpu},
+              {"instructions", report.instructions},
+              {"compiler", report.made.compiler},
+              {"build_type", report.made.build_type},
+              {"date", report.made.date},
+              {"scenes", scenes}};
   if (report.million.triangles > 0) out["large_object"] = json_of(report.million);
   return out;
 }

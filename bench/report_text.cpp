@@ -126,8 +126,9 @@ std::string markdown(const Report& report) {
   std::string text = fmt::format(
       "# The whole step, measured\n\nWritten by `bench/run`; [bench/README.md](../README.md) says what the "
       "columns mean. Times in microseconds, one core.\n\n| | |\n|---|---|\n| commit | {} |\n| CPU | {} |\n| "
+      "instructions | {} |\n| "
       "compiler | {} |\n| build | {} |\n| date | {} |\n",
-      made.commit, made.cpu, made.compiler, made.build_type, made.date);
+      made.commit, made.cpu, report.instructions, made.compiler, made.build_type, made.date);
   for (const SceneReport& scene : report.scenes) text += scene_markdown(scene);
   if (report.million.triangles > 0) {
     text += "\n## A large object\n\n" + cost_text(report.million);

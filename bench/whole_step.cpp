@@ -10,6 +10,7 @@
 
 #include "expected_hashes.h"
 #include "options.h"
+#include "phalanx/contact/instruction_set.h"
 #include "phalanx/mesh/objects.h"
 #include "phalanx/scene/build_model.h"
 #include "report.h"
@@ -84,6 +85,29 @@ std::vector<PeerRow> run_peers(const HapticModel& model, const std::vector<Bench
   return rows;
 }
 
+/// Of all ticks, in those instruction sets that this processor has beside its best one: the same forces, to
+/// the last bit, or no time is reported.
+std::vector<TimesRow> other_instruction_sets(const std::string& scene, const HapticModel& model,
+                                             const std::vector<BenchMotion>& motions,
+                                             const std::vector<Phase>& phases, std::uint64_t hash) {
+  const InstructionSet best = instruction_set();
+  std::vector<TimesRow> rows;
+  for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kPortable}) {
+    if (set == best || !has_instruction_set(set)) continue;
+    use_instruction_set(set);
+    const OurTimes times = time_ours(model, motions);
+    use_instruction_set(best);
+    if (!times.same_hash || times.hash != hash) {
+      throw std::runtime_error(
+          fmt::format("{}: {} instructions give other forces than {}; they must give the same bits", scene,
+                      instruction_set_name(set), instruction_set_name(best)));
+    }
+    rows.push_back(warm_rows(phases, times).back());
+    rows.back().phase = instruction_set_name(set);
+  }
+  return rows;
+}
+
 SceneReport run_scene(const std::string& scene, const Options& options, ExpectedHashes& expected) {
   const HapticModel model = build_model(load_scene(scene));
   const std::vector<BenchMotion> motions = make_motions(model, options.grasps);
@@ -100,6 +124,8 @@ SceneReport run_scene(const std::string& scene, const Options& options, Expected
                      .cold = {},
                      .peers = {},
                      .cost = object_cost(model.object.mesh())};
+  for (const TimesRow& row : other_instruction_sets(scene, model, motions, phases, times.hash))
+    report.warm.push_back(row);
   if (options.cold) report.cold = cold_rows(phases, time_cold(model, motions, options.cold_every));
   if (options.peers) report.peers = run_peers(model, motions, times, options);
   return report;
@@ -122,9 +148,12 @@ bool all_agree(const Report& report) {
 }
 
 int run(const Options& options) {
-  Report report{.made = made_here(), .scenes = {}, .million = {}};
-  fmt::print("phalanx_bench {} on {}, {}, {}, {}\n", report.made.commit, report.made.cpu,
-             report.made.compiler, report.made.build_type, report.made.date);
+  Report report{.made = made_here(),
+                .instructions = std::string(instruction_set_name(instruction_set())),
+                .scenes = {},
+                .million = {}};
+  fmt::print("phalanx_bench {} on {} ({}), {}, {}, {}\n", report.made.commit, report.made.cpu,
+             report.instructions, report.made.compiler, report.made.build_type, report.made.date);
   ExpectedHashes expected(PHALANX_BENCH_FOLDER "/expected_hashes.txt");
   for (const std::string& scene : options.scenes) {
     report.scenes.push_back(run_scene(scene, options, expected));

@@ -124,7 +124,7 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
     nearest = position;
     main_place = place;
   }
-  const Vec3 main = normal_on(nearest, main_place);
+  Vec3 main = normal_on(nearest, main_place);
   if (n_c.isZero(0.0)) return main;  // they touch: no direction separates them
 
   NormalFan fan;

@@ -20,7 +20,7 @@ struct PairList {
   };
 
   static constexpr int kMostOfASegment = 2048;
-  std::vector<Pair> pair = std::vector<Pair>(kSegmentsPerDigit * kMostOfASegment);
+  std::vector<Pair> pair = std::vector<Pair>(std::size_t{kSegmentsPerDigit} * kMostOfASegment);
   int count = 0;
   /// Segment k of the digit has the pairs [begin[k], begin[k + 1]).
   std::array<int, kSegmentsPerDigit + 1> begin{};

@@ -83,6 +83,11 @@ PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box) noexc
   return most(sphere, most(slab, sheet));
 }
 
+/// Rounded towards the safe side for a comparison in single precision.
+PHALANX_INLINE float single_cap(double cap) noexcept {
+  return cap < 1e15 ? static_cast<float>(cap) * 1.000001F + 1e-12F : 1e15F;
+}
+
 /// The pairs still to be looked at. Both trees have at most 8 levels below 2^24 triangles and 11 at all; each
 /// step takes one pair off and puts at most 8 on.
 class Walk {

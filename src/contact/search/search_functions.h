@@ -56,7 +56,7 @@ struct PairDistance {
 /// Receives pairs in a fixed order; may lower the cap [m^2].
 using PairSink = void (*)(void* context, const PairDistance& pair, double& cap_squared);
 
-/// Room for pairs. A gather that runs out of it calls make_room, which must leave count < capacity.
+/// Room for pairs. A gather that has not enough for a block calls make_room, which must leave room for one.
 struct PairStore {
   PairIndex* pair;
   int count;
@@ -77,8 +77,8 @@ struct SearchFunctions {
   /// Every pair whose squared distance is at most the cap.
   void (*visit)(const SegmentView& segment, const ObjectView& object, double cap_squared, bool nearest_first,
                 PairSink sink, void* context);
-  /// A lower bound on the distance, at most `cap` [m]; 0.8 of it or more unless very many pairs are about as
-  /// near.
+  /// A lower bound on the distance, at most `cap` [m]; as a rule 0.8 of it or more; less, down to 0,
+  /// where 256 pairs do not settle it.
   double (*lower_bound)(const SegmentView& segment, const ObjectView& object, double cap);
   /// All pairs that might come within `margin` before the parameter has grown by store.horizon, and some
   /// more.

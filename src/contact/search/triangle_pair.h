@@ -112,8 +112,8 @@ PHALANX_INLINE Closest closest_points(const Triangles& a, const Triangles& b) no
   edges_of(b, eb);
   const Vectors first = a.corner[0] - b.corner[0];
   Closest closest{dot(first, first), a.corner[0], b.corner[0]};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) edge_edge(ea[i], eb[j], closest);
+  for (const Edge& of_a : ea) {
+    for (const Edge& of_b : eb) edge_edge(of_a, of_b, closest);
   }
   Vectors pierced = a.corner[0];
   DoubleMask hit = corners_against_face(a, ea, b, eb, true, closest, pierced);
