@@ -28,8 +28,8 @@ inline constexpr double kPressDepth = 5e-3;  ///< of the deepest segment of ever
 [[nodiscard]] BenchMotion make_grasp(const HapticModel& model, std::uint64_t seed);
 
 /// 1.5 s of closing like the grasp of that seed and opening again while every joint trembles by itself, up to
-/// 9 degrees at 2 to 12 Hz: contacts come and go at all angles. Not timed; what the peers are compared on
-/// beside the other motions. Set-up only.
+/// 9 degrees at 2 to 12 Hz: contacts come and go at all angles. Timed by themselves, and compared with the
+/// peers. Set-up only.
 [[nodiscard]] BenchMotion make_restless(const HapticModel& model, std::uint64_t seed);
 
 /// The grasp of that seed, then 4 s in which every digit twice lets go until it is up to 2 mm off the object

@@ -60,7 +60,7 @@ HashCheck check_hash(const std::string& scene, const OurTimes& times, const Opti
                   scene, times.hash, *wanted));
 }
 
-/// What the peers are compared on beside what is timed.
+/// What the peers are compared on beside the grasps and the squeeze, and a row of its own.
 std::vector<BenchMotion> make_restless_motions(const HapticModel& model, int grasps) {
   std::vector<BenchMotion> motions;
   for (int i = 1; i <= grasps; ++i) motions.push_back(make_restless(model, static_cast<std::uint64_t>(i)));
@@ -83,6 +83,15 @@ std::vector<PeerRow> run_peers(const HapticModel& model, const std::vector<Bench
   run({PeerKind::kFclNaive, "FCL naive", 2, options.naive_every}, 50 * options.naive_every);
   if (model.object.triangle_count() <= kBruteMost) run({PeerKind::kBrute, "brute force", 2, 1}, 5);
   return rows;
+}
+
+/// Of the restless motions: fingers that slip off and catch up with the HCP, which takes the longest search.
+TimesRow restless_row(const HapticModel& model, const Options& options) {
+  const OurTimes times = time_ours(model, make_restless_motions(model, options.grasps));
+  const std::vector<Phase> any(times.repeat_us.front().size(), Phase::kNear);
+  TimesRow row = warm_rows(any, times).back();
+  row.phase = "restless";
+  return row;
 }
 
 /// Of all ticks, in those instruction sets that this processor has beside its best one: the same forces, to
@@ -124,6 +133,7 @@ SceneReport run_scene(const std::string& scene, const Options& options, Expected
                      .cold = {},
                      .peers = {},
                      .cost = object_cost(model.object.mesh())};
+  report.warm.push_back(restless_row(model, options));
   for (const TimesRow& row : other_instruction_sets(scene, model, motions, phases, times.hash))
     report.warm.push_back(row);
   if (options.cold) report.cold = cold_rows(phases, time_cold(model, motions, options.cold_every));

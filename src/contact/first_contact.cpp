@@ -26,7 +26,7 @@ namespace {
 
 /// How far a segment may go before the pairs that it may meet are listed anew [m]: what is listed at once
 /// stays few, however far the hand has jumped.
-constexpr double kLongestReach = 1e-3;
+constexpr double kLongestReach = 2.5e-3;
 
 class Search {
  public:
@@ -76,7 +76,7 @@ class Search {
     PairList& list = state_.pairs;
     list.count = 0;
     list.begin = {};
-    double horizon = std::min(1.0, s_ + kLongestReach / speed_.back());
+    double horizon = std::min(1.0, s_ + std::max(kLongestReach / speed_.back(), known_to_be_clear()));
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
       list.begin[idx(k)] = list.count;
       if (!is_clear(k, horizon)) {
@@ -89,16 +89,27 @@ class Search {
     return horizon;
   }
 
+  /// For how long every segment stays clear by what is known of its distance.
+  [[nodiscard]] double known_to_be_clear() noexcept {
+    double least = 1.0;
+    for (int k = first_; k < kSegmentsPerDigit; ++k) {
+      const double gap = clearance(k).bound() - model_.parameters.margin;
+      least = std::min(least, std::max(0.0, gap) / speed_[idx(k)] * (1.0 - 1e-9));
+    }
+    return least;
+  }
+
   /// Whether what is known of the segment's distance, or can be known soon, spares the search.
   bool is_clear(int k, double horizon) noexcept {
     constexpr double kTicks = 16.0;         // at this speed, that a new bound is worth
     constexpr double kLeastAhead = 0.3e-3;  // however slow it is [m]
+    constexpr double kMostAhead = 4e-3;     // however fast, but for twice what is needed [m]
     const double margin = model_.parameters.margin;
     const double reach = speed_[idx(k)] * (horizon - s_);
     Clearance& known = clearance(k);
     if (known.bound() > margin + reach) return true;
     if (!known.worth_asking()) return false;
-    const double ahead = margin + std::max(kTicks * reach, kLeastAhead);
+    const double ahead = margin + std::max({std::min(kTicks * reach, kMostAhead), 2.0 * reach, kLeastAhead});
     const double bound = distance_bound(placed(k), model_.object.tree(), ahead);
     known.learn(bound, bound > margin + reach);
     return bound > margin + reach;

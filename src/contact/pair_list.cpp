@@ -102,6 +102,8 @@ double gather_pairs(const PairSearch& search, double s, double horizon, int k, P
           return a.triangle != b.triangle ? a.triangle < b.triangle : a.slot < b.slot;
         });
         views.horizon = std::min(views.horizon, half->until);
+        // What is dropped may be within the margin at the old horizon: the list must end before that.
+        if (!(views.horizon < end)) views.horizon = views.s + 0.5 * (end - views.s);
         store.horizon = views.horizon - views.s;
         kept = half;
       }
@@ -116,7 +118,7 @@ double gather_pairs(const PairSearch& search, double s, double horizon, int k, P
                    [](void* self) { static_cast<Context*>(self)->flush(); },
                    &context};
   search::functions().gather(context.views.segment, context.views.object, context.views.motion,
-                             search.motion.speed, search.band.margin, context.store);
+                             search.band.margin, context.store);
   context.flush();
   return context.views.horizon;
 }

@@ -34,6 +34,7 @@ SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& 
     const double reach = hand.reach(digit, j, k);
     const double turning = turned + std::abs(w);
     motion.speed += std::abs(w) * reach;
+    motion.bend += (turning * turning - turned * turned) * reach;
     motion.jerk += (turning * turning * turning - turned * turned * turned) * reach;
     turned = turning;
   }

@@ -16,6 +16,7 @@ struct SegmentMotion {
   Vec3 angular_rate = Vec3::Zero();  ///< W' [rad]
   Vec3 linear_rate = Vec3::Zero();   ///< U' [m]
   double speed = 0.0;                ///< |dx/ds| <= speed for every point of the segment [m]
+  double bend = 0.0;                 ///< |d2x/ds2| <= bend for every point of the segment [m]
   double jerk = 0.0;                 ///< |d3x/ds3| <= jerk for every point of the segment [m]
 
   [[nodiscard]] Vec3 velocity(const Vec3& x) const noexcept { return angular.cross(x) + linear; }
@@ -23,7 +24,8 @@ struct SegmentMotion {
 
 /// Of the digit's segment k. With R_j the farthest that the segment reaches from joint j and
 /// V_j = |w_1| + .. + |w_j|, which bound the products of exponentials term by term:
-///   |dx/ds| <= sum |w_j| R_j,   |d3x/ds3| <= sum (V_j^3 - V_(j-1)^3) R_j
+///   |dx/ds| <= sum |w_j| R_j,   |d2x/ds2| <= sum (V_j^2 - V_(j-1)^2) R_j,
+///   |d3x/ds3| <= sum (V_j^3 - V_(j-1)^3) R_j
 /// @param pose  the digit at this s
 /// @param rate  w [rad per unit of s]
 /// Real-time: O(1), no allocation, lock, throw or I/O.

@@ -50,6 +50,7 @@ struct SegmentTriangle {
 struct alignas(32) PlacedLenses {
   float centre[3][kWide];  ///< relative to ObjectTree::centre() [m]
   float axis[3][kWide];    ///< in W
+  float way[3][kWide];     ///< how far the centre goes within the horizon, to first order [m]
   std::uint64_t query;     ///< the query that placed them
 };
 

@@ -7,8 +7,19 @@
 
 namespace phalanx::search::PHALANX_SEARCH_SET {
 
+/// How lenses go within a horizon h, in single precision.
+struct LensMotion {
+  float angular[3];  ///< h times the angular velocity [rad]
+  float linear[3];   ///< h times the velocity at the object tree's centre [m]
+  float spin;        ///< the length of `angular`, or more
+  float bend;        ///< what higher orders add for any point [m]
+  float reach;       ///< how far any point goes at most [m]
+};
+
 /// Moves a node's lenses to the pose of the query, once.
-PHALANX_INLINE const PlacedLenses& placed_lenses(const SegmentView& segment, std::int32_t node) noexcept {
+template <bool kMoving>
+PHALANX_INLINE const PlacedLenses& placed_lenses(const SegmentView& segment, const LensMotion& motion,
+                                                 std::int32_t node) noexcept {
   PlacedLenses& placed = segment.lenses[node];
   if (placed.query == segment.query) return placed;
   placed.query = segment.query;
@@ -16,10 +27,18 @@ PHALANX_INLINE const PlacedLenses& placed_lenses(const SegmentView& segment, std
   for (int i = 0; i < kWide; i += kFloats) {
     const Floats c[3] = {load(rest.centre[0] + i), load(rest.centre[1] + i), load(rest.centre[2] + i)};
     const Floats a[3] = {load(rest.axis[0] + i), load(rest.axis[1] + i), load(rest.axis[2] + i)};
+    Floats x[3];
     for (int k = 0; k < 3; ++k) {
       const float(&row)[3] = segment.lens_R[k];
-      store(row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + segment.lens_p[k], placed.centre[k] + i);
+      x[k] = row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + segment.lens_p[k];
+      store(x[k], placed.centre[k] + i);
       store(row[0] * a[0] + row[1] * a[1] + row[2] * a[2], placed.axis[k] + i);
+    }
+    if constexpr (kMoving) {
+      const float(&w)[3] = motion.angular;
+      store(w[1] * x[2] - w[2] * x[1] + motion.linear[0], placed.way[0] + i);
+      store(w[2] * x[0] - w[0] * x[2] + motion.linear[1], placed.way[1] + i);
+      store(w[0] * x[1] - w[1] * x[0] + motion.linear[2], placed.way[2] + i);
     }
   }
   return placed;
@@ -47,6 +66,7 @@ PHALANX_INLINE Floats square_root(const Floats& a) noexcept {
 struct Lenses {
   Floats centre[3];
   Floats axis[3];
+  Floats way[3];
   Floats radius;
   Floats half;
 };
@@ -59,13 +79,18 @@ struct Boxes {
 };
 
 /// Lower bounds on the distance of lenses and boxes: the largest of what separates the sphere from the box,
-/// the box from the lens's slab, and the lens from the box's slab.
-PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box) noexcept {
+/// the box from the lens's slab, and the lens from the box's slab. While they move: on the least distance
+/// within the horizon; along a slab's axis only the way along it counts.
+template <bool kMoving>
+PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box,
+                                     const LensMotion& motion) noexcept {
   Floats squared = all(0.0F);
   Floats along = all(0.0F);
   Floats spread = all(0.0F);
   Floats height = all(0.0F);
   Floats cosine = all(0.0F);
+  Floats way_along = all(0.0F);
+  Floats way_up = all(0.0F);
   for (int k = 0; k < 3; ++k) {
     const Floats outside = most(most(box.min[k] - lens.centre[k], lens.centre[k] - box.max[k]), all(0.0F));
     squared += outside * outside;
@@ -73,14 +98,27 @@ PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box) noexc
     spread += magnitude(lens.axis[k]) * ((box.max[k] - box.min[k]) * 0.5F);
     height += box.axis[k] * lens.centre[k];
     cosine += box.axis[k] * lens.axis[k];
+    if constexpr (kMoving) {
+      way_along += lens.axis[k] * lens.way[k];
+      way_up += box.axis[k] * lens.way[k];
+    }
   }
-  const Floats sphere = square_root(squared) * 0.9999990F - lens.radius;
-  const Floats slab = magnitude(along) - spread - lens.half;
   // How far the lens reaches along the box's axis: as a disc with a rim, or as the sphere around it.
   const Floats sine = square_root(most(1.000001F - cosine * cosine, all(0.0F)));
   const Floats reach = least(lens.radius, lens.half * magnitude(cosine) + lens.radius * sine);
-  const Floats sheet = most(box.low - height, height - box.high) - reach;
-  return most(sphere, most(slab, sheet));
+  const Floats sphere = square_root(squared) * 0.9999990F - lens.radius;
+  if constexpr (!kMoving) {
+    const Floats slab = magnitude(along) - spread - lens.half;
+    const Floats sheet = most(box.low - height, height - box.high) - reach;
+    return most(sphere, most(slab, sheet));
+  } else {
+    const Floats none = all(0.0F);
+    const Floats slab =
+        most(along - most(way_along, none), -along - most(-way_along, none)) - spread - lens.half;
+    const Floats sheet =
+        most(box.low - height - most(way_up, none), height - box.high - most(-way_up, none)) - reach;
+    return most(sphere - motion.reach, most(slab, sheet) - lens.radius * motion.spin - motion.bend);
+  }
 }
 
 /// Rounded towards the safe side for a comparison in single precision.
@@ -90,9 +128,12 @@ PHALANX_INLINE float single_cap(double cap) noexcept {
 
 /// The pairs still to be looked at. Both trees have at most 8 levels below 2^24 triangles and 11 at all; each
 /// step takes one pair off and puts at most 8 on.
+template <bool kMoving>
 class Walk {
  public:
-  Walk(const SegmentView& segment, const ObjectView& object) noexcept : segment_(segment), object_(object) {}
+  /// @param motion  if kMoving: bounds are then those within the horizon; it may become shorter meanwhile
+  Walk(const SegmentView& segment, const ObjectView& object, const LensMotion& motion) noexcept
+      : segment_(segment), object_(object), motion_(motion) {}
 
   /// Hands pairs (triangle, block, bound) whose bound is at most cap to leaf(). leaf() may lower `cap`.
   /// @param wanted  whether a pair with this bound is still of interest
@@ -131,11 +172,12 @@ class Walk {
   /// One lens against the boxes of a node; `lanes`: which of them.
   template <bool kSort>
   PHALANX_INLINE void push_boxes(std::int32_t lens, std::int32_t node, unsigned lanes, float cap) noexcept {
-    const PlacedLenses& placed = placed_lenses(segment_, lens / kWide);
+    const PlacedLenses& placed = placed_lenses<kMoving>(segment_, motion_, lens / kWide);
     const LensNode& rest = segment_.nodes[lens / kWide];
     const int at = lens % kWide;
     const Lenses one{{all(placed.centre[0][at]), all(placed.centre[1][at]), all(placed.centre[2][at])},
                      {all(placed.axis[0][at]), all(placed.axis[1][at]), all(placed.axis[2][at])},
+                     {all(placed.way[0][at]), all(placed.way[1][at]), all(placed.way[2][at])},
                      all(rest.radius[at]),
                      all(rest.half[at])};
     const BoxNode& b = object_.nodes[node];
@@ -147,7 +189,7 @@ class Walk {
                         {load(b.axis[0] + i), load(b.axis[1] + i), load(b.axis[2] + i)},
                         load(b.low + i),
                         load(b.high + i)};
-      const Floats apart = lens_box_bound(one, boxes) - segment_.slack;
+      const Floats apart = lens_box_bound<kMoving>(one, boxes, motion_) - segment_.slack;
       hits |= float_bits(apart <= cap) << i;
       store(apart, bound + i);
     }
@@ -157,7 +199,7 @@ class Walk {
   /// The lenses of a node against one box.
   template <bool kSort>
   PHALANX_INLINE void push_lenses(std::int32_t node, std::int32_t box, float cap) noexcept {
-    const PlacedLenses& placed = placed_lenses(segment_, node);
+    const PlacedLenses& placed = placed_lenses<kMoving>(segment_, motion_, node);
     const LensNode& rest = segment_.nodes[node];
     const BoxNode& b = object_.nodes[box / kWide];
     const int at = box % kWide;
@@ -172,9 +214,10 @@ class Walk {
       const Lenses lenses{
           {load(placed.centre[0] + i), load(placed.centre[1] + i), load(placed.centre[2] + i)},
           {load(placed.axis[0] + i), load(placed.axis[1] + i), load(placed.axis[2] + i)},
+          {load(placed.way[0] + i), load(placed.way[1] + i), load(placed.way[2] + i)},
           load(rest.radius + i),
           load(rest.half + i)};
-      const Floats apart = lens_box_bound(lenses, one) - segment_.slack;
+      const Floats apart = lens_box_bound<kMoving>(lenses, one, motion_) - segment_.slack;
       hits |= float_bits(apart <= cap) << i;
       store(apart, bound + i);
     }
@@ -203,6 +246,7 @@ class Walk {
 
   const SegmentView& segment_;
   const ObjectView& object_;
+  const LensMotion& motion_;
   LensBox stack_[kCapacity];
   int top_ = 0;
 };

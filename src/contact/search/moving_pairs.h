@@ -10,22 +10,42 @@
 
 namespace phalanx::search::PHALANX_SEARCH_SET {
 
+/// The lenses' part of a motion within the horizon. Everything in it grows with the horizon, so that what was
+/// placed for a longer one stays safe.
+PHALANX_INLINE LensMotion lens_motion(const SegmentView& segment, const MotionView& motion,
+                                      double horizon) noexcept {
+  double at_centre[3];
+  velocity_at(motion, segment.object_centre, at_centre);
+  LensMotion lens;
+  for (int k = 0; k < 3; ++k) {
+    lens.angular[k] = static_cast<float>(motion.angular[k] * horizon);
+    lens.linear[k] = static_cast<float>(at_centre[k] * horizon);
+  }
+  const double turning = square_root(all(dot3(motion.angular, motion.angular)))[0];
+  // Single precision rounds the way of a point by less than a millionth of it.
+  lens.spin = static_cast<float>(turning * horizon * 1.000001);
+  lens.bend = static_cast<float>((0.5 * motion.bend * horizon + 2e-6 * motion.speed) * horizon * 1.000001);
+  lens.reach = static_cast<float>(motion.speed * horizon * 1.000001);
+  return lens;
+}
+
 inline void gather(const SegmentView& segment, const ObjectView& object, const MotionView& motion,
-                   double speed, double margin, PairStore& store) noexcept {
+                   double margin, PairStore& store) noexcept {
   const double keep = margin * 1.000000001 + 1e-15;
+  const float box_cap = single_cap(margin);
   double horizon = 0.0;
   Sweep sweep{&motion, 0.0, 0.0};
-  float box_cap = 0.0F;
+  LensMotion lenses;
   const auto look_ahead = [&] {
     horizon = store.horizon;
     sweep.horizon = horizon;
     sweep.rest = motion.jerk * horizon * horizon * horizon / 6.0;
-    box_cap = single_cap(margin + speed * horizon);
+    lenses = lens_motion(segment, motion, horizon);
   };
   look_ahead();
-  Walk walk(segment, object);
+  Walk<true> walk(segment, object, lenses);
   walk.run<true>(
-      box_cap, [&](float bound) { return bound <= box_cap; },
+      box_cap, [](float) { return true; },
       [&](std::int32_t triangle, std::int32_t block, float) {
         // Room for the whole block, so that the horizon does not change between its lanes.
         if (store.capacity - store.count < kWide) {

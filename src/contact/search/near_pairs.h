@@ -110,7 +110,8 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
       }
     }
   };
-  Walk walk(segment, object);
+  const LensMotion no_motion{};
+  Walk<false> walk(segment, object, no_motion);
   const auto wanted = [&](float bound) { return bound <= box_cap; };
   if (nearest_first) {
     walk.run<true>(box_cap, wanted, leaf);
@@ -144,7 +145,8 @@ inline double lower_bound(const SegmentView& segment, const ObjectView& object, 
     });
     box_cap = single_cap(best);
   };
-  Walk walk(segment, object);
+  const LensMotion no_motion{};
+  Walk<false> walk(segment, object, no_motion);
   walk.run<true>(
       box_cap, [&](float bound) { return !is_enough(static_cast<double>(bound)); },
       [&](std::int32_t triangle, std::int32_t block, float bound) {

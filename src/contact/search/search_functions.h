@@ -20,7 +20,8 @@ struct SegmentView {
   double p[3];
   float lens_R[3][3];  ///< the same for lenses: rounded, relative to the object tree's centre
   float lens_p[3];
-  float slack;  ///< greatest rounding error of a lens against a box [m]
+  double object_centre[3];  ///< ObjectTree::centre()
+  float slack;              ///< greatest rounding error of a lens against a box [m]
 };
 
 struct ObjectView {
@@ -30,13 +31,15 @@ struct ObjectView {
 };
 
 /// How the points of a segment move with the path parameter, from the pose on: at x the velocity is
-/// angular x x + linear, its rate of change angular_rate x x + linear_rate + angular x velocity, and no third
-/// derivative is ever above `jerk`. Per unit of the parameter [m].
+/// angular x x + linear, its rate of change angular_rate x x + linear_rate + angular x velocity. No point's
+/// first, second or third derivative is ever above `speed`, `bend` or `jerk`. Per unit of the parameter [m].
 struct MotionView {
   double angular[3];
   double linear[3];
   double angular_rate[3];
   double linear_rate[3];
+  double speed;
+  double bend;
   double jerk;
 };
 
@@ -82,8 +85,7 @@ struct SearchFunctions {
   double (*lower_bound)(const SegmentView& segment, const ObjectView& object, double cap);
   /// All pairs that might come within `margin` before the parameter has grown by store.horizon, and some
   /// more.
-  /// @param speed  bound on the speed of every point of the segment
-  void (*gather)(const SegmentView& segment, const ObjectView& object, const MotionView& motion, double speed,
+  void (*gather)(const SegmentView& segment, const ObjectView& object, const MotionView& motion,
                  double margin, PairStore& store);
   /// What each of n pairs allows.
   void (*advance)(const SegmentView& segment, const ObjectView& object, const MotionView& motion,

@@ -26,6 +26,7 @@ namespace phalanx::search {
       view.lens_R[i][j] = static_cast<float>(view.R[i][j]);
     }
     view.p[i] = segment.X_WS.p[i];
+    view.object_centre[i] = object.centre()[i];
     view.lens_p[i] = static_cast<float>(relative[i]);
   }
   // Single precision rounds by 6e-8 of what it holds, a dozen times.
@@ -42,6 +43,8 @@ namespace phalanx::search {
     view.angular_rate[i] = motion.angular_rate[i];
     view.linear_rate[i] = motion.linear_rate[i];
   }
+  view.speed = motion.speed;
+  view.bend = motion.bend;
   view.jerk = motion.jerk;
   return view;
 }
