@@ -19,9 +19,10 @@ class Clearance {
     if (pause_ > 0) --pause_;
     return pause_ == 0;
   }
+  /// @param bound   another lower bound at the same place [m]
   /// @param enough  whether it spared the search this time
   void learn(double bound, bool enough) noexcept {
-    bound_ = bound;
+    bound_ = std::max(bound_, bound);
     pause_ = enough ? 0 : kPause;
   }
 

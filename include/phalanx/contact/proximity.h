@@ -12,7 +12,7 @@ namespace phalanx {
 struct PlacedSegment {
   const SegmentTree& tree;
   const Pose& X_WS;
-  SearchScratch& scratch;  ///< made for the tree; one search at a time
+  SearchScratch& scratch;  ///< fits the tree (asserted in debug); one search at a time
 };
 
 /// The smallest distance between the segment and the object if it is below `cap`, else `cap` [m]. 0 if they

@@ -47,6 +47,11 @@ class SearchScratch {
   explicit SearchScratch(const SegmentTrees& trees);
   explicit SearchScratch(const SegmentTree& tree) { grow(tree); }
 
+  /// Whether it is large enough for the tree.
+  [[nodiscard]] bool fits(const SegmentTree& tree) const noexcept {
+    return lenses_.size() >= static_cast<std::size_t>(tree.node_count()) &&
+           triangles_.size() >= static_cast<std::size_t>(tree.size());
+  }
   [[nodiscard]] PlacedLenses* lenses() noexcept { return lenses_.data(); }
   [[nodiscard]] PlacedTriangle* triangles() noexcept { return triangles_.data(); }
   struct NearPair {

@@ -2,6 +2,8 @@
 // The program's types as the search's inner loops want them.
 #pragma once
 
+#include <cassert>
+
 #include "contact/search/search_functions.h"
 #include "phalanx/contact/proximity.h"
 
@@ -13,6 +15,7 @@ namespace phalanx::search {
 
 /// A new query of the segment at its pose. Real-time.
 [[nodiscard]] inline SegmentView view_of(const PlacedSegment& segment, const ObjectTree& object) noexcept {
+  assert(segment.scratch.fits(segment.tree));
   SegmentView view;
   view.nodes = segment.tree.nodes();
   view.triangles = segment.tree.triangles();
