@@ -2,7 +2,6 @@
 #include "contact/first_contact.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "contact/pair_search.h"
 

@@ -78,6 +78,24 @@ struct Boxes {
   Floats high;
 };
 
+/// A node's, each number by get(its eight lanes): one lane for all, or several side by side.
+template <class Get>
+PHALANX_INLINE Lenses lenses_of(const PlacedLenses& placed, const LensNode& rest, Get&& get) noexcept {
+  return {{get(placed.centre[0]), get(placed.centre[1]), get(placed.centre[2])},
+          {get(placed.axis[0]), get(placed.axis[1]), get(placed.axis[2])},
+          {get(placed.way[0]), get(placed.way[1]), get(placed.way[2])},
+          get(rest.radius),
+          get(rest.half)};
+}
+template <class Get>
+PHALANX_INLINE Boxes boxes_of(const BoxNode& node, Get&& get) noexcept {
+  return {{get(node.min[0]), get(node.min[1]), get(node.min[2])},
+          {get(node.max[0]), get(node.max[1]), get(node.max[2])},
+          {get(node.axis[0]), get(node.axis[1]), get(node.axis[2])},
+          get(node.low),
+          get(node.high)};
+}
+
 /// Lower bounds on the distance of lenses and boxes: the largest of what separates the sphere from the box,
 /// the box from the lens's slab, and the lens from the box's slab. While they move: on the least distance
 /// within the horizon; along a slab's axis only the way along it counts.
@@ -173,25 +191,13 @@ class Walk {
   template <bool kSort>
   PHALANX_INLINE void push_boxes(std::int32_t lens, std::int32_t node, unsigned lanes, float cap) noexcept {
     const PlacedLenses& placed = placed_lenses<kMoving>(segment_, motion_, lens / kWide);
-    const LensNode& rest = segment_.nodes[lens / kWide];
-    const int at = lens % kWide;
-    const Lenses one{{all(placed.centre[0][at]), all(placed.centre[1][at]), all(placed.centre[2][at])},
-                     {all(placed.axis[0][at]), all(placed.axis[1][at]), all(placed.axis[2][at])},
-                     {all(placed.way[0][at]), all(placed.way[1][at]), all(placed.way[2][at])},
-                     all(rest.radius[at]),
-                     all(rest.half[at])};
-    const BoxNode& b = object_.nodes[node];
+    const Lenses one = lenses_of(placed, segment_.nodes[lens / kWide],
+                                 [&](const float* lane) { return all(lane[lens % kWide]); });
     alignas(32) float bound[kWide];
     unsigned hits = 0;
     for (int i = 0; i < kWide; i += kFloats) {
-      const Boxes boxes{{load(b.min[0] + i), load(b.min[1] + i), load(b.min[2] + i)},
-                        {load(b.max[0] + i), load(b.max[1] + i), load(b.max[2] + i)},
-                        {load(b.axis[0] + i), load(b.axis[1] + i), load(b.axis[2] + i)},
-                        load(b.low + i),
-                        load(b.high + i)};
-      const Floats apart = lens_box_bound<kMoving>(one, boxes, motion_) - segment_.slack;
-      hits |= float_bits(apart <= cap) << i;
-      store(apart, bound + i);
+      const Boxes boxes = boxes_of(object_.nodes[node], [&](const float* lane) { return load(lane + i); });
+      hits |= bound_pairs(one, boxes, cap, bound + i) << i;
     }
     push<kSort>(hits & lanes, bound, [&](int i) { return LensBox{lens, node * kWide + i, bound[i]}; });
   }
@@ -200,28 +206,24 @@ class Walk {
   template <bool kSort>
   PHALANX_INLINE void push_lenses(std::int32_t node, std::int32_t box, float cap) noexcept {
     const PlacedLenses& placed = placed_lenses<kMoving>(segment_, motion_, node);
-    const LensNode& rest = segment_.nodes[node];
-    const BoxNode& b = object_.nodes[box / kWide];
-    const int at = box % kWide;
-    const Boxes one{{all(b.min[0][at]), all(b.min[1][at]), all(b.min[2][at])},
-                    {all(b.max[0][at]), all(b.max[1][at]), all(b.max[2][at])},
-                    {all(b.axis[0][at]), all(b.axis[1][at]), all(b.axis[2][at])},
-                    all(b.low[at]),
-                    all(b.high[at])};
+    const Boxes one =
+        boxes_of(object_.nodes[box / kWide], [&](const float* lane) { return all(lane[box % kWide]); });
     alignas(32) float bound[kWide];
     unsigned hits = 0;
     for (int i = 0; i < kWide; i += kFloats) {
-      const Lenses lenses{
-          {load(placed.centre[0] + i), load(placed.centre[1] + i), load(placed.centre[2] + i)},
-          {load(placed.axis[0] + i), load(placed.axis[1] + i), load(placed.axis[2] + i)},
-          {load(placed.way[0] + i), load(placed.way[1] + i), load(placed.way[2] + i)},
-          load(rest.radius + i),
-          load(rest.half + i)};
-      const Floats apart = lens_box_bound<kMoving>(lenses, one, motion_) - segment_.slack;
-      hits |= float_bits(apart <= cap) << i;
-      store(apart, bound + i);
+      const Lenses lenses =
+          lenses_of(placed, segment_.nodes[node], [&](const float* lane) { return load(lane + i); });
+      hits |= bound_pairs(lenses, one, cap, bound + i) << i;
     }
     push<kSort>(hits, bound, [&](int i) { return LensBox{node * kWide + i, box, bound[i]}; });
+  }
+
+  /// Writes the pairs' bounds. @returns bit i: pair i is within the cap
+  PHALANX_INLINE unsigned bound_pairs(const Lenses& lenses, const Boxes& boxes, float cap,
+                                      float* bound) const noexcept {
+    const Floats apart = lens_box_bound<kMoving>(lenses, boxes, motion_) - segment_.slack;
+    store(apart, bound);
+    return float_bits(apart <= cap);
   }
 
   /// Puts the hits on the stack so that lane 0, or the nearest, comes off first.

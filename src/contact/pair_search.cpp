@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/contact/pair_list.h"
+#include "contact/pair_search.h"
 
 #include <algorithm>
 
-#include "contact/pair_search.h"
 #include "contact/search/views.h"
 
 namespace phalanx {
