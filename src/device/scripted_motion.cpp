@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "phalanx/core/nearest_name.h"
+#include "phalanx/core/random.h"
 #include "phalanx/device/motion.h"
 
 namespace phalanx {
@@ -62,26 +63,16 @@ double closed_at(const ScriptedMotion& script, bool ripple, int digit, double t)
   return closing - opening;
 }
 
-/// SplitMix64 (Steele, Lea & Flood 2014), so that a seed means the same tremor with every standard library.
-double uniform(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15ULL;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  z ^= z >> 31U;
-  return static_cast<double>(z >> 11U) * 0x1.0p-53;
-}
-
 /// Physiological and pathological tremors lie between 5 and 12 Hz: three sines of seeded frequency and phase
 /// a joint.
 class Tremor {
  public:
   explicit Tremor(const ScriptedMotion& script) : amplitude_(script.tremor_rad) {
-    std::uint64_t state = script.seed;
+    Random random(script.seed);
     for (auto& joint : waves_) {
       for (Wave& wave : joint) {
-        wave.frequency_hz = 5.0 + 7.0 * uniform(state);
-        wave.phase = 2.0 * std::numbers::pi * uniform(state);
+        wave.frequency_hz = 5.0 + 7.0 * random.uniform();
+        wave.phase = 2.0 * std::numbers::pi * random.uniform();
       }
     }
   }

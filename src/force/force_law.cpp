@@ -6,6 +6,11 @@
 #include <numbers>
 
 namespace phalanx {
+namespace {
+
+constexpr double kReferenceDepth = 1e-3;  // of Hunt-Crossley's stiffness [m]
+
+}  // namespace
 
 double law_force(const ForceLawParameters& law, double depth, double speed) noexcept {
   if (!(depth > 0.0)) return 0.0;
@@ -16,7 +21,6 @@ double law_force(const ForceLawParameters& law, double depth, double speed) noex
     case ForceLaw::kKelvinVoigt:
       return std::max(0.0, hooke + law.damping * speed);
     case ForceLaw::kHuntCrossley: {
-      constexpr double kReferenceDepth = 1e-3;
       const double spring =
           law.stiffness * kReferenceDepth * std::pow(depth / kReferenceDepth, law.hunt_crossley_exponent);
       return std::max(0.0, spring * (1.0 + law.hunt_crossley_damping * speed));
@@ -26,6 +30,25 @@ double law_force(const ForceLawParameters& law, double depth, double speed) noex
     case ForceLaw::kLinearThenCubic: {
       const double beyond = std::max(0.0, depth - law.linear_depth);
       return hooke + law.cubic * beyond * beyond * beyond;
+    }
+  }
+  return 0.0;
+}
+
+double law_slope(const ForceLawParameters& law, double depth) noexcept {
+  const double d = std::max(0.0, depth);
+  switch (law.law) {
+    case ForceLaw::kHooke:
+    case ForceLaw::kKelvinVoigt:
+      return law.stiffness;
+    case ForceLaw::kHuntCrossley:
+      return law.stiffness * law.hunt_crossley_exponent *
+             std::pow(d / kReferenceDepth, law.hunt_crossley_exponent - 1.0);
+    case ForceLaw::kDuffing:
+      return law.stiffness + 3.0 * law.cubic * d * d;
+    case ForceLaw::kLinearThenCubic: {
+      const double beyond = std::max(0.0, d - law.linear_depth);
+      return law.stiffness + 3.0 * law.cubic * beyond * beyond;
     }
   }
   return 0.0;

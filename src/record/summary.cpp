@@ -71,6 +71,9 @@ std::vector<std::string> warnings(const Summary& summary) {
   warn(Status::kStartInside,
        "a digit that started inside the object gives no force until it has once been clear; start from a "
        "more open hand");
+  warn(Status::kOscillating,
+       "the force of a segment oscillated; lower force.stiffness_n_per_mm, or choose another "
+       "stabiliser.method");
   warn(Status::kSlid,
        fmt::format(
            "a contact slid, up to {:.1f} mm beside its contact point: static grasping, which the forces "

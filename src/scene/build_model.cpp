@@ -85,6 +85,8 @@ HapticModel build_model(const SceneDescription& scene) {
   model.contact = scene.contact;
   model.force = scene.force;
   model.smoothing = scene.smoothing;
+  model.stabiliser = scene.stabiliser;
+  model.oscillation = scene.oscillation;
   model.limits = scene.limits;
   model.rate_hz = scene.rate_hz;
   return model;

@@ -7,54 +7,17 @@
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
+#include "phalanx/scene/device_file.h"
+#include "phalanx/scene/patient_file.h"
 #include "scene/folder_names.h"
 #include "scene/key_table.h"
 #include "scene/scene_tree.h"
+#include "scene/unknown_keys.h"
 
 namespace phalanx {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool starts_with_part(std::string_view path, std::string_view prefix) {
-  return path.size() > prefix.size() && path.substr(0, prefix.size()) == prefix &&
-         (path[prefix.size()] == '.' || path[prefix.size()] == '[');
-}
-
-/// Refuses every key that is in no row of the table.
-void refuse_unknown_keys(const SceneTree& tree, const toml::node& node, const std::string& path) {
-  const auto& keys = key_table();
-  if (!path.empty()) {
-    const std::string pattern = pattern_of(path);
-    if (std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.path == pattern; }))
-      return;
-    const bool holds_keys = std::any_of(
-        keys.begin(), keys.end(), [&](const KeySpec& key) { return starts_with_part(key.path, pattern); });
-    if (!holds_keys) {
-      std::vector<std::string> known;
-      for (const KeySpec& key : keys) known.push_back(key.path);
-      tree.fail(
-          path,
-          fmt::format("nobody knows this key; the nearest known one is {} (`phalanx scene keys` lists all)",
-                      nearest_name(pattern, known)));
-    }
-    if (pattern == "objects" && !node.is_array())
-      tree.fail(path, "is not an array; start each object with a line [[objects]]");
-    if (pattern != "objects" && !node.is_table()) {
-      tree.fail(path, fmt::format("is {}, but {} is a table; write its keys below a line [{}]",
-                                  type_name(node), path, path));
-    }
-  }
-  const auto child_path = [&](std::string_view part) {
-    return path.empty() ? std::string(part) : fmt::format("{}.{}", path, part);
-  };
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, child] : *table) refuse_unknown_keys(tree, child, child_path(key.str()));
-  } else if (const toml::array* array = node.as_array()) {
-    for (std::size_t i = 0; i < array->size(); ++i)
-      refuse_unknown_keys(tree, (*array)[i], child_path(std::to_string(i)));
-  }
-}
 
 class Reader {
  public:
@@ -212,6 +175,22 @@ void refuse_both_smoothing_forms(const SceneTree& tree) {
   }
 }
 
+/// smoothing.enabled is the older short form of the stabilisers "smoothing" and "none".
+void refuse_two_stabilisers(const SceneTree& tree) {
+  const toml::node* enabled = tree.find("smoothing.enabled");
+  const toml::node* method = tree.find("stabiliser.method");
+  if (enabled == nullptr || method == nullptr) return;
+  const auto on = enabled->value_exact<bool>();
+  const auto name = method->value_exact<std::string>();
+  if (!on || !name) return;  // refused where they are read
+  const bool agree = *on ? *name != "none" : *name == "none" || *name == "smoothing";
+  if (agree) return;
+  tree.fail("smoothing.enabled",
+            fmt::format("the stabiliser is stated too ({}), and they say different things; remove "
+                        "smoothing.enabled, which is the older form of stabiliser.method = \"{}\"",
+                        tree.statement("stabiliser.method"), *on ? "smoothing" : "none"));
+}
+
 void refuse_what_the_profile_says(const SceneTree& tree) {
   if (tree.find("hand.profile") == nullptr) return;
   for (const char* key : {"hand.file", "hand.side", "mirror"}) {
@@ -221,13 +200,24 @@ void refuse_what_the_profile_says(const SceneTree& tree) {
   }
 }
 
+/// What the scene says about device and patient is checked here already, by reading their files.
+void read_files_with_overlay(const SceneTree& tree, SceneDescription& scene) {
+  scene.device.overlay = tree.values_over_file("device");
+  scene.patient.overlay = tree.values_over_file("patient");
+  if (tree.find("device.file") != nullptr) scene.device.stated_at = tree.statement("device.file");
+  if (tree.find("patient.file") != nullptr) scene.patient.stated_at = tree.statement("patient.file");
+  if (tree.find("device") != nullptr) static_cast<void>(load_device(scene));
+  if (tree.find("patient") != nullptr) static_cast<void>(load_patient(scene));
+}
+
 }  // namespace
 
 SceneDescription parse_scene(const std::string& text, const std::string& origin, const fs::path& folder,
                              const Overrides& overrides) {
   const SceneTree tree(text, origin, overrides);
-  refuse_unknown_keys(tree, tree.root(), "");
+  refuse_unknown_keys(tree);
   refuse_both_smoothing_forms(tree);
+  refuse_two_stabilisers(tree);
   refuse_what_the_profile_says(tree);
 
   SceneDescription scene;
@@ -247,6 +237,7 @@ SceneDescription parse_scene(const std::string& text, const std::string& origin,
     for (std::size_t i = 0; i < objects->as_array()->size(); ++i)
       scene.objects.push_back(read_object(tree, reader, i, scene));
   }
+  read_files_with_overlay(tree, scene);
   return scene;
 }
 

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "scene/key_table.h"
@@ -38,6 +40,18 @@ toml::table parse_value(const std::string& value, const std::string& origin) {
   } catch (const toml::parse_error&) {
   }
   return toml::table{{"v", value}};
+}
+
+bool is_bare_key(std::string_view key) {
+  const auto bare = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  return !key.empty() && std::all_of(key.begin(), key.end(), bare);
+}
+
+/// A value as text that reads back the same.
+std::string as_toml(const toml::node& value) {
+  std::ostringstream out;
+  value.visit([&](const auto& node) { out << node; });
+  return out.str();
 }
 
 /// What a person types is relative to where they are, not to the scene file.
@@ -157,6 +171,30 @@ std::string SceneTree::place(std::string_view path) const {
     at = dot == std::string_view::npos ? std::string_view() : at.substr(0, dot);
   }
   return origin_;
+}
+
+std::vector<OverlaidValue> SceneTree::values_over_file(const std::string& name) const {
+  std::vector<OverlaidValue> values;
+  const toml::node* found = find(name);
+  if (found != nullptr && found->is_table())
+    add_values_below(*found->as_table(), name, name.size() + 1, values);
+  return values;
+}
+
+void SceneTree::add_values_below(const toml::table& table, const std::string& path, std::size_t skip,
+                                 std::vector<OverlaidValue>& values) const {
+  for (const auto& [key, value] : table) {
+    const std::string name(key.str());
+    const std::string at = fmt::format("{}.{}", path, name);
+    if (at.substr(skip) == "file") continue;
+    if (!is_bare_key(name))
+      fail(path, fmt::format("\"{}\": such a key exists in no file; write letters, digits, _ and -", name));
+    const toml::table* below = value.as_table();
+    if (below != nullptr && !below->empty())
+      add_values_below(*below, at, skip, values);
+    else
+      values.push_back({at.substr(skip), below != nullptr ? "{}" : as_toml(value), place(at)});
+  }
 }
 
 std::string SceneTree::statement(std::string_view path) const {

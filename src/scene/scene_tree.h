@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "phalanx/scene/scene.h"
 #include "scene/toml_reader.h"
@@ -18,6 +19,9 @@ class SceneTree {
   SceneTree(const std::string& text, std::string origin, const Overrides& overrides);
 
   [[nodiscard]] const toml::table& root() const noexcept { return root_; }
+  /// The values below the table `name`, but not its `file`: what the scene lays over that file.
+  /// @throws SceneError for a key that no TOML file could hold without quotes.
+  [[nodiscard]] std::vector<OverlaidValue> values_over_file(const std::string& name) const;
   /// The value at a path such as "objects.0.size_mm"; null if there is none.
   [[nodiscard]] const toml::node* find(std::string_view path) const;
   /// "grasp.toml:12" or "--set objects.0.size_mm=80"; for a missing value, of the innermost table that is
@@ -30,6 +34,8 @@ class SceneTree {
 
  private:
   void apply(const std::string& key, const std::string& value);
+  void add_values_below(const toml::table& table, const std::string& path, std::size_t skip,
+                        std::vector<OverlaidValue>& values) const;
 
   std::string origin_;
   toml::table root_;

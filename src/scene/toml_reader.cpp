@@ -110,17 +110,28 @@ std::string TomlTable::full(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
-std::string TomlTable::place() const {
-  return fmt::format("{}:{}: {}", origin_, table_->source().begin.line, path_);
+std::string TomlTable::place_of(const toml::node* found, const std::string& path) const {
+  if (place_of_) {
+    const ValuePlace value = place_of_(path);
+    return fmt::format("{}: {}{}", value.place, value.prefix, path);
+  }
+  const toml::node& nearest = found == nullptr ? *table_ : *found;
+  return fmt::format("{}:{}: {}", origin_, nearest.source().begin.line, path);
 }
+
+std::string TomlTable::place() const { return place_of(table_, path_); }
 
 void TomlTable::fail(std::string_view key, const std::string& problem) const {
   const toml::node* found = table_->get(key);
-  if (found == nullptr) {
-    throw SceneError(fmt::format("{}:{}: {}: {}", origin_, table_->source().begin.line, full(key), problem));
-  }
-  throw SceneError(fmt::format("{}:{}: {} = {}: {}", origin_, found->source().begin.line, full(key),
-                               show(*found), problem));
+  const std::string place = place_of(found, full(key));
+  if (found == nullptr) throw SceneError(fmt::format("{}: {}", place, problem));
+  throw SceneError(fmt::format("{} = {}: {}", place, show(*found), problem));
+}
+
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : *table_) keys.emplace_back(key.str());
+  return keys;
 }
 
 bool TomlTable::has(std::string_view key) {
@@ -143,6 +154,12 @@ double TomlTable::number(std::string_view key, const NumberRange& range) {
 
 double TomlTable::number_or(std::string_view key, const NumberRange& range, double fallback) {
   return has(key) ? number(key, range) : fallback;
+}
+
+bool TomlTable::flag(std::string_view key) {
+  const toml::node& found = node(key);
+  if (!found.is_boolean()) fail(key, fmt::format("is {}; write true or false", type_name(found)));
+  return *found.value<bool>();
 }
 
 std::string TomlTable::text(std::string_view key) {
@@ -181,7 +198,7 @@ std::pair<double, double> TomlTable::pair(std::string_view key, const NumberRang
 TomlTable TomlTable::table(std::string_view key) {
   const toml::node& found = node(key);
   if (!found.is_table()) fail(key, fmt::format("is {}; write a table: [{}]", type_name(found), full(key)));
-  return {*found.as_table(), origin_, full(key)};
+  return {*found.as_table(), origin_, full(key), place_of_};
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key, int size) {
@@ -196,7 +213,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key, int size) {
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& element = (*array)[i];
     if (!element.is_table()) fail(key, fmt::format("element {} is {}; write a table", i, type_name(element)));
-    result.emplace_back(*element.as_table(), origin_, fmt::format("{}.{}", full(key), i));
+    result.emplace_back(*element.as_table(), origin_, fmt::format("{}.{}", full(key), i), place_of_);
   }
   return result;
 }
@@ -205,8 +222,9 @@ void TomlTable::finish() const {
   for (const auto& [key, value] : *table_) {
     const std::string_view name = key.str();
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    fail(name,
-         fmt::format("nobody knows this key; the nearest known one is {}", full(nearest_name(name, known_))));
+    const std::string prefix = place_of_ ? place_of_(full(name)).prefix : "";
+    fail(name, fmt::format("nobody knows this key; the nearest known one is {}{}", prefix,
+                           full(nearest_name(name, known_))));
   }
 }
 

@@ -2,6 +2,7 @@
 // Reading TOML so that every complaint names file, line, key, value and remedy.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -39,15 +40,28 @@ struct NumberRange {
 /// "a string", "an integer", ...
 [[nodiscard]] std::string_view type_name(const toml::node& node);
 
+/// Where a value was stated, when a tree is put together from several files: the place, "FILE:LINE" or "--set
+/// KEY=VALUE", and what stands there before the value's path in the tree ("device.").
+struct ValuePlace {
+  std::string place;
+  std::string prefix;
+};
+/// The place of the value, or of the innermost table that is there, for a path in the tree.
+using PlaceOf = std::function<ValuePlace(const std::string& path)>;
+
 /// One table of a TOML file. Every read marks the key as known; finish() complains about the others.
 class TomlTable {
  public:
-  TomlTable(const toml::table& table, std::string origin, std::string path)
-      : table_(&table), origin_(std::move(origin)), path_(std::move(path)) {}
+  /// @param place_of  empty: values stand in `origin` where the parser met them
+  TomlTable(const toml::table& table, std::string origin, std::string path, PlaceOf place_of = {})
+      : table_(&table), origin_(std::move(origin)), path_(std::move(path)), place_of_(std::move(place_of)) {}
 
+  /// All keys that are there, sorted; marks none as known.
+  [[nodiscard]] std::vector<std::string> keys() const;
   [[nodiscard]] bool has(std::string_view key);
   [[nodiscard]] double number(std::string_view key, const NumberRange& range);
   [[nodiscard]] double number_or(std::string_view key, const NumberRange& range, double fallback);
+  [[nodiscard]] bool flag(std::string_view key);
   [[nodiscard]] std::string text(std::string_view key);
   [[nodiscard]] Vec3 vector(std::string_view key, const NumberRange& range);
   /// An array of two numbers.
@@ -68,10 +82,13 @@ class TomlTable {
   [[nodiscard]] const toml::node& node(std::string_view key);
   [[nodiscard]] std::vector<double> numbers(std::string_view key, const NumberRange& range, std::size_t size);
   [[nodiscard]] std::string full(std::string_view key) const;
+  /// "FILE:LINE: PATH" of a value; of the innermost table that is there if it is null.
+  [[nodiscard]] std::string place_of(const toml::node* found, const std::string& path) const;
 
   const toml::table* table_;
   std::string origin_;
   std::string path_;
+  PlaceOf place_of_;
   std::vector<std::string> known_;
 };
 

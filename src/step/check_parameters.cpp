@@ -10,6 +10,7 @@ namespace phalanx {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::max();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTiny = std::numeric_limits<double>::min();
 
 void within(const char* name, double value, double low, double high) {
@@ -33,18 +34,29 @@ void check_parameters(const HapticModel& model) {
   within("force.hunt_crossley_damping [s/m]", law.hunt_crossley_damping, 0.0, 1e3);
   within("force.cubic [N/m^3]", law.cubic, 0.0, 1e15);
   within("force.linear_depth [m]", law.linear_depth, 0.0, 1.0);
-  if (model.smoothing.enabled) {
-    within("-smoothing.min_rate [N/s]", -model.smoothing.min_rate, kTiny,
-           std::numeric_limits<double>::infinity());
-    within("smoothing.max_rate [N/s]", model.smoothing.max_rate, kTiny,
-           std::numeric_limits<double>::infinity());
+  const StabiliserParameters& stabiliser = model.stabiliser;
+  const double method = static_cast<double>(stabiliser.method);
+  within("stabiliser.method", method, 0.0, static_cast<double>(Stabiliser::kLocalWall));
+  within("stabiliser.lowpass_hz", stabiliser.lowpass_hz, 1e-3, 1e6);
+  within("stabiliser.damping [N s/m]", stabiliser.damping, 0.0, 1e6);
+  within("stabiliser.turn_rate [rad/s]", stabiliser.turn_rate, kTiny, 1e6);
+  within("stabiliser.coupling_stiffness [N/m]", stabiliser.coupling_stiffness, 1e-3, 1e9);
+  within("stabiliser.coupling_damping [N s/m]", stabiliser.coupling_damping, 0.0, 1e6);
+  within("stabiliser.passivity_damping_max [N s/m]", stabiliser.passivity_damping_max, 0.0, 1e6);
+  within("stabiliser.device_damping [N s/m]", stabiliser.device_damping, 0.0, 1e6);
+  within("stabiliser.wall_valid [s]", stabiliser.wall_valid, kTiny, 1.0);
+  within("oscillation.swing [N]", model.oscillation.swing, 1e-3, 1e3);
+  if (model.smoothing.enabled || stabiliser.method == Stabiliser::kRiseOnly) {
+    within("-smoothing.min_rate [N/s]", -model.smoothing.min_rate, kTiny, kInfinity);
+    within("smoothing.max_rate [N/s]", model.smoothing.max_rate, kTiny, kInfinity);
   }
   const LimitParameters& limits = model.limits;
   if (limits.fingertip_force_enabled)
     within("limits.fingertip_force [N]", limits.fingertip_force, kTiny, 15.0);
   if (limits.joint_torque_enabled) within("limits.joint_torque [Nm]", limits.joint_torque, kTiny, 5.0);
   if (limits.torque_rate_enabled) within("limits.torque_rate [Nm/s]", limits.torque_rate, kTiny, 1e4);
-  within("limits.joint_speed [rad/s]", limits.joint_speed, kTiny, 1e4);
+  if (limits.joint_speed != kInfinity)  // off
+    within("limits.joint_speed [rad/s]", limits.joint_speed, kTiny, 1e4);
 }
 
 }  // namespace phalanx

@@ -19,6 +19,11 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
   out.hcp_angle = gdp.hcp_angle;
   out.gdp_angle = gdp.angle;
   out.torque = force.torque;
+  out.stiffness_factor = force.stiffness_factor.value();
+  if (model.stabiliser.method == Stabiliser::kLocalWall) {
+    out.wall = force.wall;
+    out.wall_valid_for = model.stabiliser.wall_valid;
+  }
   for (std::size_t s = 0; s < kSegments; ++s) {
     const bool palm = s == kPalm;
     const std::size_t d = s / kSegmentsPerDigit;
@@ -33,10 +38,15 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
     segment.contact = contact.active;
     segment.force_raw = sent.raw;
     segment.force = sent.sent;
+    if (const OscillationObserver& observer = force.observer[s]; observer.oscillating()) {
+      segment.oscillating = true;
+      segment.oscillation_frequency = observer.frequency();
+      segment.oscillation_swing = observer.swing();
+    }
     if (contact.active) {
       segment.depth = contact.depth > 0.0 ? contact.depth : 0.0;
       segment.point = contact.p_gdp;
-      segment.normal = contact.force_normal;
+      segment.normal = sent.normal;
       const Vec3 apart = contact.p_hcp - contact.p_gdp;
       segment.slid = (apart - apart.dot(contact.n_c) * contact.n_c).norm();
     } else if (sent.sent > 0.0) {
@@ -59,11 +69,13 @@ HapticState::HapticState(const HapticModel& model)
 Status step(const HapticModel& model, const Sample& sample, HapticState& state) noexcept {
   const double period = 1.0 / model.rate_hz;
   Status status = state.guard_.accept(sample, model.hand.parameters(), model.limits, period);
+  pass_measured(sample, status, state.snapshot_);
   model.hand.poses(state.guard_.angle(), state.hcp_);
   status |= advance_gdp(contact_model(model), state.guard_.angle(), state.hcp_, state.guard_.measured(),
                         state.gdp_);
-  status |= compute_command({model.hand, model.force, model.smoothing, model.limits, period}, state.gdp_,
-                            state.hcp_, state.guard_.stale(), state.force_);
+  status |= compute_command(
+      {model.hand, model.force, model.smoothing, model.limits, period, model.stabiliser, model.oscillation},
+      state.gdp_, state.hcp_, state.guard_.stale(), state.force_);
   record(model, state.guard_.time_s(), state.hcp_, state.gdp_, state.force_, status, state.snapshot_);
   return status;
 }

@@ -3,8 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace phalanx {
+namespace {
+
+/// A channel with everything that is not finite turned to NaN; `keep` false: all of it.
+template <class Array>
+void finite_or_nan(const Array& from, bool keep, Array& to) noexcept {
+  const double nothing = keep ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < from.size(); ++i)
+    to[i] = from[i] + (from[i] - from[i]) + nothing;  // infinity - infinity is NaN
+}
+
+}  // namespace
 
 bool SampleGuard::takes_time(double time_s) noexcept {
   const bool later = std::isfinite(time_s) && (!started_ || time_s > time_s_);
@@ -56,6 +68,12 @@ Status SampleGuard::accept(const Sample& sample, const HandParameters& hand, con
   if (!has(status, Status::kSampleNotFinite)) bad_for_ = 0.0;
   if (stale()) status |= Status::kSampleStale;
   return status;
+}
+
+void pass_measured(const Sample& sample, Status accepted, Snapshot& snapshot) noexcept {
+  const bool keep = !has(accepted, Status::kTimeNotIncreasing);
+  finite_or_nan(sample.measured_torque, keep, snapshot.measured_torque);
+  finite_or_nan(sample.measured_force, keep, snapshot.measured_force);
 }
 
 }  // namespace phalanx

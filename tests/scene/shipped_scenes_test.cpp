@@ -71,6 +71,8 @@ const std::map<std::string, std::set<int>>& expected_digits() {
                                                                  {"press_teapot", {1}},
                                                                  {"squeeze_ball", {0, 1, 2, 3, 4}},
                                                                  {"squeeze_putty", {0, 1, 2, 3, 4}},
+                                                                 {"stability_grasp", {0, 1, 2, 3, 4}},
+                                                                 {"stability_press", {1}},
                                                                  {"tripod_ball", {0, 1, 2}},
                                                                  {"tripod_pen", {0, 1, 2}},
                                                                  {"turn_tap", {0, 1, 2, 3, 4}},

@@ -23,15 +23,16 @@ enum class Status : std::uint32_t {
       1U << 5,  ///< a contact's tangential offset exceeds contact.slid_mm: static grasping no longer holds
   kSearchExhausted =
       1U << 6,  ///< the advance ran out of iterations and stopped the digit early, without penetration
-  kForceLimited = 1U << 7,       ///< the fingertip cap acted
+  kForceLimited = 1U << 7,       ///< the fingertip cap changed what was sent
   kTorqueLimited = 1U << 8,      ///< the joint torque limit acted
   kTorqueRateLimited = 1U << 9,  ///< the torque-rate limit acted
   kCommandNotFinite = 1U << 10,  ///< a torque came out not finite and was set to zero
   kTrajectoryExhausted =
       1U << 11,             ///< gdp.method "trajectory": no free pose among the recorded angles; the GDP held
   kSampleStale = 1U << 12,  ///< no wholly good sample for 50 ms; forces decay to zero until one comes
+  kOscillating = 1U << 13,  ///< the force of a segment oscillates (force/oscillation.h)
 };
-inline constexpr int kStatusBits = 13;
+inline constexpr int kStatusBits = 14;
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {
   return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -49,7 +50,7 @@ constexpr Status& operator|=(Status& a, Status b) noexcept { return a = a | b; }
       "time_not_increasing", "start_inside",        "slid",
       "search_exhausted",    "force_limited",       "torque_limited",
       "torque_rate_limited", "command_not_finite",  "trajectory_exhausted",
-      "sample_stale"};
+      "sample_stale",        "oscillating"};
   return kNames[static_cast<std::size_t>(bit)];
 }
 

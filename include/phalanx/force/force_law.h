@@ -19,6 +19,10 @@ namespace phalanx {
 /// Real-time: O(1), no allocation, lock, throw or I/O.
 [[nodiscard]] double law_force(const ForceLawParameters& law, double depth, double speed) noexcept;
 
+/// Slope dF/dd of the law at this depth, at rest (v = 0) [N/m], >= 0; below the surface's d = 0 its slope
+/// there. Finite for finite arguments. Real-time.
+[[nodiscard]] double law_slope(const ForceLawParameters& law, double depth) noexcept;
+
 /// Gain of one step of a first-order low-pass of corner `corner_hz` at period T [s], discretised exactly: 1 -
 /// exp(-2 pi f T). Set-up or real-time.
 [[nodiscard]] double lowpass_gain(double corner_hz, double period) noexcept;

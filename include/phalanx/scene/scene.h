@@ -13,6 +13,8 @@
 #include "phalanx/core/math.h"
 #include "phalanx/device/motion.h"
 #include "phalanx/force/force_parameters.h"
+#include "phalanx/force/oscillation.h"
+#include "phalanx/force/stabiliser.h"
 #include "phalanx/hand/joints.h"
 #include "phalanx/scene/scene_error.h"
 
@@ -67,6 +69,20 @@ struct MotionDescription {
   std::optional<int> trial;  ///< which trial of a file whose time runs backwards, counted from 1
 };
 
+/// A value that a scene lays over a key of another file.
+struct OverlaidValue {
+  std::string path;   ///< the file's key: "motors.index_pip.friction_n"
+  std::string value;  ///< as it would stand in a file
+  std::string place;  ///< where the scene states it: "grasp.toml:12", or the override
+};
+
+/// A file that a scene names, with what the scene says otherwise.
+struct FileWithOverlay {
+  std::string file;  ///< a name in the assets' folder, or a path
+  std::vector<OverlaidValue> overlay;
+  std::string stated_at;  ///< where the scene names the file, "FILE:LINE: KEY = VALUE"; empty: nowhere
+};
+
 struct SceneDescription {
   std::string name;
   std::string description;  ///< one line
@@ -79,8 +95,14 @@ struct SceneDescription {
   ContactParameters contact;
   ForceLawParameters force;
   SmoothingParameters smoothing;
+  StabiliserParameters stabiliser;
+  OscillationParameters oscillation;
   LimitParameters limits;  ///< a limit turned "off" has its flag cleared; joint_speed "off" is infinite
   MotionDescription motion;
+  /// load_device(): phalanx/scene/device_file.h
+  FileWithOverlay device = {.file = "beihang", .overlay = {}, .stated_at = {}};
+  /// load_patient(): phalanx/scene/patient_file.h
+  FileWithOverlay patient = {.file = "adult", .overlay = {}, .stated_at = {}};
 };
 
 /// `key=value` as on the command line, in order: `rate_hz`, `force.law`, `objects.0.size_mm`; an index one

@@ -27,6 +27,8 @@ struct HapticModel {
   ContactParameters contact;
   ForceLawParameters force;
   SmoothingParameters smoothing;
+  StabiliserParameters stabiliser;  ///< the default is S2's smoothing, with the bounds of `smoothing`
+  OscillationParameters oscillation;
   LimitParameters limits;
   double rate_hz = 200.0;  ///< nominal rate of step() [Hz]
 };

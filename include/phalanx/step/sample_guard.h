@@ -56,4 +56,9 @@ class SampleGuard {
   bool started_ = false;
 };
 
+/// The optional channels of a sample, into the snapshot: finite, or NaN where the sample has none, or none
+/// that is finite, or its time was refused (kTimeNotIncreasing). Real-time: O(1), no allocation, lock, throw
+/// or I/O.
+void pass_measured(const Sample& sample, Status accepted, Snapshot& snapshot) noexcept;
+
 }  // namespace phalanx

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/device_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "phalanx/core/nearest_name.h"
+#include "scene/layered_file.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kMilli = 1e-3;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+/// Far beyond any hand exoskeleton: a value outside is a slip of the decimal point or of the unit.
+constexpr NumberRange kArmMm = {.min = -100.0, .max = 100.0};
+constexpr NumberRange kRate = {.min = 1.0, .max = 100e3};
+constexpr NumberRange kScale = {.min = 0.0, .max = 1e3};
+constexpr NumberRange kScaleAbove0 = {.min = 0.0, .max = 1e3, .min_open = true};
+constexpr NumberRange at_most(double max) { return {.min = 0.0, .max = max}; }
+constexpr NumberRange above_0(double max) { return {.min = 0.0, .max = max, .min_open = true}; }
+
+/// A table whose missing keys are looked for in a table of defaults.
+class Defaulted {
+ public:
+  Defaulted(TomlTable own, TomlTable* defaults) : own_(std::move(own)), defaults_(defaults) {}
+
+  double number(std::string_view key, const NumberRange& range, std::optional<double> fallback = {}) {
+    if (defaults_ != nullptr && defaults_->has(key)) fallback = defaults_->number(key, range);
+    if (own_.has(key) || !fallback) return own_.number(key, range);  // which says so if it is missing
+    return *fallback;
+  }
+  bool flag(std::string_view key, bool fallback) {
+    if (defaults_ != nullptr && defaults_->has(key)) fallback = defaults_->flag(key);
+    return own_.has(key) ? own_.flag(key) : fallback;
+  }
+  TomlTable& own() noexcept { return own_; }
+
+ private:
+  TomlTable own_;
+  TomlTable* defaults_;
+};
+
+int read_joint_name(TomlTable& table, std::string_view key) {
+  const std::string name = table.text(key);
+  if (const auto joint = find_joint(name)) return *joint;
+  std::vector<std::string_view> known;
+  for (int j = 0; j < kJoints; ++j) known.push_back(joint_name(j));
+  table.fail(key,
+             fmt::format("is no joint of the hand; the nearest one is \"{}\"", nearest_name(name, known)));
+}
+
+ExoJoint read_joint(TomlTable own, TomlTable* defaults, int joint) {
+  Defaulted table(std::move(own), defaults);
+  ExoJoint exo;
+  exo.joint = joint;
+  exo.inertia = table.number("inertia_kg_m2", above_0(1.0));
+  exo.damping = table.number("damping_nms_per_rad", at_most(100.0), 0.0);
+  exo.friction.coulomb = table.number("friction_nm", at_most(10.0), 0.0);
+  exo.friction.static_ratio = table.number("static_ratio", {.min = 1.0, .max = 10.0}, 1.0);
+  exo.friction.stribeck_speed = table.number("stribeck_rad_per_s", above_0(1e3), 1.0);
+  exo.sensor_lsb = table.number("sensor_lsb_rad", at_most(1.0), 0.0);
+  exo.sensor_noise = table.number("sensor_noise_rad", at_most(1.0), 0.0);
+  exo.torque_sensor = table.flag("torque_sensor", false);
+  table.own().finish();
+  return exo;
+}
+
+CoupledJoint read_coupled(TomlTable table, int joint) {
+  CoupledJoint coupled;
+  coupled.joint = joint;
+  coupled.of = read_joint_name(table, "of");
+  coupled.ratio = table.number("ratio", {.min = -10.0, .max = 10.0});
+  coupled.offset = table.number_or("offset_deg", {.min = -180.0, .max = 180.0}, 0.0) * kDeg;
+  table.finish();
+  return coupled;
+}
+
+std::array<double, kJoints> read_arms(TomlTable table) {
+  std::array<double, kJoints> arm{};
+  for (int joint = 0; joint < kJoints; ++joint)
+    arm[static_cast<std::size_t>(joint)] = table.number_or(joint_name(joint), kArmMm, 0.0) * kMilli;
+  table.finish();
+  return arm;
+}
+
+ExoMotor read_motor(TomlTable own, TomlTable* defaults, const std::string& name) {
+  Defaulted table(std::move(own), defaults);
+  ExoMotor motor;
+  motor.name = name;
+  motor.arm = read_arms(table.own().table("arms_mm"));
+  motor.lag = table.number("lag_ms", at_most(1e3), 0.0) * kMilli;
+  motor.force_limit = table.number("force_limit_n", above_0(10e3));
+  motor.pull_only = table.flag("pull_only", false);
+  motor.bias = table.number("bias_n", at_most(10e3), 0.0);
+  motor.force_constant = table.number("force_constant_n_per_a", above_0(1e6), 1.0);
+  motor.mass = table.number("mass_kg", above_0(1e3));
+  motor.damping = table.number("damping_ns_per_m", at_most(1e5), 0.0);
+  motor.tendon_stiffness = table.number("tendon_stiffness_n_per_mm", above_0(1e5)) / kMilli;
+  motor.tendon_damping = table.number("tendon_damping_ns_per_m", at_most(1e6), 0.0);
+  motor.backlash = table.number("backlash_mm", at_most(100.0), 0.0) * kMilli;
+  motor.sheath.coulomb = table.number("friction_n", at_most(10e3), 0.0);
+  motor.sheath.static_ratio = table.number("static_ratio", {.min = 1.0, .max = 10.0}, 1.0);
+  motor.sheath.stribeck_speed = table.number("stribeck_mm_per_s", above_0(1e6), 1.0) * kMilli;
+  motor.sheath.capstan = table.number("capstan", at_most(10.0), 0.0);
+  table.own().finish();
+  return motor;
+}
+
+ExoController read_controller(TomlTable table) {
+  ExoController controller;
+  controller.rate_hz = table.number_or("rate_hz", kRate, controller.rate_hz);
+  controller.compute_delay = table.number_or("compute_delay_ms", at_most(1e3), 0.0) * kMilli;
+  controller.return_delay = table.number_or("return_delay_ms", at_most(1e3), 0.0) * kMilli;
+  table.finish();
+  return controller;
+}
+
+std::array<DigitCopy, kDigits> read_copies(TomlTable table) {
+  std::vector<std::string_view> names;
+  for (int digit = 0; digit < kDigits; ++digit) names.push_back(digit_name(digit));
+  std::array<DigitCopy, kDigits> copies;
+  for (std::size_t digit = 0; digit < kDigits; ++digit) {
+    if (!table.has(names[digit])) continue;
+    TomlTable entry = table.table(names[digit]);
+    const std::string of = entry.text("of");
+    const auto found = std::find(names.begin(), names.end(), of);
+    if (found == names.end())
+      entry.fail("of", fmt::format("is no digit; the nearest one is \"{}\"", nearest_name(of, names)));
+    copies[digit].of = static_cast<int>(found - names.begin());
+    copies[digit].gain = entry.number_or("gain", at_most(10.0), 1.0);
+    entry.finish();
+  }
+  table.finish();
+  return copies;
+}
+
+void apply_scale(TomlTable table, Exoskeleton& exo) {
+  const auto scale = [&table](std::string_view key) { return table.number_or(key, kScale, 1.0); };
+  const auto scale_above_0 = [&table](std::string_view key) {
+    return table.number_or(key, kScaleAbove0, 1.0);
+  };
+  const double inertia = scale_above_0("inertia");
+  const double damping = scale("damping");
+  const double joint_friction = scale("joint_friction");
+  const double sheath_friction = scale("sheath_friction");
+  const double tendon_stiffness = scale_above_0("tendon_stiffness");
+  const double tendon_damping = scale("tendon_damping");
+  const double backlash = scale("backlash");
+  const double lag = scale("lag");
+  const double sensor_lsb = scale("sensor_lsb");
+  const double sensor_noise = scale("sensor_noise");
+  exo.controller.compute_delay *= scale("compute_delay");
+  exo.controller.return_delay *= scale("return_delay");
+  table.finish();
+  for (ExoJoint& joint : exo.joints) {
+    joint.inertia *= inertia;
+    joint.damping *= damping;
+    joint.friction.coulomb *= joint_friction;
+    joint.sensor_lsb *= sensor_lsb;
+    joint.sensor_noise *= sensor_noise;
+  }
+  for (ExoMotor& motor : exo.motors) {
+    motor.mass *= inertia;
+    motor.damping *= damping;
+    motor.sheath.coulomb *= sheath_friction;
+    motor.sheath.capstan *= sheath_friction;
+    motor.tendon_stiffness *= tendon_stiffness;
+    motor.tendon_damping *= tendon_damping;
+    motor.backlash *= backlash;
+    motor.lag *= lag;
+  }
+}
+
+/// Joints, coupled joints and motors, with the tables of defaults.
+void read_mechanics(TomlTable& root, Exoskeleton& exo) {
+  std::optional<TomlTable> defaults, of_joint, of_motor;
+  if (root.has("defaults")) {
+    defaults.emplace(root.table("defaults"));
+    if (defaults->has("joint")) of_joint.emplace(defaults->table("joint"));
+    if (defaults->has("motor")) of_motor.emplace(defaults->table("motor"));
+    defaults->finish();
+  }
+  TomlTable joints = root.table("joints");
+  for (int j = 0; j < kJoints; ++j) {
+    if (!joints.has(joint_name(j))) continue;
+    exo.joints.push_back(read_joint(joints.table(joint_name(j)), of_joint ? &*of_joint : nullptr, j));
+  }
+  joints.finish();
+  if (exo.joints.empty()) root.fail("joints", "the device has no joint; add a table [joints.NAME] for each");
+  if (root.has("coupled")) {
+    TomlTable coupled = root.table("coupled");
+    for (int j = 0; j < kJoints; ++j)
+      if (coupled.has(joint_name(j))) exo.coupled.push_back(read_coupled(coupled.table(joint_name(j)), j));
+    coupled.finish();
+  }
+  if (root.has("motors")) {
+    TomlTable motors = root.table("motors");
+    for (const std::string& name : motors.keys())
+      exo.motors.push_back(read_motor(motors.table(name), of_motor ? &*of_motor : nullptr, name));
+  }
+  if (of_joint) of_joint->finish();
+  if (of_motor && !exo.motors.empty()) of_motor->finish();
+}
+
+Exoskeleton read_device(const LayeredFile& file) {
+  TomlTable root = file.root();
+  Exoskeleton exo;
+  exo.name = std::filesystem::path(file.origin()).stem().string();
+  if (root.has("description")) exo.description = root.text("description");
+  read_mechanics(root, exo);
+  if (root.has("controller")) exo.controller = read_controller(root.table("controller"));
+  if (root.has("copy")) exo.controller.copy = read_copies(root.table("copy"));
+  static_cast<void>(root.has("base"));  // known, though gone by now, like the scales
+  static_cast<void>(root.has("scale"));
+  root.finish();
+  for (const TomlTable& scale : file.scales()) apply_scale(scale, exo);
+  try {
+    check_exoskeleton(exo);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fmt::format("{}: {}", file.in_words(), error.what()));
+  }
+  return exo;
+}
+
+}  // namespace
+
+Exoskeleton load_device(const SceneDescription& scene) {
+  LayeredFile file("device");
+  file.add_file(scene.device.file, ".", scene.device.stated_at);
+  file.add_overlay(scene.device.overlay);
+  return read_device(file);
+}
+
+Exoskeleton load_device_file(const std::string& name_or_path, const std::filesystem::path& folder) {
+  LayeredFile file("device");
+  file.add_file(name_or_path, folder);
+  return read_device(file);
+}
+
+Exoskeleton parse_device(const std::string& text, const std::string& origin,
+                         const std::filesystem::path& folder) {
+  LayeredFile file("device");
+  file.add_text(text, origin, folder);
+  return read_device(file);
+}
+
+}  // namespace phalanx

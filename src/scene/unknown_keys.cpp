@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/unknown_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "phalanx/core/nearest_name.h"
+#include "scene/key_table.h"
+
+namespace phalanx {
+namespace {
+
+bool starts_with_part(std::string_view path, std::string_view prefix) {
+  return path.size() > prefix.size() && path.substr(0, prefix.size()) == prefix &&
+         (path[prefix.size()] == '.' || path[prefix.size()] == '[');
+}
+
+/// Keys of another file, which the scene lays over it: that file's reader knows them.
+bool is_over_file(std::string_view path) {
+  const std::string_view table = path.substr(0, path.find('.'));
+  return (table == "device" || table == "patient") && path != table && path.substr(table.size()) != ".file";
+}
+
+void refuse_below(const SceneTree& tree, const toml::node& node, const std::string& path) {
+  const auto& keys = key_table();
+  if (!path.empty()) {
+    if (is_over_file(path)) return;
+    const std::string pattern = pattern_of(path);
+    if (std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.path == pattern; }))
+      return;
+    const bool holds_keys = std::any_of(
+        keys.begin(), keys.end(), [&](const KeySpec& key) { return starts_with_part(key.path, pattern); });
+    if (!holds_keys) {
+      std::vector<std::string> known;
+      for (const KeySpec& key : keys) known.push_back(key.path);
+      tree.fail(
+          path,
+          fmt::format("nobody knows this key; the nearest known one is {} (`phalanx scene keys` lists all)",
+                      nearest_name(pattern, known)));
+    }
+    if (pattern == "objects" && !node.is_array())
+      tree.fail(path, "is not an array; start each object with a line [[objects]]");
+    if (pattern != "objects" && !node.is_table()) {
+      tree.fail(path, fmt::format("is {}, but {} is a table; write its keys below a line [{}]",
+                                  type_name(node), path, path));
+    }
+  }
+  const auto child_path = [&](std::string_view part) {
+    return path.empty() ? std::string(part) : fmt::format("{}.{}", path, part);
+  };
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, child] : *table) refuse_below(tree, child, child_path(key.str()));
+  } else if (const toml::array* array = node.as_array()) {
+    for (std::size_t i = 0; i < array->size(); ++i)
+      refuse_below(tree, (*array)[i], child_path(std::to_string(i)));
+  }
+}
+
+}  // namespace
+
+void refuse_unknown_keys(const SceneTree& tree) { refuse_below(tree, tree.root(), ""); }
+
+}  // namespace phalanx

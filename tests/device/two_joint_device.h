@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "phalanx/device/exoskeleton.h"
+
+namespace phalanx::test {
+
+inline ExoMotor motor_on(const std::string& name, int joint, double arm) {
+  ExoMotor motor;
+  motor.name = name;
+  motor.arm[static_cast<std::size_t>(joint)] = arm;
+  motor.force_limit = 10.0;
+  motor.mass = 0.2;
+  motor.tendon_stiffness = 1e4;
+  return motor;
+}
+
+inline ExoJoint joint_of(int joint) {
+  ExoJoint exo;
+  exo.joint = joint;
+  exo.inertia = 1e-4;
+  return exo;
+}
+
+/// The index finger's MCP and PIP flexion, a motor each; the DIP follows the PIP at half its angle.
+inline Exoskeleton two_joint_device() {
+  Exoskeleton exo;
+  exo.name = "two joints";
+  exo.joints = {joint_of(4), joint_of(6)};
+  exo.coupled = {{.joint = 7, .of = 6, .ratio = 0.5, .offset = 0.1}};
+  exo.motors = {motor_on("mcp", 4, -0.0125), motor_on("pip", 6, -0.01)};
+  return exo;
+}
+
+}  // namespace phalanx::test

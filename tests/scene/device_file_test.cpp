@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/device_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "expect_error.h"
+#include "phalanx/core/random.h"
+
+namespace phalanx {
+namespace {
+
+const std::string kJoint = "[joints.index_mcp_flexion]\ninertia_kg_m2 = 1e-3\n";
+const std::string kMotor =
+    "[motors.mcp]\narms_mm = { index_mcp_flexion = -12 }\nforce_limit_n = 60\nmass_kg = 22\n"
+    "tendon_stiffness_n_per_mm = 1000\n";
+
+Exoskeleton parse(const std::string& text) { return parse_device(text, "d.toml"); }
+
+void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+  SCOPED_TRACE(text);
+  expect_scene_error([&] { static_cast<void>(parse(text)); }, words);
+}
+
+TEST(DeviceFile, StatesJointsMotorsAndControllerInItsUnits) {
+  const Exoskeleton exo = parse(R"(description = "all of it"
+[controller]
+rate_hz = 2000
+compute_delay_ms = 4.5
+return_delay_ms = 1
+[joints.index_pip_flexion]
+inertia_kg_m2 = 2e-4
+damping_nms_per_rad = 3e-3
+friction_nm = 0.004
+static_ratio = 1.05
+stribeck_rad_per_s = 0.02
+sensor_lsb_rad = 1e-4
+sensor_noise_rad = 2e-5
+torque_sensor = true
+[coupled.index_dip_flexion]
+of = "index_pip_flexion"
+ratio = 0.7
+offset_deg = 90
+[motors.pip]
+arms_mm = { index_pip_flexion = -12 }
+lag_ms = 4
+force_limit_n = 30
+pull_only = true
+bias_n = 2
+force_constant_n_per_a = 20
+mass_kg = 6
+damping_ns_per_m = 7
+tendon_stiffness_n_per_mm = 10
+tendon_damping_ns_per_m = 5
+backlash_mm = 0.1
+friction_n = 0.34
+static_ratio = 1.1
+stribeck_mm_per_s = 2
+capstan = 0.2
+[copy]
+middle = { of = "index", gain = 0.9 }
+)");
+  EXPECT_EQ(exo.name, "d");
+  EXPECT_EQ(exo.description, "all of it");
+  EXPECT_EQ(exo.controller.rate_hz, 2000.0);
+  EXPECT_DOUBLE_EQ(exo.controller.compute_delay, 0.0045);
+  EXPECT_DOUBLE_EQ(exo.controller.return_delay, 0.001);
+  ASSERT_EQ(exo.joints.size(), 1U);
+  const ExoJoint& joint = exo.joints[0];
+  EXPECT_EQ(joint.joint, 6);
+  EXPECT_EQ(joint.inertia, 2e-4);
+  EXPECT_EQ(joint.damping, 3e-3);
+  EXPECT_EQ(joint.friction.coulomb, 0.004);
+  EXPECT_EQ(joint.friction.static_ratio, 1.05);
+  EXPECT_EQ(joint.friction.stribeck_speed, 0.02);
+  EXPECT_EQ(joint.sensor_lsb, 1e-4);
+  EXPECT_EQ(joint.sensor_noise, 2e-5);
+  EXPECT_TRUE(joint.torque_sensor);
+  ASSERT_EQ(exo.coupled.size(), 1U);
+  EXPECT_EQ(exo.coupled[0].joint, 7);
+  EXPECT_EQ(exo.coupled[0].of, 6);
+  EXPECT_EQ(exo.coupled[0].ratio, 0.7);
+  EXPECT_DOUBLE_EQ(exo.coupled[0].offset, 0.5 * std::numbers::pi);
+  ASSERT_EQ(exo.motors.size(), 1U);
+  const ExoMotor& motor = exo.motors[0];
+  EXPECT_EQ(motor.name, "pip");
+  EXPECT_DOUBLE_EQ(motor.arm[6], -0.012);
+  EXPECT_EQ(motor.arm[4], 0.0);
+  EXPECT_DOUBLE_EQ(motor.lag, 0.004);
+  EXPECT_EQ(motor.force_limit, 30.0);
+  EXPECT_TRUE(motor.pull_only);
+  EXPECT_EQ(motor.bias, 2.0);
+  EXPECT_EQ(motor.force_constant, 20.0);
+  EXPECT_EQ(motor.mass, 6.0);
+  EXPECT_EQ(motor.damping, 7.0);
+  EXPECT_DOUBLE_EQ(motor.tendon_stiffness, 1e4);
+  EXPECT_EQ(motor.tendon_damping, 5.0);
+  EXPECT_DOUBLE_EQ(motor.backlash, 1e-4);
+  EXPECT_EQ(motor.sheath.coulomb, 0.34);
+  EXPECT_EQ(motor.sheath.static_ratio, 1.1);
+  EXPECT_DOUBLE_EQ(motor.sheath.stribeck_speed, 2e-3);
+  EXPECT_EQ(motor.sheath.capstan, 0.2);
+  EXPECT_EQ(exo.controller.copy[2].of, 1);
+  EXPECT_EQ(exo.controller.copy[2].gain, 0.9);
+  EXPECT_EQ(exo.controller.copy[3].of, -1);
+}
+
+TEST(DeviceFile, TakesFromTheDefaultsWhatAJointOrAMotorDoesNotSay) {
+  const Exoskeleton exo = parse(
+      "[defaults.joint]\ninertia_kg_m2 = 5e-4\nsensor_lsb_rad = 1e-4\n[defaults.motor]\nlag_ms = "
+      "4\npull_only = true\n"
+      "[joints]\nindex_pip_flexion = {}\n" +
+      kJoint + kMotor);
+  EXPECT_EQ(exo.joints[0].inertia, 1e-3);
+  EXPECT_EQ(exo.joints[1].inertia, 5e-4);
+  EXPECT_EQ(exo.joints[0].sensor_lsb, 1e-4);
+  EXPECT_DOUBLE_EQ(exo.motors[0].lag, 0.004);
+  EXPECT_TRUE(exo.motors[0].pull_only);
+}
+
+// Each scale doubles, and only doubles, what it names.
+TEST(DeviceFile, ScalesEveryJointAndMotor) {
+  const std::string text =
+      kJoint + "damping_nms_per_rad = 1\nfriction_nm = 1\nsensor_lsb_rad = 0.1\nsensor_noise_rad = 0.1\n" +
+      kMotor +
+      "damping_ns_per_m = 1\nfriction_n = 1\ncapstan = 1\ntendon_damping_ns_per_m = 1\n"
+      "backlash_mm = 1\nlag_ms = 1\n[controller]\ncompute_delay_ms = 1\nreturn_delay_ms = 1\n";
+  const Exoskeleton plain = parse(text);
+  struct Scaled {
+    const char* key;
+    std::vector<double> (*values)(const Exoskeleton&);
+  };
+  const std::vector<Scaled> scales = {
+      {"inertia", [](const Exoskeleton& e) { return std::vector{e.joints[0].inertia, e.motors[0].mass}; }},
+      {"damping", [](const Exoskeleton& e) { return std::vector{e.joints[0].damping, e.motors[0].damping}; }},
+      {"sheath_friction",
+       [](const Exoskeleton& e) {
+         return std::vector{e.motors[0].sheath.coulomb, e.motors[0].sheath.capstan};
+       }},
+      {"joint_friction", [](const Exoskeleton& e) { return std::vector{e.joints[0].friction.coulomb}; }},
+      {"tendon_stiffness", [](const Exoskeleton& e) { return std::vector{e.motors[0].tendon_stiffness}; }},
+      {"tendon_damping", [](const Exoskeleton& e) { return std::vector{e.motors[0].tendon_damping}; }},
+      {"backlash", [](const Exoskeleton& e) { return std::vector{e.motors[0].backlash}; }},
+      {"lag", [](const Exoskeleton& e) { return std::vector{e.motors[0].lag}; }},
+      {"compute_delay", [](const Exoskeleton& e) { return std::vector{e.controller.compute_delay}; }},
+      {"return_delay", [](const Exoskeleton& e) { return std::vector{e.controller.return_delay}; }},
+      {"sensor_lsb", [](const Exoskeleton& e) { return std::vector{e.joints[0].sensor_lsb}; }},
+      {"sensor_noise", [](const Exoskeleton& e) { return std::vector{e.joints[0].sensor_noise}; }},
+  };
+  for (const Scaled& scale : scales) {
+    SCOPED_TRACE(scale.key);
+    const Exoskeleton doubled = parse(text + "[scale]\n" + scale.key + " = 2\n");
+    for (const Scaled& other : scales) {
+      const auto before = other.values(plain);
+      const auto after = other.values(doubled);
+      for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_EQ(after[i], before[i] * (other.key == scale.key ? 2.0 : 1.0)) << other.key;
+    }
+  }
+}
+
+TEST(DeviceFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
+  expect_refused("", {"d.toml", "joints", "is missing"});
+  expect_refused("[joints]\n", {"d.toml:1", "has no joint", "[joints.NAME]"});
+  expect_refused(kJoint + "dampign_nms_per_rad = 1\n",
+                 {"d.toml:3: joints.index_mcp_flexion.dampign_nms_per_rad = 1", "nearest known one is",
+                  "joints.index_mcp_flexion.damping_nms_per_rad"});
+  expect_refused("[joints.index_mcp_flexoin]\ninertia_kg_m2 = 1\n",
+                 {"d.toml:1: joints.index_mcp_flexoin", "nearest known one is joints.index_mcp_flexion"});
+  expect_refused("[joints.index_mcp_flexion]\ndamping_nms_per_rad = 1\n",
+                 {"d.toml:1: joints.index_mcp_flexion.inertia_kg_m2: is missing"});
+  expect_refused("[joints.index_mcp_flexion]\ninertia_kg_m2 = -1\n",
+                 {"d.toml:2: joints.index_mcp_flexion.inertia_kg_m2 = -1", "must be > 0"});
+  expect_refused(kJoint + "torque_sensor = 1\n", {"d.toml:3", "write true or false"});
+  expect_refused(kJoint + "[controler]\nrate_hz = 1\n",
+                 {"d.toml:3: controler", "nearest known one is controller"});
+  expect_refused(kJoint + "[scale]\ninertai = 2\n", {"d.toml:4: scale.inertai = 2", "scale.inertia"});
+  expect_refused(kJoint + "[scale]\ninertia = 0\n", {"d.toml:4: scale.inertia = 0", "must be > 0"});
+  expect_refused("scale = 3\n" + kJoint, {"d.toml:1: scale = 3", "write a table"});
+  expect_refused(kJoint + "[defaults.motor]\nmass = 2\n" + kMotor,
+                 {"d.toml:4: defaults.motor.mass", "mass_kg"});
+  expect_refused(kJoint + "[copy]\nmiddle = { of = \"indx\" }\n", {"d.toml:4: copy.middle.of", "\"index\""});
+  expect_refused(kJoint + "[copy]\nmiddel = { of = \"index\" }\n", {"d.toml:4: copy.middel", "copy.middle"});
+  expect_refused(kJoint + "[coupled.index_dip_flexion]\nof = \"index_pip\"\nratio = 1\n",
+                 {"d.toml:4: coupled.index_dip_flexion.of", "nearest one is \"index_pip_flexion\""});
+  expect_refused(kJoint + "[motors.mcp]\nmass_kg = 1\n", {"d.toml:3: motors.mcp.arms_mm: is missing"});
+  expect_refused(kJoint + "[motors.mcp]\narms_mm = { index_mcp = -12 }\n",
+                 {"d.toml:4: motors.mcp.arms_mm.index_mcp = -12", "motors.mcp.arms_mm.index_mcp_flexion"});
+  expect_refused(kJoint +
+                     "[motors.mcp]\narms_mm = { index_mcp_flexion = 0 }\nforce_limit_n = 60\nmass_kg = 22\n"
+                     "tendon_stiffness_n_per_mm = 1000\n",
+                 {"d.toml: motor mcp: moves no joint"});
+  expect_refused(kJoint + "[motors.mcp]\nmass_kg = = 1\n", {"d.toml:4", "not valid TOML"});
+}
+
+TEST(DeviceFile, StandsOnAnother) {
+  const Exoskeleton base = load_device_file("beihang");
+  const Exoskeleton exo = parse(
+      "base = \"beihang\"\n[motors.index_pip]\nfriction_n = 1\n[scale]\nlag = "
+      "0.5\n[controller]\ncompute_delay_ms = 2\n");
+  EXPECT_EQ(exo.motors.size(), base.motors.size());
+  for (std::size_t m = 0; m < base.motors.size(); ++m) {
+    const bool changed = base.motors[m].name == "index_pip";
+    EXPECT_EQ(exo.motors[m].sheath.coulomb, changed ? 1.0 : base.motors[m].sheath.coulomb);
+    EXPECT_EQ(exo.motors[m].lag, 0.5 * base.motors[m].lag);
+  }
+  EXPECT_DOUBLE_EQ(exo.controller.compute_delay, 0.002);
+  EXPECT_EQ(exo.controller.return_delay, base.controller.return_delay);
+  expect_refused("base = \"beihagn\"\n", {"d.toml:1: base: device \"beihagn\"", "did you mean \"beihang\"?"});
+  expect_refused("base = 3\n", {"d.toml:1: base = 3", "a string"});
+}
+
+// Scales multiply from file to file, so that a scene's scale counts from the device it names.
+TEST(DeviceFile, MultipliesTheScalesOfItsBase) {
+  const Exoskeleton heavy = load_device_file("heavy_viscous");
+  const Exoskeleton twice = parse("base = \"heavy_viscous\"\n[scale]\ninertia = 2\n");
+  EXPECT_EQ(twice.joints[0].inertia, 2.0 * heavy.joints[0].inertia);
+  EXPECT_EQ(twice.joints[0].damping, heavy.joints[0].damping);
+}
+
+TEST(DeviceFile, ThatStandsOnItselfIsRefused) {
+  const auto folder = std::filesystem::temp_directory_path() / "phalanx_device_circle";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.toml") << "base = \"b.toml\"\n";
+  std::ofstream(folder / "b.toml") << "base = \"a.toml\"\n";
+  expect_scene_error([&] { static_cast<void>(load_device_file("a.toml", folder)); },
+                     {"base = ", "in a circle"});
+  std::filesystem::remove_all(folder);
+}
+
+TEST(DeviceFile, ThatShipsIsReadWhole) {
+  for (const char* name : {"beihang", "light", "heavy_viscous", "frictionless"}) {
+    SCOPED_TRACE(name);
+    const Exoskeleton exo = load_device_file(name);
+    EXPECT_EQ(exo.name, name);
+    EXPECT_FALSE(exo.description.empty());
+    EXPECT_EQ(exo.joints.size(), 8U);
+    EXPECT_EQ(exo.motors.size(), 8U);
+    for (const int digit : {2, 3, 4}) EXPECT_EQ(exo.controller.copy[static_cast<std::size_t>(digit)].of, 1);
+  }
+}
+
+// Whatever the bytes: a device that check_exoskeleton() accepts, or an error with a message.
+TEST(DeviceFile, WithAnyBytesChangedIsReadOrRefused) {
+  constexpr std::uint64_t kSeed = 11;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  Random random(kSeed);
+  const std::string whole =
+      "base = \"beihang\"\n" + kJoint + kMotor + "[scale]\nlag = 2\n[copy]\nring.of = \"index\"\n";
+  constexpr std::string_view kBytes = "[]{}=.,\"'#\n 019-+einfa_\x00\xff";
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+  };
+  int refused = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::string text = whole;
+    for (int change = 0; change < 1 + trial % 3; ++change)
+      text[below(text.size())] = kBytes[below(kBytes.size())];
+    try {
+      check_exoskeleton(parse(text));
+    } catch (const SceneError& error) {
+      ++refused;
+      EXPECT_NE(error.what()[0], '\0');
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(refused, 300);
+}
+
+TEST(DeviceText, IsTheSameForTheSameNumbersAndHoldsEachOfThem) {
+  const std::string text = device_text(parse(kJoint + kMotor));
+  EXPECT_EQ(text, device_text(parse(kMotor + kJoint)));
+  EXPECT_EQ(text, device_text(parse("description = \"another\"\n" + kJoint + kMotor)));
+  for (const char* change : {"[scale]\ninertia = 1.0000000001\n", "[scale]\ntendon_stiffness = 2\n",
+                             "[controller]\nrate_hz = 500\n", "[controller]\nreturn_delay_ms = 1\n",
+                             "[copy]\nring = { of = \"index\" }\n",
+                             "[coupled.index_pip_flexion]\nof = \"index_mcp_flexion\"\nratio = 1\n",
+                             "[defaults.motor]\nlag_ms = 1\n", "[defaults.joint]\ntorque_sensor = true\n",
+                             "[defaults.motor]\npull_only = true\n", "[defaults.motor]\nbacklash_mm = 1\n",
+                             "[defaults.joint]\nstatic_ratio = 1.5\n"})
+    EXPECT_NE(text, device_text(parse(kJoint + kMotor + change))) << change;
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene's own keys over those of the device file that it names.
+#include <filesystem>
+#include <fstream>
+
+#include "expect_error.h"
+#include "phalanx/scene/device_file.h"
+
+namespace phalanx {
+namespace {
+
+SceneDescription scene(const std::string& text, const Overrides& overrides = {}) {
+  return parse_scene(text, "s.toml", ".", overrides);
+}
+
+TEST(DeviceInAScene, IsTheShippedOneUnlessTheSceneNamesAnother) {
+  EXPECT_EQ(load_device(scene("")).name, "beihang");
+  EXPECT_EQ(load_device(scene("device.file = \"light\"")).name, "light");
+  EXPECT_EQ(device_text(scene("")), device_text(load_device_file("beihang")));
+}
+
+TEST(DeviceInAScene, IsOverlaidByTheScenesOwnKeys) {
+  const SceneDescription s = scene(
+      "[device]\nfile = \"light\"\nscale.sheath_friction = 0\n[device.motors.index_pip]\nforce_limit_n = 5\n"
+      "[device.motors.index_pip.arms_mm]\nindex_dip_flexion = -3\n",
+      {{"device.controller.compute_delay_ms", "2"}, {"device.motors.index_mcp.lag_ms", "7.5"}});
+  const Exoskeleton exo = load_device(s);
+  EXPECT_DOUBLE_EQ(exo.controller.compute_delay, 0.002);
+  for (const ExoMotor& motor : exo.motors) {
+    EXPECT_EQ(motor.sheath.coulomb, 0.0);
+    EXPECT_DOUBLE_EQ(motor.lag, motor.name == "index_mcp" ? 0.0075 : 0.004);
+    if (motor.name != "index_pip") continue;
+    EXPECT_EQ(motor.force_limit, 5.0);
+    EXPECT_DOUBLE_EQ(motor.arm[7], -0.003);
+    EXPECT_DOUBLE_EQ(motor.arm[6], -0.010);
+  }
+}
+
+TEST(DeviceInAScene, IsCheckedWhenTheSceneIsRead) {
+  const auto refused = [](const std::string& text, const Overrides& overrides,
+                          const std::vector<std::string>& words) {
+    SCOPED_TRACE(text);
+    expect_scene_error([&] { static_cast<void>(scene(text, overrides)); }, words);
+  };
+  refused("\n[device]\nfile = \"beihagn\"", {}, {"s.toml:3: device.file = ", "did you mean \"beihang\"?"});
+  refused(
+      "\n[device]\nscale.sheeth_friction = 0", {},
+      {"s.toml:3: device.scale.sheeth_friction = 0", "nearest known one is device.scale.sheath_friction"});
+  refused("", {{"device.motors.index_pip.mass_kg", "-1"}},
+          {"--set device.motors.index_pip.mass_kg=-1: device.motors.index_pip.mass_kg = -1: must be > 0"});
+  refused("\n\ndevice.controller.rate_hz = \"fast\"", {},
+          {"s.toml:3: device.controller.rate_hz", "write a number"});
+  refused("\ndevice.motors.thumbs.mass_kg = 3", {}, {"s.toml:2: device.motors.thumbs", "is missing"});
+  refused("\ndevice.joints = 3", {}, {"s.toml:2: device.joints = 3", "write a table"});
+  refused("\ndevice.base = \"light\"", {}, {"s.toml:2: device.base", "device.file"});
+  refused(
+      "\n[device.motors.index_pip.arms_mm]\nindex_pip_flexion = 0", {},
+      {"beihang.toml", "s.toml:3: device.motors.index_pip.arms_mm.index_pip_flexion = 0", "moves no joint"});
+  refused("\ndevice.foo = {}", {}, {"s.toml:2: device.foo", "nobody knows this key"});
+  refused("\ndevice.\"a b\" = 1", {}, {"s.toml:2: device", "a b"});
+  refused("device = 3", {}, {"s.toml:1: device = 3", "is a table"});
+  refused("device.file = 3", {}, {"s.toml:1: device.file = 3", "a string"});
+  refused("device.file.x = 3", {}, {"s.toml:1: device.file", "a string"});
+}
+
+// A path in a scene is relative to the scene's folder.
+TEST(DeviceInAScene, MayBeAPathBesideTheScene) {
+  const auto folder = std::filesystem::temp_directory_path() / "phalanx_device_beside";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "mine.toml") << "[joints.index_mcp_flexion]\ninertia_kg_m2 = 1e-3\n";
+  const SceneDescription s = parse_scene("device.file = \"mine.toml\"", "s.toml", folder);
+  EXPECT_EQ(load_device(s).joints.size(), 1U);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace phalanx

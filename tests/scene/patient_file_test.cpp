@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/patient_file.h"
+
+#include "expect_error.h"
+
+namespace phalanx {
+namespace {
+
+const std::string kJoint = "[joints.index_mcp_flexion]\nstiffness_nm_per_rad = 10\n";
+
+PatientParameters parse(const std::string& text) { return parse_patient(text, "p.toml"); }
+
+void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+  SCOPED_TRACE(text);
+  expect_scene_error([&] { static_cast<void>(parse(text)); }, words);
+}
+
+TEST(PatientFile, StatesImpedanceIntentAndDisturbancesInItsUnits) {
+  const PatientParameters p = parse(R"(description = "somebody"
+press_n = 4
+press_spread = 0.2
+approach_min_mm_per_s = 10
+approach_max_mm_per_s = 20
+tremor_um = 50
+tremor_min_hz = 4
+tremor_max_hz = 6
+bump_n = 1
+bump_start_s = 2
+bump_duration_ms = 50
+[joints.index_mcp_flexion]
+stiffness_nm_per_rad = 11
+damping_nms_per_rad = 0.05
+)");
+  EXPECT_EQ(p.name, "p");
+  EXPECT_EQ(p.description, "somebody");
+  EXPECT_EQ(p.stiffness[4], 11.0);
+  EXPECT_EQ(p.damping[4], 0.05);
+  EXPECT_EQ(p.stiffness[5], 0.0);
+  EXPECT_EQ(p.press, 4.0);
+  EXPECT_EQ(p.press_spread, 0.2);
+  EXPECT_DOUBLE_EQ(p.approach_min, 0.01);
+  EXPECT_DOUBLE_EQ(p.approach_max, 0.02);
+  EXPECT_DOUBLE_EQ(p.tremor, 50e-6);
+  EXPECT_EQ(p.tremor_min_hz, 4.0);
+  EXPECT_EQ(p.tremor_max_hz, 6.0);
+  EXPECT_EQ(p.bump, 1.0);
+  EXPECT_EQ(p.bump_start, 2.0);
+  EXPECT_DOUBLE_EQ(p.bump_duration, 0.05);
+}
+
+TEST(PatientFile, ScalesWhatItNames) {
+  const std::string text = "tremor_um = 10\nbump_n = 3\n" + kJoint + "damping_nms_per_rad = 1\n";
+  const PatientParameters p = parse(text + "[scale]\nstiffness = 2\ndamping = 3\ntremor = 4\nbump = 0\n");
+  EXPECT_EQ(p.stiffness[4], 20.0);
+  EXPECT_EQ(p.damping[4], 3.0);
+  EXPECT_DOUBLE_EQ(p.tremor, 40e-6);
+  EXPECT_EQ(p.bump, 0.0);
+}
+
+TEST(PatientFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
+  expect_refused("", {"p.toml", "joints", "is missing"});
+  expect_refused("pres_n = 3\n" + kJoint, {"p.toml:1: pres_n = 3", "nearest known one is press_n"});
+  expect_refused("press_spread = 1.5\n" + kJoint, {"p.toml:1: press_spread = 1.5", "<= 1"});
+  expect_refused("[joints.index_mcp_flexion]\nstiffness_nm_per_rad = nan\n",
+                 {"p.toml:2", "= nan", "must be >= 0"});
+  expect_refused("approach_max_mm_per_s = 1\n" + kJoint,
+                 {"p.toml: ", "approach_max", "at least approach_min"});
+  expect_refused(kJoint + "[scale]\nstifness = 2\n", {"p.toml:4: scale.stifness = 2", "scale.stiffness"});
+}
+
+TEST(PatientInAScene, IsOverlaidByTheScenesOwnKeys) {
+  const SceneDescription s =
+      parse_scene("patient.press_n = 4", "s.toml", ".", {{"patient.scale.stiffness", "0.5"}});
+  const PatientParameters adult = load_patient_file("adult");
+  const PatientParameters p = load_patient(s);
+  EXPECT_EQ(p.name, "adult");
+  EXPECT_EQ(p.press, 4.0);
+  EXPECT_EQ(adult.press, 3.0);
+  EXPECT_EQ(p.stiffness[4], 0.5 * adult.stiffness[4]);
+  EXPECT_NE(patient_text(s), patient_text(adult));
+  EXPECT_EQ(patient_text(parse_scene("", "s.toml", ".")), patient_text(adult));
+}
+
+TEST(PatientInAScene, IsCheckedWhenTheSceneIsRead) {
+  expect_scene_error([] { static_cast<void>(parse_scene("\npatient.pres_n = 4", "s.toml", ".")); },
+                     {"s.toml:2: patient.pres_n = 4", "nearest known one is patient.press_n"});
+  expect_scene_error([] { static_cast<void>(parse_scene("", "s.toml", ".", {{"patient.bump_n", "-1"}})); },
+                     {"--set patient.bump_n=-1: patient.bump_n = -1: must be >= 0"});
+  expect_scene_error([] { static_cast<void>(parse_scene("patient.file = \"adutl\"", "s.toml", ".")); },
+                     {"s.toml:1: patient.file", "did you mean \"adult\"?"});
+}
+
+TEST(PatientText, HoldsEveryNumber) {
+  const std::string text = patient_text(parse(kJoint));
+  for (const char* change :
+       {"press_n = 1\n", "press_spread = 0.1\n", "approach_min_mm_per_s = 29\n",
+        "approach_max_mm_per_s = 91\n", "tremor_um = 1\n", "tremor_min_hz = 4\n", "tremor_max_hz = 13\n",
+        "bump_n = 1\n", "bump_start_s = 1\n", "bump_duration_ms = 1\n"})
+    EXPECT_NE(text, patient_text(parse(change + kJoint))) << change;
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every stabiliser in the whole step.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "phalanx/mesh/primitives.h"
+#include "phalanx/step/haptic_step.h"
+#include "support/count_allocations.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+using test::at;
+using test::index_angles;
+using test::kIndex;
+using test::moved;
+using test::Runner;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr std::array<Stabiliser, 10> kAll = {Stabiliser::kNone,
+                                             Stabiliser::kSmoothing,
+                                             Stabiliser::kRiseOnly,
+                                             Stabiliser::kDirection,
+                                             Stabiliser::kLowPass,
+                                             Stabiliser::kKelvinVoigt,
+                                             Stabiliser::kVirtualCoupling,
+                                             Stabiliser::kPassivity,
+                                             Stabiliser::kEnergyBounding,
+                                             Stabiliser::kLocalWall};
+
+/// A slab 20 mm below the straight index finger.
+HapticModel floor_model(Stabiliser method) {
+  HapticModel model(test::simple_hand(),
+                    ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
+  model.stabiliser.method = method;
+  return model;
+}
+/// A ball under the proximal phalanx, which the whole finger can close around.
+HapticModel ball_model(Stabiliser method) {
+  HapticModel model(test::simple_hand(),
+                    ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
+  model.stabiliser.method = method;
+  return model;
+}
+/// Around the ball and open again, `n` from 0 to 300.
+JointArray grasp(int n) {
+  const double close = n <= 150 ? n / 150.0 : (300 - n) / 150.0;
+  return index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close);
+}
+
+DigitJoints joints_of(const JointArray& angle, int digit) {
+  DigitJoints out{};
+  for (int i = 0; i < kJointsPerDigit; ++i)
+    out[static_cast<std::size_t>(i)] = angle[static_cast<std::size_t>(joint_index(digit, i))];
+  return out;
+}
+
+TEST(StabiliserStep, EveryMethodSendsNothingBeforeAndAfterAGrasp) {
+  for (const Stabiliser method : kAll) {
+    const HapticModel model = ball_model(method);
+    Runner hand(model);
+    double largest = 0.0;
+    for (int n = 0; n <= 300; ++n) {
+      for (const SegmentSnapshot& s : hand.tick(grasp(n)).segment) largest = std::max(largest, s.force);
+    }
+    EXPECT_GT(largest, 0.5) << static_cast<int>(method);
+    for (int n = 0; n < 400; ++n) hand.tick(grasp(300));
+    for (const double torque : hand.now().torque) EXPECT_EQ(torque, 0.0) << static_cast<int>(method);
+    for (const SegmentSnapshot& s : hand.now().segment) EXPECT_EQ(s.force, 0.0) << static_cast<int>(method);
+  }
+}
+
+// "none", and smoothing that is not enabled, are the same command to the bit.
+TEST(StabiliserStep, SmoothingThatIsNotEnabledIsNone) {
+  const HapticModel none = ball_model(Stabiliser::kNone);
+  HapticModel off = ball_model(Stabiliser::kSmoothing);
+  off.smoothing.enabled = false;
+  Runner a(none);
+  Runner b(off);
+  for (int n = 0; n <= 300; ++n) EXPECT_EQ(a.tick(grasp(n)).torque, b.tick(grasp(n)).torque);
+}
+
+// Whatever is measured, every method stays within the caps, and the walls do whatever the controller asks of
+// them.
+TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
+  const std::array<double, 6> wild = {kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
+  for (const Stabiliser method : kAll) {
+    for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kHuntCrossley}) {
+      std::mt19937_64 random(13);
+      std::uniform_real_distribution<double> u(-2.0, 3.0);
+      HapticModel model = ball_model(method);
+      model.force.law = law;
+      model.force.stiffness = 1e4;
+      model.stabiliser.turn_rate = 20.0;
+      model.oscillation.reaction = OscillationReaction::kHalve;
+      HapticState state(model);
+      JointArray last{};
+      int pushed = 0;
+      int walls = 0;
+      for (int n = 1; n <= 150; ++n) {
+        Sample sample{.time_s = 0.005 * n};
+        for (double& angle : sample.angle)
+          angle = random() % 64 == 0 ? wild[random() % wild.size()] : u(random);
+        if (random() % 10 == 0) sample.time_s = wild[random() % wild.size()];
+        for (double& torque : sample.measured_torque) torque = wild[random() % wild.size()];
+        step(model, sample, state);
+        const Snapshot& now = state.snapshot();
+        for (int d = 0; d < kDigits; ++d) {
+          Vec3 sum = Vec3::Zero();
+          Vec3 wall_sum = Vec3::Zero();
+          const DigitJoints q_ref = joints_of(now.hcp_angle, d);
+          DigitJoints q{};
+          for (double& angle : q) angle = random() % 8 == 0 ? wild[random() % wild.size()] : u(random);
+          for (int k = 0; k < kSegmentsPerDigit; ++k) {
+            const std::size_t s = static_cast<std::size_t>(segment_index(d, k));
+            const SegmentSnapshot& segment = now.segment[s];
+            ASSERT_TRUE(std::isfinite(segment.force)) << "method " << static_cast<int>(method) << " seed 13";
+            ASSERT_GE(segment.force, 0.0);
+            ASSERT_LE(segment.force, model.limits.fingertip_force);
+            ASSERT_TRUE(segment.normal.allFinite());
+            sum += segment.force * segment.normal;
+            pushed += segment.force > 0.0 ? 1 : 0;
+            const double force = local_wall_force(now.wall[s], q, q_ref);
+            ASSERT_TRUE(std::isfinite(force) && force >= 0.0 && force <= now.wall[s].force_max);
+            wall_sum += force * segment.normal;
+            walls += now.wall[s].active ? 1 : 0;
+          }
+          ASSERT_LE(sum.norm(), model.limits.fingertip_force + 1e-12);
+          ASSERT_LE(wall_sum.norm(), model.limits.fingertip_force + 1e-9) << "seed 13 tick " << n;
+        }
+        for (std::size_t j = 0; j < kJoints; ++j) {
+          ASSERT_TRUE(std::isfinite(now.torque[j]));
+          ASSERT_LE(std::abs(now.torque[j]), model.limits.joint_torque);
+          ASSERT_LE(std::abs(now.torque[j] - last[j]), model.limits.torque_rate / model.rate_hz + 1e-15);
+          ASSERT_FALSE(std::isinf(now.measured_torque[j]));
+        }
+        ASSERT_GE(now.stiffness_factor, 1.0 / 1024.0);
+        ASSERT_LE(now.stiffness_factor, 1.0);
+        last = now.torque;
+      }
+      EXPECT_GT(pushed, 0) << static_cast<int>(method);
+      EXPECT_EQ(walls > 0, method == Stabiliser::kLocalWall);
+    }
+  }
+}
+
+TEST(StabiliserStep, AllocatesNothing) {
+  for (const Stabiliser method : kAll) {
+    HapticModel model = ball_model(method);
+    model.oscillation.reaction = OscillationReaction::kHalve;
+    HapticState state(model);
+    const std::size_t before = test::allocations();
+    for (int n = 0; n <= 300; ++n) step(model, Sample{.time_s = 0.005 * (n + 1), .angle = grasp(n)}, state);
+    EXPECT_EQ(test::allocations() - before, 0U) << static_cast<int>(method);
+  }
+}
+
+/// A step of the force stage alone, for one contact of the index fingertip at 2 mm whose normal is `normal`.
+class LoneContact {
+ public:
+  explicit LoneContact(const HapticModel& model)
+      : model_(model), contacts_({model.hand, model.trees, model.object, model.contact}) {
+    model.hand.poses(JointArray{}, hcp_);
+    contacts_.poses = hcp_;
+  }
+  const SegmentForce& press(const Vec3& normal) {
+    const std::size_t tip = static_cast<std::size_t>(segment_index(kIndex, 2));
+    ContactRecord& record = contacts_.record[tip];
+    record.active = true;
+    record.depth = 2e-3;
+    record.n_c = normal;
+    record.force_normal = normal;
+    record.p_S = Vec3::Zero();
+    record.p_hcp = hcp_.digit[kIndex].segment[2].p;
+    compute_command({model_.hand, model_.force, model_.smoothing, model_.limits, 0.005, model_.stabiliser,
+                     model_.oscillation},
+                    contacts_, hcp_, false, state_);
+    return state_.segment[tip];
+  }
+
+ private:
+  const HapticModel& model_;
+  GdpState contacts_;
+  HandPoses hcp_;
+  ForceState state_;
+};
+
+// A normal that hops from +y to +x: 90 deg/s are 0.45 degrees a step, so that it is there after 200 steps; 2
+// mm into 500 N/m is 1 N all the while. The first normal is taken at once, and without the method every one.
+TEST(StabiliserStep, TheDirectionOfAForceTurnsNoFasterThanItsBound) {
+  const HapticModel model = floor_model(Stabiliser::kDirection);
+  LoneContact contact(model);
+  EXPECT_EQ(contact.press(Vec3::UnitY()).normal, Vec3::UnitY());
+  for (int n = 1; n <= 199; ++n) {
+    const SegmentForce& force = contact.press(Vec3::UnitX());
+    ASSERT_NEAR(force.normal.x(), std::sin(n * std::numbers::pi / 400.0), 1e-12) << n;
+    ASSERT_DOUBLE_EQ(force.sent, 1.0);
+  }
+  EXPECT_NEAR((contact.press(Vec3::UnitX()).normal - Vec3::UnitX()).norm(), 0.0, 1e-9);
+  const HapticModel plain = floor_model(Stabiliser::kNone);
+  LoneContact free(plain);
+  free.press(Vec3::UnitY());
+  EXPECT_EQ(free.press(Vec3::UnitX()).normal, Vec3::UnitX());
+}
+
+// A scene may turn it off.
+TEST(HapticState, TakesAnInfiniteJointSpeed) {
+  HapticModel model = floor_model(Stabiliser::kSmoothing);
+  model.limits.joint_speed = kInfinity;
+  Runner hand(model);
+  hand.tick(index_angles(-0.4));
+  EXPECT_EQ(hand.tick(index_angles(0.1)).hcp_angle, index_angles(0.1));
+  EXPECT_FALSE(has(hand.now().status, Status::kSampleJump));
+}
+
+TEST(HapticState, RefusesAStabiliserOutOfRangeByName) {
+  HapticModel model = floor_model(Stabiliser::kLowPass);
+  model.stabiliser.lowpass_hz = 0.0;
+  EXPECT_THAT([&] { HapticState state(model); },
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("stabiliser.lowpass_hz")));
+  model = floor_model(static_cast<Stabiliser>(77));
+  EXPECT_THAT([&] { HapticState state(model); },
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("stabiliser.method")));
+  model = floor_model(Stabiliser::kRiseOnly);
+  model.smoothing = {.enabled = false, .max_rate = -1.0};
+  EXPECT_THROW(HapticState state(model), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace phalanx
