@@ -1,40 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx experiment NAME: the papers' experiments.
+// phalanx experiment NAME: the papers' experiments; `all` puts them on one page.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "commands.h"
+#include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/study/experiments.h"
+#include "phalanx/study/experiment_report.h"
 #include "usage.h"
 
 namespace phalanx {
 namespace {
 
-struct Report {
-  std::string text, csv, json;
-};
-
-Report s1_fig8() {
-  const auto situations = run_s1_fig8();
-  return {fig8_text(situations), fig8_csv(situations), fig8_json(situations)};
-}
-Report of_timing(const TimingResult& result) {
-  return {timing_text(result), timing_csv(result), timing_json(result)};
-}
-Report s1_timing() { return of_timing(run_s1_timing()); }
-Report s2_timing() { return of_timing(run_s2_timing()); }
-
-int run_experiment(const std::string& name, Report (*experiment)(), const std::filesystem::path& out) {
-  if (!out.empty()) prepare_output_folder(out);
-  const Report report = experiment();
-  fmt::print("{}", report.text);
-  if (out.empty()) return kDone;
+void write_files(const std::string& name, const ExperimentReport& report, const std::filesystem::path& out) {
   write_text_file(out / (name + ".csv"), report.csv);
+  if (!report.svg.empty()) write_text_file(out / (name + ".svg"), report.svg);
   write_text_file(out / "summary.json", report.json);
+}
+
+int run_one(const Experiment& experiment, const std::filesystem::path& out) {
+  if (!out.empty()) prepare_output_folder(out);
+  const ExperimentReport report = experiment.run();
+  fmt::print("{}", report.text);
+  if (!out.empty()) write_files(experiment.name, report, out);
+  return kDone;
+}
+
+int run_all(const std::filesystem::path& out) {
+  prepare_output_folder(out);
+  std::vector<PaperRow> rows;
+  std::vector<ReportSection> sections;
+  for (const Experiment& experiment : experiments()) {
+    fmt::print("{} ...\n", experiment.name);
+    std::fflush(stdout);
+    prepare_output_folder(out / experiment.name);
+    const ExperimentReport report = experiment.run();
+    write_files(experiment.name, report, out / experiment.name);
+    rows.insert(rows.end(), report.rows.begin(), report.rows.end());
+    sections.insert(sections.end(), report.sections.begin(), report.sections.end());
+  }
+  write_text_file(out / "report.html",
+                  experiments_html(rows, sections, made_here(), "1 to 20; 21 to 40 in one row of s2-limit"));
+  fmt::print("wrote    {}\n", (out / "report.html").string());
   return kDone;
 }
 
@@ -43,19 +55,27 @@ int run_experiment(const std::string& name, Report (*experiment)(), const std::f
 void add_experiment_command(CLI::App& app, Job& job) {
   CLI::App* command = app.add_subcommand("experiment", "Repeat an experiment of the papers");
   command->require_subcommand(1);
-  const auto add = [&](const std::string& name, const std::string& help, Report (*experiment)()) {
+  for (const Experiment& experiment : experiments()) {
     auto out = std::make_shared<std::string>();
-    CLI::App* sub = command->add_subcommand(name, help);
-    sub->add_option("--out", *out, "write summary.json and " + name + ".csv into this folder")
+    CLI::App* sub = command->add_subcommand(experiment.name, experiment.help);
+    sub->add_option("--out", *out,
+                    "write summary.json, " + experiment.name + ".csv and its figure into this folder")
         ->type_name("DIR");
-    sub->callback([=, &job] {
+    sub->callback([&experiment, out, sub, &job] {
       refuse_empty_values(*sub);
-      job = [=] { return run_experiment(name, experiment, *out); };
+      job = [&experiment, out] { return run_one(experiment, *out); };
     });
-  };
-  add("s1-fig8", "Seven situations of the index finger and a ball: which joints carry torque", s1_fig8);
-  add("s1-timing", "S1's 1,489 triangles: time of a step beside S1's 4.2 ms", s1_timing);
-  add("s2-timing", "S2's 2,248 + 992 triangles: time of a step", s2_timing);
+  }
+  auto out = std::make_shared<std::string>("out/experiments");
+  CLI::App* all =
+      command->add_subcommand("all", "All of them, on one page: paper, ours, difference (some minutes)");
+  all->add_option("--out", *out, "the folder of the page and of every experiment's files")
+      ->type_name("DIR")
+      ->capture_default_str();
+  all->callback([out, all, &job] {
+    refuse_empty_values(*all);
+    job = [out] { return run_all(*out); };
+  });
 }
 
 }  // namespace phalanx

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study_progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace phalanx {
+namespace {
+
+/// "45 s", "3 min 20 s", "5 h 12 min"
+std::string duration(double seconds) {
+  const auto s = static_cast<long long>(std::llround(seconds));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
+  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
+}
+
+std::string text(const StudyProgress& progress) {
+  std::string text = fmt::format("study {}/{} points ({}%)", progress.done, progress.total,
+                                 100LL * progress.done / progress.total);
+  if (progress.resumed > 0) text += fmt::format(", {} of them from earlier runs", progress.resumed);
+  text += fmt::format(", {} gone", duration(progress.elapsed_s));
+  if (std::isfinite(progress.remaining_s) && progress.done < progress.total)
+    text += fmt::format(", about {} left", duration(progress.remaining_s));
+  return text;
+}
+
+}  // namespace
+
+StudyProgressLine::StudyProgressLine(bool wanted)
+    : wanted_(wanted), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+StudyProgressLine::~StudyProgressLine() {
+  if (wanted_ && terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void StudyProgressLine::show(const StudyProgress& progress) {
+  if (!wanted_ || progress.total == 0) return;
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{}", text(progress));
+    std::fflush(stderr);
+    return;
+  }
+  const int tenths = static_cast<int>(10LL * progress.done / progress.total);
+  if (tenths == tenths_shown_) return;
+  tenths_shown_ = tenths;
+  fmt::print(stderr, "{}\n", text(progress));
+}
+
+}  // namespace phalanx

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a trial was stable, and what else it came to, gathered tick by tick.
+#pragma once
+
+#include <array>
+
+#include "phalanx/step/snapshot.h"
+#include "phalanx/study/closed_loop/press_intent.h"
+#include "phalanx/study/laboratory/trial.h"
+
+namespace phalanx {
+
+/// Stable: in the window, the force sent of every contact that is ever there swings by at most `force_swing`,
+/// and the HCP at that contact, along its n, by at most `position_swing`, both from peak to peak.
+struct StabilityCriterion {
+  double force_swing = 0.5;        ///< [N]
+  double position_swing = 0.5e-3;  ///< [m]
+  double ghost_force = 0.01;       ///< below this a force counts as gone [N]
+};
+
+/// Feed every snapshot to add(), then ask result().
+class TrialObserver {
+ public:
+  TrialObserver(const PressPlan& plan, const TrialSchedule& schedule,
+                const StabilityCriterion& criterion = {});
+
+  /// @param t  time of the host's step [s]
+  void add(double t, const Snapshot& snapshot);
+  [[nodiscard]] TrialResult result() const;
+
+ private:
+  struct Range {
+    double low = 0.0, high = 0.0;
+    bool any = false;
+    void add(double value) noexcept;
+    [[nodiscard]] double swing() const noexcept { return high - low; }
+  };
+  /// A contact is followed by the material point that it had when it was first seen in the window.
+  struct Watched {
+    bool seen = false;
+    Vec3 p_S = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
+    Range force, position;
+    double force_sum = 0.0, depth_sum = 0.0;
+  };
+  void watch_window(const Snapshot& snapshot);
+  void watch_ghost(double t, const Snapshot& snapshot);
+  [[nodiscard]] std::size_t pressing_segment() const noexcept;
+
+  const PressPlan& plan_;
+  TrialSchedule schedule_;
+  StabilityCriterion criterion_;
+  std::array<Watched, kSegments> watched_;
+  int window_ticks_ = 0;
+  double peak_depth_ = 0.0;
+  Status limited_ = Status::kOk;
+
+  struct Ghost {
+    bool pressed = false;  ///< there was a force while the finger was inside
+    bool left = false;
+    double left_at = 0.0, ended_at = 0.0;
+    double before = 0.0;  ///< position along n at the tick before [m]
+    double energy = 0.0;
+  };
+  std::array<Ghost, kDigits> ghost_;
+};
+
+}  // namespace phalanx

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/study/closed_loop/trial.h"
+
+#include <cmath>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include "phalanx/scene/build_model.h"
+#include "phalanx/scene/device_file.h"
+#include "phalanx/scene/patient_file.h"
+#include "phalanx/study/closed_loop/closed_loop.h"
+
+namespace phalanx {
+namespace {
+
+/// The set-ups that were used last, by their overrides: a point of a study runs many trials on one set-up.
+class Setups {
+ public:
+  explicit Setups(std::string scene) : scene_(std::move(scene)) {}
+
+  std::shared_ptr<const TrialSetup> get(const Overrides& overrides) {
+    {
+      const std::lock_guard lock(mutex_);
+      for (const auto& [key, setup] : kept_)
+        if (key == overrides) return setup;
+    }
+    auto made = make_trial_setup(load_scene(scene_, overrides));
+    const std::lock_guard lock(mutex_);
+    kept_.emplace_back(overrides, made);
+    if (kept_.size() > kMost) kept_.pop_front();
+    return made;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 32;
+  std::string scene_;
+  std::mutex mutex_;
+  std::deque<std::pair<Overrides, std::shared_ptr<const TrialSetup>>> kept_;
+};
+
+}  // namespace
+
+std::shared_ptr<const TrialSetup> make_trial_setup(const SceneDescription& scene) {
+  auto setup = std::make_shared<TrialSetup>(TrialSetup{.model = build_model(scene),
+                                                       .exoskeleton = load_device(scene),
+                                                       .patient = load_patient(scene),
+                                                       .plan = {},
+                                                       .schedule = {}});
+  setup->plan = plan_press(setup->model, build_motion(scene), setup->exoskeleton, setup->patient);
+  return setup;
+}
+
+TrialResult run_trial(const TrialSetup& setup, double stiffness, double press, std::uint64_t seed,
+                      const TickObserver& observer) {
+  HapticModel model = setup.model;
+  if (!std::isnan(stiffness)) model.force.stiffness = stiffness;
+  const double force = std::isnan(press) ? setup.patient.press : press;
+  const HandParameters& hand = model.hand.parameters();
+  const PressIntent intent(setup.plan, setup.patient, hand, model.force.stiffness, force, seed,
+                           setup.schedule);
+  SimulatedExoskeleton device(setup.exoskeleton, setup.patient, hand.open_angle, intent.angle(0.0),
+                              sensor_seed(seed), setup.step);
+  TrialObserver watching(setup.plan, setup.schedule);
+  run_closed_loop(
+      model, device,
+      {.angle = [&](double t) { return intent.angle(t); }, .push = [&](double t) { return intent.push(t); }},
+      setup.schedule.end, clock_phase(seed),
+      [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton& exoskeleton) {
+        watching.add(t, snapshot);
+        if (observer) observer(t, snapshot, exoskeleton);
+      });
+  return watching.result();
+}
+
+TrialFunction make_trial_function(const std::string& scene) {
+  auto setups = std::make_shared<Setups>(scene);
+  return [setups](const Overrides& overrides, double stiffness, double press, std::uint64_t seed) {
+    return run_trial(*setups->get(overrides), stiffness, press, seed);
+  };
+}
+
+}  // namespace phalanx

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/experiments/loop_run.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "phalanx/device/simulated_exoskeleton.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kSwing = 0.5;          // [N]
+constexpr double kSwingWithin = 0.125;  // a period at 8 Hz [s]
+constexpr double kSustained = 0.2;      // [s]
+
+/// Looks for a force that rises and falls, or falls and rises, by more than kSwing within kSwingWithin, and
+/// goes on doing so for kSustained: a bounce or a bump is over before.
+class SwingWatch {
+ public:
+  /// @returns since when the force has swung, once it has done so for kSustained; else NaN [s]
+  double add(double t, double force) {
+    if (!swings(t, force)) {
+      since_ = std::numeric_limits<double>::quiet_NaN();
+    } else if (std::isnan(since_)) {
+      since_ = t;
+    }
+    return t - since_ >= kSustained ? since_ : std::numeric_limits<double>::quiet_NaN();
+  }
+
+ private:
+  bool swings(double t, double force) {
+    recent_.push_back({t, force});
+    while (recent_.front().t < t - kSwingWithin) recent_.pop_front();
+    double low = force, high = force, rise = 0.0, fall = 0.0;
+    for (const Point& point : recent_) {  // oldest first
+      if (&point == &recent_.front()) low = high = point.force;
+      low = std::min(low, point.force);
+      high = std::max(high, point.force);
+      rise = std::max(rise, point.force - low);
+      fall = std::max(fall, high - point.force);
+    }
+    return rise > kSwing && fall > kSwing;
+  }
+
+  struct Point {
+    double t, force;
+  };
+  std::deque<Point> recent_;
+  double since_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+class CurveRecorder {
+ public:
+  explicit CurveRecorder(LoopCurves& curves) : curves_(curves) {}
+
+  void add(double t, const Snapshot& snapshot) {
+    curves_.time_s.push_back(t);
+    for (std::size_t s = 0; s < kSegments; ++s) {
+      const SegmentSnapshot& segment = snapshot.segment[s];
+      if (segment.contact && !seen_[s]) {
+        seen_[s] = true;
+        point_[s] = snapshot.gdp_pose[s].inverse() * segment.point;
+        normal_[s] = segment.normal;
+        origin_[s] = segment.point;
+      }
+      curves_.force[s].push_back(segment.force);
+      curves_.position[s].push_back(seen_[s] ? -normal_[s].dot(snapshot.hcp_pose[s] * point_[s] - origin_[s])
+                                             : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  void finish() {
+    for (std::size_t s = 0; s < kSegments; ++s) {
+      if (std::any_of(curves_.force[s].begin(), curves_.force[s].end(), [](double f) { return f > 0.0; }))
+        curves_.touching.push_back(static_cast<int>(s));
+    }
+  }
+
+ private:
+  LoopCurves& curves_;
+  std::array<bool, kSegments> seen_{};
+  std::array<Vec3, kSegments> point_{}, normal_{}, origin_{};
+};
+
+}  // namespace
+
+int LoopRun::stable() const {
+  return static_cast<int>(
+      std::count_if(trials.begin(), trials.end(), [](const TrialResult& t) { return t.stable; }));
+}
+
+double LoopRun::largest_force_swing() const {
+  double largest = 0.0;
+  for (const TrialResult& trial : trials) largest = std::max(largest, trial.force_swing);
+  return largest;
+}
+
+double LoopRun::largest_position_swing() const {
+  double largest = 0.0;
+  for (const TrialResult& trial : trials) largest = std::max(largest, trial.position_swing);
+  return largest;
+}
+
+LoopRun run_loop(const std::string& name, const std::string& scene, const Overrides& overrides, int seeds) {
+  const auto setup = make_trial_setup(load_scene(scene, overrides));
+  LoopRun run;
+  run.name = name;
+  run.stiffness = setup->model.force.stiffness;
+  run.trials.resize(static_cast<std::size_t>(seeds));
+  run.detections.resize(static_cast<std::size_t>(seeds));
+  constexpr double kAsItIs = std::numeric_limits<double>::quiet_NaN();
+  tbb::parallel_for(0, seeds, [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    Detection& detection = run.detections[at];
+    std::array<SwingWatch, kSegments> watch;
+    CurveRecorder recorder(run.curves);
+    run.trials[at] =
+        run_trial(*setup, kAsItIs, kAsItIs, static_cast<std::uint64_t>(i) + 1,
+                  [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton&) {
+                    if (t < setup->schedule.release) {
+                      for (std::size_t s = 0; s < kSegments; ++s) {
+                        const double since = watch[s].add(t, snapshot.segment[s].force);
+                        if (std::isnan(detection.swung_s)) detection.swung_s = since;
+                      }
+                      if (has(snapshot.status, Status::kOscillating) && std::isnan(detection.fired_s))
+                        detection.fired_s = t;
+                    }
+                    if (i == 0) recorder.add(t, snapshot);
+                  });
+    if (i == 0) recorder.finish();
+  });
+  return run;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The closed-loop experiments of S2.
+#pragma once
+
+#include <vector>
+
+#include "phalanx/study/experiment_report.h"
+#include "phalanx/study/laboratory/study.h"
+#include "study/experiments/loop_run.h"
+
+namespace phalanx {
+
+/// Without smoothing, and with +-0.05 N a step.
+[[nodiscard]] std::vector<LoopRun> run_s2_fig4(int seeds);
+/// The power grasp at 1.4 N/mm with +-0.1 N a step.
+[[nodiscard]] LoopRun run_s2_fig5(int seeds);
+
+/// One row of a limit table: what differs from the device as it is, and the two limits.
+struct LimitRow {
+  std::string change;  ///< "sheath friction x 0"
+  PointResult none;
+  PointResult smoothing;  ///< +-0.1 N a step
+};
+/// Limits of the press on the scene.
+/// @param set  of scene, device and patient, for both
+[[nodiscard]] LimitRow find_limits(const std::string& change, const Overrides& set, int seeds,
+                                   std::uint64_t first_seed = 1);
+
+[[nodiscard]] ExperimentReport s2_fig4();
+[[nodiscard]] ExperimentReport s2_fig5();
+[[nodiscard]] ExperimentReport s2_limit();
+[[nodiscard]] ExperimentReport s2_sensitivity();
+[[nodiscard]] ExperimentReport s2_fit();
+
+}  // namespace phalanx

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one free parameter, the size of the bump, fitted on S2's two limits with the reduced model.
+#include <fmt/format.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "phalanx/study/closed_loop/reduced_model.h"
+#include "phalanx/study/laboratory/limit_search.h"
+#include "study/experiments/s2_experiments.h"
+#include "study/experiments/s2_loop_figures.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kStep = 100.0;  // of the stiffness grid [N/m]
+
+struct FitRow {
+  double bump = 0.0;       // [N]
+  double none = 0.0;       // [N/m]
+  double smoothing = 0.0;  // +-0.1 N a step [N/m]
+
+  /// Sum of the squared deviations from what S2 prints, in steps of the grid.
+  [[nodiscard]] int deviation() const {
+    const auto steps = [](double ours, double paper) {
+      return static_cast<int>(std::lround((ours - paper) / kStep));
+    };
+    const int a = steps(none, 700.0);
+    const int b = steps(smoothing, 1600.0);
+    return a * a + b * b;
+  }
+};
+
+double limit_at(const ReducedModel& model, const SmoothingParameters& smoothing) {
+  const auto stable = [&](int index) {
+    for (std::uint64_t seed = 1; seed <= kLoopSeeds; ++seed)
+      if (!run_reduced_trial(model, smoothing, kStep * (index + 1), seed).stable) return false;
+    return true;
+  };
+  return kStep * (search_limit(30, stable).limit + 1);
+}
+
+FitRow fit_row(double bump) {
+  ReducedModel model = make_reduced_model();
+  model.patient.bump = bump;
+  const SmoothingParameters none{.enabled = false};
+  const SmoothingParameters smoothing{
+      .enabled = true, .min_rate = -0.1 * model.rate_hz, .max_rate = 0.1 * model.rate_hz};
+  return {.bump = bump, .none = limit_at(model, none), .smoothing = limit_at(model, smoothing)};
+}
+
+}  // namespace
+
+ExperimentReport s2_fit() {
+  std::vector<FitRow> rows(13);
+  tbb::parallel_for(std::size_t{0}, rows.size(),
+                    [&](std::size_t i) { rows[i] = fit_row(0.5 * static_cast<double>(i)); });
+  const FitRow* best = &rows.front();
+  for (const FitRow& row : rows)
+    if (row.deviation() <= best->deviation()) best = &row;
+  const double fitted = best->bump;
+
+  ExperimentReport report;
+  nlohmann::ordered_json json;
+  json["experiment"] = "s2-fit";
+  json["paper"] = "S2's two limits, 0.7 and 1.6 N/mm";
+  json["model"] = "one degree of freedom, the numbers of docs/stability.md";
+  json["fitted_bump_n"] = fitted;
+  report.csv = "bump_n,none_n_per_mm,smoothing_n_per_mm,deviation\n";
+  report.text =
+      "The size of the bump, fitted on S2's 0.7 and 1.6 N/mm with one degree of freedom: the least sum of "
+      "squared\n"
+      "deviations in steps of the grid (0.1 N/mm); of several the hardest.\n";
+  ReportTable table{.header = {"bump [N]", "k_lim without [N/mm]", "k_lim with +-0.1 N a step [N/mm]",
+                               "squared deviation [steps]"},
+                    .rows = {}};
+  for (const FitRow& row : rows) {
+    report.csv +=
+        fmt::format("{},{},{},{}\n", row.bump, 1e-3 * row.none, 1e-3 * row.smoothing, row.deviation());
+    report.text += fmt::format("bump {:4.1f} N: {:.1f} and {:.1f} N/mm{}\n", row.bump, 1e-3 * row.none,
+                               1e-3 * row.smoothing, row.bump == fitted ? "  fitted" : "");
+    table.rows.push_back({fmt::format("{:.1f}", row.bump), fmt::format("{:.1f}", 1e-3 * row.none),
+                          fmt::format("{:.1f}", 1e-3 * row.smoothing), fmt::format("{}", row.deviation())});
+    json["rows"].push_back({{"bump_n", row.bump},
+                            {"none_n_per_mm", 1e-3 * row.none},
+                            {"smoothing_n_per_mm", 1e-3 * row.smoothing},
+                            {"deviation", row.deviation()}});
+  }
+  report.text += fmt::format("fitted: {} N\n", fitted);
+  json["made"] = made_json();
+  report.json = json.dump(2) + "\n";
+  report.sections = {
+      {.title = "The fit",
+       .text =
+           {"Device and finger have the numbers of docs/stability.md. One parameter is free: how hard the "
+            "finger is bumped. "
+            "It is fitted on S2's two limits alone, on a model of one degree of freedom, by the least sum of "
+            "squared "
+            "deviations in steps of the grid (of several bumps the hardest), and frozen. What else this page "
+            "says of "
+            "stability is predicted with it.",
+            fmt::format("Fitted: {} N.", fitted)},
+       .svg = {},
+       .table = table}};
+  return report;
+}
+
+}  // namespace phalanx

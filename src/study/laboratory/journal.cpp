@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/laboratory/journal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace phalanx {
+namespace {
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A new file's name, too, must be on the disk. Where a folder cannot be synchronised there is nothing to be
+/// done.
+void synchronise_folder_of(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  static_cast<void>(::fsync(descriptor));
+  ::close(descriptor);
+}
+
+}  // namespace
+
+Journal::Journal(std::filesystem::path file, const JournalHeader& header, bool restart)
+    : file_(std::move(file)),
+      descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644)) {
+  if (descriptor_ < 0) fail("opened");
+  try {
+    refuse_other_than_a_file();
+    lock();
+    if (restart && ::ftruncate(descriptor_, 0) != 0) fail("emptied");
+    take_up(header);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+Journal::~Journal() { ::close(descriptor_); }
+
+void Journal::fail(const char* what) const {
+  throw std::runtime_error(fmt::format("{}: cannot be {}: {}", file_.string(), what, std::strerror(errno)));
+}
+
+void Journal::refuse_other_than_a_file() const {
+  struct stat status{};
+  if (::fstat(descriptor_, &status) != 0) fail("examined");
+  if (S_ISREG(status.st_mode)) return;
+  throw std::invalid_argument(
+      fmt::format("{}: is no ordinary file; name another --out folder", file_.string()));
+}
+
+void Journal::lock() {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  if (errno != EWOULDBLOCK) fail("locked");
+  throw std::invalid_argument(
+      fmt::format("{}: another process is writing it; wait until that has ended, or use another --out folder",
+                  file_.string()));
+}
+
+void Journal::take_up(const JournalHeader& header) {
+  const std::string header_text = journal_text({.header = header, .points = {}});
+  const std::string content = content_of(file_);
+  const std::size_t complete = content.rfind('\n') + 1;  // 0 if there is no complete line
+  if (complete == 0 && header_text.starts_with(content)) {
+    if (::ftruncate(descriptor_, 0) != 0) fail("emptied");
+    write_line(header_text);
+    synchronise_folder_of(file_);
+    return;
+  }
+  const JournalContent there = read_journal(file_);
+  if (const std::string problem = difference(there.header, header); !problem.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}; use another --out folder, or --restart to throw its {} finished points away",
+                    file_.string(), problem, there.points.size()));
+  }
+  if (complete < content.size() && ::ftruncate(descriptor_, static_cast<off_t>(complete)) != 0)
+    fail("shortened");
+  finished_ = there.points;
+}
+
+void Journal::append(const PointResult& result) {
+  const std::string text = result_line(result);
+  const std::lock_guard<std::mutex> guard(mutex_);
+  write_line(text);
+}
+
+void Journal::write_line(const std::string& line) {
+  struct stat before{};
+  if (::fstat(descriptor_, &before) != 0) fail("written");
+  ssize_t written = -1;
+  do {
+    written = ::write(descriptor_, line.data(), line.size());
+  } while (written < 0 && errno == EINTR);
+  if (written == static_cast<ssize_t>(line.size())) {
+    if (::fsync(descriptor_) != 0) fail("written to the disk");
+    return;
+  }
+  const int reason = written < 0 ? errno : ENOSPC;  // a part of it: the disk is full
+  if (written > 0) static_cast<void>(::ftruncate(descriptor_, before.st_size));
+  errno = reason;
+  fail("written");
+}
+
+}  // namespace phalanx

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "phalanx/study/report/chart.h"
+#include "study/plot/ticks.h"
+#include "study/report/line_panel.h"
+#include "study/report/svg.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kWidth = 180.0 * kPointsPerMm;
+constexpr double kLeft = 46.0;
+constexpr double kRight = 14.0;
+
+void check(const LineChart& chart) {
+  if (chart.panels.empty()) throw std::invalid_argument("line chart: no panel; give at least one");
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartSeries& series : panel.series) {
+      const std::size_t size = series.x.size();
+      const bool band = series.low.empty() && series.high.empty();
+      if (series.y.size() != size || (!band && (series.low.size() != size || series.high.size() != size)) ||
+          (!series.at_least.empty() && series.at_least.size() != size))
+        throw std::invalid_argument(fmt::format(
+            "line chart: series '{}': x has {} values; y, low, high and at_least must have as many "
+            "(the last three may be empty)",
+            series.name, size));
+    }
+  }
+}
+
+bool has_legend(const LineChart& chart) {
+  return std::any_of(chart.panels.begin(), chart.panels.end(),
+                     [](const ChartPanel& panel) { return legend_height(panel) > 0.0; });
+}
+
+SharedAxis shared_axis(const LineChart& chart) {
+  double low = HUGE_VAL;
+  double high = -HUGE_VAL;
+  bool marked = true;
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartSeries& series : panel.series) {
+      marked = marked && series.x.size() <= kMarkedPoints;
+      for (const double x : series.x) {
+        if (!std::isfinite(x)) continue;
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+    }
+  }
+  if (low > high) low = high = 0.0;
+  if (!(high > low)) {
+    const double room = low == 0.0 ? 0.5 : 0.1 * std::abs(low);
+    low -= room;
+    high += room;
+  }
+  // Markers on the first and the last value stand clear of the frame.
+  const double margin = marked ? 0.025 * (high - low) : 0.0;
+  SharedAxis axis{.left = kLeft,
+                  .width = kWidth - kLeft - (has_legend(chart) ? kLegendGap + kLegendWidth : kRight),
+                  .low = low - margin,
+                  .high = high + margin,
+                  .ticks = {}};
+  for (const double tick : nice_ticks(low, high, 8)) {
+    const double rounding = 1e-9 * (high - low);
+    if (tick >= axis.low - rounding && tick <= axis.high + rounding) axis.ticks.push_back(tick);
+  }
+  return axis;
+}
+
+}  // namespace
+
+std::string line_chart_svg(const LineChart& chart) {
+  check(chart);
+  Svg svg(kWidth);
+  const SharedAxis axis = shared_axis(chart);
+  double y = svg.heading(chart.title, chart.subtitle);
+  double bottom = y;
+  for (std::size_t i = 0; i < chart.panels.size(); ++i) {
+    const ChartPanel& panel = chart.panels[i];
+    y += i == 0 && !chart.windows.empty() ? 24.0 : 18.0;
+    draw_line_panel(svg, chart, i, axis, y, panel.height);
+    const double legend_end = y + legend_height(panel);
+    y += panel.height;
+    bottom = std::max({bottom, y, legend_end});
+    // A long legend may reach past its panel only where the next one has none.
+    if (i + 1 < chart.panels.size() && chart.panels[i + 1].legend) y = std::max(y, legend_end);
+  }
+  svg.text(axis.left + axis.width / 2, y + 25, cut_to(chart.x_label, axis.width + 40), Anchor::kMiddle);
+  return svg.document(std::max(bottom + 6, y + 31), chart.title);
+}
+
+}  // namespace phalanx

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/report/study_view.h"
+
+namespace phalanx {
+
+/// What a reader must know before believing the numbers: missing points, invalid runs and why, limits at the
+/// edge of the grid. Empty if there is nothing.
+[[nodiscard]] std::vector<std::string> study_warnings(const StudyView& view);
+
+}  // namespace phalanx

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/laboratory/journal.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "phalanx/record/output_file.h"
+#include "record/temporary_folder.h"
+#include "study/laboratory/expect_refusal.h"
+#include "study/laboratory/fingerprint.h"
+#include "study/laboratory/synthetic.h"
+
+namespace phalanx {
+namespace {
+
+using testing::expect_refusal;
+using testing::read_file;
+using testing::TemporaryFolder;
+
+JournalHeader header() {
+  return {.study = testing::study_of(testing::kTwelvePoints), .inputs = "abc", .commit = "test"};
+}
+
+PointResult point(int index) {
+  PointResult result;
+  result.index = index;
+  result.k_lim = 100.0 / 3.0;  // no short decimal
+  result.trials = 7;
+  result.why_invalid = "\"quoted\"\nlines";
+  result.checked = {{.n_per_mm = 0.1, .verdict = Verdict::kInvalid, .seeds_run = 3, .force_swing = 1e-300}};
+  return result;
+}
+
+/// A journal of points 0, 1 and 2.
+std::filesystem::path three_points(const TemporaryFolder& folder) {
+  const auto file = folder / "points.jsonl";
+  Journal journal(file, header(), false);
+  for (int index = 0; index < 3; ++index) journal.append(point(index));
+  return file;
+}
+
+TEST(Journal, GivesBackWhatWasWrittenToTheLastBit) {
+  const TemporaryFolder folder;
+  const Journal again(three_points(folder), header(), false);
+  ASSERT_EQ(again.finished().size(), 3U);
+  EXPECT_EQ(again.finished()[2].index, 2);
+  EXPECT_EQ(again.finished()[2].k_lim, 100.0 / 3.0);
+  EXPECT_TRUE(std::isnan(again.finished()[2].k_eff));
+  EXPECT_EQ(again.finished()[2].why_invalid, "\"quoted\"\nlines");
+  EXPECT_EQ(again.finished()[2].checked[0].force_swing, 1e-300);
+  EXPECT_EQ(result_line(again.finished()[2]), result_line(point(2)));
+}
+
+// Wherever the power went: what was complete is kept, the rest is cut off, and the file can be written on.
+TEST(Journal, CutsOffATornLastLineAtEveryLength) {
+  const TemporaryFolder folder;
+  const std::string whole = read_file(three_points(folder));
+  for (std::size_t length = 0; length < whole.size(); length += length < 40 ? 1 : 37) {
+    SCOPED_TRACE(length);
+    const auto file = folder / "torn.jsonl";
+    write_text_file(file, whole.substr(0, length));
+    const std::string complete = whole.substr(0, whole.rfind('\n', length == 0 ? 0 : length - 1) + 1);
+    const auto lines = static_cast<std::size_t>(std::count(complete.begin(), complete.end(), '\n'));
+    {
+      Journal journal(file, header(), false);
+      ASSERT_EQ(journal.finished().size(), lines == 0 ? 0 : lines - 1);
+      journal.append(point(11));
+    }
+    const JournalContent content = read_journal(file);
+    EXPECT_EQ(content.points.back().index, 11);
+  }
+}
+
+TEST(Journal, RefusesAnotherStudyInWordsAndKeepsItsPoints) {
+  const TemporaryFolder folder;
+  const auto file = three_points(folder);
+  const std::string before = read_file(file);
+  JournalHeader other = header();
+  other.study.seeds = 6;
+  expect_refusal([&] { const Journal journal(file, other, false); },
+                 {"another study", "--restart", "3 finished points", "--out"});
+  other = header();
+  other.inputs = "abd";
+  expect_refusal([&] { const Journal journal(file, other, false); }, {"scene", "has changed since"});
+  other = header();
+  other.commit = "newer";
+  expect_refusal([&] { const Journal journal(file, other, false); }, {"another version", "test", "newer"});
+  EXPECT_EQ(read_file(file), before);
+  const Journal restarted(file, other, true);
+  EXPECT_TRUE(restarted.finished().empty());
+}
+
+TEST(Journal, RefusesWhatIsNoJournalAndLeavesItAlone) {
+  const TemporaryFolder folder;
+  for (const char* text :
+       {"dear diary", "dear diary\n", "{}\n", "{\"phalanx_study_journal\": 99}\n", "[]\n"}) {
+    write_text_file(folder / "a", text);
+    expect_refusal([&] { const Journal journal(folder / "a", header(), false); },
+                   {"no journal", "--restart"});
+    EXPECT_EQ(read_file(folder / "a"), text);
+  }
+}
+
+TEST(Journal, RefusesADamagedLineByItsNumber) {
+  const TemporaryFolder folder;
+  const auto file = three_points(folder);
+  std::string text = read_file(file);
+  text[text.find("\"point\":1") + 9] = '}';
+  write_text_file(file, text);
+  expect_refusal([&] { const Journal journal(file, header(), false); }, {"points.jsonl:3: is damaged"});
+}
+
+TEST(Journal, RefusesAPointTwiceUnlessBothAgree) {
+  const TemporaryFolder folder;
+  const auto file = three_points(folder);
+  const std::string text = read_file(file);
+  write_text_file(file, text + result_line(point(1)));
+  EXPECT_EQ(read_journal(file).points.size(), 3U);
+  PointResult other = point(1);
+  other.trials = 8;
+  write_text_file(file, text + result_line(other));
+  expect_refusal([&] { static_cast<void>(read_journal(file)); }, {"point 1", "twice"});
+  write_text_file(file, text + result_line(point(12)));
+  expect_refusal([&] { static_cast<void>(read_journal(file)); }, {"no point 12"});
+}
+
+TEST(Journal, IsWrittenByOneAtATime) {
+  const TemporaryFolder folder;
+  const auto file = folder / "points.jsonl";
+  {
+    const Journal first(file, header(), false);
+    expect_refusal([&] { const Journal second(file, header(), false); }, {"another process"});
+    expect_refusal([&] { const Journal second(file, header(), true); }, {"another process"});
+  }
+  const Journal after(file, header(), false);
+  EXPECT_TRUE(after.finished().empty());
+}
+
+/// Files of this process may not grow beyond a size, as if the disk were full, as long as this lives.
+class FullDisk {
+ public:
+  explicit FullDisk(std::uintmax_t size) : handler_(::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = static_cast<rlim_t>(size);
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    ::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(Journal, EndsWithItsLastCompleteLineIfTheDiskIsFull) {
+  const TemporaryFolder folder;
+  const auto file = three_points(folder);
+  const std::string before = read_file(file);
+  Journal journal(file, header(), false);
+  for (const unsigned room : {0U, 20U}) {
+    const FullDisk full(before.size() + room);
+    EXPECT_THROW(journal.append(point(3)), std::runtime_error) << room;
+    EXPECT_EQ(read_file(file), before) << room;
+  }
+  journal.append(point(3));
+  EXPECT_EQ(read_journal(file).points.size(), 4U);
+}
+
+TEST(Journal, RefusesADevice) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/null", folder / "points.jsonl");
+  expect_refusal([&] { const Journal journal(folder / "points.jsonl", header(), false); },
+                 {"no ordinary file"});
+}
+
+TEST(Fingerprint, CountsNamesAndContentsButNotFoldersOrOrder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "other");
+  write_text_file(folder / "a", "1");
+  write_text_file(folder / "b", "2");
+  write_text_file(folder / "other/a", "1");
+  const std::string both = fingerprint_of_files({folder / "a", folder / "b"});
+  EXPECT_EQ(fingerprint_of_files({folder / "b", folder / "other/a", folder / "b"}), both);
+  write_text_file(folder / "b", "3");
+  EXPECT_NE(fingerprint_of_files({folder / "a", folder / "b"}), both);
+  EXPECT_THROW(static_cast<void>(fingerprint_of_files({folder / "none"})), std::runtime_error);
+}
+
+// The published test vector of FNV-1a, 64 bit, for "foobar".
+TEST(Fingerprint, IsFnv1a) {
+  Fingerprint print;
+  print.add("foo");
+  print.add("bar");
+  EXPECT_EQ(print.text(), "85944171f73967e8");
+}
+
+}  // namespace
+}  // namespace phalanx

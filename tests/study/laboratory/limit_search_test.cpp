@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/study/laboratory/limit_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace phalanx {
+namespace {
+
+/// Searches a grid whose verdicts are written down, and fails if one is asked for twice.
+LimitSearch search(const std::vector<bool>& verdicts, int coarse = 4) {
+  std::set<int> asked;
+  return search_limit(
+      static_cast<int>(verdicts.size()),
+      [&](int index) {
+        EXPECT_TRUE(asked.insert(index).second) << "asked twice for " << index;
+        return verdicts.at(static_cast<std::size_t>(index));
+      },
+      coarse);
+}
+
+std::vector<bool> stable_up_to(int limit, int size) {
+  std::vector<bool> verdicts(static_cast<std::size_t>(size));
+  for (int i = 0; i < size; ++i) verdicts[static_cast<std::size_t>(i)] = i <= limit;
+  return verdicts;
+}
+
+std::set<int> tried(const LimitSearch& search) {
+  std::set<int> indices;
+  for (const CheckedStiffness& checked : search.checked) indices.insert(checked.index);
+  return indices;
+}
+
+TEST(LimitSearch, FindsEveryLimitOfEveryMonotoneGrid) {
+  for (int size = 1; size <= 41; ++size) {
+    for (int limit = -1; limit < size; ++limit) {
+      const LimitSearch found = search(stable_up_to(limit, size));
+      EXPECT_EQ(found.limit, limit) << "of " << size;
+      EXPECT_EQ(found.at_least, limit == size - 1) << "of " << size;
+      EXPECT_FALSE(found.non_monotone) << "of " << size;
+      EXPECT_LE(static_cast<int>(found.checked.size()), most_checked_if_monotone(size));
+    }
+  }
+}
+
+// 40 points: 10 coarse and the last, 2 of the bisection inside 16..20, and the rest of two further on each
+// side of 17|18.
+TEST(LimitSearch, TriesTheWholeGridCoarselyAndTwoFurtherPointsOnEachSide) {
+  EXPECT_EQ(tried(search(stable_up_to(17, 40))),
+            (std::set<int>{0, 4, 8, 12, 15, 16, 17, 18, 19, 20, 24, 28, 32, 36, 39}));
+}
+
+TEST(LimitSearch, SaysThatNoneIsStable) {
+  const LimitSearch found = search(stable_up_to(-1, 10));
+  EXPECT_EQ(found.limit, -1);
+  EXPECT_FALSE(found.at_least);
+  EXPECT_EQ(tried(found), (std::set<int>{0, 1, 2, 4, 8, 9}));
+}
+
+TEST(LimitSearch, SaysThatTheLimitIsAtLeastTheGridsLast) {
+  const LimitSearch found = search(stable_up_to(9, 10));
+  EXPECT_EQ(found.limit, 9);
+  EXPECT_TRUE(found.at_least);
+  EXPECT_EQ(tried(found), (std::set<int>{0, 4, 7, 8, 9}));
+}
+
+TEST(LimitSearch, GoesBelowAnInstabilityThatTheFurtherChecksFind) {
+  auto verdicts = stable_up_to(17, 40);
+  verdicts[15] = false;  // two below the boundary that the bisection finds
+  const LimitSearch found = search(verdicts);
+  EXPECT_EQ(found.limit, 14);
+  EXPECT_TRUE(found.non_monotone);
+  EXPECT_TRUE(tried(found).contains(12) && tried(found).contains(13) && tried(found).contains(14));
+}
+
+TEST(LimitSearch, ReportsAStableIslandAboveTheLimit) {
+  auto verdicts = stable_up_to(17, 40);
+  verdicts[28] = true;
+  const LimitSearch found = search(verdicts);
+  EXPECT_EQ(found.limit, 17);
+  EXPECT_TRUE(found.non_monotone);
+}
+
+TEST(LimitSearch, StopsBelowTheFirstCoarseInstability) {
+  auto verdicts = stable_up_to(30, 40);
+  verdicts[8] = false;
+  const LimitSearch found = search(verdicts);
+  EXPECT_EQ(found.limit, 7);
+  EXPECT_TRUE(found.non_monotone);
+}
+
+// What the header guarantees, on 20,000 seeded grids that are stable at random.
+TEST(LimitSearch, KeepsItsGuaranteesWhateverTheVerdicts) {
+  constexpr unsigned kSeed = 20260501;
+  std::mt19937 random(kSeed);
+  for (int trial = 0; trial < 20'000; ++trial) {
+    const int size = 1 + static_cast<int>(random() % 40);
+    const int coarse = 1 + static_cast<int>(random() % 6);
+    const auto likely = 1 + random() % 20;  // from every second unstable to nearly none
+    std::vector<bool> verdicts(static_cast<std::size_t>(size));
+    for (int i = 0; i < size; ++i) verdicts[static_cast<std::size_t>(i)] = random() % (likely + 1) != 0;
+    const LimitSearch found = search(verdicts, coarse);
+    const std::set<int> indices = tried(found);
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed << ", trial " << trial);
+    ASSERT_GE(found.limit, -1);
+    ASSERT_EQ(found.at_least, found.limit == size - 1);
+    for (const CheckedStiffness& checked : found.checked) {
+      ASSERT_EQ(checked.stable, verdicts[static_cast<std::size_t>(checked.index)]);
+      ASSERT_TRUE(checked.stable || checked.index > found.limit);
+      ASSERT_FALSE(checked.stable && checked.index == found.limit + 1);
+    }
+    for (int i = found.limit - 2; i <= found.limit + 3; ++i) {
+      ASSERT_TRUE(i < 0 || i >= size || indices.contains(i)) << i;
+    }
+    for (int i = 0; i < size; i += coarse) ASSERT_TRUE(indices.contains(i)) << i;
+    ASSERT_TRUE(indices.contains(size - 1));
+  }
+}
+
+TEST(LimitSearch, RefusesAnEmptyGrid) {
+  const auto always = [](int) { return true; };
+  EXPECT_THROW(static_cast<void>(search_limit(0, always)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(search_limit(3, always, 0)), std::invalid_argument);
+}
+
+TEST(LimitSearch, LetsAnExceptionThrough) {
+  const auto fails = [](int) -> bool { throw std::runtime_error("device on fire"); };
+  EXPECT_THROW(static_cast<void>(search_limit(5, fails)), std::runtime_error);
+}
+
+// The estimate looks at both ends of a long grid only; it must be what the whole would give.
+TEST(LimitSearch, EstimatesTheMostPointsOfALongGrid) {
+  for (const int size : {1, 2, 40, 41, 42, 43, 100}) {
+    int most = 0;
+    for (int limit = -1; limit < size; ++limit)
+      most = std::max(most, static_cast<int>(search(stable_up_to(limit, size)).checked.size()));
+    EXPECT_EQ(most_checked_if_monotone(size), most) << size;
+  }
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/study/laboratory/run_study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "phalanx/record/made.h"
+#include "phalanx/record/output_file.h"
+#include "phalanx/study/laboratory/outputs.h"
+#include "record/temporary_folder.h"
+#include "study/laboratory/expect_refusal.h"
+#include "study/laboratory/synthetic.h"
+
+namespace phalanx {
+namespace {
+
+using testing::expect_refusal;
+using ::testing::HasSubstr;
+using testing::no_inputs;
+using testing::options_for;
+using testing::read_file;
+using testing::study_of;
+using testing::synthetic_trial;
+using testing::TemporaryFolder;
+
+const Study& twelve_points() {
+  static const Study study = study_of(testing::kTwelvePoints);
+  return study;
+}
+
+std::string csv_of(const std::vector<PointResult>& results) { return study_csv(twelve_points(), results); }
+
+/// An undisturbed run.
+const std::string& expected_csv() {
+  static const std::string csv = [] {
+    const TemporaryFolder folder;
+    return csv_of(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options_for(1)));
+  }();
+  return csv;
+}
+
+// By hand: gain x (500 + 4000 friction) - 5, down to the grid of 0.1 N/mm, 4 N/mm at most.
+TEST(RunStudy, FindsTheLimitOfEveryPoint) {
+  const TemporaryFolder folder;
+  const auto results = run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options_for(2));
+  const std::vector<double> limits = {400, 800, 1200, 1600, 900, 1700, 2500, 3300, 1400, 2600, 3800, 4000};
+  ASSERT_EQ(results.size(), limits.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    EXPECT_EQ(results[i].index, static_cast<int>(i));
+    EXPECT_EQ(results[i].k_lim, limits[i]) << i;
+    EXPECT_EQ(results[i].at_least, i == 11) << i;
+  }
+}
+
+TEST(RunStudy, GivesTheSameForAnyNumberOfThreads) {
+  for (const int jobs : {1, 2, 4, 7}) {
+    const TemporaryFolder folder;
+    const auto results =
+        run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options_for(jobs));
+    EXPECT_EQ(csv_of(results), expected_csv()) << jobs;
+  }
+}
+
+TEST(RunStudy, GoesOnWhereItStoppedAndRepeatsNothing) {
+  const TemporaryFolder folder;
+  std::atomic<int> calls{0};
+  const auto counted = [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
+    ++calls;
+    return synthetic_trial(overrides, k, press, seed);
+  };
+  static_cast<void>(run_study(twelve_points(), no_inputs, counted, folder.path(), options_for(2)));
+  const int all = calls;
+  EXPECT_GT(all, 0);
+  // The last two lines are lost.
+  std::string text = read_file(folder / "points.jsonl");
+  for (int i = 0; i < 2; ++i) text.resize(text.rfind('\n', text.size() - 2) + 1);
+  write_text_file(folder / "points.jsonl", text);
+  calls = 0;
+  const auto resumed = run_study(twelve_points(), no_inputs, counted, folder.path(), options_for(2));
+  EXPECT_EQ(csv_of(resumed), expected_csv());
+  EXPECT_GT(calls, 0);
+  EXPECT_LT(calls, all / 2);
+  calls = 0;
+  const auto again = run_study(twelve_points(), no_inputs, counted, folder.path(), options_for(2));
+  EXPECT_EQ(calls, 0);
+  EXPECT_EQ(csv_of(again), expected_csv());
+}
+
+TEST(RunStudy, ReportsItsProgress) {
+  const TemporaryFolder folder;
+  StudyOptions options = options_for(2);
+  std::vector<StudyProgress> seen;
+  options.progress = [&](const StudyProgress& progress) { seen.push_back(progress); };
+  static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options));
+  ASSERT_EQ(seen.size(), 13U);
+  EXPECT_TRUE(std::isnan(seen[0].remaining_s));
+  for (int i = 0; i <= 12; ++i) EXPECT_EQ(seen[static_cast<std::size_t>(i)].done, i);
+  EXPECT_EQ(seen.back().total, 12);
+  EXPECT_EQ(seen.back().remaining_s, 0.0);
+  seen.clear();
+  static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options));
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0].resumed, 12);
+}
+
+// Friction 0.2 fails at first: its three points are missing, the nine others are kept; then it works.
+TEST(RunStudy, KeepsThePointsBesideOneThatThrows) {
+  const TemporaryFolder folder;
+  bool broken = true;
+  std::atomic<int> calls{0};
+  const auto trial = [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
+    ++calls;
+    if (broken && testing::number_of(overrides, "synthetic.friction", 0.0) == 0.2)
+      throw std::runtime_error("the tendon broke");
+    return synthetic_trial(overrides, k, press, seed);
+  };
+  try {
+    static_cast<void>(run_study(twelve_points(), no_inputs, trial, folder.path(), options_for(2)));
+    ADD_FAILURE() << "nothing thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("3 of the points failed, first point 2 (none, friction 0.2): the tendon broke"));
+  }
+  const int before = calls;
+  broken = false;
+  calls = 0;
+  EXPECT_EQ(csv_of(run_study(twelve_points(), no_inputs, trial, folder.path(), options_for(2))),
+            expected_csv());
+  EXPECT_LT(calls, before);
+}
+
+TEST(RunStudy, ChecksEveryPointBeforeAnythingRuns) {
+  const TemporaryFolder folder;
+  const auto check = [](const Overrides& overrides) -> StudyInputs {
+    if (testing::number_of(overrides, "synthetic.gain", 1.0) == 3.0)
+      throw SceneError("nobody knows this key");
+    return {};
+  };
+  const auto never = [](const Overrides&, double, double, std::uint64_t) -> TrialResult {
+    ADD_FAILURE() << "ran";
+    return {};
+  };
+  expect_refusal(
+      [&] { static_cast<void>(run_study(twelve_points(), check, never, folder / "out", options_for(2))); },
+      {"study synthetic", "point 8", "friction 0", "nobody knows this key"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST(RunStudy, KnowsWhenWhatThePointsReadHasChanged) {
+  const TemporaryFolder folder;
+  std::string device = "light";
+  const auto check = [&](const Overrides&) { return StudyInputs{.text = device, .files = {}}; };
+  static_cast<void>(run_study(twelve_points(), check, synthetic_trial, folder.path(), options_for(2)));
+  device = "heavy";
+  EXPECT_THROW(
+      static_cast<void>(run_study(twelve_points(), check, synthetic_trial, folder.path(), options_for(2))),
+      std::invalid_argument);
+  StudyOptions restart = options_for(2);
+  restart.restart = true;
+  EXPECT_EQ(csv_of(run_study(twelve_points(), check, synthetic_trial, folder.path(), restart)),
+            expected_csv());
+}
+
+// A build with changes is not told from another one by its commit alone.
+TEST(RunStudy, NamesTheProgramWithItsFingerprintWhereTheCommitDoesNotSayAll) {
+  const std::string commit = built_from_commit();
+  const bool says_all = commit != "unknown" && !commit.ends_with("-dirty");
+  const std::string version = program_version();
+  EXPECT_THAT(version, ::testing::StartsWith(commit));
+  EXPECT_EQ(version.size(), commit.size() + (says_all ? 0 : 1 + 16));
+  EXPECT_EQ(program_version(), version);
+}
+
+// Measuring on would be for nothing. Once there is room again, the same call does all of it.
+TEST(RunStudy, EndsIfTheJournalCannotBeWritten) {
+  const TemporaryFolder folder;
+  StudyOptions options = options_for(2);
+  std::atomic<int> calls{0};
+  const auto filling = [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
+    // From here on no file of this process may grow: the journal's header is in place, its first point is
+    // not.
+    if (calls++ == 0) {
+      rlimit limit{};
+      ::getrlimit(RLIMIT_FSIZE, &limit);
+      limit.rlim_cur = static_cast<rlim_t>(std::filesystem::file_size(folder / "points.jsonl"));
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    return synthetic_trial(overrides, k, press, seed);
+  };
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  EXPECT_THROW(static_cast<void>(run_study(twelve_points(), no_inputs, filling, folder.path(), options)),
+               std::runtime_error);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  const std::string header = read_file(folder / "points.jsonl");
+  EXPECT_EQ(std::count(header.begin(), header.end(), '\n'), 1);
+  EXPECT_EQ(csv_of(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options)),
+            expected_csv());
+}
+
+class Shards : public ::testing::Test {
+ protected:
+  void run(int index, const std::string& into) const {
+    StudyOptions options = options_for(2);
+    options.shard = {.index = index, .count = 3};
+    const auto results = run_study(twelve_points(), no_inputs, synthetic_trial, folder / into, options);
+    EXPECT_EQ(results.size(), 4U);
+    for (const PointResult& result : results) EXPECT_EQ(result.index % 3, index - 1);
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(Shards, MergeIntoWhatOneRunGives) {
+  run(1, "a");
+  run(2, "a");  // two journals in one folder
+  run(3, "b");
+  const MergedStudy merged = merge_studies({folder / "a", folder / "b"}, folder / "all");
+  EXPECT_EQ(study_csv(merged.study, merged.results), expected_csv());
+  // And the merged folder can be taken up as if it had never been in parts.
+  const auto never = [](const Overrides&, double, double, std::uint64_t) -> TrialResult {
+    ADD_FAILURE() << "ran";
+    return {};
+  };
+  EXPECT_EQ(csv_of(run_study(twelve_points(), no_inputs, never, folder / "all", options_for(2))),
+            expected_csv());
+}
+
+TEST_F(Shards, AreListedIfTheyAreMissing) {
+  run(1, "a");
+  run(3, "b");
+  try {
+    static_cast<void>(merge_studies({folder / "a", folder / "b"}, folder / "all"));
+    ADD_FAILURE() << "merged";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("4 of 12 points are missing: 1, 4, 7, 10;"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "all"));
+}
+
+TEST_F(Shards, OfAnotherStudyAreRefused) {
+  run(1, "a");
+  StudyOptions options = options_for(2);
+  options.commit = "newer";
+  static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder / "b", options));
+  EXPECT_THROW(static_cast<void>(merge_studies({folder / "a", folder / "b"}, folder / "all")),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(merge_studies({folder / "nothing"}, folder / "all")), std::invalid_argument);
+}
+
+TEST_F(Shards, MustAgreeWhereTheyOverlap) {
+  run(1, "a");
+  static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder / "b", options_for(2)));
+  EXPECT_EQ(merge_studies({folder / "a", folder / "b"}, folder / "c").results.size(), 12U);
+  std::string text = read_file(folder / "a/points.1-of-3.jsonl");
+  const std::size_t at = text.find("\"trials\":") + 9;
+  text[at] = text[at] == '1' ? '2' : '1';
+  write_text_file(folder / "a/points.1-of-3.jsonl", text);
+  try {
+    static_cast<void>(merge_studies({folder / "a", folder / "b"}, folder / "d"));
+    ADD_FAILURE() << "merged";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("different results"));
+  }
+}
+
+TEST_F(Shards, AreRefusedUnderAnotherName) {
+  run(1, "a");
+  std::filesystem::create_directories(folder / "b");
+  std::filesystem::rename(folder / "a/points.1-of-3.jsonl", folder / "b/points.2-of-3.jsonl");
+  StudyOptions options = options_for(2);
+  options.shard = {.index = 2, .count = 3};
+  EXPECT_THROW(
+      static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder / "b", options)),
+      std::invalid_argument);
+}
+
+TEST(Shard, IsReadFromText) {
+  EXPECT_EQ(parse_shard("2/3").index, 2);
+  EXPECT_EQ(parse_shard("2/3").count, 3);
+  for (const char* text : {"", "2", "0/3", "4/3", "2/3x", "/3", "2/", "-1/3", "a/b", "1//2"})
+    EXPECT_THROW(static_cast<void>(parse_shard(text)), std::invalid_argument) << text;
+}
+
+TEST(StudyOutputs, HaveOneRowAPoint) {
+  const std::string& csv = expected_csv();
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  EXPECT_THAT(csv, ::testing::StartsWith("point,variant,synthetic.friction,k_lim_n_per_mm,at_least,"));
+  EXPECT_THAT(
+      csv,
+      HasSubstr(
+          "\n6,smoothing,0.2,2.5,false,false,false,true,2.5,2.0,5,2.25,0.05,0.02,300.0,500.0,3.0,5.0,62,0,"));
+  EXPECT_THAT(csv, HasSubstr("\n11,\"wall, \"\"local\"\"\",0.3,4.0,true,"));
+}
+
+TEST(StudyOutputs, LeaveEmptyWhatThereIsNot) {
+  PointResult result;
+  result.k_lim = 0.0;
+  EXPECT_THAT(study_csv(study_of("scene = \"a\""), {result}),
+              HasSubstr("\n0,0.0,false,false,false,false,,,0,,,,,,,,0,0,\n"));
+}
+
+TEST(StudyOutputs, SummariseWithEveryCheckedStiffness) {
+  const TemporaryFolder folder;
+  const auto results = run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options_for(2));
+  write_study_outputs(folder.path(), twelve_points(), results,
+                      {.commit = "test", .cpu = "", .compiler = "", .build_type = "", .date = ""});
+  const auto summary = nlohmann::json::parse(read_file(folder / "summary.json"));
+  EXPECT_EQ(summary["made"]["commit"], "test");
+  EXPECT_EQ(summary["study"]["seeds"], 5);
+  ASSERT_EQ(summary["points"].size(), 12U);
+  const auto& point = summary["points"][6];
+  EXPECT_EQ(point["variant"], "smoothing");
+  EXPECT_EQ(point["values"]["synthetic.friction"], 0.2);
+  EXPECT_EQ(point["k_lim_n_per_mm"], 2.5);
+  EXPECT_EQ(point["checked"].size(), results[6].checked.size());
+  EXPECT_EQ(point["checked"][0]["verdict"], "stable");
+  EXPECT_EQ(read_file(folder / "study.csv"), expected_csv());
+}
+
+}  // namespace
+}  // namespace phalanx

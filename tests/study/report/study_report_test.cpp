@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "phalanx/study/laboratory/report.h"
+#include "study/report/page_checks.h"
+#include "study/report/synthetic_study.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::vector<double> kFrictions = {0, 0.1, 0.2, 0.34, 0.5, 0.7, 1};
+const StudyAxis kFriction = numbers("device.scale.sheath_friction", "sheath friction [N]", kFrictions);
+const StudyAxis kDelay = numbers("device.delay", "delay [ms]", {1, 2, 4.5, 8});
+
+std::string page_of(const Study& study, const std::string& name = "") {
+  const std::string page = study_report_html(study, synthetic_results(study), kMadeUp);
+  EXPECT_EQ(flaw_of(page), "") << name;
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("src=")));
+  EXPECT_THAT(page, Not(HasSubstr("href=")));
+  if (!name.empty()) keep(name, page);
+  return page;
+}
+
+TEST(StudyReport, OfOneNumericAxisHasACurveForEachVariant) {
+  const std::string page =
+      page_of(synthetic_study({"none", "smoothing +-0.1", "rise-only +0.1"}, {kFriction}), "one_axis.html");
+  EXPECT_EQ(count_of(page, "class=\"curve\""), 7U * 3U);  // quantities x variants
+  EXPECT_EQ(count_of(page, "class=\"limit\""), kFrictions.size() * 3U);
+  EXPECT_THAT(page, Not(HasSubstr("class=\"scale\"")));
+  for (const char* words :
+       {">k_lim [N/mm]<", ">k_eff [N/mm]<", ">peak penetration [mm]<", ">ghost time [ms]<",
+        ">ghost energy [mJ]<", ">force swing [N]<", ">position swing [mm]<", "device.scale.sheath_friction",
+        "step.rate = 200", "Made-up numbers", "0.1 to 4 N/mm", ">1 to 20 (20 a point)<", "more than 0.5 N"})
+    EXPECT_THAT(page, HasSubstr(words));
+}
+
+TEST(StudyReport, SaysWhereItWasMade) {
+  const std::string page = page_of(synthetic_study({}, {}));
+  for (const std::string& words :
+       {kMadeUp.commit, kMadeUp.cpu, kMadeUp.compiler, kMadeUp.build_type, kMadeUp.date})
+    EXPECT_THAT(page, HasSubstr('>' + words + '<'));
+}
+
+// By hand: limit 1.6 N/mm, felt 1.44, 1.875 mm deep, ghost 80 (112) ms and 16 (19.2) mJ, swings 0.1 N and 0.1
+// mm.
+TEST(StudyReport, HasEveryNumberOfAPoint) {
+  const Study study = synthetic_study({}, {});
+  const std::string page = study_report_html(study, {synthetic_result(study, 0, 15)}, kMadeUp);
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page,
+              HasSubstr("<td class=\"n\">1.6</td><td class=\"n\">1.44</td><td class=\"n\">1.88</td>"
+                        "<td class=\"n\">80 (112)</td><td class=\"n\">16 (19.2)</td><td class=\"n\">0.1</td>"
+                        "<td class=\"n\">0.1</td><td class=\"n\">100</td>"));
+  keep("one_point.html", page);
+}
+
+TEST(StudyReport, OfTwoAxesHasAMapForEachVariantAndQuantity) {
+  const std::string page =
+      page_of(synthetic_study({"none", "smoothing"}, {kFriction, kDelay}), "two_axes.html");
+  EXPECT_EQ(count_of(page, "class=\"scale\""), 24U * 7U * 2U);  // steps of a scale x quantities x variants
+  EXPECT_EQ(count_of(page, "class=\"curve\""),
+            7U * 4U * 2U);  // over friction: a curve for each delay and variant
+}
+
+TEST(StudyReport, OfVariantsAloneHasBars) {
+  const Study study = synthetic_study({"none", "smoothing +-0.1", "smoothing +-0.05", "local wall"}, {});
+  const std::string page = page_of(study, "variants.html");
+  EXPECT_EQ(count_of(page, "class=\"bar\""), 7U * 4U);
+  EXPECT_THAT(page, Not(HasSubstr("class=\"curve\"")));
+}
+
+TEST(StudyReport, OfVariantsAndWordsHasMaps) {
+  const Study study =
+      synthetic_study({"none", "smoothing"}, {words("device.file", {"beihang", "light", "frictionless"})});
+  const std::string page = page_of(study, "words.html");
+  EXPECT_EQ(count_of(page, "class=\"scale\""), 24U * 7U);
+  EXPECT_THAT(page, HasSubstr(">frictionless<"));
+}
+
+TEST(StudyReport, OfManyAxesSaysWhatItLeavesOut) {
+  const Study study = synthetic_study(
+      {"a", "b", "c"}, {kFriction, kDelay, numbers("x.y", "stiffness [N/m]", {1, 2, 3, 4, 5})});
+  const std::string page = page_of(study, "many_axes.html");
+  EXPECT_THAT(page, HasSubstr("Maps of 12 of 15 combinations"));
+  EXPECT_THAT(page, HasSubstr("60 curves would be too many"));
+  EXPECT_THAT(page, HasSubstr("40 of 60 maps are drawn; 20 are left out."));
+}
+
+TEST(StudyReport, WithoutAGridHasNoLimit) {
+  Study study = synthetic_study({"none", "smoothing"}, {kFriction});
+  std::vector<PointResult> results = synthetic_results(study);
+  study.stiffness.reset();
+  for (PointResult& result : results) {
+    result.k_lim = PointResult::kNone;
+    result.checked = {{.n_per_mm = PointResult::kNone}};
+  }
+  results[3].stable = false;
+  const std::string page = study_report_html(study, results, kMadeUp);
+  keep("no_grid.html", page);
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page, Not(HasSubstr("k_lim")));
+  EXPECT_THAT(page, Not(HasSubstr("class=\"limit\"")));
+  EXPECT_THAT(page,
+              HasSubstr("Not stable at the stiffness of the scene: 1 point (none, sheath friction 0.34 N)."));
+}
+
+TEST(StudyReport, WarnsOfWhatIsMissingInvalidOrAtTheEdge) {
+  const Study study = synthetic_study({"none", "smoothing"}, {kFriction});
+  std::vector<PointResult> results = synthetic_results(study);
+  results[0] = synthetic_result(study, 0, -1);
+  results[1] = synthetic_result(study, 1, 39);
+  results[2].ends_in_invalid = true;
+  results[2].invalid_trials = 3;
+  results[2].why_invalid = "the torque limit acted & <stopped> it";
+  results[3].non_monotone = true;
+  results[3].checked.push_back({.n_per_mm = 3.7, .verdict = Verdict::kStable});
+  results[4].k_eff_seeds = 7;
+  results.erase(results.begin() + 10);
+  const std::string page = study_report_html(study, results, kMadeUp);
+  keep("warnings.html", page);
+  EXPECT_EQ(flaw_of(page), "");
+  for (const char* words :
+       {"13 of 14 points are finished",
+        "Not finished, of 14 points: 1 point (smoothing, sheath friction 0.34 N).",
+        "Not even the smallest stiffness, 0.1 N/mm, is stable", "Stable up to the end of the grid, 4 N/mm",
+        "3 of 102 runs were invalid", "the torque limit acted &amp; &lt;stopped&gt; it.",
+        "What ends the search is an invalid run", "stable again at 3.7 N/mm, above", "not monotone",
+        "k_eff of 7 seeds", ">missing<", ">&lt; 0.1<", ">\u2265 4<"})
+    EXPECT_THAT(page, HasSubstr(words));
+}
+
+TEST(StudyReport, WithoutAnyResultIsStillAPage) {
+  for (const Study& study :
+       {synthetic_study({}, {}), synthetic_study({"a", "b"}, {}), synthetic_study({}, {kFriction, kDelay})}) {
+    const std::string page = study_report_html(study, {}, kMadeUp);
+    EXPECT_EQ(flaw_of(page), "");
+    EXPECT_THAT(page, HasSubstr("0 of "));
+    EXPECT_THAT(page, Not(HasSubstr("nan")));
+  }
+}
+
+TEST(StudyReport, EscapesAllWords) {
+  Study study = synthetic_study({kNasty, "b"}, {kFriction, words("a.b", {kNasty, "c"})});
+  study.name = study.title = study.scene = study.axes[0].label = kNasty;
+  page_of(study);
+}
+
+TEST(StudyReport, OfTwoThousandPointsStaysSmallAndTheSame) {
+  std::vector<double> many;
+  for (int i = 0; i < 250; ++i) many.push_back(0.01 * i);
+  const Study line = synthetic_study({"a", "b", "c", "d", "e", "f", "g", "h"}, {numbers("a.b", "a.b", many)});
+  many.resize(50);
+  const Study plane = synthetic_study(
+      {}, {numbers("a.b", "a.b", many), numbers("c.d", "c.d", {many.begin(), many.begin() + 40})});
+  for (const Study& study : {line, plane}) {
+    ASSERT_EQ(point_count(study), 2000);
+    const std::string page = page_of(study, study.axes.size() == 1 ? "long_line.html" : "large_plane.html");
+    EXPECT_LT(page.size(), 4'000'000U);
+    EXPECT_TRUE(page == page_of(study));
+  }
+}
+
+TEST(StudyReport, RefusesAResultOfNoPoint) {
+  const Study study = synthetic_study({"a", "b"}, {});
+  std::vector<PointResult> results = synthetic_results(study);
+  results[1].index = 2;
+  EXPECT_THROW((void)study_report_html(study, results, kMadeUp), std::invalid_argument);
+  results[1].index = 0;
+  EXPECT_THROW((void)study_report_html(study, results, kMadeUp), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace phalanx
