@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where: program, headers, libraries, assets, scenes and the package that find_package(phalanx) reads.
+# What `cmake --install` puts where: program, headers, libraries, assets, scenes, studies and the package that find_package(phalanx) reads.
 # The two libraries install themselves into the export set, see phalanx_library() in modules.cmake.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/phalanx)
 install(TARGETS phalanx RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY include/phalanx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY assets scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx)
+install(DIRECTORY assets scenes studies DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx)
 install(FILES LICENSE NOTICE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(EXPORT phalanxTargets NAMESPACE phalanx:: DESTINATION ${package_dir})
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/scene.h"
@@ -161,24 +162,6 @@ OutputPlan plan(const SimulateOptions& options) {
   return result;
 }
 
-std::string law_text(const ForceLawParameters& law) {
-  static constexpr std::array<const char*, 5> kNames = {"Hooke", "Kelvin-Voigt", "Hunt-Crossley", "Duffing",
-                                                        "linear then cubic"};
-  return fmt::format("{}, k = {:.6g} N/mm", kNames[static_cast<std::size_t>(law.law)], 1e-3 * law.stiffness);
-}
-
-std::string parameters(const SceneDescription& scene, std::uint64_t ticks) {
-  const SmoothingParameters& s = scene.smoothing;
-  const std::string smoothing =
-      s.enabled ? fmt::format("smoothing \u2212{:.6g} to +{:.6g} N/s", -s.min_rate, s.max_rate)
-                : "no smoothing";
-  const std::string cap = scene.limits.fingertip_force_enabled
-                              ? fmt::format("fingertip limit {:.6g} N", scene.limits.fingertip_force)
-                              : "no fingertip limit";
-  return fmt::format("{}; {}; {}; {:.6g} Hz, {} ticks", law_text(scene.force), smoothing, cap, scene.rate_hz,
-                     ticks);
-}
-
 int simulate_scene(const SimulateOptions& options) {
   const OutputPlan output_plan = plan(options);
   SceneDescription scene = described(options);
@@ -213,7 +196,7 @@ int simulate_scene(const SimulateOptions& options) {
     summary.made = made_here();
     outputs.finish(
         summary,
-        {.title = scene.name, .subtitle = scene.description, .parameters = parameters(scene, ticks)});
+        {.title = scene.name, .subtitle = scene.description, .parameters = parameters_text(scene, ticks)});
   }
   if (options.quiet) return kDone;
   if (options.out.empty()) {

@@ -48,9 +48,13 @@ void write_all(const std::filesystem::path& out, const Study& study,
 
 std::string limit_text(const PointResult& result) {
   if (std::isnan(result.k_lim)) return result.stable ? "stable" : "not stable";
+  if (result.k_lim == 0.0 && result.ends_in_invalid)
+    return fmt::format("nothing is known: {} at the smallest stiffness", result.why_invalid);
   if (result.k_lim == 0.0) return "not stable at any stiffness of the grid";
-  return fmt::format("k_lim {}{:.6g} N/mm{}", result.at_least ? "at least " : "", 1e-3 * result.k_lim,
-                     result.non_monotone ? ", not monotone" : "");
+  return fmt::format(
+      "k_lim {}{:.6g} N/mm{}{}", result.at_least ? "at least " : "", result.k_lim / 1000.0,
+      result.non_monotone ? ", not monotone" : "",
+      result.ends_in_invalid ? fmt::format(", ends in an invalid run ({})", result.why_invalid) : "");
 }
 
 void print_results(const std::string& out, const Study& study, const std::vector<PointResult>& results) {

@@ -15,9 +15,9 @@
 namespace phalanx {
 namespace {
 
-/// Sliding friction at this speed; what breaks away, at rest. `extra` is added to the Coulomb friction.
-double dry_friction(const DryFriction& friction, double speed, double extra) noexcept {
-  const double coulomb = friction.coulomb + extra;
+/// Sliding friction at this speed; what breaks away, at rest.
+double dry_friction(const DryFriction& friction, double speed) noexcept {
+  const double coulomb = friction.coulomb;
   if (friction.static_ratio == 1.0) return coulomb;
   if (speed == 0.0) return coulomb * friction.static_ratio;
   const double u = std::abs(speed) / friction.stribeck_speed;
@@ -120,7 +120,11 @@ void Plant::pull(Tendon& tendon, double command) noexcept {
   Body& rotor = bodies_[tendon.rotor];
   rotor.drive = tendon.drive - tendon.elastic;
   rotor.drag = rotor.damping + tendon.active_damping;
-  rotor.sticking = dry_friction(rotor.friction, rotor.speed, tendon.capstan * std::abs(tendon.elastic));
+  const double dry = dry_friction(rotor.friction, rotor.speed);
+  const double against = tendon.capstan * std::abs(tendon.elastic);  // the motor pulls: T (exp(mu theta) - 1)
+  const double with = against / (1.0 + tendon.capstan);  // the joint pulls: T (1 - exp(-mu theta))
+  rotor.holds_winding = dry + (tendon.elastic >= 0.0 ? against : with);
+  rotor.holds_unwinding = dry + (tendon.elastic >= 0.0 ? with : against);
   for (std::size_t a = tendon.first_arm; a < tendon.last_arm; ++a) {
     Body& joint = bodies_[arms_[a].body];
     joint.drive += arms_[a].arm * tendon.elastic;
@@ -141,7 +145,8 @@ void Plant::load(const PlantInput& input, double h, double t) noexcept {
         std::clamp(finite_or_0(patient) + finite_or_0(input.push[j]), -kLargestTorque, kLargestTorque);
     body.drive = patient_torque_[i];
     body.drag = body.damping;
-    body.sticking = dry_friction(body.friction, body.speed, 0.0);
+    body.holds_winding = dry_friction(body.friction, body.speed);
+    body.holds_unwinding = body.holds_winding;
   }
   for (std::size_t i = 0; i < tendons_.size(); ++i)
     pull(tendons_[i], i < input.motor_force.size() ? input.motor_force[i] : 0.0);
@@ -155,7 +160,7 @@ bool Plant::sweep(double h) noexcept {
   const auto solve = [h, &changed](Body& body, double others) {
     // `others`: what the tendons' dampers do to it beyond its own drag
     const double momentum = body.momentum + h * others;
-    body.stopping = std::clamp(momentum, -h * body.sticking, h * body.sticking);
+    body.stopping = std::clamp(momentum, -h * body.holds_unwinding, h * body.holds_winding);
     const double next = (momentum - body.stopping) * body.inverse;
     changed = changed || std::abs(next - body.next_speed) > 1e-9 * std::abs(next);
     body.next_speed = next;

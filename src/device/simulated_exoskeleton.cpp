@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "phalanx/device/sensed_angles.h"
+
 namespace phalanx {
 namespace {
 
@@ -76,27 +78,16 @@ void SimulatedExoskeleton::take_arrived() noexcept {
 }
 
 void SimulatedExoskeleton::measure() noexcept {
-  sample_.time_s = time_s();
-  sample_.angle = open_;
+  JointArray read{};
   for (const ExoJoint& joint : exoskeleton_.joints) {
     const auto j = idx(joint.joint);
     const double angle =
         plant_.angle()[j] + (joint.sensor_noise > 0.0 ? joint.sensor_noise * noise_.normal() : 0.0);
-    sample_.angle[j] =
-        joint.sensor_lsb > 0.0 ? joint.sensor_lsb * std::round(angle / joint.sensor_lsb) : angle;
+    read[j] = joint.sensor_lsb > 0.0 ? joint.sensor_lsb * std::round(angle / joint.sensor_lsb) : angle;
     if (joint.torque_sensor) sample_.measured_torque[j] = plant_.tendon_torque()[j];
   }
-  for (const CoupledJoint& joint : exoskeleton_.coupled)
-    sample_.angle[idx(joint.joint)] = joint.ratio * sample_.angle[idx(joint.of)] + joint.offset;
-  for (int digit = 0; digit < kDigits; ++digit) {
-    const DigitCopy& copy = exoskeleton_.controller.copy[idx(digit)];
-    if (copy.of < 0) continue;
-    for (int i = 0; i < kJointsPerDigit; ++i) {
-      const auto from = idx(joint_index(copy.of, i));
-      const auto to = idx(joint_index(digit, i));
-      sample_.angle[to] = open_[to] + copy.gain * (sample_.angle[from] - open_[from]);
-    }
-  }
+  sample_.time_s = time_s();
+  sample_.angle = sensed_angles(exoskeleton_, open_, read);
 }
 
 JointArray SimulatedExoskeleton::wanted_torque() const noexcept {

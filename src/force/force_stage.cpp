@@ -78,6 +78,8 @@ Status apply_law(const ForceModel& model, const ContactRecord& record, const Pos
   return status;
 }
 
+constexpr double kNoDifference = 1e-6;  // what nobody feels [N]
+
 /// The stabiliser of one contact on the capped force of its law, and the cap on what it may have added. A cap
 /// that changes nothing that is sent, as while smoothing still climbs towards it, has not acted.
 double stabilise(const ForceModel& model, const StabiliserInput& by_law, double capped_force,
@@ -86,9 +88,10 @@ double stabilise(const ForceModel& model, const StabiliserInput& by_law, double 
   input.force = capped_force;
   StabiliserMemory without_cap = memory;
   const double force = stabilised_force(model.stabiliser, model.smoothing, input, memory);
-  if (capped_force < by_law.force &&
-      force != stabilised_force(model.stabiliser, model.smoothing, by_law, without_cap))
-    status |= Status::kForceLimited;
+  if (capped_force < by_law.force) {
+    const double uncapped = stabilised_force(model.stabiliser, model.smoothing, by_law, without_cap);
+    if (std::abs(force - uncapped) > kNoDifference) status |= Status::kForceLimited;
+  }
   const bool capped = model.limits.fingertip_force_enabled && !keeps_below_law(model.stabiliser.method);
   if (!capped || !(force > model.limits.fingertip_force)) return force;
   status |= Status::kForceLimited;
@@ -126,17 +129,18 @@ Status digit_forces(const ForceModel& model, const GdpState& contacts, int digit
 }
 
 /// Watches what the digit's segments are sent.
-/// @returns kOscillating where one of them oscillates; sets `swings` where one of those has just turned
+/// @returns kOscillating where one of them oscillates; sets `swings` where one of those has fired, or would
+/// have again
 Status watch(const ForceModel& model, int digit, ForceState& state, bool& swings) noexcept {
   Status status = Status::kOk;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     OscillationObserver& observer = state.observer[idx(segment_index(digit, k))];
     const double sent = force_of(state, digit, k).sent;
     if (sent == 0.0 && observer.idle()) continue;
-    const bool turned = observer.watch(sent, model.oscillation.swing, model.period);
+    const bool fired = observer.watch(sent, model.oscillation.swing, model.period);
     if (!observer.oscillating()) continue;
     status |= Status::kOscillating;
-    swings = swings || turned;
+    swings = swings || fired;
   }
   return status;
 }
@@ -209,7 +213,12 @@ Status compute_command(const ForceModel& model, const GdpState& contacts, const 
       add_torques(gdp, d, k, gdp.segment[idx(k)] * force.p_S, force.sent * force.normal, wanted);
     }
   }
-  for (std::size_t j = 0; j < kJoints; ++j) status |= limited_torque(model, wanted[j], state.torque[j]);
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const Status limited = limited_torque(model, wanted[j], state.torque[j]);
+    status |= limited;
+    // A wall says what the command holds of its contact: of a limited torque nobody can say that.
+    if (walls && limited != Status::kOk) withhold_walls(digit_of_joint(static_cast<int>(j)), state);
+  }
   if (model.oscillation.reaction == OscillationReaction::kHalve)
     state.stiffness_factor.advance(swings, model.period);
   state.hcp_before = hcp;

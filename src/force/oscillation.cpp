@@ -8,12 +8,13 @@ namespace phalanx {
 namespace {
 
 constexpr double kShortest = 4e-3;     // half-swing [s]
-constexpr double kLongest = 0.25;      // half-swing [s]
+constexpr double kLongest = 0.26;      // half-swing [s]
 constexpr double kThreeQuick = 0.24;   // three half-swings [s]
 constexpr double kClearsAfter = 0.5;   // [s]
 constexpr double kRamp = 0.2;          // [s]
 constexpr double kHalvesEvery = 0.5;   // [s]
 constexpr double kSmallest = 0x1p-10;  // of the factor
+constexpr double kGoesOn = 0.5;        // the last half-swing over the first of the row: less is dying out
 constexpr int kQuickLegs = 4;
 constexpr int kLegs = 6;
 
@@ -26,24 +27,29 @@ void OscillationObserver::forget_row(double force) noexcept {
   high_ = force;
 }
 
-void OscillationObserver::count(Leg leg, double force) noexcept {
+bool OscillationObserver::count(Leg leg, double force) noexcept {
   last_swing_ = high_ - low_;  // of the leg that ends here
   (leg == Leg::kRising ? high_ : low_) = force;
   leg_ = leg;
   if (legs_ > 0 && since_ >= kShortest) {
     std::copy_backward(half_swing_.begin(), half_swing_.end() - 1, half_swing_.end());
     half_swing_[0] = since_;
+    std::copy_backward(swing_.begin(), swing_.end() - 1, swing_.end());
+    swing_[0] = last_swing_;
     legs_ = std::min(legs_ + 1, kLegs);
   } else {
     legs_ = 1;
   }
   since_ = 0.0;
-  const bool quick = legs_ >= kQuickLegs && half_swing_[0] + half_swing_[1] + half_swing_[2] <= kThreeQuick;
-  if (!quick && legs_ < kLegs) return;
+  const bool quick = legs_ >= kQuickLegs && half_swing_[0] + half_swing_[1] + half_swing_[2] <= kThreeQuick &&
+                     swing_[0] >= kGoesOn * swing_[2];
+  const bool slow = legs_ >= kLegs && swing_[0] >= kGoesOn * swing_[4];
+  if (!quick && !slow) return false;
   oscillating_ = true;
   double sum = 0.0;
   for (int i = 0; i < legs_ - 1; ++i) sum += half_swing_[static_cast<std::size_t>(i)];
   frequency_ = 0.5 * (legs_ - 1) / sum;
+  return true;
 }
 
 bool OscillationObserver::watch(double force, double swing, double period) noexcept {
@@ -60,8 +66,7 @@ bool OscillationObserver::watch(double force, double swing, double period) noexc
     if (leg_ == Leg::kEither && now == 0.0) high_ = 0.0;  // no fall can count from there any more
     return false;
   }
-  count(falls ? Leg::kFalling : Leg::kRising, now);
-  return true;
+  return count(falls ? Leg::kFalling : Leg::kRising, now);
 }
 
 void StiffnessFactor::advance(bool swings, double period) noexcept {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "phalanx/force/force_law.h"
 
@@ -17,6 +16,7 @@ using DigitNormals = std::array<Vec3, kSegmentsPerDigit>;
 constexpr double kKeptFor = 0.25;        // [s]
 constexpr double kHighest = 10e-3;       // [m]
 constexpr double kFarthestAside = 3e-3;  // [m]
+constexpr double kUncapped = 1e6;        // f_max without a cap: what no device renders [N]
 
 constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
@@ -54,6 +54,17 @@ void share_the_cap(const DigitWalls& wall, const DigitNormals& normal, double ca
     const double host = std::min(w->host_force, cap);
     w->force_max = w->active ? scale * (host + share * (cap - host)) : 0.0;
   }
+}
+
+/// Makes the f_max so small that the walls together load no joint by more than the limit, whatever they do.
+void keep_torque_limit(const DigitWalls& walls, double limit) noexcept {
+  double factor = 1.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kJointsPerDigit); ++i) {
+    double most = 0.0;
+    for (const LocalWall* wall : walls) most += std::abs(wall->g[i]) * wall->force_max;
+    if (most > limit) factor = std::min(factor, limit / most);
+  }
+  for (LocalWall* wall : walls) wall->force_max *= factor;
 }
 
 /// A wall at this contact, as the host sees it.
@@ -94,6 +105,10 @@ void clear_walls(int digit, ForceState& state) noexcept {
   }
 }
 
+void withhold_walls(int digit, ForceState& state) noexcept {
+  for (int k = 0; k < kSegmentsPerDigit; ++k) state.wall[idx(segment_index(digit, k))] = {};
+}
+
 void make_walls(const ForceModel& model, const GdpState& contacts, const HandPoses& hcp, int digit,
                 bool stale, ForceState& state) noexcept {
   const DigitPose& gdp = contacts.poses.digit[idx(digit)];
@@ -130,9 +145,12 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
     add_torques(gdp, digit, k, gdp.segment[idx(k)] * remembered.p_S, remembered.normal, unit_torque);
     for (int i = 0; i < kJointsPerDigit; ++i) wall.g[idx(i)] = unit_torque[idx(joint_index(digit, i))];
   }
-  const bool capped = model.limits.fingertip_force_enabled;
-  if (capped) return share_the_cap(walls, normal, model.limits.fingertip_force);
-  for (LocalWall* wall : walls) wall->force_max = wall->active ? std::numeric_limits<double>::max() : 0.0;
+  if (model.limits.fingertip_force_enabled) {
+    share_the_cap(walls, normal, model.limits.fingertip_force);
+  } else {
+    for (LocalWall* wall : walls) wall->force_max = wall->active ? kUncapped : 0.0;
+  }
+  if (model.limits.joint_torque_enabled) keep_torque_limit(walls, model.limits.joint_torque);
 }
 
 bool remembers_walls(int digit, const ForceState& state) noexcept {

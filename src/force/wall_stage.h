@@ -15,6 +15,9 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
 /// Whether a contact of the digit that has let go is still kept.
 [[nodiscard]] bool remembers_walls(int digit, const ForceState& state) noexcept;
 
+/// No wall of the digit is sent at this tick; what is remembered of them stays.
+void withhold_walls(int digit, ForceState& state) noexcept;
+
 void clear_walls(int digit, ForceState& state) noexcept;
 
 }  // namespace phalanx

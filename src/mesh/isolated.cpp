@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -122,6 +123,13 @@ rlim_t address_space() {
   return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
+/// A child whose parent is killed would wait for ever for somebody to read what it writes, and keep every
+/// file of the parent open, with its locks.
+void end_with(pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);  // it was gone before that
+}
+
 [[noreturn]] void run_child(const std::function<TriangleMesh()>& read, int fd, const std::string& origin,
                             const IsolationLimits& limits) {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM, SIGINT})
@@ -198,10 +206,15 @@ TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::
     throw std::system_error(errno, std::generic_category(), origin + ": no pipe for the reader");
   Descriptor from_child(ends[0]);
   Descriptor to_parent(ends[1]);
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child < 0)
     throw std::system_error(errno, std::generic_category(), origin + ": no process for the reader");
-  if (child == 0) run_child(read, to_parent.get(), origin, limits);
+  if (child == 0) {
+    end_with(parent);
+    from_child.close();
+    run_child(read, to_parent.get(), origin, limits);
+  }
   to_parent.close();
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(limits.wall_seconds));

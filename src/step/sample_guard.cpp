@@ -45,10 +45,12 @@ Status SampleGuard::accept(const Sample& sample, const HandParameters& hand, con
                            double period) noexcept {
   Status status = Status::kOk;
   bad_for_ += period;
+  const double since =
+      started_ ? sample.time_s - time_s_ : period;  // NaN and the past become one period below
   if (!takes_time(sample.time_s))
     return Status::kTimeNotIncreasing | (stale() ? Status::kSampleStale : Status::kOk);
 
-  const double longest = limits.joint_speed * period;
+  const double longest = limits.joint_speed * (since > period ? std::min(since, kStaleAfter) : period);
   for (std::size_t j = 0; j < kJoints; ++j) {
     const double measured = sample.angle[j];
     if (!std::isfinite(measured)) {

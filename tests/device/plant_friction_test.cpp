@@ -106,11 +106,13 @@ double breakaway_tension(double static_ratio, double capstan) {
   return held;
 }
 
-// The tension adds capstan times itself to the Coulomb friction: T = r (1 + c T), T = r / (1 - r c).
+// The joint pulls the tendon out, so that a tension T meets T (1 - exp(-mu theta)) = c T / (1 + c) beside
+// Coulomb's r: it gives way at T = r (1 + c). However long the sheath, it never locks by the capstan alone.
 TEST(PlantFriction, ATensionedTendonSticksToItsSheathTheHarder) {
   EXPECT_NEAR(breakaway_tension(1.0, 0.0), 1.0, 3e-3);
-  EXPECT_NEAR(breakaway_tension(1.0, 0.2), 1.25, 3e-3);
-  EXPECT_NEAR(breakaway_tension(1.25, 0.2), 1.25 / 0.75, 3e-3);
+  EXPECT_NEAR(breakaway_tension(1.0, 0.2), 1.2, 3e-3);
+  EXPECT_NEAR(breakaway_tension(1.25, 0.2), 1.5, 3e-3);
+  EXPECT_NEAR(breakaway_tension(1.0, 1.5), 2.5, 6e-3);
 }
 
 }  // namespace

@@ -5,43 +5,21 @@
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
+#include "support/stabilised_hands.h"
 
 namespace phalanx {
 namespace {
 
 using test::at;
+using test::ball_model;
+using test::floor_model;
+using test::grasp;
 using test::index_angles;
 using test::index_segment;
+using test::joints_of;
 using test::kIndex;
 using test::moved;
 using test::Runner;
-
-/// A slab 20 mm below the straight index finger.
-HapticModel floor_model(Stabiliser method) {
-  HapticModel model(test::simple_hand(),
-                    ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
-  model.stabiliser.method = method;
-  return model;
-}
-/// A ball under the proximal phalanx, which the whole finger can close around.
-HapticModel ball_model(Stabiliser method) {
-  HapticModel model(test::simple_hand(),
-                    ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
-  model.stabiliser.method = method;
-  return model;
-}
-/// Around the ball and open again, `n` from 0 to 300.
-JointArray grasp(int n) {
-  const double close = n <= 150 ? n / 150.0 : (300 - n) / 150.0;
-  return index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close);
-}
-
-DigitJoints joints_of(const JointArray& angle, int digit) {
-  DigitJoints out{};
-  for (int i = 0; i < kJointsPerDigit; ++i)
-    out[static_cast<std::size_t>(i)] = angle[static_cast<std::size_t>(joint_index(digit, i))];
-  return out;
-}
 
 // At the angles that made them the walls are the host's forces and torques.
 TEST(LocalWall, IsTheHostsCommandAtItsReference) {
@@ -108,8 +86,34 @@ TEST(LocalWall, IsNotThereUnderAnotherMethodOrWithoutContact) {
     for (const LocalWall& wall : hand.now().wall) active += wall.active ? 1 : 0;
     EXPECT_EQ(active > 0, method == Stabiliser::kLocalWall);
     hand.move(grasp(0), 100);
+    hand.move(grasp(0), 60);  // longer than a wall that was left is kept
     for (const LocalWall& wall : hand.now().wall) EXPECT_FALSE(wall.active);
   }
+}
+
+// A finger that has just left meets the same plane when it comes back: as high above it as it is, with no
+// force.
+TEST(LocalWall, IsKeptForAWhileAfterTheContactLetsGo) {
+  const HapticModel model = floor_model(Stabiliser::kLocalWall);
+  Runner hand(model);
+  const std::size_t tip = static_cast<std::size_t>(segment_index(kIndex, 2));
+  hand.move(index_angles(0.28), 60);
+  ASSERT_TRUE(hand.now().segment[tip].contact);
+  const double stiffness = hand.now().wall[tip].stiffness;
+  for (int n = 0; n < 40 && hand.now().segment[tip].contact; ++n) hand.tick(index_angles(0.28 - 0.01 * n));
+  ASSERT_FALSE(hand.now().segment[tip].contact);
+  const LocalWall left = hand.now().wall[tip];
+  ASSERT_TRUE(left.active);
+  EXPECT_LE(left.d_ref, 0.0);
+  EXPECT_EQ(left.stiffness, stiffness);
+  EXPECT_EQ(left.host_force, 0.0);
+  const DigitJoints here = joints_of(hand.now().hcp_angle, kIndex);
+  DigitJoints back = here;
+  back[0] += 0.05;  // flexes into the plane again
+  EXPECT_EQ(local_wall_force(left, here, here), 0.0);
+  EXPECT_GT(local_wall_force(left, back, here), 0.1);
+  for (int n = 0; n < 51; ++n) hand.tick(hand.now().hcp_angle);  // 0.25 s
+  EXPECT_FALSE(hand.now().wall[tip].active);
 }
 
 }  // namespace

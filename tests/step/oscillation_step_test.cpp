@@ -9,11 +9,13 @@
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
+#include "support/stabilised_hands.h"
 
 namespace phalanx {
 namespace {
 
 using test::at;
+using test::floor_model;
 using test::index_angles;
 using test::index_segment;
 using test::kIndex;
@@ -22,13 +24,6 @@ using test::Runner;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A slab 20 mm below the straight index finger.
-HapticModel floor_model(Stabiliser method) {
-  HapticModel model(test::simple_hand(),
-                    ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
-  model.stabiliser.method = method;
-  return model;
-}
 /// The index on the floor, shaking at 10 Hz about a depth, `n` ticks from the start.
 JointArray shaking(double rest, int n) {
   return index_angles(rest + 0.02 * std::sin(2.0 * std::numbers::pi * 10.0 * 0.005 * n));

@@ -11,12 +11,17 @@
 #include "phalanx/step/haptic_step.h"
 #include "support/count_allocations.h"
 #include "support/simple_hand.h"
+#include "support/stabilised_hands.h"
 
 namespace phalanx {
 namespace {
 
 using test::at;
+using test::ball_model;
+using test::floor_model;
+using test::grasp;
 using test::index_angles;
+using test::joints_of;
 using test::kIndex;
 using test::moved;
 using test::Runner;
@@ -34,33 +39,6 @@ constexpr std::array<Stabiliser, 10> kAll = {Stabiliser::kNone,
                                              Stabiliser::kPassivity,
                                              Stabiliser::kEnergyBounding,
                                              Stabiliser::kLocalWall};
-
-/// A slab 20 mm below the straight index finger.
-HapticModel floor_model(Stabiliser method) {
-  HapticModel model(test::simple_hand(),
-                    ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
-  model.stabiliser.method = method;
-  return model;
-}
-/// A ball under the proximal phalanx, which the whole finger can close around.
-HapticModel ball_model(Stabiliser method) {
-  HapticModel model(test::simple_hand(),
-                    ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
-  model.stabiliser.method = method;
-  return model;
-}
-/// Around the ball and open again, `n` from 0 to 300.
-JointArray grasp(int n) {
-  const double close = n <= 150 ? n / 150.0 : (300 - n) / 150.0;
-  return index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close);
-}
-
-DigitJoints joints_of(const JointArray& angle, int digit) {
-  DigitJoints out{};
-  for (int i = 0; i < kJointsPerDigit; ++i)
-    out[static_cast<std::size_t>(i)] = angle[static_cast<std::size_t>(joint_index(digit, i))];
-  return out;
-}
 
 TEST(StabiliserStep, EveryMethodSendsNothingBeforeAndAfterAGrasp) {
   for (const Stabiliser method : kAll) {

@@ -18,8 +18,10 @@ struct DryFriction {
   double coulomb = 0.0;         ///< Fc >= 0
   double static_ratio = 1.0;    ///< r >= 1: breakaway over sliding friction
   double stribeck_speed = 1.0;  ///< vs > 0
-  double capstan =
-      0.0;  ///< tendon only: exp(mu theta) - 1 >= 0; the tendon's tension times this is added to Fc
+  /// Tendon only: c = exp(mu theta) - 1 >= 0 of the sheath's bends. With tension T it adds c T while the
+  /// motor winds up against the tension, c T / (1 + c) while the joint pulls the tendon out.       capstan
+  /// (Euler, Eytelwein)
+  double capstan = 0.0;
 };
 
 /// One joint of the hand with the links that the device straps to it.

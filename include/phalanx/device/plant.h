@@ -93,10 +93,11 @@ class Plant {
     double mass = 0.0, damping = 0.0;  ///< own viscous damping, the patient's included
     DryFriction friction{};
     double position = 0.0, speed = 0.0, next_speed = 0.0;
-    double drive = 0.0;     ///< sum of the forces of this step that do not depend on speeds
-    double drag = 0.0;      ///< damping of all that acts on it, tendons included
-    double sticking = 0.0;  ///< largest dry friction of this step
-    double stopping = 0.0;  ///< impulse that dry friction took in this step
+    double drive = 0.0;            ///< sum of the forces of this step that do not depend on speeds
+    double drag = 0.0;             ///< damping of all that acts on it, tendons included
+    double holds_winding = 0.0;    ///< largest dry friction of this step against a rising position
+    double holds_unwinding = 0.0;  ///< and against a falling one
+    double stopping = 0.0;         ///< impulse that dry friction took in this step
     double momentum = 0.0;  ///< at the end of this step, but for dry friction and other bodies' speeds; ...
     double inverse = 0.0;   ///< ... times this it is the speed
   };

@@ -14,7 +14,8 @@ namespace phalanx {
 ///   f = clamp(k (d_ref - g . (q - q_ref)), 0, f_max)     torque of the digit's joint i: g_i f
 /// in place of the torque g_i host_force that the host's command holds for this contact. A controller that
 /// knows it adds sum g (f - host_force) to the host's torques and then applies all its own limits; after
-/// Snapshot::wall_valid_for it adds nothing.
+/// Snapshot::wall_valid_for it adds nothing. The f_max keep the host's fingertip cap and joint torque limit
+/// whatever the angles do; a digit whose torque the host has limited at this step sends no walls.
 struct LocalWall {
   bool active = false;
   std::array<double, kJointsPerDigit> g{};  ///< n'J: the force's direction through the digit's joints, at the

@@ -22,16 +22,17 @@ inline constexpr OscillationParameters kDefaultOscillation{};
 /// `swing` from the extreme before it; the time from one leg's count to the next is a half-swing. It fires at
 /// the
 ///   4th leg in a row if the three half-swings between took at most 240 ms together (6.25 Hz and up), or
-///   6th leg in a row if each half-swing took at most 250 ms (2 Hz and up)
-/// so that an oscillation of 8 Hz or more is seen within 200 ms of its first full swing, and a press, a bump,
-/// a release or a double tap is not one. Tapping faster than that, for longer than that, looks the same as an
-/// oscillation and is reported as one. A half-swing below 4 ms is noise between two steps: it starts a new
-/// row, and so does a leg after more than 250 ms, which may go either way. The verdict holds until 0.5 s have
-/// passed without a leg. Memory O(1); bounded and finite whatever arrives. The rule is ours.
+///   6th leg in a row if each half-swing took at most 260 ms (2 Hz and up)
+/// where the last half-swing is at least half the first of these: what dies out faster is the end of a
+/// bump. So an oscillation of 8 Hz or more is seen within 200 ms of its first full swing, and a press, a
+/// bump, a release or a double tap is not one. Tapping faster than that, for longer than that, looks the same
+/// as an oscillation and is reported as one. A half-swing below 4 ms is noise between two steps: it starts a
+/// new row, and so does a leg after more than 260 ms, which may go either way. The verdict holds until 0.5 s
+/// have passed without a leg. Memory O(1); bounded and finite whatever arrives. The rule is ours.
 class OscillationObserver {
  public:
   /// One step. @param force  magnitude [N]; not finite counts as 0   @param period  of a step [s] > 0
-  /// @returns whether a leg was counted in this step
+  /// @returns whether it has fired, or would have again, in this step
   /// Real-time: O(1), no allocation, lock, throw or I/O.
   bool watch(double force, double swing, double period) noexcept;
 
@@ -49,11 +50,12 @@ class OscillationObserver {
   enum class Leg : std::uint8_t { kEither, kRising, kFalling };
 
   void forget_row(double force) noexcept;
-  void count(Leg leg, double force) noexcept;
+  bool count(Leg leg, double force) noexcept;
 
   static constexpr std::size_t kMostHalfSwings = 5;
 
   std::array<double, kMostHalfSwings> half_swing_{};  ///< [s], the latest first
+  std::array<double, kMostHalfSwings> swing_{};       ///< their sizes [N]
   double low_ = 0.0;    ///< falling: so far; rising: where this leg began; either: since the row ended [N]
   double high_ = 0.0;   ///< the same of the highest [N]
   double since_ = 0.0;  ///< time since the last leg was counted, while that matters [s]

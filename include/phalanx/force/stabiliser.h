@@ -48,7 +48,7 @@ struct StabiliserInput {
   double depth = 0.0;      ///< d into the object [m]; the contact may be there before it is deep: then <= 0
   double speed = 0.0;      ///< dd/dt > 0 pressing in, low-passed at force.velocity_lowpass_hz [m/s]
   double speed_now = 0.0;  ///< the same of this step alone, not filtered [m/s]
-  double sent = 0.0;       ///< F', the force sent at the last step, after all limits [N] >= 0
+  double sent = 0.0;       ///< F', the force sent at the last step, after the caps [N] >= 0
   bool pressing = false;   ///< there is a contact and its forces count
   double period = 0.005;   ///< T of one step [s] > 0
 };

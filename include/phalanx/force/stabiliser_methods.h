@@ -34,9 +34,10 @@ namespace phalanx {
 /// contact, with the force really sent; where it is negative the contact has made energy, and a damper takes
 /// it back:
 ///   E += T F' v,     a = min(-E / (T v^2), a_max) where E < 0, else 0,     out = max(0, F + a v)
-/// F' is held over the step in which the finger moved v T, so T F' v is exact for a zero-order hold; it holds
-/// the damper's own share. Hannaford, Ryu, "Time-domain passivity control of haptic interfaces", IEEE Trans.
-/// Robotics Automation 18(1), 2002, whose E takes the law's force and the damper's apart.
+/// F' holds the damper's own share. T F' v is exact where F' is held over the step in which the finger moved
+/// v T; of a device that answers later, with delays or behind a torque limit, the host sees only this
+/// estimate. Hannaford, Ryu, "Time-domain passivity control of haptic interfaces", IEEE Trans. Robotics
+/// Automation 18(1), 2002, whose E takes the law's force and the damper's apart.
 /// @param energy  E on entry and on return, kept within +-1000 J
 [[nodiscard]] double passive_force(double target, double previous, double speed, double damping_max,
                                    double period, double& energy) noexcept;

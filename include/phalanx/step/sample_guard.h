@@ -18,8 +18,8 @@ class SampleGuard {
   explicit SampleGuard(const JointArray& open) noexcept : angle_(open) {}
 
   /// A NaN or infinite angle keeps its last good value; an angle out of range is clamped; one that moved
-  /// faster than limits.joint_speed is slewed at that speed; a sample whose time is not later than the last
-  /// one's keeps all angles. The first sample is not slewed.
+  /// faster than limits.joint_speed since the last sample that was used is slewed at that speed; a sample
+  /// whose time is not later than the last one's keeps all angles. The first sample is not slewed.
   /// @param period  nominal period of a step [s]
   /// After 5 refused samples in a row whose times increase among themselves the device's clock has restarted:
   /// its samples are used again, slewed.

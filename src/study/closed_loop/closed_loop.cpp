@@ -4,6 +4,13 @@
 #include <memory>
 
 namespace phalanx {
+namespace {
+
+/// A step of the host that falls on a tick of the controller uses that tick's sample, however the two sums of
+/// periods are rounded [s].
+constexpr double kClock = 1e-9;
+
+}  // namespace
 
 void run_closed_loop(
     const HapticModel& model, SimulatedExoskeleton& device, const Intention& intention, double seconds,
@@ -21,7 +28,7 @@ void run_closed_loop(
     const double next = now + device.period();
     for (;; ++host_tick) {
       const double t = (static_cast<double>(host_tick) + host_phase) * host_period;
-      if (t >= next) break;
+      if (t >= next - kClock) break;
       step(model, device.sample(), *state);
       device.send(state->snapshot(), t + compute_delay);
       observer(t, state->snapshot(), device);

@@ -32,8 +32,8 @@ PressIntent::PressIntent(const PressPlan& plan, const PatientParameters& patient
     Digit& digit = digit_[d];
     digit.press = &*plan.digit[d];
     digit.approach = room_before(*digit.press, hand);
-    const double force = press * random.between(1.0 - patient.press_spread, 1.0 + patient.press_spread);
-    digit.end = force * (1.0 / digit.press->stiffness + 1.0 / wall);
+    digit.force = press * random.between(1.0 - patient.press_spread, 1.0 + patient.press_spread);
+    digit.end = digit.force * (1.0 / digit.press->stiffness + 1.0 / wall);
     digit.speed = random.between(patient.approach_min, patient.approach_max);
     for (Wave& wave : digit.tremor) {
       wave.frequency = random.between(patient.tremor_min_hz, patient.tremor_max_hz);
@@ -52,6 +52,15 @@ double PressIntent::way(const Digit& digit, double t) const noexcept {
          std::sin(2.0 * std::numbers::pi * wave.frequency * t + wave.phase);
   }
   return x;
+}
+
+double PressIntent::arrival() const noexcept {
+  double latest = schedule_.start;
+  for (const Digit& digit : digit_) {
+    if (digit.press != nullptr)
+      latest = std::max(latest, schedule_.start + (digit.approach + digit.end) / digit.speed);
+  }
+  return latest;
 }
 
 JointArray PressIntent::angle(double t) const noexcept {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "phalanx/device/sensed_angles.h"
 #include "phalanx/study/simulate.h"
 
 namespace phalanx {
@@ -81,7 +82,10 @@ PressPlan plan_press(const HapticModel& model, const Motion& motion, const Exosk
       }
     }
   };
-  simulate(model, motion, tick_count(motion.duration(), model.rate_hz), {.tick = watch, .progress = {}});
+  // The hand as the host is told of it: joints without a sensor stay open, coupled and copied ones follow.
+  Motion sensed = motion;
+  for (JointArray& angle : sensed.angle) angle = sensed_angles(exoskeleton, plan.open, angle);
+  simulate(model, sensed, tick_count(sensed.duration(), model.rate_hz), {.tick = watch, .progress = {}});
   if (!any)
     throw std::invalid_argument(
         "the motion brings none of the digits that the device moves to the object; change [motion] or the "

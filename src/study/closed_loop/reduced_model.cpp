@@ -91,6 +91,7 @@ TrialResult run_reduced_trial(const ReducedModel& model, const SmoothingParamete
   SimulatedExoskeleton device(model.exoskeleton, model.patient, hand.open_angle, intent.angle(0.0),
                               sensor_seed(seed));
   TrialObserver watching(plan, schedule);
+  watching.expect(intent);
   Snapshot snapshot;
   const double period = 1.0 / model.rate_hz;
   double host = clock_phase(seed) * period;
@@ -103,7 +104,7 @@ TrialResult run_reduced_trial(const ReducedModel& model, const SmoothingParamete
     for (; host < next; host += period) {
       press_on_wall(model, smoothing, stiffness, device.sample().angle[kJ], snapshot);
       device.send(snapshot, host + model.exoskeleton.controller.compute_delay);
-      watching.add(host, snapshot);
+      watching.add(host, snapshot, device.rendered().torque);
     }
     move.to = intent.angle(next);
     move.push = intent.push(now);

@@ -2,6 +2,7 @@
 #include "phalanx/study/closed_loop/stability_criterion.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace phalanx {
 namespace {
@@ -20,6 +21,17 @@ std::string limiters_in(Status status) {
     names += (names.empty() ? "" : ", ") + std::string(status_name(bit));
   }
   return names;
+}
+
+/// The force along the press that these torques are: the f whose torques g f come nearest to them [N].
+double force_of(const DigitPress& press, const JointArray& torque) noexcept {
+  double along = 0.0;
+  double size = 0.0;
+  for (std::size_t j = 0; j < torque.size(); ++j) {
+    along += press.g[j] * torque[j];
+    size += press.g[j] * press.g[j];
+  }
+  return along / size;
 }
 
 }  // namespace
@@ -53,20 +65,17 @@ void TrialObserver::watch_window(const Snapshot& snapshot) {
   }
 }
 
-void TrialObserver::watch_ghost(double t, const Snapshot& snapshot) {
+void TrialObserver::watch_ghost(double t, const Snapshot& snapshot, const JointArray& rendered) {
   for (std::size_t d = 0; d < ghost_.size(); ++d) {
     if (!plan_.digit[d]) continue;
     const DigitPress& press = *plan_.digit[d];
     Ghost& ghost = ghost_[d];
     const auto s = idx(press.segment);
     const double x = press.normal.dot(snapshot.hcp_pose[s] * press.p_S - press.point);  // above the wall
-    double force = 0.0;
+    const double force = force_of(press, rendered);
     bool inside = false;
-    for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      const SegmentSnapshot& segment = snapshot.segment[idx(segment_index(static_cast<int>(d), k))];
-      force += segment.force;
-      inside = inside || segment.depth > 0.0;
-    }
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      inside = inside || snapshot.segment[idx(segment_index(static_cast<int>(d), k))].depth > 0.0;
     if (inside) {
       ghost = {.pressed = true, .left = false, .left_at = t, .ended_at = t, .before = x, .energy = 0.0};
     } else if (ghost.pressed && force > criterion_.ghost_force) {
@@ -78,18 +87,54 @@ void TrialObserver::watch_ghost(double t, const Snapshot& snapshot) {
   }
 }
 
-void TrialObserver::add(double t, const Snapshot& snapshot) {
+void TrialObserver::add(double t, const Snapshot& snapshot, const JointArray& rendered,
+                        const JointArray& unrendered) {
   for (const SegmentSnapshot& segment : snapshot.segment) peak_depth_ = std::max(peak_depth_, segment.depth);
-  if (t < schedule_.release) limited_ |= snapshot.status;
-  if (t >= schedule_.window_begin && t < schedule_.window_end) watch_window(snapshot);
-  if (t >= schedule_.release) watch_ghost(t, snapshot);
+  if (t < schedule_.release) {
+    limited_ |= snapshot.status;
+    halved_ = halved_ || snapshot.stiffness_factor < 1.0;
+  }
+  if (t >= schedule_.window_begin && t < schedule_.window_end) {
+    watch_window(snapshot);
+    for (std::size_t d = 0; d < kDigits; ++d)
+      if (plan_.digit[d]) unrendered_sum_[d] += std::abs(force_of(*plan_.digit[d], unrendered));
+  }
+  if (t >= schedule_.release) watch_ghost(t, snapshot, rendered);
 }
 
+void TrialObserver::expect(const PressIntent& intent) {
+  for (int digit = 0; digit < kDigits; ++digit) meant_[idx(digit)] = intent.force(digit);
+  arrival_ = intent.arrival();
+}
+
+/// Of the digits that press, the segment with the largest mean force.
 std::size_t TrialObserver::pressing_segment() const noexcept {
   std::size_t best = 0;
-  for (std::size_t s = 1; s < watched_.size(); ++s)
-    if (watched_[s].force_sum > watched_[best].force_sum) best = s;
+  double most = -1.0;
+  for (std::size_t s = 0; s < kPalm; ++s) {
+    if (!plan_.digit[s / kSegmentsPerDigit] || watched_[s].force_sum <= most) continue;
+    most = watched_[s].force_sum;
+    best = s;
+  }
   return best;
+}
+
+/// Empty if the trial proves something.
+std::string TrialObserver::why_invalid(bool touched, bool swings) const {
+  if (!touched) return "no contact in the window";
+  if (arrival_ > schedule_.window_begin - criterion_.rest) return "the finger was still on its way";
+  const std::string limiters = limiters_in(limited_);
+  if (!limiters.empty()) return limiters;
+  if (halved_) return "stiffness halved";
+  const std::size_t pressing = pressing_segment();
+  const double mean = watched_[pressing].force_sum / window_ticks_;
+  if (!swings && mean < criterion_.least_press * meant_[pressing / kSegmentsPerDigit])
+    return "the finger hardly presses";
+  const std::size_t digit = pressing / kSegmentsPerDigit;
+  if (!swings && unrendered_sum_[digit] / window_ticks_ > criterion_.most_unrendered * meant_[digit] &&
+      meant_[digit] > 0.0)
+    return "the motors render less than is sent";
+  return "";
 }
 
 TrialResult TrialObserver::result() const {
@@ -101,11 +146,9 @@ TrialResult TrialObserver::result() const {
     result.force_swing = std::max(result.force_swing, watched.force.swing());
     result.position_swing = std::max(result.position_swing, watched.position.swing());
   }
-  result.stable = touched && result.force_swing <= criterion_.force_swing &&
-                  result.position_swing <= criterion_.position_swing;
-  const std::string limiters = limiters_in(limited_);
-  if (!touched) result.why_invalid = "no contact in the window";
-  if (!limiters.empty()) result.why_invalid = limiters;
+  result.stable =
+      result.force_swing <= criterion_.force_swing && result.position_swing <= criterion_.position_swing;
+  result.why_invalid = why_invalid(touched, !result.stable);
   result.valid = result.why_invalid.empty();
   result.peak_depth = peak_depth_;
   if (window_ticks_ > 0) {

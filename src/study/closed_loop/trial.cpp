@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/study/closed_loop/trial.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <deque>
 #include <mutex>
+#include <stdexcept>
 #include <utility>
 
 #include "phalanx/scene/build_model.h"
@@ -39,6 +42,17 @@ class Setups {
   std::deque<std::pair<Overrides, std::shared_ptr<const TrialSetup>>> kept_;
 };
 
+/// @throws std::invalid_argument
+void refuse_bump_in_window(const PatientParameters& patient, const TrialSchedule& schedule) {
+  const double end = patient.bump_start + patient.bump_duration;
+  if (patient.bump == 0.0 || end <= schedule.window_begin) return;
+  throw std::invalid_argument(
+      fmt::format("patient: the bump from {} to {} s reaches into the window from {} s on in which a trial "
+                  "is judged; let "
+                  "it end before",
+                  patient.bump_start, end, schedule.window_begin));
+}
+
 }  // namespace
 
 std::shared_ptr<const TrialSetup> make_trial_setup(const SceneDescription& scene) {
@@ -47,6 +61,7 @@ std::shared_ptr<const TrialSetup> make_trial_setup(const SceneDescription& scene
                                                        .patient = load_patient(scene),
                                                        .plan = {},
                                                        .schedule = {}});
+  refuse_bump_in_window(setup->patient, setup->schedule);
   setup->plan = plan_press(setup->model, build_motion(scene), setup->exoskeleton, setup->patient);
   return setup;
 }
@@ -62,12 +77,13 @@ TrialResult run_trial(const TrialSetup& setup, double stiffness, double press, s
   SimulatedExoskeleton device(setup.exoskeleton, setup.patient, hand.open_angle, intent.angle(0.0),
                               sensor_seed(seed), setup.step);
   TrialObserver watching(setup.plan, setup.schedule);
+  watching.expect(intent);
   run_closed_loop(
       model, device,
       {.angle = [&](double t) { return intent.angle(t); }, .push = [&](double t) { return intent.push(t); }},
       setup.schedule.end, clock_phase(seed),
       [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton& exoskeleton) {
-        watching.add(t, snapshot);
+        watching.add(t, snapshot, exoskeleton.rendered().torque, exoskeleton.rendered().unrendered);
         if (observer) observer(t, snapshot, exoskeleton);
       });
   return watching.result();

@@ -5,52 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 #include "phalanx/device/simulated_exoskeleton.h"
+#include "study/experiments/swing_watch.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kSwing = 0.5;          // [N]
-constexpr double kSwingWithin = 0.125;  // a period at 8 Hz [s]
-constexpr double kSustained = 0.2;      // [s]
-
-/// Looks for a force that rises and falls, or falls and rises, by more than kSwing within kSwingWithin, and
-/// goes on doing so for kSustained: a bounce or a bump is over before.
-class SwingWatch {
- public:
-  /// @returns since when the force has swung, once it has done so for kSustained; else NaN [s]
-  double add(double t, double force) {
-    if (!swings(t, force)) {
-      since_ = std::numeric_limits<double>::quiet_NaN();
-    } else if (std::isnan(since_)) {
-      since_ = t;
-    }
-    return t - since_ >= kSustained ? since_ : std::numeric_limits<double>::quiet_NaN();
-  }
-
- private:
-  bool swings(double t, double force) {
-    recent_.push_back({t, force});
-    while (recent_.front().t < t - kSwingWithin) recent_.pop_front();
-    double low = force, high = force, rise = 0.0, fall = 0.0;
-    for (const Point& point : recent_) {  // oldest first
-      if (&point == &recent_.front()) low = high = point.force;
-      low = std::min(low, point.force);
-      high = std::max(high, point.force);
-      rise = std::max(rise, point.force - low);
-      fall = std::max(fall, high - point.force);
-    }
-    return rise > kSwing && fall > kSwing;
-  }
-
-  struct Point {
-    double t, force;
-  };
-  std::deque<Point> recent_;
-  double since_ = std::numeric_limits<double>::quiet_NaN();
-};
 
 class CurveRecorder {
  public:
@@ -88,7 +48,12 @@ class CurveRecorder {
 
 int LoopRun::stable() const {
   return static_cast<int>(
-      std::count_if(trials.begin(), trials.end(), [](const TrialResult& t) { return t.stable; }));
+      std::count_if(trials.begin(), trials.end(), [](const TrialResult& t) { return t.stable && t.valid; }));
+}
+
+int LoopRun::unstable() const {
+  return static_cast<int>(
+      std::count_if(trials.begin(), trials.end(), [](const TrialResult& t) { return !t.stable; }));
 }
 
 double LoopRun::largest_force_swing() const {
@@ -116,19 +81,22 @@ LoopRun run_loop(const std::string& name, const std::string& scene, const Overri
     Detection& detection = run.detections[at];
     std::array<SwingWatch, kSegments> watch;
     CurveRecorder recorder(run.curves);
-    run.trials[at] =
-        run_trial(*setup, kAsItIs, kAsItIs, static_cast<std::uint64_t>(i) + 1,
-                  [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton&) {
-                    if (t < setup->schedule.release) {
-                      for (std::size_t s = 0; s < kSegments; ++s) {
-                        const double since = watch[s].add(t, snapshot.segment[s].force);
-                        if (std::isnan(detection.swung_s)) detection.swung_s = since;
-                      }
-                      if (has(snapshot.status, Status::kOscillating) && std::isnan(detection.fired_s))
-                        detection.fired_s = t;
-                    }
-                    if (i == 0) recorder.add(t, snapshot);
-                  });
+    run.trials[at] = run_trial(
+        *setup, kAsItIs, kAsItIs, static_cast<std::uint64_t>(i) + 1,
+        [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton& device) {
+          if (t < setup->schedule.release) {
+            for (std::size_t s = 0; s < kSegments; ++s) {
+              const double since = watch[s].add(t, snapshot.segment[s].force);
+              if (std::isnan(detection.swung_s)) detection.swung_s = since;
+            }
+            if (has(snapshot.status, Status::kOscillating) && std::isnan(detection.fired_s))
+              detection.fired_s = t;
+          }
+          if (i > 0) return;
+          recorder.add(t, snapshot);
+          for (std::size_t j = 0; j < kJoints; ++j)
+            run.unrendered[j] = std::max(run.unrendered[j], std::abs(device.rendered().unrendered[j]));
+        });
     if (i == 0) recorder.finish();
   });
   return run;

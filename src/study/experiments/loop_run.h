@@ -25,8 +25,8 @@ struct LoopCurves {
 /// When the on-line observer fired beside when it should have.
 struct Detection {
   static constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
-  /// From when on a segment's force swings by more than 0.5 N and back within 125 ms (8 Hz), again and again for at
-  /// least 200 ms [s]
+  /// From when on a segment's force swings by more than 0.5 N and back within 125 ms (8 Hz), again and again
+  /// for at least 200 ms [s]
   double swung_s = kNever;
   double fired_s = kNever;  ///< first time at which the snapshot said `oscillating`
 };
@@ -36,9 +36,11 @@ struct LoopRun {
   double stiffness = 0.0;
   std::vector<TrialResult> trials;  ///< seeds 1, 2, ..
   std::vector<Detection> detections;
-  LoopCurves curves;  ///< of seed 1
+  LoopCurves curves;        ///< of seed 1
+  JointArray unrendered{};  ///< largest torque of each joint that no motor could render, of seed 1 [Nm]
 
-  [[nodiscard]] int stable() const;  ///< number of seeds
+  [[nodiscard]] int stable() const;    ///< number of seeds that are stable and valid
+  [[nodiscard]] int unstable() const;  ///< number of seeds that swing too far, valid or not
   [[nodiscard]] double largest_force_swing() const;
   [[nodiscard]] double largest_position_swing() const;
 };

@@ -6,6 +6,7 @@
 
 #include "phalanx/record/made.h"
 #include "phalanx/study/experiments.h"
+#include "study/made_json.h"
 
 namespace phalanx {
 namespace {
@@ -101,12 +102,7 @@ std::string fig8_json(const std::vector<Fig8Situation>& situations) {
     }
     json["situations"].push_back(entry);
   }
-  const Made made = made_here();
-  json["made"] = {{"commit", made.commit},
-                  {"cpu", made.cpu},
-                  {"compiler", made.compiler},
-                  {"build_type", made.build_type},
-                  {"date", made.date}};
+  json["made"] = made_json(made_here());
   return json.dump(2) + "\n";
 }
 

@@ -7,6 +7,7 @@
 #include "phalanx/scene/patient_file.h"
 #include "study/experiments/s2_experiments.h"
 #include "study/experiments/s2_loop_figures.h"
+#include "study/made_json.h"
 
 namespace phalanx {
 namespace {
@@ -17,16 +18,11 @@ double slowest_detection(const LoopRun& run) {
   for (std::size_t i = 0; i < run.trials.size(); ++i) {
     if (run.trials[i].stable) continue;
     const Detection& detection = run.detections[i];
-    if (std::isnan(detection.fired_s)) return std::numeric_limits<double>::infinity();
+    if (std::isnan(detection.fired_s) || std::isnan(detection.swung_s))
+      return std::numeric_limits<double>::infinity();
     slowest = std::max(slowest, detection.fired_s - detection.swung_s);
   }
   return slowest;
-}
-
-int seen(const LoopRun& run) {
-  int count = 0;
-  for (const Detection& detection : run.detections) count += std::isnan(detection.fired_s) ? 0 : 1;
-  return count;
 }
 
 }  // namespace
@@ -46,7 +42,7 @@ ExperimentReport s2_fig4() {
   json["none"] = loop_json(runs[0]);
   json["smoothing"] = loop_json(runs[1]);
   json["slowest_detection_s"] = slowest_detection(runs[0]);
-  json["made"] = made_json();
+  json["made"] = made_json(made_here());
   report.json = json.dump(2) + "\n";
   report.csv = curves_csv(runs);
   const auto windows = trial_windows(load_patient(load_scene("stability_press")));
@@ -63,7 +59,8 @@ ExperimentReport s2_fig4() {
   const std::string detection = fmt::format(
       "The on-line observer fires in {} of {} seeds without smoothing, at the latest {:.0f} ms after the "
       "force begins to swing by more than 0.5 N for good, and in {} seeds with it.",
-      seen(runs[0]), runs[0].trials.size(), 1e3 * slowest_detection(runs[0]), seen(runs[1]));
+      seen_oscillating(runs[0]), runs[0].trials.size(), 1e3 * slowest_detection(runs[0]),
+      seen_oscillating(runs[1]));
   report.text = fmt::format(
       "S2 fig. 4: the index finger presses the teapot at 0.9 N/mm, in closed loop.\n"
       "without smoothing: {}\nsmoothing +-0.05 N a step: {}\n{}\n",

@@ -11,6 +11,7 @@
 #include "phalanx/study/laboratory/limit_search.h"
 #include "study/experiments/s2_experiments.h"
 #include "study/experiments/s2_loop_figures.h"
+#include "study/made_json.h"
 
 namespace phalanx {
 namespace {
@@ -78,18 +79,18 @@ ExperimentReport s2_fit() {
                     .rows = {}};
   for (const FitRow& row : rows) {
     report.csv +=
-        fmt::format("{},{},{},{}\n", row.bump, 1e-3 * row.none, 1e-3 * row.smoothing, row.deviation());
-    report.text += fmt::format("bump {:4.1f} N: {:.1f} and {:.1f} N/mm{}\n", row.bump, 1e-3 * row.none,
-                               1e-3 * row.smoothing, row.bump == fitted ? "  fitted" : "");
-    table.rows.push_back({fmt::format("{:.1f}", row.bump), fmt::format("{:.1f}", 1e-3 * row.none),
-                          fmt::format("{:.1f}", 1e-3 * row.smoothing), fmt::format("{}", row.deviation())});
+        fmt::format("{},{},{},{}\n", row.bump, row.none / 1000.0, row.smoothing / 1000.0, row.deviation());
+    report.text += fmt::format("bump {:4.1f} N: {:.1f} and {:.1f} N/mm{}\n", row.bump, row.none / 1000.0,
+                               row.smoothing / 1000.0, row.bump == fitted ? "  fitted" : "");
+    table.rows.push_back({fmt::format("{:.1f}", row.bump), fmt::format("{:.1f}", row.none / 1000.0),
+                          fmt::format("{:.1f}", row.smoothing / 1000.0), fmt::format("{}", row.deviation())});
     json["rows"].push_back({{"bump_n", row.bump},
-                            {"none_n_per_mm", 1e-3 * row.none},
-                            {"smoothing_n_per_mm", 1e-3 * row.smoothing},
+                            {"none_n_per_mm", row.none / 1000.0},
+                            {"smoothing_n_per_mm", row.smoothing / 1000.0},
                             {"deviation", row.deviation()}});
   }
   report.text += fmt::format("fitted: {} N\n", fitted);
-  json["made"] = made_json();
+  json["made"] = made_json(made_here());
   report.json = json.dump(2) + "\n";
   report.sections = {
       {.title = "The fit",

@@ -11,6 +11,7 @@
 #include "study/experiments/s2_experiments.h"
 #include "study/experiments/s2_loop_figures.h"
 #include "study/laboratory/measure_point.h"
+#include "study/made_json.h"
 
 namespace phalanx {
 namespace {
@@ -33,12 +34,12 @@ Study limit_study(const Overrides& set, int seeds, std::uint64_t first_seed) {
 
 std::string limit_text(const PointResult& point) {
   if (point.k_lim == 0.0) return "< 0.1";
-  return fmt::format("{}{:.1f}", point.at_least ? ">= " : "", 1e-3 * point.k_lim);
+  return fmt::format("{}{:.1f}", point.at_least ? ">= " : "", point.k_lim / 1000.0);
 }
 
 nlohmann::ordered_json point_json(const PointResult& point) {
   nlohmann::ordered_json json;
-  json["k_lim_n_per_mm"] = 1e-3 * point.k_lim;
+  json["k_lim_n_per_mm"] = point.k_lim / 1000.0;
   json["at_least"] = point.at_least;
   json["non_monotone"] = point.non_monotone;
   for (const StiffnessVerdict& checked : point.checked)
@@ -66,7 +67,7 @@ ReportTable table_of(const std::vector<LimitRow>& rows) {
 std::string csv_of(const std::vector<LimitRow>& rows) {
   std::string csv = "change,none_n_per_mm,smoothing_n_per_mm\n";
   for (const LimitRow& row : rows)
-    csv += fmt::format("{},{},{}\n", row.change, 1e-3 * row.none.k_lim, 1e-3 * row.smoothing.k_lim);
+    csv += fmt::format("{},{},{}\n", row.change, row.none.k_lim / 1000.0, row.smoothing.k_lim / 1000.0);
   return csv;
 }
 
@@ -83,7 +84,7 @@ PaperRow limit_row(const std::string& quantity, double paper, const PointResult&
           .unit = "N/mm",
           .paper = fmt::format("{:.1f}", paper),
           .ours = limit_text(ours),
-          .difference = fmt::format("{:+.1f}", 1e-3 * ours.k_lim - paper),
+          .difference = fmt::format("{:+.1f}", ours.k_lim / 1000.0 - paper),
           .kind = RowKind::kFitted,
           .note = "grid 0.1 N/mm, 20 seeds; fitted on the reduced model, found on the scene"};
 }
@@ -122,11 +123,11 @@ ExperimentReport s2_limit() {
   json["experiment"] = "s2-limit";
   json["paper"] =
       "S2: largest stable stiffness 0.7 N/mm without smoothing, 1.6 N/mm with it (bounds not printed)";
-  json["k_lim_n_per_mm"] = {{"none", 1e-3 * rows[0].none.k_lim},
-                            {"smoothing", 1e-3 * rows[0].smoothing.k_lim}};
+  json["k_lim_n_per_mm"] = {{"none", rows[0].none.k_lim / 1000.0},
+                            {"smoothing", rows[0].smoothing.k_lim / 1000.0}};
   json["paper_n_per_mm"] = {{"none", kPaperNone}, {"smoothing", kPaperSmoothing}};
   json["rows"] = rows_json(rows);
-  json["made"] = made_json();
+  json["made"] = made_json(made_here());
   report.json = json.dump(2) + "\n";
   report.csv = csv_of(rows);
   report.rows = {limit_row("largest stable stiffness without smoothing", kPaperNone, rows[0].none),
@@ -170,7 +171,7 @@ ExperimentReport s2_sensitivity() {
   json["experiment"] = "s2-sensitivity";
   json["paper"] = "not in the papers";
   json["rows"] = rows_json(rows);
-  json["made"] = made_json();
+  json["made"] = made_json(made_here());
   report.json = json.dump(2) + "\n";
   report.csv = csv_of(rows);
   report.text = "What moves the two limits of s2-limit (each with 20 seeds).\n" + text_of(rows);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "phalanx/record/made.h"
 #include "phalanx/study/human_names.h"
 
 namespace phalanx {
@@ -31,18 +30,33 @@ ChartPanel panel(const LoopRun& run, const std::string& title, const std::string
 }  // namespace
 
 std::string verdict_text(const LoopRun& run) {
-  return fmt::format(
+  std::string text = fmt::format(
       "stable in {} of {} seeds; in the window force swings by at most {:.2f} N, position by {:.2f} mm",
       run.stable(), run.trials.size(), run.largest_force_swing(), 1e3 * run.largest_position_swing());
+  const auto invalid =
+      std::find_if(run.trials.begin(), run.trials.end(), [](const TrialResult& t) { return !t.valid; });
+  if (invalid != run.trials.end()) text += fmt::format(" ({} acted)", invalid->why_invalid);
+  return text;
+}
+
+int seen_oscillating(const LoopRun& run) {
+  return static_cast<int>(std::count_if(run.detections.begin(), run.detections.end(),
+                                        [](const Detection& d) { return !std::isnan(d.fired_s); }));
 }
 
 nlohmann::ordered_json loop_json(const LoopRun& run) {
   nlohmann::ordered_json json;
-  json["stiffness_n_per_mm"] = 1e-3 * run.stiffness;
+  json["stiffness_n_per_mm"] = run.stiffness / 1000.0;
   json["stable_seeds"] = run.stable();
+  json["unstable_seeds"] = run.unstable();
+  json["seen_oscillating_seeds"] = seen_oscillating(run);
   json["seeds"] = run.trials.size();
   json["largest_force_swing_n"] = run.largest_force_swing();
   json["largest_position_swing_m"] = run.largest_position_swing();
+  for (int joint = 0; joint < kJoints; ++joint) {
+    const double unrendered = run.unrendered[static_cast<std::size_t>(joint)];
+    if (unrendered > 1e-9) json["largest_unrendered_nm"][std::string(joint_name(joint))] = unrendered;
+  }
   for (std::size_t i = 0; i < run.trials.size(); ++i) {
     const TrialResult& trial = run.trials[i];
     json["trials"].push_back({{"seed", i + 1},
@@ -103,26 +117,23 @@ std::string curves_csv(const std::vector<LoopRun>& runs) {
 
 PaperRow stability_row(const std::string& experiment, const std::string& quantity, const LoopRun& run,
                        bool stable_in_paper) {
-  const bool stable = run.stable() == static_cast<int>(run.trials.size());
+  const int all = static_cast<int>(run.trials.size());
+  const bool steady = run.stable() == all;
+  const bool oscillates = run.unstable() > 0;
+  const bool agrees = stable_in_paper ? steady : oscillates;
   return {.experiment = experiment,
           .quantity = quantity,
           .unit = "",
           .paper = stable_in_paper ? "steady" : "oscillates",
-          .ours = fmt::format("{} ({} of {} seeds stable)", stable ? "steady" : "oscillates", run.stable(),
-                              run.trials.size()),
-          .difference = stable == stable_in_paper ? "agrees" : "differs",
+          .ours = fmt::format("{} ({} of {} seeds stable, {} not)",
+                              steady       ? "steady"
+                              : oscillates ? "oscillates"
+                                           : "not proven",
+                              run.stable(), all, run.unstable()),
+          .difference = agrees ? "agrees" : "differs",
           .kind = RowKind::kPredicted,
           .note = fmt::format("largest swing {:.2f} N, {:.2f} mm", run.largest_force_swing(),
                               1e3 * run.largest_position_swing())};
-}
-
-nlohmann::ordered_json made_json() {
-  const Made made = made_here();
-  return {{"commit", made.commit},
-          {"cpu", made.cpu},
-          {"compiler", made.compiler},
-          {"build_type", made.build_type},
-          {"date", made.date}};
 }
 
 }  // namespace phalanx

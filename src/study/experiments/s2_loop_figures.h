@@ -16,6 +16,8 @@ inline constexpr int kLoopSeeds = 20;
 
 /// "stable in 20 of 20 seeds; force swings by at most 0.06 N, position by 0.07 mm"
 [[nodiscard]] std::string verdict_text(const LoopRun& run);
+/// In how many seeds the on-line observer fired.
+[[nodiscard]] int seen_oscillating(const LoopRun& run);
 /// Stiffness, verdict, swings and, seed by seed, all numbers of the trials.
 [[nodiscard]] nlohmann::ordered_json loop_json(const LoopRun& run);
 /// Force of every touching segment, or position into the object [mm], over time.
@@ -28,7 +30,5 @@ inline constexpr int kLoopSeeds = 20;
 /// One row of the page: whether a run is as the paper prints.
 [[nodiscard]] PaperRow stability_row(const std::string& experiment, const std::string& quantity,
                                      const LoopRun& run, bool stable_in_paper);
-/// commit, CPU, compiler, build type, date
-[[nodiscard]] nlohmann::ordered_json made_json();
 
 }  // namespace phalanx

@@ -12,6 +12,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/study/simulate.h"
+#include "study/made_json.h"
 
 namespace phalanx {
 
@@ -109,12 +110,7 @@ std::string timing_json(const TimingResult& result) {
                               {"p999", t.p999},
                               {"max", t.max}}}});
   }
-  const Made made = made_here();
-  json["made"] = {{"commit", made.commit},
-                  {"cpu", made.cpu},
-                  {"compiler", made.compiler},
-                  {"build_type", made.build_type},
-                  {"date", made.date}};
+  json["made"] = made_json(made_here());
   return json.dump(2) + "\n";
 }
 

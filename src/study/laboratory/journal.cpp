@@ -8,10 +8,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 namespace phalanx {
 namespace {
@@ -62,9 +64,15 @@ void Journal::refuse_other_than_a_file() const {
       fmt::format("{}: is no ordinary file; name another --out folder", file_.string()));
 }
 
+/// A process that was killed may hold its lock for a moment after it is gone.
 void Journal::lock() {
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-  if (errno != EWOULDBLOCK) fail("locked");
+  constexpr int kTries = 20;
+  constexpr auto kPause = std::chrono::milliseconds(50);
+  for (int i = 0; i < kTries; ++i) {
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    if (errno != EWOULDBLOCK && errno != EINTR) fail("locked");
+    std::this_thread::sleep_for(kPause);
+  }
   throw std::invalid_argument(
       fmt::format("{}: another process is writing it; wait until that has ended, or use another --out folder",
                   file_.string()));

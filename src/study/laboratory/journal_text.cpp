@@ -29,7 +29,7 @@ std::string header_line(const JournalHeader& header) {
 }
 
 JournalHeader header_from(const std::string& line) {
-  const OrderedJson json = OrderedJson::parse(line);
+  const OrderedJson json = parse_json(line);
   if (json.at(kFormatKey) != kFormat) throw std::out_of_range("it is of another format");
   return {
       .study = study_from_json(json.at("study")), .inputs = json.at("inputs"), .commit = json.at("commit")};
@@ -62,13 +62,15 @@ class Lines {
 void add_once(const PointResult& result, std::map<int, std::string>& seen, JournalContent& content,
               const Lines& lines) {
   if (result.index < 0 || result.index >= point_count(content.header.study))
-    lines.fail(fmt::format("the study has no point {}; move the file away or use --restart", result.index));
+    lines.fail(fmt::format("the study has no point {}; move the file away, or measure it again (--restart)",
+                           result.index));
   const auto [known, is_new] = seen.emplace(result.index, result_to_json(result).dump());
   if (is_new) {
     content.points.push_back(result);
   } else if (known->second != result_to_json(result).dump()) {
     lines.fail(
-        fmt::format("point {} stands there twice with different results; move the file away or use --restart",
+        fmt::format("point {} stands there twice with different results; move the file away, or measure it "
+                    "again (--restart)",
                     result.index));
   }
 }
@@ -106,18 +108,19 @@ JournalContent read_journal(const std::filesystem::path& file) {
   Lines lines(std::string(std::istreambuf_iterator<char>(stream), {}), file);
   JournalContent content;
   std::string line;
-  if (!lines.next(line)) lines.fail("is no journal of a study; name another folder, or use --restart");
+  if (!lines.next(line))
+    lines.fail("is no journal of a study; name another folder, or measure it again (--restart)");
   try {
     content.header = header_from(line);
   } catch (const std::exception& error) {
-    lines.fail(
-        fmt::format("is no journal of a study ({}); name another folder, or use --restart", error.what()));
+    lines.fail(fmt::format(
+        "is no journal of a study ({}); name another folder, or measure it again (--restart)", error.what()));
   }
   std::map<int, std::string> seen;
   while (lines.next(line)) {
     PointResult result;
     try {
-      result = result_from_json(OrderedJson::parse(line));
+      result = result_from_json(parse_json(line));
     } catch (const std::exception& error) {
       lines.fail(
           fmt::format("is damaged ({}); remove this line, its point is then measured again", error.what()));

@@ -7,6 +7,7 @@
 #include "phalanx/record/output_file.h"
 #include "study/laboratory/study_json.h"
 #include "study/laboratory/study_values.h"
+#include "study/made_json.h"
 
 namespace phalanx {
 namespace {
@@ -119,11 +120,7 @@ std::string study_summary_json(const Study& study, const std::vector<PointResult
   json["study"] = study_to_json(study);
   json["points"] = OrderedJson::array();
   for (const PointResult& result : results) json["points"].push_back(point_json(study, result));
-  json["made"] = {{"commit", made.commit},
-                  {"cpu", made.cpu},
-                  {"compiler", made.compiler},
-                  {"build_type", made.build_type},
-                  {"date", made.date}};
+  json["made"] = made_json(made);
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 

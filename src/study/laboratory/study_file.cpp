@@ -10,13 +10,12 @@
 #include "phalanx/scene/scene_error.h"
 #include "phalanx/study/laboratory/limit_search.h"
 #include "scene/toml_reader.h"
+#include "study/laboratory/study_limits.h"
 #include "study/laboratory/study_values.h"
 
 namespace phalanx {
 namespace {
 
-constexpr int kMostValues = 10'000;        // of an axis, of the grid, of seeds
-constexpr double kMostPoints = 1'000'000;  // of a study
 constexpr const char* kStiffnessKey = "force.stiffness_n_per_mm";
 
 double whole_number(TomlTable& table, std::string_view key, const NumberRange& range, double fallback) {
@@ -68,12 +67,22 @@ void flatten(const toml::table& table, const std::string& prefix, const TomlTabl
   }
 }
 
+/// TOML refuses a key that stands there twice, but not the same path once dotted and once in quotes.
+void refuse_twice(const Overrides& overrides, const TomlTable& place, std::string_view key) {
+  std::set<std::string_view> seen;
+  for (const auto& [path, value] : overrides) {
+    if (!seen.insert(path).second)
+      place.fail(key, fmt::format("{} stands there twice, in quotes and without; remove one", path));
+  }
+}
+
 /// `raw` is the table that `table` reads.
 Overrides overrides_in(TomlTable& table, const toml::table& raw, std::string_view key) {
   Overrides overrides;
   if (!table.has(key)) return overrides;
   static_cast<void>(table.table(key));  // refuses what is no table
   flatten(*raw.get(key)->as_table(), "", table, key, overrides);
+  refuse_twice(overrides, table, key);
   return overrides;
 }
 
@@ -142,10 +151,10 @@ StudyVariant study_variant(TomlTable table, const toml::table& raw) {
 }
 
 StiffnessGrid stiffness_grid(TomlTable table) {
-  const NumberRange positive{.min = 0.0, .max = 1000.0, .min_open = true};
+  const NumberRange positive{.min = 0.0, .max = kLargestStiffness, .min_open = true};
   StiffnessGrid grid;
   grid.min_n_per_mm = table.number("min_n_per_mm", positive);
-  grid.max_n_per_mm = table.number("max_n_per_mm", {.min = grid.min_n_per_mm, .max = 1000.0});
+  grid.max_n_per_mm = table.number("max_n_per_mm", {.min = grid.min_n_per_mm, .max = kLargestStiffness});
   grid.step_n_per_mm = table.number("step_n_per_mm", positive);
   static_cast<void>(
       whole_steps(table, grid.min_n_per_mm, grid.max_n_per_mm, grid.step_n_per_mm, "step_n_per_mm"));
@@ -212,8 +221,8 @@ Study parse_study(const std::string& text, const std::string& origin, const std:
   study.scene = root.text("scene");
   if (root.has("description")) study.title = root.text("description");
   study.seeds = static_cast<int>(whole_number(root, "seeds", {.min = 1.0, .max = kMostValues}, 20.0));
-  study.first_seed =
-      static_cast<std::uint64_t>(whole_number(root, "first_seed", {.min = 0.0, .max = 1e15}, 1.0));
+  study.first_seed = static_cast<std::uint64_t>(
+      whole_number(root, "first_seed", {.min = 0.0, .max = kLargestFirstSeed}, 1.0));
   study.set = overrides_in(root, raw, "set");
   if (root.has("stiffness")) study.stiffness = stiffness_grid(root.table("stiffness"));
   const auto raw_table = [&](std::string_view key, std::size_t i) -> const toml::table& {

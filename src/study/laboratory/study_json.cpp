@@ -1,12 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/laboratory/study_json.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "study/laboratory/study_limits.h"
+
 namespace phalanx {
 namespace {
+
+/// Deeper than anything that is written here: the parser would take all memory for a line of brackets.
+constexpr int kDeepest = 16;
+
+/// A whole number of the file, which may hold anything.
+template <class Integer>
+Integer whole_from(const OrderedJson& json, const char* key, double least, double most) {
+  const OrderedJson& number = json.at(key);
+  const double value = number.is_number_integer() ? number.get<double>() : PointResult::kNone;
+  if (!(value >= least && value <= most))
+    throw std::out_of_range(fmt::format("\"{}\" is no whole number from {} to {}", key, least, most));
+  return number.get<Integer>();
+}
+
+int count_from(const OrderedJson& json, const char* key) {
+  constexpr double kMost = 2e9;
+  return whole_from<int>(json, key, 0.0, kMost);
+}
 
 double number_from(const OrderedJson& json) {
   return json.is_null() ? PointResult::kNone : json.get<double>();
@@ -68,12 +90,37 @@ OrderedJson verdict_to_json(const StiffnessVerdict& checked) {
 StiffnessVerdict verdict_from_json(const OrderedJson& json) {
   return {.n_per_mm = number_from(json.at("n_per_mm")),
           .verdict = verdict_from(json.at("verdict")),
-          .seeds_run = json.at("seeds_run"),
+          .seeds_run = count_from(json, "seeds_run"),
           .force_swing = number_from(json.at("force_swing_n")),
           .position_swing = number_from(json.at("position_swing_m"))};
 }
 
+StiffnessGrid grid_from_json(const OrderedJson& json) {
+  const StiffnessGrid grid{.min_n_per_mm = json.at("min_n_per_mm"),
+                           .max_n_per_mm = json.at("max_n_per_mm"),
+                           .step_n_per_mm = json.at("step_n_per_mm")};
+  if (!(grid.min_n_per_mm > 0.0 && grid.max_n_per_mm >= grid.min_n_per_mm &&
+        grid.max_n_per_mm <= kLargestStiffness && grid.step_n_per_mm > 0.0 &&
+        (grid.max_n_per_mm - grid.min_n_per_mm) / grid.step_n_per_mm < kMostValues))
+    throw std::out_of_range("\"stiffness\" is no grid");
+  return grid;
+}
+
+/// What everything that reads a study relies on, and a study file is held to.
+void refuse_sizes(const Study& study) {
+  auto points = static_cast<double>(study.variants.size());
+  for (const StudyAxis& axis : study.axes) points *= static_cast<double>(axis.values.size());
+  if (points < 1.0 || points > kMostPoints) throw std::out_of_range(fmt::format("it has {} points", points));
+}
+
 }  // namespace
+
+OrderedJson parse_json(const std::string& text) {
+  return OrderedJson::parse(text, [](int depth, OrderedJson::parse_event_t, const OrderedJson&) {
+    if (depth > kDeepest) throw std::out_of_range("it is nested too deeply");
+    return true;
+  });
+}
 
 OrderedJson number_or_null(double value) {
   return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
@@ -105,18 +152,14 @@ Study study_from_json(const OrderedJson& json) {
   study.name = json.at("name");
   study.title = json.at("title");
   study.scene = json.at("scene");
-  study.seeds = json.at("seeds");
-  study.first_seed = json.at("first_seed");
-  if (json.contains("stiffness")) {
-    const OrderedJson& grid = json["stiffness"];
-    study.stiffness = StiffnessGrid{.min_n_per_mm = grid.at("min_n_per_mm"),
-                                    .max_n_per_mm = grid.at("max_n_per_mm"),
-                                    .step_n_per_mm = grid.at("step_n_per_mm")};
-  }
+  study.seeds = whole_from<int>(json, "seeds", 1.0, kMostValues);
+  study.first_seed = whole_from<std::uint64_t>(json, "first_seed", 0.0, kLargestFirstSeed);
+  if (json.contains("stiffness")) study.stiffness = grid_from_json(json["stiffness"]);
   study.set = overrides_from_json(json.at("set"));
   for (const OrderedJson& variant : json.at("variants"))
     study.variants.push_back({.name = variant.at("name"), .set = overrides_from_json(variant.at("set"))});
   for (const OrderedJson& axis : json.at("axes")) study.axes.push_back(axis_from_json(axis));
+  refuse_sizes(study);
   return study;
 }
 
@@ -146,7 +189,7 @@ OrderedJson result_to_json(const PointResult& result) {
 
 PointResult result_from_json(const OrderedJson& json) {
   PointResult result;
-  result.index = json.at("point");
+  result.index = count_from(json, "point");
   result.k_lim = number_from(json.at("k_lim_n_per_m"));
   result.at_least = json.at("at_least");
   result.non_monotone = json.at("non_monotone");
@@ -154,14 +197,14 @@ PointResult result_from_json(const OrderedJson& json) {
   result.stable = json.at("stable");
   result.measured_at = number_from(json.at("measured_at_n_per_m"));
   result.k_eff = number_from(json.at("k_eff_n_per_m"));
-  result.k_eff_seeds = json.at("k_eff_seeds");
+  result.k_eff_seeds = count_from(json, "k_eff_seeds");
   result.peak_depth = number_from(json.at("peak_depth_m"));
   result.force_swing = number_from(json.at("force_swing_n"));
   result.position_swing = number_from(json.at("position_swing_m"));
   result.ghost_s = pair_from_json(json.at("ghost_s"));
   result.ghost_energy = pair_from_json(json.at("ghost_energy_j"));
-  result.trials = json.at("trials");
-  result.invalid_trials = json.at("invalid_trials");
+  result.trials = count_from(json, "trials");
+  result.invalid_trials = count_from(json, "invalid_trials");
   result.why_invalid = json.at("why_invalid");
   for (const OrderedJson& checked : json.at("checked")) result.checked.push_back(verdict_from_json(checked));
   return result;

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "phalanx/study/laboratory/study.h"
 
 namespace phalanx {
 
 using OrderedJson = nlohmann::ordered_json;
+
+/// A line of a journal. @throws nlohmann::json::exception or std::out_of_range if it is none.
+[[nodiscard]] OrderedJson parse_json(const std::string& text);
 
 /// Everything but the study's folder, which is not the same on every machine.
 [[nodiscard]] OrderedJson study_to_json(const Study& study);

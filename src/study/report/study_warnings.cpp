@@ -61,6 +61,7 @@ std::vector<std::string> study_warnings(const StudyView& view) {
   const Study& study = view.study();
   Named missing(view);
   Named below(view);
+  Named nothing_known(view);
   Named at_least(view);
   Named ends_in_invalid(view);
   Named not_stable(view);
@@ -70,9 +71,9 @@ std::vector<std::string> study_warnings(const StudyView& view) {
       missing.add(i);
       continue;
     }
-    if (result->k_lim == 0.0) below.add(i);
+    if (result->k_lim == 0.0) (result->ends_in_invalid ? nothing_known : below).add(i);
     if (result->at_least) at_least.add(i);
-    if (result->ends_in_invalid) ends_in_invalid.add(i);
+    if (result->ends_in_invalid && result->k_lim != 0.0) ends_in_invalid.add(i);
     if (!study.stiffness && !result->stable) not_stable.add(i);
   }
   std::vector<std::string> warnings;
@@ -85,6 +86,10 @@ std::vector<std::string> study_warnings(const StudyView& view) {
         fmt::format(
             "Not even the smallest stiffness, {:.12g} N/mm, is stable; the limit is below it and shown as 0",
             study.stiffness->min_n_per_mm));
+    add(nothing_known, fmt::format("Already at the smallest stiffness, {:.12g} N/mm, a run is invalid; "
+                                   "nothing is known of the limit, "
+                                   "which is shown as 0",
+                                   study.stiffness->min_n_per_mm));
     add(at_least, fmt::format("Stable up to the end of the grid, {:.12g} N/mm; the limit may be higher",
                               study.stiffness->max_n_per_mm));
   }

@@ -47,7 +47,13 @@ class PressIntent {
               double wall, double press, std::uint64_t seed, const TrialSchedule& schedule);
 
   [[nodiscard]] JointArray angle(double t) const noexcept;  ///< [rad]
-  [[nodiscard]] JointArray push(double t) const noexcept;   ///< torque of the bump on each joint [Nm]
+  /// When the last digit's intent comes to its end [s].
+  [[nodiscard]] double arrival() const noexcept;
+  /// Force that a digit is meant to reach, 0 for those that do not press [N].
+  [[nodiscard]] double force(int digit) const noexcept {
+    return digit_[static_cast<std::size_t>(digit)].force;
+  }
+  [[nodiscard]] JointArray push(double t) const noexcept;  ///< torque of the bump on each joint [Nm]
 
  private:
   static constexpr std::size_t kWaves = 3;
@@ -58,6 +64,7 @@ class PressIntent {
   struct Digit {
     const DigitPress* press = nullptr;
     double approach = 0.0;  ///< [m]
+    double force = 0.0;     ///< [N]
     double end = 0.0;       ///< [m]
     double speed = 0.0;     ///< [m/s]
     std::array<Wave, kWaves> tremor{};

@@ -34,8 +34,8 @@ struct PressPlan {
   JointArray open{};  ///< the open hand [rad]
 };
 
-/// Plays `motion` through the step without any dynamics, and writes down each digit's first contact.
-/// A coupled joint's lever arm is added to that of the joint it follows.
+/// Plays `motion`, as far as the device can sense it, through the step without any dynamics, and writes down
+/// each digit's first contact. A coupled joint's lever arm is added to that of the joint it follows.
 /// @throws std::invalid_argument if no digit of the device meets the object, or one meets it only with joints
 /// that the patient holds with no stiffness. Set-up only.
 [[nodiscard]] PressPlan plan_press(const HapticModel& model, const Motion& motion,

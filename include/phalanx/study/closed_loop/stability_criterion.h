@@ -16,6 +16,11 @@ struct StabilityCriterion {
   double force_swing = 0.5;        ///< [N]
   double position_swing = 0.5e-3;  ///< [m]
   double ghost_force = 0.01;       ///< below this a force counts as gone [N]
+  /// Of the force that the digit is meant to reach [-]; with less nothing is proven.
+  double least_press = 0.1;
+  double most_unrendered =
+      0.1;            ///< of the force that the digit is meant to reach, mean [-]; with more nothing is felt
+  double rest = 0.3;  ///< between the end of the press and the window [s]
 };
 
 /// Feed every snapshot to add(), then ask result().
@@ -24,8 +29,15 @@ class TrialObserver {
   TrialObserver(const PressPlan& plan, const TrialSchedule& schedule,
                 const StabilityCriterion& criterion = {});
 
-  /// @param t  time of the host's step [s]
-  void add(double t, const Snapshot& snapshot);
+  /// What the patient intends: a trial in which the finger hardly presses, or is still on its way in the
+  /// window, is invalid.
+  void expect(const PressIntent& intent);
+
+  /// @param t         time of the host's step [s]
+  /// @param rendered  torque that the motors are told to render at that time, which the ghost is read from:
+  /// what was sent is felt only after the delays [Nm]
+  /// @param unrendered  torque that no motor could render at that time [Nm]
+  void add(double t, const Snapshot& snapshot, const JointArray& rendered, const JointArray& unrendered = {});
   [[nodiscard]] TrialResult result() const;
 
  private:
@@ -44,8 +56,9 @@ class TrialObserver {
     double force_sum = 0.0, depth_sum = 0.0;
   };
   void watch_window(const Snapshot& snapshot);
-  void watch_ghost(double t, const Snapshot& snapshot);
+  void watch_ghost(double t, const Snapshot& snapshot, const JointArray& rendered);
   [[nodiscard]] std::size_t pressing_segment() const noexcept;
+  [[nodiscard]] std::string why_invalid(bool touched, bool swings) const;
 
   const PressPlan& plan_;
   TrialSchedule schedule_;
@@ -54,6 +67,10 @@ class TrialObserver {
   int window_ticks_ = 0;
   double peak_depth_ = 0.0;
   Status limited_ = Status::kOk;
+  std::array<double, kDigits> unrendered_sum_{};  ///< force that nobody renders, in the window [N]
+  bool halved_ = false;                           ///< OscillationReaction::kHalve acted
+  std::array<double, kDigits> meant_{};           ///< force of each digit [N]; 0: not known
+  double arrival_ = 0.0;                          ///< [s]
 
   struct Ghost {
     bool pressed = false;  ///< there was a force while the finger was inside

@@ -65,8 +65,8 @@ struct StudyOptions {
 /// removed from `out`. If a trial throws, its point is left out, the others go on, and the end is an
 /// exception.
 /// @returns the results of this shard, by index.
-/// @throws SceneError before anything runs if a point cannot be set up; std::invalid_argument if the journal
-/// belongs to
+/// @throws SceneError before anything runs if scene, device or patient of a point cannot be loaded;
+/// std::invalid_argument if the journal belongs to
 ///         another study, another process writes it, or the folder cannot be used; std::runtime_error if a
 ///         point failed (naming the first) or the journal cannot be written.
 [[nodiscard]] std::vector<PointResult> run_study(const Study& study, const StudyCheck& check,

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parameters_text.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace phalanx {
+namespace {
+
+std::string law_text(const ForceLawParameters& law) {
+  static constexpr std::array<const char*, 5> kNames = {"Hooke", "Kelvin-Voigt", "Hunt-Crossley", "Duffing",
+                                                        "linear then cubic"};
+  return fmt::format("{}, k = {:.6g} N/mm", kNames[static_cast<std::size_t>(law.law)], 1e-3 * law.stiffness);
+}
+
+std::string stabiliser_text(const SceneDescription& scene) {
+  static constexpr std::array<const char*, 10> kNames = {"no smoothing",
+                                                         "",
+                                                         "",
+                                                         "direction smoothing",
+                                                         "low-pass",
+                                                         "damper",
+                                                         "virtual coupling",
+                                                         "time-domain passivity",
+                                                         "energy bounding",
+                                                         "local wall"};
+  const SmoothingParameters& s = scene.smoothing;
+  switch (scene.stabiliser.method) {
+    case Stabiliser::kSmoothing:
+      return s.enabled ? fmt::format("smoothing \u2212{:.6g} to +{:.6g} N/s", -s.min_rate, s.max_rate)
+                       : kNames[0];
+    case Stabiliser::kRiseOnly:
+      return fmt::format("rise-only smoothing +{:.6g} N/s", s.max_rate);
+    default:
+      return kNames[static_cast<std::size_t>(scene.stabiliser.method)];
+  }
+}
+
+}  // namespace
+
+std::string parameters_text(const SceneDescription& scene, std::uint64_t ticks) {
+  const std::string cap = scene.limits.fingertip_force_enabled
+                              ? fmt::format("fingertip limit {:.6g} N", scene.limits.fingertip_force)
+                              : "no fingertip limit";
+  return fmt::format("{}; {}; {}; {:.6g} Hz, {} ticks", law_text(scene.force), stabiliser_text(scene), cap,
+                     scene.rate_hz, ticks);
+}
+
+}  // namespace phalanx

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "phalanx/record/made.h"
+
+namespace phalanx {
+
+/// Where and from what a result was made: commit, cpu, compiler, build_type, date.
+[[nodiscard]] nlohmann::ordered_json made_json(const Made& made);
+
+}  // namespace phalanx

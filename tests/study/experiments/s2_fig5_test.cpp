@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// S2 fig. 5 in closed loop: a power grasp of the teapot at 1.4 N/mm with +-0.1 N a step.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "phalanx/device/simulated_exoskeleton.h"
+#include "study/experiments/s2_experiments.h"
+#include "study/experiments/s2_loop_figures.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kAsItIs = std::numeric_limits<double>::quiet_NaN();
+
+TEST(S2Fig5, GraspsWithFivePhalangesAndIsSteady) {
+  const LoopRun run = run_s2_fig5(kLoopSeeds);
+  EXPECT_DOUBLE_EQ(run.stiffness, 1400.0);
+  EXPECT_GE(run.curves.touching.size(), 5U);
+  std::set<int> digits;
+  for (const int segment : run.curves.touching) digits.insert(digit_of_segment(segment));
+  EXPECT_EQ(digits, (std::set<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(run.stable(), kLoopSeeds);
+  for (const TrialResult& trial : run.trials) EXPECT_TRUE(trial.valid) << trial.why_invalid;
+  EXPECT_LE(run.largest_force_swing(), 0.5);
+  EXPECT_LE(run.largest_position_swing(), 0.5e-3);
+}
+
+// Middle, ring and little finger copy the index: what their contacts ask for is recorded and felt by nobody.
+TEST(S2Fig5, RendersIndexAndThumbAndNeverTheDigitsThatCopy) {
+  const auto setup = make_trial_setup(load_scene("stability_grasp"));
+  std::array<double, kDigits> asked{};  // largest, of a digit's joints [Nm]
+  double forgone = 0.0;                 // largest of what index and thumb do not get [Nm]
+  bool saturated = false;
+  (void)run_trial(*setup, kAsItIs, kAsItIs, 1,
+                  [&](double, const Snapshot&, const SimulatedExoskeleton& device) {
+                    const Rendered& rendered = device.rendered();
+                    saturated = saturated || rendered.saturated;
+                    for (std::size_t j = 0; j < kJoints; ++j) {
+                      const auto digit = static_cast<std::size_t>(digit_of_joint(static_cast<int>(j)));
+                      asked[digit] = std::max(asked[digit], std::abs(rendered.asked[j]));
+                      if (digit < 2) {
+                        forgone = std::max(forgone, std::abs(rendered.unrendered[j]));
+                      } else {
+                        ASSERT_EQ(rendered.torque[j], 0.0);
+                        ASSERT_EQ(rendered.unrendered[j], rendered.asked[j]);
+                      }
+                    }
+                  });
+  for (std::size_t d = 0; d < kDigits; ++d)
+    EXPECT_GT(asked[d], 0.01) << digit_name(static_cast<int>(d));  // each of them presses
+  EXPECT_FALSE(saturated);
+  EXPECT_LT(forgone, 1e-9);
+  for (const ExoMotor& motor : setup->exoskeleton.motors)
+    for (std::size_t j = 2 * kJointsPerDigit; j < kJoints; ++j) EXPECT_EQ(motor.arm[j], 0.0) << motor.name;
+}
+
+TEST(S2Fig5, ReportsEveryTouchingPhalanx) {
+  const ExperimentReport report = s2_fig5();
+  ASSERT_EQ(report.rows.size(), 2U);
+  for (const PaperRow& row : report.rows) EXPECT_EQ(row.difference, "agrees") << row.quantity;
+  for (const char* name : {"thumb distal", "index distal", "middle distal", "ring distal", "little distal"})
+    EXPECT_THAT(report.text, ::testing::HasSubstr(name));
+  EXPECT_THAT(report.csv, ::testing::HasSubstr("pinky-finger-phalanx-distal_force_n"));
+  EXPECT_THAT(report.svg, ::testing::HasSubstr("</svg>"));
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// S2's largest stable stiffness, and what it must not depend on.
+#include <gtest/gtest.h>
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <atomic>
+#include <limits>
+
+#include "phalanx/study/laboratory/limit_search.h"
+#include "study/experiments/s2_experiments.h"
+#include "study/experiments/s2_loop_figures.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kGrid = 100.0;            // [N/m]
+constexpr double kOneStep = 100.0 + 1e-6;  // [N/m]
+constexpr double kHalfStep = 0.5 * Plant::kDefaultStep;
+const Overrides kNoSmoothing = {{"stabiliser.method", "\"none\""}};
+const Overrides kSmoothing = {{"smoothing.min_n", "-0.1"}, {"smoothing.max_n", "0.1"}};
+
+/// The press, integrated at another step.
+class Press {
+ public:
+  Press(const Overrides& overrides, double step) : setup_(with_step(overrides, step)) {}
+
+  /// Whether every seed is stable and valid.
+  [[nodiscard]] bool stable_at(double stiffness) const {
+    std::atomic<bool> all{true};
+    tbb::parallel_for(1, kLoopSeeds + 1, [&](int seed) {
+      if (!all) return;
+      const TrialResult result = run_trial(setup_, stiffness, std::numeric_limits<double>::quiet_NaN(),
+                                           static_cast<std::uint64_t>(seed));
+      if (!result.stable || !result.valid) all = false;
+    });
+    return all;
+  }
+
+ private:
+  static TrialSetup with_step(const Overrides& overrides, double step) {
+    TrialSetup setup = *make_trial_setup(load_scene("stability_press", overrides));
+    setup.step = step;
+    return setup;
+  }
+  TrialSetup setup_;
+};
+
+/// Half the step moves the limit by at most one point of the grid.
+void expect_same_with_half_the_step(const Overrides& overrides, double limit) {
+  const Press press(overrides, kHalfStep);
+  EXPECT_TRUE(press.stable_at(limit - kGrid));
+  EXPECT_FALSE(press.stable_at(limit + 2.0 * kGrid));
+}
+
+TEST(S2Limit, IsThePapersWithinAStepOfTheGridAndKeepsItWithHalfTheStepAndOtherSeeds) {
+  const LimitRow row = find_limits("as it is", {}, kLoopSeeds);
+  EXPECT_NEAR(row.none.k_lim, 700.0, kOneStep);
+  EXPECT_NEAR(row.smoothing.k_lim, 1600.0, kOneStep);
+  expect_same_with_half_the_step(kNoSmoothing, row.none.k_lim);
+  expect_same_with_half_the_step(kSmoothing, row.smoothing.k_lim);
+
+  const LimitRow other = find_limits("seeds 21 to 40", {}, kLoopSeeds, 21);
+  EXPECT_NEAR(other.none.k_lim, row.none.k_lim, kOneStep);
+  EXPECT_NEAR(other.smoothing.k_lim, row.smoothing.k_lim, kOneStep);
+}
+
+// Below the least that IsThePapersWithinAStepOfTheGrid allows with friction.
+TEST(S2Limit, FallsWithoutFrictionInTheSheaths) {
+  const LimitRow row =
+      find_limits("no friction in the sheaths", {{"device.scale.sheath_friction", "0"}}, kLoopSeeds);
+  EXPECT_LT(row.none.k_lim, 700.0 - kOneStep);
+  EXPECT_LT(row.smoothing.k_lim, 1600.0 - kOneStep);
+}
+
+// On both sides of the limits: 1 N/mm shakes without smoothing and is steady with it, 2 N/mm shakes with
+// both.
+TEST(S2Limit, GivesTheSameVerdictsAtOneAndTwoNewtonsAMillimetreWithHalfTheStep) {
+  for (const double step : {Plant::kDefaultStep, kHalfStep}) {
+    SCOPED_TRACE(::testing::Message() << "step " << step);
+    EXPECT_FALSE(Press(kNoSmoothing, step).stable_at(1000.0));
+    EXPECT_TRUE(Press(kSmoothing, step).stable_at(1000.0));
+    EXPECT_FALSE(Press(kNoSmoothing, step).stable_at(2000.0));
+    EXPECT_FALSE(Press(kSmoothing, step).stable_at(2000.0));
+  }
+}
+
+TEST(SoakS2Limit, MovesByAtMostOneStepOfTheGridWithHalfTheStep) {
+  for (const Overrides& overrides : {kNoSmoothing, kSmoothing}) {
+    std::array<double, 2> limit{};
+    for (std::size_t i = 0; i < limit.size(); ++i) {
+      const Press press(overrides, i == 0 ? Plant::kDefaultStep : kHalfStep);
+      limit[i] =
+          kGrid * (search_limit(30, [&](int at) { return press.stable_at(kGrid * (at + 1)); }).limit + 1);
+    }
+    EXPECT_NEAR(limit[1], limit[0], kOneStep);
+  }
+}
+
+}  // namespace
+}  // namespace phalanx
