@@ -169,8 +169,8 @@ TEST(DevicePresets, DifferFromEachOtherAsTheirDescriptionsSay) {
   EXPECT_WITHIN_1_PERCENT(light.joint_friction, 0.06);
   EXPECT_WITHIN_1_PERCENT(light.tendon_stiffness, 10e3);
   const Fingertip heavy = felt(load_device_file("heavy_viscous"), adult, kIndex, *g);
-  EXPECT_WITHIN_1_PERCENT(heavy.mass, 0.72);
-  EXPECT_WITHIN_1_PERCENT(heavy.damping, 6.4);
+  EXPECT_WITHIN_1_PERCENT(heavy.mass, 1.2);
+  EXPECT_WITHIN_1_PERCENT(heavy.damping, 20.8);
   EXPECT_WITHIN_1_PERCENT(heavy.sheath_friction, 0.051);
   EXPECT_WITHIN_1_PERCENT(heavy.joint_friction, 0.009);
   const Fingertip frictionless = felt(load_device_file("frictionless"), adult, kIndex, *g);
