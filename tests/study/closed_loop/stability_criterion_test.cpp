@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "study/closed_loop/pressing_finger.h"
@@ -41,11 +42,19 @@ class Watching {
  public:
   Watching() : observer_(plan_, kSchedule, StabilityCriterion{}) {}
   /// @param felt  force along n that the motors render at that time [N]
-  void add(double t, const Snapshot& snapshot, double felt = 0.0) {
-    const DigitPress& press = *plan_.digit[test::kIndex];
-    JointArray rendered{};
-    for (std::size_t j = 0; j < rendered.size(); ++j) rendered[j] = felt * press.g[j];
-    observer_.add(t, snapshot, rendered);
+  /// @param lost  and that they do not [N]
+  void add(double t, const Snapshot& snapshot, double felt = 0.0, double lost = 0.0) {
+    observer_.add(t, snapshot, torque_of(felt), torque_of(lost));
+  }
+  /// A press that is meant to reach `force` [N], its finger coming at `speed` [m/s].
+  void expect(double force, double speed) {
+    PatientParameters patient;
+    patient.press_spread = 0.0;
+    patient.approach_min = patient.approach_max = speed;
+    HandParameters hand;
+    hand.min_angle.fill(-10.0);
+    hand.max_angle.fill(10.0);
+    observer_.expect(PressIntent(plan_, patient, hand, 1000.0, force, 1, kSchedule));
   }
   /// The same snapshot at every step from the beginning of the window to its end.
   void fill_window(const Snapshot& snapshot) {
@@ -54,6 +63,12 @@ class Watching {
   [[nodiscard]] TrialResult result() const { return observer_.result(); }
 
  private:
+  [[nodiscard]] JointArray torque_of(double force) const {
+    JointArray torque{};
+    for (std::size_t j = 0; j < torque.size(); ++j) torque[j] = force * plan_.digit[test::kIndex]->g[j];
+    return torque;
+  }
+
   PressPlan plan_ = test::plan_on_paper();
   TrialObserver observer_;
 };
@@ -191,6 +206,46 @@ TEST(TrialObserver, IsInvalidIfALimiterActedBeforeTheRelease) {
     EXPECT_EQ(result.why_invalid, name);
     EXPECT_TRUE(result.stable) << name;
   }
+}
+
+// A press of 3 N with 1 kN/m in the wall ends some 5 mm behind it, 25 mm from the start: 0.5 s at 50 mm/s, 5
+// s at 5.
+TEST(TrialObserver, IsInvalidIfTheFingerIsStillOnItsWay) {
+  for (const auto& [speed, valid] : {std::pair{0.05, true}, std::pair{0.005, false}}) {
+    Watching watching;
+    watching.expect(3.0, speed);
+    watching.fill_window(tip_at(2e-3, 2.0));
+    EXPECT_EQ(watching.result().valid, valid) << speed;
+    EXPECT_EQ(watching.result().why_invalid, valid ? "" : "the finger was still on its way");
+  }
+}
+
+TEST(TrialObserver, IsInvalidIfTheFingerPressesWithLessThanATenth) {
+  for (const double force : {0.31, 0.29}) {
+    Watching watching;
+    watching.expect(3.0, 0.05);
+    watching.fill_window(tip_at(2e-3, force));
+    EXPECT_EQ(watching.result().valid, force > 0.3) << force;
+  }
+}
+
+TEST(TrialObserver, IsInvalidIfTheMotorsRenderLessThanNineTenths) {
+  for (const double lost : {0.29, 0.31}) {
+    Watching watching;
+    watching.expect(3.0, 0.05);
+    for (double t = kSchedule.window_begin; t < kSchedule.window_end; t += kPeriod)
+      watching.add(t, tip_at(2e-3, 3.0), 3.0 - lost, lost);
+    EXPECT_EQ(watching.result().valid, lost < 0.3) << lost;
+  }
+}
+
+TEST(TrialObserver, IsInvalidIfTheStiffnessWasHalved) {
+  Watching watching;
+  Snapshot halved = tip_at(2e-3, 2.0);
+  halved.stiffness_factor = 0.5;
+  watching.fill_window(halved);
+  EXPECT_FALSE(watching.result().valid);
+  EXPECT_EQ(watching.result().why_invalid, "stiffness halved");
 }
 
 TEST(TrialObserver, NamesEveryLimiterThatActed) {

@@ -18,8 +18,9 @@ struct StabilityCriterion {
   double ghost_force = 0.01;       ///< below this a force counts as gone [N]
   /// Of the force that the digit is meant to reach [-]; with less nothing is proven.
   double least_press = 0.1;
-  double most_unrendered =
-      0.1;            ///< of the force that the digit is meant to reach, mean [-]; with more nothing is felt
+  /// Mean force that no motor renders, of the force that the digit is meant to reach [-]; with more nothing
+  /// is felt.
+  double most_unrendered = 0.1;
   double rest = 0.3;  ///< between the end of the press and the window [s]
 };
 
