@@ -116,8 +116,11 @@ TEST_P(PlantEnergyOf, BalancesAtTheDefaultStep) {
   EXPECT_GT(plant.energy().turned_over, 0.1);
   EXPECT_GT(plant.energy().dissipated, 0.01);
   EXPECT_GT(crossings, 20U);
-  if (std::string(GetParam()) != "frictionless") {
+  const std::string name = GetParam();
+  if (name == "beihang" || name == "light") {
     EXPECT_GT(stops, 20U);
+  } else if (name == "heavy_viscous") {
+    EXPECT_GT(stops, 0U);  // with a seventh of the friction and five times the mass it seldom comes to rest
   }
   EXPECT_LT(missing(plant, stored) / plant.energy().turned_over, 1e-3);
   EXPECT_LT(worst / most_stored, 1e-3);  // sharper: what is stored is little of what is turned over
