@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "phalanx/force/stabiliser_methods.h"
+#include "support/all_stabilisers.h"
 
 namespace phalanx {
 namespace {
@@ -18,17 +19,6 @@ namespace {
 constexpr double kPeriod = 0.005;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-constexpr std::array<Stabiliser, 10> kAll = {Stabiliser::kNone,
-                                             Stabiliser::kSmoothing,
-                                             Stabiliser::kRiseOnly,
-                                             Stabiliser::kDirection,
-                                             Stabiliser::kLowPass,
-                                             Stabiliser::kKelvinVoigt,
-                                             Stabiliser::kVirtualCoupling,
-                                             Stabiliser::kPassivity,
-                                             Stabiliser::kEnergyBounding,
-                                             Stabiliser::kLocalWall};
 
 /// Feeds one contact with a wall F = k d, one depth a step.
 class Contact {
@@ -205,7 +195,7 @@ TEST(Stabiliser, TheDirectionTurnsToTheOppositeToo) {
 
 // A contact that is gone leaves nothing behind but what decays.
 TEST(Stabiliser, ForgetsAContactThatIsGone) {
-  for (const Stabiliser method : kAll) {
+  for (const Stabiliser method : test::kAllStabilisers) {
     Contact contact({.method = method});
     for (const double depth : {1e-3, 5e-3, 3e-3, 6e-3}) contact.press(depth);
     for (int n = 0; n < 200; ++n) contact.press(-1e-3);
@@ -219,7 +209,7 @@ TEST(Stabiliser, ForgetsAContactThatIsGone) {
 TEST(Stabiliser, IsFiniteAndNeverPullsWhateverArrives) {
   const std::vector<double> wild = {
       0.0, kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310, -0.1, 3.0, std::numeric_limits<double>::max()};
-  for (const Stabiliser method : kAll) {
+  for (const Stabiliser method : test::kAllStabilisers) {
     std::mt19937_64 random(31);
     StabiliserMemory memory;
     double sent = 0.0;

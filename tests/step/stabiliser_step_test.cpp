@@ -9,6 +9,7 @@
 
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
+#include "support/all_stabilisers.h"
 #include "support/count_allocations.h"
 #include "support/simple_hand.h"
 #include "support/stabilised_hands.h"
@@ -29,19 +30,8 @@ using test::Runner;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr std::array<Stabiliser, 10> kAll = {Stabiliser::kNone,
-                                             Stabiliser::kSmoothing,
-                                             Stabiliser::kRiseOnly,
-                                             Stabiliser::kDirection,
-                                             Stabiliser::kLowPass,
-                                             Stabiliser::kKelvinVoigt,
-                                             Stabiliser::kVirtualCoupling,
-                                             Stabiliser::kPassivity,
-                                             Stabiliser::kEnergyBounding,
-                                             Stabiliser::kLocalWall};
-
 TEST(StabiliserStep, EveryMethodSendsNothingBeforeAndAfterAGrasp) {
-  for (const Stabiliser method : kAll) {
+  for (const Stabiliser method : test::kAllStabilisers) {
     const HapticModel model = ball_model(method);
     Runner hand(model);
     double largest = 0.0;
@@ -69,7 +59,7 @@ TEST(StabiliserStep, SmoothingThatIsNotEnabledIsNone) {
 // them.
 TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
   const std::array<double, 6> wild = {kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
-  for (const Stabiliser method : kAll) {
+  for (const Stabiliser method : test::kAllStabilisers) {
     for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kHuntCrossley}) {
       std::mt19937_64 random(13);
       std::uniform_real_distribution<double> u(-2.0, 3.0);
@@ -130,7 +120,7 @@ TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
 }
 
 TEST(StabiliserStep, AllocatesNothing) {
-  for (const Stabiliser method : kAll) {
+  for (const Stabiliser method : test::kAllStabilisers) {
     HapticModel model = ball_model(method);
     model.oscillation.reaction = OscillationReaction::kHalve;
     HapticState state(model);
