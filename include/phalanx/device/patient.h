@@ -13,7 +13,7 @@ namespace phalanx {
 /// A patient's hand as an impedance around what the patient intends, joint by joint:
 ///   torque = stiffness (q_intended + tremor - q) + damping (dq_intended/dt - dq/dt).
 /// The intent follows a motion until the digit meets the object, and from there goes on so far that the
-/// contact's force is `press` in the end (patient/intent: phalanx/study/closed_loop.h).
+/// contact's force is `press` in the end (phalanx/device/press_intent.h).
 struct PatientParameters {
   std::string name;
   std::string description;

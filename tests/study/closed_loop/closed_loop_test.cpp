@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "study/closed_loop/pressing_finger.h"
+#include "device/pressing_finger.h"
 
 namespace phalanx {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "phalanx/step/snapshot.h"
-#include "phalanx/study/closed_loop/press_intent.h"
+#include "phalanx/device/press_intent.h"
 #include "phalanx/study/laboratory/trial.h"
 
 namespace phalanx {

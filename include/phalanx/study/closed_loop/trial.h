@@ -10,8 +10,8 @@
 #include "phalanx/device/plant.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/step/haptic_step.h"
-#include "phalanx/study/closed_loop/press_intent.h"
-#include "phalanx/study/closed_loop/press_plan.h"
+#include "phalanx/device/press_intent.h"
+#include "phalanx/device/press_plan.h"
 #include "phalanx/study/closed_loop/stability_criterion.h"
 
 namespace phalanx {

@@ -7,7 +7,7 @@
 
 #include "phalanx/core/random.h"
 #include "phalanx/device/patient.h"
-#include "phalanx/study/closed_loop/press_plan.h"
+#include "phalanx/device/press_plan.h"
 
 namespace phalanx {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "device/two_joint_device.h"
+#include "phalanx/device/press_plan.h"
 #include "phalanx/mesh/primitives.h"
-#include "phalanx/study/closed_loop/press_plan.h"
 #include "support/simple_hand.h"
 
 namespace phalanx::test {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/closed_loop/press_intent.h"
+#include "phalanx/device/press_intent.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "study/closed_loop/pressing_finger.h"
+#include "device/pressing_finger.h"
 
 namespace phalanx {
 namespace {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/closed_loop/press_plan.h"
+#include "phalanx/device/press_plan.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 
 #include "phalanx/device/sensed_angles.h"
-#include "phalanx/study/simulate.h"
 
 namespace phalanx {
 namespace {
@@ -85,7 +86,13 @@ PressPlan plan_press(const HapticModel& model, const Motion& motion, const Exosk
   // The hand as the host is told of it: joints without a sensor stay open, coupled and copied ones follow.
   Motion sensed = motion;
   for (JointArray& angle : sensed.angle) angle = sensed_angles(exoskeleton, plan.open, angle);
-  simulate(model, sensed, tick_count(sensed.duration(), model.rate_hz), {.tick = watch, .progress = {}});
+  const auto state = std::make_unique<HapticState>(model);
+  const double ticks = std::max(1.0, std::round(sensed.duration() * model.rate_hz));
+  for (double tick = 0.0; tick < ticks; tick += 1.0) {
+    const double t = tick / model.rate_hz;
+    step(model, Sample{.time_s = t, .angle = sensed.at(t)}, *state);
+    watch(state->snapshot());
+  }
   if (!any)
     throw std::invalid_argument(
         "the motion brings none of the digits that the device moves to the object; change [motion] or the "

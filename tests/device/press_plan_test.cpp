@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/closed_loop/press_plan.h"
+#include "phalanx/device/press_plan.h"
 
 #include <gmock/gmock.h>
 
 #include <stdexcept>
 
+#include "device/pressing_finger.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/device_file.h"
 #include "phalanx/scene/patient_file.h"
-#include "study/closed_loop/pressing_finger.h"
 
 namespace phalanx {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/closed_loop/press_intent.h"
+#include "phalanx/device/press_intent.h"
 
 #include <algorithm>
 #include <cmath>
