@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who may speak to the controller: HELLO, epochs, a second host, versions, PING, GOODBYE.
+#include "device/link/controller_rig.h"
+
+namespace phalanx::link_test {
+namespace {
+
+class LinkSession : public LinkController {};
+
+TEST_F(LinkSession, OpensWithAWelcomeThatSaysWhoTheControllerIsAndTheNextEpoch) {
+  EXPECT_EQ(rig.hello(), PHX_NEW_SESSION);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->header.type, PHX_WELCOME);
+  EXPECT_EQ(rig.reply->header.epoch, 101U);
+  EXPECT_EQ(rig.reply->as.welcome.host_id, kHost);
+  EXPECT_EQ(rig.reply->as.welcome.serial[0], 'B');
+  EXPECT_EQ(rig.reply->as.welcome.rate_hz, 1000);
+  EXPECT_EQ(rig.reply->as.welcome.channel_count, 3);
+  EXPECT_EQ(rig.reply->as.welcome.channel[2].kind, PHX_CHANNEL_FORCE);
+  EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
+}
+
+TEST_F(LinkSession, AnswersWithTheSequenceOfTheQuestion) {
+  phx_message hello = rig.frame(PHX_HELLO);
+  hello.header.sequence = 4711;
+  rig.send(hello);
+  EXPECT_EQ(rig.reply->header.sequence, 4711U);
+}
+
+TEST_F(LinkSession, SendsASampleEveryTickWhileItIsOpenAndNoneBefore) {
+  rig.raw[1] = 123;
+  rig.tick();
+  EXPECT_FALSE(rig.has_sample);
+  rig.hello();
+  for (std::uint32_t i = 1; i <= 5; ++i) {
+    rig.tick();
+    ASSERT_TRUE(rig.has_sample);
+    phx_message message{};
+    ASSERT_EQ(phx_decode(rig.output.sample, rig.output.sample_size, &message), PHX_OK);
+    EXPECT_EQ(message.header.epoch, rig.epoch);
+    EXPECT_EQ(message.header.sequence, i);
+    EXPECT_EQ(message.as.sample.time_us, rig.now);
+    EXPECT_EQ(message.as.sample.raw[1], 123);
+    EXPECT_EQ(message.as.sample.state, PHX_STATE_READY);
+  }
+}
+
+TEST_F(LinkSession, SaysOnceConfigureHasArrived) {
+  rig.hello();
+  rig.tick();
+  EXPECT_EQ(rig.sample.flags, 0);
+  rig.configure();
+  rig.tick();
+  EXPECT_EQ(rig.sample.flags, PHX_SAMPLE_CONFIGURED);
+}
+
+TEST_F(LinkSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
+  rig.open_and_act(0.2F);
+  EXPECT_EQ(rig.hello(99), PHX_ANSWERED);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->header.type, PHX_REFUSED);
+  EXPECT_EQ(rig.reply->header.epoch, 0U);
+  EXPECT_EQ(rig.reply->as.refused.reason, PHX_REFUSED_BUSY);
+  EXPECT_EQ(rig.reply->as.refused.host_id, 99U);
+  EXPECT_FLOAT_EQ(rig.drive(0.2F, 5), 0.2F);  // and the first goes on undisturbed
+}
+
+TEST_F(LinkSession, GoesToAnotherHostOnceTheFirstWasSilentForASecond) {
+  rig.open();
+  rig.silent(998);  // one tick in open()
+  EXPECT_EQ(rig.hello(99), PHX_ANSWERED);
+  rig.tick();
+  EXPECT_EQ(rig.hello(99), PHX_NEW_SESSION);
+  EXPECT_EQ(rig.reply->header.epoch, rig.epoch + 1);
+}
+
+TEST_F(LinkSession, ThatExpiresWithNothingEnabledEndsWithoutAFault) {
+  rig.open();
+  rig.silent(998);
+  EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
+  EXPECT_TRUE(rig.has_sample);
+  rig.tick();
+  EXPECT_EQ(rig.controller.state, PHX_STATE_NO_SESSION);
+  EXPECT_EQ(rig.controller.fault, PHX_FAULT_NONE);
+  EXPECT_FALSE(rig.has_sample);
+}
+
+TEST_F(LinkSession, IsKeptByAnyFrameOfItsHost) {
+  rig.open();
+  for (int i = 0; i < 5; ++i) {
+    rig.silent(900);
+    rig.configure();
+  }
+  EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
+}
+
+TEST_F(LinkSession, BeginsAnewForTheSameHostAndStopsWhatActed) {
+  rig.open_and_act(0.2F);
+  const std::uint32_t before = rig.epoch;
+  EXPECT_EQ(rig.hello(), PHX_NEW_SESSION);
+  EXPECT_EQ(rig.epoch, before + 1);
+  EXPECT_EQ(rig.tick(), 0.0F);
+  EXPECT_EQ(rig.sample.state, PHX_STATE_READY);
+  EXPECT_EQ(rig.sample.flags, 0);
+  EXPECT_EQ(rig.sample.acted_tick, 0U);
+}
+
+TEST_F(LinkSession, IsNotDisturbedByAHelloThatTheNetworkHasDoubledOrDelayed) {
+  phx_message hello = rig.frame(PHX_HELLO);
+  hello.header.epoch = 0;
+  hello.as.hello.host_id = kHost;
+  for (const std::uint32_t sequence : {5U, 6U}) {
+    hello.header.sequence = sequence;
+    EXPECT_EQ(rig.send(hello), PHX_NEW_SESSION);
+    rig.epoch = rig.reply->header.epoch;
+  }
+  rig.configure();
+  rig.tick();
+  rig.drive(0.2F, 1001);
+  for (const std::uint32_t sequence : {5U, 6U}) {
+    hello.header.sequence = sequence;
+    EXPECT_EQ(rig.send(hello), PHX_USED);
+    EXPECT_EQ(rig.reply->header.type, PHX_WELCOME);
+    EXPECT_EQ(rig.reply->header.epoch, rig.epoch);
+    EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
+  }
+}
+
+TEST_F(LinkSession, NeverHasEpochZero) {
+  const phx_device device = bench_device();
+  phx_controller_init(&rig.controller, &device, 0xFFFFFFFFU);
+  rig.hello();
+  EXPECT_EQ(rig.epoch, 1U);
+}
+
+TEST_F(LinkSession, RefusesAndCountsEveryFrameOfAnotherEpoch) {
+  rig.open_and_act(0.2F);
+  const std::uint32_t right = rig.epoch;
+  std::uint32_t count = 0;
+  for (const std::uint32_t other : {0U, right - 1, right + 1}) {
+    rig.epoch = other;
+    EXPECT_EQ(rig.command(-0.2F), PHX_DROPPED);
+    EXPECT_EQ(rig.configure(), PHX_DROPPED);
+    EXPECT_EQ(rig.send(rig.frame(PHX_RESET)), PHX_DROPPED);
+    EXPECT_EQ(rig.send(rig.frame(PHX_GOODBYE)), PHX_DROPPED);
+    EXPECT_EQ(rig.controller.refused, count += 4);
+  }
+  rig.epoch = right;
+  EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
+  EXPECT_EQ(rig.sample.refused, count);
+}
+
+TEST_F(LinkSession, RefusesTheEpochOfBeforeARestart) {
+  rig.open_and_act(0.2F);
+  const phx_device device = bench_device();
+  phx_controller_init(&rig.controller, &device, 500);
+  EXPECT_EQ(rig.command(0.2F), PHX_DROPPED);
+  EXPECT_EQ(rig.tick(), 0.0F);
+  EXPECT_EQ(rig.hello(), PHX_NEW_SESSION);
+  EXPECT_EQ(rig.epoch, 501U);
+}
+
+TEST_F(LinkSession, RefusesAHelloOfAnotherVersionEvenIfTheRestOfItIsUnknown) {
+  rig.open_and_act(0.2F);
+  Bytes hello{'P', 'X', 2, PHX_HELLO, 1, 2, 3, 4, 5, 0, 0, 0, 0};
+  close_again(hello);
+  EXPECT_EQ(rig.receive(hello), PHX_ANSWERED);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->header.type, PHX_REFUSED);
+  EXPECT_EQ(rig.reply->as.refused.reason, PHX_REFUSED_VERSION);
+  EXPECT_EQ(rig.reply->as.refused.version, PHX_VERSION);
+  EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
+}
+
+TEST_F(LinkSession, DropsAndCountsOtherFramesOfAnotherVersion) {
+  rig.open();
+  Bytes frame = encoded(rig.next_command(0.1F));
+  frame[2] = 2;
+  close_again(frame);
+  EXPECT_EQ(rig.receive(frame), PHX_DROPPED);
+  EXPECT_EQ(rig.controller.corrupt, 1U);
+  EXPECT_FALSE(rig.reply);
+}
+
+TEST_F(LinkSession, AnswersAPingOfAnybodyAndIsNotKeptByIt) {
+  phx_message ping = rig.frame(PHX_PING);
+  ping.as.ping.stamp = 0xFEED;
+  EXPECT_EQ(rig.send(ping), PHX_ANSWERED);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->header.type, PHX_PONG);
+  EXPECT_EQ(rig.reply->as.ping.stamp, 0xFEEDU);
+  EXPECT_EQ(rig.reply->as.ping.time_us, rig.now);
+  rig.open();
+  for (int i = 0; i < 999; ++i) {
+    EXPECT_EQ(rig.send(ping), PHX_ANSWERED);
+    rig.tick();
+  }
+  EXPECT_EQ(rig.controller.state, PHX_STATE_NO_SESSION);
+}
+
+TEST_F(LinkSession, EndsWithGoodbyeAndZeroTorqueAtTheNextTick) {
+  rig.open_and_act(0.2F);
+  EXPECT_EQ(rig.send(rig.frame(PHX_GOODBYE)), PHX_USED);
+  EXPECT_EQ(rig.tick(), 0.0F);
+  EXPECT_EQ(rig.controller.state, PHX_STATE_NO_SESSION);
+  EXPECT_FALSE(rig.has_sample);
+  EXPECT_EQ(rig.command(0.2F), PHX_DROPPED);
+  EXPECT_EQ(rig.controller.refused, 1U);
+  EXPECT_EQ(rig.hello(99), PHX_NEW_SESSION);  // another may have it at once
+}
+
+TEST_F(LinkSession, DropsAndCountsItsOwnFramesComingBack) {
+  rig.open();
+  std::mt19937_64 random(631);
+  for (const std::uint8_t type : {PHX_WELCOME, PHX_REFUSED, PHX_SAMPLE, PHX_PONG}) {
+    phx_message echo = random_message(type, random);
+    echo.header.epoch = rig.epoch;
+    EXPECT_EQ(rig.send(echo), PHX_DROPPED);
+    EXPECT_FALSE(rig.reply);
+  }
+  EXPECT_EQ(rig.controller.corrupt, 4U);
+}
+
+TEST_F(LinkSession, DropsAndCountsCorruptFramesAndGoesOn) {
+  rig.open_and_act(0.2F);
+  std::mt19937_64 random(632);
+  for (std::uint32_t i = 1; i <= 200; ++i) {
+    Bytes frame = encoded(rig.next_command(-0.2F));
+    frame[random() % frame.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
+    const phx_received received = rig.receive(frame);
+    EXPECT_EQ(received, PHX_DROPPED) << "seed 632, frame " << i;
+    EXPECT_EQ(rig.controller.corrupt, i);
+    EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
+  }
+}
+
+}  // namespace
+}  // namespace phalanx::link_test
