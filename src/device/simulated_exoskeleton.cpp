@@ -2,6 +2,7 @@
 #include "phalanx/device/simulated_exoskeleton.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "phalanx/device/sensed_angles.h"
@@ -107,15 +108,28 @@ JointArray SimulatedExoskeleton::wanted_torque() const noexcept {
 }
 
 void SimulatedExoskeleton::begin_tick() noexcept {
+  measure_tick();
+  take_arrived();
+  drive(wanted_torque());
+}
+
+void SimulatedExoskeleton::measure_tick() noexcept {
   if (begun_) ++tick_;
   begun_ = true;
-  take_arrived();
   measure();
-  transmission_.render(wanted_torque(), rendered_);
+}
+
+void SimulatedExoskeleton::drive(const JointArray& torque) noexcept {
+  transmission_.render(torque, rendered_);
   for (std::size_t i = 0; i < input_.motor_force.size(); ++i) {
     const ExoMotor& motor = exoskeleton_.motors[i];
     input_.motor_force[i] = rendered_.force[i] + (motor.pull_only ? motor.bias : 0.0);
   }
+}
+
+void SimulatedExoskeleton::fail_motor(std::size_t motor) noexcept {
+  assert(motor < input_.motor_force.size());
+  input_.motor_force[motor] = 0.0;
 }
 
 void SimulatedExoskeleton::end_tick(const IntendedMove& move) noexcept {

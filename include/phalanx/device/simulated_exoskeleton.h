@@ -28,6 +28,9 @@ struct IntendedMove {
 ///   end_tick()    the plant goes on for one period
 /// and, between the two, send() of whatever the host computed from sample().
 ///
+/// Where another controller decides on the torque, measure_tick() and drive() take the place of begin_tick():
+/// nothing is delayed then, and commands that were sent do nothing.
+///
 /// Measured: angle + seeded normal noise, rounded to the sensor's least significant bit; coupled joints
 /// follow theirs, copied digits theirs, all others stay at the open hand. Driven: joint torques through the
 /// transmission, held for a tick (zero-order hold); where the command carries local walls that are still
@@ -44,6 +47,14 @@ class SimulatedExoskeleton {
 
   void begin_tick() noexcept;
   void end_tick(const IntendedMove& move) noexcept;
+
+  /// Begins a tick by measuring only.
+  void measure_tick() noexcept;
+  /// Sets the motors for the tick begun last: joint torques through the transmission [Nm].
+  void drive(const JointArray& torque) noexcept;
+  /// This motor does nothing at all, its bias included, in the tick begun last: a broken one. After drive().
+  /// @pre motor < number of motors (asserted in debug)
+  void fail_motor(std::size_t motor) noexcept;
 
   /// A command that the host finished, or will finish, at `finished` [s]: it is in force from the
   /// controller's first tick at or after  finished + return delay,  never before. Commands act in the order

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// phalanx device: the first-aid kit for a device, and what stands in for one.
+#include "device_commands.h"
+
+namespace phalanx {
+
+void add_device_command(CLI::App& app, Job& job) {
+  CLI::App* device =
+      app.add_subcommand("device", "Look at a device, test its link, calibrate or simulate one");
+  device->require_subcommand(1);
+  device->footer("`phalanx device COMMAND --help` explains each. What a device must do: docs/device.md.");
+  add_device_calibrate(*device, job);
+  add_device_probe(*device, job);
+  add_device_monitor(*device, job);
+  add_device_test_link(*device, job);
+  add_device_simulate(*device, job);
+}
+
+}  // namespace phalanx

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// PING and PONG: what was sent, what came back, when.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace phalanx {
+
+/// Percentiles of the round trips [s]; 0 if none came back.
+struct RoundTripTimes {
+  double p50 = 0.0, p90 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
+};
+
+class RoundTrips {
+ public:
+  /// Room for this many, so that nothing is allocated while times are taken.
+  explicit RoundTrips(std::size_t capacity) { sent_.reserve(capacity), seconds_.reserve(capacity); }
+
+  /// @returns the number of the PING that leaves now, from 0
+  std::uint64_t send(double now);
+  void receive(std::uint64_t number, double now);
+
+  [[nodiscard]] std::uint64_t sent() const noexcept { return sent_.size(); }
+  [[nodiscard]] std::uint64_t received() const noexcept { return seconds_.size(); }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return sent() - received(); }
+  [[nodiscard]] double loss() const noexcept {
+    return sent() > 0 ? static_cast<double>(lost()) / static_cast<double>(sent()) : 0.0;
+  }
+  [[nodiscard]] std::uint64_t duplicates() const noexcept { return duplicates_; }
+  [[nodiscard]] std::uint64_t reordered() const noexcept { return reordered_; }  ///< after a later one
+  [[nodiscard]] std::uint64_t strange() const noexcept { return strange_; }      ///< answers to nothing
+  /// The smallest time that at least this part of the answers kept to.
+  [[nodiscard]] RoundTripTimes times() const;
+  /// Bars over doubling times, one line each.
+  [[nodiscard]] std::string histogram() const;
+
+ private:
+  struct Ping {
+    double at = 0.0;
+    bool answered = false;
+  };
+  std::vector<Ping> sent_;
+  std::vector<double> seconds_;
+  std::uint64_t newest_ = 0;
+  std::uint64_t duplicates_ = 0;
+  std::uint64_t reordered_ = 0;
+  std::uint64_t strange_ = 0;
+};
+
+}  // namespace phalanx

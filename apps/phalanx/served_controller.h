@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A simulated controller on a wire, in real time: what `phalanx device simulate` runs.
+#pragma once
+
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "controller_faults.h"
+#include "controller_log.h"
+#include "faulty_wire.h"
+#include "phalanx/device/clock.h"
+#include "phalanx/device/simulated_controller.h"
+
+namespace phalanx {
+
+/// What has been seen by the end.
+struct ServedStatistics {
+  std::uint64_t ticks = 0;
+  std::uint64_t late = 0;  ///< ticks that were left out because the process was not given its time
+  std::uint64_t restarts = 0;
+  double seconds = 0.0;  ///< of the (slowed) clock
+};
+
+/// At each tick: what has come in, the tick itself, what goes out. A tick that is missed is not made up: the
+/// controller's clock stays the process's (slowed) clock, while the plant stands still for that long.
+class ServedController {
+ public:
+  /// All must outlive it. @param log  may be null
+  ServedController(SimulatedController& controller, FaultyWire& wire, ControllerFaultPlan& plan,
+                   ControllerLog* log);
+
+  /// Until `stop` is not 0, `seconds` have gone, or the transport is lost.
+  /// @param stop  set by a signal handler
+  ServedStatistics serve(const Clock& clock, const Transport& transport, std::optional<double> seconds,
+                         const volatile std::sig_atomic_t& stop);
+
+  /// Differs from start to start, so that commands of the session before are refused.
+  [[nodiscard]] static std::uint32_t new_epoch();
+
+ private:
+  void tick(double t) noexcept;
+  void take_frames(double t, const PacketFaults& faults) noexcept;
+  void note_command(std::span<const std::uint8_t> frame) noexcept;
+
+  SimulatedController& controller_;
+  FaultyWire& wire_;
+  ControllerFaultPlan& plan_;
+  ControllerLog* log_;
+  ServedStatistics statistics_;
+  Peer host_ = 0;
+  bool has_host_ = false;
+  std::uint64_t newest_command_ = 0;
+  std::array<std::uint8_t, PHX_FRAME_MAX> frame_{};
+  std::array<std::uint8_t, PHX_FRAME_MAX> reply_{};
+};
+
+}  // namespace phalanx

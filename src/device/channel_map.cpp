@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/device/channel_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace phalanx {
+namespace {
+
+constexpr int kAbduction = 1;       ///< of a digit's joints
+constexpr int kMotorsAtMost = 256;  ///< the link's index has 8 bits
+
+constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
+
+std::string_view kind_name(ChannelKind kind) {
+  constexpr std::array<std::string_view, 6> kNames{"angle", "torque", "force", "motor", "curl", "splay"};
+  const auto k = static_cast<std::size_t>(kind);
+  return k < kNames.size() ? kNames[k] : "unknown kind";
+}
+
+/// How many of what it counts there are.
+int indices(ChannelKind kind) {
+  switch (kind) {
+    case ChannelKind::kAngle:
+    case ChannelKind::kTorque:
+      return kJoints;
+    case ChannelKind::kForce:
+    case ChannelKind::kCurl:
+    case ChannelKind::kSplay:
+      return kDigits;
+    case ChannelKind::kMotor:
+      return kMotorsAtMost;
+  }
+  return 0;
+}
+
+[[noreturn]] void refuse(std::size_t c, const DeviceChannel& channel, const std::string& what) {
+  throw std::invalid_argument(
+      fmt::format("channel {} ({} {}): {}", c, kind_name(channel.kind), channel.index, what));
+}
+
+void check(std::size_t c, const DeviceChannel& channel) {
+  const int most = indices(channel.kind);
+  if (channel.index < 0 || channel.index >= most)
+    refuse(c, channel, fmt::format("its index must be 0 .. {}; correct the device's channels", most - 1));
+  if (!std::isfinite(channel.gain) || channel.gain == 0.0)
+    refuse(c, channel,
+           fmt::format("its gain {} must be finite and not 0; calibrate the device", channel.gain));
+  if (!std::isfinite(channel.offset))
+    refuse(c, channel, fmt::format("its offset {} must be finite; calibrate the device", channel.offset));
+  if (channel.raw_min >= channel.raw_max)
+    refuse(c, channel,
+           fmt::format("raw_min {} must be below raw_max {}; correct the device's channels", channel.raw_min,
+                       channel.raw_max));
+}
+
+/// Which of its digit's joints a channel sets.
+bool sets(const DeviceChannel& channel, int joint) noexcept {
+  switch (channel.kind) {
+    case ChannelKind::kAngle:
+      return channel.index == joint;
+    case ChannelKind::kCurl:
+      return channel.index == digit_of_joint(joint) && joint % kJointsPerDigit != kAbduction;
+    case ChannelKind::kSplay:
+      return joint == joint_index(channel.index, kAbduction);
+    case ChannelKind::kTorque:
+    case ChannelKind::kForce:
+    case ChannelKind::kMotor:
+      return false;
+  }
+  return false;
+}
+
+void check_followers(const JointFollowers& followers) {
+  for (const CoupledJoint& joint : followers.coupled) {
+    const bool known = joint.joint >= 0 && joint.joint < kJoints && joint.of >= 0 && joint.of < kJoints;
+    if (!known || !std::isfinite(joint.ratio) || !std::isfinite(joint.offset))
+      throw std::invalid_argument(fmt::format(
+          "coupled joint {} of {}: both must be 0 .. {}, ratio {} and offset {} finite; correct the device "
+          "file",
+          joint.joint, joint.of, kJoints - 1, joint.ratio, joint.offset));
+  }
+  for (std::size_t d = 0; d < followers.copy.size(); ++d) {
+    const DigitCopy& copy = followers.copy[d];
+    if (copy.of >= kDigits || !std::isfinite(copy.gain))
+      throw std::invalid_argument(
+          fmt::format("copy of the {}: digit {} must be below {} and the gain {} finite; correct the device "
+                      "file",
+                      digit_name(static_cast<int>(d)), copy.of, kDigits, copy.gain));
+  }
+}
+
+}  // namespace
+
+ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers followers,
+                       const HandParameters& hand)
+    : channels_(std::move(channels)),
+      followers_(std::move(followers)),
+      open_(hand.open_angle),
+      min_(hand.min_angle),
+      max_(hand.max_angle) {
+  if (channels_.size() > kMaxChannels)
+    throw std::invalid_argument(
+        fmt::format("{} channels: a device has at most {}; leave some out", channels_.size(), kMaxChannels));
+  check_followers(followers_);
+  angle_channel_.fill(-1);
+  std::array<int, kJoints> setter{};
+  setter.fill(-1);
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    check(c, channels_[c]);
+    for (int joint = 0; joint < kJoints; ++joint) {
+      if (!sets(channels_[c], joint)) continue;
+      if (setter[idx(joint)] >= 0)
+        refuse(c, channels_[c],
+               fmt::format("channel {} sets {} already; leave one of the two out", setter[idx(joint)],
+                           joint_name(joint)));
+      setter[idx(joint)] = static_cast<int>(c);
+      if (channels_[c].kind == ChannelKind::kAngle) angle_channel_[idx(joint)] = static_cast<int>(c);
+    }
+  }
+  for (std::size_t j = 0; j < setter.size(); ++j) measured_[j] = setter[j] >= 0;
+  std::erase_if(followers_.coupled,
+                [this](const CoupledJoint& joint) { return measured_[idx(joint.joint)]; });
+}
+
+void ChannelMap::measure(std::size_t channel, double value, Sample& out) const noexcept {
+  const int index = channels_[channel].index;
+  switch (channels_[channel].kind) {
+    case ChannelKind::kAngle:
+      out.angle[idx(index)] = value;
+      break;
+    case ChannelKind::kTorque:
+      out.measured_torque[idx(index)] = value;
+      break;
+    case ChannelKind::kForce:
+      out.measured_force[idx(index)] = value;
+      break;
+    case ChannelKind::kCurl:
+      for (int i = 0; i < kJointsPerDigit; ++i) {
+        const auto j = idx(joint_index(index, i));
+        if (i != kAbduction) out.angle[j] = min_[j] + value * (max_[j] - min_[j]);
+      }
+      break;
+    case ChannelKind::kSplay: {
+      const auto j = idx(joint_index(index, kAbduction));
+      out.angle[j] = 0.5 * (min_[j] + max_[j]) + value * 0.5 * (max_[j] - min_[j]);
+      break;
+    }
+    case ChannelKind::kMotor:  // says nothing about the hand that an angle channel does not
+      break;
+  }
+}
+
+void ChannelMap::follow(JointArray& angle) const noexcept {
+  for (const CoupledJoint& joint : followers_.coupled)
+    angle[idx(joint.joint)] = joint.ratio * angle[idx(joint.of)] + joint.offset;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const DigitCopy& copy = followers_.copy[idx(digit)];
+    if (copy.of < 0) continue;
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const auto from = idx(joint_index(copy.of, i));
+      const auto to = idx(joint_index(digit, i));
+      if (!measured_[to]) angle[to] = open_[to] + copy.gain * (angle[from] - open_[from]);
+    }
+  }
+}
+
+void ChannelMap::convert(const DeviceSample& raw, Sample& out) const noexcept {
+  out = Sample{};
+  out.time_s = 1e-6 * static_cast<double>(raw.time_us);
+  out.angle = open_;
+  for (std::size_t c = 0; c < channels_.size(); ++c) measure(c, value(c, raw.raw[c]), out);
+  follow(out.angle);
+}
+
+JointFollowers followers_of(const Exoskeleton& exoskeleton) {
+  return {.coupled = exoskeleton.coupled, .copy = exoskeleton.controller.copy};
+}
+
+}  // namespace phalanx

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Waiting for a file descriptor, finer than a millisecond.
+#pragma once
+
+#include <poll.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace phalanx {
+
+/// Waits at most `seconds` of real time for `events` (POLLIN, POLLOUT) of `descriptor`; a negative descriptor
+/// only lets the time pass. @returns the events that have come, errors among them; 0: none, or a signal.
+inline short wait_for(int descriptor, short events, double seconds) noexcept {
+  const double bounded = std::isfinite(seconds) ? std::clamp(seconds, 0.0, 3600.0) : 0.0;
+  timespec time{};
+  time.tv_sec = static_cast<time_t>(bounded);
+  time.tv_nsec = static_cast<long>((bounded - std::floor(bounded)) * 1e9);
+  pollfd poll_for{.fd = descriptor, .events = events, .revents = 0};
+  return ::ppoll(&poll_for, 1, &time, nullptr) > 0 ? poll_for.revents : short{0};
+}
+
+}  // namespace phalanx

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/device/channel_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "support/count_allocations.h"
+#include "support/simple_hand.h"
+
+namespace phalanx::test {
+namespace {
+
+constexpr int kMiddle = 2;
+constexpr int kRing = 3;
+
+std::size_t idx(int i) { return static_cast<std::size_t>(i); }
+std::size_t joint(int digit, int i) { return idx(joint_index(digit, i)); }
+
+/// Flexion -0.5 .. 2, abduction -0.6 .. 0.6; open at 0.1.
+HandParameters hand() {
+  HandParameters parameters = simple_parameters();
+  parameters.open_angle.fill(0.1);
+  return parameters;
+}
+
+DeviceChannel channel(ChannelKind kind, int index, double gain, double offset = 0.0) {
+  return {.kind = kind, .index = index, .raw_min = 0, .raw_max = 4095, .gain = gain, .offset = offset};
+}
+
+Sample converted(const ChannelMap& map, std::initializer_list<std::int32_t> raw) {
+  DeviceSample in;
+  in.time_us = 1'234'567;
+  std::copy(raw.begin(), raw.end(), in.raw.begin());
+  Sample out;
+  out.angle.fill(std::numeric_limits<double>::quiet_NaN());
+  map.convert(in, out);
+  return out;
+}
+
+std::string refusal(const std::vector<DeviceChannel>& channels, const JointFollowers& followers = {}) {
+  try {
+    const ChannelMap map(channels, followers, hand());
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ChannelMap, AnAngleIsGainTimesRawPlusOffset) {
+  const ChannelMap map({channel(ChannelKind::kAngle, 4, 0.001, -0.25)}, {}, hand());
+  const Sample sample = converted(map, {1000});
+  EXPECT_DOUBLE_EQ(sample.angle[4], 0.75);
+  EXPECT_DOUBLE_EQ(sample.time_s, 1.234567);
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    if (j != 4) {
+      EXPECT_EQ(sample.angle[j], 0.1) << "not measured: open";
+    }
+    EXPECT_TRUE(std::isnan(sample.measured_torque[j]));
+  }
+  EXPECT_EQ(map.angle_channel(4), 0);
+  EXPECT_EQ(map.angle_channel(5), -1);
+}
+
+// A quarter of the way from -0.5 to 2 rad is 0.125 rad.
+TEST(ChannelMap, ACurlBendsAllHingesOfItsDigit) {
+  const ChannelMap map({channel(ChannelKind::kCurl, kIndex, 1.0 / 1000.0)}, {}, hand());
+  const Sample sample = converted(map, {250});
+  for (const int i : {0, 2, 3}) EXPECT_DOUBLE_EQ(sample.angle[joint(kIndex, i)], 0.125);
+  EXPECT_EQ(sample.angle[joint(kIndex, 1)], 0.1) << "abduction";
+  EXPECT_EQ(sample.angle[joint(kMiddle, 0)], 0.1);
+  EXPECT_EQ(map.angle_channel(joint_index(kIndex, 0)), -1);
+}
+
+// From the middle 0 half of half of 1.2 rad to the other side.
+TEST(ChannelMap, ASplaySetsTheAbductionAroundItsMiddle) {
+  HandParameters skewed = hand();
+  skewed.min_angle[joint(kRing, 1)] = -0.2;  // middle 0.2, half 0.4
+  const ChannelMap map(
+      {channel(ChannelKind::kSplay, kIndex, 0.001, -1.0), channel(ChannelKind::kSplay, kRing, 0.001, -1.0)},
+      {}, skewed);
+  const Sample sample = converted(map, {500, 1500});
+  EXPECT_DOUBLE_EQ(sample.angle[joint(kIndex, 1)], -0.3);
+  EXPECT_DOUBLE_EQ(sample.angle[joint(kRing, 1)], 0.4);
+  EXPECT_EQ(sample.angle[joint(kRing, 0)], 0.1);
+}
+
+TEST(ChannelMap, CurlAndSplayOfOneDigitDoNotCollide) {
+  EXPECT_EQ(refusal({channel(ChannelKind::kCurl, 1, 1.0), channel(ChannelKind::kSplay, 1, 1.0)}), "");
+}
+
+TEST(ChannelMap, CoupledJointsAndCopiedDigitsFollow) {
+  JointFollowers followers;
+  followers.coupled = {{.joint = 7, .of = 6, .ratio = 0.5, .offset = 0.05}};
+  followers.copy[kMiddle] = {.of = kIndex, .gain = 2.0};
+  const ChannelMap map({channel(ChannelKind::kAngle, 4, 0.001), channel(ChannelKind::kAngle, 6, 0.001)},
+                       followers, hand());
+  const Sample sample = converted(map, {300, 800});
+  EXPECT_DOUBLE_EQ(sample.angle[7], 0.45);
+  EXPECT_DOUBLE_EQ(sample.angle[8], 0.1 + 2.0 * 0.2);
+  EXPECT_DOUBLE_EQ(sample.angle[9], 0.1);
+  EXPECT_DOUBLE_EQ(sample.angle[10], 0.1 + 2.0 * 0.7);
+  EXPECT_DOUBLE_EQ(sample.angle[11], 0.1 + 2.0 * 0.35) << "of the coupled joint";
+  EXPECT_EQ(sample.angle[12], 0.1) << "the ring finger stays open";
+}
+
+TEST(ChannelMap, AJointThatIsMeasuredDoesNotFollow) {
+  JointFollowers followers;
+  followers.coupled = {{.joint = 7, .of = 6, .ratio = 0.5, .offset = 0.0}};
+  followers.copy[kMiddle] = {.of = kIndex, .gain = 1.0};
+  const ChannelMap map({channel(ChannelKind::kAngle, 6, 0.001), channel(ChannelKind::kAngle, 7, 0.001),
+                        channel(ChannelKind::kAngle, 10, 0.001)},
+                       followers, hand());
+  const Sample sample = converted(map, {1000, 200, 400});
+  EXPECT_DOUBLE_EQ(sample.angle[7], 0.2);
+  EXPECT_DOUBLE_EQ(sample.angle[10], 0.4);
+  EXPECT_DOUBLE_EQ(sample.angle[11], 0.2);
+}
+
+TEST(ChannelMap, TorqueAndForceArePassedOnAndMotorsAreNot) {
+  const ChannelMap map({channel(ChannelKind::kTorque, 4, 1e-4), channel(ChannelKind::kForce, 1, 0.01),
+                        channel(ChannelKind::kMotor, 0, 1e-6)},
+                       {}, hand());
+  const Sample sample = converted(map, {-1500, 300, 12345});
+  EXPECT_DOUBLE_EQ(sample.measured_torque[4], -0.15);
+  EXPECT_TRUE(std::isnan(sample.measured_torque[5]));
+  EXPECT_DOUBLE_EQ(sample.measured_force[1], 3.0);
+  EXPECT_TRUE(std::isnan(sample.measured_force[0]));
+  for (const double angle : sample.angle) EXPECT_EQ(angle, 0.1);
+  EXPECT_DOUBLE_EQ(map.value(2, 12345), 0.012345);
+}
+
+TEST(ChannelMap, FollowersOfADeviceFileAreItsOwn) {
+  Exoskeleton exoskeleton;
+  exoskeleton.coupled = {{.joint = 3, .of = 2, .ratio = 0.7, .offset = 0.0}};
+  exoskeleton.controller.copy[4] = {.of = 1, .gain = 0.9};
+  const JointFollowers followers = followers_of(exoskeleton);
+  ASSERT_EQ(followers.coupled.size(), 1U);
+  EXPECT_EQ(followers.coupled[0].ratio, 0.7);
+  EXPECT_EQ(followers.copy[4].of, 1);
+  EXPECT_EQ(followers.copy[3].of, -1);
+}
+
+TEST(ChannelMap, RefusesWhatItCannotMean) {
+  using enum ChannelKind;
+  const double nan = std::nan("");
+  EXPECT_NE(refusal({channel(kAngle, 20, 1.0)}).find("channel 0 (angle 20)"), std::string::npos);
+  EXPECT_NE(refusal({channel(kCurl, 5, 1.0)}), "");
+  EXPECT_NE(refusal({channel(kForce, -1, 1.0)}), "");
+  EXPECT_NE(refusal({channel(kAngle, 4, 0.0)}).find("gain"), std::string::npos);
+  EXPECT_NE(refusal({channel(kAngle, 4, nan)}).find("gain"), std::string::npos);
+  EXPECT_NE(refusal({channel(kAngle, 4, 1.0, nan)}).find("offset"), std::string::npos);
+  DeviceChannel empty = channel(kAngle, 4, 1.0);
+  empty.raw_max = empty.raw_min;
+  EXPECT_NE(refusal({empty}).find("raw_min"), std::string::npos);
+  const std::string twice = refusal({channel(kAngle, 6, 1.0), channel(kCurl, 1, 1.0)});
+  EXPECT_NE(twice.find("channel 1 (curl 1)"), std::string::npos) << twice;
+  EXPECT_NE(twice.find("index_pip_flexion"), std::string::npos) << twice;
+  EXPECT_NE(refusal(std::vector<DeviceChannel>(33, channel(kMotor, 0, 1.0))).find("32"), std::string::npos);
+  EXPECT_NE(refusal({}, {.coupled = {{.joint = 20, .of = 1}}, .copy = {}}), "");
+  JointFollowers bad_copy;
+  bad_copy.copy[2].of = 5;
+  EXPECT_NE(refusal({}, bad_copy).find("middle"), std::string::npos);
+}
+
+TEST(ChannelMap, ConvertingAllocatesNothing) {
+  JointFollowers followers;
+  followers.copy[kMiddle] = {.of = kIndex, .gain = 1.0};
+  const ChannelMap map({channel(ChannelKind::kCurl, kIndex, 1.0)}, followers, hand());
+  const DeviceSample in{};
+  Sample out;
+  const std::size_t before = allocations();
+  for (int i = 0; i < 100; ++i) map.convert(in, out);
+  EXPECT_EQ(allocations(), before);
+}
+
+}  // namespace
+}  // namespace phalanx::test

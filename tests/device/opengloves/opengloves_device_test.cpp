@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+// The glove's driver against firmware that waits for an answer at every loop.
+#include "phalanx/device/opengloves/opengloves_device.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <regex>
+#include <thread>
+
+#include "device/opengloves/glove_firmware.h"
+#include "support/count_allocations.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+using test::GloveFirmware;
+using ::testing::HasSubstr;
+
+constexpr const char* kOpenHand = "A0B0C0D0E0F2047G2047P0(AB)2047(BB)2047(CB)2047(DB)2047(EB)2047";
+constexpr const char* kFree = "A0B0C0D0E0";
+
+OpenGlovesSettings quick() { return {.full_scale = 0, .hello_timeout = 3.0, .learn_for = 0.1, .serial = ""}; }
+
+struct Fixture {
+  explicit Fixture(const char* line, const OpenGlovesSettings& settings = quick()) : firmware(line) {
+    device = make_opengloves_device(firmware.host_descriptor(), clock, settings);
+    device->set_hand(test::simple_parameters());
+  }
+  ~Fixture() { device->close(); }
+
+  // Polls, for there is no end to a test otherwise; false after 10 s.
+  static bool eventually(const std::function<bool()>& holds) {
+    for (int i = 0; i < 10000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+  // The first sample for which `is` holds.
+  bool sample_where(const std::function<bool(const DeviceSample&)>& is) {
+    return eventually([&] {
+      std::array<DeviceSample, 64> inbox;
+      const std::size_t count = device->receive(clock.now(), inbox);
+      for (std::size_t i = 0; i < count; ++i) {
+        sample = inbox[i];
+        if (is(sample)) return true;
+      }
+      return false;
+    });
+  }
+  // Sends the command again and again, as a loop does, until the glove is told so.
+  bool told(const DeviceCommand& command, const std::string& answer) {
+    return eventually([&] {
+      device->send(command);
+      return firmware.last_answer() == answer;
+    });
+  }
+
+  Clock clock;
+  GloveFirmware firmware;
+  std::unique_ptr<OpenGlovesDevice> device;
+  DeviceSample sample;
+};
+
+DeviceCommand stopped_index(double q) {
+  DeviceCommand command;
+  command.tick = 42;
+  command.enable = true;
+  command.stopped[test::kIndex] = true;
+  command.gdp_angle = test::index_angles(q, q, q);
+  return command;
+}
+
+TEST(OpenGlovesDevice, LearnsItsChannelsFromTheFirstLines) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  const DeviceInfo& info = glove.device->info();
+  ASSERT_EQ(info.channels.size(), 10U);
+  EXPECT_EQ(info.channels[0].kind, ChannelKind::kCurl);
+  EXPECT_EQ(info.channels[1].kind, ChannelKind::kSplay);
+  EXPECT_FALSE(info.renders_torque);
+  EXPECT_EQ(info.channels[0].raw_max, 4095) << "the joystick at rest says so, with a hand that is open";
+  EXPECT_DOUBLE_EQ(info.channels[0].gain, 1.0 / 4095.0);
+}
+
+TEST(OpenGlovesDevice, TakesNarrowNumbersForWhatTheyAre) {
+  Fixture glove("A0B1023C0D0E0F511G511");
+  glove.device->open();
+  ASSERT_EQ(glove.device->info().channels.size(), 5U);
+  EXPECT_EQ(glove.device->info().channels[0].raw_max, 1023);
+  ASSERT_TRUE(glove.sample_where([](const DeviceSample& s) { return s.raw[1] == 1023; }));
+}
+
+// A wide glove whose first lines looked narrow: the number comes through as it is, outside the channel's
+// range, where every station calls it a sensor fault.
+TEST(OpenGlovesDevice, NeverHidesThatItTookAWideGloveForANarrowOne) {
+  Fixture glove("A0B0C0D0E0");
+  glove.device->open();
+  EXPECT_EQ(glove.device->info().channels[1].raw_max, 1023);
+  glove.firmware.say("A0B2000C0D0E0");
+  ASSERT_TRUE(glove.sample_where([](const DeviceSample& s) { return s.raw[1] == 2000; }));
+  EXPECT_GT(glove.sample.raw[1], glove.device->info().channels[1].raw_max);
+}
+
+TEST(OpenGlovesDevice, BelievesTheFullScaleThatItIsGiven) {
+  auto settings = quick();
+  settings.full_scale = 4095;
+  Fixture glove("A0B0C0D0E0", settings);
+  glove.device->open();
+  EXPECT_EQ(glove.device->info().channels[1].raw_max, 4095);
+  settings.full_scale = 1000;
+  EXPECT_THROW(Fixture("A0", settings), std::invalid_argument);
+}
+
+// The firmware goes on only after a line of the host: that it goes on at all says that each was answered.
+TEST(OpenGlovesDevice, AnswersEveryLineWithAllFive) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  ASSERT_TRUE(glove.firmware.wait_for_answers(200));
+  const auto lines = static_cast<std::size_t>(glove.firmware.lines_sent());
+  const std::vector<std::string> answers = glove.firmware.answers();
+  const std::regex all_five("A[0-9]+B[0-9]+C[0-9]+D[0-9]+E[0-9]+");
+  for (const std::string& answer : answers) EXPECT_TRUE(std::regex_match(answer, all_five)) << answer;
+  EXPECT_GE(answers.size() + 1, lines) << "the last one may still be on its way";
+}
+
+TEST(OpenGlovesDevice, GivesSamplesInOrderWithRawNumbers) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  glove.firmware.say("A1B2C3D4E5F2047G2047P0(AB)6(BB)7(CB)8(DB)9(EB)10");
+  std::uint32_t sequence = 0;
+  std::uint64_t time_us = 0;
+  ASSERT_TRUE(glove.sample_where([&](const DeviceSample& s) {
+    EXPECT_GT(s.sequence, sequence);
+    EXPECT_GT(s.time_us, time_us);
+    sequence = s.sequence;
+    time_us = s.time_us;
+    return s.raw[0] == 1;
+  }));
+  const std::array<std::int32_t, 10> expected = {1, 6, 2, 7, 3, 8, 4, 9, 5, 10};
+  for (std::size_t c = 0; c < expected.size(); ++c) EXPECT_EQ(glove.sample.raw[c], expected[c]) << c;
+  EXPECT_EQ(glove.sample.state, DeviceState::kReady);
+}
+
+TEST(OpenGlovesDevice, StopsTheDigitThatIsStoppedAndLetsGoAgain) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  // (0.75 + 0.5) / 2.5 = 0.5 of the curl.
+  ASSERT_TRUE(glove.told(stopped_index(0.75), "A0B500C0D0E0"));
+  ASSERT_TRUE(glove.eventually([&] {
+    glove.device->send(stopped_index(0.75));
+    std::array<DeviceSample, 64> inbox;
+    const std::size_t count = glove.device->receive(0.0, inbox);
+    return count > 0 && inbox[count - 1].acted_tick == 42 && inbox[count - 1].state == DeviceState::kActive;
+  }));
+  DeviceCommand disabled = stopped_index(0.75);
+  disabled.enable = false;
+  EXPECT_TRUE(glove.told(disabled, kFree));
+}
+
+TEST(OpenGlovesDevice, LetsGoWhenTheLoopFallsSilent) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  ASSERT_TRUE(glove.told(stopped_index(0.75), "A0B500C0D0E0"));
+  EXPECT_TRUE(glove.firmware.wait_for_answer(kFree));
+}
+
+TEST(OpenGlovesDevice, LetsGoWhenItIsClosed) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  ASSERT_TRUE(glove.told(stopped_index(0.75), "A0B500C0D0E0"));
+  glove.device->send(stopped_index(0.75));
+  glove.device->close();
+  EXPECT_TRUE(glove.firmware.wait_for_answer(kFree));
+  glove.device->close();
+}
+
+TEST(OpenGlovesDevice, KeepsASilentGloveAliveWithNewlines) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  glove.firmware.say("");
+  EXPECT_TRUE(glove.firmware.wait_for_newlines(3));
+  glove.firmware.say(kOpenHand);
+  EXPECT_TRUE(glove.firmware.wait_for_answers(3)) << "and goes on where it speaks again";
+  EXPECT_EQ(glove.device->connection_fault(), Fault::kNone);
+}
+
+// A line that the glove is half through when the host comes, garbage, half lines, a line without an end: each
+// line end is answered, nothing of it becomes a sample.
+TEST(OpenGlovesDevice, UsesNothingOfADamagedLineAndAnswersItAllTheSame) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  const auto before = glove.device->statistics();
+  glove.firmware.blurt("A4000B40\nB12A1A2\n\x01\xff\x80garbage(((\n" + std::string(5000, 'A') + "9\n\n");
+  glove.firmware.blurt("A1B1C1D1E1A2");  // runs together with the next line
+  ASSERT_TRUE(glove.eventually([&] { return glove.device->statistics().corrupt >= before.corrupt + 6; }));
+  EXPECT_EQ(glove.device->statistics().corrupt, before.corrupt + 6);
+  ASSERT_TRUE(glove.firmware.wait_for_answers(20));
+  std::array<DeviceSample, 512> inbox;
+  const std::size_t count = glove.device->receive(0.0, inbox);
+  ASSERT_GT(count, 0U);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < 10; ++c) ASSERT_EQ(inbox[i].raw[c], c % 2 == 0 ? 0 : 2047);
+}
+
+TEST(OpenGlovesDevice, DoesNotBelieveTheFirstLineWhichMayBeHalfAOne) {
+  GloveFirmware firmware("");
+  firmware.blurt("47(AB)3000\n");
+  Clock clock;
+  const auto device = make_opengloves_device(firmware.host_descriptor(), clock, quick());
+  firmware.say("A0B0C0D0E0");
+  device->open();
+  EXPECT_EQ(device->info().channels.size(), 5U) << "no splay";
+  device->close();
+}
+
+TEST(OpenGlovesDevice, SaysThatTheGloveIsUnplugged) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  glove.firmware.unplug();
+  EXPECT_TRUE(glove.eventually([&] { return glove.device->connection_fault() == Fault::kDeviceLost; }));
+  glove.device->reset();  // a descriptor cannot be opened again
+  glove.device->send(stopped_index(0.5));
+  EXPECT_EQ(glove.device->connection_fault(), Fault::kDeviceLost);
+}
+
+TEST(OpenGlovesDevice, RefusesAGloveThatSaysNothing) {
+  auto settings = quick();
+  settings.hello_timeout = 0.2;
+  Fixture glove("", settings);
+  try {
+    glove.device->open();
+    ADD_FAILURE() << "opened";
+  } catch (const DeviceError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no line that a glove sends"));
+    EXPECT_THAT(error.what(), HasSubstr("baud"));
+  }
+}
+
+TEST(OpenGlovesDevice, RefusesWhatIsNoGlove) {
+  auto settings = quick();
+  settings.hello_timeout = 0.2;
+  Fixture glove("0&0&0&0&0", settings);  // the firmware's other encoding
+  EXPECT_THROW(glove.device->open(), DeviceError);
+}
+
+TEST(OpenGlovesDevice, OpensAPortByNameForItselfAlone) {
+  GloveFirmware firmware(kOpenHand);
+  Clock clock;
+  const auto device = make_opengloves_device(firmware.port(), 115200, clock, quick());
+  device->open();
+  EXPECT_EQ(device->info().serial, firmware.port()) << "no USB adapter that had a number";
+  const auto second = make_opengloves_device(firmware.port(), 115200, clock, quick());
+  EXPECT_THROW(second->open(), DeviceError);
+  device->close();
+  EXPECT_NO_THROW(second->open()) << "free again";
+  second->close();
+}
+
+TEST(OpenGlovesDevice, NamesAPortThatIsNotThereAndABaudRateThatNobodyHas) {
+  const Clock clock;
+  const auto message = [&](const std::string& port, unsigned baud) -> std::string {
+    try {
+      make_opengloves_device(port, baud, clock)->open();
+    } catch (const DeviceError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message("/dev/no-such-glove", 115200), HasSubstr("/dev/serial/by-id"));
+  EXPECT_THAT(message("/dev/null", 115200), HasSubstr("is it a serial port?"));
+  EXPECT_THAT(message("/dev/null", 12345), HasSubstr("12345 baud"));
+}
+
+TEST(OpenGlovesDevice, TakesOnlyACalibrationOfItsOwnChannels) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  auto channels = glove.device->info().channels;
+  channels[0].gain *= 1.1;
+  EXPECT_NO_THROW(glove.device->set_calibration(channels));
+  channels[0].gain = 0.0;
+  EXPECT_THROW(glove.device->set_calibration(channels), std::invalid_argument);
+  channels = glove.device->info().channels;
+  channels.pop_back();
+  EXPECT_THROW(glove.device->set_calibration(channels), std::invalid_argument);
+}
+
+TEST(OpenGlovesDevice, AllocatesNothingInTheLoop) {
+  Fixture glove(kOpenHand);
+  glove.device->open();
+  glove.firmware.say("");
+  ASSERT_TRUE(glove.firmware.wait_for_newlines(2));  // the firmware's own vectors stand still
+  const std::size_t before = test::allocations();
+  std::array<DeviceSample, 64> inbox;
+  for (int i = 0; i < 100; ++i) {
+    glove.device->send(stopped_index(0.01 * i));
+    static_cast<void>(glove.device->receive(0.0, inbox));
+    static_cast<void>(glove.device->statistics());
+    static_cast<void>(glove.device->connection_fault());
+  }
+  EXPECT_EQ(test::allocations(), before);
+}
+
+}  // namespace
+}  // namespace phalanx

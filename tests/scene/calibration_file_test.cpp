@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/calibration_file.h"
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "expect_error.h"
+#include "record/temporary_folder.h"
+
+namespace phalanx {
+namespace {
+
+Calibration example() {
+  Calibration c;
+  c.device = "a \"glove\" \\ with\na name";
+  c.serial = "0007 \xc3\xa4";
+  c.date = "2026-05-04T09:30:00Z";
+  c.phalanx = "0.1.0";
+  c.channels.push_back({.channel = {.kind = ChannelKind::kAngle,
+                                    .index = joint_index(1, 2),
+                                    .gain = -1.0 / 3.0 * 1e-3,
+                                    .offset = 2.0 / 7.0},
+                        .residual = 0.012345678901234567,
+                        .poses = {{.pose = "open hand", .value = 0.0, .raw = 3021.5},
+                                  {.pose = "fist", .value = 1.7453292519943295, .raw = 12.25}}});
+  c.channels.push_back(
+      {.channel = {.kind = ChannelKind::kCurl, .index = 0, .gain = 1e-300, .offset = -1e-5}});
+  c.channels.push_back({.channel = {.kind = ChannelKind::kSplay, .index = 4, .gain = 2.0, .offset = -1.0}});
+  return c;
+}
+
+const std::string kHead =
+    "format = 1\ndevice = \"glove\"\nserial = \"1\"\ndate = \"2026-05-04T09:30:00Z\"\nphalanx = \"0.1.0\"\n";
+const std::string kAngle = "[[channel]]\nkind = \"angle\"\njoint = \"index_pip_flexion\"\n";
+const std::string kNumbers = "gain = 0.001\noffset = 0\nresidual_rad = 0\nposes = []\n";
+
+void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+  SCOPED_TRACE(text);
+  expect_scene_error([&] { static_cast<void>(parse_calibration(text, "bad.toml")); }, words);
+}
+
+void expect_same(const Calibration& a, const Calibration& b) {
+  EXPECT_EQ(a.device, b.device);
+  EXPECT_EQ(a.serial, b.serial);
+  EXPECT_EQ(a.date, b.date);
+  EXPECT_EQ(a.phalanx, b.phalanx);
+  ASSERT_EQ(a.channels.size(), b.channels.size());
+  for (std::size_t i = 0; i < a.channels.size(); ++i) {
+    const CalibratedChannel& x = a.channels[i];
+    const CalibratedChannel& y = b.channels[i];
+    EXPECT_EQ(x.channel.kind, y.channel.kind);
+    EXPECT_EQ(x.channel.index, y.channel.index);
+    EXPECT_EQ(x.channel.gain, y.channel.gain);
+    EXPECT_EQ(x.channel.offset, y.channel.offset);
+    EXPECT_EQ(x.residual, y.residual);
+    ASSERT_EQ(x.poses.size(), y.poses.size());
+    for (std::size_t p = 0; p < x.poses.size(); ++p) {
+      EXPECT_EQ(x.poses[p].pose, y.poses[p].pose);
+      EXPECT_EQ(x.poses[p].raw, y.poses[p].raw);
+      EXPECT_EQ(x.poses[p].value, y.poses[p].value);
+    }
+  }
+}
+
+TEST(CalibrationFile, ReadsBackToTheSameBits) {
+  expect_same(parse_calibration(calibration_text(example()), "round trip"), example());
+}
+
+TEST(CalibrationFile, ReadsBackWhateverTheNumbersAre) {
+  constexpr unsigned kSeed = 99;
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> number(-99.0, 99.0);
+  for (int round = 0; round < 200; ++round) {
+    Calibration c = example();
+    for (CalibratedChannel& channel : c.channels) {
+      channel.channel.gain = number(random);
+      channel.channel.offset = 1e4 * number(random);
+      channel.residual = std::abs(number(random)) / 10.0;
+      for (PoseReading& pose : channel.poses) pose.raw = 1e7 * number(random);
+    }
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    expect_same(parse_calibration(calibration_text(c), "round trip"), c);
+  }
+}
+
+TEST(CalibrationFile, IsReadFromAFile) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "mine.toml") << calibration_text(example());
+  expect_same(load_calibration(folder / "mine.toml"), example());
+  expect_scene_error([&] { static_cast<void>(load_calibration(folder / "none.toml")); }, {"none.toml"});
+}
+
+TEST(CalibrationFile, HoldsOnlyWhatPosesCanCalibrate) {
+  Calibration c = example();
+  c.channels[0].channel.kind = ChannelKind::kMotor;
+  EXPECT_THROW(static_cast<void>(calibration_text(c)), std::invalid_argument);
+  c.channels[0].channel = {.kind = ChannelKind::kCurl, .index = 5};
+  EXPECT_THROW(static_cast<void>(calibration_text(c)), std::invalid_argument);
+}
+
+TEST(CalibrationFile, OfAnotherFormatIsRefused) {
+  expect_refused("format = 2\n", {"bad.toml:1", "format = 2", "reads format 1"});
+  expect_refused("format = \"1\"\n", {"format", "is a string"});
+  expect_refused("format = nan\n", {"format", "must be"});
+  expect_refused("", {"format", "is missing"});
+}
+
+TEST(CalibrationFile, WithAHeadThatIsNone) {
+  expect_refused("format = 1\ndevice = 3\n", {"device = 3", "write a string"});
+  for (const char* date : {"yesterday", "2026-05-04", "2026-05-04 09:30:00Z", "2026-05-04T09:30:00+02:00"}) {
+    expect_refused(
+        "format = 1\ndevice = \"d\"\nserial = \"s\"\ndate = \"" + std::string(date) + "\"\nphalanx = \"1\"\n",
+        {"bad.toml:4", "date", "2026-05-04T09:30:00Z"});
+  }
+  expect_refused("format = 1\ndevice = \"d\"\nserial = \"s\"\n", {"date", "is missing"});
+}
+
+TEST(CalibrationFile, WithoutAChannelOrWithTooMany) {
+  expect_refused(kHead, {"channel", "is missing"});
+  expect_refused(kHead + "channel = []\n", {"channel", "0 channels"});
+  expect_refused(kHead + "channel = 5\n", {"channel", "array of tables"});
+}
+
+TEST(CalibrationFile, WithAChannelTwice) {
+  expect_refused(kHead + kAngle + kNumbers + kAngle + kNumbers, {"angle of index_pip_flexion", "twice"});
+}
+
+TEST(CalibrationFile, WithANameThatNobodyKnows) {
+  expect_refused(kHead + "[[channel]]\nkind = \"angel\"\n", {"kind = 'angel'", "\"angle\""});
+  expect_refused(kHead + "[[channel]]\nkind = \"angle\"\njoint = \"index_pip\"\n",
+                 {"bad.toml:8", "\"index_pip_flexion\""});
+  expect_refused(kHead + "[[channel]]\nkind = \"curl\"\ndigit = \"pinky\"\n", {"digit = 'pinky'"});
+  expect_refused(kHead + "[[channel]]\nkind = \"curl\"\njoint = \"index_pip_flexion\"\n",
+                 {"digit", "is missing"});
+  expect_refused(kHead + kAngle + kNumbers + "gian = 1\n", {"gian = 1", "gain"});
+}
+
+TEST(CalibrationFile, WithABadNumber) {
+  const std::string rest = "offset = 0\nresidual_rad = 0\nposes = []\n";
+  for (const char* bad : {"nan", "inf", "-inf", "1e9", "true", "\"1\"", "0"})
+    expect_refused(kHead + kAngle + "gain = " + bad + "\n" + rest, {"bad.toml:9", "gain"});
+  expect_refused(kHead + kAngle + "gain = 1\noffset = nan\n", {"offset = nan"});
+  expect_refused(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = -1\n", {"residual_rad = -1"});
+  expect_refused(kHead + kAngle +
+                     "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [{ name = \"a\", raw = 1e99, "
+                     "value = 0 }]\n",
+                 {"raw"});
+  expect_refused(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [1]\n",
+                 {"poses", "write a table"});
+}
+
+// Any single byte of a good file changed: it is read, or refused with a message; nothing else.
+TEST(CalibrationFile, WithADamagedByteIsReadOrRefused) {
+  constexpr unsigned kSeed = 5;
+  std::mt19937 random(kSeed);
+  const std::string good = calibration_text(example());
+  int refused = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = good;
+    text[random() % text.size()] = static_cast<char>(random());
+    try {
+      const Calibration c = parse_calibration(text, "damaged.toml");
+      for (const CalibratedChannel& channel : c.channels) EXPECT_TRUE(std::isfinite(channel.channel.gain));
+    } catch (const SceneError& error) {
+      EXPECT_STRNE(error.what(), "") << "seed " << kSeed;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1000) << "seed " << kSeed;
+}
+
+}  // namespace
+}  // namespace phalanx
