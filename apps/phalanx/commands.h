@@ -18,11 +18,13 @@ enum ExitCode : int {
 /// Returns an exit code. std::invalid_argument becomes kWrongInput, any other exception kFailed.
 using Job = std::function<int()>;
 
+void add_run_command(CLI::App& app, Job& job);
 void add_simulate_command(CLI::App& app, Job& job);
 void add_experiment_command(CLI::App& app, Job& job);
 void add_study_command(CLI::App& app, Job& job);
 void add_scene_command(CLI::App& app, Job& job);
 void add_hand_command(CLI::App& app, Job& job);
 void add_mesh_command(CLI::App& app, Job& job);
+void add_device_command(CLI::App& app, Job& job);
 
 }  // namespace phalanx

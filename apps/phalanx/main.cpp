@@ -34,12 +34,14 @@ int run(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 wrong usage or input.\n`phalanx COMMAND --help` explains a command.");
   Job job;
+  add_run_command(app, job);
   add_simulate_command(app, job);
   add_experiment_command(app, job);
   add_study_command(app, job);
   add_scene_command(app, job);
   add_hand_command(app, job);
   add_mesh_command(app, job);
+  add_device_command(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

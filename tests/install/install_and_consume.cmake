@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs BUILD_DIR into a fresh prefix under WORK_DIR, moves that prefix (a package must not remember where it was installed), builds
-# CONSUMER_DIR against it and runs what came out.
+# CONSUMER_DIR and the example driver OWN_DEVICE_DIR against it and runs what came out.
 function(must)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   message("${output}")
@@ -25,3 +25,9 @@ must(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -D
 must(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 must(${WORK_DIR}/build/consumer)
 must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${WORK_DIR}/build/station_consumer)
+
+must(${CMAKE_COMMAND} -S ${OWN_DEVICE_DIR} -B ${WORK_DIR}/own_device -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+     -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+must(${CMAKE_COMMAND} --build ${WORK_DIR}/own_device)
+# A session of 1 s, four times slower: it must not fail for a busy machine.
+must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${WORK_DIR}/own_device/own_device 1 4)

@@ -3,9 +3,30 @@
 
 #include <cstddef>
 
+#if defined(__SANITIZE_THREAD__)
+#define PHALANX_THREAD_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define PHALANX_THREAD_SANITIZER
+#endif
+#endif
+
 namespace phalanx::test {
 
-/// Calls of the global operator new so far, in a program that links count_allocations.cpp.
+/// ThreadSanitizer insists on an operator new of its own; there only malloc and its like are counted.
+#ifdef PHALANX_THREAD_SANITIZER
+inline constexpr bool kCountsNew = false;
+#else
+inline constexpr bool kCountsNew = true;
+#endif
+
+/// Calls of the global operator new in all its forms and of malloc so far, by all threads, in a program that
+/// links count_allocations.cpp with -Wl,--wrap=malloc. With -Wl,--wrap=calloc,--wrap=realloc,
+/// --wrap=aligned_alloc,--wrap=posix_memalign also of these. What shared libraries call by themselves in C is
+/// not seen.
 [[nodiscard]] std::size_t allocations() noexcept;
+
+/// Those of the calling thread alone.
+[[nodiscard]] std::size_t allocations_of_this_thread() noexcept;
 
 }  // namespace phalanx::test

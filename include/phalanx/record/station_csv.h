@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a station writes down: its steps, and the last two seconds before a fault. docs/outputs.md has the
+// columns.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "phalanx/record/output_file.h"
+#include "phalanx/station/station_view.h"
+
+namespace phalanx {
+
+/// Header line and one line a step.
+void write_step_header(OutputFile& file);
+void write_step(OutputFile& file, const StepRecord& record);
+
+/// report.json (what, where, when, device, link), samples.csv (raw counts) and steps.csv in a new folder
+/// below `folder`, named by date, time and fault.
+/// @returns the folder. @throws std::runtime_error or std::invalid_argument as OutputFile. Not real-time.
+std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report);
+
+/// Percentiles, overruns, link and grant of a whole run as JSON.
+[[nodiscard]] std::string station_summary_json(const DeadlineStatistics& deadlines, const StationView& last,
+                                               const std::string& granted, double seconds);
+
+}  // namespace phalanx

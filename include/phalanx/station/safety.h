@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands between a step's torques and a patient's hand. Everything that a station sends to a device
+// passes Safety::command(); docs/safety.md is its page.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "phalanx/device/channel_map.h"
+#include "phalanx/device/device.h"
+#include "phalanx/hand/hand_parameters.h"
+#include "phalanx/station/safety_settings.h"
+#include "phalanx/station/sensor_watch.h"
+#include "phalanx/step/snapshot.h"
+
+namespace phalanx {
+
+enum class SafetyState : std::uint8_t {
+  kWaiting,   ///< zero torque, until the device is ready and its samples are good
+  kStarting,  ///< torque rises over SafetySettings::start_ramp
+  kRunning,
+  kStopping,  ///< torque falls over SafetySettings::stop_ramp
+  kStopped,   ///< zero torque, until start()
+  kFault,     ///< zero torque after SafetySettings::fault_ramp, until reset()
+};
+
+/// "waiting", "starting", "running", "stopping", "stopped", "fault".
+[[nodiscard]] std::string_view safety_state_name(SafetyState state) noexcept;
+
+/// One fault: what, where, when. The first one counts until a reset; others that follow from it do not hide
+/// it.
+struct FaultEvent {
+  Fault fault = Fault::kNone;
+  int channel = -1;          ///< of the sensor at fault; -1: not one sensor's
+  double time = 0.0;         ///< the host's clock [s]
+  std::uint64_t tick = 0;    ///< of the step at which it was found
+  bool from_device = false;  ///< the controller found it
+};
+
+/// A state machine and a gate, both without a clock or thread of their own: once a step the loop calls
+///   observe()   every sample since the last step, the connection's state, whether the last step was late
+///   command()   the step's torques -> what leaves
+/// What leaves is finite; no joint's torque is above its limit; none changes by more than its rate limit a
+/// step but downwards at a fault; none pushes a joint beyond the patient's range of motion; and it is zero in
+/// every state but kStarting, kRunning and kStopping, and 5 ms after a fault. Real-time but for the
+/// constructor: no allocation, lock, throw or I/O.
+class Safety {
+ public:
+  /// @param period  of the loop [s]
+  Safety(const SafetySettings& settings, const ChannelMap& map, const DeviceInfo& device,
+         const HandParameters& hand, std::vector<MotorWitness> witnesses, double period);
+
+  /// @param samples     that came in since the last step, oldest first
+  /// @param connection  Device::connection_fault()
+  /// @param late        the last step ended after this one was due
+  void observe(std::span<const DeviceSample> samples, Fault connection, bool late, double now) noexcept;
+
+  /// @param used  the sample that the step was computed from
+  void command(const Snapshot& snapshot, const DeviceSample& used, double now, DeviceCommand& out) noexcept;
+
+  void start() noexcept;  ///< from kStopped; the ramp begins once the device is ready
+  void stop() noexcept;   ///< ramps to zero; from kFault nothing changes
+  /// Asks to leave kFault. Granted if the cause is gone: samples come, none is bad, no emergency stop is
+  /// pressed; then everything begins anew with kWaiting. @returns whether; the caller then resets the device.
+  bool reset(double now) noexcept;
+  /// Whether reset() would be granted.
+  [[nodiscard]] bool cause_gone(double now) const noexcept;
+
+  /// Other limits, for a model that is exchanged. @pre at_rest()
+  void change_limits(const SafetySettings& settings) noexcept { settings_ = settings; }
+
+  [[nodiscard]] SafetyState state() const noexcept { return state_; }
+  [[nodiscard]] const FaultEvent& fault() const noexcept { return fault_; }
+  /// Nothing is sent to the motors any more.
+  [[nodiscard]] bool at_rest() const noexcept { return at_rest_; }
+  [[nodiscard]] double factor() const noexcept { return factor_; }  ///< on the step's torques, 0 .. 1
+  [[nodiscard]] int late_in_a_row() const noexcept { return late_in_a_row_; }
+  [[nodiscard]] const SafetySettings& settings() const noexcept { return settings_; }
+
+ private:
+  void trip(Fault fault, int channel, double now, bool from_device = false) noexcept;
+  void judge_sample(const DeviceSample& sample, double now) noexcept;
+  void judge_step(const Snapshot& snapshot, double now) noexcept;
+  [[nodiscard]] double silent_for(double now) const noexcept;
+  void go_on(double now) noexcept;
+  [[nodiscard]] double wanted(const Snapshot& snapshot, std::size_t joint) const noexcept;
+  [[nodiscard]] double outward_factor(std::size_t joint, double angle, double torque) const noexcept;
+
+  SafetySettings settings_;
+  SensorWatch watch_;
+  JointArray min_{};
+  JointArray max_{};
+  double period_;
+  double timeout_;  ///< of samples [s]
+  bool simulated_;  ///< the device's time is the number of steps: so is its silence
+  SafetyState state_ = SafetyState::kWaiting;
+  FaultEvent fault_;
+  double factor_ = 0.0;
+  JointArray sent_{};           ///< the last command [Nm]
+  JointArray sent_at_fault_{};  ///< from which the fault's ramp falls [Nm]
+  double fault_left_ = 0.0;     ///< of the fault's ramp, 1 .. 0
+  bool at_rest_ = true;
+  DeviceSample last_{};          ///< the newest sample
+  double silence_ = 0.0;         ///< steps without a sample, in nominal time [s]
+  bool heard_ = false;           ///< a sample has come since the beginning or the last reset
+  double waiting_since_ = -1.0;  ///< [s]
+  int late_in_a_row_ = 0;
+  std::uint64_t tick_ = 0;
+};
+
+}  // namespace phalanx

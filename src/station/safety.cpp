@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/station/safety.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
+
+/// How long a device may take to become ready after a start or a reset before its latch counts as a fault
+/// [s].
+constexpr double kDeviceAnswers = 0.5;
+/// Sums of periods are not exact: far below any period [s].
+constexpr double kClock = 1e-9;
+
+/// A glove without motors may be slower than the sample timeout: then five of its periods.
+double timeout_of(const SafetySettings& settings, const DeviceInfo& device) {
+  return device.renders_torque ? settings.sample_timeout
+                               : std::max(settings.sample_timeout, 5.0 / device.rate_hz);
+}
+
+}  // namespace
+
+std::string_view safety_state_name(SafetyState state) noexcept {
+  constexpr std::array<std::string_view, 6> kNames = {"waiting",  "starting", "running",
+                                                      "stopping", "stopped",  "fault"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const DeviceInfo& device,
+               const HandParameters& hand, std::vector<MotorWitness> witnesses, double period)
+    : settings_(settings),
+      watch_(settings, map, hand, std::move(witnesses)),
+      min_(hand.min_angle),
+      max_(hand.max_angle),
+      period_(period),
+      timeout_(timeout_of(settings, device)),
+      simulated_(device.simulated) {}
+
+// ---- what is judged ----
+
+void Safety::trip(Fault fault, int channel, double now, bool from_device) noexcept {
+  if (fault == Fault::kNone || state_ == SafetyState::kFault) return;
+  fault_ = {.fault = fault, .channel = channel, .time = now, .tick = tick_, .from_device = from_device};
+  state_ = SafetyState::kFault;
+  sent_at_fault_ = sent_;
+  fault_left_ = 1.0;
+  factor_ = 0.0;
+}
+
+void Safety::judge_sample(const DeviceSample& sample, double now) noexcept {
+  const SensorFinding finding = watch_.judge(sample, sent_);
+  heard_ = true;
+  last_ = sample;
+  if (sample.estop) trip(Fault::kEmergencyStop, -1, now, true);
+  trip(finding.fault, finding.channel, now);
+  // Right after a reset the device's samples still speak of the latch that is being cleared.
+  const bool answering = state_ == SafetyState::kWaiting && now - waiting_since_ < kDeviceAnswers;
+  if (sample.state == DeviceState::kLatched && !answering)
+    trip(sample.fault, sample.fault_channel, now, true);
+}
+
+void Safety::observe(std::span<const DeviceSample> samples, Fault connection, bool late,
+                     double now) noexcept {
+  if (waiting_since_ < 0.0) waiting_since_ = now;
+  trip(connection, -1, now);
+  for (const DeviceSample& sample : samples) judge_sample(sample, now);
+  silence_ = samples.empty() ? silence_ + period_ : 0.0;
+  const double patience = heard_ ? timeout_ : std::max(timeout_, kDeviceAnswers);
+  if (silent_for(now) >= patience - kClock) trip(Fault::kNoSample, -1, now);
+  late_in_a_row_ = late ? late_in_a_row_ + 1 : 0;
+  if (late_in_a_row_ >= settings_.overruns) trip(Fault::kOverload, -1, now);
+}
+
+/// Since the newest sample, or since we began to wait for the first [s].
+double Safety::silent_for(double now) const noexcept {
+  if (simulated_) return silence_;
+  return now - (heard_ ? last_.received : waiting_since_);
+}
+
+/// A step that is wrong in itself. The negated comparison also catches what is not a number.
+void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
+  if (has(snapshot.status, Status::kCommandNotFinite)) trip(Fault::kCommandNotFinite, -1, now);
+  for (int digit = 0; digit < kDigits; ++digit) {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const SegmentSnapshot& segment = snapshot.segment[idx(segment_index(digit, k))];
+      sum += segment.force * segment.normal;
+      if (!(std::abs(segment.force) <= kForceNever)) trip(Fault::kForceCeiling, -1, now);
+    }
+    if (!(sum.norm() <= kForceNever)) trip(Fault::kForceCeiling, -1, now);
+  }
+  for (const double torque : snapshot.torque)
+    if (!std::isfinite(torque)) trip(Fault::kCommandNotFinite, -1, now);
+}
+
+// ---- how torque comes and goes ----
+
+void Safety::go_on(double now) noexcept {
+  const bool ready = heard_ && last_.state != DeviceState::kConnecting &&
+                     last_.state != DeviceState::kLatched && watch_.all_good();
+  if (state_ == SafetyState::kWaiting && ready) state_ = SafetyState::kStarting;
+  if (state_ == SafetyState::kWaiting && heard_ && now - waiting_since_ >= kDeviceAnswers &&
+      last_.state == DeviceState::kLatched)
+    trip(last_.fault, last_.fault_channel, now, true);
+  if (state_ == SafetyState::kStarting) {
+    factor_ = std::min(1.0, factor_ + period_ / settings_.start_ramp);
+    if (factor_ >= 1.0) state_ = SafetyState::kRunning;
+  }
+  if (state_ == SafetyState::kStopping) {
+    factor_ = std::max(0.0, factor_ - period_ / settings_.stop_ramp);
+    if (factor_ <= 0.0 && at_rest_) state_ = SafetyState::kStopped;
+  }
+  if (state_ == SafetyState::kFault) {
+    const double left = fault_left_ - period_ / settings_.fault_ramp;
+    fault_left_ = left > kClock ? left : 0.0;
+  }
+}
+
+/// 1 inside the patient's range of motion, 0 at its end and beyond, for torque that would push the joint out.
+double Safety::outward_factor(std::size_t joint, double angle, double torque) const noexcept {
+  const double left = torque > 0.0 ? max_[joint] - angle : angle - min_[joint];
+  return std::clamp(left / settings_.range_taper, 0.0, 1.0);
+}
+
+/// The step's torque, tapered at the end of the range, limited, times the ramp's factor.
+double Safety::wanted(const Snapshot& snapshot, std::size_t joint) const noexcept {
+  const double torque = snapshot.torque[joint];
+  const double inside = torque * outward_factor(joint, snapshot.hcp_angle[joint], torque);
+  return factor_ * std::clamp(inside, -settings_.joint_torque, settings_.joint_torque);
+}
+
+void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double now,
+                     DeviceCommand& out) noexcept {
+  tick_ = snapshot.tick;
+  judge_step(snapshot, now);
+  go_on(now);
+  at_rest_ = true;
+  const double change = settings_.torque_rate * period_;
+  for (std::size_t j = 0; j < sent_.size(); ++j) {
+    double torque = 0.0;
+    if (state_ == SafetyState::kFault) {
+      torque = fault_left_ * sent_at_fault_[j];
+    } else {
+      torque = std::clamp(wanted(snapshot, j), sent_[j] - change, sent_[j] + change);
+    }
+    sent_[j] = std::isfinite(torque) ? torque : 0.0;
+    at_rest_ = at_rest_ && sent_[j] == 0.0;
+  }
+  const bool moving = state_ == SafetyState::kStarting || state_ == SafetyState::kRunning ||
+                      state_ == SafetyState::kStopping || (state_ == SafetyState::kFault && !at_rest_);
+  out.tick = snapshot.tick;
+  out.sample_time_us = used.time_us;
+  out.enable = moving;
+  out.torque = sent_;
+  out.hcp_angle = snapshot.hcp_angle;
+  out.gdp_angle = snapshot.gdp_angle;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    bool stopped = false;
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      stopped = stopped || snapshot.segment[idx(segment_index(digit, k))].contact;
+    out.stopped[idx(digit)] = stopped && moving && state_ != SafetyState::kFault;
+  }
+  // Walls are forces that the gate has not seen: only in full operation.
+  out.wall_valid_for = state_ == SafetyState::kRunning ? snapshot.wall_valid_for : 0.0;
+  if (out.wall_valid_for > 0.0) out.wall = snapshot.wall;
+}
+
+// ---- what people ask ----
+
+void Safety::start() noexcept {
+  if (state_ != SafetyState::kStopped && state_ != SafetyState::kStopping) return;
+  state_ = SafetyState::kStarting;
+}
+
+void Safety::stop() noexcept {
+  if (state_ == SafetyState::kFault || state_ == SafetyState::kStopped) return;
+  state_ = SafetyState::kStopping;
+}
+
+bool Safety::cause_gone(double now) const noexcept {
+  return heard_ && silent_for(now) <= timeout_ && watch_.all_good() && !last_.estop;
+}
+
+bool Safety::reset(double now) noexcept {
+  const bool connection = fault_.fault == Fault::kControllerRestarted || fault_.fault == Fault::kRefused ||
+                          fault_.fault == Fault::kNoSample || fault_.fault == Fault::kDeviceLost;
+  // With the connection gone there are no samples to judge: ask for it again, and wait.
+  if (state_ != SafetyState::kFault || !at_rest_ || !(connection || cause_gone(now))) return false;
+  state_ = SafetyState::kWaiting;
+  waiting_since_ = now;
+  fault_ = {};
+  factor_ = 0.0;
+  late_in_a_row_ = 0;
+  heard_ = false;
+  silence_ = 0.0;
+  watch_.forget();
+  return true;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/station/safety_settings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace phalanx {
+namespace {
+
+void refuse_off(bool on, const char* key) {
+  if (on) return;
+  throw std::invalid_argument(
+      fmt::format("{} = \"off\": a station runs with every limit on; give it a number (`phalanx simulate` "
+                  "and studies may turn it off)",
+                  key));
+}
+
+void refuse_above(double value, double most, const char* key, const char* unit) {
+  if (value <= most) return;
+  throw std::invalid_argument(
+      fmt::format("{} = {}: a station allows at most {} {}; lower it", key, value, most, unit));
+}
+
+}  // namespace
+
+SafetySettings make_safety_settings(const LimitParameters& limits, const std::string& clinician) {
+  refuse_off(limits.fingertip_force_enabled, "limits.fingertip_force_n");
+  refuse_off(limits.joint_torque_enabled, "limits.joint_torque_nm");
+  refuse_off(limits.torque_rate_enabled, "limits.torque_rate_nm_per_s");
+  refuse_off(std::isfinite(limits.joint_speed), "limits.joint_speed_rad_per_s");
+  refuse_above(limits.fingertip_force, kForceWithClinician, "limits.fingertip_force_n", "N");
+  if (limits.fingertip_force > kForceWithoutClinician && clinician.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "limits.fingertip_force_n = {}: above {} N somebody must answer for it; lower it, or name who: "
+        "--clinician NAME (up to {} N)",
+        limits.fingertip_force, kForceWithoutClinician, kForceWithClinician));
+  }
+  refuse_above(limits.joint_torque, kTorqueNever, "limits.joint_torque_nm", "Nm");
+  refuse_above(limits.torque_rate, kTorqueRateNever, "limits.torque_rate_nm_per_s", "Nm/s");
+  SafetySettings settings;
+  settings.fingertip_force = limits.fingertip_force;
+  settings.joint_torque = limits.joint_torque;
+  settings.torque_rate = limits.torque_rate;
+  settings.joint_speed = limits.joint_speed;
+  return settings;
+}
+
+}  // namespace phalanx

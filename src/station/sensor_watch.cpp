@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/station/sensor_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
+
+bool is_angle(const DeviceChannel& channel) noexcept {
+  return channel.kind == ChannelKind::kAngle || channel.kind == ChannelKind::kCurl ||
+         channel.kind == ChannelKind::kSplay;
+}
+
+}  // namespace
+
+SensorWatch::SensorWatch(const SafetySettings& settings, const ChannelMap& map, const HandParameters& hand,
+                         std::vector<MotorWitness> witnesses)
+    : settings_(settings), map_(&map), witness_(std::move(witnesses)) {
+  const auto& channels = map.channels();
+  channel_.resize(channels.size());
+  witnessed_.resize(channels.size() * witness_.size());
+  constexpr double kAnything = std::numeric_limits<double>::infinity();
+  for (const DeviceChannel& channel : channels) {
+    double least = -kAnything;
+    double largest = kAnything;
+    if (channel.kind == ChannelKind::kAngle) {
+      least = hand.min_angle[idx(channel.index)] - settings.range_margin;
+      largest = hand.max_angle[idx(channel.index)] + settings.range_margin;
+    }
+    least_.push_back(least);
+    largest_.push_back(largest);
+  }
+}
+
+bool SensorWatch::all_good() const noexcept {
+  return started_ && clock_bad_ == 0 &&
+         std::all_of(channel_.begin(), channel_.end(), [](const Channel& c) { return c.bad == 0; });
+}
+
+void SensorWatch::forget() noexcept {
+  std::fill(channel_.begin(), channel_.end(), Channel{});
+  clock_bad_ = 0;
+  started_ = false;
+}
+
+/// What one angle channel's newest raw value is: kNone, or what is wrong with it.
+Fault SensorWatch::judge_angle(std::size_t c, double t) noexcept {
+  Channel& channel = channel_[c];
+  const DeviceChannel& sensor = map_->channels()[c];
+  if (channel.raw < sensor.raw_min || channel.raw > sensor.raw_max) return Fault::kSensorRange;
+  const double value = map_->value(c, channel.raw);
+  if (!std::isfinite(value)) return Fault::kSampleNotFinite;
+  if (value < least_[c] || value > largest_[c]) return Fault::kOutOfRange;
+  if (channel.seen) {
+    const double furthest = settings_.joint_speed * (t - channel.time) + settings_.jump_allowance;
+    if (std::abs(value - channel.value) > furthest) return Fault::kJump;
+  }
+  channel.seen = true;
+  channel.value = value;
+  channel.time = t;
+  return Fault::kNone;
+}
+
+/// How far the motor and the other joints that it moves say that this channel's joint has gone [rad]:
+/// the tendon's length is  y = sum arm q, so  q = (y - sum of the others) / arm.
+double SensorWatch::moved_by(const MotorWitness& witness, std::size_t c) const noexcept {
+  const auto joint = idx(map_->channels()[c].index);
+  double wound = map_->value(idx(witness.channel), channel_[idx(witness.channel)].raw);
+  for (std::size_t j = 0; j < witness.arm.size(); ++j) {
+    if (j == joint || witness.arm[j] == 0.0) continue;
+    const int other = map_->angle_channel(static_cast<int>(j));
+    if (other >= 0) wound -= witness.arm[j] * map_->value(idx(other), channel_[idx(other)].raw);
+  }
+  return wound / witness.arm[joint];
+}
+
+bool SensorWatch::stands_still(std::size_t c, double t) noexcept {
+  const DeviceChannel& sensor = map_->channels()[c];
+  if (sensor.kind != ChannelKind::kAngle || t - channel_[c].still_since < settings_.stuck_after) return false;
+  for (std::size_t w = 0; w < witness_.size(); ++w) {
+    const double arm = witness_[w].arm[idx(sensor.index)];
+    if (arm == 0.0) continue;
+    const double believable =
+        settings_.stuck_counts * std::abs(sensor.gain) + witness_[w].slack / std::abs(arm);
+    if (std::abs(moved_by(witness_[w], c) - witnessed_[c * witness_.size() + w]) > believable) return true;
+  }
+  return false;
+}
+
+bool SensorWatch::disagrees(std::size_t c, double measured, double commanded, double t) noexcept {
+  const double bound = settings_.torque_error + settings_.torque_error_part * std::abs(commanded);
+  if (std::abs(measured - commanded) <= bound) {
+    channel_[c].error_since = -1.0;
+    return false;
+  }
+  if (channel_[c].error_since < 0.0) channel_[c].error_since = t;
+  return t - channel_[c].error_since >= settings_.torque_error_time;
+}
+
+SensorFinding SensorWatch::judge(const DeviceSample& sample, const JointArray& commanded) noexcept {
+  if (started_ && sample.time_us <= last_time_us_) {
+    ++clock_bad_;
+    return {clock_bad_ >= settings_.bad_samples ? Fault::kClockBackwards : Fault::kNone, -1};
+  }
+  clock_bad_ = 0;
+  last_time_us_ = sample.time_us;
+  const double t = 1e-6 * static_cast<double>(sample.time_us);
+
+  const auto& channels = map_->channels();
+  SensorFinding finding;
+  const auto found = [&](Fault fault, std::size_t c) {
+    if (finding.fault == Fault::kNone) finding = {fault, static_cast<int>(c)};
+  };
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    Channel& channel = channel_[c];
+    if (!started_ || sample.raw[c] != channel.raw) channel.still_since = t;
+    channel.raw = sample.raw[c];
+  }
+  started_ = true;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    Channel& channel = channel_[c];
+    if (is_angle(channels[c])) {
+      const Fault fault = judge_angle(c, t);
+      channel.bad = fault == Fault::kNone ? 0 : channel.bad + 1;
+      if (channel.bad >= settings_.bad_samples) found(fault, c);
+      if (channel.still_since == t) {
+        for (std::size_t w = 0; w < witness_.size(); ++w) {
+          if (channels[c].kind == ChannelKind::kAngle && witness_[w].arm[idx(channels[c].index)] != 0.0)
+            witnessed_[c * witness_.size() + w] = moved_by(witness_[w], c);
+        }
+      } else if (stands_still(c, t)) {
+        found(Fault::kStuckSensor, c);
+      }
+    } else if (channels[c].kind == ChannelKind::kTorque) {
+      const double wanted = commanded[idx(channels[c].index)] * sample.factor;
+      if (disagrees(c, map_->value(c, channel.raw), wanted, t)) found(Fault::kTorqueDisagrees, c);
+    }
+  }
+  return finding;
+}
+
+std::vector<MotorWitness> motor_witnesses(const Exoskeleton& exoskeleton,
+                                          const std::vector<DeviceChannel>& channels, double largest_torque) {
+  std::vector<MotorWitness> witnesses;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].kind != ChannelKind::kMotor || idx(channels[c].index) >= exoskeleton.motors.size())
+      continue;
+    const ExoMotor& motor = exoskeleton.motors[idx(channels[c].index)];
+    double longest = 0.0;
+    for (const double arm : motor.arm) longest = std::max(longest, std::abs(arm));
+    if (longest == 0.0) continue;
+    const double tension = std::min(motor.force_limit, largest_torque / longest) + motor.bias;
+    witnesses.push_back({.channel = static_cast<int>(c),
+                         .arm = motor.arm,
+                         .slack = 2.0 * tension / motor.tendon_stiffness + motor.backlash});
+  }
+  return witnesses;
+}
+
+}  // namespace phalanx

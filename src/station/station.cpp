@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/station/station.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "phalanx/station/pacer.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kReportSeconds = 2.0;   ///< of samples and steps in a fault report
+constexpr std::size_t kRecords = 8192;   ///< steps that may wait for whoever writes them down: 4 s at 2 kHz
+constexpr std::size_t kInbox = 512;      ///< samples between two steps
+constexpr double kShutDownWithin = 2.0;  ///< [s] for the ramp at the end
+
+double checked_period(const HapticModel& model) {
+  if (model.rate_hz >= 200.0 && model.rate_hz <= 2000.0) return 1.0 / model.rate_hz;
+  throw std::invalid_argument(
+      fmt::format("rate_hz = {}: a station runs at 200 to 2000 Hz; change rate_hz", model.rate_hz));
+}
+
+std::size_t count_of(double seconds, double rate_hz) {
+  return static_cast<std::size_t>(std::ceil(seconds * std::clamp(rate_hz, 1.0, 10000.0)));
+}
+
+DigitArray digit_forces(const Snapshot& snapshot) noexcept {
+  DigitArray force{};
+  for (int digit = 0; digit < kDigits; ++digit) {
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      force[static_cast<std::size_t>(digit)] +=
+          snapshot.segment[static_cast<std::size_t>(segment_index(digit, k))].force;
+  }
+  return force;
+}
+
+}  // namespace
+
+Station::Station(std::unique_ptr<HapticModel> model, Device& device, ChannelMap channels,
+                 StationOptions options, const Clock& clock)
+    : device_(device),
+      channels_(std::move(channels)),
+      options_(std::move(options)),
+      clock_(clock),
+      period_(checked_period(*model)),
+      model_(std::move(model)),
+      safety_(options_.safety, channels_, device.info(), model_.model().hand.parameters(), options_.witnesses,
+              period_),
+      inbox_(kInbox),
+      samples_(count_of(kReportSeconds, device.info().rate_hz)),
+      steps_(count_of(kReportSeconds, model_.model().rate_hz)),
+      records_(kRecords) {
+  statistics_.period = period_;
+}
+
+Station::~Station() { shut_down(); }
+
+void Station::start() {
+  thread_ = std::thread([this] { loop(); });
+}
+
+// ---- the loop ----
+
+void Station::loop() noexcept {
+  if (options_.ask_for_realtime) {
+    RealtimeGrant granted = make_realtime(options_.realtime);
+    const std::lock_guard lock(readers_);
+    grant_ = std::move(granted);
+  }
+  Pacer pacer(clock_, period_);
+  while (!finish_.load(std::memory_order_acquire)) {
+    const Wake wake = pacer.wait();
+    one_step(wake);
+    statistics_.add(wake, clock_.now());
+    late_ = statistics_.overruns_in_row > 0;
+    deadlines_.write(statistics_);
+  }
+}
+
+void Station::one_step(const Wake& wake) noexcept {
+  serve_requests(wake.now);
+  const std::size_t count = device_.receive(wake.now, inbox_);
+  const std::span<const DeviceSample> samples(inbox_.data(), count);
+  safety_.observe(samples, device_.connection_fault(), late_, wake.now);
+  if (count > 0) {
+    newest_ = samples.back();
+    heard_ = true;
+  }
+  if (heard_) {
+    channels_.convert(newest_, sample_);
+    status_ = model_.advance(sample_);
+  }
+  const double extra = extra_.load(std::memory_order_relaxed);
+  while (extra > 0.0 && clock_.now() < wake.now + extra) {
+  }
+  safety_.command(model_.snapshot(), newest_, wake.now, command_);
+  if (heard_) device_.send(command_);
+  write_down(wake, count, clock_.now());
+}
+
+void Station::serve_requests(double now) noexcept {
+  const unsigned asked = requests_.exchange(0, std::memory_order_acq_rel);
+  if ((asked & kStop) != 0) {
+    safety_.stop();
+    resume_after_exchange_ = false;
+  }
+  if ((asked & kResume) != 0) safety_.start();
+  if ((asked & kReset) != 0 && safety_.reset(now)) {
+    device_.reset();
+    reported_ = false;
+  }
+  if (blend_.update()) model_.blend_to(blend_.value());
+  if (incoming_.load(std::memory_order_acquire) != nullptr) exchange_model();
+}
+
+/// Another model only where no force is: the ramp down first, then the exchange, then the start ramp.
+void Station::exchange_model() noexcept {
+  const SafetyState state = safety_.state();
+  if (state == SafetyState::kStarting || state == SafetyState::kRunning) {
+    safety_.stop();
+    resume_after_exchange_ = true;
+  }
+  if (!safety_.at_rest() || safety_.state() == SafetyState::kStopping || outgoing_.load() != nullptr) return;
+  Replacement* incoming = incoming_.exchange(nullptr, std::memory_order_acq_rel);
+  if (incoming == nullptr) return;
+  model_.swap(incoming->model);
+  safety_.change_limits(incoming->safety);
+  outgoing_.store(incoming, std::memory_order_release);
+  if (std::exchange(resume_after_exchange_, false)) safety_.start();
+}
+
+void Station::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
+  const Snapshot& snapshot = model_.snapshot();
+  const StepRecord record{.tick = snapshot.tick,
+                          .time = wake.now,
+                          .lateness = wake.lateness,
+                          .duration = sent_at - wake.now,
+                          .overrun = late_,
+                          .samples = static_cast<std::uint32_t>(count),
+                          .sample_sequence = newest_.sequence,
+                          .sample_time_us = newest_.time_us,
+                          .state = safety_.state(),
+                          .fault = safety_.fault().fault,
+                          .factor = safety_.factor(),
+                          .status = status_,
+                          .stiffness = model_.model().force.stiffness,
+                          .angle = snapshot.hcp_angle,
+                          .torque = command_.torque,
+                          .force = digit_forces(snapshot)};
+  if (!records_.push(record)) ++records_lost_;
+  if (!frozen_.load(std::memory_order_acquire)) {
+    for (std::size_t i = 0; i < count; ++i) samples_.push(inbox_[i]);
+    steps_.push(record);
+    freeze_history();
+  }
+  StationView view;
+  view.time = wake.now;
+  view.snapshot = snapshot;
+  view.sent = command_.torque;
+  view.state = safety_.state();
+  view.fault = safety_.fault();
+  view.factor = safety_.factor();
+  view.at_rest = safety_.at_rest();
+  view.degraded = statistics_.degraded(wake.now);
+  view.changing = model_.blending() || incoming_.load(std::memory_order_relaxed) != nullptr;
+  view.device = newest_.state;
+  view.estop = newest_.estop;
+  view.link = device_.statistics();
+  view.records_lost = records_lost_;
+  view_.write(view);
+}
+
+/// Once the torque of a fault has come to rest, its history stands still until somebody has taken it.
+void Station::freeze_history() noexcept {
+  if (safety_.state() != SafetyState::kFault || reported_ || !safety_.at_rest()) return;
+  reported_ = true;
+  frozen_event_ = safety_.fault();
+  frozen_.store(true, std::memory_order_release);
+}
+
+// ---- other threads ----
+
+void Station::stop_torque() noexcept { requests_.fetch_or(kStop, std::memory_order_acq_rel); }
+void Station::resume_torque() noexcept { requests_.fetch_or(kResume, std::memory_order_acq_rel); }
+void Station::reset() noexcept { requests_.fetch_or(kReset, std::memory_order_acq_rel); }
+
+void Station::blend_to(const BlendedParameters& parameters) {
+  const std::lock_guard lock(readers_);
+  blend_.write(parameters);
+}
+
+void Station::replace(std::unique_ptr<Replacement> replacement) {
+  const double rate = replacement->model.model().rate_hz;
+  if (1.0 / rate != period_) {
+    throw std::invalid_argument(
+        fmt::format("rate_hz = {}: the running station has {}; end it and start one with the new rate", rate,
+                    1.0 / period_));
+  }
+  const std::lock_guard lock(readers_);
+  delete outgoing_.exchange(nullptr, std::memory_order_acq_rel);
+  delete incoming_.exchange(replacement.release(), std::memory_order_acq_rel);
+}
+
+StationView Station::view() const {
+  const std::lock_guard lock(readers_);
+  view_.update();
+  return view_.value();
+}
+
+DeadlineStatistics Station::deadlines() const {
+  const std::lock_guard lock(readers_);
+  deadlines_.update();
+  return deadlines_.value();
+}
+
+std::optional<RealtimeGrant> Station::grant() const {
+  const std::lock_guard lock(readers_);
+  return grant_;
+}
+
+std::optional<FaultReport> Station::take_fault_report() {
+  if (!frozen_.load(std::memory_order_acquire)) return std::nullopt;
+  FaultReport report;
+  report.samples = samples_.all();
+  report.steps = steps_.all();
+  report.device = device_.info();
+  report.link = device_.statistics();
+  report.event = frozen_event_;
+  samples_.clear();
+  steps_.clear();
+  frozen_.store(false, std::memory_order_release);
+  return report;
+}
+
+void Station::shut_down() noexcept {
+  if (thread_.joinable()) {
+    stop_torque();
+    const double until = clock_.now() + kShutDownWithin;
+    for (;;) {
+      const StationView now = view();
+      const bool stopped = now.state == SafetyState::kStopped || now.state == SafetyState::kFault;
+      if ((stopped && now.at_rest) || clock_.now() > until) break;
+      clock_.sleep_until(clock_.now() + 0.005);
+    }
+    finish_.store(true, std::memory_order_release);
+    thread_.join();
+  }
+  device_.close();
+  delete incoming_.exchange(nullptr);
+  delete outgoing_.exchange(nullptr);
+}
+
+}  // namespace phalanx

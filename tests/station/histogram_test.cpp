@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/station/histogram.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "support/count_allocations.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Readers get it by assignment between threads.
+static_assert(std::is_trivially_copyable_v<Histogram>);
+static_assert(sizeof(Histogram) < 4096);
+
+TEST(Histogram, IsEmptyAtFirst) {
+  const Histogram h;
+  EXPECT_EQ(h.count(), 0U);
+  EXPECT_EQ(h.max_us(), 0.0);
+  EXPECT_EQ(h.percentile_us(50.0), 0.0);
+  EXPECT_EQ(histogram_text(h, "steps"), "steps: nothing measured\n");
+}
+
+// 0.1 us 2^3 = 0.8 us opens octave 3; its bins are 0.05 us wide, so that 0.82 us lies in [0.80, 0.85).
+TEST(Histogram, PutsADurationIntoTheBinWorkedOutByHand) {
+  Histogram h;
+  h.add(0.82e-6);
+  h.add(1e-3);
+  EXPECT_EQ(h.in_octave(3), 1U);
+  EXPECT_NEAR(h.percentile_us(50.0), 0.825, 1e-9);
+  // 1000 us / 0.1 us = 10,000 = 2^13 1.2207.
+  EXPECT_EQ(h.in_octave(13), 1U);
+  EXPECT_DOUBLE_EQ(h.percentile_us(100.0), 1000.0);
+}
+
+// The edges of bin 5 of octave 10: 0.1 us 2^10 (1 + 5/16) = 134.4 us and 0.1 us 2^10 (1 + 6/16) = 140.8 us.
+TEST(Histogram, HasTheSameWidthForAllBinsOfAnOctave) {
+  for (const double us : {134.41, 137.0, 140.79}) {
+    Histogram h;
+    h.add(us * 1e-6);
+    h.add(1.0);
+    EXPECT_NEAR(h.percentile_us(50.0), 137.6, 1e-9) << us;
+  }
+}
+
+// Of 1 .. 100 ms the nearest rank of 90 % is the 90th: 90 ms, to within 1/32.
+TEST(Histogram, GivesTheNearestRank) {
+  Histogram h;
+  for (int ms = 100; ms >= 1; --ms) h.add(1e-3 * ms);
+  EXPECT_NEAR(h.percentile_us(0.0), 1e3, 1e3 / 32.0);
+  EXPECT_NEAR(h.percentile_us(1.0), 1e3, 1e3 / 32.0);
+  EXPECT_NEAR(h.percentile_us(50.0), 50e3, 50e3 / 32.0);
+  EXPECT_NEAR(h.percentile_us(90.0), 90e3, 90e3 / 32.0);
+  EXPECT_DOUBLE_EQ(h.percentile_us(100.0), 100e3);
+}
+
+TEST(Histogram, IsNeverFurtherOffThanOneIn32) {
+  constexpr unsigned kSeed = 6;
+  SCOPED_TRACE(kSeed);
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> exponent(-7.0, 1.0);  // 0.1 us .. 10 s
+  for (int i = 0; i < 20000; ++i) {
+    const double duration = std::max(std::pow(10.0, exponent(random)), 1.0000001e-7);
+    Histogram h;
+    h.add(duration);
+    h.add(13.0);  // so that the maximum does not correct the first
+    const double us = 1e6 * duration;
+    ASSERT_NEAR(h.percentile_us(50.0), us, us / 32.0 * (1.0 + 1e-9));
+  }
+}
+
+TEST(Histogram, AgreesWithSortingOnManyDurations) {
+  constexpr unsigned kSeed = 7;
+  SCOPED_TRACE(kSeed);
+  std::mt19937_64 random(kSeed);
+  std::lognormal_distribution<double> draw(-9.0, 1.5);
+  std::vector<double> all(9999);
+  Histogram h;
+  for (double& d : all) h.add(d = draw(random));
+  std::sort(all.begin(), all.end());
+  for (const double percent : {1.0, 10.0, 50.0, 90.0, 99.0, 99.9}) {
+    const auto rank = static_cast<std::size_t>(std::ceil(percent * 9999.0 / 100.0));
+    const double exact = 1e6 * all[rank - 1];
+    EXPECT_NEAR(h.percentile_us(percent), exact, exact / 32.0) << percent << " %";
+  }
+  EXPECT_DOUBLE_EQ(h.max_us(), 1e6 * all.back());
+}
+
+TEST(Histogram, TakesWhateverComes) {
+  Histogram h;
+  h.add(0.0);
+  h.add(-1.0);
+  h.add(5e-8);
+  h.add(std::numeric_limits<double>::denorm_min());
+  EXPECT_EQ(h.below_range(), 4U);
+  EXPECT_DOUBLE_EQ(h.percentile_us(50.0), 0.05);  // no more than the longest
+  h.add(13.43);                                   // 0.1 us 2^27 is 13.42 s
+  h.add(1e300);
+  h.add(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(h.above_range(), 3U);
+  h.add(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(h.count(), 7U);
+}
+
+TEST(Histogram, MergesAsIfAllHadBeenAddedToOne) {
+  Histogram a;
+  Histogram b;
+  Histogram both;
+  for (int i = 1; i <= 300; ++i) {
+    Histogram& one = i % 3 == 1 ? a : b;
+    one.add(7e-6 * i);
+    both.add(7e-6 * i);
+  }
+  a.merge(b);
+  EXPECT_EQ(a.count(), 300U);
+  EXPECT_EQ(a.max_us(), both.max_us());
+  for (std::size_t k = 0; k < Histogram::kOctaves; ++k) EXPECT_EQ(a.in_octave(k), both.in_octave(k)) << k;
+  for (const double p : {0.0, 12.5, 50.0, 99.9}) EXPECT_EQ(a.percentile_us(p), both.percentile_us(p)) << p;
+}
+
+// Three in [3.2, 6.4) us, one in [6.4, 12.8) us: 75 % is 37.5 of 50 characters, and 38 are drawn.
+TEST(Histogram, PrintsOneLineForEveryOctave) {
+  Histogram h;
+  for (const double us : {4.0, 5.0, 6.0, 12.0}) h.add(us * 1e-6);
+  const std::string text = histogram_text(h, "jitter");
+  EXPECT_THAT(text, HasSubstr("jitter: 4 measured"));
+  EXPECT_THAT(text, HasSubstr("longest 12.0 us"));
+  EXPECT_THAT(text, HasSubstr("3.2 .. 6.4 us          3   75.000 % " + std::string(38, '#') + "\n"));
+  EXPECT_THAT(text, HasSubstr("6.4 .. 12.8 us          1   25.000 % " + std::string(13, '#') + "\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+}
+
+TEST(Histogram, AllocatesNothing) {
+  Histogram a;
+  Histogram b;
+  const std::size_t before = test::allocations_of_this_thread();
+  for (int i = 0; i < 1000; ++i) a.add(1e-6 * i);
+  b.merge(a);
+  const double median = b.percentile_us(50.0);
+  EXPECT_EQ(test::allocations_of_this_thread(), before);
+  EXPECT_GT(median, 0.0);
+}
+
+}  // namespace
+}  // namespace phalanx

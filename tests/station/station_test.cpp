@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// The station with the simulated device in the same process. Its time is the number of steps, so that a busy
+// machine changes nothing but how long these tests take.
+#include "phalanx/station/station.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <functional>
+#include <stdexcept>
+
+#include "phalanx/scene/build_model.h"
+#include "phalanx/station/assemble.h"
+#include "station/watched_device.h"
+
+namespace phalanx {
+namespace {
+
+class StationTest : public testing::Test {
+ protected:
+  /// Four times as fast as real time; overruns are judged only where a test asks for it.
+  void start(const Overrides& overrides = {}, double slowdown = 0.25, int overruns = 1000000) {
+    scene_ = load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", overrides);
+    StationModel made = make_station_model(scene_, "");
+    made.safety.overruns = overruns;
+    clock_ = std::make_unique<Clock>(slowdown);
+    device_ =
+        std::make_unique<test::WatchedDevice>(make_simulated_device(simulated_settings(scene_, *made.model)));
+    device_->open();
+    StationOptions options;
+    options.ask_for_realtime = false;
+    options.safety = made.safety;
+    options.witnesses = make_witnesses(scene_, device_->info().channels, made.safety);
+    ChannelMap map = make_channel_map(scene_, device_->info().channels, made.model->hand.parameters());
+    station_ = std::make_unique<Station>(std::move(made.model), *device_, std::move(map), options, *clock_);
+    station_->start();
+  }
+
+  /// Waits, 100 s of the station at most. @returns whether it came
+  bool until(const std::function<bool(const StationView&)>& condition) {
+    const double end = clock_->now() + 100.0;
+    while (clock_->now() < end) {
+      if (condition(station_->view())) return true;
+      clock_->sleep_until(clock_->now() + 0.01);
+    }
+    return false;
+  }
+  bool until_pressing(double newtons) {
+    return until([&](const StationView& view) {
+      return view.state == SafetyState::kRunning && index_force(view) > newtons;
+    });
+  }
+  static double index_force(const StationView& view) {
+    double force = 0.0;
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      force += view.snapshot.segment[static_cast<std::size_t>(segment_index(1, k))].force;
+    return force;
+  }
+  [[nodiscard]] double allowed_step() const { return scene_.limits.torque_rate / scene_.rate_hz + 1e-9; }
+
+  SceneDescription scene_;
+  std::unique_ptr<Clock> clock_;
+  std::unique_ptr<test::WatchedDevice> device_;
+  std::unique_ptr<Station> station_;
+};
+
+TEST_F(StationTest, SqueezesTheTeapotAgainAndAgainWithoutAFaultOrAnAllocationInTheLoop) {
+  start();
+  for (int squeeze = 0; squeeze < 2; ++squeeze) {
+    ASSERT_TRUE(until_pressing(1.0)) << squeeze;
+    ASSERT_TRUE(until([](const StationView& view) { return index_force(view) < 0.01; })) << squeeze;
+  }
+  EXPECT_EQ(station_->view().state, SafetyState::kRunning);
+  EXPECT_EQ(device_->allocations, 0U);
+  EXPECT_LE(device_->largest_step, allowed_step());
+  EXPECT_LE(device_->largest_torque, scene_.limits.joint_torque);
+  station_->shut_down();
+  EXPECT_TRUE(device_->at_zero);
+}
+
+TEST_F(StationTest, StopGoesToZeroAndResumeComesBackOverTheRamp) {
+  start();
+  ASSERT_TRUE(until_pressing(0.5));
+  station_->stop_torque();
+  ASSERT_TRUE(
+      until([](const StationView& view) { return view.state == SafetyState::kStopped && view.at_rest; }));
+  EXPECT_TRUE(device_->at_zero);
+  station_->resume_torque();
+  ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
+  EXPECT_LE(device_->largest_step, allowed_step());
+}
+
+TEST_F(StationTest, AnObjectIsSwappedInContactWithoutATorqueStepBeyondTheRateLimit) {
+  start();
+  ASSERT_TRUE(until_pressing(1.0));
+  const SceneDescription other =
+      load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", {{"objects.0.size_mm", "125"}});
+  StationModel made = make_station_model(other, "");
+  station_->replace(
+      std::make_unique<Replacement>(Replacement{LiveModel(std::move(made.model)), made.safety}));
+  ASSERT_TRUE(
+      until([](const StationView& view) { return !view.changing && view.state == SafetyState::kRunning; }));
+  ASSERT_TRUE(until_pressing(0.5));
+  EXPECT_LE(device_->largest_step, allowed_step());
+  std::printf("object swapped in contact: largest torque step %.4f of %.4f Nm allowed\n",
+              device_->largest_step.load(), allowed_step());
+}
+
+TEST_F(StationTest, SmoothingOffAndAStifferWallInContactStayWithinTheRateLimit) {
+  start();
+  ASSERT_TRUE(until_pressing(1.0));
+  BlendedParameters parameters{
+      .stiffness = 900.0, .damping = 2.0, .smoothing = false, .min_rate = -20.0, .max_rate = 20.0};
+  station_->blend_to(parameters);
+  ASSERT_TRUE(until([](const StationView& view) { return view.changing; }) ||
+              until([](const StationView& view) { return !view.changing; }));
+  ASSERT_TRUE(until_pressing(0.5));
+  EXPECT_LE(device_->largest_step, allowed_step());
+  EXPECT_NE(station_->view().state, SafetyState::kFault);
+}
+
+TEST_F(StationTest, ASilentDeviceIsAFaultWithTheLastTwoSecondsInItsReport) {
+  start();
+  ASSERT_TRUE(until([](const StationView& view) { return view.snapshot.time_s > 2.5; }));
+  device_->silent = true;
+  ASSERT_TRUE(
+      until([](const StationView& view) { return view.state == SafetyState::kFault && view.at_rest; }));
+  std::optional<FaultReport> report;
+  ASSERT_TRUE(
+      until([&](const StationView&) { return (report = station_->take_fault_report()).has_value(); }));
+  EXPECT_EQ(report->event.fault, Fault::kNoSample);
+  EXPECT_EQ(report->samples.size(), 2000U);
+  EXPECT_EQ(report->steps.size(), 400U);
+  EXPECT_EQ(report->steps.back().state, SafetyState::kFault);
+  EXPECT_TRUE(device_->at_zero);
+  EXPECT_FALSE(station_->take_fault_report().has_value());
+}
+
+TEST_F(StationTest, AnEmergencyStopLatchesUntilItIsReleasedAndReset) {
+  start();
+  ASSERT_TRUE(until_pressing(0.5));
+  device_->estop = true;
+  ASSERT_TRUE(
+      until([](const StationView& view) { return view.state == SafetyState::kFault && view.at_rest; }));
+  EXPECT_EQ(station_->view().fault.fault, Fault::kEmergencyStop);
+  station_->reset();
+  const double asked = station_->view().time;
+  ASSERT_TRUE(until([&](const StationView& view) { return view.time > asked + 0.5; }));
+  EXPECT_EQ(station_->view().state, SafetyState::kFault);
+  device_->estop = false;
+  ASSERT_TRUE(until([](const StationView& view) { return !view.estop; }));
+  station_->reset();
+  ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
+}
+
+TEST_F(StationTest, StepsThatAreTooLongAreCountedShownAndStoppedAfterTenInARow) {
+  start({}, 2.0, 10);
+  ASSERT_TRUE(until_pressing(0.2));
+  station_->lengthen_steps(0.0055);  // of 5 ms
+  ASSERT_TRUE(until([](const StationView& view) { return view.degraded; }));
+  ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kFault; }));
+  EXPECT_EQ(station_->view().fault.fault, Fault::kOverload);
+  EXPECT_GE(station_->deadlines().longest_run, 10U);
+  EXPECT_GE(station_->deadlines().overruns, 10U);
+}
+
+TEST_F(StationTest, ARateOutsideItsRangeIsRefused) {
+  EXPECT_THROW(start({{"rate_hz", "100"}}), std::invalid_argument);
+  EXPECT_THROW(start({{"rate_hz", "2500"}}), std::invalid_argument);
+  start({{"rate_hz", "2000"}});
+  ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
+}
+
+}  // namespace
+}  // namespace phalanx
