@@ -12,16 +12,12 @@
 #include <utility>
 
 #include "commands.h"
-#include "phalanx/device/calibration.h"
-#include "phalanx/device/link/link_device.h"
-#include "phalanx/device/opengloves/opengloves_device.h"
 #include "phalanx/record/station_csv.h"
-#include "phalanx/scene/calibration_file.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/assemble.h"
-#include "phalanx/station/open_device.h"
 #include "phalanx/station/station.h"
 #include "run_console.h"
+#include "run_device.h"
 #include "run_options.h"
 #include "usage.h"
 
@@ -36,6 +32,11 @@ void end_on_signal() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
+  // A reader that has gone, or a terminal that belongs to another job, must not end or stop a loop that holds
+  // a hand.
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, nullptr);
+  sigaction(SIGTTIN, &action, nullptr);
 }
 
 Overrides overrides_of(const RunOptions& o) {
@@ -44,58 +45,6 @@ Overrides overrides_of(const RunOptions& o) {
   if (!o.profile.empty()) overrides.emplace_back("hand.profile", fmt::format("\"{}\"", o.profile));
   if (o.rate_hz) overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *o.rate_hz));
   return overrides;
-}
-
-/// The device, open, with the channels that its calibration says.
-struct OpenDevice {
-  std::unique_ptr<Device> device;
-  std::vector<DeviceChannel> channels;
-};
-
-std::vector<DeviceChannel> channels_of(const Calibration& calibration) {
-  std::vector<DeviceChannel> channels;
-  for (const CalibratedChannel& calibrated : calibration.channels) channels.push_back(calibrated.channel);
-  return channels;
-}
-
-OpenDevice open_wired(const RunOptions& o, const SafetySettings& safety, const HandParameters& hand,
-                      const Clock& clock) {
-  LinkSettings settings;
-  settings.torque_limit = safety.joint_torque;
-  settings.torque_rate = safety.torque_rate;
-  if (!o.no_realtime)
-    settings.on_thread_start = [] {
-      static_cast<void>(make_realtime({.priority = 79, .cpu = -1, .lock_memory = true}));
-    };
-  OpenDevice out;
-  out.device = open_device(o.device, clock, settings);
-  auto* link = dynamic_cast<LinkDevice*>(out.device.get());
-  auto* glove = dynamic_cast<OpenGlovesDevice*>(out.device.get());
-  std::optional<Calibration> calibration;
-  if (!o.calibration.empty()) calibration = load_calibration(o.calibration);
-  if (glove != nullptr) glove->set_hand(hand);
-  if (link != nullptr && calibration) link->set_calibration(channels_of(*calibration));
-  out.device->open();
-  out.channels =
-      calibration ? apply_calibration(*calibration, out.device->info()) : out.device->info().channels;
-  if (glove != nullptr && calibration) glove->set_calibration(out.channels);
-  if (!calibration)
-    fmt::print(stderr,
-               "phalanx run: no --calibration: using the device's own numbers; see `phalanx device calibrate "
-               "--help`\n");
-  return out;
-}
-
-OpenDevice open_any(const RunOptions& o, const SceneDescription& scene, const StationModel& made,
-                    const Clock& clock) {
-  if (o.device != "simulated") return open_wired(o, made.safety, made.model->hand.parameters(), clock);
-  if (!o.calibration.empty())
-    throw std::invalid_argument("--calibration: the simulated device needs none; leave it out");
-  OpenDevice out;
-  out.device = make_simulated_device(simulated_settings(scene, *made.model));
-  out.device->open();
-  out.channels = out.device->info().channels;
-  return out;
 }
 
 void say(const std::string& line) {
@@ -112,7 +61,7 @@ class Run {
   int go() {
     const SceneDescription scene = load_scene(options_.scene, overrides_);
     StationModel made = make_station_model(scene, options_.clinician);
-    OpenDevice opened = open_any(options_, scene, made, clock_);
+    OpenDevice opened = open_station_device(options_, scene, made, clock_);
     device_ = std::move(opened.device);
     StationOptions station_options;
     station_options.realtime = {.priority = options_.priority, .cpu = options_.cpu, .lock_memory = true};

@@ -53,7 +53,7 @@ void Safety::trip(Fault fault, int channel, double now, bool from_device) noexce
 }
 
 void Safety::judge_sample(const DeviceSample& sample, double now) noexcept {
-  const SensorFinding finding = watch_.judge(sample, sent_);
+  const SensorFinding finding = watch_.judge(sample, sent_, sent_force_);
   heard_ = true;
   last_ = sample;
   if (sample.estop) trip(Fault::kEmergencyStop, -1, now, true);
@@ -92,6 +92,7 @@ void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
       sum += segment.force * segment.normal;
       if (!(std::abs(segment.force) <= kForceNever)) trip(Fault::kForceCeiling, -1, now);
     }
+    sent_force_[idx(digit)] = factor_ * sum.norm();
     if (!(sum.norm() <= kForceNever)) trip(Fault::kForceCeiling, -1, now);
   }
   for (const double torque : snapshot.torque)

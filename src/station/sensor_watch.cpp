@@ -92,9 +92,9 @@ bool SensorWatch::stands_still(std::size_t c, double t) noexcept {
   return false;
 }
 
-bool SensorWatch::disagrees(std::size_t c, double measured, double commanded, double t) noexcept {
-  const double bound = settings_.torque_error + settings_.torque_error_part * std::abs(commanded);
-  if (std::abs(measured - commanded) <= bound) {
+bool SensorWatch::disagrees(std::size_t c, double commanded, double allowance, double t) noexcept {
+  const double bound = allowance + settings_.torque_error_part * std::abs(commanded);
+  if (std::abs(map_->value(c, channel_[c].raw) - commanded) <= bound) {
     channel_[c].error_since = -1.0;
     return false;
   }
@@ -102,7 +102,8 @@ bool SensorWatch::disagrees(std::size_t c, double measured, double commanded, do
   return t - channel_[c].error_since >= settings_.torque_error_time;
 }
 
-SensorFinding SensorWatch::judge(const DeviceSample& sample, const JointArray& commanded) noexcept {
+SensorFinding SensorWatch::judge(const DeviceSample& sample, const JointArray& torque,
+                                 const DigitArray& force) noexcept {
   if (started_ && sample.time_us <= last_time_us_) {
     ++clock_bad_;
     return {clock_bad_ >= settings_.bad_samples ? Fault::kClockBackwards : Fault::kNone, -1};
@@ -137,8 +138,11 @@ SensorFinding SensorWatch::judge(const DeviceSample& sample, const JointArray& c
         found(Fault::kStuckSensor, c);
       }
     } else if (channels[c].kind == ChannelKind::kTorque) {
-      const double wanted = commanded[idx(channels[c].index)] * sample.factor;
-      if (disagrees(c, map_->value(c, channel.raw), wanted, t)) found(Fault::kTorqueDisagrees, c);
+      const double wanted = sample.factor * torque[idx(channels[c].index)];
+      if (disagrees(c, wanted, settings_.torque_error, t)) found(Fault::kTorqueDisagrees, c);
+    } else if (channels[c].kind == ChannelKind::kForce) {
+      const double wanted = sample.factor * force[idx(channels[c].index)];
+      if (disagrees(c, wanted, settings_.force_error, t)) found(Fault::kTorqueDisagrees, c);
     }
   }
   return finding;

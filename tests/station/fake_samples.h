@@ -49,6 +49,12 @@ inline std::vector<DeviceChannel> two_joint_channels() {
            .raw_min = -100000,
            .raw_max = 100000,
            .gain = 1e-4,
+           .offset = 0.0},
+          {.kind = ChannelKind::kForce,
+           .index = 1,
+           .raw_min = -100000,
+           .raw_max = 100000,
+           .gain = 1e-3,
            .offset = 0.0}};
 }
 

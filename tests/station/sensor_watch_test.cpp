@@ -133,5 +133,21 @@ TEST(SensorWatch, AMeasuredTorqueThatIsNotTheCommandedOneIsAFaultAfterItsTime) {
   EXPECT_LE(steps, 202);
 }
 
+TEST(SensorWatch, AMeasuredFingertipForceThatIsNotTheCommandedOneIsAFaultAfterItsTime) {
+  Bench bench;
+  SegmentSnapshot& distal = bench.snapshot.segment[static_cast<std::size_t>(segment_index(1, 2))];
+  distal.normal = Vec3::UnitZ();
+  distal.force = 4.0;
+  bench.samples.sample.raw[5] = 1000;  // 1 N of 4 N: 3 N off, 2 + 2 N are believed
+  bench.run_with(0.1);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kRunning);
+  bench.samples.sample.raw[5] = -500;
+  const int steps = steps_to_fault(bench);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kTorqueDisagrees);
+  EXPECT_EQ(bench.safety.fault().channel, 5);
+  EXPECT_GE(steps, 200);
+  EXPECT_LE(steps, 202);
+}
+
 }  // namespace
 }  // namespace phalanx

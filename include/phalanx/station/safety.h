@@ -66,7 +66,7 @@ class Safety {
   /// Whether reset() would be granted.
   [[nodiscard]] bool cause_gone(double now) const noexcept;
 
-  /// Other limits, for a model that is exchanged. @pre at_rest()
+  /// Other torque limits, for a model that is exchanged; what judges the samples stays. @pre at_rest()
   void change_limits(const SafetySettings& settings) noexcept { settings_ = settings; }
 
   [[nodiscard]] SafetyState state() const noexcept { return state_; }
@@ -97,6 +97,7 @@ class Safety {
   FaultEvent fault_;
   double factor_ = 0.0;
   JointArray sent_{};           ///< the last command [Nm]
+  DigitArray sent_force_{};     ///< of each digit, with it [N]
   JointArray sent_at_fault_{};  ///< from which the fault's ramp falls [Nm]
   double fault_left_ = 0.0;     ///< of the fault's ramp, 1 .. 0
   bool at_rest_ = true;

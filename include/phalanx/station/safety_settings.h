@@ -41,6 +41,9 @@ struct SafetySettings {
   double torque_error = 0.15;
   double torque_error_part = 0.5;
   double torque_error_time = 0.2;
+  /// The same for a fingertip's measured force and the magnitude of the sum of the forces commanded on its
+  /// digit [N]; torque_error_part and torque_error_time hold here too.
+  double force_error = 2.0;
 
   // When the loop is too slow.
   int overruns = 10;  ///< steps in a row that ended after the next was due: fault

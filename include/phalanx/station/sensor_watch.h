@@ -10,6 +10,7 @@
 #include "phalanx/device/device.h"
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/station/safety_settings.h"
+#include "phalanx/step/snapshot.h"
 
 namespace phalanx {
 
@@ -36,9 +37,11 @@ class SensorWatch {
               std::vector<MotorWitness> witnesses);
 
   /// Judges one sample.
-  /// @param commanded  torque that the device was last sent [Nm]
+  /// @param torque  that the device was last sent [Nm]
+  /// @param force   magnitude of the forces on each digit that went with it [N]
   /// Real-time: no allocation, lock, throw or I/O.
-  [[nodiscard]] SensorFinding judge(const DeviceSample& sample, const JointArray& commanded) noexcept;
+  [[nodiscard]] SensorFinding judge(const DeviceSample& sample, const JointArray& torque,
+                                    const DigitArray& force) noexcept;
 
   /// No channel is bad at the moment: what a reset asks.
   [[nodiscard]] bool all_good() const noexcept;
@@ -56,7 +59,7 @@ class SensorWatch {
     double error_since = -1.0;  ///< when the torque began to disagree [s]; -1: it agrees
   };
   [[nodiscard]] Fault judge_angle(std::size_t c, double t) noexcept;
-  [[nodiscard]] bool disagrees(std::size_t c, double measured, double commanded, double t) noexcept;
+  [[nodiscard]] bool disagrees(std::size_t c, double commanded, double allowance, double t) noexcept;
   [[nodiscard]] bool stands_still(std::size_t c, double t) noexcept;
   [[nodiscard]] double moved_by(const MotorWitness& witness, std::size_t c) const noexcept;
 

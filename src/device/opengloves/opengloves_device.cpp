@@ -104,7 +104,6 @@ class Glove final : public OpenGlovesDevice {
 };
 
 // ---- set-up ----
-
 void Glove::open() {
   if (thread_.joinable()) return;
   if (!wire_) {
@@ -190,7 +189,6 @@ void Glove::close() noexcept {
 }
 
 // ---- the loop's thread ----
-
 std::size_t Glove::receive(double, std::span<DeviceSample> out) noexcept {
   const SampleQueue::Taken taken = samples_.take(out);
   count(counters_.overflowed, taken.dropped);
@@ -213,7 +211,6 @@ LinkStatistics Glove::statistics() const noexcept {
 }
 
 // ---- the glove's thread ----
-
 // Every line is answered, whatever it holds: the firmware waits. @returns whether there was one
 bool Glove::take_line(GloveLine& line) noexcept {
   const GloveWire::Piece piece = wire_->next();

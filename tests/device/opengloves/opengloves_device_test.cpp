@@ -247,34 +247,6 @@ TEST(OpenGlovesDevice, RefusesWhatIsNoGlove) {
   EXPECT_THROW(glove.device->open(), DeviceError);
 }
 
-TEST(OpenGlovesDevice, OpensAPortByNameForItselfAlone) {
-  GloveFirmware firmware(kOpenHand);
-  Clock clock;
-  const auto device = make_opengloves_device(firmware.port(), 115200, clock, quick());
-  device->open();
-  EXPECT_EQ(device->info().serial, firmware.port()) << "no USB adapter that had a number";
-  const auto second = make_opengloves_device(firmware.port(), 115200, clock, quick());
-  EXPECT_THROW(second->open(), DeviceError);
-  device->close();
-  EXPECT_NO_THROW(second->open()) << "free again";
-  second->close();
-}
-
-TEST(OpenGlovesDevice, NamesAPortThatIsNotThereAndABaudRateThatNobodyHas) {
-  const Clock clock;
-  const auto message = [&](const std::string& port, unsigned baud) -> std::string {
-    try {
-      make_opengloves_device(port, baud, clock)->open();
-    } catch (const DeviceError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_THAT(message("/dev/no-such-glove", 115200), HasSubstr("/dev/serial/by-id"));
-  EXPECT_THAT(message("/dev/null", 115200), HasSubstr("is it a serial port?"));
-  EXPECT_THAT(message("/dev/null", 12345), HasSubstr("12345 baud"));
-}
-
 TEST(OpenGlovesDevice, TakesOnlyACalibrationOfItsOwnChannels) {
   Fixture glove(kOpenHand);
   glove.device->open();
