@@ -3,8 +3,8 @@
 add_library(phalanx_options INTERFACE)
 target_compile_options(
   phalanx_options
-  INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Werror
-            $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast> $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor>
+  INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast>
+            $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wdouble-promotion -Werror
             # Same samples, same bits at every optimisation level: no fused multiply-add behind our back.
             -ffp-contract=off)
 if(PHALANX_SANITIZE)

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <csignal>
 #include <memory>
 #include <optional>
@@ -16,6 +16,7 @@
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/assemble.h"
 #include "phalanx/station/station.h"
+#include "run_changes.h"
 #include "run_console.h"
 #include "run_device.h"
 #include "run_options.h"
@@ -56,7 +57,7 @@ void say(const std::string& line) {
 class Run {
  public:
   Run(const RunOptions& options, const Clock& clock)
-      : options_(options), clock_(clock), overrides_(overrides_of(options)) {}
+      : options_(options), clock_(clock), overrides_(overrides_of(options)), changes_(options, overrides_) {}
 
   int go() {
     const SceneDescription scene = load_scene(options_.scene, overrides_);
@@ -69,13 +70,13 @@ class Run {
     station_options.safety = made.safety;
     station_options.witnesses = make_witnesses(scene, opened.channels, made.safety);
     ChannelMap map = make_channel_map(scene, opened.channels, made.model->hand.parameters());
-    introduce(scene);
     if (!options_.log.empty()) {
       log_ = std::make_unique<OutputFile>(options_.log);
       write_step_header(*log_);
     }
     station_ =
         std::make_unique<Station>(std::move(made.model), *device_, std::move(map), station_options, clock_);
+    introduce(scene);
     station_->start();
     watch();
     station_->shut_down();
@@ -101,7 +102,8 @@ class Run {
       if (options_.seconds && seconds >= *options_.seconds) break;
       drain();
       std::string line;
-      while (typed_.next(line)) obey(line);
+      while (asked_to_end == 0 && typed_.next(line)) obey(line);
+      for (const std::string& said : changes_.go_on(*station_)) say(said);
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
       if (!options_.quiet) say(status_line(station_->view(), station_->deadlines(), seconds));
@@ -112,15 +114,33 @@ class Run {
   /// Fetches what the loop has put aside.
   void drain() {
     say_grant();
-    StepRecord record;
-    while (station_->next_record(record))
-      if (log_) write_step(*log_, record);
+    write_log();
     if (const auto report = station_->take_fault_report()) {
-      fault_seen_ = true;
-      const auto folder = write_fault_report(options_.faults, *report);
-      say(fmt::format("FAULT {}: {} {} Report: {}", fault_name(report->event.fault),
-                      fault_meaning(report->event.fault), fault_remedy(report->event.fault),
-                      folder.string()));
+      const FaultEvent& event = report->event;
+      say(fmt::format("FAULT {}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
+                      fault_remedy(event.fault)));
+      try {
+        say(fmt::format("report: {}", write_fault_report(options_.faults, *report).string()));
+      } catch (const std::exception& error) {  // the station goes on without it
+        fmt::print(stderr, "phalanx run: the fault's report could not be written: {}\n", error.what());
+      }
+    }
+    const std::uint64_t refused = station_->view().resets_refused;
+    if (std::exchange(resets_refused_, refused) != refused)
+      say("reset refused: the cause is still there, no sample comes, or the torque is not at rest yet");
+  }
+
+  /// A log that fails is given up, in words; the station goes on.
+  void write_log() {
+    StepRecord record;
+    while (station_->next_record(record)) {
+      if (!log_) continue;
+      try {
+        write_step(*log_, record);
+      } catch (const std::exception& error) {
+        fmt::print(stderr, "phalanx run: the log ends here: {}\n", error.what());
+        log_.reset();
+      }
     }
   }
 
@@ -143,38 +163,24 @@ class Run {
       } else if (line == "quit") {
         quit_ = true;
       } else if (line.starts_with("set ")) {
-        change(line.substr(4));
+        changes_.ask(line.substr(4));
       } else if (line.starts_with("slow ")) {
-        station_->lengthen_steps(std::clamp(1e-3 * std::stod(line.substr(5)), 0.0, 1.0));
+        station_->lengthen_steps(milliseconds(line.substr(5)));
       } else if (!line.empty()) {
-        fmt::print(
-            stderr,
-            "phalanx run: '{}' is not understood; type stop, resume, reset, set KEY=VALUE, slow MS or quit\n",
-            line);
+        throw std::invalid_argument(fmt::format(
+            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, slow MS or quit", line));
       }
-    } catch (const std::exception& error) {  // a change that is refused ends nothing
+    } catch (const std::exception& error) {  // what is refused ends nothing
       fmt::print(stderr, "phalanx run: {}\n", error.what());
     }
   }
 
-  void change(const std::string& text) {
-    const auto override_ = parse_override(text);
-    const ChangeKind kind = change_kind(override_.first);
-    if (kind == ChangeKind::kNewStation)
-      throw std::invalid_argument(fmt::format(
-          "{}: this cannot change while the station runs; end it and start it with --set {}", text, text));
-    Overrides overrides = overrides_;
-    overrides.push_back(override_);
-    const SceneDescription scene = load_scene(options_.scene, overrides);
-    StationModel made = make_station_model(scene, options_.clinician);
-    if (kind == ChangeKind::kInContact) {
-      station_->blend_to(blended_of(*made.model));
-    } else {
-      station_->replace(
-          std::make_unique<Replacement>(Replacement{LiveModel(std::move(made.model)), made.safety}));
-    }
-    overrides_ = std::move(overrides);
-    say(fmt::format("changed: {}", text));
+  static double milliseconds(const std::string& text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value >= 0.0 && value <= 1000.0))
+      throw std::invalid_argument(fmt::format("slow {}: say how many ms, 0 to 1000", text));
+    return 1e-3 * value;
   }
 
   int finish() {
@@ -202,14 +208,15 @@ class Run {
 
   const RunOptions& options_;
   const Clock& clock_;
-  Overrides overrides_;
+  const Overrides overrides_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<OutputFile> log_;
   std::unique_ptr<Station> station_;
   std::optional<RealtimeGrant> granted_;
   TypedLines typed_;
   bool quit_ = false;
-  bool fault_seen_ = false;
+  std::uint64_t resets_refused_ = 0;
+  LiveChanges changes_;
   double seconds_ = 0.0;
 };
 
@@ -217,7 +224,9 @@ class Run {
 
 void add_run_command(CLI::App& app, Job& job) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* run = app.add_subcommand("run", "the station: a device, a hand and a scene, in real time");
+  CLI::App* run = app.add_subcommand(
+      "run",
+      "The station: device, hand and scene in real time, with the simulated device if there is no other");
   run->add_option("scene", options->scene, "a scene's name or file")->capture_default_str();
   run->add_option("--device", options->device,
                   "simulated, udp:HOST:PORT, serial:PORT[:BAUD] or opengloves:PORT[:BAUD]")

@@ -22,6 +22,7 @@ std::string status_line(const StationView& view, const DeadlineStatistics& deadl
     double force = 0.0;
     for (int k = 0; k < kSegmentsPerDigit; ++k)
       force += view.snapshot.segment[static_cast<std::size_t>(segment_index(digit, k))].force;
+    force *= view.factor;  // what is sent, not what the step would send
     if (force < 0.005) continue;
     line += fmt::format("  {} {:.1f} N", digit_name(digit), force);
     any = true;
@@ -44,16 +45,18 @@ bool TypedLines::next(std::string& line) {
     if (end != std::string::npos) {
       line = pending_.substr(0, end);
       pending_.erase(0, end + 1);
+      line.erase(line.find_last_not_of(" \t\r") + 1);
       return true;
     }
     pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (ended_ || poll(&input, 1, 0) <= 0) return false;
     std::array<char, 4096> read_in;
     const ssize_t count = read(STDIN_FILENO, read_in.data(), read_in.size());
-    if (count <= 0 || pending_.size() > 65536) {
+    if (count <= 0) {
       ended_ = true;
       return false;
     }
+    if (pending_.size() > 65536) pending_.clear();  // no line of ours is so long
     pending_.append(read_in.data(), static_cast<std::size_t>(count));
   }
 }

@@ -18,8 +18,19 @@
 namespace phalanx {
 namespace {
 
+/// A controller that does not slow down with us would be judged by time limits that are too long.
+void refuse_slow_motion(const RunOptions& o) {
+  const bool ours = o.device.starts_with("udp:127.") || o.device.starts_with("udp:localhost:") ||
+                    o.device.starts_with("serial:/dev/pts/");
+  if (o.slow_motion == 1.0 || ours) return;
+  throw std::invalid_argument(
+      fmt::format("--slow-motion {}: {} may be a real device, whose time goes on as ever; leave it out",
+                  o.slow_motion, o.device));
+}
+
 OpenDevice open_wired(const RunOptions& o, const SafetySettings& safety, const HandParameters& hand,
                       const Clock& clock) {
+  refuse_slow_motion(o);
   LinkSettings settings;
   settings.torque_limit = safety.joint_torque;
   settings.torque_rate = safety.torque_rate;

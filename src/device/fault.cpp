@@ -52,12 +52,15 @@ constexpr std::array kEntries{
           "Check the motor, its tendon and the sensor's calibration, then reset."},
     Entry{Fault::kOverload, "overload", "Too many steps in a row ended too late.",
           "Lower the scene's rate or the meshes' number of triangles, or free the computer, then reset."},
-    Entry{Fault::kForceCeiling, "force_ceiling", "A step asked for more than 15 N on a digit.",
+    Entry{Fault::kForceCeiling, "force_ceiling", "A step asked for more force on a digit than is allowed.",
           "Check stiffness and force limits of the scene, then reset."},
     Entry{Fault::kCommandNotFinite, "command_not_finite", "A step's command was not a finite number.",
           "Keep the fault report and tell the authors; then reset."},
     Entry{Fault::kDeviceLost, "device_lost", "The device's port or socket failed.",
-          "Plug the device in again and check that its port is there, then reset."},
+          "Plug the device in again, check that its port is there and reset; if that does not help, start "
+          "anew."},
+    Entry{Fault::kNotActing, "not_acting", "The device does not act on the commands that it is sent.",
+          "Check that it is the right device and that its firmware follows docs/link.md, then reset."},
 };
 
 const Entry& entry(Fault fault) noexcept {

@@ -68,7 +68,9 @@ void write_command(const DeviceCommand& command, phx_message& message) noexcept 
   phx_command& out = walls ? message.as.walls.command : message.as.command;
   out.tick = command.tick;
   out.sample_time_us = command.sample_time_us;
-  out.flags = command.enable ? PHX_COMMAND_ENABLE : 0;
+  out.flags = static_cast<std::uint8_t>(command.fault    ? PHX_COMMAND_FAULT
+                                        : command.enable ? PHX_COMMAND_ENABLE
+                                                         : 0U);
   std::transform(command.torque.begin(), command.torque.end(), out.torque, single);
   if (!walls) return;
   message.as.walls.valid_us = valid_us;

@@ -29,6 +29,7 @@ SimulatedDeviceSettings simulated_settings(const SceneDescription& scene, const 
 
 StationModel make_station_model(const SceneDescription& scene, const std::string& clinician) {
   StationModel out;
+  check_station_rate(scene.rate_hz);
   out.safety = make_safety_settings(scene.limits, clinician);
   out.model = std::make_unique<HapticModel>(build_model(scene));
   return out;
@@ -47,8 +48,8 @@ std::vector<MotorWitness> make_witnesses(const SceneDescription& scene,
 
 ChangeKind change_kind(const std::string& key) {
   if (changes_in_contact(key)) return ChangeKind::kInContact;
-  constexpr std::array<std::string_view, 9> kFixed = {"rate_hz", "seconds", "seed",    "mirror", "hand",
-                                                      "motion",  "device",  "patient", "profile"};
+  constexpr std::array<std::string_view, 10> kFixed = {"limits", "rate_hz", "seconds", "seed",    "mirror",
+                                                       "hand",   "motion",  "device",  "patient", "profile"};
   const std::string first = key.substr(0, key.find('.'));
   return std::find(kFixed.begin(), kFixed.end(), first) != kFixed.end() ? ChangeKind::kNewStation
                                                                         : ChangeKind::kAtZeroTorque;

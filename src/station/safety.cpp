@@ -14,6 +14,10 @@ constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); 
 /// How long a device may take to become ready after a start or a reset before its latch counts as a fault
 /// [s].
 constexpr double kDeviceAnswers = 0.5;
+/// How long a device may be ready and not act on enabled commands [s]: more than 100 repetitions of each.
+constexpr double kObeys = 0.2;
+/// A step keeps the fingertip limit itself; this much more and it is wrong.
+constexpr double kForceTolerance = 1.1;
 /// Sums of periods are not exact: far below any period [s].
 constexpr double kClock = 1e-9;
 
@@ -67,7 +71,9 @@ void Safety::judge_sample(const DeviceSample& sample, double now) noexcept {
 void Safety::observe(std::span<const DeviceSample> samples, Fault connection, bool late,
                      double now) noexcept {
   if (waiting_since_ < 0.0) waiting_since_ = now;
-  trip(connection, -1, now);
+  // Right after a reset the connection may still be mending.
+  const bool mending = state_ == SafetyState::kWaiting && now - waiting_since_ < kDeviceAnswers;
+  if (!mending) trip(connection, -1, now);
   for (const DeviceSample& sample : samples) judge_sample(sample, now);
   silence_ = samples.empty() ? silence_ + period_ : 0.0;
   const double patience = heard_ ? timeout_ : std::max(timeout_, kDeviceAnswers);
@@ -84,19 +90,27 @@ double Safety::silent_for(double now) const noexcept {
 
 /// A step that is wrong in itself. The negated comparison also catches what is not a number.
 void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
+  const double most = std::min(kForceNever, kForceTolerance * settings_.fingertip_force);
   if (has(snapshot.status, Status::kCommandNotFinite)) trip(Fault::kCommandNotFinite, -1, now);
   for (int digit = 0; digit < kDigits; ++digit) {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const SegmentSnapshot& segment = snapshot.segment[idx(segment_index(digit, k))];
       sum += segment.force * segment.normal;
-      if (!(std::abs(segment.force) <= kForceNever)) trip(Fault::kForceCeiling, -1, now);
+      if (!(std::abs(segment.force) <= most)) trip(Fault::kForceCeiling, -1, now);
     }
     sent_force_[idx(digit)] = factor_ * sum.norm();
-    if (!(sum.norm() <= kForceNever)) trip(Fault::kForceCeiling, -1, now);
+    if (!(sum.norm() <= most)) trip(Fault::kForceCeiling, -1, now);
   }
   for (const double torque : snapshot.torque)
     if (!std::isfinite(torque)) trip(Fault::kCommandNotFinite, -1, now);
+}
+
+/// Enabled commands go out, and the device stays at rest: it takes them for old, or for somebody else's.
+void Safety::judge_obedience(double now) noexcept {
+  const bool asked = state_ == SafetyState::kStarting || state_ == SafetyState::kRunning;
+  ignored_for_ = asked && last_.state == DeviceState::kReady ? ignored_for_ + period_ : 0.0;
+  if (ignored_for_ >= kObeys) trip(Fault::kNotActing, -1, now);
 }
 
 // ---- how torque comes and goes ----
@@ -104,7 +118,8 @@ void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
 void Safety::go_on(double now) noexcept {
   const bool ready = heard_ && last_.state != DeviceState::kConnecting &&
                      last_.state != DeviceState::kLatched && watch_.all_good();
-  if (state_ == SafetyState::kWaiting && ready) state_ = SafetyState::kStarting;
+  if (state_ == SafetyState::kWaiting && ready)
+    state_ = held_ ? SafetyState::kStopped : SafetyState::kStarting;
   if (state_ == SafetyState::kWaiting && heard_ && now - waiting_since_ >= kDeviceAnswers &&
       last_.state == DeviceState::kLatched)
     trip(last_.fault, last_.fault_channel, now, true);
@@ -116,10 +131,15 @@ void Safety::go_on(double now) noexcept {
     factor_ = std::max(0.0, factor_ - period_ / settings_.stop_ramp);
     if (factor_ <= 0.0 && at_rest_) state_ = SafetyState::kStopped;
   }
-  if (state_ == SafetyState::kFault) {
-    const double left = fault_left_ - period_ / settings_.fault_ramp;
-    fault_left_ = left > kClock ? left : 0.0;
-  }
+  if (state_ == SafetyState::kFault) ramp_to_zero_after_fault(now);
+}
+
+/// By the clock where steps come late: a slow loop does not make the ramp longer.
+void Safety::ramp_to_zero_after_fault(double now) noexcept {
+  const double nominal = fault_left_ - period_ / settings_.fault_ramp;
+  const double by_clock = 1.0 - (now - fault_.time) / settings_.fault_ramp;
+  const double left = std::min(nominal, by_clock);
+  fault_left_ = left > kClock ? left : 0.0;
 }
 
 /// 1 inside the patient's range of motion, 0 at its end and beyond, for torque that would push the joint out.
@@ -139,6 +159,7 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
                      DeviceCommand& out) noexcept {
   tick_ = snapshot.tick;
   judge_step(snapshot, now);
+  judge_obedience(now);
   go_on(now);
   at_rest_ = true;
   const double change = settings_.torque_rate * period_;
@@ -157,6 +178,7 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
   out.tick = snapshot.tick;
   out.sample_time_us = used.time_us;
   out.enable = moving;
+  out.fault = state_ == SafetyState::kFault;
   out.torque = sent_;
   out.hcp_angle = snapshot.hcp_angle;
   out.gdp_angle = snapshot.gdp_angle;
@@ -166,38 +188,54 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
       stopped = stopped || snapshot.segment[idx(segment_index(digit, k))].contact;
     out.stopped[idx(digit)] = stopped && moving && state_ != SafetyState::kFault;
   }
-  // Walls are forces that the gate has not seen: only in full operation.
+  choose_walls(snapshot, out);
+}
+
+/// Walls are forces that the gate does not see: only in full operation, and only where it has changed
+/// nothing.
+void Safety::choose_walls(const Snapshot& snapshot, DeviceCommand& out) const noexcept {
   out.wall_valid_for = state_ == SafetyState::kRunning ? snapshot.wall_valid_for : 0.0;
-  if (out.wall_valid_for > 0.0) out.wall = snapshot.wall;
+  if (out.wall_valid_for <= 0.0) return;
+  out.wall = snapshot.wall;
+  for (std::size_t j = 0; j < sent_.size(); ++j) {
+    if (sent_[j] == snapshot.torque[j]) continue;
+    const int digit = digit_of_joint(static_cast<int>(j));
+    for (int k = 0; k < kSegmentsPerDigit; ++k) out.wall[idx(segment_index(digit, k))].active = false;
+  }
 }
 
 // ---- what people ask ----
 
 void Safety::start() noexcept {
-  if (state_ != SafetyState::kStopped && state_ != SafetyState::kStopping) return;
-  state_ = SafetyState::kStarting;
+  held_ = false;
+  if (state_ == SafetyState::kStopping && factor_ > 0.0) {
+    state_ = SafetyState::kStarting;
+  } else if (state_ == SafetyState::kStopping || state_ == SafetyState::kStopped) {
+    state_ = SafetyState::kWaiting;
+  }
 }
 
 void Safety::stop() noexcept {
-  if (state_ == SafetyState::kFault || state_ == SafetyState::kStopped) return;
-  state_ = SafetyState::kStopping;
+  held_ = true;
+  if (state_ != SafetyState::kFault && state_ != SafetyState::kStopped) state_ = SafetyState::kStopping;
 }
 
 bool Safety::cause_gone(double now) const noexcept {
   return heard_ && silent_for(now) <= timeout_ && watch_.all_good() && !last_.estop;
 }
 
-bool Safety::reset(double now) noexcept {
-  const bool connection = fault_.fault == Fault::kControllerRestarted || fault_.fault == Fault::kRefused ||
-                          fault_.fault == Fault::kNoSample || fault_.fault == Fault::kDeviceLost;
+bool Safety::reset(Fault connection, double now) noexcept {
+  if (state_ != SafetyState::kFault || !at_rest_) return false;
   // With the connection gone there are no samples to judge: ask for it again, and wait.
-  if (state_ != SafetyState::kFault || !at_rest_ || !(connection || cause_gone(now))) return false;
+  const bool no_samples = connection != Fault::kNone || fault_.fault == Fault::kNoSample;
+  if (!no_samples && !cause_gone(now)) return false;
   state_ = SafetyState::kWaiting;
   waiting_since_ = now;
   fault_ = {};
   factor_ = 0.0;
   late_in_a_row_ = 0;
   heard_ = false;
+  ignored_for_ = 0.0;
   silence_ = 0.0;
   watch_.forget();
   return true;

@@ -13,19 +13,22 @@
 namespace phalanx {
 namespace {
 
-constexpr double kReportSeconds = 2.0;   ///< of samples and steps in a fault report
-constexpr std::size_t kRecords = 8192;   ///< steps that may wait for whoever writes them down: 4 s at 2 kHz
-constexpr std::size_t kInbox = 512;      ///< samples between two steps
-constexpr double kShutDownWithin = 2.0;  ///< [s] for the ramp at the end
+constexpr double kReportSeconds = 2.0;  ///< of samples and steps in a fault report
+constexpr std::size_t kRecords = 8192;  ///< steps that may wait for whoever writes them down: 4 s at 2 kHz
+constexpr std::size_t kInbox = 512;     ///< samples between two steps
 
 double checked_period(const HapticModel& model) {
-  if (model.rate_hz >= 200.0 && model.rate_hz <= 2000.0) return 1.0 / model.rate_hz;
-  throw std::invalid_argument(
-      fmt::format("rate_hz = {}: a station runs at 200 to 2000 Hz; change rate_hz", model.rate_hz));
+  check_station_rate(model.rate_hz);
+  return 1.0 / model.rate_hz;
 }
 
 std::size_t count_of(double seconds, double rate_hz) {
   return static_cast<std::size_t>(std::ceil(seconds * std::clamp(rate_hz, 1.0, 10000.0)));
+}
+
+/// Time that the ramp at the end may take [s]: as long as the rate limit needs, and some more.
+double shut_down_within(const SafetySettings& safety) {
+  return 2.0 + safety.stop_ramp + 1.5 * safety.joint_torque / safety.torque_rate;
 }
 
 DigitArray digit_forces(const Snapshot& snapshot) noexcept {
@@ -39,6 +42,12 @@ DigitArray digit_forces(const Snapshot& snapshot) noexcept {
 }
 
 }  // namespace
+
+void check_station_rate(double rate_hz) {
+  if (rate_hz >= 200.0 && rate_hz <= 2000.0) return;
+  throw std::invalid_argument(
+      fmt::format("rate_hz = {}: a station runs at 200 to 2000 Hz; change rate_hz", rate_hz));
+}
 
 Station::Station(std::unique_ptr<HapticModel> model, Device& device, ChannelMap channels,
                  StationOptions options, const Clock& clock)
@@ -93,28 +102,43 @@ void Station::one_step(const Wake& wake) noexcept {
   if (heard_) {
     channels_.convert(newest_, sample_);
     status_ = model_.advance(sample_);
+    ++tick_;
   }
   const double extra = extra_.load(std::memory_order_relaxed);
   while (extra > 0.0 && clock_.now() < wake.now + extra) {
   }
   safety_.command(model_.snapshot(), newest_, wake.now, command_);
+  command_.tick = tick_;
   if (heard_) device_.send(command_);
   write_down(wake, count, clock_.now());
 }
 
 void Station::serve_requests(double now) noexcept {
   const unsigned asked = requests_.exchange(0, std::memory_order_acq_rel);
-  if ((asked & kStop) != 0) {
+  ending_ = ending_ || (asked & kEnd) != 0;
+  if ((asked & kStop) != 0 || ending_) {
     safety_.stop();
     resume_after_exchange_ = false;
   }
+  if (ending_) return;
   if ((asked & kResume) != 0) safety_.start();
-  if ((asked & kReset) != 0 && safety_.reset(now)) {
-    device_.reset();
-    reported_ = false;
+  if ((asked & kReset) != 0) reset_now(now);
+  if (incoming_.load(std::memory_order_acquire) != nullptr) {
+    exchange_model();
+  } else if (blend_.update()) {
+    model_.blend_to(blend_.value());
   }
-  if (blend_.update()) model_.blend_to(blend_.value());
-  if (incoming_.load(std::memory_order_acquire) != nullptr) exchange_model();
+}
+
+void Station::reset_now(double now) noexcept {
+  if (safety_.state() != SafetyState::kFault) return;
+  if (!safety_.reset(device_.connection_fault(), now)) {
+    ++resets_refused_;
+    return;
+  }
+  device_.reset();
+  heard_ = false;
+  reported_ = false;
 }
 
 /// Another model only where no force is: the ramp down first, then the exchange, then the start ramp.
@@ -125,17 +149,16 @@ void Station::exchange_model() noexcept {
     resume_after_exchange_ = true;
   }
   if (!safety_.at_rest() || safety_.state() == SafetyState::kStopping || outgoing_.load() != nullptr) return;
-  Replacement* incoming = incoming_.exchange(nullptr, std::memory_order_acq_rel);
+  LiveModel* incoming = incoming_.exchange(nullptr, std::memory_order_acq_rel);
   if (incoming == nullptr) return;
-  model_.swap(incoming->model);
-  safety_.change_limits(incoming->safety);
+  model_.swap(*incoming);
   outgoing_.store(incoming, std::memory_order_release);
   if (std::exchange(resume_after_exchange_, false)) safety_.start();
 }
 
 void Station::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
   const Snapshot& snapshot = model_.snapshot();
-  const StepRecord record{.tick = snapshot.tick,
+  const StepRecord record{.tick = tick_,
                           .time = wake.now,
                           .lateness = wake.lateness,
                           .duration = sent_at - wake.now,
@@ -169,6 +192,8 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
   view.changing = model_.blending() || incoming_.load(std::memory_order_relaxed) != nullptr;
   view.device = newest_.state;
   view.estop = newest_.estop;
+  view.ending = ending_;
+  view.resets_refused = resets_refused_;
   view.link = device_.statistics();
   view.records_lost = records_lost_;
   view_.write(view);
@@ -184,17 +209,24 @@ void Station::freeze_history() noexcept {
 
 // ---- other threads ----
 
-void Station::stop_torque() noexcept { requests_.fetch_or(kStop, std::memory_order_acq_rel); }
-void Station::resume_torque() noexcept { requests_.fetch_or(kResume, std::memory_order_acq_rel); }
-void Station::reset() noexcept { requests_.fetch_or(kReset, std::memory_order_acq_rel); }
+/// Of what is asked between two steps the last word counts; an end is never taken back.
+void Station::ask(unsigned set, unsigned clear) noexcept {
+  unsigned before = requests_.load(std::memory_order_relaxed);
+  while (!requests_.compare_exchange_weak(before, (before & ~clear) | set, std::memory_order_acq_rel)) {
+  }
+}
+
+void Station::stop_torque() noexcept { ask(kStop, kResume); }
+void Station::resume_torque() noexcept { ask(kResume, kStop); }
+void Station::reset() noexcept { ask(kReset, 0); }
 
 void Station::blend_to(const BlendedParameters& parameters) {
   const std::lock_guard lock(readers_);
   blend_.write(parameters);
 }
 
-void Station::replace(std::unique_ptr<Replacement> replacement) {
-  const double rate = replacement->model.model().rate_hz;
+void Station::replace(std::unique_ptr<LiveModel> replacement) {
+  const double rate = replacement->model().rate_hz;
   if (1.0 / rate != period_) {
     throw std::invalid_argument(
         fmt::format("rate_hz = {}: the running station has {}; end it and start one with the new rate", rate,
@@ -207,6 +239,7 @@ void Station::replace(std::unique_ptr<Replacement> replacement) {
 
 StationView Station::view() const {
   const std::lock_guard lock(readers_);
+  delete outgoing_.exchange(nullptr, std::memory_order_acq_rel);
   view_.update();
   return view_.value();
 }
@@ -238,12 +271,12 @@ std::optional<FaultReport> Station::take_fault_report() {
 
 void Station::shut_down() noexcept {
   if (thread_.joinable()) {
-    stop_torque();
-    const double until = clock_.now() + kShutDownWithin;
+    ask(kEnd, kResume | kReset);
+    const double until = clock_.now() + shut_down_within(options_.safety);
     for (;;) {
       const StationView now = view();
       const bool stopped = now.state == SafetyState::kStopped || now.state == SafetyState::kFault;
-      if ((stopped && now.at_rest) || clock_.now() > until) break;
+      if ((now.ending && stopped && now.at_rest) || clock_.now() > until) break;
       clock_.sleep_until(clock_.now() + 0.005);
     }
     finish_.store(true, std::memory_order_release);

@@ -11,7 +11,7 @@
 namespace phalanx {
 namespace {
 
-constexpr Fault kLast = Fault::kDeviceLost;
+constexpr Fault kLast = Fault::kNotActing;
 
 bool is_known(int value) {
   return value <= PHX_FAULT_DRIVE ||

@@ -115,6 +115,9 @@ struct Bench {
   const DeviceCommand& step(bool silent = false, Fault connection = Fault::kNone, bool late = false) {
     now += period;
     ++snapshot.tick;
+    DeviceState& state = samples.sample.state;
+    if (state == DeviceState::kReady || state == DeviceState::kActive)
+      state = command.enable && obeys ? DeviceState::kActive : DeviceState::kReady;
     snapshot.hcp_angle[kMcp] = kCount * samples.sample.raw[0];
     snapshot.hcp_angle[kPip] = kCount * samples.sample.raw[1];
     if (torque_follows)
@@ -145,6 +148,7 @@ struct Bench {
   Snapshot snapshot;
   DeviceCommand command;
   double now = 0.0;
+  bool obeys = true;           ///< the device acts on what it is sent
   bool torque_follows = true;  ///< the torque sensor reads what was commanded
 };
 

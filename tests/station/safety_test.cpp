@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -95,10 +96,10 @@ TEST(Safety, AResetIsRefusedWhileTheEmergencyStopIsPressedAndThenBringsAFreshRam
   bench.run_with(0.4);
   bench.samples.sample.estop = true;
   bench.steps(20);
-  EXPECT_FALSE(bench.safety.reset(bench.now));
+  EXPECT_FALSE(bench.safety.reset(Fault::kNone, bench.now));
   bench.samples.sample.estop = false;
   bench.steps(5);
-  EXPECT_TRUE(bench.safety.reset(bench.now));
+  EXPECT_TRUE(bench.safety.reset(Fault::kNone, bench.now));
   bench.step();
   EXPECT_LE(bench.command.torque[kMcp], 0.4 / 1000 + 1e-12);
   bench.steps(500);
@@ -153,19 +154,106 @@ TEST(Safety, TorqueThatWouldPushAJointBeyondThePatientsRangeFadesToZeroAtItsEnd)
   EXPECT_NEAR(bench.command.torque[kMcp], -0.4, 1e-9);
 }
 
-TEST(Safety, MoreThanFifteenNewtonOnADigitIsAFaultWhateverTheSettings) {
+TEST(Safety, MoreForceOnADigitThanIsAllowedIsAFaultAndFifteenNewtonWhateverTheSettings) {
+  for (const auto& [allowed, good, bad] :
+       {std::array{5.0, 5.4, 5.6}, {10.0, 10.9, 11.1}, {20.0, 14.9, 15.1}}) {
+    SafetySettings settings;
+    settings.fingertip_force = allowed;
+    Bench bench(settings);
+    bench.run_with(0.1);
+    SegmentSnapshot& distal = bench.snapshot.segment[static_cast<std::size_t>(segment_index(1, 2))];
+    SegmentSnapshot& middle = bench.snapshot.segment[static_cast<std::size_t>(segment_index(1, 1))];
+    distal.normal = middle.normal = Vec3::UnitZ();
+    distal.force = middle.force = 0.5 * good;
+    bench.step();
+    EXPECT_EQ(bench.safety.state(), SafetyState::kRunning) << allowed;
+    middle.force = bad - 0.5 * good;
+    bench.step();
+    EXPECT_EQ(bench.safety.fault().fault, Fault::kForceCeiling) << allowed;
+  }
+}
+
+TEST(Safety, ADeviceThatDoesNotActOnWhatItIsSentIsAFault) {
   Bench bench;
-  bench.run_with(0.1);
-  SegmentSnapshot& distal = bench.snapshot.segment[static_cast<std::size_t>(segment_index(1, 2))];
-  SegmentSnapshot& middle = bench.snapshot.segment[static_cast<std::size_t>(segment_index(1, 1))];
-  distal.normal = middle.normal = Vec3::UnitZ();
-  distal.force = 7.4;
-  middle.force = 7.4;
-  bench.step();
+  bench.run_with(0.3);
+  bench.obeys = false;
+  bench.steps(199);
   EXPECT_EQ(bench.safety.state(), SafetyState::kRunning);
-  middle.force = 7.7;
+  bench.steps(2);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNotActing);
+}
+
+TEST(Safety, AStopIsNotForgottenByAFaultAndItsReset) {
+  Bench bench;
+  bench.run_with(0.3);
+  bench.safety.stop();
+  bench.steps(300);
+  bench.samples.sample.estop = true;
+  bench.steps(20);
+  bench.safety.stop();
+  bench.samples.sample.estop = false;
+  bench.steps(5);
+  ASSERT_TRUE(bench.safety.reset(Fault::kNone, bench.now));
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(bench.step().torque[kMcp], 0.0);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kStopped);
+  bench.safety.start();
+  bench.steps(500);
+  EXPECT_NEAR(bench.command.torque[kMcp], 0.15, 0.002);
+}
+
+TEST(Safety, StartWaitsForTheDevice) {
+  Bench bench;
+  bench.samples.sample.state = DeviceState::kConnecting;
+  bench.snapshot.torque[kMcp] = 0.3;
+  bench.steps(20);
+  bench.safety.stop();
+  bench.steps(20);
+  bench.safety.start();
+  for (int i = 0; i < 300; ++i) EXPECT_EQ(bench.step().torque[kMcp], 0.0);
+  bench.samples.sample.state = DeviceState::kReady;
+  bench.steps(300);
+  EXPECT_GT(bench.command.torque[kMcp], 0.05);
+}
+
+TEST(Safety, AResetIsGrantedWhereTheConnectionItselfIsInFaultAndGivesItTimeToMend) {
+  Bench bench;
+  bench.run_with(0.3);
+  bench.samples.sample.estop = true;
+  bench.steps(20);
+  for (int i = 0; i < 50; ++i) bench.step(true, Fault::kControllerRestarted);  // the e-stop cuts the supply
+  bench.samples.sample.estop = false;
+  EXPECT_FALSE(bench.safety.reset(Fault::kNone, bench.now));
+  EXPECT_TRUE(bench.safety.reset(Fault::kControllerRestarted, bench.now));
+  for (int i = 0; i < 100; ++i) bench.step(true, Fault::kControllerRestarted);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  bench.steps(500);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kStarting);
+}
+
+TEST(Safety, ALateStepDoesNotMakeTheFaultsRampLonger) {
+  Bench bench;
+  bench.run_with(0.4);
+  bench.samples.sample.estop = true;
   bench.step();
-  EXPECT_EQ(bench.safety.fault().fault, Fault::kForceCeiling);
+  bench.now += 8e-3;
+  EXPECT_EQ(bench.step().torque[kMcp], 0.0);
+}
+
+TEST(Safety, WallsOfADigitWhoseTorqueTheGateHasChangedAreNotSent) {
+  Bench bench;
+  bench.run_with(0.4);
+  bench.snapshot.wall_valid_for = 0.014;
+  bench.snapshot.wall[static_cast<std::size_t>(segment_index(1, 2))].active = true;
+  bench.snapshot.wall[static_cast<std::size_t>(segment_index(0, 2))].active = true;
+  bench.step();
+  EXPECT_TRUE(bench.command.wall[static_cast<std::size_t>(segment_index(1, 2))].active);
+  bench.snapshot.torque[kMcp] = 0.7;  // above the limit
+  bench.step();
+  EXPECT_FALSE(bench.command.wall[static_cast<std::size_t>(segment_index(1, 2))].active);
+  EXPECT_TRUE(bench.command.wall[static_cast<std::size_t>(segment_index(0, 2))].active);
+  bench.safety.stop();
+  bench.step();
+  EXPECT_EQ(bench.command.wall_valid_for, 0.0);
 }
 
 TEST(Safety, AStepThatIsNotFiniteIsAFaultAndWhatLeavesIsFinite) {

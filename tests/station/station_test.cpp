@@ -90,17 +90,33 @@ TEST_F(StationTest, StopGoesToZeroAndResumeComesBackOverTheRamp) {
   EXPECT_LE(device_->largest_step, allowed_step());
 }
 
+TEST_F(StationTest, OfStopAndResumeTheLastWordCounts) {
+  start();
+  ASSERT_TRUE(until_pressing(0.5));
+  station_->stop_torque();
+  ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kStopped; }));
+  station_->resume_torque();
+  station_->stop_torque();
+  const double asked = station_->view().time;
+  ASSERT_TRUE(until([&](const StationView& view) { return view.time > asked + 1.0; }));
+  EXPECT_EQ(station_->view().state, SafetyState::kStopped);
+  station_->resume_torque();
+  station_->shut_down();  // an end is the last word of all
+  EXPECT_TRUE(device_->at_zero);
+  EXPECT_TRUE(station_->view().at_rest);
+}
+
 TEST_F(StationTest, AnObjectIsSwappedInContactWithoutATorqueStepBeyondTheRateLimit) {
   start();
   ASSERT_TRUE(until_pressing(1.0));
   const SceneDescription other =
       load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", {{"objects.0.size_mm", "125"}});
   StationModel made = make_station_model(other, "");
-  station_->replace(
-      std::make_unique<Replacement>(Replacement{LiveModel(std::move(made.model)), made.safety}));
+  station_->replace(std::make_unique<LiveModel>(std::move(made.model)));
   ASSERT_TRUE(
       until([](const StationView& view) { return !view.changing && view.state == SafetyState::kRunning; }));
   ASSERT_TRUE(until_pressing(0.5));
+  EXPECT_TRUE(device_->ticks_increase);  // a device takes an old tick for an old command
   EXPECT_LE(device_->largest_step, allowed_step());
   std::printf("object swapped in contact: largest torque step %.4f of %.4f Nm allowed\n",
               device_->largest_step.load(), allowed_step());

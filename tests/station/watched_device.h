@@ -34,6 +34,8 @@ class WatchedDevice : public Device {
       largest_step = std::max(largest_step.load(), std::abs(command.torque[j] - last_[j]));
       largest_torque = std::max(largest_torque.load(), std::abs(command.torque[j]));
     }
+    ticks_increase = ticks_increase && command.tick > last_tick_;
+    last_tick_ = command.tick;
     last_ = command.torque;
     at_zero = std::all_of(last_.begin(), last_.end(), [](double torque) { return torque == 0.0; });
     device_->send(command);
@@ -42,6 +44,7 @@ class WatchedDevice : public Device {
 
   std::atomic<bool> silent{false};
   std::atomic<bool> estop{false};
+  std::atomic<bool> ticks_increase{true};
   std::atomic<bool> at_zero{true};          ///< the last command asks for no torque
   std::atomic<double> largest_step{0.0};    ///< of a joint's torque from one command to the next [Nm]
   std::atomic<double> largest_torque{0.0};  ///< [Nm]
@@ -50,6 +53,7 @@ class WatchedDevice : public Device {
  private:
   std::unique_ptr<Device> device_;
   JointArray last_{};
+  std::uint64_t last_tick_ = 0;
   int calls_ = 0;
   std::size_t allocations_before_ = 0;
 };

@@ -23,7 +23,7 @@ enum class ChannelKind : std::uint8_t {
   kAngle = 0,   ///< joint angle [rad]; joint
   kTorque = 1,  ///< torque on a joint [Nm]; joint
   kForce = 2,   ///< force at a digit's tip [N]; digit
-  kMotor = 3,   ///< what a motor has wound up [m]; motor, in the order of the device file
+  kMotor = 3,   ///< what a motor has wound up [m]; motor, in the order of their names in the device file
   kCurl = 4,    ///< a whole digit: 0 open .. 1 closed; digit
   kSplay = 5,   ///< abduction of a digit, -1 .. 1 of its range; digit
 };
@@ -67,12 +67,13 @@ struct DeviceSample {
 
 /// What the host wants of a device at one step.
 struct DeviceCommand {
-  std::uint64_t tick = 0;               ///< of the step
-  std::uint64_t sample_time_us = 0;     ///< the device's clock at the sample that the step used
-  bool enable = false;                  ///< false: zero torque, no fault
-  JointArray torque{};                  ///< [Nm] finite and within all of the host's limits
-  JointArray hcp_angle{};               ///< measured; also the walls' q_ref [rad]
-  JointArray gdp_angle{};               ///< shown: where stopped digits stand [rad]
+  std::uint64_t tick = 0;            ///< of the step
+  std::uint64_t sample_time_us = 0;  ///< the device's clock at the sample that the step used
+  bool enable = false;               ///< false: zero torque, no fault
+  bool fault = false;      ///< the host is in fault: zero torque within 5 ms, whatever `enable` says
+  JointArray torque{};     ///< [Nm] finite and within all of the host's limits
+  JointArray hcp_angle{};  ///< measured; also the walls' q_ref [rad]
+  JointArray gdp_angle{};  ///< shown: where stopped digits stand [rad]
   std::array<bool, kDigits> stopped{};  ///< a segment of the digit is in contact
   std::array<LocalWall, kSegments> wall{};
   double wall_valid_for = 0.0;  ///< from the sample's time [s]; 0: no walls

@@ -25,9 +25,10 @@ enum class Fault : std::uint16_t {
   kStuckSensor,          ///< a sensor stood still while others say that its joint moved
   kTorqueDisagrees,      ///< what is measured is not what was commanded
   kOverload,             ///< too many steps in a row ended too late
-  kForceCeiling,         ///< a step asked for more than 15 N on a digit
+  kForceCeiling,         ///< a step asked for more force on a digit than is allowed
   kCommandNotFinite,     ///< a step came out not finite
   kDeviceLost,           ///< the device's port or socket failed
+  kNotActing,            ///< the device does not act on what it is sent
 };
 
 /// "step_too_old", ... as it appears in files and on the screen; "fault_123" has no name here and is

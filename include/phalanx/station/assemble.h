@@ -39,8 +39,9 @@ struct StationModel {
 /// What a change of a scene's key needs in a running station.
 enum class ChangeKind {
   kInContact,     ///< goes over smoothly: changes_in_contact()
-  kAtZeroTorque,  ///< another model: object, law, stabiliser, limits
-  kNewStation,    ///< hand, rate, device, patient, motion
+  kAtZeroTorque,  ///< another model: object, law, stabiliser
+  kNewStation,    ///< limits (the controller is told them when its session begins), hand, rate, device,
+                  ///< patient, motion
 };
 [[nodiscard]] ChangeKind change_kind(const std::string& key);
 

@@ -58,16 +58,17 @@ class Safety {
   /// @param used  the sample that the step was computed from
   void command(const Snapshot& snapshot, const DeviceSample& used, double now, DeviceCommand& out) noexcept;
 
-  void start() noexcept;  ///< from kStopped; the ramp begins once the device is ready
-  void stop() noexcept;   ///< ramps to zero; from kFault nothing changes
-  /// Asks to leave kFault. Granted if the cause is gone: samples come, none is bad, no emergency stop is
-  /// pressed; then everything begins anew with kWaiting. @returns whether; the caller then resets the device.
-  bool reset(double now) noexcept;
+  void start() noexcept;  ///< after stop(); the ramp begins once the device is ready
+  /// Ramps to zero and stays there until start(), also over a fault and its reset.
+  void stop() noexcept;
+  /// Asks to leave kFault. Granted once the torque is at rest and the cause is gone: samples come, none is
+  /// bad, no emergency stop is pressed; or the connection itself is in fault, which only a reset mends. Then
+  /// everything begins anew with kWaiting, or with kStopped if somebody had said stop().
+  /// @param connection  Device::connection_fault() now
+  /// @returns whether; the caller then resets the device
+  bool reset(Fault connection, double now) noexcept;
   /// Whether reset() would be granted.
   [[nodiscard]] bool cause_gone(double now) const noexcept;
-
-  /// Other torque limits, for a model that is exchanged; what judges the samples stays. @pre at_rest()
-  void change_limits(const SafetySettings& settings) noexcept { settings_ = settings; }
 
   [[nodiscard]] SafetyState state() const noexcept { return state_; }
   [[nodiscard]] const FaultEvent& fault() const noexcept { return fault_; }
@@ -82,7 +83,10 @@ class Safety {
   void judge_sample(const DeviceSample& sample, double now) noexcept;
   void judge_step(const Snapshot& snapshot, double now) noexcept;
   [[nodiscard]] double silent_for(double now) const noexcept;
+  void judge_obedience(double now) noexcept;
   void go_on(double now) noexcept;
+  void ramp_to_zero_after_fault(double now) noexcept;
+  void choose_walls(const Snapshot& snapshot, DeviceCommand& out) const noexcept;
   [[nodiscard]] double wanted(const Snapshot& snapshot, std::size_t joint) const noexcept;
   [[nodiscard]] double outward_factor(std::size_t joint, double angle, double torque) const noexcept;
 
@@ -99,6 +103,8 @@ class Safety {
   JointArray sent_{};           ///< the last command [Nm]
   DigitArray sent_force_{};     ///< of each digit, with it [N]
   JointArray sent_at_fault_{};  ///< from which the fault's ramp falls [Nm]
+  bool held_ = false;           ///< somebody has said stop()
+  double ignored_for_ = 0.0;    ///< how long the device has not acted on enabled commands [s]
   double fault_left_ = 0.0;     ///< of the fault's ramp, 1 .. 0
   bool at_rest_ = true;
   DeviceSample last_{};          ///< the newest sample

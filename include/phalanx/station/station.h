@@ -28,11 +28,8 @@ struct StationOptions {
   std::vector<MotorWitness> witnesses;
 };
 
-/// A model to go over to at zero torque, with the limits that go with it.
-struct Replacement {
-  LiveModel model;
-  SafetySettings safety;
-};
+/// @throws std::invalid_argument unless 200 .. 2000 Hz
+void check_station_rate(double rate_hz);
 
 /// Runs from start() to shut_down() or its end. The loop's thread reads the device, makes the step, passes
 /// Safety, sends, and writes down; nobody can make it wait. All other functions are for other threads, any of
@@ -53,15 +50,15 @@ class Station {
   /// Ramps to zero, ends the loop and closes the device. Returns when all of that is done.
   void shut_down() noexcept;
 
-  void stop_torque() noexcept;    ///< ramps to zero and stays there
+  void stop_torque() noexcept;    ///< ramps to zero and stays there; of stop and resume the last word counts
   void resume_torque() noexcept;  ///< after stop_torque()
   void reset() noexcept;          ///< after a fault; Safety::reset() decides
 
-  /// Goes over to other stiffness and bounds in contact.
+  /// Goes over to other stiffness and bounds in contact; after an exchange that is on its way.
   void blend_to(const BlendedParameters& parameters);
   /// Goes over to another model: torque to zero at its rate limit, exchange, start ramp. One that is still
   /// waiting is replaced. @throws std::invalid_argument if it has another rate: that needs a new station
-  void replace(std::unique_ptr<Replacement> replacement);
+  void replace(std::unique_ptr<LiveModel> replacement);
 
   [[nodiscard]] StationView view() const;
   [[nodiscard]] DeadlineStatistics deadlines() const;
@@ -76,9 +73,11 @@ class Station {
   void lengthen_steps(double seconds) noexcept { extra_.store(seconds); }
 
  private:
-  enum Request : unsigned { kStop = 1, kResume = 2, kReset = 4 };
+  enum Request : unsigned { kStop = 1, kResume = 2, kReset = 4, kEnd = 8 };
   void loop() noexcept;
+  void ask(unsigned set, unsigned clear) noexcept;
   void serve_requests(double now) noexcept;
+  void reset_now(double now) noexcept;
   void exchange_model() noexcept;
   void one_step(const Wake& wake) noexcept;
   void write_down(const Wake& wake, std::size_t count, double sent_at) noexcept;
@@ -95,8 +94,11 @@ class Station {
   Safety safety_;
   std::vector<DeviceSample> inbox_;
   DeviceSample newest_;
-  bool heard_ = false;
+  bool heard_ = false;  ///< a sample has come since the beginning or the last reset
   bool late_ = false;
+  bool ending_ = false;
+  std::uint64_t tick_ = 0;  ///< of the commands: never goes back, also when models are exchanged
+  std::uint64_t resets_refused_ = 0;
   Sample sample_;
   Status status_ = Status::kOk;
   DeviceCommand command_;
@@ -112,9 +114,9 @@ class Station {
   std::atomic<double> extra_{0.0};
   FaultEvent frozen_event_;          ///< whose history it is
   std::atomic<bool> frozen_{false};  ///< the history belongs to take_fault_report() until that clears it
-  std::atomic<Replacement*> incoming_{nullptr};
-  std::atomic<Replacement*> outgoing_{nullptr};
-  mutable std::mutex readers_;  ///< among those who are not the loop
+  std::atomic<LiveModel*> incoming_{nullptr};
+  mutable std::atomic<LiveModel*> outgoing_{nullptr};  ///< exchanged; deleted by whoever looks next
+  mutable std::mutex readers_;                         ///< among those who are not the loop
   Latest<BlendedParameters> blend_;
   mutable Latest<StationView> view_;
   mutable Latest<DeadlineStatistics> deadlines_;

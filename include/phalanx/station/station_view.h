@@ -21,8 +21,10 @@ struct StationView {
   FaultEvent fault;
   double factor = 0.0;
   bool at_rest = true;
-  bool degraded = false;  ///< a step ended too late in the last second
-  bool changing = false;  ///< a change is on its way
+  bool degraded = false;             ///< a step ended too late in the last second
+  bool ending = false;               ///< shut_down() has been asked for
+  std::uint64_t resets_refused = 0;  ///< because the cause was still there
+  bool changing = false;             ///< a change is on its way
   DeviceState device = DeviceState::kConnecting;
   bool estop = false;
   LinkStatistics link;

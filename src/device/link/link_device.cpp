@@ -16,7 +16,7 @@ namespace {
 constexpr double kAskingStep = 0.005;  // [s], as all here
 /// A host that was killed holds its session for PHX_SESSION_US; the next one waits a little longer.
 constexpr double kPatienceWhenBusy = 1.25e-6 * PHX_SESSION_US;
-constexpr double kFarewell = 0.05;  // commands without ENABLE before GOODBYE
+constexpr int kFarewells = 50;  // commands without ENABLE before GOODBYE
 constexpr double kFarewellPeriod = 0.001;
 constexpr int kGoodbyes = 5;  // a lost one is repeated; samples that go on say that it was
 constexpr double kGoodbyePeriod = 0.005;
@@ -50,7 +50,11 @@ class WiredDevice final : public LinkDevice {
   void send(const DeviceCommand& command) noexcept override {
     shared_.command.write({.command = command, .at = clock_.now()});
   }
-  void reset() noexcept override { shared_.resets.fetch_add(1, std::memory_order_release); }
+  void reset() noexcept override {
+    // Before the link's thread has seen the reset, the loop must not take the old fault for a new one.
+    shared_.fault.store(Fault::kNone, std::memory_order_release);
+    shared_.resets.fetch_add(1, std::memory_order_release);
+  }
   [[nodiscard]] Fault connection_fault() const noexcept override {
     return shared_.fault.load(std::memory_order_acquire);
   }
@@ -170,8 +174,9 @@ void WiredDevice::run() noexcept {
 
 void WiredDevice::take_leave() noexcept {
   if (session_.phase() != LinkSession::Phase::kRunning) return;
-  const double end = clock_.now() + kFarewell;
-  for (double next = clock_.now(); next < end; next += kFarewellPeriod) {
+  const double begin = clock_.now();
+  for (int i = 0; i < kFarewells; ++i) {
+    const double next = begin + i * kFarewellPeriod;
     session_.receive(clock_.now());
     session_.send_disabled();
     while (clock_.now() < next) wait_until(next);

@@ -78,6 +78,10 @@ void LinkSession::receive(double now) noexcept {
     if (decoded == PHX_OTHER_VERSION && phase_ == Phase::kAsking)
       refusal_ = Refusal{.reason = PHX_REFUSED_VERSION, .version = message.header.version};
   }
+  // What the wire itself has dropped: too long, or no frame.
+  const std::uint64_t dropped = transport_.dropped();
+  LinkCounters::count(shared_.counters.corrupt, dropped - dropped_seen_);
+  dropped_seen_ = dropped;
   if (transport_.lost()) fail(Fault::kDeviceLost);
 }
 
@@ -224,7 +228,10 @@ void LinkSession::watch_for_reset(double now) noexcept {
   // What was commanded before a reset is not meant any more.
   shared_.command.update();
   has_command_ = false;
-  if (phase_ == Phase::kDown && !transport_.lost()) ask(now);
+  if (phase_ == Phase::kDown) {
+    if (transport_.lost()) return fail(Fault::kDeviceLost);
+    ask(now);
+  }
   reset_until_ = now + kResetFor;
   next_reset_ = now;
 }

@@ -98,7 +98,8 @@ class LinkSession {
   bool has_command_ = false;
   std::uint64_t last_tick_ = 0;  ///< sent
   std::uint32_t resets_seen_ = 0;
-  double reset_until_ = -1.0;  ///< RESET is repeated until then; < 0: not asked for
+  std::uint64_t dropped_seen_ = 0;  ///< of transport_.dropped(), counted already
+  double reset_until_ = -1.0;       ///< RESET is repeated until then; < 0: not asked for
 
   double next_hello_ = 0.0;
   double ask_until_ = 0.0;  ///< after a reset; open() has its own limit

@@ -738,11 +738,21 @@ static float clamp(float value, float limit) {
 
 static float smaller(float a, float b) { return a < b ? a : b; }
 
+/* How far a torque may move in this tick: by the rate limit, or, where the host is in fault, from the largest
+ * torque to zero within PHX_STOP_RAMP_US. */
+static float largest_change(const phx_controller* controller, float limit, float seconds) {
+  const float ordinary = smaller(controller->device.torque_rate, controller->configure.torque_rate) * seconds;
+  const float stopping = limit * seconds / (1e-6f * (float)PHX_STOP_RAMP_US);
+  const uint8_t flags = controller->step.command.flags;
+  const bool fault = (flags & PHX_COMMAND_FAULT) != 0 && (flags & PHX_COMMAND_ENABLE) == 0;
+  return fault && stopping > ordinary ? stopping : ordinary;
+}
+
 /* Torque limit, start ramp, torque-rate limit. The ramp stands before the rate limit, so that the sum of
  * both never changes the torque faster than the rate; the limit has the last word. */
 static void limit_torques(phx_controller* controller, float ramp, float seconds, float torque[PHX_JOINTS]) {
   const float limit = smaller(controller->device.torque_limit, controller->configure.torque_limit);
-  const float step = smaller(controller->device.torque_rate, controller->configure.torque_rate) * seconds;
+  const float step = largest_change(controller, limit, seconds);
   for (size_t i = 0; i < PHX_JOINTS; ++i) {
     const float target = is_finite(torque[i]) ? ramp * clamp(torque[i], limit) : 0.0f;
     const float last = controller->torque[i];

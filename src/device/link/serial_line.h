@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -39,7 +40,7 @@ class SerialLine : public Transport {
   std::size_t in_begin_ = 0;
   std::size_t in_end_ = 0;
   /// What the system would not take yet. Short, for what waits here grows old.
-  std::array<std::uint8_t, 2 * PHX_COBS_MAX> out_{};
+  std::array<std::uint8_t, std::size_t{2} * std::size_t{PHX_COBS_MAX}> out_{};
   std::size_t out_size_ = 0;
 };
 

@@ -113,6 +113,19 @@ void expect_within_limits(const phx_output& last, const phx_output& now, std::ui
   }
 }
 
+TEST_F(LinkLimits, GiveWayToAHostInFaultWhoseTorqueIsZeroWithinFiveMilliseconds) {
+  rig.open_and_act(kLimit);
+  for (int i = 1; i <= 5; ++i) {
+    phx_message message = rig.next_command(kLimit);  // whatever torque it still names
+    message.as.command.flags = PHX_COMMAND_FAULT;
+    rig.send(message);
+    EXPECT_NEAR(rig.tick(), kLimit * (1.0F - 0.2F * static_cast<float>(i)), 1e-5F) << i;
+  }
+  EXPECT_FLOAT_EQ(rig.output.torque[kJoint], 0.0F);
+  EXPECT_EQ(rig.sample.state, PHX_STATE_READY);
+  EXPECT_EQ(rig.sample.fault, PHX_FAULT_NONE);
+}
+
 TEST_F(LinkLimits, HoldUnderRandomCommandsSensorsAndTicks) {
   std::mt19937_64 random(651);
   rig.open();

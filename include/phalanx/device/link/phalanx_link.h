@@ -55,9 +55,10 @@ enum phx_channel_kind {
   PHX_CHANNEL_ANGLE = 0,  /* joint angle [rad]; index: joint, 0 .. 19 */
   PHX_CHANNEL_TORQUE = 1, /* torque on a joint [Nm]; index: joint */
   PHX_CHANNEL_FORCE = 2,  /* force at a digit's tip [N]; index: digit, 0 thumb .. 4 little */
-  PHX_CHANNEL_MOTOR = 3,  /* what a motor has wound up [m]; index: motor, in the order of the device file */
-  PHX_CHANNEL_CURL = 4,   /* one number for a whole digit: 0 open .. 1 closed; index: digit */
-  PHX_CHANNEL_SPLAY = 5   /* abduction of a digit, -1 .. 1 of its range; index: digit */
+  PHX_CHANNEL_MOTOR =
+      3, /* what a motor has wound up [m]; index: motor, in the order of their names in the device file */
+  PHX_CHANNEL_CURL = 4, /* one number for a whole digit: 0 open .. 1 closed; index: digit */
+  PHX_CHANNEL_SPLAY = 5 /* abduction of a digit, -1 .. 1 of its range; index: digit */
 };
 
 /* value = gain * raw + offset. A raw value outside raw_min .. raw_max is an open or shorted sensor. */
@@ -81,7 +82,7 @@ enum phx_fault {
 
 enum phx_state {
   PHX_STATE_NO_SESSION = 0, /* zero torque */
-  PHX_STATE_READY = 1,      /* session open, not enabled: zero torque */
+  PHX_STATE_READY = 1,      /* session open, not enabled: zero torque, or on its way there */
   PHX_STATE_STARTING = 2,   /* torque rises over PHX_START_RAMP_US */
   PHX_STATE_ACTIVE = 3,     /* commands act */
   PHX_STATE_FADING = 4,     /* the step acted on is older than PHX_HOLD_AGE_US: torque falls */
@@ -95,6 +96,7 @@ enum phx_state {
 #define PHX_LATCH_AGE_US \
   20000u /* from there it falls in a straight line to zero, here it is zero and latched */
 #define PHX_START_RAMP_US 1000000u
+#define PHX_STOP_RAMP_US 5000u /* from the largest torque to zero, whatever the rate limit */
 #define PHX_SESSION_US \
   1000000u                 /* without a frame of its host for so long, a session may be taken by another */
 #define PHX_BAD_SAMPLES 3u /* of a channel, in a row, until the controller latches */
@@ -150,6 +152,8 @@ typedef struct {
   int32_t raw[PHX_CHANNELS];
 } phx_sample;
 
+#define PHX_COMMAND_FAULT \
+  0x02u /* the host is in fault: not ENABLE, and torque is zero within PHX_STOP_RAMP_US */
 #define PHX_COMMAND_ENABLE 0x01u /* without it the torque goes to zero and the state to READY, no fault */
 
 typedef struct {

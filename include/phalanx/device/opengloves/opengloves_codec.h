@@ -24,7 +24,7 @@ inline constexpr int kGloveKeysPerDigit = 2 + kGloveJoints;
 inline constexpr int kGloveKeys = kDigits * kGloveKeysPerDigit;
 
 [[nodiscard]] constexpr std::size_t glove_curl_key(int digit) noexcept {
-  return static_cast<std::size_t>(digit * kGloveKeysPerDigit);
+  return static_cast<std::size_t>(digit) * std::size_t{kGloveKeysPerDigit};
 }
 [[nodiscard]] constexpr std::size_t glove_splay_key(int digit) noexcept { return glove_curl_key(digit) + 1; }
 [[nodiscard]] constexpr std::size_t glove_joint_key(int digit, int joint) noexcept {
