@@ -83,6 +83,7 @@ double measured(const SimulatedExoskeleton& device, const DeviceChannel& channel
 
 std::vector<DeviceChannel> simulated_channels(const Exoskeleton& exoskeleton, const HandParameters& hand) {
   std::vector<DeviceChannel> channels;
+  channels.reserve(2 * exoskeleton.joints.size() + exoskeleton.motors.size());
   for (const ExoJoint& joint : exoskeleton.joints) channels.push_back(angle_channel(joint, hand));
   for (std::size_t m = 0; m < exoskeleton.motors.size(); ++m)
     channels.push_back(motor_channel(exoskeleton.motors[m], static_cast<int>(m), hand));

@@ -51,7 +51,8 @@ phx_device link_device(const DeviceInfo& info, const Exoskeleton& exoskeleton) {
 
 DeviceInfo info_of(const SimulatedDeviceSettings& settings, const std::string& serial) {
   const double rate = settings.exoskeleton.controller.rate_hz;
-  if (!(rate >= 1.0 && rate <= 65535.0))
+  const bool carried = rate >= 1.0 && rate <= 65535.0;  // false for NaN, too
+  if (!carried)
     throw std::invalid_argument(
         "device '" + settings.exoskeleton.name +
         "': the link carries controller rates of 1 to 65535 Hz; change controller.rate_hz");
