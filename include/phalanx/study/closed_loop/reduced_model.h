@@ -4,8 +4,8 @@
 
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/device/patient.h"
-#include "phalanx/force/force_parameters.h"
 #include "phalanx/device/press_intent.h"
+#include "phalanx/force/force_parameters.h"
 #include "phalanx/study/laboratory/trial.h"
 
 namespace phalanx {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "phalanx/step/snapshot.h"
 #include "phalanx/device/press_intent.h"
+#include "phalanx/step/snapshot.h"
 #include "phalanx/study/laboratory/trial.h"
 
 namespace phalanx {

@@ -8,10 +8,10 @@
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/device/patient.h"
 #include "phalanx/device/plant.h"
-#include "phalanx/scene/scene.h"
-#include "phalanx/step/haptic_step.h"
 #include "phalanx/device/press_intent.h"
 #include "phalanx/device/press_plan.h"
+#include "phalanx/scene/scene.h"
+#include "phalanx/step/haptic_step.h"
 #include "phalanx/study/closed_loop/stability_criterion.h"
 
 namespace phalanx {
