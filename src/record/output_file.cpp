@@ -28,10 +28,15 @@ std::filesystem::path partial_name(const std::filesystem::path& file) {
 }
 
 void rename_or_fail(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (!error) return;
   std::error_code ignored;
+  std::error_code error;
+  // A rename would put a file in the place of a device or a pipe.
+  if (std::filesystem::exists(to, ignored) && !std::filesystem::is_regular_file(to, ignored)) {
+    error = std::make_error_code(std::errc::file_exists);
+  } else {
+    std::filesystem::rename(from, to, error);
+  }
+  if (!error) return;
   std::filesystem::remove(from, ignored);
   fail("write", to, error.value());
 }

@@ -132,5 +132,13 @@ TEST(PrepareOutputFolder, RefusesAFolderBelowAFile) {
   EXPECT_THROW(prepare_output_folder(folder / "out/deeper"), std::invalid_argument);
 }
 
+TEST(OutputFile, DoesNotTakeThePlaceOfAPipeOrADevice) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(write_text_file(folder / "pipe", "text"), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pipe.partial"));
+}
+
 }  // namespace
 }  // namespace phalanx

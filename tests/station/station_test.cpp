@@ -64,12 +64,13 @@ class StationTest : public testing::Test {
   std::unique_ptr<Station> station_;
 };
 
-TEST_F(StationTest, SqueezesTheTeapotAgainAndAgainWithoutAFaultOrAnAllocationInTheLoop) {
-  start();
-  for (int squeeze = 0; squeeze < 2; ++squeeze) {
-    ASSERT_TRUE(until_pressing(1.0)) << squeeze;
-    ASSERT_TRUE(until([](const StationView& view) { return index_force(view) < 0.01; })) << squeeze;
-  }
+TEST_F(StationTest, SqueezesTheTeapotFor30SecondsAt1KHzWithoutAFaultOrAnAllocationInTheLoop) {
+  start({{"rate_hz", "1000"}});
+  ASSERT_TRUE(until_pressing(1.0));
+  ASSERT_TRUE(until([](const StationView& view) { return index_force(view) < 0.01; }));
+  ASSERT_TRUE(until_pressing(1.0));
+  ASSERT_TRUE(until([](const StationView& view) { return view.snapshot.time_s > 30.0; }));
+  EXPECT_GT(station_->deadlines().steps, 29000U);
   EXPECT_EQ(station_->view().state, SafetyState::kRunning);
   EXPECT_EQ(device_->allocations, 0U);
   EXPECT_LE(device_->largest_step, allowed_step());
