@@ -138,10 +138,16 @@ class Run {
       try {
         write_step(*log_, record);
       } catch (const std::exception& error) {
-        fmt::print(stderr, "phalanx run: the log ends here: {}\n", error.what());
-        log_.reset();
+        lose_log(error);
       }
     }
+  }
+
+  void lose_log(const std::exception& error) {
+    fmt::print(stderr, "phalanx run: the log ends here: {}; what was written is in {}\n", error.what(),
+               log_->leave_partial().string());
+    log_.reset();
+    log_lost_ = true;
   }
 
   void say_grant() {
@@ -187,7 +193,6 @@ class Run {
     drain();
     const StationView last = station_->view();
     const DeadlineStatistics deadlines = station_->deadlines();
-    if (log_) log_->commit();
     const std::string granted = granted_ ? describe(*granted_) : "not asked for";
     if (!options_.summary.empty())
       write_text_file(options_.summary, station_summary_json(deadlines, last, granted, seconds_));
@@ -203,7 +208,12 @@ class Run {
     const bool faulty = last.state == SafetyState::kFault;
     say(faulty ? fmt::format("ended at zero torque, in fault {}", fault_name(last.fault.fault))
                : "ended at zero torque");
-    return faulty ? kFailed : kDone;
+    try {
+      if (log_) log_->commit();
+    } catch (const std::exception& error) {
+      lose_log(error);
+    }
+    return faulty || log_lost_ ? kFailed : kDone;
   }
 
   const RunOptions& options_;
@@ -215,6 +225,7 @@ class Run {
   std::optional<RealtimeGrant> granted_;
   TypedLines typed_;
   bool quit_ = false;
+  bool log_lost_ = false;
   std::uint64_t resets_refused_ = 0;
   LiveChanges changes_;
   double seconds_ = 0.0;

@@ -56,7 +56,7 @@ class MyDevice final : public Device {
 
   // The newest command takes the place of all before it. A thread of yours gets it through a Latest<>, and
   // lets go of the motors when none has come for 20 ms.
-  void send(const DeviceCommand& command) noexcept override { enabled_ = command.enable; }
+  void send(const DeviceCommand& command) noexcept override { enabled_ = command.enable && !command.fault; }
 
   // Somebody has looked and says that a fault may be cleared.
   void reset() noexcept override {}

@@ -86,7 +86,9 @@ DeviceSample read_sample(const phx_message& message, double received) noexcept {
   out.received = received;
   std::copy(std::begin(in.raw), std::end(in.raw), out.raw.begin());
   out.state = state_of(in);
-  out.fault = static_cast<Fault>(in.fault);
+  // From kNoSample on the numbers are the host's own: a device that sends one means something of its own.
+  out.fault =
+      in.fault < static_cast<std::uint16_t>(Fault::kNoSample) ? static_cast<Fault>(in.fault) : Fault::kDrive;
   out.fault_channel = in.fault == PHX_FAULT_SENSOR_RANGE ? in.fault_channel : -1;
   out.estop = (in.flags & PHX_SAMPLE_ESTOP) != 0;
   out.factor = static_cast<double>(in.factor);

@@ -27,11 +27,16 @@ std::filesystem::path partial_name(const std::filesystem::path& file) {
   throw std::runtime_error(fmt::format("cannot {} '{}': {}", what, file.string(), std::strerror(error)));
 }
 
+/// A rename would put a file in the place of a device or a pipe.
+bool stands_in_the_way(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
+}
+
 void rename_or_fail(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code ignored;
   std::error_code error;
-  // A rename would put a file in the place of a device or a pipe.
-  if (std::filesystem::exists(to, ignored) && !std::filesystem::is_regular_file(to, ignored)) {
+  if (stands_in_the_way(to)) {
     error = std::make_error_code(std::errc::file_exists);
   } else {
     std::filesystem::rename(from, to, error);
@@ -43,8 +48,11 @@ void rename_or_fail(const std::filesystem::path& from, const std::filesystem::pa
 
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path file)
-    : file_(std::move(file)), partial_(partial_name(file_)), stream_(std::fopen(partial_.c_str(), "wb")) {
+OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)), partial_(partial_name(file_)) {
+  if (stands_in_the_way(file_))
+    throw std::runtime_error(
+        fmt::format("cannot write '{}': it is no ordinary file; name another", file_.string()));
+  stream_.reset(std::fopen(partial_.c_str(), "wb"));
   if (!stream_) fail("write", file_, errno);
   buffer_.reserve(kBufferBytes);
 }
@@ -54,6 +62,11 @@ OutputFile::~OutputFile() {
   stream_.reset();
   std::error_code ignored;
   std::filesystem::remove(partial_, ignored);
+}
+
+std::filesystem::path OutputFile::leave_partial() noexcept {
+  stream_.reset();
+  return partial_;
 }
 
 void OutputFile::reserve(std::size_t bytes) {

@@ -27,6 +27,11 @@ double timeout_of(const SafetySettings& settings, const DeviceInfo& device) {
                                : std::max(settings.sample_timeout, 5.0 / device.rate_hz);
 }
 
+/// A device that is latched and does not say what for has a reason of its own.
+Fault latch_of(const DeviceSample& sample) noexcept {
+  return sample.fault == Fault::kNone ? Fault::kDrive : sample.fault;
+}
+
 }  // namespace
 
 std::string_view safety_state_name(SafetyState state) noexcept {
@@ -43,6 +48,7 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
       max_(hand.max_angle),
       period_(period),
       timeout_(timeout_of(settings, device)),
+      obeys_within_(device.renders_torque ? kObeys : std::max(kObeys, 5.0 / device.rate_hz)),
       simulated_(device.simulated) {}
 
 // ---- what is judged ----
@@ -63,17 +69,19 @@ void Safety::judge_sample(const DeviceSample& sample, double now) noexcept {
   if (sample.estop) trip(Fault::kEmergencyStop, -1, now, true);
   trip(finding.fault, finding.channel, now);
   // Right after a reset the device's samples still speak of the latch that is being cleared.
-  const bool answering = state_ == SafetyState::kWaiting && now - waiting_since_ < kDeviceAnswers;
-  if (sample.state == DeviceState::kLatched && !answering)
-    trip(sample.fault, sample.fault_channel, now, true);
+  if (sample.state == DeviceState::kLatched && now >= answers_until_)
+    trip(latch_of(sample), sample.fault_channel, now, true);
 }
 
 void Safety::observe(std::span<const DeviceSample> samples, Fault connection, bool late,
                      double now) noexcept {
-  if (waiting_since_ < 0.0) waiting_since_ = now;
+  ++tick_;
+  if (waiting_since_ < 0.0) {
+    waiting_since_ = now;
+    answers_until_ = now + kDeviceAnswers;
+  }
   // Right after a reset the connection may still be mending.
-  const bool mending = state_ == SafetyState::kWaiting && now - waiting_since_ < kDeviceAnswers;
-  if (!mending) trip(connection, -1, now);
+  if (now >= answers_until_) trip(connection, -1, now);
   for (const DeviceSample& sample : samples) judge_sample(sample, now);
   silence_ = samples.empty() ? silence_ + period_ : 0.0;
   const double patience = heard_ ? timeout_ : std::max(timeout_, kDeviceAnswers);
@@ -109,8 +117,10 @@ void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
 /// Enabled commands go out, and the device stays at rest: it takes them for old, or for somebody else's.
 void Safety::judge_obedience(double now) noexcept {
   const bool asked = state_ == SafetyState::kStarting || state_ == SafetyState::kRunning;
-  ignored_for_ = asked && last_.state == DeviceState::kReady ? ignored_for_ + period_ : 0.0;
-  if (ignored_for_ >= kObeys) trip(Fault::kNotActing, -1, now);
+  const bool acts = last_.state == DeviceState::kStarting || last_.state == DeviceState::kActive ||
+                    last_.state == DeviceState::kFading;
+  ignored_for_ = asked && !acts ? ignored_for_ + period_ : 0.0;
+  if (ignored_for_ >= obeys_within_) trip(Fault::kNotActing, -1, now);
 }
 
 // ---- how torque comes and goes ----
@@ -120,9 +130,6 @@ void Safety::go_on(double now) noexcept {
                      last_.state != DeviceState::kLatched && watch_.all_good();
   if (state_ == SafetyState::kWaiting && ready)
     state_ = held_ ? SafetyState::kStopped : SafetyState::kStarting;
-  if (state_ == SafetyState::kWaiting && heard_ && now - waiting_since_ >= kDeviceAnswers &&
-      last_.state == DeviceState::kLatched)
-    trip(last_.fault, last_.fault_channel, now, true);
   if (state_ == SafetyState::kStarting) {
     factor_ = std::min(1.0, factor_ + period_ / settings_.start_ramp);
     if (factor_ >= 1.0) state_ = SafetyState::kRunning;
@@ -148,6 +155,12 @@ double Safety::outward_factor(std::size_t joint, double angle, double torque) co
   return std::clamp(left / settings_.range_taper, 0.0, 1.0);
 }
 
+/// The smaller of both directions' factors.
+double Safety::outward_room(const Snapshot& snapshot, std::size_t joint) const noexcept {
+  const double angle = snapshot.hcp_angle[joint];
+  return std::min(outward_factor(joint, angle, 1.0), outward_factor(joint, angle, -1.0));
+}
+
 /// The step's torque, tapered at the end of the range, limited, times the ramp's factor.
 double Safety::wanted(const Snapshot& snapshot, std::size_t joint) const noexcept {
   const double torque = snapshot.torque[joint];
@@ -157,7 +170,6 @@ double Safety::wanted(const Snapshot& snapshot, std::size_t joint) const noexcep
 
 void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double now,
                      DeviceCommand& out) noexcept {
-  tick_ = snapshot.tick;
   judge_step(snapshot, now);
   judge_obedience(now);
   go_on(now);
@@ -175,7 +187,7 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
   }
   const bool moving = state_ == SafetyState::kStarting || state_ == SafetyState::kRunning ||
                       state_ == SafetyState::kStopping || (state_ == SafetyState::kFault && !at_rest_);
-  out.tick = snapshot.tick;
+  out.tick = tick_;
   out.sample_time_us = used.time_us;
   out.enable = moving;
   out.fault = state_ == SafetyState::kFault;
@@ -198,7 +210,7 @@ void Safety::choose_walls(const Snapshot& snapshot, DeviceCommand& out) const no
   if (out.wall_valid_for <= 0.0) return;
   out.wall = snapshot.wall;
   for (std::size_t j = 0; j < sent_.size(); ++j) {
-    if (sent_[j] == snapshot.torque[j]) continue;
+    if (sent_[j] == snapshot.torque[j] && outward_room(snapshot, j) >= 1.0) continue;
     const int digit = digit_of_joint(static_cast<int>(j));
     for (int k = 0; k < kSegmentsPerDigit; ++k) out.wall[idx(segment_index(digit, k))].active = false;
   }
@@ -231,6 +243,7 @@ bool Safety::reset(Fault connection, double now) noexcept {
   if (!no_samples && !cause_gone(now)) return false;
   state_ = SafetyState::kWaiting;
   waiting_since_ = now;
+  answers_until_ = now + kDeviceAnswers;
   fault_ = {};
   factor_ = 0.0;
   late_in_a_row_ = 0;

@@ -57,7 +57,8 @@ Fault SensorWatch::judge_angle(std::size_t c, double t) noexcept {
   if (!std::isfinite(value)) return Fault::kSampleNotFinite;
   if (value < least_[c] || value > largest_[c]) return Fault::kOutOfRange;
   if (channel.seen) {
-    const double furthest = settings_.joint_speed * (t - channel.time) + settings_.jump_allowance;
+    const double furthest =
+        settings_.joint_speed * std::max(0.0, t - channel.time) + settings_.jump_allowance;
     if (std::abs(value - channel.value) > furthest) return Fault::kJump;
   }
   channel.seen = true;
@@ -104,12 +105,13 @@ bool SensorWatch::disagrees(std::size_t c, double commanded, double allowance, d
 
 SensorFinding SensorWatch::judge(const DeviceSample& sample, const JointArray& torque,
                                  const DigitArray& force) noexcept {
-  if (started_ && sample.time_us <= last_time_us_) {
+  const bool backwards = started_ && sample.time_us <= last_time_us_;
+  last_time_us_ = sample.time_us;
+  if (backwards) {
     ++clock_bad_;
     return {clock_bad_ >= settings_.bad_samples ? Fault::kClockBackwards : Fault::kNone, -1};
   }
   clock_bad_ = 0;
-  last_time_us_ = sample.time_us;
   const double t = 1e-6 * static_cast<double>(sample.time_us);
 
   const auto& channels = map_->channels();

@@ -102,13 +102,11 @@ void Station::one_step(const Wake& wake) noexcept {
   if (heard_) {
     channels_.convert(newest_, sample_);
     status_ = model_.advance(sample_);
-    ++tick_;
   }
   const double extra = extra_.load(std::memory_order_relaxed);
   while (extra > 0.0 && clock_.now() < wake.now + extra) {
   }
   safety_.command(model_.snapshot(), newest_, wake.now, command_);
-  command_.tick = tick_;
   if (heard_) device_.send(command_);
   write_down(wake, count, clock_.now());
 }
@@ -158,7 +156,7 @@ void Station::exchange_model() noexcept {
 
 void Station::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
   const Snapshot& snapshot = model_.snapshot();
-  const StepRecord record{.tick = tick_,
+  const StepRecord record{.tick = command_.tick,
                           .time = wake.now,
                           .lateness = wake.lateness,
                           .duration = sent_at - wake.now,

@@ -183,6 +183,29 @@ TEST(Safety, ADeviceThatDoesNotActOnWhatItIsSentIsAFault) {
   EXPECT_EQ(bench.safety.fault().fault, Fault::kNotActing);
 }
 
+TEST(Safety, ADeviceThatIsLatchedAndDoesNotSayWhyIsAFaultToo) {
+  Bench bench;
+  bench.run_with(0.3);
+  bench.samples.sample.state = DeviceState::kLatched;
+  bench.step();
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kDrive);
+}
+
+TEST(Safety, AStopRightAfterAResetDoesNotBringTheOldFaultBack) {
+  Bench bench;
+  bench.run_with(0.3);
+  bench.samples.sample.state = DeviceState::kLatched;
+  bench.samples.sample.fault = Fault::kStepTooOld;
+  bench.steps(20);
+  ASSERT_TRUE(bench.safety.reset(Fault::kNone, bench.now));
+  bench.steps(20);
+  bench.safety.stop();
+  bench.steps(20);  // the device has not answered yet
+  EXPECT_EQ(bench.safety.state(), SafetyState::kStopped);
+  bench.steps(600);  // and it never does
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kStepTooOld);
+}
+
 TEST(Safety, AStopIsNotForgottenByAFaultAndItsReset) {
   Bench bench;
   bench.run_with(0.3);

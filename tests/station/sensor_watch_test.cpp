@@ -94,6 +94,19 @@ TEST(SensorWatch, AClockThatRunsBackwardsIsAFaultAtTheThirdSample) {
   EXPECT_EQ(bench.safety.fault().fault, Fault::kClockBackwards);
 }
 
+TEST(SensorWatch, AClockThatHasGoneBackAndGoesOnFromThereCanBeReset) {
+  Bench bench;
+  bench.run_with(0.2);
+  for (int i = 0; i < 3; ++i) {
+    bench.samples.sample.time_us -= 5000;
+    bench.step();
+  }
+  ASSERT_EQ(bench.safety.fault().fault, Fault::kClockBackwards);
+  bench.samples.sample.time_us = 0;
+  bench.steps(20);
+  EXPECT_TRUE(bench.safety.reset(Fault::kNone, bench.now));
+}
+
 TEST(SensorWatch, ASensorThatStandsStillWhileItsMotorWindsIsAFaultAfterHalfASecond) {
   Bench bench;
   bench.run_with(0.1);

@@ -30,6 +30,10 @@ class OutputFile {
   /// Flushes, closes and renames. Nothing may be written afterwards.
   void commit();
 
+  /// Gives up, and leaves what has reached the disk where it is. Nothing may be written afterwards.
+  /// @returns `<file>.partial`
+  std::filesystem::path leave_partial() noexcept;
+
  private:
   void reserve(std::size_t bytes);
   void flush();

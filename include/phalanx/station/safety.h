@@ -83,6 +83,7 @@ class Safety {
   void judge_sample(const DeviceSample& sample, double now) noexcept;
   void judge_step(const Snapshot& snapshot, double now) noexcept;
   [[nodiscard]] double silent_for(double now) const noexcept;
+  [[nodiscard]] double outward_room(const Snapshot& snapshot, std::size_t joint) const noexcept;
   void judge_obedience(double now) noexcept;
   void go_on(double now) noexcept;
   void ramp_to_zero_after_fault(double now) noexcept;
@@ -95,8 +96,9 @@ class Safety {
   JointArray min_{};
   JointArray max_{};
   double period_;
-  double timeout_;  ///< of samples [s]
-  bool simulated_;  ///< the device's time is the number of steps: so is its silence
+  double timeout_;       ///< of samples [s]
+  double obeys_within_;  ///< how long the device may be enabled and not act [s]
+  bool simulated_;       ///< the device's time is the number of steps: so is its silence
   SafetyState state_ = SafetyState::kWaiting;
   FaultEvent fault_;
   double factor_ = 0.0;
@@ -111,8 +113,10 @@ class Safety {
   double silence_ = 0.0;         ///< steps without a sample, in nominal time [s]
   bool heard_ = false;           ///< a sample has come since the beginning or the last reset
   double waiting_since_ = -1.0;  ///< [s]
+  double answers_until_ =
+      0.0;  ///< till then a device's latch and connection may still be those of before [s]
   int late_in_a_row_ = 0;
-  std::uint64_t tick_ = 0;
+  std::uint64_t tick_ = 0;  ///< of the commands: never goes back, also when models are exchanged
 };
 
 }  // namespace phalanx

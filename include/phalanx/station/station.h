@@ -97,7 +97,6 @@ class Station {
   bool heard_ = false;  ///< a sample has come since the beginning or the last reset
   bool late_ = false;
   bool ending_ = false;
-  std::uint64_t tick_ = 0;  ///< of the commands: never goes back, also when models are exchanged
   std::uint64_t resets_refused_ = 0;
   Sample sample_;
   Status status_ = Status::kOk;

@@ -280,6 +280,7 @@ void LinkSession::send_disabled() noexcept {
   message.header.type = PHX_COMMAND;
   message.as.command.tick = ++last_tick_;
   message.as.command.sample_time_us = sample_time_us_;
+  message.as.command.flags = PHX_COMMAND_FAULT;  // whoever goes without a ramp means zero at once
   send(message, epoch_);
   LinkCounters::count(shared_.counters.sent);
 }

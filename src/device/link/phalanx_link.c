@@ -433,7 +433,8 @@ static uint32_t step_age_us(const phx_controller* controller, uint64_t now_us) {
 }
 
 static bool enabled(const phx_controller* controller) {
-  return controller->acting && (controller->step.command.flags & PHX_COMMAND_ENABLE) != 0;
+  const unsigned flags = controller->step.command.flags & (PHX_COMMAND_ENABLE | PHX_COMMAND_FAULT);
+  return controller->acting && flags == PHX_COMMAND_ENABLE;
 }
 
 static bool latched(const phx_controller* controller) { return controller->fault != PHX_FAULT_NONE; }
@@ -743,8 +744,7 @@ static float smaller(float a, float b) { return a < b ? a : b; }
 static float largest_change(const phx_controller* controller, float limit, float seconds) {
   const float ordinary = smaller(controller->device.torque_rate, controller->configure.torque_rate) * seconds;
   const float stopping = limit * seconds / (1e-6f * (float)PHX_STOP_RAMP_US);
-  const uint8_t flags = controller->step.command.flags;
-  const bool fault = (flags & PHX_COMMAND_FAULT) != 0 && (flags & PHX_COMMAND_ENABLE) == 0;
+  const bool fault = (controller->step.command.flags & PHX_COMMAND_FAULT) != 0;
   return fault && stopping > ordinary ? stopping : ordinary;
 }
 

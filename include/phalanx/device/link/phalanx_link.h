@@ -153,7 +153,7 @@ typedef struct {
 } phx_sample;
 
 #define PHX_COMMAND_FAULT \
-  0x02u /* the host is in fault: not ENABLE, and torque is zero within PHX_STOP_RAMP_US */
+  0x02u /* the host is in fault: whatever ENABLE says, torque is zero within PHX_STOP_RAMP_US */
 #define PHX_COMMAND_ENABLE 0x01u /* without it the torque goes to zero and the state to READY, no fault */
 
 typedef struct {
