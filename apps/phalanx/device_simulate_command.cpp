@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "controller_faults.h"
 #include "controller_log.h"
 #include "device_commands.h"
+#include "end_signals.h"
 #include "faulty_wire.h"
 #include "phalanx/device/link/transport.h"
 #include "phalanx/scene/build_model.h"
@@ -39,15 +39,6 @@ struct DeviceSimulateOptions {
   double slow_motion = 1.0;
   std::vector<std::string> faults;
 };
-
-volatile std::sig_atomic_t asked_to_end = 0;
-
-void end_on_signal() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { asked_to_end = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 SimulatedDeviceSettings settings_of(const DeviceSimulateOptions& options) {
   Overrides overrides;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <csignal>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "end_signals.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/assemble.h"
@@ -24,21 +24,6 @@
 
 namespace phalanx {
 namespace {
-
-volatile std::sig_atomic_t asked_to_end = 0;
-
-void end_on_signal() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { asked_to_end = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
-  // A reader that has gone, or a terminal that belongs to another job, must not end or stop a loop that holds
-  // a hand.
-  action.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &action, nullptr);
-  sigaction(SIGTTIN, &action, nullptr);
-}
 
 Overrides overrides_of(const RunOptions& o) {
   Overrides overrides;

@@ -11,7 +11,7 @@
 namespace phalanx {
 
 /// Whether a scene's key may change in contact: the stiffness and what else only scales forces, and the
-/// bounds of the smoothing. Everything else (object, hand, rate, law, limits, ...) waits for zero torque.
+/// bounds of the smoothing. Everything else needs zero torque, or a new station: change_kind() in assemble.h.
 [[nodiscard]] bool changes_in_contact(const std::string& key);
 
 /// The numbers of those keys.

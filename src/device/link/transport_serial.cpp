@@ -19,6 +19,7 @@
 #include <cstdlib>  // grantpt and its kin
 #include <cstring>
 
+#include "device/descriptor.h"
 #include "device/link/serial_line.h"
 #include "phalanx/device/link/transport.h"
 
@@ -105,21 +106,6 @@ class SerialPort final : public SerialLine {
   asio::serial_port port_;
   std::string name_;
   unsigned baud_;
-};
-
-/// Closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int value) noexcept : value_(value) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  [[nodiscard]] int value() const noexcept { return value_; }
-
- private:
-  int value_;
 };
 
 [[noreturn]] void no_pseudo_terminal() {

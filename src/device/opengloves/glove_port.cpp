@@ -15,6 +15,7 @@
 #include <fstream>
 #include <utility>
 
+#include "device/descriptor.h"
 #include "phalanx/device/device.h"
 
 namespace phalanx {
@@ -61,22 +62,6 @@ const char* remedy_of_open(int error) noexcept {
   throw DeviceError(
       fmt::format("opengloves:{}: {}: {}; {}", port, what, std::strerror(error), remedy_of_open(error)));
 }
-
-// Closes itself unless it is given away.
-class Descriptor {
- public:
-  explicit Descriptor(int value) noexcept : value_(value) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  [[nodiscard]] int value() const noexcept { return value_; }
-  [[nodiscard]] int give_away() noexcept { return std::exchange(value_, -1); }
-
- private:
-  int value_;
-};
 
 }  // namespace
 
