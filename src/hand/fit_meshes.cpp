@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "phalanx/hand/fit.h"
+#include "hand/fit_point.h"
 
 namespace phalanx {
 namespace {
@@ -34,16 +34,14 @@ double along(double t, double length, double slope_base, double slope_end) noexc
   return length * t * t * (3.0 - 2.0 * t) + slope_base * t * u * u - slope_end * t * t * u;
 }
 
-void fit_segment(TriangleMesh& mesh, double bone, const SegmentFit& fit, bool distal) {
+Vec3 point_of_segment(const Vec3& p, double bone, const SegmentFit& fit, bool distal) noexcept {
   const double steepest = kSteepest * fit.length;
   const double slope_base = std::min(fit.breadth_base, steepest);
   // Beyond a distal bone the soft tip grows with the bone.
   const double slope_end = distal ? fit.length : std::min(fit.breadth_end, steepest);
-  for (Vec3& v : mesh.vertices) {
-    const double t = -v.z() / bone;
-    const double breadth = breadth_at(fit, t);
-    v = Vec3(breadth * v.x(), breadth * v.y(), -bone * along(t, fit.length, slope_base, slope_end));
-  }
+  const double t = -p.z() / bone;
+  const double breadth = breadth_at(fit, t);
+  return {breadth * p.x(), breadth * p.y(), -bone * along(t, fit.length, slope_base, slope_end)};
 }
 
 /// The mean height of the digits' first joints as seen from a point: each weighs by the inverse fourth power
@@ -63,26 +61,26 @@ double joint_height(const HandParameters& base, const Vec3& p, double& nearest) 
   return sum / weights;
 }
 
-void fit_palm(TriangleMesh& mesh, const HandParameters& base, const HandFit& fit) {
-  for (Vec3& v : mesh.vertices) {
-    double nearest = 0.0;
-    const double height = joint_height(base, v, nearest);
-    const double share = 1.0 - smooth_step((nearest - kJointZone) / (kPalmZone - kJointZone));
-    const double z =
-        fit.palm_length * v.z() + (fit.palm_breadth - fit.palm_length) * share * (v.z() - height);
-    v = Vec3(fit.palm_breadth * v.x(), fit.palm_breadth * v.y(), z);
-  }
+Vec3 point_of_palm(const Vec3& p, const HandParameters& base, const HandFit& fit) noexcept {
+  double nearest = 0.0;
+  const double height = joint_height(base, p, nearest);
+  const double share = 1.0 - smooth_step((nearest - kJointZone) / (kPalmZone - kJointZone));
+  const double z = fit.palm_length * p.z() + (fit.palm_breadth - fit.palm_length) * share * (p.z() - height);
+  return {fit.palm_breadth * p.x(), fit.palm_breadth * p.y(), z};
 }
 
 }  // namespace
 
+Vec3 fitted_point(const HandParameters& base, const HandFit& fit, int segment, const Vec3& p_S) noexcept {
+  if (segment == kPalm) return point_of_palm(p_S, base, fit);
+  return point_of_segment(p_S, segment_length(base, segment), fit.segment[static_cast<std::size_t>(segment)],
+                          segment % kSegmentsPerDigit == kSegmentsPerDigit - 1);
+}
+
 SegmentMeshes fitted_meshes(const HandParameters& base, const HandFit& fit, SegmentMeshes meshes) {
-  for (int s = 0; s < kSegments - 1; ++s) {
-    const auto i = static_cast<std::size_t>(s);
-    fit_segment(meshes[i], segment_length(base, s), fit.segment[i],
-                s % kSegmentsPerDigit == kSegmentsPerDigit - 1);
+  for (int s = 0; s < kSegments; ++s) {
+    for (Vec3& v : meshes[static_cast<std::size_t>(s)].vertices) v = fitted_point(base, fit, s, v);
   }
-  fit_palm(meshes[kPalm], base, fit);
   return meshes;
 }
 

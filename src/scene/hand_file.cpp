@@ -99,6 +99,14 @@ constexpr std::string_view kSegmentWord = "{segment}";
 /// From a hundredth of a millimetre to a kilometre: nobody exports in another unit.
 constexpr NumberRange kUnitMm = {.min = 1e-2, .max = 1e6};
 
+/// A path, relative to `folder`.
+std::filesystem::path read_path(TomlTable& table, std::string_view key, const std::filesystem::path& folder) {
+  const std::string text = table.text(key);
+  if (text.empty()) table.fail(key, "names no file; name one, or remove the key");
+  if (text.find('\0') != std::string::npos) table.fail(key, "holds a zero byte; remove it");
+  return folder / text;
+}
+
 /// A path with one `{segment}`, relative to `folder`.
 std::filesystem::path read_pattern(TomlTable& table, std::string_view key,
                                    const std::filesystem::path& folder) {
@@ -109,8 +117,7 @@ std::filesystem::path read_pattern(TomlTable& table, std::string_view key,
                "must hold {segment} once, where the segment's name stands in the files' names: "
                "\"meshes/{segment}.obj\"");
   }
-  if (text.find('\0') != std::string::npos) table.fail(key, "holds a zero byte; remove it");
-  return folder / text;
+  return read_path(table, key, folder);
 }
 
 HandMeshFiles read_meshes(TomlTable table, const std::filesystem::path& folder) {
@@ -118,6 +125,7 @@ HandMeshFiles read_meshes(TomlTable table, const std::filesystem::path& folder) 
   meshes.place = table.place();
   meshes.collision = read_pattern(table, "collision", folder);
   if (table.has("display")) meshes.display = read_pattern(table, "display", folder);
+  if (table.has("skin")) meshes.skin = read_path(table, "skin", folder);
   meshes.unit = table.number("unit_mm", kUnitMm) * kMm;
   if (table.has("handedness")) {
     const std::string word = table.text("handedness");

@@ -8,6 +8,7 @@
 
 #include "phalanx/mesh/import.h"
 #include "phalanx/scene/profile_file.h"
+#include "scene/skin_file.h"
 
 namespace phalanx {
 namespace {
@@ -139,6 +140,18 @@ SegmentMeshes display_meshes(const Source& source, const HandDescription& hand) 
   return of_the_hand(source, MeshReader(*source.files).read(source.files->display, false));
 }
 
+/// Of a right hand, its bind poses not known yet.
+HandSkin read_skin(const HandMeshFiles& files) {
+  HandSkin skin;
+  try {
+    skin = read_skin_file(files.skin);
+  } catch (const SceneError& error) {
+    throw SceneError(fmt::format("{}.skin: {}", files.place, error.what()));
+  }
+  if (files.handedness == Handedness::kLeft) mirror(skin.mesh);
+  return skin;
+}
+
 }  // namespace
 
 HandNumbers load_hand_numbers(const HandDescription& hand) {
@@ -161,5 +174,15 @@ SegmentMeshes load_collision_meshes(const HandDescription& hand) {
 }
 
 SegmentMeshes load_display_meshes(const HandDescription& hand) { return display_meshes(open(hand), hand); }
+
+std::optional<HandSkin> load_hand_skin(const HandDescription& hand) {
+  const Source source = open(hand);
+  if (!source.files || source.files->skin.empty()) return std::nullopt;
+  HandSkin skin = read_skin(*source.files);
+  skin.X_BS = bind_poses(source.base, Handedness::kRight);
+  if (source.fit) skin = fitted_skin(source.base, *source.fit, skin);
+  if (source.handedness == Handedness::kLeft) mirror(skin);
+  return skin;
+}
 
 }  // namespace phalanx

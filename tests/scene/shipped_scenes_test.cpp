@@ -56,6 +56,7 @@ const std::map<std::string, std::set<int>>& expected_digits() {
                                                                  {"bench_mug_100k", {0, 1, 2, 3, 4}},
                                                                  {"bench_mug_10k", {0, 1, 2, 3, 4}},
                                                                  {"bench_mug_1k", {0, 1, 2, 3, 4}},
+                                                                 {"first_touch", {0, 1, 2, 3, 4}},
                                                                  {"grasp_bottle", {0, 1, 2, 3, 4}},
                                                                  {"grasp_box", {0, 1, 2, 3, 4}},
                                                                  {"grasp_cup", {0, 1, 2, 3, 4}},

@@ -15,6 +15,7 @@ struct HandMeshFiles {
   std::string place;                           ///< "FILE:LINE: meshes", for messages
   std::filesystem::path collision;             ///< a path in which `{segment}` stands for the segment's name
   std::filesystem::path display;               ///< the same; empty: the collision meshes are shown
+  std::filesystem::path skin;                  ///< the continuous skin's file; empty: there is none
   double unit = 1e-3;                          ///< one unit of the files [m]
   Handedness handedness = Handedness::kRight;  ///< which hand the files show
 

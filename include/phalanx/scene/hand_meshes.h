@@ -2,8 +2,11 @@
 // The hand that a scene names: its numbers, which hand it is, and its meshes out of files.
 #pragma once
 
+#include <optional>
+
 #include "phalanx/hand/hand_meshes.h"
 #include "phalanx/hand/hand_parameters.h"
+#include "phalanx/hand/hand_skin.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/scene.h"
 
@@ -40,5 +43,13 @@ struct LoadedHand {
 /// The display meshes of load_hand() alone: what a picture draws in the segments' frames. Throws as
 /// load_hand().
 [[nodiscard]] SegmentMeshes load_display_meshes(const HandDescription& hand);
+
+/// The continuous skin of the hand that a scene describes, fitted if it names a profile, of its handedness.
+/// None if its hand file names none, or the scene says `hand.meshes = "capsules"`.
+/// @throws SceneError as load_hand_numbers(), or naming the skin file, the element, its value and the remedy:
+/// no such file, larger than 16 MB, broken JSON, a missing or misshapen entry, an unknown segment, an index
+/// without a vertex, weights that are not above 0 or whose sum is not 1 to 0.001, a vertex more than 300 mm
+/// from the wrist's centre. Set-up only.
+[[nodiscard]] std::optional<HandSkin> load_hand_skin(const HandDescription& hand);
 
 }  // namespace phalanx
