@@ -3,13 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <numbers>
 #include <sstream>
 #include <vector>
 
-#include "phalanx/device/calibration_poses.h"
+#include "phalanx/device/calibration_session.h"
 
 namespace phalanx {
 namespace {
@@ -20,123 +18,59 @@ class Dialogue {
  public:
   Dialogue(Device& device, const Clock& clock, const HandParameters& hand, CalibrationConsole& console,
            const CalibrationDialogue& settings)
-      : device_(device),
+      : info_(device.info()),
         clock_(clock),
-        hand_(hand),
         console_(console),
-        settings_(settings),
-        channels_(device.info().channels),
-        poses_(calibration_poses(channels_, hand)),
-        averages_(poses_.size()) {}
+        measure_for_(settings.measure_for),
+        session_(device, hand, settings.measure_for, settings.limits) {}
 
   Calibration run() {
-    if (poses_.empty())
-      throw CalibrationError(
-          "the device has no angle, curl or splay: there is nothing to calibrate by poses");
     introduce();
-    for (std::size_t p = 0; p < poses_.size();) p = ask(p);
-    while (true) {
-      std::vector<std::string> problems;
-      Calibration calibration = fit(problems);
-      if (problems.empty()) {
-        say_table(calibration);
-        return calibration;
-      }
-      again(problems);
-    }
+    while (!session_.at_end()) ask();
+    while (!session_.calibration()) again(session_.view().problems);
+    say_table(*session_.calibration());
+    return *session_.calibration();
   }
 
  private:
-  using Averages = std::vector<RawAverage>;  // of each channel; empty: the pose was skipped
-
   void introduce() {
-    console_.say(fmt::format("{} {}: {} poses, {:g} s each. Motors stay off.", device_.info().name,
-                             device_.info().serial, poses_.size(), settings_.measure_for));
+    console_.say(fmt::format("{} {}: {} poses, {:g} s each. Motors stay off.", info_.name, info_.serial,
+                             session_.poses().size(), measure_for_));
     console_.say("Go into the pose, then press Enter and hold still. s: skip, b: back by one, q: end.");
   }
 
-  // @returns the pose that comes next
-  std::size_t ask(std::size_t p) {
-    console_.say(fmt::format("[{}/{}] {}: {}", p + 1, poses_.size(), poses_[p].name, poses_[p].instruction));
-    const auto answer = console_.answer([&] { return live(p); });
+  // One answer to the pose that is asked for now.
+  void ask() {
+    const CalibrationSession::View view = session_.view();
+    console_.say(fmt::format("[{}/{}] {}: {}", view.pose + 1, view.names.size(), view.names[view.pose],
+                             view.instruction));
+    const auto answer = console_.answer([&] { return live(); });
     if (!answer || *answer == "q") throw CalibrationError("ended before all poses; nothing was written");
-    if (*answer == "b") return p == 0 ? 0 : p - 1;
-    if (*answer == "s") {
-      averages_[p].clear();
+    if (*answer == "b") {
+      session_.back();
+    } else if (*answer == "s") {
+      session_.skip();
       console_.say("skipped");
     } else {
-      measure(p);
+      measure();
     }
-    return p + 1;
   }
 
   // The channels that this pose is about.
-  std::string live(std::size_t p) {
-    fetch([](const DeviceSample&) {});
-    std::string text;
-    for (std::size_t c = 0; c < channels_.size(); ++c)
-      if (poses_[p].value[c]) text += fmt::format(" {:5d}", newest_.raw[c]);
-    return "raw" + text;
+  std::string live() {
+    session_.go_on(clock_.now());
+    std::string text = "raw";
+    for (const std::int32_t raw : session_.view().raw) text += fmt::format(" {:5d}", raw);
+    return text;
   }
 
-  template <class Use>
-  void fetch(Use&& use) {
-    std::array<DeviceSample, 64> inbox;
-    const std::size_t count = device_.receive(clock_.now(), inbox);
-    for (std::size_t i = 0; i < count; ++i) use(inbox[i]);
-    if (count > 0) newest_ = inbox[count - 1];
-    if (const Fault fault = device_.connection_fault(); fault != Fault::kNone)
-      throw DeviceError(fmt::format("{} {}", fault_meaning(fault), fault_remedy(fault)));
-  }
-
-  void measure(std::size_t p) {
-    fetch([](const DeviceSample&) {});  // what came in before Enter is not the pose
-    Averages averages(channels_.size());
-    const double end = clock_.now() + settings_.measure_for;
-    while (clock_.now() < end) {
+  void measure() {
+    session_.measure(clock_.now());
+    while (session_.measuring()) {
       clock_.sleep_until(clock_.now() + 0.005);
-      fetch([&](const DeviceSample& sample) {
-        for (std::size_t c = 0; c < channels_.size(); ++c) averages[c].add(sample.raw[c]);
-      });
+      session_.go_on(clock_.now());
     }
-    if (averages.front().count() == 0)
-      throw DeviceError("no sample came while the pose was measured; see `phalanx device test-link`");
-    console_.say(fmt::format("measured, {} samples", averages.front().count()));
-    averages_[p] = std::move(averages);
-  }
-
-  std::vector<PoseReading> readings(std::size_t channel) const {
-    std::vector<PoseReading> readings;
-    for (std::size_t p = 0; p < poses_.size(); ++p) {
-      if (!poses_[p].value[channel] || averages_[p].empty()) continue;
-      const RawAverage& average = averages_[p][channel];
-      readings.push_back({.pose = poses_[p].name,
-                          .value = *poses_[p].value[channel],
-                          .raw = average.mean(),
-                          .noise = average.noise(),
-                          .drift = average.drift()});
-    }
-    return readings;
-  }
-
-  Calibration fit(std::vector<std::string>& problems) const {
-    Calibration calibration;
-    calibration.device = device_.info().name;
-    calibration.serial = device_.info().serial;
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      if (!is_posable(channels_[c].kind)) continue;
-      CalibratedChannel done{.channel = channels_[c], .residual = 0.0, .poses = readings(c)};
-      try {
-        const ChannelFit fit = fit_channel(channels_[c], done.poses, hand_, settings_.limits);
-        done.channel.gain = fit.gain;
-        done.channel.offset = fit.offset;
-        done.residual = fit.worst;
-        calibration.channels.push_back(std::move(done));
-      } catch (const CalibrationError& error) {
-        problems.emplace_back(error.what());
-      }
-    }
-    return calibration;
+    console_.say(fmt::format("measured, {} samples", session_.samples()));
   }
 
   void say_table(const Calibration& calibration) {
@@ -157,24 +91,23 @@ class Dialogue {
     std::istringstream numbers(answer.value_or(""));
     std::vector<std::size_t> chosen;
     for (std::size_t number = 0; numbers >> number;)
-      if (number >= 1 && number <= poses_.size()) chosen.push_back(number - 1);
+      if (number >= 1 && number <= session_.poses().size()) chosen.push_back(number - 1);
     if (chosen.empty()) {
       throw CalibrationError(
           fmt::format("{} of the channels were refused, nothing was written; the first: {}", problems.size(),
                       problems.front()));
     }
-    for (const std::size_t p : chosen) static_cast<void>(ask(p));
+    for (const std::size_t p : chosen) {
+      session_.go_to(p);
+      while (!session_.at_end()) ask();
+    }
   }
 
-  Device& device_;
+  const DeviceInfo& info_;
   const Clock& clock_;
-  const HandParameters& hand_;
   CalibrationConsole& console_;
-  const CalibrationDialogue& settings_;
-  const std::vector<DeviceChannel> channels_;
-  const std::vector<CalibrationPose> poses_;
-  std::vector<Averages> averages_;  ///< of each pose
-  DeviceSample newest_;
+  double measure_for_;
+  CalibrationSession session_;
 };
 
 }  // namespace

@@ -9,51 +9,16 @@
 #include <cmath>
 #include <map>
 
-#include "phalanx/device/calibration_poses.h"
+#include "device/calibration/held_device.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
 namespace {
 
+using test::HeldDevice;
+using test::kGain;
+using test::kOffset;
 using ::testing::HasSubstr;
-
-/// Reads raw = (value - offset) / gain of the pose that is held. Counts what it is told to do.
-class HeldDevice final : public Device {
- public:
-  HeldDevice() {
-    info_.name = "held";
-    info_.serial = "0042";
-    for (const int joint : {joint_index(1, 0), joint_index(1, 2)})
-      info_.channels.push_back({.kind = ChannelKind::kAngle, .index = joint, .raw_max = 4095});
-    info_.channels.push_back({.kind = ChannelKind::kMotor, .index = 0, .gain = 1e-6});
-  }
-  void open() override {}
-  void close() noexcept override {}
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
-  [[nodiscard]] std::size_t receive(double, std::span<DeviceSample> out) noexcept override {
-    if (silent) return 0;
-    for (std::size_t i = 0; i < 8; ++i) {
-      out[i] = {};
-      out[i].raw = held;
-      out[i].raw[0] += static_cast<std::int32_t>(i % 3) - 1;  // noise of a count
-    }
-    return 8;
-  }
-  void send(const DeviceCommand&) noexcept override { ++commands; }
-  void reset() noexcept override { ++commands; }
-  [[nodiscard]] Fault connection_fault() const noexcept override { return fault; }
-
-  std::array<std::int32_t, kMaxChannels> held{};
-  int commands = 0;
-  bool silent = false;
-  Fault fault = Fault::kNone;
-
- private:
-  DeviceInfo info_;
-};
-
-constexpr std::array<double, 2> kGain = {-1.0 / 800.0, 1.0 / 1000.0};
-constexpr std::array<double, 2> kOffset = {2.5, -1.0};
 
 /// Goes into the pose that it is told, and answers as the script says, by the pose's name; else Enter.
 class Wearer final : public CalibrationConsole {
@@ -66,9 +31,7 @@ class Wearer final : public CalibrationConsole {
     for (const CalibrationPose& pose : poses_) {
       if (line.find(fmt::format("] {}:", pose.name)) == std::string::npos) continue;
       pose_ = pose.name;
-      for (std::size_t c = 0; c < 2; ++c)
-        if (pose.value[c])
-          device_.held[c] = static_cast<std::int32_t>(std::lround((*pose.value[c] - kOffset[c]) / kGain[c]));
+      device_.hold(pose);
       if (pose.name == cheats_in && cheats-- > 0) device_.held[1] += 400;
     }
   }
