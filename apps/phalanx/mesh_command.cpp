@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "phalanx/mesh/import.h"
+#include "phalanx/record/mesh_report_json.h"
 #include "usage.h"
 
 namespace phalanx {
@@ -42,19 +43,6 @@ std::string size_text(const MeshFinding& f) {
 
 std::string place_text(const MeshFinding& f) {
   return f.at ? fmt::format("({:.6g}, {:.6g}, {:.6g})", f.at->x(), f.at->y(), f.at->z()) : "";
-}
-
-/// Usable or not, in a sentence.
-std::string verdict(const MeshReport& report) {
-  if (const MeshFinding units = report.finding(FindingKind::kUnits); units.found > 0)
-    return "refused in a scene as it stands: " + unit_advice(units.size, report.scale);
-  std::string text = report.closed ? "usable: a closed solid"
-                     : report.sheets > 0
-                         ? "usable: open, so that its sheets are met from both sides"
-                         : "usable: closed, though edges are shared by more than two triangles";
-  if (report.solids > 1 && report.sheets == 0)
-    text += fmt::format(" in {} pieces", report.solids + report.cavities);
-  return text;
 }
 
 void print_decimation(const DecimationReport& d) {
@@ -93,52 +81,7 @@ void print_report(const std::string& file, const MeshReport& r) {
     fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<22} {:<30} {}\n", finding_name(f.kind), f.found, f.repaired,
                f.found - f.repaired, size_text(f), place_text(f), finding_meaning(f));
   }
-  fmt::print("  {}\n", verdict(r));
-}
-
-nlohmann::ordered_json to_json(const std::string& file, const MeshReport& r) {
-  nlohmann::ordered_json j;
-  j["file"] = file;
-  j["usable"] = r.finding(FindingKind::kUnits).found == 0;
-  j["verdict"] = verdict(r);
-  j["triangles_in_file"] = r.triangles_in_file;
-  j["vertices_in_file"] = r.vertices_in_file;
-  j["triangles"] = r.triangles;
-  j["vertices"] = r.vertices;
-  j["extent_m"] = {r.extent.x(), r.extent.y(), r.extent.z()};
-  j["metres_per_unit"] = r.scale;
-  j["closed"] = r.closed;
-  j["volume_m3"] = r.volume;
-  j["solids"] = r.solids;
-  j["hollows"] = r.cavities;
-  j["sheets"] = r.sheets;
-  j["tolerance_m"] = r.tolerance;
-  j["moved_m"] = r.moved;
-  j["complete"] = r.complete;
-  using Json = nlohmann::ordered_json;
-  j["findings"] = Json::array();
-  for (const MeshFinding& f : r.findings) {
-    j["findings"].push_back({{"kind", finding_name(f.kind)},
-                             {"found", f.found},
-                             {"repaired", f.repaired},
-                             {"remains", f.found - f.repaired},
-                             {"size_m", f.size},
-                             {"width_m", f.width},
-                             {"area_m2", f.area},
-                             {"at", f.at ? Json{f.at->x(), f.at->y(), f.at->z()} : Json()},
-                             {"meaning", finding_meaning(f)}});
-  }
-  if (r.decimation) {
-    const DecimationReport& d = *r.decimation;
-    j["decimation"] = {{"asked", d.asked},
-                       {"before", d.before},
-                       {"after", d.after},
-                       {"was_closed", d.was_closed},
-                       {"original_to_decimated_m", d.deviation.outward},
-                       {"decimated_to_original_m", d.deviation.inward},
-                       {"points", d.deviation.probes}};
-  }
-  return j;
+  fmt::print("  {}\n", mesh_verdict(r));
 }
 
 double metres_per(const std::string& unit) {
@@ -173,7 +116,7 @@ int check_meshes(const MeshCheck& check) {
       const ImportedMesh imported = import_and_check(file, options);
       if (imported.report.finding(FindingKind::kUnits).found > 0) code = kWrongInput;
       if (check.json) {
-        all.push_back(to_json(file, imported.report));
+        all.push_back(nlohmann::ordered_json::parse(mesh_report_json(file, imported.report)));
       } else {
         print_report(file, imported.report);
       }

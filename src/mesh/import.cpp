@@ -129,7 +129,15 @@ void decimate_to(const ImportOptions& options, const std::string& origin, Import
   report.decimation = decimation;
 }
 
+void refuse_too_many(std::size_t triangles, const ImportOptions& options, const std::string& origin) {
+  if (options.most_triangles == 0 || triangles <= options.most_triangles) return;
+  throw std::invalid_argument(origin + ": " + std::to_string(triangles) +
+                              " triangles; decimate the mesh before sending it, the limit is " +
+                              std::to_string(options.most_triangles));
+}
+
 ImportedMesh check_soup(Soup soup, const ImportOptions& options, const std::string& origin) {
+  refuse_too_many(soup.mesh.triangles.size(), options, origin);
   check_mesh(soup.mesh, origin.c_str());
   ImportedMesh imported;
   imported.mesh = mesh::repair(std::move(soup.mesh),

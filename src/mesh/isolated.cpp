@@ -132,8 +132,10 @@ void end_with(pid_t parent) {
 
 [[noreturn]] void run_child(const std::function<TriangleMesh()>& read, int fd, const std::string& origin,
                             const IsolationLimits& limits) {
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM, SIGINT})
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM})
     std::signal(signal, SIG_DFL);
+  // Ctrl-C reaches the whole group: the parent decides, and this ends with it.
+  std::signal(SIGINT, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);

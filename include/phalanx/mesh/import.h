@@ -15,6 +15,9 @@ struct ImportOptions {
                       ///< extent is this [m], and the centre moved to the origin; if 0, it stays where it is
   double unit = 1.0;  ///< metres per unit of the file's numbers, for size 0
   int triangles = 0;  ///< if > 0, the mesh is decimated to about this many
+  /// If > 0, a file with more triangles is refused right after it has been read: checking and repairing run
+  /// in this process, and take as long as the mesh is large.
+  std::size_t most_triangles = 0;
 };
 
 struct ImportedMesh {
@@ -36,7 +39,7 @@ struct ImportedMesh {
 /// file, unreadable, damaged or unknown format, no triangle or none with an area, NaN or infinite vertex, a
 /// face that names a vertex which does not exist, an option that is negative or not finite, extents of 10 km
 /// or more, numbers so large that single precision is coarser than 50 um at the object, a number of triangles
-/// that the mesh cannot be decimated to.
+/// that the mesh cannot be decimated to, more triangles than ImportOptions::most_triangles.
 /// Assimp runs in a forked child process with limits on time and memory: no file makes the program crash or
 /// hang. POSIX only. Set-up only: forks, allocates, throws.
 [[nodiscard]] ImportedMesh import_and_check(const std::filesystem::path& file,
