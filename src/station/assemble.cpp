@@ -35,6 +35,14 @@ StationModel make_station_model(const SceneDescription& scene, const std::string
   return out;
 }
 
+BlendedParameters blended_of(const SceneDescription& scene) noexcept {
+  return {.stiffness = scene.force.stiffness,
+          .damping = scene.force.damping,
+          .smoothing = scene.smoothing.enabled,
+          .min_rate = scene.smoothing.min_rate,
+          .max_rate = scene.smoothing.max_rate};
+}
+
 ChannelMap make_channel_map(const SceneDescription& scene, std::vector<DeviceChannel> channels,
                             const HandParameters& hand) {
   return {std::move(channels), followers_of(load_device(scene)), hand};

@@ -181,6 +181,8 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
   StationView view;
   view.time = wake.now;
   view.snapshot = snapshot;
+  view.stiffness = record.stiffness;
+  view.duration = record.duration;
   view.sent = command_.torque;
   view.state = safety_.state();
   view.fault = safety_.fault();

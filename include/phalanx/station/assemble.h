@@ -26,6 +26,9 @@ struct StationModel {
 };
 [[nodiscard]] StationModel make_station_model(const SceneDescription& scene, const std::string& clinician);
 
+/// What of a scene may change in contact.
+[[nodiscard]] BlendedParameters blended_of(const SceneDescription& scene) noexcept;
+
 /// Channels of an open device with the joints that follow them in the scene's device file.
 /// @param channels  calibrated ones, or the device's own
 [[nodiscard]] ChannelMap make_channel_map(const SceneDescription& scene, std::vector<DeviceChannel> channels,

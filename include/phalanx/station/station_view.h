@@ -16,7 +16,9 @@ namespace phalanx {
 struct StationView {
   double time = 0.0;  ///< the host's clock [s]
   Snapshot snapshot;
-  JointArray sent{};  ///< torques that left, after Safety [Nm]
+  double stiffness = 0.0;  ///< of the law at this step [N/m]
+  double duration = 0.0;   ///< of the step, until the command was handed to the device [s]
+  JointArray sent{};       ///< torques that left, after Safety [Nm]
   SafetyState state = SafetyState::kWaiting;
   FaultEvent fault;
   double factor = 0.0;

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "station/change_queue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+namespace phalanx {
+namespace {
+
+bool sets(const Overrides& changes, const std::string& key) {
+  return std::any_of(changes.begin(), changes.end(), [&](const auto& change) { return change.first == key; });
+}
+
+bool overtakes(const SetPart& later, const SetPart& earlier) {
+  return std::all_of(earlier.changes.begin(), earlier.changes.end(),
+                     [&](const auto& change) { return sets(later.changes, change.first); });
+}
+
+/// Whoever waits for what is overtaken waits for the newer one; oldest first.
+void take_answers(SetPart& later, SetPart& earlier) {
+  later.done.insert(later.done.begin(), std::make_move_iterator(earlier.done.begin()),
+                    std::make_move_iterator(earlier.done.end()));
+}
+
+std::size_t answers_of(const ChangeRequest& request) {
+  std::size_t count = request.done ? 1 : 0;
+  for (const SetPart& part : request.sets) count += part.done.size();
+  return count;
+}
+
+}  // namespace
+
+std::string text_of(const Overrides& changes) {
+  std::string text;
+  for (const auto& [key, value] : changes)
+    text +=
+        fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, value.empty() ? "as in the scene" : value);
+  return text;
+}
+
+void ChangeQueue::ask_set(Overrides changes, StationHost::Done done) {
+  ChangeRequest request;
+  request.text = text_of(changes);
+  SetPart& part = request.sets.emplace_back();
+  part.changes = std::move(changes);
+  if (done) part.done.push_back(std::move(done));
+  ask(std::move(request));
+}
+
+void ChangeQueue::ask(ChangeRequest request) {
+  const std::lock_guard lock(mutex_);
+  if (request.retry && retries()) return;
+  const std::size_t answers = answers_of(request);
+  if (answers_ + answers > kAnswers)
+    throw std::runtime_error(fmt::format(
+        "{} changes wait already; wait until the station has made them, and ask again", answers_));
+  if (!join(request)) {
+    if (waiting_.size() >= kRequests)
+      throw std::runtime_error(fmt::format(
+          "{} changes wait already; wait until the station has made them, and ask again", waiting_.size()));
+    waiting_.push_back(std::move(request));
+  }
+  answers_ += answers;
+}
+
+bool ChangeQueue::join(ChangeRequest& later) {
+  if (later.sets.empty() || waiting_.empty() || waiting_.back().sets.empty()) return false;
+  ChangeRequest& earlier = waiting_.back();
+  SetPart& part = later.sets.front();
+  std::vector<SetPart> stays;
+  for (SetPart& other : earlier.sets)
+    if (!overtakes(part, other)) stays.push_back(other);
+  if (stays.size() >= kParts) return false;
+  for (auto it = earlier.sets.rbegin(); it != earlier.sets.rend(); ++it)
+    if (overtakes(part, *it)) take_answers(part, *it);
+  earlier.sets = std::move(stays);
+  earlier.sets.push_back(std::move(part));
+  Overrides all;
+  for (const SetPart& one : earlier.sets) all.insert(all.end(), one.changes.begin(), one.changes.end());
+  earlier.text = text_of(all);
+  return true;
+}
+
+bool ChangeQueue::retries() const {
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [](const ChangeRequest& request) { return request.retry; });
+}
+
+std::optional<ChangeRequest> ChangeQueue::take() {
+  const std::lock_guard lock(mutex_);
+  if (waiting_.empty()) return std::nullopt;
+  ChangeRequest next = std::move(waiting_.front());
+  waiting_.pop_front();
+  answers_ -= answers_of(next);
+  return next;
+}
+
+void ChangeQueue::clear() {
+  std::deque<ChangeRequest> gone;  // freed after the lock: whoever they belong to may ask again
+  const std::lock_guard lock(mutex_);
+  std::swap(gone, waiting_);
+  answers_ = 0;
+}
+
+}  // namespace phalanx

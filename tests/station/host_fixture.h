@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// A StationHost and its owner, in slow motion, so that a busy machine makes no faults of its own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "phalanx/station/station_host.h"
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
+#define PHALANX_SLOW_BUILD
+#endif
+#endif
+
+namespace phalanx::test {
+
+#ifdef PHALANX_SLOW_BUILD
+inline constexpr double kHostSlowdown = 20.0;
+#else
+inline constexpr double kHostSlowdown = 4.0;
+#endif
+
+class HostTest : public ::testing::Test {
+ protected:
+  static StationHostSettings with(const std::string& device, const std::string& scene = "first_touch") {
+    StationHostSettings settings;
+    settings.scene = scene;
+    settings.device = device;
+    settings.ask_for_realtime = false;
+    return settings;
+  }
+  void start(const StationHostSettings& settings) { host = std::make_unique<StationHost>(settings, clock); }
+
+  /// Does what an owner does until it is so. @returns whether it came, within minutes
+  bool until(const std::function<bool()>& so) {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    while (std::chrono::steady_clock::now() < give_up) {
+      own();
+      if (so()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+  void own() {
+    host->go_on();
+    StepRecord record;
+    while (host->next_record(record)) records.push_back(record);
+    if (auto report = host->take_fault_report()) reports.push_back(std::move(*report));
+  }
+  /// So long by the process's clock.
+  void pass(double seconds) {
+    const double end = clock.now() + seconds;
+    ASSERT_TRUE(until([&] { return clock.now() >= end; }));
+  }
+  bool until_running() {
+    return until([&] { return host->state()->running && host->view().state == SafetyState::kRunning; });
+  }
+
+  /// What a request is answered with.
+  struct Answer {
+    std::optional<std::string> refused;
+    int times = 0;
+  };
+  std::pair<std::shared_ptr<Answer>, StationHost::Done> awaited() {
+    auto answer = std::make_shared<Answer>();
+    return {answer, [answer](const std::string& refused) {
+              answer->refused = refused;
+              ++answer->times;
+            }};
+  }
+  /// Asks and waits. @returns why it was refused; empty: it is done
+  std::string ask(const std::function<void(StationHost::Done)>& how) {
+    auto [answer, done] = awaited();
+    how(done);
+    const auto got = answer;
+    EXPECT_TRUE(until([&] { return got->refused.has_value(); })) << "no answer";
+    EXPECT_EQ(got->times, 1);
+    return got->refused.value_or("no answer");
+  }
+  std::string set(const Overrides& changes) {
+    return ask([&](StationHost::Done done) { host->set(changes, std::move(done)); });
+  }
+  std::string load(const std::string& scene) {
+    return ask([&](StationHost::Done done) { host->load_scene(scene, std::move(done)); });
+  }
+  std::string move_by(HandSource source) {
+    return ask([&](StationHost::Done done) { host->set_source(source, std::move(done)); });
+  }
+  std::string calibrate(CalibrationSession::Step step, std::size_t pose = 0) {
+    return ask([&](StationHost::Done done) { host->calibrate(step, pose, std::move(done)); });
+  }
+
+  [[nodiscard]] std::string value(const std::string& key) const {
+    std::string found;
+    for (const auto& [name, text] : host->state()->values)
+      if (name == key) found = text;
+    return found;
+  }
+  [[nodiscard]] static bool any_torque(const StationView& view) {
+    for (const double torque : view.sent)
+      if (torque != 0.0) return true;
+    return false;
+  }
+
+  const Clock clock{kHostSlowdown};
+  std::vector<StepRecord> records;
+  std::vector<FaultReport> reports;
+  std::unique_ptr<StationHost> host;
+};
+
+}  // namespace phalanx::test

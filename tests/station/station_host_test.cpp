@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changes while a station runs, and that whoever said stop has the last word.
+#include "phalanx/station/station_host.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "station/host_fixture.h"
+#include "station/station_build.h"
+
+namespace phalanx {
+namespace {
+
+using test::HostTest;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+
+class StationHostTest : public HostTest {};
+
+TEST_F(StationHostTest, RunsTheSceneAndSaysWhatIsSet) {
+  start(with("simulated"));
+  ASSERT_TRUE(until_running());
+  const auto state = host->state();
+  EXPECT_EQ(state->scene, "first_touch");
+  EXPECT_EQ(state->source, HandSource::kPatient);
+  EXPECT_EQ(state->device_spec, "simulated");
+  EXPECT_TRUE(state->device.simulated);
+  EXPECT_EQ(state->trouble, "");
+  EXPECT_EQ(state->busy, "");
+  EXPECT_THAT(state->overrides, IsEmpty());
+  EXPECT_THAT(state->values, Contains(Pair("force.stiffness_n_per_mm", "0.5")));
+  EXPECT_EQ(state->geometry->revision, 1U);
+  EXPECT_FALSE(state->geometry->object.vertices.empty());
+  EXPECT_THAT(state->sensed_joints, ::testing::Not(IsEmpty()));
+  EXPECT_EQ(state->wizard, nullptr);
+}
+
+TEST_F(StationHostTest, WhatCannotBeLoadedIsRefusedAtTheBeginning) {
+  EXPECT_THROW(start(with("simulated", "no_such_scene")), std::exception);
+  EXPECT_THROW(start(with("nonsense")), std::exception);
+}
+
+TEST_F(StationHostTest, AnotherStiffnessGoesOverInTheStationThatRuns) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.75"}}), "");
+  EXPECT_THAT(host->state()->overrides, ElementsAre(Pair("force.stiffness_n_per_mm", "0.75")));
+  EXPECT_EQ(value("force.stiffness_n_per_mm"), "0.75");
+  EXPECT_TRUE(until([&] { return std::abs(host->view().stiffness - 750.0) < 1e-9; }));
+  EXPECT_EQ(host->state()->geometry->revision, 1U);
+  EXPECT_EQ(host->view().state, SafetyState::kRunning);
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", ""}}), "");
+  EXPECT_THAT(host->state()->overrides, IsEmpty());
+  EXPECT_TRUE(until([&] { return std::abs(host->view().stiffness - 500.0) < 1e-9; }));
+}
+
+TEST_F(StationHostTest, AnotherObjectIsExchangedAtZeroTorqueOrGetsANewStationWithThePatient) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  const double before = host->state()->geometry->object.vertices.front().norm();
+  EXPECT_EQ(set({{"objects.0.size_mm", "117"}}), "");  // of 130
+  EXPECT_EQ(host->state()->geometry->revision, 2U);
+  EXPECT_NEAR(host->state()->geometry->object.vertices.front().norm(), 0.9 * before, 1e-3 * before);
+  EXPECT_TRUE(until_running());
+  EXPECT_THAT(move_by(HandSource::kPatient), HasSubstr("take the sliders")) << "he meets nothing";
+  EXPECT_EQ(host->state()->source, HandSource::kSliders);
+  EXPECT_EQ(set({{"objects.0.size_mm", ""}}), "");
+  EXPECT_EQ(move_by(HandSource::kPatient), "");
+  const std::uint32_t shown = host->state()->geometry->revision;
+  EXPECT_EQ(set({{"objects.0.size_mm", "131"}}), "");
+  EXPECT_EQ(host->state()->geometry->revision, shown + 1);
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, AnotherLawIsExchangedAndTheShapesStay) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(set({{"force.law", "kelvin_voigt"}}), "");
+  EXPECT_EQ(value("force.law"), "'kelvin_voigt'");
+  EXPECT_EQ(host->state()->geometry->revision, 1U);
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, AnotherRateIsANewStation) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(set({{"rate_hz", "250"}}), "");
+  EXPECT_EQ(host->state()->geometry->rate_hz, 250.0);
+  EXPECT_TRUE(until_running());
+  EXPECT_EQ(host->deadlines().period, 1.0 / 250.0);
+}
+
+TEST_F(StationHostTest, WhatIsRefusedLeavesEverythingAsItWas) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  const auto before = host->state();
+  for (const Overrides& wrong :
+       {Overrides{{"force.stiffness_n_per_mm", "-1"}}, Overrides{{"force.stiffness_n_per_mm", "nan"}},
+        Overrides{{"force.stiffness_n_per_mm", "inf"}}, Overrides{{"force.stiffness_n_per_mm", "many"}},
+        Overrides{{"no.such.key", "1"}}, Overrides{{"", "1"}}, Overrides{{"rate_hz", "5000"}},
+        Overrides{{"objects.0.size_mm", "0"}}, Overrides{{"objects.7.size_mm", "10"}},
+        Overrides{{"force.stiffness_n_per_mm", "0.8"}, {"smoothing.min_n", "[]"}}}) {
+    const std::string refused = set(wrong);
+    EXPECT_THAT(refused, HasSubstr(wrong.back().first.substr(0, wrong.back().first.find('.'))))
+        << "names the key";
+    EXPECT_FALSE(refused.empty());
+  }
+  EXPECT_THAT(load("no_such_scene"), HasSubstr("no_such_scene"));
+  EXPECT_FALSE(move_by(HandSource::kDevice).empty());
+  const auto after = host->state();
+  EXPECT_EQ(after->overrides, before->overrides);
+  EXPECT_EQ(after->values, before->values);
+  EXPECT_EQ(after->geometry, before->geometry);
+  EXPECT_EQ(after->scene, before->scene);
+  EXPECT_TRUE(after->running);
+  EXPECT_EQ(after->trouble, "");
+  EXPECT_EQ(after->busy, "");
+  EXPECT_EQ(host->view().state, SafetyState::kRunning) << "the torque was never away";
+  EXPECT_EQ(host->view().stiffness, 500.0);
+}
+
+TEST_F(StationHostTest, ASliderThatIsDraggedIsOneChangeAndEachIsAnswered) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  std::vector<std::shared_ptr<Answer>> answers;
+  const std::uint64_t before = host->state()->revision;
+  for (int i = 1; i <= 300; ++i) {
+    auto [answer, done] = awaited();
+    answers.push_back(answer);
+    host->set({{"force.stiffness_n_per_mm", std::to_string(0.3 + 0.001 * i)}}, done);
+  }
+  ASSERT_TRUE(until([&] { return answers.back()->refused.has_value(); }));
+  for (const auto& answer : answers) {
+    EXPECT_EQ(answer->refused, "");
+    EXPECT_EQ(answer->times, 1);
+  }
+  EXPECT_LT(host->state()->revision - before, 10U);
+  EXPECT_TRUE(until([&] { return std::abs(host->view().stiffness - 600.0) < 1e-6; }));
+}
+
+TEST_F(StationHostTest, OfSetsThatWereJoinedOnlyTheWrongOneIsRefused) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  auto [good, good_done] = awaited();
+  auto [bad, bad_done] = awaited();
+  auto [later, later_done] = awaited();
+  host->set({{"force.stiffness_n_per_mm", "0.625"}}, good_done);
+  host->set({{"smoothing.max_n_per_s", "-3"}}, bad_done);
+  host->set({{"force.damping_ns_per_m", "1"}}, later_done);
+  const auto last = later;
+  ASSERT_TRUE(until([&] { return last->refused.has_value(); }));
+  EXPECT_EQ(good->refused, "");
+  EXPECT_THAT(bad->refused.value_or(""), HasSubstr("smoothing.max_n_per_s"));
+  EXPECT_EQ(later->refused, "");
+  EXPECT_EQ(value("force.stiffness_n_per_mm"), "0.625");
+  EXPECT_THAT(host->state()->overrides, ::testing::SizeIs(2));
+}
+
+TEST_F(StationHostTest, MoreThanSoManyChangesAreRefusedAtTheDoor) {
+  start(with("sliders"));
+  int answered = 0;
+  int refused = 0;
+  for (int i = 0; i < 12000; ++i) {  // a minute of 200 a second
+    try {
+      host->load_scene("no_such_scene", [&](const std::string&) { ++answered; });
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("wait"));
+      ++refused;
+    }
+  }
+  EXPECT_EQ(refused, 12000 - 16);
+  ASSERT_TRUE(until([&] { return answered == 16; }));
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.6"}}), "") << "and it goes on";
+}
+
+TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) {
+  start(with("simulated"));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(move_by(HandSource::kSliders), "");
+  EXPECT_EQ(host->state()->source, HandSource::kSliders);
+  JointArray wanted = host->sliders();
+  const auto index_pip = static_cast<std::size_t>(joint_index(1, 2));
+  const auto thumb = static_cast<std::size_t>(joint_index(0, 0));
+  const auto little = static_cast<std::size_t>(joint_index(4, 2));
+  const double thumb_before = wanted[thumb];
+  wanted[index_pip] = 100.0;
+  wanted[thumb] = std::numeric_limits<double>::quiet_NaN();
+  wanted[little] = -std::numeric_limits<double>::infinity();
+  host->set_sliders(wanted);
+  const double most = host->state()->geometry->hand.max_angle[index_pip];
+  EXPECT_EQ(host->sliders()[index_pip], most);
+  EXPECT_EQ(host->sliders()[thumb], thumb_before);
+  EXPECT_TRUE(std::isfinite(host->sliders()[little]));
+  EXPECT_TRUE(until([&] { return std::abs(host->view().snapshot.hcp_angle[index_pip] - most) < 0.02; }));
+  EXPECT_NE(host->view().state, SafetyState::kFault);
+  EXPECT_EQ(move_by(HandSource::kPatient), "");
+  host->set_sliders(wanted);  // moves nothing, and breaks nothing
+  EXPECT_TRUE(until_running());
+  EXPECT_TRUE(host->state()->device.simulated);
+}
+
+TEST_F(StationHostTest, AnotherSceneLeavesWhatWasLaidOverTheLast) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.75"}}), "");
+  EXPECT_EQ(load("pinch_ball"), "");
+  EXPECT_EQ(host->state()->scene, "pinch_ball");
+  EXPECT_THAT(host->state()->overrides, IsEmpty());
+  EXPECT_EQ(host->state()->geometry->revision, 2U);
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, AStopIsObeyedByTheNextStepWhileASceneIsBuilt) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  auto [answer, done] = awaited();
+  host->load_scene("grasp_teapot", done);
+  host->go_on();
+  ASSERT_FALSE(host->state()->busy.empty());
+  host->stop();
+  const double stopped = clock.now();
+  const auto got = answer;
+  ASSERT_TRUE(until([&] { return got->refused.has_value(); }));
+  pass(1.5);
+  std::size_t after = 0;
+  for (const StepRecord& record : records) {
+    if (record.time <= stopped) continue;
+    ++after;
+    EXPECT_TRUE(record.state == SafetyState::kStopping || record.state == SafetyState::kStopped ||
+                (record.state == SafetyState::kWaiting && record.factor == 0.0))
+        << safety_state_name(record.state) << " " << record.time - stopped << " s after the stop";
+  }
+  EXPECT_GT(after, 20U);
+  EXPECT_TRUE(host->held_stopped());
+  EXPECT_EQ(host->view().state, SafetyState::kStopped);
+  EXPECT_EQ(host->state()->scene, "grasp_teapot");
+  host->resume();
+  EXPECT_FALSE(host->held_stopped());
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, AStopHoldsOverEveryKindOfChange) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  host->stop();
+  ASSERT_TRUE(until([&] { return host->view().state == SafetyState::kStopped; }));
+  records.clear();
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.75"}}), "");
+  EXPECT_EQ(set({{"objects.0.size_mm", "117"}}), "");
+  EXPECT_EQ(set({{"objects.0.size_mm", ""}}), "");
+  EXPECT_EQ(set({{"rate_hz", "250"}}), "");
+  EXPECT_EQ(move_by(HandSource::kPatient), "");
+  EXPECT_EQ(load("grasp_teapot"), "");
+  host->reset();
+  pass(1.0);
+  for (const StepRecord& record : records) {
+    EXPECT_EQ(record.factor, 0.0);
+    for (const double torque : record.torque) EXPECT_EQ(torque, 0.0);
+  }
+  EXPECT_TRUE(host->held_stopped());
+  EXPECT_EQ(host->view().state, SafetyState::kStopped);
+}
+
+TEST_F(StationHostTest, AResumeBetweenTwoStationsIsNotLost) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  host->stop();
+  auto [answer, done] = awaited();
+  host->load_scene("pinch_ball", done);
+  host->go_on();
+  ASSERT_FALSE(host->state()->busy.empty());
+  host->resume();
+  const auto got = answer;
+  ASSERT_TRUE(until([&] { return got->refused.has_value(); }));
+  EXPECT_FALSE(host->held_stopped());
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, AFaultIsReportedOverASwitchAndTorqueComesBackOnlyByWord) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  host->lengthen_steps(0.0075);  // of 5 ms
+  while (host->view().state != SafetyState::kFault || !host->view().at_rest) host->go_on();
+  auto [answer, done] = awaited();
+  host->load_scene("pinch_ball", done);
+  const auto got = answer;
+  StepRecord record;
+  while (!got->refused.has_value()) {  // an owner who fetches records first, and reports late
+    host->go_on();
+    while (host->next_record(record)) {
+    }
+  }
+  pass(1.0);
+  EXPECT_TRUE(host->held_stopped());
+  EXPECT_EQ(host->view().state, SafetyState::kStopped);
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_EQ(reports.front().event.fault, Fault::kOverload);
+  host->resume();
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, TheViewNeverGoesBackOverASwitch) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  auto [answer, done] = awaited();
+  host->load_scene("pinch_ball", done);
+  const auto got = answer;
+  double last = host->view().time;
+  std::uint32_t revision = host->state()->geometry->revision;
+  while (!got->refused.has_value()) {
+    host->go_on();
+    const bool gone = !host->state()->running;
+    const StationView view = host->view();
+    EXPECT_GE(view.time, last);
+    EXPECT_GT(view.snapshot.tick, 0U) << "a hand at the origin is shown";
+    last = view.time;
+    EXPECT_GE(host->state()->geometry->revision, revision);
+    revision = host->state()->geometry->revision;
+    EXPECT_FALSE(gone && any_torque(view));
+  }
+}
+
+TEST_F(StationHostTest, AResetDuringASwitchDoesNotStartTheStationTwice) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  auto [answer, done] = awaited();
+  host->load_scene("pinch_ball", done);
+  const auto got = answer;
+  while (!got->refused.has_value()) {
+    host->go_on();
+    host->reset();
+  }
+  pass(0.3);
+  EXPECT_EQ(host->state()->geometry->revision, 2U);
+}
+
+TEST_F(StationHostTest, NothingIsAnsweredOrBegunOnceItIsShutDown) {
+  start(with("sliders"));
+  int answers = 0;
+  const auto done = [&](const std::string&) { ++answers; };
+  host->load_scene("pinch_ball", done);
+  host->load_scene("grasp_teapot", done);
+  host->go_on();
+  host->shut_down();
+  host->load_scene("pinch_ball", done);
+  host->stop();
+  host->resume();
+  host->reset();
+  host->set_sliders({});
+  for (int i = 0; i < 5; ++i) host->go_on();
+  EXPECT_EQ(answers, 0);
+  EXPECT_FALSE(any_torque(host->view()));
+  host->shut_down();
+  host.reset();
+  EXPECT_EQ(answers, 0);
+}
+
+TEST_F(StationHostTest, EndsWhileWorkIsOnItsWay) {
+  for (int i = 0; i < 3; ++i) {
+    start(with("sliders"));
+    host->load_scene("pinch_ball", {});
+    host->set({{"objects.0.size_mm", "50"}}, {});
+    for (int k = 0; k < 40 * i; ++k) own();
+    host.reset();
+  }
+}
+
+// A word that was late on its way does not undo a newer one.
+TEST_F(StationHostTest, AResumeThatIsOlderThanAStopDoesNothing) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  host->stop();
+  const std::uint64_t seen = host->stops();
+  host->stop();  // somebody else's, not seen yet
+  EXPECT_FALSE(host->resume(seen));
+  EXPECT_TRUE(host->held_stopped());
+  EXPECT_TRUE(until([&] { return host->view().state == SafetyState::kStopped; }));
+  EXPECT_TRUE(host->resume(host->stops()));
+  EXPECT_FALSE(host->held_stopped());
+  EXPECT_TRUE(until_running());
+}
+
+TEST_F(StationHostTest, AResetOfAnotherFaultThanTheOneThatIsThereDoesNothing) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  EXPECT_FALSE(host->reset(12.5)) << "there is no fault at all";
+  EXPECT_TRUE(host->reset(0.0));
+}
+
+// Whoever ends the program while a large object is being built does not wait for that with torque on.
+TEST_F(StationHostTest, TheTorqueIsZeroBeforeAChangeOnItsWayIsDone) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  host->set({{"objects.0.triangles", "1500000"}}, {});
+  ASSERT_TRUE(until([&] { return !host->state()->busy.empty(); }));
+  std::thread ending([&] { host->shut_down(); });
+  bool resumed = false;
+  bool at_rest_while_busy = false;
+  for (int i = 0; i < 10000 && !at_rest_while_busy; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    resumed = resumed || host->resume(host->stops());
+    const StationView view = host->view();
+    at_rest_while_busy =
+        view.state == SafetyState::kStopped && view.at_rest && host->state()->geometry->revision == 1;
+  }
+  EXPECT_TRUE(at_rest_while_busy);
+  EXPECT_TRUE(host->held_stopped());
+  ending.join();
+  EXPECT_EQ(host->view().factor, 0.0);
+}
+
+TEST_F(StationHostTest, CalibratingWhatNeedsNoneIsRefused) {
+  start(with("simulated"));
+  ASSERT_TRUE(until_running());
+  using Step = CalibrationSession::Step;
+  for (const Step step :
+       {Step::kBegin, Step::kMeasure, Step::kSkip, Step::kBack, Step::kGoTo, Step::kAbandon, Step::kWrite})
+    EXPECT_THAT(calibrate(step, 3), HasSubstr("calibration"));
+  EXPECT_EQ(host->state()->geometry->revision, 1U) << "the station went on";
+  EXPECT_EQ(host->view().state, SafetyState::kRunning);
+}
+
+TEST(LaidOver, KeepsTheLastWordOfEachKeyAndForgetsWhatItReplaces) {
+  const Overrides before = {{"a", "1"}, {"objects.0.size_mm", "5"}, {"objects.0.kind", "mug"}};
+  EXPECT_THAT(laid_over(before, {{"a", "2"}}),
+              ElementsAre(Pair("objects.0.size_mm", "5"), Pair("objects.0.kind", "mug"), Pair("a", "2")));
+  EXPECT_THAT(laid_over(before, {{"objects.0", "{kind='box'}"}}),
+              ElementsAre(Pair("a", "1"), Pair("objects.0", "{kind='box'}")));
+  EXPECT_THAT(laid_over(before, {{"objects", ""}}), ElementsAre(Pair("a", "1")));
+  EXPECT_THAT(laid_over(before, {{"object", ""}}), ::testing::SizeIs(3)) << "another key";
+}
+
+TEST(ChangeKindOf, APatientHasToBeToldOfAnotherObject) {
+  EXPECT_EQ(change_kind("objects.0.size_mm", HandSource::kPatient), ChangeKind::kNewStation);
+  EXPECT_EQ(change_kind("objects.0.size_mm", HandSource::kSliders), ChangeKind::kAtZeroTorque);
+  EXPECT_EQ(change_kind("objectsize", HandSource::kPatient), ChangeKind::kAtZeroTorque);
+  EXPECT_EQ(change_kind("force.stiffness_n_per_mm", HandSource::kPatient), ChangeKind::kInContact);
+  EXPECT_EQ(change_kind("rate_hz", HandSource::kSliders), ChangeKind::kNewStation);
+}
+
+}  // namespace
+}  // namespace phalanx
