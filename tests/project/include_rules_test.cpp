@@ -27,8 +27,8 @@ const std::map<std::string, Modules>& allowed_includes() {
       {"scene", {"core", "mesh", "hand", "contact", "force", "step", "device"}},
       {"station", {"core", "hand", "force", "step", "device", "scene"}},
       {"exercise", {"core", "step"}},
-      {"record", {"core", "hand", "step", "device", "station", "scene"}},
-      {"serve", {"core", "mesh", "step", "station", "scene", "record", "exercise"}},
+      {"record", {"core", "mesh", "hand", "step", "device", "station", "scene"}},
+      {"serve", {"core", "mesh", "hand", "step", "device", "station", "scene", "record", "exercise"}},
       {"study",
        {"core", "mesh", "hand", "contact", "force", "step", "device", "scene", "station", "exercise",
         "record"}},
@@ -36,9 +36,13 @@ const std::map<std::string, Modules>& allowed_includes() {
   return table;
 }
 
+// "phalanx/tick.pb.h", which the build makes of proto/phalanx/tick.proto.
+bool is_generated(const std::string& path) { return path.ends_with(".pb.h"); }
+
 // The module that a quoted include names, from the project's root of includes ("phalanx/mesh/x.h", or
 // "mesh/x.h" below src/); empty for a file beside the one that includes it.
 std::string module_of_include(const std::string& path) {
+  if (is_generated(path)) return {};
   static const std::regex with_module(R"((?:phalanx/)?([a-z_]+)/.*)");
   std::smatch match;
   return std::regex_match(path, match, with_module) ? match[1].str() : std::string();
@@ -46,6 +50,8 @@ std::string module_of_include(const std::string& path) {
 
 bool resolves(const std::filesystem::path& from, const std::string& include) {
   namespace fs = std::filesystem;
+  if (is_generated(include))
+    return fs::exists(root() / "proto" / (include.substr(0, include.size() - 5) + ".proto"));
   return fs::exists(root() / "include" / include) || fs::exists(root() / "src" / include) ||
          fs::exists(root() / from.parent_path() / include);
 }

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "phalanx/cockpit.pb.h"
+#include "phalanx/serve/cockpit.h"
+#include "serve/audit_log.h"
+#include "serve/page_requests.h"
+#include "serve/seats.h"
+#include "serve/upload_work.h"
+
+namespace phalanx {
+
+/// How a page keeps up with the ticks that it is sent.
+struct Pace {
+  /// So many may be on their way: at 60 a second, 0.2 s of them.
+  static constexpr std::uint64_t kOnTheirWay = 12;
+  std::uint64_t sent = 0;  ///< since its welcome; what a newer one has replaced aside
+  std::uint64_t seen = 0;  ///< of these, as the page says
+  double newest = -1.0;    ///< time of the newest that it was sent [s]
+
+  [[nodiscard]] bool keeps_up() const noexcept { return sent - seen < kOnTheirWay; }
+};
+
+/// All on the server's thread, unless a function says otherwise.
+struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
+  Parts(StationHost& station, CockpitSettings given);
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+  ~Parts();
+  [[nodiscard]] double now() const { return settings.clock(); }  ///< [s]
+
+  // ---- what goes out: cockpit_outgoing.cpp
+  void to_all(const Bytes& bytes);
+  void tell(wire::Notice::Level level, const std::string& who, const std::string& code,
+            const std::string& text);
+  void tell_one(PageId page, const std::string& code, const std::string& text);
+  void reply(PageId page, std::uint32_t request, const std::string& refused);
+  void welcome(PageId page);
+  [[nodiscard]] Bytes state_now();
+  /// To all pages, with the next frame: however often something changes, not more often than kStateWithin.
+  void want_state() { state_wanted = true; }
+  void send_state_if_due();
+  void send_tick();
+  void show_out_the_silent();
+
+  // ---- what comes in: cockpit_incoming.cpp
+  void obey(PageId page, const wire::ToHost& message);
+  /// @param page  number of the page for people; 0: a request without one
+  void stop(std::uint32_t page, const std::string& who);
+  void fault_reported(const std::string& file);
+
+  // ---- HTTP: cockpit_http.cpp
+  void geometry(const std::string& revision, const std::function<void(WebAnswer)>& answer);
+  [[nodiscard]] const Seat* operator_of(const WebRequest& request) const;
+  void upload(const WebRequest& request, std::function<void(WebAnswer)> answer);
+
+  StationHost& host;
+  const CockpitSettings settings;
+  WebServer* server = nullptr;
+  AuditLog log;
+  Seats seats;
+  wire::Welcome choices;  ///< without what differs from page to page
+  std::map<PageId, Pace> greeted;
+  std::map<PageId, double> waiting;              ///< for their hello, since [s]
+  std::map<std::uint32_t, double> stops_told;    ///< a page's newest, since the last resume [s]
+  std::map<std::uint32_t, double> sliders_told;  ///< a page's newest [s]
+  std::string report;                            ///< of the fault that began at `reported`
+  double reported = -1.0;                        ///< [s], the host's clock
+  bool state_wanted = false;
+  double state_sent = -1e9;  ///< [s]
+  std::uint64_t told_revision = 0;
+  SafetyState told_safety = SafetyState::kWaiting;
+  Bytes geometry_bytes;
+  std::uint32_t geometry_revision = 0;
+  std::shared_ptr<UploadWork> upload_work;  ///< the newest
+
+ private:
+  void hello(PageId page, const wire::Hello& hello);
+  void give_way(PageId page);
+  void seen(PageId page, std::uint64_t ticks);
+  void take(PageId page);
+  void release(PageId page);
+  [[nodiscard]] bool is_told(PageId page, const PageRequest& asked);
+  void refuse_unless_operator(PageId page) const;
+  void ask_host(PageId page, const wire::ToHost& message);
+  void answered(PageId page, std::uint32_t number, const std::string& who, const PageRequest& asked,
+                const std::string& refused);
+};
+
+/// A line of text.
+[[nodiscard]] WebAnswer plain_answer(int status, std::string text);
+
+}  // namespace phalanx

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/page_requests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "phalanx/scene/data_paths.h"
+#include "scene/folder_names.h"
+#include "serve/foreign_files.h"
+
+namespace phalanx {
+namespace {
+
+constexpr int kMostSettings = 64;
+constexpr std::size_t kLongestValue = 4096;  ///< [bytes]
+
+PageRequest set(const wire::Set& message, StationHost& host, const std::filesystem::path& uploads,
+                StationHost::Done done) {
+  if (message.setting_size() == 0 || message.setting_size() > kMostSettings)
+    throw std::invalid_argument(
+        fmt::format("{} settings at once; send 1 to {}", message.setting_size(), kMostSettings));
+  Overrides changes;
+  PageRequest request{.code = "set", .text = {}, .at_once = false};
+  for (const wire::Setting& setting : message.setting()) {
+    if (setting.key().empty() || setting.key().size() > 200 || setting.value().size() > kLongestValue)
+      throw std::invalid_argument("a setting without a key, or too long; send a scene's key and its value");
+    if (names_foreign_file(setting.key(), setting.value(), uploads))
+      throw std::invalid_argument(
+          fmt::format("{} = {}: a page may name what is shipped, or a mesh that it has sent; other files are "
+                      "named where the station is started",
+                      setting.key(), setting.value()));
+    changes.emplace_back(setting.key(), setting.value());
+    request.text += fmt::format("{}{} = {}", request.text.empty() ? "" : ", ", setting.key(),
+                                setting.value().empty() ? "as in the scene" : setting.value());
+  }
+  host.set(std::move(changes), std::move(done));
+  return request;
+}
+
+PageRequest load(const std::string& name, StationHost& host, StationHost::Done done) {
+  const auto shipped = names_in_folder(data_folder() / "scenes", ".toml");
+  if (std::find(shipped.begin(), shipped.end(), name) == shipped.end())
+    throw std::invalid_argument(
+        fmt::format("scene {}: is not among those shipped; choose one of the list", name));
+  host.load_scene(name, std::move(done));
+  return {.code = "scene", .text = name, .at_once = false};
+}
+
+PageRequest source(wire::HandSource wanted, StationHost& host, StationHost::Done done) {
+  const bool sliders = wanted == wire::HAND_SLIDERS;
+  if (!sliders && wanted != wire::HAND_PATIENT)
+    throw std::invalid_argument("a page switches between the simulated patient and the sliders only");
+  host.set_source(sliders ? HandSource::kSliders : HandSource::kPatient, std::move(done));
+  return {.code = "source",
+          .text = sliders ? "the sliders move the hand" : "the simulated patient moves the hand",
+          .at_once = false};
+}
+
+void pose(const wire::Sliders& sliders, StationHost& host) {
+  JointArray angle{};
+  if (sliders.angle_size() != kJoints)
+    throw std::invalid_argument(
+        fmt::format("{} angles; send one a joint, {}", sliders.angle_size(), kJoints));
+  for (int j = 0; j < kJoints; ++j)
+    angle[static_cast<std::size_t>(j)] = static_cast<double>(sliders.angle(j));
+  host.set_sliders(angle);
+}
+
+PageRequest calibrate(const wire::Calibrate& message, StationHost& host, StationHost::Done done) {
+  using Step = CalibrationSession::Step;
+  constexpr std::array<Step, 7> kSteps = {Step::kBegin, Step::kMeasure, Step::kSkip, Step::kBack,
+                                          Step::kGoTo,  Step::kAbandon, Step::kWrite};
+  const auto step = static_cast<std::size_t>(message.step());
+  if (step >= kSteps.size()) throw std::invalid_argument("no such step of a calibration");
+  host.calibrate(kSteps[step], message.pose(), std::move(done));
+  const std::string name = wire::Calibrate::Step_Name(message.step());
+  return {.code = "calibrate",
+          .text = kSteps[step] == Step::kGoTo ? fmt::format("{}, pose {}", name, message.pose() + 1) : name,
+          .at_once = false};
+}
+
+}  // namespace
+
+PageRequest hand_over(const wire::ToHost& message, StationHost& host, const std::filesystem::path& uploads,
+                      StationHost::Done done) {
+  switch (message.what_case()) {
+    case wire::ToHost::kResume:
+      if (!host.resume(message.resume().stops()))
+        throw std::invalid_argument("another stop has come since; look, then resume again");
+      return {.code = "resumed", .text = "resumed", .at_once = true};
+    case wire::ToHost::kReset:
+      if (!host.reset(message.reset().fault_time()))
+        throw std::invalid_argument("another fault has come since; look, then reset again");
+      return {.code = "reset", .text = "asked for a reset", .at_once = true};
+    case wire::ToHost::kSet:
+      return set(message.set(), host, uploads, std::move(done));
+    case wire::ToHost::kScene:
+      return load(message.scene().name(), host, std::move(done));
+    case wire::ToHost::kSource:
+      return source(message.source().source(), host, std::move(done));
+    case wire::ToHost::kSliders:
+      pose(message.sliders(), host);
+      return {.code = "sliders", .text = "moves the hand with the sliders", .at_once = true};
+    case wire::ToHost::kCalibrate:
+      return calibrate(message.calibrate(), host, std::move(done));
+    default:
+      throw std::invalid_argument("this message asks for nothing that is known; reload the page");
+  }
+}
+
+}  // namespace phalanx

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace phalanx {
+
+/// What is no UTF-8 becomes U+FFFD, a mark for each byte: a browser refuses a whole message for one such
+/// byte, and devices, file names and people's names hold any.
+[[nodiscard]] std::string as_utf8(std::string_view text);
+
+/// The same in one line, for a name: without control characters, and without those that turn the direction of
+/// writing or break lines, so that it cannot pass for what stands beside it.
+[[nodiscard]] std::string one_line(std::string_view text);
+
+/// At most `bytes`, cut at a whole character of UTF-8, "..." at the end where something is missing.
+/// @pre bytes >= 3
+[[nodiscard]] std::string shortened(std::string text, std::size_t bytes);
+
+/// A refusal without the option that a page never typed: "--set KEY=VALUE: ..." becomes "KEY=VALUE: ...".
+[[nodiscard]] std::string without_option(std::string refusal);
+
+}  // namespace phalanx

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/upload_work.h"
+
+#include <thread>
+#include <utility>
+
+namespace phalanx {
+
+std::optional<Overrides> UploadWork::values() const {
+  const std::lock_guard lock(mutex_);
+  if (host_ == nullptr) return std::nullopt;
+  return host_->state()->values;
+}
+
+bool UploadWork::done() const {
+  const std::lock_guard lock(mutex_);
+  return done_;
+}
+
+void UploadWork::finish() {
+  const std::lock_guard lock(mutex_);
+  done_ = true;
+  ended_.notify_all();
+}
+
+void UploadWork::abandon(std::chrono::milliseconds wait) {
+  std::unique_lock lock(mutex_);
+  host_ = nullptr;
+  ended_.wait_for(lock, wait, [this] { return done_; });
+}
+
+void begin(const std::shared_ptr<UploadWork>& work, std::function<void(const ValuesInForce&)> what) {
+  std::thread([work, what = std::move(what)]() mutable {
+    what([work] { return work->values(); });
+    what = nullptr;  // what it holds goes first
+    work->finish();
+  }).detach();
+}
+
+}  // namespace phalanx

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/uploads.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "phalanx/mesh/import.h"
+#include "phalanx/record/mesh_report_json.h"
+#include "phalanx/record/output_file.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kKept = 50;
+constexpr std::array<const char*, 5> kFormats = {".obj", ".3ds", ".stl", ".ply", ".glb"};
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+}
+
+int hex(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+std::string percent_decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && hex(text[i + 1]) >= 0 && hex(text[i + 2]) >= 0) {
+      out.push_back(static_cast<char>(hex(text[i + 1]) * 16 + hex(text[i + 2])));
+      i += 2;
+    } else {
+      out.push_back(text[i] == '+' ? ' ' : text[i]);
+    }
+  }
+  return out;
+}
+
+double number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0.0 && value <= 2000.0))
+    throw std::invalid_argument(fmt::format("size_mm = {}: must be a number from 0 to 2000", text));
+  return value;
+}
+
+double metres_per(const std::string& unit) {
+  if (unit == "m") return 1.0;
+  if (unit == "mm") return 1e-3;
+  if (unit == "cm") return 1e-2;
+  if (unit == "in") return 0.0254;
+  throw std::invalid_argument(fmt::format("unit = {}: must be m, mm, cm or in", unit));
+}
+
+/// FNV-1a: two different files of one name get two names.
+std::uint64_t hash_of(const std::string& bytes) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return hash;
+}
+
+std::string file_name(const UploadedMesh& mesh, const std::string& extension) {
+  std::string stem = fs::path(mesh.name).stem().string();
+  std::erase_if(stem, [](char c) { return !is_plain(c); });
+  if (stem.empty()) stem = "mesh";
+  return fmt::format("{}-{:016x}{}", stem.substr(0, 40), hash_of(mesh.bytes), extension);
+}
+
+/// Whether file_name() could have made it: "mug-0123456789abcdef.stl".
+bool is_our_name(const std::string& name) {
+  constexpr std::size_t kDigits = 16;
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot < kDigits + 2 || name[dot - kDigits - 1] != '-') return false;
+  const auto digits = name.begin() + static_cast<std::ptrdiff_t>(dot - kDigits);
+  const bool hashed = std::all_of(digits, digits + kDigits,
+                                  [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+  return hashed && std::all_of(name.begin(), digits, is_plain) &&
+         std::find(kFormats.begin(), kFormats.end(), name.substr(dot)) != kFormats.end();
+}
+
+/// Ours are in letters that no way of writing a value changes.
+bool is_named(const std::string& name, const Overrides& values) {
+  return std::any_of(values.begin(), values.end(),
+                     [&](const auto& entry) { return entry.second.find(name) != std::string::npos; });
+}
+
+void keep_newest(const fs::path& folder, const Overrides& in_force) {
+  std::vector<fs::directory_entry> files;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (!entry.is_symlink(ignored) && entry.is_regular_file(ignored) &&
+        is_our_name(entry.path().filename().string()))
+      files.push_back(entry);
+  std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) {
+    return a.last_write_time(ignored) > b.last_write_time(ignored);
+  });
+  for (std::size_t i = kKept; i < files.size(); ++i) {
+    const fs::path& file = files[i].path();
+    if (!is_named(file.filename().string(), in_force)) fs::remove(file, ignored);
+  }
+}
+
+std::string extension_of(const std::string& name) {
+  std::string extension = fs::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
+    throw std::invalid_argument(
+        fmt::format("{}: not a mesh that can be read; send an .obj, .3ds, .stl, .ply or .glb",
+                    name.empty() ? "a file without a name" : name));
+  return extension;
+}
+
+/// The import knows a mesh in memory; the person knows a file.
+std::string in_the_files_words(std::string refusal, const std::string& name) {
+  constexpr std::string_view kInMemory = "mesh in memory";
+  if (refusal.starts_with(kInMemory)) refusal.replace(0, kInMemory.size(), name);
+  return refusal;
+}
+
+/// @throws std::runtime_error  nobody waits any more
+Overrides values_now(const ValuesInForce& in_force) {
+  std::optional<Overrides> values = in_force();
+  if (!values) throw std::runtime_error("the station has ended");
+  return std::move(*values);
+}
+
+Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
+  const std::string extension = extension_of(mesh.name);
+  const ImportOptions options{.size = 1e-3 * mesh.size_mm,
+                              .unit = metres_per(mesh.unit),
+                              .triangles = 0,
+                              .most_triangles = kMostUploadedTriangles};
+  static_cast<void>(values_now(in_force));
+  const ImportedMesh imported =
+      import_and_check_from_memory(mesh.bytes.data(), mesh.bytes.size(), extension.substr(1), options);
+  Json answer = {{"ok", imported.report.finding(FindingKind::kUnits).found == 0}};
+  answer["report"] = Json::parse(mesh_report_json(mesh.name, imported.report));
+  if (!answer["ok"].get<bool>()) {
+    answer["error"] = mesh_verdict(imported.report);
+    return answer;
+  }
+  const Overrides values = values_now(in_force);
+  fs::create_directories(folder);
+  const fs::path file = fs::absolute(folder) / file_name(mesh, extension);
+  write_text_file(file, mesh.bytes);
+  keep_newest(folder, values);
+  answer["file"] = file.lexically_normal().string();
+  return answer;
+}
+
+}  // namespace
+
+UploadedMesh upload_of(const std::string& query, std::string bytes) {
+  UploadedMesh mesh;
+  mesh.bytes = std::move(bytes);
+  for (std::size_t begin = 0; begin < query.size();) {
+    const std::size_t end = std::min(query.find('&', begin), query.size());
+    const std::string_view pair = std::string_view(query).substr(begin, end - begin);
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos) {
+      const std::string_view key = pair.substr(0, equals);
+      const std::string value = percent_decoded(pair.substr(equals + 1));
+      if (key == "name") mesh.name = value;
+      if (key == "size_mm") mesh.size_mm = number(value);
+      if (key == "unit") mesh.unit = value;
+    }
+    begin = end + 1;
+  }
+  static_cast<void>(metres_per(mesh.unit));
+  if (mesh.bytes.empty()) throw std::invalid_argument(fmt::format("{}: the file is empty", mesh.name));
+  return mesh;
+}
+
+std::string take_upload(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
+  Json answer;
+  try {
+    answer = accepted(mesh, folder, in_force);
+  } catch (const std::exception& refused) {
+    answer = {{"ok", false}, {"error", in_the_files_words(refused.what(), mesh.name)}};
+  }
+  return answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace phalanx

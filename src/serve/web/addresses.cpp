@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the machine is called, and where it stands in its networks.
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <climits>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+
+#include "phalanx/serve/reach.h"
+
+namespace phalanx {
+namespace {
+
+std::string text_of(int family, const void* address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  return ::inet_ntop(family, address, text.data(), static_cast<socklen_t>(text.size())) != nullptr
+             ? text.data()
+             : "";
+}
+
+/// Empty for one that nobody is reached by.
+std::string useful_address(const sockaddr* address) {
+  if (address->sa_family == AF_INET) {
+    const in_addr& v4 = reinterpret_cast<const sockaddr_in*>(address)->sin_addr;
+    const std::uint32_t bits = ntohl(v4.s_addr);
+    const bool link_local = (bits >> 16U) == 0xA9FEU;  // 169.254/16
+    return link_local ? "" : text_of(AF_INET, &v4);
+  }
+  if (address->sa_family == AF_INET6) {
+    const in6_addr& v6 = reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr;
+    return IN6_IS_ADDR_LINKLOCAL(&v6) ? "" : text_of(AF_INET6, &v6);
+  }
+  return "";
+}
+
+bool is_v6(const std::string& address) { return address.find(':') != std::string::npos; }
+
+std::string user_name() {
+  const passwd* entry = ::getpwuid(::geteuid());
+  return entry != nullptr ? entry->pw_name : std::to_string(::geteuid());
+}
+
+}  // namespace
+
+std::vector<std::string> machine_names() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name.front() == '\0') return {};
+  std::string full(name.data());
+  for (char& c : full) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string first = full.substr(0, full.find('.'));
+  std::vector<std::string> names{full};
+  for (const std::string& other : {first, first + ".local"}) {
+    if (std::find(names.begin(), names.end(), other) == names.end()) names.push_back(other);
+  }
+  return names;
+}
+
+std::vector<std::string> machine_addresses() {
+  ifaddrs* first = nullptr;
+  if (::getifaddrs(&first) != 0) return {};
+  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> list(first, &::freeifaddrs);
+  std::vector<std::string> v4;
+  std::vector<std::string> v6;
+  for (const ifaddrs* at = first; at != nullptr; at = at->ifa_next) {
+    const bool up = (at->ifa_flags & IFF_UP) != 0 && (at->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!up || at->ifa_addr == nullptr) continue;
+    std::string address = useful_address(at->ifa_addr);
+    if (!address.empty()) (is_v6(address) ? v6 : v4).push_back(std::move(address));
+  }
+  v4.insert(v4.end(), v6.begin(), v6.end());
+  return v4;
+}
+
+std::vector<std::string> lan_urls(std::uint16_t port, const std::string& token) {
+  std::vector<std::string> urls;
+  for (const std::string& address : machine_addresses()) {
+    const std::string host = is_v6(address) ? "[" + address + "]" : address;
+    urls.push_back(fmt::format("https://{}:{}/{}", host, port, token.empty() ? "" : "?token=" + token));
+  }
+  return urls;
+}
+
+std::string ssh_line(std::uint16_t port) {
+  const char* connection = std::getenv("SSH_CONNECTION");  // "client port server port"
+  if (connection == nullptr) return "";
+  std::istringstream words(connection);
+  std::string client;
+  std::string client_port;
+  std::string server;
+  std::string server_port;
+  if (!(words >> client >> client_port >> server >> server_port)) return "";
+  const std::string other_port = server_port == "22" ? "" : " -p " + server_port;
+  return fmt::format("ssh{} -L {}:127.0.0.1:{} {}@{}", other_port, port, port, user_name(), server);
+}
+
+}  // namespace phalanx

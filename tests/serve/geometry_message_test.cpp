@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/geometry_message.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "phalanx/geometry.pb.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+/// One triangle, different for each number.
+TriangleMesh triangle(int number) {
+  return {.vertices = {Vec3(number, 0.25, 0.5), Vec3(1.0, number, 0.125), Vec3(-1.0, 0.0, number)},
+          .triangles = {{0, 2, 1}}};
+}
+
+HostGeometry simple_geometry() {
+  HostGeometry geometry;
+  geometry.revision = 7;
+  geometry.hand = test::simple_parameters();
+  for (int s = 0; s < kSegments; ++s) geometry.segment[at(s)] = triangle(s);
+  geometry.display = geometry.segment;
+  geometry.object = triangle(99);
+  geometry.rate_hz = 800.0;
+  return geometry;
+}
+
+HandSkin simple_skin() {
+  HandSkin skin;
+  skin.mesh = triangle(3);
+  skin.segment = {{15, 0, 0, 0}, {1, 2, 0, 0}, {4, 5, 6, 7}};
+  skin.weight = {{1.0F, 0.0F, 0.0F, 0.0F}, {0.75F, 0.25F, 0.0F, 0.0F}, {0.5F, 0.25F, 0.125F, 0.125F}};
+  skin.X_BS = bind_poses(test::simple_parameters(), Handedness::kRight);
+  skin.X_BS[4].R = rotation_about(Vec3(1, -2, 3).normalized(), 2.0);
+  return skin;
+}
+
+wire::Geometry sent(const HostGeometry& geometry) {
+  wire::Geometry message;
+  EXPECT_TRUE(message.ParseFromString(geometry_message(geometry)));
+  return message;
+}
+
+void expect_same(const wire::Mesh& message, const TriangleMesh& mesh) {
+  ASSERT_EQ(at(message.position_size()), 3 * mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(message.position(static_cast<int>(3 * i) + k), static_cast<float>(mesh.vertices[i][k]));
+  }
+  ASSERT_EQ(at(message.index_size()), 3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(message.index(static_cast<int>(3 * t + k)), static_cast<std::uint32_t>(mesh.triangles[t][k]));
+  }
+}
+
+TEST(GeometryMessage, HoldsTheMeshesOfSegmentsAndObject) {
+  const HostGeometry geometry = simple_geometry();
+  const wire::Geometry message = sent(geometry);
+  EXPECT_EQ(message.revision(), 7U);
+  EXPECT_FALSE(message.left());
+  EXPECT_EQ(message.rate_hz(), 800.0F);
+  ASSERT_EQ(message.segment_size(), kSegments);
+  for (int s = 0; s < kSegments; ++s) expect_same(message.segment(s), geometry.segment[at(s)]);
+  expect_same(message.object(), geometry.object);
+  EXPECT_EQ(message.display_size(), 0);
+  EXPECT_FALSE(message.has_skin());
+}
+
+TEST(GeometryMessage, HoldsWhatIsShownOnlyWhereItDiffers) {
+  HostGeometry geometry = simple_geometry();
+  geometry.display[5].vertices[1].x() += 1e-3;
+  const wire::Geometry message = sent(geometry);
+  ASSERT_EQ(message.display_size(), kSegments);
+  for (int s = 0; s < kSegments; ++s) expect_same(message.display(s), geometry.display[at(s)]);
+  geometry = simple_geometry();
+  geometry.display[15].triangles[0] = {0, 1, 2};
+  EXPECT_EQ(sent(geometry).display_size(), kSegments);
+}
+
+TEST(GeometryMessage, OfAnEmptySceneHasAnObjectWithoutVertices) {
+  HostGeometry geometry = simple_geometry();
+  geometry.object = {};
+  geometry.handedness = Handedness::kLeft;
+  const wire::Geometry message = sent(geometry);
+  EXPECT_EQ(message.object().position_size(), 0);
+  EXPECT_EQ(message.object().index_size(), 0);
+  EXPECT_TRUE(message.left());
+}
+
+TEST(GeometryMessage, HoldsTheSkin) {
+  HostGeometry geometry = simple_geometry();
+  geometry.skin = simple_skin();
+  const wire::Geometry message = sent(geometry);
+  ASSERT_TRUE(message.has_skin());
+  const wire::Skin& skin = message.skin();
+  expect_same(skin.mesh(), geometry.skin->mesh);
+  ASSERT_EQ(skin.segment_size(), 12);
+  ASSERT_EQ(skin.weight_size(), 12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(skin.segment(static_cast<int>(4 * i + k)), geometry.skin->segment[i][k]);
+      EXPECT_EQ(skin.weight(static_cast<int>(4 * i + k)), geometry.skin->weight[i][k]);
+    }
+  }
+}
+
+// What a page computes from the message is the rotation that it was made of.
+TEST(GeometryMessage, HoldsTheBindPosesAsPositionAndQuaternion) {
+  HostGeometry geometry = simple_geometry();
+  geometry.skin = simple_skin();
+  const wire::Skin skin = sent(geometry).skin();
+  ASSERT_EQ(skin.bind_pose_size(), 7 * kSegments);
+  for (int s = 0; s < kSegments; ++s) {
+    const auto number = [&](int i) { return static_cast<double>(skin.bind_pose(7 * s + i)); };
+    const Pose& X = geometry.skin->X_BS[at(s)];
+    EXPECT_LT((Vec3(number(0), number(1), number(2)) - X.p).norm(), 1e-7);
+    const Eigen::Quaterniond q(number(6), number(3), number(4), number(5));  // w x y z
+    EXPECT_NEAR(q.norm(), 1.0, 1e-6);
+    EXPECT_LT((q.toRotationMatrix() - X.R).norm(), 1e-6);
+  }
+  // A turn of 2 rad about (1, -2, 3), by hand: w = cos 1, the vector's length is sin 1.
+  EXPECT_NEAR(std::abs(skin.bind_pose(4 * 7 + 6)), 0.540302, 1e-6);
+  EXPECT_NEAR(std::abs(skin.bind_pose(4 * 7 + 5)), 3.0 / std::sqrt(14.0) * 0.841471, 1e-6);
+}
+
+TEST(GeometryMessage, NamesSegmentsAndJointsWithTheirRanges) {
+  HostGeometry geometry = simple_geometry();
+  geometry.hand.open_angle[6] = 0.375;
+  const wire::Geometry message = sent(geometry);
+  ASSERT_EQ(message.segment_name_size(), kSegments);
+  EXPECT_EQ(message.segment_name(0), "thumb-metacarpal");
+  EXPECT_EQ(message.segment_name(kPalm), "wrist");
+  ASSERT_EQ(message.joint_name_size(), kJoints);
+  EXPECT_EQ(message.joint_name(4), "index_mcp_flexion");
+  ASSERT_EQ(message.joint_min_size(), kJoints);
+  ASSERT_EQ(message.joint_max_size(), kJoints);
+  ASSERT_EQ(message.joint_open_size(), kJoints);
+  EXPECT_EQ(message.joint_min(4), -0.5F);
+  EXPECT_EQ(message.joint_max(5), 0.6F);
+  EXPECT_EQ(message.joint_open(6), 0.375F);
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a page's message asks of the station, and the state that pages are shown of it.
+#include "serve/page_requests.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "serve/state_message.h"
+#include "station/host_fixture.h"
+
+namespace phalanx {
+namespace {
+
+using test::HostTest;
+using ::testing::HasSubstr;
+
+class PageRequestsTest : public HostTest {
+ protected:
+  PageRequestsTest() { start(with("sliders")); }
+
+  /// Hands it over and waits. @returns what was asked
+  PageRequest handed(const wire::ToHost& message) {
+    auto [answer, done] = awaited();
+    const PageRequest asked = hand_over(message, *host, "/tmp/up", done);
+    if (asked.at_once) {
+      EXPECT_EQ(answer->times, 0);
+      return asked;
+    }
+    const auto got = answer;
+    EXPECT_TRUE(until([&] { return got->refused.has_value(); }));
+    refused = got->refused.value_or("no answer");
+    return asked;
+  }
+  std::string why_not(const wire::ToHost& message) {
+    try {
+      static_cast<void>(hand_over(message, *host, "/tmp/up", [](const std::string&) { FAIL(); }));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static wire::ToHost set(const std::string& key, const std::string& value, int times = 1) {
+    wire::ToHost message;
+    for (int i = 0; i < times; ++i) {
+      message.mutable_set()->add_setting()->set_key(key);
+      message.mutable_set()->mutable_setting(i)->set_value(value);
+    }
+    return message;
+  }
+  wire::State state() {
+    wire::State out;
+    write_state(*host, out);
+    return out;
+  }
+  std::string refused;
+};
+
+TEST_F(PageRequestsTest, ASetIsLaidOverTheSceneAndShown) {
+  const PageRequest asked = handed(set("force.stiffness_n_per_mm", "0.8"));
+  EXPECT_EQ(asked.code, "set");
+  EXPECT_EQ(asked.text, "force.stiffness_n_per_mm = 0.8");
+  EXPECT_EQ(refused, "");
+  const wire::State shown = state();
+  ASSERT_EQ(shown.changed_size(), 1);
+  EXPECT_EQ(shown.changed(0).value(), "0.8");
+  EXPECT_EQ(shown.source(), wire::HAND_SLIDERS);
+  EXPECT_EQ(shown.slider_size(), kJoints);
+  EXPECT_FALSE(shown.station_gone());
+  EXPECT_FALSE(shown.has_wizard());
+  EXPECT_FALSE(shown.has_fault());
+  EXPECT_GT(shown.time(), 0.0);
+  EXPECT_EQ(shown.loop().lateness().octave_size(), 27);
+  handed(set("force.stiffness_n_per_mm", ""));
+  EXPECT_EQ(state().changed_size(), 0);
+}
+
+TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
+  EXPECT_FALSE(why_not(set("rate_hz", "250", 0)).empty());
+  EXPECT_THAT(why_not(set("rate_hz", "250", 65)), HasSubstr("65"));
+  EXPECT_FALSE(why_not(set("", "1")).empty());
+  EXPECT_FALSE(why_not(set(std::string(201, 'k'), "1")).empty());
+  EXPECT_FALSE(why_not(set("description", std::string(4097, 'v'))).empty());
+  EXPECT_THAT(why_not(set("objects.0.file", R"("\u002fetc\u002fpasswd")")), HasSubstr("objects.0.file"));
+  wire::ToHost message;
+  message.mutable_scene()->set_name("../scenes/wave");
+  EXPECT_THAT(why_not(message), HasSubstr("shipped"));
+  message.mutable_scene()->set_name("/etc/passwd");
+  EXPECT_FALSE(why_not(message).empty());
+  message.mutable_scene()->set_name("");
+  EXPECT_FALSE(why_not(message).empty());
+  message.mutable_source()->set_source(wire::HAND_DEVICE);
+  EXPECT_FALSE(why_not(message).empty());
+  message.mutable_source()->set_source(static_cast<wire::HandSource>(77));
+  EXPECT_FALSE(why_not(message).empty());
+  message.mutable_calibrate()->set_step(static_cast<wire::Calibrate::Step>(77));
+  EXPECT_FALSE(why_not(message).empty());
+  message.mutable_calibrate()->set_step(static_cast<wire::Calibrate::Step>(-1));
+  EXPECT_FALSE(why_not(message).empty());
+  EXPECT_FALSE(why_not(wire::ToHost()).empty());
+  EXPECT_EQ(host->state()->overrides.size(), 0U);
+}
+
+TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsAreHandedOver) {
+  wire::ToHost message;
+  message.mutable_scene()->set_name("pinch_ball");
+  EXPECT_EQ(handed(message).code, "scene");
+  EXPECT_EQ(refused, "");
+  EXPECT_EQ(state().scene(), "pinch_ball");
+  EXPECT_EQ(state().geometry(), 2U);
+  message.mutable_source()->set_source(wire::HAND_SLIDERS);
+  EXPECT_EQ(handed(message).code, "source");
+  message.mutable_calibrate()->set_step(wire::Calibrate::BEGIN);
+  EXPECT_EQ(handed(message).code, "calibrate");
+  EXPECT_FALSE(refused.empty()) << "the simulated device needs none";
+  message.mutable_calibrate()->set_step(wire::Calibrate::MEASURE);
+  EXPECT_EQ(handed(message).text, "MEASURE");
+  message.mutable_calibrate()->set_step(wire::Calibrate::GO_TO);
+  message.mutable_calibrate()->set_pose(2);
+  const PageRequest step = handed(message);
+  EXPECT_EQ(step.code, "calibrate");
+  EXPECT_EQ(step.text, "GO_TO, pose 3") << "as people count";
+}
+
+TEST_F(PageRequestsTest, SlidersOfWhateverNumberStayInsideTheHand) {
+  wire::ToHost message;
+  auto& sliders = *message.mutable_sliders();
+  EXPECT_FALSE(why_not(message).empty());
+  for (int j = 0; j < kJoints; ++j) sliders.add_angle(std::numeric_limits<float>::quiet_NaN());
+  const PageRequest asked = handed(message);
+  EXPECT_TRUE(asked.at_once);
+  EXPECT_EQ(asked.text, "moves the hand with the sliders");
+  for (int j = 0; j < kJoints; ++j) sliders.set_angle(j, std::numeric_limits<float>::infinity());
+  handed(message);
+  for (int j = 0; j < kJoints; ++j) sliders.set_angle(j, -3e38F);
+  handed(message);
+  for (const double angle : host->sliders()) EXPECT_LT(std::abs(angle), 4.0);
+  sliders.add_angle(0.0F);
+  EXPECT_THAT(why_not(message), HasSubstr("21"));
+}
+
+TEST_F(PageRequestsTest, ResumeAndResetAreDoneAtOnce) {
+  host->stop();
+  EXPECT_TRUE(state().held_stopped());
+  wire::ToHost message;
+  message.mutable_resume()->set_stops(state().stops());
+  EXPECT_TRUE(handed(message).at_once);
+  EXPECT_FALSE(state().held_stopped());
+  message.mutable_reset();
+  EXPECT_EQ(handed(message).code, "reset");
+}
+
+TEST_F(PageRequestsTest, AResumeOrAResetThatANewerStopOrFaultHasOvertakenIsRefused) {
+  host->stop();
+  wire::ToHost message;
+  message.mutable_resume()->set_stops(state().stops());
+  host->stop();
+  EXPECT_EQ(why_not(message), "another stop has come since; look, then resume again");
+  EXPECT_TRUE(host->held_stopped());
+  message.mutable_resume()->set_stops(state().stops());
+  EXPECT_EQ(handed(message).code, "resumed");
+  EXPECT_FALSE(host->held_stopped());
+  message.mutable_reset()->set_fault_time(12.5);
+  EXPECT_EQ(why_not(message), "another fault has come since; look, then reset again");
+}
+
+TEST(Choices, AreEveryKeySceneAndProfile) {
+  wire::Welcome welcome;
+  write_choices(welcome);
+  EXPECT_GT(welcome.key_size(), 30);
+  const auto change_of = [&](const std::string& path) {
+    for (const wire::KeyInfo& key : welcome.key())
+      if (key.path() == path) return key.change();
+    ADD_FAILURE() << path;
+    return wire::CHANGE_NEW_STATION;
+  };
+  EXPECT_EQ(change_of("force.stiffness_n_per_mm"), wire::CHANGE_IN_CONTACT);
+  EXPECT_EQ(change_of("force.law"), wire::CHANGE_AT_ZERO_TORQUE);
+  EXPECT_EQ(change_of("objects[].kind"), wire::CHANGE_AT_ZERO_TORQUE);
+  EXPECT_EQ(change_of("rate_hz"), wire::CHANGE_NEW_STATION);
+  ASSERT_GT(welcome.scene_size(), 10);
+  ASSERT_GT(welcome.profile_size(), 1);
+  EXPECT_LT(welcome.profile(0).name(), welcome.profile(1).name());
+}
+
+}  // namespace
+}  // namespace phalanx

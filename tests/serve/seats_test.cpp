@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who operates: one page at a time, taken over only openly.
+#include "serve/seats.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Visitor kHere{.address = "127.0.0.1", .may_operate = true};
+const Visitor kViewer{.address = "192.0.2.7", .may_operate = false};
+
+class SeatsTest : public ::testing::Test {
+ protected:
+  PageId come(const Visitor& visitor = kHere, const std::string& secret = "") {
+    const PageId page = ++last;
+    seats.join(page, visitor, "secret" + std::to_string(page), now);
+    seats.come_back(page, secret, now);
+    return page;
+  }
+  std::string secret(PageId page) { return seats.find(page)->secret; }
+  [[nodiscard]] std::string operating() const {
+    const Seat* seat = seats.operating(now);
+    return seat != nullptr ? seat->label() : "";
+  }
+  Seats seats;
+  PageId last = 0;
+  double now = 100.0;
+};
+
+TEST_F(SeatsTest, TheFirstWhoMayOperateDoesAndOthersDoNot) {
+  const PageId viewer = come(kViewer);
+  EXPECT_EQ(operating(), "");
+  const PageId first = come();
+  const PageId second = come();
+  EXPECT_FALSE(seats.operates(viewer));
+  EXPECT_TRUE(seats.operates(first));
+  EXPECT_FALSE(seats.operates(second));
+  EXPECT_EQ(operating(), "page 2 (127.0.0.1)");
+  EXPECT_EQ(seats.here(), 3U);
+}
+
+TEST_F(SeatsTest, APageThatHasNotSaidHelloDoesNotOperate) {
+  seats.join(1, kHere, "s", now);
+  EXPECT_EQ(operating(), "");
+}
+
+TEST_F(SeatsTest, ControlIsTakenFromWhoeverHasItButNotByAViewer) {
+  const PageId first = come();
+  seats.name(first, "Anna");
+  const PageId second = come();
+  const PageId viewer = come(kViewer);
+  EXPECT_THROW(seats.take(viewer, now), std::invalid_argument);
+  EXPECT_THROW(seats.take(99, now), std::invalid_argument);
+  EXPECT_EQ(seats.take(second, now), "page 1 (127.0.0.1), Anna");
+  EXPECT_FALSE(seats.operates(first));
+  EXPECT_TRUE(seats.operates(second));
+}
+
+TEST_F(SeatsTest, AReloadKeepsTheRoleForTenSeconds) {
+  const PageId first = come();
+  const std::string mine = secret(first);
+  const PageId second = come();
+  seats.leave(first, now);
+  now += 9.9;
+  EXPECT_FALSE(seats.operates(second));
+  const PageId again = come(kHere, mine);
+  EXPECT_TRUE(seats.operates(again));
+  EXPECT_EQ(seats.find(again)->number, 1U);
+  seats.leave(again, now);
+  now += 10.1;
+  EXPECT_EQ(operating(), "");
+  EXPECT_FALSE(seats.operates(second)) << "not by itself: it asks, or comes anew";
+  EXPECT_EQ(seats.take(second, now), "") << "from nobody";
+  const PageId late = come(kHere, mine);
+  EXPECT_FALSE(seats.operates(late));
+  EXPECT_EQ(seats.find(late)->number, 1U) << "but it is the same page";
+}
+
+TEST_F(SeatsTest, WhoeverComesNextSitsWhereNobodyDoes) {
+  const PageId first = come();
+  EXPECT_TRUE(seats.release(first));
+  EXPECT_FALSE(seats.release(first));
+  EXPECT_EQ(operating(), "");
+  EXPECT_TRUE(seats.operates(come()));
+}
+
+TEST_F(SeatsTest, APageWhoseOldLineStillCountsAsOpenTakesItsOwnPlace) {
+  const PageId first = come();
+  seats.name(first, "Anna");
+  const PageId other = come();
+  const std::string mine = secret(first);
+  const PageId again = ++last;
+  seats.join(again, kHere, "fresh", now);
+  const Seats::Return back = seats.come_back(again, mine, now);
+  EXPECT_EQ(back.replaced, first);
+  EXPECT_FALSE(back.sat_down) << "it operated before";
+  EXPECT_EQ(seats.find(first), nullptr);
+  EXPECT_TRUE(seats.operates(again));
+  EXPECT_EQ(operating(), "page 1 (127.0.0.1), Anna");
+  EXPECT_EQ(seats.with_secret(mine), seats.find(again));
+  EXPECT_EQ(seats.here(), 2U);
+  seats.leave(first, now);  // its line's end
+  now += 11.0;
+  EXPECT_EQ(operating(), "page 1 (127.0.0.1), Anna");
+  EXPECT_FALSE(seats.operates(other));
+  EXPECT_EQ(seats.come_back(again, mine, now).replaced, 0U) << "not by itself";
+  EXPECT_NE(seats.find(again), nullptr);
+}
+
+TEST_F(SeatsTest, AnUnknownSecretGivesNothing) {
+  const PageId first = come();
+  const PageId guest = come(kHere, "guessed");
+  EXPECT_FALSE(seats.operates(guest));
+  EXPECT_NE(seats.find(guest)->number, seats.find(first)->number);
+  EXPECT_EQ(seats.with_secret(""), nullptr);
+  EXPECT_EQ(seats.with_secret("guessed"), nullptr);
+  EXPECT_EQ(seats.with_secret(secret(first)), seats.find(first));
+}
+
+TEST_F(SeatsTest, WhoSitsDownBecauseNobodyOperatesIsSaid) {
+  const auto sits = [this](const Visitor& visitor) {
+    ++last;
+    seats.join(last, visitor, "s" + std::to_string(last), now);
+    return seats.come_back(last, "", now).sat_down;
+  };
+  EXPECT_FALSE(sits(kViewer));
+  EXPECT_TRUE(sits(kHere));
+  EXPECT_FALSE(sits(kHere));
+}
+
+TEST_F(SeatsTest, AnOperatorWhoComesBackByTheViewersLinkIsAViewer) {
+  const PageId first = come();
+  const std::string mine = secret(first);
+  seats.leave(first, now);
+  const PageId again = come(kViewer, mine);
+  EXPECT_FALSE(seats.operates(again));
+  EXPECT_FALSE(seats.find(again)->visitor.may_operate);
+  EXPECT_EQ(operating(), "");
+}
+
+TEST_F(SeatsTest, ASecretIsForgottenInTheEndAndSoAreTheOldestOfTooMany) {
+  const PageId first = come();
+  const std::string mine = secret(first);
+  seats.leave(first, now);
+  now += Seats::kRemember + 1.0;
+  EXPECT_NE(seats.find(come(kHere, mine))->number, 1U);
+  const PageId early = come();
+  const std::string earliest = secret(early);
+  const std::uint32_t number = seats.find(early)->number;
+  seats.leave(early, now);
+  for (std::size_t i = 0; i <= Seats::kRemembered; ++i) {
+    now += 0.001;
+    seats.leave(come(), now);
+  }
+  EXPECT_NE(seats.find(come(kHere, earliest))->number, number);
+}
+
+TEST_F(SeatsTest, ANameIsOneShortLine) {
+  const PageId page = come();
+  seats.name(page, "A\nn\u202Ena");
+  EXPECT_EQ(seats.find(page)->label(), "page 1 (127.0.0.1), Anna");
+  seats.name(page, std::string(1000, 'x') + "\xFF");
+  EXPECT_EQ(seats.find(page)->name.size(), Seats::kNameLength);
+  seats.name(99, "nobody");
+}
+
+}  // namespace
+}  // namespace phalanx

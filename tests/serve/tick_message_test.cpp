@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/tick_message.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace phalanx {
+namespace {
+
+StationView a_view() {
+  StationView view;
+  view.time = 12.5;
+  view.snapshot.tick = 2500;
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    view.snapshot.hcp_angle[j] = 0.01 * static_cast<double>(j);
+    view.snapshot.gdp_angle[j] = -0.01 * static_cast<double>(j);
+    view.sent[j] = 0.001 * static_cast<double>(j);
+    view.snapshot.measured_torque[j] = std::numeric_limits<double>::quiet_NaN();
+  }
+  view.snapshot.measured_force.fill(std::numeric_limits<double>::quiet_NaN());
+  view.stiffness = 700.0;
+  view.duration = 123e-6;
+  view.state = SafetyState::kStopping;
+  view.factor = 0.25;
+  return view;
+}
+
+TEST(TickMessage, HasTheOrderAndUnitsOfTheSchema) {
+  StationView view = a_view();
+  view.snapshot.hcp_pose[3].p = Vec3(1.0, 2.0, 3.0);
+  // A quarter turn about z: x y z w = 0 0 sin 45 cos 45.
+  view.snapshot.hcp_pose[3].R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  wire::Tick tick;
+  write_tick(view, tick);
+  EXPECT_EQ(tick.tick(), 2500U);
+  EXPECT_EQ(tick.time(), 12.5);
+  ASSERT_EQ(tick.hcp_angle_size(), kJoints);
+  EXPECT_FLOAT_EQ(tick.hcp_angle(7), 0.07F);
+  EXPECT_FLOAT_EQ(tick.gdp_angle(7), -0.07F);
+  EXPECT_FLOAT_EQ(tick.torque(7), 0.007F);
+  ASSERT_EQ(tick.hcp_pose_size(), 7 * kSegments);
+  ASSERT_EQ(tick.gdp_pose_size(), 7 * kSegments);
+  const double half = std::sqrt(0.5);
+  const double expected[] = {1, 2, 3, 0, 0, half, half};
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(static_cast<double>(tick.hcp_pose(21 + i)), expected[i], 1e-6);
+  EXPECT_EQ(tick.stiffness(), 700.0F);
+  EXPECT_EQ(tick.state(), wire::SAFETY_STOPPING);
+  EXPECT_EQ(tick.factor(), 0.25F);
+  EXPECT_TRUE(tick.at_rest());
+  EXPECT_NEAR(static_cast<double>(tick.step_us()), 123.0, 1e-3);
+}
+
+TEST(TickMessage, SensorsThatAreNotThereAreLeftOutAndOneOfManyIsAllOfThem) {
+  StationView view = a_view();
+  wire::Tick tick;
+  write_tick(view, tick);
+  EXPECT_EQ(tick.measured_torque_size(), 0);
+  EXPECT_EQ(tick.measured_force_size(), 0);
+  view.snapshot.measured_torque[4] = 0.5;
+  write_tick(view, tick);
+  ASSERT_EQ(tick.measured_torque_size(), kJoints);
+  EXPECT_TRUE(std::isnan(tick.measured_torque(3)));
+  EXPECT_EQ(tick.measured_torque(4), 0.5F);
+}
+
+TEST(TickMessage, OnlySegmentsThatTouchOrStillPushAreContacts) {
+  StationView view = a_view();
+  view.snapshot.segment[5].contact = true;
+  view.snapshot.segment[5].depth = 0.002;
+  view.snapshot.segment[5].point = Vec3(0.1, 0.2, 0.3);
+  view.snapshot.segment[5].normal = Vec3::UnitZ();
+  view.snapshot.segment[5].force_raw = 2.0;
+  view.snapshot.segment[5].force = 1.5;
+  view.snapshot.segment[9].force = 0.1;  // decays
+  view.snapshot.segment[11].depth = 1.0;
+  wire::Tick tick;
+  write_tick(view, tick);
+  write_tick(view, tick);  // the second time nothing is left of the first
+  ASSERT_EQ(tick.contact_size(), 2);
+  EXPECT_EQ(tick.contact(0).segment(), 5U);
+  EXPECT_TRUE(tick.contact(0).touching());
+  EXPECT_EQ(tick.contact(0).force_raw(), 2.0F);
+  EXPECT_EQ(tick.contact(0).force(), 1.5F);
+  ASSERT_EQ(tick.contact(0).point_size(), 3);
+  EXPECT_FLOAT_EQ(tick.contact(0).point(1), 0.2F);
+  EXPECT_EQ(tick.contact(0).normal(2), 1.0F);
+  EXPECT_EQ(tick.contact(1).segment(), 9U);
+  EXPECT_FALSE(tick.contact(1).touching());
+  EXPECT_EQ(tick.hcp_angle_size(), kJoints);
+}
+
+TEST(TickMessage, EveryStateHasItsNameOnTheWire) {
+  EXPECT_EQ(wire_state(SafetyState::kWaiting), wire::SAFETY_WAITING);
+  EXPECT_EQ(wire_state(SafetyState::kStarting), wire::SAFETY_STARTING);
+  EXPECT_EQ(wire_state(SafetyState::kRunning), wire::SAFETY_RUNNING);
+  EXPECT_EQ(wire_state(SafetyState::kStopping), wire::SAFETY_STOPPING);
+  EXPECT_EQ(wire_state(SafetyState::kStopped), wire::SAFETY_STOPPED);
+  EXPECT_EQ(wire_state(SafetyState::kFault), wire::SAFETY_FAULT);
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/uploads.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "phalanx/mesh/import.h"
+#include "record/temporary_folder.h"
+#include "serve/foreign_files.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+/// A tetrahedron, so many millimetres from corner to corner.
+std::string solid(int mm) {
+  const std::string e = std::to_string(mm);
+  return "v 0 0 0\nv " + e + " 0 0\nv 0 " + e + " 0\nv 0 0 " + e + "\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+}
+
+nlohmann::json taken(const std::string& query, const std::string& bytes, const std::filesystem::path& folder,
+                     const Overrides& in_force = {}) {
+  return nlohmann::json::parse(take_upload(upload_of(query, bytes), folder, [&] { return in_force; }));
+}
+
+std::size_t files_in(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  if (std::filesystem::exists(folder))
+    for ([[maybe_unused]] const auto& entry : std::filesystem::recursive_directory_iterator(folder)) ++count;
+  return count;
+}
+
+TEST(Uploads, TheQuerySaysNameSizeAndUnit) {
+  const UploadedMesh mesh = upload_of("name=my%20mug%2Fx+y.stl&size_mm=90.5&unit=mm&more=1", "abc");
+  EXPECT_EQ(mesh.name, "my mug/x y.stl");
+  EXPECT_EQ(mesh.size_mm, 90.5);
+  EXPECT_EQ(mesh.unit, "mm");
+  EXPECT_EQ(mesh.bytes, "abc");
+  for (const char* wrong : {"size_mm=-1", "size_mm=nan", "size_mm=inf", "size_mm=2001", "size_mm=9x",
+                            "size_mm=", "unit=mile", "unit="})
+    EXPECT_THROW(upload_of("name=a.obj&" + std::string(wrong), "abc"), std::invalid_argument) << wrong;
+  EXPECT_THROW(upload_of("name=a.obj", ""), std::invalid_argument);
+  EXPECT_EQ(upload_of("name=%zz%4", "x").name, "%zz%4");
+  EXPECT_EQ(upload_of("&&=&name", "x").name, "");
+}
+
+TEST(Uploads, AGoodMeshIsKeptUnderANameOfOurOwn) {
+  const TemporaryFolder folder;
+  const auto answer = taken("name=..%2F..%2Fetc%2Fpass%20wd.OBJ&unit=mm", solid(60), folder / "up");
+  ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
+  const std::filesystem::path file = answer["file"].get<std::string>();
+  EXPECT_EQ(file.parent_path(), folder / "up");
+  EXPECT_THAT(file.filename().string(), ::testing::MatchesRegex("passwd-[0-9a-f]{16}\\.obj"));
+  EXPECT_EQ(testing::read_file(file), solid(60));
+  EXPECT_TRUE(answer.contains("report"));
+  EXPECT_FALSE(names_foreign_file("objects.0.file", file.string(), folder / "up"));
+  const auto same = taken("name=passwd.obj&unit=mm", solid(60), folder / "up");
+  EXPECT_EQ(same["file"], answer["file"]);
+  const auto other = taken("name=passwd.obj&unit=mm", solid(61), folder / "up");
+  EXPECT_NE(other["file"], answer["file"]);
+}
+
+TEST(Uploads, WhatIsNoMeshIsRefusedInWordsAndLeavesNothing) {
+  const TemporaryFolder folder;
+  for (const char* name : {"mug.exe", "mug", "", ".obj", "mug.obj.toml", "%ff%fe.sh"}) {
+    const auto answer = taken("name=" + std::string(name), "MZ...", folder / "up");
+    EXPECT_FALSE(answer["ok"].get<bool>()) << name;
+    EXPECT_FALSE(answer["error"].get<std::string>().empty()) << name;
+  }
+  for (const char* name : {"mug.obj", "mug.stl", "mug.ply", "mug.glb", "mug.3ds"}) {
+    const auto answer = taken("name=" + std::string(name), std::string("broken \0\xFF", 9), folder / "up");
+    EXPECT_FALSE(answer["ok"].get<bool>()) << name;
+  }
+  EXPECT_EQ(files_in(folder / "up"), 0U);
+}
+
+TEST(Uploads, ASizeThatNoHandCanGraspIsNotKept) {
+  const TemporaryFolder folder;
+  const auto answer = taken("name=a.obj&unit=m", solid(60), folder / "up");  // 60 m
+  EXPECT_FALSE(answer["ok"].get<bool>());
+  EXPECT_THAT(answer["error"].get<std::string>(), ::testing::Not(::testing::IsEmpty()));
+  EXPECT_TRUE(answer.contains("report"));
+  EXPECT_EQ(files_in(folder / "up"), 0U);
+}
+
+TEST(Uploads, AFolderThatCannotBeWrittenIsSaid) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "file") << "in the way";
+  const auto answer = taken("name=a.obj&unit=mm", solid(60), folder / "file");
+  EXPECT_FALSE(answer["ok"].get<bool>());
+}
+
+/// The older the lower its number.
+std::filesystem::path put_old(const std::filesystem::path& folder, const std::string& name, int number) {
+  std::filesystem::create_directories(folder);
+  const auto file = folder / name;
+  std::ofstream(file) << number;
+  std::filesystem::last_write_time(
+      file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1000 - number));
+  return file;
+}
+
+std::string upload_name(int number) {
+  const std::string digits = std::to_string(number);
+  return "old-" + std::string(16 - digits.size(), 'a') + digits + ".obj";
+}
+
+TEST(Uploads, KeepsTheNewestFifty) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 60; ++i) put_old(folder / "up", upload_name(i), i);
+  const auto answer = taken("name=new.obj&unit=mm", solid(60), folder / "up");
+  EXPECT_EQ(files_in(folder / "up"), 50U);
+  EXPECT_TRUE(std::filesystem::exists(answer["file"].get<std::string>()));
+  EXPECT_FALSE(std::filesystem::exists(folder / "up" / upload_name(10)));
+  EXPECT_TRUE(std::filesystem::exists(folder / "up" / upload_name(59)));
+}
+
+TEST(Uploads, FilesOfPeopleStayHoweverOldTheyAre) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> theirs;
+  for (const char* name :
+       {"thesis.odt", "mug.obj", "mug-2.stl", "-0123456789abcdef.obj", "mug-0123456789abcdeF.obj",
+        "mug-0123456789abcdeg.obj", "mug-0123456789abcde.obj", "mug_0123456789abcdef.obj",
+        "my mug-0123456789abcdef.obj", "mug-0123456789abcdef.obj.bak", "mug-0123456789abcdef.txt",
+        "mug-0123456789abcdef", "0123456789abcdef.obj"})
+    theirs.push_back(put_old(folder / "up", name, 0));
+  for (int i = 0; i < 60; ++i) put_old(folder / "up", upload_name(i), 1 + i);
+  ASSERT_TRUE(taken("name=new.obj&unit=mm", solid(60), folder / "up")["ok"].get<bool>());
+  for (const auto& file : theirs) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+  EXPECT_EQ(files_in(folder / "up"), 50U + theirs.size());
+}
+
+TEST(Uploads, WhatTheSceneInForceNamesStays) {
+  const TemporaryFolder folder;
+  const auto named = put_old(folder / "up", upload_name(0), 0);
+  const auto other = put_old(folder / "up", upload_name(1), 1);
+  for (int i = 2; i < 60; ++i) put_old(folder / "up", upload_name(i), i);
+  const auto answer = taken("name=new.obj&unit=mm", solid(60), folder / "up",
+                            {{"rate_hz", "250"}, {"objects.0.file", "'" + named.string() + "'"}});
+  ASSERT_TRUE(answer["ok"].get<bool>());
+  EXPECT_TRUE(std::filesystem::exists(named));
+  EXPECT_FALSE(std::filesystem::exists(other));
+}
+
+TEST(Uploads, WhatNobodyWaitsForAnyMoreLeavesNothing) {
+  const TemporaryFolder folder;
+  for (const int asked_before : {0, 1}) {
+    int asked = 0;
+    const auto answer =
+        nlohmann::json::parse(take_upload(upload_of("name=a.obj&unit=mm", solid(60)), folder / "up", [&] {
+          return asked++ < asked_before ? std::optional(Overrides()) : std::nullopt;
+        }));
+    EXPECT_FALSE(answer["ok"].get<bool>());
+    EXPECT_EQ(asked, asked_before + 1);
+    EXPECT_EQ(files_in(folder / "up"), 0U);
+  }
+}
+
+TEST(Uploads, AMeshThatWouldTakeMinutesToCheckIsRefusedInWords) {
+  const TemporaryFolder folder;
+  std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\n";
+  for (std::size_t i = 0; i <= kMostUploadedTriangles; ++i) mesh += "f 1 2 3\n";
+  const auto answer = taken("name=big.obj&unit=mm", mesh, folder / "up");
+  EXPECT_FALSE(answer["ok"].get<bool>());
+  EXPECT_EQ(answer["error"],
+            "big.obj: 500001 triangles; decimate the mesh before sending it, the limit is 500000");
+  EXPECT_EQ(files_in(folder / "up"), 0U);
+}
+
+TEST(Uploads, TheImportsLimitIsOffWhereNobodySetsIt) {
+  const std::string mesh = solid(60);
+  EXPECT_NO_THROW(import_and_check_from_memory(mesh.data(), mesh.size(), "obj", {.unit = 1e-3}));
+  EXPECT_NO_THROW(
+      import_and_check_from_memory(mesh.data(), mesh.size(), "obj", {.unit = 1e-3, .most_triangles = 4}));
+  EXPECT_THROW(
+      import_and_check_from_memory(mesh.data(), mesh.size(), "obj", {.unit = 1e-3, .most_triangles = 3}),
+      std::invalid_argument);
+}
+
+class ForeignFiles : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(ForeignFiles, AreSeenHoweverTheyAreWritten) {
+  const auto& [key, value] = GetParam();
+  EXPECT_TRUE(names_foreign_file(key, value, "/tmp/up")) << key << " = " << value;
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, ForeignFiles,
+    ::testing::Values(
+        std::pair{"objects.0.file", "/etc/passwd"}, std::pair{"objects.0.file", "\"/etc/passwd\""},
+        std::pair{"objects.0.file", "'/etc/passwd'"}, std::pair{"objects.0.file", "\"\"\"/etc/passwd\"\"\""},
+        std::pair{"objects.0.file", R"("\u002fetc\u002fpasswd")"},
+        std::pair{"objects.0.file", R"("\U0000002Fetc")"}, std::pair{"objects.0.file", "secret.obj"},
+        std::pair{"objects.0.file", "\"secret.obj\""}, std::pair{"objects.0.file", ".."},
+        std::pair{"objects.0.file", "/tmp/up/../secret.obj"}, std::pair{"objects.0.file", "/tmp/up/a/b.obj"},
+        std::pair{"objects.0.file", "/tmp/up/a.b.obj"}, std::pair{"objects.0.file", "/tmp/up/.obj"},
+        std::pair{"objects.0.file", "/tmp/up/"}, std::pair{"objects.0.file", "/tmp/upper/a.obj"},
+        std::pair{"objects.0.file", "/tmp/up/a.obj/../../x"},
+        std::pair{"objects.0", "{kind='file', file='secret.obj'}"},
+        std::pair{"objects", "[{kind='file', file='/etc/x'}]"},
+        std::pair{"objects", R"([{kind='file', "\u0066ile"='secret.obj'}])"},
+        std::pair{"objects.00.file", "secret.obj"}, std::pair{"motion.file", "walk.csv"},
+        std::pair{"motion", "{file = 'walk.csv'}"}, std::pair{"hand.profile", "../x"},
+        std::pair{"hand.profile", "mine.toml"}, std::pair{"hand.profile", R"("mine\u002etoml")"},
+        std::pair{"hand", "{profile = 'mine.toml'}"}, std::pair{"device.file", "./x.toml"},
+        std::pair{"device", "{file = './x'}"}, std::pair{"patient", "'/x'"},
+        std::pair{"objects.0.kind", "'''\n/etc/passwd'''"}, std::pair{"odd.file", "x"}));
+
+TEST(OwnFiles, ShippedNamesNumbersAndWhatWasSentMayBeNamed) {
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
+           {"hand.profile", "large-man"},
+           {"hand.profile", "\"large-man\""},
+           {"rate_hz", "250"},
+           {"rate_hz", ""},
+           {"smoothing.enabled", "true"},
+           {"objects.0.rotation_deg", "[0, 0, -42]"},
+           {"force.law", "hooke"},
+           {"objects.0.file", "/tmp/up/mug-0123456789abcdef.obj"},
+           {"objects.0.file", "\"/tmp/up/mug-0123456789abcdef.obj\""},
+           {"objects.0.file", "\"\""},
+           {"objects.0", "{kind='file', file='/tmp/up/mug-0123456789abcdef.obj', size_mm=90}"}})
+    EXPECT_FALSE(names_foreign_file(key, value, "/tmp/up")) << key << " = " << value;
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/serve/reach.h"
+
+#include <gmock/gmock.h>
+#include <openssl/pem.h>
+#include <openssl/x509v3.h>
+#include <qrencode.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <sstream>
+
+namespace phalanx {
+namespace {
+
+using testing::Contains;
+using testing::Each;
+using testing::EndsWith;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+TEST(RandomToken, IsAHundredAndTwentyEightBitsThatAreNeverTheSame) {
+  std::set<std::string> seen;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string token = random_token();
+    EXPECT_THAT(token, MatchesRegex("[A-Za-z0-9_-]{22}"));
+    EXPECT_TRUE(seen.insert(token).second);
+  }
+}
+
+TEST(LanUrls, NameEveryAddressAndTheToken) {
+  const std::vector<std::string> urls = lan_urls(8480, "abc");
+  EXPECT_EQ(urls.size(), machine_addresses().size());
+  EXPECT_THAT(urls, Each(StartsWith("https://")));
+  EXPECT_THAT(urls, Each(EndsWith(":8480/?token=abc")));
+  EXPECT_THAT(lan_urls(8480, ""), Each(EndsWith(":8480/")));
+  EXPECT_THAT(machine_addresses(), testing::Not(Contains("127.0.0.1")));
+}
+
+TEST(SshLine, IsForThoseWhoCameBySsh) {
+  ASSERT_EQ(::setenv("SSH_CONNECTION", "198.51.100.7 50000 192.0.2.2 22", 1), 0);
+  EXPECT_THAT(ssh_line(8480), MatchesRegex("ssh -L 8480:127\\.0\\.0\\.1:8480 [^ ]+@192\\.0\\.2\\.2"));
+  ASSERT_EQ(::setenv("SSH_CONNECTION", "198.51.100.7 50000 192.0.2.2 2222", 1), 0);
+  EXPECT_THAT(ssh_line(8481), StartsWith("ssh -p 2222 -L 8481:127.0.0.1:8481 "));
+  ASSERT_EQ(::setenv("SSH_CONNECTION", "nonsense", 1), 0);
+  EXPECT_EQ(ssh_line(8480), "");
+  ASSERT_EQ(::unsetenv("SSH_CONNECTION"), 0);
+  EXPECT_EQ(ssh_line(8480), "");
+}
+
+/// The modules of a printed code, true: dark; the colours are looked at by the caller.
+std::vector<std::vector<bool>> modules(const std::string& text) {
+  std::vector<std::vector<bool>> rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find('m') + 1;
+    const std::string cells = line.substr(begin, line.rfind('\x1b') - begin);
+    std::vector<bool> upper;
+    std::vector<bool> lower;
+    for (std::size_t i = 0; i < cells.size();) {
+      const bool space = cells[i] == ' ';
+      const std::string cell = cells.substr(i, space ? 1 : 3);
+      upper.push_back(cell == "\u2588" || cell == "\u2580");
+      lower.push_back(cell == "\u2588" || cell == "\u2584");
+      i += cell.size();
+    }
+    rows.push_back(upper);
+    rows.push_back(lower);
+  }
+  return rows;
+}
+
+TEST(QrText, IsTheCodeWithAQuietZoneDarkOnLight) {
+  const std::string url = "https://192.0.2.2:8480/?token=AAAAAAAAAAAAAAAAAAAAAA";
+  const std::string text = qr_text(url);
+  const auto rows = modules(text);
+  const std::unique_ptr<QRcode, decltype(&QRcode_free)> code(
+      QRcode_encodeString8bit(url.c_str(), 0, QR_ECLEVEL_M), &QRcode_free);
+  const auto width = static_cast<std::size_t>(code->width);
+  ASSERT_GE(rows.size(), width + 8);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    ASSERT_EQ(rows[row].size(), width + 8);
+    for (std::size_t column = 0; column < width + 8; ++column) {
+      const bool inside = row >= 4 && row < width + 4 && column >= 4 && column < width + 4;
+      const bool dark = inside && (code->data[(row - 4) * width + column - 4] & 1U) != 0;
+      ASSERT_EQ(rows[row][column], dark) << row << " " << column;
+    }
+  }
+  EXPECT_THAT(text, StartsWith("\x1b[38;5;16;48;5;231m"));
+  EXPECT_THAT(text, EndsWith("\x1b[0m\n"));
+}
+
+TEST(QrText, RefusesWhatDoesNotFit) {
+  EXPECT_THROW((void)qr_text(""), std::runtime_error);
+  EXPECT_THROW((void)qr_text(std::string(5000, 'x')), std::runtime_error);
+}
+
+class Certificate : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  static std::string text_of(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  static unsigned mode_of(const std::filesystem::path& path) {
+    struct stat status{};
+    EXPECT_EQ(::stat(path.c_str(), &status), 0);
+    return status.st_mode & 07777U;
+  }
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("phalanx-certificate-" + std::to_string(::getpid()));
+};
+
+TEST_F(Certificate, IsForTheNamesAndItsKeyIsSecret) {
+  const CertificateFiles files =
+      make_self_signed_certificate(folder_ / "deep", {"station", "192.0.2.2", "fd00::2"});
+  EXPECT_EQ(mode_of(files.key), 0600U);
+  EXPECT_EQ(mode_of(folder_ / "deep"), 0700U);
+  const std::unique_ptr<BIO, decltype(&BIO_free_all)> file(BIO_new_file(files.certificate.c_str(), "r"),
+                                                           &BIO_free_all);
+  const std::unique_ptr<X509, decltype(&X509_free)> made(
+      PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr), &X509_free);
+  ASSERT_TRUE(made);
+  for (const char* name : {"station", "localhost"}) {
+    EXPECT_EQ(X509_check_host(made.get(), name, 0, 0, nullptr), 1) << name;
+  }
+  EXPECT_EQ(X509_check_host(made.get(), "other", 0, 0, nullptr), 0);
+  for (const char* address : {"192.0.2.2", "fd00::2", "127.0.0.1", "::1"}) {
+    EXPECT_EQ(X509_check_ip_asc(made.get(), address, 0), 1) << address;
+  }
+  int days = 0;
+  int rest = 0;
+  ASSERT_EQ(ASN1_TIME_diff(&days, &rest, X509_get0_notBefore(made.get()), X509_get0_notAfter(made.get())), 1);
+  EXPECT_EQ(days, 397);
+  EXPECT_EQ(X509_verify(made.get(), X509_get0_pubkey(made.get())), 1) << "signed by itself";
+  EXPECT_THAT(certificate_fingerprint(files.certificate), MatchesRegex("([0-9A-F]{2}:){31}[0-9A-F]{2}"));
+}
+
+TEST_F(Certificate, IsUsedAgainWhileItFits) {
+  const CertificateFiles files = make_self_signed_certificate(folder_, {"station", "odd name; is left out"});
+  const std::string first = text_of(files.certificate);
+  ASSERT_EQ(::chmod(files.key.c_str(), 0644), 0);
+  (void)make_self_signed_certificate(folder_, {"station", "odd name; is left out"});
+  EXPECT_EQ(text_of(files.certificate), first);
+  EXPECT_EQ(mode_of(files.key), 0600U) << "closed again";
+  (void)make_self_signed_certificate(folder_, {"station", "192.0.2.9"});
+  EXPECT_NE(text_of(files.certificate), first) << "it was not for this address";
+}
+
+TEST_F(Certificate, IsMadeAnewIfWhatIsThereIsBroken) {
+  const CertificateFiles files = make_self_signed_certificate(folder_, {});
+  const std::string first = text_of(files.certificate);
+  std::ofstream(files.key) << "nonsense";
+  (void)make_self_signed_certificate(folder_, {});
+  EXPECT_NE(text_of(files.certificate), first);
+  EXPECT_THAT(text_of(files.key), StartsWith("-----BEGIN PRIVATE KEY-----"));
+}
+
+TEST_F(Certificate, SaysWhereItCannotBeWritten) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "file") << "in the way";
+  EXPECT_THROW((void)make_self_signed_certificate(folder_ / "file" / "keys", {}), std::runtime_error);
+  EXPECT_THROW((void)certificate_fingerprint(folder_ / "file"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace phalanx

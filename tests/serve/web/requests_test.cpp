@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which requests get in, how far, and how they are answered.
+#include <gmock/gmock.h>
+
+#include <random>
+#include <thread>
+
+#include "serve/web/page_client.h"
+#include "serve/web/web_fixture.h"
+
+namespace phalanx {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class WebRequests : public WebTest {
+ protected:
+  static std::string post(const std::string& path, const std::string& fields) {
+    return "POST " + path +
+           " HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nConnection: close\r\n" + fields +
+           "\r\n";
+  }
+  /// Sends back what came.
+  void echo() {
+    application_.on_requested = [](const WebRequest& request, const std::function<void(WebAnswer)>& answer) {
+      WebAnswer same;
+      same.body = std::make_shared<const std::string>(request.body);
+      answer(same);
+    };
+  }
+};
+
+std::string with_host(const std::string& host) {
+  return "GET / HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n";
+}
+
+TEST_F(WebRequests, ThisMachinesNamesAreLetIn) {
+  start();
+  for (const char* host :
+       {"127.0.0.1", "127.0.0.1:8480", "localhost", "LOCALHOST:1", "localhost.", "[::1]:8480"}) {
+    EXPECT_EQ(status_of(ask(with_host(host))), 200) << host;
+  }
+  std::string name(256, '\0');
+  ASSERT_EQ(::gethostname(name.data(), name.size() - 1), 0);
+  EXPECT_EQ(status_of(ask(with_host(name.c_str()))), 200) << name;
+}
+
+TEST_F(WebRequests, OtherNamesAreNot) {
+  start();
+  for (const char* host :
+       {"evil.example", "localhost.evil.example", "192.0.2.1", "localhost:80x", "127.0.0.1 x", "[::2]",
+        "[::1", "", ":8480", "localhost@evil.example", "2130706433"}) {
+    const std::string answer = ask(with_host(host));
+    EXPECT_EQ(status_of(answer), 421) << host;
+    EXPECT_THAT(body_of(answer), HasSubstr("address that the station printed")) << host;
+  }
+  EXPECT_EQ(status_of(ask("GET / HTTP/1.1\r\nConnection: close\r\n\r\n")), 421);
+  EXPECT_EQ(
+      status_of(ask("GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\nConnection: close\r\n\r\n")),
+      400);
+  EXPECT_THAT(application_.requests(), IsEmpty());
+}
+
+TEST_F(WebRequests, OnlyThreeMethodsAreUnderstood) {
+  start();
+  for (const char* method : {"PUT", "DELETE", "OPTIONS", "TRACE", "PATCH", "BREW"}) {
+    const std::string answer =
+        ask(std::string(method) + " / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
+    EXPECT_EQ(status_of(answer), 405) << method;
+    EXPECT_EQ(field_of(answer, "Allow"), "GET, HEAD, POST") << method;
+  }
+}
+
+TEST_F(WebRequests, AHeadHasALimit) {
+  start();
+  EXPECT_EQ(status_of(ask(get("/", "X-Long: " + std::string(9000, 'x') + "\r\n"))), 431);
+  std::string many;
+  for (int i = 0; i < 5000; ++i) many += "X-" + std::to_string(i) + ": y\r\n";
+  EXPECT_EQ(status_of(ask(get("/", many))), 431);
+  EXPECT_EQ(status_of(ask(get("/", "X-Long: " + std::string(4000, 'x') + "\r\n"))), 200);
+  expect_alive();
+}
+
+TEST_F(WebRequests, WhatIsNoHttpIsToldSo) {
+  start();
+  for (const std::string& text :
+       {std::string("hello\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"), std::string("GET /\r\n\r\n"),
+        std::string("\x16\x03\x01\x02\x01\x01\r\n\r\n"), get("/", "no colon\r\n"),
+        get("/", "Content-Length: -1\r\n"), get("/", "Content-Length: 99999999999999999999\r\n"),
+        get("/", "Content-Length: 1\r\nTransfer-Encoding: chunked\r\n")}) {
+    EXPECT_EQ(status_of(ask(text)), 400) << text;
+  }
+  expect_alive();
+}
+
+TEST_F(WebRequests, TheApplicationGetsWhatIsNoFile) {
+  echo();
+  start();
+  EXPECT_EQ(status_of(ask(get("/what/is%20this?a=b&c", "X-Phalanx-Page: abc\r\n"))), 200);
+  const auto requests = application_.requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_EQ(requests[0].method, "GET");
+  EXPECT_EQ(requests[0].path, "/what/is this");
+  EXPECT_EQ(requests[0].query, "a=b&c");
+  EXPECT_EQ(requests[0].page_secret, "abc");
+  EXPECT_EQ(requests[0].visitor.address, "127.0.0.1");
+  EXPECT_TRUE(requests[0].visitor.may_operate);
+}
+
+TEST_F(WebRequests, ABodyComesWholeOrInChunksOrWhenTold) {
+  echo();
+  application_.limit = 10;
+  start();
+  EXPECT_EQ(body_of(ask(post("/mesh", "Content-Length: 10\r\n") + "0123456789")), "0123456789");
+  EXPECT_EQ(
+      body_of(ask(post("/mesh", "Transfer-Encoding: chunked\r\n") + "3\r\nabc\r\n4\r\ndefg\r\n0\r\n\r\n")),
+      "abcdefg");
+  RawClient patient(port());
+  patient.say(post("/mesh", "Content-Length: 3\r\nExpect: 100-continue\r\n"));
+  EXPECT_EQ(patient.hear_until("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  patient.say("xyz");
+  EXPECT_EQ(body_of(patient.hear_answer()), "xyz");
+}
+
+TEST_F(WebRequests, ABodyIsNoLongerThanAllowed) {
+  echo();
+  application_.limit = 10;
+  start();
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 11\r\n") + "01234567890")), 413);
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 99999999999\r\n"))), 413)
+      << "not a byte is waited for";
+  EXPECT_EQ(status_of(ask(post("/mesh", "Transfer-Encoding: chunked\r\n") + "b\r\n01234567890\r\n0\r\n\r\n")),
+            413);
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 11\r\nExpect: 100-continue\r\n"))), 413);
+  EXPECT_EQ(status_of(ask(post("/mesh", "Transfer-Encoding: chunked\r\n") + "zz\r\nabc\r\n")), 400);
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\nExpect: miracles\r\n"))), 417);
+  EXPECT_THAT(application_.requests(), IsEmpty());
+  expect_alive();
+}
+
+TEST_F(WebRequests, NothingIsSentWhereNothingIsTaken) {
+  echo();
+  start();
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\n") + "x")), 413);
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 0\r\n"))), 200);
+}
+
+TEST_F(WebRequests, APostComesFromThePageItself) {
+  echo();
+  start();
+  const auto from = [&](const std::string& origin) {
+    return status_of(
+        ask("POST /x HTTP/1.1\r\nHost: localhost:8480\r\nConnection: close\r\n" + origin + "\r\n"));
+  };
+  EXPECT_EQ(from("Origin: http://localhost:8480\r\n"), 200);
+  EXPECT_EQ(from(""), 403);
+  EXPECT_EQ(from("Origin: null\r\n"), 403);
+  EXPECT_EQ(from("Origin: http://localhost\r\n"), 403);
+  EXPECT_EQ(from("Origin: https://localhost:8480\r\n"), 403);
+  EXPECT_EQ(from("Origin: http://localhost:8480.evil.example\r\n"), 403);
+}
+
+TEST_F(WebRequests, AnAnswerMayComeLaterFromAnyThreadAndOnce) {
+  std::vector<std::thread> threads;
+  application_.on_requested = [&threads](const WebRequest&, std::function<void(WebAnswer)> answer) {
+    threads.emplace_back([answer = std::move(answer)] {
+      WebAnswer one;
+      one.body = std::make_shared<const std::string>("first");
+      answer(one);
+      one.body = std::make_shared<const std::string>("second");
+      answer(one);
+    });
+  };
+  start();
+  EXPECT_EQ(body_of(ask(get("/later"))), "first");
+  server_->stop();
+  for (std::thread& thread : threads) thread.join();
+}
+
+TEST_F(WebRequests, AnAnswerThatIsForgottenIsSaidToBe) {
+  application_.on_requested = [](const WebRequest&, const std::function<void(WebAnswer)>&) {};
+  start();
+  EXPECT_EQ(status_of(ask(get("/forgotten"))), 500);
+}
+
+TEST_F(WebRequests, AnAnswerMayComeWhenTheServerIsNoMore) {
+  std::function<void(WebAnswer)> kept;
+  application_.on_requested = [&](const WebRequest&, std::function<void(WebAnswer)> answer) {
+    kept = std::move(answer);
+  };
+  start();
+  RawClient client(port());
+  client.say(get("/never"));
+  ASSERT_TRUE(application_.await_requests(1));
+  server_.reset();
+  EXPECT_EQ(client.hear_all(), "");
+  kept(WebAnswer{});
+}
+
+TEST_F(WebRequests, WhoIsSlowToSayOneIsLetGo) {
+  settings_.request_timeout = 1.0;
+  start();
+  RawClient slow(port());
+  slow.say("GET / HTTP/1.1\r\nHost: local");
+  EXPECT_EQ(slow.hear_all(), "");
+  expect_alive();
+}
+
+TEST_F(WebRequests, ABodyThatDoesNotComeIsLetGo) {
+  application_.limit = 100;
+  settings_.idle_timeout = 1.0;
+  start();
+  RawClient slow(port());
+  slow.say(post("/mesh", "Content-Length: 100\r\n") + "a");
+  EXPECT_EQ(slow.hear_all(), "");
+  EXPECT_THAT(application_.requests(), IsEmpty());
+  expect_alive();
+}
+
+TEST_F(WebRequests, MoreThatAskThanAllowedAreRefused) {
+  settings_.connections = 3;
+  start();
+  std::vector<std::unique_ptr<RawClient>> inside;
+  for (int i = 0; i < 3; ++i) {
+    inside.push_back(std::make_unique<RawClient>(port()));
+    inside.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_EQ(status_of(inside.back()->hear_answer()), 200);
+  }
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(status_of(ask(get("/"))), 503);
+  inside[0]->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(status_of(inside[0]->hear_answer()), 200) << "those inside do not notice";
+  inside.clear();
+  while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
+}
+
+TEST_F(WebRequests, AnEighthOfThePlacesIsKeptForPostAndPages) {
+  settings_.connections = 16;
+  start();
+  std::vector<std::unique_ptr<RawClient>> inside;
+  for (int i = 0; i < 14; ++i) {
+    inside.push_back(std::make_unique<RawClient>(port()));
+    inside.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_EQ(status_of(inside.back()->hear_answer()), 200);
+  }
+  EXPECT_EQ(status_of(ask(get("/"))), 503);
+  EXPECT_EQ(status_of(PageClient(port()).welcome()), 101);
+  EXPECT_EQ(status_of(ask(post("/stop", "Content-Length: 0\r\n"))), 404) << "the application's answer";
+  EXPECT_THAT(application_.requests(), testing::SizeIs(1));
+}
+
+TEST_F(WebRequests, WhoOnlyConnectsOrHasNoRightHostIsLetGoSoon) {
+  settings_.proof_timeout = 0.5;
+  start();
+  RawClient silent(port());
+  RawClient wrong(port());
+  wrong.say("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  EXPECT_EQ(status_of(wrong.hear_answer()), 421);
+  EXPECT_EQ(silent.hear_all(), "");
+  EXPECT_EQ(wrong.hear_all(), "");
+}
+
+TEST_F(WebRequests, WhoOnlyConnectsKeepsNobodyOut) {
+  settings_.proof_timeout = 3600.0;
+  settings_.request_timeout = 3600.0;
+  start();
+  std::vector<std::unique_ptr<RawClient>> silent;
+  for (int i = 0; i < 200; ++i) silent.push_back(std::make_unique<RawClient>(port()));
+  expect_alive();
+  EXPECT_EQ(silent[100]->hear_all(), "") << "the oldest went";
+  silent.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(status_of(silent.back()->hear_answer()), 200) << "the newest stay";
+}
+
+TEST_F(WebRequests, AThousandConnectsLeaveItWorking) {
+  start();
+  RawClient inside(port());
+  inside.say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  ASSERT_EQ(status_of(inside.hear_answer()), 200);
+  {
+    std::vector<std::unique_ptr<RawClient>> crowd;
+    for (int i = 0; i < 900; ++i) crowd.push_back(std::make_unique<RawClient>(port()));
+    inside.say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(status_of(inside.hear_answer()), 200);
+  }
+  for (int i = 0; i < 100; ++i) RawClient(port()).vanish();
+  while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
+}
+
+TEST_F(WebRequests, GarbageLeavesItWorking) {
+  constexpr unsigned kSeed = 20261122;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  std::mt19937 random(kSeed);
+  const std::vector<std::string> beginnings{
+      "",
+      "GET ",
+      "GET / HTTP/1.1\r\n",
+      "GET / HTTP/1.1\r\nHost: localhost\r\n",
+      "POST /x HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n"
+      "Transfer-Encoding: chunked\r\n\r\n",
+      "GET / HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n"
+      "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"};
+  application_.limit = 1000;
+  settings_.connections = 500;  // those that linger should not keep the next ones out
+  start();
+  for (int i = 0; i < 2000; ++i) {
+    RawClient client(port());
+    std::string text = beginnings[random() % beginnings.size()];
+    const bool upgrades = text.find("websocket") != std::string::npos;
+    client.say(text);
+    if (upgrades) client.hear_until("\r\n\r\n");
+    std::string garbage(random() % 3000, '\0');
+    for (char& c : garbage) c = static_cast<char>(random());
+    client.say(garbage);
+    if (random() % 2 == 0) client.vanish();
+  }
+  while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a server is started with, and the thread that it has.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <future>
+#include <sstream>
+
+#include "phalanx/serve/reach.h"
+#include "serve/web/page_client.h"
+#include "serve/web/web_fixture.h"
+
+namespace phalanx {
+namespace {
+
+using testing::HasSubstr;
+
+class WebServing : public WebTest {
+ protected:
+  /// What the constructor says to these settings; empty: nothing.
+  std::string refusal() {
+    try {
+      const WebServer server(settings_, application_);
+    } catch (const WebServerError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  void with_certificate() {
+    const CertificateFiles files = make_self_signed_certificate(folder_ / "keys", machine_addresses());
+    settings_.certificate = files.certificate;
+    settings_.key = files.key;
+  }
+};
+
+TEST_F(WebServing, AnAddressThatOthersReachNeedsTlsAndAToken) {
+  for (const char* address : {"0.0.0.0", "::", "192.0.2.77"}) {
+    settings_.address = address;
+    EXPECT_THAT(refusal(), HasSubstr("a certificate, its key and a token are needed")) << address;
+  }
+  settings_.address = "0.0.0.0";
+  settings_.operator_token = random_token();
+  EXPECT_THAT(refusal(), HasSubstr("a certificate, its key and a token are needed"));
+  with_certificate();
+  EXPECT_EQ(refusal(), "");
+  settings_.operator_token.clear();
+  EXPECT_THAT(refusal(), HasSubstr("a certificate, its key and a token are needed"));
+}
+
+TEST_F(WebServing, AnAddressIsOneOfThisMachine) {
+  settings_.address = "somewhere";
+  EXPECT_THAT(refusal(), HasSubstr("\"somewhere\" is no IP address"));
+  settings_.address = "203.0.113.9";
+  settings_.operator_token = random_token();
+  with_certificate();
+  EXPECT_THAT(refusal(), HasSubstr("is it an address of this machine?"));
+}
+
+TEST_F(WebServing, APortThatIsTakenIsSaidOrTheNextIsTried) {
+  start();
+  settings_.port = port();
+  settings_.next_free_port = false;
+  EXPECT_THAT(refusal(), HasSubstr("is taken by another program"));
+  settings_.next_free_port = true;
+  const WebServer next(settings_, application_);
+  EXPECT_GT(next.port(), port());
+  EXPECT_LE(next.port(), port() + 20);
+  EXPECT_EQ(next.url(), "http://127.0.0.1:" + std::to_string(next.port()) + "/");
+}
+
+TEST_F(WebServing, TokensAreLongAndTwo) {
+  settings_.viewer_token = random_token();
+  EXPECT_THAT(refusal(), HasSubstr("without the operator's"));
+  settings_.operator_token = settings_.viewer_token;
+  EXPECT_THAT(refusal(), HasSubstr("must not be the operator's"));
+  settings_.operator_token = "short";
+  EXPECT_THAT(refusal(), HasSubstr("at least 16 letters"));
+  settings_.operator_token = "sixteen letters; or more";
+  EXPECT_THAT(refusal(), HasSubstr("at least 16 letters"));
+}
+
+TEST_F(WebServing, ACertificateIsOneAndItsKeyIsItsOwn) {
+  settings_.certificate = folder_ / "secret.txt";
+  EXPECT_THAT(refusal(), HasSubstr("only one of them was given"));
+  settings_.key = folder_ / "secret.txt";
+  EXPECT_THAT(refusal(), HasSubstr("no certificate in PEM"));
+  with_certificate();
+  EXPECT_EQ(refusal(), "");
+  settings_.key = make_self_signed_certificate(folder_ / "others", {}).key;
+  EXPECT_THAT(refusal(), HasSubstr("belongs to"));
+}
+
+TEST_F(WebServing, LimitsAreSensible) {
+  settings_.frame_rate_hz = 0.0;
+  EXPECT_THAT(refusal(), HasSubstr("frame rate"));
+  settings_.frame_rate_hz = 60.0;
+  settings_.queue_limit = 0;
+  EXPECT_THAT(refusal(), HasSubstr("at least 1"));
+  settings_.queue_limit = 1;
+  settings_.idle_timeout = 0.0;
+  EXPECT_THAT(refusal(), HasSubstr("timeout"));
+}
+
+TEST_F(WebServing, AFolderThatIsNoFrontEndIsNotReadWhole) {
+  for (int i = 0; i < 1100; ++i) write("many/" + std::to_string(i), "");
+  settings_.site = folder_ / "many";
+  EXPECT_THAT(refusal(), HasSubstr("no built front-end"));
+}
+
+/// A line of a file in /proc, behind its name.
+std::string line_of(const std::string& path, const std::string& name) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(name)) return line.substr(name.size());
+  }
+  return "";
+}
+
+TEST_F(WebServing, ItsThreadGivesWayAndTakesNoSignals) {
+  start();
+  std::promise<std::string> task;
+  server_->post([&task] { task.set_value("/proc/self/task/" + std::to_string(::gettid())); });
+  const std::string path = task.get_future().get();
+  const std::string blocked = line_of(path + "/status", "SigBlk:\t");
+  // All 64 but SIGKILL (9), SIGSTOP (19) and the two that the C library keeps (32, 33).
+  EXPECT_EQ(std::stoull(blocked, nullptr, 16), ~((1ULL << 8) | (1ULL << 18) | (1ULL << 31) | (1ULL << 32)));
+  const std::string stat = line_of(path + "/stat", "");
+  std::istringstream fields(stat.substr(stat.rfind(')') + 2));
+  std::vector<std::string> values{"", "", ""};  // so that they are numbered as in proc(5)
+  for (std::string value; fields >> value;) values.push_back(value);
+  EXPECT_GE(std::stoi(values.at(19)), 5) << "nice";
+  EXPECT_EQ(values.at(41), "0") << "SCHED_OTHER";
+}
+
+TEST_F(WebServing, StopsWithoutHavingStarted) {
+  server_ = std::make_unique<WebServer>(settings_, application_);
+  server_->stop();
+  server_->start();
+  EXPECT_TRUE(application_.joined_pages().empty());
+}
+
+}  // namespace
+}  // namespace phalanx

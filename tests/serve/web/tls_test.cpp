@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Over TLS, by token.
+#include <gmock/gmock.h>
+
+#include "phalanx/serve/reach.h"
+#include "serve/web/page_client.h"
+#include "serve/web/web_fixture.h"
+
+namespace phalanx {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class WebTls : public WebTest {
+ protected:
+  void SetUp() override {
+    WebTest::SetUp();
+    const CertificateFiles files = make_self_signed_certificate(folder_ / "keys", {});
+    settings_.certificate = files.certificate;
+    settings_.key = files.key;
+    settings_.operator_token = random_token();
+    settings_.viewer_token = random_token();
+  }
+  std::string ask(const std::string& path, const std::string& fields = "") const {
+    return ask_securely(port(), get(path, fields));
+  }
+  std::string cookie_by(const std::string& token) const {
+    const std::string field = field_of(ask("/?token=" + token), "Set-Cookie");
+    return "Cookie: other=1; " + field.substr(0, field.find(';')) + "\r\n";
+  }
+  std::unique_ptr<PageClient> page(const std::string& fields, const std::string& path = "/") const {
+    std::string own = PageClient::good_fields();
+    own.replace(own.find("http:"), 5, "https:");
+    return std::make_unique<PageClient>(RawClient::secure(port()), PageClient::head(own + fields, path));
+  }
+};
+
+TEST_F(WebTls, TheAddressWithTheTokenGivesACookieAndGoesOnWithoutIt) {
+  start();
+  EXPECT_TRUE(server_->tls());
+  EXPECT_THAT(server_->url(), StartsWith("https://127.0.0.1:"));
+  const std::string answer = ask("/assets/app-1a2b.js?a=1&token=" + settings_.operator_token + "&b=2");
+  EXPECT_EQ(status_of(answer), 303);
+  EXPECT_EQ(field_of(answer, "Location"), "/assets/app-1a2b.js?a=1&b=2");
+  const std::string cookie = field_of(answer, "Set-Cookie");
+  for (const char* part : {"; HttpOnly", "; SameSite=Strict", "; Secure", "; Path=/"}) {
+    EXPECT_THAT(cookie, HasSubstr(part));
+  }
+  EXPECT_EQ(field_of(ask("/?token=" + settings_.operator_token), "Location"), "/");
+  EXPECT_EQ(status_of(ask("/", cookie_by(settings_.operator_token))), 200);
+}
+
+TEST_F(WebTls, WithoutTheTokenNobodyGetsAnything) {
+  start();
+  const std::string wrong = random_token();
+  for (const std::string& path :
+       {std::string("/"), std::string("/assets/app-1a2b.js"), std::string("/none"), std::string("/?token="),
+        "/?token=" + wrong, "/?token=" + settings_.operator_token.substr(1),
+        "/?Token=" + settings_.operator_token, "/?token=" + wrong + "&token=" + settings_.operator_token}) {
+    const std::string answer = ask(path);
+    EXPECT_EQ(status_of(answer), 403) << path;
+    EXPECT_EQ(field_of(answer, "Set-Cookie"), "") << path;
+    EXPECT_THAT(body_of(answer), HasSubstr("token")) << path;
+  }
+  EXPECT_EQ(status_of(ask("/", "Cookie: phalanx-" + std::to_string(port()) + "=" + wrong + "\r\n")), 403);
+  EXPECT_EQ(status_of(page("")->welcome()), 403);
+  EXPECT_THAT(application_.requests(), IsEmpty());
+  EXPECT_THAT(application_.joined_pages(), IsEmpty());
+}
+
+TEST_F(WebTls, TheCookieSaysWhoMayOperate) {
+  start();
+  const auto operates = page(cookie_by(settings_.operator_token));
+  ASSERT_EQ(status_of(operates->welcome()), 101);
+  ASSERT_TRUE(application_.await_joined(1));
+  const auto looks = page(cookie_by(settings_.viewer_token));
+  ASSERT_EQ(status_of(looks->welcome()), 101);
+  ASSERT_TRUE(application_.await_joined(2));
+  EXPECT_TRUE(application_.joined_pages()[0].second.may_operate);
+  EXPECT_FALSE(application_.joined_pages()[1].second.may_operate);
+  ask("/request", cookie_by(settings_.viewer_token));
+  ASSERT_TRUE(application_.await_requests(1));
+  EXPECT_FALSE(application_.requests()[0].visitor.may_operate);
+}
+
+TEST_F(WebTls, AProgramMayBringTheTokenWithItsSocket) {
+  start();
+  const auto looks = page("", "/?token=" + settings_.viewer_token);
+  ASSERT_EQ(status_of(looks->welcome()), 101);
+  ASSERT_TRUE(application_.await_joined(1));
+  EXPECT_FALSE(application_.joined_pages()[0].second.may_operate);
+}
+
+TEST_F(WebTls, MessagesOfAnyLengthGetThroughBothWays) {
+  application_.on_received = [this](PageId page, std::string_view message) {
+    server_->send(page, std::make_shared<const std::string>(message));
+  };
+  start();
+  const auto echoing = page(cookie_by(settings_.operator_token));
+  for (const std::size_t length : {0U, 1U, 125U, 126U, 16'384U, 65'535U, 65'536U}) {
+    const std::string text(length, 'x');
+    echoing->say(text);
+    EXPECT_EQ(echoing->hear_message().payload, text);
+  }
+}
+
+TEST_F(WebTls, AnotherSchemesOriginIsNotThePages) {
+  start();
+  const std::string cookie = cookie_by(settings_.operator_token);
+  PageClient plain(RawClient::secure(port()), PageClient::head(PageClient::good_fields() + cookie));
+  EXPECT_EQ(status_of(plain.welcome()), 403);
+}
+
+TEST_F(WebTls, AHandshakeThatDoesNotComeIsLetGo) {
+  settings_.request_timeout = 2.0;
+  start();
+  RawClient half(port());
+  half.say(std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11));
+  EXPECT_EQ(half.hear_all(), "");
+  RawClient silent(port());
+  EXPECT_EQ(silent.hear_all(), "");
+  EXPECT_EQ(status_of(ask("/", cookie_by(settings_.operator_token))), 200);
+}
+
+TEST_F(WebTls, PlainHttpGetsNothing) {
+  start();
+  EXPECT_EQ(status_of(phalanx::ask(port(), get("/?token=" + settings_.operator_token))), 0);
+}
+
+TEST_F(WebTls, StoppingSaysGoodbyeHereToo) {
+  start();
+  const auto one = page(cookie_by(settings_.operator_token));
+  ASSERT_TRUE(application_.await_joined(1));
+  server_->stop();
+  EXPECT_EQ(one->hear_message().code(), 1001);
+  EXPECT_EQ(application_.left_pages().size(), 1U);
+}
+
+}  // namespace
+}  // namespace phalanx
