@@ -14,24 +14,15 @@
 #include "end_signals.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/station/assemble.h"
-#include "phalanx/station/station.h"
-#include "run_changes.h"
+#include "phalanx/station/station_host.h"
 #include "run_console.h"
-#include "run_device.h"
+#include "run_host.h"
 #include "run_options.h"
+#include "run_page.h"
 #include "usage.h"
 
 namespace phalanx {
 namespace {
-
-Overrides overrides_of(const RunOptions& o) {
-  Overrides overrides;
-  for (const std::string& text : o.set) overrides.push_back(parse_override(text));
-  if (!o.profile.empty()) overrides.emplace_back("hand.profile", fmt::format("\"{}\"", o.profile));
-  if (o.rate_hz) overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *o.rate_hz));
-  return overrides;
-}
 
 void say(const std::string& line) {
   fmt::print("{}\n", line);
@@ -41,39 +32,33 @@ void say(const std::string& line) {
 /// One run of the station, from the terminal's side.
 class Run {
  public:
-  Run(const RunOptions& options, const Clock& clock)
-      : options_(options), clock_(clock), overrides_(overrides_of(options)), changes_(options, overrides_) {}
+  Run(const RunOptions& options, const Clock& clock) : options_(options), clock_(clock) {}
 
   int go() {
-    const SceneDescription scene = load_scene(options_.scene, overrides_);
-    StationModel made = make_station_model(scene, options_.clinician);
-    OpenDevice opened = open_station_device(options_, scene, made, clock_);
-    device_ = std::move(opened.device);
-    StationOptions station_options;
-    station_options.realtime = {.priority = options_.priority, .cpu = options_.cpu, .lock_memory = true};
-    station_options.ask_for_realtime = !options_.no_realtime;
-    station_options.safety = made.safety;
-    station_options.witnesses = make_witnesses(scene, opened.channels, made.safety);
-    ChannelMap map = make_channel_map(scene, opened.channels, made.model->hand.parameters());
     if (!options_.log.empty()) {
       log_ = std::make_unique<OutputFile>(options_.log);
       write_step_header(*log_);
     }
-    station_ =
-        std::make_unique<Station>(std::move(made.model), *device_, std::move(map), station_options, clock_);
-    introduce(scene);
-    station_->start();
+    host_ = std::make_unique<StationHost>(host_settings(options_), clock_);
+    introduce();
+    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *host_);
     watch();
-    station_->shut_down();
+    host_->shut_down();
     return finish();
   }
 
  private:
-  void introduce(const SceneDescription& scene) {
-    const DeviceInfo& info = device_->info();
-    say(fmt::format("scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", options_.scene,
-                    scene.rate_hz, info.name, info.serial, scene.limits.fingertip_force,
+  void introduce() {
+    const auto state = host_->state();
+    say(fmt::format("scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", state->scene,
+                    state->geometry->rate_hz, state->device.name, state->device.serial,
+                    state->fingertip_force,
                     options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
+    if (state->source == HandSource::kDevice && options_.calibration.empty())
+      fmt::print(
+          stderr,
+          "phalanx run: no --calibration: using the device's own numbers; see `phalanx device calibrate "
+          "--help`\n");
     say("Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
         "quit.");
   }
@@ -85,13 +70,13 @@ class Run {
       clock_.sleep_until(clock_.now() + 0.02);
       const double seconds = clock_.now() - begin;
       if (options_.seconds && seconds >= *options_.seconds) break;
+      host_->go_on();
       drain();
       std::string line;
       while (asked_to_end == 0 && typed_.next(line)) obey(line);
-      for (const std::string& said : changes_.go_on(*station_)) say(said);
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
-      if (!options_.quiet) say(status_line(station_->view(), station_->deadlines(), seconds));
+      if (!options_.quiet) say(status_line(host_->view(), host_->deadlines(), seconds));
     }
     seconds_ = clock_.now() - begin;
   }
@@ -100,25 +85,35 @@ class Run {
   void drain() {
     say_grant();
     write_log();
-    if (const auto report = station_->take_fault_report()) {
-      const FaultEvent& event = report->event;
-      say(fmt::format("FAULT {}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
-                      fault_remedy(event.fault)));
-      try {
-        say(fmt::format("report: {}", write_fault_report(options_.faults, *report).string()));
-      } catch (const std::exception& error) {  // the station goes on without it
-        fmt::print(stderr, "phalanx run: the fault's report could not be written: {}\n", error.what());
-      }
+    if (const auto report = host_->take_fault_report()) tell_fault(*report);
+    const std::uint64_t refused = host_->view().resets_refused;
+    if (std::exchange(resets_refused_, refused) < refused) {
+      const std::string why =
+          "reset refused: the cause is still there, no sample comes, or the torque is not at rest yet";
+      say(why);
+      if (page_) page_->tell("reset_refused", why, false);
     }
-    const std::uint64_t refused = station_->view().resets_refused;
-    if (std::exchange(resets_refused_, refused) != refused)
-      say("reset refused: the cause is still there, no sample comes, or the torque is not at rest yet");
+  }
+
+  void tell_fault(const FaultReport& report) {
+    const FaultEvent& event = report.event;
+    const std::string text = fmt::format("{}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
+                                         fault_remedy(event.fault));
+    say("FAULT " + text);
+    if (page_) page_->tell("fault", text, true);
+    try {
+      const std::string file = write_fault_report(options_.faults, report).string();
+      say("report: " + file);
+      if (page_) page_->fault_reported(file);
+    } catch (const std::exception& error) {  // the station goes on without it
+      fmt::print(stderr, "phalanx run: the fault's report could not be written: {}\n", error.what());
+    }
   }
 
   /// A log that fails is given up, in words; the station goes on.
   void write_log() {
     StepRecord record;
-    while (station_->next_record(record)) {
+    while (host_->next_record(record)) {
       if (!log_) continue;
       try {
         write_step(*log_, record);
@@ -137,7 +132,7 @@ class Run {
 
   void say_grant() {
     if (granted_) return;
-    granted_ = station_->grant();
+    granted_ = host_->grant();
     if (!granted_) return;
     say("real time: " + describe(*granted_));
     for (const std::string& missing : granted_->missing) fmt::print(stderr, "phalanx run: {}\n", missing);
@@ -146,20 +141,28 @@ class Run {
   void obey(const std::string& line) {
     try {
       if (line == "stop") {
-        station_->stop_torque();
+        host_->stop();
       } else if (line == "resume") {
-        station_->resume_torque();
+        host_->resume();
       } else if (line == "reset") {
-        station_->reset();
+        host_->reset();
       } else if (line == "quit") {
         quit_ = true;
       } else if (line.starts_with("set ")) {
-        changes_.ask(line.substr(4));
+        const std::string change = line.substr(4);
+        host_->set({parse_override(change)}, [change](const std::string& refused) {
+          say(refused.empty() ? "changed: " + change : "refused: " + refused);
+        });
+      } else if (line.starts_with("scene ")) {
+        host_->load_scene(line.substr(6), [line](const std::string& refused) {
+          say(refused.empty() ? "changed: " + line : "refused: " + refused);
+        });
       } else if (line.starts_with("slow ")) {
-        station_->lengthen_steps(milliseconds(line.substr(5)));
+        host_->lengthen_steps(milliseconds(line.substr(5)));
       } else if (!line.empty()) {
         throw std::invalid_argument(fmt::format(
-            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, slow MS or quit", line));
+            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, scene NAME, slow MS or quit",
+            line));
       }
     } catch (const std::exception& error) {  // what is refused ends nothing
       fmt::print(stderr, "phalanx run: {}\n", error.what());
@@ -176,8 +179,9 @@ class Run {
 
   int finish() {
     drain();
-    const StationView last = station_->view();
-    const DeadlineStatistics deadlines = station_->deadlines();
+    page_.reset();
+    const StationView last = host_->view();
+    const DeadlineStatistics deadlines = host_->deadlines();
     const std::string granted = granted_ ? describe(*granted_) : "not asked for";
     if (!options_.summary.empty())
       write_text_file(options_.summary, station_summary_json(deadlines, last, granted, seconds_));
@@ -203,16 +207,14 @@ class Run {
 
   const RunOptions& options_;
   const Clock& clock_;
-  const Overrides overrides_;
-  std::unique_ptr<Device> device_;
   std::unique_ptr<OutputFile> log_;
-  std::unique_ptr<Station> station_;
+  std::unique_ptr<StationHost> host_;
+  std::unique_ptr<RunPage> page_;
   std::optional<RealtimeGrant> granted_;
   TypedLines typed_;
   bool quit_ = false;
   bool log_lost_ = false;
   std::uint64_t resets_refused_ = 0;
-  LiveChanges changes_;
   double seconds_ = 0.0;
 };
 
@@ -223,9 +225,11 @@ void add_run_command(CLI::App& app, Job& job) {
   CLI::App* run = app.add_subcommand(
       "run",
       "The station: device, hand and scene in real time, with the simulated device if there is no other");
-  run->add_option("scene", options->scene, "a scene's name or file")->capture_default_str();
+  run->add_option("scene", options->scene,
+                  fmt::format("a scene's name or file [{}; {} with a device]", RunOptions::kDemonstration,
+                              RunOptions::kGrasp));
   run->add_option("--device", options->device,
-                  "simulated, udp:HOST:PORT, serial:PORT[:BAUD] or opengloves:PORT[:BAUD]")
+                  "simulated, sliders, udp:HOST:PORT, serial:PORT[:BAUD] or opengloves:PORT[:BAUD]")
       ->capture_default_str();
   run->add_option("--calibration", options->calibration,
                   "the device's calibration file (phalanx device calibrate)");
@@ -248,10 +252,25 @@ void add_run_command(CLI::App& app, Job& job) {
                   "run everything so many times slower, time limits included")
       ->check(CLI::Range(1.0, 1000.0));
   run->add_flag("--no-realtime", options->no_realtime, "do not ask for SCHED_FIFO and locked memory");
-  run->add_flag("--headless", options->headless, "open no page");
+  run->add_flag("--headless", options->headless, "no page");
+  run->add_option("--listen", options->listen, "address of the page; any but this machine's own needs TLS")
+      ->capture_default_str();
+  CLI::Option* port =
+      run->add_option("--port", options->port, "of the page; 0: any; else the next free one from 8480")
+          ->check(CLI::Range(0, 65535));
+  run->add_option("--tls-cert", options->certificate,
+                  "the page's certificate (PEM); else one of its own is made");
+  run->add_option("--tls-key", options->key, "its key (PEM)");
+  run->add_option("--audit", options->audit, "every change made in the page, a JSON line each")
+      ->capture_default_str();
+  run->add_option("--uploads", options->uploads, "folder of the meshes that pages send")
+      ->capture_default_str();
+  run->add_option("--calibrations", options->calibrations, "folder of what the page's calibration writes")
+      ->capture_default_str();
   run->add_flag("--quiet", options->quiet, "no line a second");
-  run->callback([options, run, &job] {
+  run->callback([options, run, port, &job] {
     refuse_empty_values(*run);
+    options->port_stated = port->count() > 0;
     job = [options] {
       end_on_signal();
       const Clock clock(options->slow_motion);

@@ -9,7 +9,10 @@ namespace phalanx {
 
 /// What `phalanx run` was told on its command line.
 struct RunOptions {
-  std::string scene = "grasp_teapot";
+  static constexpr const char* kDemonstration = "first_touch";
+  static constexpr const char* kGrasp = "grasp_teapot";
+
+  std::string scene;  ///< empty: kDemonstration with a simulated device, else kGrasp
   std::string device = "simulated";
   std::string calibration;
   std::string clinician;
@@ -25,6 +28,14 @@ struct RunOptions {
   int cpu = -1;
   bool no_realtime = false;
   bool headless = false;
+  std::string listen = "127.0.0.1";
+  int port = 8480;
+  bool port_stated = false;  ///< then that one or none
+  std::string certificate;
+  std::string key;
+  std::string audit = "out/cockpit/changes.jsonl";
+  std::string uploads = "out/cockpit/meshes";
+  std::string calibrations = "out/calibrations";
   bool quiet = false;
 };
 

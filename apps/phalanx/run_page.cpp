@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run_page.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "phalanx/scene/data_paths.h"
+#include "phalanx/serve/cockpit.h"
+#include "phalanx/serve/reach.h"
+#include "phalanx/serve/web_server.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "localhost" || address == "::1";
+}
+
+bool is_wildcard(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
+
+/// An installed program's page, or that of the source tree.
+fs::path site_folder() {
+  const fs::path data = data_folder();
+  std::error_code ignored;
+  return fs::exists(data / "web/index.html", ignored) && !fs::exists(data / "web/package.json", ignored)
+             ? data / "web"
+             : data / "web/dist";
+}
+
+fs::path own_certificates() {
+  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
+    return fs::path(config) / "phalanx";
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr && *home != '\0' ? home : ".") / ".config/phalanx";
+}
+
+void secure(const RunOptions& o, WebServerSettings& settings) {
+  if (o.certificate.empty() != o.key.empty())
+    throw std::invalid_argument(
+        "--tls-cert and --tls-key: give both, or neither for a certificate of our own");
+  if (o.certificate.empty()) {
+    std::vector<std::string> names = machine_names();
+    for (const std::string& address : machine_addresses()) names.push_back(address);
+    if (!is_wildcard(o.listen)) names.push_back(o.listen);
+    const CertificateFiles own = make_self_signed_certificate(own_certificates(), names);
+    settings.certificate = own.certificate;
+    settings.key = own.key;
+  } else {
+    settings.certificate = o.certificate;
+    settings.key = o.key;
+  }
+  settings.operator_token = random_token();
+  settings.viewer_token = random_token();
+}
+
+WebServerSettings server_settings(const RunOptions& o) {
+  WebServerSettings settings;
+  settings.address = o.listen;
+  settings.port = static_cast<std::uint16_t>(o.port);
+  settings.next_free_port = !o.port_stated;
+  settings.site = site_folder();
+  settings.site_missing =
+      "The station runs, but its page has not been built here. In the project's folder type ./run once: it "
+      "builds "
+      "the page.\n";
+  if (!is_loopback(o.listen)) secure(o, settings);
+  return settings;
+}
+
+std::vector<std::string> urls(const RunOptions& o, const WebServer& server, const std::string& token) {
+  if (is_wildcard(o.listen)) return lan_urls(server.port(), token);
+  return {token.empty() ? server.url() : fmt::format("{}?token={}", server.url(), token)};
+}
+
+CockpitSettings cockpit_settings(const RunOptions& o) {
+  CockpitSettings settings;
+  settings.log = o.audit;
+  settings.uploads = o.uploads;
+  settings.version = PHALANX_VERSION;
+  return settings;
+}
+
+}  // namespace
+
+struct RunPage::Parts {
+  Parts(const RunOptions& o, StationHost& host)
+      : settings(server_settings(o)), cockpit(host, cockpit_settings(o)), server(settings, cockpit) {
+    cockpit.attach(server);
+  }
+
+  void introduce(const RunOptions& o) const {
+    if (is_loopback(o.listen)) {
+      fmt::print("Cockpit: {}\n", server.url());
+      if (const std::string line = ssh_line(server.port()); !line.empty())
+        fmt::print(
+            "  you are here over SSH; on your own computer type\n    {}\n  and open the address above "
+            "there\n",
+            line);
+    } else {
+      introduce_to_the_network(o);
+    }
+    std::fflush(stdout);
+  }
+
+  void introduce_to_the_network(const RunOptions& o) const {
+    const std::vector<std::string> to_operate = urls(o, server, settings.operator_token);
+    for (const std::string& url : to_operate) fmt::print("Cockpit, to operate:  {}\n", url);
+    for (const std::string& url : urls(o, server, settings.viewer_token))
+      fmt::print("Cockpit, to look on:  {}\n", url);
+    if (o.certificate.empty())
+      fmt::print(
+          "  the browser asks once whether to trust this machine; its certificate's SHA-256 is\n  {}\n",
+          certificate_fingerprint(settings.certificate));
+    if (!to_operate.empty()) fmt::print("{}", qr_text(to_operate.front()));
+  }
+
+  const WebServerSettings settings;
+  Cockpit cockpit;
+  WebServer server;
+};
+
+RunPage::RunPage(const RunOptions& options, StationHost& host)
+    : parts_(std::make_unique<Parts>(options, host)) {
+  parts_->server.start();
+  parts_->introduce(options);
+}
+
+RunPage::~RunPage() { parts_->server.stop(); }
+
+void RunPage::tell(const std::string& code, const std::string& text, bool fault) {
+  parts_->cockpit.tell(code, text, fault);
+}
+
+void RunPage::fault_reported(const std::string& file) { parts_->cockpit.fault_reported(file); }
+
+}  // namespace phalanx

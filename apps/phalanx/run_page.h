@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "phalanx/station/station_host.h"
+#include "run_options.h"
+
+namespace phalanx {
+
+/// The cockpit of `phalanx run`, from the making of its server to its end.
+class RunPage {
+ public:
+  /// Binds, says the address on standard output, and serves. @param host  outlives the page
+  /// @throws WebServerError or std::runtime_error, saying what to do
+  RunPage(const RunOptions& options, StationHost& host);
+  ~RunPage();
+
+  void tell(const std::string& code, const std::string& text, bool fault);  ///< Cockpit::tell()
+  void fault_reported(const std::string& file);                             ///< Cockpit::fault_reported()
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace phalanx

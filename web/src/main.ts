@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the page together and keeps it going.
+import type { State } from "./gen/phalanx/cockpit_pb";
+import type { Tick } from "./gen/phalanx/tick_pb";
+import type { App } from "./panels/app";
+import { confirmDialog, helpDialog } from "./panels/dialog";
+import { devicePanel } from "./panels/device_panel";
+import { el } from "./panels/dom";
+import { faultCard } from "./panels/fault_card";
+import { handPanel } from "./panels/hand_panel";
+import { header } from "./panels/header";
+import { listenToKeys } from "./panels/keyboard";
+import { Look } from "./panels/look";
+import { lostBand } from "./panels/lost_band";
+import { kNameKey, peoplePanel } from "./panels/people_panel";
+import { readouts } from "./panels/readouts";
+import { operatorName, roleStrip } from "./panels/role_strip";
+import { stopBox } from "./panels/stop_box";
+import { tabs } from "./panels/tabs";
+import { toasts } from "./panels/toasts";
+import { touchPanel } from "./panels/touch_panel";
+import { troubleCard } from "./panels/trouble_card";
+import { viewFrame } from "./panels/view_frame";
+import type { PlotPanel } from "./plots/plot_panel";
+import { GeometryLoader } from "./state/geometry_loader";
+import { Store } from "./state/store";
+import { strings } from "./strings";
+import type { ViewProbe } from "./view3d/hand_view";
+import { Connection, type Socket } from "./wire/connection";
+import { Host } from "./wire/host";
+import { fetchGeometry, linkExpired, postStop, streamUrl, uploadMesh } from "./wire/http";
+import { lasting, session } from "./wire/memory";
+
+declare global {
+  interface Window {
+    /// What the page knows, for tests and the curious; changes nothing.
+    phalanx: {
+      view: () => ViewProbe | undefined;
+      tick: () => Tick | undefined;
+      state: () => State | undefined;
+      lost: () => boolean;
+      page: () => number;
+      history: () => { readonly seconds: number; readonly samples: number };
+      newest: (channel: number) => number;
+    };
+  }
+}
+
+const kSecret = "phalanx.secret";
+const kReloaded = "phalanx.reloaded";
+const kReadoutMs = 80; // as often as a person can read
+const kPaintPatienceMs = 800;
+const kPlotMs = 33;
+const kPlotRest = 4; // times as long as drawing took
+
+const store = new Store();
+const secret = { get: () => session.get(kSecret), set: (value: string) => session.set(kSecret, value) };
+const connection = new Connection({
+  openSocket: () => new WebSocket(streamUrl(location.href)) as unknown as Socket,
+  secret,
+  name: () => lasting.get(kNameKey),
+  onPhase: (phase) => {
+    store.setPhase(phase);
+    // A page of another version than the station: once anew, so that it fits; never in a circle.
+    if (phase === "mismatch" && session.get(kReloaded) !== "yes") {
+      session.set(kReloaded, "yes");
+      location.reload();
+    } else if (phase === "open") {
+      session.set(kReloaded, "");
+    }
+  },
+  onMessage: (message) => store.receive(message),
+  linkExpired,
+});
+const host = new Host(connection, () => postStop(secret.get()));
+
+const dialogs = el("div", { class: "dialogs", hidden: true });
+const app: App = {
+  store,
+  host,
+  dialogs,
+  upload: (file, sizeMm, unit) => uploadMesh(secret.get(), file, sizeMm, unit),
+  takeControl: () => {
+    const words = strings.role;
+    const text = store.role === "other" ? words.confirmOther(operatorName(app)) : words.confirmNobody;
+    confirmDialog(app, words.confirmTitle, text, words.confirm, () => void host.takeControl());
+  },
+};
+
+let plots: PlotPanel | undefined;
+const band = lostBand(store);
+const numbers = readouts(store);
+const frame = viewFrame(store, [band.element, faultCard(app), troubleCard(app), toasts(store)]);
+const look = new Look((theme) => {
+  frame.setTheme(theme);
+  plots?.setTheme(theme);
+  window.dispatchEvent(new Event("resize"));
+});
+const stop = stopBox(app);
+const panels = tabs([
+  { name: "touch", text: strings.tabs.touch, panel: touchPanel(app) },
+  { name: "hand", text: strings.tabs.hand, panel: handPanel(app) },
+  { name: "device", text: strings.tabs.device, panel: devicePanel(app) },
+  { name: "people", text: strings.tabs.people, panel: peoplePanel(app) },
+]);
+const plotPlace = el("div", { class: "plot-slot" });
+
+document.title = strings.title;
+document.getElementById("opening")?.remove(); // what was painted until now
+document.getElementById("page")?.append(
+  header(app, look),
+  el("main", { class: "scene" }, numbers.element, frame.element, plotPlace, dialogs),
+  el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels.element, stop.element),
+);
+
+listenToKeys(window, {
+  stop: () => stop.stop(),
+  pause: () => store.setPaused(!store.paused),
+  help: () => helpDialog(app),
+  camera: (preset) => frame.camera(preset),
+  zoom: (factor) => frame.zoom(factor),
+});
+
+const geometry = new GeometryLoader(fetchGeometry, (loaded, revision) => store.setGeometry(loaded, revision));
+store.on(["state"], () => store.state && geometry.want(store.state.geometry));
+store.on(["connection"], () => {
+  if (!store.connected) geometry.forget(); // another station counts its revisions anew
+});
+
+let readAt = 0;
+let plotAt = 0;
+let wasLost: boolean | undefined;
+let wasDead: boolean | undefined; // the view
+
+/// What follows the clock: told apart from what follows messages, since silence has to be seen too.
+function heartbeat(now: number): void {
+  const lost = store.lost;
+  if (lost !== wasLost) {
+    wasLost = lost;
+    document.documentElement.dataset["lost"] = String(lost);
+    numbers.update();
+  }
+  const dead = store.viewDead;
+  if (dead !== wasDead) {
+    wasDead = dead;
+    document.documentElement.dataset["view"] = dead ? "dead" : "live";
+    frame.view()?.setLost(dead);
+  }
+  band.update(now);
+}
+function onFrame(now: number): void {
+  requestAnimationFrame(onFrame); // first: whatever goes wrong below, the page goes on
+  heartbeat(performance.now());
+  if (now - readAt >= kReadoutMs) {
+    readAt = now;
+    numbers.update();
+    stop.update();
+  }
+  if (!store.paused && plots && now >= plotAt) {
+    const began = performance.now();
+    plots.draw();
+    // Where drawing is slow, the plots wait: the view and the controls come first.
+    plotAt = now + Math.max(kPlotMs, kPlotRest * (performance.now() - began));
+  }
+}
+document.addEventListener("visibilitychange", () => {
+  if (document.visibilityState === "visible") store.freshness.visible(performance.now());
+});
+store.on(["connection", "geometry", "state"], () => heartbeat(performance.now()));
+
+window.phalanx = {
+  view: () => frame.view()?.probe(),
+  tick: () => store.tick,
+  state: () => store.state,
+  lost: () => store.lost,
+  page: () => store.welcome?.page ?? 0,
+  history: () => {
+    const time = store.history.time();
+    return { seconds: (time.at(-1) ?? 0) - (time[0] ?? 0), samples: store.history.length };
+  },
+  newest: (channel) => store.history.channel(channel).at(-1) ?? NaN,
+};
+
+connection.start();
+requestAnimationFrame(onFrame);
+/// When the page has been seen for the first time, or soon in any case: hidden pages are not painted.
+function painted(): Promise<void> {
+  return new Promise((resolve) => {
+    setTimeout(resolve, kPaintPatienceMs);
+    if (!PerformanceObserver.supportedEntryTypes?.includes("paint")) return;
+    new PerformanceObserver((entries) => {
+      if (entries.getEntriesByName("first-contentful-paint").length > 0) resolve();
+    }).observe({ type: "paint", buffered: true });
+  });
+}
+
+/// The page is there first; the renderer and the plots, which take the processor for a while, follow.
+async function bringIn(): Promise<void> {
+  await painted();
+  const view = frame.load(look.theme);
+  const { plotPanel } = await import("./plots/plot_panel");
+  plots = plotPanel(store, look.theme);
+  plotPlace.append(plots.element);
+  await view;
+  wasDead = undefined; // the view has not heard yet
+}
+void bringIn();

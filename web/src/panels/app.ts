@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every panel gets: what is known, what may be asked for, and how a refusal comes back.
+import type { Store } from "../state/store";
+import { strings } from "../strings";
+import type { Answer } from "../wire/connection";
+import type { Change, Host } from "../wire/host";
+import type { ImportReport } from "../wire/http";
+
+export interface App {
+  readonly store: Store;
+  readonly host: Host;
+  readonly upload: (file: File, sizeMm: number, unit: string) => Promise<ImportReport>;
+  readonly dialogs: HTMLElement; // where dialogs stand; never over Stop
+  readonly takeControl: () => void; // asks first
+}
+
+/// What to say beside the control; empty: it was done.
+export function refusal(answer: Answer): string {
+  return answer.ok ? "" : answer.error || strings.notSent;
+}
+
+/// Asks for a change as one. @returns the refusal in the host's words; empty: done
+export async function change(app: App, changes: readonly Change[]): Promise<string> {
+  for (const [key, value] of changes) app.store.asked(key, value);
+  const answer = await app.host.set(changes);
+  for (const [key, value] of changes) app.store.answered(key, value, answer.ok);
+  app.store.tell("own");
+  return refusal(answer);
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device and the loop that drives it.
+import type { Link, Loop, State } from "../gen/phalanx/cockpit_pb";
+import { strings } from "../strings";
+import type { App } from "./app";
+import { el, section, setShown } from "./dom";
+import { histogram } from "./histogram";
+import { wizardSection } from "./wizard";
+
+const words = strings.device;
+type Fact = readonly [label: string, value: string, bad?: boolean];
+
+/// Writes facts into a list; rows keep their place.
+function showFacts(list: HTMLElement, facts: readonly Fact[]): void {
+  const wanted = facts.map((fact) => fact.join("|")).join("\n");
+  if (list.dataset["shown"] === wanted) return;
+  list.dataset["shown"] = wanted;
+  list.replaceChildren(
+    ...facts.flatMap(([label, value, bad]) => [el("dt", {}, label), el("dd", { class: bad ? "bad" : undefined }, value || strings.dash)]),
+  );
+}
+
+function deviceFacts(state: State): readonly Fact[] {
+  const name = state.deviceSimulated ? `${state.deviceName} (${words.simulated})` : state.deviceName;
+  return [
+    [words.name, name],
+    [words.serial, state.deviceSerial],
+    [words.spec, state.deviceSpec],
+    [words.state, words.states[state.deviceState] ?? state.deviceState, state.deviceState === "latched"],
+    [words.estop, state.estop ? words.pressed : words.released, state.estop],
+    [words.torque, state.rendersTorque ? words.renders : words.noTorque],
+    [words.calibration, state.calibration || words.ownNumbers],
+    [words.realtime, state.realtime || words.realtimeUnknown],
+  ];
+}
+
+const count = (value: bigint) => value.toLocaleString("en");
+
+function linkFacts(link: Link): readonly Fact[] {
+  const names = words.linkNames;
+  return [
+    [names.received, count(link.received)],
+    [names.lost, count(link.lost), link.lost > 0n],
+    [names.corrupt, count(link.corrupt), link.corrupt > 0n],
+    [names.refused, count(link.refused), link.refused > 0n],
+    [names.outdated, count(link.outdated), link.outdated > 0n],
+    [names.sent, count(link.sent)],
+  ];
+}
+
+/// The same rows, without what is no longer known.
+const unknown = (facts: readonly Fact[]): readonly Fact[] => facts.map(([label]) => [label, strings.dash]);
+
+function loopFacts(loop: Loop): readonly Fact[] {
+  return [
+    [words.period, strings.device.durations.ms((loop.period * 1000).toLocaleString("en", { maximumSignificantDigits: 4 }))],
+    [words.steps, count(loop.steps)],
+    [words.overruns, count(loop.overruns), loop.overruns > 0n],
+    [words.skipped, count(loop.skipped), loop.skipped > 0n],
+  ];
+}
+
+export function devicePanel(app: App): HTMLElement {
+  const device = el("dl", { class: "facts" });
+  const link = el("dl", { class: "facts facts-narrow" });
+  const loop = el("dl", { class: "facts facts-narrow" });
+  const degraded = el("p", { class: "warning", role: "status" }, words.degraded);
+  const lateness = histogram(words.lateness);
+  const step = histogram(words.step);
+  const update = () => {
+    const state = app.store.state;
+    if (!state) return;
+    const live = app.store.connected;
+    const said = (facts: readonly Fact[]) => (live ? facts : unknown(facts));
+    const { loop: numbers } = state;
+    showFacts(device, said(deviceFacts(state)));
+    showFacts(link, state.link ? said(linkFacts(state.link)) : []);
+    showFacts(loop, numbers ? said(loopFacts(numbers)) : []);
+    setShown(degraded, state.degraded && live);
+    lateness.show(live ? numbers?.lateness : undefined);
+    step.show(live ? numbers?.step : undefined);
+  };
+  app.store.on(["state", "connection"], update);
+  update();
+  return el(
+    "div",
+    {},
+    section(words.title, device),
+    wizardSection(app),
+    section(words.loop, degraded, loop, lateness.element, step.element),
+    section(words.link, link),
+  );
+}

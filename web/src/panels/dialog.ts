@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dialogs that leave the rest of the page alive: Stop is never behind one.
+import { strings } from "../strings";
+import type { App } from "./app";
+import { button, el, newId } from "./dom";
+
+export interface OpenDialog {
+  readonly element: HTMLElement;
+  close(): void;
+}
+
+/// Opens over the view. The focus goes in, and back when it closes.
+export function openDialog(app: App, title: string, content: readonly Node[], kind: "small" | "large" = "small", onClose: () => void = () => {}): OpenDialog {
+  for (const open of app.dialogs.querySelectorAll<HTMLElement>(".dialog")) open.dispatchEvent(new Event("phalanx-close"));
+  const before = document.activeElement;
+  const id = newId("dialog");
+  const close = () => {
+    if (!element.isConnected) return;
+    element.remove();
+    app.dialogs.hidden = true;
+    onClose();
+    if (before instanceof HTMLElement && before.isConnected) before.focus();
+  };
+  const element = el(
+    "div",
+    { class: `dialog dialog-${kind}`, role: "dialog", "aria-labelledby": id, tabindex: -1 },
+    el("header", {}, el("h2", { id }, title), button(strings.look.close, close, { class: "quiet" })),
+    el("div", { class: "dialog-body" }, ...content),
+  );
+  element.addEventListener("phalanx-close", close);
+  app.dialogs.append(element);
+  app.dialogs.hidden = false;
+  element.focus();
+  return { element, close };
+}
+
+/// Asks; `yes` runs when it is confirmed.
+export function confirmDialog(app: App, title: string, text: string, confirm: string, yes: () => void): void {
+  const sure = button(confirm, () => {
+    dialog.close();
+    yes();
+  }, { class: "primary" });
+  const cancel = button(strings.role.cancel, () => dialog.close());
+  const dialog = openDialog(app, title, [el("p", {}, text), el("div", { class: "buttons" }, sure, cancel)]);
+  sure.focus();
+}
+
+export function helpDialog(app: App): void {
+  const list = el("dl", { class: "keys" });
+  for (const [key, meaning] of strings.help.rows) list.append(el("dt", {}, el("kbd", {}, key)), el("dd", {}, meaning));
+  openDialog(app, strings.help.title, [list, el("p", { class: "hint" }, strings.help.note)]);
+}

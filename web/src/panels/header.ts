@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The top line: what is shown, what moves it, who has control, and how the page looks.
+import { strings } from "../strings";
+import type { App } from "./app";
+import { button, el, setShown, setSwitch, setText, switchButton } from "./dom";
+import { helpDialog } from "./dialog";
+import type { Look } from "./look";
+import { operatorName } from "./role_strip";
+
+export function header(app: App, look: Look): HTMLElement {
+  const scene = el("span", { class: "header-scene" });
+  const source = el("span", { class: "chip" });
+  const who = el("span", { class: "chip" });
+  const light = switchButton(strings.look.light, (on) => {
+    look.setTheme(on ? "light" : "dark");
+    setSwitch(light, on);
+  });
+  const large = switchButton(strings.look.large, (on) => {
+    look.setLarge(on);
+    setSwitch(large, on);
+  });
+  setSwitch(light, look.theme === "light");
+  setSwitch(large, look.large);
+  const update = () => {
+    const { state, role, connected } = app.store;
+    setText(scene, state?.sceneDescription || state?.scene || "");
+    scene.title = scene.textContent ?? "";
+    setText(source, state && connected ? (strings.hand.sources[state.source] ?? "") : strings.dash);
+    setShown(source, state !== undefined);
+    setText(who, `${strings.people.operator}: ${connected ? (role === "mine" ? strings.me : operatorName(app)) : strings.dash}`);
+    setShown(who, state !== undefined);
+    setSwitch(light, look.theme === "light");
+  };
+  app.store.on(["state", "connection"], update);
+  update();
+  return el(
+    "header",
+    { class: "header" },
+    el("h1", {}, strings.product),
+    scene,
+    source,
+    who,
+    el("div", { class: "header-tools" }, light, large, button("?", () => helpDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
+  );
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// A slider for each joint, where the sliders move the hand.
+import { HandSource } from "../gen/phalanx/cockpit_pb";
+import { kDigits, kJoints, kJointsPerDigit } from "../state/channels";
+import { Throttle } from "../state/throttle";
+import { strings } from "../strings";
+import type { App } from "./app";
+import { button, el, newId, section, setAttribute, setShown, setText } from "./dom";
+import { onLetGo } from "./drag";
+
+const words = strings.hand;
+const kPerSecond = 30;
+const kOwnWordMs = 1000; // what the station says of a joint may be older than what was sent for it
+const kDegrees = 180 / Math.PI;
+const kFist = 0.8; // share of the way from the open hand to the end of a flexing joint's range
+const kSpread = 1; // a digit's abduction: its second joint
+
+/// Flexing joints most of the way to the end of their range, the others as in the open hand.
+export function fist(open: readonly number[], max: readonly number[]): number[] {
+  return open.map((angle, joint) =>
+    joint % kJointsPerDigit === kSpread ? angle : angle + kFist * ((max[joint] ?? angle) - angle),
+  );
+}
+
+/// Where the hand is wanted: what the station says, and over it what a person has just said here.
+export class WantedAngles {
+  private readonly own = new Map<number, { angle: number; until: number }>(); // [ms]; Infinity: held, or not sent yet
+
+  constructor(private readonly now: () => number = () => performance.now()) {}
+
+  want(joint: number, angle: number): void {
+    this.own.set(joint, { angle, until: Infinity });
+  }
+
+  /// It is sent. Joints that nobody holds are the station's again after a while.
+  sent(held: ReadonlySet<number>): void {
+    for (const [joint, word] of this.own) {
+      if (word.until === Infinity && !held.has(joint)) word.until = this.now() + kOwnWordMs;
+    }
+  }
+
+  forget(): void {
+    this.own.clear();
+  }
+
+  angles(station: readonly number[]): number[] {
+    return Array.from({ length: kJoints }, (_, joint) => {
+      const word = this.own.get(joint);
+      if (word && this.now() < word.until) return word.angle;
+      this.own.delete(joint);
+      return station[joint] ?? 0;
+    });
+  }
+}
+
+interface JointSlider {
+  readonly input: HTMLInputElement;
+  readonly output: HTMLElement;
+}
+
+export function jointSliders(app: App): HTMLElement {
+  const wanted = new WantedAngles();
+  const held = new Set<number>();
+  const sliders: JointSlider[] = [];
+  const angles = () => wanted.angles(app.store.state?.slider ?? []);
+  const throttle = new Throttle<null>(() => {
+    app.host.sliders(angles());
+    wanted.sent(held);
+  }, kPerSecond);
+
+  function place(): void {
+    angles().forEach((angle, joint) => {
+      const slider = sliders[joint];
+      if (!slider) return;
+      if (!held.has(joint)) slider.input.value = String(angle);
+      const text = `${Math.round(angle * kDegrees)}${words.degrees}`;
+      setText(slider.output, text);
+      setAttribute(slider.input, "aria-valuetext", text);
+    });
+  }
+  function letGo(joint: number): void {
+    if (!held.delete(joint)) return;
+    throttle.flush();
+    wanted.sent(held);
+  }
+  function joint(number: number): HTMLElement {
+    const id = newId("joint");
+    const input = el("input", { type: "range", id, step: 0.005 });
+    const output = el("output", { for: id });
+    sliders[number] = { input, output };
+    input.addEventListener("input", () => {
+      held.add(number);
+      wanted.want(number, Number(input.value));
+      place();
+      throttle.push(null);
+    });
+    onLetGo(input, () => letGo(number));
+    const name = words.joints[number % kJointsPerDigit] ?? "";
+    return el("div", { class: "joint" }, el("label", { for: id }, name), input, output);
+  }
+  const digits = Array.from({ length: kDigits }, (_, digit) =>
+    el(
+      "fieldset",
+      { class: "digit", "data-digit": digit },
+      el("legend", {}, strings.digits[digit] ?? ""),
+      ...Array.from({ length: kJointsPerDigit }, (_unused, i) => joint(digit * kJointsPerDigit + i)),
+    ),
+  );
+  const go = (to: readonly number[]) => {
+    held.clear();
+    to.forEach((angle, number) => wanted.want(number, angle));
+    place();
+    throttle.push(null);
+    throttle.flush();
+  };
+  const open = button(words.open, () => app.store.geometry && go(app.store.geometry.jointOpen));
+  const closed = button(words.fist, () => app.store.geometry && go(fist(app.store.geometry.jointOpen, app.store.geometry.jointMax)));
+  const box = el("div", { class: "sliders" }, el("div", { class: "buttons" }, open, closed), ...digits);
+  const hint = el("p", { class: "hint" }, words.slidersHint);
+
+  const ranges = () => {
+    const geometry = app.store.geometry;
+    if (!geometry) return;
+    const now = angles();
+    sliders.forEach((slider, number) => {
+      setAttribute(slider.input, "min", String(geometry.jointMin[number] ?? 0));
+      setAttribute(slider.input, "max", String(geometry.jointMax[number] ?? 0));
+      if (!held.has(number)) slider.input.value = String(now[number] ?? 0);
+      slider.input.title = geometry.jointName[number] ?? "";
+    });
+  };
+  const update = () => {
+    const { state, role } = app.store;
+    const on = state?.source === HandSource.HAND_SLIDERS;
+    setShown(box, on);
+    setShown(hint, !on && state?.source !== HandSource.HAND_DEVICE);
+    if (role !== "mine" || !on) {
+      throttle.clear(); // it is no longer this page's to say
+      wanted.forget();
+      held.clear();
+    }
+    if (on && state.slider.length === kJoints) place();
+  };
+  app.store.on(["geometry"], () => {
+    ranges();
+    update();
+  });
+  app.store.on(["state", "connection"], update);
+  update();
+  return section(words.slidersTitle, hint, box);
+}

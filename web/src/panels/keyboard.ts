@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of the page. Space and Esc mean Stop and nothing else.
+import type { CameraPreset } from "../view3d/hand_view";
+
+export interface KeyActions {
+  stop(): void;
+  pause(): void;
+  help(): void;
+  camera(preset: CameraPreset): void;
+  zoom(factor: number): void;
+}
+
+const kZoomStep = 1.15;
+/// A key that is held down says Stop again, so often at most [ms].
+const kStopAgainMs = 200;
+const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
+const typed = new Set(["text", "search", "number", "email", "url", "tel", "password"]);
+
+/// Whether letters go into it.
+export function isTextField(target: EventTarget | null): boolean {
+  if (target instanceof HTMLTextAreaElement) return true;
+  if (target instanceof HTMLInputElement) return typed.has(target.type);
+  return target instanceof HTMLElement && target.isContentEditable;
+}
+
+/// @param source  the window: listens before anything on the page does
+export function listenToKeys(source: Window, actions: KeyActions): void {
+  const swallow = (event: Event) => {
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  };
+  let stopped = -Infinity; // when a key last said it [ms]
+  const isStop = (event: KeyboardEvent) =>
+    event.key === "Escape" || (event.key === " " && !isTextField(event.target));
+
+  source.addEventListener(
+    "keydown",
+    (event) => {
+      if (isStop(event)) {
+        if (event.key === " ") swallow(event);
+        if (event.repeat && performance.now() - stopped < kStopAgainMs) return;
+        stopped = performance.now();
+        actions.stop();
+        return;
+      }
+      if (isTextField(event.target) || event.ctrlKey || event.altKey || event.metaKey) return;
+      const preset = presets[event.key];
+      if (preset) actions.camera(preset);
+      else if (event.key === "+" || event.key === "=") actions.zoom(kZoomStep);
+      else if (event.key === "-") actions.zoom(1 / kZoomStep);
+      else if (event.key === "p" || event.key === "P") actions.pause();
+      else if (event.key === "?") actions.help();
+      else return;
+      event.preventDefault();
+    },
+    { capture: true },
+  );
+  // Some browsers press a button when Space comes up.
+  source.addEventListener("keyup", (event) => event.key === " " && isStop(event) && swallow(event), { capture: true });
+}

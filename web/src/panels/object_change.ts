@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Another object in the place of the first.
+import type { State } from "../gen/phalanx/cockpit_pb";
+import { find } from "../state/keys";
+import { table } from "../state/toml";
+import type { Change } from "../wire/host";
+
+const kPlace = ["position_mm", "rotation_deg"];
+
+/// The whole object anew, since sizes of another shape would be refused. It keeps its place, and earlier changes of it are taken away.
+/// @param entries  key without "objects.0.", value as in a file
+export function replaceObject(state: State | undefined, entries: readonly (readonly [string, string])[]): readonly Change[] {
+  const earlier = (state?.changed ?? []).filter((one) => one.key.startsWith("objects.0."));
+  const place = kPlace.flatMap((name): [string, string][] => {
+    const value = find(state?.value, `objects.0.${name}`);
+    return value === undefined ? [] : [[name, value]];
+  });
+  return [...earlier.map((one): Change => [one.key, ""]), ["objects.0", table([...entries, ...place])]];
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// The object in the hand: a shape with its sizes, or a mesh of one's own.
+import type { KeyInfo } from "../gen/phalanx/cockpit_pb";
+import { choicesOf, defaultOf, keyOf, kindsOf, objectKind } from "../state/keys";
+import { fromTyped, quote, unquote } from "../state/toml";
+import { strings } from "../strings";
+import { change, type App } from "./app";
+import { ChoiceBox } from "./choice_box";
+import { button, el, section, setShown } from "./dom";
+import { replaceObject } from "./object_change";
+import { row, shownNumber } from "./setting_controls";
+import { uploadBox } from "./upload_box";
+
+const words = strings.object;
+const kNotHere = new Set(["kind", "file", "unit", "decimate_to", "position_mm", "rotation_deg"]);
+
+const nameOf = (key: KeyInfo) => key.path.replace("objects[].", "");
+
+function objectKeys(app: App): KeyInfo[] {
+  return app.store.welcome?.key.filter((key) => key.path.startsWith("objects[].")) ?? [];
+}
+
+/// The sizes that a shape has.
+export function sizesOf(app: App, kind: string): KeyInfo[] {
+  const kindKey = keyOf(app.store.welcome, "objects.0.kind");
+  const kinds = kindKey ? choicesOf(kindKey) : [];
+  return objectKeys(app).filter((key) => !kNotHere.has(nameOf(key)) && (kindsOf(key, kinds)?.includes(kind) ?? true));
+}
+
+export function objectSection(app: App): HTMLElement {
+  const kind = new ChoiceBox(() => choose());
+  const kindRow = row(words.kind, kind);
+  const sizes = el("div", { class: "sizes" });
+  const use = button(words.use, () => void apply(), { class: "primary" });
+  const upload = uploadBox(app);
+  let chosen = ""; // by the person and not yet used; empty: what is in force
+  let built = "";
+
+  const current = () => objectKind(app.store.state, app.store.welcome);
+  const fields = new Map<string, HTMLInputElement>();
+
+  function build(): void {
+    const shown = chosen || current();
+    const keys = shown === "file" ? [] : sizesOf(app, shown);
+    const wanted = `${shown} ${keys.map((key) => key.path).join(" ")}`;
+    if (wanted === built) return;
+    built = wanted;
+    fields.clear();
+    sizes.replaceChildren(
+      ...keys.map((key) => {
+        const field = el("input", { type: "text", inputmode: "decimal", class: key.type === "vector" ? "vector" : "number", autocomplete: "off" });
+        fields.set(nameOf(key), field);
+        field.addEventListener("input", () => {
+          field.dataset["touched"] = "yes";
+          chosen ||= current();
+          update();
+        });
+        return row(words.sizes[nameOf(key)] ?? nameOf(key), field, key.unit).element;
+      }),
+    );
+  }
+
+  function truth(name: string): string {
+    const shown = chosen || current();
+    if (shown === current()) return app.store.value(`objects.0.${name}`);
+    const key = objectKeys(app).find((one) => nameOf(one) === name);
+    return key ? defaultOf(key, shown) : "";
+  }
+
+  function update(): void {
+    const key = keyOf(app.store.welcome, "objects.0.kind");
+    kind.setChoices((key ? choicesOf(key) : []).map((value) => ({ value, text: words.kinds[value] ?? value })));
+    const shown = chosen || current();
+    kind.value = shown;
+    build();
+    for (const [name, field] of fields) {
+      if (field.dataset["touched"] !== "yes") field.value = shownNumber(truth(name));
+    }
+    setShown(upload.element, shown === "file");
+    setShown(use, shown !== "file");
+    use.disabled = chosen === "";
+    if (current() === "file") upload.inForce(unquote(app.store.value("objects.0.file")));
+  }
+
+  async function apply(): Promise<void> {
+    const wanted = kind.value;
+    const keys = sizesOf(app, wanted);
+    const entries: [string, string][] = [["kind", quote(wanted)]];
+    for (const key of keys) {
+      const text = fields.get(nameOf(key))?.value ?? "";
+      if (text.trim() !== "") entries.push([nameOf(key), fromTyped(text, key.type)]);
+    }
+    kindRow.refuse("");
+    use.disabled = true;
+    const refused = await change(app, replaceObject(app.store.state, entries));
+    kindRow.refuse(refused);
+    chosen = "";
+    built = "";
+    update();
+  }
+
+  function choose(): void {
+    chosen = kind.value === current() ? "" : kind.value;
+    if (chosen === "file" && current() === "file") chosen = "";
+    built = "";
+    kindRow.refuse("");
+    update();
+  }
+  app.store.on(["state", "connection"], update);
+  update();
+  return section(words.title, kindRow.element, sizes, el("div", { class: "buttons" }, use), upload.element);
+}

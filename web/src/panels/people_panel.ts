@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who is here, who has control, and what happened.
+import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
+import { strings } from "../strings";
+import { lasting } from "../wire/memory";
+import { refusal, type App } from "./app";
+import { clockTime } from "./clock";
+import { button, el, section, setShown, setText } from "./dom";
+import { operatorName } from "./role_strip";
+import { row } from "./setting_controls";
+
+const words = strings.people;
+
+export function noticeItem(notice: Notice): HTMLElement {
+  const level = strings.notice.levels[notice.level] ?? "";
+  return el(
+    "li",
+    { class: "notice", "data-level": Notice_Level[notice.level]?.toLowerCase() },
+    el("time", {}, clockTime(notice.unixTime)),
+    el("span", { class: "notice-level" }, level),
+    el("span", { class: "notice-who" }, notice.who || words.station),
+    el("span", { class: "notice-text" }, notice.text),
+  );
+}
+
+export const kNameKey = "phalanx.name";
+
+function nameRow(app: App): HTMLElement {
+  const field = el("input", { type: "text", maxlength: 40, autocomplete: "name", value: lasting.get(kNameKey) });
+  const made = row(words.name, field, "", words.nameHint);
+  const save = button(words.save, () => void send());
+  made.element.querySelector(".row-control")?.append(save);
+  async function send(): Promise<void> {
+    lasting.set(kNameKey, field.value.trim());
+    made.refuse(refusal(await app.host.setName(field.value.trim())));
+  }
+  field.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") void send();
+  });
+  return made.element;
+}
+
+export function peoplePanel(app: App): HTMLElement {
+  const facts = el("dl", { class: "facts" });
+  const release = button(strings.role.release, () => void go());
+  const take = button(strings.role.take, app.takeControl, { class: "primary" });
+  const error = el("p", { class: "refused", role: "alert", hidden: true });
+  const urls = el("ul", { class: "urls" });
+  const urlBox = el("div", {}, el("h3", {}, words.elsewhere), urls);
+  const log = el("ol", { class: "notices" });
+  const empty = el("p", { class: "hint" }, words.logEmpty);
+  async function go(): Promise<void> {
+    setText(error, refusal(await app.host.releaseControl()));
+    setShown(error, error.textContent !== "");
+  }
+  const update = () => {
+    const { state, welcome, role } = app.store;
+    const me = welcome ? strings.page(welcome.page) : strings.dash;
+    const operator = role === "mine" ? `${operatorName(app)}, ${strings.me}` : operatorName(app);
+    const wanted = [words.thisPage, me, words.operator, operator];
+    if (facts.dataset["shown"] !== wanted.join()) {
+      facts.dataset["shown"] = wanted.join();
+      facts.replaceChildren(...wanted.map((text, i) => el(i % 2 === 0 ? "dt" : "dd", {}, text)));
+    }
+    setText(looking, strings.people.looking(state?.pages ?? 0));
+    setShown(release, role === "mine");
+    setShown(take, role === "other" || role === "nobody");
+    const links = state?.otherUrl ?? [];
+    setShown(urlBox, links.length > 0);
+    if (urls.childElementCount !== links.length) urls.replaceChildren(...links.map((url) => el("li", {}, el("code", {}, url))));
+  };
+  const notices = () => {
+    log.replaceChildren(...[...app.store.notices].reverse().map(noticeItem));
+    setShown(empty, app.store.notices.length === 0);
+  };
+  const looking = el("p", { class: "hint" });
+  app.store.on(["state", "connection"], update);
+  app.store.on(["notice"], notices);
+  update();
+  notices();
+  return el(
+    "div",
+    {},
+    section(words.title, looking, facts, nameRow(app), error, el("div", { class: "buttons" }, release, take), urlBox),
+    section(words.log, empty, log),
+  );
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Above the view: the stability verdict as a light, and the force of each digit.
+import type { Store } from "../state/store";
+import { digitForces, kDigits } from "../state/channels";
+import type { Verdict } from "../state/verdict";
+import { strings } from "../strings";
+import { el, setAttribute, setText } from "./dom";
+
+const kFullBar = 5; // [N]
+
+/// "SHAKES, 11 Hz, 1.2 N".
+export function verdictText(verdict: Verdict | null): string {
+  const words = strings.verdict;
+  if (verdict === null) return words.unknown;
+  if (verdict.kind !== "shakes") return words[verdict.kind];
+  if (!Number.isFinite(verdict.frequency) || !Number.isFinite(verdict.swing)) return words.shakes;
+  return words.shakesFull(verdict.frequency.toFixed(0), verdict.swing.toFixed(1));
+}
+
+export interface Readouts {
+  readonly element: HTMLElement;
+  update(): void; // as often as a person can read
+}
+
+export function readouts(store: Store): Readouts {
+  const text = el("strong");
+  const spoken = el("span", { class: "visually-hidden", role: "status", "aria-live": "assertive" });
+  const light = el("div", { class: "verdict" }, el("span", { class: "lamp", "aria-hidden": "true" }), el("div", {}, el("small", {}, strings.verdict.label), text), spoken);
+  const digits = Array.from({ length: kDigits }, (_, digit) => {
+    const value = el("output", { "aria-label": strings.digits[digit] ?? "" });
+    const bar = el("span", { class: "bar" });
+    const box = el(
+      "div",
+      { class: "digit-force", "data-digit": digit },
+      el("span", { class: "digit-name" }, strings.digits[digit] ?? ""),
+      el("span", { class: "digit-value" }, value, el("span", { class: "unit" }, strings.units.newton)),
+      el("span", { class: "bar-track", "aria-hidden": "true" }, bar),
+    );
+    return { box, value, bar };
+  });
+  const element = el(
+    "div",
+    { class: "readouts" },
+    light,
+    el("div", { class: "digit-forces", role: "group", "aria-label": strings.forcePerDigit }, ...digits.map((digit) => digit.box)),
+  );
+  const update = () => {
+    const verdict = store.lost || !store.tick ? null : store.light.shown;
+    setAttribute(light, "data-verdict", verdict?.kind ?? "unknown");
+    setText(text, verdictText(verdict));
+    // The figures change all the time; only the verdict itself is spoken.
+    setText(spoken, verdict?.kind === "shakes" ? strings.verdict.shakes : verdictText(verdict));
+    const forces = digitForces(store.lost ? undefined : store.tick);
+    digits.forEach((digit, i) => {
+      const force = forces[i] ?? 0;
+      setText(digit.value, store.lost || !store.tick ? strings.dash : force.toFixed(1));
+      digit.bar.style.transform = `scaleX(${Math.min(1, force / kFullBar).toFixed(3)})`;
+    });
+  };
+  update();
+  return { element, update };
+}

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// Controls for single keys. Each shows the truth, asks for a change, and says beside itself why it was refused.
+import { choicesOf, keyOf, parseRange, within } from "../state/keys";
+import { Throttle } from "../state/throttle";
+import { fromNumber, number, quote, unquote } from "../state/toml";
+import type { Change } from "../wire/host";
+import { change, type App } from "./app";
+import { ChoiceBox } from "./choice_box";
+import { el, newId, setShown, setSwitch, setText, switchButton } from "./dom";
+import { onLetGo } from "./drag";
+
+const kSliderPerSecond = 10;
+const kSliderSteps = 1000;
+
+/// A label, a control, its unit, and what was refused.
+export interface Row {
+  readonly element: HTMLElement;
+  readonly refuse: (text: string) => void; // empty: nothing is wrong
+}
+
+export function row(label: string, of: HTMLElement | ChoiceBox, unit = "", hint = ""): Row {
+  const control = of instanceof ChoiceBox ? of.button : of;
+  if (of instanceof ChoiceBox) of.name(label);
+  control.id ||= newId("control");
+  const error = el("p", { class: "refused", role: "alert", id: `${control.id}-error`, hidden: true });
+  control.setAttribute("aria-describedby", error.id);
+  const element = el(
+    "div",
+    { class: "row" },
+    el("label", { for: control.id }, label, hint ? " " : null, hint ? el("small", {}, hint) : null),
+    el("div", { class: "row-control" }, control, unit ? el("span", { class: "unit" }, unit) : null),
+    error,
+    of instanceof ChoiceBox ? of.list : null,
+  );
+  const refuse = (text: string) => {
+    setText(error, text);
+    setShown(error, text !== "");
+  };
+  return { element, refuse };
+}
+
+/// Puts a value into a field unless a person is typing there.
+function put(field: HTMLInputElement, text: string): void {
+  if (document.activeElement === field && field.dataset["touched"] === "yes") return;
+  if (field.value !== text) field.value = text;
+}
+
+/// Calls `commit` when a person is done with a field; `put` leaves it alone until then.
+function typing(field: HTMLInputElement, commit: () => void): void {
+  field.addEventListener("input", () => (field.dataset["touched"] = "yes"));
+  field.addEventListener("change", () => {
+    delete field.dataset["touched"];
+    commit();
+  });
+  field.addEventListener("blur", () => delete field.dataset["touched"]);
+}
+
+/// What a person reads of a number.
+export function shownNumber(value: string): string {
+  const parsed = number(value);
+  return Number.isFinite(parsed) ? fromNumber(parsed) : unquote(value);
+}
+
+/// A number of one key.
+export function numberRow(app: App, setting: string, label: string, unit: string): HTMLElement {
+  const field = el("input", { type: "text", inputmode: "decimal", class: "number", autocomplete: "off" });
+  const made = row(label, field, unit);
+  const show = () => put(field, shownNumber(app.store.value(setting)));
+  typing(field, () => {
+    const text = field.value.trim();
+    const value = unquote(text) === "off" ? quote("off") : text;
+    made.refuse("");
+    void change(app, [[setting, value === "" ? "" : value]]).then((refused) => {
+      made.refuse(refused);
+      show();
+    });
+  });
+  app.store.on(["state", "own", "connection"], show);
+  show();
+  return made.element;
+}
+
+/// A choice of one key.
+export function choiceRow(
+  app: App,
+  setting: string,
+  label: string,
+  texts: Readonly<Record<string, string>>,
+  changes: (choice: string) => readonly Change[] = (choice) => [[setting, quote(choice)]],
+  current: () => string = () => unquote(app.store.value(setting)),
+): HTMLElement {
+  const box = new ChoiceBox(() => {
+    made.refuse("");
+    if (box.value === current()) return;
+    void change(app, changes(box.value)).then((refused) => {
+      made.refuse(refused);
+      show();
+    });
+  });
+  const made = row(label, box);
+  const show = () => {
+    const key = keyOf(app.store.welcome, setting);
+    const choices = key ? choicesOf(key) : [];
+    box.setChoices(choices.map((value) => ({ value, text: texts[value] ?? value })));
+    box.value = current();
+  };
+  app.store.on(["state", "own", "connection"], show);
+  show();
+  return made.element;
+}
+
+/// A switch that stands for several keys at once.
+/// @param blocked  why it cannot be used now; empty: it can
+export function switchRow(
+  app: App,
+  label: string,
+  hint: string,
+  current: () => boolean,
+  changes: (on: boolean) => readonly Change[],
+  blocked: () => string = () => "",
+): HTMLElement {
+  const control = switchButton(label, (on) => {
+    made.refuse("");
+    void change(app, changes(on)).then((refused) => {
+      made.refuse(refused);
+      show();
+    });
+    show();
+  });
+  control.setAttribute("aria-label", label); // the row's label is the hint
+  const made = row(hint, control);
+  made.element.classList.add("row-switch");
+  const said = made.element.querySelector("label");
+  const show = () => {
+    const why = blocked();
+    setSwitch(control, current());
+    control.disabled = why !== "";
+    if (said) setText(said, why || hint);
+  };
+  app.store.on(["state", "own", "connection"], show);
+  show();
+  return made.element;
+}
+
+/// A place on a logarithmic scale, 0 .. 1, and back.
+export const toScale = (value: number, min: number, max: number) =>
+  Math.min(1, Math.max(0, Math.log(value / min) / Math.log(max / min)));
+export const fromScale = (place: number, min: number, max: number) => min * (max / min) ** place;
+
+/// A logarithmic slider with a number field. Sends while it is dragged, and the last value for sure.
+export function logSliderRow(
+  app: App,
+  setting: string,
+  texts: { readonly label: string; readonly field: string; readonly unit: string; readonly low: string; readonly high: string },
+  min: number,
+  max: number,
+): HTMLElement {
+  const slider = el("input", { type: "range", min: 0, max: kSliderSteps, step: 1 });
+  const field = el("input", { type: "text", inputmode: "decimal", class: "number", "aria-label": texts.field, autocomplete: "off" });
+  const made = row(texts.label, slider);
+  const ends = el("div", { class: "slider-ends", "aria-hidden": "true" }, el("span", {}, texts.low), el("span", {}, texts.high));
+  made.element.classList.add("row-slider");
+  made.element.querySelector("label")?.after(el("div", { class: "number-unit" }, field, el("span", { class: "unit" }, texts.unit)));
+  made.element.querySelector(".row-control")?.append(ends);
+  let dragged = false;
+  const rounded = (value: number) => fromNumber(Number(value.toPrecision(2)));
+
+  const show = () => {
+    const value = number(app.store.value(setting));
+    if (!dragged && Number.isFinite(value)) {
+      slider.value = String(Math.round(kSliderSteps * toScale(Math.max(value, min / 10), min, max)));
+    }
+    put(field, Number.isFinite(value) ? fromNumber(value) : "");
+    slider.setAttribute("aria-valuetext", `${field.value} ${texts.unit}`);
+  };
+  const send = (value: string) => {
+    made.refuse("");
+    void change(app, [[setting, value]]).then((refused) => {
+      made.refuse(refused);
+      show();
+    });
+  };
+  const throttle = new Throttle(send, kSliderPerSecond);
+  slider.addEventListener("input", () => {
+    dragged = true;
+    const value = rounded(fromScale(Number(slider.value) / kSliderSteps, min, max));
+    field.value = value;
+    throttle.push(value);
+  });
+  onLetGo(slider, () => {
+    throttle.flush();
+    dragged = false;
+  });
+  typing(field, () => {
+    const key = keyOf(app.store.welcome, setting);
+    const typed = field.value.trim().replace(",", ".");
+    if (key && within(number(typed), parseRange(key.range))) throttle.push(fromNumber(number(typed)));
+    else throttle.push(typed);
+  });
+  app.store.on(["state", "connection"], () => {
+    if (app.store.role === "mine") return;
+    throttle.clear(); // it is no longer this page's to say
+    dragged = false;
+  });
+  app.store.on(["state", "own", "connection"], show);
+  show();
+  return made.element;
+}
+
+/// A fieldset that is only usable while this page has control.
+export function guarded(app: App, ...children: readonly (Node | null)[]): HTMLFieldSetElement {
+  const fieldset = el("fieldset", { class: "guarded" }, ...children);
+  const update = () => {
+    const disabled = app.store.role !== "mine";
+    if (fieldset.disabled !== disabled) fieldset.disabled = disabled;
+  };
+  app.store.on(["state", "connection"], update);
+  update();
+  return fieldset;
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every key that a scene may hold, as the station lists them.
+import type { KeyInfo } from "../gen/phalanx/cockpit_pb";
+import { choicesOf, defaultOf, keyOf, kindsOf, objectKind, settingOf } from "../state/keys";
+import { fromTyped, unquote } from "../state/toml";
+import { strings } from "../strings";
+import { change, type App } from "./app";
+import { ChoiceBox } from "./choice_box";
+import { button, el, newId, setShown, setSwitch, setText, switchButton } from "./dom";
+import { openDialog } from "./dialog";
+
+const words = strings.settings;
+
+interface Entry {
+  readonly key: KeyInfo;
+  readonly element: HTMLElement;
+  readonly update: () => void;
+}
+
+/// Whether the object in force has the key.
+function applies(app: App, key: KeyInfo): boolean {
+  const kindKey = keyOf(app.store.welcome, "objects.0.kind");
+  const kinds = kindsOf(key, kindKey ? choicesOf(kindKey) : []);
+  return kinds === null || kinds.includes(objectKind(app.store.state, app.store.welcome));
+}
+
+/// Where the value stands, and what a person does there.
+interface ValueField {
+  value: string;
+  readonly control: HTMLElement;
+  readonly below: HTMLElement | null;
+}
+
+function valueField(key: KeyInfo, id: string, touched: () => void, done: () => void): ValueField {
+  if (key.type === "flag" || key.type === "choice") {
+    const options = key.type === "flag" ? ["true", "false"] : choicesOf(key);
+    const text = (value: string) => (value === "true" ? words.on : value === "false" ? words.off : value);
+    const empty = key.defaultValue === "" ? [{ value: "", text: words.notStated }] : [];
+    const box = new ChoiceBox(touched);
+    box.setChoices([...empty, ...options.map((value) => ({ value, text: text(value) }))]);
+    box.button.id = id;
+    box.name(settingOf(key.path));
+    return {
+      control: box.button,
+      below: box.list,
+      get value() {
+        return box.value;
+      },
+      set value(value: string) {
+        box.value = value;
+      },
+    };
+  }
+  const input = el("input", { id, type: "text", autocomplete: "off", spellcheck: "false", placeholder: words.notStated });
+  input.addEventListener("input", touched);
+  input.addEventListener("keydown", (event) => event.key === "Enter" && done());
+  return {
+    control: input,
+    below: null,
+    get value() {
+      return input.value;
+    },
+    set value(value: string) {
+      if (input.value !== value) input.value = value;
+    },
+  };
+}
+
+function entry(app: App, key: KeyInfo): Entry {
+  const setting = settingOf(key.path);
+  const id = newId("key");
+  let touched = false;
+  const touch = () => {
+    touched = true;
+    set.disabled = false;
+  };
+  const field = valueField(key, id, touch, () => !set.disabled && set.click());
+  const error = el("p", { class: "refused", role: "alert", hidden: true });
+  const set = button(words.apply, () => void send(field.value.trim() === "" ? "" : fromTyped(field.value, key.type)));
+  const reset = button(words.reset, () => void send(""), { class: "quiet" });
+  const facts = [
+    key.range ? `${words.range} ${key.range}` : key.type,
+    key.defaultValue ? `${words.default} ${unquote(defaultOf(key, objectKind(app.store.state, app.store.welcome)))}` : "",
+    words.change[key.change] ?? "",
+  ].filter((text) => text !== "");
+
+  async function send(value: string): Promise<void> {
+    touched = false;
+    setText(error, "");
+    set.disabled = true;
+    const refused = await change(app, [[setting, value]]);
+    setText(error, refused);
+    setShown(error, refused !== "");
+    update();
+  }
+  function update(): void {
+    if (!touched) field.value = unquote(app.store.value(setting));
+    set.disabled = !touched;
+    const differs = app.store.changed(setting);
+    setShown(reset, differs);
+    element.classList.toggle("differs", differs);
+  }
+  const element = el(
+    "li",
+    { class: "setting" },
+    el("label", { for: id }, el("code", {}, setting), el("span", { class: "meaning" }, key.meaning)),
+    el("div", { class: "setting-control" }, field.control, el("span", { class: "unit" }, key.unit), set, reset),
+    field.below,
+    el("p", { class: "hint" }, facts.join(" · ")),
+    error,
+  );
+  update();
+  return { key, element, update };
+}
+
+let follow: () => void = () => {};
+let listening = false;
+
+export function openSettings(app: App): void {
+  const search = el("input", { type: "search", id: newId("search"), placeholder: words.searchHint, autocomplete: "off" });
+  const count = el("span", { class: "hint", role: "status" });
+  const only = switchButton(words.onlyChanged, (on) => {
+    setSwitch(only, on);
+    filter();
+  });
+  const none = el("p", { class: "hint" }, words.none);
+  const entries = (app.store.welcome?.key ?? []).map((key) => entry(app, key));
+  const list = el("ul", { class: "settings" }, ...entries.map((one) => one.element));
+  const fieldset = el("fieldset", { class: "guarded" }, list);
+
+  function filter(): void {
+    const wanted = search.value.toLowerCase().split(/\s+/).filter((word) => word !== "");
+    const onlyChanged = only.getAttribute("aria-checked") === "true";
+    let shown = 0;
+    for (const one of entries) {
+      const text = `${one.key.path} ${one.key.meaning}`.toLowerCase();
+      const fits =
+        wanted.every((word) => text.includes(word)) &&
+        applies(app, one.key) &&
+        (!onlyChanged || app.store.changed(settingOf(one.key.path)));
+      setShown(one.element, fits);
+      if (fits) ++shown;
+    }
+    setText(count, words.count(shown, entries.length));
+    setShown(none, shown === 0);
+  }
+  follow = () => {
+    fieldset.disabled = app.store.role !== "mine";
+    for (const one of entries) one.update();
+    filter();
+  };
+  if (!listening) app.store.on(["state", "connection", "own"], () => follow());
+  listening = true;
+  search.addEventListener("input", filter);
+  follow();
+  const head = el("div", { class: "settings-head" }, el("label", { for: search.id }, words.search), search, only, count);
+  openDialog(app, words.title, [head, fieldset, none], "large", () => (follow = () => {}));
+  search.focus();
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// The place of the 3D view: its buttons, its keys, and what is said while it cannot be shown.
+import type { Store } from "../state/store";
+import { strings } from "../strings";
+import type { ThemeName } from "../theme";
+import type { CameraPreset, HandView, ShownParts } from "../view3d/hand_view";
+import type { ViewTrouble } from "../view3d/view";
+import { button, el, saveFile, setShown, setSwitch, setText, stamp, switchButton } from "./dom";
+
+const kZoomStep = 1.15;
+const kOrbitStep = 0.08; // [rad] for a key
+const words = strings.view;
+type Part = keyof ShownParts;
+
+export interface ViewFrame {
+  readonly element: HTMLElement;
+  view(): HandView | undefined;
+  load(theme: ThemeName): Promise<void>; // brings in the renderer
+  setTheme(theme: ThemeName): void;
+  camera(preset: CameraPreset): void;
+  zoom(factor: number): void;
+}
+
+export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame {
+  let view: HandView | undefined;
+  let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true };
+  const host = el("div", { class: "view-host", tabindex: 0, role: "application", "aria-label": words.label });
+  const wait = el("p", { class: "view-wait" }, words.loading);
+
+  const camera = (preset: CameraPreset) => view?.camera(preset);
+  const zoom = (factor: number) => view?.zoom(factor);
+  const presets = (Object.keys(words.presets) as CameraPreset[]).map((preset, i) =>
+    button(words.presets[preset], () => camera(preset), { title: String(i + 1), "aria-keyshortcuts": String(i + 1) }),
+  );
+  const switches = (Object.keys(words.parts) as Part[]).map((part) => {
+    const control = switchButton(words.parts[part], (on) => {
+      parts = { ...parts, [part]: on };
+      setSwitch(control, on);
+      view?.setParts(parts);
+    });
+    setSwitch(control, true);
+    return control;
+  });
+  const picture = button(words.picture, () => view && saveFile(`phalanx-${stamp()}.png`, view.picture()));
+  const cameras = el(
+    "div",
+    { class: "view-tools view-cameras", role: "toolbar", "aria-label": words.camera },
+    ...presets,
+    button("+", () => zoom(kZoomStep), { "aria-label": words.nearer, title: words.nearer }),
+    button("−", () => zoom(1 / kZoomStep), { "aria-label": words.farther, title: words.farther }),
+  );
+  const shown = el("div", { class: "view-parts-list" }, ...switches, picture);
+  const menu = el("details", { class: "view-tools view-parts" }, el("summary", {}, words.partsMenu), shown);
+
+  host.addEventListener("keydown", (event) => {
+    const turn: Readonly<Record<string, readonly [number, number]>> = {
+      ArrowLeft: [-kOrbitStep, 0],
+      ArrowRight: [kOrbitStep, 0],
+      ArrowUp: [0, kOrbitStep],
+      ArrowDown: [0, -kOrbitStep],
+    };
+    const step = turn[event.key];
+    if (!step || event.target !== host) return;
+    view?.orbit(step[0], step[1]);
+    event.preventDefault();
+  });
+
+  function say(trouble: ViewTrouble): void {
+    setText(wait, trouble === "context-lost" ? words.contextLost : words.failed);
+    setShown(wait, trouble !== "context-restored");
+  }
+
+  async function load(theme: ThemeName): Promise<void> {
+    try {
+      const { createHandView } = await import("../view3d/view");
+      view = createHandView(host, { onTrouble: say });
+    } catch (reason) {
+      console.error(reason);
+      setText(wait, words.failed);
+      return;
+    }
+    if (wait.textContent === words.loading) setShown(wait, false);
+    view.setTheme(theme);
+    view.setParts(parts);
+    view.setLost(store.viewDead);
+    if (store.geometry) view.setGeometry(store.geometry);
+    if (store.tick) view.show(store.tick);
+    store.on(["geometry"], () => store.geometry && view?.setGeometry(store.geometry));
+    store.on(["tick"], () => store.tick && view?.show(store.tick));
+  }
+  return {
+    element: el("div", { class: "view-frame" }, host, wait, cameras, menu, ...over),
+    view: () => view,
+    load,
+    setTheme: (theme) => view?.setTheme(theme),
+    camera,
+    zoom,
+  };
+}

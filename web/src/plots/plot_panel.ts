@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plots below the view, and what is shown in them.
+import "uplot/dist/uPlot.min.css";
+import { button, el, setShown, setSwitch, setText, switchButton } from "../panels/dom";
+import { kDigits } from "../state/channels";
+import type { Store } from "../state/store";
+import { strings } from "../strings";
+import type { ThemeName } from "../theme";
+import { lasting } from "../wire/memory";
+import { chart, type Chart } from "./chart";
+import { saveCsv, savePng } from "./export";
+import { legendOf, plotKinds, type PlotKind } from "./plot_kinds";
+
+const kKinds = "phalanx.plots";
+const kWide = 1400; // [px]: from here on there is room for all of them
+const words = strings.plots;
+
+export interface PlotPanel {
+  readonly element: HTMLElement;
+  draw(): void;
+  setTheme(theme: ThemeName): void;
+  refit(): void;
+}
+
+function firstKinds(): Set<PlotKind> {
+  const stored = lasting.get(kKinds).split(",");
+  const known = plotKinds.filter((kind) => stored.includes(kind));
+  if (known.length > 0) return new Set(known);
+  return new Set(window.innerWidth >= kWide ? plotKinds : ["force"]);
+}
+
+export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
+  let colours = theme;
+  let digits: readonly boolean[] = new Array<boolean>(kDigits).fill(true);
+  const kinds = firstKinds();
+  const charts = new Map<PlotKind, { readonly box: HTMLElement; readonly chart: Chart }>();
+  const area = el("div", { class: "plot-area" });
+
+  function rebuild(): void {
+    for (const one of charts.values()) one.chart.dispose();
+    charts.clear();
+    area.replaceChildren();
+    for (const kind of plotKinds.filter((one) => kinds.has(one))) {
+      const box = el("figure", { class: "plot-box" });
+      area.append(box);
+      box.append(el("figcaption", {}, el("strong", {}, `${words.titles[kind]} [${words.units[kind]}]`), el("small", { title: legendOf(kind) }, legendOf(kind))));
+      const place = el("div", { class: "plot-place" });
+      box.append(place);
+      const made = chart(kind, store.history, colours, digits);
+      place.append(made.element);
+      charts.set(kind, { box, chart: made });
+      made.resize();
+    }
+  }
+
+  const kindSwitches = plotKinds.map((kind) => {
+    const control = switchButton(words.titles[kind], (on) => {
+      if (on) kinds.add(kind);
+      else kinds.delete(kind);
+      lasting.set(kKinds, [...kinds].join(","));
+      setSwitch(control, on);
+      rebuild();
+    });
+    setSwitch(control, kinds.has(kind));
+    return control;
+  });
+  const digitSwitches = digits.map((_, digit) => {
+    const control = switchButton(strings.digits[digit] ?? "", (on) => {
+      digits = digits.map((shown, i) => (i === digit ? on : shown));
+      setSwitch(control, on);
+      for (const one of charts.values()) one.chart.setDigits(digits);
+    }, { "data-digit": digit });
+    setSwitch(control, true);
+    return control;
+  });
+  const pause = button(words.pause, () => store.setPaused(!store.paused), { "aria-keyshortcuts": "p", class: "pause" });
+  const paused = el("span", { class: "paused", role: "status" }, words.paused);
+  const update = () => {
+    setText(pause, store.paused ? words.resume : words.pause);
+    setShown(paused, store.paused);
+  };
+  store.on(["own"], update);
+  update();
+  const png = button(words.png, () =>
+    savePng([...charts].map(([kind, one]) => ({ title: `${words.titles[kind]} [${words.units[kind]}]`, legend: legendOf(kind), canvas: one.chart.canvas() })), colours),
+    { title: words.pngLong, "aria-label": words.pngLong },
+  );
+  const offline = el("p", { class: "plot-offline", role: "status" }, words.offline);
+  const live = () => {
+    setShown(offline, !store.connected);
+    area.classList.toggle("plot-dead", !store.connected);
+  };
+  store.on(["connection"], live);
+  live();
+  const tools = el(
+    "div",
+    { class: "plot-tools" },
+    el("div", { class: "switches", role: "group", "aria-label": words.which }, ...kindSwitches),
+    el("div", { class: "switches", role: "group", "aria-label": words.digits }, ...digitSwitches),
+    el("div", { class: "switches" }, paused, pause, button(words.csv, () => saveCsv(store), { title: words.csvLong, "aria-label": words.csvLong }), png),
+  );
+  const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, offline));
+  new ResizeObserver(() => {
+    for (const one of charts.values()) one.chart.resize();
+  }).observe(area);
+  queueMicrotask(rebuild);
+  return {
+    element,
+    draw: () => {
+      for (const one of charts.values()) one.chart.draw();
+    },
+    setTheme: (next) => {
+      colours = next;
+      for (const one of charts.values()) one.chart.setTheme(next);
+    },
+    refit: rebuild,
+  };
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who may do what on this page, now.
+import type { State, Welcome } from "../gen/phalanx/cockpit_pb";
+
+/// mine: this page operates. Otherwise why it does not: no connection; the address only watches; somebody else operates; nobody does.
+export type Role = "mine" | "offline" | "watch_only" | "other" | "nobody";
+
+export function roleOf(connected: boolean, welcome: Welcome | undefined, state: State | undefined): Role {
+  if (!connected || !welcome || !state) return "offline";
+  if (!welcome.mayOperate) return "watch_only";
+  if (state.operatorPage === welcome.page) return "mine";
+  return state.operatorPage === 0 ? "nobody" : "other";
+}
+
+export const mayChange = (role: Role): boolean => role === "mine";
+export const mayTake = (role: Role): boolean => role === "other" || role === "nobody";
+
+/// A wizard needs a device whose sensors a person moves.
+export function mayCalibrate(role: Role, state: State | undefined): boolean {
+  return mayChange(role) && state !== undefined && !state.deviceSimulated && state.source === 0;
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that the page knows. Panels read it and are told when something in it changed.
+import type { Notice, State, ToPage, Welcome } from "../gen/phalanx/cockpit_pb";
+import type { Geometry } from "../gen/phalanx/geometry_pb";
+import type { Tick } from "../gen/phalanx/tick_pb";
+import type { Phase } from "../wire/connection";
+import { channels, fillRow } from "./channels";
+import { Freshness } from "./freshness";
+import { History } from "./history";
+import { isChanged, valueOf } from "./keys";
+import { continues, merged } from "./notices";
+import { roleOf, type Role } from "./roles";
+import { same } from "./toml";
+import { VerdictLight } from "./verdict";
+
+export const kHistorySeconds = 10;
+const kFramesPerSecond = 60;
+const kNoticesKept = 200;
+const kPendingMs = 1500;
+/// The station says its State twice a second; one that is older says nothing of now [ms].
+export const kStateStaleMs = 1500;
+
+export type Topic = "state" | "tick" | "notice" | "geometry" | "connection" | "own";
+
+interface Pending {
+  readonly value: string;
+  until: number; // forgotten then [ms]; Infinity: its answer is awaited
+}
+
+export class Store {
+  phase: Phase = "connecting";
+  welcome: Welcome | undefined;
+  state: State | undefined;
+  tick: Tick | undefined;
+  geometry: Geometry | undefined;
+  private shape: number | undefined; // revision of `geometry`, if it is of this connection's station
+  private stateAt = -Infinity; // when `state` came [ms]; of this connection
+  notices: Notice[] = [];
+  paused = false;
+  readonly light = new VerdictLight();
+  readonly history = new History(channels.length, Math.ceil(1.1 * kHistorySeconds * kFramesPerSecond));
+  readonly freshness: Freshness;
+  private readonly listeners = new Map<Topic, ((store: Store) => void)[]>();
+  private readonly pending = new Map<string, Pending>();
+  private readonly row = new Float64Array(channels.length);
+
+  constructor(private readonly now: () => number = () => performance.now()) {
+    this.freshness = new Freshness(now());
+  }
+
+  on(topics: readonly Topic[], listener: (store: Store) => void): void {
+    for (const topic of topics) {
+      const list = this.listeners.get(topic) ?? [];
+      list.push(listener);
+      this.listeners.set(topic, list);
+    }
+  }
+
+  /// A listener that throws is reported; the others are told all the same.
+  tell(topic: Topic): void {
+    for (const listener of this.listeners.get(topic) ?? []) {
+      try {
+        listener(this);
+      } catch (reason) {
+        console.error(reason);
+      }
+    }
+  }
+
+  get connected(): boolean {
+    return this.phase === "open";
+  }
+
+  /// No connection, or nothing new for too long.
+  get lost(): boolean {
+    return !this.connected || this.freshness.stale(this.now());
+  }
+
+  /// What the station is known to be doing now; undefined: no connection, or it has said nothing for too long.
+  get known(): State | undefined {
+    return this.connected && this.now() - this.stateAt <= kStateStaleMs ? this.state : undefined;
+  }
+
+  /// What is drawn is not what is felt: its shape has not come yet.
+  get shapeMissing(): boolean {
+    const state = this.connected && this.stateAt !== -Infinity ? this.state : undefined;
+    return state !== undefined && !state.stationGone && state.geometry !== this.shape;
+  }
+
+  /// What is drawn says nothing of now.
+  get viewDead(): boolean {
+    return this.lost || this.shapeMissing;
+  }
+
+  get role(): Role {
+    return roleOf(this.connected, this.welcome, this.state);
+  }
+
+  setPhase(phase: Phase): void {
+    this.phase = phase;
+    if (phase !== "open") {
+      this.pending.clear();
+      this.shape = undefined; // another station counts its revisions anew
+      this.stateAt = -Infinity;
+    }
+    this.tell("connection");
+  }
+
+  setGeometry(geometry: Geometry, revision: number): void {
+    this.geometry = geometry;
+    this.shape = revision;
+    this.tell("geometry");
+  }
+
+  setPaused(paused: boolean): void {
+    this.paused = paused;
+    this.tell("own");
+  }
+
+  receive(message: ToPage): void {
+    const what = message.what;
+    switch (what.case) {
+      case "welcome":
+        this.welcome = what.value;
+        this.notices = [...merged(what.value.past)];
+        this.tell("connection");
+        this.tell("notice");
+        break;
+      case "state":
+        this.state = what.value;
+        this.stateAt = this.now();
+        this.settle();
+        this.tell("state");
+        break;
+      case "tick":
+        this.step(what.value);
+        break;
+      case "notice":
+        if (continues(this.notices.at(-1), what.value)) this.notices.pop();
+        this.notices.push(what.value);
+        if (this.notices.length > kNoticesKept) this.notices.shift();
+        this.tell("notice");
+        break;
+      case "reply":
+      case undefined:
+        break;
+    }
+  }
+
+  private step(tick: Tick): void {
+    if (!this.freshness.tick(tick.time, this.now())) return;
+    this.tick = tick;
+    this.light.feed(tick, this.now() / 1000);
+    if (!this.paused) {
+      fillRow(tick, this.row);
+      this.history.push(tick.time, this.row);
+    }
+    this.tell("tick");
+  }
+
+  // ---- values of keys, with what this page has just asked for on top until the station has answered
+
+  value(setting: string): string {
+    const asked = this.pending.get(setting);
+    if (asked && this.now() < asked.until) return asked.value;
+    return valueOf(this.state, this.welcome, setting);
+  }
+
+  changed(setting: string): boolean {
+    return isChanged(this.state, setting);
+  }
+
+  /// The page asked for it; an empty value asks for the scene's own, which is not known here.
+  asked(setting: string, value: string): void {
+    if (value !== "") this.pending.set(setting, { value, until: Infinity });
+  }
+
+  /// It was answered. Where it was done, it stays on top for a moment: the State that says so may still be on its way.
+  answered(setting: string, value: string, ok: boolean): void {
+    const asked = this.pending.get(setting);
+    if (!asked || asked.value !== value) return;
+    if (ok) asked.until = this.now() + kPendingMs;
+    else this.pending.delete(setting);
+    this.settle();
+  }
+
+  private settle(): void {
+    for (const [setting, asked] of this.pending) {
+      const done = asked.until !== Infinity && same(asked.value, valueOf(this.state, this.welcome, setting));
+      if (done || this.now() >= asked.until) this.pending.delete(setting);
+    }
+  }
+}

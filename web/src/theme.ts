@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours that mean something, in one place: for the 3D view, the plots and the style sheet. Chosen from Okabe and Ito's palette, which
+// people with any of the common colour-vision deficiencies tell apart; nothing is said by colour alone.
+
+export type ThemeName = "dark" | "light";
+
+/// One a digit, thumb to little finger.
+export const digitColour: readonly string[] = ["#E69F00", "#56B4E9", "#009E73", "#CC79A7", "#D55E00"];
+
+export interface Theme {
+  readonly background: string;
+  readonly panel: string;
+  readonly text: string;
+  readonly quiet: string; // labels, grid lines' text
+  readonly grid: string;
+  readonly accent: string; // what can be pressed
+  readonly ok: string; // steady
+  readonly bad: string; // shaking, fault
+  readonly warn: string;
+  readonly skin: string;
+  readonly ghost: string;
+  readonly object: string;
+  readonly floor: string;
+  readonly arrow: string;
+  readonly lost: string; // the hand of a page without connection
+}
+
+export const themes: Readonly<Record<ThemeName, Theme>> = {
+  dark: {
+    background: "#14181d",
+    panel: "#1d232b",
+    text: "#eef2f6",
+    quiet: "#a3b0bd",
+    grid: "#33404d",
+    accent: "#56B4E9",
+    ok: "#009E73",
+    bad: "#D55E00",
+    warn: "#F0E442",
+    skin: "#d9b8a0",
+    ghost: "#8fd0ff",
+    object: "#8d99a6",
+    floor: "#1a2027",
+    arrow: "#F0E442",
+    lost: "#6b7076",
+  },
+  light: {
+    background: "#f4f6f8",
+    panel: "#ffffff",
+    text: "#15202b",
+    quiet: "#52606d",
+    grid: "#ccd5de",
+    accent: "#0072B2",
+    ok: "#007a58",
+    bad: "#b34700",
+    warn: "#8a6d00",
+    skin: "#d9b8a0",
+    ghost: "#0072B2",
+    object: "#9aa5b1",
+    floor: "#e6ebf0",
+    arrow: "#8a4b00",
+    lost: "#9a9fa5",
+  },
+};

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is in the picture: hand, ghost, object, contacts, floor and lights. Knows no canvas.
+import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
+import type { Geometry } from "../gen/phalanx/geometry_pb";
+import type { Tick } from "../gen/phalanx/tick_pb";
+import { themes } from "../theme";
+import type { ThemeName } from "../theme";
+import type { Sight } from "./camera_presets";
+import { ContactMarks, marksOf } from "./contact_marks";
+import type { Mark } from "./contact_marks";
+import { Floor } from "./floor";
+import { HandPair } from "./hand_pair";
+import { objectShape } from "./hand_shape";
+import type { ShownParts } from "./hand_view";
+import { Lights } from "./lights";
+import { ObjectMaterial } from "./object_material";
+import type { QualitySettings } from "./quality";
+
+const kTouchRadius = 0.011; // of the colour on the object around a contact [m]
+
+export class HandScene {
+  readonly scene = new Scene();
+  readonly over = new Scene(); // drawn over it, with a depth of its own
+  readonly lights = new Lights();
+  readonly hands = new HandPair();
+  readonly marks = new ContactMarks();
+  private readonly floor = new Floor();
+  private readonly background = new Color();
+  private readonly objectMaterial = new ObjectMaterial();
+  private object: Mesh<BufferGeometry, ObjectMaterial> | null = null;
+  private parts: ShownParts = { skin: true, ghost: true, arrows: true, object: true };
+  private theme: ThemeName = "dark";
+  private lost = false;
+  private left = false;
+  private contacts: readonly Mark[] = [];
+  private covered = new Box3();
+
+  constructor() {
+    this.scene.background = this.background;
+    this.scene.add(this.lights.group, this.floor.group, this.hands.shownGroup, this.marks.solid);
+    this.over.add(this.hands.ghostGroup, this.marks.faint);
+    this.setTheme(this.theme);
+  }
+
+  setGeometry(geometry: Geometry): void {
+    this.left = geometry.left;
+    this.hands.setGeometry(geometry);
+    this.dropObject();
+    const shape = objectShape(geometry.object);
+    if (shape) {
+      this.object = new Mesh(shape, this.objectMaterial);
+      this.object.castShadow = this.object.receiveShadow = true;
+      this.scene.add(this.object);
+    }
+    this.floor.standUnder(shape, new Box3());
+    this.covered.makeEmpty();
+    this.contacts = [];
+    this.paint();
+  }
+
+  show(tick: Tick): void {
+    if (!this.hands.pose(tick.gdpPose, tick.hcpPose)) return;
+    this.contacts = marksOf(tick);
+    this.coverHand();
+    this.paint();
+  }
+
+  setParts(parts: ShownParts): void {
+    this.parts = parts;
+    this.hands.useSkin(parts.skin);
+    this.paint();
+  }
+
+  setLost(lost: boolean): void {
+    this.lost = lost;
+    this.paint();
+  }
+
+  setTheme(name: ThemeName): void {
+    this.theme = name;
+    const theme = themes[name];
+    this.background.set(theme.background);
+    this.floor.setTheme(theme, name === "dark");
+    this.lights.setTheme(name === "dark");
+    this.marks.setColour(theme.arrow, theme.background);
+    this.hands.setGhostColour(theme.ghost);
+    this.objectMaterial.color.set(theme.object);
+    this.paint();
+  }
+
+  setQuality(settings: QualitySettings): void {
+    this.lights.setShadow(settings.shadow);
+    this.objectMaterial.setOcclusion(settings.occlusion);
+    this.hands.setGhostDetail(settings.ghost);
+  }
+
+  sight(): Sight {
+    return {
+      hand: this.hands.corners(),
+      object: cornersOf(this.object?.geometry.boundingBox ?? null),
+      palm: this.hands.palm(),
+      left: this.left,
+      grip: this.grip(),
+    };
+  }
+
+  /// Between thumb and index: of their contacts if both touch, else of their tips.
+  grip(): Vector3 | null {
+    const touch = (first: number): Vector3 | null => {
+      const mark = this.contacts.find((contact) => contact.touching && contact.segment >= first && contact.segment < first + 3);
+      return mark ? new Vector3(...mark.point) : null;
+    };
+    const thumb = touch(0) ?? this.hands.middleOf(2);
+    const index = touch(3) ?? this.hands.middleOf(5);
+    return thumb && index ? thumb.add(index).multiplyScalar(0.5) : null;
+  }
+
+  dispose(): void {
+    this.dropObject();
+    this.hands.dispose();
+    this.marks.dispose();
+    this.floor.dispose();
+    this.lights.dispose();
+    this.objectMaterial.dispose();
+  }
+
+  /// Colours and visibility, all from what is known: there is no order in which to call the rest.
+  private paint(): void {
+    const theme = themes[this.theme];
+    const contacts = this.lost ? [] : this.contacts;
+    this.hands.paint(this.lost ? theme.lost : theme.skin, !this.lost, contacts);
+    this.hands.ghostGroup.visible = this.parts.ghost && !this.lost;
+    this.marks.show(contacts);
+    this.marks.visible = this.parts.arrows && !this.lost;
+    if (this.object) this.object.visible = this.parts.object;
+    this.objectMaterial.setTouches(contacts.filter((mark) => mark.touching), kTouchRadius);
+    this.objectMaterial.setFingers(this.hands.capsules());
+  }
+
+  /// The shadow's box grows with the hand, and does not shrink: a map that changes its scale with every tick would flicker.
+  private coverHand(): void {
+    const hand = new Box3().setFromPoints(this.hands.corners());
+    if (this.covered.isEmpty()) {
+      const object = this.object?.geometry.boundingBox;
+      if (object) this.covered.copy(object);
+      else this.floor.standUnder(null, hand);
+    } else if (this.covered.containsBox(hand)) {
+      return;
+    }
+    this.covered.union(hand).expandByScalar(0.01);
+    this.lights.cover(this.covered);
+  }
+
+  private dropObject(): void {
+    this.object?.removeFromParent();
+    this.object?.geometry.dispose();
+    this.object = null;
+  }
+}
+
+function cornersOf(box: Box3 | null): Vector3[] {
+  if (!box || box.isEmpty()) return [];
+  const { min, max } = box;
+  return Array.from({ length: 8 }, (_, i) => new Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z));
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 3D view. The contract between it and the rest of the page; everything else in this folder is its own.
+import type { Geometry } from "../gen/phalanx/geometry_pb";
+import type { Tick } from "../gen/phalanx/tick_pb";
+import type { ThemeName } from "../theme";
+
+export type CameraPreset = "home" | "palm" | "thumb" | "follow";
+
+export interface ShownParts {
+  readonly skin: boolean; // false: the rigid segments that the search sees
+  readonly ghost: boolean; // the measured hand
+  readonly arrows: boolean;
+  readonly object: boolean;
+}
+
+/// What was drawn in the last frame: for tests and the curious. World frame, metres.
+export interface ViewProbe {
+  readonly frames: number;
+  readonly tick: bigint; // shown
+  readonly shown: readonly (readonly [number, number, number])[]; // origin of each segment's frame as drawn, 16
+  readonly ghost: readonly (readonly [number, number, number])[];
+  readonly arrows: readonly { readonly segment: number; readonly length: number }[]; // visible ones [m]
+  readonly quality: number; // 0 lowest .. 3
+  readonly framesPerSecond: number;
+  readonly lost: boolean;
+}
+
+export interface HandView {
+  setGeometry(geometry: Geometry): void;
+  show(tick: Tick): void; // the newest; drawn at the next frame of the screen
+  setLost(lost: boolean): void; // no connection: the hand greys at once, ghost and arrows go
+  setParts(parts: ShownParts): void;
+  setTheme(theme: ThemeName): void;
+  camera(preset: CameraPreset): void;
+  zoom(factor: number): void; // > 1: nearer
+  orbit(right: number, up: number): void; // [rad], for keys
+  probe(): ViewProbe;
+  picture(): string; // data URL of a PNG of what is seen now
+  dispose(): void;
+}

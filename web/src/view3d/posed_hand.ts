@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hand's surface at the poses of a tick: 16 bones that stand directly in the world.
+import { Bone, Matrix4, Skeleton, SkinnedMesh, Vector3 } from "three";
+import type { Material } from "three";
+import type { HandShape } from "./hand_shape";
+import { kSegments, poseMatrices } from "./poses";
+
+export type Point = readonly [number, number, number];
+
+/// One skeleton, under one or several meshes of the same shape (a ghost is drawn twice).
+export class PosedHand {
+  readonly meshes: readonly SkinnedMesh[];
+  readonly skeleton: Skeleton;
+  posed = false; // it has been somewhere
+
+  constructor(private readonly shape: HandShape, materials: readonly Material[]) {
+    const bones = shape.inverses.map(() => {
+      const bone = new Bone();
+      bone.matrixAutoUpdate = bone.matrixWorldAutoUpdate = false;
+      return bone;
+    });
+    this.skeleton = new Skeleton(bones, shape.inverses.map((matrix) => matrix.clone()));
+    this.skeleton.computeBoneTexture();
+    this.meshes = materials.map((material) => {
+      const mesh = new SkinnedMesh(shape.geometry, material);
+      mesh.bind(this.skeleton, new Matrix4());
+      mesh.frustumCulled = false; // its box in the bind pose says nothing about where it is
+      mesh.matrixAutoUpdate = false;
+      return mesh;
+    });
+  }
+
+  /// X_WS of the 16 segments, as in a tick. @returns false, and nothing moves, if they are not whole
+  pose(poses: readonly number[]): boolean {
+    const matrices = poseMatrices(poses);
+    if (!matrices) return false;
+    matrices.forEach((matrix, segment) => this.skeleton.bones[segment]!.matrixWorld.copy(matrix));
+    this.skeleton.update();
+    this.posed = true;
+    return true;
+  }
+
+  /// Origin of each segment's frame [m], worked back from the bone matrices as the graphics card has them.
+  drawn(): Point[] {
+    if (!this.posed) return [];
+    const bone = new Matrix4();
+    const origin = new Vector3();
+    return Array.from({ length: kSegments }, (_, segment): Point => {
+      bone.fromArray(this.skeleton.boneMatrices, 16 * segment);
+      origin.setFromMatrixPosition(new Matrix4().copy(this.shape.inverses[segment]!).invert()).applyMatrix4(bone);
+      return [origin.x, origin.y, origin.z];
+    });
+  }
+
+  /// X_WS of a segment.
+  frame(segment: number): Matrix4 {
+    return this.skeleton.bones[segment]!.matrixWorld;
+  }
+
+  /// Corners of the segments' boxes in W: what a camera has to see.
+  corners(): Vector3[] {
+    const points: Vector3[] = [];
+    if (!this.posed) return points;
+    this.shape.boxes.forEach((box, segment) => {
+      if (box.isEmpty()) return;
+      for (let i = 0; i < 8; ++i) {
+        const corner = new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z);
+        points.push(corner.applyMatrix4(this.frame(segment)));
+      }
+    });
+    return points;
+  }
+
+  get visible(): boolean {
+    return this.meshes.every((mesh) => mesh.visible);
+  }
+  set visible(visible: boolean) {
+    for (const mesh of this.meshes) mesh.visible = visible;
+  }
+
+  /// Its bones' texture; the shape belongs to whoever made it.
+  dispose(): void {
+    for (const mesh of this.meshes) mesh.removeFromParent();
+    this.skeleton.dispose();
+  }
+}
+

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the browser remembers for the page. A browser that forbids it only forgets.
+
+function read(storage: () => Storage, key: string): string {
+  try {
+    return storage().getItem(key) ?? "";
+  } catch {
+    return "";
+  }
+}
+
+function write(storage: () => Storage, key: string, value: string): void {
+  try {
+    storage().setItem(key, value);
+  } catch {
+    // private windows and full disks: the page works without
+  }
+}
+
+/// Until the tab is closed: a reload is the same page.
+export const session = {
+  get: (key: string) => read(() => sessionStorage, key),
+  set: (key: string, value: string) => write(() => sessionStorage, key, value),
+};
+
+/// For this browser: theme, type size, name.
+export const lasting = {
+  get: (key: string) => read(() => localStorage, key),
+  set: (key: string, value: string) => write(() => localStorage, key, value),
+};

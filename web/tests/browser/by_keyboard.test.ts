@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole of it without a mouse. Focus is moved with Tab only, and has to be seen.
+import { beforeAll, describe, expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import type { CockpitPage } from "./support/cockpit_page";
+import { differing } from "./support/pictures";
+import { valueOf } from "./support/settings";
+import { stage } from "./support/stage";
+import { until } from "./support/until";
+
+const kMostTabs = 80;
+const play = stage();
+let cockpit: CockpitPage;
+let seen: string[] = [];
+
+beforeAll(async () => {
+  cockpit = await play.open((await play.station({ scene: "first_touch" })).url);
+  await cockpit.untilRunning();
+});
+
+/// What has the focus: its role and name as a screen reader would say them, and how it is marked.
+function focused(): Promise<{ name: string; tag: string; marked: boolean }> {
+  return cockpit.page.evaluate(() => {
+    const element = document.activeElement as HTMLElement;
+    const label = element instanceof HTMLInputElement || element instanceof HTMLSelectElement ? element.labels?.[0]?.innerText : "";
+    const style = getComputedStyle(element);
+    return {
+      name: element.getAttribute("aria-label") ?? (label || element.innerText || "").trim().split("\n")[0] ?? "",
+      tag: element.tagName.toLowerCase(),
+      marked: (style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2) || style.boxShadow !== "none",
+    };
+  });
+}
+
+/// Presses Tab until the named control has the focus. Each stop on the way must be visible as such.
+async function tabTo(name: string, tag: string): Promise<void> {
+  seen = [];
+  for (let i = 0; i < kMostTabs; ++i) {
+    await cockpit.page.keyboard.press("Tab");
+    const now = await focused();
+    seen.push(`${now.tag} ${now.name}`);
+    if (now.tag !== "body") expect(now.marked, `the focus cannot be seen on ${now.tag} "${now.name}"`).toBe(true);
+    if (now.name === name && now.tag === tag) return;
+  }
+  throw new Error(`Tab never came to ${tag} "${name}"; it came to ${seen.join("; ")}`);
+}
+
+describe("by keyboard", () => {
+  it("makes the wall stiff until the hand shakes", async () => {
+    await tabTo(strings.force.stiffnessField, "input");
+    await cockpit.page.keyboard.press("Control+A");
+    await cockpit.page.keyboard.type("1.6");
+    await cockpit.page.keyboard.press("Enter");
+    await until("the stiffness", () => cockpit.stream.newest!.stiffness === 1600, () => cockpit.brief());
+    await until("the light says shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
+  });
+
+  it("moves the slider by arrow keys", async () => {
+    await tabTo(strings.force.stiffness, "input");
+    const before = cockpit.stream.newest!.stiffness;
+    await cockpit.page.keyboard.press("ArrowRight");
+    await cockpit.page.keyboard.press("PageUp");
+    await until("a stiffer wall", () => cockpit.stream.newest!.stiffness > before, () => `${cockpit.stream.newest!.stiffness} N/m`);
+  });
+
+  it("switches smoothing on with Enter, and the hand settles", async () => {
+    await tabTo(strings.calm.smoothing, "button");
+    await cockpit.page.keyboard.press("Enter");
+    await cockpit.untilState("smoothing in force", (state) => valueOf(state, "smoothing.enabled") === "true");
+    await until(
+      "steady",
+      async () => (await cockpit.verdict()) === "steady" && !cockpit.stream.ticks.slice(-60).some((tick) => tick.contact.some((contact) => contact.oscillating)),
+      () => cockpit.brief(),
+    );
+  });
+
+  it("chooses views by 1 to 4, zooms by + and -, turns by arrow keys", async () => {
+    const view = cockpit.page.getByRole("application", { name: strings.view.label });
+    await cockpit.page.evaluate(() => (document.activeElement as HTMLElement).blur());
+    const look = async () => {
+      const frames = (await cockpit.probe())!.frames;
+      await until("the camera has arrived", async () => (await cockpit.probe())!.frames > frames + 12);
+      return view.screenshot();
+    };
+    let before = await look();
+    for (const key of ["2", "3", "4", "1", "+", "-"]) {
+      await cockpit.page.keyboard.press(key);
+      if (key === "+") for (let i = 0; i < 3; ++i) await cockpit.page.keyboard.press(key);
+      if (key === "-") for (let i = 0; i < 6; ++i) await cockpit.page.keyboard.press(key);
+      const after = await look();
+      const changed = await differing(cockpit.page, before, after);
+      console.log(`${key}: ${(100 * changed).toFixed(1)} % of the pixels change`);
+      expect(changed, `key ${key}`).toBeGreaterThan(0.05);
+      before = after;
+    }
+    await view.focus();
+    for (let i = 0; i < 6; ++i) await cockpit.page.keyboard.press("ArrowLeft");
+    expect(await differing(cockpit.page, before, await look()), "arrow keys").toBeGreaterThan(0.05);
+  });
+
+  it("lists the keys, and gives the focus back", async () => {
+    await tabTo(strings.look.help, "button");
+    await cockpit.page.keyboard.press("?");
+    const dialog = cockpit.page.getByRole("dialog", { name: strings.help.title });
+    await dialog.waitFor();
+    for (const [key] of strings.help.rows) expect(await dialog.innerText()).toContain(key);
+    expect(await dialog.evaluate((element) => element.contains(document.activeElement))).toBe(true);
+    await cockpit.page.keyboard.press("Tab");
+    expect((await focused()).name).toBe(strings.look.close);
+    await cockpit.page.keyboard.press("Enter");
+    expect(await dialog.count()).toBe(0);
+    expect((await focused()).name).toBe(strings.look.help);
+  });
+
+  it("stops by Esc in a dialog, and the dialog hides no Stop", async () => {
+    await cockpit.page.keyboard.press("?");
+    await cockpit.page.keyboard.press("Escape");
+    await cockpit.untilStopped();
+    expect(await cockpit.stopButton.isVisible()).toBe(true);
+    await cockpit.stopButton.click({ trial: true }); // would fail if something lay over it
+    await tabTo(strings.stop.resume, "button");
+    await cockpit.page.keyboard.press("Enter");
+    await cockpit.untilState("resumed", (state) => !state.heldStopped);
+  });
+
+  it("goes from tab to tab by arrow keys", async () => {
+    await tabTo(strings.tabs.touch, "button");
+    for (const name of [strings.tabs.hand, strings.tabs.device, strings.tabs.people, strings.tabs.touch]) {
+      await cockpit.page.keyboard.press("ArrowRight");
+      expect((await focused()).name).toBe(name);
+      expect(await cockpit.page.getByRole("tab", { name, exact: true }).getAttribute("aria-selected")).toBe("true");
+    }
+  });
+});

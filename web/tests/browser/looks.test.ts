@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of the page's states, for looking at; and that all of their text can be read.
+import { beforeAll, describe, it } from "vitest";
+import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
+import { strings } from "../../src/strings";
+import type { CockpitPage } from "./support/cockpit_page";
+import { asFile, cube, noise } from "./support/meshes";
+import { shootReadable } from "./support/readable";
+import { stage, type Station } from "./support/stage";
+import { pause, until } from "./support/until";
+
+const play = stage();
+let station: Station;
+let cockpit: CockpitPage;
+
+beforeAll(async () => {
+  station = await play.station();
+  cockpit = await play.open(station.url);
+});
+
+async function upload(name: string, bytes: Buffer): Promise<void> {
+  const { page } = cockpit;
+  await cockpit.choose(strings.object.kind, "file");
+  await page.getByLabel(strings.object.file, { exact: true }).setInputFiles(asFile(name, bytes));
+  await cockpit.button(strings.object.upload).click();
+  const verdict = page.getByText(new RegExp(`^(${strings.object.good}|${strings.object.bad})$`));
+  await verdict.waitFor();
+  await verdict.scrollIntoViewIfNeeded();
+}
+
+describe("the page looks right", () => {
+  it("at first sight", () => shootReadable(cockpit, "01_first"));
+
+  it("in contact", async () => {
+    await cockpit.untilRunning();
+    await cockpit.untilTouching(1);
+    await shootReadable(cockpit, "02_contact");
+  });
+
+  it("while it shakes", async () => {
+    await cockpit.setStiffness(1.6);
+    await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
+    await pause(1500); // some of it in the plots
+    await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
+    await shootReadable(cockpit, "03_shaking");
+  });
+
+  it("when it has settled", async () => {
+    await cockpit.switch(strings.calm.smoothing).click();
+    await until("steady", async () => (await cockpit.verdict()) === "steady", () => cockpit.brief());
+    await pause(1500);
+    await until("steady", async () => (await cockpit.verdict()) === "steady", () => cockpit.brief());
+    await shootReadable(cockpit, "04_settled");
+  });
+
+  it("when a change is refused", async () => {
+    await cockpit.setStiffness(-1);
+    await until("the refusal", async () => (await cockpit.page.getByRole("alert").filter({ hasText: "stiffness" }).count()) > 0);
+    await shootReadable(cockpit, "05_refused");
+    await cockpit.setStiffness(1);
+  });
+
+  it("stopped", async () => {
+    await cockpit.stopButton.click();
+    await cockpit.untilStopped();
+    await pause(500);
+    await shootReadable(cockpit, "06_stopped");
+    await cockpit.button(strings.stop.resume).click();
+  });
+
+  it("with the list of all settings", async () => {
+    await cockpit.button(strings.settings.open).click();
+    await shootReadable(cockpit, "07_settings");
+    await cockpit.button(strings.look.close).click();
+  });
+
+  it("with the keys", async () => {
+    await cockpit.button(strings.look.help).click();
+    await shootReadable(cockpit, "08_keys");
+    await cockpit.button(strings.look.close).click();
+  });
+
+  it("with a good and with a broken mesh", async () => {
+    await upload("cube.stl", cube(40));
+    await shootReadable(cockpit, "09_upload_good");
+    await upload("noise.stl", noise(5000, 20261122));
+    await shootReadable(cockpit, "10_upload_bad");
+  });
+
+  it("with the sliders", async () => {
+    await cockpit.tab("hand");
+    await shootReadable(cockpit, "11_hand");
+    await cockpit.button(strings.hand.sources[HandSource.HAND_SLIDERS]!).click();
+    await cockpit.untilState("the sliders", (state) => state.source === HandSource.HAND_SLIDERS && !state.stationGone);
+    await cockpit.button(strings.hand.fist).click();
+    await pause(1500);
+    await shootReadable(cockpit, "12_sliders");
+  });
+
+  it("with the device, and with who is here", async () => {
+    await cockpit.tab("device");
+    await shootReadable(cockpit, "13_device");
+    await cockpit.tab("people");
+    await shootReadable(cockpit, "14_people");
+    await cockpit.tab("touch");
+  });
+
+  it("for a viewer", async () => {
+    const viewer = await play.open(station.url);
+    await shootReadable(viewer, "15_viewer");
+    await viewer.button(strings.role.take).first().click();
+    await shootReadable(viewer, "16_take_control");
+    await viewer.button(strings.role.cancel).click();
+  });
+
+  it("without the program", async () => {
+    await station.program.kill();
+    await until("the page knows", () => cockpit.lost());
+    await pause(1000);
+    await shootReadable(cockpit, "17_lost");
+    await cockpit.page.keyboard.press("Space");
+    await until("the failure of Stop", async () => cockpit.page.getByText(strings.stop.failed).isVisible());
+    await shootReadable(cockpit, "18_lost_stop");
+  });
+});

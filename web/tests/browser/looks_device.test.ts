@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// With a device on a wire: its faults and its calibration, as seen and as they work.
+import { beforeAll, describe, expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import type { CockpitPage } from "./support/cockpit_page";
+import { shootReadable } from "./support/readable";
+import { stage, type OwnDevice, type Station } from "./support/stage";
+import { pause, until } from "./support/until";
+
+const kSlow = process.env["PHALANX_COCKPIT_SLOW_MOTION"] ?? "20"; // two processes and a browser on two cores: pictures, no reaction times
+const play = stage();
+let device: OwnDevice;
+let station: Station;
+let cockpit: CockpitPage;
+
+beforeAll(async () => {
+  device = await play.device("grasp_teapot", [], kSlow);
+  station = await play.station({ scene: "grasp_teapot", slow: kSlow, args: ["--device", device.address] });
+  cockpit = await play.open(station.url);
+});
+
+describe("a device on a wire", () => {
+  it("has a panel", async () => {
+    await cockpit.untilRunning();
+    await cockpit.tab("device");
+    await shootReadable(cockpit, "30_device");
+    expect(await cockpit.page.getByText(device.address).isVisible()).toBe(true);
+  });
+
+  it("is calibrated pose by pose", async () => {
+    const words = strings.wizard;
+    await cockpit.button(words.begin).click();
+    await cockpit.untilState("the wizard", (state) => state.wizard !== undefined && state.busy === "");
+    const { wizard } = cockpit.stream.state!;
+    await cockpit.page.getByText(words.pose(1, wizard!.name.length, wizard!.name[0]!)).scrollIntoViewIfNeeded();
+    await until("live counts", () => (cockpit.stream.state!.wizard?.raw.length ?? 0) > 0, () => cockpit.brief());
+    await shootReadable(cockpit, "31_wizard");
+    await cockpit.button(words.measure).click();
+    await until("measuring", () => cockpit.stream.state!.wizard!.measuring || cockpit.stream.state!.wizard!.done[0] === true, () => cockpit.brief());
+    await shootReadable(cockpit, "32_wizard_measures");
+    await until("the first pose is measured", () => cockpit.stream.state!.wizard!.done[0] === true, () => cockpit.brief(), 120_000);
+    for (const _ of wizard!.name.slice(1)) {
+      const pose = cockpit.stream.state!.wizard!.pose;
+      await cockpit.button(words.skip).click();
+      await until("the next pose", () => (cockpit.stream.state!.wizard?.pose ?? 0) > pose, () => cockpit.brief());
+      if ((cockpit.stream.state!.wizard?.pose ?? 0) >= wizard!.name.length) break;
+    }
+    await pause(500);
+    await shootReadable(cockpit, "33_wizard_refused");
+    await cockpit.button(words.abandon).click();
+    await cockpit.untilState("no wizard any more", (state) => state.wizard === undefined && !state.stationGone && state.busy === "");
+  });
+
+  it("whose cable is pulled is a fault that says what to do, and Reset refuses while the cause is there", async () => {
+    await cockpit.untilRunning();
+    await device.program.kill();
+    await cockpit.untilState("the fault", (state) => state.fault !== undefined);
+    const fault = cockpit.stream.state!.fault!;
+    const card = cockpit.page.getByRole("alert").filter({ has: cockpit.page.getByRole("heading", { name: /Fault/ }) });
+    await card.waitFor();
+    for (const words of [fault.meaning, fault.remedy]) expect(await card.innerText()).toContain(words);
+    await until("the report's place", () => (cockpit.stream.state!.fault?.report ?? "") !== "", () => cockpit.brief());
+    await pause(1000);
+    await shootReadable(cockpit, "34_fault");
+    await cockpit.button(strings.fault.reset).click();
+    await until("the refusal", () => cockpit.stream.notices.some((notice) => notice.code === "reset_refused") || cockpit.stream.state!.fault !== undefined);
+    expect(cockpit.stream.state!.fault).toBeDefined();
+  });
+});

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program is killed: the page must not look alive. It comes back: the page does, too.
+import { expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import { differing } from "./support/pictures";
+import { small, stage } from "./support/stage";
+import { until } from "./support/until";
+
+const play = stage();
+
+it("greys the hand and says so when the program is gone, and comes back by itself", async () => {
+  const first = await play.station();
+  const cockpit = await play.open(first.url, small);
+  const band = cockpit.page.getByRole("alert").filter({ hasText: strings.lost.closed });
+  const root = cockpit.page.locator("html");
+  await cockpit.untilRunning();
+  await cockpit.untilTouching();
+  expect(await cockpit.lost()).toBe(false);
+  expect((await cockpit.probe())!.lost).toBe(false);
+  expect((await cockpit.probe())!.arrows.length).toBeGreaterThan(0);
+  expect(await band.isVisible()).toBe(false);
+  const view = cockpit.page.getByRole("application", { name: strings.view.label });
+  const alive = await view.screenshot();
+
+  await first.program.kill();
+  await until("the page knows", () => cockpit.lost());
+  await until("the picture is drawn as lost", async () => (await cockpit.probe())!.lost);
+  const probe = (await cockpit.probe())!;
+  expect(probe.arrows, "arrows would look alive").toEqual([]);
+  expect(await band.isVisible()).toBe(true);
+  expect(await root.getAttribute("data-lost")).toBe("true");
+  expect(await cockpit.verdict()).toBe("unknown");
+  expect(await cockpit.page.getByRole("group", { name: strings.forcePerDigit }).innerText()).not.toMatch(/\d/);
+  await until("controls that say why they are off", async () => cockpit.stiffnessField.isDisabled());
+  expect(await cockpit.page.getByText(strings.role.offline).isVisible()).toBe(true);
+  const dead = await view.screenshot();
+  const changed = await differing(cockpit.page, alive, dead);
+  console.log(`${(100 * changed).toFixed(1)} % of the picture's pixels changed when it went grey`);
+  expect(changed).toBeGreaterThan(0.02);
+  const frozen = await cockpit.page.evaluate(() => window.phalanx.tick()!.tick);
+
+  // Stop is still there, and honest.
+  await cockpit.stopButton.click();
+  await until("the page says that Stop did not get through", async () => cockpit.page.getByText(strings.stop.failed).isVisible());
+
+  const second = await play.station({ port: first.port });
+  expect(second.url).toBe(first.url);
+  const connections = cockpit.stream.connections;
+  await until("the page is back", async () => !(await cockpit.lost()) && !(await cockpit.probe())!.lost, () => cockpit.brief());
+  expect(cockpit.stream.connections).toBeGreaterThanOrEqual(connections);
+  expect(await band.isVisible()).toBe(false);
+  expect(await root.getAttribute("data-lost")).toBe("false");
+  await until("ticks of the new station", async () => {
+    const tick = await cockpit.page.evaluate(() => window.phalanx.tick()!);
+    return cockpit.stream.tick(tick.tick) !== undefined && tick.tick !== frozen;
+  });
+
+  // The stop that nobody confirmed is still owed: the new station gets it.
+  await cockpit.untilStopped();
+  await until("the failure is no longer said", async () => !(await cockpit.page.getByText(strings.stop.failed).isVisible()));
+  await cockpit.button(strings.stop.resume).click();
+  await cockpit.untilRunning();
+  await cockpit.untilTouching();
+  await until("arrows again", async () => (await cockpit.probe())!.arrows.length > 0);
+  expect(await cockpit.stiffnessField.isEnabled()).toBe(true);
+});
+
+it("says so when the line stands but nothing new comes", async () => {
+  const station = await play.station();
+  const cockpit = await play.open(station.url, small);
+  await cockpit.untilRunning();
+  station.program.signal("SIGSTOP");
+  await until("the page knows", () => cockpit.lost());
+  await until("the picture is drawn as lost", async () => (await cockpit.probe())!.lost);
+  await until("words over the view", async () => cockpit.page.getByText(strings.lost.stale, { exact: true }).or(cockpit.page.getByText(strings.lost.closed, { exact: true })).isVisible());
+  station.program.signal("SIGCONT");
+  await until("it goes on", async () => !(await cockpit.lost()) && !(await cockpit.probe())!.lost, () => cockpit.brief());
+});

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// The papers in ten seconds: a stiff wall makes the hand shake, smoothing lets it settle.
+import { beforeAll, describe, expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import type { Tick } from "../../src/gen/phalanx/tick_pb";
+import type { CockpitPage } from "./support/cockpit_page";
+import { small, stage, type Station } from "./support/stage";
+import { until } from "./support/until";
+
+const kShaking = 1.6; // [N/mm], docs/scenes.md
+const kOscillating = 1 << 13; // status bit
+const kSettled = 400; // ticks of the stream without shaking
+
+const play = stage();
+let station: Station;
+let cockpit: CockpitPage;
+
+const shakes = (tick: Tick) => tick.contact.some((contact) => contact.oscillating);
+
+beforeAll(async () => {
+  station = await play.station({ scene: "first_touch" });
+  cockpit = await play.open(station.url, small);
+  await cockpit.untilRunning();
+});
+
+/// Of contacts that are deep enough to divide by: force_raw / depth [N/m].
+function stiffnesses(ticks: readonly Tick[]): number[] {
+  return ticks.flatMap((tick) =>
+    tick.contact.filter((contact) => contact.touching && contact.depth > 3e-4).map((contact) => contact.forceRaw / contact.depth / tick.stiffnessFactor),
+  );
+}
+
+async function untilItFeels(newtonPerMetre: number): Promise<number[]> {
+  return until(
+    `forces of a law of ${newtonPerMetre} N/m`,
+    async () => {
+      const ticks = await cockpit.stream.next(5);
+      if (ticks.some((tick) => Math.abs(tick.stiffness / newtonPerMetre - 1) > 1e-4)) return false;
+      const found = stiffnesses(ticks);
+      return found.length >= 5 && found;
+    },
+    () => `${cockpit.brief()}; the law's stiffness is ${cockpit.stream.newest?.stiffness}`,
+  );
+}
+
+describe("shake and settle", () => {
+  it("computes with the stiffness that is typed into the page", async () => {
+    for (const stiffness of [0.5, 0.8]) {
+      await cockpit.setStiffness(stiffness);
+      const found = await untilItFeels(1000 * stiffness);
+      console.log(`set ${1000 * stiffness} N/m; force over depth: ${Math.min(...found).toFixed(1)} .. ${Math.max(...found).toFixed(1)} N/m of ${found.length} contacts`);
+      for (const one of found) expect(Math.abs(one / (1000 * stiffness) - 1)).toBeLessThan(0.02);
+    }
+  });
+
+  it("shakes when the slider makes the wall stiff, and says so", async () => {
+    expect(await cockpit.switch(strings.calm.smoothing).getAttribute("aria-checked")).toBe("false");
+    const slider = cockpit.slider(strings.force.stiffness);
+    const box = (await slider.boundingBox())!;
+    const place = (newtonPerMm: number) => box.x + 10 + (box.width - 20) * (Math.log(newtonPerMm / 0.1) / Math.log(5 / 0.1));
+    await cockpit.page.mouse.move(place(0.8), box.y + box.height / 2);
+    await cockpit.page.mouse.down();
+    await cockpit.page.mouse.move(place(1.2), box.y + box.height / 2, { steps: 4 });
+    await cockpit.page.mouse.move(place(kShaking), box.y + box.height / 2, { steps: 4 });
+    await cockpit.page.mouse.up();
+    const dragged = Number(await cockpit.stiffnessField.inputValue());
+    expect(dragged).toBeGreaterThan(1.3);
+    expect(dragged).toBeLessThan(2);
+    await until("the dragged stiffness", () => Math.abs((cockpit.stream.newest?.stiffness ?? 0) / 1000 - dragged) < 1e-3);
+    await cockpit.setStiffness(kShaking);
+    await until("the stream's oscillating bits", () => cockpit.stream.ticks.slice(-20).some(shakes), () => cockpit.brief());
+    await until("the light says shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
+    const tick = cockpit.stream.ticks.filter(shakes).at(-1)!;
+    expect(tick.status & kOscillating).not.toBe(0);
+    expect(await cockpit.page.locator("[data-verdict]").innerText()).toContain(strings.verdict.shakes);
+    const contact = tick.contact.find((one) => one.oscillating)!;
+    console.log(`it shakes: ${contact.frequency.toFixed(1)} Hz, ${contact.swing.toFixed(2)} N`);
+    expect(contact.swing).toBeGreaterThan(0.1);
+  });
+
+  it("settles when smoothing is switched on, and stays so", async () => {
+    await cockpit.switch(strings.calm.smoothing).click();
+    await cockpit.untilState("smoothing in force", (state) => state.value.some((one) => one.key === "smoothing.enabled" && one.value === "true"));
+    await until(
+      "the light says steady, for a contact with force",
+      async () => (await cockpit.verdict()) === "steady" && !cockpit.stream.ticks.slice(-60).some(shakes),
+      () => cockpit.brief(),
+    );
+    const verdicts = new Set<string | null>();
+    let ticks: Tick[] = [];
+    while (ticks.length < kSettled) {
+      ticks = ticks.concat(await cockpit.stream.next(20));
+      verdicts.add(await cockpit.verdict());
+    }
+    expect([...verdicts]).not.toContain("shakes");
+    expect([...verdicts]).toContain("steady");
+    expect(ticks.filter(shakes).map((tick) => tick.tick)).toEqual([]);
+    expect(ticks.filter((tick) => (tick.status & kOscillating) !== 0).map((tick) => tick.tick)).toEqual([]);
+    expect(ticks.at(-1)!.stiffness).toBeCloseTo(1000 * kShaking, 1);
+    const touching = ticks.filter((tick) => tick.contact.some((contact) => contact.force > 0.2)).length;
+    console.log(`settled: ${ticks.length} ticks over ${(ticks.at(-1)!.time - ticks[0]!.time).toFixed(1)} s, ${touching} of them with a force above 0.2 N`);
+    expect(touching, "a hand that touches nothing is calm, too").toBeGreaterThan(kSettled / 10);
+  });
+});

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Without a patient: every slider moves its joint, the object is met and felt, and the patient comes back.
+import { beforeAll, describe, expect, it } from "vitest";
+import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
+import { strings } from "../../src/strings";
+import type { CockpitPage } from "./support/cockpit_page";
+import { differing } from "./support/pictures";
+import { small, stage } from "./support/stage";
+import { until } from "./support/until";
+
+const kJoints = 20;
+const kNear = 0.02; // [rad]; a slider's step is 0.005
+const play = stage();
+let cockpit: CockpitPage;
+
+beforeAll(async () => {
+  cockpit = await play.open((await play.station({ scene: "squeeze_ball" })).url, small);
+  await cockpit.untilRunning();
+  await cockpit.tab("hand");
+});
+
+const source = (which: HandSource) => cockpit.button(strings.hand.sources[which]!);
+const joints = () => cockpit.page.getByRole("group", { name: /./ }).getByRole("slider");
+const angle = (joint: number) => cockpit.stream.newest?.hcpAngle[joint] ?? NaN;
+
+async function untilAt(joint: number, wanted: number): Promise<void> {
+  await until(`joint ${joint} at ${wanted.toFixed(2)} rad`, () => Math.abs(angle(joint) - wanted) < kNear, () => `it is at ${angle(joint).toFixed(3)}; ${cockpit.brief()}`);
+}
+
+/// Puts a slider on the step that is nearest to an angle, as a person would.
+async function moveTo(joint: number, wanted: number): Promise<void> {
+  const slider = joints().nth(joint);
+  const step = await slider.evaluate((input, value) => {
+    const [field, before] = [input as HTMLInputElement, (input as HTMLInputElement).value];
+    field.value = String(value);
+    const nearest = field.value;
+    field.value = before;
+    return nearest;
+  }, wanted);
+  await slider.fill(step);
+}
+
+describe("the sliders", () => {
+  it("take the hand over from the patient", async () => {
+    await source(HandSource.HAND_SLIDERS).click();
+    await cockpit.untilState("the sliders move the hand", (state) => state.source === HandSource.HAND_SLIDERS && state.slider.length === kJoints && !state.stationGone);
+    await until("the button is pressed", async () => (await source(HandSource.HAND_SLIDERS).getAttribute("aria-pressed")) === "true");
+    await until("20 sliders", async () => (await joints().count()) === kJoints, async () => `${await joints().count()} are there`);
+  });
+
+  it("move one joint each", async () => {
+    await cockpit.button(strings.hand.open).click();
+    const { jointMin, jointMax, jointOpen } = await cockpit.geometry();
+    for (let joint = 0; joint < kJoints; ++joint) await untilAt(joint, jointOpen[joint]!);
+    for (let joint = 0; joint < kJoints; ++joint) {
+      const before = cockpit.stream.newest!.hcpAngle;
+      const [open, min, max] = [jointOpen[joint]!, jointMin[joint]!, jointMax[joint]!];
+      const wanted = open + 0.3 * (max - open > open - min ? max - open : min - open);
+      await moveTo(joint, wanted);
+      await untilAt(joint, wanted);
+      cockpit.stream.newest!.hcpAngle.forEach((now, other) => {
+        if (other !== joint) expect(Math.abs(now - before[other]!), `joint ${other} moved with ${joint}`).toBeLessThan(kNear);
+      });
+      await moveTo(joint, open);
+      await untilAt(joint, open);
+    }
+    for (let joint = 0; joint < kJoints; ++joint) await untilAt(joint, jointOpen[joint]!);
+  });
+
+  it("let one see hand and object: a hand that stands still, and nothing but the object goes", async () => {
+    const view = cockpit.page.getByRole("application", { name: strings.view.label });
+    const look = async () => {
+      const frames = (await cockpit.probe())!.frames;
+      await until("another frame", async () => (await cockpit.probe())!.frames > frames + 1);
+      return view.screenshot();
+    };
+    await cockpit.page.getByText(strings.view.partsMenu, { exact: true }).click();
+    const [one, two] = [await look(), await look()];
+    await cockpit.switch(strings.view.parts.object).click();
+    const without = await look();
+    await cockpit.switch(strings.view.parts.object).click();
+    await cockpit.page.getByText(strings.view.partsMenu, { exact: true }).click();
+    const still = await differing(cockpit.page, one, two);
+    const object = await differing(cockpit.page, two, without);
+    const open = await look();
+    await cockpit.button(strings.hand.fist).click();
+    await cockpit.stream.next(90);
+    const fist = await differing(cockpit.page, open, await look());
+    console.log(`pixels that change: ${(100 * still).toFixed(2)} % when nothing moves, ${(100 * object).toFixed(2)} % without the object, ${(100 * fist).toFixed(2)} % with a fist`);
+    expect(still).toBeLessThan(0.005);
+    expect(object).toBeGreaterThan(0.02);
+    expect(fist).toBeGreaterThan(0.02);
+  });
+
+  it("give force where the object is met", async () => {
+    await cockpit.untilRunning();
+    await cockpit.untilTouching();
+    const probe = await until("an arrow", async () => {
+      const now = (await cockpit.probe())!;
+      return now.arrows.length > 0 && now;
+    }, () => cockpit.brief());
+    expect(probe.arrows[0]!.length).toBeGreaterThan(0);
+    await cockpit.button(strings.hand.open).click();
+    await until("nothing is touched", () => cockpit.stream.newest!.contact.length === 0, () => cockpit.brief());
+  });
+
+  it("give the hand back to the patient", async () => {
+    await source(HandSource.HAND_PATIENT).click();
+    await cockpit.untilState("the patient moves the hand", (state) => state.source === HandSource.HAND_PATIENT && !state.stationGone);
+    await until("no sliders", async () => (await joints().count()) === 0);
+    await cockpit.untilRunning();
+    const still = cockpit.stream.newest!.hcpAngle;
+    await until("the patient's hand moves", () => cockpit.stream.newest!.hcpAngle.some((now, joint) => Math.abs(now - still[joint]!) > 0.05));
+  });
+});

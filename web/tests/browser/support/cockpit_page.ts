@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// One browser page with the cockpit: what a person finds on it, by the names that a screen reader says.
+import { fromBinary } from "@bufbuild/protobuf";
+import type { Locator, Page } from "playwright-core";
+import type { State } from "../../../src/gen/phalanx/cockpit_pb";
+import { GeometrySchema, type Geometry } from "../../../src/gen/phalanx/geometry_pb";
+import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
+import { strings } from "../../../src/strings";
+import type { ViewProbe } from "../../../src/view3d/hand_view";
+import { Stream } from "./stream";
+import { until } from "./until";
+
+export class CockpitPage {
+  readonly stream: Stream;
+  readonly errors: string[] = [];
+
+  constructor(readonly page: Page) {
+    this.stream = new Stream(page);
+    page.on("pageerror", (error) => this.errors.push(String(error.stack ?? error)));
+    page.setDefaultTimeout(30_000);
+  }
+
+  async go(url: string): Promise<void> {
+    await this.page.goto(url);
+    await this.ready();
+  }
+
+  /// The stream runs and the hand is drawn.
+  async ready(): Promise<void> {
+    await until("a picture of the hand", async () => ((await this.probe())?.shown.length ?? 0) > 0 && this.stream.newest !== undefined, () => this.brief());
+  }
+
+  probe(): Promise<ViewProbe | undefined> {
+    return this.page.evaluate(() => window.phalanx?.view());
+  }
+
+  state(): Promise<State | undefined> {
+    return this.page.evaluate(() => window.phalanx?.state());
+  }
+
+  lost(): Promise<boolean> {
+    return this.page.evaluate(() => window.phalanx.lost());
+  }
+
+  number(): Promise<number> {
+    return this.page.evaluate(() => window.phalanx.page());
+  }
+
+  /// What the light says: none, steady, shakes or unknown.
+  verdict(): Promise<string | null> {
+    return this.page.locator("[data-verdict]").getAttribute("data-verdict");
+  }
+
+  /// The shapes as the station serves them, not as the page keeps them.
+  async geometry(): Promise<Geometry> {
+    const url = new URL(`geometry/${this.stream.state!.geometry}`, this.page.url());
+    return fromBinary(GeometrySchema, await (await this.page.request.get(url.href)).body());
+  }
+
+  // ---- by their names
+
+  button(name: string): Locator {
+    return this.page.getByRole("button", { name, exact: true });
+  }
+
+  switch(name: string): Locator {
+    return this.page.getByRole("switch", { name, exact: true });
+  }
+
+  /// A name may be followed by a hint.
+  fieldLike(name: string): Locator {
+    return this.page.getByRole("textbox", { name });
+  }
+
+  field(name: string): Locator {
+    return this.page.getByRole("textbox", { name, exact: true });
+  }
+
+  choice(name: string): Locator {
+    return this.page.getByRole("combobox", { name, exact: true });
+  }
+
+  slider(name: string): Locator {
+    return this.page.getByRole("slider", { name, exact: true });
+  }
+
+  get stopButton(): Locator {
+    return this.page.getByRole("button", { name: strings.stop.button });
+  }
+
+  get stopBox(): Locator {
+    return this.page.getByRole("region", { name: strings.stop.region });
+  }
+
+  get stiffnessField(): Locator {
+    return this.field(strings.force.stiffnessField);
+  }
+
+  async tab(name: keyof typeof strings.tabs): Promise<void> {
+    await this.page.getByRole("tab", { name: strings.tabs[name], exact: true }).click();
+  }
+
+  // ---- what a person does
+
+  /// Opens a choice and takes one of it, by the value that stands in a scene's file.
+  async choose(name: string, value: string): Promise<void> {
+    const box = this.choice(name);
+    await box.click();
+    await this.page.locator(`[id="${await box.getAttribute("aria-controls")}"] [data-value="${value}"]`).click();
+  }
+
+  async setStiffness(newtonPerMm: number): Promise<void> {
+    await this.stiffnessField.fill(String(newtonPerMm));
+    await this.stiffnessField.press("Enter");
+  }
+
+  // ---- waiting
+
+  untilState(what: string, is: (state: State) => boolean): Promise<true> {
+    return until(what, () => this.stream.state !== undefined && is(this.stream.state) && (true as const), () => this.brief());
+  }
+
+  untilRunning(): Promise<true> {
+    return this.untilState("the station runs", (state) => state.safety === SafetyState.SAFETY_RUNNING && !state.stationGone);
+  }
+
+  untilStopped(): Promise<true> {
+    return this.untilState("the station has stopped", (state) => state.heldStopped && state.safety === SafetyState.SAFETY_STOPPED);
+  }
+
+  /// A contact with force at full factor.
+  untilTouching(newtons = 0.2): Promise<true> {
+    return until(
+      `a force of ${newtons} N`,
+      () => {
+        const tick = this.stream.newest;
+        return tick !== undefined && tick.contact.some((contact) => contact.touching && contact.force * tick.factor > newtons) && (true as const);
+      },
+      () => this.brief(),
+    );
+  }
+
+  /// In a few words, for messages of tests that fail.
+  brief(): string {
+    const { state, newest } = this.stream;
+    if (!state) return "no state has come";
+    const contacts = newest?.contact.map((contact) => `${contact.segment}: ${contact.force.toFixed(2)} N`).join(", ") ?? "";
+    return (
+      `scene ${state.scene}, ${SafetyState[state.safety]}${state.heldStopped ? ", held" : ""}${state.fault ? `, fault ${state.fault.name}` : ""}` +
+      `${state.busy ? `, busy: ${state.busy}` : ""}${state.trouble ? `, trouble: ${state.trouble}` : ""}; tick ${newest?.tick}, contacts [${contacts}]; last notice: ${this.stream.notices.at(-1)?.text ?? "none"}`
+    );
+  }
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh of one's own: a good one becomes the object, a broken one is refused in words that help, and nothing changes.
+import { beforeAll, describe, expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import type { CockpitPage } from "./support/cockpit_page";
+import { asFile, cube, noise } from "./support/meshes";
+import { valueOf } from "./support/settings";
+import { small, stage } from "./support/stage";
+import { until } from "./support/until";
+
+const words = strings.object;
+const kSeed = 20261122;
+const kCube = 60; // [mm]; the patient of this scene has to reach it
+
+const play = stage();
+let cockpit: CockpitPage;
+
+beforeAll(async () => {
+  cockpit = await play.open((await play.station({ scene: "grasp_box" })).url, small);
+  await cockpit.untilRunning();
+  await cockpit.choose(words.kind, "file");
+});
+
+/// What the page says of a file that was sent.
+async function upload(name: string, bytes: Buffer, sizeMm: string, unit = "mm"): Promise<{ verdict: string; all: string; mayUse: boolean }> {
+  const { page } = cockpit;
+  await page.getByLabel(words.file, { exact: true }).setInputFiles(asFile(name, bytes));
+  await cockpit.fieldLike(words.size).fill(sizeMm);
+  if (sizeMm === "0") await cockpit.choose(words.unit, unit);
+  await cockpit.button(words.upload).click();
+  const verdict = page.getByRole("status").filter({ hasText: new RegExp(`^(${words.good}|${words.bad})$`) });
+  await verdict.waitFor();
+  return { verdict: await verdict.innerText(), all: await page.locator(".import").first().innerText(), mayUse: await cockpit.button(words.useMesh).isVisible() };
+}
+
+/// Extent of the object's mesh as the station serves it [m].
+async function objectExtent(): Promise<number[]> {
+  const { position } = (await cockpit.geometry()).object!;
+  return [0, 1, 2].map((axis) => {
+    const values = position.filter((_, i) => i % 3 === axis);
+    return Math.max(...values) - Math.min(...values);
+  });
+}
+
+describe("an uploaded mesh", () => {
+  it("is refused in the host's words if it is none, and nothing changes", async () => {
+    const { geometry, value } = cockpit.stream.state!;
+    const refused = await upload("noise.stl", noise(5000, kSeed), "50");
+    console.log(`seed ${kSeed}: ${refused.all.replaceAll("\n", " | ")}`);
+    expect(refused.verdict).toBe(words.bad);
+    expect(refused.all, "what is wrong, and what to do").toMatch(/stl.*export it again/s);
+    expect(refused.mayUse).toBe(false);
+    await cockpit.stream.next(30);
+    expect(cockpit.stream.state!.geometry).toBe(geometry);
+    expect(cockpit.stream.state!.value).toEqual(value);
+  });
+
+  it("is refused if its unit makes it as large as a house", async () => {
+    const { geometry } = cockpit.stream.state!;
+    const refused = await upload("house.stl", cube(kCube), "0", "m");
+    console.log(refused.all.replaceAll("\n", " | "));
+    expect(refused.verdict).toBe(words.bad);
+    expect(refused.mayUse).toBe(false);
+    expect(cockpit.stream.state!.geometry).toBe(geometry);
+  });
+
+  it("tells what it found in one with a hole", async () => {
+    const open = await upload("open.stl", cube(kCube, 1), "0");
+    console.log(open.all.replaceAll("\n", " | "));
+    expect(open.verdict).toBe(words.good);
+    expect(open.all).toContain(words.findings);
+    expect(open.all).toMatch(/open|hole|boundary/i);
+  });
+
+  it("becomes the object that the hand meets", async () => {
+    const { geometry } = cockpit.stream.state!;
+    const good = await upload("cube.stl", cube(kCube), "0");
+    console.log(good.all.replaceAll("\n", " | "));
+    expect(good.verdict).toBe(words.good);
+    expect(good.all, "the report of the import").toMatch(/triangles/i);
+    await cockpit.button(words.useMesh).click();
+    await cockpit.untilState("a new geometry", (state) => state.geometry !== geometry && valueOf(state, "objects.0.kind") === '"file"' && !state.stationGone && state.busy === "");
+    for (const extent of await objectExtent()) expect(extent).toBeCloseTo(kCube / 1000, 5);
+    await until("the page shows that geometry", async () => (await cockpit.state())!.geometry === cockpit.stream.state!.geometry);
+    await cockpit.untilRunning();
+    await cockpit.untilTouching();
+    await until("an arrow", async () => (await cockpit.probe())!.arrows.length > 0);
+  });
+});

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, it } from "vitest";
+import { toCsv } from "../../../src/state/csv";
+import { History } from "../../../src/state/history";
+import { random } from "./random";
+
+describe("History", () => {
+  it("is a plain list's last entries, whatever is pushed", () => {
+    const seed = 20261122;
+    const next = random(seed);
+    const history = new History(3, 7);
+    const list: { time: number; row: number[] }[] = [];
+    let time = 0;
+    for (let i = 0; i < 200; ++i) {
+      time += 0.001 + next();
+      const row = [next(), -next(), 100 * next()].map(Math.fround);
+      history.push(time, row);
+      list.push({ time, row });
+      const last = list.slice(-7);
+      expect([...history.time()], `seed ${seed}, push ${i}`).toEqual(last.map((one) => one.time));
+      for (let channel = 0; channel < 3; ++channel) {
+        expect([...history.channel(channel)]).toEqual(last.map((one) => one.row[channel]));
+      }
+      expect(history.end).toBe(time);
+    }
+  });
+
+  it("takes its storage once", () => {
+    const history = new History(2, 4);
+    const storage = history.channel(1).buffer;
+    for (let i = 1; i < 50; ++i) history.push(i, [i, -i]);
+    expect(history.channel(1).buffer).toBe(storage);
+    expect(history.length).toBe(4);
+  });
+
+  it("ignores a step that it has, and begins anew when the clock runs backwards", () => {
+    const history = new History(1, 4);
+    history.push(1, [10]);
+    history.push(1, [11]);
+    expect([...history.channel(0)]).toEqual([10]);
+    history.push(2, [20]);
+    history.push(0.5, [5]);
+    expect([...history.time()]).toEqual([0.5]);
+    expect([...history.channel(0)]).toEqual([5]);
+  });
+
+  it("is empty at first and refuses a channel that it has not", () => {
+    const history = new History(1, 4);
+    expect(history.time().length).toBe(0);
+    expect(history.end).toBeNaN();
+    expect(() => history.channel(1)).toThrow(RangeError);
+  });
+});
+
+describe("toCsv", () => {
+  it("writes a head with units, times from zero, and leaves unknown values empty", () => {
+    const history = new History(2, 4);
+    history.push(100, [0.1, NaN]);
+    history.push(100.0167, [-2, 1e-5]);
+    const text = toCsv(history, [
+      { name: "force_raw index tip", unit: "N" },
+      { name: 'odd, "name"', unit: "rad" },
+    ]);
+    expect(text).toBe('time [s],force_raw index tip [N],"odd, ""name"" [rad]"\r\n0.0000,0.1,\r\n0.0167,-2,0.00001\r\n');
+  });
+
+  it("is only a head where there is nothing", () => {
+    expect(toCsv(new History(1, 2), [{ name: "a", unit: "N" }])).toBe("time [s],a [N]\r\n");
+  });
+});

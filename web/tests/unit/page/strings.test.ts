@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+import { readFileSync, readdirSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { describe, expect, it } from "vitest";
+import { ChangeKind, HandSource, Notice_Level } from "../../../src/gen/phalanx/cockpit_pb";
+import { strings } from "../../../src/strings";
+
+const source = resolve(__dirname, "../../../src");
+const keysOfDocs = readFileSync(resolve(source, "../../docs/scenes.md"), "utf8");
+
+/// The choices of a key in the table of docs/scenes.md.
+function choices(key: string): string[] {
+  const line = keysOfDocs.split("\n").find((one) => one.startsWith(`| \`${key}\` | choice`));
+  return line?.split("|")[4]?.split(",").map((word) => word.trim()) ?? [];
+}
+
+function visit(value: unknown, path: string, found: (path: string, text: string) => void): void {
+  if (typeof value === "string") found(path, value);
+  else if (typeof value === "function") found(path, String((value as (...words: unknown[]) => unknown)("a", "b", "c")));
+  else if (Array.isArray(value)) value.forEach((one, i) => visit(one, `${path}[${i}]`, found));
+  else for (const [name, one] of Object.entries(value as object)) visit(one, `${path}.${name}`, found);
+}
+
+const enumNames = (values: object) => Object.values(values).filter((value) => typeof value === "string").length;
+
+describe("strings", () => {
+  it("are all there, and none is blank", () => {
+    let count = 0;
+    visit(strings, "strings", (path, text) => {
+      ++count;
+      expect(text.trim(), path).not.toBe("");
+      expect(text, path).not.toContain("undefined");
+    });
+    expect(count).toBeGreaterThan(200);
+  });
+
+  it("name every value of the messages' enumerations", () => {
+    expect(strings.hand.sources.length).toBe(enumNames(HandSource));
+    expect(strings.settings.change.length).toBe(enumNames(ChangeKind));
+    expect(strings.notice.levels.length).toBe(enumNames(Notice_Level));
+  });
+
+  it("name every shape, force law and stabiliser that a scene may choose", () => {
+    const named: readonly (readonly [string, Readonly<Record<string, string>>])[] = [
+      ["objects[].kind", strings.object.kinds],
+      ["force.law", strings.force.laws],
+      ["stabiliser.method", strings.calm.methods],
+    ];
+    for (const [key, texts] of named) {
+      expect(choices(key).length, key).toBeGreaterThan(3);
+      for (const choice of choices(key)) expect(texts[choice], `${key} = ${choice}`).toBeTruthy();
+    }
+  });
+
+  it("name every size that an object may have", () => {
+    const sizes = [...keysOfDocs.matchAll(/\| `objects\[\]\.(\w+)` \| (?:number|vector)/g)].map((match) => match[1]!);
+    const placed = ["position_mm", "rotation_deg"];
+    for (const size of sizes.filter((one) => !placed.includes(one))) expect(strings.object.sizes[size], size).toBeTruthy();
+  });
+
+  it("hold all the text: panels and plots have none of their own", () => {
+    for (const folder of ["panels", "plots", "state", "wire"]) {
+      for (const name of readdirSync(join(source, folder))) {
+        readFileSync(join(source, folder, name), "utf8").split("\n").forEach((line, i) => {
+          const code = line.replace(/\/\/.*$/, "");
+          // A sentence, or a capitalised word that is no key of the keyboard, in quotes.
+          const text = /"(?=[^"]*[a-z] [a-z])(?![^"]*[:;{}()=<>])[A-Z][^"]*"/.exec(code) ?? /"(?!Enter|Escape|Arrow)[A-Z][a-z]{2,}"/.exec(code);
+          expect(text?.[0], `${folder}/${name}:${i + 1}`).toBeUndefined();
+          const unit = /["'` ](N|Nm|rad|mm|cm|N\/s|Nm\/s|rad\/s|N\/mm|ms|µs|s|HTTP)["'`\]]|"–"/.exec(code);
+          expect(unit?.[0], `${folder}/${name}:${i + 1}`).toBeUndefined();
+        });
+      }
+    }
+  });
+});

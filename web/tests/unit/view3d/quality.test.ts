@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, it } from "vitest";
+import { highestQuality, pixelRatioFor, QualityWatch, qualityLevels } from "../../../src/view3d/quality";
+
+/// Frames of that length for so long; the level after it.
+function run(watch: QualityWatch, frame: number, seconds: number): number {
+  for (let time = 0; time < seconds; time += frame) watch.frame(frame);
+  return watch.level;
+}
+
+describe("QualityWatch", () => {
+  it("stays at the top while frames are fast", () => {
+    expect(run(new QualityWatch(), 1 / 60, 60)).toBe(highestQuality);
+  });
+  it("stays where it is between slow and fast", () => {
+    expect(run(new QualityWatch(2), 1 / 30, 120)).toBe(2);
+  });
+  it("goes down one level at a time at 15 frames a second", () => {
+    const watch = new QualityWatch();
+    const levels = [watch.level];
+    for (let i = 0; i < 200; ++i) if (watch.frame(1 / 15)) levels.push(watch.level);
+    expect(levels).toEqual([3, 2, 1, 0]);
+  });
+  it("goes down by two within ten frames at 2 frames a second", () => {
+    const watch = new QualityWatch();
+    for (let i = 0; i < 10; ++i) watch.frame(0.5);
+    expect(watch.level).toBe(1);
+  });
+  it("does not go below zero nor above the top", () => {
+    expect(run(new QualityWatch(0), 0.5, 60)).toBe(0);
+    expect(run(new QualityWatch(99), 1 / 60, 60)).toBe(highestQuality);
+  });
+  it("goes up again when frames have been fast for a while, not at once", () => {
+    const watch = new QualityWatch(1);
+    expect(run(watch, 1 / 60, 4)).toBe(1);
+    expect(run(watch, 1 / 60, 8)).toBe(2);
+  });
+  it("swings less and less where one level is too slow and the next is fast", () => {
+    const watch = new QualityWatch(1);
+    let time = 0;
+    const ups: number[] = [];
+    while (time < 600) {
+      const before = watch.level;
+      const frame = watch.level >= 2 ? 1 / 15 : 1 / 60;
+      watch.frame(frame);
+      time += frame;
+      if (watch.level > before) ups.push(time);
+    }
+    const waits = ups.slice(1).map((at, i) => at - ups[i]!);
+    expect(waits.length).toBeGreaterThan(2);
+    for (let i = 1; i < waits.length; ++i) expect(waits[i]!).toBeGreaterThan(1.5 * waits[i - 1]!);
+  });
+  it("does not judge by one long pause", () => {
+    const watch = new QualityWatch();
+    for (let i = 0; i < 100; ++i) {
+      watch.frame(1 / 60);
+      if (i % 10 === 0) watch.frame(30);
+    }
+    expect(watch.level).toBe(highestQuality);
+  });
+});
+
+describe("pixelRatioFor", () => {
+  it("is never more than the screen's, the level's or what the area allows", () => {
+    const best = qualityLevels[highestQuality]!;
+    expect(pixelRatioFor(best, 800, 600, 1)).toBe(1);
+    expect(pixelRatioFor(best, 800, 600, 3)).toBe(best.pixelRatio);
+    const worst = qualityLevels[0]!;
+    const ratio = pixelRatioFor(worst, 1600, 1000, 2);
+    expect(1600 * 1000 * ratio * ratio).toBeCloseTo(worst.pixels, 0);
+  });
+});

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+import { defineConfig } from "vite";
+
+// The page is served by the station itself: relative addresses, nothing from elsewhere.
+export default defineConfig({
+  base: "./",
+  build: { target: "es2022", outDir: "dist", emptyOutDir: true, sourcemap: false, assetsInlineLimit: 0, reportCompressedSize: true, chunkSizeWarningLimit: 700 },
+  server: {
+    // `npx vite` for whoever works on the page; the station runs beside it.
+    proxy: {
+      "/stream": { target: "ws://127.0.0.1:8480", ws: true },
+      "/geometry": "http://127.0.0.1:8480",
+      "/mesh": "http://127.0.0.1:8480",
+      "/stop": "http://127.0.0.1:8480",
+    },
+  },
+});
