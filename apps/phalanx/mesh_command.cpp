@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "phalanx/mesh/import.h"
+#include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "usage.h"
 
@@ -84,13 +85,6 @@ void print_report(const std::string& file, const MeshReport& r) {
   fmt::print("  {}\n", mesh_verdict(r));
 }
 
-double metres_per(const std::string& unit) {
-  if (unit == "mm") return 1e-3;
-  if (unit == "cm") return 1e-2;
-  if (unit == "in") return 0.0254;
-  return 1.0;
-}
-
 void check_out(const std::string& out, const std::string& file) {
   const std::filesystem::path path(out);
   std::error_code error;  // a file that does not exist is no other's equal
@@ -108,7 +102,7 @@ int check_meshes(const MeshCheck& check) {
   if (check.size_mm > 0.0 && check.unit != "m")
     throw std::invalid_argument("--unit: --size-mm decides the size by itself; give one of the two");
   const ImportOptions options{
-      .size = check.size_mm * 1e-3, .unit = metres_per(check.unit), .triangles = check.triangles};
+      .size = check.size_mm * 1e-3, .unit = metres_per(check.unit).value(), .triangles = check.triangles};
   auto all = nlohmann::ordered_json::array();
   int code = kDone;
   for (const std::string& file : check.files) {

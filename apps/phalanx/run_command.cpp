@@ -104,7 +104,7 @@ class Run {
     try {
       const std::string file = write_fault_report(options_.faults, report).string();
       say("report: " + file);
-      if (page_) page_->fault_reported(file);
+      if (page_) page_->fault_reported(file, event.time);
     } catch (const std::exception& error) {  // the station goes on without it
       fmt::print(stderr, "phalanx run: the fault's report could not be written: {}\n", error.what());
     }
@@ -142,23 +142,29 @@ class Run {
     try {
       if (line == "stop") {
         host_->stop();
+        tell_typed("stopped", "stopped");
       } else if (line == "resume") {
-        host_->resume();
+        if (!host_->resume())
+          throw std::invalid_argument("somebody has said stop in the same moment; look, then resume again");
+        tell_typed("resumed", "resumed");
       } else if (line == "reset") {
         host_->reset();
+        tell_typed("reset", "asked for a reset");
       } else if (line == "quit") {
         quit_ = true;
+        tell_typed("quit", "ends the station");
       } else if (line.starts_with("set ")) {
         const std::string change = line.substr(4);
-        host_->set({parse_override(change)}, [change](const std::string& refused) {
-          say(refused.empty() ? "changed: " + change : "refused: " + refused);
+        host_->set({parse_override(change)}, [this, change](const ChangeOutcome& outcome) {
+          say_typed("set", change, change, outcome);
         });
       } else if (line.starts_with("scene ")) {
-        host_->load_scene(line.substr(6), [line](const std::string& refused) {
-          say(refused.empty() ? "changed: " + line : "refused: " + refused);
+        host_->load_scene(line.substr(6), [this, line](const ChangeOutcome& outcome) {
+          say_typed("scene", line.substr(6), line, outcome);
         });
       } else if (line.starts_with("slow ")) {
         host_->lengthen_steps(milliseconds(line.substr(5)));
+        tell_typed("slow", fmt::format("makes every step {} ms longer", line.substr(5)));
       } else if (!line.empty()) {
         throw std::invalid_argument(fmt::format(
             "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, scene NAME, slow MS or quit",
@@ -167,6 +173,19 @@ class Run {
     } catch (const std::exception& error) {  // what is refused ends nothing
       fmt::print(stderr, "phalanx run: {}\n", error.what());
     }
+  }
+
+  void say_typed(const std::string& code, const std::string& text, const std::string& line,
+                 const ChangeOutcome& outcome) {
+    if (!outcome.refused.empty()) return say("refused: " + outcome.refused);
+    if (outcome.overtaken) return say("overtaken by a newer value: " + line);
+    say("changed: " + line);
+    tell_typed(code, text);
+  }
+
+  /// Pages and the log of changes hear of it as of a page's change.
+  void tell_typed(const std::string& code, const std::string& text) {
+    if (page_) page_->typed(code, text);
   }
 
   static double milliseconds(const std::string& text) {

@@ -92,7 +92,8 @@ CockpitSettings cockpit_settings(const RunOptions& o) {
 struct RunPage::Parts {
   Parts(const RunOptions& o, StationHost& host)
       : settings(server_settings(o)), cockpit(host, cockpit_settings(o)), server(settings, cockpit) {
-    cockpit.attach(server);
+    cockpit.attach(
+        server, is_loopback(o.listen) ? std::vector<std::string>() : urls(o, server, settings.viewer_token));
   }
 
   void introduce(const RunOptions& o) const {
@@ -138,6 +139,10 @@ void RunPage::tell(const std::string& code, const std::string& text, bool fault)
   parts_->cockpit.tell(code, text, fault);
 }
 
-void RunPage::fault_reported(const std::string& file) { parts_->cockpit.fault_reported(file); }
+void RunPage::typed(const std::string& code, const std::string& text) { parts_->cockpit.typed(code, text); }
+
+void RunPage::fault_reported(const std::string& file, double fault_time) {
+  parts_->cockpit.fault_reported(file, fault_time);
+}
 
 }  // namespace phalanx

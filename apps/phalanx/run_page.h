@@ -18,7 +18,8 @@ class RunPage {
   ~RunPage();
 
   void tell(const std::string& code, const std::string& text, bool fault);  ///< Cockpit::tell()
-  void fault_reported(const std::string& file);                             ///< Cockpit::fault_reported()
+  void typed(const std::string& code, const std::string& text);             ///< Cockpit::typed()
+  void fault_reported(const std::string& file, double fault_time);          ///< Cockpit::fault_reported()
 
  private:
   struct Parts;

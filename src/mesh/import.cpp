@@ -16,9 +16,9 @@
 #include "mesh/decimate.h"
 #include "mesh/deviation.h"
 #include "mesh/index_check.h"
-#include "mesh/isolated.h"
 #include "mesh/obj_reduce.h"
 #include "mesh/repair.h"
+#include "phalanx/mesh/isolated.h"
 
 namespace phalanx {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/isolated.h"
+#include "phalanx/mesh/isolated.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -26,7 +26,7 @@
 namespace phalanx::mesh {
 namespace {
 
-constexpr std::uint8_t kMesh = 1;
+constexpr std::uint8_t kResult = 1;
 constexpr std::uint8_t kRefusal = 2;
 constexpr std::uint8_t kOutOfMemory = 3;
 
@@ -83,27 +83,42 @@ bool read_all(int fd, void* data, std::size_t bytes, Clock::time_point deadline)
   return true;
 }
 
-template <typename T>
-bool write_vector(int fd, const std::vector<T>& values) {
+/// @tparam Sequence  std::vector or std::string
+template <typename Sequence>
+bool write_sequence(int fd, const Sequence& values) {
   const std::uint64_t count = values.size();
-  return write_all(fd, &count, sizeof count) && write_all(fd, values.data(), values.size() * sizeof(T));
+  return write_all(fd, &count, sizeof count) &&
+         write_all(fd, values.data(), values.size() * sizeof(typename Sequence::value_type));
 }
 
 /// A child gone wild may claim any count, but not more than the memory that it has.
-template <typename T>
-bool read_vector(int fd, std::vector<T>& values, std::uint64_t most_bytes, Clock::time_point deadline) {
+template <typename Sequence>
+bool read_sequence(int fd, Sequence& values, std::uint64_t most_bytes, Clock::time_point deadline) {
+  constexpr std::size_t kEach = sizeof(typename Sequence::value_type);
   std::uint64_t count = 0;
-  if (!read_all(fd, &count, sizeof count, deadline) || count > most_bytes / sizeof(T)) return false;
+  if (!read_all(fd, &count, sizeof count, deadline) || count > most_bytes / kEach) return false;
   values.reserve(static_cast<std::size_t>(count));  // of address space; memory follows as it is filled
   constexpr std::uint64_t kChunk = 1 << 16;
   for (std::uint64_t have = 0; have < count;) {
     const std::uint64_t more = std::min(kChunk, count - have);
     values.resize(static_cast<std::size_t>(have + more));
-    if (!read_all(fd, values.data() + have, static_cast<std::size_t>(more) * sizeof(T), deadline))
-      return false;
+    if (!read_all(fd, values.data() + have, static_cast<std::size_t>(more) * kEach, deadline)) return false;
     have += more;
   }
   return true;
+}
+
+bool write_result(int fd, const TriangleMesh& mesh) {
+  return write_sequence(fd, mesh.vertices) && write_sequence(fd, mesh.triangles);
+}
+bool write_result(int fd, const std::string& text) { return write_sequence(fd, text); }
+
+bool read_result(int fd, TriangleMesh& mesh, std::uint64_t most_bytes, Clock::time_point deadline) {
+  return read_sequence(fd, mesh.vertices, most_bytes, deadline) &&
+         read_sequence(fd, mesh.triangles, most_bytes, deadline);
+}
+bool read_result(int fd, std::string& text, std::uint64_t most_bytes, Clock::time_point deadline) {
+  return read_sequence(fd, text, most_bytes, deadline);
 }
 
 void limit(int resource, rlim_t most) {
@@ -130,7 +145,8 @@ void end_with(pid_t parent) {
   if (::getppid() != parent) ::_exit(1);  // it was gone before that
 }
 
-[[noreturn]] void run_child(const std::function<TriangleMesh()>& read, int fd, const std::string& origin,
+template <typename Result>
+[[noreturn]] void run_child(const std::function<Result()>& work, int fd, const std::string& origin,
                             const IsolationLimits& limits) {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM})
     std::signal(signal, SIG_DFL);
@@ -140,6 +156,9 @@ void end_with(pid_t parent) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);
   limit(RLIMIT_AS, address_space() + limits.memory_bytes);
+  // What the parent closes is closed: a port that is locked, a connection, a file.
+  ::close_range(STDERR_FILENO + 1, static_cast<unsigned>(fd) - 1, 0);
+  ::close_range(static_cast<unsigned>(fd) + 1, ~0U, 0);
   // What a dying reader prints would only puzzle: the parent says it in one sentence.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) {
@@ -148,8 +167,8 @@ void end_with(pid_t parent) {
   }
   bool sent = false;
   try {
-    const TriangleMesh mesh = read();
-    sent = write_all(fd, &kMesh, 1) && write_vector(fd, mesh.vertices) && write_vector(fd, mesh.triangles);
+    const Result result = work();
+    sent = write_all(fd, &kResult, 1) && write_result(fd, result);
   } catch (const std::bad_alloc&) {
     sent = write_all(fd, &kOutOfMemory, 1);
   } catch (const std::exception& e) {
@@ -157,27 +176,27 @@ void end_with(pid_t parent) {
     std::string what = e.what();
     if (dynamic_cast<const std::invalid_argument*>(&e) == nullptr)
       what = origin + ": the file is damaged (" + what + "); repair the mesh or export it again";
-    sent = write_all(fd, &kRefusal, 1) && write_vector(fd, std::vector<char>(what.begin(), what.end()));
+    sent = write_all(fd, &kRefusal, 1) && write_sequence(fd, what);
   } catch (...) {
   }
   ::_exit(sent ? 0 : 1);  // no destructors, no buffers: those belong to the parent
 }
 
+template <typename Result>
 struct Received {
   std::uint8_t kind = 0;
-  TriangleMesh mesh;
-  std::vector<char> refusal;
+  Result result;
+  std::string refusal;
 };
 
-Received receive(int fd, std::uint64_t most, Clock::time_point deadline) {
-  Received r;
+template <typename Result>
+Received<Result> receive(int fd, std::uint64_t most, Clock::time_point deadline) {
+  Received<Result> r;
   std::uint8_t kind = 0;
   if (!read_all(fd, &kind, 1, deadline)) return r;
   bool whole = kind == kOutOfMemory;
-  if (kind == kMesh)
-    whole =
-        read_vector(fd, r.mesh.vertices, most, deadline) && read_vector(fd, r.mesh.triangles, most, deadline);
-  if (kind == kRefusal) whole = read_vector(fd, r.refusal, 1 << 16, deadline);
+  if (kind == kResult) whole = read_result(fd, r.result, most, deadline);
+  if (kind == kRefusal) whole = read_sequence(fd, r.refusal, 1 << 16, deadline);
   if (whole) r.kind = kind;
   return r;
 }
@@ -199,10 +218,8 @@ int reap(pid_t child, Clock::time_point deadline) {
   return status;
 }
 
-}  // namespace
-
-TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::string& origin,
-                          const IsolationLimits& limits) {
+template <typename Result>
+Result run(const std::function<Result()>& work, const std::string& origin, const IsolationLimits& limits) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw std::system_error(errno, std::generic_category(), origin + ": no pipe for the reader");
@@ -215,15 +232,15 @@ TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::
   if (child == 0) {
     end_with(parent);
     from_child.close();
-    run_child(read, to_parent.get(), origin, limits);
+    run_child(work, to_parent.get(), origin, limits);
   }
   to_parent.close();
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(limits.wall_seconds));
-  Received received;
+  Received<Result> received;
   std::exception_ptr failure;
   try {
-    received = receive(from_child.get(), limits.memory_bytes, deadline);
+    received = receive<Result>(from_child.get(), limits.memory_bytes, deadline);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -231,9 +248,8 @@ TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::
   // What has sent all it had to say is not waited for.
   const int status = reap(child, failure || received.kind != 0 ? Clock::now() : deadline);
   if (failure) std::rethrow_exception(failure);
-  if (received.kind == kMesh) return std::move(received.mesh);
-  if (received.kind == kRefusal)
-    throw std::invalid_argument(std::string(received.refusal.begin(), received.refusal.end()));
+  if (received.kind == kResult) return std::move(received.result);
+  if (received.kind == kRefusal) throw std::invalid_argument(received.refusal);
   std::string what = "crashed on it";
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)) {
     const bool slept = Clock::now() >= deadline;
@@ -245,6 +261,18 @@ TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::
     what = "wanted more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory for it";
   throw std::invalid_argument(origin + ": the file is damaged or far too large: its reader " + what +
                               "; repair the mesh or export it again");
+}
+
+}  // namespace
+
+TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::string& origin,
+                          const IsolationLimits& limits) {
+  return run(read, origin, limits);
+}
+
+std::string run_isolated_text(const std::function<std::string()>& work, const std::string& origin,
+                              const IsolationLimits& limits) {
+  return run(work, origin, limits);
 }
 
 }  // namespace phalanx::mesh

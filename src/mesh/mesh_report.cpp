@@ -2,6 +2,9 @@
 #include "phalanx/mesh/mesh_report.h"
 
 #include <cstdio>
+#include <string_view>
+
+#include "phalanx/mesh/length_units.h"
 
 namespace phalanx {
 namespace {
@@ -73,16 +76,14 @@ std::string unit_advice(double largest, double scale) {
   constexpr double kSmallest = 3e-3;
   constexpr double kLargest = 3.0;
   if (largest >= kSmallest && largest <= kLargest) return "";
-  struct Unit {
-    const char* name;
-    double metres;
-  };
   // What people hold is some 5 to 50 cm wide; the first unit that makes it so.
-  for (const Unit unit : {Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"in", 0.0254}, Unit{"m", 1.0}}) {
-    const double would_be = largest / scale * unit.metres;
-    if (unit.metres != scale && would_be >= 0.02 && would_be <= 1.0)
-      return "it is " + length_text(largest) + " wide; probably its numbers are " + unit.name + " (" +
-             length_text(would_be) + "): give unit \"" + unit.name + "\" with size_mm 0, or the size in mm";
+  for (const std::string_view name : {"mm", "cm", "in", "m"}) {
+    const double metres = metres_per(name).value();
+    const double would_be = largest / scale * metres;
+    if (metres != scale && would_be >= 0.02 && would_be <= 1.0)
+      return "it is " + length_text(largest) + " wide; probably its numbers are " + std::string(name) + " (" +
+             length_text(would_be) + "): give unit \"" + std::string(name) +
+             "\" with size_mm 0, or the size in mm";
   }
   return "it is " + length_text(largest) + " wide, no object for a hand; give its size in mm";
 }

@@ -69,9 +69,38 @@ Pose mirrored(Pose X) {
 
 }  // namespace
 
+namespace {
+
+/// Triangles of all objects together, as they become known.
+class TriangleCount {
+ public:
+  void add(std::size_t index, std::size_t triangles) {
+    count_ += triangles;
+    if (count_ <= kMostSceneTriangles) return;
+    throw SceneError(fmt::format(
+        "objects[{}]: with its {} triangles the scene's objects have {}, and may have {} together; make it "
+        "coarser (triangles, or decimate_to for a file) or leave objects out",
+        index, triangles, count_, kMostSceneTriangles));
+  }
+
+ private:
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
 TriangleMesh make_world_mesh(const SceneDescription& scene) {
+  TriangleCount count;
+  // What is made here says how many it is asked for, and is refused before it is made.
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].kind != "file") count.add(i, static_cast<std::size_t>(scene.objects[i].triangles));
+  }
   TriangleMesh world;
-  for (const ObjectDescription& object : scene.objects) append(world, make_object_mesh(object), object.pose);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const TriangleMesh mesh = make_object_mesh(scene.objects[i]);
+    if (scene.objects[i].kind == "file") count.add(i, mesh.triangles.size());
+    append(world, mesh, scene.objects[i].pose);
+  }
   if (is_mirrored(scene)) mirror(world);
   return world;
 }

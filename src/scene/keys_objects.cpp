@@ -2,6 +2,7 @@
 // Keys of one element of objects[].
 #include <array>
 
+#include "phalanx/mesh/length_units.h"
 #include "scene/key_builders.h"
 
 namespace phalanx {
@@ -29,8 +30,7 @@ void add_object_keys(std::vector<KeySpec>& keys) {
   keys.push_back(
       for_kinds("file", choice("objects[].unit", {"m", "mm", "cm", "in"}, "\"m\"",
                                "what the file's numbers are; counts with size_mm = 0", [](T t, V v) {
-                                 constexpr std::array<double, 4> kMetres = {1.0, 1e-3, 1e-2, 0.0254};
-                                 t.object.unit = kMetres[static_cast<std::size_t>(v.integer)];
+                                 t.object.unit = kLengthUnits[static_cast<std::size_t>(v.integer)].metres;
                                })));
   keys.push_back(
       for_kinds("file", integer("objects[].decimate_to", between(0, 10000000), "0",

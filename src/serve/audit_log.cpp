@@ -4,13 +4,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <system_error>
-#include <utility>
+#include <string>
 
 #include "serve/plain_text.h"
 
@@ -24,58 +21,36 @@ std::string utc(double unix_time) {
                      static_cast<int>((unix_time - whole) * 1e3));
 }
 
+std::string line_of(const wire::Notice& notice) {
+  const nlohmann::ordered_json line = {{"time", utc(notice.unix_time())},
+                                       {"level", wire::Notice::Level_Name(notice.level())},
+                                       {"who", notice.who()},
+                                       {"code", notice.code()},
+                                       {"text", notice.text()}};
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string gap_line(const LogGap& gap) {
+  wire::Notice notice;
+  notice.set_level(wire::Notice::WARNING);
+  notice.set_unix_time(gap.until);
+  notice.set_code("log_gap");
+  notice.set_text(fmt::format("lines missing here, from {} on, because the disk did not take them: {}",
+                              utc(gap.since), gap.lines));
+  return line_of(notice);
+}
+
 }  // namespace
 
-AuditLog::AuditLog(std::filesystem::path file, std::uintmax_t file_length)
-    : path_(std::move(file)), file_length_(file_length) {
-  if (path_.empty()) return;
-  std::error_code error;
-  if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), error);
-  open();
-  if (!file_)
-    throw std::runtime_error(
-        fmt::format("{}: the log of changes cannot be written ({}); name another with --audit",
-                    path_.string(), std::generic_category().message(errno)));
-}
-
-void AuditLog::open() {
-  file_.reset(std::fopen(path_.c_str(), "ae"));
-  if (!file_) return;
-  std::error_code none;
-  const std::uintmax_t bytes = std::filesystem::file_size(path_, none);
-  written_ = none ? 0 : bytes;  // a device has no length
-}
-
-bool AuditLog::begin_anew() {
-  file_.reset();
-  std::filesystem::path old = path_;
-  old += ".1";
-  std::error_code error;
-  std::filesystem::rename(path_, old, error);
-  if (!error) open();
-  return file_ != nullptr;
-}
-
-void AuditLog::write(const std::string& line) {
-  if (written_ > 0 && written_ + line.size() > file_length_ && !begin_anew()) {
-    broken_ = true;
-    return;
-  }
-  written_ += line.size();
-  broken_ = std::fputs(line.c_str(), file_.get()) < 0 || std::fflush(file_.get()) != 0;
+AuditLog::AuditLog(const std::filesystem::path& file, std::uintmax_t file_length) {
+  if (!file.empty()) file_.emplace(file, file_length, gap_line);
 }
 
 void AuditLog::add(const wire::Notice& notice) {
   newest_.push_back(notice);
   newest_.back().set_text(shortened(notice.text(), kTextLength));
   if (newest_.size() > kRemembered) newest_.pop_front();
-  if (!file_ || broken_) return;
-  const nlohmann::ordered_json line = {{"time", utc(notice.unix_time())},
-                                       {"level", wire::Notice::Level_Name(notice.level())},
-                                       {"who", notice.who()},
-                                       {"code", notice.code()},
-                                       {"text", notice.text()}};
-  write(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (file_) file_->add(notice.unix_time(), line_of(notice));
 }
 
 }  // namespace phalanx

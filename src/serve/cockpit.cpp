@@ -45,7 +45,10 @@ Cockpit::Cockpit(StationHost& host, CockpitSettings settings)
 
 Cockpit::~Cockpit() = default;
 
-void Cockpit::attach(WebServer& server) { parts_->server = &server; }
+void Cockpit::attach(WebServer& server, const std::vector<std::string>& viewer_urls) {
+  parts_->server = &server;
+  parts_->viewer_urls = viewer_urls;
+}
 
 void Cockpit::tell(const std::string& code, const std::string& text, bool fault) {
   parts_->server->post([parts = parts_.get(), code, text, fault] {
@@ -53,8 +56,13 @@ void Cockpit::tell(const std::string& code, const std::string& text, bool fault)
   });
 }
 
-void Cockpit::fault_reported(const std::string& file) {
-  parts_->server->post([parts = parts_.get(), file] { parts->fault_reported(file); });
+void Cockpit::typed(const std::string& code, const std::string& text) {
+  parts_->server->post(
+      [parts = parts_.get(), code, text] { parts->tell(wire::Notice::CHANGE, "the terminal", code, text); });
+}
+
+void Cockpit::fault_reported(const std::string& file, double fault_time) {
+  parts_->server->post([parts = parts_.get(), file, fault_time] { parts->fault_reported(file, fault_time); });
 }
 
 void Cockpit::joined(PageId page, const Visitor& visitor) {
@@ -67,10 +75,7 @@ void Cockpit::joined(PageId page, const Visitor& visitor) {
 }
 
 void Cockpit::left(PageId page) {
-  if (const Seat* seat = parts_->seats.find(page)) {
-    parts_->stops_told.erase(seat->number);
-    parts_->sliders_told.erase(seat->number);
-  }
+  if (const Seat* seat = parts_->seats.find(page)) parts_->sliders_told.erase(seat->number);
   parts_->greeted.erase(page);
   parts_->waiting.erase(page);
   parts_->seats.leave(page, parts_->now());
@@ -95,11 +100,12 @@ void Cockpit::received_too_much(PageId page, std::string_view last) {
   const Seat* seat = parts_->seats.find(page);
   wire::ToHost message;
   if (seat == nullptr || !message.ParseFromArray(last.data(), static_cast<int>(last.size()))) return;
-  if (message.has_stop()) parts_->stop(seat->number, seat->label());
+  if (message.has_stop()) parts_->stop(*seat);
 }
 
 void Cockpit::frame() {
   parts_->show_out_the_silent();
+  parts_->tell_if_log_breaks();
   if (parts_->greeted.empty()) return;
   parts_->send_state_if_due();
   parts_->send_tick();
@@ -107,14 +113,17 @@ void Cockpit::frame() {
 
 void Cockpit::requested(const WebRequest& request, std::function<void(WebAnswer)> answer) {
   if (request.method == "POST" && request.path == "/stop") {
-    const Seat* seat = parts_->seats.with_secret(request.page_secret);
-    parts_->stop(seat != nullptr ? seat->number : 0,
-                 seat != nullptr ? seat->label() : fmt::format("a page ({})", request.visitor.address));
+    const std::string& address = request.visitor.address;
+    if (const Seat* seat = parts_->seats.with_secret(request.page_secret)) {
+      parts_->stop(*seat);
+    } else {
+      parts_->stop(address, fmt::format("a page ({})", address));
+    }
     return answer(plain_answer(200, "stopped\n"));
   }
   if (request.method == "POST" && request.path == "/mesh") return parts_->upload(request, std::move(answer));
   if (request.method != "POST" && request.path.starts_with(kGeometry))
-    return parts_->geometry(request.path.substr(kGeometry.size()), answer);
+    return parts_->geometry(request.path.substr(kGeometry.size()), std::move(answer));
   const bool known =
       request.path == "/stop" || request.path == "/mesh" || request.path.starts_with(kGeometry);
   answer(known ? plain_answer(405, "not with this method\n")

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "serve/cockpit_parts.h"
-#include "serve/geometry_message.h"
 #include "serve/plain_text.h"
 #include "serve/uploads.h"
 
@@ -34,16 +33,12 @@ WebAnswer plain_answer(int status, std::string text) {
           .immutable = false};
 }
 
-void Cockpit::Parts::geometry(const std::string& revision, const std::function<void(WebAnswer)>& answer) {
-  const auto shown = host.state()->geometry;
+void Cockpit::Parts::geometry(const std::string& revision, std::function<void(WebAnswer)> answer) {
+  auto shown = host.state()->geometry;
   if (!shown || revision != std::to_string(shown->revision))
     return answer(
         plain_answer(404, "this shape is no longer shown; the page learns of the new one by itself\n"));
-  if (!geometry_bytes || geometry_revision != shown->revision) {
-    geometry_bytes = std::make_shared<const std::string>(geometry_message(*shown));
-    geometry_revision = shown->revision;
-  }
-  answer({.status = 200, .type = "application/x-protobuf", .body = geometry_bytes, .immutable = false});
+  shapes->ask(std::move(shown), std::move(answer));
 }
 
 const Seat* Cockpit::Parts::operator_of(const WebRequest& request) const {
@@ -67,8 +62,12 @@ void Cockpit::Parts::upload(const WebRequest& request, std::function<void(WebAns
   tell(wire::Notice::CHANGE, seat->label(), "upload",
        fmt::format("sends a mesh: {}, {} bytes", shortened(one_line(mesh.name), 100), mesh.bytes.size()));
   const auto work = std::make_shared<UploadWork>(host);
-  begin(work, [answer = std::move(answer), mesh = std::move(mesh), folder = settings.uploads](
-                  const ValuesInForce& in_force) { answer(take_mesh(mesh, folder, in_force)); });
+  begin(
+      work,
+      [mesh = std::move(mesh), folder = settings.uploads](const ValuesInForce& in_force) {
+        return take_mesh(mesh, folder, in_force);
+      },
+      std::move(answer));
   upload_work = work;
 }
 

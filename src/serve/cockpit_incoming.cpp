@@ -22,7 +22,7 @@ void Cockpit::Parts::obey(PageId page, const wire::ToHost& message) {
     case wire::ToHost::kHello:
       return hello(page, message.hello());
     case wire::ToHost::kStop:
-      stop(seats.find(page)->number, seats.find(page)->label());
+      stop(*seats.find(page));
       return reply(page, message.request(), "");
     case wire::ToHost::kSeen:
       return seen(page, message.seen().ticks());
@@ -45,6 +45,7 @@ void Cockpit::Parts::obey(PageId page, const wire::ToHost& message) {
 
 void Cockpit::Parts::hello(PageId page, const wire::Hello& hello) {
   if (greeted.contains(page)) return;
+  if (hello.protocol() != kProtocol) return turn_away(page, hello.protocol());
   waiting.erase(page);
   const Seats::Return back = seats.come_back(page, hello.secret(), now());
   if (back.replaced != 0) give_way(back.replaced);
@@ -69,12 +70,15 @@ void Cockpit::Parts::seen(PageId page, std::uint64_t ticks) {
   pace->second.seen = std::clamp(ticks, pace->second.seen, pace->second.sent);
 }
 
-void Cockpit::Parts::stop(std::uint32_t page, const std::string& who) {
+void Cockpit::Parts::stop(const Seat& seat) { stop(fmt::format("page {}", seat.number), seat.label()); }
+
+void Cockpit::Parts::stop(const std::string& speaker, const std::string& who) {
+  const bool held = host.held_stopped();  // if not, this one did something, whoever has resumed since
   host.stop();
   want_state();
-  const auto told = stops_told.find(page);
-  if (told != stops_told.end() && now() - told->second < kStopToldEvery) return;
-  stops_told[page] = now();
+  std::erase_if(stops_told, [&](const auto& told) { return now() - told.second >= kStopToldEvery; });
+  if (held && stops_told.contains(speaker)) return;
+  stops_told[speaker] = now();
   tell(wire::Notice::CHANGE, who, "stopped", "stopped the torque");
 }
 
@@ -106,22 +110,22 @@ void Cockpit::Parts::ask_host(PageId page, const wire::ToHost& message) {
   const std::string who = seats.find(page)->label();
   const auto asked = std::make_shared<PageRequest>();
   // The host may answer when the cockpit is no more.
-  const auto done = [weak = weak_from_this(), page, number, who, asked](const std::string& refused) {
+  const auto done = [weak = weak_from_this(), page, number, who, asked](const ChangeOutcome& outcome) {
     const auto parts = weak.lock();
     if (!parts || parts->server == nullptr) return;
-    parts->server->post([weak, page, number, who, asked, refused] {
-      if (const auto still = weak.lock()) still->answered(page, number, who, *asked, refused);
+    parts->server->post([weak, page, number, who, asked, outcome] {
+      if (const auto still = weak.lock()) still->answered(page, number, who, *asked, outcome);
     });
   };
   *asked = hand_over(message, host, settings.uploads, done);
-  if (message.has_resume()) stops_told.clear();
-  if (asked->at_once) answered(page, number, who, *asked, "");
+  if (asked->at_once) answered(page, number, who, *asked, {});
 }
 
 void Cockpit::Parts::answered(PageId page, std::uint32_t number, const std::string& who,
-                              const PageRequest& asked, const std::string& why) {
-  const std::string refused = without_option(why);
+                              const PageRequest& asked, const ChangeOutcome& outcome) {
+  const std::string refused = without_option(outcome.refused);
   reply(page, number, refused);
+  if (outcome.overtaken) return;  // it was no change; the newer one is told
   if (!refused.empty()) {
     tell(wire::Notice::WARNING, who, "refused", refused);
   } else if (!is_told(page, asked)) {
@@ -143,9 +147,9 @@ bool Cockpit::Parts::is_told(PageId page, const PageRequest& asked) {
   return true;
 }
 
-void Cockpit::Parts::fault_reported(const std::string& file) {
+void Cockpit::Parts::fault_reported(const std::string& file, double fault_time) {
   report = file;
-  reported = host.view().fault.time;
+  reported = fault_time;
   want_state();
 }
 

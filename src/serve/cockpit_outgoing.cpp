@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <chrono>
+#include <utility>
 
 #include "serve/cockpit_parts.h"
 #include "serve/plain_text.h"
@@ -37,14 +39,19 @@ void Cockpit::Parts::tell(wire::Notice::Level level, const std::string& who, con
   notice.set_who(as_utf8(who));
   notice.set_code(code);
   notice.set_text(as_utf8(text));
-  const bool was_broken = log.broken();
   log.add(notice);
   wire::ToPage message;
   *message.mutable_notice() = log.newest().back();
   to_all(encoded(message));
-  if (log.broken() && !was_broken)
-    tell(wire::Notice::WARNING, "", "log_broken",
-         "the log of changes can no longer be written: is the disk full? The station goes on without it");
+}
+
+/// Told again only when it could be written in between.
+void Cockpit::Parts::tell_if_log_breaks() {
+  const bool broken = log.broken();
+  if (std::exchange(log_broken, broken) || !broken) return;
+  tell(wire::Notice::WARNING, "", "log_broken",
+       "the log of changes cannot be written: is the disk full? The station goes on; when it can be written "
+       "again, it says what is missing");
 }
 
 void Cockpit::Parts::tell_one(PageId page, const std::string& code, const std::string& text) {
@@ -76,10 +83,22 @@ void Cockpit::Parts::welcome(PageId page) {
   welcome.set_may_operate(seat.visitor.may_operate);
   welcome.set_clock(host.now());
   welcome.set_unix_time(unix_now());
+  if (seat.visitor.may_operate)
+    for (const std::string& url : viewer_urls) welcome.add_viewer_url(url);
   for (const wire::Notice& notice : log.newest()) *welcome.add_past() = notice;
   server->send(page, encoded(message));
   greeted[page] = {};
   server->send(page, state_now());
+}
+
+/// The number alone says why: a page of another protocol may not understand the rest of a Welcome.
+void Cockpit::Parts::turn_away(PageId page, std::uint32_t protocol) {
+  wire::ToPage message;
+  message.mutable_welcome()->set_protocol(kProtocol);
+  message.mutable_welcome()->set_version(settings.version);
+  server->send(page, encoded(message));
+  server->show_out(page, fmt::format("this page speaks protocol {}, the station {}: reload the page",
+                                     protocol, kProtocol));
 }
 
 Bytes Cockpit::Parts::state_now() {
@@ -89,7 +108,6 @@ Bytes Cockpit::Parts::state_now() {
   if (state.has_fault() && state.fault().time() == reported)
     state.mutable_fault()->set_report(as_utf8(report));
   write_seats(seats, now(), state);
-  for (const std::string& url : settings.other_urls) state.add_other_url(url);
   return encoded(message);
 }
 

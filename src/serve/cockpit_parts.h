@@ -4,12 +4,14 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "phalanx/cockpit.pb.h"
 #include "phalanx/serve/cockpit.h"
 #include "serve/audit_log.h"
 #include "serve/page_requests.h"
 #include "serve/seats.h"
+#include "serve/shapes.h"
 #include "serve/upload_work.h"
 
 namespace phalanx {
@@ -40,42 +42,46 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
   void tell_one(PageId page, const std::string& code, const std::string& text);
   void reply(PageId page, std::uint32_t request, const std::string& refused);
   void welcome(PageId page);
+  void turn_away(PageId page, std::uint32_t protocol);
   [[nodiscard]] Bytes state_now();
   /// To all pages, with the next frame: however often something changes, not more often than kStateWithin.
   void want_state() { state_wanted = true; }
   void send_state_if_due();
   void send_tick();
   void show_out_the_silent();
+  void tell_if_log_breaks();
 
   // ---- what comes in: cockpit_incoming.cpp
   void obey(PageId page, const wire::ToHost& message);
-  /// @param page  number of the page for people; 0: a request without one
-  void stop(std::uint32_t page, const std::string& who);
-  void fault_reported(const std::string& file);
+  /// @param speaker  one key held down is one speaker's: a page, or an address without one
+  void stop(const std::string& speaker, const std::string& who);
+  void stop(const Seat& seat);
+  void fault_reported(const std::string& file, double fault_time);
 
   // ---- HTTP: cockpit_http.cpp
-  void geometry(const std::string& revision, const std::function<void(WebAnswer)>& answer);
+  void geometry(const std::string& revision, std::function<void(WebAnswer)> answer);
   [[nodiscard]] const Seat* operator_of(const WebRequest& request) const;
   void upload(const WebRequest& request, std::function<void(WebAnswer)> answer);
 
   StationHost& host;
   const CockpitSettings settings;
   WebServer* server = nullptr;
+  std::vector<std::string> viewer_urls;
   AuditLog log;
   Seats seats;
   wire::Welcome choices;  ///< without what differs from page to page
   std::map<PageId, Pace> greeted;
   std::map<PageId, double> waiting;              ///< for their hello, since [s]
-  std::map<std::uint32_t, double> stops_told;    ///< a page's newest, since the last resume [s]
+  std::map<std::string, double> stops_told;      ///< a speaker's newest, for kStopToldEvery [s]
   std::map<std::uint32_t, double> sliders_told;  ///< a page's newest [s]
   std::string report;                            ///< of the fault that began at `reported`
   double reported = -1.0;                        ///< [s], the host's clock
+  bool log_broken = false;                       ///< all pages have been told
   bool state_wanted = false;
   double state_sent = -1e9;  ///< [s]
   std::uint64_t told_revision = 0;
   SafetyState told_safety = SafetyState::kWaiting;
-  Bytes geometry_bytes;
-  std::uint32_t geometry_revision = 0;
+  const std::shared_ptr<Shapes> shapes = std::make_shared<Shapes>();
   std::shared_ptr<UploadWork> upload_work;  ///< the newest
 
  private:
@@ -88,7 +94,7 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
   void refuse_unless_operator(PageId page) const;
   void ask_host(PageId page, const wire::ToHost& message);
   void answered(PageId page, std::uint32_t number, const std::string& who, const PageRequest& asked,
-                const std::string& refused);
+                const ChangeOutcome& outcome);
 };
 
 /// A line of text.

@@ -66,7 +66,8 @@ void pose(const wire::Sliders& sliders, StationHost& host) {
         fmt::format("{} angles; send one a joint, {}", sliders.angle_size(), kJoints));
   for (int j = 0; j < kJoints; ++j)
     angle[static_cast<std::size_t>(j)] = static_cast<double>(sliders.angle(j));
-  host.set_sliders(angle);
+  if (!host.set_sliders(angle))
+    throw std::invalid_argument("the sliders do not move the hand now; let them move it first");
 }
 
 PageRequest calibrate(const wire::Calibrate& message, StationHost& host, StationHost::Done done) {
@@ -89,7 +90,7 @@ PageRequest hand_over(const wire::ToHost& message, StationHost& host, const std:
   switch (message.what_case()) {
     case wire::ToHost::kResume:
       if (!host.resume(message.resume().stops()))
-        throw std::invalid_argument("another stop has come since; look, then resume again");
+        throw std::invalid_argument("another stop or fault has come since; look, then resume again");
       return {.code = "resumed", .text = "resumed", .at_once = true};
     case wire::ToHost::kReset:
       if (!host.reset(message.reset().fault_time()))

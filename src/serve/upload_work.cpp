@@ -29,11 +29,13 @@ void UploadWork::abandon(std::chrono::milliseconds wait) {
   ended_.wait_for(lock, wait, [this] { return done_; });
 }
 
-void begin(const std::shared_ptr<UploadWork>& work, std::function<void(const ValuesInForce&)> what) {
-  std::thread([work, what = std::move(what)]() mutable {
-    what([work] { return work->values(); });
+void begin(const std::shared_ptr<UploadWork>& work, std::function<WebAnswer(const ValuesInForce&)> what,
+           std::function<void(WebAnswer)> answer) {
+  std::thread([work, what = std::move(what), answer = std::move(answer)]() mutable {
+    WebAnswer outcome = what([work] { return work->values(); });
     what = nullptr;  // what it holds goes first
     work->finish();
+    answer(std::move(outcome));
   }).detach();
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 
+#include "phalanx/serve/web_server.h"
 #include "phalanx/station/station_host.h"
 #include "serve/uploads.h"
 
@@ -35,6 +36,8 @@ class UploadWork {
 };
 
 /// Begins work on a thread that nobody has to wait for: it must hold all that it touches.
-void begin(const std::shared_ptr<UploadWork>& work, std::function<void(const ValuesInForce&)> what);
+/// @param answer  is given what came of it, when the work is done: whoever hears it may send the next
+void begin(const std::shared_ptr<UploadWork>& work, std::function<WebAnswer(const ValuesInForce&)> what,
+           std::function<void(WebAnswer)> answer);
 
 }  // namespace phalanx

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "phalanx/mesh/import.h"
+#include "phalanx/mesh/isolated.h"
+#include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "phalanx/record/output_file.h"
 
@@ -23,6 +25,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kKept = 50;
+/// Of the whole import, in a process of its own: what a mesh does there, it does not do to the station, and
+/// one that has passed there passes again when the station takes it.
+constexpr mesh::IsolationLimits kImportLimits{
+    .cpu_seconds = 60, .memory_bytes = std::uint64_t{4} << 30, .wall_seconds = 180.0};
 constexpr std::array<const char*, 5> kFormats = {".obj", ".3ds", ".stl", ".ply", ".glb"};
 
 bool is_plain(char c) {
@@ -56,12 +62,9 @@ double number(const std::string& text) {
   return value;
 }
 
-double metres_per(const std::string& unit) {
-  if (unit == "m") return 1.0;
-  if (unit == "mm") return 1e-3;
-  if (unit == "cm") return 1e-2;
-  if (unit == "in") return 0.0254;
-  throw std::invalid_argument(fmt::format("unit = {}: must be m, mm, cm or in", unit));
+double metres_per_unit_of(const UploadedMesh& mesh) {
+  if (const std::optional<double> metres = metres_per(mesh.unit)) return *metres;
+  throw std::invalid_argument(fmt::format("unit = {}: must be m, mm, cm or in", mesh.unit));
 }
 
 /// FNV-1a: two different files of one name get two names.
@@ -137,21 +140,31 @@ Overrides values_now(const ValuesInForce& in_force) {
   return std::move(*values);
 }
 
+/// A file's name may hold any bytes.
+std::string as_text(const Json& answer) {
+  return answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// What the import says of it.
+Json checked(const UploadedMesh& mesh, const std::string& format, const ImportOptions& options) {
+  const ImportedMesh imported =
+      import_and_check_from_memory(mesh.bytes.data(), mesh.bytes.size(), format, options);
+  Json answer = {{"ok", imported.report.finding(FindingKind::kUnits).found == 0}};
+  answer["report"] = Json::parse(mesh_report_json(mesh.name, imported.report));
+  if (!answer["ok"].get<bool>()) answer["error"] = mesh_verdict(imported.report);
+  return answer;
+}
+
 Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
   const std::string extension = extension_of(mesh.name);
   const ImportOptions options{.size = 1e-3 * mesh.size_mm,
-                              .unit = metres_per(mesh.unit),
+                              .unit = metres_per_unit_of(mesh),
                               .triangles = 0,
                               .most_triangles = kMostUploadedTriangles};
   static_cast<void>(values_now(in_force));
-  const ImportedMesh imported =
-      import_and_check_from_memory(mesh.bytes.data(), mesh.bytes.size(), extension.substr(1), options);
-  Json answer = {{"ok", imported.report.finding(FindingKind::kUnits).found == 0}};
-  answer["report"] = Json::parse(mesh_report_json(mesh.name, imported.report));
-  if (!answer["ok"].get<bool>()) {
-    answer["error"] = mesh_verdict(imported.report);
-    return answer;
-  }
+  Json answer = Json::parse(mesh::run_isolated_text(
+      [&] { return as_text(checked(mesh, extension.substr(1), options)); }, mesh.name, kImportLimits));
+  if (!answer["ok"].get<bool>()) return answer;
   const Overrides values = values_now(in_force);
   fs::create_directories(folder);
   const fs::path file = fs::absolute(folder) / file_name(mesh, extension);
@@ -179,7 +192,7 @@ UploadedMesh upload_of(const std::string& query, std::string bytes) {
     }
     begin = end + 1;
   }
-  static_cast<void>(metres_per(mesh.unit));
+  static_cast<void>(metres_per_unit_of(mesh));
   if (mesh.bytes.empty()) throw std::invalid_argument(fmt::format("{}: the file is empty", mesh.name));
   return mesh;
 }
@@ -191,7 +204,7 @@ std::string take_upload(const UploadedMesh& mesh, const fs::path& folder, const 
   } catch (const std::exception& refused) {
     answer = {{"ok", false}, {"error", in_the_files_words(refused.what(), mesh.name)}};
   }
-  return answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return as_text(answer);
 }
 
 }  // namespace phalanx

@@ -20,15 +20,16 @@ bool overtakes(const SetPart& later, const SetPart& earlier) {
                      [&](const auto& change) { return sets(later.changes, change.first); });
 }
 
-/// Whoever waits for what is overtaken waits for the newer one; oldest first.
-void take_answers(SetPart& later, SetPart& earlier) {
-  later.done.insert(later.done.begin(), std::make_move_iterator(earlier.done.begin()),
-                    std::make_move_iterator(earlier.done.end()));
+/// Whoever waits for what is overtaken is answered together with the newer one; oldest first.
+void overtake(SetPart& later, SetPart& earlier) {
+  if (earlier.done) earlier.overtaken.push_back(std::move(earlier.done));
+  later.overtaken.insert(later.overtaken.begin(), std::make_move_iterator(earlier.overtaken.begin()),
+                         std::make_move_iterator(earlier.overtaken.end()));
 }
 
 std::size_t answers_of(const ChangeRequest& request) {
   std::size_t count = request.done ? 1 : 0;
-  for (const SetPart& part : request.sets) count += part.done.size();
+  for (const SetPart& part : request.sets) count += part.overtaken.size() + (part.done ? 1 : 0);
   return count;
 }
 
@@ -42,12 +43,15 @@ std::string text_of(const Overrides& changes) {
   return text;
 }
 
+ChangeAnswer answer_to(SetPart part, std::string refused) {
+  return {
+      .done = std::move(part.done), .overtaken = std::move(part.overtaken), .refused = std::move(refused)};
+}
+
 void ChangeQueue::ask_set(Overrides changes, StationHost::Done done) {
   ChangeRequest request;
   request.text = text_of(changes);
-  SetPart& part = request.sets.emplace_back();
-  part.changes = std::move(changes);
-  if (done) part.done.push_back(std::move(done));
+  request.sets.push_back({.changes = std::move(changes), .done = std::move(done), .overtaken = {}});
   ask(std::move(request));
 }
 
@@ -76,7 +80,7 @@ bool ChangeQueue::join(ChangeRequest& later) {
     if (!overtakes(part, other)) stays.push_back(other);
   if (stays.size() >= kParts) return false;
   for (auto it = earlier.sets.rbegin(); it != earlier.sets.rend(); ++it)
-    if (overtakes(part, *it)) take_answers(part, *it);
+    if (overtakes(part, *it)) overtake(part, *it);
   earlier.sets = std::move(stays);
   earlier.sets.push_back(std::move(part));
   Overrides all;

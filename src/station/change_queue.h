@@ -17,12 +17,14 @@ namespace phalanx {
 /// Values to be laid over the scene, and who waits for the answer.
 struct SetPart {
   Overrides changes;
-  std::vector<StationHost::Done> done;
+  StationHost::Done done;
+  std::vector<StationHost::Done> overtaken;  ///< of older values of the same keys, oldest first
 };
 
 /// What became of a part of a request.
 struct ChangeAnswer {
-  std::vector<StationHost::Done> done;
+  StationHost::Done done;
+  std::vector<StationHost::Done> overtaken;
   std::string refused;  ///< empty: it is done
 };
 
@@ -36,7 +38,7 @@ struct ChangeRequest {
 
 /// Bounded. A slider that is dragged asks faster than changes are made, so neighbouring sets become one
 /// request, and a value that waits is overtaken by a newer one of the same keys: it is never tried, and
-/// answered as the newer one. Any thread; stop() does not come by here.
+/// answered so, before the newer one. Any thread; stop() does not come by here.
 class ChangeQueue {
  public:
   static constexpr std::size_t kRequests = 16;   ///< that wait
@@ -57,6 +59,9 @@ class ChangeQueue {
   std::deque<ChangeRequest> waiting_;
   std::size_t answers_ = 0;  ///< waited for
 };
+
+/// What became of a part, to all who wait for it.
+[[nodiscard]] ChangeAnswer answer_to(SetPart part, std::string refused);
 
 /// "force.law = hooke, rate_hz = as in the scene", for people.
 [[nodiscard]] std::string text_of(const Overrides& changes);

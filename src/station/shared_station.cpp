@@ -41,10 +41,14 @@ std::shared_ptr<RunningStation> SharedStation::current() const {
 
 // ---- what people say ----
 
-void SharedStation::stop() noexcept {
-  const std::lock_guard lock(mutex_);
+void SharedStation::hold() noexcept {
   ++stops_;
   held_.store(true);
+}
+
+void SharedStation::stop() noexcept {
+  const std::lock_guard lock(mutex_);
+  hold();
   if (running_) running_->station->stop_torque();
 }
 
@@ -69,15 +73,15 @@ void SharedStation::end() noexcept {
   stop();
 }
 
-void SharedStation::set_sliders(const JointArray& angle) noexcept {
+bool SharedStation::set_sliders(const JointArray& angle) noexcept {
   const std::lock_guard lock(mutex_);
-  if (!running_ || !state_->geometry) return;
-  auto* posed = dynamic_cast<PosedDevice*>(running_->device.get());
-  if (posed == nullptr) return;
+  auto* posed = running_ ? dynamic_cast<PosedDevice*>(running_->device.get()) : nullptr;
+  if (posed == nullptr) return false;
   const HandParameters& hand = state_->geometry->hand;
   for (std::size_t j = 0; j < angle.size(); ++j)
     if (std::isfinite(angle[j])) slider_[j] = std::clamp(angle[j], hand.min_angle[j], hand.max_angle[j]);
   posed->pose(slider_);
+  return true;
 }
 
 JointArray SharedStation::sliders() const {
@@ -129,11 +133,18 @@ void SharedStation::retire() {
     last_view_ = last;
     last_deadlines_ = deadlines;
     // A new station knows nothing of the fault: torque comes back by somebody's word only.
-    if (last.state == SafetyState::kFault) held_.store(true);
+    if (last.state == SafetyState::kFault) hold();
     retired_.push_back(old);
     if (retired_.size() <= kRetired) return;
     gone = std::move(retired_.front());
     retired_.pop_front();
+  });
+}
+
+void SharedStation::lose(const std::string& why) {
+  change_state([&](HostState& s) {
+    s.trouble = why;
+    hold();
   });
 }
 

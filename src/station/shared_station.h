@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "station/station_build.h"
 
@@ -32,11 +33,12 @@ class SharedStation {
   void stop() noexcept;
   /// @param stops  what stops() was when it was said; nothing if it is another now. @returns whether
   bool resume(std::uint64_t stops) noexcept;
-  [[nodiscard]] std::uint64_t stops() const noexcept;
+  [[nodiscard]] std::uint64_t stops() const noexcept;  ///< rises whenever held() is said anew
   /// As stop(), for good: from here on resume() does nothing.
   void end() noexcept;
   [[nodiscard]] bool held() const noexcept { return held_.load(); }
-  void set_sliders(const JointArray& angle) noexcept;
+  /// @returns whether there are sliders to move the hand; nothing is done otherwise
+  [[nodiscard]] bool set_sliders(const JointArray& angle) noexcept;
   [[nodiscard]] JointArray sliders() const;
 
   // ---- the worker's thread
@@ -44,6 +46,8 @@ class SharedStation {
   void begin(std::shared_ptr<RunningStation> next);
   /// The station that runs, if there is one, comes to zero torque and ends.
   void retire();
+  /// There is no station, and `why` none could be made: whatever brings one back, it begins held.
+  void lose(const std::string& why);
 
   // ---- what it says
   [[nodiscard]] StationView view() const;
@@ -56,6 +60,7 @@ class SharedStation {
   [[nodiscard]] std::shared_ptr<RunningStation> oldest_retired() const;
   void forget(const std::shared_ptr<RunningStation>& retired);
   void keep_report(Station& station);
+  void hold() noexcept;  ///< with the lock. A resume() of before means something else from here on
 
   mutable std::mutex mutex_;
   std::shared_ptr<RunningStation> running_;

@@ -2,9 +2,11 @@
 #include "station/station_changer.h"
 
 #include <algorithm>
+#include <future>
 #include <stdexcept>
 #include <utility>
 
+#include "phalanx/core/give_way.h"
 #include "phalanx/scene/scene_values.h"
 
 namespace phalanx {
@@ -28,8 +30,20 @@ Overrides all_of(const std::vector<SetPart>& parts) {
 
 std::vector<ChangeAnswer> answer_to_all(std::vector<SetPart> parts, const std::string& refused) {
   std::vector<ChangeAnswer> answers;
-  for (SetPart& part : parts) answers.push_back({.done = std::move(part.done), .refused = refused});
+  for (SetPart& part : parts) answers.push_back(answer_to(std::move(part), refused));
   return answers;
+}
+
+/// What computes for seconds gives way to the loop that runs meanwhile. On a thread of its own: a loop or a
+/// link that the worker starts inherits its priority, and could not raise it again.
+template <class Work>
+auto giving_way(const Work& work) {
+  return std::async(std::launch::async,
+                    [&work] {
+                      give_way("phalanx-build");
+                      return work();
+                    })
+      .get();
 }
 
 }  // namespace
@@ -46,8 +60,12 @@ StationChanger::StationChanger(const StationHostSettings& settings, const Clock&
 }
 
 void StationChanger::first_station() {
-  StationBuild build = build_station(plan_, settings_.clinician);
+  StationBuild build = built(plan_);
   take_over(build);
+}
+
+StationBuild StationChanger::built(const StationPlan& plan) const {
+  return giving_way([&] { return build_station(plan, settings_.clinician); });
 }
 
 // ---- changes ----
@@ -70,7 +88,7 @@ std::vector<ChangeAnswer> StationChanger::set(std::vector<SetPart> parts) {
     } catch (const std::exception& error) {
       refused = error.what();
     }
-    answers.push_back({.done = std::move(part.done), .refused = std::move(refused)});
+    answers.push_back(answer_to(std::move(part), std::move(refused)));
   }
   return answers;
 }
@@ -108,9 +126,9 @@ void StationChanger::blend(Station& station, StationPlan next) {
 }
 
 void StationChanger::exchange(Station& station, StationPlan next, bool moves_object) {
-  StationBuild build = build_station(next, settings_.clinician);
+  StationBuild build = built(next);
   const std::shared_ptr<HostGeometry> geometry = build.geometry;
-  station.replace(std::make_unique<LiveModel>(std::move(build.made.model)));
+  station.replace(giving_way([&] { return std::make_unique<LiveModel>(std::move(build.made.model)); }));
   // An earlier blend that still waits for its turn must not have the last word on the new model.
   station.blend_to(blended_of(build.scene));
   plan_ = std::move(next);
@@ -151,14 +169,16 @@ void StationChanger::try_again() {
 // ---- from one station to the next ----
 
 void StationChanger::switch_to(const StationPlan& next) {
-  StationBuild build = build_station(next, settings_.clinician);
+  StationBuild build = built(next);
   shared_.retire();
   try {
     take_over(build);
     plan_ = next;
   } catch (const std::exception& error) {
-    shared_.change_state([&](HostState& s) { s.trouble = error.what(); });
-    if (!(next == plan_)) go_back();
+    if (next == plan_)
+      shared_.lose(error.what());
+    else
+      go_back();
     throw;
   }
 }
@@ -166,10 +186,10 @@ void StationChanger::switch_to(const StationPlan& next) {
 /// What the device refuses with the new plan, it may still grant with the old one.
 void StationChanger::go_back() {
   try {
-    StationBuild build = build_station(plan_, settings_.clinician);
+    StationBuild build = built(plan_);
     take_over(build);
   } catch (const std::exception& error) {
-    shared_.change_state([&](HostState& s) { s.trouble = error.what(); });
+    shared_.lose(error.what());
   }
 }
 
@@ -198,13 +218,12 @@ void StationChanger::begin_wizard() {
   refuse_while_calibrating();
   if (plan_.source != HandSource::kDevice)
     throw std::invalid_argument("the simulated device needs no calibration; start with --device to have one");
-  StationBuild build = build_station(plan_, settings_.clinician);
+  StationBuild build = built(plan_);
   const HandParameters hand = build.made.model->hand.parameters();
   shared_.retire();
   try {
     wizard_.begin(settings_.device, hand, clock_);
-  } catch (const std::exception& error) {
-    shared_.change_state([&](HostState& s) { s.trouble = error.what(); });
+  } catch (const std::exception&) {
     go_back();
     throw;
   }
@@ -218,9 +237,7 @@ void StationChanger::step_wizard(CalibrationSession::Step step, std::size_t pose
 
 void StationChanger::abandon_wizard() {
   wizard_.refuse_unless_on();
-  wizard_.end();
-  hide_wizard();
-  switch_to(plan_);
+  leave_wizard(plan_);
 }
 
 /// Written first: if that fails, what was measured is still there.
@@ -230,9 +247,19 @@ void StationChanger::write_wizard() {
     throw std::invalid_argument("this program writes no calibrations; use `phalanx device calibrate`");
   StationPlan next = plan_;
   next.calibration = settings_.write_calibration(found);
+  leave_wizard(next);
+}
+
+/// No station runs meanwhile, so that whatever is refused, its scene for one, leaves none.
+void StationChanger::leave_wizard(const StationPlan& next) {
   wizard_.end();
   hide_wizard();
-  switch_to(next);
+  try {
+    switch_to(next);
+  } catch (const std::exception& error) {
+    if (shared_.current() == nullptr) shared_.lose(error.what());
+    throw;
+  }
 }
 
 void StationChanger::serve_wizard() {

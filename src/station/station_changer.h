@@ -12,7 +12,8 @@
 namespace phalanx {
 
 /// One thread at a time: the worker's, and the owner's while there is none. Where something is refused, an
-/// exception says why and all is as it was; where a device does not open again either, there is no station.
+/// exception says why and all is as it was; where that cannot be made again either, there is no station:
+/// SharedStation::lose().
 class StationChanger {
  public:
   /// @param settings, clock, shared  outlive it
@@ -33,6 +34,8 @@ class StationChanger {
   void close_wizard() noexcept { wizard_.end(); }
 
  private:
+  /// build_station(), beside a station that runs. @throws as that
+  [[nodiscard]] StationBuild built(const StationPlan& plan) const;
   void lay_over(const Overrides& changes);
   [[nodiscard]] ChangeKind needed(const Overrides& changes) const;
   void blend(Station& station, StationPlan next);
@@ -41,6 +44,7 @@ class StationChanger {
   void go_back();
   void take_over(StationBuild& build);
   void refuse_while_calibrating() const;
+  void leave_wizard(const StationPlan& next);
   void show_wizard();
   void hide_wizard();
 

@@ -26,13 +26,22 @@ Answers work_off(StationChanger& changer, ChangeRequest request) {
     refused = error.what();
     if (refused.empty()) refused = "refused without a reason";
   }
-  return {{.done = {std::move(request.done)}, .refused = std::move(refused)}};
+  return {{.done = std::move(request.done), .overtaken = {}, .refused = std::move(refused)}};
+}
+
+/// All of it, untried.
+Answers refuse(ChangeRequest request, const std::string& why) {
+  Answers answers;
+  for (SetPart& part : request.sets) answers.push_back(answer_to(std::move(part), why));
+  answers.push_back({.done = std::move(request.done), .overtaken = {}, .refused = why});
+  return answers;
 }
 
 void tell(const Answers& answers) {
-  for (const ChangeAnswer& answer : answers)
-    for (const StationHost::Done& done : answer.done)
-      if (done) done(answer.refused);
+  for (const ChangeAnswer& answer : answers) {
+    for (const StationHost::Done& done : answer.overtaken) done({.refused = {}, .overtaken = true});
+    if (answer.done) answer.done({.refused = answer.refused, .overtaken = false});
+  }
 }
 
 }  // namespace
@@ -67,8 +76,7 @@ struct StationHost::Parts {
       });
     } catch (const std::system_error& error) {  // no thread to be had
       shared.change_state([](HostState& s) { s.busy.clear(); });
-      for (const SetPart& part : next->sets) tell({{.done = part.done, .refused = error.what()}});
-      tell({{.done = {next->done}, .refused = error.what()}});
+      tell(refuse(std::move(*next), error.what()));
     }
   }
 
@@ -97,7 +105,7 @@ StationHost::~StationHost() { shut_down(); }
 
 void StationHost::stop() noexcept { parts_->shared.stop(); }
 
-void StationHost::resume() noexcept { static_cast<void>(parts_->shared.resume(parts_->shared.stops())); }
+bool StationHost::resume() noexcept { return parts_->shared.resume(parts_->shared.stops()); }
 
 bool StationHost::resume(std::uint64_t stops) noexcept { return parts_->shared.resume(stops); }
 
@@ -140,7 +148,7 @@ void StationHost::set_source(HandSource source, Done done) {
       [changer = &parts_->changer, source] { changer->set_source(source); }, std::move(done));
 }
 
-void StationHost::set_sliders(const JointArray& angle) noexcept { parts_->shared.set_sliders(angle); }
+bool StationHost::set_sliders(const JointArray& angle) noexcept { return parts_->shared.set_sliders(angle); }
 
 void StationHost::calibrate(Step step, std::size_t pose, Done done) {
   auto work = [changer = &parts_->changer, step, pose] {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/isolated.h"
+#include "phalanx/mesh/isolated.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -37,6 +38,32 @@ TEST(RunIsolated, HandsTheMeshBackBitByBit) {
   const TriangleMesh got = run_isolated([&] { return made; }, "torus", {});
   EXPECT_EQ(got.vertices, made.vertices);
   EXPECT_EQ(got.triangles, made.triangles);
+}
+
+TEST(RunIsolated, HandsATextBackAndEndsWorkThatLoops) {
+  std::string text(200'000, 'x');  // more than a pipe holds
+  text[7] = '\0';
+  EXPECT_EQ(run_isolated_text([&] { return text; }, "cup.obj", {}), text);
+  const auto loop = []() -> std::string {
+    for (std::atomic<unsigned> i = 0;; ++i) {
+    }
+  };
+  EXPECT_THROW((void)run_isolated_text(loop, "cup.obj", {.cpu_seconds = 1, .wall_seconds = 30.0}),
+               std::invalid_argument);
+}
+
+// A serial port is locked until its last descriptor is closed: the child's would be one.
+TEST(RunIsolated, HoldsNoFileOfItsParentOpen) {
+  const int file = ::open("/dev/null", O_RDONLY);
+  const int high = ::fcntl(file, F_DUPFD, 200);
+  ASSERT_GE(high, 200);
+  const auto open_there = [&] {
+    return std::string(::fcntl(file, F_GETFD) < 0 && ::fcntl(high, F_GETFD) < 0 ? "none" : "some");
+  };
+  EXPECT_EQ(open_there(), "some");
+  EXPECT_EQ(run_isolated_text(open_there, "cup.obj", {}), "none");
+  ::close(high);
+  ::close(file);
 }
 
 TEST(RunIsolated, PassesARefusalOnWordByWord) {

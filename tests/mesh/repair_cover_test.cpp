@@ -14,8 +14,8 @@
 
 #include "mesh/assimp_reader.h"
 #include "mesh/deviation.h"
-#include "mesh/isolated.h"
 #include "mesh/repair.h"
+#include "phalanx/mesh/isolated.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx::mesh {

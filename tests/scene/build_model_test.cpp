@@ -35,6 +35,12 @@ TEST(BuildModel, MakesEveryKindInItsSize) {
   EXPECT_NEAR(size("kind = \"mug\"\nlength_mm = 95").z(), 0.095, 1e-9);
 }
 
+TEST(BuildModel, RefusesMoreTrianglesThanOneSceneMayHave) {
+  const std::string large = "[[objects]]\nkind = \"sphere\"\ntriangles = 2000000\n";
+  expect_scene_error([&] { static_cast<void>(make_world_mesh(parse(large + large + large))); },
+                     {"objects[2]", "6000000", "4000000", "decimate_to"});
+}
+
 TEST(BuildModel, ImportsAFileInItsSize) {
   const fs::path file =
       fs::temp_directory_path() / ("phalanx_build_model_" + std::to_string(getpid()) + ".obj");

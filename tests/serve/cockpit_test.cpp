@@ -1,180 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pages, the server and a station: who may do what, and what everybody is told. docs/cockpit.md
-#include "phalanx/serve/cockpit.h"
-
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <array>
-#include <atomic>
-#include <cerrno>
-#include <chrono>
-#include <nlohmann/json.hpp>
-#include <sstream>
-#include <thread>
+#include <string>
 
-#include "phalanx/cockpit.pb.h"
-#include "phalanx/geometry.pb.h"
-#include "record/temporary_folder.h"
-#include "serve/owner.h"
-#include "serve/web/page_client.h"
+#include "serve/cockpit_fixture.h"
+#include "serve/full_disk.h"
 
 namespace phalanx {
 namespace {
 
+using namespace test;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::read_file;
-
-/// A browser's page as the cockpit knows it.
-class Page {
- public:
-  explicit Page(std::uint16_t port, const std::string& secret = "", const std::string& name = "")
-      : client_(port) {
-    wire::ToHost hello;
-    hello.mutable_hello()->set_protocol(Cockpit::kProtocol);
-    hello.mutable_hello()->set_secret(secret);
-    hello.mutable_hello()->set_name(name);
-    say(hello);
-    welcome = hear(wire::ToPage::kWelcome).welcome();
-    state = hear(wire::ToPage::kState).state();
-  }
-
-  void say(const wire::ToHost& message) { client_.say(message.SerializeAsString()); }
-  /// The next of a kind; the others are taken in. What: kGone: the line was closed.
-  wire::ToPage hear(wire::ToPage::WhatCase what) {
-    return hear([what](const wire::ToPage& message) { return message.what_case() == what; });
-  }
-  wire::ToPage hear(const std::function<bool(const wire::ToPage&)>& so) {
-    for (;;) {
-      const PageClient::Frame frame = client_.hear();
-      if (frame.opcode == PageClient::kPing) {
-        client_.say(frame.payload, PageClient::kPong);
-        continue;
-      }
-      if (frame.opcode != PageClient::kBinary) {
-        ADD_FAILURE() << "the line was closed: " << frame.reason();
-        return {};
-      }
-      wire::ToPage message;
-      EXPECT_TRUE(message.ParseFromString(frame.payload));
-      if (message.has_state()) state = message.state();
-      if (so(message)) return message;
-    }
-  }
-  wire::Notice notice(const std::string& code) {
-    return hear([&](const wire::ToPage& m) { return m.has_notice() && m.notice().code() == code; }).notice();
-  }
-  /// Until the state is so.
-  void until(const std::function<bool(const wire::State&)>& so) {
-    if (so(state)) return;
-    hear([&](const wire::ToPage& m) { return m.has_state() && so(m.state()); });
-  }
-  /// @returns the reply to it
-  wire::Reply ask(wire::ToHost message) {
-    message.set_request(++request_);
-    say(message);
-    return hear([&](const wire::ToPage& m) { return m.has_reply() && m.reply().request() == request_; })
-        .reply();
-  }
-  wire::Reply set(const std::string& key, const std::string& value) {
-    wire::ToHost message;
-    auto& setting = *message.mutable_set()->add_setting();
-    setting.set_key(key);
-    setting.set_value(value);
-    return ask(message);
-  }
-  PageClient& client() { return client_; }
-
-  wire::Welcome welcome;
-  wire::State state;
-
- private:
-  PageClient client_;
-  std::uint32_t request_ = 0;
-};
-
-wire::ToHost to_stop() {
-  wire::ToHost message;
-  message.mutable_stop();
-  return message;
-}
-wire::ToHost to_resume(const StationHost& host) {
-  wire::ToHost message;
-  message.mutable_resume()->set_stops(host.stops());
-  return message;
-}
-wire::ToHost to_see(std::uint64_t ticks) {
-  wire::ToHost message;
-  message.set_request(77);
-  message.mutable_seen()->set_ticks(ticks);
-  return message;
-}
-wire::ToHost to_take() {
-  wire::ToHost message;
-  message.mutable_take();
-  return message;
-}
-
-class CockpitTest : public ::testing::Test {
- protected:
-  CockpitTest() {
-    StationHostSettings station;
-    station.scene = "first_touch";
-    station.device = "sliders";
-    station.ask_for_realtime = false;
-    host_ = std::make_unique<StationHost>(station, clock_);
-    cockpit_ = std::make_unique<Cockpit>(
-        *host_, CockpitSettings{.log = folder_ / "audit.jsonl",
-                                .uploads = folder_ / "up",
-                                .version = "1.2.3",
-                                .other_urls = {"https://192.0.2.1:8480/"},
-                                .clock = [this] { return clock_.now() * clock_.slowdown() + skipped_; }});
-    WebServerSettings settings;
-    settings.port = 0;
-    settings.site_missing = "none";
-    server_ = std::make_unique<WebServer>(settings, *cockpit_);
-    cockpit_->attach(*server_);
-    server_->start();
-    owner_ = std::make_unique<test::Owner>(*host_);
-  }
-  ~CockpitTest() override {
-    owner_.reset();
-    server_.reset();
-    cockpit_.reset();
-  }
-  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
-  /// So long passes for the cockpit at once.
-  void skip(double seconds) { skipped_ = skipped_ + seconds; }
-  std::string post(const std::string& path, const std::string& body, const std::string& fields = "") const {
-    return ask(port(), "POST " + path +
-                           " HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nConnection: close\r\n"
-                           "Content-Length: " +
-                           std::to_string(body.size()) + "\r\n" + fields + "\r\n" + body);
-  }
-  std::vector<nlohmann::json> log() const {
-    std::istringstream text(read_file(folder_ / "audit.jsonl"));
-    std::vector<nlohmann::json> lines;
-    for (std::string line; std::getline(text, line);) lines.push_back(nlohmann::json::parse(line));
-    return lines;
-  }
-  std::size_t logged(const std::string& code) const {
-    std::size_t count = 0;
-    for (const auto& line : log()) count += line["code"] == code ? 1U : 0U;
-    return count;
-  }
-
-  const testing::TemporaryFolder folder_;
-  const Clock clock_{test::kHostSlowdown};
-  std::atomic<double> skipped_{0.0};
-  std::unique_ptr<StationHost> host_;
-  std::unique_ptr<Cockpit> cockpit_;
-  std::unique_ptr<WebServer> server_;
-  std::unique_ptr<test::Owner> owner_;
-};
 
 TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   Page page(port(), "", "Anna");
@@ -188,7 +26,8 @@ TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   EXPECT_EQ(page.state.operator_page(), 1U);
   EXPECT_EQ(page.state.operator_name(), "Anna");
   EXPECT_EQ(page.state.scene(), "first_touch");
-  EXPECT_EQ(page.state.other_url_size(), 1);
+  ASSERT_EQ(page.welcome.viewer_url_size(), 1);
+  EXPECT_EQ(page.welcome.viewer_url(0), kLookOn);
   const wire::Tick first = page.hear(wire::ToPage::kTick).tick();
   EXPECT_EQ(first.hcp_angle_size(), kJoints);
   EXPECT_EQ(first.gdp_pose_size(), 7 * kSegments);
@@ -235,6 +74,31 @@ TEST_F(CockpitTest, AKeyHeldDownIsObeyedEachTimeAndToldOnceASecondAndAfterEachRe
   EXPECT_EQ(logged("stopped"), 3U);
 }
 
+TEST_F(CockpitTest, AStopThatStopsSomethingIsToldWhoeverHasResumedAndHoweverSoon) {
+  Page page(port());
+  EXPECT_TRUE(page.ask(to_stop()).ok());
+  host_->resume();  // at the terminal
+  EXPECT_TRUE(page.ask(to_stop()).ok());
+  EXPECT_EQ(logged("stopped"), 2U);
+  EXPECT_TRUE(page.ask(to_stop()).ok());
+  EXPECT_EQ(logged("stopped"), 2U) << "it was stopped";
+}
+
+TEST_F(CockpitTest, TwoPeopleWithoutAPageAreTwoInTheLog) {
+  const auto stop_from = [this](const std::string& address) {
+    WebRequest request;
+    request.method = "POST";
+    request.path = "/stop";
+    request.visitor.address = address;
+    server_->post([this, request] { cockpit_->requested(request, [](const WebAnswer&) {}); });
+  };
+  for (const char* address : {"192.0.2.1", "192.0.2.2", "192.0.2.1"}) stop_from(address);
+  const auto lines = log();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0]["who"], "a page (192.0.2.1)");
+  EXPECT_EQ(lines[1]["who"], "a page (192.0.2.2)");
+}
+
 TEST_F(CockpitTest, WhoSitsDownBecauseNobodyOperatesIsToldAndLogged) {
   Page first(port(), "", "Anna");
   ASSERT_EQ(first.welcome.past_size(), 1);
@@ -254,7 +118,7 @@ TEST_F(CockpitTest, AResumeThatANewerStopHasOvertakenIsRefused) {
   EXPECT_TRUE(page.ask(to_stop()).ok());
   const wire::ToHost late = to_resume(*host_);
   EXPECT_EQ(status_of(post("/stop", "")), 200);
-  EXPECT_EQ(page.ask(late).error(), "another stop has come since; look, then resume again");
+  EXPECT_EQ(page.ask(late).error(), "another stop or fault has come since; look, then resume again");
   EXPECT_TRUE(host_->held_stopped());
   page.until([&](const wire::State& s) { return s.stops() == host_->stops(); });
   EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
@@ -399,6 +263,30 @@ TEST_F(CockpitTest, ChangesAreMadeToldAndLoggedAndWhatIsRefusedSaysWhy) {
   EXPECT_EQ(logged("scene"), 1U);
 }
 
+TEST_F(CockpitTest, AValueThatWasOvertakenIsNoChange) {
+  Page page(port());
+  owner_.reset();  // so that all of them wait
+  for (const std::string value : {"99", "0.7", "0.8"}) {
+    wire::ToHost message;
+    auto& setting = *message.mutable_set()->add_setting();
+    setting.set_key("force.stiffness_n_per_mm");
+    setting.set_value(value);
+    message.set_request(100);
+    page.say(message);
+  }
+  EXPECT_TRUE(page.ask(to_stop()).ok());  // by now they have come
+  owner_ = std::make_unique<Owner>(*host_);
+  for (int i = 0; i < 3; ++i) {
+    const wire::Reply reply = page.hear(wire::ToPage::kReply).reply();
+    EXPECT_EQ(reply.request(), 100U);
+    EXPECT_TRUE(reply.ok()) << reply.error();
+  }
+  EXPECT_TRUE(page.ask(to_take()).ok());  // by now they have been logged
+  EXPECT_EQ(logged("refused"), 0U);
+  ASSERT_EQ(logged("set"), 1U);
+  EXPECT_EQ(log().back()["text"], "force.stiffness_n_per_mm = 0.8");
+}
+
 TEST_F(CockpitTest, NoPageLearnsAnothersSecretAndNoFrameHoldsWhatBrowsersRefuse) {
   Page first(port(), "", std::string("An\u202Ena"));
   Page second(port());
@@ -408,8 +296,8 @@ TEST_F(CockpitTest, NoPageLearnsAnothersSecretAndNoFrameHoldsWhatBrowsersRefuse)
   std::string heard;
   for (int i = 0; i < 20; ++i) heard += second.client().hear().payload;
   EXPECT_THAT(heard, Not(HasSubstr(first.welcome.secret())));
-  EXPECT_THAT(read_file(folder_ / "audit.jsonl"), Not(HasSubstr(first.welcome.secret())));
-  EXPECT_THAT(read_file(folder_ / "audit.jsonl"), Not(HasSubstr(second.welcome.secret())));
+  EXPECT_THAT(log_text(), Not(HasSubstr(first.welcome.secret())));
+  EXPECT_THAT(log_text(), Not(HasSubstr(second.welcome.secret())));
   cockpit_->tell("fault", "a device named \xFF\xFE", true);
   EXPECT_EQ(first.notice("fault").text(), "a device named \xEF\xBF\xBD\xEF\xBF\xBD");
 }
@@ -454,113 +342,65 @@ TEST_F(CockpitTest, WhoHasNotSaidHelloMayStopAndIsShownOutInTheEnd) {
   page.until([](const wire::State& s) { return s.pages() == 1; });
 }
 
-TEST_F(CockpitTest, AStopComesInOverPlainHttpToo) {
-  Page page(port(), "", "Anna");
-  EXPECT_EQ(status_of(post("/stop", "")), 200);
+TEST_F(CockpitTest, APageOfAnotherProtocolIsTurnedAwayInWordsAndMayStop) {
+  for (const std::uint32_t protocol : {0U, Cockpit::kProtocol + 1}) {
+    PageClient other(port());
+    other.say(to_stop().SerializeAsString());
+    wire::ToHost hello;
+    hello.mutable_hello()->set_protocol(protocol);
+    other.say(hello.SerializeAsString());
+    wire::ToPage only;
+    ASSERT_TRUE(only.ParseFromString(other.hear_message().payload));
+    EXPECT_EQ(only.welcome().protocol(), Cockpit::kProtocol);
+    EXPECT_EQ(only.welcome().version(), "1.2.3");
+    EXPECT_EQ(only.welcome().secret(), "");
+    EXPECT_THAT(other.hear_end().reason(), HasSubstr("reload"));
+  }
   EXPECT_TRUE(host_->held_stopped());
-  EXPECT_EQ(page.notice("stopped").who(), "a page (127.0.0.1)");
-  EXPECT_EQ(status_of(post("/stop", "", "X-Phalanx-Page: " + page.welcome.secret() + "\r\n")), 200);
-  EXPECT_EQ(page.notice("stopped").who(), "page 1 (127.0.0.1), Anna");
-  EXPECT_EQ(status_of(ask(port(), get("/stop"))), 405) << "no link stops a hand";
-  EXPECT_EQ(status_of(post("/resume", "")), 404);
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_EQ(logged("operator_taken"), 0U);
 }
 
-TEST_F(CockpitTest, TheShapesAreFetchedByTheirRevision) {
+TEST_F(CockpitTest, AReportIsShownBesideItsOwnFaultOnly) {
   Page page(port());
-  const std::string answer = ask(port(), get("/geometry/1"));
-  ASSERT_EQ(status_of(answer), 200);
-  wire::Geometry geometry;
-  ASSERT_TRUE(geometry.ParseFromString(body_of(answer)));
-  EXPECT_EQ(geometry.revision(), 1U);
-  EXPECT_GT(geometry.object().position_size(), 0);
-  for (const std::string wrong : {"2", "", "1x", "../1", "-1", "01", "99999999999999999999"})
-    EXPECT_EQ(status_of(ask(port(), get("/geometry/" + wrong))) / 100, 4) << wrong;
-}
-
-TEST_F(CockpitTest, TheOperatorSendsAMeshAndGraspsIt) {
-  Page page(port());
-  Page other(port());
-  const std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-  const std::string mine = "X-Phalanx-Page: " + page.welcome.secret() + "\r\n";
-  const std::string theirs = "X-Phalanx-Page: " + other.welcome.secret() + "\r\n";
-  EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mm", mesh)) / 100, 4);
-  EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mm", mesh, theirs)) / 100, 4);
-  EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mile", mesh, mine)), 400);
-  const auto bad = nlohmann::json::parse(body_of(post("/mesh?name=b.obj", "not a mesh", mine)));
-  EXPECT_FALSE(bad["ok"].get<bool>());
-  const auto good =
-      nlohmann::json::parse(body_of(post("/mesh?token=geheim&name=../a.obj&unit=mm", mesh, mine)));
-  ASSERT_TRUE(good["ok"].get<bool>()) << good.dump();
-  const wire::Notice told = other.notice("upload");
-  EXPECT_THAT(read_file(folder_ / "audit.jsonl"), Not(HasSubstr("geheim")));
-  EXPECT_EQ(told.who(), "page 1 (127.0.0.1)");
-  wire::ToHost set;
-  const auto lay = [&](const std::string& key, const std::string& value) {
-    auto& setting = *set.mutable_set()->add_setting();
-    setting.set_key(key);
-    setting.set_value(value);
-  };
-  lay("objects.0", "{kind = \"file\", file = \"" + good["file"].get<std::string>() +
-                       "\", size_mm = 0, unit = \"mm\", position_mm = [0, 400, 0]}");
-  const wire::Reply reply = page.ask(set);
-  EXPECT_TRUE(reply.ok()) << reply.error();
-  EXPECT_FALSE(page.set("objects.0.file", "/etc/passwd").ok());
-}
-
-TEST_F(CockpitTest, EndsWhileAPageStillAsksAndAMeshIsStillRead) {
-  Page page(port());
-  for (int i = 0; i < 20; ++i) {
-    wire::ToHost scene;
-    scene.mutable_scene()->set_name("pinch_ball");
-    scene.set_request(100U + static_cast<unsigned>(i));
-    page.say(scene);
-  }
-  std::string mesh;
-  for (int i = 0; i < 3000; ++i) {
-    const std::string x = std::to_string(i);
-    mesh += "v " + x + " 0 0\nv " + x + " 1 0\nv " + x + " 0 1\n";
-    const std::string n = std::to_string(3 * i + 1);
-    mesh += "f " + n + " " + std::to_string(3 * i + 2) + " " + std::to_string(3 * i + 3) + "\n";
-  }
-  RawClient line(port());
-  line.say(
-      "POST /mesh?name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nX-Phalanx-Page: " +
-      page.welcome.secret() + "\r\nContent-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh);
-  page.notice("upload");
+  page.until([](const wire::State& s) { return s.safety() == wire::SAFETY_RUNNING; });
   owner_.reset();
-  server_.reset();
-  cockpit_.reset();
-  for (int i = 0; i < 20; ++i) host_->go_on();  // answers to a cockpit that is no more
+  host_->lengthen_steps(0.05);  // of 1 ms
+  while (host_->view().state != SafetyState::kFault) host_->go_on();
+  host_->lengthen_steps(0.0);
+  owner_ = std::make_unique<Owner>(*host_);
+  page.until([](const wire::State& s) { return s.has_fault(); });
+  const double fault_time = page.state.fault().time();
+  cockpit_->fault_reported("of_an_earlier_one.json", fault_time - 1.0);
+  cockpit_->typed("mark", "");
+  page.notice("mark");
+  EXPECT_EQ(page.hear(wire::ToPage::kState).state().fault().report(), "");
+  cockpit_->fault_reported("its_own.json", fault_time);
+  page.until([](const wire::State& s) { return s.fault().report() == "its_own.json"; });
 }
 
-TEST_F(CockpitTest, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
+TEST_F(CockpitTest, AFullDiskIsToldEverythingGoesOnAndTheLogNamesWhatIsMissing) {
   Page page(port());
-  const std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-  const std::string mine = "X-Phalanx-Page: " + page.welcome.secret() + "\r\n";
-  const auto good = nlohmann::json::parse(body_of(post("/mesh?name=a.obj&unit=mm", mesh, mine)));
-  ASSERT_TRUE(good["ok"].get<bool>()) << good.dump();
-  page.notice("upload");
-  // The next one is written to a pipe that nobody reads.
-  const std::string pipe = good["file"].get<std::string>() + ".partial";
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  RawClient line(port());
-  line.say("POST /mesh?name=a.obj&unit=mm HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\n" +
-           mine + "Content-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh);
-  page.notice("upload");
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // most often it is stuck by then
-  owner_.reset();
-  server_.reset();
-  cockpit_.reset();  // hangs if it waits
-  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  ASSERT_GE(reader, 0);
-  std::array<char, 4096> piece{};
-  for (;;) {
-    const ssize_t got = ::read(reader, piece.data(), piece.size());
-    if (got == 0 || (got < 0 && errno != EAGAIN)) break;
-    std::this_thread::yield();
+  EXPECT_EQ(log().size(), 1U);
+  {
+    const FullDisk full;
+    EXPECT_TRUE(page.ask(to_stop()).ok());
+    EXPECT_EQ(page.notice("log_broken").level(), wire::Notice::WARNING);
   }
-  ::close(reader);
+  EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
+  const auto lines = log();
+  ASSERT_GE(lines.size(), 3U);
+  EXPECT_EQ(lines[1]["code"], "log_gap");
+  EXPECT_EQ(lines.back()["code"], "resumed");
+  EXPECT_EQ(logged("stopped"), 0U);
+}
+
+TEST_F(CockpitTest, WhatIsTypedAtTheTerminalIsToldAndLogged) {
+  Page page(port());
+  cockpit_->typed("set", "force.stiffness_n_per_mm=0.7");
+  const wire::Notice told = page.notice("set");
+  EXPECT_EQ(told.who(), "the terminal");
+  EXPECT_EQ(told.level(), wire::Notice::CHANGE);
+  EXPECT_EQ(logged("set"), 1U);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ class PageRequestsTest : public HostTest {
     auto [answer, done] = awaited();
     const PageRequest asked = hand_over(message, *host, "/tmp/up", done);
     if (asked.at_once) {
+      EXPECT_TRUE(until_idle());
       EXPECT_EQ(answer->times, 0);
       return asked;
     }
@@ -34,13 +35,22 @@ class PageRequestsTest : public HostTest {
     refused = got->refused.value_or("no answer");
     return asked;
   }
+  /// Nothing waits to be done or answered.
+  bool until_idle() {
+    return until([&] { return host->state()->busy.empty(); });
+  }
+  /// @returns why it is refused at once; nothing of it may be done later
   std::string why_not(const wire::ToHost& message) {
+    auto [answer, done] = awaited();
+    std::string why;
     try {
-      static_cast<void>(hand_over(message, *host, "/tmp/up", [](const std::string&) { FAIL(); }));
+      static_cast<void>(hand_over(message, *host, "/tmp/up", done));
     } catch (const std::invalid_argument& error) {
-      return error.what();
+      why = error.what();
     }
-    return "";
+    EXPECT_TRUE(until_idle());
+    EXPECT_EQ(answer->times, 0);
+    return why;
   }
   static wire::ToHost set(const std::string& key, const std::string& value, int times = 1) {
     wire::ToHost message;
@@ -141,6 +151,13 @@ TEST_F(PageRequestsTest, SlidersOfWhateverNumberStayInsideTheHand) {
   EXPECT_THAT(why_not(message), HasSubstr("21"));
 }
 
+TEST_F(PageRequestsTest, SlidersThatMoveNothingAreRefused) {
+  EXPECT_EQ(move_by(HandSource::kPatient), "");
+  wire::ToHost message;
+  for (int j = 0; j < kJoints; ++j) message.mutable_sliders()->add_angle(0.1F);
+  EXPECT_EQ(why_not(message), "the sliders do not move the hand now; let them move it first");
+}
+
 TEST_F(PageRequestsTest, ResumeAndResetAreDoneAtOnce) {
   host->stop();
   EXPECT_TRUE(state().held_stopped());
@@ -157,13 +174,19 @@ TEST_F(PageRequestsTest, AResumeOrAResetThatANewerStopOrFaultHasOvertakenIsRefus
   wire::ToHost message;
   message.mutable_resume()->set_stops(state().stops());
   host->stop();
-  EXPECT_EQ(why_not(message), "another stop has come since; look, then resume again");
+  EXPECT_EQ(why_not(message), "another stop or fault has come since; look, then resume again");
   EXPECT_TRUE(host->held_stopped());
   message.mutable_resume()->set_stops(state().stops());
   EXPECT_EQ(handed(message).code, "resumed");
   EXPECT_FALSE(host->held_stopped());
-  message.mutable_reset()->set_fault_time(12.5);
+  ASSERT_TRUE(until_running());
+  overload();
+  message.mutable_reset()->set_fault_time(0.0);
   EXPECT_EQ(why_not(message), "another fault has come since; look, then reset again");
+  EXPECT_EQ(host->view().state, SafetyState::kFault);
+  message.mutable_reset()->set_fault_time(state().fault().time());
+  EXPECT_EQ(handed(message).code, "reset");
+  EXPECT_TRUE(until_running());
 }
 
 TEST(Choices, AreEveryKeySceneAndProfile) {

@@ -14,16 +14,19 @@ using ::testing::Pair;
 using ::testing::SizeIs;
 
 ChangeRequest scene(const std::string& text) {
-  return {.text = text, .work = [] {}, .done = [](const std::string&) {}, .sets = {}, .retry = false};
+  return {.text = text, .work = [] {}, .done = [](const ChangeOutcome&) {}, .sets = {}, .retry = false};
 }
 
 class ChangeQueueTest : public testing::Test {
  protected:
   StationHost::Done to(int number) {
-    return [this, number](const std::string&) { answered.push_back(number); };
+    return [this, number](const ChangeOutcome&) { answered.push_back(number); };
   }
-  void answer(const SetPart& part) {
-    for (const auto& done : part.done) done("");
+  /// Whom it names, in order.
+  std::vector<int> named(const std::vector<StationHost::Done>& waiting) {
+    answered.clear();
+    for (const auto& done : waiting) done({});
+    return answered;
   }
   ChangeQueue queue;
   std::vector<int> answered;
@@ -37,7 +40,7 @@ TEST_F(ChangeQueueTest, IsInOrder) {
   EXPECT_FALSE(queue.take().has_value());
 }
 
-TEST_F(ChangeQueueTest, ANewerValueOvertakesTheOldOneAndAnswersBothInOrder) {
+TEST_F(ChangeQueueTest, AnOldValueIsOvertakenByANewerOneAndNeverAnsweredAsDone) {
   queue.ask_set({{"a", "1"}}, to(1));
   queue.ask_set({{"b", "1"}}, to(2));
   queue.ask_set({{"a", "2"}}, to(3));
@@ -48,9 +51,14 @@ TEST_F(ChangeQueueTest, ANewerValueOvertakesTheOldOneAndAnswersBothInOrder) {
   EXPECT_THAT(request->sets[0].changes, ElementsAre(Pair("b", "1")));
   EXPECT_THAT(request->sets[1].changes, ElementsAre(Pair("a", "3")));
   EXPECT_EQ(request->text, "b = 1, a = 3");
-  answer(request->sets[0]);
-  answer(request->sets[1]);
-  EXPECT_THAT(answered, ElementsAre(2, 1, 3, 4));
+  EXPECT_THAT(named({request->sets[0].done}), ElementsAre(2));
+  EXPECT_THAT(request->sets[0].overtaken, SizeIs(0));
+  EXPECT_THAT(named({request->sets[1].done}), ElementsAre(4));
+  EXPECT_THAT(named(request->sets[1].overtaken), ElementsAre(1, 3));
+  const ChangeAnswer answer = answer_to(request->sets[1], "why");
+  EXPECT_THAT(named({answer.done}), ElementsAre(4));
+  EXPECT_THAT(named(answer.overtaken), ElementsAre(1, 3));
+  EXPECT_EQ(answer.refused, "why");
   EXPECT_FALSE(queue.take().has_value());
 }
 

@@ -64,15 +64,27 @@ class HostTest : public ::testing::Test {
     return until([&] { return host->state()->running && host->view().state == SafetyState::kRunning; });
   }
 
+  /// Until steps that are too long have ended in a fault, at rest.
+  void overload() {
+    host->lengthen_steps(0.0075);  // of 5 ms
+    ASSERT_TRUE(until([&] {
+      const StationView view = host->view();
+      return view.state == SafetyState::kFault && view.at_rest;
+    }));
+    host->lengthen_steps(0.0);
+  }
+
   /// What a request is answered with.
   struct Answer {
     std::optional<std::string> refused;
+    bool overtaken = false;
     int times = 0;
   };
   std::pair<std::shared_ptr<Answer>, StationHost::Done> awaited() {
     auto answer = std::make_shared<Answer>();
-    return {answer, [answer](const std::string& refused) {
-              answer->refused = refused;
+    return {answer, [answer](const ChangeOutcome& outcome) {
+              answer->refused = outcome.refused;
+              answer->overtaken = outcome.overtaken;
               ++answer->times;
             }};
   }
@@ -83,6 +95,7 @@ class HostTest : public ::testing::Test {
     const auto got = answer;
     EXPECT_TRUE(until([&] { return got->refused.has_value(); })) << "no answer";
     EXPECT_EQ(got->times, 1);
+    EXPECT_FALSE(got->overtaken);
     return got->refused.value_or("no answer");
   }
   std::string set(const Overrides& changes) {

@@ -4,12 +4,21 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "station/host_fixture.h"
 #include "station/station_build.h"
@@ -85,7 +94,7 @@ TEST_F(StationHostTest, AnotherLawIsExchangedAndTheShapesStay) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
   EXPECT_EQ(set({{"force.law", "kelvin_voigt"}}), "");
-  EXPECT_EQ(value("force.law"), "'kelvin_voigt'");
+  EXPECT_EQ(value("force.law"), R"("kelvin_voigt")");
   EXPECT_EQ(host->state()->geometry->revision, 1U);
   EXPECT_TRUE(until_running());
 }
@@ -142,6 +151,7 @@ TEST_F(StationHostTest, ASliderThatIsDraggedIsOneChangeAndEachIsAnswered) {
   for (const auto& answer : answers) {
     EXPECT_EQ(answer->refused, "");
     EXPECT_EQ(answer->times, 1);
+    EXPECT_EQ(answer->overtaken, answer != answers.back());
   }
   EXPECT_LT(host->state()->revision - before, 10U);
   EXPECT_TRUE(until([&] { return std::abs(host->view().stiffness - 600.0) < 1e-6; }));
@@ -171,7 +181,7 @@ TEST_F(StationHostTest, MoreThanSoManyChangesAreRefusedAtTheDoor) {
   int refused = 0;
   for (int i = 0; i < 12000; ++i) {  // a minute of 200 a second
     try {
-      host->load_scene("no_such_scene", [&](const std::string&) { ++answered; });
+      host->load_scene("no_such_scene", [&](const ChangeOutcome&) { ++answered; });
     } catch (const std::runtime_error& error) {
       EXPECT_THAT(error.what(), HasSubstr("wait"));
       ++refused;
@@ -195,7 +205,7 @@ TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) 
   wanted[index_pip] = 100.0;
   wanted[thumb] = std::numeric_limits<double>::quiet_NaN();
   wanted[little] = -std::numeric_limits<double>::infinity();
-  host->set_sliders(wanted);
+  EXPECT_TRUE(host->set_sliders(wanted));
   const double most = host->state()->geometry->hand.max_angle[index_pip];
   EXPECT_EQ(host->sliders()[index_pip], most);
   EXPECT_EQ(host->sliders()[thumb], thumb_before);
@@ -203,7 +213,7 @@ TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) 
   EXPECT_TRUE(until([&] { return std::abs(host->view().snapshot.hcp_angle[index_pip] - most) < 0.02; }));
   EXPECT_NE(host->view().state, SafetyState::kFault);
   EXPECT_EQ(move_by(HandSource::kPatient), "");
-  host->set_sliders(wanted);  // moves nothing, and breaks nothing
+  EXPECT_FALSE(host->set_sliders(wanted)) << "it moves nothing";
   EXPECT_TRUE(until_running());
   EXPECT_TRUE(host->state()->device.simulated);
 }
@@ -346,14 +356,14 @@ TEST_F(StationHostTest, AResetDuringASwitchDoesNotStartTheStationTwice) {
 TEST_F(StationHostTest, NothingIsAnsweredOrBegunOnceItIsShutDown) {
   start(with("sliders"));
   int answers = 0;
-  const auto done = [&](const std::string&) { ++answers; };
+  const auto done = [&](const ChangeOutcome&) { ++answers; };
   host->load_scene("pinch_ball", done);
   host->load_scene("grasp_teapot", done);
   host->go_on();
   host->shut_down();
   host->load_scene("pinch_ball", done);
   host->stop();
-  host->resume();
+  EXPECT_FALSE(host->resume());
   host->reset();
   host->set_sliders({});
   for (int i = 0; i < 5; ++i) host->go_on();
@@ -364,14 +374,58 @@ TEST_F(StationHostTest, NothingIsAnsweredOrBegunOnceItIsShutDown) {
   EXPECT_EQ(answers, 0);
 }
 
-TEST_F(StationHostTest, EndsWhileWorkIsOnItsWay) {
+TEST_F(StationHostTest, EndsWhileWorkIsOnItsWayWithoutTorqueOrAnAnswer) {
   for (int i = 0; i < 3; ++i) {
     start(with("sliders"));
-    host->load_scene("pinch_ball", {});
-    host->set({{"objects.0.size_mm", "50"}}, {});
-    for (int k = 0; k < 40 * i; ++k) own();
+    ASSERT_TRUE(until_running());
+    auto [answer, done] = awaited();
+    host->load_scene("pinch_ball", done);
+    host->set({{"objects.0.size_mm", "50"}}, done);
+    own();
+    ASSERT_FALSE(host->state()->busy.empty());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20 * i));  // wherever the work has come to
+    host->shut_down();
+    EXPECT_EQ(host->view().factor, 0.0);
+    EXPECT_FALSE(any_torque(host->view()));
     host.reset();
+    EXPECT_EQ(answer->times, 0);
   }
+}
+
+/// Nice value of each thread of this process, with its name.
+std::vector<std::pair<std::string, int>> threads() {
+  std::vector<std::pair<std::string, int>> found;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::getline(std::ifstream(task.path() / "comm"), name);
+    const auto id = static_cast<id_t>(std::stoul(task.path().filename().string()));
+    errno = 0;
+    const int nice = ::getpriority(PRIO_PROCESS, id);
+    if (errno == 0) found.emplace_back(name, nice);  // else it has ended
+  }
+  return found;
+}
+
+// A loop without SCHED_FIFO has nothing but its nice value against seconds of computing, and a loop that is
+// begun by the worker must not inherit what gives way.
+TEST_F(StationHostTest, WhatComputesGivesWayAndNoLoopDoes) {
+  const int own_nice = ::getpriority(PRIO_PROCESS, 0);
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  auto [answer, done] = awaited();
+  host->set({{"objects.0.triangles", "400000"}}, done);
+  const auto got = answer;
+  std::optional<int> computing;
+  EXPECT_TRUE(until([&] {
+    for (const auto& [name, nice] : threads())
+      if (name == "phalanx-build") computing = nice;
+    return computing || got->refused;
+  }));
+  EXPECT_EQ(computing, std::max(5, own_nice));
+  EXPECT_TRUE(until([&] { return got->refused.has_value(); }));
+  EXPECT_EQ(load("pinch_ball"), "");
+  ASSERT_TRUE(until_running());
+  for (const auto& [name, nice] : threads()) EXPECT_EQ(nice, own_nice) << name;
 }
 
 // A word that was late on its way does not undo a newer one.
@@ -389,11 +443,48 @@ TEST_F(StationHostTest, AResumeThatIsOlderThanAStopDoesNothing) {
   EXPECT_TRUE(until_running());
 }
 
+// Said twice, or late: it was said before anybody knew of the fault.
+TEST_F(StationHostTest, AResumeFromBeforeAFaultDoesNotBringTheTorqueBackAfterIt) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  host->stop();
+  const std::uint64_t seen = host->stops();
+  EXPECT_TRUE(host->resume(seen));
+  ASSERT_TRUE(until_running());
+  overload();
+  EXPECT_EQ(load("pinch_ball"), "");
+  EXPECT_FALSE(host->resume(seen));
+  EXPECT_TRUE(host->held_stopped());
+  EXPECT_TRUE(until([&] { return host->view().state == SafetyState::kStopped; }));
+  EXPECT_TRUE(host->resume(host->stops()));
+  ASSERT_TRUE(until_running());
+  host->stop();
+  const std::uint64_t stopped = host->stops();
+  overload();
+  EXPECT_EQ(load("first_touch"), "");
+  EXPECT_FALSE(host->resume(stopped)) << "that it was stopped already does not make it a word on the fault";
+  EXPECT_TRUE(host->held_stopped());
+}
+
 TEST_F(StationHostTest, AResetOfAnotherFaultThanTheOneThatIsThereDoesNothing) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
   EXPECT_FALSE(host->reset(12.5)) << "there is no fault at all";
-  EXPECT_TRUE(host->reset(0.0));
+  overload();
+  const double first = host->view().fault.time;
+  EXPECT_FALSE(host->reset(0.0)) << "said before there was one";
+  pass(0.3);
+  EXPECT_EQ(host->view().state, SafetyState::kFault);
+  EXPECT_TRUE(host->reset(first));
+  ASSERT_TRUE(until_running());
+  overload();
+  const double second = host->view().fault.time;
+  EXPECT_GT(second, first);
+  EXPECT_FALSE(host->reset(first));
+  pass(0.3);
+  EXPECT_EQ(host->view().state, SafetyState::kFault);
+  EXPECT_TRUE(host->reset(second));
+  EXPECT_TRUE(until_running());
 }
 
 // Whoever ends the program while a large object is being built does not wait for that with torque on.

@@ -4,9 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 #include "device/link/controller_thread.h"
+#include "phalanx/device/calibration_poses.h"
+#include "phalanx/scene/calibration_file.h"
+#include "record/temporary_folder.h"
 #include "station/host_fixture.h"
 
 namespace phalanx {
@@ -19,18 +25,54 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using Step = CalibrationSession::Step;
 
-/// Its raw values rise for ever, whatever pose is asked for: nothing can be calibrated by it, and a station
-/// ends in a fault after a while.
+/// Its raw values rise for ever, whatever pose is asked for, until they are held: nothing can be calibrated
+/// by it, and a station ends in a fault after a while.
 class WiredHostTest : public HostTest {
  protected:
-  void connect() {
-    StationHostSettings settings = with(controller->address(), "grasp_teapot");
+  void connect(const std::string& scene = "grasp_teapot") {
+    StationHostSettings settings = with(controller->address(), scene);
     settings.overrides = {{"limits.joint_torque_nm", "0.4"}, {"limits.torque_rate_nm_per_s", "80"}};
-    settings.write_calibration = [this](const Calibration&) -> std::string {
+    settings.write_calibration = [this](Calibration found) -> std::string {
       ++written;
-      throw std::runtime_error("the disk is full");
+      if (disk_full) throw std::runtime_error("the disk is full");
+      found.date = "2026-05-04T09:30:00Z";
+      found.phalanx = "0.1.0";
+      const std::string file = folder / "found.toml";
+      std::ofstream(file) << calibration_text(found);
+      return file;
     };
     start(settings);
+  }
+  /// The sensors read these angles of their joints [rad], as of a device that says 1 rad too much of each.
+  void hold(std::array<double, 2> angle) {
+    std::array<std::int32_t, 2> raw{};
+    for (std::size_t c = 0; c < raw.size(); ++c)
+      raw[c] = static_cast<std::int32_t>(std::lround(1000.0 * (angle[c] + kTooMuch)));
+    controller->hold(raw);
+    const auto before = host->state()->wizard;
+    if (before == nullptr || before->pose == before->names.size()) return;
+    ASSERT_TRUE(until([&] {  // what was on its way is no part of the pose
+      const auto wizard = host->state()->wizard;
+      for (const std::int32_t seen : wizard->raw)
+        if (seen != raw[0] && seen != raw[1]) return false;
+      return !wizard->raw.empty();
+    }));
+  }
+  void measure() {
+    ASSERT_EQ(calibrate(Step::kMeasure), "");
+    ASSERT_TRUE(until([&] { return !host->state()->wizard->measuring; }));
+    ASSERT_EQ(host->state()->trouble, "");
+  }
+  /// A wearer goes into every pose.
+  void measure_all() {
+    const auto state = host->state();
+    const HandParameters& hand = state->geometry->hand;
+    std::array<double, 2> angle = {hand.open_angle[kJoint[0]], hand.open_angle[kJoint[1]]};
+    for (const CalibrationPose& pose : calibration_poses(state->device.channels, hand)) {
+      for (std::size_t c = 0; c < angle.size(); ++c) angle[c] = pose.value[c].value_or(angle[c]);
+      hold(angle);
+      measure();
+    }
   }
   void begin() {
     ASSERT_EQ(calibrate(Step::kBegin), "");
@@ -39,8 +81,58 @@ class WiredHostTest : public HostTest {
 
   std::unique_ptr<ControllerThread> controller =
       std::make_unique<ControllerThread>(listen_udp("127.0.0.1:0"), clock);
+  static constexpr std::array<std::size_t, 2> kJoint = {4, 6};  ///< of bench_device()
+  static constexpr double kTooMuch = 1.0;                       ///< [rad]
+  const testing::TemporaryFolder folder;
   int written = 0;
+  bool disk_full = false;
 };
+
+TEST_F(WiredHostTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
+  connect();
+  begin();
+  measure_all();
+  ASSERT_TRUE(host->state()->wizard->finished) << ::testing::PrintToString(host->state()->wizard->problems);
+  disk_full = true;
+  EXPECT_THAT(calibrate(Step::kWrite), HasSubstr("the disk is full"));
+  ASSERT_NE(host->state()->wizard, nullptr) << "what was measured is still there";
+  const HandParameters& hand = host->state()->geometry->hand;
+  std::array<double, 2> middle{};
+  for (std::size_t c = 0; c < middle.size(); ++c)
+    middle[c] = 0.5 * (hand.min_angle[kJoint[c]] + hand.max_angle[kJoint[c]]);
+  hold(middle);
+  disk_full = false;
+  const double asked = host->now();
+  EXPECT_EQ(calibrate(Step::kWrite), "");
+  EXPECT_EQ(written, 2);
+  EXPECT_EQ(host->state()->wizard, nullptr);
+  EXPECT_EQ(host->state()->calibration, folder / "found.toml");
+  EXPECT_TRUE(host->state()->running);
+  EXPECT_EQ(host->state()->trouble, "");
+  ASSERT_TRUE(until([&] { return host->view().time > asked; })) << "until then the last station's is shown";
+  for (std::size_t c = 0; c < middle.size(); ++c)
+    EXPECT_NEAR(host->view().snapshot.hcp_angle[kJoint[c]], middle[c], 2e-3);
+}
+
+TEST_F(WiredHostTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {
+  const std::filesystem::path shipped = PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml";
+  const std::string scene = folder / "own.toml";
+  std::filesystem::copy_file(shipped, scene);
+  connect(scene);
+  begin();
+  const std::uint64_t before = host->stops();
+  std::filesystem::remove(scene);
+  const std::string refused = calibrate(Step::kAbandon);
+  EXPECT_THAT(refused, HasSubstr("own.toml"));
+  EXPECT_EQ(host->state()->wizard, nullptr);
+  EXPECT_FALSE(host->state()->running);
+  EXPECT_EQ(host->state()->trouble, refused);
+  EXPECT_FALSE(host->resume(before));
+  EXPECT_TRUE(host->held_stopped());
+  EXPECT_EQ(load("grasp_teapot"), "");
+  EXPECT_TRUE(host->state()->running);
+  EXPECT_TRUE(host->held_stopped());
+}
 
 TEST_F(WiredHostTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation) {
   connect();
@@ -52,9 +144,7 @@ TEST_F(WiredHostTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation) {
   const std::size_t poses = host->state()->wizard->names.size();
   ASSERT_GT(poses, 2U);
   for (std::size_t i = 0; i < poses; ++i) {
-    ASSERT_EQ(calibrate(Step::kMeasure), "");
-    ASSERT_TRUE(until([&] { return !host->state()->wizard->measuring; }));
-    ASSERT_EQ(host->state()->trouble, "");
+    measure();
   }
   const auto end = host->state()->wizard;
   EXPECT_EQ(end->pose, poses);
@@ -93,12 +183,44 @@ TEST_F(WiredHostTest, NothingElseChangesWhileACalibrationIsOn) {
 TEST_F(WiredHostTest, ADeviceLostDuringACalibrationIsSaidAndItCanBeAbandoned) {
   connect();
   begin();
+  ASSERT_TRUE(until([&] { return !host->state()->wizard->raw.empty(); }));
+  pass(0.1);              // before the first samples a restart is just another session
   controller->restart();  // it knows nothing of our session any more
   EXPECT_TRUE(until([&] { return !host->state()->trouble.empty(); }));
   EXPECT_NE(host->state()->wizard, nullptr);
   EXPECT_EQ(calibrate(Step::kAbandon), "");
   EXPECT_EQ(host->state()->trouble, "");
   EXPECT_TRUE(host->state()->running);
+}
+
+// Whoever plugs the device in again is not whom the hand waits for; nor is a slider that is dragged.
+TEST_F(WiredHostTest, AStationThatWasLostComesBackStoppedWhateverBringsItBack) {
+  connect();
+  hold({-kTooMuch, -kTooMuch});
+  const std::string address = controller->after_scheme();
+  ASSERT_TRUE(until([&] { return host->view().snapshot.tick > 0; }));
+  for (const bool by_reset : {false, true}) {
+    host->stop();
+    const std::uint64_t seen = host->stops();
+    EXPECT_TRUE(host->resume(seen));
+    controller.reset();
+    EXPECT_FALSE(set({{"rate_hz", "250"}}).empty());
+    EXPECT_FALSE(host->state()->running);
+    controller = std::make_unique<ControllerThread>(listen_udp(address), clock);
+    hold({-kTooMuch, -kTooMuch});
+    EXPECT_FALSE(host->resume(seen)) << "said before it was lost";
+    records.clear();
+    if (by_reset)
+      host->reset();
+    else
+      EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.6"}}), "");
+    ASSERT_TRUE(until([&] { return host->state()->running && host->view().state == SafetyState::kStopped; }));
+    pass(0.5);
+    for (const StepRecord& record : records) EXPECT_EQ(record.factor, 0.0);
+    EXPECT_TRUE(host->held_stopped());
+    EXPECT_TRUE(host->resume(host->stops()));
+    EXPECT_TRUE(until([&] { return host->view().factor > 0.0; }));
+  }
 }
 
 TEST_F(WiredHostTest, ADeviceThatDoesNotOpenAgainIsTroubleUntilAReset) {

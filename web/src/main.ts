@@ -26,6 +26,7 @@ import { GeometryLoader } from "./state/geometry_loader";
 import { Store } from "./state/store";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";
+import { makeShapes } from "./view3d/shape_maker";
 import { Connection, type Socket } from "./wire/connection";
 import { Host } from "./wire/host";
 import { fetchGeometry, linkExpired, postStop, streamUrl, uploadMesh } from "./wire/http";
@@ -61,10 +62,9 @@ const connection = new Connection({
   name: () => lasting.get(kNameKey),
   onPhase: (phase) => {
     store.setPhase(phase);
-    // A page of another version than the station: once anew, so that it fits; never in a circle.
+    // A page of another version than the station: once anew, so that it fits; never in a circle, so only where that it was done is kept.
     if (phase === "mismatch" && session.get(kReloaded) !== "yes") {
-      session.set(kReloaded, "yes");
-      location.reload();
+      if (session.set(kReloaded, "yes")) location.reload();
     } else if (phase === "open") {
       session.set(kReloaded, "");
     }
@@ -79,7 +79,7 @@ const app: App = {
   store,
   host,
   dialogs,
-  upload: (file, sizeMm, unit) => uploadMesh(secret.get(), file, sizeMm, unit),
+  upload: (file, sizeMm, unit, signal) => uploadMesh(secret.get(), file, sizeMm, unit, signal),
   takeControl: () => {
     const words = strings.role;
     const text = store.role === "other" ? words.confirmOther(operatorName(app)) : words.confirmNobody;
@@ -121,7 +121,7 @@ listenToKeys(window, {
   zoom: (factor) => frame.zoom(factor),
 });
 
-const geometry = new GeometryLoader(fetchGeometry, (loaded, revision) => store.setGeometry(loaded, revision));
+const geometry = new GeometryLoader(async (revision) => makeShapes(await fetchGeometry(revision)), (loaded, revision) => store.setGeometry(loaded, revision));
 store.on(["state"], () => store.state && geometry.want(store.state.geometry));
 store.on(["connection"], () => {
   if (!store.connected) geometry.forget(); // another station counts its revisions anew

@@ -3,8 +3,11 @@
 // scenes and keys, refusals, faults) come in English, with codes that a page may translate.
 
 const en = {
+  locale: "en-GB", // of figures and times, and for screen readers
   title: "Phalanx cockpit",
   product: "Phalanx",
+  opening: "Opening … If this stays, reload the page.",
+  noScript: "Phalanx’s cockpit needs JavaScript.",
 
   stop: {
     button: "STOP",
@@ -54,7 +57,6 @@ const en = {
   },
 
   digits: ["Thumb", "Index", "Middle", "Ring", "Little"],
-  palm: "Palm",
   forcePerDigit: "Force of each digit",
   dash: "–", // not known, or nothing
 
@@ -75,6 +77,9 @@ const en = {
   lost: {
     closed: "Connection lost",
     stale: "No new measurements",
+    unmeasured: "No measurement from the device",
+    unmeasuredWhy: "The station is there. What you see is not where the hand is now.",
+    measured: (seconds: string) => `last measured ${seconds} s ago`,
     connecting: "Connecting …",
     calibrating: "The calibration is on: the device moves, the station rests.",
     since: (seconds: string) => `last picture ${seconds} s ago`,
@@ -122,7 +127,6 @@ const en = {
     title: "Scene",
     label: "Scene",
     load: "Load",
-    current: (name: string) => `${name} (now)`,
     changes: (count: number) => (count === 1 ? "1 value differs from the scene" : `${count} values differ from the scene`),
     reset: "Back to the scene’s values",
   },
@@ -151,7 +155,6 @@ const en = {
     useMesh: "Use this mesh",
     tooLarge: "The file is larger than 64 MB.",
     noConnection: "The file could not be sent: no connection.",
-    none: "This scene has no object.",
     kinds: {
       teapot: "Teapot",
       sphere: "Ball",
@@ -246,7 +249,6 @@ const en = {
     reset: "Scene’s value",
     default: "default",
     range: "range",
-    differs: "differs from the scene",
     change: ["goes over in contact, within 0.2 s", "the torque goes to zero and comes back", "the station ends and begins anew"],
     none: "Nothing matches.",
     on: "on",
@@ -270,7 +272,6 @@ const en = {
     fist: "Fist",
     degrees: "°",
     joints: ["Flexion", "Spread", "Middle joint", "End joint"],
-    thumbJoints: ["Flexion", "Spread", "Middle joint", "End joint"],
   },
 
   device: {
@@ -325,12 +326,11 @@ const en = {
       s: (value: string) => `${value} s`,
     },
     histogram: (name: string, from: string, to: string) => `${name}: how often, from ${from} to ${to}`,
-    unknown: "not known",
   },
 
   fault: {
     title: "Fault",
-    meaning: "What it means",
+    none: "No fault.",
     remedy: "What to do",
     report: "Report",
     reportPending: "is being written",
@@ -362,7 +362,6 @@ const en = {
     results: "Results",
     finished: "All poses are measured.",
     unfinished: "Some channels were refused. Measure their poses again.",
-    file: (file: string) => `Written to ${file}`,
     beyond: "All poses are through.",
   },
 
@@ -374,7 +373,7 @@ const en = {
     name: "My name",
     nameHint: "what others read",
     save: "Save",
-    elsewhere: "This page elsewhere",
+    elsewhere: "Links for others, to look on and to stop",
     log: "What happened",
     logEmpty: "Nothing yet.",
     station: "station",
@@ -417,28 +416,27 @@ const en = {
     nothing: "nothing",
     curve: (digit: string, part: string, kind: string) => `${digit} ${part} ${kind}`.trim(),
     more: (count: number) => `and ${count} more`,
+    beyond: (value: string, unit: string) => `▲ beyond the plot: up to ${value} ${unit}`,
+    keys: "Arrow keys read its values: left and right in time, up and down nearest the pointer first. Home and End go to the oldest and the newest.",
   },
 
   look: {
-    theme: "Dark or light",
-    dark: "Dark",
     light: "Light",
     large: "Large type",
     help: "Keys",
     close: "Close",
-    changed: "Changes",
   },
 
   help: {
     title: "Keys",
-    note: "Esc and Space always stop, also here. Close with the button.",
+    note: "Esc and Space always stop, also here. Close with the button. Only while the browser asks for a file it keeps all keys to itself.",
     rows: [
       ["Space", "Stop (except in a text field)"],
       ["Esc", "Stop, everywhere"],
       ["P", "Pause the plots, or go on"],
       ["1 2 3 4", "View: home, palm, thumb side, follow"],
       ["+ −", "Nearer, farther"],
-      ["Arrow keys", "Turn the view, when it has the focus"],
+      ["Arrow keys", "Turn the view, or read the values of a plot: whichever has the focus"],
       ["Tab", "To the next control"],
       ["Enter", "Press a button or switch"],
       ["?", "This list"],
@@ -458,10 +456,7 @@ const en = {
     mm: "mm",
   },
   http: (status: number) => `HTTP ${status}`,
-  refused: "Refused",
   notSent: "Not sent: no connection.",
-  yes: "yes",
-  no: "no",
 };
 
 export type Strings = typeof en;

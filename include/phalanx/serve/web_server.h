@@ -93,8 +93,9 @@ struct WebServerSettings {
   std::size_t messages_per_second = 200;      ///< of one page, with its pings; more, and it is shown out
   std::size_t queue_limit = 256;              ///< messages waiting for one page; more, and it is shown out
   std::size_t queue_bytes = 4 * 1024 * 1024;  ///< the same in bytes; one alone may be longer
-  /// At once, that have asked for something with a right Host and token; the last eighth is kept for
-  /// WebSockets and POST. Others are refused (503).
+  /// At once, that have asked for something with a right Host and token; others are refused (503). Viewers
+  /// leave the last eighth to visitors who may operate, and these the last sixteenth to their own WebSockets.
+  /// A POST without a body needs no place: it is always heard, and its connection then closed.
   std::size_t connections = 64;
   std::size_t unproven_connections = 32;  ///< that have not; a new one takes the place of the oldest
   std::size_t unproven_per_address =
@@ -117,7 +118,7 @@ struct WebServerSettings {
 ///   - token, where there is one: in the query (?token=...) of the first request, which sets a cookie
 ///     (HttpOnly, SameSite=Strict, with TLS also Secure) and goes on to the same address without it; a
 ///     WebSocket or a POST may bring it so itself; compared in constant time; else 403;
-///   - more than `connections`: 503;
+///   - no place among the `connections`: 503;
 ///   - Origin, for WebSockets and POST: "http(s)://" + Host, exactly; else 403;
 ///   - a WebSocket may be asked for at any path; another upgrade: 400;
 ///   - files: an exact path out of the list read at the start, so that no path leads out of the folder;

@@ -23,13 +23,13 @@ namespace phalanx {
 enum class HandSource { kDevice, kPatient, kSliders };
 
 struct StationHostSettings {
-  std::string scene = "first_touch";
-  Overrides overrides;
-  std::string device = "simulated";  ///< "simulated", "sliders", or an address: open_device.h
-  std::string calibration;           ///< its file; empty: the device's own numbers
-  std::string clinician;
-  RealtimeRequest realtime;
-  bool ask_for_realtime = true;
+  std::string scene = "first_touch";  ///< a shipped one's name, or a file
+  Overrides overrides;                ///< laid over the scene's keys, until another scene is loaded
+  std::string device = "simulated";   ///< "simulated", "sliders", or an address: open_device.h
+  std::string calibration;            ///< its file; empty: the device's own numbers
+  std::string clinician;              ///< who answers for a fingertip force above 5 N: safety_settings.h
+  RealtimeRequest realtime;           ///< of the loop's thread
+  bool ask_for_realtime = true;       ///< false: the loop and the link are ordinary threads
   /// Writes what the calibration wizard found. @returns the file. @throws if it cannot
   std::function<std::string(const Calibration&)> write_calibration;
 };
@@ -68,16 +68,25 @@ struct HostState {
   std::shared_ptr<const CalibrationSession::View> wizard;  ///< null: no calibration is on
 };
 
+/// What became of a request.
+struct ChangeOutcome {
+  std::string refused;     ///< why, for people; empty: it is done, or overtaken
+  bool overtaken = false;  ///< newer values of all its keys came before it was tried: never checked nor made
+};
+
 /// Changes are asked for from any thread, made on a worker's one after the other, and answered by whoever
-/// calls go_on(). Where a change is refused, everything stays as it was; should the device not open again
-/// either, there is no station until reset(). A station that has to end comes to zero torque first, and the
-/// next one begins at zero torque, with its ramp; after a stop() that nobody took back, or a fault, it begins
-/// stopped. While a calibration is on, all other changes are refused.
+/// calls go_on(). Where a change is refused, everything stays as it was; should that not be made again either
+/// (the device does not open), there is no station until reset() or a change brings one. A station that has
+/// to end comes to zero torque first, and the next one begins at zero torque, with its ramp; after a stop()
+/// that nobody took back, after a fault, and after one that could not be made, it begins stopped, until
+/// resume(). While a calibration is on, all other changes are refused.
+///
+/// Real-time: none of it; all take locks. stop(), view(), state() and whatever else is for any thread hold
+/// them for copies only and never wait for a change. The station's own loop shares no lock with them.
 class StationHost {
  public:
-  /// What became of a request: empty if it is done, else the reason. Called in go_on(); never once
-  /// shut_down() has begun.
-  using Done = std::function<void(const std::string& refused)>;
+  /// Called in go_on(), once; never once shut_down() has begun.
+  using Done = std::function<void(const ChangeOutcome&)>;
 
   /// Loads the scene, opens the device and starts the station.
   /// @param clock  of the process; outlives the host
@@ -89,13 +98,17 @@ class StationHost {
 
   // ---- any thread
   // Whatever has a Done throws std::runtime_error if too many changes wait already; then Done is not called.
-  // Sets that wait become one: a value that a newer one of the same key overtakes is answered as that one.
+  // Sets that wait become one: a value that newer ones of the same keys overtake is never tried.
   /// At once: zero torque, and it stays until resume(), also over changes.
   void stop() noexcept;
-  void resume() noexcept;
-  /// The same from afar: nothing if somebody has said stop since the speaker saw `stops`. @returns whether
+  /// @returns whether: not once shut_down() has begun, nor if somebody says stop in the same moment
+  bool resume() noexcept;
+  /// The same from afar: nothing if it is another stop by now than the one that the speaker saw.
+  /// @param stops  stops(), as it was seen. @returns whether
   bool resume(std::uint64_t stops) noexcept;
-  [[nodiscard]] std::uint64_t stops() const noexcept;  ///< how often somebody has said stop
+  /// How often the torque was held until resume(): somebody said stop, a fault ended with its station, or no
+  /// station could be made.
+  [[nodiscard]] std::uint64_t stops() const noexcept;
   void reset() noexcept;  ///< after a fault; where there is no station, tries again to make one
   /// The same from afar: nothing if there is another fault by now than the one of that time [s].
   /// @param fault_time  FaultEvent::time; 0: there was none. @returns whether
@@ -106,12 +119,13 @@ class StationHost {
   void load_scene(std::string scene, Done done);
   /// kPatient and kSliders, of the simulated device; refused for a device on a wire.
   void set_source(HandSource source, Done done);
-  /// Where the sliders' hand is wanted [rad]; clamped to the range of motion. Only with kSliders.
-  void set_sliders(const JointArray& angle) noexcept;
+  /// Where the sliders' hand is wanted [rad]; clamped to the range of motion, and what is not finite is left
+  /// as it was. @returns whether sliders move the hand of the station that runs; nothing is done otherwise
+  bool set_sliders(const JointArray& angle) noexcept;
   /// Ends the station at zero torque and leads through the poses; kAbandon and kWrite go back to a station.
   void calibrate(CalibrationSession::Step step, std::size_t pose, Done done);
 
-  [[nodiscard]] bool held_stopped() const noexcept;  ///< somebody said stop(), and nobody resume()
+  [[nodiscard]] bool held_stopped() const noexcept;  ///< since stops() rose last, nobody has said resume()
   [[nodiscard]] double now() const noexcept;         ///< of the process's clock [s]
   [[nodiscard]] JointArray sliders() const;          ///< where they were last set [rad]
   [[nodiscard]] StationView view() const;  ///< of the newest step; the last one's while there is no station

@@ -20,9 +20,9 @@ struct StationView {
   double duration = 0.0;   ///< of the step, until the command was handed to the device [s]
   JointArray sent{};       ///< torques that left, after Safety [Nm]
   SafetyState state = SafetyState::kWaiting;
-  FaultEvent fault;
-  double factor = 0.0;
-  bool at_rest = true;
+  FaultEvent fault;                  ///< that it is in; its fault is kNone: in none
+  double factor = 0.0;               ///< of the ramps, on the step's torques, 0 .. 1 [-]
+  bool at_rest = true;               ///< what leaves is zero for every joint
   bool degraded = false;             ///< a step ended too late in the last second
   bool ending = false;               ///< shut_down() has been asked for
   std::uint64_t resets_refused = 0;  ///< because the cause was still there

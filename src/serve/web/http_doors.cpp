@@ -11,7 +11,7 @@ namespace phalanx::web {
 namespace {
 
 constexpr std::size_t kLongestTarget = 2048;  // [bytes]
-constexpr std::size_t kKeptShare = 8;         // of all places: one in so many is for stops and pages
+constexpr std::size_t kShare = 16;            // one in so many of all places
 
 }  // namespace
 
@@ -63,13 +63,13 @@ bool HttpSession::pass_token() {
     refuse(*refusal);
     return false;
   }
-  if (!pass_place()) return false;
   if (const auto* known = std::get_if<TokenDoor::Entry>(&verdict)) {
     request_.visitor.may_operate = known->may_operate;
-    return true;
+    return pass_place();
   }
   const auto& cookie = std::get<TokenDoor::Cookie>(verdict);
   request_.visitor.may_operate = cookie.may_operate;
+  if (!pass_place()) return false;
   // Nobody behind the doors needs to see it.
   request_.query = without(target_.query, "token");
   if (upgrade_ || request_.method == "POST") return true;
@@ -83,18 +83,32 @@ bool HttpSession::pass_token() {
   return false;
 }
 
-// Who has shown that it may come in leaves the doorstep, if there is room inside.
+// However many look on, somebody who may operate can fetch the page and then become one.
+std::size_t HttpSession::places_left_free() const {
+  const std::size_t share = house_.settings.connections / kShare;
+  if (!request_.visitor.may_operate) return 2 * share;
+  return upgrade_ ? 0 : share;
+}
+
+// Who has shown that it may come in leaves the doorstep, if there is room inside. A place that was given for
+// one request is good for another that has to leave as many free.
 bool HttpSession::pass_place() {
-  if (place_) return true;
-  const std::size_t all = house_.settings.connections;
-  const std::size_t kept = upgrade_ || request_.method == "POST" ? 0 : all / kKeptShare;
-  if (house_.connections >= all - kept) {
-    refuse(sentence(503, "Too many are connected to the station just now. Close a page, and try again."));
-    return false;
+  const std::size_t left_free = places_left_free();
+  if (place_ && left_free <= left_free_) return true;
+  const std::size_t others = house_.connections - (place_ ? 1 : 0);
+  if (others + left_free < house_.settings.connections) {
+    left_free_ = left_free;
+    if (!place_) place_.emplace(house_.connections);
+    stay_.reset();
+    return true;
   }
-  place_.emplace(house_.connections);
-  stay_.reset();
-  return true;
+  // A stop is heard from the doorstep, where a new one always finds room.
+  if (request_.method == "POST" && parser_->is_done()) {
+    exchange_.keep_alive = false;
+    return true;
+  }
+  refuse(sentence(503, "Too many are connected to the station just now. Close a page, and try again."));
+  return false;
 }
 
 bool HttpSession::pass_origin() {

@@ -40,6 +40,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   bool pass_origin();
   bool pass_upgrade();
 
+  /// Of all places, those that such a request leaves to others.
+  [[nodiscard]] std::size_t places_left_free() const;
   void become_page();
   void serve_file(const SiteFile& file);
   void ask_application();
@@ -63,6 +65,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<Doorstep::Stay> stay_;  ///< until it has asked for something rightly
   Clock::time_point proof_by_;
   std::optional<Place> place_;  ///< from then on
+  std::size_t left_free_ = 0;   ///< places_left_free() of the request that it was given for
   std::string reached_;         ///< our address of this connection
   beast::flat_buffer buffer_;
   std::optional<Parser> parser_;

@@ -6,8 +6,7 @@
 
 namespace phalanx::web {
 
-/// A thread that gives way to others: SCHED_OTHER, nice 5 (or what the process has, if that is nicer), all
-/// signals blocked.
-[[nodiscard]] std::thread start_nice_thread(std::function<void()> work);
+/// A thread that gives way to others (give_way()), all signals blocked. @param name  15 bytes at most
+[[nodiscard]] std::thread start_nice_thread(const char* name, std::function<void()> work);
 
 }  // namespace phalanx::web

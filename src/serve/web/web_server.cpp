@@ -91,7 +91,7 @@ void WebServer::start() {
   const std::lock_guard lock(parts_->starting);
   if (parts_->stopped || parts_->thread.joinable()) return;
   net::post(*parts_->io, [parts = parts_.get()] { parts->listener->start(); });
-  parts_->thread = start_nice_thread([parts = parts_.get()] { parts->run(); });
+  parts_->thread = start_nice_thread("phalanx-web", [parts = parts_.get()] { parts->run(); });
 }
 
 void WebServer::stop() noexcept {

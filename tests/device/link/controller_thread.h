@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "device/link/session_bench.h"
@@ -15,7 +16,7 @@
 
 namespace phalanx::test {
 
-/// 1 kHz of `clock`. Every raw value counts the controller's ticks since it was made.
+/// 1 kHz of `clock`. Every raw value counts the controller's ticks since it was made, until hold().
 class ControllerThread {
  public:
   ControllerThread(std::unique_ptr<Transport> transport, const Clock& clock)
@@ -34,6 +35,11 @@ class ControllerThread {
     transport_.reset();
   }
   void restart() { restart_ = true; }
+  /// From here its two sensors read this.
+  void hold(std::array<std::int32_t, 2> raw) {
+    const std::lock_guard lock(mutex_);
+    held_ = raw;
+  }
   [[nodiscard]] const std::string& address() const { return address_; }
   [[nodiscard]] std::string after_scheme() const { return address_.substr(address_.find(':') + 1); }
 
@@ -72,6 +78,10 @@ class ControllerThread {
       ++ticks_;
       std::array<std::int32_t, PHX_CHANNELS> raw{};
       raw[0] = raw[1] = ticks_;
+      {
+        const std::lock_guard lock(mutex_);
+        if (held_) std::copy(held_->begin(), held_->end(), raw.begin());
+      }
       phx_output output{};
       phx_controller_tick(&controller_, time_us(), raw.data(), false, false, &output);
       if (output.sample_size > 0) transport_->send({output.sample, output.sample_size}, host_);
@@ -95,7 +105,8 @@ class ControllerThread {
   std::int32_t ticks_ = 0;
   std::atomic<bool> stop_{false};
   std::atomic<bool> restart_{false};
-  std::mutex mutex_;
+  std::optional<std::array<std::int32_t, 2>> held_;
+  std::mutex mutex_;  ///< of shown_ and held_
   std::thread thread_;
 };
 

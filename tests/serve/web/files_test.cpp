@@ -9,6 +9,7 @@ namespace phalanx {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class WebFiles : public WebTest {};
 
@@ -88,6 +89,9 @@ TEST_F(WebFiles, EveryAnswerIsProtected) {
     EXPECT_EQ(field_of(answer, "Referrer-Policy"), "no-referrer") << request;
     EXPECT_THAT(field_of(answer, "Content-Security-Policy"), HasSubstr("default-src 'self'")) << request;
     EXPECT_THAT(field_of(answer, "Content-Security-Policy"), HasSubstr("frame-ancestors 'none'")) << request;
+    // Scripts, styles and workers fall back on default-src: files of the site, nothing inline.
+    for (const char* looser : {"unsafe-", "script-src", "style-src", "worker-src", "child-src"})
+      EXPECT_THAT(field_of(answer, "Content-Security-Policy"), Not(HasSubstr(looser))) << request;
   }
 }
 

@@ -234,19 +234,64 @@ TEST_F(WebRequests, MoreThatAskThanAllowedAreRefused) {
   while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
 }
 
-TEST_F(WebRequests, AnEighthOfThePlacesIsKeptForPostAndPages) {
+constexpr const char* kEmpty = "Content-Length: 0\r\n";
+
+TEST_F(WebRequests, FilesLeaveASixteenthOfThePlacesToPagesAndAPostNeedsNone) {
   settings_.connections = 16;
   start();
   std::vector<std::unique_ptr<RawClient>> inside;
-  for (int i = 0; i < 14; ++i) {
+  for (int i = 0; i < 15; ++i) {
     inside.push_back(std::make_unique<RawClient>(port()));
     inside.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
     ASSERT_EQ(status_of(inside.back()->hear_answer()), 200);
   }
   EXPECT_EQ(status_of(ask(get("/"))), 503);
-  EXPECT_EQ(status_of(PageClient(port()).welcome()), 101);
-  EXPECT_EQ(status_of(ask(post("/stop", "Content-Length: 0\r\n"))), 404) << "the application's answer";
-  EXPECT_THAT(application_.requests(), testing::SizeIs(1));
+  PageClient page(port());
+  EXPECT_EQ(status_of(page.welcome()), 101);
+  EXPECT_EQ(status_of(PageClient(port()).welcome()), 503);
+  for (int i = 0; i < 50; ++i)
+    EXPECT_EQ(status_of(ask(post("/stop", kEmpty))), 404) << "the application's answer";
+  EXPECT_THAT(application_.requests(), testing::SizeIs(50));
+  application_.limit = 10;
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\n") + "x")), 503) << "a body needs one";
+}
+
+TEST_F(WebRequests, APostThatHasNoPlaceIsTheLastOfItsConnection) {
+  settings_.connections = 1;
+  start();
+  PageClient page(port());
+  RawClient line(port());
+  line.say("POST /stop HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nContent-Length: 0\r\n\r\n");
+  EXPECT_EQ(status_of(line.hear_answer()), 404);
+  EXPECT_EQ(line.hear_all(), "") << "closed, though it asked to be kept";
+}
+
+TEST_F(WebRequests, ViewersLeaveAnEighthOfThePlacesToWhoMayOperate) {
+  settings_.connections = 16;
+  settings_.operator_token = "operator-token-16";
+  settings_.viewer_token = "viewers-token--16";
+  const auto page_by = [&](const std::string& token) {
+    return std::make_unique<PageClient>(std::make_unique<RawClient>(port()),
+                                        PageClient::head(PageClient::good_fields(), "/?token=" + token));
+  };
+  start();
+  std::vector<std::unique_ptr<PageClient>> pages;
+  for (int i = 0; i < 14; ++i) {
+    pages.push_back(page_by(settings_.viewer_token));
+    ASSERT_EQ(status_of(pages.back()->welcome()), 101);
+  }
+  EXPECT_EQ(status_of(page_by(settings_.viewer_token)->welcome()), 503);
+  EXPECT_EQ(status_of(ask(get("/?token=" + settings_.viewer_token))), 503);
+  // The operator reloads: first the page, then its WebSocket.
+  RawClient line(port());
+  const std::string cookie = "phalanx-" + std::to_string(port()) + "=" + settings_.operator_token;
+  line.say("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: " + cookie + "\r\n\r\n");
+  EXPECT_EQ(status_of(line.hear_answer()), 200);
+  line.say(PageClient::head(PageClient::good_fields(), "/?token=" + settings_.viewer_token));
+  EXPECT_EQ(status_of(line.hear_answer()), 503) << "its place is not a viewer's";
+  pages.push_back(page_by(settings_.operator_token));
+  EXPECT_EQ(status_of(pages.back()->welcome()), 101);
+  EXPECT_EQ(status_of(ask(post("/stop?token=" + settings_.viewer_token, kEmpty))), 404) << "heard";
 }
 
 TEST_F(WebRequests, WhoOnlyConnectsOrHasNoRightHostIsLetGoSoon) {

@@ -9,7 +9,7 @@ import type { ImportReport } from "../wire/http";
 export interface App {
   readonly store: Store;
   readonly host: Host;
-  readonly upload: (file: File, sizeMm: number, unit: string) => Promise<ImportReport>;
+  readonly upload: (file: File, sizeMm: number, unit: string, signal: AbortSignal) => Promise<ImportReport>;
   readonly dialogs: HTMLElement; // where dialogs stand; never over Stop
   readonly takeControl: () => void; // asks first
 }

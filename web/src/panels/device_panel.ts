@@ -4,6 +4,7 @@ import type { Link, Loop, State } from "../gen/phalanx/cockpit_pb";
 import { strings } from "../strings";
 import type { App } from "./app";
 import { el, section, setShown } from "./dom";
+import { faultSection } from "./fault_card";
 import { histogram } from "./histogram";
 import { wizardSection } from "./wizard";
 
@@ -34,7 +35,7 @@ function deviceFacts(state: State): readonly Fact[] {
   ];
 }
 
-const count = (value: bigint) => value.toLocaleString("en");
+const count = (value: bigint) => value.toLocaleString(strings.locale);
 
 function linkFacts(link: Link): readonly Fact[] {
   const names = words.linkNames;
@@ -53,7 +54,7 @@ const unknown = (facts: readonly Fact[]): readonly Fact[] => facts.map(([label])
 
 function loopFacts(loop: Loop): readonly Fact[] {
   return [
-    [words.period, strings.device.durations.ms((loop.period * 1000).toLocaleString("en", { maximumSignificantDigits: 4 }))],
+    [words.period, strings.device.durations.ms((loop.period * 1000).toLocaleString(strings.locale, { maximumSignificantDigits: 4 }))],
     [words.steps, count(loop.steps)],
     [words.overruns, count(loop.overruns), loop.overruns > 0n],
     [words.skipped, count(loop.skipped), loop.skipped > 0n],
@@ -86,6 +87,7 @@ export function devicePanel(app: App): HTMLElement {
     "div",
     {},
     section(words.title, device),
+    faultSection(app),
     wizardSection(app),
     section(words.loop, degraded, loop, lateness.element, step.element),
     section(words.link, link),

@@ -30,8 +30,9 @@ export function listenToKeys(source: Window, actions: KeyActions): void {
     event.stopImmediatePropagation();
   };
   let stopped = -Infinity; // when a key last said it [ms]
+  // While a text is being composed the key has no name, only its place.
   const isStop = (event: KeyboardEvent) =>
-    event.key === "Escape" || (event.key === " " && !isTextField(event.target));
+    event.key === "Escape" || event.code === "Escape" || (event.key === " " && !isTextField(event.target));
 
   source.addEventListener(
     "keydown",

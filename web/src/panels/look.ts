@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dark or light, and the size of type. The system's wish until the person has chosen.
-import { themes, type ThemeName } from "../theme";
+import { digitColours, themes, type ThemeName } from "../theme";
 import { lasting } from "../wire/memory";
 
 const kTheme = "phalanx.theme";
@@ -45,6 +45,7 @@ export class Look {
     root.dataset["theme"] = theme;
     root.dataset["large"] = String(this.isLarge);
     for (const [colour, value] of Object.entries(themes[theme])) root.style.setProperty(`--${colour}`, String(value));
+    digitColours[theme].forEach((colour, digit) => root.style.setProperty(`--digit-${digit}`, colour));
     this.changed(theme);
   }
 }

@@ -27,7 +27,8 @@ export function lostBand(store: Store): LostBand {
     if (!store.viewDead) return;
     const words = strings.lost;
     const fresh = store.freshness;
-    const age = fresh.ever ? words.since((fresh.age(now) / 1000).toFixed(fresh.age(now) < 10_000 ? 1 : 0)) : "";
+    const seconds = (fresh.age(now) / 1000).toFixed(fresh.age(now) < 10_000 ? 1 : 0);
+    const age = fresh.ever ? words.since(seconds) : "";
     if (!store.lost) {
       setText(title, words.shape);
       setText(since, "");
@@ -44,6 +45,10 @@ export function lostBand(store: Store): LostBand {
       setText(title, words.closed);
       setText(since, "");
       setText(why, words.mismatch);
+    } else if (store.unmeasured) {
+      setText(title, words.unmeasured);
+      setText(since, fresh.ever ? words.measured(seconds) : "");
+      setText(why, whySilent(store.state) || words.unmeasuredWhy);
     } else if (store.connected) {
       setText(title, words.stale);
       setText(since, age);

@@ -26,7 +26,8 @@ export function noticeItem(notice: Notice): HTMLElement {
 export const kNameKey = "phalanx.name";
 
 function nameRow(app: App): HTMLElement {
-  const field = el("input", { type: "text", maxlength: 40, autocomplete: "name", value: lasting.get(kNameKey) });
+  // No list of the browser's own: an open one would take Esc for itself.
+  const field = el("input", { type: "text", maxlength: 40, autocomplete: "off", value: lasting.get(kNameKey) });
   const made = row(words.name, field, "", words.nameHint);
   const save = button(words.save, () => void send());
   made.element.querySelector(".row-control")?.append(save);
@@ -65,9 +66,12 @@ export function peoplePanel(app: App): HTMLElement {
     setText(looking, strings.people.looking(state?.pages ?? 0));
     setShown(release, role === "mine");
     setShown(take, role === "other" || role === "nobody");
-    const links = state?.otherUrl ?? [];
+    const links = welcome?.viewerUrl ?? [];
     setShown(urlBox, links.length > 0);
-    if (urls.childElementCount !== links.length) urls.replaceChildren(...links.map((url) => el("li", {}, el("code", {}, url))));
+    if (urls.dataset["shown"] !== links.join()) {
+      urls.dataset["shown"] = links.join();
+      urls.replaceChildren(...links.map((url) => el("li", {}, el("code", {}, url))));
+    }
   };
   const notices = () => {
     log.replaceChildren(...[...app.store.notices].reverse().map(noticeItem));

@@ -24,8 +24,9 @@ export interface Readouts {
 
 export function readouts(store: Store): Readouts {
   const text = el("strong");
-  const spoken = el("span", { class: "visually-hidden", role: "status", "aria-live": "assertive" });
-  const light = el("div", { class: "verdict" }, el("span", { class: "lamp", "aria-hidden": "true" }), el("div", {}, el("small", {}, strings.verdict.label), text), spoken);
+  const spoken = el("span", { class: "visually-hidden", role: "status" });
+  const alarm = el("span", { class: "visually-hidden", role: "alert" });
+  const light = el("div", { class: "verdict" }, el("span", { class: "lamp", "aria-hidden": "true" }), el("div", {}, el("small", {}, strings.verdict.label), text), spoken, alarm);
   const digits = Array.from({ length: kDigits }, (_, digit) => {
     const value = el("output", { "aria-label": strings.digits[digit] ?? "" });
     const bar = el("span", { class: "bar" });
@@ -48,8 +49,10 @@ export function readouts(store: Store): Readouts {
     const verdict = store.lost || !store.tick ? null : store.light.shown;
     setAttribute(light, "data-verdict", verdict?.kind ?? "unknown");
     setText(text, verdictText(verdict));
-    // The figures change all the time; only the verdict itself is spoken.
-    setText(spoken, verdict?.kind === "shakes" ? strings.verdict.shakes : verdictText(verdict));
+    // The figures change all the time; only the verdict itself is spoken, and only shaking into the middle of something.
+    const shakes = verdict?.kind === "shakes";
+    setText(spoken, shakes ? "" : verdictText(verdict));
+    setText(alarm, shakes ? strings.verdict.shakes : "");
     const forces = digitForces(store.lost ? undefined : store.tick);
     digits.forEach((digit, i) => {
       const force = forces[i] ?? 0;

@@ -2,7 +2,7 @@
 // Controls for single keys. Each shows the truth, asks for a change, and says beside itself why it was refused.
 import { choicesOf, keyOf, parseRange, within } from "../state/keys";
 import { Throttle } from "../state/throttle";
-import { fromNumber, number, quote, unquote } from "../state/toml";
+import { fromNumber, fromTyped, number, quote, unquote } from "../state/toml";
 import type { Change } from "../wire/host";
 import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
@@ -67,10 +67,8 @@ export function numberRow(app: App, setting: string, label: string, unit: string
   const made = row(label, field, unit);
   const show = () => put(field, shownNumber(app.store.value(setting)));
   typing(field, () => {
-    const text = field.value.trim();
-    const value = unquote(text) === "off" ? quote("off") : text;
     made.refuse("");
-    void change(app, [[setting, value === "" ? "" : value]]).then((refused) => {
+    void change(app, [[setting, fromTyped(field.value, 'number or "off"')]]).then((refused) => {
       made.refuse(refused);
       show();
     });
@@ -193,7 +191,7 @@ export function logSliderRow(
   });
   typing(field, () => {
     const key = keyOf(app.store.welcome, setting);
-    const typed = field.value.trim().replace(",", ".");
+    const typed = fromTyped(field.value, "number");
     if (key && within(number(typed), parseRange(key.range))) throttle.push(fromNumber(number(typed)));
     else throttle.push(typed);
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh of one's own: choose, upload, read what the import says, use it.
-import { quote } from "../state/toml";
+import { fromTyped, quote } from "../state/toml";
 import { strings } from "../strings";
 import type { ImportReport } from "../wire/http";
 import { change, type App } from "./app";
@@ -15,7 +15,7 @@ const words = strings.object;
 export function reportLines(report: ImportReport): string[] {
   const facts = report.facts;
   if (!facts) return [...report.report];
-  const count = (value: number) => value.toLocaleString("en");
+  const count = (value: number) => value.toLocaleString(strings.locale);
   const extent = facts.extent.map((metres) => (metres * 1000).toFixed(1)).join(" × ");
   return [
     facts.verdict,
@@ -25,6 +25,8 @@ export function reportLines(report: ImportReport): string[] {
   ];
 }
 const kLimitBytes = 64 * 1024 * 1024; // Cockpit::kUploadLimit
+/// For the way of the largest file and the longest import [ms].
+export const kUploadPatienceMs = 600_000;
 
 export interface UploadBox {
   readonly element: HTMLElement;
@@ -36,7 +38,7 @@ export function uploadBox(app: App): UploadBox {
   const choose = button(words.choose, () => picker.click());
   const chosen = el("p", { class: "hint" }, words.accepted);
   const size = el("input", { type: "text", inputmode: "decimal", class: "number", value: "100", autocomplete: "off" });
-  const unit = new ChoiceBox(() => {});
+  const unit = new ChoiceBox(() => outdated());
   unit.setChoices(Object.entries(words.units).map(([value, text]) => ({ value, text })));
   unit.value = Object.keys(words.units)[0] ?? "";
   const unitRow = row(words.unit, unit).element;
@@ -48,9 +50,10 @@ export function uploadBox(app: App): UploadBox {
   const report = el("pre", { class: "report", tabindex: 0, "aria-label": words.report });
   const use = button(words.useMesh, () => void apply(), { class: "primary" });
   const outcome = el("div", { class: "import" }, verdict, error, findingsBox, report, use);
-  let done: ImportReport | null = null;
+  let done: ImportReport | null = null; // of the file, size and unit that are shown
+  let running: AbortController | null = null; // the upload whose answer is awaited
 
-  const number = () => Math.max(0, Number(size.value.replace(",", ".")) || 0);
+  const number = () => Math.max(0, Number(fromTyped(size.value, "number")) || 0);
 
   function show(report_: ImportReport | null): void {
     done = report_;
@@ -69,20 +72,33 @@ export function uploadBox(app: App): UploadBox {
     use.disabled = false;
   }
 
+  const failed = (why: string): ImportReport => ({ ok: false, error: why, report: [], facts: null, findings: [], file: "" });
+
+  /// Another file, size or unit: what was said is not of it, and what is under way is given up.
+  function outdated(): void {
+    running?.abort();
+    running = null;
+    send.disabled = false;
+    const file = picker.files?.[0];
+    if (file) setText(chosen, file.name);
+    show(null);
+  }
+
   async function upload(): Promise<void> {
     const file = picker.files?.[0];
     if (!file) return picker.click();
-    show(null);
-    if (file.size > kLimitBytes) return show({ ok: false, error: words.tooLarge, report: [], facts: null, findings: [], file: "" });
+    outdated();
+    if (file.size > kLimitBytes) return show(failed(words.tooLarge));
+    const mine = new AbortController();
+    running = mine;
+    const patience = setTimeout(() => mine.abort(), kUploadPatienceMs);
     setText(chosen, words.uploading(file.name));
     send.disabled = true;
-    try {
-      show(await app.upload(file, number(), unit.value));
-    } catch {
-      show({ ok: false, error: words.noConnection, report: [], facts: null, findings: [], file: "" });
-    }
-    send.disabled = false;
-    setText(chosen, file.name);
+    const answer = await app.upload(file, number(), unit.value, mine.signal).catch(() => failed(words.noConnection));
+    clearTimeout(patience);
+    if (running !== mine) return; // it was given up
+    outdated();
+    show(answer);
   }
 
   async function apply(): Promise<void> {
@@ -101,11 +117,13 @@ export function uploadBox(app: App): UploadBox {
   }
 
   picker.addEventListener("change", () => {
-    setText(chosen, picker.files?.[0]?.name ?? words.accepted);
-    show(null);
+    setText(chosen, words.accepted);
+    outdated();
   });
+  app.store.on(["connection"], () => !app.store.connected && running?.abort());
   const showUnit = () => setShown(unitRow, number() === 0);
   size.addEventListener("input", showUnit);
+  size.addEventListener("input", outdated);
   showUnit();
   show(null);
 

@@ -36,7 +36,6 @@ export function wizardSection(app: App): HTMLElement {
   const problemBox = el("div", { class: "import", "data-ok": "false" }, el("h3", {}, words.problems), problems);
   const results = el("pre", { class: "report", tabindex: 0, "aria-label": words.results });
   const resultBox = el("div", {}, el("h3", {}, words.results), results);
-  const file = el("p", { class: "hint" });
   const course = el(
     "div",
     { class: "wizard" },
@@ -47,7 +46,6 @@ export function wizardSection(app: App): HTMLElement {
     outcome,
     problemBox,
     resultBox,
-    file,
     el("div", { class: "buttons" }, measure, back, skip, write, abandon),
     poses,
   );
@@ -89,9 +87,7 @@ export function wizardSection(app: App): HTMLElement {
     setShown(problemBox, wizard.problem.length > 0);
     setText(results, wizard.result.join("\n"));
     setShown(resultBox, wizard.result.length > 0);
-    setShown(write, wizard.finished && wizard.file === "");
-    setText(file, words.file(wizard.file));
-    setShown(file, wizard.file !== "");
+    setShown(write, wizard.finished);
     showPoses(wizard);
   }
 

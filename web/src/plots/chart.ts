@@ -5,13 +5,24 @@ import type { History } from "../state/history";
 import { kHistorySeconds } from "../state/store";
 import { strings } from "../strings";
 import { themes, type ThemeName } from "../theme";
-import { el } from "../panels/dom";
+import { el, setText } from "../panels/dom";
+import { drawCutOff } from "./cut_off";
 import { curvesOf, type Curve, type PlotKind } from "./plot_kinds";
+import { readings, spokenReadings, tipLines, type Reading } from "./readings";
+import { valueRange } from "./value_range";
 
 const kGapSeconds = 0.25; // a longer pause between two samples is a gap in the curve
-const kHoverCurves = 8;
 const kLineEnd = 4; // how far a line reaches beyond its first point [px]
-const kSmallest: Readonly<Record<PlotKind, number>> = { force: 1, torque: 0.02, angle: 10 }; // span of the axis at least
+/// How far an arrow key goes, as a share of the plot: to the right, and down. Home and End go to the oldest and the newest values.
+const kSteps: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [-0.01, 0],
+  ArrowRight: [0.01, 0],
+  ArrowUp: [0, -0.05],
+  ArrowDown: [0, 0.05],
+  Home: [-1, 0],
+  End: [1, 0],
+};
+const kNowhere = { left: -10, top: -10 }; // uPlot's word for no cursor
 
 export interface Chart {
   readonly element: HTMLElement;
@@ -44,28 +55,18 @@ function gapsOf(time: ArrayLike<number>, toPixel: (time: number) => number): [nu
   return gaps;
 }
 
-/// The axis: from zero or below to a little above, never narrower than what is worth looking at.
-/// No digit is sent more; what the law asks of a stiff wall may be many times that, and would flatten the curves that are felt [N].
-const kMostForceShown = 10;
-
-export function valueRange(kind: PlotKind, low: number | null, high: number | null): [number, number] {
-  const least = kSmallest[kind];
-  const both = kind === "torque"; // pushes both ways
-  const min = Math.min(both ? -least / 2 : 0, low ?? 0);
-  const highest = kind === "force" ? Math.min(high ?? 0, kMostForceShown) : (high ?? 0);
-  const max = Math.max(both ? least / 2 : least, highest);
-  const room = 0.08 * (max - min);
-  return [min < 0 ? min - room : 0, max + room];
-}
-
 export function chart(kind: PlotKind, history: History, theme: ThemeName, digits: readonly boolean[]): Chart {
-  let curves: readonly Curve[] = curvesOf(kind, digits);
+  let chosen = digits;
+  let name = theme;
+  let curves: readonly Curve[] = [];
   let colours = themes[theme];
   let plot: uPlot | null = null;
   const scratch = new Map<number, Float32Array>();
   const tip = el("div", { class: "plot-tip", hidden: true });
   const host = el("div", { class: "plot-host" });
-  const element = el("div", { class: "plot" }, host, tip);
+  const spoken = el("span", { class: "visually-hidden", role: "status" });
+  const label = `${strings.plots.titles[kind]}. ${strings.plots.keys}`;
+  const element = el("div", { class: "plot", tabindex: 0, role: "application", "aria-label": label }, host, tip, spoken);
 
   /// Values for people; only angles differ from what is kept.
   function values(curve: Curve): Float32Array {
@@ -94,47 +95,60 @@ export function chart(kind: PlotKind, history: History, theme: ThemeName, digits
     };
   }
 
-  function hover(u: uPlot): void {
-    const at = u.cursor.idx;
+  /// What stands where the cursor is; null: it is nowhere.
+  function pointedAt(u: uPlot): { readonly ago: number; readonly found: readonly Reading[] } | null {
+    const { idx: at, left = -1, top = 0 } = u.cursor;
     const time = at === null || at === undefined ? undefined : u.data[0][at];
-    if (at === null || at === undefined || time === undefined || (u.cursor.left ?? -1) < 0) {
-      tip.hidden = true;
-      return;
-    }
-    const found = curves
-      .map((curve, i) => ({ curve, value: Number(u.data[i + 1]?.[at]) }))
-      .filter(({ value }) => Number.isFinite(value) && value !== 0)
-      .sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
-    const unit = strings.plots.units[kind];
-    const lines = found.slice(0, kHoverCurves).map(({ curve, value }) => {
-      const swatch = el("span", { class: "swatch", "data-digit": curve.channel.digit });
-      return el("div", {}, swatch, curve.label, el("b", {}, `${value.toFixed(kind === "angle" ? 0 : kind === "force" ? 2 : 3)} ${unit}`));
-    });
-    const more = found.length - lines.length;
-    tip.replaceChildren(
-      el("small", {}, strings.plots.ago((time - history.end).toFixed(2))),
-      ...(lines.length > 0 ? lines : [el("div", {}, strings.plots.nothing)]),
-      ...(more > 0 ? [el("small", {}, strings.plots.more(more))] : []),
-    );
-    tip.hidden = false;
+    if (at === null || at === undefined || time === undefined || left < 0) return null;
+    const here = curves.map((_, i) => Number(u.data[i + 1]?.[at]));
+    return { ago: time - history.end, found: readings(kind, curves, here, (value) => Math.abs(u.valToPos(value, "y") - top)) };
+  }
+
+  function hover(u: uPlot): void {
+    const what = pointedAt(u);
+    tip.hidden = what === null;
+    if (!what) return;
+    tip.replaceChildren(...tipLines(kind, what.ago, what.found));
     const left = u.cursor.left ?? 0;
     const right = left < u.over.clientWidth / 2;
     tip.style.left = right ? `${left + u.over.offsetLeft + 14}px` : "auto";
     tip.style.right = right ? "auto" : `${u.over.clientWidth - left + 14}px`;
   }
 
+  /// The cursor by keys, which also say aloud what it finds; they begin at the newest values.
+  function key(event: KeyboardEvent): void {
+    const step = kSteps[event.key];
+    if (!step || !plot || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault(); // the page's scrolling
+    const width = plot.bbox.width / uPlot.pxRatio;
+    const height = plot.bbox.height / uPlot.pxRatio;
+    const { left = -1, top = -1 } = plot.cursor;
+    const [fromLeft, fromTop] = left < 0 ? [width, height / 2] : [left, top];
+    const inside = (value: number, most: number) => Math.min(most, Math.max(0, value));
+    plot.setCursor({ left: inside(fromLeft + step[0] * width, width), top: inside(fromTop + step[1] * height, height) });
+    const what = pointedAt(plot);
+    if (what) setText(spoken, spokenReadings(kind, what.ago, what.found));
+  }
+  element.addEventListener("keydown", key);
+  element.addEventListener("blur", () => plot?.setCursor(kNowhere));
+
+  /// @param ratio  canvas pixels for each pixel of the page
+  const font = (ratio: number) => `${0.75 * ratio * parseFloat(getComputedStyle(document.documentElement).fontSize)}px system-ui, sans-serif`;
+
   function axis(): uPlot.Axis {
-    const size = getComputedStyle(document.documentElement).fontSize;
     return {
       stroke: colours.quiet,
       grid: { stroke: colours.grid, width: 1 },
       ticks: { show: false },
-      font: `calc(${size} * 0.75) system-ui, sans-serif`.replace(/calc\((.+)px \* 0.75\)/, (_, px: string) => `${0.75 * Number(px)}px`),
+      font: font(1),
     };
   }
 
   function build(): void {
     plot?.destroy();
+    tip.hidden = true;
+    curves = curvesOf(kind, chosen, name);
+    colours = themes[name];
     const { clientWidth: width, clientHeight: height } = host;
     const options: uPlot.Options = {
       width: Math.max(width, 80),
@@ -150,7 +164,7 @@ export function chart(kind: PlotKind, history: History, theme: ThemeName, digits
         { ...axis(), size: 46, space: 26 },
       ],
       series: [{}, ...curves.map(series)],
-      hooks: { setCursor: [hover] },
+      hooks: { setCursor: [hover], draw: [(u) => drawCutOff(u, curves, strings.plots.units[kind], colours, () => font(uPlot.pxRatio))] },
     };
     plot = new uPlot(options, data(), host);
   }
@@ -162,11 +176,11 @@ export function chart(kind: PlotKind, history: History, theme: ThemeName, digits
     element,
     canvas: () => plot!.ctx.canvas,
     setDigits(next) {
-      curves = curvesOf(kind, next);
+      chosen = next;
       build();
     },
     setTheme(next) {
-      colours = themes[next];
+      name = next;
       build();
     },
     draw() {

@@ -3,7 +3,8 @@
 import { channels } from "../state/channels";
 import { toCsv } from "../state/csv";
 import type { Store } from "../state/store";
-import { themes, type ThemeName } from "../theme";
+import { strings } from "../strings";
+import { digitColours, themes, type ThemeName } from "../theme";
 import { saveBlob, stamp } from "../panels/dom";
 import { columnName } from "./plot_kinds";
 
@@ -20,31 +21,70 @@ export function saveCsv(store: Store): void {
   saveBlob(`phalanx-${stamp()}.csv`, new Blob([csvOf(store)], { type: "text/csv" }));
 }
 
-/// The plots one under the other, each with its title and what its lines mean.
-export function savePng(parts: readonly { readonly title: string; readonly legend: string; readonly canvas: HTMLCanvasElement }[], theme: ThemeName): void {
-  const first = parts[0];
-  if (!first) return;
-  const ratio = window.devicePixelRatio || 1;
-  const head = Math.round(34 * ratio);
+/// One plot of the picture.
+export interface Part {
+  readonly title: string;
+  readonly legend: string;
+  readonly canvas: HTMLCanvasElement;
+}
+
+const kFont = "system-ui, sans-serif";
+const kMargin = 8; // [px], as the others
+const kKeyHeight = 30;
+const kTitleLine = 22;
+const kLegendLine = 40;
+const kHead = 50; // above each plot
+const kSwatch = 12;
+
+/// The plots one under the other, with all that is needed to read them alone: which colour is which digit, each plot's title, and what
+/// its lines mean. As wide as the widest of these.
+/// @param digits  that are shown
+export function drawPicture(parts: readonly Part[], digits: readonly boolean[], theme: ThemeName): HTMLCanvasElement | null {
   const out = document.createElement("canvas");
-  out.width = Math.max(...parts.map((part) => part.canvas.width));
-  out.height = parts.reduce((sum, part) => sum + part.canvas.height + head, 0);
   const context = out.getContext("2d");
-  if (!context) return;
+  if (!context || parts.length === 0) return null;
+  const ratio = window.devicePixelRatio || 1;
+  const px = (pixels: number) => Math.round(pixels * ratio);
+  const fonts = { title: `600 ${px(14)}px ${kFont}`, small: `${px(12)}px ${kFont}` };
+  const width = (font: string, text: string) => {
+    context.font = font;
+    return context.measureText(text).width;
+  };
+  const names = strings.digits.map((name, digit) => ({ name, colour: digitColours[theme][digit] ?? "" })).filter((_, digit) => digits[digit] ?? false);
+  const keyWidth = (name: string) => px(kSwatch) + width(fonts.small, name) + 3 * px(kMargin);
+  out.width = Math.ceil(
+    Math.max(
+      ...parts.map((part) => Math.max(part.canvas.width, 2 * px(kMargin) + Math.max(width(fonts.title, part.title), width(fonts.small, part.legend)))),
+      px(kMargin) + names.reduce((sum, { name }) => sum + keyWidth(name), 0),
+    ),
+  );
+  out.height = parts.reduce((sum, part) => sum + part.canvas.height + px(kHead), px(kKeyHeight));
+
   const colours = themes[theme];
+  const write = (font: string, colour: string, text: string, left: number, line: number) => {
+    context.font = font;
+    context.fillStyle = colour;
+    context.fillText(text, left, line);
+  };
   context.fillStyle = colours.panel;
   context.fillRect(0, 0, out.width, out.height);
-  let top = 0;
-  for (const part of parts) {
-    context.fillStyle = colours.text;
-    context.font = `600 ${14 * ratio}px system-ui, sans-serif`;
-    context.fillText(part.title, 8 * ratio, top + 22 * ratio);
-    const width = context.measureText(part.title).width;
-    context.fillStyle = colours.quiet;
-    context.font = `${11 * ratio}px system-ui, sans-serif`;
-    context.fillText(part.legend, width + 24 * ratio, top + 22 * ratio);
-    context.drawImage(part.canvas, 0, top + head);
-    top += part.canvas.height + head;
+  let left = px(kMargin);
+  for (const { name, colour } of names) {
+    context.fillStyle = colour;
+    context.fillRect(left, px(kTitleLine - kSwatch + 1), px(kSwatch), px(kSwatch));
+    write(fonts.small, colours.text, name, left + px(kSwatch) + px(kMargin), px(kTitleLine));
+    left += keyWidth(name);
   }
-  out.toBlob((blob) => blob && saveBlob(`phalanx-${stamp()}.png`, blob));
+  let top = px(kKeyHeight);
+  for (const part of parts) {
+    write(fonts.title, colours.text, part.title, px(kMargin), top + px(kTitleLine));
+    write(fonts.small, colours.quiet, part.legend, px(kMargin), top + px(kLegendLine));
+    context.drawImage(part.canvas, 0, top + px(kHead));
+    top += part.canvas.height + px(kHead);
+  }
+  return out;
+}
+
+export function savePng(parts: readonly Part[], digits: readonly boolean[], theme: ThemeName): void {
+  drawPicture(parts, digits, theme)?.toBlob((blob) => blob && saveBlob(`phalanx-${stamp()}.png`, blob));
 }

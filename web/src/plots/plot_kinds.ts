@@ -2,7 +2,7 @@
 // The three plots: which channels each shows, how they are drawn and named.
 import { channelsOf, type Channel, type Quantity } from "../state/channels";
 import { strings } from "../strings";
-import { digitColour } from "../theme";
+import { digitColours, type ThemeName } from "../theme";
 
 export type PlotKind = "force" | "torque" | "angle";
 export const plotKinds: readonly PlotKind[] = ["force", "torque", "angle"];
@@ -41,14 +41,14 @@ function labelOf(channel: Channel, joint: boolean): string {
 }
 
 /// Curves of the digits that are chosen. The palm has no force of its own.
-export function curvesOf(kind: PlotKind, digits: readonly boolean[]): readonly Curve[] {
+export function curvesOf(kind: PlotKind, digits: readonly boolean[], theme: ThemeName): readonly Curve[] {
   const joint = kind !== "force";
   return quantities[kind].flatMap((quantity) =>
     channelsOf(quantity)
       .filter((channel) => digits[channel.digit] ?? false)
       .map((channel) => ({
         channel,
-        colour: digitColour[channel.digit] ?? "",
+        colour: digitColours[theme][channel.digit] ?? "",
         width: thin.has(quantity) ? 1 : 2,
         dash: (joint ? jointDash : segmentDash)[channel.place] ?? [],
         label: labelOf(channel, joint),
@@ -56,6 +56,8 @@ export function curvesOf(kind: PlotKind, digits: readonly boolean[]): readonly C
       })),
   );
 }
+
+export const titleOf = (kind: PlotKind) => `${strings.plots.titles[kind]} [${strings.plots.units[kind]}]`;
 
 export function legendOf(kind: PlotKind): string {
   const words = strings.plots;
@@ -70,4 +72,3 @@ export function columnName(channel: Channel, segments: readonly string[], joints
   const part = (force ? segments : joints)[channel.part] ?? `${force ? "segment" : "joint"}_${channel.part}`;
   return `${channel.quantity} ${part}`;
 }
-

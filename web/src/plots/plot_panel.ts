@@ -9,7 +9,7 @@ import type { ThemeName } from "../theme";
 import { lasting } from "../wire/memory";
 import { chart, type Chart } from "./chart";
 import { saveCsv, savePng } from "./export";
-import { legendOf, plotKinds, type PlotKind } from "./plot_kinds";
+import { legendOf, plotKinds, titleOf, type PlotKind } from "./plot_kinds";
 
 const kKinds = "phalanx.plots";
 const kWide = 1400; // [px]: from here on there is room for all of them
@@ -19,7 +19,6 @@ export interface PlotPanel {
   readonly element: HTMLElement;
   draw(): void;
   setTheme(theme: ThemeName): void;
-  refit(): void;
 }
 
 function firstKinds(): Set<PlotKind> {
@@ -33,22 +32,22 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
   let colours = theme;
   let digits: readonly boolean[] = new Array<boolean>(kDigits).fill(true);
   const kinds = firstKinds();
-  const charts = new Map<PlotKind, { readonly box: HTMLElement; readonly chart: Chart }>();
+  const charts = new Map<PlotKind, Chart>();
   const area = el("div", { class: "plot-area" });
 
   function rebuild(): void {
-    for (const one of charts.values()) one.chart.dispose();
+    for (const one of charts.values()) one.dispose();
     charts.clear();
     area.replaceChildren();
     for (const kind of plotKinds.filter((one) => kinds.has(one))) {
       const box = el("figure", { class: "plot-box" });
       area.append(box);
-      box.append(el("figcaption", {}, el("strong", {}, `${words.titles[kind]} [${words.units[kind]}]`), el("small", { title: legendOf(kind) }, legendOf(kind))));
+      box.append(el("figcaption", {}, el("strong", {}, titleOf(kind)), el("small", { title: legendOf(kind) }, legendOf(kind))));
       const place = el("div", { class: "plot-place" });
       box.append(place);
       const made = chart(kind, store.history, colours, digits);
       place.append(made.element);
-      charts.set(kind, { box, chart: made });
+      charts.set(kind, made);
       made.resize();
     }
   }
@@ -68,7 +67,7 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
     const control = switchButton(strings.digits[digit] ?? "", (on) => {
       digits = digits.map((shown, i) => (i === digit ? on : shown));
       setSwitch(control, on);
-      for (const one of charts.values()) one.chart.setDigits(digits);
+      for (const one of charts.values()) one.setDigits(digits);
     }, { "data-digit": digit });
     setSwitch(control, true);
     return control;
@@ -82,7 +81,7 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
   store.on(["own"], update);
   update();
   const png = button(words.png, () =>
-    savePng([...charts].map(([kind, one]) => ({ title: `${words.titles[kind]} [${words.units[kind]}]`, legend: legendOf(kind), canvas: one.chart.canvas() })), colours),
+    savePng([...charts].map(([kind, one]) => ({ title: titleOf(kind), legend: legendOf(kind), canvas: one.canvas() })), digits, colours),
     { title: words.pngLong, "aria-label": words.pngLong },
   );
   const offline = el("p", { class: "plot-offline", role: "status" }, words.offline);
@@ -101,18 +100,17 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
   );
   const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, offline));
   new ResizeObserver(() => {
-    for (const one of charts.values()) one.chart.resize();
+    for (const one of charts.values()) one.resize();
   }).observe(area);
   queueMicrotask(rebuild);
   return {
     element,
     draw: () => {
-      for (const one of charts.values()) one.chart.draw();
+      for (const one of charts.values()) one.draw();
     },
     setTheme: (next) => {
       colours = next;
-      for (const one of charts.values()) one.chart.setTheme(next);
+      for (const one of charts.values()) one.setTheme(next);
     },
-    refit: rebuild,
   };
 }

@@ -2,10 +2,10 @@
 // The curves of a session: their numbers in the history, names and units.
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { strings } from "../strings";
+import { kSegments } from "../view3d/segments";
 
 export const kDigits = 5;
 export const kJoints = 20;
-export const kSegments = 16;
 export const kJointsPerDigit = 4;
 export const kSegmentsPerDigit = 3;
 

@@ -1,24 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { Tick } from "../gen/phalanx/tick_pb";
 
 /// A picture older than this is not alive [ms].
 export const kStaleMs = 500;
+const kSampleStale = 1 << 12; // Status::kSampleStale
 
-/// Whether what is shown is alive: a step that is newer than the last one has come within kStaleMs. A page that was hidden is given
-/// that time anew, as browsers hold back what happens in hidden pages.
+/// Whether what is shown is alive: a newer step, made from a fresh measurement, has come within kStaleMs. A station whose device is
+/// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that was hidden is
+/// given its time anew, as browsers hold back what happens in hidden pages.
 export class Freshness {
-  private newest = -Infinity; // [ms] on the page's clock
-  private since = 0;
-  private last: number | undefined; // the station's time of the newest step
+  private measuredAt = -Infinity; // when the newest measured step came [ms], on the page's clock
+  private heardAt = -Infinity; // when the station's clock was last seen to go on [ms], likewise
+  private since: number;
+  private measured = true; // the newest step
+  private step: bigint | undefined;
+  private time: number | undefined; // the station's
 
   constructor(now: number) {
     this.since = now;
   }
 
   /// @returns whether the step is a new one
-  tick(stationTime: number, now: number): boolean {
-    if (stationTime === this.last) return false;
-    this.last = stationTime;
-    this.newest = now;
+  take(tick: Tick, now: number): boolean {
+    if (tick.time !== this.time) this.heardAt = now;
+    this.time = tick.time;
+    if (tick.tick === this.step) return false;
+    this.step = tick.tick;
+    this.measured = (tick.status & kSampleStale) === 0;
+    if (this.measured) this.measuredAt = now;
     return true;
   }
 
@@ -26,16 +35,21 @@ export class Freshness {
     this.since = now;
   }
 
-  /// Milliseconds since the last new step; since the page began, if there was none.
+  /// Milliseconds since the last measured step; since the page began, if there was none.
   age(now: number): number {
-    return this.newest === -Infinity ? now - this.since : now - this.newest;
+    return this.ever ? now - this.measuredAt : now - this.since;
   }
 
   stale(now: number): boolean {
-    return now - Math.max(this.newest, this.since) > kStaleMs;
+    return !this.measured || now - Math.max(this.measuredAt, this.since) > kStaleMs;
+  }
+
+  /// The station goes on, but not from what is measured now.
+  unmeasured(now: number): boolean {
+    return this.stale(now) && now - this.heardAt <= kStaleMs;
   }
 
   get ever(): boolean {
-    return this.newest !== -Infinity;
+    return this.measuredAt !== -Infinity;
   }
 }

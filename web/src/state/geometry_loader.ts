@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Geometry } from "../gen/phalanx/geometry_pb";
+import type { Shapes } from "../view3d/shapes";
 
 const kRetryMs = 1000;
 
@@ -11,8 +11,8 @@ export class GeometryLoader {
   private era = 0; // of the station
 
   constructor(
-    private readonly fetch: (revision: number) => Promise<Geometry>,
-    private readonly loaded: (geometry: Geometry, revision: number) => void,
+    private readonly fetch: (revision: number) => Promise<Shapes>,
+    private readonly loaded: (geometry: Shapes, revision: number) => void,
   ) {}
 
   want(revision: number): void {

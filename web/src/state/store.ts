@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that the page knows. Panels read it and are told when something in it changed.
 import type { Notice, State, ToPage, Welcome } from "../gen/phalanx/cockpit_pb";
-import type { Geometry } from "../gen/phalanx/geometry_pb";
-import type { Tick } from "../gen/phalanx/tick_pb";
+import { SafetyState, type Tick } from "../gen/phalanx/tick_pb";
+import type { Shapes } from "../view3d/shapes";
 import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
 import { Freshness } from "./freshness";
@@ -32,7 +32,7 @@ export class Store {
   welcome: Welcome | undefined;
   state: State | undefined;
   tick: Tick | undefined;
-  geometry: Geometry | undefined;
+  geometry: Shapes | undefined;
   private shape: number | undefined; // revision of `geometry`, if it is of this connection's station
   private stateAt = -Infinity; // when `state` came [ms]; of this connection
   notices: Notice[] = [];
@@ -71,9 +71,17 @@ export class Store {
     return this.phase === "open";
   }
 
-  /// No connection, or nothing new for too long.
+  /// No connection, or nothing that was measured newly for too long.
   get lost(): boolean {
     return !this.connected || this.freshness.stale(this.now());
+  }
+
+  /// The station lives and is heard, but its device does not measure: what is lost is the hand, not the connection.
+  get unmeasured(): boolean {
+    if (!this.connected || !this.lost) return false;
+    const known = this.known;
+    const waits = known?.safety === SafetyState.SAFETY_WAITING && !known.stationGone && known.busy === "" && !known.wizard;
+    return waits || this.freshness.unmeasured(this.now());
   }
 
   /// What the station is known to be doing now; undefined: no connection, or it has said nothing for too long.
@@ -106,7 +114,7 @@ export class Store {
     this.tell("connection");
   }
 
-  setGeometry(geometry: Geometry, revision: number): void {
+  setGeometry(geometry: Shapes, revision: number): void {
     this.geometry = geometry;
     this.shape = revision;
     this.tell("geometry");
@@ -148,7 +156,7 @@ export class Store {
   }
 
   private step(tick: Tick): void {
-    if (!this.freshness.tick(tick.time, this.now())) return;
+    if (!this.freshness.take(tick, this.now())) return;
     this.tick = tick;
     this.light.feed(tick, this.now() / 1000);
     if (!this.paused) {

@@ -61,17 +61,19 @@ export function fromNumber(value: number): string {
   return String(Number(value.toPrecision(9)));
 }
 
-/// What a person typed, as a value of a key of this type (KeyInfo.type).
+/// What a person typed, as a value of a key of this type (KeyInfo.type). A number may have a decimal comma; in a vector commas part numbers.
 export function fromTyped(text: string, type: string): string {
   const typed = text.trim();
+  const point = typed.replace(/^([^,.]*),([^,.]*)$/, "$1.$2");
   switch (type) {
     case "number":
+      return point;
     case "integer":
     case "flag":
     case "vector":
       return typed;
     case 'number or "off"':
-      return unquote(typed) === "off" ? '"off"' : typed;
+      return unquote(typed) === "off" ? '"off"' : point;
     default:
       return quote(unquote(typed));
   }

@@ -46,9 +46,4 @@ export class VerdictLight {
   get shown(): Verdict {
     return this.current;
   }
-
-  clear(): void {
-    this.heldUntil = -Infinity;
-    this.current = { kind: "none" };
-  }
 }

@@ -13,10 +13,13 @@ export class Canvas {
   private lostTimer: ReturnType<typeof setTimeout> | undefined;
   private told = false; // of a trouble that is still there
 
-  /// @param redraw  what is on the canvas is gone  @param trouble  for the page to tell people
+  /// @param redraw   what is on the canvas is gone
+  /// @param release  the renderer goes: what it has drawn must not hold on to it
+  /// @param trouble  for the page to tell people
   constructor(
     private readonly surface: HTMLElement,
     private readonly redraw: () => void,
+    private readonly release: () => void,
     private readonly trouble: (what: ViewTrouble) => void,
   ) {}
 
@@ -54,6 +57,7 @@ export class Canvas {
     if (!this.renderer) return;
     this.renderer.domElement.removeEventListener("webglcontextlost", this.lost);
     this.renderer.domElement.removeEventListener("webglcontextrestored", this.restored);
+    this.release();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.renderer = null;

@@ -7,7 +7,7 @@ import {
 } from "three";
 import type { BufferGeometry } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
-import { kSegments } from "./poses";
+import { kSegments } from "./segments";
 
 /// Length of an arrow: 12 mm for each newton, up to 15 N.
 export const arrowMetresPerNewton = 0.012;

@@ -8,18 +8,19 @@ export interface ShadedMesh {
   readonly source: Uint32Array; // of each vertex: which vertex of the input it is, or is a copy of
 }
 
+/// At an edge of more triangles than this all of them are in one group: pair by pair they would take for ever.
+const kMostAtEdge = 64;
+
 /// Around each vertex the triangles are gathered into groups: two that share an edge are in one group unless their
 /// normals differ by more than `crease` [rad]. Each group gets the mean of its normals, weighted by the angle at
 /// the vertex, and its own copy of the vertex. Triangles without area and with an index out of range are left
-/// out. crease >= pi: no vertex is copied.
+/// out. crease >= pi: no vertex is copied. Takes time in proportion to the triangles, however many meet in one place.
 export function creaseNormals(positions: ArrayLike<number>, indices: ArrayLike<number>, crease: number): ShadedMesh {
   const position = Float32Array.from(positions);
   const vertices = Math.floor(position.length / 3);
   const faces = usableFaces(position, indices, vertices);
   const around = facesAround(faces.index, vertices);
-  const cosCrease = crease >= Math.PI ? -2 : Math.cos(crease);
-  const group = new Int32Array(64); // grows with the largest valence
-  return shade(position, faces, around, cosCrease, group);
+  return shade(position, faces, around, new Groups(faces, vertices, crease));
 }
 
 interface Faces {
@@ -67,71 +68,110 @@ function facesAround(index: Uint32Array, vertices: number): Around {
   return { first, corner };
 }
 
-function shade(position: Float32Array, faces: Faces, around: Around, cosCrease: number, scratch: Int32Array): ShadedMesh {
-  const vertices = around.first.length - 1;
+function shade(position: Float32Array, faces: Faces, around: Around, groups: Groups): ShadedMesh {
   const outIndex = new Uint32Array(faces.index.length);
-  const source: number[] = [];
-  const normals: number[] = [];
-  let group = scratch;
-  for (let vertex = 0; vertex < vertices; ++vertex) {
-    const begin = around.first[vertex]!;
-    const count = around.first[vertex + 1]! - begin;
-    if (count > group.length) group = new Int32Array(2 * count);
-    gather(faces, around.corner, begin, count, cosCrease, group);
-    for (let root = 0; root < count; ++root) {
-      if (find(group, root) !== root) continue;
-      let x = 0, y = 0, z = 0;
-      for (let i = root; i < count; ++i) {
-        if (find(group, i) !== root) continue;
-        const corner = around.corner[begin + i]!;
-        const face = corner - (corner % 3);
-        const weight = angleAt(position, faces.index, corner);
-        x += weight * faces.normal[face]!;
-        y += weight * faces.normal[face + 1]!;
-        z += weight * faces.normal[face + 2]!;
-        outIndex[corner] = source.length;
-      }
-      const length = Math.hypot(x, y, z);
-      if (length > 1e-12) normals.push(x / length, y / length, z / length);
-      else normals.push(0, 0, 1); // faces that cancel out: any direction will do
-      source.push(vertex);
+  const source = new Uint32Array(faces.index.length); // at most one copy a corner
+  const normal = new Float32Array(3 * faces.index.length);
+  let made = 0;
+  for (let vertex = 0; vertex + 1 < around.first.length; ++vertex) {
+    const corners = around.corner.subarray(around.first[vertex]!, around.first[vertex + 1]!);
+    const firstCopy = made;
+    groups.gather(corners);
+    const sum = new Float64Array(3 * corners.length);
+    corners.forEach((corner, i) => {
+      const root = groups.rootOf(i); // not after i: its copy is made already
+      if (root === i) source[made++] = vertex;
+      const copy = root === i ? made - 1 : outIndex[corners[root]!]!;
+      outIndex[corner] = copy;
+      const at = 3 * (copy - firstCopy);
+      const face = corner - (corner % 3);
+      const weight = angleAt(position, faces.index, corner);
+      for (let k = 0; k < 3; ++k) sum[at + k] = sum[at + k]! + weight * faces.normal[face + k]!;
+    });
+    for (let copy = firstCopy; copy < made; ++copy) {
+      const at = 3 * (copy - firstCopy);
+      const length = Math.hypot(sum[at]!, sum[at + 1]!, sum[at + 2]!);
+      for (let k = 0; k < 3; ++k) normal[3 * copy + k] = length > 1e-12 ? sum[at + k]! / length : k === 2 ? 1 : 0; // none: any will do
     }
   }
-  const outPosition = new Float32Array(3 * source.length);
-  for (let i = 0; i < source.length; ++i) {
+  const outPosition = new Float32Array(3 * made);
+  for (let i = 0; i < made; ++i) {
     const from = 3 * source[i]!;
     outPosition.set(position.subarray(from, from + 3), 3 * i);
   }
-  return { position: outPosition, normal: Float32Array.from(normals), index: outIndex, source: Uint32Array.from(source) };
+  return { position: outPosition, normal: normal.slice(0, 3 * made), index: outIndex, source: source.slice(0, made) };
 }
 
-/// group[i]: towards the smallest corner of the group that corner i is in.
-function gather(faces: Faces, corners: Uint32Array, begin: number, count: number, cosCrease: number, group: Int32Array): void {
-  for (let i = 0; i < count; ++i) group[i] = cosCrease < -1 ? 0 : i;
-  if (cosCrease < -1) return;
-  for (let i = 0; i < count; ++i) {
-    for (let j = i + 1; j < count; ++j) {
-      const a = corners[begin + i]!, b = corners[begin + j]!;
-      if (!shareEdge(faces.index, a, b)) continue;
-      const p = a - (a % 3), q = b - (b % 3);
-      const cosine = faces.normal[p]! * faces.normal[q]! + faces.normal[p + 1]! * faces.normal[q + 1]! + faces.normal[p + 2]! * faces.normal[q + 2]!;
-      if (cosine < cosCrease) continue;
-      const x = find(group, i), y = find(group, j);
-      group[Math.max(x, y)] = Math.min(x, y);
+/// Which corners at one vertex belong together. Two triangles there share an edge if they have another vertex in common, so corners
+/// are met by their neighbours.
+class Groups {
+  private parent = new Int32Array(64); // of corner i: towards the smallest of its group; grows with the largest valence
+  private before = new Int32Array(128); // of side 2 i or 2 i + 1 of corner i: the last one before it with its neighbour; -1: none
+  private readonly last: Int32Array; // of each neighbour: the last side that has it; -1: none
+  private readonly sides: Int32Array; // of each neighbour: how many sides have it
+  private readonly cosCrease: number;
+  private readonly whole: boolean;
+
+  constructor(private readonly faces: Faces, vertices: number, crease: number) {
+    this.last = new Int32Array(vertices).fill(-1);
+    this.sides = new Int32Array(vertices);
+    this.cosCrease = Math.cos(crease);
+    this.whole = crease >= Math.PI;
+  }
+
+  gather(corners: Uint32Array): void {
+    if (corners.length > this.parent.length) {
+      this.parent = new Int32Array(2 * corners.length);
+      this.before = new Int32Array(4 * corners.length);
+    }
+    for (let i = 0; i < corners.length; ++i) this.parent[i] = this.whole ? 0 : i;
+    if (this.whole) return;
+    for (let side = 0; side < 2 * corners.length; ++side) ++this.sides[this.neighbour(corners, side)]!;
+    for (let side = 0; side < 2 * corners.length; ++side) this.meet(corners, side);
+    for (let side = 0; side < 2 * corners.length; ++side) {
+      const neighbour = this.neighbour(corners, side);
+      this.last[neighbour] = -1;
+      this.sides[neighbour] = 0;
     }
   }
-}
 
-function find(group: Int32Array, i: number): number {
-  while (group[i] !== i) i = group[i]!;
-  return i;
-}
+  /// The smallest corner of the group that corner i is in.
+  rootOf(i: number): number {
+    const { parent } = this;
+    while (parent[i] !== i) i = parent[i] = parent[parent[i]!]!; // every path is halved on the way
+    return i;
+  }
 
-/// Two corners at one vertex: do their triangles have another vertex in common?
-function shareEdge(index: Uint32Array, a: number, b: number): boolean {
-  const a1 = index[next(a)]!, a2 = index[next(next(a))]!;
-  const b1 = index[next(b)]!, b2 = index[next(next(b))]!;
-  return a1 === b1 || a1 === b2 || a2 === b1 || a2 === b2;
+  /// With the sides before it that have the same neighbour.
+  private meet(corners: Uint32Array, side: number): void {
+    const neighbour = this.neighbour(corners, side);
+    const newest = this.last[neighbour]!;
+    if (this.sides[neighbour]! > kMostAtEdge) {
+      if (newest >= 0) this.unite(side >> 1, newest >> 1);
+    } else {
+      for (let other = newest; other >= 0; other = this.before[other]!) {
+        if (this.smooth(corners[side >> 1]!, corners[other >> 1]!)) this.unite(side >> 1, other >> 1);
+      }
+    }
+    this.before[side] = newest;
+    this.last[neighbour] = side;
+  }
+
+  private neighbour(corners: Uint32Array, side: number): number {
+    const one = next(corners[side >> 1]!);
+    return this.faces.index[side % 2 === 0 ? one : next(one)]!;
+  }
+
+  private smooth(a: number, b: number): boolean {
+    const { normal } = this.faces;
+    const p = a - (a % 3), q = b - (b % 3);
+    return normal[p]! * normal[q]! + normal[p + 1]! * normal[q + 1]! + normal[p + 2]! * normal[q + 2]! >= this.cosCrease;
+  }
+
+  private unite(i: number, j: number): void {
+    const x = this.rootOf(i), y = this.rootOf(j);
+    this.parent[Math.max(x, y)] = Math.min(x, y);
+  }
 }
 
 function next(corner: number): number {

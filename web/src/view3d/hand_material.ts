@@ -4,7 +4,7 @@
 import { Color, MeshStandardMaterial, ReplaceStencilOp, Vector3 } from "three";
 import { forceColour } from "./force_colour";
 import { handStencil } from "./ghost_material";
-import { kSegments } from "./poses";
+import { kSegments } from "./segments";
 
 const kReach = 0.018; // of the full colour around a contact [m], one standard deviation
 const kElsewhere = 0.45; // share of the colour on the rest of the segment

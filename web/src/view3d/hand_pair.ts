@@ -2,7 +2,6 @@
 // The shown hand and its ghost: one shape, two sets of bones.
 import { Box3, Group, Matrix4, Vector3 } from "three";
 import type { SkinnedMesh } from "three";
-import type { Geometry } from "../gen/phalanx/geometry_pb";
 import { GhostMaterials } from "./ghost_material";
 import { HandMaterial } from "./hand_material";
 import type { Press } from "./hand_material";
@@ -10,9 +9,10 @@ import { segmentShape, skinShape } from "./hand_shape";
 import type { HandShape } from "./hand_shape";
 import type { Capsule } from "./object_material";
 import { PosedHand } from "./posed_hand";
-import type { Point } from "./posed_hand";
-import { kPalm } from "./poses";
+import type { DrawnVertex, Point } from "./posed_hand";
 import type { GhostDetail } from "./quality";
+import { kPalm } from "./segments";
+import type { Shapes } from "./shapes";
 
 interface Look {
   readonly shown: PosedHand;
@@ -32,10 +32,10 @@ export class HandPair {
   private ghostColour = "#ffffff";
   private poses: { gdp: readonly number[]; hcp: readonly number[] } | null = null;
 
-  setGeometry(geometry: Geometry): void {
+  setGeometry(shapes: Shapes): void {
     this.dropLooks();
     this.poses = null; // of another hand
-    this.looks = { skin: this.lookOf(skinShape(geometry.skin)), segments: this.lookOf(segmentShape(geometry)) };
+    this.looks = { skin: this.lookOf(skinShape(shapes.skin)), segments: this.lookOf(segmentShape(shapes.segments)) };
     this.choose();
   }
 
@@ -73,6 +73,11 @@ export class HandPair {
     return this.look?.shown.drawn() ?? [];
   }
 
+  /// Some of the skin's vertices where they are drawn; none without a skin.
+  shownSkin(): DrawnVertex[] {
+    return this.look?.shown.drawnVertices() ?? [];
+  }
+
   ghostOrigins(): Point[] {
     return this.look?.ghost.visible ? this.look.ghost.drawn() : [];
   }
@@ -96,7 +101,18 @@ export class HandPair {
   capsules(): Capsule[] {
     const look = this.look;
     if (!look?.shown.posed) return [];
-    return look.shape.boxes.slice(0, kPalm).filter((box) => !box.isEmpty()).map((box, segment) => capsuleIn(box, look.shown.frame(segment)));
+    return look.shape.boxes.slice(0, kPalm).flatMap((box, segment) => (box.isEmpty() ? [] : [capsuleIn(box, look.shown.frame(segment))]));
+  }
+
+  /// Gives back what a renderer holds of both looks, seen or not; what is drawn later is made anew.
+  release(): void {
+    this.material.dispose();
+    for (const look of [this.looks.skin, this.looks.segments]) {
+      look?.shown.release();
+      look?.ghost.release();
+      look?.ghostMaterials.dispose();
+      look?.shape.geometry.dispose();
+    }
   }
 
   dispose(): void {

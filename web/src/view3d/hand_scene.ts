@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is in the picture: hand, ghost, object, contacts, floor and lights. Knows no canvas.
 import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
-import type { Geometry } from "../gen/phalanx/geometry_pb";
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { themes } from "../theme";
 import type { ThemeName } from "../theme";
@@ -15,6 +14,7 @@ import type { ShownParts } from "./hand_view";
 import { Lights } from "./lights";
 import { ObjectMaterial } from "./object_material";
 import type { QualitySettings } from "./quality";
+import type { Shapes } from "./shapes";
 
 const kTouchRadius = 0.011; // of the colour on the object around a contact [m]
 
@@ -31,6 +31,7 @@ export class HandScene {
   private parts: ShownParts = { skin: true, ghost: true, arrows: true, object: true };
   private theme: ThemeName = "dark";
   private lost = false;
+  private whole = true; // the newest tick had a whole hand
   private left = false;
   private contacts: readonly Mark[] = [];
   private covered = new Box3();
@@ -42,11 +43,11 @@ export class HandScene {
     this.setTheme(this.theme);
   }
 
-  setGeometry(geometry: Geometry): void {
-    this.left = geometry.left;
-    this.hands.setGeometry(geometry);
+  setGeometry(shapes: Shapes): void {
+    this.left = shapes.left;
+    this.hands.setGeometry(shapes);
     this.dropObject();
-    const shape = objectShape(geometry.object);
+    const shape = objectShape(shapes.object);
     if (shape) {
       this.object = new Mesh(shape, this.objectMaterial);
       this.object.castShadow = this.object.receiveShadow = true;
@@ -58,11 +59,20 @@ export class HandScene {
     this.paint();
   }
 
-  show(tick: Tick): void {
-    if (!this.hands.pose(tick.gdpPose, tick.hcpPose)) return;
-    this.contacts = marksOf(tick);
-    this.coverHand();
+  /// @returns false, and the hand stays where it was and is grey, if the tick's is not whole
+  show(tick: Tick): boolean {
+    this.whole = this.hands.pose(tick.gdpPose, tick.hcpPose);
+    if (this.whole) {
+      this.contacts = marksOf(tick);
+      this.coverHand();
+    }
     this.paint();
+    return this.whole;
+  }
+
+  /// What is drawn says nothing of now.
+  get dead(): boolean {
+    return this.lost || !this.whole;
   }
 
   setParts(parts: ShownParts): void {
@@ -115,23 +125,31 @@ export class HandScene {
     return thumb && index ? thumb.add(index).multiplyScalar(0.5) : null;
   }
 
-  dispose(): void {
-    this.dropObject();
-    this.hands.dispose();
+  /// Gives back what a renderer holds of it, so that the renderer can go; what is drawn later is made anew.
+  release(): void {
+    this.object?.geometry.dispose();
+    this.hands.release();
     this.marks.dispose();
     this.floor.dispose();
     this.lights.dispose();
     this.objectMaterial.dispose();
   }
 
+  dispose(): void {
+    this.release();
+    this.dropObject();
+    this.hands.dispose();
+  }
+
   /// Colours and visibility, all from what is known: there is no order in which to call the rest.
   private paint(): void {
     const theme = themes[this.theme];
-    const contacts = this.lost ? [] : this.contacts;
-    this.hands.paint(this.lost ? theme.lost : theme.skin, !this.lost, contacts);
-    this.hands.ghostGroup.visible = this.parts.ghost && !this.lost;
+    const { dead } = this;
+    const contacts = dead ? [] : this.contacts;
+    this.hands.paint(dead ? theme.lost : theme.skin, !dead, contacts);
+    this.hands.ghostGroup.visible = this.parts.ghost && !dead;
     this.marks.show(contacts);
-    this.marks.visible = this.parts.arrows && !this.lost;
+    this.marks.visible = this.parts.arrows && !dead;
     if (this.object) this.object.visible = this.parts.object;
     this.objectMaterial.setTouches(contacts.filter((mark) => mark.touching), kTouchRadius);
     this.objectMaterial.setFingers(this.hands.capsules());

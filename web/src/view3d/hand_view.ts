@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The 3D view. The contract between it and the rest of the page; everything else in this folder is its own.
-import type { Geometry } from "../gen/phalanx/geometry_pb";
 import type { Tick } from "../gen/phalanx/tick_pb";
 import type { ThemeName } from "../theme";
+import type { DrawnVertex, Point } from "./posed_hand";
+import type { Shapes } from "./shapes";
 
 export type CameraPreset = "home" | "palm" | "thumb" | "follow";
 
@@ -17,18 +18,19 @@ export interface ShownParts {
 export interface ViewProbe {
   readonly frames: number;
   readonly tick: bigint; // shown
-  readonly shown: readonly (readonly [number, number, number])[]; // origin of each segment's frame as drawn, 16
-  readonly ghost: readonly (readonly [number, number, number])[];
+  readonly shown: readonly Point[]; // origin of each segment's frame as drawn, 16
+  readonly ghost: readonly Point[];
+  readonly skin: readonly DrawnVertex[]; // some of it; empty: the segments are shown
   readonly arrows: readonly { readonly segment: number; readonly length: number }[]; // visible ones [m]
   readonly quality: number; // 0 lowest .. 3
   readonly framesPerSecond: number;
-  readonly lost: boolean;
+  readonly lost: boolean; // grey
 }
 
 export interface HandView {
-  setGeometry(geometry: Geometry): void;
+  setGeometry(shapes: Shapes): void;
   show(tick: Tick): void; // the newest; drawn at the next frame of the screen
-  setLost(lost: boolean): void; // no connection: the hand greys at once, ghost and arrows go
+  setLost(lost: boolean): void; // no measurement: the hand greys at once, ghost and arrows go
   setParts(parts: ShownParts): void;
   setTheme(theme: ThemeName): void;
   camera(preset: CameraPreset): void;

@@ -3,9 +3,18 @@
 import { Bone, Matrix4, Skeleton, SkinnedMesh, Vector3 } from "three";
 import type { Material } from "three";
 import type { HandShape } from "./hand_shape";
-import { kSegments, poseMatrices } from "./poses";
+import { poseMatrices } from "./poses";
+import { kSegments } from "./segments";
 
 export type Point = readonly [number, number, number];
+
+/// A vertex of the station's skin, by its number there, where it is drawn [m].
+export interface DrawnVertex {
+  readonly vertex: number;
+  readonly at: Point;
+}
+
+const kProbed = 64; // vertices of the skin
 
 /// One skeleton, under one or several meshes of the same shape (a ghost is drawn twice).
 export class PosedHand {
@@ -52,6 +61,21 @@ export class PosedHand {
     });
   }
 
+  /// Vertices all over the skin, moved by the bones as the graphics card moves them.
+  drawnVertices(): DrawnVertex[] {
+    const { source } = this.shape;
+    const mesh = this.meshes[0];
+    if (!this.posed || !mesh) return [];
+    const position = this.shape.geometry.getAttribute("position");
+    const point = new Vector3();
+    const count = Math.min(kProbed, source.length);
+    return Array.from({ length: count }, (_, i): DrawnVertex => {
+      const at = Math.floor((i * source.length) / count);
+      mesh.applyBoneTransform(at, point.fromBufferAttribute(position, at));
+      return { vertex: source[at]!, at: [point.x, point.y, point.z] };
+    });
+  }
+
   /// X_WS of a segment.
   frame(segment: number): Matrix4 {
     return this.skeleton.bones[segment]!.matrixWorld;
@@ -78,10 +102,14 @@ export class PosedHand {
     for (const mesh of this.meshes) mesh.visible = visible;
   }
 
+  /// What a renderer holds of it.
+  release(): void {
+    this.skeleton.boneTexture?.dispose();
+  }
+
   /// Its bones' texture; the shape belongs to whoever made it.
   dispose(): void {
     for (const mesh of this.meshes) mesh.removeFromParent();
     this.skeleton.dispose();
   }
 }
-

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pose arrays of a tick (x y z [m], unit quaternion x y z w; seven numbers a segment) and the matrices of the renderer.
 import { Matrix4, Quaternion, Vector3 } from "three";
+import { kSegments } from "./segments";
 
-export const kSegments = 16;
-export const kPalm = kSegments - 1;
 const kPoseNumbers = 7;
 const kSmallestQuaternion = 1e-6;
 

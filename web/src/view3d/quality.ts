@@ -35,11 +35,12 @@ const kVerySlow = 1 / 9; // [s] mean above: down by two, and judged after fewer 
 const kFewFrames = 4;
 const kFast = 1 / 45; // [s] mean below, for long enough: up
 const kFirstPatience = 8; // [s] of fast frames before a step up; doubles with each step up that did not last
-const kLongestPatience = 300;
+const kLasts = 60; // [s] a step up that is taken back sooner did not last
+const kMostTries = 3; // steps up that did not last; then there are no more
 const kLongestFrame = 1; // [s] longer: the page was hidden or the machine asleep
 
 /// Feed it the time between frames that followed each other as fast as they could; it says which level to use. It goes down
-/// soon, and up late: after a step up that had to be taken back it waits twice as long before the next.
+/// soon, and up late: after a step up that did not last it waits twice as long before the next, and after the third it stays down.
 export class QualityWatch {
   level: number;
   private frames = 0;
@@ -47,7 +48,8 @@ export class QualityWatch {
   private settle = kSettle;
   private fastFor = 0;
   private patience = kFirstPatience;
-  private steppedUp = false;
+  private sinceUp = Infinity; // [s] of frames
+  private tries = 0; // steps up that did not last
 
   constructor(level: number = highestQuality) {
     this.level = Math.min(highestQuality, Math.max(0, Math.round(level)));
@@ -67,9 +69,10 @@ export class QualityWatch {
     if (this.frames < kWindow) return false;
     const lasted = this.sum;
     this.frames = this.sum = 0;
+    this.sinceUp += lasted;
     if (mean > kSlow) return this.down(1);
     this.fastFor = mean < kFast ? this.fastFor + lasted : 0;
-    return this.fastFor > this.patience && this.up();
+    return this.level < highestQuality && this.fastFor > this.patience && this.tries < kMostTries && this.up();
   }
 
   /// The next frame's time says nothing: the page was hidden, the canvas resized, a new shape came.
@@ -80,14 +83,17 @@ export class QualityWatch {
   }
 
   private down(steps: number): boolean {
-    if (this.steppedUp) this.patience = Math.min(kLongestPatience, 2 * this.patience);
-    this.steppedUp = false;
+    if (this.sinceUp < kLasts) {
+      this.patience *= 2;
+      ++this.tries;
+    }
+    this.sinceUp = Infinity;
     return this.change(Math.max(0, this.level - steps));
   }
 
   private up(): boolean {
-    this.steppedUp = true;
-    return this.change(Math.min(highestQuality, this.level + 1));
+    this.sinceUp = 0;
+    return this.change(this.level + 1);
   }
 
   private change(level: number): boolean {

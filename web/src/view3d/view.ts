@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The 3D view: a frame is drawn when something has changed, at most as often as the screen shows one.
 import type { WebGLRenderer } from "three";
-import type { Geometry } from "../gen/phalanx/geometry_pb";
 import type { Tick } from "../gen/phalanx/tick_pb";
 import type { ThemeName } from "../theme";
 import { CameraRig } from "./camera_rig";
@@ -10,6 +9,7 @@ import type { ViewTrouble } from "./canvas";
 import { HandScene } from "./hand_scene";
 import type { CameraPreset, HandView, ShownParts, ViewProbe } from "./hand_view";
 import { highestQuality, pixelRatioFor, QualityWatch, qualityLevels } from "./quality";
+import type { Shapes } from "./shapes";
 
 export type { ViewTrouble } from "./canvas";
 
@@ -42,14 +42,13 @@ class View implements HandView {
   private recent: number[] = []; // when the frames of the last second were
   private pending: Tick | null = null;
   private shownTick = 0n;
-  private lost = false;
   private seen = false; // a hand has been in the picture since the last geometry
   private size = { width: 0, height: 0 };
 
   constructor(host: HTMLElement, private readonly options: HandViewOptions) {
     this.surface.style.cssText = "position:relative;width:100%;height:100%;overflow:hidden;touch-action:none";
     host.append(this.surface);
-    this.canvas = new Canvas(this.surface, this.redraw, (what) => options.onTrouble?.(what));
+    this.canvas = new Canvas(this.surface, this.redraw, () => this.content.release(), (what) => options.onTrouble?.(what));
     this.rig = new CameraRig(this.surface, this.demand);
     this.watch = new QualityWatch(options.quality ?? highestQuality);
     this.renderer = this.canvas.use(qualityLevels[this.watch.level]!.antialias);
@@ -61,8 +60,8 @@ class View implements HandView {
     this.resize();
   }
 
-  setGeometry(geometry: Geometry): void {
-    this.content.setGeometry(geometry);
+  setGeometry(shapes: Shapes): void {
+    this.content.setGeometry(shapes);
     this.pending = null;
     this.seen = false;
     this.watch.interrupted();
@@ -75,7 +74,6 @@ class View implements HandView {
   }
 
   setLost(lost: boolean): void {
-    this.lost = lost;
     this.content.setLost(lost);
     this.redraw();
   }
@@ -108,10 +106,11 @@ class View implements HandView {
       tick: this.shownTick,
       shown: this.content.hands.shownOrigins(),
       ghost: this.content.hands.ghostOrigins(),
+      skin: this.content.hands.shownSkin(),
       arrows: this.content.marks.drawn(),
       quality: this.watch.level,
       framesPerSecond: this.recent.filter((at) => at > now() - kRateWindow).length / kRateWindow,
-      lost: this.lost,
+      lost: this.content.dead,
     };
   }
 
@@ -169,8 +168,7 @@ class View implements HandView {
 
   private takeTick(): void {
     if (!this.pending) return;
-    this.content.show(this.pending);
-    this.shownTick = this.pending.tick;
+    if (this.content.show(this.pending)) this.shownTick = this.pending.tick;
     this.pending = null;
     this.renderer!.shadowMap.needsUpdate = true;
     if (this.seen || this.content.hands.palm() === null) return;

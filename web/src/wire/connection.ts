@@ -27,7 +27,6 @@ export interface Memory {
 export interface Answer {
   readonly ok: boolean;
   readonly error: string; // why not; empty: the connection was lost before an answer came
-  readonly text: string;
 }
 
 export interface ConnectionParts {
@@ -113,7 +112,7 @@ export class Connection {
   ask(what: Request): Promise<Answer> {
     const request = this.nextRequest++;
     if (this.state !== "open" || !this.post(what, request)) {
-      return Promise.resolve({ ok: false, error: "", text: "" });
+      return Promise.resolve({ ok: false, error: "" });
     }
     return new Promise((resolve) => this.waitingFor.set(request, resolve));
   }
@@ -162,7 +161,7 @@ export class Connection {
     } else if (what.case === "reply") {
       const resolve = this.waitingFor.get(what.value.request);
       this.waitingFor.delete(what.value.request);
-      resolve?.({ ok: what.value.ok, error: what.value.error, text: what.value.text });
+      resolve?.({ ok: what.value.ok, error: what.value.error });
     }
     this.parts.onMessage(message);
   }
@@ -193,7 +192,7 @@ export class Connection {
         // it is gone already
       }
     }
-    for (const resolve of this.waitingFor.values()) resolve({ ok: false, error: "", text: "" });
+    for (const resolve of this.waitingFor.values()) resolve({ ok: false, error: "" });
     this.waitingFor.clear();
   }
 

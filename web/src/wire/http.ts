@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What goes over plain HTTP: shapes, uploads, and the stop that is left when the socket is down.
-import { fromBinary } from "@bufbuild/protobuf";
-import { GeometrySchema, type Geometry } from "../gen/phalanx/geometry_pb";
 import { strings } from "../strings";
 
 const kGeometryMs = 10_000;
@@ -17,10 +15,11 @@ export function streamUrl(page: string): string {
   return url.href;
 }
 
-export async function fetchGeometry(revision: number): Promise<Geometry> {
+/// The bytes of a Geometry.
+export async function fetchGeometry(revision: number): Promise<ArrayBuffer> {
   const response = await fetch(`geometry/${revision}`, { signal: AbortSignal.timeout(kGeometryMs) });
   if (!response.ok) throw new Error(`geometry/${revision}: ${response.status}`);
-  return fromBinary(GeometrySchema, new Uint8Array(await response.arrayBuffer()));
+  return response.arrayBuffer();
 }
 
 /// Whether the station refuses this page's own address; false too where it does not answer.
@@ -123,13 +122,15 @@ export function readImportReport(text: string, status: number): ImportReport {
 }
 
 /// @param sizeMm  largest extent; 0 keeps the file's numbers in `unit`
-/// @throws TypeError if there is no connection
-export async function uploadMesh(secret: string, file: File, sizeMm: number, unit: string): Promise<ImportReport> {
+/// @param signal  gives it up
+/// @throws TypeError if there is no connection, AbortError if it was given up
+export async function uploadMesh(secret: string, file: File, sizeMm: number, unit: string, signal: AbortSignal): Promise<ImportReport> {
   const query = new URLSearchParams({ name: file.name, size_mm: String(sizeMm), unit });
   const response = await fetch(`mesh?${query.toString()}`, {
     method: "POST",
     headers: { "X-Phalanx-Page": secret, "Content-Type": "application/octet-stream" },
     body: file,
+    signal,
   });
   return readImportReport(await response.text(), response.status);
 }

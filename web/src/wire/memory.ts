@@ -9,12 +9,14 @@ function read(storage: () => Storage, key: string): string {
   }
 }
 
-function write(storage: () => Storage, key: string, value: string): void {
+/// @returns whether it is kept: private windows and full disks keep nothing, and the page works without
+function write(storage: () => Storage, key: string, value: string): boolean {
   try {
     storage().setItem(key, value);
   } catch {
-    // private windows and full disks: the page works without
+    return false;
   }
+  return read(storage, key) === value;
 }
 
 /// Until the tab is closed: a reload is the same page.

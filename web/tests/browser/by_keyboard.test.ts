@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole of it without a mouse. Focus is moved with Tab only, and has to be seen.
 import { beforeAll, describe, expect, it } from "vitest";
+import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
+import { asFile, cube } from "./support/meshes";
 import { differing } from "./support/pictures";
-import { valueOf } from "./support/settings";
+import { stiffnessKey, valueOf } from "./support/settings";
 import { stage } from "./support/stage";
 import { until } from "./support/until";
 
@@ -32,18 +34,20 @@ function focused(): Promise<{ name: string; tag: string; marked: boolean }> {
   });
 }
 
-/// Presses Tab until the named control has the focus. Each stop on the way must be visible as such.
-async function tabTo(name: string, tag: string): Promise<void> {
+/// Presses Tab until what has the focus is the one. Each stop on the way must be visible as such.
+async function tabUntil(what: string, is: (now: { name: string; tag: string }) => boolean | Promise<boolean>): Promise<void> {
   seen = [];
   for (let i = 0; i < kMostTabs; ++i) {
     await cockpit.page.keyboard.press("Tab");
     const now = await focused();
     seen.push(`${now.tag} ${now.name}`);
     if (now.tag !== "body") expect(now.marked, `the focus cannot be seen on ${now.tag} "${now.name}"`).toBe(true);
-    if (now.name === name && now.tag === tag) return;
+    if (await is(now)) return;
   }
-  throw new Error(`Tab never came to ${tag} "${name}"; it came to ${seen.join("; ")}`);
+  throw new Error(`Tab never came to ${what}; it came to ${seen.join("; ")}`);
 }
+
+const tabTo = (name: string, tag: string) => tabUntil(`${tag} "${name}"`, (now) => now.name === name && now.tag === tag);
 
 describe("by keyboard", () => {
   it("makes the wall stiff until the hand shakes", async () => {
@@ -130,5 +134,73 @@ describe("by keyboard", () => {
       expect((await focused()).name).toBe(name);
       expect(await cockpit.page.getByRole("tab", { name, exact: true }).getAttribute("aria-selected")).toBe("true");
     }
+  });
+
+  it("finds a setting in the list of all and sets it", async () => {
+    const { keyboard } = cockpit.page;
+    await tabTo(strings.settings.open, "button");
+    await keyboard.press("Enter");
+    await cockpit.page.getByRole("dialog", { name: strings.settings.title }).waitFor();
+    await keyboard.type(stiffnessKey); // the search has the focus
+    await tabUntil(`the field of ${stiffnessKey}`, () =>
+      cockpit.page.evaluate((key) => {
+        const focus = document.activeElement;
+        return focus?.tagName === "INPUT" && focus.closest("li")?.querySelector("code")?.textContent === key;
+      }, stiffnessKey),
+    );
+    await keyboard.press("Control+A");
+    await keyboard.type("0.7");
+    await keyboard.press("Enter");
+    await until("the stiffness", () => cockpit.stream.newest!.stiffness === 700, () => cockpit.brief());
+    await tabTo(strings.look.close, "button");
+    await keyboard.press("Enter");
+  });
+
+  it("saves the curves", async () => {
+    for (const [name, ending] of [[strings.plots.csvLong, ".csv"], [strings.plots.pngLong, ".png"]] as const) {
+      await tabTo(name, "button");
+      const download = cockpit.page.waitForEvent("download");
+      await cockpit.page.keyboard.press("Enter");
+      expect((await download).suggestedFilename().endsWith(ending)).toBe(true);
+    }
+  });
+
+  it("moves a joint by its slider", async () => {
+    const { keyboard } = cockpit.page;
+    await tabTo(strings.tabs.touch, "button");
+    await keyboard.press("ArrowRight");
+    await tabTo(strings.hand.sources[HandSource.HAND_SLIDERS]!, "button");
+    await keyboard.press("Enter");
+    await cockpit.untilState("the sliders", (state) => state.source === HandSource.HAND_SLIDERS && state.slider.length > 0 && !state.stationGone);
+    const smallest = (await cockpit.geometry()).jointMin[0]!;
+    const angle = () => cockpit.stream.newest!.hcpAngle[0]!;
+    await tabTo(strings.hand.joints[0]!, "input"); // the thumb's
+    await keyboard.press("Home");
+    await until("the joint at the end of its range", () => Math.abs(angle() - smallest) < 0.02, () => `${angle()} rad`);
+    await keyboard.press("PageUp");
+    await until("the joint on its way back", () => angle() > smallest + 0.02, () => `${angle()} rad`);
+  });
+
+  it("uploads a mesh and uses it", async () => {
+    const { keyboard } = cockpit.page;
+    const words = strings.object;
+    await tabTo(strings.tabs.hand, "button");
+    await keyboard.press("ArrowLeft");
+    await tabTo(words.kind, "button");
+    await keyboard.press("Enter");
+    await keyboard.press("Home");
+    const marked = () => cockpit.page.evaluate(() => document.getElementById(document.activeElement?.getAttribute("aria-activedescendant") ?? "")?.dataset["value"]);
+    for (let i = 0; i < kMostTabs && (await marked()) !== "file"; ++i) await keyboard.press("ArrowDown");
+    await keyboard.press("Enter");
+    await tabTo(words.choose, "button");
+    const chooser = cockpit.page.waitForEvent("filechooser");
+    await keyboard.press("Enter");
+    await (await chooser).setFiles(asFile("cube.stl", cube(60)));
+    await tabTo(words.upload, "button");
+    await keyboard.press("Enter");
+    await cockpit.page.getByRole("status").filter({ hasText: words.good }).waitFor();
+    await tabTo(words.useMesh, "button");
+    await keyboard.press("Enter");
+    await cockpit.untilState("the mesh in force", (state) => valueOf(state, "objects.0.kind") === '"file"');
   });
 });

@@ -111,7 +111,6 @@ export class FakeHost {
         lateness: { p50Us: 54, p99Us: 121, p999Us: 210, maxUs: 1210, octave },
         step: { p50Us: 88.4, p99Us: 190, p999Us: 260, maxUs: 2310, octave: octave.map((_, k) => octave[Math.max(0, k - 1)]!) },
       },
-      otherUrl: ["http://127.0.0.1:8480/"],
     });
   }
 
@@ -168,7 +167,7 @@ export class FakeHost {
     }
     if (what.case === "sliders") this.state.slider = what.value.angle;
     if (what.case === "scene") Object.assign(this.state, { scene: what.value.name, changed: [] });
-    if (message.request !== 0) this.send({ case: "reply", value: { $typeName: "phalanx.wire.Reply", request: message.request, ok: error === "", error, text: "" } });
+    if (message.request !== 0) this.send({ case: "reply", value: { $typeName: "phalanx.wire.Reply", request: message.request, ok: error === "", error } });
     this.say();
   }
 
@@ -196,6 +195,7 @@ export class FakeHost {
           { level: 1, unixTime: Date.now() / 1000 - 30, who: "page 2 (127.0.0.1), Anna", code: "set", text: "force.stiffness_n_per_mm = 0.5" },
         ],
         unixTime: Date.now() / 1000,
+        viewerUrl: this.mayOperate ? ["https://192.0.2.7:8480/?token=Q3mYf0aLr8sVn2kTzB7w1A"] : [],
       }),
     });
     this.say();

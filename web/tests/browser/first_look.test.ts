@@ -10,7 +10,7 @@ import type { CockpitPage } from "./support/cockpit_page";
 import { curveHeight } from "./support/pictures";
 import { dataFolder } from "./support/program";
 import { stage, type Station } from "./support/stage";
-import { distance, origins, type Point } from "./support/geometry";
+import { distance, origins, skinAt, type Point } from "./support/geometry";
 import { pause, until } from "./support/until";
 
 const kMillimetre = 1e-3;
@@ -28,7 +28,8 @@ beforeAll(async () => {
 });
 
 describe("the first look", () => {
-  it("shows the hand and its ghost where the stream says that they are", async () => {
+  it("shows the hand, its skin and its ghost where the stream says that they are", async () => {
+    const skin = (await cockpit.geometry()).skin!;
     const seen = new Set<bigint>();
     let worst = 0;
     let moved = 0;
@@ -43,6 +44,8 @@ describe("the first look", () => {
       for (const [drawn, sent] of [[probe.shown, origins(tick.gdpPose)], [probe.ghost, origins(tick.hcpPose)]] as const) {
         sent.forEach((origin, segment) => (worst = Math.max(worst, distance(origin, drawn[segment]!))));
       }
+      expect(probe.skin.length).toBeGreaterThan(0);
+      for (const { vertex, at } of probe.skin) worst = Math.max(worst, distance(skinAt(skin, tick.gdpPose, vertex), at));
       first ??= origins(tick.hcpPose);
       moved = Math.max(moved, ...origins(tick.hcpPose).map((origin, segment) => distance(origin, first![segment]!)));
       await pause(150);
@@ -90,7 +93,7 @@ describe("the first look", () => {
     }, () => cockpit.brief());
   });
 
-  it("is small, and says how soon something was seen", async () => {
+  it("is small; how soon something was seen is printed, not asserted: that is the machine's", async () => {
     const site = join(dataFolder, "web/dist");
     expect(await (await cockpit.page.request.get(station.url)).text(), "the station serves another page than the one that is weighed").toBe(
       readFileSync(join(site, "index.html"), "utf8"),
@@ -100,7 +103,7 @@ describe("the first look", () => {
     const paint = await cockpit.page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime);
     console.log(`first contentful paint after ${paint?.toFixed(0)} ms; ${files.length} files of JS and CSS, ${(bytes / 1000).toFixed(1)} kB gzipped`);
     expect(files.length).toBeGreaterThan(1);
-    expect(paint).toBeGreaterThan(0);
+    expect(paint, "the browser has painted").toBeDefined();
     expect(bytes).toBeLessThan(kBundleLimit);
   });
 });

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A left hand is drawn as the mirror image of a right one, where the stream says it is.
 import { expect, it } from "vitest";
+import type { Skin } from "../../src/gen/phalanx/geometry_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
-import { cross, distance, dot, minus, origins, type Point } from "./support/geometry";
+import { cross, distance, dot, minus, origins, skinAt, volume, type Point } from "./support/geometry";
 import { shoot } from "./support/pictures";
 import { small, stage } from "./support/stage";
 import { pause, until } from "./support/until";
@@ -25,7 +26,7 @@ function handedness(points: readonly Point[]): number {
   return dot(cross(minus(index, palm), minus(little, palm)), minus(thumb, palm));
 }
 
-async function drawnAsSent(cockpit: CockpitPage): Promise<readonly Point[]> {
+async function drawnAsSent(cockpit: CockpitPage, skin: Skin): Promise<readonly Point[]> {
   const seen = new Set<bigint>();
   let drawn: readonly Point[] = [];
   await until("four drawn ticks", async () => {
@@ -35,6 +36,8 @@ async function drawnAsSent(cockpit: CockpitPage): Promise<readonly Point[]> {
     seen.add(tick.tick);
     origins(tick.gdpPose).forEach((origin, segment) => expect(distance(origin, probe.shown[segment]!), `segment ${segment}`).toBeLessThan(kMillimetre));
     origins(tick.hcpPose).forEach((origin, segment) => expect(distance(origin, probe.ghost[segment]!), `segment ${segment}`).toBeLessThan(kMillimetre));
+    expect(probe.skin.length).toBeGreaterThan(0);
+    for (const { vertex, at } of probe.skin) expect(distance(skinAt(skin, tick.gdpPose, vertex), at), `vertex ${vertex} of the skin`).toBeLessThan(kMillimetre);
     drawn = probe.shown;
     await pause(100);
     return seen.size >= 4;
@@ -46,11 +49,11 @@ it("draws a left hand as a left hand, and a right one as a right one", async () 
   const cockpits = [await open([]), await open(["--set", "mirror=true"])] as const;
   const sides: number[] = [];
   for (const [i, cockpit] of cockpits.entries()) {
-    const { left, display, segment } = await cockpit.geometry();
+    const { left, display, segment, skin } = await cockpit.geometry();
     expect(left).toBe(i === 1);
     // The triangles are turned, too: seen from outside they go round counter-clockwise, or the hand would be inside out.
-    for (const mesh of display.length > 0 ? display : segment) expect(volume(mesh.position, mesh.index)).toBeGreaterThan(0);
-    sides.push(handedness(await drawnAsSent(cockpit)));
+    for (const mesh of [skin!.mesh!, ...(display.length > 0 ? display : segment)]) expect(volume(mesh.position, mesh.index)).toBeGreaterThan(0);
+    sides.push(handedness(await drawnAsSent(cockpit, skin!)));
   }
   const [right, left] = sides as [number, number];
   console.log(`handedness: right ${(1e9 * right).toFixed(0)} mm^3, left ${(1e9 * left).toFixed(0)} mm^3`);
@@ -61,11 +64,3 @@ it("draws a left hand as a left hand, and a right one as a right one", async () 
   expect(await cockpits[1].page.getByRole("tabpanel").innerText()).toContain(strings.hand.side);
   await shoot(cockpits[1].page, "26_left_hand");
 });
-
-/// [m^3]; negative where the surface is inside out.
-function volume(position: readonly number[], index: readonly number[]): number {
-  const at = (vertex: number): Point => [position[3 * vertex]!, position[3 * vertex + 1]!, position[3 * vertex + 2]!];
-  let six = 0;
-  for (let i = 0; i + 2 < index.length; i += 3) six += dot(at(index[i]!), cross(at(index[i + 1]!), at(index[i + 2]!)));
-  return six / 6;
-}

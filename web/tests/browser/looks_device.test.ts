@@ -19,6 +19,15 @@ beforeAll(async () => {
   cockpit = await play.open(station.url);
 });
 
+/// The station goes on and sends steps, but of a hand that nobody measures: it is grey, and the page says why.
+async function untilUnmeasured(): Promise<void> {
+  await cockpit.stream.next(3);
+  await until("a grey hand", async () => (await cockpit.probe())!.lost, () => cockpit.brief());
+  expect(await cockpit.lost()).toBe(true);
+  expect((await cockpit.probe())!.arrows).toEqual([]);
+  expect(await cockpit.page.getByText(strings.lost.unmeasured, { exact: true }).isVisible()).toBe(true);
+}
+
 describe("a device on a wire", () => {
   it("has a panel", async () => {
     await cockpit.untilRunning();
@@ -62,8 +71,10 @@ describe("a device on a wire", () => {
     await until("the report's place", () => (cockpit.stream.state!.fault?.report ?? "") !== "", () => cockpit.brief());
     await pause(1000);
     await shootReadable(cockpit, "34_fault");
-    await cockpit.button(strings.fault.reset).click();
-    await until("the refusal", () => cockpit.stream.notices.some((notice) => notice.code === "reset_refused") || cockpit.stream.state!.fault !== undefined);
+    await untilUnmeasured();
+    await card.getByRole("button", { name: strings.fault.reset, exact: true }).click();
+    await until("the refusal", () => cockpit.stream.notices.some((notice) => notice.code === "reset_refused"), () => cockpit.brief());
     expect(cockpit.stream.state!.fault).toBeDefined();
+    await untilUnmeasured();
   });
 });

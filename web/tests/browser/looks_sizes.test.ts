@@ -36,4 +36,16 @@ describe("the page looks right", () => {
       await cockpit.page.context().close();
     });
   }
+
+  it("26_telephone_sideways, where Stop was pressed and nobody confirms it", async () => {
+    const own = await play.station();
+    const cockpit = await play.open(own.url, { viewport: { width: 844, height: 340 }, hasTouch: true, isMobile: true });
+    await cockpit.untilRunning();
+    await own.program.kill();
+    await until("the page knows", () => cockpit.lost());
+    await cockpit.stopButton.click();
+    await until("the failure of Stop", async () => cockpit.page.getByText(strings.stop.failed).isVisible());
+    await shootReadable(cockpit, "26_telephone_sideways");
+    await cockpit.page.context().close();
+  });
 });

@@ -36,7 +36,7 @@ const wizard = {
   pose: 2, name: ["flat hand", "fist", "fingers at right angles", "thumb across the palm", "fingers spread"],
   instruction: "Bend the fingers at the knuckles to a right angle, the other joints straight, and hold still.",
   measuring: false, measured: 0, done: [true, true, false, false, false], raw: [20412, 18003, 22410, 19772],
-  problem: [] as string[], result: [] as string[], finished: false, file: "",
+  problem: [] as string[], result: [] as string[], finished: false,
 };
 
 const onWire = (host: FakeHost) => Object.assign(host.state, { source: 0, deviceSimulated: false, deviceSpec: "serial:/dev/ttyACM0", deviceSerial: "BH-0042" });

@@ -6,11 +6,39 @@ import { differing } from "./support/pictures";
 import { small, stage } from "./support/stage";
 import { until } from "./support/until";
 
+declare global {
+  interface Window {
+    framesUntilGrey?: number; // of the screen, from the end of the first connection on
+  }
+}
+
 const play = stage();
 
-it("greys the hand and says so when the program is gone, and comes back by itself", async () => {
+/// In the page, before anything of it runs.
+function countFrames(): void {
+  const Own = window.WebSocket;
+  window.WebSocket = class extends Own {
+    constructor(url: string | URL, protocols?: string | string[]) {
+      super(url, protocols);
+      this.addEventListener("close", () => {
+        let frames = 0;
+        const look = (): void => {
+          if (window.phalanx.view()?.lost) window.framesUntilGrey ??= frames;
+          else requestAnimationFrame(look);
+          ++frames;
+        };
+        requestAnimationFrame(look);
+      });
+    }
+  };
+}
+
+it("greys the hand before the next frame and says so when the program is gone, and comes back by itself", async () => {
   const first = await play.station();
   const cockpit = await play.open(first.url, small);
+  await cockpit.page.addInitScript(countFrames);
+  await cockpit.page.reload();
+  await cockpit.ready();
   const band = cockpit.page.getByRole("alert").filter({ hasText: strings.lost.closed });
   const root = cockpit.page.locator("html");
   await cockpit.untilRunning();
@@ -27,6 +55,7 @@ it("greys the hand and says so when the program is gone, and comes back by itsel
   await until("the picture is drawn as lost", async () => (await cockpit.probe())!.lost);
   const probe = (await cockpit.probe())!;
   expect(probe.arrows, "arrows would look alive").toEqual([]);
+  expect(await until("frames counted", () => cockpit.page.evaluate(() => window.framesUntilGrey)), "frames of the old picture").toBe(0);
   expect(await band.isVisible()).toBe(true);
   expect(await root.getAttribute("data-lost")).toBe("true");
   expect(await cockpit.verdict()).toBe("unknown");

@@ -5,8 +5,15 @@ import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it } from "vitest";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
 import { arrowLength } from "../../../src/view3d/contact_marks";
+import { distance, skinAt } from "../support/geometry";
 import { launch } from "./browser";
 import { recording, serve } from "./server";
+
+declare global {
+  interface Window {
+    live: Record<string, number>; // what WebGL has made and not deleted, by kind
+  }
+}
 
 const name = "grasp_teapot,skin";
 const pressing = 240; // all five fingers press
@@ -56,6 +63,21 @@ async function load(which = name): Promise<void> {
   await page.evaluate((shown) => window.viewPage.load(shown), which);
 }
 
+/// In the page, before anything of it runs.
+function countLive(): void {
+  window.live = {};
+  const context = WebGL2RenderingContext.prototype as unknown as Record<string, (...given: unknown[]) => unknown>;
+  for (const kind of ["Buffer", "Texture", "VertexArray", "Framebuffer"]) {
+    for (const [verb, step] of [["create", 1], ["delete", -1]] as const) {
+      const original = context[verb + kind]!;
+      context[verb + kind] = function (this: unknown, ...given: unknown[]): unknown {
+        window.live[kind] = (window.live[kind] ?? 0) + step;
+        return original.apply(this, given);
+      };
+    }
+  }
+}
+
 interface Seen {
   readonly warm: number; // share of pixels of skin's hues
   readonly colours: number; // how many different ones
@@ -83,14 +105,17 @@ async function look(): Promise<Seen> {
 }
 
 describe("what is drawn", () => {
-  it("stands where the tick says, shown hand and ghost, within a hundredth of a millimetre", async () => {
+  it("stands where the tick says, shown hand, skin and ghost, within a hundredth of a millimetre", async () => {
     await open(1);
     await load();
+    const skin = recording(name).geometry.skin!;
     for (const number of [0, pressing, 400]) {
       await show(number);
       const probe = await page.evaluate(() => window.viewPage.view.probe());
       const tick: Tick = recording(name).ticks[number]!;
       expect(probe.shown).toHaveLength(16);
+      expect(probe.skin.length).toBeGreaterThan(0);
+      for (const { vertex, at } of probe.skin) expect(distance(skinAt(skin, tick.gdpPose, vertex), at)).toBeLessThan(1e-5);
       for (let i = 0; i < 16; ++i) {
         for (let k = 0; k < 3; ++k) {
           expect(Math.abs(probe.shown[i]![k]! - tick.gdpPose[7 * i + k]!)).toBeLessThan(1e-5);
@@ -240,26 +265,26 @@ describe("the graphics card", () => {
     expect(await page.evaluate(() => window.viewPage.troubles)).toEqual(["context-lost"]);
     complaints = complaints.filter((text) => !/context/i.test(text));
   });
+  it("gets all buffers back from a renderer that another kind replaces, however often the quality swings", async () => {
+    await page.addInitScript(countLive);
+    await open(0);
+    const buffers = await page.evaluate(async ([which, number]) => {
+      const counts: number[] = [];
+      await window.viewPage.swing(which, number, 4, () => counts.push(window.live["Buffer"] ?? 0));
+      return counts;
+    }, [name, pressing] as const);
+    expect(buffers.length).toBe(4);
+    expect(buffers[0]).toBeGreaterThan(5);
+    expect(new Set(buffers).size, `live buffers after each swing: ${buffers.join(", ")}`).toBe(1);
+    complaints = complaints.filter((text) => !/context/i.test(text));
+  });
   it("gets all its buffers, textures and vertex arrays back when shapes change", async () => {
-    await page.addInitScript(() => {
-      const live: Record<string, number> = {};
-      const context = WebGL2RenderingContext.prototype as unknown as Record<string, (...given: unknown[]) => unknown>;
-      for (const kind of ["Buffer", "Texture", "VertexArray", "Framebuffer"]) {
-        for (const [verb, step] of [["create", 1], ["delete", -1]] as const) {
-          const original = context[verb + kind]!;
-          context[verb + kind] = function (this: unknown, ...given: unknown[]): unknown {
-            live[kind] = (live[kind] ?? 0) + step;
-            return original.apply(this, given);
-          };
-        }
-      }
-      (window as unknown as { live: typeof live }).live = live;
-    });
+    await page.addInitScript(countLive);
     await open(2);
     const liveAfter = async (): Promise<Record<string, number>> => {
       await load();
       await show(pressing);
-      return page.evaluate(() => ({ ...(window as unknown as { live: Record<string, number> }).live }));
+      return page.evaluate(() => ({ ...window.live }));
     };
     await liveAfter();
     const once = await liveAfter();

@@ -25,10 +25,10 @@ class FakeSocket implements Socket {
   }
   welcome(secret = "abc", protocol = kProtocol): void {
     this.onopen?.();
-    this.say({ case: "welcome", value: { $typeName: "phalanx.wire.Welcome", protocol, secret, version: "", page: 1, mayOperate: true, key: [], scene: [], profile: [], past: [], clock: 0, unixTime: 0 } });
+    this.say({ case: "welcome", value: { $typeName: "phalanx.wire.Welcome", protocol, secret, version: "", page: 1, mayOperate: true, key: [], scene: [], profile: [], past: [], clock: 0, unixTime: 0, viewerUrl: [] } });
   }
   answer(request: number, ok: boolean, error = ""): void {
-    this.say({ case: "reply", value: { $typeName: "phalanx.wire.Reply", request, ok, error, text: "" } });
+    this.say({ case: "reply", value: { $typeName: "phalanx.wire.Reply", request, ok, error } });
   }
 }
 
@@ -199,9 +199,9 @@ describe("Connection", () => {
     newest().answer(numbers[1]!, false, "no");
     newest().answer(numbers[0]!, true);
     expect(await first).toMatchObject({ ok: true });
-    expect(await second).toEqual({ ok: false, error: "no", text: "" });
+    expect(await second).toEqual({ ok: false, error: "no" });
     newest().onclose?.();
-    expect(await third).toEqual({ ok: false, error: "", text: "" });
+    expect(await third).toEqual({ ok: false, error: "" });
     expect(await ask()).toMatchObject({ ok: false });
   });
 

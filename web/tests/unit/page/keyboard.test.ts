@@ -46,6 +46,12 @@ describe("keys", () => {
     expect(actions.stop).toHaveBeenCalledTimes(3);
   });
 
+  it("Esc stops also while a text is being composed, where the key has no name", () => {
+    press(add("input", "text"), "Process", { code: "Escape", isComposing: true });
+    press(add("input", "text"), "Process", { code: "KeyA", isComposing: true });
+    expect(actions.stop).toHaveBeenCalledOnce();
+  });
+
   it("a key that is held down stops again, five times a second at most", () => {
     vi.useFakeTimers();
     vi.advanceTimersByTime(1000);

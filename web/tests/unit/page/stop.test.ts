@@ -25,7 +25,7 @@ beforeEach(() => {
   confirms = false;
   refuse = "";
   store = new Store();
-  const answer = () => Promise.resolve({ ok: refuse === "", error: refuse, text: "" });
+  const answer = () => Promise.resolve({ ok: refuse === "", error: refuse });
   const host = {
     stop: () => (++said.stop, Promise.resolve(confirms)),
     resume: (stops: bigint) => (said.resume.push(stops), answer()),

@@ -2,14 +2,14 @@
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import { channels, digitForces } from "../../../src/state/channels";
 import { kStaleMs } from "../../../src/state/freshness";
 import { GeometrySchema } from "../../../src/gen/phalanx/geometry_pb";
-import { reportLines } from "../../../src/panels/upload_box";
+import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import { Store } from "../../../src/state/store";
-import { readImportReport, streamUrl } from "../../../src/wire/http";
+import { shapesOf } from "../../../src/view3d/shapes";
 
 const stiffness = "force.stiffness_n_per_mm";
+const kSampleStale = 1 << 12; // Status::kSampleStale
 let now = 0;
 let store: Store;
 const receive = (what: NonNullable<MessageInitShape<typeof ToPageSchema>["what"]>) => store.receive(create(ToPageSchema, { what }));
@@ -74,6 +74,50 @@ describe("lost", () => {
     expect(store.lost).toBe(false);
   });
 
+  it("is said at once when a step is not from a fresh measurement, though steps go on, and until one is", () => {
+    tick(1);
+    tick(1.005, { status: kSampleStale });
+    expect(store.lost).toBe(true);
+    expect(store.viewDead).toBe(true);
+    expect(store.unmeasured).toBe(true);
+    for (let i = 0; i < 100; ++i) {
+      now += 20;
+      tick(1.01 + i * 0.02, { status: kSampleStale | 1 });
+      expect(store.unmeasured).toBe(true);
+    }
+    expect(store.freshness.age(now)).toBe(2000);
+    expect(store.tick?.time, "the torque's way to zero is plotted").toBeGreaterThan(2.9);
+    now += kStaleMs + 1;
+    expect(store.lost).toBe(true);
+    expect(store.unmeasured, "the station is silent as well").toBe(false);
+    tick(4);
+    expect(store.lost).toBe(false);
+    expect(store.unmeasured).toBe(false);
+  });
+
+  it("is said when the station's clock goes on and its step does not, as after a reset without a device", () => {
+    tick(1);
+    for (let i = 1; i <= 40; ++i) {
+      now += 20;
+      receive({ case: "tick", value: { tick: 1000n, time: 1 + 0.02 * i } });
+    }
+    expect(store.lost).toBe(true);
+    expect(store.unmeasured).toBe(true);
+    expect(store.tick?.time).toBe(1);
+  });
+
+  it("of a station that still waits for its first measurement is the device's, of one that rests it is not", () => {
+    now += kStaleMs + 1;
+    receive({ case: "state", value: { safety: SafetyState.SAFETY_WAITING } });
+    expect(store.unmeasured).toBe(true);
+    receive({ case: "state", value: { safety: SafetyState.SAFETY_WAITING, stationGone: true } });
+    expect(store.unmeasured).toBe(false);
+    receive({ case: "state", value: { safety: SafetyState.SAFETY_WAITING, busy: "another scene" } });
+    expect(store.unmeasured).toBe(false);
+    store.setPhase("waiting");
+    expect(store.unmeasured).toBe(false);
+  });
+
   it("is said at once when the connection breaks", () => {
     tick(1);
     store.setPhase("waiting");
@@ -99,16 +143,16 @@ describe("what is drawn", () => {
     receive({ case: "state", value: { geometry: 3 } });
     expect(store.viewDead).toBe(true);
     expect(store.lost).toBe(false);
-    store.setGeometry(create(GeometrySchema), 2);
+    store.setGeometry(shapesOf(create(GeometrySchema)), 2);
     expect(store.shapeMissing).toBe(true);
-    store.setGeometry(create(GeometrySchema), 3);
+    store.setGeometry(shapesOf(create(GeometrySchema)), 3);
     expect(store.viewDead).toBe(false);
     receive({ case: "state", value: { geometry: 4, stationGone: true } });
     expect(store.shapeMissing).toBe(false);
   });
 
   it("may be another station's after the line broke, whatever its number", () => {
-    store.setGeometry(create(GeometrySchema), 3);
+    store.setGeometry(shapesOf(create(GeometrySchema)), 3);
     receive({ case: "state", value: { geometry: 3 } });
     expect(store.shapeMissing).toBe(false);
     store.setPhase("waiting");
@@ -136,42 +180,16 @@ describe("listeners", () => {
 });
 
 describe("notices", () => {
-  const notice = (unixTime: number, text: string, more: object = {}) => receive({ case: "notice", value: { unixTime, text, code: "set", who: "page 2", ...more } });
-  const texts = () => store.notices.map((one) => one.text);
-
-  it("of one person who drags one control are one line, the last", () => {
-    for (let i = 0; i < 20; ++i) notice(i, `force.stiffness_n_per_mm = ${i}`);
-    expect(texts()).toEqual(["force.stiffness_n_per_mm = 19"]);
-  });
-
-  it("of others, of other keys, later ones and other things stay", () => {
+  it("that say the same anew take the place of the last one", () => {
+    const notice = (unixTime: number, text: string) => receive({ case: "notice", value: { unixTime, text, code: "set", who: "page 2" } });
     notice(1, "a.b = 1");
-    notice(1, "a.b = 2", { who: "page 3" });
-    notice(1, "a.b = 3, a.c = 4", { who: "page 3" });
-    notice(4, "a.b = 5, a.c = 4", { who: "page 3" });
-    notice(4, "stopped the torque", { code: "stopped" });
-    notice(4, "stopped the torque", { code: "stopped" });
-    expect(texts().length).toBe(6);
+    notice(2, "a.b = 2");
+    notice(2, "a.c = 3");
+    expect(store.notices.map((one) => one.text)).toEqual(["a.b = 2", "a.c = 3"]);
   });
 });
 
 describe("ticks", () => {
-  const contact = [
-    { segment: 5, touching: true, force: 2, forceRaw: 3 },
-    { segment: 4, touching: true, force: 1, forceRaw: 1 },
-    { segment: 15, touching: true, force: 9, forceRaw: 9 },
-  ];
-
-  it("what is sent is the factor times the force; a digit's force is the sum of its segments'", () => {
-    tick(1, { factor: 0.5, contact });
-    expect(digitForces(store.tick)).toEqual([0, 1.5, 0, 0, 0]);
-    const of = (quantity: string, part: number) => store.history.channel(channels.find((one) => one.quantity === quantity && one.part === part)!.index).at(-1);
-    expect(of("force_raw", 5)).toBe(3);
-    expect(of("force_sent", 5)).toBe(1);
-    expect(of("force_sent", 0)).toBe(0);
-    expect(of("torque", 0)).toBeNaN();
-  });
-
   it("are not kept while the plots pause, but still shown", () => {
     tick(1);
     store.setPaused(true);
@@ -184,25 +202,5 @@ describe("ticks", () => {
     for (let i = 0; i < 2000; ++i) tick(i / 60);
     const time = store.history.time();
     expect(time.at(-1)! - time[0]!).toBeGreaterThan(10);
-  });
-});
-
-describe("addresses and answers", () => {
-  it("the stream lies beside the page", () => {
-    expect(streamUrl("http://127.0.0.1:8480/")).toBe("ws://127.0.0.1:8480/stream");
-    expect(streamUrl("https://host/a/b/index.html#x")).toBe("wss://host/a/b/stream");
-  });
-
-  it("an import's report is taken apart, and nonsense is a refusal", () => {
-    const good = '{"ok":true,"report":["a","b"],"findings":["c"],"file":"/x.stl"}';
-    expect(readImportReport(good, 200)).toEqual({ ok: true, error: "", report: ["a", "b"], facts: null, findings: ["c"], file: "/x.stl" });
-    expect(readImportReport('{"ok":false,"error":"open","report":"one\\ntwo"}', 400)).toMatchObject({ ok: false, error: "open", report: ["one", "two"] });
-    const own = { verdict: "usable: a closed solid", triangles: 2404, vertices: 1204, extent_m: [0.061, 0.04, 0.038], closed: true, volume_m3: 5e-5,
-      findings: [{ kind: "duplicate_vertices", found: 12, meaning: "merged" }, { kind: "holes", found: 0, meaning: "none" }] };
-    const read = readImportReport(JSON.stringify({ ok: true, report: own, file: "/x.stl" }), 200);
-    expect(reportLines(read)).toEqual(["usable: a closed solid", "1,204 vertices, 2,404 triangles", "61.0 × 40.0 × 38.0 mm", "closed, 50.0 cm³"]);
-    expect(read.findings).toEqual(["12 duplicate vertices: merged"]);
-    expect(readImportReport("Too large", 413)).toMatchObject({ ok: false, error: "Too large" });
-    expect(readImportReport("null", 500)).toMatchObject({ ok: false, error: "HTTP 500", findings: [] });
   });
 });

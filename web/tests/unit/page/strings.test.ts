@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-import { readFileSync, readdirSync } from "node:fs";
-import { join, resolve } from "node:path";
+import { readFileSync } from "node:fs";
+import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
 import { ChangeKind, HandSource, Notice_Level } from "../../../src/gen/phalanx/cockpit_pb";
 import { strings } from "../../../src/strings";
+import { literals, unusedTexts } from "./source_texts";
 
-const source = resolve(__dirname, "../../../src");
-const keysOfDocs = readFileSync(resolve(source, "../../docs/scenes.md"), "utf8");
+const keysOfDocs = readFileSync(resolve(__dirname, "../../../../docs/scenes.md"), "utf8");
 
 /// The choices of a key in the table of docs/scenes.md.
 function choices(key: string): string[] {
@@ -21,6 +21,7 @@ function visit(value: unknown, path: string, found: (path: string, text: string)
   else for (const [name, one] of Object.entries(value as object)) visit(one, `${path}.${name}`, found);
 }
 
+const kPatienceMs = 60_000; // the compiler reads all sources
 const enumNames = (values: object) => Object.values(values).filter((value) => typeof value === "string").length;
 
 describe("strings", () => {
@@ -58,18 +59,23 @@ describe("strings", () => {
     for (const size of sizes.filter((one) => !placed.includes(one))) expect(strings.object.sizes[size], size).toBeTruthy();
   });
 
-  it("hold all the text: panels and plots have none of their own", () => {
-    for (const folder of ["panels", "plots", "state", "wire"]) {
-      for (const name of readdirSync(join(source, folder))) {
-        readFileSync(join(source, folder, name), "utf8").split("\n").forEach((line, i) => {
-          const code = line.replace(/\/\/.*$/, "");
-          // A sentence, or a capitalised word that is no key of the keyboard, in quotes.
-          const text = /"(?=[^"]*[a-z] [a-z])(?![^"]*[:;{}()=<>])[A-Z][^"]*"/.exec(code) ?? /"(?!Enter|Escape|Arrow)[A-Z][a-z]{2,}"/.exec(code);
-          expect(text?.[0], `${folder}/${name}:${i + 1}`).toBeUndefined();
-          const unit = /["'` ](N|Nm|rad|mm|cm|N\/s|Nm\/s|rad\/s|N\/mm|ms|µs|s|HTTP)["'`\]]|"–"/.exec(code);
-          expect(unit?.[0], `${folder}/${name}:${i + 1}`).toBeUndefined();
-        });
-      }
+  it("hold all the text: the sources have none of their own", () => {
+    const keys = /^(Enter|Escape|Arrow\w+|Home|End|Space|Process)$/; // of the keyboard
+    const scene = 'number or "off"'; // KeyInfo.type
+    const all = literals();
+    expect(all.length).toBeGreaterThan(500);
+    for (const folder of ["panels", "plots", "state", "view3d", "wire", "main.ts"]) expect(all.some(({ place }) => place.startsWith(folder)), folder).toBe(true);
+    for (const { text, place } of all) {
+      if (/[;{}=<>#]/.test(text) || keys.test(text) || text === scene) continue; // shaders and the like
+      expect(text, place).not.toMatch(/(^|\s)[A-Za-z]{2,} [a-z]{2,}(\s|[.,:!?…]|$)/); // a sentence
+      expect(text, place).not.toMatch(/(^|\s)[A-Z][a-z]{2,}(\s|[.,:!?…]|$)/); // a label
+      expect(text.trim(), place).not.toMatch(/^(N|Nm|rad|mm|cm|N\/s|Nm\/s|rad\/s|N\/mm|ms|µs|s|°|HTTP|–)$/);
+      expect(text, place).not.toMatch(/^en(-[A-Z]{2})?$/); // strings.locale
     }
   });
+
+  it("are all used", () => {
+    const inIndexHtml = ["opening", "noScript"]; // opening.test.ts
+    expect(unusedTexts().filter((path) => !inIndexHtml.includes(path))).toEqual([]);
+  }, kPatienceMs);
 });

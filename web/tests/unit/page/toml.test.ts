@@ -68,6 +68,15 @@ describe("fromTyped", () => {
     expect(fromTyped("3", 'number or "off"')).toBe("3");
   });
 
+  it("takes a decimal comma in a number, and nowhere else", () => {
+    expect(fromTyped("1,6", "number")).toBe("1.6");
+    expect(fromTyped(" ,5", 'number or "off"')).toBe(".5");
+    expect(fromTyped("1,234.5", "number")).toBe("1,234.5"); // no number: refused by the station
+    expect(fromTyped("1,2,3", "number")).toBe("1,2,3");
+    expect(fromTyped("[1, 2]", "vector")).toBe("[1, 2]");
+    expect(fromTyped("a, b", "text")).toBe('"a, b"');
+  });
+
   it("a table is one line", () => {
     expect(table([["kind", '"sphere"'], ["diameter_mm", "60"]])).toBe('{kind = "sphere", diameter_mm = 60}');
   });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import { SphereGeometry } from "three";
+import { SphereGeometry, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { creaseNormals } from "../../../src/view3d/crease_normals";
+import { random as seeded } from "../page/random";
 
 const degree = Math.PI / 180;
 const cube = {
@@ -48,7 +49,74 @@ describe("creaseNormals", () => {
     expect(shaded.index.length).toBe(3);
     expect(Array.from(shaded.normal)).not.toContain(NaN);
   });
+  it("groups as comparing all pairs at each vertex would: 200 seeded soups", () => {
+    const random = seeded(20261122);
+    for (let round = 0; round < 200; ++round) {
+      const vertices = 4 + Math.floor(8 * random());
+      const position = Array.from({ length: 3 * vertices }, () => random());
+      const index = Array.from({ length: 3 * Math.floor(30 * random()) }, () => Math.floor(vertices * random()));
+      const crease = Math.PI * random();
+      const shaded = creaseNormals(position, index, crease);
+      const kept = Array.from(shaded.index, (vertex) => shaded.source[vertex]!); // triangles without area are gone
+      const copies = allPairs(position, kept, crease);
+      const pairs = new Set(kept.map((_, corner) => `${copies[corner]}: ${shaded.index[corner]}`));
+      expect(pairs.size, `round ${round}`).toBe(new Set(copies).size); // each group has one copy,
+      expect(pairs.size, `round ${round}`).toBe(shaded.source.length); // and each copy one group
+    }
+  });
+  it("ends where 100,000 triangles meet in one point, all of them in one group or each in its own", () => {
+    const flat = creaseNormals(...fan(100_000, 0), 38 * degree);
+    expect(flat.source.filter((vertex) => vertex === 0).length).toBe(1);
+    expect(normalOf(flat.normal, 0)).toEqual([0, 0, 1]);
+    const folded = creaseNormals(...fan(100_000, 1), 38 * degree);
+    expect(folded.source.filter((vertex) => vertex === 0).length).toBe(100_000);
+  });
+  it("ends where 100,000 triangles meet in one edge: they are one group there", () => {
+    const count = 100_000;
+    const position = [0, 0, 0, 0, 0, 1];
+    const index: number[] = [];
+    for (let i = 0; i < count; ++i) {
+      position.push(Math.cos(i), Math.sin(i), 0.5);
+      index.push(0, 1, i + 2);
+    }
+    const shaded = creaseNormals(position, index, 38 * degree);
+    expect(shaded.source.filter((vertex) => vertex === 0).length).toBe(1);
+  });
   it("makes nothing of nothing", () => {
     expect(creaseNormals([], [], 1).index.length).toBe(0);
   });
 });
+
+/// Triangles around vertex 0; every other rim vertex is lifted by `fold`.
+function fan(count: number, fold: number): [number[], number[]] {
+  const position = [0, 0, 0];
+  const index: number[] = [];
+  for (let i = 0; i < count; ++i) {
+    const angle = (2 * Math.PI * i) / count;
+    position.push(Math.cos(angle), Math.sin(angle), i % 2 === 0 ? 0 : fold);
+    index.push(0, i + 1, ((i + 1) % count) + 1);
+  }
+  return [position, index];
+}
+
+/// For each corner the name of its group, found by comparing all pairs of triangles at its vertex.
+function allPairs(position: readonly number[], index: readonly number[], crease: number): string[] {
+  const group = index.map((_, corner) => corner);
+  const points = Float32Array.from(position);
+  const unit = (face: number): Vector3 => {
+    const [a, b, c] = [0, 1, 2].map((k) => new Vector3().fromArray(points, 3 * index[face + k]!)) as [Vector3, Vector3, Vector3];
+    return b.sub(a).cross(c.sub(a)).normalize();
+  };
+  for (let a = 0; a < index.length; ++a) {
+    for (let b = 0; b < a; ++b) {
+      if (index[a] !== index[b]) continue;
+      const [p, q] = [a - (a % 3), b - (b % 3)];
+      const others = index.slice(q, q + 3).filter((vertex) => vertex !== index[a]);
+      const share = index.slice(p, p + 3).some((vertex) => vertex !== index[a] && others.includes(vertex));
+      if (!share || unit(p).dot(unit(q)) < Math.cos(crease)) continue;
+      const [from, to] = [group[a]!, group[b]!];
+      group.forEach((one, corner) => one === from && (group[corner] = to));
+    }
+  }
+  return group.map((one, corner) => `${index[corner]} ${one}`);
+}

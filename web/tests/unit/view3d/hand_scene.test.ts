@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene without a canvas: shapes that come and go, what is visible, and where it is drawn.
 import { create } from "@bufbuild/protobuf";
-import { BoxGeometry, BufferGeometry, Material, Skeleton, SphereGeometry } from "three";
+import { BoxGeometry, BufferGeometry, InstancedMesh, Material, Mesh, Skeleton, SkinnedMesh, SphereGeometry } from "three";
+import type { EventDispatcher } from "three";
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { GeometrySchema, MeshSchema, SkinSchema } from "../../../src/gen/phalanx/geometry_pb";
-import type { Geometry, Mesh } from "../../../src/gen/phalanx/geometry_pb";
+import type { Geometry, Mesh as MeshMessage } from "../../../src/gen/phalanx/geometry_pb";
 import { ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
 import { arrowLargestForce, arrowLength, arrowMetresPerNewton } from "../../../src/view3d/contact_marks";
 import { HandScene } from "../../../src/view3d/hand_scene";
-import { skinShape } from "../../../src/view3d/hand_shape";
+import { qualityLevels } from "../../../src/view3d/quality";
+import { shapesOf } from "../../../src/view3d/shapes";
 
 const segments = 16;
 
-function meshOf(shape: BufferGeometry): Mesh {
+function meshOf(shape: BufferGeometry): MeshMessage {
   return create(MeshSchema, { position: Array.from(shape.getAttribute("position").array), index: Array.from(shape.getIndex()!.array) });
 }
 
@@ -48,7 +50,7 @@ describe("where it is drawn", () => {
   for (const withSkin of [true, false]) {
     it(`each segment's origin comes back from the bones' matrices (${withSkin ? "skin" : "segments"})`, () => {
       const scene = new HandScene();
-      scene.setGeometry(geometry(withSkin));
+      scene.setGeometry(shapesOf(geometry(withSkin)));
       scene.show(tick(1));
       const shown = scene.hands.shownOrigins();
       const ghost = scene.hands.ghostOrigins();
@@ -60,18 +62,41 @@ describe("where it is drawn", () => {
       }
     });
   }
-  it("nothing before the first tick, and nothing moves by half a hand", () => {
+  it("the skin is where its bones take it, by hand: turned by 0.2 about each of two bones, half of each", () => {
+    const input = geometry(true);
     const scene = new HandScene();
-    scene.setGeometry(geometry(true));
+    scene.setGeometry(shapesOf(input));
+    scene.show(tick(1));
+    const drawn = scene.hands.shownSkin();
+    expect(drawn.length).toBe(64);
+    const [cos, sin] = [Math.cos(0.5 - 0.3), Math.sin(0.5 - 0.3)]; // shown at 0.5, bound at 0.3
+    for (const { vertex, at } of drawn) {
+      const [x, y, z] = input.skin!.mesh!.position.slice(3 * vertex, 3 * vertex + 3) as [number, number, number];
+      const middle = 0.02 * 3.5; // of the origins of bones 3 and 4
+      expect(at[0]).toBeCloseTo(middle + cos * (x - middle) - sin * y, 6);
+      expect(at[1]).toBeCloseTo(sin * (x - middle) + cos * y, 6);
+      expect(at[2]).toBeCloseTo(z, 6); // bound and shown at the same height
+    }
+  });
+  it("nothing before the first tick, and nothing moves by half a hand, which is grey until a whole one comes", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(true)));
     expect(scene.hands.shownOrigins()).toEqual([]);
     scene.show(tick(1));
     const before = scene.hands.shownOrigins();
-    scene.show({ ...tick(1), gdpPose: poses(1).slice(7) });
+    expect(scene.dead).toBe(false);
+    expect(scene.show({ ...tick(1), gdpPose: poses(1).slice(7) })).toBe(false);
     expect(scene.hands.shownOrigins()).toEqual(before);
+    expect(scene.dead).toBe(true);
+    expect(scene.marks.drawn()).toEqual([]);
+    expect(scene.hands.ghostGroup.visible).toBe(false);
+    expect(scene.show(tick(1))).toBe(true);
+    expect(scene.dead).toBe(false);
+    expect(scene.marks.drawn()).toHaveLength(1);
   });
   it("a measured hand that is not whole is no ghost", () => {
     const scene = new HandScene();
-    scene.setGeometry(geometry(true));
+    scene.setGeometry(shapesOf(geometry(true)));
     scene.show(tick(1));
     scene.show({ ...tick(1), hcpPose: [] });
     expect(scene.hands.shownOrigins()).toHaveLength(segments);
@@ -80,7 +105,7 @@ describe("where it is drawn", () => {
   });
   it("stays where it is when the skin is switched off", () => {
     const scene = new HandScene();
-    scene.setGeometry(geometry(true));
+    scene.setGeometry(shapesOf(geometry(true)));
     scene.show(tick(1));
     const before = scene.hands.shownOrigins();
     scene.setParts({ skin: false, ghost: true, arrows: true, object: true });
@@ -88,9 +113,9 @@ describe("where it is drawn", () => {
   });
   it("a new hand is not seen in the old one's place", () => {
     const scene = new HandScene();
-    scene.setGeometry(geometry(true));
+    scene.setGeometry(shapesOf(geometry(true)));
     scene.show(tick(1));
-    scene.setGeometry(geometry(true));
+    scene.setGeometry(shapesOf(geometry(true)));
     expect(scene.hands.shownOrigins()).toEqual([]);
     expect(scene.hands.shownGroup.visible).toBe(false);
   });
@@ -99,7 +124,7 @@ describe("where it is drawn", () => {
 describe("arrows", () => {
   it("are to scale, with the factor of the station", () => {
     const scene = new HandScene();
-    scene.setGeometry(geometry(false));
+    scene.setGeometry(shapesOf(geometry(false)));
     scene.show(tick(4, 0.5));
     const [arrow, ...others] = scene.marks.drawn();
     expect(others).toEqual([]);
@@ -110,7 +135,7 @@ describe("arrows", () => {
     expect(arrowLength(100)).toBe(arrowLargestForce * arrowMetresPerNewton);
     expect(arrowLength(0)).toBe(0);
     const scene = new HandScene();
-    scene.setGeometry(geometry(false));
+    scene.setGeometry(shapesOf(geometry(false)));
     for (const nothing of [tick(0), tick(5, 0), tick(NaN)]) {
       scene.show(nothing);
       expect(scene.marks.drawn()).toEqual([]);
@@ -118,7 +143,7 @@ describe("arrows", () => {
   });
   it("without a whole point or direction are left out", () => {
     const scene = new HandScene();
-    scene.setGeometry(geometry(false));
+    scene.setGeometry(shapesOf(geometry(false)));
     for (const bad of [{ point: [NaN, 0, 0] }, { point: [] }, { normal: [0, 0, 0] }, { segment: 16 }]) {
       const spoilt = tick(1);
       Object.assign(spoilt.contact[0]!, bad);
@@ -131,7 +156,7 @@ describe("arrows", () => {
 describe("a lost connection", () => {
   it("takes ghost and arrows away at once, and gives them back", () => {
     const scene = new HandScene();
-    scene.setGeometry(geometry(true));
+    scene.setGeometry(shapesOf(geometry(true)));
     scene.show(tick(2));
     expect(scene.hands.ghostGroup.visible).toBe(true);
     scene.setLost(true);
@@ -153,7 +178,7 @@ describe("memory", () => {
     const materials = new Set<Material>();
     const live = { geometries: 0, bones: 0, materials: 0 };
     const setAttribute = BufferGeometry.prototype.setAttribute;
-    const inputs = geometry(true);
+    const inputs = shapesOf(geometry(true));
     vi.spyOn(BufferGeometry.prototype, "setAttribute").mockImplementation(function (this: BufferGeometry, ...args) {
       geometries.add(this);
       return setAttribute.apply(this, args);
@@ -194,21 +219,65 @@ function collect(node: object, into: Set<Material>): void {
   if ("material" in node && node.material instanceof Material) into.add(node.material);
 }
 
-describe("skinShape", () => {
-  it("refuses a skin that does not fit together, and the segments are shown instead", () => {
+describe("a skin that does not fit together", () => {
+  it("is not shown, but the segments are", () => {
     for (const spoil of ["segment", "weight", "bindPose"] as const) {
       const made = geometry(true);
       made.skin![spoil] = made.skin![spoil].slice(1);
-      expect(skinShape(made.skin)).toBeNull();
       const scene = new HandScene();
-      scene.setGeometry(made);
+      scene.setGeometry(shapesOf(made));
       scene.show(tick(1));
       expect(scene.hands.shownOrigins()).toHaveLength(segments);
+      expect(scene.hands.shownSkin()).toEqual([]);
     }
   });
-  it("keeps each vertex's weights at a sum of 1, also where it adds vertices", () => {
-    const shape = skinShape(geometry(true).skin)!;
-    const weight = shape.geometry.getAttribute("skinWeight");
-    for (let i = 0; i < weight.count; ++i) expect(weight.getX(i) + weight.getY(i) + weight.getZ(i) + weight.getW(i)).toBeCloseTo(1, 6);
+});
+
+describe("the fingers' shade on the object", () => {
+  it("is that of the right finger where a segment has no surface", () => {
+    const made = geometry(false);
+    made.segment[1] = create(MeshSchema, {});
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(made));
+    scene.show(tick(1));
+    // Each capsule's middle is its segment's origin: a box around it, 2 cm from the next.
+    const middles = scene.hands.capsules().map(({ from, to }) => (from[0] + to[0]) / 2);
+    const expected = Array.from({ length: 15 }, (_, segment) => 0.02 * segment).filter((_, segment) => segment !== 1);
+    expect(middles.length).toBe(14);
+    middles.forEach((x, i) => expect(x).toBeCloseTo(expected[i]!, 6));
   });
 });
+
+describe("a renderer that goes", () => {
+  it("is held by nothing that it has drawn: shapes, materials, bones, arrows and shadow, of both looks", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(true)));
+    scene.show(tick(1));
+    const drawn = new Set<EventDispatcher<{ dispose: object }>>();
+    const collectAll = () => [scene.scene, scene.over].forEach((part) => part.traverse((node) => drawnOf(node).forEach((one) => drawn.add(one))));
+    for (const skin of [true, false]) {
+      scene.setParts({ skin, ghost: true, arrows: true, object: true });
+      for (const settings of qualityLevels) {
+        scene.setQuality(settings);
+        collectAll();
+      }
+    }
+    expect(drawn.size).toBeGreaterThan(15);
+    const held = new Set(drawn);
+    drawn.forEach((one) => one.addEventListener("dispose", () => held.delete(one))); // as a renderer does
+    scene.release();
+    expect([...held].map((one) => one.constructor.name)).toEqual([]);
+    scene.show(tick(1)); // and all is still there to be drawn by the next
+    expect(scene.hands.shownOrigins()).toHaveLength(segments);
+    expect(scene.marks.drawn()).toHaveLength(1);
+  });
+});
+
+/// What of a node a renderer keeps things for, and listens to until it is disposed of.
+function drawnOf(node: object): EventDispatcher<{ dispose: object }>[] {
+  const found: unknown[] = [];
+  if (node instanceof Mesh) found.push(node.geometry, node.material);
+  if (node instanceof InstancedMesh) found.push(node);
+  if (node instanceof SkinnedMesh) found.push(node.skeleton.boneTexture);
+  return found.filter((one) => one !== null) as EventDispatcher<{ dispose: object }>[];
+}

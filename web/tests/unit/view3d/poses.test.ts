@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { bindInverses, kSegments, poseMatrices, poseMatrix } from "../../../src/view3d/poses";
+import { bindInverses, poseMatrices, poseMatrix } from "../../../src/view3d/poses";
+import { kSegments } from "../../../src/view3d/segments";
 
 const half = Math.SQRT1_2;
 const quarterTurnAboutZ = [1, 2, 3, 0, 0, half, half];

@@ -8,6 +8,19 @@ function run(watch: QualityWatch, frame: number, seconds: number): number {
   return watch.level;
 }
 
+/// When it goes up while frames are slow where `slow` [s].
+function upsWithin(watch: QualityWatch, seconds: number, slow: (time: number) => boolean): number[] {
+  const ups: number[] = [];
+  for (let time = 0; time < seconds; ) {
+    const before = watch.level;
+    const frame = slow(time) ? 1 / 15 : 1 / 60;
+    watch.frame(frame);
+    time += frame;
+    if (watch.level > before) ups.push(time);
+  }
+  return ups;
+}
+
 describe("QualityWatch", () => {
   it("stays at the top while frames are fast", () => {
     expect(run(new QualityWatch(), 1 / 60, 60)).toBe(highestQuality);
@@ -35,20 +48,19 @@ describe("QualityWatch", () => {
     expect(run(watch, 1 / 60, 4)).toBe(1);
     expect(run(watch, 1 / 60, 8)).toBe(2);
   });
-  it("swings less and less where one level is too slow and the next is fast", () => {
+  it("tries three times, waiting longer each time, where one level is fast and the next too slow; then it stays down for good", () => {
     const watch = new QualityWatch(1);
-    let time = 0;
-    const ups: number[] = [];
-    while (time < 600) {
-      const before = watch.level;
-      const frame = watch.level >= 2 ? 1 / 15 : 1 / 60;
-      watch.frame(frame);
-      time += frame;
-      if (watch.level > before) ups.push(time);
-    }
+    const ups = upsWithin(watch, 3600, () => watch.level >= 2);
     const waits = ups.slice(1).map((at, i) => at - ups[i]!);
-    expect(waits.length).toBeGreaterThan(2);
-    for (let i = 1; i < waits.length; ++i) expect(waits[i]!).toBeGreaterThan(1.5 * waits[i - 1]!);
+    expect(waits.length).toBe(2);
+    expect(waits[1]!).toBeGreaterThan(1.5 * waits[0]!);
+    expect(watch.level).toBe(1);
+  });
+  it("does not count it against a level that the machine was busy for a while, an hour after the step up", () => {
+    const watch = new QualityWatch(1);
+    const ups = upsWithin(watch, 6 * 3600, (time) => watch.level >= 2 && time % 3600 < 5);
+    expect(ups.length).toBeGreaterThan(6);
+    expect(watch.level).toBeGreaterThan(1);
   });
   it("does not judge by one long pause", () => {
     const watch = new QualityWatch();

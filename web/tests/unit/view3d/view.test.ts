@@ -4,6 +4,7 @@ import { create } from "@bufbuild/protobuf";
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { GeometrySchema } from "../../../src/gen/phalanx/geometry_pb";
 import { TickSchema } from "../../../src/gen/phalanx/tick_pb";
+import { shapesOf } from "../../../src/view3d/shapes";
 import { createHandView } from "../../../src/view3d/view";
 
 afterEach(() => vi.restoreAllMocks());
@@ -14,7 +15,7 @@ describe("without WebGL", () => {
     const troubles: string[] = [];
     const host = document.createElement("div");
     const view = createHandView(host, { onTrouble: (what) => troubles.push(what) });
-    view.setGeometry(create(GeometrySchema, {}));
+    view.setGeometry(shapesOf(create(GeometrySchema, {})));
     view.show(create(TickSchema, { tick: 3n }));
     view.setTheme("light");
     view.setLost(true);

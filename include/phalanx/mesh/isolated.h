@@ -9,7 +9,7 @@
 
 namespace phalanx::mesh {
 
-/// What a reader may use before it is stopped.
+/// What the work in the child may use before it is stopped.
 struct IsolationLimits {
   std::uint64_t cpu_seconds = 3;
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;  ///< of address space, beyond this process' own
@@ -22,7 +22,13 @@ struct IsolationLimits {
 /// @throws std::invalid_argument with what the reader threw, or, starting with `origin`, that it crashed, ran
 /// into a limit.
 /// @throws std::runtime_error if the system gives no process or pipe.
+/// Set-up only: forks, allocates, throws.
 [[nodiscard]] TriangleMesh run_isolated(const std::function<TriangleMesh()>& read, const std::string& origin,
                                         const IsolationLimits& limits);
+
+/// The same for work whose outcome is a text: for the whole import of a mesh from a stranger, beside a loop
+/// that moves a hand. What `work` changes in memory stays in the child.
+[[nodiscard]] std::string run_isolated_text(const std::function<std::string()>& work,
+                                            const std::string& origin, const IsolationLimits& limits);
 
 }  // namespace phalanx::mesh

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// A station with its cockpit and server, and pages that say and hear what a browser's would.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "phalanx/cockpit.pb.h"
+#include "phalanx/serve/cockpit.h"
+#include "record/temporary_folder.h"
+#include "serve/owner.h"
+#include "serve/web/page_client.h"
+
+namespace phalanx {
+namespace test {
+
+using testing::read_file;
+
+/// A browser's page as the cockpit knows it.
+class Page {
+ public:
+  explicit Page(std::uint16_t port, const std::string& secret = "", const std::string& name = "")
+      : client_(port) {
+    wire::ToHost hello;
+    hello.mutable_hello()->set_protocol(Cockpit::kProtocol);
+    hello.mutable_hello()->set_secret(secret);
+    hello.mutable_hello()->set_name(name);
+    say(hello);
+    welcome = hear(wire::ToPage::kWelcome).welcome();
+    state = hear(wire::ToPage::kState).state();
+  }
+
+  void say(const wire::ToHost& message) { client_.say(message.SerializeAsString()); }
+  /// The next of a kind; the others are taken in. What: kGone: the line was closed.
+  wire::ToPage hear(wire::ToPage::WhatCase what) {
+    return hear([what](const wire::ToPage& message) { return message.what_case() == what; });
+  }
+  wire::ToPage hear(const std::function<bool(const wire::ToPage&)>& so) {
+    for (;;) {
+      const PageClient::Frame frame = client_.hear();
+      if (frame.opcode == PageClient::kPing) {
+        client_.say(frame.payload, PageClient::kPong);
+        continue;
+      }
+      if (frame.opcode != PageClient::kBinary) {
+        ADD_FAILURE() << "the line was closed: " << frame.reason();
+        return {};
+      }
+      wire::ToPage message;
+      EXPECT_TRUE(message.ParseFromString(frame.payload));
+      if (message.has_state()) state = message.state();
+      if (so(message)) return message;
+    }
+  }
+  wire::Notice notice(const std::string& code) {
+    return hear([&](const wire::ToPage& m) { return m.has_notice() && m.notice().code() == code; }).notice();
+  }
+  /// Until the state is so.
+  void until(const std::function<bool(const wire::State&)>& so) {
+    if (so(state)) return;
+    hear([&](const wire::ToPage& m) { return m.has_state() && so(m.state()); });
+  }
+  /// @returns the reply to it
+  wire::Reply ask(wire::ToHost message) {
+    message.set_request(++request_);
+    say(message);
+    return hear([&](const wire::ToPage& m) { return m.has_reply() && m.reply().request() == request_; })
+        .reply();
+  }
+  wire::Reply set(const std::string& key, const std::string& value) {
+    wire::ToHost message;
+    auto& setting = *message.mutable_set()->add_setting();
+    setting.set_key(key);
+    setting.set_value(value);
+    return ask(message);
+  }
+  PageClient& client() { return client_; }
+
+  wire::Welcome welcome;
+  wire::State state;
+
+ private:
+  PageClient client_;
+  std::uint32_t request_ = 0;
+};
+
+inline wire::ToHost to_stop() {
+  wire::ToHost message;
+  message.mutable_stop();
+  return message;
+}
+inline wire::ToHost to_resume(const StationHost& host) {
+  wire::ToHost message;
+  message.mutable_resume()->set_stops(host.stops());
+  return message;
+}
+inline wire::ToHost to_see(std::uint64_t ticks) {
+  wire::ToHost message;
+  message.set_request(77);
+  message.mutable_seen()->set_ticks(ticks);
+  return message;
+}
+inline wire::ToHost to_take() {
+  wire::ToHost message;
+  message.mutable_take();
+  return message;
+}
+
+inline const std::string kLookOn = "https://192.0.2.1:8480/?token=look";
+
+class CockpitTest : public ::testing::Test {
+ protected:
+  CockpitTest() {
+    StationHostSettings station;
+    station.scene = "first_touch";
+    station.device = "sliders";
+    station.ask_for_realtime = false;
+    host_ = std::make_unique<StationHost>(station, clock_);
+    cockpit_ = std::make_unique<Cockpit>(
+        *host_, CockpitSettings{.log = folder_ / "audit.jsonl",
+                                .uploads = folder_ / "up",
+                                .version = "1.2.3",
+                                .clock = [this] { return clock_.now() * clock_.slowdown() + skipped_; }});
+    WebServerSettings settings;
+    settings.port = 0;
+    settings.site_missing = "none";
+    server_ = std::make_unique<WebServer>(settings, *cockpit_);
+    cockpit_->attach(*server_, {kLookOn});
+    server_->start();
+    owner_ = std::make_unique<Owner>(*host_);
+  }
+  ~CockpitTest() override {
+    owner_.reset();
+    server_.reset();
+    cockpit_.reset();
+  }
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+  /// So long passes for the cockpit at once.
+  void skip(double seconds) { skipped_ = skipped_ + seconds; }
+  std::string post(const std::string& path, const std::string& body, const std::string& fields = "") const {
+    return ask(port(), "POST " + path +
+                           " HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nConnection: close\r\n"
+                           "Content-Length: " +
+                           std::to_string(body.size()) + "\r\n" + fields + "\r\n" + body);
+  }
+  /// The log's file, with all that was told before this.
+  std::string log_text() const {
+    const std::string mark = "mark " + std::to_string(++marks_);
+    cockpit_->typed("mark", mark);
+    std::string text;
+    for (int i = 0; i < 60'000 && text.find(mark + "\"") == std::string::npos; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      text = read_file(folder_ / "audit.jsonl");
+    }
+    return text;
+  }
+  std::vector<nlohmann::json> log() const {
+    std::istringstream text(log_text());
+    std::vector<nlohmann::json> lines;
+    for (std::string line; std::getline(text, line);) {
+      const nlohmann::json one = nlohmann::json::parse(line);
+      if (one["code"] != "mark") lines.push_back(one);
+    }
+    return lines;
+  }
+  std::size_t logged(const std::string& code) const {
+    std::size_t count = 0;
+    for (const auto& line : log()) count += line["code"] == code ? 1U : 0U;
+    return count;
+  }
+
+  const testing::TemporaryFolder folder_;
+  const Clock clock_{kHostSlowdown};
+  std::atomic<double> skipped_{0.0};
+  mutable int marks_ = 0;  ///< in the log
+  std::unique_ptr<StationHost> host_;
+  std::unique_ptr<Cockpit> cockpit_;
+  std::unique_ptr<WebServer> server_;
+  std::unique_ptr<Owner> owner_;
+};
+
+}  // namespace test
+}  // namespace phalanx

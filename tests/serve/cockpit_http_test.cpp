@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pages ask for over plain HTTP: a stop, the shapes, a mesh of their own. docs/cockpit.md
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "phalanx/geometry.pb.h"
+#include "serve/cockpit_fixture.h"
+
+namespace phalanx {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using CockpitHttp = CockpitTest;
+
+TEST_F(CockpitHttp, AStopComesInOverPlainHttpToo) {
+  Page page(port(), "", "Anna");
+  EXPECT_EQ(status_of(post("/stop", "")), 200);
+  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_EQ(page.notice("stopped").who(), "a page (127.0.0.1)");
+  EXPECT_EQ(status_of(post("/stop", "", "X-Phalanx-Page: " + page.welcome.secret() + "\r\n")), 200);
+  EXPECT_EQ(page.notice("stopped").who(), "page 1 (127.0.0.1), Anna");
+  EXPECT_EQ(status_of(ask(port(), get("/stop"))), 405) << "no link stops a hand";
+  EXPECT_EQ(status_of(post("/resume", "")), 404);
+  EXPECT_TRUE(host_->held_stopped());
+}
+
+TEST_F(CockpitHttp, TheShapesAreFetchedByTheirRevision) {
+  Page page(port());
+  const std::string answer = ask(port(), get("/geometry/1"));
+  ASSERT_EQ(status_of(answer), 200);
+  wire::Geometry geometry;
+  ASSERT_TRUE(geometry.ParseFromString(body_of(answer)));
+  EXPECT_EQ(geometry.revision(), 1U);
+  EXPECT_GT(geometry.object().position_size(), 0);
+  for (const std::string wrong : {"2", "", "1x", "../1", "-1", "01", "99999999999999999999"})
+    EXPECT_EQ(status_of(ask(port(), get("/geometry/" + wrong))) / 100, 4) << wrong;
+}
+
+TEST_F(CockpitHttp, TheOperatorSendsAMeshAndGraspsIt) {
+  Page page(port());
+  Page other(port());
+  const std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const std::string mine = "X-Phalanx-Page: " + page.welcome.secret() + "\r\n";
+  const std::string theirs = "X-Phalanx-Page: " + other.welcome.secret() + "\r\n";
+  EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mm", mesh)) / 100, 4);
+  EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mm", mesh, theirs)) / 100, 4);
+  EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mile", mesh, mine)), 400);
+  const auto bad = nlohmann::json::parse(body_of(post("/mesh?name=b.obj", "not a mesh", mine)));
+  EXPECT_FALSE(bad["ok"].get<bool>());
+  const auto good =
+      nlohmann::json::parse(body_of(post("/mesh?token=geheim&name=../a.obj&unit=mm", mesh, mine)));
+  ASSERT_TRUE(good["ok"].get<bool>()) << good.dump();
+  const wire::Notice told = other.notice("upload");
+  EXPECT_THAT(log_text(), Not(HasSubstr("geheim")));
+  EXPECT_EQ(told.who(), "page 1 (127.0.0.1)");
+  wire::ToHost set;
+  const auto lay = [&](const std::string& key, const std::string& value) {
+    auto& setting = *set.mutable_set()->add_setting();
+    setting.set_key(key);
+    setting.set_value(value);
+  };
+  lay("objects.0", "{kind = \"file\", file = \"" + good["file"].get<std::string>() +
+                       "\", size_mm = 0, unit = \"mm\", position_mm = [0, 400, 0]}");
+  const wire::Reply reply = page.ask(set);
+  EXPECT_TRUE(reply.ok()) << reply.error();
+  EXPECT_FALSE(page.set("objects.0.file", "/etc/passwd").ok());
+}
+
+TEST_F(CockpitHttp, EndsWhileChangesWaitThatAreAnsweredWhenItIsNoMore) {
+  Page page(port());
+  owner_.reset();  // nobody answers
+  for (std::uint32_t request : {101U, 102U}) {
+    wire::ToHost scene;
+    scene.mutable_scene()->set_name("pinch_ball");
+    scene.set_request(request);
+    page.say(scene);
+  }
+  EXPECT_TRUE(page.ask(to_take()).ok()) << "those before have been handed over";
+  server_.reset();
+  EXPECT_EQ(page.client().hear_end().code(), 1001);
+  cockpit_.reset();
+  EXPECT_EQ(host_->state()->scene, "first_touch");
+  while (host_->state()->scene != "pinch_ball" || !host_->state()->busy.empty()) {
+    host_->go_on();  // answers to a cockpit that is no more
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+TEST_F(CockpitHttp, AStopIsHeardWhenAllPlacesAreTaken) {
+  std::vector<std::unique_ptr<Page>> pages;
+  for (std::size_t i = 0; i < WebServerSettings{}.connections; ++i)
+    pages.push_back(std::make_unique<Page>(port()));
+  EXPECT_EQ(status_of(PageClient(port()).welcome()), 503);
+  EXPECT_EQ(status_of(post("/stop", "")), 200);
+  EXPECT_TRUE(host_->held_stopped());
+}
+
+TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
+  Page page(port());
+  std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  for (int i = 0; i < 1000; ++i) mesh += "# a line that only makes it longer than a pipe of one page\n";
+  const std::string mine = "X-Phalanx-Page: " + page.welcome.secret() + "\r\n";
+  const auto good = nlohmann::json::parse(body_of(post("/mesh?name=a.obj&unit=mm", mesh, mine)));
+  ASSERT_TRUE(good["ok"].get<bool>()) << good.dump();
+  page.notice("upload");
+  // The next one is written to a pipe that nobody reads until the end.
+  const std::string pipe = good["file"].get<std::string>() + ".partial";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  ASSERT_GE(::fcntl(reader, F_SETPIPE_SZ, 4096), 4096);
+  RawClient line(port());
+  line.say("POST /mesh?name=a.obj&unit=mm HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\n" +
+           mine + "Content-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh);
+  page.notice("upload");
+  pollfd begun{.fd = reader, .events = POLLIN, .revents = 0};
+  ASSERT_EQ(::poll(&begun, 1, 300'000), 1) << "nothing is written";
+  owner_.reset();
+  server_.reset();
+  cockpit_.reset();  // hangs if it waits
+  ASSERT_EQ(::fcntl(reader, F_SETFL, 0), 0);
+  std::size_t written = 0;
+  std::array<char, 4096> piece{};
+  for (ssize_t got = 1; got > 0;) {
+    got = ::read(reader, piece.data(), piece.size());
+    written += static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+  }
+  EXPECT_EQ(written, mesh.size()) << "it was still being written";
+  ::close(reader);
+}
+
+}  // namespace
+}  // namespace phalanx

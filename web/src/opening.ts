@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first script, and a small one: what index.html holds is painted, then the page itself comes and takes its place.
+import { strings } from "./strings";
+
+const kUnseenMs = 250; // a hidden page is not painted
+
+document.documentElement.lang = strings.locale;
+const bringIn = () => void import("./main"); // once, however often it is asked for
+requestAnimationFrame(() => setTimeout(bringIn)); // what is asked for in a frame's callback comes after its paint
+setTimeout(bringIn, kUnseenMs);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A page without a station: what it was told, and what it asked for.
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { StateSchema, ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import type { App } from "../../../src/panels/app";
+import { Store } from "../../../src/state/store";
+import type { Change, Host } from "../../../src/wire/host";
+
+export const stiffness = "force.stiffness_n_per_mm";
+export const kMe = 2; // this page's number
+
+export interface FakeApp {
+  readonly app: App;
+  readonly store: Store;
+  readonly asked: (readonly Change[])[];
+  readonly resets: number[]; // times of the faults that were to be reset
+  refuse: string; // what the station answers; empty: it does it
+  state(state: MessageInitShape<typeof StateSchema>): void;
+  /// The page that has control, and the values of keys.
+  operate(page: number, values?: readonly (readonly [string, string])[]): void;
+}
+
+export function fakeApp(): FakeApp {
+  const store = new Store();
+  store.setPhase("open");
+  const key = [
+    { path: stiffness, type: "number", range: ">= 0, <= 100", defaultValue: "0.5" },
+    { path: "stabiliser.method", type: "choice", range: "none, smoothing, low_pass", defaultValue: '"smoothing"' },
+    { path: "smoothing.enabled", type: "flag", range: "true, false", defaultValue: "true" },
+  ];
+  store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: 1, page: kMe, mayOperate: true, key }) } }));
+  const answer = () => Promise.resolve({ ok: made.refuse === "", error: made.refuse });
+  const host = {
+    set: (changes: readonly Change[]) => {
+      made.asked.push(changes);
+      return answer();
+    },
+    reset: (faultTime: number) => {
+      made.resets.push(faultTime);
+      return answer();
+    },
+  } as unknown as Host;
+  const state = (value: MessageInitShape<typeof StateSchema>) => store.receive(create(ToPageSchema, { what: { case: "state", value } }));
+  const made: FakeApp = {
+    app: { store, host, dialogs: document.createElement("div"), takeControl: () => {}, upload: () => Promise.reject(new Error("none")) },
+    store,
+    asked: [],
+    resets: [],
+    refuse: "",
+    state,
+    operate: (page, values = []) => state({ operatorPage: page, value: values.map(([name, value]) => ({ key: name, value })) }),
+  };
+  return made;
+}

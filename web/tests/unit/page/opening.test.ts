@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+import { readFileSync } from "node:fs";
+import { resolve } from "node:path";
+import { afterEach, expect, it, vi } from "vitest";
+import { strings } from "../../../src/strings";
+
+const page = readFileSync(resolve(__dirname, "../../../index.html"), "utf8");
+const brought = vi.fn();
+afterEach(() => {
+  vi.unstubAllGlobals();
+  vi.useRealTimers();
+});
+
+/// Takes the first script in, with frames that are painted when the test says so.
+async function open(): Promise<() => void> {
+  const frames: (() => void)[] = [];
+  vi.useFakeTimers();
+  vi.stubGlobal("requestAnimationFrame", (call: () => void) => frames.push(call));
+  brought.mockClear();
+  vi.resetModules();
+  vi.doMock("../../../src/main", () => {
+    brought();
+    return {};
+  });
+  await import("../../../src/opening");
+  return () => frames.forEach((call) => call());
+}
+
+it("the page's frame stands in index.html itself, in the words of strings.ts, with no style or script that the station forbids", () => {
+  const parsed = new DOMParser().parseFromString(page.replace(/<(script|link)[^>]*>/g, ""), "text/html"); // which would be fetched
+  expect(parsed.documentElement.lang).toBe(strings.locale);
+  expect(parsed.title).toBe(strings.title);
+  expect(parsed.querySelector("#page > #opening h1")!.textContent).toBe(strings.product);
+  expect(parsed.querySelector("#page > #opening p")!.textContent).toBe(strings.opening);
+  expect(/<noscript>(.*)<\/noscript>/.exec(page)![1]).toBe(strings.noScript);
+  expect(page).not.toMatch(/<style|style=|<script(?![^>]* src=)/);
+});
+
+it("the page itself comes after the first frame, not before", async () => {
+  const paint = await open();
+  await vi.advanceTimersByTimeAsync(1);
+  expect(brought).not.toHaveBeenCalled();
+  paint();
+  await vi.advanceTimersByTimeAsync(1);
+  vi.useRealTimers(); // what follows is not for want of a frame
+  await vi.waitFor(() => expect(brought).toHaveBeenCalledOnce());
+  expect(document.documentElement.lang).toBe(strings.locale);
+});
+
+it("a page that nobody sees comes, too", async () => {
+  await open();
+  await vi.advanceTimersByTimeAsync(1000);
+  vi.useRealTimers();
+  await vi.waitFor(() => expect(brought).toHaveBeenCalledOnce());
+});

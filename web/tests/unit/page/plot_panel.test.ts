@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+import { create } from "@bufbuild/protobuf";
+import { afterEach, beforeAll, beforeEach, describe, expect, it, vi } from "vitest";
+import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import * as dom from "../../../src/panels/dom";
+import { titleOf } from "../../../src/plots/plot_kinds";
+import { plotPanel, type PlotPanel } from "../../../src/plots/plot_panel";
+import { csvOf } from "../../../src/plots/export";
+import { Store } from "../../../src/state/store";
+import { strings } from "../../../src/strings";
+import { fakeCanvases, textsOn } from "./fake_canvas";
+
+const words = strings.plots;
+let store: Store;
+let panel: PlotPanel;
+const tick = (time: number) => store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: BigInt(1000 * time), time, factor: 1 } } }));
+const press = (name: string) =>
+  [...panel.element.querySelectorAll("button")].find((one) => (one.getAttribute("aria-label") ?? one.textContent) === name)!.click();
+const plots = () => [...panel.element.querySelectorAll("figcaption strong")].map((title) => title.textContent);
+
+beforeAll(fakeCanvases);
+beforeEach(async () => {
+  localStorage.clear();
+  store = new Store();
+  store.setPhase("open");
+  panel = plotPanel(store, "dark");
+  document.body.replaceChildren(panel.element);
+  await Promise.resolve(); // it is built when it has its place
+});
+afterEach(() => vi.restoreAllMocks());
+
+describe("the plots", () => {
+  it("pause, say so, and go on", () => {
+    const badge = panel.element.querySelector<HTMLElement>(".paused")!;
+    tick(1);
+    press(words.pause);
+    expect(store.paused).toBe(true);
+    expect(badge.hidden).toBe(false);
+    tick(2);
+    expect(store.history.length).toBe(1);
+    press(words.resume);
+    expect(badge.hidden).toBe(true);
+    tick(3);
+    expect(store.history.length).toBe(2);
+  });
+
+  it("are those that were chosen, also when the page comes again", async () => {
+    expect(plots()).toEqual([titleOf("force")]); // there is room for one
+    press(words.titles.angle);
+    const chosen = [titleOf("force"), titleOf("angle")];
+    expect(plots()).toEqual(chosen);
+    panel = plotPanel(store, "dark");
+    await Promise.resolve();
+    expect(plots()).toEqual(chosen);
+  });
+
+  it("are saved as CSV by their button", async () => {
+    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    tick(1);
+    press(words.csvLong);
+    const [name, blob] = save.mock.calls[0]!;
+    expect(name).toMatch(/^phalanx-\d{8}-\d{6}\.csv$/);
+    expect(await blob.text()).toBe(csvOf(store));
+  });
+
+  it("are saved as a picture by their button: those that are shown, of the digits that are shown", () => {
+    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    let picture: HTMLCanvasElement | undefined;
+    vi.spyOn(HTMLCanvasElement.prototype, "toBlob").mockImplementation(function (this: HTMLCanvasElement, done: BlobCallback) {
+      picture = this;
+      done(new Blob(["png"]));
+    });
+    press(strings.digits[1]!);
+    press(words.pngLong);
+    expect(save.mock.calls[0]![0]).toMatch(/^phalanx-\d{8}-\d{6}\.png$/);
+    const digits = strings.digits.filter((_, digit) => digit !== 1);
+    expect(textsOn(picture!).slice(0, 4)).toEqual(digits);
+    for (const title of plots()) expect(textsOn(picture!)).toContain(title);
+  });
+
+  it("say that they are old where there is no connection", () => {
+    const said = panel.element.querySelector<HTMLElement>(".plot-offline")!;
+    expect(said.hidden).toBe(true);
+    store.setPhase("waiting");
+    expect(said.hidden).toBe(false);
+  });
+});

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { stabiliserInForce, touchPanel } from "../../../src/panels/touch_panel";
+import { strings } from "../../../src/strings";
+import { fakeApp, type FakeApp } from "./fake_app";
+
+let fake: FakeApp;
+beforeEach(() => {
+  vi.useFakeTimers();
+  fake = fakeApp();
+});
+afterEach(() => vi.useRealTimers());
+
+describe("smoothing", () => {
+  it("off is no stabiliser, and choosing one switches it on", async () => {
+    fake.operate(2, [["smoothing.enabled", "false"], ["stabiliser.method", '"smoothing"']]);
+    expect(stabiliserInForce(fake.app)).toBe("none");
+    const panel = touchPanel(fake.app);
+    document.body.replaceChildren(panel);
+    const box = panel.querySelector<HTMLButtonElement>(`[role=combobox][aria-label="${strings.calm.method}"]`)!;
+    expect(box.textContent).toBe(strings.calm.methods["none"]);
+    const choose = (value: string) => {
+      box.click();
+      document.getElementById(box.getAttribute("aria-controls")!)!.querySelector<HTMLElement>(`[data-value=${value}]`)!.click();
+    };
+    choose("low_pass");
+    choose("none");
+    const smoothing = panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!;
+    smoothing.click();
+    await vi.advanceTimersByTimeAsync(10);
+    expect(fake.asked).toEqual([
+      [["smoothing.enabled", "true"], ["stabiliser.method", '"low_pass"']],
+      [["stabiliser.method", '"smoothing"'], ["smoothing.enabled", "false"]],
+      [["smoothing.enabled", "true"]],
+    ]);
+  });
+
+  it("has a switch that speaks of it alone: another stabiliser blocks it, and says so", async () => {
+    const shown = () => {
+      const control = panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!;
+      return [control.getAttribute("aria-checked"), control.disabled, panel.textContent!.includes(strings.calm.smoothingOther)];
+    };
+    const panel = touchPanel(fake.app);
+    const stabiliser = (method: string, enabled = "true") => fake.operate(2, [["stabiliser.method", `"${method}"`], ["smoothing.enabled", enabled]]);
+    stabiliser("smoothing");
+    expect(shown()).toEqual(["true", false, false]);
+    stabiliser("rise_only");
+    expect(shown()).toEqual(["true", false, false]);
+    stabiliser("low_pass");
+    expect(shown()).toEqual(["false", true, true]);
+    stabiliser("none");
+    expect(shown()).toEqual(["false", false, false]);
+    panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!.click();
+    await vi.advanceTimersByTimeAsync(10);
+    expect(fake.asked).toEqual([[["smoothing.enabled", "true"], ["stabiliser.method", '"smoothing"']]]);
+  });
+});
