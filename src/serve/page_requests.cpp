@@ -72,15 +72,24 @@ void pose(const wire::Sliders& sliders, StationHost& host) {
 
 PageRequest calibrate(const wire::Calibrate& message, StationHost& host, StationHost::Done done) {
   using Step = CalibrationSession::Step;
-  constexpr std::array<Step, 7> kSteps = {Step::kBegin, Step::kMeasure, Step::kSkip, Step::kBack,
-                                          Step::kGoTo,  Step::kAbandon, Step::kWrite};
-  const auto step = static_cast<std::size_t>(message.step());
-  if (step >= kSteps.size()) throw std::invalid_argument("no such step of a calibration");
-  host.calibrate(kSteps[step], message.pose(), std::move(done));
-  const std::string name = wire::Calibrate::Step_Name(message.step());
-  return {.code = "calibrate",
-          .text = kSteps[step] == Step::kGoTo ? fmt::format("{}, pose {}", name, message.pose() + 1) : name,
-          .at_once = false};
+  struct Known {
+    Step step;
+    const char* words;
+  };
+  constexpr std::array<Known, 7> kSteps = {{{Step::kBegin, "begins"},
+                                            {Step::kMeasure, "measures the pose"},
+                                            {Step::kSkip, "leaves the pose out"},
+                                            {Step::kBack, "goes a pose back"},
+                                            {Step::kGoTo, "goes to pose"},
+                                            {Step::kAbandon, "is given up"},
+                                            {Step::kWrite, "is written and used"}}};
+  const auto index = static_cast<std::size_t>(message.step());
+  if (index >= kSteps.size()) throw std::invalid_argument("no such step of a calibration");
+  const Known& known = kSteps[index];
+  host.calibrate(known.step, message.pose(), std::move(done));
+  std::string text = fmt::format("calibration: {}", known.words);
+  if (known.step == Step::kGoTo) text += fmt::format(" {}", message.pose() + 1);
+  return {.code = "calibrate", .text = std::move(text), .at_once = false};
 }
 
 }  // namespace

@@ -126,12 +126,12 @@ TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsAreHandedOver) {
   EXPECT_EQ(handed(message).code, "calibrate");
   EXPECT_FALSE(refused.empty()) << "the simulated device needs none";
   message.mutable_calibrate()->set_step(wire::Calibrate::MEASURE);
-  EXPECT_EQ(handed(message).text, "MEASURE");
+  EXPECT_EQ(handed(message).text, "calibration: measures the pose");
   message.mutable_calibrate()->set_step(wire::Calibrate::GO_TO);
   message.mutable_calibrate()->set_pose(2);
   const PageRequest step = handed(message);
   EXPECT_EQ(step.code, "calibrate");
-  EXPECT_EQ(step.text, "GO_TO, pose 3") << "as people count";
+  EXPECT_EQ(step.text, "calibration: goes to pose 3") << "as people count";
 }
 
 TEST_F(PageRequestsTest, SlidersOfWhateverNumberStayInsideTheHand) {

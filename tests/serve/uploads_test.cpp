@@ -47,7 +47,9 @@ TEST(Uploads, TheQuerySaysNameSizeAndUnit) {
   EXPECT_EQ(mesh.bytes, "abc");
   for (const char* wrong : {"size_mm=-1", "size_mm=nan", "size_mm=inf", "size_mm=2001", "size_mm=9x",
                             "size_mm=", "unit=mile", "unit="})
-    EXPECT_THROW(static_cast<void>(upload_of("name=a.obj&" + std::string(wrong), "abc")), std::invalid_argument) << wrong;
+    EXPECT_THROW(static_cast<void>(upload_of("name=a.obj&" + std::string(wrong), "abc")),
+                 std::invalid_argument)
+        << wrong;
   EXPECT_THROW(static_cast<void>(upload_of("name=a.obj", "")), std::invalid_argument);
   EXPECT_EQ(upload_of("name=%zz%4", "x").name, "%zz%4");
   EXPECT_EQ(upload_of("&&=&name", "x").name, "");

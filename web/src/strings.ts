@@ -146,7 +146,7 @@ const en = {
     uploading: (name: string) => `Uploading ${name} …`,
     good: "The mesh can be used.",
     bad: "The mesh cannot be used.",
-    findings: "Findings",
+    findings: "Findings, and what they mean for the forces",
     report: "Report of the import",
     counts: (vertices: string, triangles: string) => `${vertices} vertices, ${triangles} triangles`,
     extent: (millimetres: string) => `${millimetres} mm`,

@@ -61,7 +61,9 @@ function valueField(key: KeyInfo, id: string, touched: () => void, done: () => v
       return input.value;
     },
     set value(value: string) {
-      if (input.value !== value) input.value = value;
+      if (input.value === value) return;
+      input.value = value;
+      input.title = value; // all of it, where the field is too narrow
     },
   };
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest notice over the view; faults stay until they are dismissed.
+// The newest notice over the view; faults stay until they are dismissed. What has a place of its own stays there.
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
 import { continues } from "../state/notices";
@@ -9,6 +9,7 @@ import { button, el, setText } from "./dom";
 
 const kShownMs = 6000;
 const kAtOnce = 3;
+const kShownElsewhere = new Set(["fault", "calibrate"]); // by code: on a card, in the wizard
 
 export function toasts(store: Store): HTMLElement {
   const quiet = el("div", { class: "toast-list", role: "status", "aria-live": "polite", "aria-label": strings.notice.region });
@@ -47,7 +48,8 @@ export function toasts(store: Store): HTMLElement {
   store.on(["notice"], () => {
     const last = store.notices.at(-1);
     // What happened before this page came is in the list; only what happens now pops up.
-    if (last && last !== seen && !store.welcome?.past.includes(last) && !renew(last)) show(last);
+    const now = last && last !== seen && !kShownElsewhere.has(last.code) && !store.welcome?.past.includes(last);
+    if (now && !renew(last)) show(last);
     seen = last;
   });
   return el("div", { class: "toasts" }, loud, quiet);

@@ -196,6 +196,9 @@ describe("by keyboard", () => {
     const chooser = cockpit.page.waitForEvent("filechooser");
     await keyboard.press("Enter");
     await (await chooser).setFiles(asFile("cube.stl", cube(60)));
+    await tabUntil("the mesh's size", (now) => now.name.startsWith(words.size) && now.tag === "input");
+    await keyboard.press("Control+A");
+    await keyboard.type("60"); // mm; a larger one goes through the open hand
     await tabTo(words.upload, "button");
     await keyboard.press("Enter");
     await cockpit.page.getByRole("status").filter({ hasText: words.good }).waitFor();

@@ -90,7 +90,8 @@ function lookAtText(): Unreadable {
     }
   }
   for (const field of document.querySelectorAll<HTMLElement>("button, input[type=text]")) {
-    if (field.checkVisibility() && !field.closest(".visually-hidden") && field.scrollWidth > field.clientWidth + 1) {
+    const told = field instanceof HTMLInputElement && field.title === field.value; // by its title
+    if (!told && field.checkVisibility() && !field.closest(".visually-hidden") && field.scrollWidth > field.clientWidth + 1) {
       cut.push(`the ${field.tagName.toLowerCase()} "${field.getAttribute("aria-label") ?? field.innerText}" is ${field.scrollWidth - field.clientWidth} px too narrow`);
     }
   }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+import { create } from "@bufbuild/protobuf";
+import { beforeEach, describe, expect, it } from "vitest";
+import { Notice_Level, ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { toasts } from "../../../src/panels/toasts";
+import { Store } from "../../../src/state/store";
+
+let store: Store;
+let element: HTMLElement;
+const notice = (level: Notice_Level, code: string, text: string) =>
+  store.receive(create(ToPageSchema, { what: { case: "notice", value: { level, code, text, unixTime: 1 } } }));
+const shown = () => [...element.querySelectorAll(".toast p")].map((text) => text.textContent);
+
+beforeEach(() => {
+  store = new Store(() => 0);
+  element = toasts(store);
+});
+
+describe("toasts", () => {
+  it("shows what happens, and a warning's own words", () => {
+    notice(Notice_Level.CHANGE, "scene", "pinch_ball");
+    notice(Notice_Level.WARNING, "log_broken", "the log cannot be written");
+    expect(shown()).toEqual(["pinch_ball", "the log cannot be written"]);
+  });
+
+  it("leaves a fault of the station to its card", () => {
+    notice(Notice_Level.FAULT, "fault", "no_sample: no sample has come");
+    expect(shown()).toEqual([]);
+  });
+});
