@@ -30,7 +30,7 @@ async function untilUnmeasured(): Promise<void> {
 
 describe("a device on a wire", () => {
   it("has a panel", async () => {
-    await cockpit.untilRunning();
+    await cockpit.untilRunningAgain();
     await cockpit.tab("device");
     await shootReadable(cockpit, "30_device");
     expect(await cockpit.page.getByText(device.address).isVisible()).toBe(true);
@@ -61,7 +61,7 @@ describe("a device on a wire", () => {
   });
 
   it("whose cable is pulled is a fault that says what to do, and one again after a Reset that changes nothing", async () => {
-    await cockpit.untilRunning();
+    await cockpit.untilRunningAgain();
     await device.program.kill();
     await cockpit.untilState("the fault", (state) => state.fault !== undefined);
     const fault = cockpit.stream.state!.fault!;

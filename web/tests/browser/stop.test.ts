@@ -33,7 +33,7 @@ beforeAll(async () => {
 const torque = () => Math.min(...operator.stream.ticks.slice(-10).map((tick) => Math.max(...tick.torque.map(Math.abs))));
 
 async function untilAtWork(): Promise<void> {
-  await operator.untilRunning();
+  await operator.untilRunningAgain();
   await until("torque", () => torque() > 2 * kAtWork, () => operator.brief());
 }
 

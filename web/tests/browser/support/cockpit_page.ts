@@ -10,6 +10,8 @@ import type { ViewProbe } from "../../../src/view3d/hand_view";
 import { Stream } from "./stream";
 import { until } from "./until";
 
+const kPressMs = 2000;
+
 export class CockpitPage {
   readonly stream: Stream;
   readonly errors: string[] = [];
@@ -122,6 +124,25 @@ export class CockpitPage {
 
   untilRunning(): Promise<true> {
     return this.untilState("the station runs", (state) => state.safety === SafetyState.SAFETY_RUNNING && !state.stationGone);
+  }
+
+  /// Running, whatever a busy computer has done to the link between two programs: a fault is reset and a hold resumed, as a person would.
+  untilRunningAgain(): Promise<true> {
+    const press = async (button: Locator) => {
+      if (await button.isEnabled().catch(() => false)) await button.click({ timeout: kPressMs }).catch(() => undefined); // it may have gone
+    };
+    return until(
+      "the station runs",
+      async () => {
+        const { state } = this.stream;
+        if (state === undefined || state.stationGone) return false;
+        if (state.safety === SafetyState.SAFETY_RUNNING) return true as const;
+        if (state.fault) await press(this.button(strings.fault.reset).first());
+        else if (state.heldStopped) await press(this.button(strings.stop.resume));
+        return false;
+      },
+      () => this.brief(),
+    );
   }
 
   untilStopped(): Promise<true> {
