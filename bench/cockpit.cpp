@@ -17,7 +17,7 @@
 
 #include "load_process.h"
 #include "phalanx/mesh/import.h"
-#include "phalanx/mesh/isolated.h"
+#include "phalanx/mesh/isolation_helper.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/serve/cockpit.h"
 #include "phalanx/station/histogram.h"
@@ -109,6 +109,10 @@ void print(const Phase& phase, const Phase& quiet) {
 /// a thread below the loop's.
 constexpr int kUploadTriangles = 100'000;
 
+std::string import_it(const std::string& file) {
+  return std::to_string(import_and_check(file).report.triangles);
+}
+
 class Uploads {
  public:
   Uploads()
@@ -117,9 +121,7 @@ class Uploads {
     thread_ = std::jthread([this](const std::stop_token& stop) {
       ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 5);
       while (!stop.stop_requested()) {
-        static_cast<void>(mesh::run_isolated_text(
-            [this] { return std::to_string(import_and_check(file_).report.triangles); }, "ball",
-            {.cpu_seconds = 60}));
+        static_cast<void>(mesh::run_isolated_work(import_it, file_.string(), "ball", {.cpu_seconds = 60}));
         ++done_;
       }
     });
@@ -141,7 +143,8 @@ class Uploads {
 }  // namespace
 
 int run(double seconds, int rounds) {
-  LoadProcess clients;  // forks: before all threads
+  LoadProcess clients;  // both fork: before all threads
+  const mesh::IsolationHelper helper;
   Bench bench;
   bench.run(2.0, nullptr);
   fmt::print("real time: {}\n\n", bench.realtime());

@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "end_signals.h"
+#include "phalanx/mesh/isolation_helper.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/station_host.h"
@@ -292,6 +293,7 @@ void add_run_command(CLI::App& app, Job& job) {
     options->port_stated = port->count() > 0;
     job = [options] {
       end_on_signal();
+      const mesh::IsolationHelper helper;  // while there are no threads yet, and little memory
       const Clock clock(options->slow_motion);
       return Run(*options, clock).go();
     };

@@ -18,7 +18,7 @@
 #include "mesh/index_check.h"
 #include "mesh/obj_reduce.h"
 #include "mesh/repair.h"
-#include "phalanx/mesh/isolated.h"
+#include "phalanx/mesh/isolation_helper.h"
 
 namespace phalanx {
 namespace {
@@ -59,6 +59,28 @@ struct Soup {
       0;  ///< vertices that the file has, where the reader gives every corner its own; else 0
 };
 
+/// What Assimp makes of a file that we have looked through before. Only in a process of its own.
+TriangleMesh read_file(std::string_view text, const std::string& format, const std::string& origin) {
+  if (format == "obj") {
+    mesh::ReducedObj reduced = mesh::reduce_obj(text, origin);
+    TriangleMesh soup = mesh::read_with_assimp(reduced.text.data(), reduced.text.size(), format, origin);
+    // Assimp leaves them out without a word; the report is to count them.
+    soup.vertices.resize(soup.vertices.size() + reduced.unreferenced, Vec3::Zero());
+    return soup;
+  }
+  if (format == "3ds") mesh::check_3ds_indices(text, origin);
+  if (format == "glb") mesh::check_glb_indices(text, origin);
+  return mesh::read_with_assimp(text.data(), text.size(), format, origin);
+}
+
+/// read_file() of "format NUL origin NUL text".
+TriangleMesh read_packed(const std::string& packed) {
+  const std::size_t format = packed.find('\0');
+  const std::size_t origin = packed.find('\0', format + 1);
+  return read_file(std::string_view(packed).substr(origin + 1), packed.substr(0, format),
+                   packed.substr(format + 1, origin - format - 1));
+}
+
 Soup read_soup(const void* data, std::size_t bytes, const std::string& format, const std::string& origin) {
   if (bytes == 0) throw std::invalid_argument(origin + ": the file is empty; export the mesh again");
   if (format == "ply" &&
@@ -71,20 +93,11 @@ Soup read_soup(const void* data, std::size_t bytes, const std::string& format, c
                                      .memory_bytes = (std::uint64_t{256} << 20) + 16 * std::uint64_t{bytes},
                                      .wall_seconds = 60.0 + 1e-5 * static_cast<double>(bytes)};
   const std::string_view text(static_cast<const char*>(data), bytes);
-  const auto read = [&] {
-    if (format == "obj") {
-      mesh::ReducedObj reduced = mesh::reduce_obj(text, origin);
-      TriangleMesh soup = mesh::read_with_assimp(reduced.text.data(), reduced.text.size(), format, origin);
-      // Assimp leaves them out without a word; the report is to count them.
-      soup.vertices.resize(soup.vertices.size() + reduced.unreferenced, Vec3::Zero());
-      return soup;
-    }
-    if (format == "3ds") mesh::check_3ds_indices(text, origin);
-    if (format == "glb") mesh::check_glb_indices(text, origin);
-    return mesh::read_with_assimp(data, bytes, format, origin);
-  };
   Soup soup;
-  soup.mesh = mesh::run_isolated(read, origin, limits);
+  soup.mesh = mesh::has_isolation_helper()
+                  ? mesh::run_isolated_mesh(read_packed, format + '\0' + origin + '\0' + std::string(text),
+                                            origin, limits)
+                  : mesh::run_isolated([&] { return read_file(text, format, origin); }, origin, limits);
   if (format == "obj") soup.positions = mesh::count_obj_positions(text);
   return soup;
 }

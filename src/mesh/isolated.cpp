@@ -2,7 +2,6 @@
 #include "phalanx/mesh/isolated.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -23,6 +22,8 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/pipe_io.h"
+
 namespace phalanx::mesh {
 namespace {
 
@@ -30,96 +31,7 @@ constexpr std::uint8_t kResult = 1;
 constexpr std::uint8_t kRefusal = 2;
 constexpr std::uint8_t kOutOfMemory = 3;
 
-/// Closes a file descriptor when it goes.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-  void close() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-  }
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
-bool write_all(int fd, const void* data, std::size_t bytes) {
-  const auto* at = static_cast<const char*>(data);
-  while (bytes > 0) {
-    const ssize_t done = ::write(fd, at, bytes);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    at += done;
-    bytes -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
-
 using Clock = std::chrono::steady_clock;
-
-/// Milliseconds until then, for poll(); 0 if it is past.
-int left_until(Clock::time_point deadline) {
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-  return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000));
-}
-
-bool read_all(int fd, void* data, std::size_t bytes, Clock::time_point deadline) {
-  auto* at = static_cast<char*>(data);
-  while (bytes > 0) {
-    pollfd ready{.fd = fd, .events = POLLIN, .revents = 0};
-    const int events = ::poll(&ready, 1, left_until(deadline));
-    if (events < 0 && errno == EINTR) continue;
-    if (events <= 0) return false;
-    const ssize_t done = ::read(fd, at, bytes);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    at += done;
-    bytes -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
-
-/// @tparam Sequence  std::vector or std::string
-template <typename Sequence>
-bool write_sequence(int fd, const Sequence& values) {
-  const std::uint64_t count = values.size();
-  return write_all(fd, &count, sizeof count) &&
-         write_all(fd, values.data(), values.size() * sizeof(typename Sequence::value_type));
-}
-
-/// A child gone wild may claim any count, but not more than the memory that it has.
-template <typename Sequence>
-bool read_sequence(int fd, Sequence& values, std::uint64_t most_bytes, Clock::time_point deadline) {
-  constexpr std::size_t kEach = sizeof(typename Sequence::value_type);
-  std::uint64_t count = 0;
-  if (!read_all(fd, &count, sizeof count, deadline) || count > most_bytes / kEach) return false;
-  values.reserve(static_cast<std::size_t>(count));  // of address space; memory follows as it is filled
-  constexpr std::uint64_t kChunk = 1 << 16;
-  for (std::uint64_t have = 0; have < count;) {
-    const std::uint64_t more = std::min(kChunk, count - have);
-    values.resize(static_cast<std::size_t>(have + more));
-    if (!read_all(fd, values.data() + have, static_cast<std::size_t>(more) * kEach, deadline)) return false;
-    have += more;
-  }
-  return true;
-}
-
-bool write_result(int fd, const TriangleMesh& mesh) {
-  return write_sequence(fd, mesh.vertices) && write_sequence(fd, mesh.triangles);
-}
-bool write_result(int fd, const std::string& text) { return write_sequence(fd, text); }
-
-bool read_result(int fd, TriangleMesh& mesh, std::uint64_t most_bytes, Clock::time_point deadline) {
-  return read_sequence(fd, mesh.vertices, most_bytes, deadline) &&
-         read_sequence(fd, mesh.triangles, most_bytes, deadline);
-}
-bool read_result(int fd, std::string& text, std::uint64_t most_bytes, Clock::time_point deadline) {
-  return read_sequence(fd, text, most_bytes, deadline);
-}
 
 void limit(int resource, rlim_t most) {
   rlimit now{};
@@ -190,7 +102,7 @@ struct Received {
 };
 
 template <typename Result>
-Received<Result> receive(int fd, std::uint64_t most, Clock::time_point deadline) {
+Received<Result> receive(int fd, std::uint64_t most, Deadline deadline) {
   Received<Result> r;
   std::uint8_t kind = 0;
   if (!read_all(fd, &kind, 1, deadline)) return r;
@@ -203,7 +115,7 @@ Received<Result> receive(int fd, std::uint64_t most, Clock::time_point deadline)
 
 /// Waits for the child's end, and ends it itself at the deadline.
 /// @returns its status
-int reap(pid_t child, Clock::time_point deadline) {
+int reap(pid_t child, Deadline deadline) {
   int status = 0;
   for (;;) {
     const pid_t done = ::waitpid(child, &status, WNOHANG);
@@ -235,8 +147,7 @@ Result run(const std::function<Result()>& work, const std::string& origin, const
     run_child(work, to_parent.get(), origin, limits);
   }
   to_parent.close();
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(limits.wall_seconds));
+  const Deadline deadline = deadline_after(limits.wall_seconds);
   Received<Result> received;
   std::exception_ptr failure;
   try {

@@ -7,13 +7,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "phalanx/mesh/import.h"
-#include "phalanx/mesh/isolated.h"
+#include "phalanx/mesh/isolation_helper.h"
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "phalanx/record/output_file.h"
@@ -155,15 +156,41 @@ Json checked(const UploadedMesh& mesh, const std::string& format, const ImportOp
   return answer;
 }
 
-Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
-  const std::string extension = extension_of(mesh.name);
-  const ImportOptions options{.size = 1e-3 * mesh.size_mm,
-                              .unit = metres_per_unit_of(mesh),
+/// checked() of "format NUL size NUL metres NUL length of the name NUL name bytes".
+std::string check_packed(const std::string& packed) {
+  std::size_t at = 0;
+  const auto next = [&] {
+    const std::size_t end = packed.find('\0', at);
+    std::string field = packed.substr(at, end - at);
+    at = end + 1;
+    return field;
+  };
+  const std::string format = next();
+  const ImportOptions options{.size = std::strtod(next().c_str(), nullptr),
+                              .unit = std::strtod(next().c_str(), nullptr),
                               .triangles = 0,
                               .most_triangles = kMostUploadedTriangles};
+  const auto name_length = static_cast<std::size_t>(std::strtoull(next().c_str(), nullptr, 10));
+  UploadedMesh mesh;
+  mesh.name = packed.substr(at, name_length);
+  mesh.bytes = packed.substr(at + name_length);
+  return as_text(checked(mesh, format, options));
+}
+
+std::string packed(const UploadedMesh& mesh, const std::string& format) {
+  std::string fields;
+  for (const std::string& field :
+       {format, fmt::format("{:a}", 1e-3 * mesh.size_mm), fmt::format("{:a}", metres_per_unit_of(mesh)),
+        std::to_string(mesh.name.size())})
+    fields.append(field).push_back('\0');
+  return fields + mesh.name + mesh.bytes;
+}
+
+Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
+  const std::string extension = extension_of(mesh.name);
   static_cast<void>(values_now(in_force));
-  Json answer = Json::parse(mesh::run_isolated_text(
-      [&] { return as_text(checked(mesh, extension.substr(1), options)); }, mesh.name, kImportLimits));
+  Json answer = Json::parse(
+      mesh::run_isolated_work(check_packed, packed(mesh, extension.substr(1)), mesh.name, kImportLimits));
   if (!answer["ok"].get<bool>()) return answer;
   const Overrides values = values_now(in_force);
   fs::create_directories(folder);

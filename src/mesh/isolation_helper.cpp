@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/mesh/isolation_helper.h"
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include "mesh/pipe_io.h"
+
+namespace phalanx::mesh {
+namespace {
+
+constexpr std::uint8_t kResult = 1;
+constexpr std::uint8_t kRefusal = 2;
+constexpr std::uint64_t kMostInput = std::uint64_t{2} << 30;  // [bytes]
+constexpr std::uint64_t kMostWords = std::uint64_t{1} << 16;  // of an origin or a refusal [bytes]
+constexpr double kPatience = 60.0;                            // for input and answer to get through [s]
+constexpr int kNice = 5;  // below the loop where it has no better scheduling
+
+/// The program's end of the line to its helper; -1: it has none.
+std::atomic<int> the_helper{-1};
+
+/// Goes over the line as it is: both ends are one program.
+struct Job {
+  IsolatedWork text = nullptr;
+  IsolatedReading mesh = nullptr;  ///< one of the two
+  IsolationLimits limits;
+};
+
+/// Room for one descriptor beside a message.
+union Ancillary {
+  cmsghdr head;
+  std::array<char, CMSG_SPACE(sizeof(int))> bytes;
+};
+
+bool send_job(int line, Job job, int fd) {
+  Ancillary ancillary{};
+  iovec data{.iov_base = &job, .iov_len = sizeof job};
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = ancillary.bytes.data();
+  message.msg_controllen = ancillary.bytes.size();
+  cmsghdr* head = CMSG_FIRSTHDR(&message);
+  head->cmsg_level = SOL_SOCKET;
+  head->cmsg_type = SCM_RIGHTS;
+  head->cmsg_len = CMSG_LEN(sizeof fd);
+  std::memcpy(CMSG_DATA(head), &fd, sizeof fd);
+  return ::sendmsg(line, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(sizeof job);
+}
+
+/// @returns the descriptor that came with it; -1: the program has ended
+int receive_job(int line, Job& job) {
+  Ancillary ancillary{};
+  iovec data{.iov_base = &job, .iov_len = sizeof job};
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = ancillary.bytes.data();
+  message.msg_controllen = ancillary.bytes.size();
+  ssize_t got = 0;
+  do {
+    got = ::recvmsg(line, &message, MSG_CMSG_CLOEXEC);
+  } while (got < 0 && errno == EINTR);
+  const cmsghdr* head = CMSG_FIRSTHDR(&message);
+  if (got != static_cast<ssize_t>(sizeof job) || head == nullptr) return -1;
+  int fd = -1;
+  std::memcpy(&fd, CMSG_DATA(head), sizeof fd);
+  return fd;
+}
+
+/// In a process of its own, which forks the one that does the work, waits for it and tells how it went.
+void do_job(const Job& job, int fd) {
+  std::string origin;
+  std::string input;
+  const Deadline deadline = deadline_after(kPatience);
+  if (!read_sequence(fd, origin, kMostWords, deadline) || !read_sequence(fd, input, kMostInput, deadline))
+    return;
+  try {
+    if (job.mesh != nullptr) {
+      const TriangleMesh mesh = run_isolated([&] { return job.mesh(input); }, origin, job.limits);
+      if (write_all(fd, &kResult, 1)) write_result(fd, mesh);
+    } else {
+      const std::string text = run_isolated_text([&] { return job.text(input); }, origin, job.limits);
+      if (write_all(fd, &kResult, 1)) write_result(fd, text);
+    }
+  } catch (const std::exception& refused) {
+    const std::string words = refused.what();
+    if (write_all(fd, &kRefusal, 1)) write_sequence(fd, words.substr(0, kMostWords));
+  }
+}
+
+[[noreturn]] void serve(int line, pid_t program) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != program) ::_exit(0);  // it was gone before that
+  ::prctl(PR_SET_NAME, "phalanx-helper");
+  ::setpriority(PRIO_PROCESS, 0, kNice);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches the whole group; the program decides
+  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGCHLD, SIG_IGN);  // nobody asks how a job's process ended
+  Job job;
+  for (int fd = receive_job(line, job); fd >= 0; fd = receive_job(line, job)) {
+    const pid_t helper = ::getpid();
+    if (::fork() == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (::getppid() != helper) ::_exit(0);
+      std::signal(SIGCHLD, SIG_DFL);
+      do_job(job, fd);
+      ::_exit(0);
+    }
+    ::close(fd);
+  }
+  ::_exit(0);
+}
+
+/// @returns what came of it; nothing: there is no helper that could be asked
+/// @throws std::invalid_argument  refused, as run_isolated_text()
+template <typename Result>
+std::optional<Result> ask_helper(const Job& job, const std::string& input, const std::string& origin) {
+  const int line = the_helper.load();
+  std::array<int, 2> ends{};
+  if (line < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return std::nullopt;
+  const Descriptor ours(ends[0]);
+  Descriptor theirs(ends[1]);
+  if (!send_job(line, job, theirs.get())) return std::nullopt;
+  theirs.close();
+  if (!write_sequence(ours.get(), origin) || !write_sequence(ours.get(), input)) return std::nullopt;
+  const Deadline deadline = deadline_after(job.limits.wall_seconds + kPatience);
+  std::uint8_t kind = 0;
+  Result answer;
+  std::string refusal;
+  const bool told = read_all(ours.get(), &kind, 1, deadline);
+  if (told && kind == kResult && read_result(ours.get(), answer, job.limits.memory_bytes, deadline))
+    return answer;
+  if (told && kind == kRefusal && read_sequence(ours.get(), refusal, kMostWords, deadline))
+    throw std::invalid_argument(refusal);
+  throw std::invalid_argument(origin +
+                              ": the process that was to read it has died; close other programs, and try a "
+                              "smaller file");
+}
+
+}  // namespace
+
+IsolationHelper::IsolationHelper() {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw std::system_error(errno, std::generic_category(), "no socket for the helper process");
+  const pid_t program = ::getpid();
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::close(ends[0]);
+    serve(ends[1], program);
+  }
+  ::close(ends[1]);
+  control_ = ends[0];
+  if (process_ < 0) {
+    ::close(control_);
+    throw std::system_error(errno, std::generic_category(), "no helper process");
+  }
+  the_helper = control_;
+}
+
+IsolationHelper::~IsolationHelper() {
+  the_helper = -1;
+  ::close(control_);
+  ::kill(process_, SIGKILL);  // it may be waiting for a fork; what it forked ends with it
+  while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+std::string run_isolated_work(IsolatedWork work, const std::string& input, const std::string& origin,
+                              const IsolationLimits& limits) {
+  const Job job{.text = work, .mesh = nullptr, .limits = limits};
+  if (std::optional<std::string> text = ask_helper<std::string>(job, input, origin)) return std::move(*text);
+  return run_isolated_text([&] { return work(input); }, origin, limits);
+}
+
+TriangleMesh run_isolated_mesh(IsolatedReading work, const std::string& input, const std::string& origin,
+                               const IsolationLimits& limits) {
+  const Job job{.text = nullptr, .mesh = work, .limits = limits};
+  if (std::optional<TriangleMesh> mesh = ask_helper<TriangleMesh>(job, input, origin))
+    return std::move(*mesh);
+  return run_isolated([&] { return work(input); }, origin, limits);
+}
+
+bool has_isolation_helper() noexcept { return the_helper.load() >= 0; }
+
+}  // namespace phalanx::mesh

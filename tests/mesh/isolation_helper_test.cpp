@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/mesh/isolation_helper.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <future>
+#include <stdexcept>
+#include <string>
+
+#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx::mesh {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string backwards(const std::string& input) { return {input.rbegin(), input.rend()}; }
+std::string parent_of(const std::string&) { return std::to_string(::getppid()); }
+std::string refused(const std::string& input) { throw std::invalid_argument(input); }
+std::string crashed(const std::string&) { std::abort(); }
+std::string endless(const std::string&) {
+  for (std::atomic<unsigned> i = 0;; ++i) {
+  }
+}
+TriangleMesh torus(const std::string& triangles) { return make_torus(0.1, 0.03, std::stoi(triangles)); }
+
+/// The process that forked for it.
+std::string forker() { return run_isolated_work(parent_of, "", "cup.obj", {}); }
+
+std::string refusal(IsolatedWork work, const std::string& input) {
+  try {
+    (void)run_isolated_work(work, input, "cup.obj", {.cpu_seconds = 1, .wall_seconds = 30.0});
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(IsolationHelper, ForksInThisProcessesPlaceWhileItLives) {
+  const std::string self = std::to_string(::getpid());
+  EXPECT_FALSE(has_isolation_helper());
+  EXPECT_EQ(forker(), self);
+  {
+    const IsolationHelper helper;
+    EXPECT_TRUE(has_isolation_helper());
+    EXPECT_NE(forker(), self);
+    EXPECT_NE(forker(), self);
+  }
+  EXPECT_FALSE(has_isolation_helper());
+  EXPECT_EQ(forker(), self);
+}
+
+TEST(IsolationHelper, HandsBytesAndMeshesThroughBitByBit) {
+  const IsolationHelper helper;
+  std::string text(300'000, 'x');  // more than a socket holds
+  text[7] = '\0';
+  EXPECT_EQ(run_isolated_work(backwards, text, "cup.obj", {}), backwards(text));
+  EXPECT_EQ(run_isolated_work(backwards, "", "cup.obj", {}), "");
+  const TriangleMesh made = torus("50000");
+  const TriangleMesh got = run_isolated_mesh(torus, "50000", "torus", {});
+  EXPECT_EQ(got.vertices, made.vertices);
+  EXPECT_EQ(got.triangles, made.triangles);
+}
+
+TEST(IsolationHelper, TellsHowItWentInTheSameWords) {
+  const IsolationHelper helper;
+  EXPECT_EQ(refusal(refused, "cup.obj: too pretty"), "cup.obj: too pretty");
+  EXPECT_THAT(refusal(crashed, ""), AllOf(StartsWith("cup.obj: "), HasSubstr("crashed")));
+  EXPECT_THAT(refusal(endless, ""), AllOf(StartsWith("cup.obj: "), HasSubstr("not done after 1 s")));
+  EXPECT_EQ(run_isolated_work(backwards, "abc", "cup.obj", {}), "cba") << "it has outlived all that";
+}
+
+TEST(IsolationHelper, ServesSeveralAtOnce) {
+  const IsolationHelper helper;
+  auto slow = std::async(std::launch::async, [] { return refusal(endless, ""); });
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(run_isolated_work(backwards, std::to_string(100 + i), "cup.obj", {}),
+              backwards(std::to_string(100 + i)));
+  EXPECT_THAT(slow.get(), HasSubstr("not done"));
+}
+
+TEST(IsolationHelper, ImportsTheSameMesh) {
+  const std::string obj = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const auto import_it = [&] { return import_mesh_from_memory(obj.data(), obj.size(), "obj", 0.06); };
+  const TriangleMesh direct = import_it();
+  const IsolationHelper helper;
+  const TriangleMesh helped = import_it();
+  EXPECT_EQ(helped.vertices, direct.vertices);
+  EXPECT_EQ(helped.triangles, direct.triangles);
+  EXPECT_THROW((void)import_mesh_from_memory("nonsense", 8, "obj", 0.06), std::invalid_argument);
+}
+
+// Killed from outside, as by a system that is out of memory: the program forks itself again.
+TEST(IsolationHelper, IsDoneWithoutOnceItIsDead) {
+  const IsolationHelper helper;
+  std::ifstream children("/proc/self/task/" + std::to_string(::getpid()) + "/children");
+  pid_t process = 0;
+  if (!(children >> process)) GTEST_SKIP() << "this kernel does not list a process's children";
+  ::kill(process, SIGKILL);
+  std::string answer;
+  for (int i = 0; i < 100 && answer != "cba"; ++i) {
+    try {
+      answer = run_isolated_work(backwards, "abc", "cup.obj", {});
+    } catch (const std::invalid_argument&) {  // it died with the job in its hands
+    }
+    ::usleep(10'000);
+  }
+  EXPECT_EQ(answer, "cba");
+}
+
+}  // namespace
+}  // namespace phalanx::mesh
