@@ -33,9 +33,10 @@ endfunction()
 # phalanx_test(NAME SOURCES ... MODULES module ... [LIBRARIES external ...] [SOAK])
 # A GoogleTest program tests/.../NAME; every TEST of it becomes a ctest test, in a sanitized build with the prefix `asan.` or `tsan.`
 # and the label of that name. With SOAK, those whose suite's name begins with `Soak` get the label `soak`, which ./test leaves out and
-# ./test --soak (where the environment says PHALANX_SOAK=1) runs.
+# ./test --soak (where the environment says PHALANX_SOAK=1) runs. With LONG_SANITIZED, all of them do so in a sanitized build, where they
+# take a minute each.
 function(phalanx_test name)
-  cmake_parse_arguments(ARG "SOAK" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "SOAK;LONG_SANITIZED" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   list(TRANSFORM ARG_MODULES PREPEND phalanx_ OUTPUT_VARIABLE modules)
   target_link_libraries(${name} PRIVATE phalanx_options ${modules} ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
@@ -50,6 +51,9 @@ function(phalanx_test name)
   endif()
   if(PHALANX_SANITIZE)
     set(prefix TEST_PREFIX ${label}.)
+  endif()
+  if(PHALANX_SANITIZE AND ARG_LONG_SANITIZED)
+    set(label soak)
   endif()
   set(ordinary "")
   if(ARG_SOAK)

@@ -7,7 +7,7 @@ import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, cube } from "./support/meshes";
 import { differing } from "./support/pictures";
 import { stiffnessKey, valueOf } from "./support/settings";
-import { stage } from "./support/stage";
+import { small, stage } from "./support/stage";
 import { until } from "./support/until";
 
 const kMostTabs = 80;
@@ -16,7 +16,7 @@ let cockpit: CockpitPage;
 let seen: string[] = [];
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station({ scene: "first_touch" })).url);
+  cockpit = await play.open((await play.station({ scene: "first_touch" })).url, small);
   await cockpit.untilRunning();
 });
 
