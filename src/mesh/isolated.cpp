@@ -27,10 +27,6 @@
 namespace phalanx::mesh {
 namespace {
 
-constexpr std::uint8_t kResult = 1;
-constexpr std::uint8_t kRefusal = 2;
-constexpr std::uint8_t kOutOfMemory = 3;
-
 using Clock = std::chrono::steady_clock;
 
 void limit(int resource, rlim_t most) {

@@ -22,8 +22,6 @@
 namespace phalanx::mesh {
 namespace {
 
-constexpr std::uint8_t kResult = 1;
-constexpr std::uint8_t kRefusal = 2;
 constexpr std::uint64_t kMostInput = std::uint64_t{2} << 30;  // [bytes]
 constexpr std::uint64_t kMostWords = std::uint64_t{1} << 16;  // of an origin or a refusal [bytes]
 constexpr double kPatience = 60.0;                            // for input and answer to get through [s]
@@ -39,42 +37,43 @@ struct Job {
   IsolationLimits limits;
 };
 
-/// Room for one descriptor beside a message.
-union Ancillary {
-  cmsghdr head;
-  std::array<char, CMSG_SPACE(sizeof(int))> bytes;
+/// A job as sendmsg() and recvmsg() take it, with room for one descriptor beside it.
+class Parcel {
+ public:
+  explicit Parcel(Job& job) : data_{.iov_base = &job, .iov_len = sizeof job} {
+    message_.msg_iov = &data_;
+    message_.msg_iovlen = 1;
+    message_.msg_control = room_.data();
+    message_.msg_controllen = room_.size();
+  }
+  Parcel(const Parcel&) = delete;
+  Parcel& operator=(const Parcel&) = delete;
+  [[nodiscard]] msghdr& message() { return message_; }
+
+ private:
+  iovec data_;
+  msghdr message_{};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> room_{};
 };
 
 bool send_job(int line, Job job, int fd) {
-  Ancillary ancillary{};
-  iovec data{.iov_base = &job, .iov_len = sizeof job};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = ancillary.bytes.data();
-  message.msg_controllen = ancillary.bytes.size();
-  cmsghdr* head = CMSG_FIRSTHDR(&message);
+  Parcel parcel(job);
+  cmsghdr* head = CMSG_FIRSTHDR(&parcel.message());
   head->cmsg_level = SOL_SOCKET;
   head->cmsg_type = SCM_RIGHTS;
   head->cmsg_len = CMSG_LEN(sizeof fd);
   std::memcpy(CMSG_DATA(head), &fd, sizeof fd);
-  return ::sendmsg(line, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(sizeof job);
+  return ::sendmsg(line, &parcel.message(), MSG_NOSIGNAL) == static_cast<ssize_t>(sizeof job);
 }
 
 /// @returns the descriptor that came with it; -1: the program has ended
 int receive_job(int line, Job& job) {
-  Ancillary ancillary{};
-  iovec data{.iov_base = &job, .iov_len = sizeof job};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = ancillary.bytes.data();
-  message.msg_controllen = ancillary.bytes.size();
+  Parcel parcel(job);
   ssize_t got = 0;
   do {
-    got = ::recvmsg(line, &message, MSG_CMSG_CLOEXEC);
+    got = ::recvmsg(line, &parcel.message(), MSG_CMSG_CLOEXEC);
   } while (got < 0 && errno == EINTR);
-  const cmsghdr* head = CMSG_FIRSTHDR(&message);
+  const cmsghdr* head = CMSG_FIRSTHDR(&parcel.message());
   if (got != static_cast<ssize_t>(sizeof job) || head == nullptr) return -1;
   int fd = -1;
   std::memcpy(&fd, CMSG_DATA(head), sizeof fd);

@@ -58,6 +58,11 @@ bool read_sequence(int fd, Sequence& values, std::uint64_t most_bytes, Deadline 
   return true;
 }
 
+/// The first byte of what another process says of its work; a result or the words of a refusal follow.
+inline constexpr std::uint8_t kResult = 1;
+inline constexpr std::uint8_t kRefusal = 2;
+inline constexpr std::uint8_t kOutOfMemory = 3;
+
 /// What work in another process came to.
 bool write_result(int fd, const std::string& text);
 bool write_result(int fd, const TriangleMesh& mesh);
