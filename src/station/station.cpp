@@ -16,6 +16,7 @@ namespace {
 constexpr double kReportSeconds = 2.0;  ///< of samples and steps in a fault report
 constexpr std::size_t kRecords = 8192;  ///< steps that may wait for whoever writes them down: 4 s at 2 kHz
 constexpr std::size_t kInbox = 512;     ///< samples between two steps
+constexpr double kLook = 0.005;         ///< whether the ramp at the end is over, as often as this [s]
 
 double checked_period(const HapticModel& model) {
   check_station_rate(model.rate_hz);
@@ -272,12 +273,12 @@ std::optional<FaultReport> Station::take_fault_report() {
 void Station::shut_down() noexcept {
   if (thread_.joinable()) {
     ask(kEnd, kResume | kReset);
-    const double until = clock_.now() + shut_down_within(options_.safety);
-    for (;;) {
+    // Counted, not timed: while the machine stands still, the ramp does not go on either.
+    for (double waited = 0.0; waited < shut_down_within(options_.safety); waited += kLook) {
       const StationView now = view();
       const bool stopped = now.state == SafetyState::kStopped || now.state == SafetyState::kFault;
-      if ((now.ending && stopped && now.at_rest) || clock_.now() > until) break;
-      clock_.sleep_until(clock_.now() + 0.005);
+      if (now.ending && stopped && now.at_rest) break;
+      clock_.sleep_until(clock_.now() + kLook);
     }
     finish_.store(true, std::memory_order_release);
     thread_.join();

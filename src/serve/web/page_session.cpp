@@ -9,11 +9,12 @@
 namespace phalanx::web {
 namespace {
 
-constexpr auto kGoodbye = std::chrono::seconds(2);  // for the other end to say it, too
-constexpr std::size_t kLongestReason = 123;         // of a close frame [bytes]
+constexpr auto kOthersGoodbye = std::chrono::seconds(2);  // for the other end to say it, too
+constexpr std::size_t kLongestReason = 123;               // of a close frame [bytes]
 
-// What a page has said in one go lies in buffers when its limit is passed.
-constexpr auto kLastWords = std::chrono::milliseconds(250);
+// What a page has said in one go lies in buffers when its limit is passed; longer than a machine stands
+// still.
+constexpr auto kLastWords = std::chrono::seconds(2);
 constexpr std::size_t kMostLastWords = 64 * 1024;  // [bytes]
 constexpr std::size_t kFrameHead = 6;              // at least [bytes]
 
@@ -107,7 +108,7 @@ bool PageSession::send_newest(Bytes message) {
 void PageSession::leave(websocket::close_code code, const std::string& reason, bool at_once) {
   if (leaving_) return;
   leaving_ = true;
-  out_by_ = Clock::now() + kGoodbye;
+  out_by_ = Clock::now() + kOthersGoodbye;
   goodbye_ = websocket::close_reason(code, reason.substr(0, kLongestReason));
   if (at_once) queue_.clear();
   pump();
@@ -122,7 +123,7 @@ void PageSession::check(Clock::time_point now) {
     // It broke the protocol, or said goodbye itself: it has as long to end as one that is shown out.
     leaving_ = true;
     closing_ = true;
-    out_by_ = now + kGoodbye;
+    out_by_ = now + kOthersGoodbye;
   }
   const bool stuck = in_flight_ && now - written_since_ > seconds(settings_.idle_timeout);
   if (stuck || (leaving_ && now > out_by_)) cut();

@@ -163,13 +163,13 @@ export function logSliderRow(
   let dragged = false;
   const rounded = (value: number) => fromNumber(Number(value.toPrecision(2)));
 
+  const tell = () => slider.setAttribute("aria-valuetext", `${field.value} ${texts.unit}`);
   const show = () => {
+    if (dragged || throttle.waits) return; // what a person has just said is newer than all that is known
     const value = number(app.store.value(setting));
-    if (!dragged && Number.isFinite(value)) {
-      slider.value = String(Math.round(kSliderSteps * toScale(Math.max(value, min / 10), min, max)));
-    }
+    if (Number.isFinite(value)) slider.value = String(Math.round(kSliderSteps * toScale(Math.max(value, min / 10), min, max)));
     put(field, Number.isFinite(value) ? fromNumber(value) : "");
-    slider.setAttribute("aria-valuetext", `${field.value} ${texts.unit}`);
+    tell();
   };
   const send = (value: string) => {
     made.refuse("");
@@ -183,11 +183,13 @@ export function logSliderRow(
     dragged = true;
     const value = rounded(fromScale(Number(slider.value) / kSliderSteps, min, max));
     field.value = value;
+    tell();
     throttle.push(value);
   });
   onLetGo(slider, () => {
     throttle.flush();
     dragged = false;
+    show();
   });
   typing(field, () => {
     const key = keyOf(app.store.welcome, setting);

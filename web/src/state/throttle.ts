@@ -15,6 +15,11 @@ export class Throttle<T> {
     this.interval = 1000 / perSecond;
   }
 
+  /// A value has been pushed and not yet passed on.
+  get waits(): boolean {
+    return this.waiting !== null;
+  }
+
   push(value: T): void {
     this.waiting = { value };
     if (this.timer !== undefined) return;

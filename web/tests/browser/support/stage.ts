@@ -4,7 +4,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium, type Browser, type BrowserContextOptions } from "playwright-core";
-import { afterAll, expect, vi } from "vitest";
+import { afterAll, afterEach, expect, vi } from "vitest";
 import { CockpitPage } from "./cockpit_page";
 import { Program, projectFolder } from "./program";
 
@@ -35,7 +35,9 @@ export interface OwnDevice {
 /// Large enough to hold all controls, small enough for several pages drawn by a processor.
 export const small: BrowserContextOptions = { viewport: { width: 1000, height: 640 } };
 
-const kHangMs = 300_000; // of a whole test; only against hangs, as all limits here
+const kHangMs = 900_000; // of a whole test; only against hangs, as all limits here, and long enough for a wait to say what it saw instead
+
+const kLastWords = 600; // characters
 
 /// A program whose test was killed ends by itself after a quarter of an hour; its clock is the slowed one.
 const forgotten = (slow: string) => ["--seconds", String(Math.ceil(900 / Number(slow)))];
@@ -89,6 +91,13 @@ export class Stage {
     return page;
   }
 
+  /// What every page knew last, and the last words of every program.
+  brief(): string {
+    const pages = this.pages.map((page, i) => `page ${i + 1}: ${page.brief()}`);
+    const programs = this.programs.map((program) => `phalanx ${program.args[0]}${program.ended ? ", ended" : ""}: ${(program.output + program.errors).slice(-kLastWords)}`);
+    return [...pages, ...programs].join("\n");
+  }
+
   async close(): Promise<void> {
     const errors = this.pages.flatMap((page) => page.errors);
     await (await this.browser?.catch(() => undefined))?.close();
@@ -108,6 +117,9 @@ export class Stage {
 export function stage(): Stage {
   vi.setConfig({ testTimeout: kHangMs, hookTimeout: kHangMs });
   const made = new Stage();
+  afterEach(({ task }) => {
+    if (task.result?.state === "fail") console.log(`when "${task.name}" failed:\n${made.brief()}`);
+  });
   afterAll(() => made.close());
   return made;
 }

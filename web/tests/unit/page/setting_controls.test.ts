@@ -45,6 +45,38 @@ describe("controls", () => {
     expect(fake.asked.at(-1)).toEqual([[stiffness, "5"]]);
   });
 
+  it("a number that is dragged or typed is never replaced by an older one while it is on its way", async () => {
+    fake.operate(2, [[stiffness, "0.5"]]);
+    const element = slider();
+    const range = element.querySelector<HTMLInputElement>("input[type=range]")!;
+    const field = element.querySelector<HTMLInputElement>("input[type=text]")!;
+    const drag = (to: number) => {
+      range.value = String(to);
+      range.dispatchEvent(new Event("input"));
+      return field.value;
+    };
+    const told = drag(600); // sent at once
+    const wanted = drag(700); // waits for its turn
+    expect(Number(wanted)).toBeGreaterThan(Number(told));
+    fake.operate(2, [[stiffness, "0.5"]]);
+    await vi.advanceTimersByTimeAsync(0); // the first one's answer
+    expect(field.value).toBe(wanted);
+    expect(range.getAttribute("aria-valuetext")).toBe(`${wanted} N/mm`);
+    range.dispatchEvent(new Event("pointerup"));
+    expect(field.value).toBe(wanted);
+    expect(fake.asked.at(-1)).toEqual([[stiffness, wanted]]);
+
+    enter(element, "2.5"); // so soon after the drag it waits, too
+    fake.operate(2, [[stiffness, wanted]]);
+    expect(field.value).toBe("2.5");
+    await vi.advanceTimersByTimeAsync(300);
+    expect(fake.asked.at(-1)).toEqual([[stiffness, "2.5"]]);
+    fake.operate(2, [[stiffness, "0.7"]]);
+    await vi.advanceTimersByTimeAsync(3000);
+    fake.operate(2, [[stiffness, "0.7"]]);
+    expect(field.value).toBe("0.7");
+  });
+
   it("what is refused is said in the host's words, and the control goes back to the truth", async () => {
     fake.operate(2, [[stiffness, "0.7"]]);
     const element = slider();
