@@ -12,7 +12,7 @@ namespace phalanx::bench {
 namespace {
 
 double segment_distance(DistanceEngine& engine, const GdpValues& state, int segment) {
-  const Pose& X = state.poses.digit[at(digit_of_segment(segment))].segment[at(segment % kSegmentsPerDigit)];
+  const Pose& X = state.poses.digit[idx(digit_of_segment(segment))].segment[idx(segment % kSegmentsPerDigit)];
   return engine.nearest(segment, X, 1.0).distance;
 }
 
@@ -33,13 +33,13 @@ bool keeps_clear_between(const HapticModel& model, DistanceEngine& engine, const
   for (int n = 0; n <= kSamples; ++n) {
     DigitAngles angle{};
     for (int i = 0; i < kJointsPerDigit; ++i) {
-      const std::size_t j = at(joint_index(digit, i));
-      angle[at(i)] = from.angle[j] + (to.angle[j] - from.angle[j]) * n / kSamples;
+      const std::size_t j = idx(joint_index(digit, i));
+      angle[idx(i)] = from.angle[j] + (to.angle[j] - from.angle[j]) * n / kSamples;
     }
     DigitPose pose;
     model.hand.digit_pose(digit, angle, pose);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      const Nearest nearest = engine.nearest(segment_index(digit, k), pose.segment[at(k)], 1.0);
+      const Nearest nearest = engine.nearest(segment_index(digit, k), pose.segment[idx(k)], 1.0);
       if (nearest.distance < model.contact.margin - kStopBand) return false;
     }
   }
@@ -49,7 +49,7 @@ bool keeps_clear_between(const HapticModel& model, DistanceEngine& engine, const
 /// Whether the digit's search ran out of steps in this tick: its last segment then has a record that neither
 /// pushes nor holds.
 bool gave_up(const GdpValues& state, int digit) {
-  const ContactRecord& last = state.record[at(segment_index(digit, kSegmentsPerDigit - 1))];
+  const ContactRecord& last = state.record[idx(segment_index(digit, kSegmentsPerDigit - 1))];
   return last.active && std::isinf(last.offset);
 }
 
@@ -65,9 +65,9 @@ void compare_contact(const HapticModel& model, const GdpValues& before, const Gd
                      const GdpValues& peer, const PeerGdp& gdp, int segment, Difference& out,
                      Agreement& agreement) {
   const std::vector<ClosePair>& tied = gdp.tied(segment);
-  const ContactRecord& was = before.record[at(segment)];
-  const ContactRecord& a = ours.record[at(segment)];
-  const ContactRecord& b = peer.record[at(segment)];
+  const ContactRecord& was = before.record[idx(segment)];
+  const ContactRecord& a = ours.record[idx(segment)];
+  const ContactRecord& b = peer.record[idx(segment)];
   if (!a.active || !b.active) return;
   // A record that is made anew where the last one was has the same bits: only the reverse shows.
   if (tied.empty() && (!was.active || a.p_S != was.p_S)) {
@@ -76,7 +76,7 @@ void compare_contact(const HapticModel& model, const GdpValues& before, const Gd
   }
   if (tied.empty()) return;
   ++agreement.records;
-  const Pose& X = peer.poses.digit[at(digit_of_segment(segment))].segment[at(segment % kSegmentsPerDigit)];
+  const Pose& X = peer.poses.digit[idx(digit_of_segment(segment))].segment[idx(segment % kSegmentsPerDigit)];
   if (!one_place(model.hand.mesh(segment), X, model.object.mesh(), tied)) return;
   ++agreement.unique;
   const double point = (a.p_gdp - b.p_gdp).norm();
@@ -94,12 +94,12 @@ Difference difference_of(const HapticModel& model, const GdpValues& before, cons
                          const GdpValues& peer, const PeerGdp& gdp, int digit, Agreement& agreement) {
   Difference out;
   for (int i = 0; i < kJointsPerDigit; ++i) {
-    const std::size_t j = at(joint_index(digit, i));
+    const std::size_t j = idx(joint_index(digit, i));
     out.angle = std::max(out.angle, std::abs(ours.angle[j] - peer.angle[j]));
   }
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     const int segment = segment_index(digit, k);
-    if (ours.record[at(segment)].active != peer.record[at(segment)].active) out.flags.push_back(segment);
+    if (ours.record[idx(segment)].active != peer.record[idx(segment)].active) out.flags.push_back(segment);
   }
   if (out.angle > kSameAngle) return out;  // records at different places are not to be compared
   agreement.angle = std::max(agreement.angle, out.angle);
@@ -120,7 +120,7 @@ bool grazes(const HapticModel& model, const GdpValues& before, const GdpValues& 
     const auto way = [&](const GdpValues& state) {
       double sum = 0.0;
       for (int i = 0; i < kJointsPerDigit; ++i) {
-        const std::size_t j = at(joint_index(digit, i));
+        const std::size_t j = idx(joint_index(digit, i));
         sum += std::abs(state.angle[j] - before.angle[j]);
       }
       return sum;
@@ -137,7 +137,7 @@ bool grazes(const HapticModel& model, const GdpValues& before, const GdpValues& 
   }
   return std::all_of(difference.flags.begin(), difference.flags.end(), [&](int segment) {
     const ContactRecord& made =
-        ours.record[at(segment)].active ? ours.record[at(segment)] : peer.record[at(segment)];
+        ours.record[idx(segment)].active ? ours.record[idx(segment)] : peer.record[idx(segment)];
     return made.depth <= kTouchBand &&
            std::abs(segment_distance(engine, ours, segment) - margin) <= kTouchBand &&
            std::abs(segment_distance(engine, peer, segment) - margin) <= kTouchBand;
@@ -151,7 +151,7 @@ std::string describe(const HapticModel& model, const GdpValues& ours, const GdpV
   if (gave_up(peer, digit)) text += " the peer's search gave up;";
   for (const int segment : difference.flags) {
     text += fmt::format(" {} in contact only in {};", segment_name(segment),
-                        ours.record[at(segment)].active ? "ours" : "the peer's");
+                        ours.record[idx(segment)].active ? "ours" : "the peer's");
   }
   text += difference.contact + " clearance less the margin [nm], ours / the peer's:";
   for (int k = 0; k < kSegmentsPerDigit; ++k) {

@@ -55,7 +55,7 @@ struct Posture {
   [[nodiscard]] JointArray at_closure(const Closure& closure) const {
     JointArray angle;
     for (int j = 0; j < kJoints; ++j) {
-      angle[at(j)] = open[at(j)] + closure[at(digit_of_joint(j))] * (closed[at(j)] - open[at(j)]);
+      angle[idx(j)] = open[idx(j)] + closure[idx(digit_of_joint(j))] * (closed[idx(j)] - open[idx(j)]);
     }
     return angle;
   }
@@ -71,16 +71,16 @@ Posture draw_posture(const HandParameters& hand, std::uint64_t seed) {
             ? std::array{1.0, random.between(0.7, 1.0), random.between(0.3, 0.8), random.between(0.3, 0.8)}
             : std::array{1.0, random.between(-0.3, 0.3), random.between(0.6, 1.0), random.between(0.4, 0.9)};
     for (int i = 0; i < kJointsPerDigit; ++i) {
-      const std::size_t j = at(joint_index(d, i));
+      const std::size_t j = idx(joint_index(d, i));
       const double way = hand.max_angle[j] - hand.open_angle[j];
       const auto in_range = [&](double angle) {
         return std::clamp(angle, hand.min_angle[j], hand.max_angle[j]);
       };
       posture.open[j] = in_range(hand.open_angle[j] + random.between(-0.04, 0.04));
-      posture.closed[j] = in_range(hand.open_angle[j] + weight[at(i)] * way);
+      posture.closed[j] = in_range(hand.open_angle[j] + weight[idx(i)] * way);
     }
-    posture.begin[at(d)] = static_cast<int>(random.between(10.0, 80.0));
-    posture.ticks[at(d)] = static_cast<int>(random.between(200.0, 300.0));
+    posture.begin[idx(d)] = static_cast<int>(random.between(10.0, 80.0));
+    posture.ticks[idx(d)] = static_cast<int>(random.between(200.0, 300.0));
   }
   return posture;
 }
@@ -94,7 +94,7 @@ struct Depths {
 double deepest(const Snapshot& snapshot, int digit) {
   double depth = 0.0;
   for (int k = 0; k < kSegmentsPerDigit; ++k)
-    depth = std::max(depth, snapshot.segment[at(segment_index(digit, k))].depth);
+    depth = std::max(depth, snapshot.segment[idx(segment_index(digit, k))].depth);
   return depth;
 }
 
@@ -108,19 +108,19 @@ Depths find_depths(const HapticModel& model, const Posture& posture) {
   for (int n = 0; n <= kSearchSteps; ++n) {
     Closure closure;
     for (int d = 0; d < kDigits; ++d)
-      closure[at(d)] = std::min(found.pressed[at(d)], static_cast<double>(n) / kSearchSteps);
+      closure[idx(d)] = std::min(found.pressed[idx(d)], static_cast<double>(n) / kSearchSteps);
     // A step a second: no speed is too high, and nothing that smooths the force matters to the depth.
     static_cast<void>(step(model, {static_cast<double>(n), posture.at_closure(closure)}, state));
     for (int d = 0; d < kDigits; ++d) {
       const double depth = deepest(state.snapshot(), d);
       const auto crossing = [&](double wanted) {
-        return (n - (depth - wanted) / (depth - before[at(d)])) / kSearchSteps;
+        return (n - (depth - wanted) / (depth - before[idx(d)])) / kSearchSteps;
       };
-      if (before[at(d)] < kLightDepth && depth >= kLightDepth)
-        found.light[at(d)] = std::min(found.light[at(d)], crossing(kLightDepth));
-      if (before[at(d)] < kPressDepth && depth >= kPressDepth)
-        found.pressed[at(d)] = std::min(found.pressed[at(d)], crossing(kPressDepth));
-      before[at(d)] = depth;
+      if (before[idx(d)] < kLightDepth && depth >= kLightDepth)
+        found.light[idx(d)] = std::min(found.light[idx(d)], crossing(kLightDepth));
+      if (before[idx(d)] < kPressDepth && depth >= kPressDepth)
+        found.pressed[idx(d)] = std::min(found.pressed[idx(d)], crossing(kPressDepth));
+      before[idx(d)] = depth;
     }
   }
   return found;
@@ -131,8 +131,8 @@ std::vector<JointArray> grasp_angles(const Posture& posture, const Closure& pres
   for (int tick = 0; tick < kGraspTicks; ++tick) {
     Closure closure;
     for (int d = 0; d < kDigits; ++d) {
-      const double u = static_cast<double>(tick - posture.begin[at(d)]) / posture.ticks[at(d)];
-      closure[at(d)] = pressed[at(d)] * minimum_jerk(u);
+      const double u = static_cast<double>(tick - posture.begin[idx(d)]) / posture.ticks[idx(d)];
+      closure[idx(d)] = pressed[idx(d)] * minimum_jerk(u);
     }
     angle.push_back(posture.at_closure(closure));
   }
@@ -193,7 +193,7 @@ BenchMotion make_squeeze(const HapticModel& model, std::uint64_t seed) {
       const int since = tick - d * kPeriod / kDigits;
       const double u = since < 0 ? 0.0 : static_cast<double>(since % kPeriod) / kPeriod;
       const double out = kRelease * (u < 0.5 ? minimum_jerk(2.0 * u) : minimum_jerk(2.0 - 2.0 * u));
-      closure[at(d)] = depths.pressed[at(d)] + out * (depths.light[at(d)] - depths.pressed[at(d)]);
+      closure[idx(d)] = depths.pressed[idx(d)] + out * (depths.light[idx(d)] - depths.pressed[idx(d)]);
     }
     motion.angle.push_back(posture.at_closure(closure));
   }

@@ -35,7 +35,7 @@ Clearance::Clearance(const HandModel& hand, const TriangleMesh& object, Distance
       object_min_(least_corner(object)),
       object_max_(greatest_corner(object)) {
   for (int s = 0; s < kSegments; ++s) {
-    Sphere& sphere = sphere_[at(s)];
+    Sphere& sphere = sphere_[idx(s)];
     sphere.centre = 0.5 * (least_corner(hand.mesh(s)) + greatest_corner(hand.mesh(s)));
     for (const Vec3& v : hand.mesh(s).vertices)
       sphere.radius = std::max(sphere.radius, (v - sphere.centre).norm());
@@ -45,9 +45,9 @@ Clearance::Clearance(const HandModel& hand, const TriangleMesh& object, Distance
 void Clearance::forget() { known_.fill(Known{}); }
 
 double Clearance::root_bound(int segment, const Pose& X_WS) const {
-  const Vec3 centre = X_WS * sphere_[at(segment)].centre;
+  const Vec3 centre = X_WS * sphere_[idx(segment)].centre;
   const Vec3 outside = (object_min_ - centre).cwiseMax(centre - object_max_).cwiseMax(0.0);
-  return outside.norm() - sphere_[at(segment)].radius - 1e-12;
+  return outside.norm() - sphere_[idx(segment)].radius - 1e-12;
 }
 
 double Clearance::of(int digit, int k, const DigitAngles& angle, const Pose& X_WS, double needed) {
@@ -56,7 +56,7 @@ double Clearance::of(int digit, int k, const DigitAngles& angle, const Pose& X_W
     ++questions_;
     return engine_.nearest(segment, X_WS, std::numeric_limits<double>::infinity()).distance;
   }
-  Known& known = known_[at(segment)];
+  Known& known = known_[idx(segment)];
   const double moved = travel(hand_, digit, k, known.angle, angle);
   if (known.bound - moved > needed) return known.bound - moved;
   if (known.exact && moved == 0.0) return known.bound;

@@ -45,14 +45,14 @@ struct PeerGdp::Tick {
 
   [[nodiscard]] int first_moving() const {
     for (int i = 0; i < kJointsPerDigit; ++i) {
-      if (rate[at(i)] != 0.0) return segment_in_digit_of_joint(i);
+      if (rate[idx(i)] != 0.0) return segment_in_digit_of_joint(i);
     }
     return kSegmentsPerDigit;
   }
   void go_to(const HandModel& hand, double to) {
     s = to;
     for (int i = fixed; i < kJointsPerDigit; ++i)
-      angle[at(i)] = s < 1.0 ? from[at(i)] + s * rate[at(i)] : hcp[at(i)];
+      angle[idx(i)] = s < 1.0 ? from[idx(i)] + s * rate[idx(i)] : hcp[idx(i)];
     hand.digit_pose(digit, angle, pose);
   }
 };
@@ -87,25 +87,25 @@ Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
     Tick tick{.digit = d,
               .from = digit_angles(state.angle, d),
               .rate = {},
-              .hcp_was = digit_angles(state.started[at(d)] ? state.hcp_angle : hcp_angle, d),
+              .hcp_was = digit_angles(state.started[idx(d)] ? state.hcp_angle : hcp_angle, d),
               .hcp = digit_angles(hcp_angle, d),
-              .hcp_pose = hcp.digit[at(d)],
+              .hcp_pose = hcp.digit[idx(d)],
               .angle = digit_angles(state.angle, d),
-              .pose = state.poses.digit[at(d)]};
+              .pose = state.poses.digit[idx(d)]};
     advance_digit(tick, state);
-    state.poses.digit[at(d)] = tick.pose;
-    for (int i = 0; i < kJointsPerDigit; ++i) state.angle[at(joint_index(d, i))] = tick.angle[at(i)];
+    state.poses.digit[idx(d)] = tick.pose;
+    for (int i = 0; i < kJointsPerDigit; ++i) state.angle[idx(joint_index(d, i))] = tick.angle[idx(i)];
 
     const bool clear = tick.angle == tick.hcp;
-    state.inside[at(d)] = !clear && (state.inside[at(d)] || !state.started[at(d)]);
-    state.started[at(d)] = state.started[at(d)] || measured[at(d)];
+    state.inside[idx(d)] = !clear && (state.inside[idx(d)] || !state.started[idx(d)]);
+    state.started[idx(d)] = state.started[idx(d)] || measured[idx(d)];
     if (tick.exhausted) status |= Status::kSearchExhausted;
-    if (state.inside[at(d)]) status |= Status::kStartInside;
+    if (state.inside[idx(d)]) status |= Status::kStartInside;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      ContactRecord& record = state.record[at(segment_index(d, k))];
+      ContactRecord& record = state.record[idx(segment_index(d, k))];
       if (!record.active) continue;
-      measure_record(record, tick.pose.segment[at(k)], tick.hcp_pose.segment[at(k)]);
-      record.silent = state.inside[at(d)];
+      measure_record(record, tick.pose.segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+      record.silent = state.inside[idx(d)];
     }
   }
   state.hcp_angle = hcp_angle;
@@ -116,9 +116,9 @@ Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
 int PeerGdp::held_joints(const Tick& tick, GdpState& state) const {
   int held = 0;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
-    ContactRecord& record = state.record[at(segment_index(tick.digit, k))];
+    ContactRecord& record = state.record[idx(segment_index(tick.digit, k))];
     if (!record.active) continue;
-    measure_record(record, tick.pose.segment[at(k)], tick.hcp_pose.segment[at(k)]);
+    measure_record(record, tick.pose.segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
     if (record.depth > 0.0) held = joints_that_move(k);
   }
   return held;
@@ -128,25 +128,25 @@ int PeerGdp::held_joints(const Tick& tick, GdpState& state) const {
 void PeerGdp::advance_digit(Tick& tick, GdpState& state) {
   const double margin = model_.contact.margin;
   tick.fixed = held_joints(tick, state);
-  for (int i = 0; i < kJointsPerDigit; ++i) tick.rate[at(i)] = tick.hcp[at(i)] - tick.angle[at(i)];
+  for (int i = 0; i < kJointsPerDigit; ++i) tick.rate[idx(i)] = tick.hcp[idx(i)] - tick.angle[idx(i)];
   bool asked = false;
   while (tick.fixed < kJointsPerDigit) {
-    for (int i = 0; i < tick.fixed; ++i) tick.rate[at(i)] = 0.0;
+    for (int i = 0; i < tick.fixed; ++i) tick.rate[idx(i)] = 0.0;
     if (tick.first_moving() == kSegmentsPerDigit) break;
     asked = true;
     const Stop stop = next_stop(tick, state);
     if (stop.segment < 0) break;
-    ContactRecord& record = state.record[at(segment_index(tick.digit, stop.segment))];
+    ContactRecord& record = state.record[idx(segment_index(tick.digit, stop.segment))];
     if (record.active) {
-      measure_record(record, tick.pose.segment[at(stop.segment)], tick.hcp_pose.segment[at(stop.segment)]);
+      measure_record(record, tick.pose.segment[idx(stop.segment)], tick.hcp_pose.segment[idx(stop.segment)]);
       if (record.depth + record.offset <= 0.0) record.active = false;
     }
     const SegmentField field = field_of(model_.hand, tick.digit, stop.segment, tick.pose, tick.rate);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const int segment = segment_index(tick.digit, k);
-      if (state.record[at(segment)].active) continue;
+      if (state.record[idx(segment)].active) continue;
       if (k != stop.segment &&
-          clearance_.of(tick.digit, k, tick.angle, tick.pose.segment[at(k)], margin) > margin) {
+          clearance_.of(tick.digit, k, tick.angle, tick.pose.segment[idx(k)], margin) > margin) {
         continue;
       }
       make_record(tick, k, k == stop.segment ? &field : nullptr, state);
@@ -155,7 +155,7 @@ void PeerGdp::advance_digit(Tick& tick, GdpState& state) {
   }
   if (!asked && pruning_ == Pruning::kNone) {  // does not know that nothing moves
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      static_cast<void>(clearance_.of(tick.digit, k, tick.angle, tick.pose.segment[at(k)], margin));
+      static_cast<void>(clearance_.of(tick.digit, k, tick.angle, tick.pose.segment[idx(k)], margin));
     }
   }
 }
@@ -182,7 +182,7 @@ PeerGdp::Stop PeerGdp::next_stop(Tick& tick, GdpState& state) {
     const double from = tick.s;
     tick.go_to(model_.hand, last ? 1.0 : tick.s + length);
     for (int k = first; k < kSegmentsPerDigit; ++k)
-      state.record[at(segment_index(tick.digit, k))].active = false;
+      state.record[idx(segment_index(tick.digit, k))].active = false;
     if (last && !near) return {};
     if (!last && !(tick.s > from)) break;
   }
@@ -193,7 +193,7 @@ PeerGdp::Stop PeerGdp::next_stop(Tick& tick, GdpState& state) {
 PeerGdp::Step PeerGdp::step_of(const Tick& tick, int k, double longest) {
   const Floors floors{model_.contact.margin};
   const SegmentField field = field_of(model_.hand, tick.digit, k, tick.pose, tick.rate);
-  const Pose& X_WS = tick.pose.segment[at(k)];
+  const Pose& X_WS = tick.pose.segment[idx(k)];
   const double needed = floors.margin + field.speed * longest;
   const double distance = clearance_.of(tick.digit, k, tick.angle, X_WS, needed);
   if (distance > needed) return {.length = longest};
@@ -213,8 +213,8 @@ PeerGdp::Step PeerGdp::step_of(const Tick& tick, int k, double longest) {
         (pair.distance <= floors.margin && field.closing(n, pair.on_segment) > floors.creep(pair.distance))) {
       return {.length = 0.0, .blocked = true, .near = true};
     }
-    for (const std::int32_t corner : mesh.triangles[at(pair.segment_triangle)]) {
-      const Vec3 x = X_WS * mesh.vertices[at(corner)];
+    for (const std::int32_t corner : mesh.triangles[idx(pair.segment_triangle)]) {
+      const Vec3 x = X_WS * mesh.vertices[idx(corner)];
       const double height = n.dot(x - pair.on_object);
       const double v = field.closing(n, x);
       step.length = std::min(step.length, safe_step(height, v, field.acceleration, floors.of(pair.distance)));
@@ -231,7 +231,7 @@ void PeerGdp::list_pairs(int segment, const Pose& X_WS, double limit) {
 
 void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, GdpState& state) {
   const int segment = segment_index(tick.digit, k);
-  const Pose& X_WS = tick.pose.segment[at(k)];
+  const Pose& X_WS = tick.pose.segment[idx(k)];
   const double margin = model_.contact.margin;
   // A search that gave up stops wherever it is; what is nearest there may be far away.
   const double cap =
@@ -239,7 +239,7 @@ void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, Gd
           ? std::max(margin, clearance_.of(tick.digit, k, tick.angle, X_WS, 1.0) * (1.0 + 1e-12))
           : margin;
   list_pairs(segment, X_WS, cap + kTie);
-  std::vector<ClosePair>& tied = tied_[at(segment)];
+  std::vector<ClosePair>& tied = tied_[idx(segment)];
   if (!choose_contact(pairs_, cap, tick.exhausted ? nullptr : field, tied)) return;
   const ClosePair& nearest = tied.front();
   ContactRecord record;
@@ -247,10 +247,10 @@ void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, Gd
   record.p_S = X_WS.R.transpose() * (nearest.on_segment - X_WS.p);
   record.n_c = nearest.direction();
   record.force_normal = record.n_c;
-  record.silent = state.inside[at(tick.digit)];
+  record.silent = state.inside[idx(tick.digit)];
   record.offset = tick.exhausted && nearest.distance > margin ? std::numeric_limits<double>::infinity()
                                                               : offset_of(tick, k, record, state);
-  state.record[at(segment)] = record;
+  state.record[idx(segment)] = record;
 }
 
 // Rule 3's d0.
@@ -263,13 +263,13 @@ double PeerGdp::offset_of(const Tick& tick, int k, ContactRecord record, const G
   model_.hand.digit_pose(tick.digit, hcp_angle, hcp);
   bool pushed = false;
   for (int nearer = 0; nearer < k; ++nearer) {
-    ContactRecord other = state.record[at(segment_index(tick.digit, nearer))];
+    ContactRecord other = state.record[idx(segment_index(tick.digit, nearer))];
     if (!other.active) continue;
-    measure_record(other, tick.pose.segment[at(nearer)], hcp.segment[at(nearer)]);
+    measure_record(other, tick.pose.segment[idx(nearer)], hcp.segment[idx(nearer)]);
     pushed = pushed || other.depth > 0.0;
   }
   if (!pushed) return 0.0;
-  measure_record(record, tick.pose.segment[at(k)], hcp.segment[at(k)]);
+  measure_record(record, tick.pose.segment[idx(k)], hcp.segment[idx(k)]);
   return std::max(0.0, record.depth);
 }
 

@@ -27,7 +27,7 @@ class PeerGdp {
 
   /// The pairs that tie for the record that a segment got in the last tick, the one that gave its point
   /// first; empty if it got none.
-  [[nodiscard]] const std::vector<ClosePair>& tied(int segment) const { return tied_[at(segment)]; }
+  [[nodiscard]] const std::vector<ClosePair>& tied(int segment) const { return tied_[idx(segment)]; }
 
   /// Questions of distance that the engine has been asked.
   [[nodiscard]] long questions() const { return clearance_.questions() + lists_; }

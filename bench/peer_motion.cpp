@@ -12,21 +12,21 @@ SegmentField field_of(const HandModel& hand, int digit, int k, const DigitPose& 
   SegmentField field;
   const int joints = joints_that_move(k);
   for (int j = 0; j < joints; ++j) {
-    const double w = std::abs(rate[at(j)]);
+    const double w = std::abs(rate[idx(j)]);
     const double reach = hand.reach(digit, j, k);
     double nearer = 0.0;
     double from_here = 0.0;
     for (int i = 0; i < joints; ++i) {
-      const double w_i = std::abs(rate[at(i)]);
+      const double w_i = std::abs(rate[idx(i)]);
       if (i < j) {
         nearer += w_i;
       } else {
         from_here += w_i * hand.reach(digit, i, k);
       }
     }
-    const JointAxis& joint = pose.joint[at(j)];
-    field.angular += rate[at(j)] * joint.axis;
-    field.linear -= rate[at(j)] * joint.axis.cross(joint.centre);
+    const JointAxis& joint = pose.joint[idx(j)];
+    field.angular += rate[idx(j)] * joint.axis;
+    field.linear -= rate[idx(j)] * joint.axis.cross(joint.centre);
     field.speed += w * reach;
     field.acceleration += w * (2.0 * reach * nearer + from_here);
   }
@@ -36,7 +36,7 @@ SegmentField field_of(const HandModel& hand, int digit, int k, const DigitPose& 
 double travel(const HandModel& hand, int digit, int k, const DigitAngles& a, const DigitAngles& b) {
   double sum = 0.0;
   for (int j = 0; j < joints_that_move(k); ++j) {
-    sum += std::abs(b[at(j)] - a[at(j)]) * hand.reach(digit, j, k);
+    sum += std::abs(b[idx(j)] - a[idx(j)]) * hand.reach(digit, j, k);
   }
   return sum;
 }

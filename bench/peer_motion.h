@@ -2,11 +2,10 @@
 // How a segment moves along a straight line in joint space, for the peers.
 #pragma once
 
+#include "phalanx/core/index.h"
 #include "phalanx/hand/hand_model.h"
 
 namespace phalanx::bench {
-
-inline constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// The segment's velocity v(x) = angular x x + linear for each unit of the path parameter s, and bounds that
 /// hold for all its points along the whole path.

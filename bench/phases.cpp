@@ -14,7 +14,7 @@ std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValu
     for (int s = 0; s < kPalm; ++s) {
       const int d = digit_of_segment(s);
       const int k = s % kSegmentsPerDigit;
-      const Pose& X_WS = state.poses.digit[at(d)].segment[at(k)];
+      const Pose& X_WS = state.poses.digit[idx(d)].segment[idx(k)];
       if (!(clearance.of(d, k, digit_angles(state.angle, d), X_WS, kFreeDistance) > kFreeDistance))
         return false;
     }
@@ -25,7 +25,7 @@ std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValu
     bool touches = false;
     bool deep = false;
     for (int s = 0; s < kPalm; ++s) {
-      const ContactRecord& record = states[tick].record[at(s)];
+      const ContactRecord& record = states[tick].record[idx(s)];
       touches = touches || record.active;
       deep = deep || (record.active && record.depth > kDeepDepth);
     }

@@ -38,6 +38,7 @@ endfunction()
 function(phalanx_test name)
   cmake_parse_arguments(ARG "SOAK;LONG_SANITIZED" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/tests/support/count_allocations.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON) # it replaces malloc and free
   list(TRANSFORM ARG_MODULES PREPEND phalanx_ OUTPUT_VARIABLE modules)
   target_link_libraries(${name} PRIVATE phalanx_options ${modules} ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)

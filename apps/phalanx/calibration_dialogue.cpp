@@ -3,16 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <sstream>
 #include <vector>
 
+#include "phalanx/core/units.h"
 #include "phalanx/device/calibration_session.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 class Dialogue {
  public:

@@ -3,16 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "phalanx/core/units.h"
 #include "phalanx/hand/anthropometry.h"
 #include "phalanx/hand/fit.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kMm = 1e-3;
-constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 
 /// "+0.8 SD" from one mean, or "-0.8 SD of men, +0.5 SD of women".
 std::string deviations(double value, std::span<const Norm> norms) {

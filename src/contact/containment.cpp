@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
+#include "phalanx/core/index.h"
+
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
 
 /// The mesh's closed parts: connected by shared vertices, a triangle that stands in it twice counted once. An
 /// open sheet contains nothing.

@@ -4,10 +4,9 @@
 
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
+#include "phalanx/core/index.h"
 
 namespace phalanx {
-
-inline constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// One digit while its tick is being worked out.
 struct DigitTick {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/segment_motion.h"
+#include "phalanx/core/index.h"
 
 #include <cmath>
 
 namespace phalanx {
-namespace {
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 double segment_speed(const HandModel& hand, int digit, const DigitAngles& rate, int k) noexcept {
   double speed = 0.0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/segment_tree.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
 
 struct Lens {
   Vec3 centre;

@@ -10,7 +10,7 @@
 namespace phalanx {
 namespace {
 
-struct Corner {
+struct TiedCorner {
   Vec3 on_a;
   Vec3 on_b;
   double angle = 0.0;
@@ -18,7 +18,7 @@ struct Corner {
 
 /// At most 9 edge pairs, 6 corner-face pairs, 18 corner-edge pairs.
 struct TiedCorners {
-  std::array<Corner, 33> corner;
+  std::array<TiedCorner, 33> corner;
   std::size_t count = 0;
 };
 
@@ -28,7 +28,7 @@ void add_corner_edge_pairs(const Corners& points, const Corners& t, bool points_
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 foot = nearest_on_edge(t[i], t[(i + 1) % 3] - t[i], p);
       if ((p - foot).squaredNorm() > limit_squared) continue;
-      out.corner[out.count++] = points_are_a ? Corner{p, foot} : Corner{foot, p};
+      out.corner[out.count++] = points_are_a ? TiedCorner{p, foot} : TiedCorner{foot, p};
     }
   }
 }
@@ -69,14 +69,15 @@ TiedRegion tied_region(const Corners& a, const Corners& b, const TriangleDistanc
     tied.corner[i].angle = std::atan2(r.dot(v), r.dot(u));
   }
   const auto end = tied.corner.begin() + static_cast<std::ptrdiff_t>(tied.count);
-  std::sort(tied.corner.begin(), end, [](const Corner& x, const Corner& y) { return x.angle < y.angle; });
+  std::sort(tied.corner.begin(), end,
+            [](const TiedCorner& x, const TiedCorner& y) { return x.angle < y.angle; });
 
   // Steiner: the polygon widened by e is the polygon, a band of width e along its edges and a disc of radius
   // e shared by its corners.
   TiedRegion region{point_weight, point_weight * mean_a, point_weight * mean_b};
   for (std::size_t i = 0; i < tied.count; ++i) {
-    const Corner& p = tied.corner[i];
-    const Corner& q = tied.corner[(i + 1) % tied.count];
+    const TiedCorner& p = tied.corner[i];
+    const TiedCorner& q = tied.corner[(i + 1) % tied.count];
     const double area = 0.5 * (p.on_a - mean_a).cross(q.on_a - mean_a).norm();
     const double band = excess * (q.on_a - p.on_a).norm();
     region.weight += area + band;

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/calibration.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "phalanx/hand/anthropometry.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 // ---- one channel's fit and its checks, in the order in which they are made ----
 

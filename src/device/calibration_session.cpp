@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/calibration_session.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 namespace phalanx {
 namespace {
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 std::string result_line(const CalibratedChannel& done) {
   return fmt::format("{}: {:.4e} a count, offset {:.4f}, from {} poses, at most {:.2f} deg off",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/channel_map.h"
+#include "phalanx/core/index.h"
 
 #include <fmt/format.h>
 
@@ -12,10 +13,8 @@
 namespace phalanx {
 namespace {
 
-constexpr int kAbduction = 1;       ///< of a digit's joints
+constexpr int kAbductionJoint = 1;  ///< of a digit's joints
 constexpr int kMotorsAtMost = 256;  ///< the link's index has 8 bits
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 std::string_view kind_name(ChannelKind kind) {
   constexpr std::array<std::string_view, 6> kNames{"angle", "torque", "force", "motor", "curl", "splay"};
@@ -65,9 +64,9 @@ bool sets(const DeviceChannel& channel, int joint) noexcept {
     case ChannelKind::kAngle:
       return channel.index == joint;
     case ChannelKind::kCurl:
-      return channel.index == digit_of_joint(joint) && joint % kJointsPerDigit != kAbduction;
+      return channel.index == digit_of_joint(joint) && joint % kJointsPerDigit != kAbductionJoint;
     case ChannelKind::kSplay:
-      return joint == joint_index(channel.index, kAbduction);
+      return joint == joint_index(channel.index, kAbductionJoint);
     case ChannelKind::kTorque:
     case ChannelKind::kForce:
     case ChannelKind::kMotor:
@@ -143,11 +142,11 @@ void ChannelMap::measure(std::size_t channel, double value, Sample& out) const n
     case ChannelKind::kCurl:
       for (int i = 0; i < kJointsPerDigit; ++i) {
         const auto j = idx(joint_index(index, i));
-        if (i != kAbduction) out.angle[j] = min_[j] + value * (max_[j] - min_[j]);
+        if (i != kAbductionJoint) out.angle[j] = min_[j] + value * (max_[j] - min_[j]);
       }
       break;
     case ChannelKind::kSplay: {
-      const auto j = idx(joint_index(index, kAbduction));
+      const auto j = idx(joint_index(index, kAbductionJoint));
       out.angle[j] = 0.5 * (min_[j] + max_[j]) + value * 0.5 * (max_[j] - min_[j]);
       break;
     }

@@ -3,18 +3,16 @@
 
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "phalanx/core/math.h"
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/device/transmission.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void refuse(const std::string& place, const std::string& problem) {
   throw std::invalid_argument(fmt::format("{}: {}", place, problem));

@@ -2,17 +2,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "phalanx/core/math.h"
 #include "phalanx/device/patient.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void refuse(std::string_view name, double value, std::string_view rule) {
   throw std::invalid_argument(

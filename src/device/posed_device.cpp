@@ -11,9 +11,10 @@
 namespace phalanx {
 namespace {
 
-constexpr double kCount = 10e-6;                                  ///< of an angle channel [rad]
-constexpr double kBeyondRange = 20.0 * std::numbers::pi / 180.0;  ///< that it can still show, each side [rad]
-constexpr double kStartRamp = 1.0;  ///< of the factor, as a controller on the link has it [s]
+constexpr double kCount = 10e-6;  ///< of an angle channel [rad]
+constexpr double kShownBeyondRange =
+    20.0 * std::numbers::pi / 180.0;  ///< that it can still show, each side [rad]
+constexpr double kStartRamp = 1.0;    ///< of the factor, as a controller on the link has it [s]
 
 void check_above_zero(double value, const char* what) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -38,8 +39,8 @@ DeviceInfo info_of(const PosedDeviceSettings& settings) {
                   .renders_torque = true,
                   .simulated = true};
   for (std::size_t j = 0; j < kJoints; ++j) {
-    const double low = (settings.hand.min_angle[j] - kBeyondRange) / kCount;
-    const double high = (settings.hand.max_angle[j] + kBeyondRange) / kCount;
+    const double low = (settings.hand.min_angle[j] - kShownBeyondRange) / kCount;
+    const double high = (settings.hand.max_angle[j] + kShownBeyondRange) / kCount;
     info.channels.push_back({.kind = ChannelKind::kAngle,
                              .index = static_cast<int>(j),
                              .raw_min = static_cast<std::int32_t>(std::lround(low)),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/press_plan.h"
+#include "phalanx/core/index.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 bool moves(const Exoskeleton& exoskeleton, int digit) {
   for (const ExoJoint& joint : exoskeleton.joints)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/simulated_channels.h"
+#include "phalanx/core/index.h"
 
 #include <fmt/format.h>
 
@@ -19,8 +20,6 @@ constexpr double kBeyondRange = 20.0 * std::numbers::pi / 180.0;  ///< on either
 constexpr double kMotorPlay = 5e-3;  ///< wound up beyond the joints' angles: backlash and stretch [m]
 /// A rotor that is stopped pulls harder than its motor; so many times as much a sensor can still show.
 constexpr double kTorqueReserve = 4.0;
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// Counts of a value, kept within 32 bits; what is not a number reads as an open sensor would.
 std::int32_t counts(double value, const DeviceChannel& channel) noexcept {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/simulated_exoskeleton.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,7 +11,6 @@
 namespace phalanx {
 namespace {
 
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 /// Clocks are compared with this tolerance [s], far below any period: sums of periods are not exact.
 constexpr double kClock = 1e-9;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/force/force_stage.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 SegmentForce& force_of(ForceState& state, int digit, int k) noexcept {
   return state.segment[idx(segment_index(digit, k))];

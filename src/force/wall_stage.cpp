@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "phalanx/core/index.h"
 #include "phalanx/force/force_law.h"
 
 namespace phalanx {
@@ -17,8 +18,6 @@ constexpr double kKeptFor = 0.25;        // [s]
 constexpr double kHighest = 10e-3;       // [m]
 constexpr double kFarthestAside = 3e-3;  // [m]
 constexpr double kUncapped = 1e6;        // f_max without a cap: what no device renders [N]
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// Largest s in 0 .. 1 with |a + s b| <= cap; 0 if there is none.
 double largest_share(const Vec3& a, const Vec3& b, double cap) noexcept {

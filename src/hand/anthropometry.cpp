@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/anthropometry.h"
+#include "phalanx/core/units.h"
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 
 namespace phalanx {
 namespace {
-
-constexpr double kMm = 1e-3;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 // SOURCES
 // [ANSUR] Gordon C. C. et al., "1988 Anthropometric Survey of U.S. Army Personnel: Methods and Summary

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/fit.h"
+#include "phalanx/core/index.h"
 
 #include <cmath>
 #include <sstream>
@@ -12,11 +13,9 @@ namespace {
 
 constexpr auto kMiddleDigit = static_cast<std::size_t>(Digit::kMiddle);
 
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 /// The row of the segment's own bone.
 const DhRow& row_of(const HandParameters& parameters, int segment) noexcept {
-  return parameters.digits[at(digit_of_segment(segment))].dh[at(segment % kSegmentsPerDigit + 1)];
+  return parameters.digits[idx(digit_of_segment(segment))].dh[idx(segment % kSegmentsPerDigit + 1)];
 }
 
 /// From a distal segment's joint to its soft tip [m].
@@ -33,8 +32,8 @@ void check(const HandSize& size) {
   check(size.hand_length, "hand length");
   check(size.hand_breadth, "hand breadth");
   for (int s = 0; s < kSegments - 1; ++s) {
-    check(size.segment[at(s)].length, std::string(segment_name(s)) + ": length");
-    check(size.segment[at(s)].breadth, std::string(segment_name(s)) + ": breadth");
+    check(size.segment[idx(s)].length, std::string(segment_name(s)) + ": length");
+    check(size.segment[idx(s)].breadth, std::string(segment_name(s)) + ": breadth");
   }
 }
 
@@ -59,13 +58,13 @@ std::optional<double> common_ratio(const std::optional<double>& whole, double ba
 double palm_ratio(const HandParameters& base, const HandSize& size, const HandFit& fit, double ratio) {
   bool stated = false;
   for (int k = 0; k < kSegmentsPerDigit; ++k)
-    stated = stated || size.segment[at(segment_index(static_cast<int>(kMiddleDigit), k))].length.has_value();
+    stated = stated || size.segment[idx(segment_index(static_cast<int>(kMiddleDigit), k))].length.has_value();
   if (!size.hand_length || !stated) return ratio;
   const DigitParameters& middle = base.digits[kMiddleDigit];
   const int first = segment_index(static_cast<int>(kMiddleDigit), 0);
-  const double finger = fit.segment[at(first)].length * (middle.dh[0].a + middle.dh[1].a) +
-                        fit.segment[at(first + 1)].length * middle.dh[2].a +
-                        fit.segment[at(first + 2)].length * length_with_tip(base.segments[at(first + 2)]);
+  const double finger = fit.segment[idx(first)].length * (middle.dh[0].a + middle.dh[1].a) +
+                        fit.segment[idx(first + 1)].length * middle.dh[2].a +
+                        fit.segment[idx(first + 2)].length * length_with_tip(base.segments[idx(first + 2)]);
   if (!(middle.base.z() < 0.0)) {
     throw std::invalid_argument("hand '" + base.name +
                                 "': the middle finger's base does not lie beyond the wrist (-z); correct it");
@@ -81,8 +80,8 @@ double palm_ratio(const HandParameters& base, const HandSize& size, const HandFi
 void fit_breadths(HandFit& fit) {
   for (int digit = 0; digit < kDigits; ++digit) {
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      SegmentFit& own = fit.segment[at(segment_index(digit, k))];
-      const auto middle = [&](int i) { return fit.segment[at(segment_index(digit, i))].breadth_middle; };
+      SegmentFit& own = fit.segment[idx(segment_index(digit, k))];
+      const auto middle = [&](int i) { return fit.segment[idx(segment_index(digit, i))].breadth_middle; };
       own.breadth_base = k == 0 ? fit.palm_breadth : 0.5 * (middle(k - 1) + middle(k));
       own.breadth_end = k == kSegmentsPerDigit - 1 ? middle(k) : 0.5 * (middle(k) + middle(k + 1));
     }
@@ -94,7 +93,7 @@ void fit_breadths(HandFit& fit) {
 double hand_length(const HandParameters& parameters) noexcept {
   const DigitParameters& middle = parameters.digits[kMiddleDigit];
   const SegmentShape& distal =
-      parameters.segments[at(segment_index(static_cast<int>(kMiddleDigit), kSegmentsPerDigit - 1))];
+      parameters.segments[idx(segment_index(static_cast<int>(kMiddleDigit), kSegmentsPerDigit - 1))];
   const double finger = middle.dh[0].a + middle.dh[1].a + middle.dh[2].a + length_with_tip(distal);
   return -middle.base.z() - middle.distal.normalized().z() * finger;
 }
@@ -106,17 +105,17 @@ double segment_length(const HandParameters& parameters, int segment) noexcept {
 }
 
 double segment_breadth(const HandParameters& parameters, int segment) noexcept {
-  const SegmentShape& shape = parameters.segments[at(segment)];
+  const SegmentShape& shape = parameters.segments[idx(segment)];
   return shape.radius_base + shape.radius_tip;
 }
 
 HandFit fit_hand(const HandParameters& base, const HandSize& size) {
   check(size);
   const auto stated_length = [&](int s) -> const std::optional<double>& {
-    return size.segment[at(s)].length;
+    return size.segment[idx(s)].length;
   };
   const auto stated_breadth = [&](int s) -> const std::optional<double>& {
-    return size.segment[at(s)].breadth;
+    return size.segment[idx(s)].breadth;
   };
   const auto lengths = common_ratio(size.hand_length, hand_length(base), stated_length,
                                     [&](int s) { return segment_length(base, s); });
@@ -127,7 +126,7 @@ HandFit fit_hand(const HandParameters& base, const HandSize& size) {
   HandFit fit;
   fit.palm_breadth = breadth_ratio;
   for (int s = 0; s < kSegments - 1; ++s) {
-    SegmentFit& own = fit.segment[at(s)];
+    SegmentFit& own = fit.segment[idx(s)];
     own.length = stated_length(s) ? *stated_length(s) / segment_length(base, s) : length_ratio;
     own.breadth_middle = stated_breadth(s) ? *stated_breadth(s) / segment_breadth(base, s) : breadth_ratio;
   }
@@ -140,17 +139,17 @@ HandParameters fitted_parameters(const HandParameters& base, const HandFit& fit)
   HandParameters hand = base;
   const Vec3 palm(fit.palm_breadth, fit.palm_breadth, fit.palm_length);
   for (int digit = 0; digit < kDigits; ++digit) {
-    DigitParameters& parameters = hand.digits[at(digit)];
+    DigitParameters& parameters = hand.digits[idx(digit)];
     parameters.base = palm.cwiseProduct(parameters.base);
     for (int i = 0; i < kJointsPerDigit; ++i) {
-      const double ratio = fit.segment[at(segment_index(digit, segment_in_digit_of_joint(i)))].length;
-      parameters.dh[at(i)].a *= ratio;
-      parameters.dh[at(i)].d *= ratio;
+      const double ratio = fit.segment[idx(segment_index(digit, segment_in_digit_of_joint(i)))].length;
+      parameters.dh[idx(i)].a *= ratio;
+      parameters.dh[idx(i)].d *= ratio;
     }
   }
   for (int s = 0; s < kSegments - 1; ++s) {
-    SegmentShape& shape = hand.segments[at(s)];
-    const SegmentFit& own = fit.segment[at(s)];
+    SegmentShape& shape = hand.segments[idx(s)];
+    const SegmentFit& own = fit.segment[idx(s)];
     const bool distal = s % kSegmentsPerDigit == kSegmentsPerDigit - 1;
     const double whole = own.length * length_with_tip(shape);
     const double breadth = own.breadth_middle * (shape.radius_base + shape.radius_tip);

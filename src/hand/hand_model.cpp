@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/hand_model.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +10,6 @@
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// x distal, z the flexion axis: right-hand frame of a digit's first joint at q = 0, in H.
 Pose base_frame(const DigitParameters& digit) {
@@ -27,9 +26,9 @@ Pose base_frame(const DigitParameters& digit) {
 void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
   const std::string name = "hand '" + parameters.name + "': ";
   for (int j = 0; j < kJoints; ++j) {
-    const double low = parameters.min_angle[at(j)];
-    const double high = parameters.max_angle[at(j)];
-    const double open = parameters.open_angle[at(j)];
+    const double low = parameters.min_angle[idx(j)];
+    const double high = parameters.max_angle[idx(j)];
+    const double open = parameters.open_angle[idx(j)];
     if (!(std::isfinite(low) && std::isfinite(high) && low < high)) {
       throw std::invalid_argument(name + "joint " + std::string(joint_name(j)) +
                                   " has an empty range of motion; its minimum must be below its maximum");
@@ -40,7 +39,7 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
     }
   }
   for (int d = 0; d < kDigits; ++d) {
-    const DigitParameters& digit = parameters.digits[at(d)];
+    const DigitParameters& digit = parameters.digits[idx(d)];
     bool finite = digit.base.allFinite() && digit.distal.allFinite() && digit.dorsal.allFinite();
     for (const DhRow& row : digit.dh) {
       finite = finite && std::isfinite(row.a) && std::isfinite(row.alpha) && std::isfinite(row.d) &&
@@ -53,7 +52,7 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
     }
   }
   for (int s = 0; s < kSegments; ++s) {
-    check_mesh(meshes[at(s)], (name + "segment " + std::string(segment_name(s))).c_str());
+    check_mesh(meshes[idx(s)], (name + "segment " + std::string(segment_name(s))).c_str());
   }
 }
 
@@ -74,22 +73,22 @@ HandModel::HandModel(HandParameters parameters, Handedness handedness, const Pos
   }
   const bool mirrored = handedness == Handedness::kLeft;
   for (int d = 0; d < kDigits; ++d) {
-    const DigitParameters& digit = parameters_.digits[at(d)];
-    X_WB_[at(d)] = X_WH * (mirrored ? Pose{reflection()} * base_frame(digit) : base_frame(digit));
+    const DigitParameters& digit = parameters_.digits[idx(d)];
+    X_WB_[idx(d)] = X_WH * (mirrored ? Pose{reflection()} * base_frame(digit) : base_frame(digit));
     for (int i = 0; i < kJointsPerDigit; ++i) {
-      const DhRow& row = digit.dh[at(i)];
-      joint_[at(d)][at(i)] = {row.a, row.d, row.theta, std::cos(row.alpha), std::sin(row.alpha)};
+      const DhRow& row = digit.dh[idx(i)];
+      joint_[idx(d)][idx(i)] = {row.a, row.d, row.theta, std::cos(row.alpha), std::sin(row.alpha)};
     }
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       double radius = 0.0;  // of the segment's mesh around its own joint
       for (const Vec3& v : mesh(segment_index(d, k)).vertices) radius = std::max(radius, v.norm());
       radius += std::abs(
-          digit.dh[at(k + 1)].d);  // the segment's origin is this far along the axis from the joint's centre
+          digit.dh[idx(k + 1)].d);  // the segment's origin is this far along the axis from the joint's centre
       // Distances between successive D-H origins do not depend on the angles; the segment's own joint is k
       // + 1.
       for (int i = k + 1; i >= 0; --i) {
-        reach_[at(d)][at(i)][at(k)] = radius;
-        if (i > 0) radius += std::hypot(digit.dh[at(i - 1)].a, digit.dh[at(i - 1)].d);
+        reach_[idx(d)][idx(i)][idx(k)] = radius;
+        if (i > 0) radius += std::hypot(digit.dh[idx(i - 1)].a, digit.dh[idx(i - 1)].d);
       }
     }
   }
@@ -105,17 +104,17 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
   // The right hand's chain, from a base that is reflected for a left hand: it then carries the reflected
   // frames, in which the third axis is the negative of the axis that flexes, for an axis is a pseudovector.
   const double flexion = handedness_ == Handedness::kLeft ? -1.0 : 1.0;
-  const Pose& base = X_WB_[at(digit)];
+  const Pose& base = X_WB_[idx(digit)];
   Vec3 x = base.R.col(0);
   Vec3 y = base.R.col(1);
   Vec3 z = base.R.col(2);
   Vec3 p = base.p;
   for (int i = 0; i < kJointsPerDigit; ++i) {
-    const ChainJoint& joint = joint_[at(digit)][at(i)];
-    const double c = std::cos(joint.theta + angle[at(i)]);
-    const double s = std::sin(joint.theta + angle[at(i)]);
+    const ChainJoint& joint = joint_[idx(digit)][idx(i)];
+    const double c = std::cos(joint.theta + angle[idx(i)]);
+    const double s = std::sin(joint.theta + angle[idx(i)]);
     const Vec3 axis = flexion * z;
-    pose.joint[at(i)] = {axis, p};
+    pose.joint[idx(i)] = {axis, p};
     // Rz(theta + q) Tz(d): `across` is at right angles to the link and to z.
     const Vec3 link = c * x + s * y;
     const Vec3 across = c * y - s * x;
@@ -128,7 +127,7 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
     if (i == 0) continue;
     // WebXR's frame, from the one at the link's far end: origin back at the joint, -Z along the link, -X the
     // axis that flexes.
-    Pose& segment = pose.segment[at(i - 1)];
+    Pose& segment = pose.segment[idx(i - 1)];
     segment.R.col(0) = -flexion * z;
     segment.R.col(1) = -y;
     segment.R.col(2) = -x;
@@ -137,22 +136,22 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
 }
 
 void HandModel::poses(const JointArray& angle, HandPoses& poses) const noexcept {
-  for (int d = 0; d < kDigits; ++d) digit_pose(d, digit_angles(angle, d), poses.digit[at(d)]);
+  for (int d = 0; d < kDigits; ++d) digit_pose(d, digit_angles(angle, d), poses.digit[idx(d)]);
 }
 
 DigitAngles digit_angles(const JointArray& angle, int digit) noexcept {
   DigitAngles out{};
-  for (int i = 0; i < kJointsPerDigit; ++i) out[at(i)] = angle[at(joint_index(digit, i))];
+  for (int i = 0; i < kJointsPerDigit; ++i) out[idx(i)] = angle[idx(joint_index(digit, i))];
   return out;
 }
 
 PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept {
   PointJacobian J;
   for (int i = 0; i < kJointsPerDigit; ++i) {
-    const JointAxis& joint = pose.joint[at(i)];
+    const JointAxis& joint = pose.joint[idx(i)];
     const bool moves = i < joints_that_move(k);
-    J.linear[at(i)] = moves ? Vec3(joint.axis.cross(p_W - joint.centre)) : Vec3(Vec3::Zero());
-    J.angular[at(i)] = moves ? joint.axis : Vec3(Vec3::Zero());
+    J.linear[idx(i)] = moves ? Vec3(joint.axis.cross(p_W - joint.centre)) : Vec3(Vec3::Zero());
+    J.angular[idx(i)] = moves ? joint.axis : Vec3(Vec3::Zero());
   }
   return J;
 }

@@ -6,11 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "phalanx/core/index.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx::mesh {
-
-constexpr std::size_t idx(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
 
 /// A triangle's corner, and the edge that runs from it to the triangle's next corner: 3 * triangle + k.
 using Corner = std::uint32_t;

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "mesh/extruded_solid.h"
 #include "mesh/object_shapes.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/objects.h"
 
 namespace phalanx::mesh {
@@ -37,8 +37,6 @@ const std::vector<KeyCut>& key_upper_edge() {
 }
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double depth_at(const std::vector<KeyCut>& edge, double along) {
   for (std::size_t i = 0; i + 1 < edge.size(); ++i) {

@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
 #include "mesh/mesh_builder.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx::mesh {
-namespace {
-constexpr double kPi = std::numbers::pi;
-}
+namespace {}
 
 MugShape mug_shape(double diameter, double height) {
   MugShape s;

@@ -16,10 +16,10 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-struct Placed {
+struct PlacedVertex {
   Cell cell;
   std::int32_t vertex;
-  friend bool operator<(const Placed& a, const Placed& b) {
+  friend bool operator<(const PlacedVertex& a, const PlacedVertex& b) {
     return a.cell < b.cell || (a.cell == b.cell && a.vertex < b.vertex);
   }
 };
@@ -78,7 +78,7 @@ Mended merge_near_vertices(TriangleMesh& mesh, Allowance& allowance) {
   const double tolerance = allowance.reach;
   std::vector<double>& spent = allowance.spent;
   // A grid of cells as wide as the tolerance: whoever is near stands in one of 27.
-  std::vector<Placed> placed;
+  std::vector<PlacedVertex> placed;
   {
     const std::vector<bool> border = border_vertices(mesh);
     const Vec3 origin = bounds(mesh).min;
@@ -111,7 +111,7 @@ Mended merge_near_vertices(TriangleMesh& mesh, Allowance& allowance) {
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
         const Cell& c = placed[p].cell;
-        const Placed first{{c[0] + dx, c[1] + dy, c[2] - 1}, -1};
+        const PlacedVertex first{{c[0] + dx, c[1] + dy, c[2] - 1}, -1};
         const Cell last{c[0] + dx, c[1] + dy, c[2] + 1};
         for (auto other = std::lower_bound(placed.begin(), placed.end(), first);
              other != placed.end() && other->cell <= last; ++other) {

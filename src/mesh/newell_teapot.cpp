@@ -14,9 +14,9 @@ Point cubic(const Point& p0, const Point& p1, const Point& p2, const Point& p3, 
   return p0 * (s * s * s) + p1 * (3.0 * s * s * t) + p2 * (3.0 * s * t * t) + p3 * (t * t * t);
 }
 
-using RZ = std::array<double, 2>;
+using ProfilePoint = std::array<double, 2>;
 /// Four control points a piece; a piece's last is the next one's first. (radius, z)
-constexpr std::array<std::array<RZ, 4>, 7> kProfile = {{
+constexpr std::array<std::array<ProfilePoint, 4>, 7> kProfile = {{
     {{{0.0, 0.0}, {1.425, 0.0}, {1.5, 0.075}, {1.5, 0.15}}},                           // bottom
     {{{1.5, 0.15}, {1.5, 0.225}, {2.0, 0.45}, {2.0, 0.9}}},                            // lower body
     {{{2.0, 0.9}, {2.0, 1.35}, {1.75, 1.875}, {1.5, 2.4}}},                            // upper body

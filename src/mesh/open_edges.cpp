@@ -16,7 +16,7 @@
 namespace phalanx::mesh {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
 
 /// An open edge as its triangle runs through it.
 struct Rim {
@@ -28,8 +28,8 @@ struct Rim {
   Vec3 along;  ///< unit
   Vec3 into;   ///< the triangle's surface, across the edge: unit; zero if it has no area
   double length = 0.0;
-  std::uint32_t across = kNone;  ///< the edge on a slit's other side
-  Spot gap;                      ///< the slit's width
+  std::uint32_t across = kNoEdge;  ///< the edge on a slit's other side
+  Spot gap;                        ///< the slit's width
   [[nodiscard]] Vec3 middle() const { return start + 0.5 * step; }
 };
 
@@ -76,13 +76,13 @@ struct Budget {
 };
 
 /// The nearest open edge that faces the point `p` of rim `i`: the gap between them is free of both surfaces.
-/// @returns its number, or kNone; `gap` gets the vector to it
+/// @returns its number, or kNoEdge; `gap` gets the vector to it
 std::uint32_t facing(const std::vector<Rim>& rims, const BoxTree& tree, std::uint32_t i, const Vec3& p,
                      Vec3& gap, Budget& budget) {
   constexpr double kHalf = 0.5;  // cosine: 60 degrees
   const Rim& own = rims[i];
   double least = kSlit;
-  std::uint32_t best = kNone;
+  std::uint32_t best = kNoEdge;
   const auto may_hit = [&](const FloatBox& b) {
     if (budget.left == 0) return false;
     double squared = 0.0;
@@ -116,13 +116,13 @@ void find_slits(std::vector<Rim>& rims, Budget& budget) {
   const BoxTree tree = boxes_of(rims);
   for (std::uint32_t i = 0; i < rims.size(); ++i) {
     int met = 0;
-    std::uint32_t across = kNone;
+    std::uint32_t across = kNoEdge;
     Spot widest;
     for (const double s : {1.0 / 6.0, 0.5, 5.0 / 6.0}) {
       const Vec3 p = rims[i].start + s * rims[i].step;
       Vec3 gap = Vec3::Zero();
       const std::uint32_t j = facing(rims, tree, i, p, gap, budget);
-      if (j == kNone) continue;
+      if (j == kNoEdge) continue;
       ++met;
       across = j;
       widest.take(gap.norm(), p + 0.5 * gap);
@@ -138,24 +138,24 @@ DisjointSets join(const std::vector<Rim>& rims, Budget& budget) {
   DisjointSets lines(rims.size());
   std::map<std::int32_t, std::array<std::uint32_t, 2>> at;  // at each vertex: a free rim, one of a slit
   for (std::uint32_t i = 0; i < rims.size(); ++i) {
-    const bool slit = rims[i].across != kNone;
+    const bool slit = rims[i].across != kNoEdge;
     for (const std::int32_t v : {rims[i].from, rims[i].to}) {
-      auto& here = at.try_emplace(v, std::array<std::uint32_t, 2>{kNone, kNone}).first->second;
+      auto& here = at.try_emplace(v, std::array<std::uint32_t, 2>{kNoEdge, kNoEdge}).first->second;
       std::uint32_t& same = here[slit ? 1 : 0];
-      if (same == kNone) {
+      if (same == kNoEdge) {
         same = i;
       } else {
         lines.join(same, i);
       }
     }
-    if (slit && rims[rims[i].across].across != kNone) lines.join(i, rims[i].across);
+    if (slit && rims[rims[i].across].across != kNoEdge) lines.join(i, rims[i].across);
   }
   // A line that a slit cuts goes on beyond it.
   std::vector<FloatBox> ends;
   std::vector<std::uint32_t> rim_at;
   std::vector<Vec3> place;
   for (const auto& [v, here] : at) {
-    if (here[0] == kNone || here[1] == kNone) continue;
+    if (here[0] == kNoEdge || here[1] == kNoEdge) continue;
     const Rim& r = rims[here[0]];
     place.push_back(r.from == v ? r.start : Vec3(r.start + r.step));
     ends.push_back(outward(place.back(), place.back()));
@@ -235,7 +235,7 @@ OpenEdges find_open_edges(const TriangleMesh& mesh, const EdgeTable& edges, cons
   }
   for (auto& [name, line] : lines) {
     const Vec3 centre = line.moment / line.length;
-    if (rims[name].across != kNone) {
+    if (rims[name].across != kNoEdge) {
       Spot widest;
       for (const std::uint32_t i : line.rims) widest.take(rims[i].gap);
       add(result.slits, line.length, widest.size, widest.at);

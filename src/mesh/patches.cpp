@@ -7,11 +7,11 @@
 namespace phalanx::mesh {
 namespace {
 
-constexpr Corner kNone = std::numeric_limits<Corner>::max();
+constexpr Corner kNoMate = std::numeric_limits<Corner>::max();
 
-/// For each corner the one from which the same edge starts in the only other triangle at it, or kNone.
+/// For each corner the one from which the same edge starts in the only other triangle at it, or kNoMate.
 std::vector<Corner> mates(const TriangleMesh& mesh, const EdgeTable& edges) {
-  std::vector<Corner> mate(3 * mesh.triangles.size(), kNone);
+  std::vector<Corner> mate(3 * mesh.triangles.size(), kNoMate);
   edges.for_each([&](std::span<const HalfEdge> edge) {
     if (edge.size() != 2) return;
     mate[edge[0].start] = edge[1].start;
@@ -49,7 +49,7 @@ Patches orient_patches(TriangleMesh& mesh, const EdgeTable& edges) {
       const std::uint32_t t = walk.triangles[i];
       against += walk.against[t] ? 1U : 0U;
       for (Corner c = 3 * t; c < 3 * t + 3; ++c) {
-        if (mate[c] == kNone) continue;
+        if (mate[c] == kNoMate) continue;
         const std::uint32_t n = mate[c] / 3;
         const bool n_against = walk.against[t] != same_way(c, mate[c]);
         if (patches.of[n] == kUnseen) {

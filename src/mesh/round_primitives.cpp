@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
 #include "mesh/mesh_builder.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using mesh::MeshBuilder;
 using mesh::Ring;
 using mesh::round_to;

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "mesh/mesh_builder.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using mesh::MeshBuilder;
 using mesh::Ring;
 

@@ -39,7 +39,7 @@ class ArcTable {
   std::vector<double> length_{0.0};
 };
 
-struct Row {
+struct SpunRow {
   std::size_t piece;
   double f;
   int around;
@@ -65,8 +65,8 @@ class Spinner {
   }
 
   /// All rows between the poles.
-  [[nodiscard]] std::vector<Row> rows(const Grid& grid) const {
-    std::vector<Row> rows;
+  [[nodiscard]] std::vector<SpunRow> rows(const Grid& grid) const {
+    std::vector<SpunRow> rows;
     const std::size_t pieces = shape_.pieces().size();
     for (std::size_t p = 0; p < pieces; ++p) {
       const int bands = std::max(least_bands(shape_.pieces()[p]),
@@ -80,7 +80,7 @@ class Spinner {
     return rows;
   }
 
-  [[nodiscard]] static int count(const std::vector<Row>& rows) {
+  [[nodiscard]] static int count(const std::vector<SpunRow>& rows) {
     int triangles = rows.front().around + rows.back().around;
     for (std::size_t i = 0; i + 1 < rows.size(); ++i) triangles += rows[i].around + rows[i + 1].around;
     return triangles;
@@ -116,7 +116,7 @@ class Spinner {
     const std::size_t last_piece = shape_.pieces().size() - 1;
     const std::int32_t lower = builder.vertex(shape_.point({1.0, 0.0}, 0, 0.0));
     Ring last;
-    for (const Row& row : rows(grid)) {
+    for (const SpunRow& row : rows(grid)) {
       Ring ring = builder.ring(
           row.around, [&](int j) { return shape_.point(direction(j, row.around), row.piece, row.f); });
       if (last.empty()) {

@@ -3,18 +3,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "mesh/mesh_builder.h"
 #include "mesh/object_shapes.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/objects.h"
 
 namespace phalanx::mesh {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kZone = kPi / 6.0;  // between the latitudes that carry bumps
 
 double ball_radius(double diameter, double bump, const Vec3& u) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/device_file.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 
 #include "phalanx/core/nearest_name.h"
@@ -13,16 +13,11 @@
 namespace phalanx {
 namespace {
 
-constexpr double kMilli = 1e-3;
-constexpr double kDeg = std::numbers::pi / 180.0;
-
 /// Far beyond any hand exoskeleton: a value outside is a slip of the decimal point or of the unit.
 constexpr NumberRange kArmMm = {.min = -100.0, .max = 100.0};
 constexpr NumberRange kRate = {.min = 1.0, .max = 100e3};
 constexpr NumberRange kScale = {.min = 0.0, .max = 1e3};
 constexpr NumberRange kScaleAbove0 = {.min = 0.0, .max = 1e3, .min_open = true};
-constexpr NumberRange at_most(double max) { return {.min = 0.0, .max = max}; }
-constexpr NumberRange above_0(double max) { return {.min = 0.0, .max = max, .min_open = true}; }
 
 /// A table whose missing keys are looked for in a table of defaults.
 class Defaulted {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/hand_file.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "phalanx/scene/data_paths.h"
 #include "scene/toml_reader.h"
@@ -12,8 +12,6 @@
 namespace phalanx {
 namespace {
 
-constexpr double kMm = 1e-3;
-constexpr double kDeg = std::numbers::pi / 180.0;
 /// Far beyond any hand: a value outside is a slip of the decimal point or of the unit.
 constexpr NumberRange kPlaceMm = {.min = -300.0, .max = 300.0};
 constexpr NumberRange kLengthMm = {.min = 0.0, .max = 200.0};

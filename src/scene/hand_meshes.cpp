@@ -14,7 +14,7 @@ namespace phalanx {
 namespace {
 
 /// No part of a segment lies further from the segment's joint [m]: the longest hand is shorter.
-constexpr double kFarthest = 0.3;
+constexpr double kFarthestOfSegment = 0.3;
 /// No segment is smaller [m].
 constexpr double kSmallest = 3e-3;
 
@@ -50,11 +50,11 @@ class MeshReader {
     const Bounds box = bounds(mesh);
     const double farthest = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
     const double extent = (box.max - box.min).maxCoeff();
-    if (farthest > kFarthest) {
+    if (farthest > kFarthestOfSegment) {
       fail(file,
            fmt::format("reaches {:.4g} mm from the segment's joint, more than {:g} mm; put the joint at "
                        "the mesh's origin, or correct unit_mm = {:g}",
-                       1e3 * farthest, 1e3 * kFarthest, 1e3 * files_.unit));
+                       1e3 * farthest, 1e3 * kFarthestOfSegment, 1e3 * files_.unit));
     }
     if (extent < kSmallest) {
       fail(file,

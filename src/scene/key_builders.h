@@ -3,17 +3,15 @@
 #pragma once
 
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scene/key_table.h"
 
-namespace phalanx {
+#include "phalanx/core/units.h"
 
-constexpr double kMm = 1e-3;
-constexpr double kDeg = std::numbers::pi / 180.0;
+namespace phalanx {
 
 [[nodiscard]] constexpr NumberRange between(double min, double max) { return {.min = min, .max = max}; }
 [[nodiscard]] constexpr NumberRange above(double min, double max) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/mapping_file.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
-
-#include <numbers>
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
@@ -12,7 +11,6 @@
 namespace phalanx {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr NumberRange kAny = {.min = -1e9, .max = 1e9};
 
 /// A number stated either in rad or in deg, [rad].

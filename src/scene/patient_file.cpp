@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/patient_file.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +9,8 @@
 namespace phalanx {
 namespace {
 
-constexpr double kMilli = 1e-3;
 constexpr double kMicro = 1e-6;
-constexpr NumberRange kScale = {.min = 0.0, .max = 1e3};
-constexpr NumberRange at_most(double max) { return {.min = 0.0, .max = max}; }
-constexpr NumberRange above_0(double max) { return {.min = 0.0, .max = max, .min_open = true}; }
+constexpr NumberRange kShare = {.min = 0.0, .max = 1e3};
 
 void read_joint(TomlTable table, int joint, PatientParameters& patient) {
   const auto j = static_cast<std::size_t>(joint);
@@ -41,10 +39,10 @@ void read_disturbances(TomlTable& root, PatientParameters& patient) {
 }
 
 void apply_scale(TomlTable table, PatientParameters& patient) {
-  const double stiffness = table.number_or("stiffness", kScale, 1.0);
-  const double damping = table.number_or("damping", kScale, 1.0);
-  patient.tremor *= table.number_or("tremor", kScale, 1.0);
-  patient.bump *= table.number_or("bump", kScale, 1.0);
+  const double stiffness = table.number_or("stiffness", kShare, 1.0);
+  const double damping = table.number_or("damping", kShare, 1.0);
+  patient.tremor *= table.number_or("tremor", kShare, 1.0);
+  patient.bump *= table.number_or("bump", kShare, 1.0);
   table.finish();
   for (double& k : patient.stiffness) k *= stiffness;
   for (double& b : patient.damping) b *= damping;

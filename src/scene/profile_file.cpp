@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/profile_file.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/hand/anthropometry.h"
@@ -15,8 +15,6 @@
 namespace phalanx {
 namespace {
 
-constexpr double kMm = 1e-3;
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr NumberRange kAnyNumber = {};
 
 /// "141.7 to 233 mm"

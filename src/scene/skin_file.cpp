@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "phalanx/core/nearest_name.h"
+#include "phalanx/core/units.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/toml_reader.h"
 
@@ -20,7 +21,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMm = 1e-3;
 /// No part of a hand lies further from the wrist [m]: the longest hand is shorter.
 constexpr double kFarthest = 0.3;
 /// A vertex's weights may miss 1 by this much, for they are written with few digits.

@@ -31,16 +31,16 @@ std::string NumberRange::text() const {
 }
 
 std::string read_text_file(const std::string& path, const std::string& what) {
-  constexpr std::size_t kMaxBytes = 16U << 20U;
+  constexpr std::size_t kMostTextBytes = 16U << 20U;
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw SceneError(
         fmt::format("{}: cannot be opened as a {}; check the path and its permissions", path, what));
-  std::string text(kMaxBytes + 1, '\0');
+  std::string text(kMostTextBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (file.bad()) throw SceneError(fmt::format("{}: cannot be read as a {}; is it a folder?", path, what));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaxBytes) {
+  if (text.size() > kMostTextBytes) {
     throw SceneError(
         fmt::format("{}: is larger than 16 MB; a {} file is a few kilobytes of TOML", path, what));
   }

@@ -27,6 +27,10 @@ struct NumberRange {
   /// "> 0, <= 15", "any finite number"
   [[nodiscard]] std::string text() const;
 };
+/// 0 <= value <= max.
+[[nodiscard]] constexpr NumberRange at_most(double max) { return {.min = 0.0, .max = max}; }
+/// 0 < value <= max.
+[[nodiscard]] constexpr NumberRange above_0(double max) { return {.min = 0.0, .max = max, .min_open = true}; }
 
 /// The text of a file. @throws SceneError if it cannot be read or is larger than 16 MB (no TOML file of ours
 /// is).

@@ -7,15 +7,12 @@
 
 #include "phalanx/scene/scene_keys.h"
 #include "scene/scene_tree.h"
+#include "serve/plain_text.h"
 
 namespace phalanx {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_plain(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-}
 
 /// Whether only a path will do, not a name of what is shipped.
 bool is_for_paths(const std::string& pattern) {

@@ -15,6 +15,11 @@ namespace phalanx {
 /// writing or break lines, so that it cannot pass for what stands beside it.
 [[nodiscard]] std::string one_line(std::string_view text);
 
+/// Of the characters that any file name may have: Latin letters, digits, '-' and '_'.
+[[nodiscard]] constexpr bool is_plain(char c) noexcept {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+}
+
 /// At most `bytes`, cut at a whole character of UTF-8, "..." at the end where something is missing.
 /// @pre bytes >= 3
 [[nodiscard]] std::string shortened(std::string text, std::size_t bytes);

@@ -18,6 +18,7 @@
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "phalanx/record/output_file.h"
+#include "serve/plain_text.h"
 
 namespace phalanx {
 namespace {
@@ -31,10 +32,6 @@ constexpr std::size_t kKept = 50;
 constexpr mesh::IsolationLimits kImportLimits{
     .cpu_seconds = 60, .memory_bytes = std::uint64_t{4} << 30, .wall_seconds = 180.0};
 constexpr std::array<const char*, 5> kFormats = {".obj", ".3ds", ".stl", ".ply", ".glb"};
-
-bool is_plain(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-}
 
 int hex(char c) {
   if (c >= '0' && c <= '9') return c - '0';

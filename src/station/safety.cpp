@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/station/safety.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +9,6 @@
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// How long a device may take to become ready after a start or a reset before its latch counts as a fault
 /// [s].

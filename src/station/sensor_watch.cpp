@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/station/sensor_watch.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 bool is_angle(const DeviceChannel& channel) noexcept {
   return channel.kind == ChannelKind::kAngle || channel.kind == ChannelKind::kCurl ||

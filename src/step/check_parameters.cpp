@@ -5,12 +5,12 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include "phalanx/core/math.h"
 
 namespace phalanx {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::max();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTiny = std::numeric_limits<double>::min();
 
 void within(const char* name, double value, double low, double high) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "support/moving_digit.h"
+#include "support/sanitized.h"
 
 namespace phalanx {
 namespace {
@@ -145,7 +146,7 @@ TEST(FirstContact, IsTheFirstPlaceWithinTheMarginThatCloses) {
   std::cout << "seed 23\n";
   MovingDigit digit(ball_in_reach(300));
   for (const double length : {1.0, 0.1}) {
-    const Stops found = check_stops(23, digit, 40, 8, length);
+    const Stops found = check_stops(23, digit, 40, test::kSanitized ? 1 : 8, length);
     EXPECT_GT(found.stops, 3);
     EXPECT_EQ(found.exhausted, 0);
   }
@@ -206,7 +207,7 @@ TEST(FirstContact, IsRightWhereTheListRunsOver) {
       SCOPED_TRACE(::testing::Message() << "seed 24 way " << n);
       aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.3);
       for (int k = 0; k < kSegmentsPerDigit; ++k) over += runs_over(digit, k) ? 1 : 0;
-      ASSERT_NO_FATAL_FAILURE(expect_right_stop(digit, count, 5));
+      ASSERT_NO_FATAL_FAILURE(expect_right_stop(digit, count, test::kSanitized ? 1 : 5));
     }
     std::cout << crowd.name << ": " << over << " lists ran over, " << count.stops << " stops, "
               << count.exhausted << " given up\n";

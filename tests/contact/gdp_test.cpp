@@ -11,6 +11,7 @@
 #include "phalanx/contact/proximity.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
+#include "support/sanitized.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -23,7 +24,7 @@ using test::index_segment;
 using test::moved;
 using test::Runner;
 
-constexpr double kMargin = 50e-6;
+constexpr double kGdpMargin = 50e-6;
 
 HapticModel model_of(const TriangleMesh& object) {
   HapticModel model(test::simple_hand(), ObjectModel(object));
@@ -60,7 +61,7 @@ void expect_invariants(const HapticModel& model, const Snapshot& s) {
       if (contact.contact) {
         ASSERT_LE(contact.depth, std::max(0.0, behind(s, segment)) + 1e-12) << "tick " << s.tick;
       }
-      ASSERT_GE(clearance(model, s, segment), kMargin - 10e-9)
+      ASSERT_GE(clearance(model, s, segment), kGdpMargin - 10e-9)
           << segment_name(segment) << " at tick " << s.tick;
     }
     if (!record) {
@@ -84,7 +85,7 @@ TEST(Gdp, StopsAtTheMarginAndTheDepthIsTheHcpsBeyondIt) {
   const Snapshot& s = hand.now();
   const SegmentSnapshot& tip = index_segment(s, 2);
   ASSERT_TRUE(tip.contact);
-  EXPECT_NEAR(clearance(model, s, segment_index(1, 2)), kMargin, 10e-9);
+  EXPECT_NEAR(clearance(model, s, segment_index(1, 2)), kGdpMargin, 10e-9);
   // The floor is horizontal: the depth is the vertical drop of the material point from the GDP to the HCP.
   const std::size_t segment = static_cast<std::size_t>(segment_index(1, 2));
   const Vec3 p_S = s.gdp_pose[segment].inverse() * tip.point;
@@ -147,8 +148,8 @@ TEST(Gdp, ATieGoesToTheDistalSegment) {
     if (distal_decides && middle_decides) {  // both have a record: the tie
       EXPECT_EQ(index_gdp(s, 2), 0.0);
       EXPECT_EQ(index_gdp(s, 3), 0.0);
-      EXPECT_NEAR(clearance(model, s, segment_index(1, 1)), kMargin, 10e-9);
-      EXPECT_NEAR(clearance(model, s, segment_index(1, 2)), kMargin, 10e-9);
+      EXPECT_NEAR(clearance(model, s, segment_index(1, 1)), kGdpMargin, 10e-9);
+      EXPECT_NEAR(clearance(model, s, segment_index(1, 2)), kGdpMargin, 10e-9);
       // The distal segment decided, so the whole finger is fixed: the DIP does not follow the HCP.
       const Snapshot& on = hand.tick(index_angles(0.46, 0.0, 0.05));
       EXPECT_EQ(index_gdp(on, 3), 0.0);
@@ -285,7 +286,7 @@ struct WireCount {
 
 /// The index finger sweeps over a 2 mm wire at `speed` [rad/s] and 200 Hz, in `kWireCases` places and phases
 /// of the tick.
-constexpr int kWireCases = 100;
+constexpr int kWireCases = test::kSanitized ? 10 : 100;
 WireCount sweep_over_wire(GdpMethod method, double speed) {
   WireCount count;
   for (int n = 0; n < kWireCases; ++n) {
@@ -303,9 +304,9 @@ WireCount sweep_over_wire(GdpMethod method, double speed) {
     // two samples: nothing is within the margin before the stop, and something is at the stop.
     const double stop = index_gdp(hand.now(), 0);
     for (double sampled = 0.0; sampled < stop - 1e-6; sampled += 5e-4) {
-      if (index_clearance(model, index_angles(sampled)) <= kMargin) ++count.early;
+      if (index_clearance(model, index_angles(sampled)) <= kGdpMargin) ++count.early;
     }
-    if (index_clearance(model, index_angles(stop)) > kMargin) ++count.early;
+    if (index_clearance(model, index_angles(stop)) > kGdpMargin) ++count.early;
   }
   return count;
 }
@@ -485,7 +486,7 @@ TEST(GdpTrajectory, StopsAtARecordedPoseThatWasFree) {
   const double stopped = index_gdp(hand.now(), 0);
   EXPECT_NEAR(stopped / 0.01, std::round(stopped / 0.01), 1e-9)
       << "one of the sampled angles, 0.01 rad apart";
-  EXPECT_GT(clearance(model, hand.now(), segment_index(1, 2)), kMargin);
+  EXPECT_GT(clearance(model, hand.now(), segment_index(1, 2)), kGdpMargin);
   hand.move(index_angles(0.0), 50);
   EXPECT_EQ(hand.now().gdp_angle, hand.now().hcp_angle);
 }

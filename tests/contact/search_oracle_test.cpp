@@ -7,6 +7,7 @@
 
 #include "phalanx/contact/proximity.h"
 #include "support/exact_triangles.h"
+#include "support/sanitized.h"
 #include "support/search_cases.h"
 
 namespace phalanx {
@@ -143,7 +144,9 @@ void check_all_cases(std::uint64_t seed, int poses) {
   }
 }
 
-TEST(SearchOracle, DistanceBoundAndPatchEqualAllPairsOfTriangles) { check_all_cases(404, 15); }
+TEST(SearchOracle, DistanceBoundAndPatchEqualAllPairsOfTriangles) {
+  check_all_cases(404, test::kSanitized ? 3 : 15);
+}
 
 // A pair that is 1 ulp beside the answer, a lane that was left out, a box too small: seldom, so for long.
 TEST(SoakSearchOracle, DistanceBoundAndPatchEqualAllPairsOfTriangles) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/plant.h"
+#include "phalanx/core/math.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,6 @@ using test::one_motor;
 using test::two_joint_device;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // 2 mm of play on an arm of 10 mm: 0.2 rad. 0.01 Nm are 1 N on the tendon, which gives 0.1 mm, 0.01 rad.
 TEST(Plant, ATendonWithBacklashHasItsPlayAndNoTensionInside) {

@@ -11,7 +11,7 @@
 namespace phalanx::test {
 namespace {
 
-constexpr double kWall = 1000.0;
+constexpr double kCycleWall = 1000.0;
 constexpr double kPress = 3.0;
 constexpr std::uint64_t kSeed = 5;
 constexpr double kTick = 1e-3;
@@ -21,8 +21,8 @@ struct Squeezing {
   explicit Squeezing(double tremor, const TrialSchedule& with = {})
       : patient(trembling(tremor)),
         schedule(with),
-        cycle(plan, patient, hand, kWall, kPress, kSeed, schedule),
-        intent(plan, patient, hand, kWall, kPress, kSeed, schedule) {}
+        cycle(plan, patient, hand, kCycleWall, kPress, kSeed, schedule),
+        intent(plan, patient, hand, kCycleWall, kPress, kSeed, schedule) {}
 
   static PatientParameters trembling(double tremor) {
     PatientParameters patient = steady_patient();

@@ -11,7 +11,6 @@
 namespace phalanx {
 namespace {
 
-using test::idx;
 using test::kIndex;
 using test::kMcp;
 using test::kPip;

@@ -13,7 +13,6 @@
 namespace phalanx {
 namespace {
 
-using test::idx;
 using test::kDip;
 using test::kIndex;
 using test::kMcp;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device/two_joint_device.h"
+#include "phalanx/core/index.h"
 #include "phalanx/device/press_plan.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/simple_hand.h"
@@ -14,8 +15,6 @@ inline constexpr int kAbduction = 5;  ///< a joint that two_joint_device() does 
 inline constexpr int kPip = 6;
 inline constexpr int kDip = 7;
 inline constexpr int kTip = 5;  ///< distal segment of the index finger
-
-inline std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 
 /// A slab whose top is 20 mm below the straight index finger, no limits, no smoothing, 1 N/mm.
 inline HapticModel finger_above_slab() {

@@ -222,9 +222,9 @@ TEST(Transmission, StaysFiniteAndBoundedWhateverArrives) {
   exo.motors.push_back(motor_on("both", 4, 0.01));
   exo.motors[2].arm[6] = 0.02;
   const Transmission transmission(exo);
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  for (const double evil : {kNaN, kInf, -kInf, 1e308, -1e308, 1e-320}) {
+  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const double evil : {kNotANumber, kInfinite, -kInfinite, 1e308, -1e308, 1e-320}) {
     for (int joint = 0; joint < kJoints; ++joint) {
       Rendered r;
       JointArray wanted = torque_on(joint, evil);
@@ -236,7 +236,7 @@ TEST(Transmission, StaysFiniteAndBoundedWhateverArrives) {
                     std::isfinite(r.unrendered[j]));
     }
   }
-  EXPECT_EQ(render(exo, torque_on(4, kNaN)).asked[4], 0.0);
+  EXPECT_EQ(render(exo, torque_on(4, kNotANumber)).asked[4], 0.0);
 }
 
 TEST(Transmission, AllocatesNothingAndGivesTheSameBits) {

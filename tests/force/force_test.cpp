@@ -2,16 +2,14 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
+#include "phalanx/core/math.h"
 #include "phalanx/force/force_law.h"
 #include "phalanx/force/smoothing.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // 2 mm into a 500 N/m wall is 1 N, by hand.
 TEST(ForceLaw, HookeIsStiffnessTimesDepth) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/force/stabiliser.h"
+#include "phalanx/core/math.h"
 
 #include <gmock/gmock.h>
 
@@ -16,8 +17,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kPeriod = 0.005;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kStabiliserPeriod = 0.005;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Feeds one contact with a wall F = k d, one depth a step.
@@ -28,7 +28,7 @@ class Contact {
 
   /// The force sent at this depth; below 0 there is no contact.
   double press(double depth) {
-    const double speed = pressed_ ? (depth - depth_) / kPeriod : 0.0;
+    const double speed = pressed_ ? (depth - depth_) / kStabiliserPeriod : 0.0;
     pressed_ = depth >= 0.0;
     depth_ = depth;
     const StabiliserInput input{.force = pressed_ ? stiffness_ * depth : 0.0,
@@ -37,7 +37,7 @@ class Contact {
                                 .speed_now = speed,
                                 .sent = sent_,
                                 .pressing = pressed_,
-                                .period = kPeriod};
+                                .period = kStabiliserPeriod};
     sent_ = stabilised_force(parameters_, smoothing_, input, memory_);
     return sent_;
   }
@@ -113,10 +113,11 @@ TEST(Stabiliser, TheVirtualCouplingIsASeriesOfTwoSpringsAtRest) {
 // (-1 + 1.5652)) / 2300 mm = 0.63138 mm.
 TEST(Stabiliser, TheVirtualCouplingsStepsAreThoseOfImplicitEuler) {
   double proxy = 0.0;
-  EXPECT_NEAR(coupled_force(1.0, 2e-3, 2e-3, 1000.0, 4.0, kPeriod, proxy), 500.0 * 3.6 / 2300.0, 1e-12);
+  EXPECT_NEAR(coupled_force(1.0, 2e-3, 2e-3, 1000.0, 4.0, kStabiliserPeriod, proxy), 500.0 * 3.6 / 2300.0,
+              1e-12);
   EXPECT_NEAR(proxy, 3.6e-3 / 2300.0 * 1000.0 / 1.0, 1e-12);
   const double before = proxy;
-  EXPECT_NEAR(coupled_force(0.5, 1e-3, -1e-3, 1000.0, 4.0, kPeriod, proxy),
+  EXPECT_NEAR(coupled_force(0.5, 1e-3, -1e-3, 1000.0, 4.0, kStabiliserPeriod, proxy),
               500.0 * (1.0 + 800.0 * (before - 1e-3)) / 2300.0, 1e-12);
 }
 
@@ -126,16 +127,17 @@ TEST(Stabiliser, TheVirtualCouplingsStepsAreThoseOfImplicitEuler) {
 TEST(Stabiliser, ThePassivityControllerTakesBackWhatTheHoldMade) {
   double energy = 0.0;
   const double kFast = 0.2;
-  EXPECT_EQ(passive_force(1.0, 0.0, kFast, 50.0, kPeriod, energy), 1.0);
-  EXPECT_EQ(passive_force(2.0, 1.0, kFast, 50.0, kPeriod, energy), 2.0);
-  EXPECT_EQ(passive_force(3.0, 2.0, kFast, 50.0, kPeriod, energy), 3.0);
+  EXPECT_EQ(passive_force(1.0, 0.0, kFast, 50.0, kStabiliserPeriod, energy), 1.0);
+  EXPECT_EQ(passive_force(2.0, 1.0, kFast, 50.0, kStabiliserPeriod, energy), 2.0);
+  EXPECT_EQ(passive_force(3.0, 2.0, kFast, 50.0, kStabiliserPeriod, energy), 3.0);
   EXPECT_NEAR(energy, 3e-3, 1e-15);
-  EXPECT_NEAR(passive_force(2.0, 3.0, -kFast, 50.0, kPeriod, energy), 2.0, 1e-9) << "E is 0: nothing to take";
+  EXPECT_NEAR(passive_force(2.0, 3.0, -kFast, 50.0, kStabiliserPeriod, energy), 2.0, 1e-9)
+      << "E is 0: nothing to take";
   double energy_capped = energy;
   // 2 mJ at 0.2 m/s: a = 10, and 1 N - 10 x 0.2 would pull: 0. With at most 2 N s/m: 0.6 N.
-  EXPECT_EQ(passive_force(1.0, 2.0, -kFast, 50.0, kPeriod, energy), 0.0);
+  EXPECT_EQ(passive_force(1.0, 2.0, -kFast, 50.0, kStabiliserPeriod, energy), 0.0);
   EXPECT_NEAR(energy, -2e-3, 1e-12);
-  EXPECT_NEAR(passive_force(1.0, 2.0, -kFast, 2.0, kPeriod, energy_capped), 0.6, 1e-12);
+  EXPECT_NEAR(passive_force(1.0, 2.0, -kFast, 2.0, kStabiliserPeriod, energy_capped), 0.6, 1e-12);
 }
 
 // Whatever wall oscillates, what it has given away is taken back while the finger moves: with no cap on a and
@@ -143,9 +145,11 @@ TEST(Stabiliser, ThePassivityControllerTakesBackWhatTheHoldMade) {
 // missing.
 TEST(Stabiliser, ThePassivityControllersEnergyReturnsToZero) {
   double energy = -1e-3;
-  const double out = passive_force(3.0, 0.0, 0.1, 1e9, kPeriod, energy);  // a = 1e-3 / (0.005 x 0.01) = 20
+  const double out =
+      passive_force(3.0, 0.0, 0.1, 1e9, kStabiliserPeriod, energy);  // a = 1e-3 / (0.005 x 0.01) = 20
   EXPECT_NEAR(out, 5.0, 1e-9);
-  static_cast<void>(passive_force(0.0, out - 3.0, 0.1, 1e9, kPeriod, energy));  // the damper's part of it
+  static_cast<void>(
+      passive_force(0.0, out - 3.0, 0.1, 1e9, kStabiliserPeriod, energy));  // the damper's part of it
   EXPECT_NEAR(energy, 0.0, 1e-12);
 }
 
@@ -224,7 +228,7 @@ TEST(Stabiliser, IsFiniteAndNeverPullsWhateverArrives) {
                                   .speed_now = any(),
                                   .sent = random() % 8 == 0 ? any() : sent,
                                   .pressing = random() % 8 != 0,
-                                  .period = kPeriod};
+                                  .period = kStabiliserPeriod};
       sent = stabilised_force({.method = method}, {}, input, memory);
       ASSERT_TRUE(std::isfinite(sent)) << "method " << static_cast<int>(method) << " seed 31 step " << n;
       ASSERT_GE(sent, 0.0);

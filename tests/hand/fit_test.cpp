@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/fit.h"
+#include "phalanx/core/index.h"
 
 #include <gmock/gmock.h>
 
@@ -13,10 +14,8 @@ namespace {
 
 constexpr int kMiddle = static_cast<int>(Digit::kMiddle);
 
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 /// The simple hand, its knuckles 90 mm beyond the wrist.
-HandParameters simple_parameters() {
+HandParameters forward_knuckles() {
   HandParameters hand = test::simple_parameters();
   for (DigitParameters& digit : hand.digits) digit.base.z() = -0.09;
   return hand;
@@ -29,8 +28,8 @@ SegmentMeshes capsules(const HandParameters& parameters) {
 /// Where the fit puts one point of a segment.
 Vec3 moved(const HandParameters& base, const HandFit& fit, int segment, const Vec3& p) {
   SegmentMeshes meshes;
-  meshes[at(segment)].vertices = {p};
-  return fitted_meshes(base, fit, meshes)[at(segment)].vertices.front();
+  meshes[idx(segment)].vertices = {p};
+  return fitted_meshes(base, fit, meshes)[idx(segment)].vertices.front();
 }
 
 HandSize random_size(std::mt19937_64& random, const HandParameters& base) {
@@ -40,14 +39,14 @@ HandSize random_size(std::mt19937_64& random, const HandParameters& base) {
   size.hand_length = ratio(random) * hand_length(base);
   size.hand_breadth = ratio(random) * hand_breadth(base);
   for (int s = 0; s < kSegments - 1; ++s) {
-    if (stated(random)) size.segment[at(s)].length = ratio(random) * segment_length(base, s);
-    if (stated(random)) size.segment[at(s)].breadth = ratio(random) * segment_breadth(base, s);
+    if (stated(random)) size.segment[idx(s)].length = ratio(random) * segment_length(base, s);
+    if (stated(random)) size.segment[idx(s)].breadth = ratio(random) * segment_breadth(base, s);
   }
   return size;
 }
 
 TEST(Fit, OfNothingStatedIsTheBaseHand) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   const HandFit fit = fit_hand(base, {});
   const HandParameters hand = fitted_parameters(base, fit);
   for (std::size_t d = 0; d < kDigits; ++d) {
@@ -64,21 +63,21 @@ TEST(Fit, OfNothingStatedIsTheBaseHand) {
 }
 
 TEST(Fit, HandLengthIsTheSumOfItsPartsByHand) {
-  HandParameters p = simple_parameters();
+  HandParameters p = forward_knuckles();
   DigitParameters& middle = p.digits[kMiddle];
   middle.base = {0.003, 0.001, -0.09};
   middle.distal = {0.0, -0.6, -0.8};
   middle.dh[0].a = 0.0;
   middle.dh[1].a = 0.045;
   middle.dh[2].a = 0.026;
-  SegmentShape& tip = p.segments[at(segment_index(kMiddle, 2))];
+  SegmentShape& tip = p.segments[idx(segment_index(kMiddle, 2))];
   tip.length = 0.015;
   tip.radius_tip = 0.006;
   EXPECT_NEAR(hand_length(p), 0.09 + 0.8 * (0.045 + 0.026 + 0.015 + 0.006), 1e-15);
 }
 
 TEST(Fit, ReproducesHandLengthAndBreadthAndEveryStatedSegment) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   std::mt19937_64 random(11);
   for (int n = 0; n < 300; ++n) {
     const HandSize size = random_size(random, base);
@@ -92,11 +91,11 @@ TEST(Fit, ReproducesHandLengthAndBreadthAndEveryStatedSegment) {
     EXPECT_NEAR(hand_length(hand), *size.hand_length, 1e-12) << "seed 11 case " << n;
     EXPECT_NEAR(hand_breadth(hand), *size.hand_breadth, 1e-12) << "seed 11 case " << n;
     for (int s = 0; s < kSegments - 1; ++s) {
-      const auto& breadth = size.segment[at(s)].breadth;
+      const auto& breadth = size.segment[idx(s)].breadth;
       if (breadth) {
         EXPECT_NEAR(segment_breadth(hand, s), *breadth, 1e-12) << "seed 11 case " << n;
       }
-      const auto& stated = size.segment[at(s)].length;
+      const auto& stated = size.segment[idx(s)].length;
       if (stated) {
         EXPECT_NEAR(segment_length(hand, s), *stated, 1e-12) << "seed 11 case " << n;
       }
@@ -105,10 +104,10 @@ TEST(Fit, ReproducesHandLengthAndBreadthAndEveryStatedSegment) {
 }
 
 TEST(Fit, ScalesAMeshToItsStatedBreadthInTheMiddleOfTheBone) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   const int s = segment_index(1, 1);
   HandSize size;
-  size.segment[at(s)].breadth = 1.2 * segment_breadth(base, s);
+  size.segment[idx(s)].breadth = 1.2 * segment_breadth(base, s);
   size.hand_breadth = hand_breadth(base);
   const HandFit fit = fit_hand(base, size);
   const double half = 0.5 * segment_length(base, s);
@@ -119,7 +118,7 @@ TEST(Fit, ScalesAMeshToItsStatedBreadthInTheMiddleOfTheBone) {
 }
 
 TEST(Fit, WhatIsNotStatedFollowsTheHandsLengthAndBreadth) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   HandSize size;
   size.hand_length = 1.1 * hand_length(base);
   HandFit fit = fit_hand(base, size);
@@ -130,19 +129,19 @@ TEST(Fit, WhatIsNotStatedFollowsTheHandsLengthAndBreadth) {
   for (const SegmentFit& own : fit.segment) EXPECT_NEAR(own.breadth_middle, 0.9, 1e-12);
   EXPECT_NEAR(fit.palm_length, 1.1, 1e-12);
   HandSize part;
-  part.segment[at(segment_index(1, 0))].length = 1.2 * segment_length(base, segment_index(1, 0));
+  part.segment[idx(segment_index(1, 0))].length = 1.2 * segment_length(base, segment_index(1, 0));
   fit = fit_hand(base, part);
-  EXPECT_EQ(fit.segment[at(segment_index(1, 1))].length, 1.0)
+  EXPECT_EQ(fit.segment[idx(segment_index(1, 1))].length, 1.0)
       << "one finger's phalanx says nothing of others";
   HandSize all;
-  for (int s = 0; s < kSegments - 1; ++s) all.segment[at(s)].length = 1.2 * segment_length(base, s);
+  for (int s = 0; s < kSegments - 1; ++s) all.segment[idx(s)].length = 1.2 * segment_length(base, s);
   EXPECT_NEAR(fit_hand(base, all).palm_length, 1.2, 1e-12);
 }
 
 // Around a joint both segments are scaled by one number in all directions, so that turning them against each
 // other opens no gap that the base hand's did not have.
 TEST(Fit, ScalesBothSegmentsOfAJointAlikeAroundIt) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> u(-0.004, 0.004);
   for (int n = 0; n < 100; ++n) {
@@ -150,11 +149,11 @@ TEST(Fit, ScalesBothSegmentsOfAJointAlikeAroundIt) {
     for (int digit = 0; digit < kDigits; ++digit) {
       for (int k = 0; k < kSegmentsPerDigit - 1; ++k) {
         const int s = segment_index(digit, k);
-        const double ratio = fit.segment[at(s)].breadth_end;
-        ASSERT_EQ(ratio, fit.segment[at(s + 1)].breadth_base);
+        const double ratio = fit.segment[idx(s)].breadth_end;
+        ASSERT_EQ(ratio, fit.segment[idx(s + 1)].breadth_base);
         const Vec3 offset(u(random), u(random), -std::abs(u(random)));  // beyond the near bone's end
         const Vec3 end(0.0, 0.0, -segment_length(base, s));
-        const Vec3 new_end(0.0, 0.0, fit.segment[at(s)].length * end.z());
+        const Vec3 new_end(0.0, 0.0, fit.segment[idx(s)].length * end.z());
         EXPECT_LT((moved(base, fit, s, end + offset) - new_end - ratio * offset).norm(), 1e-14)
             << "seed 12 case " << n;
         const Vec3 behind(offset.x(), offset.y(), -offset.z());  // behind the far segment's joint
@@ -165,8 +164,8 @@ TEST(Fit, ScalesBothSegmentsOfAJointAlikeAroundIt) {
 }
 
 TEST(Fit, ScalesThePalmAroundAKnuckleAsTheFinger) {
-  HandParameters base = simple_parameters();
-  for (int d = 0; d < kDigits; ++d) base.digits[at(d)].base = {0.06 * (d - 2), 0.0, -0.08};
+  HandParameters base = forward_knuckles();
+  for (int d = 0; d < kDigits; ++d) base.digits[idx(d)].base = {0.06 * (d - 2), 0.0, -0.08};
   HandSize size;
   size.hand_length = 1.2 * hand_length(base);
   size.hand_breadth = 0.9 * hand_breadth(base);
@@ -181,29 +180,29 @@ TEST(Fit, ScalesThePalmAroundAKnuckleAsTheFinger) {
 }
 
 TEST(Fit, KeepsMeshesClosedAndOutwardAtTheExtremes) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   std::mt19937_64 random(13);
   for (int n = 0; n < 20; ++n) {
     const SegmentMeshes meshes =
         fitted_meshes(base, fit_hand(base, random_size(random, base)), capsules(base));
     for (int s = 0; s < kSegments; ++s) {
-      EXPECT_TRUE(is_closed(meshes[at(s)])) << segment_name(s);
-      EXPECT_GT(signed_volume(meshes[at(s)]), 0.0) << segment_name(s) << " seed 13 case " << n;
+      EXPECT_TRUE(is_closed(meshes[idx(s)])) << segment_name(s);
+      EXPECT_GT(signed_volume(meshes[idx(s)]), 0.0) << segment_name(s) << " seed 13 case " << n;
     }
   }
 }
 
 TEST(Fit, RefusesAMiddleFingerThatIsLongerThanTheHand) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   HandSize size;
   size.hand_length = 0.05;
-  size.segment[at(segment_index(kMiddle, 0))].length = 0.06;
+  size.segment[idx(segment_index(kMiddle, 0))].length = 0.06;
   EXPECT_THAT([&] { (void)fit_hand(base, size); },
               ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("longer than the hand")));
 }
 
 TEST(Fit, RefusesSizesThatAreNoLengths) {
-  const HandParameters base = simple_parameters();
+  const HandParameters base = forward_knuckles();
   for (const double bad : {0.0, -0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
     HandSize size;
     size.hand_breadth = bad;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/hand_skin.h"
+#include "phalanx/core/index.h"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +17,8 @@ namespace {
 
 constexpr double kRightAngle = std::numbers::pi / 2.0;
 
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 /// The simple hand, its knuckles 90 mm beyond the wrist.
-HandParameters simple_parameters() {
+HandParameters forward_hand() {
   HandParameters hand = test::simple_parameters();
   for (DigitParameters& digit : hand.digits) digit.base.z() = -0.09;
   return hand;
@@ -36,7 +35,7 @@ HandSkin bare(const HandParameters& parameters) {
 void add_vertex(HandSkin& skin, int segment, const Vec3& p_S) {
   const int before = segment % kSegmentsPerDigit == 0 ? kPalm : segment - 1;
   const double own = segment == kPalm ? 1.0 : std::clamp(0.5 - p_S.z() / 0.016, 0.0, 1.0);
-  skin.mesh.vertices.emplace_back(skin.X_BS[at(segment)] * p_S);
+  skin.mesh.vertices.emplace_back(skin.X_BS[idx(segment)] * p_S);
   skin.segment.push_back({static_cast<std::uint8_t>(segment), static_cast<std::uint8_t>(before), 0, 0});
   skin.weight.push_back({static_cast<float>(own), 1.0F - static_cast<float>(own), 0.0F, 0.0F});
 }
@@ -47,8 +46,8 @@ HandSkin capsule_skin(const HandParameters& parameters) {
   const SegmentMeshes meshes = make_capsule_meshes(parameters, Handedness::kRight, 800);
   for (int s = 0; s < kSegments; ++s) {
     const auto first = static_cast<std::int32_t>(skin.mesh.vertices.size());
-    for (const Vec3& v : meshes[at(s)].vertices) add_vertex(skin, s, v);
-    for (const Triangle& t : meshes[at(s)].triangles)
+    for (const Vec3& v : meshes[idx(s)].vertices) add_vertex(skin, s, v);
+    for (const Triangle& t : meshes[idx(s)].triangles)
       skin.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   return skin;
@@ -61,7 +60,7 @@ std::array<Pose, kSegments> poses(const HandParameters& parameters, Handedness h
   hand.poses(angle, digits);
   std::array<Pose, kSegments> X_WS;
   for (int s = 0; s < kPalm; ++s) {
-    X_WS[at(s)] = digits.digit[at(s / kSegmentsPerDigit)].segment[at(s % kSegmentsPerDigit)];
+    X_WS[idx(s)] = digits.digit[idx(s / kSegmentsPerDigit)].segment[idx(s % kSegmentsPerDigit)];
   }
   X_WS[kPalm] = X_WH;
   return X_WS;
@@ -89,14 +88,14 @@ double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b
 
 // The simple hand's digits run along -Z from their bases and have the hand frame's directions.
 TEST(BindPoses, AreTheStraightHands) {
-  const std::array<Pose, kSegments> X_BS = bind_poses(simple_parameters(), Handedness::kRight);
+  const std::array<Pose, kSegments> X_BS = bind_poses(forward_hand(), Handedness::kRight);
   for (int d = 0; d < kDigits; ++d) {
     const Vec3 base(0.1 * (d - 1), 0.0, -0.09);
     const std::array<double, kSegmentsPerDigit> along = {0.0, test::kLength1,
                                                          test::kLength1 + test::kLength2};
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      const Pose& X = X_BS[at(segment_index(d, k))];
-      EXPECT_LT((X.p - (base - along[at(k)] * Vec3::UnitZ())).norm(), 1e-15);
+      const Pose& X = X_BS[idx(segment_index(d, k))];
+      EXPECT_LT((X.p - (base - along[idx(k)] * Vec3::UnitZ())).norm(), 1e-15);
       EXPECT_LT((X.R - Mat3::Identity()).norm(), 1e-15);
     }
   }
@@ -105,7 +104,7 @@ TEST(BindPoses, AreTheStraightHands) {
 }
 
 TEST(Skinned, IsTheSkinItselfInTheStraightPose) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   const HandSkin skin = capsule_skin(hand);
   EXPECT_LT(largest_difference(skinned(skin, skin.X_BS), skin.mesh.vertices), 1e-8);  // weights are floats
   const Pose X_WH{rotation_about(Vec3(1, 2, 3).normalized(), 0.7), Vec3(0.1, -0.2, 0.3)};
@@ -117,7 +116,7 @@ TEST(Skinned, IsTheSkinItselfInTheStraightPose) {
 // Half of each, 10 mm below the PIP joint: the first segment keeps the point there, the second, at a right
 // angle, takes it to 10 mm behind the joint.
 TEST(Skinned, BlendsWhatItsSegmentsDo) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   HandSkin skin = bare(hand);
   add_vertex(skin, segment_index(test::kIndex, 1), Vec3(0.0, -0.010, 0.0));
   const auto X_WS = poses(hand, Handedness::kRight, test::index_angles(0.0, kRightAngle));
@@ -126,7 +125,7 @@ TEST(Skinned, BlendsWhatItsSegmentsDo) {
 }
 
 TEST(Skinned, IsRigidWhereOneSegmentHoldsIt) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   const HandSkin skin = capsule_skin(hand);
   constexpr std::uint64_t kSeed = 41;
   Random random(kSeed);
@@ -146,7 +145,7 @@ TEST(Skinned, IsRigidWhereOneSegmentHoldsIt) {
 }
 
 TEST(SkinMirror, TwiceIsTheSameToTheLastBit) {
-  const HandSkin skin = capsule_skin(simple_parameters());
+  const HandSkin skin = capsule_skin(forward_hand());
   HandSkin twice = skin;
   mirror(twice);
   EXPECT_NE(twice.mesh.vertices, skin.mesh.vertices);
@@ -160,7 +159,7 @@ TEST(SkinMirror, TwiceIsTheSameToTheLastBit) {
 }
 
 TEST(SkinMirror, MovesAsTheOtherHandDoes) {
-  HandParameters hand = simple_parameters();
+  HandParameters hand = forward_hand();
   hand.digits[0].distal = Vec3(-0.5, -0.3, -0.8).normalized();  // a thumb that is not parallel to the rest
   hand.digits[0].dorsal = Vec3(-0.8, 0.6, 0.275).normalized();
   const HandSkin right = capsule_skin(hand);
@@ -184,7 +183,7 @@ TEST(SkinMirror, MovesAsTheOtherHandDoes) {
 }
 
 TEST(FittedSkin, OfRatioOneIsTheSame) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   const HandSkin skin = capsule_skin(hand);
   const HandSkin fitted = fitted_skin(hand, HandFit{}, skin);
   EXPECT_LT(largest_difference(fitted.mesh.vertices, skin.mesh.vertices), 1e-8);
@@ -195,7 +194,7 @@ TEST(FittedSkin, OfRatioOneIsTheSame) {
 }
 
 TEST(FittedSkin, OfOneRatioIsThatManyTimesTheSize) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   const HandSkin skin = capsule_skin(hand);
   for (const double ratio : {0.75, 1.3}) {
     const HandSkin fitted = fitted_skin(hand, uniform_fit(ratio), skin);
@@ -209,7 +208,7 @@ TEST(FittedSkin, OfOneRatioIsThatManyTimesTheSize) {
 
 // At random fits every vertex is the blend of where its segments' fitted meshes have it.
 TEST(FittedSkin, FollowsTheFittedMeshes) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   const HandSkin skin = capsule_skin(hand);
   constexpr std::uint64_t kSeed = 43;
   Random random(kSeed);
@@ -242,7 +241,7 @@ TEST(FittedSkin, FollowsTheFittedMeshes) {
 }
 
 TEST(FittedSkin, OfAHandThatCannotBeIsRefused) {
-  const HandParameters hand = simple_parameters();
+  const HandParameters hand = forward_hand();
   HandFit fit = uniform_fit(1.0);
   fit.segment[2].breadth_middle = 100.0;
   EXPECT_THROW((void)fitted_skin(hand, fit, capsule_skin(hand)), std::invalid_argument);

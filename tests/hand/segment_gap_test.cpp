@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string>
 
+#include "phalanx/core/index.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/scene/hand_file.h"
 #include "support/segment_rims.h"
@@ -23,11 +24,9 @@ constexpr double kGap = 1e-3;
 constexpr double kCmcReach = 14e-3;  // [m]
 constexpr double kWebGap = 17e-3;    // [m] how far the fold of the web opens
 
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 HandModel adult() {
   SegmentMeshes meshes;
-  for (int s = 0; s < kSegments; ++s) meshes[at(s)] = test::read_generic_mesh(s);
+  for (int s = 0; s < kSegments; ++s) meshes[idx(s)] = test::read_generic_mesh(s);
   return {load_hand_file("adult", PHALANX_SOURCE_DIR), Handedness::kRight, Pose{}, meshes};
 }
 
@@ -54,21 +53,21 @@ Worst widest_over_the_range(const HandModel& hand, int digit, int k, const Trian
     for (int j = 0; j <= (k == 0 ? steps : 0); ++j) {
       DigitAngles q{};
       const auto set = [&](int joint, int step) {
-        const std::size_t n = at(joint_index(digit, joint));
+        const std::size_t n = idx(joint_index(digit, joint));
         const double low = hand.parameters().min_angle[n];
-        q[at(joint)] = low + step * (hand.parameters().max_angle[n] - low) / steps;
+        q[idx(joint)] = low + step * (hand.parameters().max_angle[n] - low) / steps;
       };
       set(first, i);
       if (k == 0) set(1, j);
       DigitPose pose;
       hand.digit_pose(digit, q, pose);
-      const Pose X_WN = k == 0 ? hand.palm_pose() : pose.segment[at(k - 1)];
+      const Pose X_WN = k == 0 ? hand.palm_pose() : pose.segment[idx(k - 1)];
       const test::Gap gap = test::widest_gap(rim, moving, hand.mesh(test::neighbour_of(s)),
-                                             X_WN.inverse() * pose.segment[at(k)], reach);
+                                             X_WN.inverse() * pose.segment[idx(k)], reach);
       if (gap.width <= worst.width) continue;
       std::ostringstream text;
       text << segment_name(s) << ": " << 1e3 * gap.width << " mm at "
-           << q[at(first)] * 180.0 / std::numbers::pi;
+           << q[idx(first)] * 180.0 / std::numbers::pi;
       if (k == 0) text << " and " << q[1] * 180.0 / std::numbers::pi;
       text << " deg, at (" << 1e3 * gap.at.transpose() << ") mm";
       worst = {gap.width, text.str()};
@@ -101,7 +100,7 @@ TEST(SegmentMeshes, EndWhereTheHandFileSaysThatTheFingersEnd) {
   const std::array<double, kDigits> soft_tip = {5.67e-3, 3.84e-3, 3.95e-3, 3.95e-3, 3.73e-3};
   const HandModel hand = adult();
   for (int d = 0; d < kDigits; ++d) {
-    const double end = hand.parameters().digits[at(d)].dh[3].a + soft_tip[at(d)];
+    const double end = hand.parameters().digits[idx(d)].dh[3].a + soft_tip[idx(d)];
     EXPECT_NEAR(-bounds(hand.mesh(segment_index(d, 2))).min.z(), end, 1e-5) << digit_name(d);
   }
 }
@@ -122,7 +121,7 @@ TEST(SegmentMeshes, AreAsThickAtTheirJointsAsTheCapsules) {
         high = high.cwiseMax(p);
       }
       const double mean = (high.x() - low.x() + high.y() - low.y()) / 4.0;
-      EXPECT_NEAR(mean, hand.parameters().segments[at(s)].radius_base, 1.0e-3) << segment_name(s);
+      EXPECT_NEAR(mean, hand.parameters().segments[idx(s)].radius_base, 1.0e-3) << segment_name(s);
     }
   }
 }
@@ -138,7 +137,7 @@ TEST(SegmentMeshes, FitTogetherWithoutASeamInTheStraightHand) {
     const auto pose = [&](int segment) {
       return segment == kPalm
                  ? hand.palm_pose()
-                 : straight.digit[at(segment / kSegmentsPerDigit)].segment[at(segment % kSegmentsPerDigit)];
+                 : straight.digit[idx(segment / kSegmentsPerDigit)].segment[idx(segment % kSegmentsPerDigit)];
     };
     for (std::size_t i = 0; i < rim.own.size(); ++i) {
       const double apart = (pose(s) * rim.own[i] - pose(test::neighbour_of(s)) * rim.neighbours[i]).norm();

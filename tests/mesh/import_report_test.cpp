@@ -17,14 +17,14 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-ImportedMesh import_text(const std::string& text, const std::string& format,
-                         const ImportOptions& options = {}) {
+ImportedMesh import_with_report(const std::string& text, const std::string& format,
+                                const ImportOptions& options = {}) {
   return import_and_check_from_memory(text.data(), text.size(), format, options);
 }
 
-std::string refusal(const std::string& text, const std::string& format, const ImportOptions& options) {
+std::string report_refusal(const std::string& text, const std::string& format, const ImportOptions& options) {
   try {
-    (void)import_text(text, format, options);
+    (void)import_with_report(text, format, options);
   } catch (const std::invalid_argument& e) {
     return e.what();
   }
@@ -39,7 +39,7 @@ const char* const kCubeWithFlaws =
     "f 1 3 2\nf 1 1 2\n";                                     // twice, and without area
 
 TEST(ImportReport, CountsAnObjsOwnVertices) {
-  const ImportedMesh imported = import_text(kCubeWithFlaws, "obj");
+  const ImportedMesh imported = import_with_report(kCubeWithFlaws, "obj");
   const MeshReport& r = imported.report;
   EXPECT_EQ(r.vertices_in_file, 10U);
   EXPECT_EQ(r.finding(FindingKind::kUnreferencedVertices).found, 1U);
@@ -54,25 +54,25 @@ TEST(ImportReport, CountsAnObjsOwnVertices) {
 }
 
 TEST(ImportReport, KnowsThatAnStlHasItsCornersApart) {
-  const ImportedMesh imported = import_text(test::to_stl_binary(make_box({0.1, 0.1, 0.1}, 12)), "stl");
+  const ImportedMesh imported = import_with_report(test::to_stl_binary(make_box({0.1, 0.1, 0.1}, 12)), "stl");
   EXPECT_EQ(imported.report.finding(FindingKind::kDuplicateVertices).found, 28U);
   EXPECT_EQ(imported.report.findings.size(), 1U);
 }
 
 TEST(ImportReport, ReadsNumbersInTheUnitGiven) {
   const std::string text = test::to_ply_text(make_box({90, 60, 30}, 12));
-  const ImportedMesh as_metres = import_text(text, "ply");
+  const ImportedMesh as_metres = import_with_report(text, "ply");
   EXPECT_EQ(as_metres.report.finding(FindingKind::kUnits).found, 1U);
-  const ImportedMesh as_mm = import_text(text, "ply", {.unit = 1e-3});
+  const ImportedMesh as_mm = import_with_report(text, "ply", {.unit = 1e-3});
   EXPECT_EQ(as_mm.report.findings.size(), 0U);
   EXPECT_NEAR((as_mm.report.extent - Vec3(0.09, 0.06, 0.03)).norm(), 0.0, 1e-12);
   EXPECT_DOUBLE_EQ(as_mm.report.scale, 1e-3);
-  const ImportedMesh sized = import_text(text, "ply", {.size = 0.045, .unit = 1e-3});
+  const ImportedMesh sized = import_with_report(text, "ply", {.size = 0.045, .unit = 1e-3});
   EXPECT_NEAR(sized.report.scale, 0.5e-3, 1e-18);
 }
 
 TEST(ImportReport, SaysWhatManyTrianglesCost) {
-  const ImportedMesh imported = import_text(test::to_stl_binary(make_sphere(0.1, 210'000)), "stl");
+  const ImportedMesh imported = import_with_report(test::to_stl_binary(make_sphere(0.1, 210'000)), "stl");
   EXPECT_EQ(imported.report.finding(FindingKind::kManyTriangles).found, imported.mesh.triangles.size());
   EXPECT_THAT(finding_meaning(imported.report.finding(FindingKind::kManyTriangles)), HasSubstr("decimate"));
 }
@@ -81,7 +81,7 @@ TEST(ImportRefuses, AnObjectThatSinglePrecisionCannotHold) {
   TriangleMesh far = make_box({0.09, 0.09, 0.09}, 12);
   for (Vec3& v : far.vertices) v.x() += 9000.0;
   for (const auto& [text, format] : {std::pair{test::to_stl_binary(far), "stl"}, {test::to_obj(far), "obj"}})
-    EXPECT_THAT(refusal(text, format, {}), AllOf(HasSubstr("single precision"), HasSubstr("origin")))
+    EXPECT_THAT(report_refusal(text, format, {}), AllOf(HasSubstr("single precision"), HasSubstr("origin")))
         << format;
 }
 
@@ -90,7 +90,7 @@ TEST(ImportRefuses, PointsWithoutASurface) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "end_header\n0 0 0\nnan nan nan\n1 0 0\n";
-  EXPECT_THAT(refusal(text, "ply", {}), HasSubstr("no triangle"));
+  EXPECT_THAT(report_refusal(text, "ply", {}), HasSubstr("no triangle"));
 }
 
 // Decimation moves no finding to another frame.
@@ -102,7 +102,7 @@ TEST(ImportReport, SaysWhereInTheFileAfterDecimationToo) {
   });
   const std::string text = test::to_ply_text(ball);
   for (const int triangles : {0, 500}) {
-    const MeshReport r = import_text(text, "ply", {.size = 0.05, .triangles = triangles}).report;
+    const MeshReport r = import_with_report(text, "ply", {.size = 0.05, .triangles = triangles}).report;
     const MeshFinding hole = r.finding(FindingKind::kHoles);
     ASSERT_EQ(hole.found, 1U);
     ASSERT_TRUE(hole.at);
@@ -113,22 +113,22 @@ TEST(ImportReport, SaysWhereInTheFileAfterDecimationToo) {
 
 TEST(ImportRefuses, AnOptionThatMakesNoSense) {
   const std::string text = test::to_obj(make_box({0.1, 0.1, 0.1}, 12));
-  EXPECT_THAT(refusal(text, "obj", {.unit = 0.0}), HasSubstr("unit is 0 m"));
-  EXPECT_THAT(refusal(text, "obj", {.unit = std::numeric_limits<double>::infinity()}),
+  EXPECT_THAT(report_refusal(text, "obj", {.unit = 0.0}), HasSubstr("unit is 0 m"));
+  EXPECT_THAT(report_refusal(text, "obj", {.unit = std::numeric_limits<double>::infinity()}),
               HasSubstr("unit is inf m"));
-  EXPECT_THAT(refusal(text, "obj", {.triangles = -5}), HasSubstr("-5 triangles"));
+  EXPECT_THAT(report_refusal(text, "obj", {.triangles = -5}), HasSubstr("-5 triangles"));
 }
 
 TEST(ImportRefuses, GlTf1AndUtf16InWords) {
-  EXPECT_THAT(refusal(std::string("glTF\1\0\0\0", 8) + std::string(40, ' '), "glb", {}),
+  EXPECT_THAT(report_refusal(std::string("glTF\1\0\0\0", 8) + std::string(40, ' '), "glb", {}),
               HasSubstr("glTF 1.0"));
-  EXPECT_THAT(refusal(std::string("\xFE\xFF\0v\0 ", 6), "obj", {}), HasSubstr("UTF-16"));
+  EXPECT_THAT(report_refusal(std::string("\xFE\xFF\0v\0 ", 6), "obj", {}), HasSubstr("UTF-16"));
 }
 
 // Four thousand million vertices in 200 bytes.
 TEST(ImportRefuses, AHeaderThatClaimsMoreThanAnyMachineHolds) {
-  const std::string answer =
-      refusal(test::ply_header("binary_little_endian", 4'000'000'000, 4'000'000'000) + "abc", "ply", {});
+  const std::string answer = report_refusal(
+      test::ply_header("binary_little_endian", 4'000'000'000, 4'000'000'000) + "abc", "ply", {});
   EXPECT_THAT(answer, HasSubstr("mesh in memory: "));
 }
 

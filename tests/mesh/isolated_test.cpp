@@ -24,9 +24,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::string refusal(const std::function<TriangleMesh()>& read) {
+std::string reading_refusal(const std::function<TriangleMesh()>& read) {
   try {
-    (void)run_isolated(read, "cup.3ds", {.cpu_seconds = 1, .wall_seconds = 30.0});
+    (void)run_isolated(read, "cup.3ds", {.cpu_seconds = 1, .wall_seconds = 300.0});
   } catch (const std::invalid_argument& e) {
     return e.what();
   }
@@ -48,7 +48,7 @@ TEST(RunIsolated, HandsATextBackAndEndsWorkThatLoops) {
     for (std::atomic<unsigned> i = 0;; ++i) {
     }
   };
-  EXPECT_THROW((void)run_isolated_text(loop, "cup.obj", {.cpu_seconds = 1, .wall_seconds = 30.0}),
+  EXPECT_THROW((void)run_isolated_text(loop, "cup.obj", {.cpu_seconds = 1, .wall_seconds = 300.0}),
                std::invalid_argument);
 }
 
@@ -65,23 +65,23 @@ TEST(RunIsolated, HoldsNoFileOfItsParentOpen) {
 }
 
 TEST(RunIsolated, PassesARefusalOnWordByWord) {
-  EXPECT_EQ(refusal([]() -> TriangleMesh { throw std::invalid_argument("cup.3ds: too pretty"); }),
+  EXPECT_EQ(reading_refusal([]() -> TriangleMesh { throw std::invalid_argument("cup.3ds: too pretty"); }),
             "cup.3ds: too pretty");
 }
 
 TEST(RunIsolated, TurnsACrashIntoARefusal) {
-  EXPECT_THAT(refusal([]() -> TriangleMesh { std::abort(); }),
+  EXPECT_THAT(reading_refusal([]() -> TriangleMesh { std::abort(); }),
               AllOf(StartsWith("cup.3ds: "), HasSubstr("crashed")));
-  EXPECT_THAT(refusal([]() -> TriangleMesh {
+  EXPECT_THAT(reading_refusal([]() -> TriangleMesh {
                 std::raise(SIGSEGV);
                 return {};
               }),
               HasSubstr("crashed"));
-  EXPECT_THAT(refusal([]() -> TriangleMesh { std::_Exit(0); }), HasSubstr("crashed"));
+  EXPECT_THAT(reading_refusal([]() -> TriangleMesh { std::_Exit(0); }), HasSubstr("crashed"));
 }
 
 TEST(RunIsolated, StopsALoop) {
-  EXPECT_THAT(refusal([]() -> TriangleMesh {
+  EXPECT_THAT(reading_refusal([]() -> TriangleMesh {
                 for (std::atomic<unsigned> i = 0;; ++i) {
                 }
               }),
@@ -103,7 +103,7 @@ TEST(RunIsolated, EndsAReaderThatSleeps) {
 }
 
 TEST(RunIsolated, SaysWhenMemoryRunsOut) {
-  EXPECT_THAT(refusal([]() -> TriangleMesh { throw std::bad_alloc(); }), HasSubstr("memory"));
+  EXPECT_THAT(reading_refusal([]() -> TriangleMesh { throw std::bad_alloc(); }), HasSubstr("memory"));
 }
 
 }  // namespace

@@ -19,19 +19,19 @@
 namespace phalanx::mesh {
 namespace {
 
-struct Repaired {
+struct AttackRepaired {
   TriangleMesh mesh;
   MeshReport report;
 };
 
-Repaired repaired(const TriangleMesh& soup) {
-  Repaired r;
+AttackRepaired attacked(const TriangleMesh& soup) {
+  AttackRepaired r;
   r.mesh = repair(soup, {}, "test", r.report);
   return r;
 }
 
 void expect_no_second_repair(const TriangleMesh& once) {
-  const Repaired r = repaired(once);
+  const AttackRepaired r = attacked(once);
   for (const MeshFinding& f : r.report.findings) EXPECT_EQ(f.repaired, 0U) << finding_name(f.kind);
   EXPECT_TRUE(test::corner_positions(once) == test::corner_positions(r.mesh));
 }
@@ -53,7 +53,7 @@ TriangleMesh block(const Vec3& size, const Vec3& centre) {
   return mesh;
 }
 
-TriangleMesh turned(TriangleMesh mesh) {
+TriangleMesh turned_round(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
 }
@@ -65,7 +65,7 @@ TEST(RepairAttack, PartsThatStandOnAnotherStaySolids) {
     TriangleMesh mesh = block({0.2, 0.2, 0.02}, {0, 0, -0.01});
     for (const double x : {-0.06, 0.0, 0.055})
       add_to(mesh, block({0.02, 0.03, 0.04}, {x, 0.3 * x + 0.01, 0.02 - into}));
-    const Repaired r = repaired(mesh);
+    const AttackRepaired r = attacked(mesh);
     EXPECT_EQ(r.report.solids, 4U);
     EXPECT_EQ(r.report.cavities, 0U);
     EXPECT_EQ(r.report.finding(FindingKind::kInsideOut).found, 0U);
@@ -84,7 +84,7 @@ TEST(RepairAttack, ABlockOnAnySideOfAnotherIsTurnedAsIfAlone) {
       const TriangleMesh big = block(Vec3::Constant(0.1), Vec3::Zero());
       TriangleMesh mesh = kind % 2 == 0 ? big : small;
       add_to(mesh, kind % 2 == 0 ? small : big);
-      const Repaired r = repaired(kind < 2 ? mesh : turned(mesh));
+      const AttackRepaired r = attacked(kind < 2 ? mesh : turned_round(mesh));
       EXPECT_EQ(r.report.solids, 2U);
       EXPECT_EQ(r.report.finding(FindingKind::kInsideOut).repaired, kind < 2 ? 0U : 2U);
       EXPECT_NEAR(r.report.volume, 1e-3 + 8e-6, 1e-12);
@@ -96,7 +96,7 @@ TEST(RepairAttack, ABlockOnAnySideOfAnotherIsTurnedAsIfAlone) {
 TEST(RepairAttack, AHollowThatTouchesItsOuterWallStaysAHollow) {
   TriangleMesh mesh = block(Vec3::Constant(0.1), Vec3::Zero());
   add_to(mesh, block(Vec3::Constant(0.02), {0.04, 0.003, 0.005}));
-  const Repaired r = repaired(mesh);
+  const AttackRepaired r = attacked(mesh);
   EXPECT_EQ(r.report.solids, 1U);
   EXPECT_EQ(r.report.cavities, 1U);
   EXPECT_NEAR(r.report.volume, 1e-3 - 8e-6, 1e-12);
@@ -116,7 +116,7 @@ TriangleMesh nested(int count) {
 }
 
 TEST(RepairAttack, NestedShellsAreSolidAndHollowInTurn) {
-  const Repaired r = repaired(nested(101));
+  const AttackRepaired r = attacked(nested(101));
   EXPECT_EQ(r.report.solids, 51U);
   EXPECT_EQ(r.report.cavities, 50U);
   EXPECT_TRUE(r.report.complete);
@@ -124,7 +124,7 @@ TEST(RepairAttack, NestedShellsAreSolidAndHollowInTurn) {
 
 // Work that grows with the square of their number stops: it says so and leaves the rest as it was.
 TEST(RepairAttack, TooManyNestedShellsAreSaidToBe) {
-  const Repaired r = repaired(nested(20000));
+  const AttackRepaired r = attacked(nested(20000));
   EXPECT_FALSE(r.report.complete);
   EXPECT_EQ(r.report.solids + r.report.cavities, 20000U);
 }
@@ -142,7 +142,7 @@ TriangleMesh disc(int corners) {
 
 TEST(RepairAttack, FlipsAreNotUndoneByFlips) {
   const TriangleMesh fan = disc(8000);
-  const Repaired r = repaired(fan);
+  const AttackRepaired r = attacked(fan);
   EXPECT_LE(r.report.finding(FindingKind::kDegenerateFaces).found, fan.triangles.size());
   EXPECT_LE(r.report.moved, r.report.tolerance);
   expect_no_second_repair(r.mesh);
@@ -159,7 +159,7 @@ TEST(RepairAttack, AHubOfFlatTrianglesComesToAnEnd) {
   }
   for (int i = 0; i < kCount; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % kCount});
   add_to(mesh, block(Vec3::Constant(0.1), {0.2, 0, 0}));
-  const Repaired r = repaired(mesh);
+  const AttackRepaired r = attacked(mesh);
   EXPECT_LE(r.report.finding(FindingKind::kDegenerateFaces).found, mesh.triangles.size());
   EXPECT_EQ(r.report.solids, 1U);
 }
@@ -211,7 +211,7 @@ TEST(RepairAttack, AllStepsTogetherStayWithinTheTolerance) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937_64 random(seed);
     const TriangleMesh soup = rattled(random);
-    const Repaired r = repaired(soup);
+    const AttackRepaired r = attacked(soup);
     EXPECT_GT(r.report.moved, 0.0);
     EXPECT_LE(r.report.moved, r.report.tolerance);
     const SurfaceDeviation off = measure_deviation(weld(soup), r.mesh);

@@ -19,9 +19,9 @@ struct Case {
   TriangleMesh mesh;
 };
 
-Case teapot() { return {"Teapot", make_teapot(0.15, 2000)}; }
-Case mug() { return {"Mug", make_mug(0.08, 0.1, 1500)}; }
-Case torus() { return {"Torus", make_torus(0.08, 0.02, 1200)}; }
+Case teapot_case() { return {"Teapot", make_teapot(0.15, 2000)}; }
+Case mug_case() { return {"Mug", make_mug(0.08, 0.1, 1500)}; }
+Case torus_case() { return {"Torus", make_torus(0.08, 0.02, 1200)}; }
 
 /// A shuffled soup: two fifths of the triangles turned, corners apart, some twice, some without area,
 /// vertices that nobody uses, and positions off by at most `noise` [m].
@@ -109,7 +109,7 @@ TEST_P(DamagedMesh, IsRepairedTheSameEveryTime) {
   EXPECT_TRUE(a.triangles == b.triangles);
 }
 
-INSTANTIATE_TEST_SUITE_P(Closed, DamagedMesh, ::testing::Values(teapot, mug, torus),
+INSTANTIATE_TEST_SUITE_P(Closed, DamagedMesh, ::testing::Values(teapot_case, mug_case, torus_case),
                          [](const auto& each) { return each.param().name; });
 
 }  // namespace

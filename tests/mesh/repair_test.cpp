@@ -50,7 +50,7 @@ Repaired repaired(const TriangleMesh& soup, const RepairOptions& options = {}) {
   return r;
 }
 
-std::string refusal(const TriangleMesh& soup, const RepairOptions& options = {}) {
+std::string repair_refusal(const TriangleMesh& soup, const RepairOptions& options = {}) {
   try {
     MeshReport report;
     (void)repair(soup, options, "test", report);
@@ -475,24 +475,24 @@ TEST(Repair, SaysWhichUnitTheNumbersProbablyAre) {
 
 TEST(Repair, RefusesNumbersTooLargeForSinglePrecision) {
   // 90 mm at 10 km: a float's step there is 2^-23 x 10 km = 1.2 mm.
-  EXPECT_THAT(refusal(cube(0.09, Vec3(9000, 0, 0))),
+  EXPECT_THAT(repair_refusal(cube(0.09, Vec3(9000, 0, 0))),
               AllOf(HasSubstr("test: "), HasSubstr("1.07"), HasSubstr("mm")));
-  EXPECT_THAT(refusal(cube(0.09, Vec3(9000, 0, 0)), {.size = 0.09}), HasSubstr("origin"));
+  EXPECT_THAT(repair_refusal(cube(0.09, Vec3(9000, 0, 0)), {.size = 0.09}), HasSubstr("origin"));
   const Repaired r = repaired(cube(0.09, Vec3(100, 0, 0)));
   EXPECT_NEAR(r.report.finding(FindingKind::kCoarseNumbers).size, 100.09 * std::pow(2.0, -23), 1e-9);
 }
 
 TEST(Repair, RefusesWhatIsFartherThanTenKilometres) {
-  EXPECT_THAT(refusal(cube(20'000)), HasSubstr("10 km"));
-  EXPECT_THAT(refusal(cube(20'000)), HasSubstr("in mm"));
-  EXPECT_EQ(refusal(cube(20'000), {.size = 0.1}), "accepted");
+  EXPECT_THAT(repair_refusal(cube(20'000)), HasSubstr("10 km"));
+  EXPECT_THAT(repair_refusal(cube(20'000)), HasSubstr("in mm"));
+  EXPECT_EQ(repair_refusal(cube(20'000), {.size = 0.1}), "accepted");
 }
 
 TEST(Repair, RefusesTrianglesWithoutAnyArea) {
   TriangleMesh line;
   for (const double x : {0.0, 0.01, 0.05}) line.vertices.emplace_back(x, 0, 0);
   line.triangles = {{0, 1, 2}};
-  EXPECT_THAT(refusal(line), HasSubstr("area"));
+  EXPECT_THAT(repair_refusal(line), HasSubstr("area"));
 }
 
 TEST(FindingWords, AreThereForEveryKind) {

@@ -2,16 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "mesh/mesh_checks.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Distance from the convex hull of two spheres on the z axis: the largest support gap over the directions in
 // the point's half plane, sampled; only for points at the surface, where it is 0.

@@ -20,7 +20,7 @@ TriangleMesh unit_tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
-std::string refusal(const TriangleMesh& mesh) {
+std::string mesh_refusal(const TriangleMesh& mesh) {
   try {
     check_mesh(mesh, "cup.obj");
   } catch (const std::invalid_argument& e) {
@@ -76,19 +76,19 @@ TEST(TriangleMesh, BoundsAreTheExtremeCoordinates) {
 }
 
 TEST(TriangleMesh, CheckNamesTheMeshThePlaceAndTheValue) {
-  EXPECT_EQ(refusal(unit_tetrahedron()), "accepted");
-  EXPECT_THAT(refusal({}), AllOf(StartsWith("cup.obj: "), HasSubstr("no triangle")));
+  EXPECT_EQ(mesh_refusal(unit_tetrahedron()), "accepted");
+  EXPECT_THAT(mesh_refusal({}), AllOf(StartsWith("cup.obj: "), HasSubstr("no triangle")));
   TriangleMesh nan = unit_tetrahedron();
   nan.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal(nan),
+  EXPECT_THAT(mesh_refusal(nan),
               AllOf(StartsWith("cup.obj: vertex 2"), HasSubstr("nan"), HasSubstr("not finite")));
   TriangleMesh high = unit_tetrahedron();
   high.triangles[3][1] = 4;
-  EXPECT_THAT(refusal(high),
+  EXPECT_THAT(mesh_refusal(high),
               AllOf(StartsWith("cup.obj: triangle 3"), HasSubstr("vertex 4"), HasSubstr("4 vertices")));
   TriangleMesh negative = unit_tetrahedron();
   negative.triangles[1][0] = -1;
-  EXPECT_THAT(refusal(negative), AllOf(StartsWith("cup.obj: triangle 1"), HasSubstr("vertex -1")));
+  EXPECT_THAT(mesh_refusal(negative), AllOf(StartsWith("cup.obj: triangle 1"), HasSubstr("vertex -1")));
 }
 
 }  // namespace

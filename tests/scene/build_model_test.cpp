@@ -62,15 +62,16 @@ TEST(BuildModel, ImportsAFileInTheUnitOrRefusesItsSizeWithTheRemedy) {
     static_cast<void>(make_world_mesh(parse(object)));
     ADD_FAILURE() << "80 m wide";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr(file.string()),
-                                             testing::HasSubstr("80 m wide"), testing::HasSubstr("\"mm\"")));
+    EXPECT_THAT(error.what(),
+                ::testing::AllOf(::testing::HasSubstr(file.string()), ::testing::HasSubstr("80 m wide"),
+                                 ::testing::HasSubstr("\"mm\"")));
   }
   try {
     static_cast<void>(
         parse("[[objects]]\nkind = \"file\"\nfile = \"" + file.string() + "\"\nsize_mm = 90\nunit = \"mm\""));
     ADD_FAILURE() << "a size and a unit";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("size_mm = 0"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("size_mm = 0"));
   }
   fs::remove(file);
 }
@@ -81,7 +82,7 @@ TEST(BuildModel, NamesAMeshFileThatIsMissing) {
     static_cast<void>(build_model(scene));
     ADD_FAILURE() << "built";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("none.obj"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("none.obj"));
   }
 }
 

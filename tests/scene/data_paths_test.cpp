@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Sets PHALANX_DATA for one test.
-class DataPaths : public testing::Test {
+class DataPaths : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const char* before = std::getenv("PHALANX_DATA")) before_ = before;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "phalanx/core/index.h"
 #include "phalanx/hand/fit.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/hand_meshes.h"
@@ -17,8 +18,6 @@ namespace phalanx {
 namespace {
 
 constexpr double kCmcReach = 14e-3;  // [m]
-
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// At the joint in front of each segment of a digit, the largest distance over seeded angles [m].
 std::array<double, kPalm> rim_distances(const Profile& profile) {
@@ -31,9 +30,9 @@ std::array<double, kPalm> rim_distances(const Profile& profile) {
   // The rims with the meshes as the files number them, stretched as the meshes are; at the thumb's CMC joint
   // the points that count in the base hand.
   SegmentMeshes numbered;
-  for (int s = 0; s < kSegments; ++s) numbered[at(s)] = test::read_generic_mesh(s);
+  for (int s = 0; s < kSegments; ++s) numbered[idx(s)] = test::read_generic_mesh(s);
   const auto rim = [&](int s) {
-    return test::read_rim(s, numbered[at(s)].vertices, numbered[at(test::neighbour_of(s))].vertices);
+    return test::read_rim(s, numbered[idx(s)].vertices, numbered[idx(test::neighbour_of(s))].vertices);
   };
   const test::Rim base_cmc = rim(0);
   numbered = fitted_meshes(file.parameters, fitted.fit, numbered);
@@ -59,13 +58,13 @@ std::array<double, kPalm> rim_distances(const Profile& profile) {
     HandPoses poses;
     hand.poses(q, poses);
     for (int d = 0; d < kDigits; ++d) {
-      const auto pose = [&](int k) { return k < 0 ? hand.palm_pose() : poses.digit[at(d)].segment[at(k)]; };
+      const auto pose = [&](int k) { return k < 0 ? hand.palm_pose() : poses.digit[idx(d)].segment[idx(k)]; };
       const auto segment = [&](int k) { return k < 0 ? kPalm : segment_index(d, k); };
       for (int k = 0; k < kSegmentsPerDigit; ++k) {
         const int s = segment(k);
-        const test::Gap gap = test::widest_gap(rims[at(s)], hand.mesh(s), hand.mesh(segment(k - 1)),
+        const test::Gap gap = test::widest_gap(rims[idx(s)], hand.mesh(s), hand.mesh(segment(k - 1)),
                                                pose(k - 1).inverse() * pose(k));
-        largest[at(s)] = std::max(largest[at(s)], gap.width);
+        largest[idx(s)] = std::max(largest[idx(s)], gap.width);
       }
     }
   }
@@ -87,7 +86,7 @@ TEST_P(FittedGap, StaysWithinTheBaseHandsCriterionAtTheExtremesOfSize) {
   RecordProperty("largest_mm", std::to_string(1e3 * *std::max_element(gap.begin(), gap.end())));
   for (int s = 0; s < kPalm; ++s) {
     const bool at_palm = s % kSegmentsPerDigit == 0;
-    EXPECT_LT(gap[at(s)], at_palm ? 1e-3 * ratio : 1e-3) << segment_name(s) << " seed 31";
+    EXPECT_LT(gap[idx(s)], at_palm ? 1e-3 * ratio : 1e-3) << segment_name(s) << " seed 31";
   }
 }
 

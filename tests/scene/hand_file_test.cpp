@@ -23,7 +23,7 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+void expect_hand_refused(const std::string& text, const std::vector<std::string>& words) {
   expect_scene_error([&] { static_cast<void>(parse_hand(text, "bad.toml")); }, words);
 }
 
@@ -113,37 +113,39 @@ TEST(AdultHand, KeepsItsOpenFingersApart) {
 }
 
 TEST(HandFile, WithALineThatNobodyKnows) {
-  expect_refused(changed("offset_mm", "offsett_mm = [0, 0, 0]\noffset_mm"),
-                 {"bad.toml:", "palm.offsett_mm", "nearest known one is palm.offset_mm"});
+  expect_hand_refused(changed("offset_mm", "offsett_mm = [0, 0, 0]\noffset_mm"),
+                      {"bad.toml:", "palm.offsett_mm", "nearest known one is palm.offset_mm"});
 }
 
-TEST(HandFile, WithoutADigit) { expect_refused("name = \"x\"", {"bad.toml", "thumb", "is missing"}); }
+TEST(HandFile, WithoutADigit) { expect_hand_refused("name = \"x\"", {"bad.toml", "thumb", "is missing"}); }
 
 TEST(HandFile, WithANumberThatIsNotFinite) {
-  expect_refused(changed("a_mm = 46.22", "a_mm = nan"), {"a_mm = nan", "must be"});
+  expect_hand_refused(changed("a_mm = 46.22", "a_mm = nan"), {"a_mm = nan", "must be"});
 }
 
 TEST(HandFile, WithANegativeRadius) {
-  expect_refused(changed("radius_tip_mm = 11.5", "radius_tip_mm = -11.5"),
-                 {"thumb.segments.0.radius_tip_mm = -11.5", "> 0"});
+  expect_hand_refused(changed("radius_tip_mm = 11.5", "radius_tip_mm = -11.5"),
+                      {"thumb.segments.0.radius_tip_mm = -11.5", "> 0"});
 }
 
 TEST(HandFile, WithAnEmptyRangeOfMotion) {
-  expect_refused(changed("max_deg = 35.0", "max_deg = -18.0"), {"thumb.joints.0.max_deg = -18", "> -18"});
+  expect_hand_refused(changed("max_deg = 35.0", "max_deg = -18.0"),
+                      {"thumb.joints.0.max_deg = -18", "> -18"});
 }
 
 TEST(HandFile, WithAnOpenAngleOutsideItsRange) {
-  expect_refused(changed("open_deg = 0.0", "open_deg = 36.0"), {"thumb.joints.0.open_deg = 36", "<= 35"});
+  expect_hand_refused(changed("open_deg = 0.0", "open_deg = 36.0"),
+                      {"thumb.joints.0.open_deg = 36", "<= 35"});
 }
 
 TEST(HandFile, WithTwoJointsSwapped) {
-  expect_refused(changed("thumb_cmc_flexion", "thumb_cmc_abduction"),
-                 {"thumb.joints.0.name", "\"thumb_cmc_flexion\""});
+  expect_hand_refused(changed("thumb_cmc_flexion", "thumb_cmc_abduction"),
+                      {"thumb.joints.0.name", "\"thumb_cmc_flexion\""});
 }
 
 TEST(HandFile, WithABackAlongTheFinger) {
-  expect_refused(changed("dorsal = [-0.852, 0.207, 0.481]", "dorsal = [-0.519, -0.462, -0.719]"),
-                 {"thumb.dorsal", "parallel"});
+  expect_hand_refused(changed("dorsal = [-0.852, 0.207, 0.481]", "dorsal = [-0.519, -0.462, -0.719]"),
+                      {"thumb.dorsal", "parallel"});
 }
 
 TEST(HandFile, ThatIsMissing) {

@@ -154,8 +154,8 @@ TEST(HandMeshes, AndAStatedNumberOfTrianglesAreRefusedTogether) {
 
 /// A set of meshes with one spoilt, and what the refusal says.
 template <typename Spoil>
-void expect_refused(Spoil&& spoil, const std::vector<std::string>& words,
-                    const std::string& table = kCollision) {
+void expect_meshes_refused(Spoil&& spoil, const std::vector<std::string>& words,
+                           const std::string& table = kCollision) {
   const HandFolder folder;
   SegmentMeshes meshes = capsules();
   spoil(meshes[3]);
@@ -168,12 +168,12 @@ void expect_refused(Spoil&& spoil, const std::vector<std::string>& words,
 }
 
 TEST(HandMeshes, ThatAreOpenAreRefused) {
-  expect_refused([](TriangleMesh& mesh) { mesh.triangles.pop_back(); },
-                 {"is not closed", "phalanx mesh check"});
+  expect_meshes_refused([](TriangleMesh& mesh) { mesh.triangles.pop_back(); },
+                        {"is not closed", "phalanx mesh check"});
 }
 
 TEST(HandMeshes, ThatLieFarFromTheirJointAreRefused) {
-  expect_refused(
+  expect_meshes_refused(
       [](TriangleMesh& mesh) {
         for (Vec3& v : mesh.vertices) v.z() -= 0.4;
       },
@@ -181,7 +181,7 @@ TEST(HandMeshes, ThatLieFarFromTheirJointAreRefused) {
 }
 
 TEST(HandMeshes, InAnAbsurdUnitAreRefused) {
-  expect_refused(
+  expect_meshes_refused(
       [](TriangleMesh& mesh) {
         for (Vec3& v : mesh.vertices) v *= 1e-3;
       },

@@ -128,87 +128,88 @@ TEST(LoadHandSkin, ThatIsMissingIsRefusedByItsName) {
   expect_scene_error([&] { (void)read_hand_file(number); }, {"meshes.skin = 3", "string"});
 }
 
-void expect_refused(const std::string& skin, std::vector<std::string> words) {
+void expect_skin_refused(const std::string& skin, std::vector<std::string> words) {
   const HandFolder folder;
   words.insert(words.end(), {"hand.toml:", "meshes.skin", "skin.json"});
   expect_scene_error([&] { (void)load_hand_skin(described(folder, skin)); }, words);
 }
 
 TEST(LoadHandSkin, ThatIsNoJsonIsRefused) {
-  expect_refused("", {"not valid JSON"});
-  expect_refused(SkinText{}.all().substr(0, 150), {"not valid JSON", "line 1"});
-  expect_refused("\xff\xfe\x01", {"not valid JSON"});
-  expect_refused("[1, 2]", {"is [1,2]", "write an object"});
-  expect_refused("{\"segments\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}",
-                 {"lists in lists"});
-  expect_refused(std::string((16U << 20U) + 1, ' '), {"at most 16 MB"});
+  expect_skin_refused("", {"not valid JSON"});
+  expect_skin_refused(SkinText{}.all().substr(0, 150), {"not valid JSON", "line 1"});
+  expect_skin_refused("\xff\xfe\x01", {"not valid JSON"});
+  expect_skin_refused("[1, 2]", {"is [1,2]", "write an object"});
+  expect_skin_refused("{\"segments\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}",
+                      {"lists in lists"});
+  expect_skin_refused(std::string((16U << 20U) + 1, ' '), {"at most 16 MB"});
 }
 
 TEST(LoadHandSkin, WithoutAnEntryIsRefused) {
-  expect_refused("{}", {"segments", "is missing"});
-  expect_refused(R"({"segments": ["wrist"]})", {"vertices_mm", "is missing"});
-  expect_refused(R"({"segments": ["wrist"], "vertices_mm": [[0, 0, 0]]})", {"influences", "is missing"});
-  expect_refused(R"({"segments": ["wrist"], "vertices_mm": [[0, 0, 0]], "influences": [[[0, 1]]]})",
-                 {"triangles", "is missing"});
+  expect_skin_refused("{}", {"segments", "is missing"});
+  expect_skin_refused(R"({"segments": ["wrist"]})", {"vertices_mm", "is missing"});
+  expect_skin_refused(R"({"segments": ["wrist"], "vertices_mm": [[0, 0, 0]]})", {"influences", "is missing"});
+  expect_skin_refused(R"({"segments": ["wrist"], "vertices_mm": [[0, 0, 0]], "influences": [[[0, 1]]]})",
+                      {"triangles", "is missing"});
   SkinText text;
   text.triangles = "[]";
-  expect_refused(text.all(), {"triangles = []", "write a list"});
+  expect_skin_refused(text.all(), {"triangles = []", "write a list"});
   text = {};
   text.vertices = "7";
-  expect_refused(text.all(), {"vertices_mm = 7", "write a list"});
+  expect_skin_refused(text.all(), {"vertices_mm = 7", "write a list"});
 }
 
 /// Refused once this part of the file is that.
-void expect_refused(std::string SkinText::* part, const std::string& value, std::vector<std::string> words) {
+void expect_skin_refused(std::string SkinText::* part, const std::string& value,
+                         std::vector<std::string> words) {
   SkinText text;
   text.*part = value;
-  expect_refused(text.all(), std::move(words));
+  expect_skin_refused(text.all(), std::move(words));
 }
 
 TEST(LoadHandSkin, OfAnUnknownSegmentIsRefused) {
-  expect_refused(&SkinText::segments, R"(["index-finger-phalanx-distal", "wrst"])",
-                 {"segments[1] = \"wrst\"", "no such segment", "\"wrist\""});
-  expect_refused(&SkinText::segments, "[4]", {"segments[0] = 4", "in quotes"});
-  expect_refused(&SkinText::segments, R"(["wrist"])", {"influences[2]", "no segment 1", "0 to 0"});
+  expect_skin_refused(&SkinText::segments, R"(["index-finger-phalanx-distal", "wrst"])",
+                      {"segments[1] = \"wrst\"", "no such segment", "\"wrist\""});
+  expect_skin_refused(&SkinText::segments, "[4]", {"segments[0] = 4", "in quotes"});
+  expect_skin_refused(&SkinText::segments, R"(["wrist"])", {"influences[2]", "no segment 1", "0 to 0"});
 }
 
 TEST(LoadHandSkin, WithAWrongVertexIsRefused) {
   const std::string rest = "[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
-  expect_refused(&SkinText::vertices, "[[0, 0, 301], " + rest, {"vertices_mm[0] = [0,0,301]", "301 mm"});
-  expect_refused(&SkinText::vertices, "[[0, 0], " + rest, {"vertices_mm[0] = [0,0]", "three numbers"});
-  expect_refused(&SkinText::vertices, "[[0, 0, null], " + rest, {"vertices_mm[0]", "three numbers"});
-  expect_refused(&SkinText::vertices, "[[0, 0, NaN], " + rest, {"not valid JSON"});
-  expect_refused(&SkinText::vertices, "[[0, 0, 1e999], " + rest, {"not valid JSON", "1e999"});
-  expect_refused(&SkinText::vertices, "[[0, 0, 1e308], " + rest, {"vertices_mm[0]", "300 mm"});
+  expect_skin_refused(&SkinText::vertices, "[[0, 0, 301], " + rest, {"vertices_mm[0] = [0,0,301]", "301 mm"});
+  expect_skin_refused(&SkinText::vertices, "[[0, 0], " + rest, {"vertices_mm[0] = [0,0]", "three numbers"});
+  expect_skin_refused(&SkinText::vertices, "[[0, 0, null], " + rest, {"vertices_mm[0]", "three numbers"});
+  expect_skin_refused(&SkinText::vertices, "[[0, 0, NaN], " + rest, {"not valid JSON"});
+  expect_skin_refused(&SkinText::vertices, "[[0, 0, 1e999], " + rest, {"not valid JSON", "1e999"});
+  expect_skin_refused(&SkinText::vertices, "[[0, 0, 1e308], " + rest, {"vertices_mm[0]", "300 mm"});
 }
 
 TEST(LoadHandSkin, WithWrongWeightsIsRefused) {
   const std::string rest = ", [[0, 1]], [[0, 1]], [[0, 1]]]";
-  expect_refused(&SkinText::influences, "[[[0, 0.5], [1, 0.4]]" + rest,
-                 {"influences[0] = [[0,0.5],[1,0.4]]", "sum is 0.9", "make it 1"});
-  expect_refused(&SkinText::influences, "[[[0, 1.5], [1, -0.5]]" + rest,
-                 {"influences[0]", "1.5 is no weight"});
-  expect_refused(&SkinText::influences, "[[[0, 1], [1, -0.5]]" + rest,
-                 {"influences[0]", "-0.5 is no weight"});
-  expect_refused(&SkinText::influences, "[[[0, null]]" + rest, {"influences[0]", "null is no weight"});
-  expect_refused(&SkinText::influences, "[[[0, \"1\"]]" + rest, {"influences[0]", "is no weight"});
-  expect_refused(&SkinText::influences, "[[[2, 1]]" + rest, {"influences[0]", "no segment 2", "0 to 1"});
-  expect_refused(&SkinText::influences, "[[[-1, 1]]" + rest, {"influences[0]", "no segment -1"});
-  expect_refused(&SkinText::influences, "[[[0.5, 1]]" + rest, {"influences[0]", "no segment 0.5"});
-  expect_refused(&SkinText::influences, "[[0, 1]" + rest, {"influences[0]", "write pairs"});
-  expect_refused(&SkinText::influences, "[[]" + rest, {"influences[0] = []", "one to four"});
-  expect_refused(&SkinText::influences, "[[[0,0.2],[0,0.2],[0,0.2],[0,0.2],[0,0.2]]" + rest,
-                 {"influences[0]", "one to four"});
-  expect_refused(&SkinText::influences, "[[[0, 1]]]", {"influences", "1 entries for 4 vertices"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 0.5], [1, 0.4]]" + rest,
+                      {"influences[0] = [[0,0.5],[1,0.4]]", "sum is 0.9", "make it 1"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 1.5], [1, -0.5]]" + rest,
+                      {"influences[0]", "1.5 is no weight"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 1], [1, -0.5]]" + rest,
+                      {"influences[0]", "-0.5 is no weight"});
+  expect_skin_refused(&SkinText::influences, "[[[0, null]]" + rest, {"influences[0]", "null is no weight"});
+  expect_skin_refused(&SkinText::influences, "[[[0, \"1\"]]" + rest, {"influences[0]", "is no weight"});
+  expect_skin_refused(&SkinText::influences, "[[[2, 1]]" + rest, {"influences[0]", "no segment 2", "0 to 1"});
+  expect_skin_refused(&SkinText::influences, "[[[-1, 1]]" + rest, {"influences[0]", "no segment -1"});
+  expect_skin_refused(&SkinText::influences, "[[[0.5, 1]]" + rest, {"influences[0]", "no segment 0.5"});
+  expect_skin_refused(&SkinText::influences, "[[0, 1]" + rest, {"influences[0]", "write pairs"});
+  expect_skin_refused(&SkinText::influences, "[[]" + rest, {"influences[0] = []", "one to four"});
+  expect_skin_refused(&SkinText::influences, "[[[0,0.2],[0,0.2],[0,0.2],[0,0.2],[0,0.2]]" + rest,
+                      {"influences[0]", "one to four"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 1]]]", {"influences", "1 entries for 4 vertices"});
 }
 
 TEST(LoadHandSkin, WithAnIndexWithoutAVertexIsRefused) {
-  expect_refused(&SkinText::triangles, "[[0, 1, 2], [1, 2, 4]]",
-                 {"triangles[1] = [1,2,4]", "no vertex 4", "0 to 3"});
-  expect_refused(&SkinText::triangles, "[[0, -1, 2]]", {"triangles[0]", "no vertex -1"});
-  expect_refused(&SkinText::triangles, "[[0, 1.5, 2]]", {"triangles[0]", "no vertex 1.5"});
-  expect_refused(&SkinText::triangles, "[[0, 1]]", {"triangles[0] = [0,1]", "three vertices"});
-  expect_refused(&SkinText::triangles, "[[0, 1, 18446744073709551615]]", {"triangles[0]", "no vertex"});
+  expect_skin_refused(&SkinText::triangles, "[[0, 1, 2], [1, 2, 4]]",
+                      {"triangles[1] = [1,2,4]", "no vertex 4", "0 to 3"});
+  expect_skin_refused(&SkinText::triangles, "[[0, -1, 2]]", {"triangles[0]", "no vertex -1"});
+  expect_skin_refused(&SkinText::triangles, "[[0, 1.5, 2]]", {"triangles[0]", "no vertex 1.5"});
+  expect_skin_refused(&SkinText::triangles, "[[0, 1]]", {"triangles[0] = [0,1]", "three vertices"});
+  expect_skin_refused(&SkinText::triangles, "[[0, 1, 18446744073709551615]]", {"triangles[0]", "no vertex"});
 }
 
 }  // namespace

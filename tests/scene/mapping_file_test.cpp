@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/mapping_file.h"
+#include "phalanx/core/units.h"
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "expect_error.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
-
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+void expect_mapping_refused(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
   expect_scene_error([&] { static_cast<void>(parse_mapping(text, "bad.toml")); }, words);
 }
@@ -89,37 +87,37 @@ TEST(MappingFile, IsReadInRadiansOrDegrees) {
 }
 
 TEST(MappingFile, WithAnUnknownJointIsAnsweredWithTheNearest) {
-  expect_refused("[index_pip_flection]\nsource = \"a\"",
-                 {"bad.toml:1", "index_pip_flection", "index_pip_flexion"});
+  expect_mapping_refused("[index_pip_flection]\nsource = \"a\"",
+                         {"bad.toml:1", "index_pip_flection", "index_pip_flexion"});
 }
 
 TEST(MappingFile, WithAnUnknownKeyIsAnsweredWithTheNearest) {
-  expect_refused("[index_pip_flexion]\nsource = \"a\"\nofset_rad = 1",
-                 {"bad.toml:3", "ofset_rad = 1", "offset_rad"});
+  expect_mapping_refused("[index_pip_flexion]\nsource = \"a\"\nofset_rad = 1",
+                         {"bad.toml:3", "ofset_rad = 1", "offset_rad"});
 }
 
 TEST(MappingFile, WithoutASource) {
-  expect_refused("[index_pip_flexion]\nsign = 1", {"index_pip_flexion.source", "is missing"});
+  expect_mapping_refused("[index_pip_flexion]\nsign = 1", {"index_pip_flexion.source", "is missing"});
 }
 
 TEST(MappingFile, WithABadNumber) {
   const std::string head = "[index_pip_flexion]\nsource = \"a\"\n";
-  expect_refused(head + "sign = 0.5", {"bad.toml:3", "sign = 0.5", "must be 1 or -1"});
-  expect_refused(head + "gain = -2", {"gain = -2", "> 0"});
-  expect_refused(head + "gain = nan", {"gain = nan", "must be"});
-  expect_refused(head + "offset_rad = inf", {"offset_rad = inf", "must be"});
-  expect_refused(head + "clamp_rad = [1, 0]", {"clamp_rad", "[smallest, largest]"});
-  expect_refused(head + "clamp_rad = [1]", {"clamp_rad", "2 numbers"});
+  expect_mapping_refused(head + "sign = 0.5", {"bad.toml:3", "sign = 0.5", "must be 1 or -1"});
+  expect_mapping_refused(head + "gain = -2", {"gain = -2", "> 0"});
+  expect_mapping_refused(head + "gain = nan", {"gain = nan", "must be"});
+  expect_mapping_refused(head + "offset_rad = inf", {"offset_rad = inf", "must be"});
+  expect_mapping_refused(head + "clamp_rad = [1, 0]", {"clamp_rad", "[smallest, largest]"});
+  expect_mapping_refused(head + "clamp_rad = [1]", {"clamp_rad", "2 numbers"});
 }
 
 TEST(MappingFile, WithRadiansAndDegreesAtOnce) {
   const std::string head = "[index_pip_flexion]\nsource = \"a\"\n";
-  expect_refused(head + "offset_rad = 1\noffset_deg = 1", {"offset_rad", "keep one"});
-  expect_refused(head + "clamp_rad = [0, 1]\nclamp_deg = [0, 1]", {"clamp", "keep one"});
+  expect_mapping_refused(head + "offset_rad = 1\noffset_deg = 1", {"offset_rad", "keep one"});
+  expect_mapping_refused(head + "clamp_rad = [0, 1]\nclamp_deg = [0, 1]", {"clamp", "keep one"});
 }
 
 TEST(MappingFile, WithoutAnyJoint) {
-  expect_refused("description = \"x\"", {"bad.toml", "no joint is mapped"});
+  expect_mapping_refused("description = \"x\"", {"bad.toml", "no joint is mapped"});
 }
 
 TEST(MappingFile, ThatIsMissing) {

@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kPip = 6;  // index_pip_flexion
 
-Motion parse(const std::string& text, std::optional<int> trial = {}) {
+Motion parse_csv(const std::string& text, std::optional<int> trial = {}) {
   return parse_motion(text, "m.csv", {}, trial);
 }
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words,
-                    std::optional<int> trial = {}) {
+void expect_motion_refused(const std::string& text, const std::vector<std::string>& words,
+                           std::optional<int> trial = {}) {
   SCOPED_TRACE(text.substr(0, 200));
-  expect_scene_error([&] { static_cast<void>(parse(text, trial)); }, words);
+  expect_scene_error([&] { static_cast<void>(parse_csv(text, trial)); }, words);
 }
 
 SensorMapping pip_from(const std::string& source) {
@@ -40,7 +40,7 @@ SensorMapping pip_from(const std::string& source) {
 }
 
 TEST(MotionFile, MayNameAnyJointsInAnyOrder) {
-  const Motion motion = parse("index_pip_flexion,time_s,thumb_ip_flexion\n0.5,1.0,0.1\n0.7,1.5,0.2\n");
+  const Motion motion = parse_csv("index_pip_flexion,time_s,thumb_ip_flexion\n0.5,1.0,0.1\n0.7,1.5,0.2\n");
   EXPECT_EQ(motion.time_s, (std::vector<double>{1.0, 1.5}));
   EXPECT_EQ(motion.angle[1][kPip], 0.7);
   EXPECT_EQ(motion.angle[1][3], 0.2);
@@ -56,7 +56,7 @@ TEST(MotionFile, LeavesJointsWithoutAColumnAtTheOpenHand) {
 
 TEST(MotionFile, MayComeFromAnySpreadsheet) {
   const Motion motion =
-      parse("\xEF\xBB\xBF\"time_s\" , \"index_pip_flexion\"\r\n 0 , +1e-1 \r\n\r\n1,.5\r\n");
+      parse_csv("\xEF\xBB\xBF\"time_s\" , \"index_pip_flexion\"\r\n 0 , +1e-1 \r\n\r\n1,.5\r\n");
   EXPECT_EQ(motion.angle[0][kPip], 0.1);
   EXPECT_EQ(motion.angle[1][kPip], 0.5);
 }
@@ -73,52 +73,55 @@ TEST(MotionFile, WithoutTheColumnThatTheMappingNeeds) {
 }
 
 TEST(MotionFile, WithoutTime) {
-  expect_refused("time,index_pip_flexion\n0,1\n", {"m.csv:1", "column \"time_s\" is missing"});
-  expect_refused("time_s;index_pip_flexion\n0;1\n", {"\"time_s\" is missing", "separated by commas"});
+  expect_motion_refused("time,index_pip_flexion\n0,1\n", {"m.csv:1", "column \"time_s\" is missing"});
+  expect_motion_refused("time_s;index_pip_flexion\n0;1\n", {"\"time_s\" is missing", "separated by commas"});
 }
 
-TEST(MotionFile, WithoutAnyJoint) { expect_refused("time_s\n0\n", {"m.csv:1", "no column is a joint"}); }
+TEST(MotionFile, WithoutAnyJoint) {
+  expect_motion_refused("time_s\n0\n", {"m.csv:1", "no column is a joint"});
+}
 
 TEST(MotionFile, WithAnUnknownColumn) {
-  expect_refused("time_s,index_pip_flection\n0,1\n",
-                 {"m.csv:1", "\"index_pip_flection\"", "did you mean \"index_pip_flexion\"?", "mapping"});
+  expect_motion_refused(
+      "time_s,index_pip_flection\n0,1\n",
+      {"m.csv:1", "\"index_pip_flection\"", "did you mean \"index_pip_flexion\"?", "mapping"});
 }
 
 TEST(MotionFile, WithAColumnTwice) {
-  expect_refused("time_s,index_pip_flexion,index_pip_flexion\n0,1,1\n",
-                 {"m.csv:1", "\"index_pip_flexion\" appears twice"});
+  expect_motion_refused("time_s,index_pip_flexion,index_pip_flexion\n0,1,1\n",
+                        {"m.csv:1", "\"index_pip_flexion\" appears twice"});
 }
 
 TEST(MotionFile, WithTextInANumber) {
-  expect_refused("time_s,index_pip_flexion\n0,1\n1,bent\n",
-                 {"m.csv:3", "column \"index_pip_flexion\"", "\"bent\" is not a number"});
-  expect_refused("time_s,index_pip_flexion\n0,1x\n", {"m.csv:2", "\"1x\" is not a number"});
-  expect_refused("time_s,index_pip_flexion\n0,\n", {"m.csv:2", "\"\" is not a number"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,1\n1,bent\n",
+                        {"m.csv:3", "column \"index_pip_flexion\"", "\"bent\" is not a number"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,1x\n", {"m.csv:2", "\"1x\" is not a number"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,\n", {"m.csv:2", "\"\" is not a number"});
 }
 
 TEST(MotionFile, WithNanOrInfinity) {
-  expect_refused("time_s,index_pip_flexion\n0,nan\n",
-                 {"m.csv:2", "column \"index_pip_flexion\"", "nan", "not a finite number"});
-  expect_refused("time_s,index_pip_flexion\n0,-inf\n", {"m.csv:2", "not a finite number"});
-  expect_refused("time_s,index_pip_flexion\nnan,0\n",
-                 {"m.csv:2", "column \"time_s\"", "not a finite number"});
-  expect_refused("time_s,index_pip_flexion\n0,1e999\n", {"m.csv:2", "1e999"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,nan\n",
+                        {"m.csv:2", "column \"index_pip_flexion\"", "nan", "not a finite number"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,-inf\n", {"m.csv:2", "not a finite number"});
+  expect_motion_refused("time_s,index_pip_flexion\nnan,0\n",
+                        {"m.csv:2", "column \"time_s\"", "not a finite number"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,1e999\n", {"m.csv:2", "1e999"});
 }
 
 TEST(MotionFile, InDegrees) {
-  expect_refused("time_s,index_pip_flexion\n0,45\n",
-                 {"m.csv:2", "index_pip_flexion = 45 rad", "in degrees", "gain = 0.01745"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,45\n",
+                        {"m.csv:2", "index_pip_flexion = 45 rad", "in degrees", "gain = 0.01745"});
 }
 
 TEST(MotionFile, WithARaggedRow) {
-  expect_refused("time_s,index_pip_flexion\n0,1\n1\n", {"m.csv:3", "1 cells, the header 2"});
-  expect_refused("time_s,index_pip_flexion\n0,1,2\n", {"m.csv:2", "3 cells, the header 2"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,1\n1\n", {"m.csv:3", "1 cells, the header 2"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,1,2\n", {"m.csv:2", "3 cells, the header 2"});
 }
 
 TEST(MotionFile, ThatIsEmpty) {
-  expect_refused("", {"m.csv", "the file is empty"});
-  expect_refused("\n \n", {"the file is empty"});
-  expect_refused("time_s,index_pip_flexion\n", {"header but no rows"});
+  expect_motion_refused("", {"m.csv", "the file is empty"});
+  expect_motion_refused("\n \n", {"the file is empty"});
+  expect_motion_refused("time_s,index_pip_flexion\n", {"header but no rows"});
 }
 
 TEST(MotionFile, ThatIsMissing) {
@@ -127,33 +130,33 @@ TEST(MotionFile, ThatIsMissing) {
 }
 
 TEST(MotionFile, WithATimeTwice) {
-  expect_refused("time_s,index_pip_flexion\n0,1\n0,2\n",
-                 {"m.csv:3", "column \"time_s\"", "0 s stands twice"});
+  expect_motion_refused("time_s,index_pip_flexion\n0,1\n0,2\n",
+                        {"m.csv:3", "column \"time_s\"", "0 s stands twice"});
 }
 
 TEST(MotionFile, WithAHugeLine) {
-  expect_refused("time_s,index_pip_flexion\n0," + std::string(70'000, '1') + "\n",
-                 {"m.csv:2", "more than 65536"});
-  expect_refused(std::string(70'000, 'x'), {"m.csv:1", "more than 65536"});
+  expect_motion_refused("time_s,index_pip_flexion\n0," + std::string(70'000, '1') + "\n",
+                        {"m.csv:2", "more than 65536"});
+  expect_motion_refused(std::string(70'000, 'x'), {"m.csv:1", "more than 65536"});
 }
 
 constexpr const char* kThreeTrials = "time_s,index_pip_flexion\n4,0.1\n5,0.2\n4.5,0.3\n5,0.4\n6,0.5\n0,0.6\n";
 
 TEST(MotionFile, WhoseTimeRunsBackwardsNamesItsTrials) {
-  expect_refused(kThreeTrials,
-                 {"m.csv:4", "column \"time_s\"", "from 5 s to 4.5 s", "3 trials", "--trial N"});
+  expect_motion_refused(kThreeTrials,
+                        {"m.csv:4", "column \"time_s\"", "from 5 s to 4.5 s", "3 trials", "--trial N"});
 }
 
 TEST(MotionFile, PlaysTheTrialThatIsChosen) {
-  EXPECT_EQ(parse(kThreeTrials, 1).time_s, (std::vector<double>{4.0, 5.0}));
-  EXPECT_EQ(parse(kThreeTrials, 2).time_s, (std::vector<double>{4.5, 5.0, 6.0}));
-  EXPECT_EQ(parse(kThreeTrials, 2).angle[2][kPip], 0.5);
-  EXPECT_EQ(parse(kThreeTrials, 3).time_s, (std::vector<double>{0.0}));
+  EXPECT_EQ(parse_csv(kThreeTrials, 1).time_s, (std::vector<double>{4.0, 5.0}));
+  EXPECT_EQ(parse_csv(kThreeTrials, 2).time_s, (std::vector<double>{4.5, 5.0, 6.0}));
+  EXPECT_EQ(parse_csv(kThreeTrials, 2).angle[2][kPip], 0.5);
+  EXPECT_EQ(parse_csv(kThreeTrials, 3).time_s, (std::vector<double>{0.0}));
 }
 
 TEST(MotionFile, HasNoTrialBeyondItsLast) {
-  expect_refused(kThreeTrials, {"no trial 4", "holds 3"}, 4);
-  expect_refused(kThreeTrials, {"trial 0", "counted from 1"}, 0);
+  expect_motion_refused(kThreeTrials, {"no trial 4", "holds 3"}, 4);
+  expect_motion_refused(kThreeTrials, {"trial 0", "counted from 1"}, 0);
 }
 
 TEST(MotionFile, ReadsBackWhatWasWrittenBitForBit) {
@@ -181,7 +184,7 @@ TEST(MotionFile, SaysWhereItCouldNotBeWritten) {
     write_motion_csv({{0.0}, {JointArray{}}}, "/nowhere/m.csv");
     ADD_FAILURE() << "written";
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("/nowhere/m.csv"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("/nowhere/m.csv"));
   }
 }
 

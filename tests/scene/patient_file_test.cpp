@@ -6,17 +6,17 @@
 namespace phalanx {
 namespace {
 
-const std::string kJoint = "[joints.index_mcp_flexion]\nstiffness_nm_per_rad = 10\n";
+const std::string kPatientJoint = "[joints.index_mcp_flexion]\nstiffness_nm_per_rad = 10\n";
 
-PatientParameters parse(const std::string& text) { return parse_patient(text, "p.toml"); }
+PatientParameters parse_toml(const std::string& text) { return parse_patient(text, "p.toml"); }
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+void expect_patient_refused(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
-  expect_scene_error([&] { static_cast<void>(parse(text)); }, words);
+  expect_scene_error([&] { static_cast<void>(parse_toml(text)); }, words);
 }
 
 TEST(PatientFile, StatesImpedanceIntentAndDisturbancesInItsUnits) {
-  const PatientParameters p = parse(R"(description = "somebody"
+  const PatientParameters p = parse_toml(R"(description = "somebody"
 press_n = 4
 press_spread = 0.2
 approach_min_mm_per_s = 10
@@ -49,8 +49,9 @@ damping_nms_per_rad = 0.05
 }
 
 TEST(PatientFile, ScalesWhatItNames) {
-  const std::string text = "tremor_um = 10\nbump_n = 3\n" + kJoint + "damping_nms_per_rad = 1\n";
-  const PatientParameters p = parse(text + "[scale]\nstiffness = 2\ndamping = 3\ntremor = 4\nbump = 0\n");
+  const std::string text = "tremor_um = 10\nbump_n = 3\n" + kPatientJoint + "damping_nms_per_rad = 1\n";
+  const PatientParameters p =
+      parse_toml(text + "[scale]\nstiffness = 2\ndamping = 3\ntremor = 4\nbump = 0\n");
   EXPECT_EQ(p.stiffness[4], 20.0);
   EXPECT_EQ(p.damping[4], 3.0);
   EXPECT_DOUBLE_EQ(p.tremor, 40e-6);
@@ -58,14 +59,16 @@ TEST(PatientFile, ScalesWhatItNames) {
 }
 
 TEST(PatientFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
-  expect_refused("", {"p.toml", "joints", "is missing"});
-  expect_refused("pres_n = 3\n" + kJoint, {"p.toml:1: pres_n = 3", "nearest known one is press_n"});
-  expect_refused("press_spread = 1.5\n" + kJoint, {"p.toml:1: press_spread = 1.5", "<= 1"});
-  expect_refused("[joints.index_mcp_flexion]\nstiffness_nm_per_rad = nan\n",
-                 {"p.toml:2", "= nan", "must be >= 0"});
-  expect_refused("approach_max_mm_per_s = 1\n" + kJoint,
-                 {"p.toml: ", "approach_max", "at least approach_min"});
-  expect_refused(kJoint + "[scale]\nstifness = 2\n", {"p.toml:4: scale.stifness = 2", "scale.stiffness"});
+  expect_patient_refused("", {"p.toml", "joints", "is missing"});
+  expect_patient_refused("pres_n = 3\n" + kPatientJoint,
+                         {"p.toml:1: pres_n = 3", "nearest known one is press_n"});
+  expect_patient_refused("press_spread = 1.5\n" + kPatientJoint, {"p.toml:1: press_spread = 1.5", "<= 1"});
+  expect_patient_refused("[joints.index_mcp_flexion]\nstiffness_nm_per_rad = nan\n",
+                         {"p.toml:2", "= nan", "must be >= 0"});
+  expect_patient_refused("approach_max_mm_per_s = 1\n" + kPatientJoint,
+                         {"p.toml: ", "approach_max", "at least approach_min"});
+  expect_patient_refused(kPatientJoint + "[scale]\nstifness = 2\n",
+                         {"p.toml:4: scale.stifness = 2", "scale.stiffness"});
 }
 
 TEST(PatientInAScene, IsOverlaidByTheScenesOwnKeys) {
@@ -91,12 +94,12 @@ TEST(PatientInAScene, IsCheckedWhenTheSceneIsRead) {
 }
 
 TEST(PatientText, HoldsEveryNumber) {
-  const std::string text = patient_text(parse(kJoint));
+  const std::string text = patient_text(parse_toml(kPatientJoint));
   for (const char* change :
        {"press_n = 1\n", "press_spread = 0.1\n", "approach_min_mm_per_s = 29\n",
         "approach_max_mm_per_s = 91\n", "tremor_um = 1\n", "tremor_min_hz = 4\n", "tremor_max_hz = 13\n",
         "bump_n = 1\n", "bump_start_s = 1\n", "bump_duration_ms = 1\n"})
-    EXPECT_NE(text, patient_text(parse(change + kJoint))) << change;
+    EXPECT_NE(text, patient_text(parse_toml(change + kPatientJoint))) << change;
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/profile_file.h"
+#include "phalanx/core/units.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "expect_error.h"
 #include "hand_files.h"
@@ -13,17 +13,16 @@
 namespace phalanx {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
-const std::string kHead = "name = \"p\"\nhandedness = \"right\"\n";
+const std::string kProfileHead = "name = \"p\"\nhandedness = \"right\"\n";
 
-Profile parse(const std::string& text) { return parse_profile(kHead + text, "p.toml"); }
+Profile parse_with_head(const std::string& text) { return parse_profile(kProfileHead + text, "p.toml"); }
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
-  expect_scene_error([&] { (void)fit_profile(parse(text), load_hand_file("adult")); }, words);
+void expect_profile_refused(const std::string& text, const std::vector<std::string>& words) {
+  expect_scene_error([&] { (void)fit_profile(parse_with_head(text), load_hand_file("adult")); }, words);
 }
 
 TEST(Profile, StatesSizesInMillimetresAndRangesInDegrees) {
-  const Profile p = parse(R"(
+  const Profile p = parse_with_head(R"(
     hand_length_mm = 180
     hand_breadth_mm = 80
     segments = [{ name = "index-finger-phalanx-proximal", length_mm = 40, breadth_mm = 20 }]
@@ -42,9 +41,10 @@ TEST(Profile, FitsTheAdultHandToTheNanometre) {
   const HandParameters base = load_hand_file("adult");
   for (const double length_mm : {145.0, 165.0, 185.7, 210.0, 230.0}) {
     for (const double breadth_mm : {66.0, 81.5, 105.0}) {
-      const FittedHand hand = fit_profile(parse("hand_length_mm = " + std::to_string(length_mm) +
-                                                "\nhand_breadth_mm = " + std::to_string(breadth_mm)),
-                                          base);
+      const FittedHand hand =
+          fit_profile(parse_with_head("hand_length_mm = " + std::to_string(length_mm) +
+                                      "\nhand_breadth_mm = " + std::to_string(breadth_mm)),
+                      base);
       EXPECT_NEAR(hand_length(hand.parameters), 1e-3 * length_mm, 1e-9);
       EXPECT_NEAR(hand_breadth(hand.parameters), 1e-3 * breadth_mm, 1e-9);
     }
@@ -68,8 +68,8 @@ TEST(Profile, OfANameThatShipsIsReadAndMakesAHand) {
 }
 
 TEST(Profile, MovesTheOpenAngleIntoItsOwnRange) {
-  const FittedHand hand =
-      fit_profile(parse("[range_of_motion]\nindex_pip_flexion = [15, 60]"), load_hand_file("adult"));
+  const FittedHand hand = fit_profile(parse_with_head("[range_of_motion]\nindex_pip_flexion = [15, 60]"),
+                                      load_hand_file("adult"));
   EXPECT_DOUBLE_EQ(hand.parameters.min_angle[6], 15 * kDeg);
   EXPECT_DOUBLE_EQ(hand.parameters.max_angle[6], 60 * kDeg);
   EXPECT_DOUBLE_EQ(hand.parameters.open_angle[6], 15 * kDeg);
@@ -77,14 +77,15 @@ TEST(Profile, MovesTheOpenAngleIntoItsOwnRange) {
 }
 
 TEST(Profile, RefusesSizesBeyondFourDeviationsWithTheRangeAndItsSource) {
-  expect_refused("hand_length_mm = 19.0", {"p.toml:3: hand_length_mm = 19", "141.7 to 233 mm", "Gordon"});
-  expect_refused("hand_length_mm = 233.1", {"hand_length_mm = 233.1", "141.7 to 233 mm"});
-  expect_refused("hand_breadth_mm = 120", {"hand_breadth_mm = 120", "64.2 to 107.2 mm"});
-  expect_refused("hand_breadth_mm = nan", {"hand_breadth_mm = nan"});
+  expect_profile_refused("hand_length_mm = 19.0",
+                         {"p.toml:3: hand_length_mm = 19", "141.7 to 233 mm", "Gordon"});
+  expect_profile_refused("hand_length_mm = 233.1", {"hand_length_mm = 233.1", "141.7 to 233 mm"});
+  expect_profile_refused("hand_breadth_mm = 120", {"hand_breadth_mm = 120", "64.2 to 107.2 mm"});
+  expect_profile_refused("hand_breadth_mm = nan", {"hand_breadth_mm = nan"});
   // Index proximal: 39.78 +- 4 x 4.94 mm.
-  expect_refused("segments = [{ name = \"index-finger-phalanx-proximal\", length_mm = 60 }]",
-                 {"segments.0.length_mm = 60", "20.02 to 59.54 mm", "Buryanov"});
-  expect_refused(
+  expect_profile_refused("segments = [{ name = \"index-finger-phalanx-proximal\", length_mm = 60 }]",
+                         {"segments.0.length_mm = 60", "20.02 to 59.54 mm", "Buryanov"});
+  expect_profile_refused(
       "segments = [{ name = \"index-finger-phalanx-proximal\", breadth_mm = 40 }]",
       {"p.toml:3: segments.0.breadth_mm: the breadth of index-finger-phalanx-proximal comes to 40 mm",
        "our own bounds"});
@@ -92,36 +93,38 @@ TEST(Profile, RefusesSizesBeyondFourDeviationsWithTheRangeAndItsSource) {
 
 TEST(Profile, AcceptsTheVeryEndsOfTheRanges) {
   const HandParameters base = load_hand_file("adult");
-  EXPECT_NO_THROW((void)fit_profile(parse("hand_length_mm = 141.7\nhand_breadth_mm = 64.2"), base));
-  EXPECT_NO_THROW((void)fit_profile(parse("hand_length_mm = 233\nhand_breadth_mm = 107.2"), base));
+  EXPECT_NO_THROW((void)fit_profile(parse_with_head("hand_length_mm = 141.7\nhand_breadth_mm = 64.2"), base));
+  EXPECT_NO_THROW((void)fit_profile(parse_with_head("hand_length_mm = 233\nhand_breadth_mm = 107.2"), base));
 }
 
 TEST(Profile, RefusesSizesThatOnlyFollow) {
   // 230 mm with a middle finger of a small hand leaves a palm of 1.6 times the base's.
-  expect_refused(R"(hand_length_mm = 230
+  expect_profile_refused(R"(hand_length_mm = 230
     segments = [{ name = "middle-finger-phalanx-proximal", length_mm = 30 },
                 { name = "middle-finger-phalanx-intermediate", length_mm = 15 },
                 { name = "middle-finger-phalanx-distal", length_mm = 11 }])",
-                 {"p.toml", "the palm's length", "Buryanov"});
+                         {"p.toml", "the palm's length", "Buryanov"});
 }
 
 TEST(Profile, RefusesImpossibleAngles) {
-  expect_refused("[range_of_motion]\nindex_pip_flexion = [0, 200]",
-                 {"range_of_motion.index_pip_flexion = [0, 200]", "-45 to 130 deg", "our own bounds"});
-  expect_refused("[range_of_motion]\nindex_pip_flexion = [60, 60]", {"is an empty range"});
-  expect_refused("[range_of_motion]\nindex_pip_flexoin = [0, 60]",
-                 {"nearest known one is range_of_motion.index_pip_flexion"});
+  expect_profile_refused(
+      "[range_of_motion]\nindex_pip_flexion = [0, 200]",
+      {"range_of_motion.index_pip_flexion = [0, 200]", "-45 to 130 deg", "our own bounds"});
+  expect_profile_refused("[range_of_motion]\nindex_pip_flexion = [60, 60]", {"is an empty range"});
+  expect_profile_refused("[range_of_motion]\nindex_pip_flexoin = [0, 60]",
+                         {"nearest known one is range_of_motion.index_pip_flexion"});
 }
 
 TEST(Profile, RefusesKeysAndSegmentsThatNobodyKnows) {
-  expect_refused("hand_lenght_mm = 180", {"p.toml:3: hand_lenght_mm", "hand_length_mm"});
-  expect_refused("segments = [{ name = \"index-finger-phalanx\", length_mm = 40 }]",
-                 {"is no segment of a digit", "index-finger-phalanx-"});
-  expect_refused("segments = [{ name = \"wrist\", length_mm = 40 }]", {"hand_length_mm and hand_breadth_mm"});
-  expect_refused("segments = [{ name = \"index-finger-phalanx-distal\" }]", {"states neither"});
-  expect_refused(R"(segments = [{ name = "index-finger-phalanx-distal", length_mm = 15 },
+  expect_profile_refused("hand_lenght_mm = 180", {"p.toml:3: hand_lenght_mm", "hand_length_mm"});
+  expect_profile_refused("segments = [{ name = \"index-finger-phalanx\", length_mm = 40 }]",
+                         {"is no segment of a digit", "index-finger-phalanx-"});
+  expect_profile_refused("segments = [{ name = \"wrist\", length_mm = 40 }]",
+                         {"hand_length_mm and hand_breadth_mm"});
+  expect_profile_refused("segments = [{ name = \"index-finger-phalanx-distal\" }]", {"states neither"});
+  expect_profile_refused(R"(segments = [{ name = "index-finger-phalanx-distal", length_mm = 15 },
                                 { name = "index-finger-phalanx-distal", length_mm = 16 }])",
-                 {"segments.1.name", "stated twice"});
+                         {"segments.1.name", "stated twice"});
   expect_scene_error([] { (void)parse_profile("name = \"p\"", "p.toml"); }, {"handedness", "is missing"});
   expect_scene_error([] { (void)parse_profile("name = \"p\"\nhandedness = \"both\"", "p.toml"); },
                      {"handedness = ", "\"right\" or \"left\""});

@@ -9,117 +9,119 @@
 namespace phalanx {
 namespace {
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+void expect_scene_refused(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
   expect_scene_error([&] { static_cast<void>(parse_scene(text, "bad.toml", ".")); }, words);
 }
 
 TEST(SceneErrors, UnknownKeyIsAnsweredWithTheNearestOne) {
-  expect_refused("\n[force]\nstifness_n_per_mm = 0.9",
-                 {"bad.toml:3", "force.stifness_n_per_mm = 0.9", "force.stiffness_n_per_mm"});
-  expect_refused("rate_hx = 200", {"bad.toml:1", "rate_hx", "nearest known one is rate_hz"});
-  expect_refused("[[objects]]\nkind = \"sphere\"\ndiametre_mm = 3",
-                 {"bad.toml:3", "objects.0.diametre_mm", "objects[].diameter_mm"});
+  expect_scene_refused("\n[force]\nstifness_n_per_mm = 0.9",
+                       {"bad.toml:3", "force.stifness_n_per_mm = 0.9", "force.stiffness_n_per_mm"});
+  expect_scene_refused("rate_hx = 200", {"bad.toml:1", "rate_hx", "nearest known one is rate_hz"});
+  expect_scene_refused("[[objects]]\nkind = \"sphere\"\ndiametre_mm = 3",
+                       {"bad.toml:3", "objects.0.diametre_mm", "objects[].diameter_mm"});
 }
 
 TEST(SceneErrors, KeyWithoutItsUnitOrItsTableIsAnsweredWithTheWholeKey) {
-  expect_refused("limits.torque_rate = \"off\"", {"nearest known one is limits.torque_rate_nm_per_s"});
-  expect_refused("stiffness = 1", {"nearest known one is force.stiffness_n_per_mm"});
-  expect_refused("[objects.x]", {"[[objects]]"});
+  expect_scene_refused("limits.torque_rate = \"off\"", {"nearest known one is limits.torque_rate_nm_per_s"});
+  expect_scene_refused("stiffness = 1", {"nearest known one is force.stiffness_n_per_mm"});
+  expect_scene_refused("[objects.x]", {"[[objects]]"});
 }
 
 TEST(SceneErrors, UnknownTable) {
-  expect_refused("[forces]\nlaw = \"hooke\"", {"bad.toml:1", "forces", "nearest known one is"});
+  expect_scene_refused("[forces]\nlaw = \"hooke\"", {"bad.toml:1", "forces", "nearest known one is"});
 }
 
-TEST(SceneErrors, NotToml) { expect_refused("rate_hz = = 3", {"bad.toml:1", "not valid TOML"}); }
+TEST(SceneErrors, NotToml) { expect_scene_refused("rate_hz = = 3", {"bad.toml:1", "not valid TOML"}); }
 
 TEST(SceneErrors, SameKeyTwice) {
-  expect_refused("rate_hz = 3\nrate_hz = 4", {"bad.toml:2", "not valid TOML"});
+  expect_scene_refused("rate_hz = 3\nrate_hz = 4", {"bad.toml:2", "not valid TOML"});
 }
 
 TEST(SceneErrors, RateOfZeroNegativeOrTooFast) {
   for (const std::string rate : {"0", "-200", "4001", "nan", "inf"}) {
-    expect_refused("rate_hz = " + rate, {"bad.toml:1", "rate_hz", ">= 1, <= 4000", "Hz", "default is 200"});
+    expect_scene_refused("rate_hz = " + rate,
+                         {"bad.toml:1", "rate_hz", ">= 1, <= 4000", "Hz", "default is 200"});
   }
 }
 
 TEST(SceneErrors, NegativeStiffness) {
-  expect_refused("[force]\nstiffness_n_per_mm = -0.5",
-                 {"bad.toml:2", "force.stiffness_n_per_mm = -0.5", ">= 0", "N/mm"});
+  expect_scene_refused("[force]\nstiffness_n_per_mm = -0.5",
+                       {"bad.toml:2", "force.stiffness_n_per_mm = -0.5", ">= 0", "N/mm"});
 }
 
 TEST(SceneErrors, NumberThatIsNotFinite) {
-  expect_refused("force.stiffness_n_per_mm = nan", {"force.stiffness_n_per_mm = nan", "must be"});
-  expect_refused("force.damping_ns_per_m = inf", {"force.damping_ns_per_m = inf", "must be"});
-  expect_refused("hand.position_mm = [0, nan, 0]", {"hand.position_mm", "must be"});
-  expect_refused("smoothing.max_n = inf", {"smoothing.max_n", "must be"});
+  expect_scene_refused("force.stiffness_n_per_mm = nan", {"force.stiffness_n_per_mm = nan", "must be"});
+  expect_scene_refused("force.damping_ns_per_m = inf", {"force.damping_ns_per_m = inf", "must be"});
+  expect_scene_refused("hand.position_mm = [0, nan, 0]", {"hand.position_mm", "must be"});
+  expect_scene_refused("smoothing.max_n = inf", {"smoothing.max_n", "must be"});
 }
 
 TEST(SceneErrors, WrongType) {
-  expect_refused("rate_hz = \"fast\"", {"rate_hz", "is a string; write a number"});
-  expect_refused("smoothing.enabled = 1", {"smoothing.enabled", "write true or false"});
-  expect_refused("seed = 1.5", {"seed", "write a whole number"});
-  expect_refused("hand.position_mm = [1, 2]", {"hand.position_mm", "three numbers"});
-  expect_refused("hand.position_mm = [1, 2, \"x\"]", {"hand.position_mm", "three numbers"});
-  expect_refused("description = 3", {"description", "write a string in quotes"});
-  expect_refused("force = 3", {"force = 3", "is a table"});
-  expect_refused("[objects]\nkind = \"sphere\"", {"objects", "[[objects]]"});
-  expect_refused("objects = [3]", {"objects.0", "is a table"});
+  expect_scene_refused("rate_hz = \"fast\"", {"rate_hz", "is a string; write a number"});
+  expect_scene_refused("smoothing.enabled = 1", {"smoothing.enabled", "write true or false"});
+  expect_scene_refused("seed = 1.5", {"seed", "write a whole number"});
+  expect_scene_refused("hand.position_mm = [1, 2]", {"hand.position_mm", "three numbers"});
+  expect_scene_refused("hand.position_mm = [1, 2, \"x\"]", {"hand.position_mm", "three numbers"});
+  expect_scene_refused("description = 3", {"description", "write a string in quotes"});
+  expect_scene_refused("force = 3", {"force = 3", "is a table"});
+  expect_scene_refused("[objects]\nkind = \"sphere\"", {"objects", "[[objects]]"});
+  expect_scene_refused("objects = [3]", {"objects.0", "is a table"});
 }
 
 TEST(SceneErrors, UnknownChoice) {
-  expect_refused("force.law = \"hook\"",
-                 {"bad.toml:1", "force.law = ", "hook", "did you mean \"hooke\"?", "duffing"});
-  expect_refused("[[objects]]\nkind = \"spere\"", {"objects.0.kind", "did you mean \"sphere\"?"});
+  expect_scene_refused("force.law = \"hook\"",
+                       {"bad.toml:1", "force.law = ", "hook", "did you mean \"hooke\"?", "duffing"});
+  expect_scene_refused("[[objects]]\nkind = \"spere\"", {"objects.0.kind", "did you mean \"sphere\"?"});
 }
 
 TEST(SceneErrors, SizeThatTheKindDoesNotHave) {
-  expect_refused(
+  expect_scene_refused(
       "[[objects]]\nkind = \"teapot\"\ndiameter_mm = 50",
       {"bad.toml:3", "objects.0.diameter_mm = 50", "means nothing for a teapot", "sphere cylinder mug"});
 }
 
 TEST(SceneErrors, SizeOfZero) {
-  expect_refused("[[objects]]\nkind = \"teapot\"\nsize_mm = 0", {"objects.0.size_mm = 0", "> 0"});
-  expect_refused("[[objects]]\nkind = \"sphere\"\ndiameter_mm = 0", {"objects.0.diameter_mm = 0", "> 0"});
-  expect_refused("[[objects]]\nkind = \"box\"\nextent_mm = [1, 0, 1]", {"objects.0.extent_mm", "> 0"});
+  expect_scene_refused("[[objects]]\nkind = \"teapot\"\nsize_mm = 0", {"objects.0.size_mm = 0", "> 0"});
+  expect_scene_refused("[[objects]]\nkind = \"sphere\"\ndiameter_mm = 0",
+                       {"objects.0.diameter_mm = 0", "> 0"});
+  expect_scene_refused("[[objects]]\nkind = \"box\"\nextent_mm = [1, 0, 1]", {"objects.0.extent_mm", "> 0"});
 }
 
 TEST(SceneErrors, FileObjectWithoutAFile) {
-  expect_refused("[[objects]]\nkind = \"file\"", {"objects.0", "file", "is missing"});
+  expect_scene_refused("[[objects]]\nkind = \"file\"", {"objects.0", "file", "is missing"});
 }
 
 TEST(SceneErrors, TorusWithATubeThickerThanItsRing) {
-  expect_refused("[[objects]]\nkind = \"torus\"\nring_diameter_mm = 20\ntube_diameter_mm = 30",
-                 {"tube_diameter_mm = 30", "thinner"});
+  expect_scene_refused("[[objects]]\nkind = \"torus\"\nring_diameter_mm = 20\ntube_diameter_mm = 30",
+                       {"tube_diameter_mm = 30", "thinner"});
 }
 
 TEST(SceneErrors, BothFormsOfTheSmoothingBounds) {
-  expect_refused("[smoothing]\nmin_n = -0.1\nmin_n_per_s = -20",
-                 {"bad.toml:2", "smoothing.min_n", "bad.toml:3", "per tick"});
-  expect_refused("[smoothing]\nmin_n = -0.1\nmax_n_per_s = 20", {"smoothing.max_n_per_s"});
+  expect_scene_refused("[smoothing]\nmin_n = -0.1\nmin_n_per_s = -20",
+                       {"bad.toml:2", "smoothing.min_n", "bad.toml:3", "per tick"});
+  expect_scene_refused("[smoothing]\nmin_n = -0.1\nmax_n_per_s = 20", {"smoothing.max_n_per_s"});
 }
 
 TEST(SceneErrors, SmoothingBoundOfTheWrongSign) {
-  expect_refused("smoothing.min_n = 0.1", {"smoothing.min_n = 0.1", "< 0"});
-  expect_refused("smoothing.min_n_per_s = 0", {"smoothing.min_n_per_s = 0", "< 0"});
-  expect_refused("smoothing.max_n = -0.1", {"smoothing.max_n = -0.1", "> 0"});
+  expect_scene_refused("smoothing.min_n = 0.1", {"smoothing.min_n = 0.1", "< 0"});
+  expect_scene_refused("smoothing.min_n_per_s = 0", {"smoothing.min_n_per_s = 0", "< 0"});
+  expect_scene_refused("smoothing.max_n = -0.1", {"smoothing.max_n = -0.1", "> 0"});
 }
 
 TEST(SceneErrors, FingertipForceOutOfItsRange) {
   for (const std::string force : {"0", "-1", "15.1", "\"on\"", "inf"}) {
-    expect_refused("limits.fingertip_force_n = " + force,
-                   {"limits.fingertip_force_n", "> 0, <= 15", "or \"off\""});
+    expect_scene_refused("limits.fingertip_force_n = " + force,
+                         {"limits.fingertip_force_n", "> 0, <= 15", "or \"off\""});
   }
 }
 
 TEST(SceneErrors, LimitCannotBeTurnedOffByAFlagOrANumber) {
-  expect_refused("limits.torque_rate_nm_per_s = false", {"limits.torque_rate_nm_per_s", "\"off\""});
-  expect_refused("limits.torque_rate_nm_per_s = 0", {"limits.torque_rate_nm_per_s", "\"off\""});
+  expect_scene_refused("limits.torque_rate_nm_per_s = false", {"limits.torque_rate_nm_per_s", "\"off\""});
+  expect_scene_refused("limits.torque_rate_nm_per_s = 0", {"limits.torque_rate_nm_per_s", "\"off\""});
 }
 
-TEST(SceneErrors, TrialOfZero) { expect_refused("motion.trial = 0", {"motion.trial = 0", ">= 1"}); }
+TEST(SceneErrors, TrialOfZero) { expect_scene_refused("motion.trial = 0", {"motion.trial = 0", ">= 1"}); }
 
 TEST(SceneErrors, MissingSceneIsAnsweredWithTheNearestOne) {
   expect_scene_error([] { static_cast<void>(load_scene("grasp_teapott")); },

@@ -94,7 +94,7 @@ TEST(ShippedScenes, CanAllBeReadAndAreAllTestedHere) {
   EXPECT_EQ(names, tested);
 }
 
-class ShippedScene : public testing::TestWithParam<std::string> {};
+class ShippedScene : public ::testing::TestWithParam<std::string> {};
 
 // The contact stays put within 5 mm (static grasping), the fingers go in a few mm, and every digit is felt.
 TEST_P(ShippedScene, TouchesWithTheDigitsOfItsGraspAndGently) {
@@ -113,7 +113,7 @@ std::vector<std::string> names() {
   return result;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(All, ShippedScene, ::testing::ValuesIn(names()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

@@ -9,11 +9,11 @@
 namespace phalanx {
 namespace {
 
-SceneDescription parse(const std::string& text) { return parse_scene(text, "test.toml", "."); }
+SceneDescription parse_keys(const std::string& text) { return parse_scene(text, "test.toml", "."); }
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+void expect_stabiliser_refused(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
-  expect_scene_error([&] { static_cast<void>(parse(text)); }, words);
+  expect_scene_error([&] { static_cast<void>(parse_keys(text)); }, words);
 }
 
 TEST(StabiliserKeys, KnowEveryMethodByName) {
@@ -29,15 +29,15 @@ TEST(StabiliserKeys, KnowEveryMethodByName) {
       {"energy_bounding", Stabiliser::kEnergyBounding},
       {"local_wall", Stabiliser::kLocalWall}};
   for (const auto& [name, method] : methods)
-    EXPECT_EQ(parse("stabiliser.method = \"" + name + "\"").stabiliser.method, method) << name;
-  EXPECT_EQ(parse("").stabiliser.method, Stabiliser::kSmoothing);
-  expect_refused("stabiliser.method = \"smooth\"",
-                 {"test.toml:1", "stabiliser.method", "did you mean \"smoothing\""});
+    EXPECT_EQ(parse_keys("stabiliser.method = \"" + name + "\"").stabiliser.method, method) << name;
+  EXPECT_EQ(parse_keys("").stabiliser.method, Stabiliser::kSmoothing);
+  expect_stabiliser_refused("stabiliser.method = \"smooth\"",
+                            {"test.toml:1", "stabiliser.method", "did you mean \"smoothing\""});
 }
 
 // What a scene does not state is what a model has by itself.
 TEST(StabiliserKeys, HaveTheDefaultsOfTheStructs) {
-  const SceneDescription scene = parse("");
+  const SceneDescription scene = parse_keys("");
   const StabiliserParameters s;
   EXPECT_DOUBLE_EQ(scene.stabiliser.lowpass_hz, s.lowpass_hz);
   EXPECT_DOUBLE_EQ(scene.stabiliser.damping, s.damping);
@@ -52,7 +52,7 @@ TEST(StabiliserKeys, HaveTheDefaultsOfTheStructs) {
 }
 
 TEST(StabiliserKeys, AreInSIUnitsInsideAndReachTheModel) {
-  const SceneDescription scene = parse(R"(
+  const SceneDescription scene = parse_keys(R"(
 hand.meshes = "capsules"
 [stabiliser]
 method = "virtual_coupling"
@@ -86,16 +86,16 @@ TEST(StabiliserKeys, TakeTheOlderFormWhereItSaysTheSame) {
   for (const char* text :
        {"smoothing.enabled = false", "smoothing.enabled = false\nstabiliser.method = \"none\"",
         "smoothing.enabled = false\nstabiliser.method = \"smoothing\""}) {
-    const SceneDescription scene = parse(text);
+    const SceneDescription scene = parse_keys(text);
     EXPECT_TRUE(!scene.smoothing.enabled || scene.stabiliser.method == Stabiliser::kNone) << text;
   }
-  EXPECT_EQ(parse("smoothing.enabled = true\nstabiliser.method = \"low_pass\"").stabiliser.method,
+  EXPECT_EQ(parse_keys("smoothing.enabled = true\nstabiliser.method = \"low_pass\"").stabiliser.method,
             Stabiliser::kLowPass);
-  expect_refused("smoothing.enabled = false\nstabiliser.method = \"low_pass\"",
-                 {"test.toml:1", "smoothing.enabled", "stabiliser.method", "low_pass", "remove"});
-  expect_refused("smoothing.enabled = true\nstabiliser.method = \"none\"",
-                 {"test.toml:1", "smoothing.enabled", "stabiliser.method", "none", "remove"});
-  expect_refused("smoothing.enabled = 3\nstabiliser.method = \"none\"", {"true or false"});
+  expect_stabiliser_refused("smoothing.enabled = false\nstabiliser.method = \"low_pass\"",
+                            {"test.toml:1", "smoothing.enabled", "stabiliser.method", "low_pass", "remove"});
+  expect_stabiliser_refused("smoothing.enabled = true\nstabiliser.method = \"none\"",
+                            {"test.toml:1", "smoothing.enabled", "stabiliser.method", "none", "remove"});
+  expect_stabiliser_refused("smoothing.enabled = 3\nstabiliser.method = \"none\"", {"true or false"});
 }
 
 }  // namespace

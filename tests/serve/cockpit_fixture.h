@@ -58,6 +58,8 @@ class Page {
       wire::ToPage message;
       EXPECT_TRUE(message.ParseFromString(frame.payload));
       if (message.has_state()) state = message.state();
+      ticks += message.has_tick() ? 1 : 0;
+      replies += message.has_reply() ? 1 : 0;
       if (so(message)) return message;
     }
   }
@@ -87,6 +89,8 @@ class Page {
 
   wire::Welcome welcome;
   wire::State state;
+  int ticks = 0;    ///< that have come
+  int replies = 0;  ///< likewise
 
  private:
   PageClient client_;
@@ -109,6 +113,11 @@ inline wire::ToHost to_see(std::uint64_t ticks) {
   message.mutable_seen()->set_ticks(ticks);
   return message;
 }
+inline wire::ToHost to_be_named(const std::string& name) {
+  wire::ToHost message;
+  message.mutable_name()->set_name(name);
+  return message;
+}
 inline wire::ToHost to_take() {
   wire::ToHost message;
   message.mutable_take();
@@ -119,7 +128,9 @@ inline const std::string kLookOn = "https://192.0.2.1:8480/?token=look";
 
 class CockpitTest : public ::testing::Test {
  protected:
-  CockpitTest() {
+  /// @param still  for the cockpit time passes by skip() only; then states are sent to pages that come, and
+  /// no more
+  explicit CockpitTest(bool still = false) : still_(still) {
     StationHostSettings station;
     station.scene = "first_touch";
     station.device = "sliders";
@@ -129,10 +140,12 @@ class CockpitTest : public ::testing::Test {
         *host_, CockpitSettings{.log = folder_ / "audit.jsonl",
                                 .uploads = folder_ / "up",
                                 .version = "1.2.3",
-                                .clock = [this] { return clock_.now() * clock_.slowdown() + skipped_; }});
+                                .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); }});
     WebServerSettings settings;
     settings.port = 0;
     settings.site_missing = "none";
+    // Whoever waits with one page does not answer another's pings, and a slow machine makes that long.
+    settings.idle_timeout = settings.request_timeout = settings.proof_timeout = 600.0;
     server_ = std::make_unique<WebServer>(settings, *cockpit_);
     cockpit_->attach(*server_, {kLookOn});
     server_->start();
@@ -180,12 +193,20 @@ class CockpitTest : public ::testing::Test {
 
   const testing::TemporaryFolder folder_;
   const Clock clock_{kHostSlowdown};
+  const Clock real_;
+  const bool still_;
   std::atomic<double> skipped_{0.0};
   mutable int marks_ = 0;  ///< in the log
   std::unique_ptr<StationHost> host_;
   std::unique_ptr<Cockpit> cockpit_;
   std::unique_ptr<WebServer> server_;
   std::unique_ptr<Owner> owner_;
+};
+
+/// For what depends on a second more or less.
+class StillCockpitTest : public CockpitTest {
+ protected:
+  StillCockpitTest() : CockpitTest(true) {}
 };
 
 }  // namespace test

@@ -5,13 +5,12 @@
 
 #include <cmath>
 
+#include "phalanx/core/index.h"
 #include "phalanx/geometry.pb.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// One triangle, different for each number.
 TriangleMesh triangle(int number) {
@@ -23,7 +22,7 @@ HostGeometry simple_geometry() {
   HostGeometry geometry;
   geometry.revision = 7;
   geometry.hand = test::simple_parameters();
-  for (int s = 0; s < kSegments; ++s) geometry.segment[at(s)] = triangle(s);
+  for (int s = 0; s < kSegments; ++s) geometry.segment[idx(s)] = triangle(s);
   geometry.display = geometry.segment;
   geometry.object = triangle(99);
   geometry.rate_hz = 800.0;
@@ -47,12 +46,12 @@ wire::Geometry sent(const HostGeometry& geometry) {
 }
 
 void expect_same(const wire::Mesh& message, const TriangleMesh& mesh) {
-  ASSERT_EQ(at(message.position_size()), 3 * mesh.vertices.size());
+  ASSERT_EQ(idx(message.position_size()), 3 * mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     for (int k = 0; k < 3; ++k)
       EXPECT_EQ(message.position(static_cast<int>(3 * i) + k), static_cast<float>(mesh.vertices[i][k]));
   }
-  ASSERT_EQ(at(message.index_size()), 3 * mesh.triangles.size());
+  ASSERT_EQ(idx(message.index_size()), 3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_EQ(message.index(static_cast<int>(3 * t + k)), static_cast<std::uint32_t>(mesh.triangles[t][k]));
@@ -66,7 +65,7 @@ TEST(GeometryMessage, HoldsTheMeshesOfSegmentsAndObject) {
   EXPECT_FALSE(message.left());
   EXPECT_EQ(message.rate_hz(), 800.0F);
   ASSERT_EQ(message.segment_size(), kSegments);
-  for (int s = 0; s < kSegments; ++s) expect_same(message.segment(s), geometry.segment[at(s)]);
+  for (int s = 0; s < kSegments; ++s) expect_same(message.segment(s), geometry.segment[idx(s)]);
   expect_same(message.object(), geometry.object);
   EXPECT_EQ(message.display_size(), 0);
   EXPECT_FALSE(message.has_skin());
@@ -77,7 +76,7 @@ TEST(GeometryMessage, HoldsWhatIsShownOnlyWhereItDiffers) {
   geometry.display[5].vertices[1].x() += 1e-3;
   const wire::Geometry message = sent(geometry);
   ASSERT_EQ(message.display_size(), kSegments);
-  for (int s = 0; s < kSegments; ++s) expect_same(message.display(s), geometry.display[at(s)]);
+  for (int s = 0; s < kSegments; ++s) expect_same(message.display(s), geometry.display[idx(s)]);
   geometry = simple_geometry();
   geometry.display[15].triangles[0] = {0, 1, 2};
   EXPECT_EQ(sent(geometry).display_size(), kSegments);
@@ -118,7 +117,7 @@ TEST(GeometryMessage, HoldsTheBindPosesAsPositionAndQuaternion) {
   ASSERT_EQ(skin.bind_pose_size(), 7 * kSegments);
   for (int s = 0; s < kSegments; ++s) {
     const auto number = [&](int i) { return static_cast<double>(skin.bind_pose(7 * s + i)); };
-    const Pose& X = geometry.skin->X_BS[at(s)];
+    const Pose& X = geometry.skin->X_BS[idx(s)];
     EXPECT_LT((Vec3(number(0), number(1), number(2)) - X.p).norm(), 1e-7);
     const Eigen::Quaterniond q(number(6), number(3), number(4), number(5));  // w x y z
     EXPECT_NEAR(q.norm(), 1.0, 1e-6);

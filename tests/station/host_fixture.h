@@ -13,20 +13,11 @@
 #include <vector>
 
 #include "phalanx/station/station_host.h"
-
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
-#define PHALANX_SLOW_BUILD
-#endif
-#endif
+#include "support/sanitized.h"
 
 namespace phalanx::test {
 
-#ifdef PHALANX_SLOW_BUILD
-inline constexpr double kHostSlowdown = 20.0;
-#else
-inline constexpr double kHostSlowdown = 4.0;
-#endif
+inline constexpr double kHostSlowdown = kSanitized ? 8.0 : 4.0;
 
 class HostTest : public ::testing::Test {
  protected:

@@ -19,6 +19,8 @@
 #include <string>
 #include <thread>
 
+#include "support/sanitized.h"
+
 namespace phalanx {
 namespace {
 
@@ -27,13 +29,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 // Sanitizers turn locking into nothing and reserve terabytes of address space.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-constexpr bool kSanitized = false;
-#endif
+using test::kSanitized;
 
 /// What `body` writes in a child process. Fails the test if the child does not end well.
 std::string in_child(const std::function<void(std::ostream&)>& body) {

@@ -18,9 +18,9 @@ namespace {
 using test::Approach;
 using test::LoneFinger;
 
-constexpr double kStiffness = 1000.0;  // LoneFinger's
-const Vec3 kY = Vec3::UnitY();
-const Vec3 kZ = Vec3::UnitZ();
+constexpr double kDragStiffness = 1000.0;  // LoneFinger's
+const Vec3 kDragY = Vec3::UnitY();
+const Vec3 kDragZ = Vec3::UnitZ();
 
 /// A finger drawn slowly across, 10 mm/s at 1 kHz, by turning its abduction; the first joint keeps the
 /// fingertip at a height over the touching one, which a series of presses has found.
@@ -85,7 +85,7 @@ class Drag {
       } else if (b.contact || a.contact) {
         const Vec3 q_S = last.gdp_pose[tip].inverse() * a.point;
         const double moved_a = (now.hcp_pose[tip] * q_S - last.hcp_pose[tip] * q_S).norm();
-        const double own = kStiffness * std::max(b.contact ? moved : 0.0, a.contact ? moved_a : 0.0);
+        const double own = kDragStiffness * std::max(b.contact ? moved : 0.0, a.contact ? moved_a : 0.0);
         if (change > 0.0) result.largest = std::max(result.largest, own > 0.0 ? change / own : 1e9);
       }
       result.largest_force = std::max(result.largest_force, b.force);
@@ -114,19 +114,19 @@ struct DragOver {
 std::vector<DragOver> drags() {
   return {{"sphere",
            make_sphere(0.06, 1000),
-           {.from = Vec3(0, 0.0007, 0.045), .along = -kZ, .heading = kY, .reach = 0.03}},
+           {.from = Vec3(0, 0.0007, 0.045), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
           {"teapot, side",
            make_teapot(0.15, 1000),
-           {.from = Vec3(0, -0.06, 0), .along = kY, .heading = -kZ, .reach = 0.04}},
+           {.from = Vec3(0, -0.06, 0), .along = kDragY, .heading = -kDragZ, .reach = 0.04}},
           {"torus",
            make_torus(0.08, 0.03, 2000),
-           {.from = Vec3(0.04, 0, 0.03), .along = -kZ, .heading = kY, .reach = 0.03}},
+           {.from = Vec3(0.04, 0, 0.03), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
           {"box",
            make_box(Vec3(0.06, 0.06, 0.06), 300),
-           {.from = Vec3(0.01, 0, 0.04), .along = -kZ, .heading = kY, .reach = 0.03}},
+           {.from = Vec3(0.01, 0, 0.04), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
           {"arched sheet, from inside",
            test::grid_sheet(16, 0.05),
-           {.from = Vec3(0, 0.003, -0.02), .along = kZ, .heading = kY, .reach = 0.03}}};
+           {.from = Vec3(0, 0.003, -0.02), .along = kDragZ, .heading = kDragY, .reach = 0.03}}};
 }
 
 // Between two touches nothing but the HCP's own motion changes the force.
@@ -155,7 +155,7 @@ TEST(Drag, AFingerDraggedAtADepthChangesItsForceByItsOwnMotionUnlessItSlips) {
     EXPECT_LE(r.largest, 1.0 + 1e-6) << over.name;
     // Inherent in contacts that do not slide: one lets go while the finger is still inside beside it, and the
     // next begins with the depth that the finger has there.
-    EXPECT_LE(r.largest_slip, 1.1 * kStiffness * 1e-3) << over.name;
+    EXPECT_LE(r.largest_slip, 1.1 * kDragStiffness * 1e-3) << over.name;
   }
 }
 

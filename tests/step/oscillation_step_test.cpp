@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
@@ -21,8 +21,6 @@ using test::index_segment;
 using test::kIndex;
 using test::moved;
 using test::Runner;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The index on the floor, shaking at 10 Hz about a depth, `n` ticks from the start.
 JointArray shaking(double rest, int n) {

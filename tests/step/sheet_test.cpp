@@ -17,9 +17,9 @@ using test::Approach;
 using test::LoneFinger;
 using test::Press;
 
-const Vec3 kX = Vec3::UnitX();
-const Vec3 kY = Vec3::UnitY();
-const Vec3 kZ = Vec3::UnitZ();
+const Vec3 kSheetX = Vec3::UnitX();
+const Vec3 kSheetY = Vec3::UnitY();
+const Vec3 kSheetZ = Vec3::UnitZ();
 
 /// Cells of a square grid of side 60 mm in z = 0 for which keep(x, y) holds at the cell's centre.
 TriangleMesh sheet(const std::function<bool(double, double)>& keep) {
@@ -47,7 +47,7 @@ TriangleMesh flipped(TriangleMesh mesh) {
 }
 
 Approach from_side(double side, double x, double y) {
-  return {.from = Vec3(x, y, side * 0.012), .along = -side * kZ, .heading = kY, .reach = 0.02};
+  return {.from = Vec3(x, y, side * 0.012), .along = -side * kSheetZ, .heading = kSheetY, .reach = 0.02};
 }
 
 /// All corners of the index finger's distal segment are on the side of z = 0 where it came from.
@@ -65,8 +65,8 @@ TEST(Sheet, PressesBackAlikeFromBothSidesWhicheverWayItIsWound) {
       const std::optional<Press> below = finger.press(from_side(-1.0, x, 0.004), 1e-3);
       ASSERT_TRUE(above && below);
       EXPECT_GT(above->force.z(), 0.9);
-      EXPECT_LT((above->force.normalized() - kZ).norm(), 1e-9);
-      EXPECT_LT((below->force.normalized() + kZ).norm(), 1e-9);
+      EXPECT_LT((above->force.normalized() - kSheetZ).norm(), 1e-9);
+      EXPECT_LT((below->force.normalized() + kSheetZ).norm(), 1e-9);
       // The same press turned over, but for where on the fingertip's facets the contact's middle comes to
       // lie: that moves its lever of 77 mm by less than 0.1 mm.
       EXPECT_NEAR(below->force.norm(), above->force.norm(), 0.1 / 77.0);
@@ -119,7 +119,7 @@ TEST(Sheet, OfTwoSheetsTheNearerOneStopsTheFinger) {
     const std::optional<Press> alone = one.press(from_side(side, 0.002, 0.004), 1e-3);
     ASSERT_TRUE(press && alone);
     expect_on_side(finger, press->snapshot, side, side > 0.0 ? 0.2e-3 : 0.0);
-    EXPECT_LT((press->force.normalized() - side * kZ).norm(), 1e-9);
+    EXPECT_LT((press->force.normalized() - side * kSheetZ).norm(), 1e-9);
     EXPECT_NEAR(press->force.norm(), alone->force.norm(), 0.03)
         << "0.2 mm earlier on the fingertip's arc, up to a facet farther on the fingertip";
   }
@@ -133,7 +133,7 @@ TEST(Sheet, ThinnerThanTheMarginIsMetLikeOne) {
     for (const double side : {1.0, -1.0}) {
       const std::optional<Press> press = finger.press(from_side(side, 0.002, 0.004), 1e-3);
       ASSERT_TRUE(press);
-      EXPECT_LT((press->force.normalized() - side * kZ).norm(), 1e-9) << "thickness " << thickness;
+      EXPECT_LT((press->force.normalized() - side * kSheetZ).norm(), 1e-9) << "thickness " << thickness;
       EXPECT_NEAR(press->force.norm(), 1.0, 0.1);
       expect_on_side(finger, press->snapshot, side, side > 0.0 ? thickness : 0.0);
     }
@@ -193,10 +193,10 @@ TEST(Sheet, TheFootOfATeapotIsMetFromOutsideAndFromItsInside) {
     return z(0) + z(1) + z(2) > -0.075;
   });
   LoneFinger finger{ObjectModel(foot)};
-  const std::optional<Press> inside =
-      finger.press({.from = Vec3(-0.01, 0.002, 0.02), .along = -kZ, .heading = kX, .reach = 0.055}, 1e-3);
-  const std::optional<Press> outside =
-      finger.press({.from = Vec3(-0.01, 0.002, -0.05), .along = kZ, .heading = kX, .reach = 0.02}, 1e-3);
+  const std::optional<Press> inside = finger.press(
+      {.from = Vec3(-0.01, 0.002, 0.02), .along = -kSheetZ, .heading = kSheetX, .reach = 0.055}, 1e-3);
+  const std::optional<Press> outside = finger.press(
+      {.from = Vec3(-0.01, 0.002, -0.05), .along = kSheetZ, .heading = kSheetX, .reach = 0.02}, 1e-3);
   ASSERT_TRUE(inside && outside);
   EXPECT_GT(inside->force.normalized().z(), 0.9);
   EXPECT_LT(outside->force.normalized().z(), -0.9);

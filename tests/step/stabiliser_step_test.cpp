@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/all_stabilisers.h"
@@ -27,8 +28,7 @@ using test::kIndex;
 using test::moved;
 using test::Runner;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 TEST(StabiliserStep, EveryMethodSendsNothingBeforeAndAfterAGrasp) {
   for (const Stabiliser method : test::kAllStabilisers) {
@@ -58,7 +58,7 @@ TEST(StabiliserStep, SmoothingThatIsNotEnabledIsNone) {
 // Whatever is measured, every method stays within the caps, and the walls do whatever the controller asks of
 // them.
 TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
-  const std::array<double, 6> wild = {kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
+  const std::array<double, 6> wild = {kNotANumber, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
   for (const Stabiliser method : test::kAllStabilisers) {
     for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kHuntCrossley}) {
       std::mt19937_64 random(13);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "phalanx/core/math.h"
 #include "phalanx/step/haptic_step.h"
 
 #include <gmock/gmock.h>
@@ -23,7 +24,6 @@ using test::moved;
 using test::Runner;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A slab 20 mm below the straight index finger.
 HapticModel floor_model() {

@@ -16,12 +16,14 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <vector>
 
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/dirty_mesh.h"
 #include "support/lone_finger.h"
 #include "support/rolling.h"
+#include "support/sanitized.h"
 #include "support/sheets.h"
 #include "support/surface_bound.h"
 
@@ -207,11 +209,18 @@ Felt sweep(const Sweep& s, int hand_triangles = 2250) {
 /// Fingers for creases: the usual one, whose facets turn by up to 40 degrees from one to the next, and one
 /// with facets so small that a face's own normal at a crease is told from what the finger's rolling makes.
 constexpr std::array kFingers{2250, 60000};
+std::vector<int> fingers_for_creases() {
+  return test::kSanitized ? std::vector{kFingers[0]} : std::vector(kFingers.begin(), kFingers.end());
+}
+
+/// Of so many places: under a sanitizer those in the middle.
+constexpr int share(int places) { return test::kSanitized ? places / 8 : places; }
 
 Sweep over(const char* name, TriangleMesh mesh, const Vec3& from, const Vec3& direction, const Vec3& along,
            const Vec3& heading, int places, double reach = 0.04) {
-  return {name,      std::move(mesh), {.from = from, .along = along, .heading = heading, .reach = reach},
-          direction, places,          kStep};
+  const Vec3 first = from + 0.5 * kPitch * (places - share(places)) * direction;
+  return {name,      std::move(mesh), {.from = first, .along = along, .heading = heading, .reach = reach},
+          direction, share(places),   kStep};
 }
 
 /// How fast the direction of the force turns as the contact goes over an object, and how far it is off the
@@ -269,7 +278,7 @@ class SweepOverSphere : public ::testing::TestWithParam<int> {
 
 TEST_P(SweepOverSphere, JumpsNoMoreThanItsFacetsTurn) {
   const Felt felt = sweep(line());
-  EXPECT_EQ(felt.compared, 399);
+  EXPECT_EQ(felt.compared, share(400) - 1);
 }
 
 // The ideal is 1 / r: 1.91 degrees per millimetre of the contact's way on a sphere of 30 mm.
@@ -281,6 +290,7 @@ TEST_P(SweepOverSphere, TheForceTurnsByAtMostATwentiethMorePerMillimetreThanOnAn
     EXPECT_LE(turning.most * kRadius, 1.05);
     EXPECT_LE(turning.off_radial, 0.5 * kDegree);
   }
+  if (test::kSanitized) return;  // so few places need not hold the worst
   const Turning flat = turning_over(line(), 0.0, 2250);
   std::printf("%s, flat: %.4f of 1/r at most %.3f off\n", line().name, flat.most * kRadius,
               flat.off_radial / kDegree);
@@ -292,7 +302,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, SweepOverSphere, ::testing::Values(0, 1, 2));
 TEST(Sweep, OverTheSmoothSideOfATeapotJumpsNoMoreThanItsFacetsTurn) {
   const Felt felt =
       sweep(over("teapot, side", make_teapot(0.15, 1000), Vec3(-0.02, -0.07, 0.0), kX, kY, -kZ, 300, 0.055));
-  EXPECT_EQ(felt.compared, 299);
+  EXPECT_EQ(felt.compared, share(300) - 1);
 }
 // What the import makes of a spoilt file turns no faster than the surface before it was spoilt.
 TEST(Sweep, OverAnImportedDirtyTeapotJumpsNoMoreThanTheCleanOnesFacetsTurn) {
@@ -306,15 +316,15 @@ TEST(Sweep, OverAnImportedDirtyTeapotJumpsNoMoreThanTheCleanOnesFacetsTurn) {
     const ObjectModel object(import_mesh(folder / "teapot.obj", 0.0));
     const Felt felt =
         sweep(over("dirty teapot, side", clean, Vec3(-0.02, -0.07, 0.0), kX, kY, -kZ, 300, 0.055), object);
-    EXPECT_EQ(felt.compared, 299) << "kinds " << kinds;
+    EXPECT_EQ(felt.compared, share(300) - 1) << "kinds " << kinds;
   }
 }
 TEST(Sweep, OverTheLidAndKnobOfATeapotJumpsNoMoreThanItsCreasesTurn) {
-  for (const int finger : kFingers) {
+  for (const int finger : fingers_for_creases()) {
     const Felt felt =
         sweep(over("teapot, lid", make_teapot(0.15, 2000), Vec3(-0.03, 0.004, 0.05), kX, -kZ, kY, 400, 0.055),
               finger);
-    EXPECT_GE(felt.compared, 350);
+    EXPECT_GE(felt.compared, share(350));
     if (finger == kFingers[1]) {
       EXPECT_GE(felt.faces_fail, 10) << "the faces' own normals must fail at the crease";
     }
@@ -323,35 +333,35 @@ TEST(Sweep, OverTheLidAndKnobOfATeapotJumpsNoMoreThanItsCreasesTurn) {
 TEST(Sweep, OverATorusJumpsNoMoreThanItsFacetsTurn) {
   const Felt felt =
       sweep(over("torus", make_torus(0.08, 0.03, 2000), Vec3(0.025, 0.003, 0.03), kX, -kZ, kY, 280));
-  EXPECT_GE(felt.compared, 250);
+  EXPECT_GE(felt.compared, share(250));
 }
 TEST(Sweep, OverTheRimOfAMugJumpsNoMoreThanItsCreasesTurn) {
-  for (const int finger : kFingers) {
+  for (const int finger : fingers_for_creases()) {
     const Felt felt = sweep(
         over("mug, rim", make_mug(0.08, 0.09, 2000), Vec3(0.03, 0.003, 0.055), kX, -kZ, kY, 150), finger);
-    EXPECT_GE(felt.compared, 100);
+    EXPECT_GE(felt.compared, share(100));
     if (finger == kFingers[1]) {
       EXPECT_GE(felt.faces_fail, 10) << "the faces' own normals must fail at the crease";
     }
   }
 }
 TEST(Sweep, OverTheEdgeOfABoxJumpsNoMoreThanARightAngleTurns) {
-  for (const int finger : kFingers) {
+  for (const int finger : fingers_for_creases()) {
     const Felt felt = sweep(
         over("box, edge", make_box(Vec3(0.06, 0.06, 0.06), 300), Vec3(0.01, 0.003, 0.045), kX, -kZ, kY, 245),
         finger);
-    EXPECT_GE(felt.compared, 230);
+    EXPECT_GE(felt.compared, share(230));
     if (finger == kFingers[1]) {
       EXPECT_GE(felt.faces_fail, 10) << "the faces' own normals must fail at the crease";
     }
   }
 }
 TEST(Sweep, OverTheRimOfACylinderJumpsNoMoreThanARightAngleTurns) {
-  for (const int finger : kFingers) {
+  for (const int finger : fingers_for_creases()) {
     const Felt felt = sweep(
         over("cylinder, rim", make_cylinder(0.06, 0.06, 1000), Vec3(0.01, 0.003, 0.045), kX, -kZ, kY, 240),
         finger);
-    EXPECT_GE(felt.compared, 230);
+    EXPECT_GE(felt.compared, share(230));
     if (finger == kFingers[1]) {
       EXPECT_GE(felt.faces_fail, 5) << "the faces' own normals must fail at the crease";
     }
@@ -396,10 +406,10 @@ TEST_P(SweepOverFile, JumpsNoMoreThanItsFacetsTurn) {
                     GetParam().beside * size[3 - longest - thinnest] * heading;
   Sweep line = over(GetParam().file, mesh, from, direction, along, heading, GetParam().places, 0.055);
   line.step.reset();  // what the docs say of it was measured on made objects
-  for (const int finger : kFingers) {
+  for (const int finger : fingers_for_creases()) {
     if (finger != kFingers[0] && !GetParam().fine) continue;
     const Felt felt = sweep(line, finger);
-    EXPECT_GE(felt.compared, GetParam().compared);
+    EXPECT_GE(felt.compared, test::kSanitized ? 0 : GetParam().compared);
   }
 }
 
@@ -419,11 +429,11 @@ TEST(Sweep, OverAnOpenSheetAndOffItsRimJumpsNoMoreThanItsFacetsTurn) {
         sweep(over(side > 0 ? "flat sheet, from above" : "flat sheet, from below", test::grid_sheet(10, 0.0),
                    Vec3(0.01, 0.003, side * 0.02), kX, -side * kZ, kY, 245),
               60000);
-    EXPECT_GE(flat.compared, 200);
+    EXPECT_GE(flat.compared, share(200));
     const Felt arch =
         sweep(over(side > 0 ? "arched sheet, from outside" : "arched sheet, from inside",
                    test::grid_sheet(16, 0.05), Vec3(-0.015, 0.003, side * 0.02), kX, -side * kZ, kY, 300));
-    EXPECT_GE(arch.compared, 200);
+    EXPECT_GE(arch.compared, share(200));
   }
 }
 

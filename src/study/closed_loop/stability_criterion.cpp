@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/study/closed_loop/stability_criterion.h"
+#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace phalanx {
 namespace {
-
-constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 /// What may act in a trial beside the stabiliser that is studied: nothing.
 constexpr Status kLimiters =

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 
+#include "phalanx/core/units.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/study/experiments.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr int kIndex = static_cast<int>(Digit::kIndex);
 constexpr double kSpeed = 20.0 * kDeg;     // of a closing joint [rad/s]
 constexpr double kApproach = 20.0 * kDeg;  // how far before the touch the first joint starts [rad]

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "phalanx/core/units.h"
 #include "phalanx/record/made.h"
 #include "phalanx/study/experiments.h"
 #include "study/made_json.h"
@@ -11,17 +11,16 @@
 namespace phalanx {
 namespace {
 
-constexpr double kRadToDeg = 180.0 / std::numbers::pi;
-constexpr int kIndex = static_cast<int>(Digit::kIndex);
+constexpr int kFinger = static_cast<int>(Digit::kIndex);
 constexpr std::array<const char*, 3> kJointNames = {"MCP flexion", "PIP", "DIP"};
 constexpr std::array<const char*, 3> kSegmentNames = {"proximal", "middle", "distal"};
 
 /// Of MCP flexion, PIP, DIP.
 double of_joint(const JointArray& values, std::size_t i) {
-  return values[static_cast<std::size_t>(joint_index(kIndex, i == 0 ? 0 : static_cast<int>(i) + 1))];
+  return values[static_cast<std::size_t>(joint_index(kFinger, i == 0 ? 0 : static_cast<int>(i) + 1))];
 }
 const SegmentSnapshot& of_segment(const Snapshot& snapshot, std::size_t i) {
-  return snapshot.segment[static_cast<std::size_t>(segment_index(kIndex, static_cast<int>(i)))];
+  return snapshot.segment[static_cast<std::size_t>(segment_index(kFinger, static_cast<int>(i)))];
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct Column {
   OrderedJson (*value)(const PointResult& result);
 };
 
-constexpr double kMilli = 1e3;    // m to mm, s to ms, J to mJ
+constexpr double kToMilli = 1e3;  // m to mm, s to ms, J to mJ
 constexpr double kNPerMm = 1e-3;  // of 1 N/m
 constexpr Column kColumns[] = {
     {"k_lim_n_per_mm", [](const PointResult& r) { return in_unit(r.k_lim, kNPerMm); }},
@@ -33,13 +33,14 @@ constexpr Column kColumns[] = {
     {"measured_at_n_per_mm", [](const PointResult& r) { return in_unit(r.measured_at, kNPerMm); }},
     {"k_eff_n_per_mm", [](const PointResult& r) { return in_unit(r.k_eff, kNPerMm); }},
     {"k_eff_seeds", [](const PointResult& r) { return OrderedJson(r.k_eff_seeds); }},
-    {"peak_depth_mm", [](const PointResult& r) { return in_unit(r.peak_depth, kMilli); }},
+    {"peak_depth_mm", [](const PointResult& r) { return in_unit(r.peak_depth, kToMilli); }},
     {"force_swing_n", [](const PointResult& r) { return in_unit(r.force_swing, 1.0); }},
-    {"position_swing_mm", [](const PointResult& r) { return in_unit(r.position_swing, kMilli); }},
-    {"ghost_mean_ms", [](const PointResult& r) { return in_unit(r.ghost_s.mean, kMilli); }},
-    {"ghost_largest_ms", [](const PointResult& r) { return in_unit(r.ghost_s.largest, kMilli); }},
-    {"ghost_energy_mean_mj", [](const PointResult& r) { return in_unit(r.ghost_energy.mean, kMilli); }},
-    {"ghost_energy_largest_mj", [](const PointResult& r) { return in_unit(r.ghost_energy.largest, kMilli); }},
+    {"position_swing_mm", [](const PointResult& r) { return in_unit(r.position_swing, kToMilli); }},
+    {"ghost_mean_ms", [](const PointResult& r) { return in_unit(r.ghost_s.mean, kToMilli); }},
+    {"ghost_largest_ms", [](const PointResult& r) { return in_unit(r.ghost_s.largest, kToMilli); }},
+    {"ghost_energy_mean_mj", [](const PointResult& r) { return in_unit(r.ghost_energy.mean, kToMilli); }},
+    {"ghost_energy_largest_mj",
+     [](const PointResult& r) { return in_unit(r.ghost_energy.largest, kToMilli); }},
     {"trials", [](const PointResult& r) { return OrderedJson(r.trials); }},
     {"invalid_trials", [](const PointResult& r) { return OrderedJson(r.invalid_trials); }},
     {"why_invalid", [](const PointResult& r) { return OrderedJson(r.why_invalid); }},
@@ -76,7 +77,7 @@ OrderedJson checked_json(const StiffnessVerdict& checked) {
           {"verdict", verdict_name(checked.verdict)},
           {"seeds_run", checked.seeds_run},
           {"force_swing_n", number_or_null(checked.force_swing)},
-          {"position_swing_mm", in_unit(checked.position_swing, kMilli)}};
+          {"position_swing_mm", in_unit(checked.position_swing, kToMilli)}};
 }
 
 OrderedJson point_json(const Study& study, const PointResult& result) {

@@ -13,9 +13,9 @@ namespace {
 
 constexpr float kDeg = std::numbers::pi_v<float> / 180.0F;
 constexpr float kFieldOfView = 19.0F * kDeg;  // vertical; long enough a lens to keep proportions
-constexpr float kLeft = 0.10F,
-                kRight = 0.95F;  // the scene's share of the width: the force scale is left of it
-constexpr float kFill = 0.86F;   // its share of the height
+constexpr float kSceneLeft = 0.10F,
+                kSceneRight = 0.95F;  // the scene's share of the width: the force scale is left of it
+constexpr float kFill = 0.86F;        // its share of the height
 
 /// A camera that looks along `forward` and just holds all vertices.
 Camera fitted(const std::vector<const RenderMesh*>& meshes, const Vec3f& forward, int width, int height) {
@@ -24,11 +24,11 @@ Camera fitted(const std::vector<const RenderMesh*>& meshes, const Vec3f& forward
   camera.right = forward.cross(Vec3f::UnitZ()).normalized();
   camera.up = camera.right.cross(forward);
   camera.focal = 0.5F * static_cast<float>(height) / std::tan(0.5F * kFieldOfView);
-  camera.centre_x = 0.5F * (kLeft + kRight) * static_cast<float>(width);
+  camera.centre_x = 0.5F * (kSceneLeft + kSceneRight) * static_cast<float>(width);
   camera.centre_y = 0.5F * static_cast<float>(height);
   // In the camera's axes a vertex (x, y, z) is inside if |x - ex| <= tx (z - ez): the nearest apex for each
   // pair of planes.
-  const float tx = 0.5F * (kRight - kLeft) * static_cast<float>(width) / camera.focal;
+  const float tx = 0.5F * (kSceneRight - kSceneLeft) * static_cast<float>(width) / camera.focal;
   const float ty = 0.5F * kFill * static_cast<float>(height) / camera.focal;
   float x_high = -1e9F, x_low = -1e9F, y_high = -1e9F, y_low = -1e9F;
   for (const RenderMesh* mesh : meshes) {

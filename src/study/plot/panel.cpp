@@ -15,17 +15,18 @@ namespace {
 
 /// Okabe and Ito's palette, told apart by colour-blind readers; its yellow is too pale for lines and a grey
 /// stands in for it.
-constexpr std::array<const char*, kMostCurves> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                           "#000000", "#E69F00", "#56B4E9", "#7F7F7F"};
+constexpr std::array<const char*, kMostCurves> kCurveColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                                "#000000", "#E69F00", "#56B4E9", "#7F7F7F"};
 /// And by shape, for readers of a grey copy: paths around the origin.
-constexpr std::array<const char*, kMostCurves> kMarkers = {"M-1.7,0a1.7,1.7 0 1,0 3.4,0a1.7,1.7 0 1,0 -3.4,0",
-                                                           "M-1.5,-1.5h3v3h-3z",
-                                                           "M0,-2L1.9,1.3H-1.9z",
-                                                           "M0,-2.1L2.1,0L0,2.1L-2.1,0z",
-                                                           "M0,2L1.9,-1.3H-1.9z",
-                                                           "M-2,0H2M0,-2V2",
-                                                           "M-1.5,-1.5L1.5,1.5M-1.5,1.5L1.5,-1.5",
-                                                           "M-1.9,-0.9h3.8v1.8h-3.8z"};
+constexpr std::array<const char*, kMostCurves> kCurveMarkers = {
+    "M-1.7,0a1.7,1.7 0 1,0 3.4,0a1.7,1.7 0 1,0 -3.4,0",
+    "M-1.5,-1.5h3v3h-3z",
+    "M0,-2L1.9,1.3H-1.9z",
+    "M0,-2.1L2.1,0L0,2.1L-2.1,0z",
+    "M0,2L1.9,-1.3H-1.9z",
+    "M-2,0H2M0,-2V2",
+    "M-1.5,-1.5L1.5,1.5M-1.5,1.5L1.5,-1.5",
+    "M-1.9,-0.9h3.8v1.8h-3.8z"};
 constexpr int kMarkersPerCurve = 6;
 
 struct Range {
@@ -40,9 +41,9 @@ struct Range {
   }
 };
 
-class Drawing {
+class PanelDrawing {
  public:
-  Drawing(const Panel& panel, const PanelFrame& frame, const std::vector<double>& time)
+  PanelDrawing(const Panel& panel, const PanelFrame& frame, const std::vector<double>& time)
       : panel_(panel), frame_(frame), time_(time) {
     Range range;
     for (const Curve& curve : panel.curves) range.include(curve.solid);
@@ -120,9 +121,10 @@ class Drawing {
     }
     if (dashed) {
       add(R"svg(<path class="dashed" d="{}" stroke="{}" stroke-width="0.7" stroke-dasharray="3 1.6" stroke-opacity="0.85"/>)svg",
-          points, kColours[index]);
+          points, kCurveColours[index]);
     } else {
-      add(R"svg(<path class="solid" d="{}" stroke="{}" stroke-width="1.25"/>)svg", points, kColours[index]);
+      add(R"svg(<path class="solid" d="{}" stroke="{}" stroke-width="1.25"/>)svg", points,
+          kCurveColours[index]);
     }
   }
 
@@ -138,7 +140,7 @@ class Drawing {
 
   void marker(double x, double y, std::size_t index) {
     add(R"svg(<path transform="translate({:.2f},{:.2f})" d="{}" fill="#FFF" stroke="{}" stroke-width="0.9"/>)svg",
-        x, y, kMarkers[index], kColours[index]);
+        x, y, kCurveMarkers[index], kCurveColours[index]);
   }
 
   void axes() {
@@ -176,7 +178,7 @@ class Drawing {
           xml_escaped(text));
     };
     for (std::size_t i = 0; i < panel_.curves.size(); ++i, y += kLine) {
-      add(R"svg(<path d="M{:.2f},{:.2f}h18" stroke="{}" stroke-width="1.25"/>)svg", x, y, kColours[i]);
+      add(R"svg(<path d="M{:.2f},{:.2f}h18" stroke="{}" stroke-width="1.25"/>)svg", x, y, kCurveColours[i]);
       marker(x + 9, y, i);
       words(panel_.curves[i].label, "#000", 23);
     }
@@ -209,7 +211,7 @@ class Drawing {
 
 std::string draw_panel(const Panel& panel, const PanelFrame& frame, const std::vector<double>& time,
                        const std::string& clip_id) {
-  return Drawing(panel, frame, time).draw(clip_id);
+  return PanelDrawing(panel, frame, time).draw(clip_id);
 }
 
 std::string xml_escaped(const std::string& text) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/study/plot.h"
+#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <stdexcept>
 
 #include "phalanx/study/human_names.h"
@@ -24,7 +24,6 @@ constexpr double kTop = 68.0;
 constexpr double kPanelHeight = 124.0;
 constexpr double kPanelGap = 30.0;
 constexpr double kBottom = 32.0;
-constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostAngles = 6;
 constexpr double kLeastMove = 0.5 / kRadToDeg;  // joints that move less are at rest [rad]
 

@@ -10,7 +10,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kWidth = 180.0 * kPointsPerMm;
+constexpr double kBarsWidth = 180.0 * kPointsPerMm;
 constexpr double kRow = 14.0;
 constexpr double kNumberRoom = 32.0;
 
@@ -56,20 +56,20 @@ void draw_quantity(Svg& svg, const BarChart::Quantity& quantity, double x, doubl
 
 std::string bar_chart_svg(const BarChart& chart) {
   check(chart);
-  Svg svg(kWidth);
+  Svg svg(kBarsWidth);
   const double top = svg.heading(chart.title, "") + 28;
   double names = 0.0;
   for (const std::string& name : chart.names) names = std::max(names, text_width(name));
-  names = std::min(names, 0.3 * kWidth);
+  names = std::min(names, 0.3 * kBarsWidth);
   for (std::size_t i = 0; i < chart.names.size(); ++i) {
     const double y = top + kRow * static_cast<double>(i);
     if (i % 2 == 0)
       svg.add(R"svg(<rect x="4" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="#F5F5F5"/>)svg", y,
-              kWidth - 8, kRow);
+              kBarsWidth - 8, kRow);
     svg.text(8 + names, y + kRow / 2 + 2.8, cut_to(chart.names[i], names + 1), Anchor::kEnd);
   }
   const double left = names + 14;
-  const double width = (kWidth - 4 - left) / std::max(1.0, static_cast<double>(chart.quantities.size()));
+  const double width = (kBarsWidth - 4 - left) / std::max(1.0, static_cast<double>(chart.quantities.size()));
   for (std::size_t i = 0; i < chart.quantities.size(); ++i)
     draw_quantity(svg, chart.quantities[i], left + width * static_cast<double>(i), width - 8, top);
   return svg.document(top + kRow * static_cast<double>(chart.names.size()) + 6, chart.title);

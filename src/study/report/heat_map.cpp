@@ -23,9 +23,9 @@ double widest(const std::vector<std::string>& texts) {
   return result;
 }
 
-class Drawing {
+class HeatMapDrawing {
  public:
-  explicit Drawing(const HeatMap& map) : map_(map), width_(map.width_mm * kPointsPerMm), svg_(width_) {
+  explicit HeatMapDrawing(const HeatMap& map) : map_(map), width_(map.width_mm * kPointsPerMm), svg_(width_) {
     double low = HUGE_VAL;
     double high = -HUGE_VAL;
     for (const double value : map.value) {
@@ -184,7 +184,7 @@ std::string heat_map_svg(const HeatMap& map) {
         "heat map '{}': {} values and {} marks for {} rows x {} columns; give rows x columns of each "
         "(marks may be empty)",
         map.title, map.value.size(), map.at_least.size(), map.rows.size(), map.columns.size()));
-  return Drawing(map).draw();
+  return HeatMapDrawing(map).draw();
 }
 
 }  // namespace phalanx

@@ -11,9 +11,9 @@
 namespace phalanx {
 namespace {
 
-constexpr double kWidth = 180.0 * kPointsPerMm;
-constexpr double kLeft = 46.0;
-constexpr double kRight = 14.0;
+constexpr double kChartWidth = 180.0 * kPointsPerMm;
+constexpr double kChartLeft = 46.0;
+constexpr double kChartRight = 14.0;
 
 void check(const LineChart& chart) {
   if (chart.panels.empty()) throw std::invalid_argument("line chart: no panel; give at least one");
@@ -58,11 +58,12 @@ SharedAxis shared_axis(const LineChart& chart) {
   }
   // Markers on the first and the last value stand clear of the frame.
   const double margin = marked ? 0.025 * (high - low) : 0.0;
-  SharedAxis axis{.left = kLeft,
-                  .width = kWidth - kLeft - (has_legend(chart) ? kLegendGap + kLegendWidth : kRight),
-                  .low = low - margin,
-                  .high = high + margin,
-                  .ticks = {}};
+  SharedAxis axis{
+      .left = kChartLeft,
+      .width = kChartWidth - kChartLeft - (has_legend(chart) ? kLegendGap + kLegendWidth : kChartRight),
+      .low = low - margin,
+      .high = high + margin,
+      .ticks = {}};
   for (const double tick : nice_ticks(low, high, 8)) {
     const double rounding = 1e-9 * (high - low);
     if (tick >= axis.low - rounding && tick <= axis.high + rounding) axis.ticks.push_back(tick);
@@ -74,7 +75,7 @@ SharedAxis shared_axis(const LineChart& chart) {
 
 std::string line_chart_svg(const LineChart& chart) {
   check(chart);
-  Svg svg(kWidth);
+  Svg svg(kChartWidth);
   const SharedAxis axis = shared_axis(chart);
   double y = svg.heading(chart.title, chart.subtitle);
   double bottom = y;

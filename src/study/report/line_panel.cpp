@@ -42,10 +42,10 @@ std::vector<std::pair<std::size_t, std::size_t>> stretches(const ChartSeries& se
   return result;
 }
 
-class Drawing {
+class LinePanelDrawing {
  public:
-  Drawing(Svg& svg, const LineChart& chart, std::size_t index, const SharedAxis& axis, double top,
-          double height)
+  LinePanelDrawing(Svg& svg, const LineChart& chart, std::size_t index, const SharedAxis& axis, double top,
+                   double height)
       : svg_(svg),
         chart_(chart),
         panel_(chart.panels[index]),
@@ -286,7 +286,7 @@ double legend_height(const ChartPanel& panel) {
 
 void draw_line_panel(Svg& svg, const LineChart& chart, std::size_t index, const SharedAxis& axis, double top,
                      double height) {
-  Drawing(svg, chart, index, axis, top, height).draw();
+  LinePanelDrawing(svg, chart, index, axis, top, height).draw();
 }
 
 }  // namespace phalanx

@@ -22,18 +22,19 @@ constexpr std::array<Look, 3> kLooks = {Look{CellVerdict::kStable, "#0072B2", "s
                                         Look{CellVerdict::kUnstable, "#F0B95B", "unstable"},
                                         Look{CellVerdict::kInvalid, "url(#hatch)", "invalid"}};
 constexpr const char* kBackground = "#F1F1F1";
-constexpr double kLeft = 36.0;
-constexpr double kRight = 8.0;
+constexpr double kMapLeft = 36.0;
+constexpr double kMapRight = 8.0;
 
-class Drawing {
+class VerdictMapDrawing {
  public:
-  explicit Drawing(const VerdictMap& map) : map_(map), width_(map.width_mm * kPointsPerMm), svg_(width_) {
+  explicit VerdictMapDrawing(const VerdictMap& map)
+      : map_(map), width_(map.width_mm * kPointsPerMm), svg_(width_) {
     const double columns = std::max(1.0, static_cast<double>(map.columns.size()));
     const double rows = std::max(1.0, static_cast<double>(map.stiffness.size()));
     double widest = 30.0;
     for (const VerdictMap::Column& column : map.columns)
       widest = std::max(widest, text_width(column.name) + 2.0);
-    cell_w_ = std::min(std::min(widest, 70.0), (width_ - kLeft - kRight) / columns);
+    cell_w_ = std::min(std::min(widest, 70.0), (width_ - kMapLeft - kMapRight) / columns);
     height_ = std::clamp(5.0 * rows, 40.0, 200.0);
     cell_h_ = height_ / rows;
   }
@@ -45,7 +46,7 @@ class Drawing {
     top_ = heading + 22;
     svg_.add(
         R"svg(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="{}" stroke="#000" stroke-width="0.6"/>)svg",
-        kLeft, top_, cell_w_ * static_cast<double>(map_.columns.size()), height_, kBackground);
+        kMapLeft, top_, cell_w_ * static_cast<double>(map_.columns.size()), height_, kBackground);
     for (const Look& look : kLooks) cells(look);
     for (std::size_t column = 0; column < map_.columns.size(); ++column) limit(column);
     axis();
@@ -53,7 +54,9 @@ class Drawing {
   }
 
  private:
-  [[nodiscard]] double px(std::size_t column) const { return kLeft + cell_w_ * static_cast<double>(column); }
+  [[nodiscard]] double px(std::size_t column) const {
+    return kMapLeft + cell_w_ * static_cast<double>(column);
+  }
   /// The upper edge of the cell of grid point `row`, counted from the bottom.
   [[nodiscard]] double py(std::size_t row) const {
     return top_ + height_ - cell_h_ * static_cast<double>(row + 1);
@@ -116,8 +119,8 @@ class Drawing {
     const auto label = [&](double k, double step) {
       const double row = (k - low) / spacing;
       const double y = top_ + height_ - cell_h_ * (row + 0.5);
-      svg_.add(R"svg(<path d="M{:.2f},{:.2f}h-3" stroke="#000" stroke-width="0.6"/>)svg", kLeft, y);
-      svg_.text(kLeft - 5, y + 2.8, tick_label(k, step), Anchor::kEnd);
+      svg_.add(R"svg(<path d="M{:.2f},{:.2f}h-3" stroke="#000" stroke-width="0.6"/>)svg", kMapLeft, y);
+      svg_.text(kMapLeft - 5, y + 2.8, tick_label(k, step), Anchor::kEnd);
     };
     if (map_.stiffness.size() == 1) {
       label(low, low > 0.0 ? low / 10 : 1.0);
@@ -134,8 +137,8 @@ class Drawing {
   double column_names() {
     std::vector<std::string> names;
     for (const VerdictMap::Column& column : map_.columns) names.push_back(column.name);
-    const double y = draw_column_names(svg_, names, kLeft, cell_w_, top_ + height_);
-    const double middle = (kLeft + px(map_.columns.size())) / 2;
+    const double y = draw_column_names(svg_, names, kMapLeft, cell_w_, top_ + height_);
+    const double middle = (kMapLeft + px(map_.columns.size())) / 2;
     if (map_.x_label.empty()) return y;
     // Under few columns the label may be wider than they are: then it begins at their left.
     const bool wide = text_width(map_.x_label) > 2 * (middle - 4);
@@ -159,7 +162,7 @@ std::string verdict_map_svg(const VerdictMap& map) {
                                               map.title, column.name, column.cell.size(),
                                               map.stiffness.size()));
   }
-  return Drawing(map).draw();
+  return VerdictMapDrawing(map).draw();
 }
 
 }  // namespace phalanx

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/calibration.h"
+#include "phalanx/core/units.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "support/simple_hand.h"
@@ -17,14 +17,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr int kPip = joint_index(1, 2);
 
 DeviceChannel pip_channel() {
   return {.kind = ChannelKind::kAngle, .index = kPip, .raw_min = 0, .raw_max = 4095};
 }
 
-const HandParameters& hand() {
+const HandParameters& the_hand() {
   static const HandParameters parameters = test::simple_parameters();
   return parameters;
 }
@@ -42,7 +41,7 @@ std::vector<PoseReading> straight_line() {
 void expect_refused(const std::vector<PoseReading>& readings, const std::vector<std::string>& words,
                     const DeviceChannel& channel = pip_channel()) {
   try {
-    static_cast<void>(fit_channel(channel, readings, hand()));
+    static_cast<void>(fit_channel(channel, readings, the_hand()));
     ADD_FAILURE() << "accepted; expected a message with " << ::testing::PrintToString(words);
   } catch (const CalibrationError& error) {
     for (const std::string& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
@@ -80,7 +79,7 @@ TEST(RawAverage, OfNothingOrOneIsQuiet) {
 // ---- the fit ----
 
 TEST(CalibrationFit, OfAStraightLineIsThatLine) {
-  const ChannelFit fit = fit_channel(pip_channel(), straight_line(), hand());
+  const ChannelFit fit = fit_channel(pip_channel(), straight_line(), the_hand());
   EXPECT_NEAR(fit.gain, 0.045 * kDeg, 1e-15);
   EXPECT_NEAR(fit.offset, -45.0 * kDeg, 1e-12);
   EXPECT_NEAR(fit.worst, 0.0, 1e-12);
@@ -89,17 +88,18 @@ TEST(CalibrationFit, OfAStraightLineIsThatLine) {
 TEST(CalibrationFit, FindsTheDirection) {
   auto readings = straight_line();
   for (PoseReading& r : readings) r.raw = 4000.0 - r.raw;
-  const ChannelFit fit = fit_channel(pip_channel(), readings, hand());
+  const ChannelFit fit = fit_channel(pip_channel(), readings, the_hand());
   EXPECT_NEAR(fit.gain, -0.045 * kDeg, 1e-15);
   EXPECT_NEAR(fit.gain * 3000.0 + fit.offset, 0.0, 1e-12);
 }
 
-// By hand: values 0, 1, 2 (of 0.03 rad) at raw 0, 100, 200 with the middle one 0.03 too high:
-// gain 0.0003, offset 0.01, residuals +0.01, -0.02, +0.01.
+// By hand: values 0, 1, 2 (of 0.03 rad) at raw 0, 100, 200 with the middle one 0.03 too
+// high: gain 0.0003, offset 0.01, residuals +0.01, -0.02, +0.01.
 TEST(CalibrationFit, IsTheLeastSquaresOne) {
   const std::vector<PoseReading> readings = {reading("a", 0.0, 0.0), reading("b", 0.06, 100.0),
                                              reading("c", 0.06, 200.0)};
-  const ChannelFit fit = fit_channel(pip_channel(), readings, hand(), {.most_noise = 1.0, .most_drift = 1.0});
+  const ChannelFit fit =
+      fit_channel(pip_channel(), readings, the_hand(), {.most_noise = 1.0, .most_drift = 1.0});
   EXPECT_NEAR(fit.gain, 0.0003, 1e-12);
   EXPECT_NEAR(fit.offset, 0.01, 1e-12);
   EXPECT_NEAR(fit.residual[0], 0.01, 1e-12);
@@ -119,7 +119,7 @@ TEST(CalibrationFit, FindsWhatMadeTheCounts) {
     const double offset = 45.0 * kDeg - gain * 2000.0;  // half way at 2000 counts
     std::vector<PoseReading> readings = straight_line();
     for (PoseReading& r : readings) r.raw = (r.value - offset) / gain + 5.0 * unit(random);
-    const ChannelFit fit = fit_channel(pip_channel(), readings, hand());
+    const ChannelFit fit = fit_channel(pip_channel(), readings, the_hand());
     EXPECT_NEAR(fit.gain, gain, 5.0 * std::abs(gain) / span * 2.0) << "seed " << kSeed;
     EXPECT_LE(fit.worst, 10.0 * std::abs(gain)) << "seed " << kSeed;
   }
@@ -130,9 +130,9 @@ TEST(CalibrationFit, MeasuresACurlsResidualInAngle) {
   const DeviceChannel curl{.kind = ChannelKind::kCurl, .index = 1, .raw_min = 0, .raw_max = 4095};
   std::vector<PoseReading> readings = {reading("open hand", 0.2, 1000.0), reading("fist", 1.0, 3000.0),
                                        reading("stretched", 0.0, 500.0)};
-  EXPECT_NEAR(fit_channel(curl, readings, hand()).worst, 0.0, 1e-12);
+  EXPECT_NEAR(fit_channel(curl, readings, the_hand()).worst, 0.0, 1e-12);
   readings[0].raw += 0.03 / 0.8 * 2000.0;
-  const ChannelFit fit = fit_channel(curl, readings, hand());
+  const ChannelFit fit = fit_channel(curl, readings, the_hand());
   EXPECT_GT(fit.worst, 0.01 * 2.5);
   EXPECT_LT(fit.worst, 0.03 * 2.5);
 }

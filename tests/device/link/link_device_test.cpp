@@ -48,6 +48,19 @@ class Loop {
     }
     return false;
   }
+  /// Until the controller acts. Where the machine stands still between two steps, the controller latches, as
+  /// it should: then once more.
+  bool until_acting() {
+    for (int i = 0; i < 100; ++i) {
+      if (!until([&] { return newest.state == DeviceState::kReady; }, false)) return false;
+      const std::uint64_t goal = tick_ + 5;
+      const auto acts = [&] { return newest.acted_tick >= goal; };
+      if (!until([&] { return acts() || newest.state == DeviceState::kLatched; })) return false;
+      if (acts()) return true;
+      device_.reset();
+    }
+    return false;
+  }
   void command(bool enable) {
     DeviceCommand command;
     command.tick = ++tick_;
@@ -128,7 +141,7 @@ TEST_P(LinkDeviceOn, CommandsActAndCloseLetsGo) {
   const auto device = connect();
   device->open();
   Loop loop(*device, clock);
-  ASSERT_TRUE(loop.until([&] { return loop.newest.acted_tick >= 5; }));
+  ASSERT_TRUE(loop.until_acting());
   EXPECT_GT(device->statistics().sent, 0u);
   device->close();
   device->close();
@@ -145,7 +158,7 @@ TEST_P(LinkDeviceOn, AfterARestartNothingIsSentUntilResetOpensANewSession) {
   const auto device = connect();
   device->open();
   Loop loop(*device, clock);
-  ASSERT_TRUE(loop.until([&] { return loop.newest.acted_tick >= 5; }));
+  ASSERT_TRUE(loop.until_acting());
   const std::uint32_t first_epoch = controller.controller().epoch;
   controller.restart();
   ASSERT_TRUE(loop.until([&] { return device->connection_fault() == Fault::kControllerRestarted; }));
@@ -162,14 +175,14 @@ TEST_P(LinkDeviceOn, AfterARestartNothingIsSentUntilResetOpensANewSession) {
   ASSERT_TRUE(loop.until(
       [&] { return loop.samples >= before + 20 && loop.newest.state == DeviceState::kReady; }, false));
   EXPECT_GE(controller.controller().epoch, first_epoch + 1000);
-  ASSERT_TRUE(loop.until([&] { return loop.newest.state == DeviceState::kStarting; }));
+  ASSERT_TRUE(loop.until_acting());
 }
 
 TEST_P(LinkDeviceOn, LatchesAndResets) {
   const auto device = connect();
   device->open();
   Loop loop(*device, clock);
-  ASSERT_TRUE(loop.until([&] { return loop.newest.acted_tick >= 5; }));
+  ASSERT_TRUE(loop.until_acting());
   ASSERT_TRUE(loop.until([&] { return loop.newest.state == DeviceState::kLatched; }, false));
   EXPECT_EQ(loop.newest.fault, Fault::kStepTooOld);
   device->reset();
@@ -190,7 +203,7 @@ TEST_P(LinkDeviceOn, TheLoopsSideAllocatesNothing) {
   const auto device = connect();
   device->open();
   Loop loop(*device, clock);
-  ASSERT_TRUE(loop.until([&] { return loop.newest.acted_tick >= 5; }));
+  ASSERT_TRUE(loop.until_acting());
   std::array<DeviceSample, 64> out{};
   std::size_t received = 0;
   const std::size_t before = test::allocations();
@@ -243,15 +256,16 @@ TEST(LinkDevice, WaitsForAControllerThatComesUpLater) {
 }
 
 TEST(LinkDevice, ASecondHostIsRefusedAndTheFirstGoesOn) {
-  const Clock clock{kSlowdown};
+  const Clock clock{5.0 * kSlowdown};  // the first one says nothing while the second asks for 1.25 s
   ControllerThread controller(listen_udp("127.0.0.1:0"), clock);
   const auto first = make_link_device(connect_udp(controller.after_scheme()), clock);
   first->open();
   Loop loop(*first, clock);
-  ASSERT_TRUE(loop.until([&] { return loop.newest.acted_tick >= 5; }));
+  ASSERT_TRUE(loop.until_acting());
   const std::uint32_t epoch = controller.controller().epoch;
   const Clock real;  // it waits for more than the second after which a dead host loses the device
-  const auto second = make_link_device(connect_udp(controller.after_scheme()), real);
+  const auto second =
+      make_link_device(connect_udp(controller.after_scheme()), real, {.hello_timeout = kPatience});
   EXPECT_THAT(message_of_open(*second), HasSubstr("belongs to another host"));
   EXPECT_EQ(controller.controller().epoch, epoch);
   EXPECT_EQ(first->connection_fault(), Fault::kNone);
@@ -278,7 +292,7 @@ TEST(LinkDevice, NamesTheVersionOfAControllerThatSpeaksAnother) {
       wire->send(refused, from);
     }
   });
-  const auto device = make_link_device(connect_udp(address), clock);
+  const auto device = make_link_device(connect_udp(address), clock, {.hello_timeout = kPatience});
   EXPECT_THAT(message_of_open(*device), HasSubstr("version 9 of the link, this program version 1"));
   stop = true;
   other.join();

@@ -23,14 +23,14 @@ using Bytes = std::vector<std::uint8_t>;
 using testing::HasSubstr;
 
 // Far beyond what a busy machine needs; reached only where a frame does not come at all.
-constexpr double kPatience = 10.0;
+constexpr double kTransportPatience = 60.0;
 
 struct Received {
   Bytes frame;
   Peer from = 0;
 };
 
-std::optional<Received> next(Transport& transport, double patience = kPatience) {
+std::optional<Received> next(Transport& transport, double patience = kTransportPatience) {
   Received received;
   std::array<std::uint8_t, PHX_FRAME_MAX> buffer{};
   for (int attempt = 0; attempt < 100; ++attempt) {

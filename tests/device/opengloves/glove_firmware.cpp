@@ -14,7 +14,7 @@
 namespace phalanx::test {
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(10);
+constexpr auto kPatience = std::chrono::minutes(5);
 
 int new_master() {
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);

@@ -20,7 +20,9 @@ using ::testing::HasSubstr;
 
 constexpr const char* kOpenHand = "A0B0C0D0E0F2047G2047";
 
-OpenGlovesSettings quick() { return {.full_scale = 0, .hello_timeout = 3.0, .learn_for = 0.1, .serial = ""}; }
+OpenGlovesSettings quick() {
+  return {.full_scale = 0, .hello_timeout = 60.0, .learn_for = 0.1, .serial = ""};
+}
 
 // Polls; false after 10 s.
 bool eventually(const std::function<bool()>& holds) {

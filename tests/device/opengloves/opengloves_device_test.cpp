@@ -19,13 +19,15 @@ namespace {
 using test::GloveFirmware;
 using ::testing::HasSubstr;
 
-constexpr const char* kOpenHand = "A0B0C0D0E0F2047G2047P0(AB)2047(BB)2047(CB)2047(DB)2047(EB)2047";
+constexpr const char* kOpenGlove = "A0B0C0D0E0F2047G2047P0(AB)2047(BB)2047(CB)2047(DB)2047(EB)2047";
 constexpr const char* kFree = "A0B0C0D0E0";
 
-OpenGlovesSettings quick() { return {.full_scale = 0, .hello_timeout = 3.0, .learn_for = 0.1, .serial = ""}; }
+OpenGlovesSettings quick_device() {
+  return {.full_scale = 0, .hello_timeout = 60.0, .learn_for = 0.1, .serial = ""};
+}
 
 struct Fixture {
-  explicit Fixture(const char* line, const OpenGlovesSettings& settings = quick()) : firmware(line) {
+  explicit Fixture(const char* line, const OpenGlovesSettings& settings = quick_device()) : firmware(line) {
     device = make_opengloves_device(firmware.host_descriptor(), clock, settings);
     device->set_hand(test::simple_parameters());
   }
@@ -75,7 +77,7 @@ DeviceCommand stopped_index(double q) {
 }
 
 TEST(OpenGlovesDevice, LearnsItsChannelsFromTheFirstLines) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   const DeviceInfo& info = glove.device->info();
   ASSERT_EQ(info.channels.size(), 10U);
@@ -106,7 +108,7 @@ TEST(OpenGlovesDevice, NeverHidesThatItTookAWideGloveForANarrowOne) {
 }
 
 TEST(OpenGlovesDevice, BelievesTheFullScaleThatItIsGiven) {
-  auto settings = quick();
+  auto settings = quick_device();
   settings.full_scale = 4095;
   Fixture glove("A0B0C0D0E0", settings);
   glove.device->open();
@@ -117,7 +119,7 @@ TEST(OpenGlovesDevice, BelievesTheFullScaleThatItIsGiven) {
 
 // The firmware goes on only after a line of the host: that it goes on at all says that each was answered.
 TEST(OpenGlovesDevice, AnswersEveryLineWithAllFive) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   ASSERT_TRUE(glove.firmware.wait_for_answers(200));
   const auto lines = static_cast<std::size_t>(glove.firmware.lines_sent());
@@ -128,7 +130,7 @@ TEST(OpenGlovesDevice, AnswersEveryLineWithAllFive) {
 }
 
 TEST(OpenGlovesDevice, GivesSamplesInOrderWithRawNumbers) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   glove.firmware.say("A1B2C3D4E5F2047G2047P0(AB)6(BB)7(CB)8(DB)9(EB)10");
   std::uint32_t sequence = 0;
@@ -146,7 +148,7 @@ TEST(OpenGlovesDevice, GivesSamplesInOrderWithRawNumbers) {
 }
 
 TEST(OpenGlovesDevice, StopsTheDigitThatIsStoppedAndLetsGoAgain) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   // (0.75 + 0.5) / 2.5 = 0.5 of the curl.
   ASSERT_TRUE(glove.told(stopped_index(0.75), "A0B500C0D0E0"));
@@ -162,14 +164,14 @@ TEST(OpenGlovesDevice, StopsTheDigitThatIsStoppedAndLetsGoAgain) {
 }
 
 TEST(OpenGlovesDevice, LetsGoWhenTheLoopFallsSilent) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   ASSERT_TRUE(glove.told(stopped_index(0.75), "A0B500C0D0E0"));
   EXPECT_TRUE(glove.firmware.wait_for_answer(kFree));
 }
 
 TEST(OpenGlovesDevice, LetsGoWhenItIsClosed) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   ASSERT_TRUE(glove.told(stopped_index(0.75), "A0B500C0D0E0"));
   glove.device->send(stopped_index(0.75));
@@ -179,11 +181,11 @@ TEST(OpenGlovesDevice, LetsGoWhenItIsClosed) {
 }
 
 TEST(OpenGlovesDevice, KeepsASilentGloveAliveWithNewlines) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   glove.firmware.say("");
   EXPECT_TRUE(glove.firmware.wait_for_newlines(3));
-  glove.firmware.say(kOpenHand);
+  glove.firmware.say(kOpenGlove);
   EXPECT_TRUE(glove.firmware.wait_for_answers(3)) << "and goes on where it speaks again";
   EXPECT_EQ(glove.device->connection_fault(), Fault::kNone);
 }
@@ -191,7 +193,7 @@ TEST(OpenGlovesDevice, KeepsASilentGloveAliveWithNewlines) {
 // A line that the glove is half through when the host comes, garbage, half lines, a line without an end: each
 // line end is answered, nothing of it becomes a sample.
 TEST(OpenGlovesDevice, UsesNothingOfADamagedLineAndAnswersItAllTheSame) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   const auto before = glove.device->statistics();
   glove.firmware.blurt("A4000B40\nB12A1A2\n\x01\xff\x80garbage(((\n" + std::string(5000, 'A') + "9\n\n");
@@ -210,7 +212,7 @@ TEST(OpenGlovesDevice, DoesNotBelieveTheFirstLineWhichMayBeHalfAOne) {
   GloveFirmware firmware("");
   firmware.blurt("47(AB)3000\n");
   Clock clock;
-  const auto device = make_opengloves_device(firmware.host_descriptor(), clock, quick());
+  const auto device = make_opengloves_device(firmware.host_descriptor(), clock, quick_device());
   firmware.say("A0B0C0D0E0");
   device->open();
   EXPECT_EQ(device->info().channels.size(), 5U) << "no splay";
@@ -218,7 +220,7 @@ TEST(OpenGlovesDevice, DoesNotBelieveTheFirstLineWhichMayBeHalfAOne) {
 }
 
 TEST(OpenGlovesDevice, SaysThatTheGloveIsUnplugged) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   glove.firmware.unplug();
   EXPECT_TRUE(glove.eventually([&] { return glove.device->connection_fault() == Fault::kDeviceLost; }));
@@ -228,7 +230,7 @@ TEST(OpenGlovesDevice, SaysThatTheGloveIsUnplugged) {
 }
 
 TEST(OpenGlovesDevice, RefusesAGloveThatSaysNothing) {
-  auto settings = quick();
+  auto settings = quick_device();
   settings.hello_timeout = 0.2;
   Fixture glove("", settings);
   try {
@@ -241,14 +243,14 @@ TEST(OpenGlovesDevice, RefusesAGloveThatSaysNothing) {
 }
 
 TEST(OpenGlovesDevice, RefusesWhatIsNoGlove) {
-  auto settings = quick();
+  auto settings = quick_device();
   settings.hello_timeout = 0.2;
   Fixture glove("0&0&0&0&0", settings);  // the firmware's other encoding
   EXPECT_THROW(glove.device->open(), DeviceError);
 }
 
 TEST(OpenGlovesDevice, TakesOnlyACalibrationOfItsOwnChannels) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   auto channels = glove.device->info().channels;
   channels[0].gain *= 1.1;
@@ -261,7 +263,7 @@ TEST(OpenGlovesDevice, TakesOnlyACalibrationOfItsOwnChannels) {
 }
 
 TEST(OpenGlovesDevice, AllocatesNothingInTheLoop) {
-  Fixture glove(kOpenHand);
+  Fixture glove(kOpenGlove);
   glove.device->open();
   glove.firmware.say("");
   ASSERT_TRUE(glove.firmware.wait_for_newlines(2));  // the firmware's own vectors stand still

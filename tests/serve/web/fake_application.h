@@ -113,7 +113,7 @@ class FakeApplication final : public WebApplication {
   template <class Condition>
   bool await(const Condition& condition) const {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(60), condition);
+    return changed_.wait_for(lock, std::chrono::minutes(5), condition);
   }
 
   mutable std::mutex mutex_;

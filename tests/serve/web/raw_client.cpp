@@ -16,7 +16,7 @@
 namespace phalanx {
 namespace {
 
-constexpr int kPatience = 60'000;  // [ms]
+constexpr int kPatience = 300'000;  // [ms]
 
 bool await(int descriptor, short what) {
   pollfd one{descriptor, what, 0};

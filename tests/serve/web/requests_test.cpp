@@ -199,7 +199,7 @@ TEST_F(WebRequests, AnAnswerMayComeWhenTheServerIsNoMore) {
 }
 
 TEST_F(WebRequests, WhoIsSlowToSayOneIsLetGo) {
-  settings_.request_timeout = 1.0;
+  settings_.request_timeout = 3.0;  // also of the one that shows it alive
   start();
   RawClient slow(port());
   slow.say("GET / HTTP/1.1\r\nHost: local");
@@ -295,7 +295,7 @@ TEST_F(WebRequests, ViewersLeaveAnEighthOfThePlacesToWhoMayOperate) {
 }
 
 TEST_F(WebRequests, WhoOnlyConnectsOrHasNoRightHostIsLetGoSoon) {
-  settings_.proof_timeout = 0.5;
+  settings_.proof_timeout = 3.0;
   start();
   RawClient silent(port());
   RawClient wrong(port());

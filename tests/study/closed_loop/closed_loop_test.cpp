@@ -12,7 +12,6 @@
 namespace phalanx {
 namespace {
 
-using test::idx;
 using test::kMcp;
 
 /// What the host saw at one of its steps.

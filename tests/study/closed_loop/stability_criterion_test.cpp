@@ -12,7 +12,6 @@
 namespace phalanx {
 namespace {
 
-using test::idx;
 using test::kTip;
 
 constexpr int kOther = 8;  // distal segment of the middle finger

@@ -13,7 +13,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kAsItIs = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFig5AsItIs = std::numeric_limits<double>::quiet_NaN();
 
 TEST(S2Fig5, GraspsWithFivePhalangesAndIsSteady) {
   const LoopRun run = run_s2_fig5(kLoopSeeds);
@@ -34,7 +34,7 @@ TEST(S2Fig5, RendersIndexAndThumbAndNeverTheDigitsThatCopy) {
   std::array<double, kDigits> asked{};  // largest, of a digit's joints [Nm]
   double forgone = 0.0;                 // largest of what index and thumb do not get [Nm]
   bool saturated = false;
-  (void)run_trial(*setup, kAsItIs, kAsItIs, 1,
+  (void)run_trial(*setup, kFig5AsItIs, kFig5AsItIs, 1,
                   [&](double, const Snapshot&, const SimulatedExoskeleton& device) {
                     const Rendered& rendered = device.rendered();
                     saturated = saturated || rendered.saturated;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kGrid = 100.0;            // [N/m]
 constexpr double kOneStep = 100.0 + 1e-6;  // [N/m]
 constexpr double kHalfStep = 0.5 * Plant::kDefaultStep;
-const Overrides kNoSmoothing = {{"stabiliser.method", "\"none\""}};
+const Overrides kUnsmoothed = {{"stabiliser.method", "\"none\""}};
 const Overrides kSmoothing = {{"smoothing.min_n", "-0.1"}, {"smoothing.max_n", "0.1"}};
 
 /// The press, integrated at another step.
@@ -58,7 +58,7 @@ TEST(S2Limit, IsThePapersWithinAStepOfTheGridAndKeepsItWithHalfTheStepAndOtherSe
   const LimitRow row = find_limits("as it is", {}, kLoopSeeds);
   EXPECT_NEAR(row.none.k_lim, 700.0, kOneStep);
   EXPECT_NEAR(row.smoothing.k_lim, 1600.0, kOneStep);
-  expect_same_with_half_the_step(kNoSmoothing, row.none.k_lim);
+  expect_same_with_half_the_step(kUnsmoothed, row.none.k_lim);
   expect_same_with_half_the_step(kSmoothing, row.smoothing.k_lim);
 
   const LimitRow other = find_limits("seeds 21 to 40", {}, kLoopSeeds, 21);
@@ -79,15 +79,15 @@ TEST(S2Limit, FallsWithoutFrictionInTheSheaths) {
 TEST(S2Limit, GivesTheSameVerdictsAtOneAndTwoNewtonsAMillimetreWithHalfTheStep) {
   for (const double step : {Plant::kDefaultStep, kHalfStep}) {
     SCOPED_TRACE(::testing::Message() << "step " << step);
-    EXPECT_FALSE(Press(kNoSmoothing, step).stable_at(1000.0));
+    EXPECT_FALSE(Press(kUnsmoothed, step).stable_at(1000.0));
     EXPECT_TRUE(Press(kSmoothing, step).stable_at(1000.0));
-    EXPECT_FALSE(Press(kNoSmoothing, step).stable_at(2000.0));
+    EXPECT_FALSE(Press(kUnsmoothed, step).stable_at(2000.0));
     EXPECT_FALSE(Press(kSmoothing, step).stable_at(2000.0));
   }
 }
 
 TEST(SoakS2Limit, MovesByAtMostOneStepOfTheGridWithHalfTheStep) {
-  for (const Overrides& overrides : {kNoSmoothing, kSmoothing}) {
+  for (const Overrides& overrides : {kUnsmoothed, kSmoothing}) {
     std::array<double, 2> limit{};
     for (std::size_t i = 0; i < limit.size(); ++i) {
       const Press press(overrides, i == 0 ? Plant::kDefaultStep : kHalfStep);

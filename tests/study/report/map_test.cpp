@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 HeatMap small_map() {
   return {.title = "k_lim",
@@ -26,7 +26,7 @@ HeatMap small_map() {
           .y_label = "delay [ms]",
           .columns = {"0", "0.17", "0.34"},
           .rows = {"4.5", "2"},
-          .value = {0.25, 0.55, kNan, 0.31, 1.25, 3.9},
+          .value = {0.25, 0.55, kNotANumber, 0.31, 1.25, 3.9},
           .at_least = {false, false, false, false, false, true},
           .low = {},
           .high = {},
@@ -62,7 +62,7 @@ TEST(HeatMapSvg, LeavesTheNumbersOutWhereThereIsNoRoom) {
   for (int i = 0; i < 50; ++i) map.columns.push_back(fmt::format("{:.2f}", 0.01 * i));
   for (int i = 0; i < 40; ++i) map.rows.push_back(fmt::format("{}", i));
   for (int i = 0; i < 2000; ++i)
-    map.value.push_back(i % 97 == 0 ? kNan : std::sin(0.1 * (i % 50)) + 0.05 * (i / 50));
+    map.value.push_back(i % 97 == 0 ? kNotANumber : std::sin(0.1 * (i % 50)) + 0.05 * (i / 50));
   const std::string svg = heat_map_svg(map);
   keep("many_map.svg", svg);
   EXPECT_EQ(flaw_of(svg), "");
@@ -76,7 +76,7 @@ TEST(HeatMapSvg, SurvivesEqualValuesNoValuesAndNoCells) {
   map.value.assign(6, 1.5);
   EXPECT_EQ(flaw_of(heat_map_svg(map)), "");
   EXPECT_EQ(count_of(heat_map_svg(map), ">1.5<"), 6U);  // the scale says 1.50
-  map.value.assign(6, kNan);
+  map.value.assign(6, kNotANumber);
   EXPECT_EQ(count_of(heat_map_svg(map), "fill=\"url(#hatch)\""), 7U);
   EXPECT_EQ(flaw_of(heat_map_svg({})), "");
 }
