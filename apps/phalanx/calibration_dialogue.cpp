@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "phalanx/core/units.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/device/calibration_session.h"
 
 namespace phalanx {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "phalanx/core/units.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/hand/anthropometry.h"
 #include "phalanx/hand/fit.h"
 

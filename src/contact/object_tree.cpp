@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/object_tree.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "contact/search/wide_ranges.h"
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/segment_motion.h"
-#include "phalanx/core/index.h"
 
 #include <cmath>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 

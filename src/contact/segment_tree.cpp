@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/segment_tree.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "contact/search/wide_ranges.h"
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/calibration.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/hand/anthropometry.h"
 
 namespace phalanx {

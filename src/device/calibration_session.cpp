@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/calibration_session.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/channel_map.h"
-#include "phalanx/core/index.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/device/transmission.h"
 

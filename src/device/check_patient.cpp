@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/device/patient.h"
 
 namespace phalanx {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/press_plan.h"
-#include "phalanx/core/index.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "phalanx/core/index.h"
 #include "phalanx/device/sensed_angles.h"
 
 namespace phalanx {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/simulated_channels.h"
-#include "phalanx/core/index.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,8 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/simulated_exoskeleton.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
+#include "phalanx/core/index.h"
 #include "phalanx/device/sensed_angles.h"
 
 namespace phalanx {

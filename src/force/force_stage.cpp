@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/force/force_stage.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "force/wall_stage.h"
+#include "phalanx/core/index.h"
 #include "phalanx/force/force_law.h"
 #include "phalanx/force/stabiliser_methods.h"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/anthropometry.h"
-#include "phalanx/core/units.h"
 
 #include <algorithm>
 #include <array>
+
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {

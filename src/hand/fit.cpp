@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/fit.h"
-#include "phalanx/core/index.h"
 
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

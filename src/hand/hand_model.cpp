@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/hand_model.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "mesh/extruded_solid.h"
 #include "mesh/object_shapes.h"
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/objects.h"
 
 namespace phalanx::mesh {

@@ -7,11 +7,10 @@
 #include <stdexcept>
 
 #include "mesh/mesh_builder.h"
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx::mesh {
-namespace {}
 
 MugShape mug_shape(double diameter, double height) {
   MugShape s;

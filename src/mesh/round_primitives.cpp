@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "mesh/mesh_builder.h"
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "mesh/mesh_builder.h"
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx {

@@ -9,7 +9,7 @@
 
 #include "mesh/mesh_builder.h"
 #include "mesh/object_shapes.h"
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/objects.h"
 
 namespace phalanx::mesh {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/device_file.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "scene/layered_file.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/hand_file.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/scene/data_paths.h"
 #include "scene/toml_reader.h"
 

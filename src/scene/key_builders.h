@@ -2,14 +2,12 @@
 // How the key table is written down: one function for each type of key, and one for each part of the table.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "phalanx/core/constants.h"
 #include "scene/key_table.h"
-
-#include "phalanx/core/units.h"
 
 namespace phalanx {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/mapping_file.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
 #include "scene/toml_reader.h"

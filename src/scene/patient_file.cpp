@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/patient_file.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
+#include "phalanx/core/constants.h"
 #include "scene/layered_file.h"
 
 namespace phalanx {
 namespace {
 
 constexpr double kMicro = 1e-6;
-constexpr NumberRange kShare = {.min = 0.0, .max = 1e3};
+constexpr NumberRange kFactor = {.min = 0.0, .max = 1e3};
 
 void read_joint(TomlTable table, int joint, PatientParameters& patient) {
   const auto j = static_cast<std::size_t>(joint);
@@ -39,10 +39,10 @@ void read_disturbances(TomlTable& root, PatientParameters& patient) {
 }
 
 void apply_scale(TomlTable table, PatientParameters& patient) {
-  const double stiffness = table.number_or("stiffness", kShare, 1.0);
-  const double damping = table.number_or("damping", kShare, 1.0);
-  patient.tremor *= table.number_or("tremor", kShare, 1.0);
-  patient.bump *= table.number_or("bump", kShare, 1.0);
+  const double stiffness = table.number_or("stiffness", kFactor, 1.0);
+  const double damping = table.number_or("damping", kFactor, 1.0);
+  patient.tremor *= table.number_or("tremor", kFactor, 1.0);
+  patient.bump *= table.number_or("bump", kFactor, 1.0);
   table.finish();
   for (double& k : patient.stiffness) k *= stiffness;
   for (double& b : patient.damping) b *= damping;

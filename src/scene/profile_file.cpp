@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/profile_file.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/hand/anthropometry.h"
 #include "phalanx/scene/data_paths.h"

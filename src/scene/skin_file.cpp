@@ -11,8 +11,8 @@
 #include <system_error>
 #include <vector>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
-#include "phalanx/core/units.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/toml_reader.h"
 

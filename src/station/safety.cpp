@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/station/safety.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

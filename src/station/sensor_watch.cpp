@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/station/sensor_watch.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

@@ -5,7 +5,8 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include "phalanx/core/math.h"
+
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {

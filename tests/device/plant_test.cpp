@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/plant.h"
-#include "phalanx/core/math.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "phalanx/core/constants.h"
 #include "plant_cases.h"
 #include "support/count_allocations.h"
 

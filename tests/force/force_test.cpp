@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/force/force_law.h"
 #include "phalanx/force/smoothing.h"
 

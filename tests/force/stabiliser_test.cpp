@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/force/stabiliser.h"
-#include "phalanx/core/math.h"
 
 #include <gmock/gmock.h>
 
@@ -11,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/force/stabiliser_methods.h"
 #include "support/all_stabilisers.h"
 

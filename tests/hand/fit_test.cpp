@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/fit.h"
-#include "phalanx/core/index.h"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
+#include "phalanx/core/index.h"
 #include "phalanx/hand/hand_meshes.h"
 #include "support/simple_hand.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/hand_skin.h"
-#include "phalanx/core/index.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
 #include "phalanx/hand/hand_meshes.h"
 #include "support/simple_hand.h"

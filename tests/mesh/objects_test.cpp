@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every object of daily life and therapy at many resolutions.
 #include "phalanx/mesh/objects.h"
-#include "phalanx/core/math.h"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +17,7 @@
 
 #include "mesh/mesh_checks.h"
 #include "mesh/object_shapes.h"
+#include "phalanx/core/constants.h"
 #include "support/sanitized.h"
 
 namespace phalanx {

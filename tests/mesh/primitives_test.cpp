@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/mesh/primitives.h"
-#include "phalanx/core/math.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +10,7 @@
 #include <string>
 
 #include "mesh/mesh_checks.h"
+#include "phalanx/core/constants.h"
 #include "support/sanitized.h"
 
 namespace phalanx {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/mapping_file.h"
-#include "phalanx/core/units.h"
 
 #include <cmath>
 #include <limits>
 
 #include "expect_error.h"
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/profile_file.h"
-#include "phalanx/core/units.h"
 
 #include <cmath>
 
 #include "expect_error.h"
 #include "hand_files.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/hand_meshes.h"

@@ -175,7 +175,7 @@ TEST_F(StationTest, AnEmergencyStopLatchesUntilItIsReleasedAndReset) {
 
 TEST_F(StationTest, StepsThatAreTooLongAreCountedShownAndStoppedAfterTenInARow) {
   start({}, 2.0, 10);
-  station_->lengthen_steps(0.0055);  // of 5 ms
+  station_->lengthen_steps(0.0055);  // of 5 ms; with torque: the fault suite
   ASSERT_TRUE(until([](const StationView& view) { return view.degraded; }));
   ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kFault; }));
   EXPECT_EQ(station_->view().fault.fault, Fault::kOverload);

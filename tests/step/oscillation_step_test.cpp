@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "phalanx/core/math.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/all_stabilisers.h"

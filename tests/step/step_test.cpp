@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/core/math.h"
 #include "phalanx/step/haptic_step.h"
 
 #include <gmock/gmock.h>
@@ -8,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/count_allocations.h"
 #include "support/simple_hand.h"

@@ -4,16 +4,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <limits>
-#include <numbers>
 
 namespace phalanx {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-
-inline constexpr double kPi = std::numbers::pi;
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Rigid pose X_AB of frame B in frame A:  p_A = R p_B + p.  R is orthonormal, p is in metres.
 /// Real-time: plain values, no allocation.

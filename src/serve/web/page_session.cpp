@@ -88,9 +88,13 @@ void PageSession::show_out_for_too_much() {
 }
 
 void PageSession::count_control_frame(websocket::frame_type kind) {
-  if (leaving_ || heard_until_ || kind == websocket::frame_type::close || rate_.allows_one(Clock::now()))
-    return;
-  heard_until_ = Clock::now() + kLastWords;
+  if (leaving_ || kind == websocket::frame_type::close) return;
+  if (heard_until_) {
+    last_words_ += kFrameHead;
+    if (last_words_ > kMostLastWords) heard_until_ = Clock::now();
+  } else if (!rate_.allows_one(Clock::now())) {
+    heard_until_ = Clock::now() + kLastWords;
+  }
 }
 
 bool PageSession::send(Bytes message) {

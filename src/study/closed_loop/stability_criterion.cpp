@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/study/closed_loop/stability_criterion.h"
-#include "phalanx/core/index.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {

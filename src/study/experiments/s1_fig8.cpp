@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "phalanx/core/units.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/study/experiments.h"
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "phalanx/core/units.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/record/made.h"
 #include "phalanx/study/experiments.h"
 #include "study/made_json.h"

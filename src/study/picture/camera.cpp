@@ -11,8 +11,8 @@
 namespace phalanx::picture {
 namespace {
 
-constexpr float kDeg = std::numbers::pi_v<float> / 180.0F;
-constexpr float kFieldOfView = 19.0F * kDeg;  // vertical; long enough a lens to keep proportions
+constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+constexpr float kFieldOfView = 19.0F * kDegree;  // vertical; long enough a lens to keep proportions
 constexpr float kSceneLeft = 0.10F,
                 kSceneRight = 0.95F;  // the scene's share of the width: the force scale is left of it
 constexpr float kFill = 0.86F;        // its share of the height
@@ -139,9 +139,9 @@ Camera choose_camera(const RayScene& scene, const std::vector<const RenderMesh*>
   float best_score = -1e9F;
   for (const float elevation : {17.0F, 26.0F, 38.0F, 52.0F}) {
     for (int i = 0; i < 48; ++i) {
-      const float azimuth = static_cast<float>(i) * 7.5F * kDeg;
-      const Vec3f forward(-std::cos(elevation * kDeg) * std::cos(azimuth),
-                          -std::cos(elevation * kDeg) * std::sin(azimuth), -std::sin(elevation * kDeg));
+      const float azimuth = static_cast<float>(i) * 7.5F * kDegree;
+      const Vec3f forward(-std::cos(elevation * kDegree) * std::cos(azimuth),
+                          -std::cos(elevation * kDegree) * std::sin(azimuth), -std::sin(elevation * kDegree));
       const Camera camera = fitted(all, forward, width, height);
       const Shown image = shown(scene, camera, width, height);
       const float tilt = (elevation - 20.0F) / 60.0F;

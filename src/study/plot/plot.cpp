@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/study/plot.h"
-#include "phalanx/core/units.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/study/human_names.h"
 #include "study/plot/panel.h"
 #include "study/plot/ticks.h"

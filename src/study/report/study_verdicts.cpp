@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostColumns = 60;  // of one map
 constexpr std::size_t kMostMaps = 40;
-constexpr std::size_t kColumnsOfHalfVerdicts = 8;  // up to here two maps fit beside each other
+constexpr std::size_t kColumnsOfHalfVerdictMap = 8;  // up to here two maps fit beside each other
 
 CellVerdict cell_of(Verdict verdict) {
   switch (verdict) {
@@ -51,7 +51,7 @@ std::vector<VerdictMap> maps_of(const StudyView& view, const Dimension* along, c
     return {empty};
   }
   empty.x_label = along->label;
-  empty.width_mm = along->names.size() <= kColumnsOfHalfVerdicts ? 88.0 : 180.0;
+  empty.width_mm = along->names.size() <= kColumnsOfHalfVerdictMap ? 88.0 : 180.0;
   std::vector<VerdictMap> maps;
   for (std::size_t i = 0; i < along->order.size(); ++i) {
     if (i % kMostColumns == 0) maps.push_back(empty);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/calibration.h"
-#include "phalanx/core/units.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "phalanx/core/constants.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {

@@ -37,7 +37,7 @@ class GloveFirmware {
   /// Host's lines that were not empty, in order.
   [[nodiscard]] std::vector<std::string> answers() const;
   [[nodiscard]] std::string last_answer() const;
-  /// Waits until the host has sent so many more of these; false: it did not within 10 s.
+  /// Waits until the host has sent so many more of these; false: it did not within 5 minutes.
   [[nodiscard]] bool wait_for_answers(std::size_t more);
   [[nodiscard]] bool wait_for_newlines(std::size_t more);
   /// Waits until an answer is this one.

@@ -11,6 +11,7 @@ import { Stream } from "./stream";
 import { kHangMs, until } from "./until";
 
 const kPressMs = 2000;
+const kTooBusy = "overload"; // docs/safety.md
 const isStopped = (state: State) => state.heldStopped && state.safety === SafetyState.SAFETY_STOPPED;
 
 export class CockpitPage {
@@ -123,8 +124,9 @@ export class CockpitPage {
     return until(what, () => this.stream.state !== undefined && is(this.stream.state) && (true as const), () => this.brief());
   }
 
+  /// Running; of faults only that of a computer which is too busy is reset.
   untilRunning(): Promise<true> {
-    return this.untilState("the station runs", (state) => state.safety === SafetyState.SAFETY_RUNNING && !state.stationGone);
+    return this.untilReset("the station runs", (state) => Promise.resolve(state.safety === SafetyState.SAFETY_RUNNING), [kTooBusy]);
   }
 
   /// Running, whatever a busy computer has done to the link between two programs: a fault is reset and a hold resumed, as a person would.
@@ -153,14 +155,14 @@ export class CockpitPage {
     return this.untilReset("the station has stopped", (state) => Promise.resolve(isStopped(state)));
   }
 
-  private untilReset(what: string, is: (state: State) => Promise<boolean>): Promise<true> {
+  private untilReset(what: string, is: (state: State) => Promise<boolean>, only?: readonly string[]): Promise<true> {
     return until(
       what,
       async () => {
         const { state } = this.stream;
         if (state === undefined || state.stationGone) return false;
         if (!state.fault) return (await is(state)) && (true as const);
-        await this.press(this.button(strings.fault.reset).first());
+        if (!only || only.includes(state.fault.name)) await this.press(this.button(strings.fault.reset).first());
         return false;
       },
       () => this.brief(),

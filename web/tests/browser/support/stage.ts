@@ -35,12 +35,12 @@ export interface OwnDevice {
 /// Large enough to hold all controls, small enough for several pages drawn by a processor.
 export const small: BrowserContextOptions = { viewport: { width: 1000, height: 640 } };
 
-const kHangMs = 900_000; // of a whole test; only against hangs, as all limits here, and long enough for a wait to say what it saw instead
+const kTestMs = 900_000; // of a whole test; only against hangs, as all limits here, and long enough for a wait to say what it saw instead
 
 const kLastWords = 600; // characters
 
-/// A program whose test was killed ends by itself after a quarter of an hour; its clock is the slowed one.
-const forgotten = (slow: string) => ["--seconds", String(Math.ceil(900 / Number(slow)))];
+/// A program whose test was killed ends by itself after half an hour; its clock is the slowed one.
+const forgotten = (slow: string) => ["--seconds", String(Math.ceil(1800 / Number(slow)))];
 
 const browserFlags = [
   "--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-background-networking", "--disable-component-update",
@@ -115,7 +115,7 @@ export class Stage {
 
 /// One for a file of stories.
 export function stage(): Stage {
-  vi.setConfig({ testTimeout: kHangMs, hookTimeout: kHangMs });
+  vi.setConfig({ testTimeout: kTestMs, hookTimeout: kTestMs });
   const made = new Stage();
   afterEach(({ task }) => {
     if (task.result?.state === "fail") console.log(`when "${task.name}" failed:\n${made.brief()}`);
