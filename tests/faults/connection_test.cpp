@@ -67,8 +67,9 @@ void kill_controller(TwoProcesses& both) { both.controller().signal(SIGKILL); }
 
 const Registered kPulledUdp("ACableThatIsPulledStopsTheHost", "udp",
                             {.events = {{2.4, kill_controller}}, .seconds = 3.0});
-const Registered kPulledPty("ACableThatIsPulledStopsTheHost", "pty",
-                            {.pty = true, .slower = 4.0, .events = {{2.4, kill_controller}}, .seconds = 3.0});
+const Registered kPulledPty(
+    "ACableThatIsPulledStopsTheHost", "pty",
+    {.pty = true, .slower = 4.0, .fault = "device_lost", .events = {{2.4, kill_controller}}, .seconds = 3.0});
 TEST(Faults, ACableThatIsPulledStopsTheHost) {
   const HostStop udp = host_stop(outcome("ACableThatIsPulledStopsTheHost", "udp").logs.host);
   const HostStop pty = host_stop(outcome("ACableThatIsPulledStopsTheHost", "pty").logs.host);
