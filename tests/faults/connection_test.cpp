@@ -22,6 +22,7 @@ double ms(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
 
 const Registered kSilence("ASilentControllerStopsTheHost", "",
                           {.controller = {"--fault", "silence@2.2+0.2"},
+                           .late = {"no_sample"},
                            .events = {type_at(2.9, "reset")},
                            .seconds = 4.6});
 TEST(Faults, ASilentControllerStopsTheHost) {
@@ -66,10 +67,9 @@ HostStop host_stop(const HostRows& rows) {
 void kill_controller(TwoProcesses& both) { both.controller().signal(SIGKILL); }
 
 const Registered kPulledUdp("ACableThatIsPulledStopsTheHost", "udp",
-                            {.events = {{2.4, kill_controller}}, .seconds = 3.0});
-const Registered kPulledPty(
-    "ACableThatIsPulledStopsTheHost", "pty",
-    {.pty = true, .slower = 4.0, .fault = "device_lost", .events = {{2.4, kill_controller}}, .seconds = 3.0});
+                            {.late = {"no_sample"}, .events = {{2.4, kill_controller}}, .seconds = 3.0});
+const Registered kPulledPty("ACableThatIsPulledStopsTheHost", "pty",
+                            {.pty = true, .slower = 4.0, .events = {{2.4, kill_controller}}, .seconds = 3.0});
 TEST(Faults, ACableThatIsPulledStopsTheHost) {
   const HostStop udp = host_stop(outcome("ACableThatIsPulledStopsTheHost", "udp").logs.host);
   const HostStop pty = host_stop(outcome("ACableThatIsPulledStopsTheHost", "pty").logs.host);
@@ -121,7 +121,9 @@ void stall_host(TwoProcesses& both) {
 }
 
 const Registered kStall("AStalledHostLeavesZeroTorque", "",
-                        {.events = {{2.2, stall_host}, type_at(2.9, "reset")}, .seconds = 4.6});
+                        {.late = {"step_too_old"},
+                         .events = {{2.2, stall_host}, type_at(2.9, "reset")},
+                         .seconds = 4.6});
 TEST(Faults, AStalledHostLeavesZeroTorque) {
   const Outcome& o = outcome("AStalledHostLeavesZeroTorque");
   expect_sane(o);

@@ -54,12 +54,14 @@ bool joined_in_time(const Outcome& outcome) {
   return start < rows.size() && rows[start].time_us <= kClosing;
 }
 
-/// Whether no busy machine has come between: a pseudo-terminal's bytes were carried by the kernel's threads
-/// before the host gave up waiting for a sample, and the fault is the one that the scenario makes.
+/// Whether no busy machine has come between: of the faults of what comes late, only those that the scenario
+/// makes.
 bool is_undisturbed(const Entry& entry) {
-  const std::vector<std::string>& faults = entry.outcome.faults;
-  if (entry.scenario.pty && std::ranges::find(faults, "no_sample") != faults.end()) return false;
-  return entry.scenario.fault.empty() || faults == std::vector{entry.scenario.fault};
+  const std::vector<std::string>& own = entry.scenario.late;
+  return std::ranges::none_of(entry.outcome.faults, [&](const std::string& fault) {
+    const bool late = fault == "no_sample" || fault == "step_too_old" || fault == "overload";
+    return late && std::ranges::find(own, fault) == own.end();
+  });
 }
 
 /// What this busy machine has disturbed gets another chance.

@@ -17,7 +17,7 @@ Event type_line_at(double at, const std::string& line) {
 
 // First a short overload, which is shown and goes by, then one that lasts.
 const Registered kOverload("AnOverloadIsShownAndThenStops", "",
-                           {.fault = "overload",
+                           {.late = {"overload"},
                             .events = {type_line_at(1.9, "slow 8"), type_line_at(1.94, "slow 0"),
                                        type_line_at(3.2, "slow 8"), type_line_at(3.6, "slow 0")},
                             .seconds = 4.0});

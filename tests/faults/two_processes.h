@@ -39,9 +39,9 @@ struct Scenario {
   /// So many times more slowly than others: the kernel's own threads carry a pseudo-terminal's bytes, and
   /// come late on a busy machine.
   double slower = 1.0;
-  /// The only one that the host is to name, where a busy machine may make another first: one that came in its
-  /// place is tried again.
-  std::string fault = {};
+  /// Faults of what comes late that it makes: no_sample, step_too_old, overload. A busy machine makes them,
+  /// too, and where one comes that is not named here the scenario is tried again.
+  std::vector<std::string> late = {};
   std::vector<Event> events = {};  ///< in order
   double seconds = 4.2;            ///< then the host is asked to end, then the controller
 };
