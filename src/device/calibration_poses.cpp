@@ -11,9 +11,7 @@
 namespace phalanx {
 namespace {
 
-constexpr int kAbduction = 1;
-
-bool is_abduction(int joint) { return joint % kJointsPerDigit == kAbduction; }
+bool is_abduction(int joint) { return joint % kJointsPerDigit == kAbductionJoint; }
 bool is_thumb(int digit) { return digit == static_cast<int>(Digit::kThumb); }
 
 // Where a value lies between the hand's smallest (0) and largest angle (1) of a joint.
@@ -34,7 +32,7 @@ double open_curl(const HandParameters& hand, int digit) {
 double open_value(const DeviceChannel& c, const HandParameters& hand) {
   if (c.kind == ChannelKind::kAngle) return hand.open_angle[static_cast<std::size_t>(c.index)];
   if (c.kind == ChannelKind::kCurl) return open_curl(hand, c.index);
-  const int joint = joint_index(c.index, kAbduction);
+  const int joint = joint_index(c.index, kAbductionJoint);
   return 2.0 * fraction(hand, joint, hand.open_angle[static_cast<std::size_t>(joint)]) - 1.0;
 }
 

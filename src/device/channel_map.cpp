@@ -14,7 +14,6 @@
 namespace phalanx {
 namespace {
 
-constexpr int kAbductionJoint = 1;  ///< of a digit's joints
 constexpr int kMotorsAtMost = 256;  ///< the link's index has 8 bits
 
 std::string_view kind_name(ChannelKind kind) {

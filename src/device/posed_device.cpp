@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "device/shown_range.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kCount = 10e-6;  ///< of an angle channel [rad]
-constexpr double kShownBeyondRange =
-    20.0 * std::numbers::pi / 180.0;  ///< that it can still show, each side [rad]
-constexpr double kStartRamp = 1.0;    ///< of the factor, as a controller on the link has it [s]
+constexpr double kCount = 10e-6;    ///< of an angle channel [rad]
+constexpr double kStartRamp = 1.0;  ///< of the factor, as a controller on the link has it [s]
 
 void check_above_zero(double value, const char* what) {
   if (!(value > 0.0) || !std::isfinite(value))

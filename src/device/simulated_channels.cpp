@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
+#include "device/shown_range.h"
 #include "phalanx/core/index.h"
 
 namespace phalanx {
@@ -17,8 +17,7 @@ namespace {
 constexpr double kAngleCount = 10e-6;  ///< where the sensor has no least significant bit [rad]
 constexpr double kMotorCount = 1e-6;   ///< [m]
 constexpr double kTorqueCount = 1e-4;  ///< [Nm]
-constexpr double kBeyondRange = 20.0 * std::numbers::pi / 180.0;  ///< on either side [rad]
-constexpr double kMotorPlay = 5e-3;  ///< wound up beyond the joints' angles: backlash and stretch [m]
+constexpr double kMotorPlay = 5e-3;    ///< wound up beyond the joints' angles: backlash and stretch [m]
 /// A rotor that is stopped pulls harder than its motor; so many times as much a sensor can still show.
 constexpr double kTorqueReserve = 4.0;
 
@@ -41,15 +40,15 @@ DeviceChannel channel_of(ChannelKind kind, int index, double gain, double low, d
 DeviceChannel angle_channel(const ExoJoint& joint, const HandParameters& hand) {
   const auto j = idx(joint.joint);
   return channel_of(ChannelKind::kAngle, joint.joint, joint.sensor_lsb > 0.0 ? joint.sensor_lsb : kAngleCount,
-                    hand.min_angle[j] - kBeyondRange, hand.max_angle[j] + kBeyondRange);
+                    hand.min_angle[j] - kShownBeyondRange, hand.max_angle[j] + kShownBeyondRange);
 }
 
 DeviceChannel motor_channel(const ExoMotor& motor, int index, const HandParameters& hand) {
   double low = -kMotorPlay;
   double high = kMotorPlay;
   for (std::size_t j = 0; j < motor.arm.size(); ++j) {
-    const double at_min = motor.arm[j] * (hand.min_angle[j] - kBeyondRange);
-    const double at_max = motor.arm[j] * (hand.max_angle[j] + kBeyondRange);
+    const double at_min = motor.arm[j] * (hand.min_angle[j] - kShownBeyondRange);
+    const double at_max = motor.arm[j] * (hand.max_angle[j] + kShownBeyondRange);
     low += std::min(at_min, at_max);
     high += std::max(at_min, at_max);
   }

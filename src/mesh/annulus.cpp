@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "phalanx/core/constants.h"
 
 namespace phalanx::mesh {
 namespace {
-
-constexpr double kNoTriangle = std::numeric_limits<double>::infinity();
 
 double twice_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -18,7 +17,7 @@ double twice_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
 double thinness(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double area = 0.5 * (b - a).cross(c - a).norm();
   const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-  return area > 1e-9 * squares ? squares / (4.0 * std::sqrt(3.0) * area) : kNoTriangle;
+  return area > 1e-9 * squares ? squares / (4.0 * std::sqrt(3.0) * area) : kInfinity;
 }
 
 }  // namespace
@@ -31,7 +30,7 @@ std::optional<AnnulusFilling> fill_annulus(const MeshBuilder& builder, const Pla
   // best filling that has used i edges of the outer and j edges of the inner loop.
   std::size_t i0 = 0;
   std::size_t j0 = 0;
-  double shortest = kNoTriangle;
+  double shortest = kInfinity;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < m; ++j) {
       const double d = (outer.at[i] - inner.at[j]).squaredNorm();
@@ -51,18 +50,18 @@ std::optional<AnnulusFilling> fill_annulus(const MeshBuilder& builder, const Pla
   // triangles.
   const auto cost_of = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                            const Vec3& pa, const Vec3& pb, const Vec3& pc) {
-    if (!(twice_area(a, b, c) > 1e-6)) return kNoTriangle;
+    if (!(twice_area(a, b, c) > 1e-6)) return kInfinity;
     const double thin = thinness(pa, pb, pc);
     return thin * thin;
   };
   const std::size_t width = m + 1;
-  std::vector<double> cost((n + 1) * width, kNoTriangle);
+  std::vector<double> cost((n + 1) * width, kInfinity);
   std::vector<bool> by_outer((n + 1) * width, false);
   cost[0] = 0.0;
   for (std::size_t i = 0; i <= n; ++i) {
     for (std::size_t j = 0; j <= m; ++j) {
       double& best = cost[i * width + j];
-      if (i > 0 && cost[(i - 1) * width + j] < kNoTriangle) {
+      if (i > 0 && cost[(i - 1) * width + j] < kInfinity) {
         const double c = cost[(i - 1) * width + j] + cost_of(outer.at[o(i - 1)], outer.at[o(i)],
                                                              inner.at[in(j)], space(outer, o(i - 1)),
                                                              space(outer, o(i)), space(inner, in(j)));
@@ -71,7 +70,7 @@ std::optional<AnnulusFilling> fill_annulus(const MeshBuilder& builder, const Pla
           by_outer[i * width + j] = true;
         }
       }
-      if (j > 0 && cost[i * width + j - 1] < kNoTriangle) {
+      if (j > 0 && cost[i * width + j - 1] < kInfinity) {
         const double c = cost[i * width + j - 1] + cost_of(outer.at[o(i)], inner.at[in(j)],
                                                            inner.at[in(j - 1)], space(outer, o(i)),
                                                            space(inner, in(j)), space(inner, in(j - 1)));
@@ -82,7 +81,7 @@ std::optional<AnnulusFilling> fill_annulus(const MeshBuilder& builder, const Pla
       }
     }
   }
-  if (!(cost.back() < kNoTriangle)) return std::nullopt;
+  if (!(cost.back() < kInfinity)) return std::nullopt;
   AnnulusFilling filling;
   const auto add = [&](const Triangle& t) {
     filling.triangles.push_back(t);

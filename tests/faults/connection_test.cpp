@@ -14,10 +14,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Event type_at(double at, const std::string& line) {
-  return {at, [line](TwoProcesses& both) { both.host().type(line); }};
-}
-
 double ms(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
 
 const Registered kSilence("ASilentControllerStopsTheHost", "",

@@ -71,6 +71,9 @@ void run(Entry& entry) {
     for (int i = 0; i < kTries; ++i) {
       entry.outcome = TwoProcesses(entry.scenario).go();
       if (joined_in_time(entry.outcome) && is_undisturbed(entry)) return;
+      fmt::print("{}: a busy machine came between, which {}\n", entry.test,
+                 joined_in_time(entry.outcome) ? fmt::format("made {}", fmt::join(entry.outcome.faults, ", "))
+                                               : std::string("let the host join too late"));
     }
     if (!joined_in_time(entry.outcome))
       entry.outcome.problem = "this machine is too busy: the host never joined before the patient's squeeze";
@@ -110,6 +113,10 @@ std::string key(const std::string& test, const std::string& variant) { return te
 
 Registered::Registered(const std::string& test, const std::string& variant, Scenario scenario) {
   entries()[key(test, variant)] = {.test = test, .scenario = std::move(scenario), .outcome = {}};
+}
+
+Event type_at(double at, const std::string& line) {
+  return {at, [line](TwoProcesses& both) { both.host().type(line); }};
 }
 
 const Outcome& outcome(const std::string& test, const std::string& variant) {

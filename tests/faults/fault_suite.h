@@ -15,6 +15,9 @@ class Registered {
   Registered(const std::string& test, const std::string& variant, Scenario scenario);
 };
 
+/// A line typed at the host's terminal, at a time of the controller's process [s].
+[[nodiscard]] Event type_at(double at, const std::string& line);
+
 /// What the scenario has left. @throws std::runtime_error with its problem if it did not come to its end
 [[nodiscard]] const Outcome& outcome(const std::string& test, const std::string& variant = {});
 

@@ -11,15 +11,11 @@
 namespace phalanx::testing {
 namespace {
 
-Event type_line_at(double at, const std::string& line) {
-  return {at, [line](TwoProcesses& both) { both.host().type(line); }};
-}
-
 // First a short overload, which is shown and goes by, then one that lasts.
 const Registered kOverload("AnOverloadIsShownAndThenStops", "",
                            {.late = {"overload"},
-                            .events = {type_line_at(1.9, "slow 8"), type_line_at(1.94, "slow 0"),
-                                       type_line_at(3.2, "slow 8"), type_line_at(3.6, "slow 0")},
+                            .events = {type_at(1.9, "slow 8"), type_at(1.94, "slow 0"),
+                                       type_at(3.2, "slow 8"), type_at(3.6, "slow 0")},
                             .seconds = 4.0});
 TEST(Faults, AnOverloadIsShownAndThenStops) {
   const Outcome& o = outcome("AnOverloadIsShownAndThenStops");
@@ -78,8 +74,7 @@ void expect_gentle(const Outcome& o, const std::string& what) {
 }
 
 const Registered kStiffness("StiffnessChangesInContactWithoutAStep", "",
-                            {.events = {type_line_at(2.4, "set force.stiffness_n_per_mm=1.2")},
-                             .seconds = 4.2});
+                            {.events = {type_at(2.4, "set force.stiffness_n_per_mm=1.2")}, .seconds = 4.2});
 TEST(Faults, StiffnessChangesInContactWithoutAStep) {
   const Outcome& o = outcome("StiffnessChangesInContactWithoutAStep");
   EXPECT_NE(o.host_output.find("changed: force.stiffness"), std::string::npos) << o.host_errors;
@@ -91,7 +86,7 @@ TEST(Faults, StiffnessChangesInContactWithoutAStep) {
 
 // The patient's hand is in the new object when it appears: it is felt from the next squeeze on, at 6.3 s.
 const Registered kSwap("AnObjectIsSwappedWithoutAStep", "",
-                       {.events = {type_line_at(2.0, "set objects.0.size_mm=125")}, .seconds = 7.6});
+                       {.events = {type_at(2.0, "set objects.0.size_mm=125")}, .seconds = 7.6});
 TEST(Faults, AnObjectIsSwappedWithoutAStep) {
   const Outcome& o = outcome("AnObjectIsSwappedWithoutAStep");
   EXPECT_NE(o.host_output.find("changed: objects"), std::string::npos) << o.host_errors;

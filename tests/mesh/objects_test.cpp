@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/maker_refusal.h"
 #include "mesh/mesh_checks.h"
 #include "mesh/object_shapes.h"
 #include "phalanx/core/constants.h"
@@ -341,44 +342,35 @@ TEST(Objects, AreMadeForTheWholeRangeOfProportions) {
   }
 }
 
-std::string object_refusal(const std::function<void()>& make) {
-  try {
-    make();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
-
 TEST(ObjectRefusals, NameTheMakerTheValueAndTheRemedy) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(object_refusal([] { (void)make_bottle(-0.1, 0.2, 100); }),
+  EXPECT_EQ(maker_refusal([] { (void)make_bottle(-0.1, 0.2, 100); }),
             "make_bottle: diameter is -0.1 m; give a finite length above 0");
-  EXPECT_EQ(object_refusal([] { (void)make_bottle(0.1, 0.1, 100); }),
+  EXPECT_EQ(maker_refusal([] { (void)make_bottle(0.1, 0.1, 100); }),
             "make_bottle: a length of 0.1 m is 1 times the diameter of 0.1 m; give 1.5 to 8 times");
-  EXPECT_EQ(object_refusal([] { (void)make_pen(0.01, 0.1, 0); }),
+  EXPECT_EQ(maker_refusal([] { (void)make_pen(0.01, 0.1, 0); }),
             "make_pen: triangles is 0; give 1 to 50000000");
-  EXPECT_EQ(object_refusal([&] { (void)make_cup(0.1, kNan, 100); }),
+  EXPECT_EQ(maker_refusal([&] { (void)make_cup(0.1, kNan, 100); }),
             "make_cup: length is nan m; give a finite length above 0");
-  EXPECT_EQ(object_refusal([] { (void)make_therapy_ball(0.07, 0.02, 100); }),
+  EXPECT_EQ(maker_refusal([] { (void)make_therapy_ball(0.07, 0.02, 100); }),
             "make_therapy_ball: bump is 0.02 m; give 0 (smooth) to 0.15 of the diameter of 0.07 m");
-  EXPECT_NE(object_refusal([&] { (void)make_therapy_ball(0.07, kNan, 100); }).find("bump is nan"),
+  EXPECT_NE(maker_refusal([&] { (void)make_therapy_ball(0.07, kNan, 100); }).find("bump is nan"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_key(0.1, 0.02, 0.002, 100); }).find("1.8 to 4 times"),
+  EXPECT_NE(maker_refusal([] { (void)make_key(0.1, 0.02, 0.002, 100); }).find("1.8 to 4 times"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_key(0.05, 0.02, 0.02, 100); }).find("thickness"),
+  EXPECT_NE(maker_refusal([] { (void)make_key(0.05, 0.02, 0.02, 100); }).find("thickness"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_putty_bar({0.1, 0.0, 0.1}, 100); }).find("a length is 0 m"),
+  EXPECT_NE(maker_refusal([] { (void)make_putty_bar({0.1, 0.0, 0.1}, 100); }).find("a length is 0 m"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_putty_bar({0.2, 0.01, 0.1}, 100); }).find("1 to 10 times"),
+  EXPECT_NE(maker_refusal([] { (void)make_putty_bar({0.2, 0.01, 0.1}, 100); }).find("1 to 10 times"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_peg(0.01, 0.05, 0.011, 100); }).find("head_diameter"),
+  EXPECT_NE(maker_refusal([] { (void)make_peg(0.01, 0.05, 0.011, 100); }).find("head_diameter"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_peg(0.01, 0.05, -0.02, 100); }).find("head_diameter is -0.02"),
+  EXPECT_NE(maker_refusal([] { (void)make_peg(0.01, 0.05, -0.02, 100); }).find("head_diameter is -0.02"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_jar(0.08, 0.1, 0.1, 100); }).find("0.5 to 1.05 times"),
+  EXPECT_NE(maker_refusal([] { (void)make_jar(0.08, 0.1, 0.1, 100); }).find("0.5 to 1.05 times"),
             std::string::npos);
-  EXPECT_NE(object_refusal([] { (void)make_tap_handle(0.05, 0.2, 100); }).find("0.3 to 2 times"),
+  EXPECT_NE(maker_refusal([] { (void)make_tap_handle(0.05, 0.2, 100); }).find("0.3 to 2 times"),
             std::string::npos);
 }
 

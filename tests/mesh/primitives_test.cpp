@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mesh/maker_refusal.h"
 #include "mesh/mesh_checks.h"
 #include "phalanx/core/constants.h"
 #include "support/sanitized.h"
@@ -99,15 +100,6 @@ TEST_P(Primitive, DoesNotCrossItself) {
 
 INSTANTIATE_TEST_SUITE_P(All, Primitive, ::testing::ValuesIn(solids()),
                          [](const auto& each) { return each.param.name; });
-
-std::string maker_refusal(const std::function<void()>& make) {
-  try {
-    make();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
 
 TEST(PrimitiveRefusals, NameTheMakerTheValueAndTheRemedy) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

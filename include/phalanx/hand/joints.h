@@ -11,6 +11,7 @@ namespace phalanx {
 inline constexpr int kDigits = 5;
 inline constexpr int kJointsPerDigit = 4;
 inline constexpr int kSegmentsPerDigit = 3;
+inline constexpr int kAbductionJoint = 1;  ///< of a digit's joints, the one that moves it sideways
 inline constexpr int kJoints = kDigits * kJointsPerDigit;
 inline constexpr int kSegments = kDigits * kSegmentsPerDigit + 1;
 /// The palm is the last segment. It is fixed in the world.

@@ -7,13 +7,10 @@
 #include <cmath>
 
 #include "phalanx/study/human_names.h"
+#include "study/laboratory/study_json.h"
 
 namespace phalanx {
 namespace {
-
-nlohmann::ordered_json seconds_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
 
 ChartPanel panel(const LoopRun& run, const std::string& title, const std::string& label, double scale,
                  const std::array<std::vector<double>, kSegments>& values) {
@@ -69,8 +66,8 @@ nlohmann::ordered_json loop_json(const LoopRun& run) {
                               {"mean_force_n", trial.mean_force},
                               {"ghost_s", trial.ghost_s},
                               {"ghost_energy_j", trial.ghost_energy},
-                              {"swung_s", seconds_or_null(run.detections[i].swung_s)},
-                              {"oscillation_seen_s", seconds_or_null(run.detections[i].fired_s)}});
+                              {"swung_s", number_or_null(run.detections[i].swung_s)},
+                              {"oscillation_seen_s", number_or_null(run.detections[i].fired_s)}});
   }
   return json;
 }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "device/opengloves/glove_firmware.h"
+#include "device/opengloves/quick_settings.h"
 #include "phalanx/device/opengloves/opengloves_device.h"
 #include "record/temporary_folder.h"
 
@@ -16,13 +17,10 @@ namespace phalanx {
 namespace {
 
 using test::GloveFirmware;
+using test::quick;
 using ::testing::HasSubstr;
 
 constexpr const char* kOpenHand = "A0B0C0D0E0F2047G2047";
-
-OpenGlovesSettings quick() {
-  return {.full_scale = 0, .hello_timeout = 60.0, .learn_for = 0.1, .serial = ""};
-}
 
 // Polls; false after 10 s.
 bool eventually(const std::function<bool()>& holds) {

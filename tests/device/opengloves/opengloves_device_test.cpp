@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "device/opengloves/glove_firmware.h"
+#include "device/opengloves/quick_settings.h"
 #include "support/count_allocations.h"
 #include "support/simple_hand.h"
 
@@ -17,17 +18,14 @@ namespace phalanx {
 namespace {
 
 using test::GloveFirmware;
+using test::quick;
 using ::testing::HasSubstr;
 
 constexpr const char* kOpenGlove = "A0B0C0D0E0F2047G2047P0(AB)2047(BB)2047(CB)2047(DB)2047(EB)2047";
 constexpr const char* kFree = "A0B0C0D0E0";
 
-OpenGlovesSettings quick_device() {
-  return {.full_scale = 0, .hello_timeout = 60.0, .learn_for = 0.1, .serial = ""};
-}
-
 struct Fixture {
-  explicit Fixture(const char* line, const OpenGlovesSettings& settings = quick_device()) : firmware(line) {
+  explicit Fixture(const char* line, const OpenGlovesSettings& settings = quick()) : firmware(line) {
     device = make_opengloves_device(firmware.host_descriptor(), clock, settings);
     device->set_hand(test::simple_parameters());
   }
@@ -108,7 +106,7 @@ TEST(OpenGlovesDevice, NeverHidesThatItTookAWideGloveForANarrowOne) {
 }
 
 TEST(OpenGlovesDevice, BelievesTheFullScaleThatItIsGiven) {
-  auto settings = quick_device();
+  auto settings = quick();
   settings.full_scale = 4095;
   Fixture glove("A0B0C0D0E0", settings);
   glove.device->open();
@@ -212,7 +210,7 @@ TEST(OpenGlovesDevice, DoesNotBelieveTheFirstLineWhichMayBeHalfAOne) {
   GloveFirmware firmware("");
   firmware.blurt("47(AB)3000\n");
   Clock clock;
-  const auto device = make_opengloves_device(firmware.host_descriptor(), clock, quick_device());
+  const auto device = make_opengloves_device(firmware.host_descriptor(), clock, quick());
   firmware.say("A0B0C0D0E0");
   device->open();
   EXPECT_EQ(device->info().channels.size(), 5U) << "no splay";
@@ -230,7 +228,7 @@ TEST(OpenGlovesDevice, SaysThatTheGloveIsUnplugged) {
 }
 
 TEST(OpenGlovesDevice, RefusesAGloveThatSaysNothing) {
-  auto settings = quick_device();
+  auto settings = quick();
   settings.hello_timeout = 0.2;
   Fixture glove("", settings);
   try {
@@ -243,7 +241,7 @@ TEST(OpenGlovesDevice, RefusesAGloveThatSaysNothing) {
 }
 
 TEST(OpenGlovesDevice, RefusesWhatIsNoGlove) {
-  auto settings = quick_device();
+  auto settings = quick();
   settings.hello_timeout = 0.2;
   Fixture glove("0&0&0&0&0", settings);  // the firmware's other encoding
   EXPECT_THROW(glove.device->open(), DeviceError);
