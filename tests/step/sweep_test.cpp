@@ -377,6 +377,8 @@ struct FileSweep {
   /// With the finger of small facets as well. Not over three of them: at single places its force is 24, 15
   /// and 12 degrees off what the ideal finger feels, up to 13 degrees more than its facets account for.
   bool fine = true;
+  /// By so many places the share that a sanitizer is given lies beside the middle, where that meets nothing.
+  int sanitized_shift = 0;
 };
 void PrintTo(const FileSweep& f, std::ostream* out) { *out << f.file; }
 
@@ -403,13 +405,14 @@ TEST_P(SweepOverFile, JumpsNoMoreThanItsFacetsTurn) {
   const Vec3 heading = along.cross(direction);
   const Vec3 from = 0.5 * (low + high) - (0.5 * size[thinnest] + 0.012) * along -
                     0.5 * kPitch * GetParam().places * direction +
-                    GetParam().beside * size[3 - longest - thinnest] * heading;
+                    GetParam().beside * size[3 - longest - thinnest] * heading +
+                    (test::kSanitized ? kPitch * GetParam().sanitized_shift : 0.0) * direction;
   Sweep line = over(GetParam().file, mesh, from, direction, along, heading, GetParam().places, 0.055);
   line.step.reset();  // what the docs say of it was measured on made objects
   for (const int finger : fingers_for_creases()) {
     if (finger != kFingers[0] && !GetParam().fine) continue;
     const Felt felt = sweep(line, finger);
-    EXPECT_GE(felt.compared, test::kSanitized ? 1 : GetParam().compared);
+    EXPECT_GE(felt.compared, test::kSanitized ? share(GetParam().places) / 2 : GetParam().compared);
   }
 }
 
@@ -417,7 +420,7 @@ INSTANTIATE_TEST_SUITE_P(Files, SweepOverFile,
                          ::testing::Values(FileSweep{"OBJ/spider.obj", 0.01, 400, 390, false},
                                            FileSweep{"PLY/Wuson.ply", 0.01, 400, 390, false},
                                            FileSweep{"OBJ/WusonOBJ.obj", 0.1, 400, 390},
-                                           FileSweep{"STL/3DSMaxExport.STL", -0.35, 400, 150, false},
+                                           FileSweep{"STL/3DSMaxExport.STL", -0.35, 400, 150, false, -100},
                                            FileSweep{"3DS/fels.3ds", 0.01, 400, 390},
                                            FileSweep{"glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", -0.4,
                                                      1000, 990}),
