@@ -16,12 +16,13 @@
 #include <thread>
 
 #include "load_process.h"
+#include "phalanx/device/press_intent.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/isolation_helper.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/serve/cockpit.h"
-#include "phalanx/station/histogram.h"
 #include "phalanx/station/station_host.h"
+#include "rounds.h"
 
 namespace phalanx::bench {
 namespace {
@@ -30,12 +31,11 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr double kSettle = 0.5;  ///< after a change of load, not counted [s]
 
-/// Durations of one kind of slice.
+/// What one kind of load came to, round by round.
 struct Phase {
   std::string name;
-  Histogram step{};
-  Histogram lateness{};
-  std::uint64_t steps = 0;
+  Rounds step{};
+  Rounds lateness{};
   std::uint64_t overruns = 0;
 };
 
@@ -69,7 +69,18 @@ class Bench {
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
 
-  /// Runs for so long; the steps count for `phase` (none: nowhere).
+  /// Runs for so long; nothing of it counts.
+  void settle(double seconds) { run(seconds, nullptr); }
+  /// Runs for so long, which is a round of `phase`.
+  void measure(double seconds, Phase& phase) {
+    phase.step.emplace_back();
+    phase.lateness.emplace_back();
+    run(seconds, &phase);
+  }
+
+  [[nodiscard]] std::string realtime() const { return host_.state()->realtime; }
+
+ private:
   void run(double seconds, Phase* phase) {
     const auto end = std::chrono::steady_clock::now() + Seconds(seconds);
     while (std::chrono::steady_clock::now() < end) {
@@ -78,31 +89,31 @@ class Bench {
       StepRecord record;
       while (host_.next_record(record)) {
         if (phase == nullptr) continue;
-        phase->step.add(record.duration);
-        phase->lateness.add(record.lateness);
-        ++phase->steps;
+        phase->step.back().push_back(record.duration * 1e6);
+        phase->lateness.back().push_back(record.lateness * 1e6);
         if (record.overrun) ++phase->overruns;
       }
     }
   }
 
-  [[nodiscard]] std::string realtime() const { return host_.state()->realtime; }
-
- private:
   const Clock clock_;
   StationHost host_;
   Cockpit cockpit_;
   WebServer server_;
 };
 
+std::string text(const Ratio& ratio) {
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
+}
+
 void print(const Phase& phase, const Phase& quiet) {
-  const auto ratio = [](const Histogram& a, const Histogram& b, double percent) {
-    return a.percentile_us(percent) / b.percentile_us(percent);
-  };
-  fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.1f} | {:.1f} | {:.2f} | {} |\n", phase.name,
-             phase.steps, phase.step.percentile_us(50), phase.step.percentile_us(99.9),
-             ratio(phase.step, quiet.step, 99.9), phase.lateness.percentile_us(50),
-             phase.lateness.percentile_us(99.9), ratio(phase.lateness, quiet.lateness, 99.9), phase.overruns);
+  std::size_t steps = 0;
+  for (const auto& round : phase.step) steps += round.size();
+  fmt::print("| {} | {} | {:.1f} | {} | {:.1f} | {} | {:.1f} | {} | {} |\n", phase.name, steps,
+             percentile(phase.step, 50.0), text(ratio(phase.step, quiet.step, 50.0)),
+             percentile(phase.step, 99.9), text(ratio(phase.step, quiet.step, 99.9)),
+             percentile(phase.lateness, 99.9), text(ratio(phase.lateness, quiet.lateness, 99.9)),
+             phase.overruns);
 }
 
 /// A mesh of this many triangles imported again and again, as an upload is: in a process of its own, made by
@@ -142,45 +153,54 @@ class Uploads {
 
 }  // namespace
 
-int run(double seconds, int rounds) {
+/// A slice is whole squeezes of the simulated patient, or the slices would not hold the same work.
+int run(double squeezes, int rounds) {
+  const double seconds = squeezes * TrialSchedule{}.end;
   LoadProcess clients;  // both fork: before all threads
   const mesh::IsolationHelper helper;
   Bench bench;
-  bench.run(2.0, nullptr);
+  bench.settle(2.0);
   fmt::print("real time: {}\n\n", bench.realtime());
-  std::array<Phase, 6> phase;
-  phase[0].name = "no page";
-  phase[1].name = "20 viewers at 60 Hz";
-  phase[2].name = "a page that never reads";
-  phase[3].name = "100 MB in one message, again and again";
-  phase[4].name = "1,000 connections at once, again and again";
-  phase[5].name = "a mesh of 100,000 triangles, again and again";
+  Phase quiet{"no page"};
+  Phase again{"no page, once more"};
+  std::array<Phase, 4> loaded = {Phase{"20 viewers at 60 Hz"}, Phase{"a page that never reads"},
+                                 Phase{"100 MB in one message, again and again"},
+                                 Phase{"1,000 connections at once, again and again"}};
+  Phase importing{"a mesh of 100,000 triangles, again and again"};
   constexpr std::array<Load, 4> kLoads = {Load::kViewers, Load::kStuck, Load::kHuge, Load::kConnections};
   std::uint64_t messages = 0;
   double viewed = 0.0;  // [s]
   int uploads = 0;
   for (int round = 0; round < rounds; ++round) {
-    bench.run(kSettle, nullptr);
-    bench.run(seconds, &phase[0]);
+    bench.settle(kSettle);
+    bench.measure(seconds, quiet);
     for (std::size_t k = 0; k < kLoads.size(); ++k) {
       const auto begin = std::chrono::steady_clock::now();
       clients.begin(kLoads[k], bench.port());
-      bench.run(kSettle, nullptr);
-      bench.run(seconds, &phase[k + 1]);
+      bench.settle(kSettle);
+      bench.measure(seconds, loaded[k]);
       messages += clients.end();
-      if (kLoads[k] == Load::kViewers) viewed += Seconds(std::chrono::steady_clock::now() - begin).count();
+      if (kLoads[k] != Load::kViewers) continue;
+      viewed += Seconds(std::chrono::steady_clock::now() - begin).count();
+      bench.settle(kSettle);
+      bench.measure(seconds, again);
     }
     const Uploads imports;
-    bench.run(kSettle, nullptr);
-    bench.run(seconds, &phase[5]);
+    bench.settle(kSettle);
+    bench.measure(seconds, importing);
     uploads += imports.done();
   }
   fmt::print(
-      "| load | steps | step p50 [us] | p99.9 | ratio | woken late p50 [us] | p99.9 | ratio | overruns |\n");
+      "| load | steps | step p50 [us] | ratio | p99.9 | ratio | woken late p99.9 [us] | ratio | overruns "
+      "|\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
-  for (const Phase& each : phase) print(each, phase[0]);
+  print(quiet, quiet);
+  print(again, quiet);
+  for (const Phase& each : loaded) print(each, quiet);
+  print(importing, quiet);
+  fmt::print("\nratios to the first line, with the middle 95 % of what rounds drawn anew give\n");
   const double rate = static_cast<double>(messages) / viewed / LoadProcess::kViewerCount;
-  fmt::print("\n{:.1f} messages a second to each viewer; {} imports\n", rate, uploads);
+  fmt::print("{:.1f} messages a second to each viewer; {} imports\n", rate, uploads);
   // 60 ticks a second and a few states, less a slice's ends. A slice too short to tell has to be served only.
   const double least = seconds < 1.0 ? 1.0 : 57.0;
   if (rate >= least) return 0;
@@ -191,11 +211,11 @@ int run(double seconds, int rounds) {
 }  // namespace phalanx::bench
 
 int main(int argc, char** argv) {
-  const double seconds = argc > 1 ? std::strtod(argv[1], nullptr) : 5.0;
+  const double squeezes = argc > 1 ? std::strtod(argv[1], nullptr) : 1.0;
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 12;
-  if (!(seconds > 0.0) || rounds < 1) {
-    fmt::print(stderr, "usage: phalanx_bench_cockpit [SECONDS OF A SLICE [ROUNDS]]\n");
+  if (!(squeezes > 0.0) || rounds < 1) {
+    fmt::print(stderr, "usage: phalanx_bench_cockpit [SQUEEZES OF 5.3 s IN A SLICE [ROUNDS]]\n");
     return 2;
   }
-  return phalanx::bench::run(seconds, rounds);
+  return phalanx::bench::run(squeezes, rounds);
 }
