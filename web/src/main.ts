@@ -147,6 +147,7 @@ function heartbeat(now: number): void {
     frame.view()?.setLost(dead);
   }
   band.update(now);
+  plots?.update();
 }
 function onFrame(now: number): void {
   requestAnimationFrame(onFrame); // first: whatever goes wrong below, the page goes on
@@ -163,9 +164,6 @@ function onFrame(now: number): void {
     plotAt = now + Math.max(kPlotMs, kPlotRest * (performance.now() - began));
   }
 }
-document.addEventListener("visibilitychange", () => {
-  if (document.visibilityState === "visible") store.freshness.visible(performance.now());
-});
 store.on(["connection", "geometry", "state"], () => heartbeat(performance.now()));
 
 window.phalanx = {

@@ -21,7 +21,7 @@ const en = {
     silent: "the station says nothing",
     resume: "Resume",
     resumeHint: "Torque comes back slowly.",
-    resumeViewer: "Only who has control can resume.",
+    resumeViewer: "Only the person in control can resume.",
     region: "Stop and state",
   },
 
@@ -49,7 +49,7 @@ const en = {
   verdict: {
     label: "Stability",
     none: "No contact",
-    off: "No force sent",
+    off: "No force is sent",
     steady: "Steady",
     shakes: "SHAKES",
     shakesFull: (frequency: string, swing: string) => `SHAKES, ${frequency} Hz, ${swing} N`,
@@ -58,6 +58,8 @@ const en = {
 
   digits: ["Thumb", "Index", "Middle", "Ring", "Little"],
   forcePerDigit: "Force of each digit",
+  follows: "(follows)",
+  followsWhy: "The device neither measures nor moves this finger: it follows another one, and is not pushed back.",
   dash: "–", // not known, or nothing
 
   view: {
@@ -68,15 +70,19 @@ const en = {
     presets: { home: "Home", palm: "Palm", thumb: "Thumb side", follow: "Follow" },
     nearer: "Nearer",
     farther: "Farther",
-    parts: { skin: "Skin", ghost: "Measured hand", arrows: "Force arrows", object: "Object" },
+    parts: { skin: "Skin", ghost: "Where the hand is", arrows: "Force arrows", object: "Object" },
     partsMenu: "Show",
     camera: "View",
     picture: "Save picture",
+    key: {
+      arrows: (millimetres: string, newtons: string) => `arrow: ${millimetres} mm for 1 N, up to ${newtons} N`,
+      colours: (newtons: string) => `colour of a segment: its force, 0 to ${newtons} N`,
+    },
   },
 
   lost: {
     closed: "Connection lost",
-    stale: "No new measurements",
+    stale: "Nothing comes from the station",
     unmeasured: "No measurement from the device",
     unmeasuredWhy: "The station is there. What you see is not where the hand is now.",
     measured: (seconds: string) => `last measured ${seconds} s ago`,
@@ -98,7 +104,7 @@ const en = {
     title: "There is no station",
     noReason: "It gave no reason.",
     again: "Try again",
-    viewer: "Only who has control can try again.",
+    viewer: "Only the person in control can try again.",
   },
 
   tabs: { touch: "Touch", hand: "Hand", device: "Device", people: "People", label: "Panels" },
@@ -210,7 +216,7 @@ const en = {
     smoothing: "Smoothing",
     smoothingHint: "limits how fast a force may change",
     smoothingOther: "another stabiliser is in force",
-    fall: "Fastest fall",
+    fall: "Fastest fall (below zero)",
     rise: "Fastest rise",
     method: "Stabiliser",
     methods: {
@@ -225,15 +231,15 @@ const en = {
       energy_bounding: "Energy bounding",
       local_wall: "Wall in the controller",
     } as Record<string, string>,
-    rate: "Rate",
+    rate: "Update rate",
   },
 
   limits: {
     title: "Limits",
     force: "Force of a digit",
     torque: "Torque of a joint",
-    torqueRate: "Change of a torque",
-    speed: "Believed joint speed",
+    torqueRate: "Fastest change of a torque",
+    speed: "Fastest joint speed taken for true",
     off: "OFF",
     change: "Change in the list of all settings",
   },
@@ -263,6 +269,7 @@ const en = {
     left: "Left",
     profile: "Profile of a patient",
     noProfile: "None: adult hand",
+    profileSide: { left: "This profile’s hand is a left one.", right: "This profile’s hand is a right one." },
     source: "What moves the hand",
     sources: ["The device", "Simulated patient", "Sliders"],
     deviceHint: "A device is connected; its sensors move the hand.",
@@ -299,7 +306,7 @@ const en = {
     ownNumbers: "the device’s own numbers",
     realtime: "Real time",
     realtimeUnknown: "not known",
-    degraded: "The loop is degraded: it cannot keep its time.",
+    degraded: "The computer cannot keep time: forces may come late.",
     link: "Link",
     linkNames: {
       received: "received",
@@ -337,7 +344,7 @@ const en = {
     channel: (channel: number) => `sensor channel ${channel}`,
     fromDevice: "reported by the device",
     reset: "Reset",
-    resetViewer: "Only who has control can reset.",
+    resetViewer: "Only the person in control can reset.",
   },
 
   wizard: {
@@ -358,11 +365,11 @@ const en = {
     goTo: (name: string) => `Go to ${name}`,
     abandon: "Abandon",
     write: "Write and use",
-    problems: "Refused",
+    problems: "Channels that were refused",
     results: "Results",
     finished: "All poses are measured.",
     unfinished: "Some channels were refused. Measure their poses again.",
-    beyond: "All poses are through.",
+    beyond: "All poses have been gone through.",
   },
 
   people: {
@@ -394,9 +401,12 @@ const en = {
     paused: "paused",
     csv: "CSV",
     csvTime: "time",
+    csvClock: "station_time",
     csvHead: (name: string, unit: string) => `${name} [${unit}]`,
     offline: "No connection: these curves are old",
-    csvLong: "Save what the plots hold as CSV",
+    silent: "Nothing comes from the station: these curves are old",
+    unmeasured: "No measurement from the device",
+    csvLong: "Save the last 10 s of all curves as CSV",
     png: "PNG",
     pngLong: "Save the plots as a picture (PNG)",
     digits: "Digits",
@@ -405,7 +415,7 @@ const en = {
     sent: "sent",
     measured: "measured",
     shown: "shown",
-    lineRaw: "thin: raw",
+    lineRaw: "thin: before smoothing and limits",
     lineSent: "thick: sent",
     lineMeasured: "thin: measured",
     lineShown: "thick: shown",
@@ -431,7 +441,7 @@ const en = {
     title: "Keys",
     note: "Esc and Space always stop, also here. Close with the button. Only while the browser asks for a file it keeps all keys to itself.",
     rows: [
-      ["Space", "Stop (except in a text field)"],
+      ["Space", "Stop (except where words are typed)"],
       ["Esc", "Stop, everywhere"],
       ["P", "Pause the plots, or go on"],
       ["1 2 3 4", "View: home, palm, thumb side, follow"],
@@ -447,6 +457,7 @@ const en = {
     newton: "N",
     newtonPerSecond: "N/s",
     stiffness: "N/mm",
+    newtonPerMetre: "N/m",
     torque: "Nm",
     torqueRate: "Nm/s",
     radian: "rad",

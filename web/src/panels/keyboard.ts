@@ -16,11 +16,17 @@ const kStopAgainMs = 200;
 const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
 const typed = new Set(["text", "search", "number", "email", "url", "tel", "password"]);
 
-/// Whether letters go into it.
+/// Whether letters and figures go into it.
 export function isTextField(target: EventTarget | null): boolean {
   if (target instanceof HTMLTextAreaElement) return true;
   if (target instanceof HTMLInputElement) return typed.has(target.type);
   return target instanceof HTMLElement && target.isContentEditable;
+}
+
+/// Whether a blank means anything in it: in a number it does not.
+function takesBlanks(target: EventTarget | null): boolean {
+  const number = target instanceof HTMLInputElement && (target.type === "number" || /^(decimal|numeric)$/.test(target.inputMode || (target.getAttribute("inputmode") ?? "")));
+  return isTextField(target) && !number;
 }
 
 /// @param source  the window: listens before anything on the page does
@@ -32,7 +38,7 @@ export function listenToKeys(source: Window, actions: KeyActions): void {
   let stopped = -Infinity; // when a key last said it [ms]
   // While a text is being composed the key has no name, only its place.
   const isStop = (event: KeyboardEvent) =>
-    event.key === "Escape" || event.code === "Escape" || (event.key === " " && !isTextField(event.target));
+    event.key === "Escape" || event.code === "Escape" || (event.key === " " && !takesBlanks(event.target));
 
   source.addEventListener(
     "keydown",

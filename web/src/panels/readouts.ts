@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Above the view: the stability verdict as a light, and the force of each digit.
+import type { State } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
-import { digitForces, kDigits } from "../state/channels";
+import { digitForces, followers, kDigits } from "../state/channels";
 import type { Verdict } from "../state/verdict";
 import { strings } from "../strings";
-import { el, setAttribute, setText } from "./dom";
+import { el, setAttribute, setShown, setText } from "./dom";
 
 const kFullBar = 5; // [N]
 
@@ -15,6 +16,11 @@ export function verdictText(verdict: Verdict | null): string {
   if (verdict.kind !== "shakes") return words[verdict.kind];
   if (!Number.isFinite(verdict.frequency) || !Number.isFinite(verdict.swing)) return words.shakes;
   return words.shakesFull(verdict.frequency.toFixed(0), verdict.swing.toFixed(1));
+}
+
+/// A device that renders no torque, such as a glove that only stops a digit, lets nobody feel the force.
+function asFelt(verdict: Verdict, state: State | undefined): Verdict {
+  return verdict.kind === "steady" && state?.rendersTorque === false ? { kind: "off" } : verdict;
 }
 
 export interface Readouts {
@@ -30,14 +36,15 @@ export function readouts(store: Store): Readouts {
   const digits = Array.from({ length: kDigits }, (_, digit) => {
     const value = el("output", { "aria-label": strings.digits[digit] ?? "" });
     const bar = el("span", { class: "bar" });
+    const follows = el("small", { title: strings.followsWhy, hidden: true }, strings.follows);
     const box = el(
       "div",
       { class: "digit-force", "data-digit": digit },
-      el("span", { class: "digit-name" }, strings.digits[digit] ?? ""),
+      el("span", { class: "digit-name" }, strings.digits[digit] ?? "", " ", follows),
       el("span", { class: "digit-value" }, value, el("span", { class: "unit" }, strings.units.newton)),
       el("span", { class: "bar-track", "aria-hidden": "true" }, bar),
     );
-    return { box, value, bar };
+    return { box, value, bar, follows };
   });
   const element = el(
     "div",
@@ -45,8 +52,13 @@ export function readouts(store: Store): Readouts {
     light,
     el("div", { class: "digit-forces", role: "group", "aria-label": strings.forcePerDigit }, ...digits.map((digit) => digit.box)),
   );
+  const showFollowers = () => {
+    const all = followers(store.state?.sensedJoint ?? []);
+    digits.forEach((digit, i) => setShown(digit.follows, store.state !== undefined && (all[i] ?? false)));
+  };
+  store.on(["state"], showFollowers);
   const update = () => {
-    const verdict = store.lost || !store.tick ? null : store.light.shown;
+    const verdict = store.lost || !store.tick ? null : asFelt(store.light.shown, store.state);
     setAttribute(light, "data-verdict", verdict?.kind ?? "unknown");
     setText(text, verdictText(verdict));
     // The figures change all the time; only the verdict itself is spoken, and only shaking into the middle of something.

@@ -6,6 +6,7 @@ import type { ThemeName } from "../theme";
 import type { CameraPreset, HandView, ShownParts } from "../view3d/hand_view";
 import type { ViewTrouble } from "../view3d/view";
 import { button, el, saveFile, setShown, setSwitch, setText, stamp, switchButton } from "./dom";
+import { viewKey } from "./view_key";
 
 const kZoomStep = 1.15;
 const kOrbitStep = 0.08; // [rad] for a key
@@ -89,7 +90,7 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
     store.on(["tick"], () => store.tick && view?.show(store.tick));
   }
   return {
-    element: el("div", { class: "view-frame" }, host, wait, cameras, menu, ...over),
+    element: el("div", { class: "view-frame" }, host, wait, viewKey(), cameras, menu, ...over),
     view: () => view,
     load,
     setTheme: (theme) => view?.setTheme(theme),

@@ -72,9 +72,10 @@ export function wizardSection(app: App): HTMLElement {
     setText(title, beyond ? words.beyond : words.pose(wizard.pose + 1, wizard.name.length, wizard.name[wizard.pose] ?? ""));
     setText(instruction, beyond ? "" : wizard.instruction);
     setShown(instruction, !beyond);
-    setShown(measuring, wizard.measuring);
+    const live = app.store.connected;
+    setShown(measuring, live && wizard.measuring);
     progress.value = wizard.measured;
-    setText(raw, wizard.raw.join("   "));
+    setText(raw, live ? wizard.raw.join("   ") : strings.dash);
     setShown(rawBox, wizard.raw.length > 0 && !beyond);
     setShown(measure, !beyond);
     setShown(skip, !beyond);

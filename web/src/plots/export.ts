@@ -2,7 +2,7 @@
 // What is plotted, as files.
 import { channels } from "../state/channels";
 import { toCsv } from "../state/csv";
-import type { Store } from "../state/store";
+import { kHistorySeconds, type Store } from "../state/store";
 import { strings } from "../strings";
 import { digitColours, themes, type ThemeName } from "../theme";
 import { saveBlob, stamp } from "../panels/dom";
@@ -14,7 +14,7 @@ export function csvOf(store: Store): string {
     name: columnName(channel, geometry?.segmentName ?? [], geometry?.jointName ?? []),
     unit: channel.unit,
   }));
-  return toCsv(history, columns);
+  return toCsv(history, kHistorySeconds, columns);
 }
 
 export function saveCsv(store: Store): void {

@@ -36,6 +36,7 @@ function labelOf(channel: Channel, joint: boolean): string {
     torque: "",
     angle_measured: strings.plots.measured,
     angle_shown: strings.plots.shown,
+    stiffness: "",
   };
   return strings.plots.curve(strings.digits[channel.digit] ?? "", (part ?? "").toLowerCase(), kinds[channel.quantity]);
 }
@@ -68,6 +69,7 @@ export function legendOf(kind: PlotKind): string {
 
 /// A channel's name in files: "force_sent index-finger-phalanx-distal".
 export function columnName(channel: Channel, segments: readonly string[], joints: readonly string[]): string {
+  if (channel.quantity === "stiffness") return channel.quantity;
   const force = channel.quantity.startsWith("force");
   const part = (force ? segments : joints)[channel.part] ?? `${force ? "segment" : "joint"}_${channel.part}`;
   return `${channel.quantity} ${part}`;

@@ -18,6 +18,7 @@ const words = strings.plots;
 export interface PlotPanel {
   readonly element: HTMLElement;
   draw(): void;
+  update(): void; // what follows the clock: whether the curves are of now
   setTheme(theme: ThemeName): void;
 }
 
@@ -84,12 +85,19 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
     savePng([...charts].map(([kind, one]) => ({ title: titleOf(kind), legend: legendOf(kind), canvas: one.canvas() })), digits, colours),
     { title: words.pngLong, "aria-label": words.pngLong },
   );
-  const offline = el("p", { class: "plot-offline", role: "status" }, words.offline);
-  const live = () => {
-    setShown(offline, !store.connected);
-    area.classList.toggle("plot-dead", !store.connected);
+  const dead = el("p", { class: "plot-offline", role: "status" });
+  const whyDead = () => {
+    if (!store.connected) return words.offline;
+    if (!store.lost) return "";
+    return store.unmeasured ? words.unmeasured : words.silent;
   };
-  store.on(["connection"], live);
+  const live = () => {
+    const why = whyDead();
+    setText(dead, why);
+    setShown(dead, why !== "");
+    area.classList.toggle("plot-dead", why !== "");
+  };
+  store.on(["connection", "tick"], live);
   live();
   const tools = el(
     "div",
@@ -98,7 +106,7 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
     el("div", { class: "switches", role: "group", "aria-label": words.digits }, ...digitSwitches),
     el("div", { class: "switches" }, paused, pause, button(words.csv, () => saveCsv(store), { title: words.csvLong, "aria-label": words.csvLong }), png),
   );
-  const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, offline));
+  const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, dead));
   new ResizeObserver(() => {
     for (const one of charts.values()) one.resize();
   }).observe(area);
@@ -108,6 +116,7 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
     draw: () => {
       for (const one of charts.values()) one.draw();
     },
+    update: live,
     setTheme: (next) => {
       colours = next;
       for (const one of charts.values()) one.setTheme(next);

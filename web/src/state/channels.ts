@@ -9,13 +9,13 @@ export const kJoints = 20;
 export const kJointsPerDigit = 4;
 export const kSegmentsPerDigit = 3;
 
-export type Quantity = "force_raw" | "force_sent" | "torque" | "angle_measured" | "angle_shown";
+export type Quantity = "force_raw" | "force_sent" | "torque" | "angle_measured" | "angle_shown" | "stiffness";
 
 export interface Channel {
   readonly index: number; // in the history
   readonly quantity: Quantity;
-  readonly part: number; // segment or joint
-  readonly digit: number; // -1: the palm
+  readonly part: number; // segment or joint; 0: there is but one
+  readonly digit: number; // -1: the palm, or the whole hand
   readonly place: number; // in the digit, from the palm
   readonly unit: string;
 }
@@ -37,6 +37,7 @@ function list(): Channel[] {
   add("torque", kJoints, units.torque, digitOfJoint, kJointsPerDigit);
   add("angle_measured", kJoints, units.radian, digitOfJoint, kJointsPerDigit);
   add("angle_shown", kJoints, units.radian, digitOfJoint, kJointsPerDigit);
+  add("stiffness", 1, units.newtonPerMetre, () => -1, 1);
   return channels;
 }
 
@@ -46,7 +47,12 @@ export function channelsOf(quantity: Quantity): readonly Channel[] {
   return channels.filter((channel) => channel.quantity === quantity);
 }
 
-/// A tick as one row of the history, in the channels' order. What is missing is NaN.
+const kSampleStale = 1 << 12; // Status::kSampleStale
+
+/// Whether the step was made from what the device has just measured: one that is silent has its last sample used again.
+export const isMeasured = (tick: Tick) => (tick.status & kSampleStale) === 0;
+
+/// A tick as one row of the history, in the channels' order. What is missing, or not measured, is NaN.
 export function fillRow(tick: Tick, row: Float64Array): void {
   const torque = 2 * kSegments;
   const measured = torque + kJoints;
@@ -57,19 +63,29 @@ export function fillRow(tick: Tick, row: Float64Array): void {
     row[contact.segment] = contact.forceRaw;
     row[kSegments + contact.segment] = tick.factor * contact.force;
   }
+  const now = isMeasured(tick);
   for (let joint = 0; joint < kJoints; ++joint) {
     row[torque + joint] = tick.torque[joint] ?? NaN;
-    row[measured + joint] = tick.hcpAngle[joint] ?? NaN;
-    row[shown + joint] = tick.gdpAngle[joint] ?? NaN;
+    row[measured + joint] = (now ? tick.hcpAngle[joint] : undefined) ?? NaN;
+    row[shown + joint] = (now ? tick.gdpAngle[joint] : undefined) ?? NaN;
   }
+  row[shown + kJoints] = tick.stiffness;
 }
 
-/// What a digit's contacts push with together: the sum of what is sent for its segments [N].
+/// What a digit's contacts push with together: the length of the sum of the forces that are sent for its segments, which is what the
+/// station limits [N].
 export function digitForces(tick: Tick | undefined): number[] {
-  const forces = new Array<number>(kDigits).fill(0);
+  const sums = Array.from({ length: kDigits }, () => [0, 0, 0] as [number, number, number]);
   for (const contact of tick?.contact ?? []) {
-    const digit = digitOfSegment(contact.segment);
-    if (digit >= 0 && digit < kDigits) forces[digit]! += (tick?.factor ?? 0) * contact.force;
+    const sum = sums[digitOfSegment(contact.segment)];
+    if (!sum) continue;
+    for (const axis of [0, 1, 2] as const) sum[axis] += (tick?.factor ?? 0) * contact.force * (contact.normal[axis] ?? 0);
   }
-  return forces;
+  return sums.map((sum) => Math.hypot(...sum));
+}
+
+/// Digits of which the device measures or moves no joint: they follow others, and nothing pushes them back.
+export function followers(sensedJoints: readonly number[]): boolean[] {
+  const own = new Set(sensedJoints.map(digitOfJoint));
+  return Array.from({ length: kDigits }, (_, digit) => !own.has(digit));
 }

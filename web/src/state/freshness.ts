@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Tick } from "../gen/phalanx/tick_pb";
+import { isMeasured } from "./channels";
 
 /// A picture older than this is not alive [ms].
 export const kStaleMs = 500;
-const kSampleStale = 1 << 12; // Status::kSampleStale
 
 /// Whether what is shown is alive: a newer step, made from a fresh measurement, has come within kStaleMs. A station whose device is
-/// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that was hidden is
-/// given its time anew, as browsers hold back what happens in hidden pages.
+/// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that
+/// slept wakes with a picture that is not alive, until the next step has come.
 export class Freshness {
   private measuredAt = -Infinity; // when the newest measured step came [ms], on the page's clock
   private heardAt = -Infinity; // when the station's clock was last seen to go on [ms], likewise
-  private since: number;
+  private readonly since: number;
   private measured = true; // the newest step
   private step: bigint | undefined;
   private time: number | undefined; // the station's
@@ -26,13 +26,9 @@ export class Freshness {
     this.time = tick.time;
     if (tick.tick === this.step) return false;
     this.step = tick.tick;
-    this.measured = (tick.status & kSampleStale) === 0;
+    this.measured = isMeasured(tick);
     if (this.measured) this.measuredAt = now;
     return true;
-  }
-
-  visible(now: number): void {
-    this.since = now;
   }
 
   /// Milliseconds since the last measured step; since the page began, if there was none.

@@ -7,11 +7,9 @@ import {
 } from "three";
 import type { BufferGeometry } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
+import { arrowLargestForce, arrowMetresPerNewton } from "./arrow_scale";
 import { kSegments } from "./segments";
 
-/// Length of an arrow: 12 mm for each newton, up to 15 N.
-export const arrowMetresPerNewton = 0.012;
-export const arrowLargestForce = 15;
 const kShaft = 0.0013; // radius [m]
 const kHead = 0.0036; // radius [m]
 const kHeadLength = 0.008; // [m], shorter where the arrow is

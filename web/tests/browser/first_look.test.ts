@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { beforeAll, describe, expect, it } from "vitest";
 import { strings } from "../../src/strings";
-import { arrowMetresPerNewton } from "../../src/view3d/contact_marks";
+import { arrowMetresPerNewton } from "../../src/view3d/arrow_scale";
 import type { CockpitPage } from "./support/cockpit_page";
 import { curveHeight } from "./support/pictures";
 import { dataFolder } from "./support/program";

@@ -61,6 +61,23 @@ it("draws a left hand as a left hand, and a right one as a right one", async () 
   expect(Math.abs(left)).toBeGreaterThan(1e-6);
   expect(Math.sign(left)).toBe(-Math.sign(right));
   await cockpits[1].tab("hand");
-  expect(await cockpits[1].page.getByRole("tabpanel").innerText()).toContain(strings.hand.side);
+  await until("Side says left", async () => (await cockpits[1].choice(strings.hand.side).innerText()).includes(strings.hand.left), () => cockpits[1].brief());
   await shoot(cockpits[1].page, "26_left_hand");
+});
+
+it("makes it the other hand by the page's own choice, and back", async () => {
+  const cockpit = await open([]);
+  await cockpit.tab("hand");
+  const { skin } = await cockpit.geometry();
+  const right = handedness(await drawnAsSent(cockpit, skin!));
+  for (const [side, left] of [["left", true], ["right", false]] as const) {
+    const shape = cockpit.stream.state!.geometry;
+    await cockpit.choose(strings.hand.side, side);
+    await cockpit.untilState("another shape", (state) => state.geometry !== shape && state.busy === "");
+    expect((await cockpit.geometry()).left).toBe(left);
+    await cockpit.untilRunningAgain();
+    const drawn = handedness(await drawnAsSent(cockpit, (await cockpit.geometry()).skin!));
+    expect(Math.sign(drawn)).toBe((left ? -1 : 1) * Math.sign(right));
+    await until("Side says so", async () => (await cockpit.choice(strings.hand.side).innerText()).includes(strings.hand[side]), () => cockpit.brief());
+  }
 });

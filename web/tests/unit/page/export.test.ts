@@ -22,11 +22,13 @@ describe("the CSV", () => {
     store.setGeometry(names as unknown as Shapes, 1);
     const joints = (first: number) => Array.from({ length: kJoints }, (_, joint) => first + joint);
     const contact = Array.from({ length: kSegments }, (_, segment) => ({ segment, touching: true, force: 200 + segment, forceRaw: 100 + segment }));
-    const value = { tick: 1n, time: 1, factor: 0.5, contact, torque: joints(300), hcpAngle: joints(400), gdpAngle: joints(500) };
+    const value = { tick: 1n, time: 1, factor: 0.5, contact, torque: joints(300), hcpAngle: joints(400), gdpAngle: joints(500), stiffness: 1200 };
     store.receive(create(ToPageSchema, { what: { case: "tick", value } }));
     const [head, row] = csvOf(store).trimEnd().split("\r\n").map((line) => line.split(","));
     const cells = new Map(head!.map((name, i) => [name, row![i]]));
-    expect(cells.size).toBe(1 + 2 * kSegments + 3 * kJoints);
+    expect(cells.size).toBe(3 + 2 * kSegments + 3 * kJoints);
+    expect(cells.get("station_time [s]")).toBe("1.0000");
+    expect(cells.get("stiffness [N/m]")).toBe("1200");
     for (let i = 0; i < kSegments; ++i) {
       expect(cells.get(`force_raw segment-${i} [N]`)).toBe(String(100 + i));
       expect(cells.get(`force_sent segment-${i} [N]`)).toBe(String(0.5 * (200 + i)));

@@ -27,6 +27,8 @@ export function fakeApp(): FakeApp {
     { path: stiffness, type: "number", range: ">= 0, <= 100", defaultValue: "0.5" },
     { path: "stabiliser.method", type: "choice", range: "none, smoothing, low_pass", defaultValue: '"smoothing"' },
     { path: "smoothing.enabled", type: "flag", range: "true, false", defaultValue: "true" },
+    { path: "hand.side", type: "choice", range: "right, left", defaultValue: '"right"' },
+    { path: "mirror", type: "flag", range: "true, false", defaultValue: "false" },
   ];
   store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: 1, page: kMe, mayOperate: true, key }) } }));
   const answer = () => Promise.resolve({ ok: made.refuse === "", error: made.refuse });

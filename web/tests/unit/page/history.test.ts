@@ -57,14 +57,21 @@ describe("toCsv", () => {
     const history = new History(2, 4);
     history.push(100, [0.1, NaN]);
     history.push(100.0167, [-2, 1e-5]);
-    const text = toCsv(history, [
+    const text = toCsv(history, 10, [
       { name: "force_raw index tip", unit: "N" },
       { name: 'odd, "name"', unit: "rad" },
     ]);
-    expect(text).toBe('time [s],force_raw index tip [N],"odd, ""name"" [rad]"\r\n0.0000,0.1,\r\n0.0167,-2,0.00001\r\n');
+    expect(text).toBe('time [s],station_time [s],force_raw index tip [N],"odd, ""name"" [rad]"\r\n0.0000,100.0000,0.1,\r\n0.0167,100.0167,-2,0.00001\r\n');
+  });
+
+  it("holds no more than the last seconds", () => {
+    const history = new History(1, 8);
+    for (const time of [1, 2, 11, 12, 13]) history.push(time, [time]);
+    const rows = toCsv(history, 2, [{ name: "a", unit: "N" }]).trimEnd().split("\r\n").slice(1);
+    expect(rows).toEqual(["0.0000,11.0000,11", "1.0000,12.0000,12", "2.0000,13.0000,13"]);
   });
 
   it("is only a head where there is nothing", () => {
-    expect(toCsv(new History(1, 2), [{ name: "a", unit: "N" }])).toBe("time [s],a [N]\r\n");
+    expect(toCsv(new History(1, 2), 10, [{ name: "a", unit: "N" }])).toBe("time [s],station_time [s],a [N]\r\n");
   });
 });

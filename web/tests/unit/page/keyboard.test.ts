@@ -39,6 +39,17 @@ describe("keys", () => {
     expect(actions.stop).not.toHaveBeenCalled();
   });
 
+  it("Space stops also from a field for a number, where figures act as figures", () => {
+    const number = add("input", "text");
+    number.setAttribute("inputmode", "decimal");
+    for (const field of [number, add("input", "number")]) {
+      expect(press(field, " ")).toBe(true);
+      expect(press(field, "3")).toBe(false);
+    }
+    expect(actions.stop).toHaveBeenCalledTimes(2);
+    expect(actions.camera).not.toHaveBeenCalled();
+  });
+
   it("Esc stops everywhere, also in text fields, and with any other key held", () => {
     press(document.body, "Escape");
     press(add("input", "text"), "Escape");

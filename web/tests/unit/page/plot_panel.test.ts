@@ -83,5 +83,26 @@ describe("the plots", () => {
     expect(said.hidden).toBe(true);
     store.setPhase("waiting");
     expect(said.hidden).toBe(false);
+    expect(said.textContent).toBe(words.offline);
+  });
+
+  it("say that nothing comes, or that nothing is measured", () => {
+    let now = 0;
+    store = new Store(() => now);
+    store.setPhase("open");
+    panel = plotPanel(store, "dark");
+    const said = panel.element.querySelector<HTMLElement>(".plot-offline")!;
+    const area = panel.element.querySelector(".plot-area")!;
+    tick(1);
+    expect(said.hidden).toBe(true);
+    now += 5000;
+    panel.update();
+    expect(said.textContent).toBe(words.silent);
+    expect(area.classList.contains("plot-dead")).toBe(true);
+    store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: 2000n, time: 2, factor: 1, status: 1 << 12 } } }));
+    expect(said.textContent).toBe(words.unmeasured);
+    tick(3);
+    expect(said.hidden).toBe(true);
+    expect(area.classList.contains("plot-dead")).toBe(false);
   });
 });

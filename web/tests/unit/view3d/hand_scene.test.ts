@@ -8,7 +8,8 @@ import { GeometrySchema, MeshSchema, SkinSchema } from "../../../src/gen/phalanx
 import type { Geometry, Mesh as MeshMessage } from "../../../src/gen/phalanx/geometry_pb";
 import { ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
-import { arrowLargestForce, arrowLength, arrowMetresPerNewton } from "../../../src/view3d/contact_marks";
+import { arrowLargestForce, arrowMetresPerNewton } from "../../../src/view3d/arrow_scale";
+import { arrowLength } from "../../../src/view3d/contact_marks";
 import { HandScene } from "../../../src/view3d/hand_scene";
 import { qualityLevels } from "../../../src/view3d/quality";
 import { shapesOf } from "../../../src/view3d/shapes";
