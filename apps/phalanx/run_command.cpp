@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -30,6 +31,8 @@ void say(const std::string& line) {
   std::fflush(stdout);
 }
 
+void complain(const std::string& what) { fmt::print(stderr, "phalanx run: {}\n", what); }
+
 /// One run of the station, from the terminal's side.
 class Run {
  public:
@@ -41,6 +44,7 @@ class Run {
       write_step_header(*log_);
     }
     host_ = std::make_unique<StationHost>(host_settings(options_), clock_);
+    look();
     introduce();
     if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *host_);
     watch();
@@ -56,10 +60,7 @@ class Run {
                     state->fingertip_force,
                     options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
     if (state->source == HandSource::kDevice && options_.calibration.empty())
-      fmt::print(
-          stderr,
-          "phalanx run: no --calibration: using the device's own numbers; see `phalanx device calibrate "
-          "--help`\n");
+      complain("no --calibration: using the device's own numbers; see `phalanx device calibrate --help`");
     say("Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
         "quit.");
   }
@@ -77,9 +78,19 @@ class Run {
       while (asked_to_end == 0 && typed_.next(line)) obey(line);
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
-      if (!options_.quiet) say(status_line(host_->view(), host_->deadlines(), seconds));
+      if (options_.quiet) continue;
+      look();
+      say(status_line(host_->view(), host_->deadlines(), seconds));
     }
     seconds_ = clock_.now() - begin;
+  }
+
+  /// What the person at the terminal is about to be shown. Lines may be read late, and what was typed before
+  /// another stop or fault is not about that one.
+  void look() {
+    seen_stops_ = host_->stops();
+    const FaultEvent fault = host_->view().fault;
+    seen_fault_ = fault.fault == Fault::kNone ? 0.0 : fault.time;
   }
 
   /// Fetches what the loop has put aside.
@@ -100,6 +111,7 @@ class Run {
     const FaultEvent& event = report.event;
     const std::string text = fmt::format("{}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
                                          fault_remedy(event.fault));
+    seen_fault_ = event.time;
     say("FAULT " + text);
     if (page_) page_->tell("fault", text, true);
     try {
@@ -107,7 +119,7 @@ class Run {
       say("report: " + file);
       if (page_) page_->fault_reported(file, event.time);
     } catch (const std::exception& error) {  // the station goes on without it
-      fmt::print(stderr, "phalanx run: the fault's report could not be written: {}\n", error.what());
+      complain(fmt::format("the fault's report could not be written: {}", error.what()));
     }
   }
 
@@ -125,8 +137,8 @@ class Run {
   }
 
   void lose_log(const std::exception& error) {
-    fmt::print(stderr, "phalanx run: the log ends here: {}; what was written is in {}\n", error.what(),
-               log_->leave_partial().string());
+    complain(fmt::format("the log ends here: {}; what was written is in {}", error.what(),
+                         log_->leave_partial().string()));
     log_.reset();
     log_lost_ = true;
   }
@@ -136,20 +148,25 @@ class Run {
     granted_ = host_->grant();
     if (!granted_) return;
     say("real time: " + describe(*granted_));
-    for (const std::string& missing : granted_->missing) fmt::print(stderr, "phalanx run: {}\n", missing);
+    for (const std::string& missing : granted_->missing) complain(missing);
   }
 
   void obey(const std::string& line) {
     try {
       if (line == "stop") {
         host_->stop();
+        look();
         tell_typed("stopped", "stopped");
       } else if (line == "resume") {
-        if (!host_->resume())
-          throw std::invalid_argument("somebody has said stop in the same moment; look, then resume again");
+        const bool resumed = host_->resume(seen_stops_);
+        look();
+        if (!resumed)
+          throw std::invalid_argument("another stop or fault has come since; look, then resume again");
         tell_typed("resumed", "resumed");
       } else if (line == "reset") {
-        host_->reset();
+        const bool reset = host_->reset(seen_fault_);
+        look();
+        if (!reset) throw std::invalid_argument("another fault has come since; look, then reset again");
         tell_typed("reset", "asked for a reset");
       } else if (line == "quit") {
         quit_ = true;
@@ -172,7 +189,7 @@ class Run {
             line));
       }
     } catch (const std::exception& error) {  // what is refused ends nothing
-      fmt::print(stderr, "phalanx run: {}\n", error.what());
+      complain(error.what());
     }
   }
 
@@ -235,6 +252,8 @@ class Run {
   bool quit_ = false;
   bool log_lost_ = false;
   std::uint64_t resets_refused_ = 0;
+  std::uint64_t seen_stops_ = 0;  ///< as look() saw them
+  double seen_fault_ = 0.0;       ///< FaultEvent::time; 0: none [s]
   double seconds_ = 0.0;
 };
 

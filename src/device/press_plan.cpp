@@ -71,6 +71,11 @@ PressPlan plan_press(const HapticModel& model, const Motion& motion, const Exosk
   PressPlan plan;
   plan.open = model.hand.parameters().open_angle;
   bool any = false;
+  const auto all = [&] {
+    for (int digit = 0; digit < kDigits; ++digit)
+      if (moves(exoskeleton, digit) && !plan.digit[idx(digit)]) return false;
+    return true;
+  };
   const auto watch = [&](const Snapshot& snapshot) {
     for (int digit = 0; digit < kDigits; ++digit) {
       if (plan.digit[idx(digit)] || !moves(exoskeleton, digit)) continue;
@@ -87,7 +92,7 @@ PressPlan plan_press(const HapticModel& model, const Motion& motion, const Exosk
   for (JointArray& angle : sensed.angle) angle = sensed_angles(exoskeleton, plan.open, angle);
   const auto state = std::make_unique<HapticState>(model);
   const double ticks = std::max(1.0, std::round(sensed.duration() * model.rate_hz));
-  for (double tick = 0.0; tick < ticks; tick += 1.0) {
+  for (double tick = 0.0; tick < ticks && !all(); tick += 1.0) {
     const double t = tick / model.rate_hz;
     step(model, Sample{.time_s = t, .angle = sensed.at(t)}, *state);
     watch(state->snapshot());

@@ -117,7 +117,7 @@ void Cockpit::Parts::ask_host(PageId page, const wire::ToHost& message) {
       if (const auto still = weak.lock()) still->answered(page, number, who, *asked, outcome);
     });
   };
-  *asked = hand_over(message, host, settings.uploads, done);
+  *asked = hand_over(message, host, choices, settings.uploads, done);
   if (asked->at_once) answered(page, number, who, *asked, {});
 }
 

@@ -7,14 +7,13 @@
 #include <array>
 #include <stdexcept>
 
-#include "phalanx/scene/data_paths.h"
-#include "scene/folder_names.h"
 #include "serve/foreign_files.h"
 
 namespace phalanx {
 namespace {
 
 constexpr int kMostSettings = 64;
+constexpr std::size_t kLongestKey = 200;     ///< [bytes]
 constexpr std::size_t kLongestValue = 4096;  ///< [bytes]
 
 PageRequest set(const wire::Set& message, StationHost& host, const std::filesystem::path& uploads,
@@ -25,8 +24,12 @@ PageRequest set(const wire::Set& message, StationHost& host, const std::filesyst
   Overrides changes;
   PageRequest request{.code = "set", .text = {}, .at_once = false};
   for (const wire::Setting& setting : message.setting()) {
-    if (setting.key().empty() || setting.key().size() > 200 || setting.value().size() > kLongestValue)
-      throw std::invalid_argument("a setting without a key, or too long; send a scene's key and its value");
+    if (setting.key().empty() || setting.key().size() > kLongestKey)
+      throw std::invalid_argument(fmt::format("a setting's key of {} bytes; a scene's key has 1 to {}",
+                                              setting.key().size(), kLongestKey));
+    if (setting.value().size() > kLongestValue)
+      throw std::invalid_argument(fmt::format("{}: a value of {} bytes; send at most {}", setting.key(),
+                                              setting.value().size(), kLongestValue));
     if (names_foreign_file(setting.key(), setting.value(), uploads))
       throw std::invalid_argument(
           fmt::format("{} = {}: a page may name what is shipped, or a mesh that it has sent; other files are "
@@ -40,9 +43,10 @@ PageRequest set(const wire::Set& message, StationHost& host, const std::filesyst
   return request;
 }
 
-PageRequest load(const std::string& name, StationHost& host, StationHost::Done done) {
-  const auto shipped = names_in_folder(data_folder() / "scenes", ".toml");
-  if (std::find(shipped.begin(), shipped.end(), name) == shipped.end())
+PageRequest load(const std::string& name, StationHost& host, const wire::Welcome& choices,
+                 StationHost::Done done) {
+  const auto& shipped = choices.scene();
+  if (std::none_of(shipped.begin(), shipped.end(), [&](const auto& scene) { return scene.name() == name; }))
     throw std::invalid_argument(
         fmt::format("scene {}: is not among those shipped; choose one of the list", name));
   host.load_scene(name, std::move(done));
@@ -84,7 +88,9 @@ PageRequest calibrate(const wire::Calibrate& message, StationHost& host, Station
                                             {Step::kAbandon, "is given up"},
                                             {Step::kWrite, "is written and used"}}};
   const auto index = static_cast<std::size_t>(message.step());
-  if (index >= kSteps.size()) throw std::invalid_argument("no such step of a calibration");
+  if (index >= kSteps.size())
+    throw std::invalid_argument(fmt::format("step {} of a calibration: there are 0 to {}; reload the page",
+                                            index, kSteps.size() - 1));
   const Known& known = kSteps[index];
   host.calibrate(known.step, message.pose(), std::move(done));
   std::string text = fmt::format("calibration: {}", known.words);
@@ -94,8 +100,8 @@ PageRequest calibrate(const wire::Calibrate& message, StationHost& host, Station
 
 }  // namespace
 
-PageRequest hand_over(const wire::ToHost& message, StationHost& host, const std::filesystem::path& uploads,
-                      StationHost::Done done) {
+PageRequest hand_over(const wire::ToHost& message, StationHost& host, const wire::Welcome& choices,
+                      const std::filesystem::path& uploads, StationHost::Done done) {
   switch (message.what_case()) {
     case wire::ToHost::kResume:
       if (!host.resume(message.resume().stops()))
@@ -108,7 +114,7 @@ PageRequest hand_over(const wire::ToHost& message, StationHost& host, const std:
     case wire::ToHost::kSet:
       return set(message.set(), host, uploads, std::move(done));
     case wire::ToHost::kScene:
-      return load(message.scene().name(), host, std::move(done));
+      return load(message.scene().name(), host, choices, std::move(done));
     case wire::ToHost::kSource:
       return source(message.source().source(), host, std::move(done));
     case wire::ToHost::kSliders:

@@ -17,12 +17,13 @@ struct PageRequest {
 };
 
 /// Hands an operator's message to the host. Its values are checked by the code that reads scene files.
+/// @param choices  what pages were told that there is (write_choices()): no disk is asked while others wait
 /// @param uploads  folder of the meshes that pages may name
 /// @param done     as StationHost's; not called for what is done at once
 /// @returns what was asked, for the log
 /// @throws std::invalid_argument: not for a station, refused at once, or said before its page knew of another
 /// stop or fault; as StationHost if too much waits
-PageRequest hand_over(const wire::ToHost& message, StationHost& host, const std::filesystem::path& uploads,
-                      StationHost::Done done);
+PageRequest hand_over(const wire::ToHost& message, StationHost& host, const wire::Welcome& choices,
+                      const std::filesystem::path& uploads, StationHost::Done done);
 
 }  // namespace phalanx

@@ -217,7 +217,9 @@ UploadedMesh upload_of(const std::string& query, std::string bytes) {
     begin = end + 1;
   }
   static_cast<void>(metres_per_unit_of(mesh));
-  if (mesh.bytes.empty()) throw std::invalid_argument(fmt::format("{}: the file is empty", mesh.name));
+  if (mesh.bytes.empty())
+    throw std::invalid_argument(
+        fmt::format("{}: the file is empty; send another", mesh.name.empty() ? "the mesh" : mesh.name));
   return mesh;
 }
 

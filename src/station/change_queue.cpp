@@ -11,6 +11,9 @@
 namespace phalanx {
 namespace {
 
+/// From here on no further change is told: the text is read often, and people read no more [bytes].
+constexpr std::size_t kLongText = 300;
+
 bool sets(const Overrides& changes, const std::string& key) {
   return std::any_of(changes.begin(), changes.end(), [&](const auto& change) { return change.first == key; });
 }
@@ -37,9 +40,11 @@ std::size_t answers_of(const ChangeRequest& request) {
 
 std::string text_of(const Overrides& changes) {
   std::string text;
-  for (const auto& [key, value] : changes)
+  for (const auto& [key, value] : changes) {
+    if (text.size() > kLongText) return text + ", ...";
     text +=
         fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, value.empty() ? "as in the scene" : value);
+  }
   return text;
 }
 

@@ -163,7 +163,12 @@ void StationChanger::set_source(HandSource source) {
 
 void StationChanger::try_again() {
   refuse_while_calibrating();
-  if (shared_.current() == nullptr) switch_to(plan_);
+  if (shared_.current() != nullptr) return;
+  try {
+    switch_to(plan_);
+  } catch (const std::exception& error) {
+    shared_.lose(error.what());
+  }
 }
 
 // ---- from one station to the next ----

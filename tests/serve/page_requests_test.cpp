@@ -15,16 +15,20 @@ namespace phalanx {
 namespace {
 
 using test::HostTest;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class PageRequestsTest : public HostTest {
  protected:
-  PageRequestsTest() { start(with("sliders")); }
+  PageRequestsTest() {
+    start(with("sliders"));
+    write_choices(choices);
+  }
 
   /// Hands it over and waits. @returns what was asked
   PageRequest handed(const wire::ToHost& message) {
     auto [answer, done] = awaited();
-    const PageRequest asked = hand_over(message, *host, "/tmp/up", done);
+    const PageRequest asked = hand_over(message, *host, choices, "/tmp/up", done);
     if (asked.at_once) {
       EXPECT_TRUE(until_idle());
       EXPECT_EQ(answer->times, 0);
@@ -44,7 +48,7 @@ class PageRequestsTest : public HostTest {
     auto [answer, done] = awaited();
     std::string why;
     try {
-      static_cast<void>(hand_over(message, *host, "/tmp/up", done));
+      static_cast<void>(hand_over(message, *host, choices, "/tmp/up", done));
     } catch (const std::invalid_argument& error) {
       why = error.what();
     }
@@ -65,6 +69,7 @@ class PageRequestsTest : public HostTest {
     write_state(*host, out);
     return out;
   }
+  wire::Welcome choices;
   std::string refused;
 };
 
@@ -91,8 +96,9 @@ TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
   EXPECT_FALSE(why_not(set("rate_hz", "250", 0)).empty());
   EXPECT_THAT(why_not(set("rate_hz", "250", 65)), HasSubstr("65"));
   EXPECT_FALSE(why_not(set("", "1")).empty());
-  EXPECT_FALSE(why_not(set(std::string(201, 'k'), "1")).empty());
-  EXPECT_FALSE(why_not(set("description", std::string(4097, 'v'))).empty());
+  EXPECT_THAT(why_not(set(std::string(201, 'k'), "1")), HasSubstr("201"));
+  EXPECT_THAT(why_not(set("description", std::string(4097, 'v'))),
+              AllOf(HasSubstr("description"), HasSubstr("4097"), HasSubstr("4096")));
   EXPECT_THAT(why_not(set("objects.0.file", R"("\u002fetc\u002fpasswd")")), HasSubstr("objects.0.file"));
   wire::ToHost message;
   message.mutable_scene()->set_name("../scenes/wave");

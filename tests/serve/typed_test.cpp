@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -16,6 +17,17 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::Pair;
+
+/// As the station's log of changes has them.
+std::vector<std::pair<std::string, std::string>> changes_in(const testing::TemporaryFolder& folder) {
+  std::istringstream text(testing::read_file(folder / "changes.jsonl"));
+  std::vector<std::pair<std::string, std::string>> told;
+  for (std::string line; std::getline(text, line);) {
+    const auto change = nlohmann::json::parse(line);
+    told.emplace_back(change["who"] == "the terminal" ? "terminal" : "page", change["code"]);
+  }
+  return told;
+}
 
 TEST(Typed, EveryWordIsLoggedAsTheTerminals) {
   const testing::TemporaryFolder folder;
@@ -37,6 +49,38 @@ TEST(Typed, EveryWordIsLoggedAsTheTerminals) {
   EXPECT_THAT(told, ElementsAre(Pair("stopped", "stopped"), Pair("slow", "makes every step 1 ms longer"),
                                 Pair("resumed", "resumed"), Pair("reset", "asked for a reset"),
                                 Pair("quit", "ends the station")));
+}
+
+// Typed words are read late where the terminal is busy: they speak of what its person had seen.
+TEST(Typed, AResumeDoesNotUndoAStopThatCameAfterWhatItsPersonSaw) {
+  const testing::TemporaryFolder folder;
+  const std::string script = R"(
+    until_there() { for _ in $(seq 600); do grep -qs -- "$1" "$2" && return; sleep 0.2; done; echo "no $1 in $2" >&2; exit 1; }
+    mkfifo typed
+    "$PROGRAM" run --device sliders --port 0 --no-realtime --quiet --audit changes.jsonl <typed >out 2>err &
+    exec 4>typed
+    until_there http: out
+    port=$(sed -n 's|.*http://127.0.0.1:\([0-9]*\)/.*|\1|p' out | head -n 1)
+    echo stop >&4
+    until_there stopped changes.jsonl
+    exec 3<>"/dev/tcp/127.0.0.1/$port"
+    printf 'POST /stop HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nOrigin: http://127.0.0.1:%s\r\nContent-Length: 0\r\n\r\n' "$port" "$port" >&3
+    until_there page changes.jsonl
+    echo resume >&4
+    until_there 'another stop' err
+    echo resume >&4
+    until_there resumed changes.jsonl
+    echo quit >&4
+    wait $!
+  )";
+  std::ofstream(folder / "story.sh") << script;
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && PROGRAM='" PHALANX_PROGRAM "' PHALANX_DATA='" PHALANX_SOURCE_DIR
+                              "' timeout 300 bash story.sh 2>trouble";
+  ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c)
+      << testing::read_file(folder / "trouble") << testing::read_file(folder / "err");
+  EXPECT_THAT(changes_in(folder), ElementsAre(Pair("terminal", "stopped"), Pair("page", "stopped"),
+                                              Pair("terminal", "resumed"), Pair("terminal", "quit")));
 }
 
 }  // namespace

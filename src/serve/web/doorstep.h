@@ -42,9 +42,9 @@ class Doorstep {
 
   /// Sends the oldest of that address away if it has all its places, or the oldest of all if there is none
   /// left.
-  /// @param address    of the other end
+  /// @param from       address of the other end; those of one IPv6 network (/64) count as one
   /// @param send_away  gives the place back, at once; may be called until the place is given back
-  [[nodiscard]] Stay come(const std::string& address, std::function<void()> send_away);
+  [[nodiscard]] Stay come(const std::string& from, std::function<void()> send_away);
   [[nodiscard]] std::size_t waiting() const noexcept { return guests_.size(); }
 
  private:

@@ -35,6 +35,7 @@ void HttpSession::expect_body(std::size_t limit) {
     }
     large_body_.emplace(house_.large_bodies);
   }
+  request_.body.reserve(static_cast<std::size_t>(length.value_or(0)));
   body_since_ = Clock::now();
   const std::string expected = field(http::field::expect);
   if (expected.empty()) return read_body();

@@ -11,8 +11,9 @@ namespace phalanx::web {
 /// template. Meets Beast's AsyncStream.
 class Line {
  public:
-  using Plain = beast::tcp_stream;
-  using Secure = beast::ssl_stream<beast::tcp_stream>;
+  /// As beast::tcp_stream, but that how fast it is read can be bounded.
+  using Plain = beast::basic_stream<tcp, net::any_io_executor, beast::simple_rate_policy>;
+  using Secure = beast::ssl_stream<Plain>;
   using next_layer_type = Plain;
   using executor_type = Plain::executor_type;
 

@@ -18,6 +18,9 @@ constexpr auto kLastWords = std::chrono::seconds(2);
 constexpr std::size_t kMostLastWords = 64 * 1024;  // [bytes]
 constexpr std::size_t kFrameHead = 6;              // at least [bytes]
 
+// Frames that never end a message count as none: a page's bytes are bounded, too, by reading them no faster.
+constexpr std::size_t kMostRead = 1'000'000;  // [bytes/s]
+
 websocket::stream_base::timeout timeouts(const WebServerSettings& settings) {
   return {seconds(settings.request_timeout), seconds(settings.idle_timeout), true};
 }
@@ -36,6 +39,7 @@ PageSession::PageSession(PageId id, Visitor visitor, Line&& line, Place place,
       queue_(settings.queue_limit, settings.queue_bytes) {
   // The socket's own limits take over.
   socket_.next_layer().transport().expires_never();
+  socket_.next_layer().transport().rate_policy().read_limit(kMostRead);
   socket_.set_option(timeouts(settings));
   socket_.read_message_max(settings.message_limit);
   socket_.auto_fragment(false);

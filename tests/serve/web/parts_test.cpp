@@ -48,6 +48,21 @@ TEST(Doorstep, ANewOneTakesThePlaceOfTheOldestOfItsAddressAndThenOfAll) {
   for (const Guest* guest : {&b3, &c1, &d1}) EXPECT_TRUE(guest->waits());
 }
 
+TEST(Doorstep, TheAddressesOfOneNetworkOfIPv6AreOne) {
+  Doorstep doorstep(9, 2);
+  Guest first(doorstep, "2001:db8::1");
+  Guest other(doorstep, "2001:db8:0:1::1");
+  Guest mapped(doorstep, "::ffff:10.0.0.1");
+  Guest mapped_too(doorstep, "::ffff:10.0.0.2");
+  Guest mapped_three(doorstep, "::ffff:10.0.0.3");
+  Guest second(doorstep, "2001:db8::2");
+  EXPECT_TRUE(first.waits());
+  Guest third(doorstep, "2001:db8::ffff:3");
+  EXPECT_FALSE(first.waits());
+  for (const Guest* guest : {&other, &mapped, &mapped_too, &mapped_three, &second, &third})
+    EXPECT_TRUE(guest->waits());
+}
+
 TEST(PageQueue, TakesWhatIsLargerThanItselfWhenEmpty) {
   PageQueue queue(2, 10);
   const auto long_one = std::make_shared<const std::string>(100, 'x');
