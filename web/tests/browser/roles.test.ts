@@ -64,7 +64,7 @@ describe("roles", () => {
       expect(await viewer.page.getByText(strings.role.other(strings.page(await anna.number()))).isVisible()).toBe(true);
       expect(await viewer.stopButton.isEnabled()).toBe(true);
     }
-    expect(anna.stream.state!.pages).toBe(3);
+    await anna.untilState("three pages", (state) => state.pages === 3);
   });
 
   it("calls people by their names", async () => {
@@ -129,7 +129,6 @@ describe("roles", () => {
     const history = (await cleo.page.evaluate(() => window.phalanx.history())).samples;
     await until("the history grows", async () => (await cleo.page.evaluate(() => window.phalanx.history())).samples > history + 30);
     expect(cleo.stream.notices.some((notice) => notice.code === "set" && notice.text.includes("0.9")), "what happened before the reload").toBe(true);
-    expect(anna.stream.state!.operatorPage).toBe(number);
-    expect(anna.stream.state!.pages).toBe(3);
+    await anna.untilState("the same operator, and three pages", (state) => state.operatorPage === number && state.pages === 3);
   });
 });

@@ -42,11 +42,10 @@ it("greys the hand before the next frame and says so when the program is gone, a
   const band = cockpit.page.getByRole("alert").filter({ hasText: strings.lost.closed });
   const root = cockpit.page.locator("html");
   await cockpit.untilRunning();
-  await cockpit.untilTouching();
-  expect(await cockpit.lost()).toBe(false);
-  expect((await cockpit.probe())!.lost).toBe(false);
-  expect((await cockpit.probe())!.arrows.length).toBeGreaterThan(0);
-  expect(await band.isVisible()).toBe(false);
+  await until("a picture that lives, with arrows", async () => {
+    const { lost, arrows } = (await cockpit.probe())!;
+    return !lost && arrows.length > 0 && !(await cockpit.lost()) && !(await band.isVisible());
+  }, () => cockpit.brief());
   const view = cockpit.page.getByRole("application", { name: strings.view.label });
   const alive = await view.screenshot();
 
@@ -77,8 +76,7 @@ it("greys the hand before the next frame and says so when the program is gone, a
   const connections = cockpit.stream.connections;
   await until("the page is back", async () => !(await cockpit.lost()) && !(await cockpit.probe())!.lost, () => cockpit.brief());
   expect(cockpit.stream.connections).toBeGreaterThanOrEqual(connections);
-  expect(await band.isVisible()).toBe(false);
-  expect(await root.getAttribute("data-lost")).toBe("false");
+  await until("the words are gone", async () => !(await band.isVisible()) && (await root.getAttribute("data-lost")) === "false", () => cockpit.brief());
   await until("ticks of the new station", async () => {
     const tick = await cockpit.page.evaluate(() => window.phalanx.tick()!);
     return cockpit.stream.tick(tick.tick) !== undefined && tick.tick !== frozen;
