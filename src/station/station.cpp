@@ -205,6 +205,7 @@ void Station::freeze_history() noexcept {
   if (safety_.state() != SafetyState::kFault || reported_ || !safety_.at_rest()) return;
   reported_ = true;
   frozen_event_ = safety_.fault();
+  frozen_link_ = device_.statistics();  // only this thread may ask the device
   frozen_.store(true, std::memory_order_release);
 }
 
@@ -262,7 +263,7 @@ std::optional<FaultReport> Station::take_fault_report() {
   report.samples = samples_.all();
   report.steps = steps_.all();
   report.device = device_.info();
-  report.link = device_.statistics();
+  report.link = frozen_link_;
   report.event = frozen_event_;
   samples_.clear();
   steps_.clear();

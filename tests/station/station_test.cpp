@@ -152,6 +152,8 @@ TEST_F(StationTest, ASilentDeviceIsAFaultWithTheLastTwoSecondsInItsReport) {
   EXPECT_EQ(report->samples.size(), 2000U);
   EXPECT_EQ(report->steps.size(), 400U);
   EXPECT_EQ(report->steps.back().state, SafetyState::kFault);
+  EXPECT_GT(report->link.received, 2000U);
+  EXPECT_TRUE(device_->one_thread) << "a device's calls belong to the loop's thread (device.h)";
   EXPECT_TRUE(device_->at_zero);
   EXPECT_FALSE(station_->take_fault_report().has_value());
 }

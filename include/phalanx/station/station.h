@@ -112,6 +112,7 @@ class Station {
   std::atomic<bool> finish_{false};
   std::atomic<double> extra_{0.0};
   FaultEvent frozen_event_;          ///< whose history it is
+  LinkStatistics frozen_link_;       ///< then
   std::atomic<bool> frozen_{false};  ///< the history belongs to take_fault_report() until that clears it
   std::atomic<LiveModel*> incoming_{nullptr};
   mutable std::atomic<LiveModel*> outgoing_{nullptr};  ///< exchanged; deleted by whoever looks next
