@@ -405,7 +405,7 @@ const en = {
     csvHead: (name: string, unit: string) => `${name} [${unit}]`,
     offline: "No connection: these curves are old",
     silent: "Nothing comes from the station: these curves are old",
-    unmeasured: "No measurement from the device",
+    unmeasured: "The device does not measure now",
     csvLong: "Save the last 10 s of all curves as CSV",
     png: "PNG",
     pngLong: "Save the plots as a picture (PNG)",

@@ -27,7 +27,7 @@ async function untilUnmeasured(): Promise<void> {
   expect(await cockpit.lost()).toBe(true);
   expect((await cockpit.probe())!.arrows).toEqual([]);
   const band = cockpit.page.locator(".lost-band");
-  await until("the page says why", () => cockpit.page.getByText(strings.lost.unmeasured, { exact: true }).isVisible(), () => band.innerText());
+  await until("the page says why", () => band.getByText(strings.lost.unmeasured, { exact: true }).isVisible(), () => band.innerText());
 }
 
 describe("a device on a wire", () => {

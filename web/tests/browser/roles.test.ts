@@ -61,7 +61,8 @@ describe("roles", () => {
     await untilMayOperate(anna, true);
     for (const viewer of [bert, cleo]) {
       await untilMayOperate(viewer, false);
-      expect(await viewer.page.getByText(strings.role.other(strings.page(await anna.number()))).isVisible()).toBe(true);
+      const why = viewer.page.getByText(strings.role.other(strings.page(await anna.number())));
+      await until("who has control is said", () => why.isVisible(), () => viewer.page.locator(".role-strip").innerText());
       expect(await viewer.stopButton.isEnabled()).toBe(true);
     }
     await anna.untilState("three pages", (state) => state.pages === 3);
