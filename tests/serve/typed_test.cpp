@@ -19,14 +19,11 @@ using ::testing::ElementsAre;
 using ::testing::Pair;
 
 /// As the station's log of changes has them.
-std::vector<std::pair<std::string, std::string>> changes_in(const testing::TemporaryFolder& folder) {
+std::vector<nlohmann::json> changes_in(const testing::TemporaryFolder& folder) {
   std::istringstream text(testing::read_file(folder / "changes.jsonl"));
-  std::vector<std::pair<std::string, std::string>> told;
-  for (std::string line; std::getline(text, line);) {
-    const auto change = nlohmann::json::parse(line);
-    told.emplace_back(change["who"] == "the terminal" ? "terminal" : "page", change["code"]);
-  }
-  return told;
+  std::vector<nlohmann::json> changes;
+  for (std::string line; std::getline(text, line);) changes.push_back(nlohmann::json::parse(line));
+  return changes;
 }
 
 TEST(Typed, EveryWordIsLoggedAsTheTerminals) {
@@ -39,10 +36,8 @@ TEST(Typed, EveryWordIsLoggedAsTheTerminals) {
       "--audit changes.jsonl >out 2>err";
   ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c): the shell is the user's side here
       << testing::read_file(folder / "err");
-  std::istringstream text(testing::read_file(folder / "changes.jsonl"));
   std::vector<std::pair<std::string, std::string>> told;
-  for (std::string line; std::getline(text, line);) {
-    const auto change = nlohmann::json::parse(line);
+  for (const nlohmann::json& change : changes_in(folder)) {
     EXPECT_EQ(change["who"], "the terminal");
     told.emplace_back(change["code"], change["text"]);
   }
@@ -79,8 +74,11 @@ TEST(Typed, AResumeDoesNotUndoAStopThatCameAfterWhatItsPersonSaw) {
                               "' timeout 300 bash story.sh 2>trouble";
   ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c)
       << testing::read_file(folder / "trouble") << testing::read_file(folder / "err");
-  EXPECT_THAT(changes_in(folder), ElementsAre(Pair("terminal", "stopped"), Pair("page", "stopped"),
-                                              Pair("terminal", "resumed"), Pair("terminal", "quit")));
+  std::vector<std::pair<std::string, std::string>> told;
+  for (const nlohmann::json& change : changes_in(folder))
+    told.emplace_back(change["who"] == "the terminal" ? "terminal" : "page", change["code"]);
+  EXPECT_THAT(told, ElementsAre(Pair("terminal", "stopped"), Pair("page", "stopped"),
+                                Pair("terminal", "resumed"), Pair("terminal", "quit")));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ export function isTextField(target: EventTarget | null): boolean {
 
 /// Whether a blank means anything in it: in a number it does not.
 function takesBlanks(target: EventTarget | null): boolean {
-  const number = target instanceof HTMLInputElement && (target.type === "number" || /^(decimal|numeric)$/.test(target.inputMode || (target.getAttribute("inputmode") ?? "")));
+  const number = target instanceof HTMLInputElement && (target.type === "number" || target.getAttribute("inputmode") === "decimal");
   return isTextField(target) && !number;
 }
 

@@ -52,11 +52,10 @@ export function readouts(store: Store): Readouts {
     light,
     el("div", { class: "digit-forces", role: "group", "aria-label": strings.forcePerDigit }, ...digits.map((digit) => digit.box)),
   );
-  const showFollowers = () => {
+  store.on(["state"], () => {
     const all = followers(store.state?.sensedJoint ?? []);
-    digits.forEach((digit, i) => setShown(digit.follows, store.state !== undefined && (all[i] ?? false)));
-  };
-  store.on(["state"], showFollowers);
+    digits.forEach((digit, i) => setShown(digit.follows, all[i] ?? false));
+  });
   const update = () => {
     const verdict = store.lost || !store.tick ? null : asFelt(store.light.shown, store.state);
     setAttribute(light, "data-verdict", verdict?.kind ?? "unknown");

@@ -5,7 +5,8 @@ import type { History } from "./history";
 
 const field = (text: string) => (/[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
-/// The last `seconds`. Times begin at the first row's; beside it stands the station's clock, as in its log. Values with the digits that single precision carries; what is not known is empty.
+/// The last `seconds`. Times begin at the first row's; beside it stands the station's clock, as in its log. Values with the digits that
+/// single precision carries; what is not known is empty.
 /// @param columns  name and unit of each channel of the history
 export function toCsv(history: History, seconds: number, columns: readonly { readonly name: string; readonly unit: string }[]): string {
   const words = strings.plots;

@@ -6,8 +6,8 @@ import { isMeasured } from "./channels";
 export const kStaleMs = 500;
 
 /// Whether what is shown is alive: a newer step, made from a fresh measurement, has come within kStaleMs. A station whose device is
-/// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that
-/// slept wakes with a picture that is not alive, until the next step has come.
+/// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that slept
+/// wakes with a picture that is not alive, until the next step has come.
 export class Freshness {
   private measuredAt = -Infinity; // when the newest measured step came [ms], on the page's clock
   private heardAt = -Infinity; // when the station's clock was last seen to go on [ms], likewise
