@@ -30,19 +30,22 @@ function(phalanx_library target)
   install(TARGETS ${target} EXPORT phalanxTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
-# phalanx_test(NAME SOURCES ... MODULES module ... [LIBRARIES external ...] [SOAK])
+# phalanx_test(NAME SOURCES ... MODULES module ... [LIBRARIES external ...] [SOAK] [HELD_CLOCK])
 # A GoogleTest program tests/.../NAME; every TEST of it becomes a ctest test, in a sanitized build with the prefix `asan.` or `tsan.`
 # and the label of that name. With SOAK, those whose suite's name begins with `Soak` get the label `soak`, which ./test leaves out and
 # ./test --soak (where the environment says PHALANX_SOAK=1) runs. With LONG_SANITIZED, all of them do so in a sanitized build, where they
-# take a minute each.
+# take a minute each. With HELD_CLOCK, the program runs under a held clock (tests/support/held_clock/held_clock.h).
 function(phalanx_test name)
-  cmake_parse_arguments(ARG "SOAK;LONG_SANITIZED" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "SOAK;LONG_SANITIZED;HELD_CLOCK" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   set_source_files_properties(${PROJECT_SOURCE_DIR}/tests/support/count_allocations.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON) # it replaces malloc and free
   list(TRANSFORM ARG_MODULES PREPEND phalanx_ OUTPUT_VARIABLE modules)
   target_link_libraries(${name} PRIVATE phalanx_options ${modules} ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE PHALANX_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  if(ARG_HELD_CLOCK)
+    target_link_libraries(${name} PRIVATE phalanx_hold_this_process)
+  endif()
   set(prefix "")
   set(label release)
   if(PHALANX_SANITIZE MATCHES "address")

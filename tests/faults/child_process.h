@@ -27,6 +27,7 @@ class ChildProcess {
   void signal(int number) const;
   /// Waits for its end. @returns its exit code, 128 + N after signal N; empty: it still ran after `seconds`
   std::optional<int> wait(double seconds);
+  [[nodiscard]] pid_t pid() const { return pid_; }
   [[nodiscard]] bool ended() { return wait(0.0).has_value(); }
 
   /// What it has written so far.

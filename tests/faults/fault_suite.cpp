@@ -8,14 +8,11 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
-
-#include "faults/reactions.h"
 
 namespace phalanx::testing {
 namespace {
@@ -44,48 +41,15 @@ bool is_to_run(const std::string& name) {
   return false;
 }
 
-/// The patient closes his hand in the first half second. A host that comes later finds his fingers in the
-/// object already, where they feel nothing until they have left it: there would be no contact to disturb.
-bool joined_in_time(const Outcome& outcome) {
-  constexpr std::int64_t kClosing = 350000;
-  const ControllerRows& rows = outcome.logs.controller;
-  const std::size_t start =
-      first_row(rows, 0, [](const ControllerRow& row) { return row.state == "starting"; });
-  return start < rows.size() && rows[start].time_us <= kClosing;
-}
-
-/// Whether no busy machine has come between: of the faults of what comes late, only those that the scenario
-/// makes.
-bool is_undisturbed(const Entry& entry) {
-  const std::vector<std::string>& own = entry.scenario.late;
-  return std::ranges::none_of(entry.outcome.faults, [&](const std::string& fault) {
-    const bool late = fault == "no_sample" || fault == "step_too_old" || fault == "overload";
-    return late && std::ranges::find(own, fault) == own.end();
-  });
-}
-
-/// What this busy machine has disturbed gets another chance.
 void run(Entry& entry) {
-  constexpr int kTries = 3;
   try {
-    for (int i = 0; i < kTries; ++i) {
-      entry.outcome = TwoProcesses(entry.scenario).go();
-      if (joined_in_time(entry.outcome) && is_undisturbed(entry)) return;
-      fmt::print("{}: a busy machine came between, which {}\n", entry.test,
-                 joined_in_time(entry.outcome) ? fmt::format("made {}", fmt::join(entry.outcome.faults, ", "))
-                                               : std::string("let the host join too late"));
-    }
-    if (!joined_in_time(entry.outcome))
-      entry.outcome.problem = "this machine is too busy: the host never joined before the patient's squeeze";
+    entry.outcome = TwoProcesses(entry.scenario).go();
   } catch (const std::exception& error) {
     entry.outcome.problem = error.what();
   }
 }
 
-std::size_t at_once() {
-  const char* given = std::getenv("PHALANX_FAULTS_AT_ONCE");
-  return given != nullptr ? std::stoul(given) : 6;
-}
+std::size_t at_once() { return std::max(2U, std::thread::hardware_concurrency()); }
 
 class AllScenarios : public ::testing::Environment {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenarios of all tests of this program run side by side before the first test begins (they mostly
-// sleep); a test looks at what its own has left.
+// The scenarios of all tests of this program run side by side before the first test begins;
+// a test looks at what its own has left.
 #pragma once
 
 #include <string>

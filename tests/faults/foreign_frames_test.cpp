@@ -146,7 +146,6 @@ void write_noise_to_the_line(TwoProcesses& both) {
 const Registered kSerial("RandomBytesOnTheSerialLineAreCounted", "",
                          {.controller = {"--fault", "corrupt=0.05@1.8+1.5"},
                           .pty = true,
-                          .slower = 4.0,
                           .events = {{1.8, write_noise_to_the_line}},
                           .seconds = 4.2});
 TEST(Faults, RandomBytesOnTheSerialLineAreCounted) {

@@ -13,8 +13,7 @@ namespace {
 
 // First a short overload, which is shown and goes by, then one that lasts.
 const Registered kOverload("AnOverloadIsShownAndThenStops", "",
-                           {.late = {"overload"},
-                            .events = {type_at(1.9, "slow 8"), type_at(1.94, "slow 0"),
+                           {.events = {type_at(1.9, "slow 8"), type_at(1.94, "slow 0"),
                                        type_at(3.2, "slow 8"), type_at(3.6, "slow 0")},
                             .seconds = 4.0});
 TEST(Faults, AnOverloadIsShownAndThenStops) {

@@ -122,7 +122,6 @@ TEST(Faults, AnAngleOutOfThePatientsRangeIsAFault) {
 const Registered kClock("AClockThatRunsBackwardsIsAFault", "",
                         {.controller = {"--fault", at("clock-backwards")},
                          .host = {"--rate-hz", "1000"},
-                         .late = {"step_too_old"},
                          .seconds = 3.0});
 TEST(Faults, AClockThatRunsBackwardsIsAFault) {
   const Outcome& o = outcome("AClockThatRunsBackwardsIsAFault");

@@ -10,12 +10,8 @@
 namespace phalanx::testing {
 namespace {
 
-constexpr double kHang = 240.0;  ///< real seconds for anything to begin or end: only against hangs
-
-std::string of_environment(const char* name, const std::string& otherwise) {
-  const char* given = std::getenv(name);
-  return given != nullptr && *given != '\0' ? given : otherwise;
-}
+constexpr double kHang = 240.0;      ///< real seconds for a program to begin: only against hangs
+constexpr double kEndWithin = 60.0;  ///< of the held clock, for a program to listen or to end [s]
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
   to.insert(to.end(), more.begin(), more.end());
@@ -36,48 +32,62 @@ std::vector<std::string> faults_below(const std::filesystem::path& folder) {
 
 }  // namespace
 
-double slow_motion() {
-#ifdef PHALANX_SANITIZED
-  const std::string otherwise = "20";
-#else
-  const std::string otherwise = "8";
-#endif
-  return std::stod(of_environment("PHALANX_FAULTS_SLOW_MOTION", otherwise));
+std::string program() {
+  const char* given = std::getenv("PHALANX_PROGRAM");
+  return given != nullptr && *given != '\0' ? given : PHALANX_PROGRAM_BUILT;
 }
-
-std::string program() { return of_environment("PHALANX_PROGRAM", PHALANX_PROGRAM_BUILT); }
 
 TwoProcesses::TwoProcesses(const Scenario& scenario) : scenario_(scenario) {
   start_controller();
   start_host();
 }
 
+std::unique_ptr<ChildProcess> TwoProcesses::start(const std::vector<std::string>& command,
+                                                  const std::string& output) {
+  std::vector<std::string> under_clock{"/usr/bin/env"};
+  append(under_clock, clock_.environment(PHALANX_HELD_CLOCK_LIBRARY));
+  append(under_clock, command);
+  auto process = std::make_unique<ChildProcess>(under_clock, path(output));
+  const double give_up = wall_seconds() + kHang;
+  while (!clock_.holds(process->pid())) {
+    if (process->ended() || wall_seconds() > give_up)
+      throw std::runtime_error(command[1] + " does not begin: " + process->errors());
+    sleep_seconds(0.001);
+  }
+  return process;
+}
+
+std::optional<int> TwoProcesses::wait_for(ChildProcess& process) {
+  const double give_up = clock_.now() + kEndWithin;
+  while (!process.ended() && clock_.now() < give_up) pass(0.01);
+  return process.wait(0.0);
+}
+
 void TwoProcesses::start_controller() {
-  std::vector<std::string> command{program(),       "device",
-                                   "simulate",      "grasp_teapot",
-                                   "--slow-motion", std::to_string(slow_),
-                                   "--log",         path("controller.csv").string()};
+  std::vector<std::string> command{program(),      "device", "simulate",
+                                   "grasp_teapot", "--log",  path("controller.csv").string()};
   append(command, scenario_.pty ? std::vector<std::string>{"--pty"}
                                 : std::vector<std::string>{"--udp", "127.0.0.1:0"});
   append(command, scenario_.controller);
   append(command, scenario_.both);
-  controller_ = std::make_unique<ChildProcess>(command, path("controller.txt"));
+  controller_ = start(command, "controller.txt");
   const std::string listening = "listening on ";
-  const double give_up = wall_seconds() + kHang;
+  const double give_up = clock_.now() + kEndWithin;
   std::string said;
   while (!said.ends_with('\n')) {
-    if (controller_->ended() || wall_seconds() > give_up)
+    if (controller_->ended() || clock_.now() > give_up)
       throw std::runtime_error("the controller does not listen: " + controller_->errors());
-    sleep_seconds(0.005);
+    pass(0.001);
     said = controller_->output();
   }
-  begin_ = wall_seconds();
+  begin_ = clock_.now();
   if (!said.starts_with(listening)) throw std::runtime_error("the controller says: " + said);
   address_ = said.substr(listening.size(), said.find('\n') - listening.size());
   if (scenario_.pty) return;
   controller_port_ = static_cast<std::uint16_t>(std::stoul(address_.substr(address_.rfind(':') + 1)));
   if (!scenario_.middle) return;
   middle_ = std::make_unique<UdpMiddle>(controller_port_);
+  clock_.watch_thread(middle_->thread_id());
   address_ = "udp:127.0.0.1:" + std::to_string(middle_->port());
 }
 
@@ -87,8 +97,6 @@ void TwoProcesses::start_host() {
                                    "grasp_teapot",
                                    "--device",
                                    address_,
-                                   "--slow-motion",
-                                   std::to_string(slow_),
                                    "--headless",
                                    "--no-realtime",
                                    "--log",
@@ -99,10 +107,10 @@ void TwoProcesses::start_host() {
                                    path("faults").string()};
   append(command, scenario_.host);
   append(command, scenario_.both);
-  host_ = std::make_unique<ChildProcess>(command, path("host.txt"));
+  host_ = start(command, "host.txt");
 }
 
-double TwoProcesses::now() const { return (wall_seconds() - begin_) / slow_; }
+double TwoProcesses::now() const { return clock_.now() - begin_; }
 
 Outcome TwoProcesses::go() {
   for (const Event& event : scenario_.events) {
@@ -111,9 +119,9 @@ Outcome TwoProcesses::go() {
   }
   if (scenario_.seconds > now()) pass(scenario_.seconds - now());
   host_->signal(SIGINT);
-  outcome_.host_exit = host_->wait(kHang);
+  outcome_.host_exit = wait_for(*host_);
   controller_->signal(SIGINT);
-  outcome_.controller_exit = controller_->wait(kHang);
+  outcome_.controller_exit = wait_for(*controller_);
   gather();
   return outcome_;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario: `phalanx device simulate` and `phalanx run` as two processes with a wire between them, and what
-// happens to them at which time of the controller.
+// happens to them at which time of the controller. Both run under a clock that the test holds.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,9 @@
 #include "faults/station_logs.h"
 #include "faults/udp_middle.h"
 #include "record/temporary_folder.h"
+#include "support/held_clock/held_clock.h"
 
 namespace phalanx::testing {
-
-/// So many times slower than life do both processes run, time limits included, so that a busy machine does
-/// not make faults of its own: 8, with sanitizers 20, or what PHALANX_FAULTS_SLOW_MOTION says.
-[[nodiscard]] double slow_motion();
 
 class TwoProcesses;
 
@@ -36,14 +33,8 @@ struct Scenario {
   std::vector<std::string> both = {};        ///< further arguments
   bool pty = false;                          ///< a pseudo-terminal is the wire; else UDP
   bool middle = false;                       ///< UDP with the test in the middle
-  /// So many times more slowly than others: the kernel's own threads carry a pseudo-terminal's bytes, and
-  /// come late on a busy machine.
-  double slower = 1.0;
-  /// Faults of what comes late that it makes: no_sample, step_too_old, overload. A busy machine makes them,
-  /// too, and where one comes that is not named here the scenario is tried again.
-  std::vector<std::string> late = {};
-  std::vector<Event> events = {};  ///< in order
-  double seconds = 4.2;            ///< then the host is asked to end, then the controller
+  std::vector<Event> events = {};            ///< in order
+  double seconds = 4.2;                      ///< then the host is asked to end, then the controller
 };
 
 /// Everything that a scenario leaves.
@@ -75,8 +66,13 @@ class TwoProcesses {
   [[nodiscard]] const std::string& address() const { return address_; }
   [[nodiscard]] std::uint16_t controller_port() const { return controller_port_; }
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-  /// Sleeps for so long, in slow motion [s].
-  void pass(double seconds) const { sleep_seconds(seconds * slow_); }
+  /// Lets so much time pass [s].
+  void pass(double seconds) { clock_.advance(seconds); }
+  /// Starts a further program under the same clock. @throws std::runtime_error
+  [[nodiscard]] std::unique_ptr<ChildProcess> start(const std::vector<std::string>& command,
+                                                    const std::string& output);
+  /// Lets time pass until the program has ended. @returns its exit status; nothing: it goes on after a minute
+  std::optional<int> wait_for(ChildProcess& process);
 
  private:
   void start_controller();
@@ -85,8 +81,8 @@ class TwoProcesses {
   [[nodiscard]] double now() const;
 
   const Scenario& scenario_;
-  double slow_ = slow_motion() * scenario_.slower;
   TemporaryFolder folder_;
+  test::HeldClock clock_;
   std::unique_ptr<ChildProcess> controller_;
   std::unique_ptr<UdpMiddle> middle_;
   std::unique_ptr<ChildProcess> host_;

@@ -57,7 +57,14 @@ UdpMiddle::~UdpMiddle() {
   ::close(controller_side_);
 }
 
+std::int32_t UdpMiddle::thread_id() const {
+  thread_id_.wait(0);
+  return thread_id_;
+}
+
 void UdpMiddle::work() {
+  thread_id_ = ::gettid();
+  thread_id_.notify_all();
   while (!ending_) {
     std::array<pollfd, 2> sockets{pollfd{.fd = host_side_, .events = POLLIN, .revents = 0},
                                   pollfd{.fd = controller_side_, .events = POLLIN, .revents = 0}};

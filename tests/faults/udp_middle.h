@@ -31,6 +31,8 @@ class UdpMiddle {
   /// The newest COMMAND of the host and the newest SAMPLE of the controller that went by; empty: none yet.
   [[nodiscard]] Bytes last_command() const;
   [[nodiscard]] Bytes last_sample() const;
+  /// Of the thread that passes on, as of gettid().
+  [[nodiscard]] std::int32_t thread_id() const;
 
  private:
   void work();
@@ -45,6 +47,7 @@ class UdpMiddle {
   Bytes command_;
   Bytes sample_;
   std::atomic<bool> ending_{false};
+  std::atomic<std::int32_t> thread_id_{0};
   std::thread thread_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A StationHost and its owner, in slow motion, so that a busy machine makes no faults of its own.
+// A StationHost and its owner. The program runs under a held clock: a busy machine makes no faults of its
+// own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,11 +14,8 @@
 #include <vector>
 
 #include "phalanx/station/station_host.h"
-#include "support/sanitized.h"
 
 namespace phalanx::test {
-
-inline constexpr double kHostSlowdown = kSanitized ? 8.0 : 4.0;
 
 class HostTest : public ::testing::Test {
  protected:
@@ -36,7 +34,7 @@ class HostTest : public ::testing::Test {
     while (std::chrono::steady_clock::now() < give_up) {
       own();
       if (so()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      sleep(0.005);
     }
     return false;
   }
@@ -46,7 +44,8 @@ class HostTest : public ::testing::Test {
     while (host->next_record(record)) records.push_back(record);
     if (auto report = host->take_fault_report()) reports.push_back(std::move(*report));
   }
-  /// So long by the process's clock.
+  void sleep(double seconds) const { clock.sleep_until(clock.now() + seconds); }
+  /// The owner's work for so long by the process's clock.
   void pass(double seconds) {
     const double end = clock.now() + seconds;
     ASSERT_TRUE(until([&] { return clock.now() >= end; }));
@@ -114,7 +113,7 @@ class HostTest : public ::testing::Test {
     return false;
   }
 
-  const Clock clock{kHostSlowdown};
+  const Clock clock;
   std::vector<StepRecord> records;
   std::vector<FaultReport> reports;
   std::unique_ptr<StationHost> host;

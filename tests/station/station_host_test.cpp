@@ -299,7 +299,10 @@ TEST_F(StationHostTest, AFaultIsReportedOverASwitchAndTorqueComesBackOnlyByWord)
   start(with("sliders"));
   ASSERT_TRUE(until_running());
   host->lengthen_steps(0.0075);  // of 5 ms
-  while (host->view().state != SafetyState::kFault || !host->view().at_rest) host->go_on();
+  while (host->view().state != SafetyState::kFault || !host->view().at_rest) {
+    host->go_on();
+    sleep(0.005);
+  }
   auto [answer, done] = awaited();
   host->load_scene("pinch_ball", done);
   const auto got = answer;
@@ -308,6 +311,7 @@ TEST_F(StationHostTest, AFaultIsReportedOverASwitchAndTorqueComesBackOnlyByWord)
     host->go_on();
     while (host->next_record(record)) {
     }
+    sleep(0.005);
   }
   pass(1.0);
   EXPECT_TRUE(host->held_stopped());
@@ -327,6 +331,7 @@ TEST_F(StationHostTest, TheViewNeverGoesBackOverASwitch) {
   double last = host->view().time;
   std::uint32_t revision = host->state()->geometry->revision;
   while (!got->refused.has_value()) {
+    sleep(0.0002);
     host->go_on();
     const bool gone = !host->state()->running;
     const StationView view = host->view();
@@ -348,6 +353,7 @@ TEST_F(StationHostTest, AResetDuringASwitchDoesNotStartTheStationTwice) {
   while (!got->refused.has_value()) {
     host->go_on();
     host->reset();
+    sleep(0.0002);
   }
   pass(0.3);
   EXPECT_EQ(host->state()->geometry->revision, 2U);

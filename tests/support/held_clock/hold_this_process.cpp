@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program that has this file runs under a held clock from its beginning to its end: time passes while all
+// its threads sleep.
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "support/held_clock/held_clock.h"
+#include "support/held_clock/interpose.h"
+
+namespace phalanx::test {
+namespace {
+
+/// For the life of the process: threads may look at the clock to the last moment.
+HeldClock* const kProcessClock = [] {
+  auto* clock = new HeldClock;
+  hold(&clock->page());
+  std::thread([clock] {
+    clock->ignore_thread(static_cast<std::int32_t>(::syscall(SYS_gettid)));
+    clock->run([] { return false; });
+  }).detach();
+  return clock;
+}();
+
+}  // namespace
+}  // namespace phalanx::test

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C library's functions that tell CLOCK_MONOTONIC or wait for it, replaced: under a held clock they tell
+// and wait for its time. Linked into test programs, and as a library that LD_PRELOAD puts before a program.
+// Without a held clock they are the system calls.
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/epoll.h>
+#include <sys/mman.h>
+#include <sys/timerfd.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "support/held_clock/interpose.h"
+
+namespace phalanx::test {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr int kFreeReads = 1000;         ///< of the clock by a thread that never waits; each more takes kSpin
+constexpr std::int64_t kSpin = 1000;     ///< [ns]: a loop that waits for a time by reading the clock must end
+constexpr std::int64_t kYield = 20'000;  ///< [ns]: the same for a loop that yields
+constexpr long kNap = 500'000;           ///< real time between two looks from a condition variable [ns]
+
+std::atomic<ClockPage*> held{nullptr};
+
+/// This thread's place on the page, given back at its end.
+struct Place {
+  ~Place() {
+    if (wait == nullptr) return;
+    wait->kind.store(WaitKind::kNone);
+    wait->tid.store(0);
+  }
+  ClockWait* take(ClockPage& page) noexcept {
+    const auto tid = static_cast<std::int32_t>(::syscall(SYS_gettid));
+    if (wait != nullptr && wait->tid.load() == tid) return wait;
+    for (ClockWait& place : page.wait)  // of the program that this process was before exec()
+      if (place.tid.load() == tid) return wait = &place;
+    for (ClockWait& place : page.wait) {
+      std::int32_t free = 0;
+      if (!place.tid.compare_exchange_strong(free, tid)) continue;
+      place.pid.store(::getpid());
+      place.kind.store(WaitKind::kNone);
+      return wait = &place;
+    }
+    std::fputs("held clock: more threads than it has places for\n", stderr);
+    std::abort();
+  }
+  ClockWait* wait = nullptr;
+};
+thread_local Place own_place;
+thread_local int reads = 0;
+
+std::int64_t of(const timespec& t) noexcept { return t.tv_sec * kSecond + t.tv_nsec; }
+timespec to_timespec(std::int64_t ns) noexcept { return {ns / kSecond, ns % kSecond}; }
+
+/// Enters the wait, then calls `look` until it returns false. @returns whether the clock's holder ended the
+/// wait
+template <class Look>
+bool wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look) noexcept {
+  reads = 0;
+  ClockWait& wait = *own_place.take(page);
+  wait.woken.store(0);
+  wait.deadline.store(deadline);
+  wait.kind.store(kind);
+  while (look(wait)) {
+  }
+  const bool ended = wait.woken.exchange(2) == 1;
+  wait.kind.store(WaitKind::kNone);
+  return ended;
+}
+
+/// @returns 0, or EINTR where a signal's handler ran
+int sleep_until(ClockPage& page, std::int64_t deadline) noexcept {
+  int result = 0;
+  wait_until(page, WaitKind::kSleep, deadline, [&](ClockWait& wait) {
+    if (wait.woken.load() != 0 || page.now.load() >= deadline) return false;
+    if (futex(&wait.woken, FUTEX_WAIT, 0) != 0 && errno == EINTR) {
+      result = EINTR;
+      return false;
+    }
+    return true;
+  });
+  return result;
+}
+
+/// The thread's signal mask without the signal that ends a poll.
+sigset_t mask_for_waiting(const sigset_t* given) noexcept {
+  sigset_t mask;
+  if (given != nullptr)
+    mask = *given;
+  else
+    pthread_sigmask(SIG_SETMASK, nullptr, &mask);
+  sigdelset(&mask, wake_signal());
+  return mask;
+}
+
+sigset_t only_wake_signal() noexcept {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, wake_signal());
+  return set;
+}
+
+/// Whether this thread has been signalled in its present wait.
+thread_local volatile sig_atomic_t signalled = 0;
+void note_signal(int) { signalled = 1; }
+
+/// `call(mask, over)` waits for descriptors with that mask, not at all once the time is over.
+template <class Call>
+int poll_until(ClockPage& page, std::int64_t deadline, const sigset_t* given, Call call) noexcept {
+  const sigset_t mask = mask_for_waiting(given);
+  int result = 0;
+  int error = 0;
+  signalled = 0;
+  const bool ended = wait_until(page, WaitKind::kPoll, deadline, [&](ClockWait&) {
+    const bool over = page.now.load() >= deadline;
+    result = call(mask, over);
+    error = errno;
+    return result < 0 && error == EINTR && signalled != 0 && !over;
+  });
+  if (ended && signalled == 0) {  // its signal is on its way, and must not end the next wait
+    const sigset_t set = only_wake_signal();
+    const timespec second{1, 0};
+    ::syscall(SYS_rt_sigtimedwait, &set, nullptr, &second, _NSIG / 8);
+  }
+  errno = error;
+  return result;
+}
+
+void block_wake_signal() noexcept {
+  struct sigaction action{};
+  action.sa_handler = note_signal;
+  sigaction(wake_signal(), &action, nullptr);
+  const sigset_t set = only_wake_signal();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+/// Where it is allowed, a thread that wakes up is run at once, whatever else a busy computer does: under a
+/// held clock threads wake up some hundred thousand times a test. Elsewhere the same test takes longer.
+void ask_for_the_processor() noexcept {
+  const sched_param first{1};
+  ::syscall(SYS_sched_setscheduler, 0, SCHED_RR, &first);
+}
+
+void before_fork() {
+  if (ClockPage* page = held.load()) page->forking.fetch_add(1);
+}
+void after_fork_in_child() {
+  own_place.wait = nullptr;
+  if (ClockPage* page = held.load()) {
+    enter_process(*page, ::getpid());
+    page->forking.fetch_sub(1);
+  }
+}
+
+/// A program that was started with a clock's file.
+[[gnu::constructor]] void attach_to_named_page() {
+  const char* file = std::getenv(kClockVariable);
+  if (file == nullptr || *file == '\0') return;
+  const int descriptor = ::open(file, O_RDWR | O_CLOEXEC);
+  void* memory = descriptor < 0
+                     ? MAP_FAILED
+                     : ::mmap(nullptr, sizeof(ClockPage), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  if (memory == MAP_FAILED) {
+    std::perror("held clock: its file");
+    std::abort();
+  }
+  ::close(descriptor);
+  hold(static_cast<ClockPage*>(memory));
+}
+
+}  // namespace
+
+void hold(ClockPage* page) noexcept {
+  block_wake_signal();
+  ask_for_the_processor();
+  pthread_atfork(before_fork, nullptr, after_fork_in_child);
+  enter_process(*page, ::getpid());
+  held.store(page);
+}
+
+}  // namespace phalanx::test
+
+// ---- the C library's names ----
+
+using phalanx::test::ClockPage;
+using phalanx::test::ClockWait;
+using phalanx::test::WaitKind;
+
+extern "C" {
+
+int clock_gettime(clockid_t id, timespec* t) noexcept {
+  ClockPage* page = phalanx::test::held.load(std::memory_order_acquire);
+  if (page == nullptr || id != CLOCK_MONOTONIC) return static_cast<int>(::syscall(SYS_clock_gettime, id, t));
+  if (++phalanx::test::reads > phalanx::test::kFreeReads) page->now.fetch_add(phalanx::test::kSpin);
+  *t = phalanx::test::to_timespec(page->now.load());
+  return 0;
+}
+
+int clock_nanosleep(clockid_t id, int flags, const timespec* t, timespec* left) {
+  ClockPage* page = phalanx::test::held.load();
+  if (page == nullptr || id != CLOCK_MONOTONIC) {
+    if (::syscall(SYS_clock_nanosleep, id, flags, t, left) == 0) return 0;
+    return errno;
+  }
+  const std::int64_t deadline = phalanx::test::of(*t) + ((flags & TIMER_ABSTIME) != 0 ? 0 : page->now.load());
+  const int result = phalanx::test::sleep_until(*page, deadline);
+  if (result != 0 && left != nullptr && (flags & TIMER_ABSTIME) == 0)
+    *left = phalanx::test::to_timespec(std::max<std::int64_t>(0, deadline - page->now.load()));
+  return result;
+}
+
+int nanosleep(const timespec* t, timespec* left) {
+  if (phalanx::test::held.load() == nullptr) return static_cast<int>(::syscall(SYS_nanosleep, t, left));
+  const int result = clock_nanosleep(CLOCK_MONOTONIC, 0, t, left);
+  if (result == 0) return 0;
+  errno = result;
+  return -1;
+}
+
+int usleep(useconds_t us) {
+  const timespec t = phalanx::test::to_timespec(1000LL * us);
+  return nanosleep(&t, nullptr);
+}
+
+int sched_yield() noexcept {
+  ClockPage* page = phalanx::test::held.load();
+  if (page != nullptr && ++phalanx::test::reads > phalanx::test::kFreeReads)
+    return phalanx::test::sleep_until(*page, page->now.load() + phalanx::test::kYield), 0;
+  return static_cast<int>(::syscall(SYS_sched_yield));
+}
+
+int ppoll(pollfd* descriptors, nfds_t count, const timespec* timeout, const sigset_t* mask) {
+  const auto now = [&](const timespec* t, const sigset_t* m) {
+    timespec copy = t != nullptr ? *t : timespec{};
+    return static_cast<int>(
+        ::syscall(SYS_ppoll, descriptors, count, t != nullptr ? &copy : nullptr, m, _NSIG / 8));
+  };
+  ClockPage* page = phalanx::test::held.load();
+  const bool at_once = timeout != nullptr && phalanx::test::of(*timeout) == 0;
+  if (page == nullptr || timeout == nullptr || at_once) return now(timeout, mask);
+  const timespec zero{};
+  return phalanx::test::poll_until(
+      *page, page->now.load() + phalanx::test::of(*timeout), mask,
+      [&](const sigset_t& m, bool over) { return now(over ? &zero : nullptr, &m); });
+}
+
+int poll(pollfd* descriptors, nfds_t count, int milliseconds) {
+  if (milliseconds < 0) return ppoll(descriptors, count, nullptr, nullptr);
+  const timespec t = phalanx::test::to_timespec(1'000'000LL * milliseconds);
+  return ppoll(descriptors, count, &t, nullptr);
+}
+
+int epoll_pwait(int epoll, epoll_event* events, int count, int milliseconds, const sigset_t* mask) {
+  const auto now = [&](int ms, const sigset_t* m) {
+    return static_cast<int>(::syscall(SYS_epoll_pwait, epoll, events, count, ms, m, _NSIG / 8));
+  };
+  ClockPage* page = phalanx::test::held.load();
+  if (page == nullptr || milliseconds <= 0) return now(milliseconds, mask);
+  return phalanx::test::poll_until(*page, page->now.load() + 1'000'000LL * milliseconds, mask,
+                                   [&](const sigset_t& m, bool over) { return now(over ? 0 : -1, &m); });
+}
+
+int epoll_wait(int epoll, epoll_event* events, int count, int milliseconds) {
+  return epoll_pwait(epoll, events, count, milliseconds, nullptr);
+}
+
+/// Asio waits in epoll_wait() where there are no such timers.
+int timerfd_create(clockid_t id, int flags) noexcept {
+  if (phalanx::test::held.load() == nullptr)
+    return static_cast<int>(::syscall(SYS_timerfd_create, id, flags));
+  errno = EINVAL;
+  return -1;
+}
+
+int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t id,
+                           const timespec* until) {
+  ClockPage* page = phalanx::test::held.load();
+  const std::int64_t deadline = phalanx::test::of(*until);
+  int result = ETIMEDOUT;
+  const auto nap = [&](timespec real) {
+    real.tv_nsec += phalanx::test::kNap;
+    if (real.tv_nsec >= phalanx::test::kSecond) ++real.tv_sec, real.tv_nsec -= phalanx::test::kSecond;
+    return pthread_cond_timedwait(condition, mutex, &real);
+  };
+  const auto look = [&](std::int64_t time) {
+    if (time >= deadline) return false;
+    timespec real{};
+    ::syscall(SYS_clock_gettime, CLOCK_REALTIME, &real);
+    result = nap(real);
+    return result == ETIMEDOUT;
+  };
+  if (page != nullptr && id == CLOCK_MONOTONIC) {
+    phalanx::test::wait_until(*page, WaitKind::kNap, deadline,
+                              [&](ClockWait&) { return look(page->now.load()); });
+    return result;
+  }
+  timespec now{};
+  do ::syscall(SYS_clock_gettime, id, &now);
+  while (look(phalanx::test::of(now)));
+  return result;
+}
+
+}  // extern "C"
