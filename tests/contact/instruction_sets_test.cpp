@@ -26,7 +26,7 @@ class UsedSet {
 };
 
 /// Bits of results, one after the other.
-class Bits {
+class ResultBits {
  public:
   void add(double x) { bits_.push_back(std::bit_cast<std::uint64_t>(x)); }
   void add(std::uint64_t x) { bits_.push_back(x); }
@@ -42,7 +42,7 @@ class Bits {
   }
   [[nodiscard]] std::size_t size() const { return bits_.size(); }
   /// The first place at which they differ; size() if they do not.
-  [[nodiscard]] std::size_t first_difference(const Bits& other) const {
+  [[nodiscard]] std::size_t first_difference(const ResultBits& other) const {
     std::size_t i = 0;
     while (i < std::min(size(), other.size()) && bits_[i] == other.bits_[i]) ++i;
     return size() == other.size() ? i : std::min(i, std::min(size(), other.size()) - 1);
@@ -52,14 +52,14 @@ class Bits {
   std::vector<std::uint64_t> bits_;
 };
 
-void expect_same_bits(const Bits& portable, const Bits& wide) {
+void expect_same_bits(const ResultBits& portable, const ResultBits& wide) {
   ASSERT_EQ(portable.size(), wide.size());
   EXPECT_EQ(portable.first_difference(wide), portable.size()) << "place of the first different number";
 }
 
-Bits searched(std::uint64_t seed, int poses) {
+ResultBits searched(std::uint64_t seed, int poses) {
   test::Random random(seed);
-  Bits out;
+  ResultBits out;
   for (const test::SearchCase& shapes : test::search_cases(random)) {
     const ObjectModel object(shapes.object);
     const SegmentTree segment(shapes.segment);
@@ -83,7 +83,7 @@ Bits searched(std::uint64_t seed, int poses) {
   return out;
 }
 
-void add_snapshot(const Snapshot& s, Bits& out) {
+void add_snapshot(const Snapshot& s, ResultBits& out) {
   out.add(static_cast<std::uint64_t>(s.status));
   out.add(s.hcp_angle);
   out.add(s.gdp_angle);
@@ -109,12 +109,12 @@ JointArray any_hand(test::Random& random, const HandParameters& hand, double rea
 }
 
 /// A hand that grasps and lets go at random.
-Bits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks) {
+ResultBits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks) {
   test::Random random(seed);
   HapticModel model(test::simple_hand(), ObjectModel(object));
   model.limits.joint_speed = 1e4;
   test::Runner runner(model);
-  Bits out;
+  ResultBits out;
   for (int n = 0; n < grasps; ++n) {
     const JointArray from = runner.now().hcp_angle;
     const JointArray to = any_hand(random, model.hand.parameters(), n % 3 == 2 ? 0.0 : 1.0);
@@ -148,7 +148,7 @@ class EverySet : public ::testing::TestWithParam<InstructionSet> {
 
   template <class Run>
   void expect_same_as_portable(Run&& run) const {
-    Bits portable;
+    ResultBits portable;
     {
       const UsedSet used(InstructionSet::kPortable);
       portable = run();

@@ -15,8 +15,8 @@
 namespace phalanx {
 namespace {
 
-constexpr std::uint64_t kSeed = 3;
-constexpr double kTick = 1e-3;
+constexpr std::uint64_t kLineSeed = 3;
+constexpr double kLinePeriod = 1e-3;
 
 /// A packet that says its number.
 std::array<std::uint8_t, 4> packet(int number) {
@@ -31,12 +31,12 @@ struct Came {
 
 /// One packet a tick into the line; what came out of it and when, until long after the last.
 std::vector<Came> through(const PacketFaults& faults, int packets) {
-  FaultyLine line(kSeed);
+  FaultyLine line(kLineSeed);
   std::vector<Came> out;
   std::array<std::uint8_t, PHX_FRAME_MAX> bytes{};
   Peer peer = 0;
   for (int tick = 0; tick < packets + 100; ++tick) {
-    const double t = kTick * tick;
+    const double t = kLinePeriod * tick;
     if (tick < packets) line.put(t, faults, packet(tick), 77);
     while (const std::size_t size = line.take(t, bytes, peer)) {
       EXPECT_EQ(size, 4U);
@@ -121,7 +121,7 @@ TEST(FaultyLine, TheSameSeedDoesTheSame) {
 }
 
 TEST(FaultyLine, KeepsNoMoreThanItHasRoomForAndAllocatesNothing) {
-  FaultyLine line(kSeed);
+  FaultyLine line(kLineSeed);
   std::array<std::uint8_t, PHX_FRAME_MAX> bytes{};
   const std::vector<std::uint8_t> too_large(PHX_FRAME_MAX + 1, 1);
   Peer peer = 0;
@@ -162,7 +162,7 @@ class MemoryTransport final : public Transport {
 
 TEST(FaultyWire, InSilenceNothingIsSentOrHeardAndNothingComesLater) {
   MemoryTransport transport;
-  FaultyWire wire(transport, kSeed);
+  FaultyWire wire(transport, kLineSeed);
   std::array<std::uint8_t, PHX_FRAME_MAX> out{};
   Peer from = 0;
   wire.send(0.0, {.delay = 0.01}, packet(1), 5);  // is on its way when the cable is pulled
@@ -184,7 +184,7 @@ TEST(FaultyWire, InSilenceNothingIsSentOrHeardAndNothingComesLater) {
 
 TEST(FaultyWire, NoiseGoesBothWaysBesideTheRest) {
   MemoryTransport transport;
-  FaultyWire wire(transport, kSeed);
+  FaultyWire wire(transport, kLineSeed);
   std::array<std::uint8_t, PHX_FRAME_MAX> out{};
   Peer from = 0;
   const PacketFaults noise{.noise_bytes = true};

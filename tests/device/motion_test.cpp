@@ -52,7 +52,7 @@ TEST(Motion, OfOneKeyStandsStill) {
   EXPECT_EQ(motion.at(7.0), all(0.5));
 }
 
-void expect_refused(const Motion& motion, const char* words) {
+void expect_motion_refused(const Motion& motion, const char* words) {
   try {
     check_motion(motion);
     ADD_FAILURE() << "accepted";
@@ -63,13 +63,13 @@ void expect_refused(const Motion& motion, const char* words) {
 
 TEST(CheckMotion, RefusesWhatBreaksTheInvariant) {
   EXPECT_NO_THROW(check_motion(two_keys()));
-  expect_refused({}, "no keys");
-  expect_refused({{0.0, 1.0}, {all(0.0)}}, "2 times");
-  expect_refused({{0.0, 0.0}, {all(0.0), all(0.0)}}, "key 1: time 0 s does not come after");
-  expect_refused({{0.0, kNan}, {all(0.0), all(0.0)}}, "not finite");
+  expect_motion_refused({}, "no keys");
+  expect_motion_refused({{0.0, 1.0}, {all(0.0)}}, "2 times");
+  expect_motion_refused({{0.0, 0.0}, {all(0.0), all(0.0)}}, "key 1: time 0 s does not come after");
+  expect_motion_refused({{0.0, kNan}, {all(0.0), all(0.0)}}, "not finite");
   Motion nan = two_keys();
   nan.angle[1][5] = kNan;
-  expect_refused(nan, "key 1: index_mcp_abduction = nan");
+  expect_motion_refused(nan, "key 1: index_mcp_abduction = nan");
 }
 
 }  // namespace

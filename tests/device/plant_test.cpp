@@ -24,7 +24,7 @@ using test::no_patient;
 using test::one_motor;
 using test::two_joint_device;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 // 2 mm of play on an arm of 10 mm: 0.2 rad. 0.01 Nm are 1 N on the tendon, which gives 0.1 mm, 0.01 rad.
 TEST(Plant, ATendonWithBacklashHasItsPlayAndNoTensionInside) {
@@ -118,7 +118,7 @@ TEST(Plant, StaysFiniteWhateverArrives) {
   PatientParameters patient = no_patient();
   patient.stiffness.fill(2.0);
   patient.damping.fill(0.01);
-  for (const double bad : {kNan, kInfinity, -kInfinity, 1e308, -1e308}) {
+  for (const double bad : {kNotANumber, kInfinity, -kInfinity, 1e308, -1e308}) {
     Plant plant(exo, patient, {});
     PlantInput input = no_input(exo);
     input.motor_force = {bad, -bad};
@@ -140,7 +140,7 @@ TEST(Plant, DoesNothingForATimeThatIsNotAboveZero) {
   Plant plant(exo, no_patient(), {});
   PlantInput input = no_input(exo);
   input.motor_force[0] = 1.0;
-  for (const double duration : {0.0, -1.0, kNan}) plant.advance(input, duration);
+  for (const double duration : {0.0, -1.0, kNotANumber}) plant.advance(input, duration);
   EXPECT_EQ(plant.tendon(0).motor_force, 0.0);
   EXPECT_EQ(plant.tendon(0).wound, 0.0);
 }
@@ -213,10 +213,10 @@ TEST(Plant, RefusesAStepThatItsTendonsDoNotBear) {
   exo.motors[0].tendon_stiffness = 1e7;  // 7746 rad/s
   EXPECT_NO_THROW(Plant(exo, no_patient(), {}, 1.29e-4));
   EXPECT_THROW(Plant(exo, no_patient(), {}, 1.30e-4), std::invalid_argument);
-  for (const double step : {0.0, 9e-8, 1.1e-3, kNan})
+  for (const double step : {0.0, 9e-8, 1.1e-3, kNotANumber})
     EXPECT_THROW(Plant(one_motor(0.01), no_patient(), {}, step), std::invalid_argument) << step;
   JointArray start{};
-  start[at(kMcp)] = kNan;
+  start[at(kMcp)] = kNotANumber;
   EXPECT_THROW(Plant(one_motor(0.01), no_patient(), start), std::invalid_argument);
 }
 

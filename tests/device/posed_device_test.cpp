@@ -42,9 +42,9 @@ JointArray all_at(double angle) {
 }
 
 /// A host that reads a sample and sends a command a step.
-class Loop {
+class PosedLoop {
  public:
-  explicit Loop(const PosedDeviceSettings& settings = settings_at())
+  explicit PosedLoop(const PosedDeviceSettings& settings = settings_at())
       : device(settings), period(1.0 / settings.host_rate_hz) {
     device.open();
   }
@@ -83,7 +83,7 @@ TEST(PosedDevice, HasAnAngleChannelForEveryJointAndNoMotor) {
 }
 
 TEST(PosedDevice, EachCallGivesOneSampleOnePeriodLater) {
-  Loop loop(settings_at(300.0));
+  PosedLoop loop(settings_at(300.0));
   for (int i = 1; i <= 9; ++i) {
     loop.step();
     EXPECT_EQ(loop.newest.sequence, static_cast<std::uint32_t>(i));
@@ -100,7 +100,7 @@ TEST(PosedDevice, StartsAtItsStartWithinTheRange) {
   PosedDeviceSettings settings = settings_at();
   settings.start = all_at(0.25);
   settings.start[kPip] = 5.0;
-  Loop loop(settings);
+  PosedLoop loop(settings);
   loop.run(0.1);
   EXPECT_NEAR(loop.angle(0), 0.25, kCount);
   EXPECT_NEAR(loop.angle(kPip), 2.0, kCount);
@@ -108,7 +108,7 @@ TEST(PosedDevice, StartsAtItsStartWithinTheRange) {
 
 // x(t) = d (1 - (1 + t/T) exp(-t/T)): after one time constant of 50 ms, 10 steps, 0.26424 d.
 TEST(PosedDevice, ASmallMoveIsCriticallyDamped) {
-  Loop loop;
+  PosedLoop loop;
   loop.step();
   loop.device.pose(all_at(0.1));
   loop.run(0.05);
@@ -125,7 +125,7 @@ TEST(PosedDevice, ASmallMoveIsCriticallyDamped) {
 
 // 2.5 rad at 6 rad/s at most, and there within a second.
 TEST(PosedDevice, FromEndToEndItKeepsItsSpeedAndArrives) {
-  Loop loop;
+  PosedLoop loop;
   loop.device.pose(all_at(-kEnds));
   loop.run(2.0);
   EXPECT_NEAR(loop.angle(kPip), -0.5, kCount);
@@ -145,7 +145,7 @@ TEST(PosedDevice, NoPlayOfTheSlidersExceedsSpeedOrRange) {
   for (const double rate : {10.0, 200.0, 700.0, 2000.0}) {
     SCOPED_TRACE(testing::Message() << rate << " Hz, seed " << kSeed);
     Random random(kSeed);
-    Loop loop(settings_at(rate));
+    PosedLoop loop(settings_at(rate));
     loop.step();
     const double most = 6.0 * loop.period + 2.0 * kCount;
     for (int i = 0; i < 20000; ++i) {
@@ -166,7 +166,7 @@ TEST(PosedDevice, NoPlayOfTheSlidersExceedsSpeedOrRange) {
 }
 
 TEST(PosedDevice, WhatIsNotFiniteStaysWhereItWas) {
-  Loop loop;
+  PosedLoop loop;
   loop.device.pose(all_at(0.3));
   JointArray target = all_at(0.4);
   target[0] = std::nan("");
@@ -179,7 +179,7 @@ TEST(PosedDevice, WhatIsNotFiniteStaysWhereItWas) {
 }
 
 TEST(PosedDevice, ItsStateFollowsTheCommands) {
-  Loop loop;
+  PosedLoop loop;
   loop.step(false);
   EXPECT_EQ(loop.newest.state, DeviceState::kReady);
   EXPECT_EQ(loop.newest.factor, 0.0);
@@ -209,7 +209,7 @@ TEST(PosedDevice, ItsStateFollowsTheCommands) {
 }
 
 TEST(PosedDevice, ClosedItGivesNothingAndOpensAgainWithItsClock) {
-  Loop loop;
+  PosedLoop loop;
   loop.run(0.1);
   loop.device.close();
   loop.device.close();
@@ -239,7 +239,7 @@ TEST(PosedDevice, SettingsThatMakeNoSenseAreRefused) {
 }
 
 TEST(PosedDevice, TheLoopsCallsAllocateNothing) {
-  Loop loop;
+  PosedLoop loop;
   loop.step();
   const std::size_t before = allocations();
   for (int i = 0; i < 100; ++i) {
@@ -252,7 +252,7 @@ TEST(PosedDevice, TheLoopsCallsAllocateNothing) {
 
 // For ThreadSanitizer, and whole poses: all joints are told the same, so all read the same.
 TEST(PosedDevice, OneThreadPosesWhileAnotherLoops) {
-  Loop loop;
+  PosedLoop loop;
   loop.step();
   std::atomic<bool> done{false};
   std::thread sliders([&] {
@@ -290,7 +290,7 @@ class Watch {
   [[nodiscard]] Safety& safety() { return safety_; }
 
  private:
-  Loop loop_;
+  PosedLoop loop_;
   ChannelMap map_;
   Safety safety_;
   Sample sample_;

@@ -13,16 +13,16 @@ namespace {
 
 constexpr double kCycleWall = 1000.0;
 constexpr double kPress = 3.0;
-constexpr std::uint64_t kSeed = 5;
-constexpr double kTick = 1e-3;
+constexpr std::uint64_t kCycleSeed = 5;
+constexpr double kCyclePeriod = 1e-3;
 
 /// Patient, plan and cycle together: the cycle refers to the others.
 struct Squeezing {
   explicit Squeezing(double tremor, const TrialSchedule& with = {})
       : patient(trembling(tremor)),
         schedule(with),
-        cycle(plan, patient, hand, kCycleWall, kPress, kSeed, schedule),
-        intent(plan, patient, hand, kCycleWall, kPress, kSeed, schedule) {}
+        cycle(plan, patient, hand, kCycleWall, kPress, kCycleSeed, schedule),
+        intent(plan, patient, hand, kCycleWall, kPress, kCycleSeed, schedule) {}
 
   static PatientParameters trembling(double tremor) {
     PatientParameters patient = steady_patient();
@@ -32,8 +32,9 @@ struct Squeezing {
   /// Largest change of the MCP between two ticks that begin in from .. to [rad].
   [[nodiscard]] double largest_step(double from, double to) const {
     double largest = 0.0;
-    for (double t = from; t < to; t += kTick)
-      largest = std::max(largest, std::abs(cycle.angle(t + kTick)[idx(kMcp)] - cycle.angle(t)[idx(kMcp)]));
+    for (double t = from; t < to; t += kCyclePeriod)
+      largest =
+          std::max(largest, std::abs(cycle.angle(t + kCyclePeriod)[idx(kMcp)] - cycle.angle(t)[idx(kMcp)]));
     return largest;
   }
 

@@ -15,8 +15,8 @@ using test::kIndex;
 using test::kMcp;
 using test::kPip;
 
-constexpr double kWall = 1000.0;  // [N/m]
-constexpr double kPress = 3.0;    // [N]
+constexpr double kWall = 1000.0;   // [N/m]
+constexpr double kIntended = 3.0;  // [N]
 const TrialSchedule kSchedule;
 
 /// An intent with all that it refers to.
@@ -25,7 +25,7 @@ struct Case {
                 HandParameters the_hand = test::simple_parameters())
       : patient(std::move(the_patient)),
         hand(std::move(the_hand)),
-        intent(plan, patient, hand, kWall, kPress, seed, kSchedule) {}
+        intent(plan, patient, hand, kWall, kIntended, seed, kSchedule) {}
   Case(const Case&) = delete;
   Case& operator=(const Case&) = delete;
 
@@ -63,7 +63,7 @@ TEST(PressIntent, StaysWhereTheWallHoldsThePressAtRest) {
   for (const double t : {1.0, kSchedule.window_begin, kSchedule.window_end, kSchedule.release})
     EXPECT_NEAR(one.way(t), kEnd, 1e-12) << t;
   // There the springs' force along the press is F at the depth F / k: kh (x_end - F / k) = F.
-  EXPECT_NEAR(one.press().stiffness * (one.way(2.0) - kPress / kWall), kPress, 1e-9);
+  EXPECT_NEAR(one.press().stiffness * (one.way(2.0) - kIntended / kWall), kIntended, 1e-9);
 }
 
 TEST(PressIntent, LetsGoAtTheSpeedOfTheRelease) {
@@ -193,7 +193,7 @@ TEST(PressIntent, ComesFromAsFarAsAJointThatOpensReaches) {
   one.plan.digit[kIndex]->into[idx(kPip)] *= -1.0;
   HandParameters hand = test::simple_parameters();
   hand.max_angle[idx(kPip)] = 0.5;
-  const PressIntent intent(one.plan, one.patient, hand, kWall, kPress, 1, kSchedule);
+  const PressIntent intent(one.plan, one.patient, hand, kWall, kIntended, 1, kSchedule);
   EXPECT_NEAR(intent.angle(0.0)[idx(kPip)], 0.5, 1e-12);
 }
 

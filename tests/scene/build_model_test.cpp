@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SceneDescription parse(const std::string& text) { return parse_scene(text, "test.toml", PHALANX_SOURCE_DIR); }
+SceneDescription parse_objects(const std::string& text) {
+  return parse_scene(text, "test.toml", PHALANX_SOURCE_DIR);
+}
 
 Vec3 extent(const TriangleMesh& mesh) {
   const Bounds box = bounds(mesh);
@@ -24,7 +26,7 @@ Vec3 extent(const TriangleMesh& mesh) {
 
 TEST(BuildModel, MakesEveryKindInItsSize) {
   const auto size = [](const std::string& keys) {
-    return extent(make_world_mesh(parse("[[objects]]\n" + keys)));
+    return extent(make_world_mesh(parse_objects("[[objects]]\n" + keys)));
   };
   EXPECT_NEAR(size("kind = \"teapot\"\nsize_mm = 110").x(), 0.110, 1e-9);
   EXPECT_NEAR(size("kind = \"sphere\"\ndiameter_mm = 40").z(), 0.040, 1e-9);
@@ -37,7 +39,7 @@ TEST(BuildModel, MakesEveryKindInItsSize) {
 
 TEST(BuildModel, RefusesMoreTrianglesThanOneSceneMayHave) {
   const std::string large = "[[objects]]\nkind = \"sphere\"\ntriangles = 2000000\n";
-  expect_scene_error([&] { static_cast<void>(make_world_mesh(parse(large + large + large))); },
+  expect_scene_error([&] { static_cast<void>(make_world_mesh(parse_objects(large + large + large))); },
                      {"objects[2]", "6000000", "4000000", "decimate_to"});
 }
 
@@ -46,7 +48,7 @@ TEST(BuildModel, ImportsAFileInItsSize) {
       fs::temp_directory_path() / ("phalanx_build_model_" + std::to_string(getpid()) + ".obj");
   write_obj(make_box({1.0, 2.0, 4.0}, 12), file, "box");
   const SceneDescription scene =
-      parse("[[objects]]\nkind = \"file\"\nsize_mm = 80\nfile = \"" + file.string() + "\"");
+      parse_objects("[[objects]]\nkind = \"file\"\nsize_mm = 80\nfile = \"" + file.string() + "\"");
   EXPECT_TRUE(extent(make_world_mesh(scene)).isApprox(Vec3(0.02, 0.04, 0.08), 1e-9));
   fs::remove(file);
 }
@@ -55,11 +57,12 @@ TEST(BuildModel, ImportsAFileInTheUnitOrRefusesItsSizeWithTheRemedy) {
   const fs::path file = fs::temp_directory_path() / ("phalanx_unit_" + std::to_string(getpid()) + ".obj");
   write_obj(make_box({20, 40, 80}, 1200), file, "box");
   const std::string object = "[[objects]]\nkind = \"file\"\nfile = \"" + file.string() + "\"\nsize_mm = 0\n";
-  EXPECT_TRUE(
-      extent(make_world_mesh(parse(object + "unit = \"mm\""))).isApprox(Vec3(0.02, 0.04, 0.08), 1e-9));
-  EXPECT_LE(make_world_mesh(parse(object + "unit = \"mm\"\ndecimate_to = 100")).triangles.size(), 100U);
+  EXPECT_TRUE(extent(make_world_mesh(parse_objects(object + "unit = \"mm\"")))
+                  .isApprox(Vec3(0.02, 0.04, 0.08), 1e-9));
+  EXPECT_LE(make_world_mesh(parse_objects(object + "unit = \"mm\"\ndecimate_to = 100")).triangles.size(),
+            100U);
   try {
-    static_cast<void>(make_world_mesh(parse(object)));
+    static_cast<void>(make_world_mesh(parse_objects(object)));
     ADD_FAILURE() << "80 m wide";
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(),
@@ -67,8 +70,8 @@ TEST(BuildModel, ImportsAFileInTheUnitOrRefusesItsSizeWithTheRemedy) {
                                  ::testing::HasSubstr("\"mm\"")));
   }
   try {
-    static_cast<void>(
-        parse("[[objects]]\nkind = \"file\"\nfile = \"" + file.string() + "\"\nsize_mm = 90\nunit = \"mm\""));
+    static_cast<void>(parse_objects("[[objects]]\nkind = \"file\"\nfile = \"" + file.string() +
+                                    "\"\nsize_mm = 90\nunit = \"mm\""));
     ADD_FAILURE() << "a size and a unit";
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("size_mm = 0"));
@@ -77,7 +80,7 @@ TEST(BuildModel, ImportsAFileInTheUnitOrRefusesItsSizeWithTheRemedy) {
 }
 
 TEST(BuildModel, NamesAMeshFileThatIsMissing) {
-  const SceneDescription scene = parse("[[objects]]\nkind = \"file\"\nfile = \"none.obj\"");
+  const SceneDescription scene = parse_objects("[[objects]]\nkind = \"file\"\nfile = \"none.obj\"");
   try {
     static_cast<void>(build_model(scene));
     ADD_FAILURE() << "built";
@@ -87,7 +90,7 @@ TEST(BuildModel, NamesAMeshFileThatIsMissing) {
 }
 
 TEST(BuildModel, PutsObjectsWhereTheSceneSays) {
-  const SceneDescription scene = parse(R"(
+  const SceneDescription scene = parse_objects(R"(
     [[objects]]
     kind = "box"
     extent_mm = [10, 20, 30]
@@ -103,7 +106,7 @@ TEST(BuildModel, PutsObjectsWhereTheSceneSays) {
 }
 
 TEST(BuildModel, PassesTheScenesParametersOn) {
-  const SceneDescription scene = parse(R"(
+  const SceneDescription scene = parse_objects(R"(
     rate_hz = 500
     hand.side = "left"
     hand.position_mm = [0, 0, 7]
@@ -125,13 +128,15 @@ TEST(BuildModel, PassesTheScenesParametersOn) {
   EXPECT_GT(model.object.triangle_count(), 500);
 }
 
-TEST(BuildModel, WorksWithoutAnyObject) { EXPECT_EQ(build_model(parse("")).object.triangle_count(), 0); }
+TEST(BuildModel, WorksWithoutAnyObject) {
+  EXPECT_EQ(build_model(parse_objects("")).object.triangle_count(), 0);
+}
 
 TEST(BuildMotion, PlaysTheScriptUnlessThereIsAFile) {
-  const SceneDescription script = parse("motion.name = \"press\"\nmotion.hold_s = 2");
+  const SceneDescription script = parse_objects("motion.name = \"press\"\nmotion.hold_s = 2");
   EXPECT_DOUBLE_EQ(build_motion(script).duration(), 4.2);
   EXPECT_EQ(simulation_seconds(script, build_motion(script)), build_motion(script).duration());
-  const SceneDescription file = parse(R"(
+  const SceneDescription file = parse_objects(R"(
     seconds = 0.5
     [motion]
     file = "assets/motions/glove_two_trials.csv"
@@ -142,7 +147,7 @@ TEST(BuildMotion, PlaysTheScriptUnlessThereIsAFile) {
 }
 
 TEST(BuildMotion, NamesAMotionFileThatIsMissing) {
-  expect_scene_error([] { static_cast<void>(build_motion(parse("motion.file = \"none.csv\""))); },
+  expect_scene_error([] { static_cast<void>(build_motion(parse_objects("motion.file = \"none.csv\""))); },
                      {"none.csv", "there is no file"});
 }
 

@@ -35,7 +35,7 @@ const std::string kHead =
 const std::string kAngle = "[[channel]]\nkind = \"angle\"\njoint = \"index_pip_flexion\"\n";
 const std::string kNumbers = "gain = 0.001\noffset = 0\nresidual_rad = 0\nposes = []\n";
 
-void expect_refused(const std::string& text, const std::vector<std::string>& words) {
+void expect_bad_calibration(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
   expect_scene_error([&] { static_cast<void>(parse_calibration(text, "bad.toml")); }, words);
 }
@@ -100,54 +100,55 @@ TEST(CalibrationFile, HoldsOnlyWhatPosesCanCalibrate) {
 }
 
 TEST(CalibrationFile, OfAnotherFormatIsRefused) {
-  expect_refused("format = 2\n", {"bad.toml:1", "format = 2", "reads format 1"});
-  expect_refused("format = \"1\"\n", {"format", "is a string"});
-  expect_refused("format = nan\n", {"format", "must be"});
-  expect_refused("", {"format", "is missing"});
+  expect_bad_calibration("format = 2\n", {"bad.toml:1", "format = 2", "reads format 1"});
+  expect_bad_calibration("format = \"1\"\n", {"format", "is a string"});
+  expect_bad_calibration("format = nan\n", {"format", "must be"});
+  expect_bad_calibration("", {"format", "is missing"});
 }
 
 TEST(CalibrationFile, WithAHeadThatIsNone) {
-  expect_refused("format = 1\ndevice = 3\n", {"device = 3", "write a string"});
+  expect_bad_calibration("format = 1\ndevice = 3\n", {"device = 3", "write a string"});
   for (const char* date : {"yesterday", "2026-05-04", "2026-05-04 09:30:00Z", "2026-05-04T09:30:00+02:00"}) {
-    expect_refused(
+    expect_bad_calibration(
         "format = 1\ndevice = \"d\"\nserial = \"s\"\ndate = \"" + std::string(date) + "\"\nphalanx = \"1\"\n",
         {"bad.toml:4", "date", "2026-05-04T09:30:00Z"});
   }
-  expect_refused("format = 1\ndevice = \"d\"\nserial = \"s\"\n", {"date", "is missing"});
+  expect_bad_calibration("format = 1\ndevice = \"d\"\nserial = \"s\"\n", {"date", "is missing"});
 }
 
 TEST(CalibrationFile, WithoutAChannelOrWithTooMany) {
-  expect_refused(kHead, {"channel", "is missing"});
-  expect_refused(kHead + "channel = []\n", {"channel", "0 channels"});
-  expect_refused(kHead + "channel = 5\n", {"channel", "array of tables"});
+  expect_bad_calibration(kHead, {"channel", "is missing"});
+  expect_bad_calibration(kHead + "channel = []\n", {"channel", "0 channels"});
+  expect_bad_calibration(kHead + "channel = 5\n", {"channel", "array of tables"});
 }
 
 TEST(CalibrationFile, WithAChannelTwice) {
-  expect_refused(kHead + kAngle + kNumbers + kAngle + kNumbers, {"angle of index_pip_flexion", "twice"});
+  expect_bad_calibration(kHead + kAngle + kNumbers + kAngle + kNumbers,
+                         {"angle of index_pip_flexion", "twice"});
 }
 
 TEST(CalibrationFile, WithANameThatNobodyKnows) {
-  expect_refused(kHead + "[[channel]]\nkind = \"angel\"\n", {"kind = 'angel'", "\"angle\""});
-  expect_refused(kHead + "[[channel]]\nkind = \"angle\"\njoint = \"index_pip\"\n",
-                 {"bad.toml:8", "\"index_pip_flexion\""});
-  expect_refused(kHead + "[[channel]]\nkind = \"curl\"\ndigit = \"pinky\"\n", {"digit = 'pinky'"});
-  expect_refused(kHead + "[[channel]]\nkind = \"curl\"\njoint = \"index_pip_flexion\"\n",
-                 {"digit", "is missing"});
-  expect_refused(kHead + kAngle + kNumbers + "gian = 1\n", {"gian = 1", "gain"});
+  expect_bad_calibration(kHead + "[[channel]]\nkind = \"angel\"\n", {"kind = 'angel'", "\"angle\""});
+  expect_bad_calibration(kHead + "[[channel]]\nkind = \"angle\"\njoint = \"index_pip\"\n",
+                         {"bad.toml:8", "\"index_pip_flexion\""});
+  expect_bad_calibration(kHead + "[[channel]]\nkind = \"curl\"\ndigit = \"pinky\"\n", {"digit = 'pinky'"});
+  expect_bad_calibration(kHead + "[[channel]]\nkind = \"curl\"\njoint = \"index_pip_flexion\"\n",
+                         {"digit", "is missing"});
+  expect_bad_calibration(kHead + kAngle + kNumbers + "gian = 1\n", {"gian = 1", "gain"});
 }
 
 TEST(CalibrationFile, WithABadNumber) {
   const std::string rest = "offset = 0\nresidual_rad = 0\nposes = []\n";
   for (const char* bad : {"nan", "inf", "-inf", "1e9", "true", "\"1\"", "0"})
-    expect_refused(kHead + kAngle + "gain = " + bad + "\n" + rest, {"bad.toml:9", "gain"});
-  expect_refused(kHead + kAngle + "gain = 1\noffset = nan\n", {"offset = nan"});
-  expect_refused(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = -1\n", {"residual_rad = -1"});
-  expect_refused(kHead + kAngle +
-                     "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [{ name = \"a\", raw = 1e99, "
-                     "value = 0 }]\n",
-                 {"raw"});
-  expect_refused(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [1]\n",
-                 {"poses", "write a table"});
+    expect_bad_calibration(kHead + kAngle + "gain = " + bad + "\n" + rest, {"bad.toml:9", "gain"});
+  expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = nan\n", {"offset = nan"});
+  expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = -1\n", {"residual_rad = -1"});
+  expect_bad_calibration(kHead + kAngle +
+                             "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [{ name = \"a\", raw = 1e99, "
+                             "value = 0 }]\n",
+                         {"raw"});
+  expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [1]\n",
+                         {"poses", "write a table"});
 }
 
 // Any single byte of a good file changed: it is read, or refused with a message; nothing else.

@@ -16,15 +16,15 @@ const std::string kMotor =
     "[motors.mcp]\narms_mm = { index_mcp_flexion = -12 }\nforce_limit_n = 60\nmass_kg = 22\n"
     "tendon_stiffness_n_per_mm = 1000\n";
 
-Exoskeleton parse(const std::string& text) { return parse_device(text, "d.toml"); }
+Exoskeleton parse_text(const std::string& text) { return parse_device(text, "d.toml"); }
 
 void expect_refused(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
-  expect_scene_error([&] { static_cast<void>(parse(text)); }, words);
+  expect_scene_error([&] { static_cast<void>(parse_text(text)); }, words);
 }
 
 TEST(DeviceFile, StatesJointsMotorsAndControllerInItsUnits) {
-  const Exoskeleton exo = parse(R"(description = "all of it"
+  const Exoskeleton exo = parse_text(R"(description = "all of it"
 [controller]
 rate_hz = 2000
 compute_delay_ms = 4.5
@@ -107,7 +107,7 @@ middle = { of = "index", gain = 0.9 }
 }
 
 TEST(DeviceFile, TakesFromTheDefaultsWhatAJointOrAMotorDoesNotSay) {
-  const Exoskeleton exo = parse(
+  const Exoskeleton exo = parse_text(
       "[defaults.joint]\ninertia_kg_m2 = 5e-4\nsensor_lsb_rad = 1e-4\n[defaults.motor]\nlag_ms = "
       "4\npull_only = true\n"
       "[joints]\nindex_pip_flexion = {}\n" +
@@ -126,7 +126,7 @@ TEST(DeviceFile, ScalesEveryJointAndMotor) {
       kMotor +
       "damping_ns_per_m = 1\nfriction_n = 1\ncapstan = 1\ntendon_damping_ns_per_m = 1\n"
       "backlash_mm = 1\nlag_ms = 1\n[controller]\ncompute_delay_ms = 1\nreturn_delay_ms = 1\n";
-  const Exoskeleton plain = parse(text);
+  const Exoskeleton plain = parse_text(text);
   struct Scaled {
     const char* key;
     std::vector<double> (*values)(const Exoskeleton&);
@@ -150,7 +150,7 @@ TEST(DeviceFile, ScalesEveryJointAndMotor) {
   };
   for (const Scaled& scale : scales) {
     SCOPED_TRACE(scale.key);
-    const Exoskeleton doubled = parse(text + "[scale]\n" + scale.key + " = 2\n");
+    const Exoskeleton doubled = parse_text(text + "[scale]\n" + scale.key + " = 2\n");
     for (const Scaled& other : scales) {
       const auto before = other.values(plain);
       const auto after = other.values(doubled);
@@ -196,7 +196,7 @@ TEST(DeviceFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
 
 TEST(DeviceFile, StandsOnAnother) {
   const Exoskeleton base = load_device_file("beihang");
-  const Exoskeleton exo = parse(
+  const Exoskeleton exo = parse_text(
       "base = \"beihang\"\n[motors.index_pip]\nfriction_n = 1\n[scale]\nlag = "
       "0.5\n[controller]\ncompute_delay_ms = 2\n");
   EXPECT_EQ(exo.motors.size(), base.motors.size());
@@ -214,7 +214,7 @@ TEST(DeviceFile, StandsOnAnother) {
 // Scales multiply from file to file, so that a scene's scale counts from the device it names.
 TEST(DeviceFile, MultipliesTheScalesOfItsBase) {
   const Exoskeleton heavy = load_device_file("heavy_viscous");
-  const Exoskeleton twice = parse("base = \"heavy_viscous\"\n[scale]\ninertia = 2\n");
+  const Exoskeleton twice = parse_text("base = \"heavy_viscous\"\n[scale]\ninertia = 2\n");
   EXPECT_EQ(twice.joints[0].inertia, 2.0 * heavy.joints[0].inertia);
   EXPECT_EQ(twice.joints[0].damping, heavy.joints[0].damping);
 }
@@ -258,7 +258,7 @@ TEST(DeviceFile, WithAnyBytesChangedIsReadOrRefused) {
     for (int change = 0; change < 1 + trial % 3; ++change)
       text[below(text.size())] = kBytes[below(kBytes.size())];
     try {
-      check_exoskeleton(parse(text));
+      check_exoskeleton(parse_text(text));
     } catch (const SceneError& error) {
       ++refused;
       EXPECT_NE(error.what()[0], '\0');
@@ -269,9 +269,9 @@ TEST(DeviceFile, WithAnyBytesChangedIsReadOrRefused) {
 }
 
 TEST(DeviceText, IsTheSameForTheSameNumbersAndHoldsEachOfThem) {
-  const std::string text = device_text(parse(kJoint + kMotor));
-  EXPECT_EQ(text, device_text(parse(kMotor + kJoint)));
-  EXPECT_EQ(text, device_text(parse("description = \"another\"\n" + kJoint + kMotor)));
+  const std::string text = device_text(parse_text(kJoint + kMotor));
+  EXPECT_EQ(text, device_text(parse_text(kMotor + kJoint)));
+  EXPECT_EQ(text, device_text(parse_text("description = \"another\"\n" + kJoint + kMotor)));
   for (const char* change : {"[scale]\ninertia = 1.0000000001\n", "[scale]\ntendon_stiffness = 2\n",
                              "[controller]\nrate_hz = 500\n", "[controller]\nreturn_delay_ms = 1\n",
                              "[copy]\nring = { of = \"index\" }\n",
@@ -279,7 +279,7 @@ TEST(DeviceText, IsTheSameForTheSameNumbersAndHoldsEachOfThem) {
                              "[defaults.motor]\nlag_ms = 1\n", "[defaults.joint]\ntorque_sensor = true\n",
                              "[defaults.motor]\npull_only = true\n", "[defaults.motor]\nbacklash_mm = 1\n",
                              "[defaults.joint]\nstatic_ratio = 1.5\n"})
-    EXPECT_NE(text, device_text(parse(kJoint + kMotor + change))) << change;
+    EXPECT_NE(text, device_text(parse_text(kJoint + kMotor + change))) << change;
 }
 
 }  // namespace

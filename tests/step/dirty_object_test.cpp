@@ -25,7 +25,7 @@ using namespace test::dirt;
 
 constexpr double kMargin = 50e-6;
 /// How far an import may move a point: 1 um and 1e-5 of the largest extent, here 0.15 m.
-constexpr double kMoved = 1e-6 + 1.5e-6;
+constexpr double kMovedByRepair = 1e-6 + 1.5e-6;
 
 /// What is held against the oracle, over all presses on one file.
 struct Judged {
@@ -71,7 +71,7 @@ Judged press_everywhere(LoneFinger& finger, const std::vector<RawTriangle>& raw,
           test::raw_of(finger.model().hand.mesh(static_cast<int>(s)), press->snapshot.gdp_pose[s]), raw,
           3.0 * kMargin);
       EXPECT_GT(gap, 0.0) << "segment " << k << " goes through the file's triangles";
-      EXPECT_TRUE(segment.contact || gap >= kMargin - kMoved)
+      EXPECT_TRUE(segment.contact || gap >= kMargin - kMovedByRepair)
           << "segment " << k << " at " << gap * 1e6 << " um";
       if (!segment.contact) continue;
       ++judged.touching;

@@ -14,7 +14,7 @@ namespace phalanx {
 namespace {
 
 /// How far below the margin a stopped segment may be.
-constexpr double kTolerance = 10e-9;
+constexpr double kOracleTolerance = 10e-9;
 
 class OracleOnScene : public ::testing::TestWithParam<const char*> {
  protected:
@@ -27,7 +27,7 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
       ASSERT_FALSE(segment_[s].collides(snapshot.gdp_pose[s], object_))
           << segment_name(static_cast<int>(s)) << " at tick " << snapshot.tick;
       if (!distances) continue;
-      ASSERT_GE(segment_[s].distance(snapshot.gdp_pose[s], object_), model_.contact.margin - kTolerance)
+      ASSERT_GE(segment_[s].distance(snapshot.gdp_pose[s], object_), model_.contact.margin - kOracleTolerance)
           << segment_name(static_cast<int>(s)) << " at tick " << snapshot.tick;
     }
     for (int d = 0; d < kDigits; ++d) {

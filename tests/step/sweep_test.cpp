@@ -40,7 +40,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kCrease = ObjectModel::kDefaultCreaseAngle;
 constexpr double kPitch = 1e-4;
 constexpr double kDepth = 1e-3;
-constexpr double kStiffness = 1000.0;  // LoneFinger's
+constexpr double kFingerStiffness = 1000.0;  // LoneFinger's
 /// How far the force may turn beyond the finger's rolling at a crease: facets of the finger that tie on the
 /// edge and beside it (docs/architecture.md, "Force normal").
 constexpr double kStep = 7.0 * kDegree;
@@ -158,7 +158,7 @@ Felt sweep(const Sweep& s, const ObjectModel& object, int hand_triangles = 2250)
         felt.beyond_n_c = std::max(felt.beyond_n_c, turned - turn_of_contact);
       }
       const double share = std::min(turn + turn_of_n_c, 1.0 + 2.0 * std::sin(15.0 * kDegree));
-      const double allowed = kStiffness * 1.1 * kDepth * (share + moved / LoneFinger::lever()) + 1e-3;
+      const double allowed = kFingerStiffness * 1.1 * kDepth * (share + moved / LoneFinger::lever()) + 1e-3;
       const double jump = (press->force - last->force).norm();
       EXPECT_LE(jump, allowed) << s.name << ", place " << i << ": contact from "
                                << last->point.transpose() * 1e3 << " to " << press->point.transpose() * 1e3

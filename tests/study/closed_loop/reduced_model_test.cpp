@@ -11,7 +11,7 @@
 namespace phalanx {
 namespace {
 
-const SmoothingParameters kNoSmoothing{.enabled = false};
+const SmoothingParameters kSmoothingOff{.enabled = false};
 const SmoothingParameters kTenthOfANewton{.enabled = true, .min_rate = -20.0, .max_rate = 20.0};
 
 ReducedModel with_press(double press) {
@@ -34,7 +34,7 @@ ReducedModel frictionless(double press) {
 TEST(ReducedModel, RestsAtThePressOnASoftWallWithoutFriction) {
   constexpr double kWall = 100.0;
   for (const double press : {1.0, 2.0, 3.0}) {
-    const TrialResult result = run_reduced_trial(frictionless(press), kNoSmoothing, kWall, 1);
+    const TrialResult result = run_reduced_trial(frictionless(press), kSmoothingOff, kWall, 1);
     EXPECT_TRUE(result.valid) << result.why_invalid;
     EXPECT_TRUE(result.stable) << "force swings by " << result.force_swing;
     EXPECT_NEAR(result.mean_force, press, kWall * 25e-6 + 1e-3) << press;
@@ -67,7 +67,7 @@ TEST(ReducedModel, IsTheSameForTheSameSeedAndAnotherForAnother) {
 
 TEST(ReducedModel, ShakesOnAStiffWallWithoutSmoothingAndRestsWithIt) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    EXPECT_FALSE(run_reduced_trial(make_reduced_model(), kNoSmoothing, 2000.0, seed).stable) << seed;
+    EXPECT_FALSE(run_reduced_trial(make_reduced_model(), kSmoothingOff, 2000.0, seed).stable) << seed;
     EXPECT_TRUE(run_reduced_trial(make_reduced_model(), kTenthOfANewton, 1000.0, seed).stable) << seed;
   }
 }

@@ -12,7 +12,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSceneStiffness = std::numeric_limits<double>::quiet_NaN();
 
 struct Seen {
   double least_force = 0.0;  ///< along the press; below 0 it pulls in [N]
@@ -27,18 +27,20 @@ Seen press(const Overrides& limits, double stiffness) {
   const auto setup = make_trial_setup(load_scene("stability_press", set));
   const JointArray& g = setup->plan.digit[static_cast<std::size_t>(Digit::kIndex)]->g;
   Seen seen;
-  static_cast<void>(run_trial(
-      *setup, stiffness, kNan, 1, [&](double, const Snapshot& snapshot, const SimulatedExoskeleton& device) {
-        double along = 0.0, size = 0.0;
-        for (std::size_t j = 0; j < kJoints; ++j) {
-          along += g[j] * device.rendered().torque[j];
-          size += g[j] * g[j];
-          seen.most_torque = std::max(seen.most_torque, std::abs(device.rendered().torque[j]));
-        }
-        seen.least_force = std::min(seen.least_force, along / size);
-        if (has(snapshot.status, Status::kTorqueLimited | Status::kTorqueRateLimited)) ++seen.limited;
-        for (const LocalWall& wall : snapshot.wall) seen.walls += wall.active ? 1 : 0;
-      }));
+  static_cast<void>(run_trial(*setup, stiffness, kSceneStiffness, 1,
+                              [&](double, const Snapshot& snapshot, const SimulatedExoskeleton& device) {
+                                double along = 0.0, size = 0.0;
+                                for (std::size_t j = 0; j < kJoints; ++j) {
+                                  along += g[j] * device.rendered().torque[j];
+                                  size += g[j] * g[j];
+                                  seen.most_torque =
+                                      std::max(seen.most_torque, std::abs(device.rendered().torque[j]));
+                                }
+                                seen.least_force = std::min(seen.least_force, along / size);
+                                if (has(snapshot.status, Status::kTorqueLimited | Status::kTorqueRateLimited))
+                                  ++seen.limited;
+                                for (const LocalWall& wall : snapshot.wall) seen.walls += wall.active ? 1 : 0;
+                              }));
   return seen;
 }
 

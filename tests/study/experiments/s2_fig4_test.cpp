@@ -12,7 +12,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kAsItIs = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSceneValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWithin = 0.2;  // [s]
 constexpr std::size_t kIndexTip = 5;
 const Overrides kNoSmoothing = {{"stabiliser.method", "\"none\""}};
@@ -34,15 +34,17 @@ Watched watch_trial(const TrialSetup& setup, std::uint64_t seed) {
   Watched watched;
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
-  watched.result = run_trial(
-      setup, kAsItIs, kAsItIs, seed, [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton&) {
-        if (t < setup.schedule.release && has(snapshot.status, Status::kOscillating))
-          watched.oscillating.push_back(t);
-        watched.least_factor = std::min(watched.least_factor, snapshot.stiffness_factor);
-        if (t < setup.schedule.window_end - 0.5 || t >= setup.schedule.window_end) return;
-        low = std::min(low, snapshot.segment[kIndexTip].force);
-        high = std::max(high, snapshot.segment[kIndexTip].force);
-      });
+  watched.result = run_trial(setup, kSceneValue, kSceneValue, seed,
+                             [&](double t, const Snapshot& snapshot, const SimulatedExoskeleton&) {
+                               if (t < setup.schedule.release && has(snapshot.status, Status::kOscillating))
+                                 watched.oscillating.push_back(t);
+                               watched.least_factor =
+                                   std::min(watched.least_factor, snapshot.stiffness_factor);
+                               if (t < setup.schedule.window_end - 0.5 || t >= setup.schedule.window_end)
+                                 return;
+                               low = std::min(low, snapshot.segment[kIndexTip].force);
+                               high = std::max(high, snapshot.segment[kIndexTip].force);
+                             });
   watched.late_swing = high - low;
   return watched;
 }

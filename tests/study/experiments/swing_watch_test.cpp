@@ -10,13 +10,13 @@
 namespace phalanx {
 namespace {
 
-constexpr double kPeriod = 0.005;  // of the host [s]
+constexpr double kHostPeriod = 0.005;  // of the host [s]
 
 /// What the watch says first of a force over 4 s; NaN: nothing.
 double first_verdict(const std::function<double(double t)>& force) {
   SwingWatch watch;
   for (int i = 0; i <= 800; ++i) {
-    const double since = watch.add(kPeriod * i, force(kPeriod * i));
+    const double since = watch.add(kHostPeriod * i, force(kHostPeriod * i));
     if (!std::isnan(since)) return since;
   }
   return std::numeric_limits<double>::quiet_NaN();
