@@ -11,6 +11,7 @@
 #include "phalanx/contact/proximity.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/lone_finger.h"
+#include "support/search_cases.h"
 #include "support/surface_bound.h"
 
 namespace phalanx {
@@ -104,7 +105,7 @@ TEST(ContactPatch, OnAFlatPlateDoesNotFeelWhereTheTrianglesMeet) {
   // A cube on its corner has one nearest point; of the ball, facets that fold by 3 degrees may tie.
   const SegmentTree cube(make_box(Vec3::Constant(6e-3), 12));
   SearchScratch scratch(cube);
-  const Mat3 on_corner = Eigen::Quaterniond::FromTwoVectors(Vec3(1, 1, 1), -Vec3::UnitZ()).toRotationMatrix();
+  const Mat3 on_corner = test::corner_down();
   const double height = 3e-3 * std::numbers::sqrt3;
   for (int n = 0; n < 400; ++n) {
     const Vec3 place(8.5e-3 + n * 5e-6, 9.3e-3 + n * 1e-6, kMargin);
@@ -215,7 +216,7 @@ TEST(ContactPatch, MeetsTwoCoincidentSheetsOfOppositeWindingAsOne) {
 
 // Triangles at random, through each other, slivers and repeated ones among them: the worst that a mesh can
 // be.
-TriangleMesh soup(std::mt19937_64& random, int triangles) {
+TriangleMesh random_soup(std::mt19937_64& random, int triangles) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   TriangleMesh mesh;
   for (int t = 0; t < triangles; ++t) {
@@ -237,7 +238,7 @@ TEST(ForceNormal, IsWithin30DegreesOfTheSeparationDirectionOnAnySoupOfTriangles)
   std::mt19937_64 random(31);
   int contacts = 0;
   for (int n = 0; n < 150; ++n) {
-    test::LoneFinger finger(ObjectModel(soup(random, 40)));
+    test::LoneFinger finger(ObjectModel(random_soup(random, 40)));
     std::uniform_real_distribution<double> u(-0.02, 0.02);
     const double start = finger.aim({.from = Vec3(u(random), u(random), 0.03),
                                      .along = -Vec3::UnitZ(),
