@@ -10,6 +10,9 @@ function(phalanx_instruction_sets folder)
     set(avx2 -mavx2)
     set(avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512)
   endif()
+  # Their own flags: no precompiled header fits them.
+  set_source_files_properties(${folder}/search_portable.cpp ${folder}/search_avx2.cpp ${folder}/search_avx512.cpp
+                              PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   set_source_files_properties(${folder}/search_portable.cpp PROPERTIES COMPILE_OPTIONS "${common}")
   set_source_files_properties(${folder}/search_avx2.cpp PROPERTIES COMPILE_OPTIONS "${common};${avx2}")
   set_source_files_properties(${folder}/search_avx512.cpp PROPERTIES COMPILE_OPTIONS "${common};${avx512}")
