@@ -62,6 +62,9 @@ function(phalanx_test name)
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "phalanx_test(${name}): ${ARG_UNPARSED_ARGUMENTS}?")
   endif()
+  if("link" IN_LIST ARG_MODULES OR "web" IN_LIST ARG_MODULES)
+    list(APPEND ARG_MODULES asio) # their functions of it that are no templates
+  endif()
   list(TRANSFORM ARG_MODULES PREPEND phalanx_ OUTPUT_VARIABLE modules)
   add_executable(${name} ${ARG_SOURCES})
   # The product's objects stand first on the linker's line: of an inline function the first copy counts, the one as shipped.

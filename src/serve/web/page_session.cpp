@@ -48,6 +48,14 @@ PageSession::PageSession(PageId id, Visitor visitor, Line&& line, Place place,
       [this](websocket::frame_type kind, std::string_view) { count_control_frame(kind); });
 }
 
+PageSession::~PageSession() = default;
+
+void PageSession::accept(const http::request<http::buffer_body>& request, const Exchange& exchange) {
+  socket_.set_option(websocket::stream_base::decorator(
+      [exchange](websocket::response_type& response) { protect(response, exchange); }));
+  socket_.async_accept(request, beast::bind_front_handler(&PageSession::on_accepted, shared_from_this()));
+}
+
 void PageSession::on_accepted(error_code error) {
   if (error) return;
   pages_.admit(shared_from_this());

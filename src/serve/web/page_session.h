@@ -22,13 +22,15 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   /// @param settings, pages  outlive it
   PageSession(PageId id, Visitor visitor, Line&& line, Place place, const WebServerSettings& settings,
               Pages& pages);
+  ~PageSession();
+  PageSession(const PageSession&) = delete;
+  PageSession& operator=(const PageSession&) = delete;
 
   [[nodiscard]] PageId id() const noexcept { return id_; }
   [[nodiscard]] const Visitor& visitor() const noexcept { return visitor_; }
 
   /// Shakes hands; joins the pages if that goes well.
-  template <class Request>
-  void accept(const Request& request, const Exchange& exchange);
+  void accept(const http::request<http::buffer_body>& request, const Exchange& exchange);
 
   /// @returns false if the queue is full
   [[nodiscard]] bool send(Bytes message);
@@ -70,12 +72,5 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   Clock::time_point out_by_;
   websocket::close_reason goodbye_;
 };
-
-template <class Request>
-void PageSession::accept(const Request& request, const Exchange& exchange) {
-  socket_.set_option(websocket::stream_base::decorator(
-      [exchange](websocket::response_type& response) { protect(response, exchange); }));
-  socket_.async_accept(request, beast::bind_front_handler(&PageSession::on_accepted, shared_from_this()));
-}
 
 }  // namespace phalanx::web
