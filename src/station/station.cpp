@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/lockfree/spsc_queue.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -44,6 +45,13 @@ DigitArray digit_forces(const Snapshot& snapshot) noexcept {
 
 }  // namespace
 
+struct Station::Records {
+  explicit Records(std::size_t size) : queue(size) {}
+  boost::lockfree::spsc_queue<StepRecord> queue;
+};
+
+bool Station::next_record(StepRecord& record) { return records_->queue.pop(record); }
+
 void check_station_rate(double rate_hz) {
   if (rate_hz >= 200.0 && rate_hz <= 2000.0) return;
   throw std::invalid_argument(
@@ -63,7 +71,7 @@ Station::Station(std::unique_ptr<HapticModel> model, Device& device, ChannelMap 
       inbox_(kInbox),
       samples_(count_of(kReportSeconds, device.info().rate_hz)),
       steps_(count_of(kReportSeconds, model_.model().rate_hz)),
-      records_(kRecords) {
+      records_(std::make_unique<Records>(kRecords)) {
   statistics_.period = period_;
 }
 
@@ -173,7 +181,7 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
                           .angle = snapshot.hcp_angle,
                           .torque = command_.torque,
                           .force = digit_forces(snapshot)};
-  if (!records_.push(record)) ++records_lost_;
+  if (!records_->queue.push(record)) ++records_lost_;
   if (!frozen_.load(std::memory_order_acquire)) {
     for (std::size_t i = 0; i < count; ++i) samples_.push(inbox_[i]);
     steps_.push(record);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <boost/lockfree/spsc_queue.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -65,7 +64,7 @@ class Station {
   /// What the system granted to the loop; empty until the loop has begun.
   [[nodiscard]] std::optional<RealtimeGrant> grant() const;
   /// The next step's record, in order. @returns whether there was one
-  [[nodiscard]] bool next_record(StepRecord& record) { return records_.pop(record); }
+  [[nodiscard]] bool next_record(StepRecord& record);
   /// The report of a fault, once, after the torque has come to rest.
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
 
@@ -120,7 +119,8 @@ class Station {
   Latest<BlendedParameters> blend_;
   mutable Latest<StationView> view_;
   mutable Latest<DeadlineStatistics> deadlines_;
-  boost::lockfree::spsc_queue<StepRecord> records_;
+  struct Records;  ///< a queue of one writer and one reader
+  const std::unique_ptr<Records> records_;
   std::uint64_t records_lost_ = 0;  ///< the loop's own
   std::optional<RealtimeGrant> grant_;
   std::thread thread_;
