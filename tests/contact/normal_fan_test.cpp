@@ -10,8 +10,8 @@
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
 #include "phalanx/mesh/primitives.h"
+#include "support/corner_down.h"
 #include "support/lone_finger.h"
-#include "support/search_cases.h"
 #include "support/surface_bound.h"
 
 namespace phalanx {

@@ -10,9 +10,6 @@
 
 namespace phalanx::test {
 
-inline constexpr int kMcp = 4;  ///< joint of two_joint_device()
-inline constexpr int kPip = 6;
-
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// One joint and no motor: a mass with viscous friction.

@@ -24,7 +24,7 @@ namespace phalanx::test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20260;
-constexpr std::size_t kPip = 6;                               ///< index_pip_flexion, -0.5 .. 2 rad
+constexpr std::size_t kPosedJoint = 6;                        ///< index_pip_flexion, -0.5 .. 2 rad
 constexpr double kCount = 10e-6;                              ///< [rad]
 constexpr double kEnds = std::numeric_limits<double>::max();  ///< beyond every range
 
@@ -99,11 +99,11 @@ TEST(PosedDevice, EachCallGivesOneSampleOnePeriodLater) {
 TEST(PosedDevice, StartsAtItsStartWithinTheRange) {
   PosedDeviceSettings settings = settings_at();
   settings.start = all_at(0.25);
-  settings.start[kPip] = 5.0;
+  settings.start[kPosedJoint] = 5.0;
   PosedLoop loop(settings);
   loop.run(0.1);
   EXPECT_NEAR(loop.angle(0), 0.25, kCount);
-  EXPECT_NEAR(loop.angle(kPip), 2.0, kCount);
+  EXPECT_NEAR(loop.angle(kPosedJoint), 2.0, kCount);
 }
 
 // x(t) = d (1 - (1 + t/T) exp(-t/T)): after one time constant of 50 ms, 10 steps, 0.26424 d.
@@ -112,13 +112,13 @@ TEST(PosedDevice, ASmallMoveIsCriticallyDamped) {
   loop.step();
   loop.device.pose(all_at(0.1));
   loop.run(0.05);
-  EXPECT_NEAR(loop.angle(kPip), 0.026424, kCount);
-  double before = loop.angle(kPip);
+  EXPECT_NEAR(loop.angle(kPosedJoint), 0.026424, kCount);
+  double before = loop.angle(kPosedJoint);
   for (int i = 0; i < 200; ++i) {
     loop.step();
-    EXPECT_GE(loop.angle(kPip), before);
-    EXPECT_LE(loop.angle(kPip), 0.1 + kCount) << "no overshoot";
-    before = loop.angle(kPip);
+    EXPECT_GE(loop.angle(kPosedJoint), before);
+    EXPECT_LE(loop.angle(kPosedJoint), 0.1 + kCount) << "no overshoot";
+    before = loop.angle(kPosedJoint);
   }
   EXPECT_NEAR(before, 0.1, kCount);
 }
@@ -128,15 +128,15 @@ TEST(PosedDevice, FromEndToEndItKeepsItsSpeedAndArrives) {
   PosedLoop loop;
   loop.device.pose(all_at(-kEnds));
   loop.run(2.0);
-  EXPECT_NEAR(loop.angle(kPip), -0.5, kCount);
+  EXPECT_NEAR(loop.angle(kPosedJoint), -0.5, kCount);
   loop.device.pose(all_at(kEnds));
   double fastest = 0.0;
   for (int i = 0; i < 200; ++i) {
-    const double before = loop.angle(kPip);
+    const double before = loop.angle(kPosedJoint);
     loop.step();
-    fastest = std::max(fastest, (loop.angle(kPip) - before) / loop.period);
+    fastest = std::max(fastest, (loop.angle(kPosedJoint) - before) / loop.period);
   }
-  EXPECT_NEAR(loop.angle(kPip), 2.0, kCount);
+  EXPECT_NEAR(loop.angle(kPosedJoint), 2.0, kCount);
   EXPECT_LE(fastest, 6.0 + kCount / loop.period);
   EXPECT_GE(fastest, 5.5) << "the speed is made use of";
 }
@@ -170,12 +170,12 @@ TEST(PosedDevice, WhatIsNotFiniteStaysWhereItWas) {
   loop.device.pose(all_at(0.3));
   JointArray target = all_at(0.4);
   target[0] = std::nan("");
-  target[kPip] = std::numeric_limits<double>::infinity();
+  target[kPosedJoint] = std::numeric_limits<double>::infinity();
   loop.device.pose(target);
   loop.run(2.0);
   EXPECT_NEAR(loop.angle(0), 0.3, kCount);
-  EXPECT_NEAR(loop.angle(kPip), 0.3, kCount);
-  EXPECT_NEAR(loop.angle(kPip + 1), 0.4, kCount);
+  EXPECT_NEAR(loop.angle(kPosedJoint), 0.3, kCount);
+  EXPECT_NEAR(loop.angle(kPosedJoint + 1), 0.4, kCount);
 }
 
 TEST(PosedDevice, ItsStateFollowsTheCommands) {
@@ -234,7 +234,7 @@ TEST(PosedDevice, SettingsThatMakeNoSenseAreRefused) {
     EXPECT_THROW(PosedDevice{slow}, std::invalid_argument);
   }
   PosedDeviceSettings start = settings_at();
-  start.start[kPip] = std::nan("");
+  start.start[kPosedJoint] = std::nan("");
   EXPECT_THROW(PosedDevice{start}, std::invalid_argument);
 }
 

@@ -10,9 +10,7 @@
 
 namespace phalanx::test {
 
-inline constexpr int kMcp = 4;        ///< flexion of the index finger
 inline constexpr int kAbduction = 5;  ///< a joint that two_joint_device() does not have
-inline constexpr int kPip = 6;
 inline constexpr int kDip = 7;
 inline constexpr int kTip = 5;  ///< distal segment of the index finger
 

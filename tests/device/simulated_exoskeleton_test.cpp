@@ -20,7 +20,7 @@ using test::posture;
 using test::rendered_at_next;
 using test::two_joint_device;
 
-constexpr int kDip = 7;
+constexpr int kOtherJoint = 7;
 
 JointArray open_hand() {
   JointArray open{};
@@ -44,7 +44,7 @@ TEST(SimulatedExoskeleton, ShowsTheOpenHandAndWhatFollowsWhereItHasNoSensor) {
   const JointArray& q = device.sample().angle;
   EXPECT_EQ(q[at(kMcp)], 0.3);
   EXPECT_EQ(q[at(kPip)], 0.4);
-  EXPECT_DOUBLE_EQ(q[at(kDip)], 0.3);
+  EXPECT_DOUBLE_EQ(q[at(kOtherJoint)], 0.3);
   EXPECT_EQ(q[at(5)], 0.05);                                       // index abduction: not sensed
   for (int j = 0; j < 4; ++j) EXPECT_EQ(q[at(j)], open[at(j)]);    // thumb
   for (int j = 12; j < 16; ++j) EXPECT_EQ(q[at(j)], open[at(j)]);  // ring

@@ -8,6 +8,9 @@
 
 namespace phalanx::test {
 
+inline constexpr int kMcp = 4;  ///< joint of two_joint_device(): flexion of the index finger
+inline constexpr int kPip = 6;
+
 inline ExoMotor motor_on(const std::string& name, int joint, double arm) {
   ExoMotor motor;
   motor.name = name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -10,6 +11,9 @@
 #include <string>
 
 namespace phalanx::testing {
+
+// Files of a folder are compiled as one: what another of them calls testing::Values is still GoogleTest's.
+using namespace ::testing;  // NOLINT(google-build-using-namespace)
 
 /// A folder of the test's own, gone when the test ends.
 class TemporaryFolder {

@@ -10,16 +10,11 @@
 #include <vector>
 
 #include "phalanx/mesh/primitives.h"
+#include "support/corner_down.h"
 
 namespace phalanx::test {
 
 using Random = std::mt19937_64;
-
-/// Turns (1, 1, 1) to -z. Not by Eigen's Quaternion::FromTwoVectors, which takes the compiler 7 s.
-inline Mat3 corner_down() {
-  const double angle = std::numbers::pi - std::acos(1.0 / std::numbers::sqrt3);
-  return Eigen::AngleAxisd(angle, Vec3(-1, 1, 0).normalized()).toRotationMatrix();
-}
 
 inline double between(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);

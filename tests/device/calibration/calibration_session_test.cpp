@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr double kMeasureFor = 0.1;
-constexpr double kTick = 0.02;  // six calls of go_on() measure a pose
+constexpr double kWizardPeriod = 0.02;  // six calls of go_on() measure a pose
 
 class CalibrationSessionTest : public testing::Test {
  protected:
@@ -36,7 +36,7 @@ class CalibrationSessionTest : public testing::Test {
     session.measure(now);
     while (session.measuring()) wait();
   }
-  void wait() { session.go_on(now += kTick); }
+  void wait() { session.go_on(now += kWizardPeriod); }
   void measure_all() {
     while (!session.at_end()) measure();
   }

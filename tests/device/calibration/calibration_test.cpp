@@ -17,10 +17,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kPip = joint_index(1, 2);
+constexpr int kCalibrated = joint_index(1, 2);
 
 DeviceChannel pip_channel() {
-  return {.kind = ChannelKind::kAngle, .index = kPip, .raw_min = 0, .raw_max = 4095};
+  return {.kind = ChannelKind::kAngle, .index = kCalibrated, .raw_min = 0, .raw_max = 4095};
 }
 
 const HandParameters& the_hand() {
@@ -215,7 +215,7 @@ Calibration calibration() {
                 .channels = {}};
   c.channels.push_back({.channel = {.kind = ChannelKind::kSplay, .index = 3, .gain = 0.003, .offset = -1.5}});
   c.channels.push_back(
-      {.channel = {.kind = ChannelKind::kAngle, .index = kPip, .gain = -0.001, .offset = 2.0}});
+      {.channel = {.kind = ChannelKind::kAngle, .index = kCalibrated, .gain = -0.001, .offset = 2.0}});
   return c;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "record/temporary_folder.h"  // for GoogleTest's namespace in this one
+
 namespace phalanx::testing {
 
 /// `act` throws a std::invalid_argument (a SceneError is one) whose message holds all of `words`.

@@ -9,6 +9,7 @@
 
 #include "phalanx/study/laboratory/run_study.h"
 #include "phalanx/study/laboratory/study_file.h"
+#include "record/temporary_folder.h"  // for GoogleTest's namespace in this one
 
 namespace phalanx::testing {
 
