@@ -50,20 +50,10 @@ PageSession::PageSession(PageId id, Visitor visitor, Line&& line, Place place,
 
 PageSession::~PageSession() = default;
 
-void PageSession::accept(const http::request<http::buffer_body>& request, const Exchange& exchange) {
-  socket_.set_option(websocket::stream_base::decorator(
-      [exchange](websocket::response_type& response) { protect(response, exchange); }));
-  socket_.async_accept(request, beast::bind_front_handler(&PageSession::on_accepted, shared_from_this()));
-}
-
 void PageSession::on_accepted(error_code error) {
   if (error) return;
   pages_.admit(shared_from_this());
   read();
-}
-
-void PageSession::read() {
-  socket_.async_read(message_, beast::bind_front_handler(&PageSession::on_read, shared_from_this()));
 }
 
 void PageSession::on_read(error_code error, std::size_t bytes) {
@@ -154,10 +144,7 @@ void PageSession::pump() {
                         beast::bind_front_handler(&PageSession::on_written, shared_from_this()));
   } else if (leaving_) {
     closing_ = true;
-    socket_.async_close(goodbye_, [self = shared_from_this()](error_code) {
-      self->cut();
-      self->pages_.ended(self->id_);
-    });
+    close();
   }
 }
 

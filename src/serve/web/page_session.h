@@ -50,6 +50,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   void show_out_for_too_much();
   void count_control_frame(websocket::frame_type kind);
   void pump();
+  void close();
   void on_written(error_code error, std::size_t bytes);
   void cut();
 
