@@ -20,7 +20,7 @@ namespace {
 using test::angle_of;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMargin = 50e-6;
+constexpr double kFanMargin = 50e-6;
 
 /// A ball of 5 mm radius. Its facets fold by up to 3 degrees; where several of them tie within 5 um over an
 /// edge, on it and beside it, n_c is their mean and n may still be the face's.
@@ -108,7 +108,7 @@ TEST(ContactPatch, OnAFlatPlateDoesNotFeelWhereTheTrianglesMeet) {
   const Mat3 on_corner = test::corner_down();
   const double height = 3e-3 * std::numbers::sqrt3;
   for (int n = 0; n < 400; ++n) {
-    const Vec3 place(8.5e-3 + n * 5e-6, 9.3e-3 + n * 1e-6, kMargin);
+    const Vec3 place(8.5e-3 + n * 5e-6, 9.3e-3 + n * 1e-6, kFanMargin);
     const ContactPatch corner =
         contact_patch({cube, Pose{on_corner, place + Vec3(0, 0, height)}, scratch}, object, 1.0);
     ASSERT_LT(angle_of(corner.direction, Vec3::UnitZ()), 1e-9) << n;
@@ -129,7 +129,7 @@ void expect_steady_round_edge(const ObjectModel& object, const Vec3& from, doubl
   for (int n = 0; n <= steps; ++n) {
     const double angle = turn * n / steps;
     const Vec3 u = rotation_about(Vec3::UnitY(), angle) * from;
-    const ContactPatch patch = ball.at((Ball::kRadius + kMargin) * u + Vec3(0, 1e-3, 0), object);
+    const ContactPatch patch = ball.at((Ball::kRadius + kFanMargin) * u + Vec3(0, 1e-3, 0), object);
     ASSERT_LT(angle_of(patch.direction, u), kBallFold) << "at " << angle / kDegree << " degrees";
     ASSERT_LE(angle_of(patch.object_normal, last_n), angle_of(patch.direction, last_n_c) + kBallFold)
         << "at " << angle / kDegree << " degrees, n " << patch.object_normal.transpose() << " before "
@@ -169,7 +169,7 @@ TEST(ContactPatch, AFoldOf29DegreesIsRoundedAndOneOf31IsNot) {
   Ball ball;
   // 1 mm before the edge on the first face: a crease leaves the face's own normal, a smooth fold has begun to
   // turn it.
-  const Vec3 before(-1e-3, 1e-3, Ball::kRadius + kMargin);
+  const Vec3 before(-1e-3, 1e-3, Ball::kRadius + kFanMargin);
   EXPECT_LT(angle_of(ball.at(before, ObjectModel(folded(31.0 * kDegree))).object_normal, Vec3::UnitZ()),
             1e-9);
   const ObjectModel smooth(folded(29.0 * kDegree));
@@ -184,8 +184,8 @@ TEST(ContactPatch, MeetsASheetFromBothSidesAlike) {
   const ObjectModel object(square_sheet());
   Ball ball;
   for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.01, -0.02, 0), Vec3(0.0299, 0.0, 0), Vec3(0.03, 0.03, 0)}) {
-    const ContactPatch above = ball.at(place + Vec3(0, 0, Ball::kRadius + kMargin), object);
-    const ContactPatch below = ball.at(place - Vec3(0, 0, Ball::kRadius + kMargin), object);
+    const ContactPatch above = ball.at(place + Vec3(0, 0, Ball::kRadius + kFanMargin), object);
+    const ContactPatch below = ball.at(place - Vec3(0, 0, Ball::kRadius + kFanMargin), object);
     EXPECT_GT(above.object_normal.z(), 0.99);
     EXPECT_LT(below.object_normal.z(), -0.99);
   }
@@ -204,7 +204,7 @@ TEST(ContactPatch, MeetsTwoCoincidentSheetsOfOppositeWindingAsOne) {
   Ball ball;
   for (const double side : {1.0, -1.0}) {
     for (const Vec3& place : {Vec3(0.001, 0.002, 0), Vec3(0.0299, 0.01, 0)}) {
-      const Vec3 centre = place + side * Vec3(0, 0, Ball::kRadius + kMargin);
+      const Vec3 centre = place + side * Vec3(0, 0, Ball::kRadius + kFanMargin);
       const ContactPatch a = ball.at(centre, one);
       const ContactPatch b = ball.at(centre, two);
       EXPECT_LT((a.object_normal - b.object_normal).norm(), 1e-9);
