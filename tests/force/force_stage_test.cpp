@@ -1,0 +1,538 @@
+// SPDX-License-Identifier: Apache-2.0
+// The force stage on contact records that are written by hand: what a search would find does not matter here.
+#include "phalanx/force/force_stage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "phalanx/core/index.h"
+#include "phalanx/force/force_law.h"
+#include "phalanx/mesh/primitives.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kTick = 0.005;  // [s]
+constexpr int kProximal = 0;
+constexpr int kDistal = 2;
+
+/// The simple hand, open and straight along -Z, with records of our own and every limiter off.
+class Stage {
+ public:
+  Stage() {
+    limits.fingertip_force_enabled = false;
+    limits.joint_torque_enabled = false;
+    limits.torque_rate_enabled = false;
+    hand_.poses(hand_.parameters().open_angle, hcp);
+    state.hcp_before = hcp;
+  }
+
+  /// The segment's point 10 mm from its joint presses something below it: the finger is pushed towards +Y.
+  ContactRecord& press(int k, double depth, const Vec3& normal = Vec3::UnitY(), int digit = test::kIndex) {
+    ContactRecord& record = contacts_.record[idx(segment_index(digit, k))];
+    record.active = true;
+    record.p_S = Vec3(0.0, 0.0, -0.010);
+    record.n_c = record.force_normal = normal;
+    record.depth = depth;
+    record.p_hcp = hcp.digit[idx(digit)].segment[idx(k)] * record.p_S;
+    record.p_gdp = contacts_.poses.digit[idx(digit)].segment[idx(k)] * record.p_S;
+    return record;
+  }
+  void leave(int k, int digit = test::kIndex) {
+    contacts_.record[idx(segment_index(digit, k))].active = false;
+  }
+  /// The measured finger moves by so much, all segments alike.
+  void move_hcp(const Vec3& by) {
+    for (Pose& segment : hcp.digit[idx(test::kIndex)].segment) segment.p += by;
+  }
+  Status tick() {
+    return compute_command({hand_, law, smoothing, limits, kTick, stabiliser, oscillation}, contacts_, hcp,
+                           stale, state);
+  }
+  Status ticks(int count) {
+    Status status = Status::kOk;
+    for (int i = 0; i < count; ++i) status = tick();
+    return status;
+  }
+  [[nodiscard]] double sent(int k, int digit = test::kIndex) const {
+    return state.segment[idx(segment_index(digit, k))].sent;
+  }
+  [[nodiscard]] const LocalWall& wall(int k, int digit = test::kIndex) const {
+    return state.wall[idx(segment_index(digit, k))];
+  }
+  [[nodiscard]] double torque(int i, int digit = test::kIndex) const {
+    return state.torque[idx(joint_index(digit, i))];
+  }
+
+  ForceLawParameters law{.law = ForceLaw::kHooke, .stiffness = 500.0};
+  SmoothingParameters smoothing;
+  LimitParameters limits;
+  StabiliserParameters stabiliser{.method = Stabiliser::kNone};
+  OscillationParameters oscillation;
+  ForceState state;
+  HandPoses hcp;
+  bool stale = false;
+
+ private:
+  HandModel hand_ = test::simple_hand();
+  SegmentTrees trees_ = make_segment_trees(hand_);
+  ObjectModel object_{test::moved(make_box(Vec3(0.01, 0.01, 0.01), 12), test::at(10.0, 0.0, 0.0))};
+  ContactParameters parameters_;
+  GdpState contacts_{ContactModel{hand_, trees_, object_, parameters_}};
+};
+
+// ---- the law's slope ----
+
+// By hand, k = 500 N/m. Hunt-Crossley's slope is k n (d / 1 mm)^(n - 1): 750 N/m at 1 mm and 1500 at 4 mm for
+// n = 1.5, 4000 at 4 mm for n = 2. Duffing at 2 mm: 500 + 3 x 5e7 x 4e-6 = 1100. Linear to 2 mm, then cubic,
+// at 3 mm: 500 + 3 x 5e7 x 1e-6 = 650.
+TEST(LawSlope, IsWhatTheLawsDerivativeIsByHand) {
+  ForceLawParameters law{.law = ForceLaw::kHuntCrossley, .stiffness = 500.0, .hunt_crossley_exponent = 1.5};
+  EXPECT_NEAR(law_slope(law, 1e-3), 750.0, 1e-9);
+  EXPECT_NEAR(law_slope(law, 4e-3), 1500.0, 1e-9);
+  law.hunt_crossley_exponent = 2.0;
+  EXPECT_NEAR(law_slope(law, 4e-3), 4000.0, 1e-9);
+  EXPECT_EQ(law_slope(law, 0.0), 0.0);
+  EXPECT_EQ(law_slope(law, -1e-3), 0.0);
+  law.hunt_crossley_exponent = 1.0;
+  EXPECT_EQ(law_slope(law, 7e-3), 500.0);
+  law = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
+  EXPECT_NEAR(law_slope(law, 2e-3), 1100.0, 1e-9);
+  EXPECT_EQ(law_slope(law, -2e-3), 500.0) << "below the surface its slope there";
+  law = {.law = ForceLaw::kLinearThenCubic, .stiffness = 500.0, .cubic = 5e7, .linear_depth = 2e-3};
+  EXPECT_EQ(law_slope(law, 1e-3), 500.0);
+  EXPECT_EQ(law_slope(law, 2e-3), 500.0);
+  EXPECT_NEAR(law_slope(law, 3e-3), 650.0, 1e-9);
+  law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 9.0};
+  EXPECT_EQ(law_slope(law, 3e-3), 500.0) << "at rest";
+}
+
+// The same against the force itself, by central differences of 1 nm.
+TEST(LawSlope, IsTheDifferenceQuotientOfTheForceAtRest) {
+  for (const ForceLaw kind : {ForceLaw::kHooke, ForceLaw::kKelvinVoigt, ForceLaw::kHuntCrossley,
+                              ForceLaw::kDuffing, ForceLaw::kLinearThenCubic}) {
+    for (const double n : {1.0, 1.5, 2.2, 3.0}) {
+      const ForceLawParameters law{.law = kind, .stiffness = 700.0, .hunt_crossley_exponent = n};
+      for (const double depth : {0.3e-3, 1.1e-3, 1.9e-3, 2.6e-3, 6e-3}) {
+        const double h = 1e-9;
+        const double quotient = (law_force(law, depth + h, 0.0) - law_force(law, depth - h, 0.0)) / (2.0 * h);
+        EXPECT_NEAR(law_slope(law, depth), quotient, 1e-5 * quotient)
+            << static_cast<int>(kind) << " " << depth;
+      }
+    }
+  }
+}
+
+// ---- the closing speed ----
+
+// The object pushes towards +Y, and the finger goes 1 mm towards -Y in 5 ms: it closes at +0.2 m/s. 2 mm into
+// 500 N/m with 2 N s/m are 1 N + 0.4 N. At rest again, 1 N; opening at 0.1 m/s, 0.8 N.
+TEST(ForceStage, AFingerThatMovesIntoTheObjectClosesWithAPositiveSpeed) {
+  Stage stage;
+  stage.law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12) << "nothing is known of the tick before the first";
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.4, 1e-12);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12) << "it rests";
+  stage.move_hcp({3e-3, 0.5e-3, -1e-3});  // what is not along the normal is not closing
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 0.8, 1e-12);
+}
+
+// Of 0.2 m/s the low-pass of 30 Hz lets through 1 - exp(-2 pi 30 x 0.005) = 0.61034 in the first step, and of
+// the rest as much in the second. Without contact it forgets.
+TEST(ForceStage, TheClosingSpeedIsLowPassedAndForgottenWithTheContact) {
+  Stage stage;
+  stage.law.velocity_lowpass_hz = 30.0;
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
+  const double gain = 1.0 - std::exp(-0.3 * 3.14159265358979323846);
+  for (const double expected : {0.2 * gain, 0.2 * (1.0 - (1.0 - gain) * (1.0 - gain))}) {
+    stage.move_hcp({0.0, -1e-3, 0.0});
+    stage.press(kDistal, 2e-3);
+    stage.tick();
+    EXPECT_NEAR(force.speed, expected, 1e-12);
+  }
+  stage.leave(kDistal);
+  stage.tick();
+  EXPECT_EQ(force.speed, 0.0);
+}
+
+// A damper of 4 N s/m beside Hooke's law takes the low-passed speed, time-domain passivity that of the step.
+TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
+  const double gain = 1.0 - std::exp(-0.3 * 3.14159265358979323846);
+  for (const Stabiliser method : {Stabiliser::kKelvinVoigt, Stabiliser::kPassivity}) {
+    Stage stage;
+    stage.law.velocity_lowpass_hz = 30.0;
+    stage.stabiliser = {.method = method, .damping = 4.0, .passivity_damping_max = 50.0};
+    stage.press(kDistal, 2e-3);
+    stage.tick();
+    EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
+    stage.move_hcp({0.0, 1e-3, 0.0});  // opens at 0.2 m/s
+    stage.press(kDistal, 2e-3);
+    stage.tick();
+    // E = 0.005 x 1 N x -0.2 = -1 mJ, a = 1e-3 / (0.005 x 0.04) = 5 N s/m, 1 - 5 x 0.2 = 0.
+    EXPECT_NEAR(stage.sent(kDistal), method == Stabiliser::kPassivity ? 0.0 : 1.0 - 4.0 * 0.2 * gain, 1e-12);
+  }
+}
+
+// ---- what is silent, stale or gone ----
+
+TEST(ForceStage, ASilentContactAndAStaleHandPushNothing) {
+  Stage stage;
+  stage.press(kDistal, 2e-3).silent = true;
+  stage.tick();
+  EXPECT_EQ(stage.sent(kDistal), 0.0);
+  stage.press(kDistal, 2e-3).silent = false;
+  stage.stale = true;
+  stage.tick();
+  EXPECT_EQ(stage.sent(kDistal), 0.0);
+  stage.stale = false;
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
+}
+
+// The direction of a force that still decays stays; once nothing is sent and nothing touches, it is
+// forgotten.
+TEST(ForceStage, TheNormalOutlivesTheContactAsLongAsAForceIsSent) {
+  Stage stage;
+  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.press(kDistal, 2e-3);
+  stage.ticks(3);  // 0.3 N
+  const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
+  stage.leave(kDistal);
+  for (const double expected : {0.2, 0.1}) {
+    stage.tick();
+    EXPECT_NEAR(force.sent, expected, 1e-12);
+    EXPECT_EQ(force.normal, Vec3::UnitY());
+    EXPECT_NEAR(stage.torque(0), -0.075 * expected, 1e-12) << "40 + 25 + 10 mm from the knuckle";
+  }
+  stage.ticks(2);
+  EXPECT_EQ(force.sent, 0.0);
+  EXPECT_EQ(force.normal, Vec3::Zero());
+  EXPECT_EQ(stage.torque(0), 0.0);
+  stage.press(kDistal, 0.0);
+  stage.tick();
+  EXPECT_EQ(force.normal, Vec3::UnitY()) << "a contact without depth has one";
+}
+
+// ---- limits ----
+
+// 4 N on each of two segments along the same normal and a cap of 5 N on the digit: 2.5 N each, and it is
+// said.
+TEST(ForceStage, TheDigitsSumIsCappedAndSaid) {
+  Stage stage;
+  stage.limits.fingertip_force_enabled = true;
+  stage.press(kDistal, 8e-3);
+  stage.press(kProximal, 8e-3);
+  const Status status = stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 2.5, 1e-12);
+  EXPECT_NEAR(stage.sent(kProximal), 2.5, 1e-12);
+  EXPECT_TRUE(has(status, Status::kForceLimited));
+  stage.press(kDistal, 4e-3);
+  stage.press(kProximal, 4e-3, -Vec3::UnitY());
+  EXPECT_FALSE(has(stage.tick(), Status::kForceLimited)) << "forces that are opposite add up to nothing";
+  EXPECT_NEAR(stage.sent(kDistal), 2.0, 1e-12);
+}
+
+// A damper may bring a contact above the cap; smoothing keeps below the law by itself.
+TEST(ForceStage, AMethodThatAddsToTheLawIsCappedOnEachContactAgain) {
+  Stage stage;
+  stage.limits.fingertip_force_enabled = true;
+  stage.limits.fingertip_force = 1.2;
+  stage.law.velocity_lowpass_hz = 1e6;
+  stage.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 2e-3);
+  EXPECT_TRUE(has(stage.tick(), Status::kForceLimited)) << "1 N + 0.8 N";
+  EXPECT_NEAR(stage.sent(kDistal), 1.2, 1e-12);
+}
+
+// 75 mm x 4 N = 0.3 Nm wanted. A limit of 0.2 Nm, and a rate of 10 Nm/s: 0.05 Nm a tick, down and up alike.
+TEST(ForceStage, TorqueIsLimitedAndRateLimitedBothWaysAndEachIsSaid) {
+  Stage stage;
+  stage.limits.joint_torque_enabled = true;
+  stage.limits.joint_torque = 0.2;
+  stage.press(kDistal, 8e-3);
+  EXPECT_TRUE(has(stage.tick(), Status::kTorqueLimited));
+  EXPECT_NEAR(stage.torque(0), -0.2, 1e-15);
+  stage.press(kDistal, 1e-3);
+  EXPECT_EQ(stage.tick(), Status::kOk);
+  stage.limits.torque_rate_enabled = true;
+  for (const double sign : {1.0, -1.0}) {
+    stage.press(kDistal, 1e-12, sign * Vec3::UnitY());
+    stage.ticks(20);
+    stage.press(kDistal, 4e-3, sign * Vec3::UnitY());  // 2 N: 0.15 Nm
+    for (int i = 1; i <= 2; ++i) {
+      EXPECT_TRUE(has(stage.tick(), Status::kTorqueRateLimited)) << i;
+      EXPECT_NEAR(stage.torque(0), -sign * 0.05 * i, 1e-9) << i;
+    }
+    stage.ticks(5);
+    EXPECT_EQ(stage.tick(), Status::kOk);
+    stage.leave(kDistal);
+    for (int i = 1; i <= 2; ++i) {
+      EXPECT_TRUE(has(stage.tick(), Status::kTorqueRateLimited)) << i;
+      EXPECT_NEAR(stage.torque(0), -sign * (0.15 - 0.05 * i), 1e-9) << i;
+    }
+    stage.ticks(5);
+  }
+}
+
+// ---- oscillation ----
+
+// The verdict on a finger that has left ends half a second later, also where its other segments were always
+// at rest.
+TEST(ForceStage, AFreeDigitIsWatchedUntilTheVerdictOfEachSegmentHasEnded) {
+  for (const int k : {kProximal, 1, kDistal}) {
+    Stage stage;
+    for (int n = 0; n < 100; ++n) {
+      stage.press(k, n % 20 < 10 ? 2e-3 : 6e-3);  // 1 and 3 N, 10 Hz
+      stage.tick();
+    }
+    ASSERT_TRUE(has(stage.tick(), Status::kOscillating));
+    stage.leave(k);
+    EXPECT_TRUE(has(stage.ticks(80), Status::kOscillating)) << "0.4 s";
+    EXPECT_FALSE(has(stage.ticks(40), Status::kOscillating)) << "0.6 s";
+    EXPECT_TRUE(stage.state.resting[idx(test::kIndex)]);
+  }
+}
+
+// The distal segment oscillates until 0.5 s and its verdict lasts to 1 s; the proximal one swings from 0.6 s
+// on and fires about 0.85 s, when 0.5 s have passed since the first halving: the stiffness is halved again,
+// although the segment that is looked at last does not swing any more.
+TEST(ForceStage, AnOscillationOfAnySegmentHalvesTheStiffness) {
+  Stage stage;
+  stage.oscillation.reaction = OscillationReaction::kHalve;
+  double first = -1.0;
+  double second = -1.0;
+  for (int n = 0; n < 200; ++n) {
+    const double t = kTick * n;
+    stage.press(kDistal, t < 0.5 && n % 20 < 10 ? 10e-3 : 2e-3);
+    stage.press(kProximal, t >= 0.6 && n % 20 < 10 ? 18e-3 : 1e-3);
+    const Status status = stage.tick();
+    const double factor = stage.state.stiffness_factor.value();
+    if (first < 0.0 && factor < 1.0) first = t;
+    if (second < 0.0 && factor < 0.5 - 1e-9) second = t;
+    if (t > 0.9) {
+      EXPECT_TRUE(has(status, Status::kOscillating)) << t;
+    }
+  }
+  EXPECT_GT(first, 0.1);
+  EXPECT_LT(first, 0.3);
+  EXPECT_GE(second, first + 0.5);
+  EXPECT_LT(second, first + 0.5 + 0.3);
+  EXPECT_LT(second, 0.95) << "within the distal segment's verdict";
+}
+
+// ---- local walls ----
+
+Stage walled() {
+  Stage stage;
+  stage.stabiliser.method = Stabiliser::kLocalWall;
+  return stage;
+}
+
+// A torque that the host has limited is not the wall's force any more: the digit's walls are withheld, and no
+// other digit's.
+TEST(ForceStage, WallsOfADigitWhoseTorqueWasLimitedAreWithheld) {
+  for (const bool rate : {false, true}) {
+    Stage stage = walled();
+    stage.limits.joint_torque_enabled = !rate;
+    stage.limits.joint_torque = 0.2;
+    stage.limits.torque_rate_enabled = rate;
+    stage.press(kDistal, 8e-3);                      // 4 N: 0.3 Nm
+    stage.press(kProximal, 0.2e-3);                  // of the same digit
+    stage.press(kDistal, 0.2e-3, Vec3::UnitY(), 3);  // 0.1 N: 7.5 mNm on the ring finger
+    stage.tick();
+    EXPECT_FALSE(stage.wall(kDistal).active);
+    EXPECT_FALSE(stage.wall(kProximal).active);
+    EXPECT_TRUE(stage.wall(kDistal, 3).active);
+    stage.press(kDistal, 0.2e-3);
+    stage.ticks(20);
+    EXPECT_TRUE(stage.wall(kDistal).active) << "and come back with the torque";
+  }
+}
+
+// By hand: 500 N/m at 2 mm; lever arms of the point 75 mm from the knuckle, 35 and 10 mm from the other
+// joints; no force along +Y turns abduction. Without caps f_max is what no device renders.
+TEST(ForceStage, AWallIsTheContactAsTheControllerNeedsIt) {
+  Stage stage = walled();
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  const LocalWall& wall = stage.wall(kDistal);
+  ASSERT_TRUE(wall.active);
+  EXPECT_NEAR(wall.d_ref, 2e-3, 1e-15);
+  EXPECT_EQ(wall.stiffness, 500.0);
+  EXPECT_NEAR(wall.host_force, 1.0, 1e-12);
+  EXPECT_EQ(wall.force_max, 1e6);
+  EXPECT_NEAR(wall.g[0], -0.075, 1e-12);
+  EXPECT_NEAR(wall.g[1], 0.0, 1e-12);
+  EXPECT_NEAR(wall.g[2], -0.035, 1e-12);
+  EXPECT_NEAR(wall.g[3], -0.010, 1e-12);
+}
+
+// A law with a slope of its own: Duffing at 2 mm is 1.4 N with 1100 N/m, so that d_ref = 1.4 / 1100 m.
+TEST(ForceStage, AWallsReferenceDepthIsTheLawsForceOverItsSlope) {
+  Stage stage = walled();
+  stage.law = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.wall(kDistal).stiffness, 1100.0, 1e-9);
+  EXPECT_NEAR(stage.wall(kDistal).d_ref, 1.4 / 1100.0, 1e-12);
+}
+
+// 0.2 Nm over 75 mm are 2.667 N, whichever way the wall turns the joint.
+TEST(ForceStage, AWallsLargestForceKeepsTheTorqueLimit) {
+  for (const double sign : {1.0, -1.0}) {
+    Stage stage = walled();
+    stage.limits.joint_torque_enabled = true;
+    stage.limits.joint_torque = 0.2;
+    stage.press(kDistal, 1e-3, sign * Vec3::UnitY());
+    stage.tick();
+    ASSERT_TRUE(stage.wall(kDistal).active);
+    EXPECT_NEAR(stage.wall(kDistal).force_max, 0.2 / 0.075, 1e-9);
+    stage.limits.joint_torque = 0.5;
+    stage.limits.fingertip_force_enabled = true;
+    stage.limits.fingertip_force = 4.0;
+    stage.tick();
+    EXPECT_NEAR(stage.wall(kDistal).force_max, 4.0, 1e-12)
+        << "4 N are 0.3 Nm: the fingertip cap is the smaller";
+  }
+}
+
+// Two walls on opposite sides of the finger may both be at their largest, or one of them: at the knuckle 75
+// mm and 10 mm, so that 0.085 m f_max is at most 0.2 Nm where both are equal.
+TEST(ForceStage, TheWallsOfADigitTogetherKeepTheTorqueLimit) {
+  Stage stage = walled();
+  stage.limits.fingertip_force_enabled = true;
+  stage.limits.fingertip_force = 5.0;
+  stage.limits.joint_torque_enabled = true;
+  stage.limits.joint_torque = 0.2;
+  stage.press(kDistal, 0.2e-3);
+  stage.press(kProximal, 0.2e-3, -Vec3::UnitY());
+  stage.tick();
+  ASSERT_TRUE(stage.wall(kDistal).active && stage.wall(kProximal).active);
+  for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
+    const double most = std::abs(stage.wall(kDistal).g[i]) * stage.wall(kDistal).force_max +
+                        std::abs(stage.wall(kProximal).g[i]) * stage.wall(kProximal).force_max;
+    EXPECT_LE(most, 0.2 + 1e-12) << i;
+    if (i == 0) {
+      EXPECT_NEAR(most, 0.2, 1e-12) << "and use it";
+    }
+  }
+}
+
+// The cap of 5 N holds for any forces between 0 and f_max, each combination tried. Parallel normals with 1 N
+// and 0.5 N of the host: 3.5 N of room for both, in proportion to each one's own 4 and 4.5 N.
+TEST(ForceStage, TheWallsOfADigitTogetherKeepTheFingertipCap) {
+  for (const double turn : {0.0, 0.4, 1.2, 2.0, 3.1}) {
+    Stage stage = walled();
+    stage.limits.fingertip_force_enabled = true;
+    stage.press(kDistal, 2e-3);
+    stage.press(kProximal, 1e-3, Vec3(std::sin(turn), std::cos(turn), 0.0));
+    stage.press(1, 4e-3, Vec3(-std::sin(0.5 * turn), std::cos(0.5 * turn), 0.0));
+    stage.tick();
+    double largest = 0.0;
+    for (unsigned subset = 1; subset < 8; ++subset) {
+      for (int step = 0; step <= 10; ++step) {
+        Vec3 sum = Vec3::Zero();
+        for (int k = 0; k < kSegmentsPerDigit; ++k) {
+          if ((subset >> k & 1U) == 0U) continue;
+          const double share = k == 0 ? 0.1 * step : 1.0;
+          sum += share * stage.wall(k).force_max *
+                 stage.state.segment[idx(segment_index(test::kIndex, k))].normal;
+        }
+        largest = std::max(largest, sum.norm());
+      }
+    }
+    EXPECT_LE(largest, 5.0 + 1e-9) << turn;
+    EXPECT_GT(largest, 4.9) << turn << ": and use it";
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      EXPECT_GE(stage.wall(k).force_max, stage.wall(k).host_force - 1e-12) << "at least what the host sends";
+    }
+  }
+  Stage stage = walled();
+  stage.limits.fingertip_force_enabled = true;
+  stage.press(kDistal, 2e-3);
+  stage.press(kProximal, 1e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.wall(kDistal).force_max, 1.0 + 3.5 * 4.0 / 8.5, 1e-9);
+  EXPECT_NEAR(stage.wall(kProximal).force_max, 0.5 + 3.5 * 4.5 / 8.5, 1e-9);
+}
+
+// 4 N, 4 N and, against them, 4 N: the sum is within 5 N, but without the third it would be 8 N. So no wall
+// may reach what the host sends: 5/8 of 4 N each.
+TEST(ForceStage, WallsMayNotReachTheHostsForceWhereSomeOfThemAloneWouldBreakTheCap) {
+  Stage stage = walled();
+  stage.limits.fingertip_force_enabled = true;
+  stage.press(kProximal, 8e-3);
+  stage.press(1, 8e-3, -Vec3::UnitY());
+  stage.press(kDistal, 8e-3);
+  stage.tick();
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    EXPECT_NEAR(stage.wall(k).host_force, 4.0, 1e-12) << k;
+    EXPECT_NEAR(stage.wall(k).force_max, 2.5, 1e-12) << k;
+  }
+}
+
+/// A wall at 2 mm whose contact has let go, `moved` from where the finger was.
+Stage left_by(const Vec3& moved) {
+  Stage stage = walled();
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  stage.leave(kDistal);
+  stage.move_hcp(moved);
+  stage.tick();
+  return stage;
+}
+
+// Kept while the finger is 0 to 10 mm above the plane and at most 3 mm beside its place.
+TEST(ForceStage, AWallThatWasLeftIsKeptNearItsPlaceAtTheFingersHeight) {
+  const Stage above = left_by({0.0, 4e-3, 0.0});
+  ASSERT_TRUE(above.wall(kDistal).active);
+  EXPECT_NEAR(above.wall(kDistal).d_ref, -4e-3, 1e-12);
+  EXPECT_EQ(above.wall(kDistal).stiffness, 500.0);
+  EXPECT_EQ(above.wall(kDistal).host_force, 0.0);
+  EXPECT_TRUE(left_by({0.0, 9.9e-3, 0.0}).wall(kDistal).active);
+  EXPECT_FALSE(left_by({0.0, 10.1e-3, 0.0}).wall(kDistal).active);
+  EXPECT_FALSE(left_by({0.0, -0.1e-3, 0.0}).wall(kDistal).active)
+      << "below: the object is not there any more";
+  for (const Vec3& side : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.0, -1.0), Vec3(-0.6, 0.0, 0.8)}) {
+    EXPECT_TRUE(left_by(Vec3(0.0, 4e-3, 0.0) + 2.9e-3 * side).wall(kDistal).active);
+    EXPECT_FALSE(left_by(Vec3(0.0, 4e-3, 0.0) + 3.1e-3 * side).wall(kDistal).active);
+  }
+}
+
+TEST(ForceStage, AWallThatWasLeftIsKeptForAQuarterOfASecond) {
+  Stage stage = left_by({0.0, 1e-3, 0.0});
+  stage.ticks(48);
+  EXPECT_TRUE(stage.wall(kDistal).active) << "0.245 s";
+  stage.ticks(2);
+  EXPECT_FALSE(stage.wall(kDistal).active) << "0.255 s";
+}
+
+// Once the measured hand is not known any more, no wall is known either, also after samples come again.
+TEST(ForceStage, AStaleHandForgetsAWallThatWasLeft) {
+  Stage stage = left_by({0.0, 1e-3, 0.0});
+  ASSERT_TRUE(stage.wall(kDistal).active);
+  stage.stale = true;
+  stage.tick();
+  EXPECT_FALSE(stage.wall(kDistal).active);
+  stage.stale = false;
+  stage.tick();
+  EXPECT_FALSE(stage.wall(kDistal).active);
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The observer's rule on zigzags whose legs are worked out by hand: how long three half-swings may take, how
+// much may die out, and which half-swings are noise.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "phalanx/force/oscillation.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kMillisecond = 1e-3;
+
+/// Straight from extreme to extreme, so many milliseconds each.
+/// @returns the leg at which the observer fires first, the leg from extremes[0] to extremes[1] being the
+/// first; 0: none
+int fires_at_leg(const std::vector<double>& extremes, int milliseconds) {
+  OscillationObserver observer;
+  observer.watch(extremes[0], 0.5, kMillisecond);
+  for (std::size_t leg = 1; leg < extremes.size(); ++leg) {
+    const double from = extremes[leg - 1];
+    const double to = extremes[leg];
+    for (int i = 1; i <= milliseconds; ++i) {
+      const double force = i == milliseconds ? to : from + (to - from) * i / milliseconds;
+      if (observer.watch(force, 0.5, kMillisecond)) return static_cast<int>(leg);
+    }
+  }
+  return 0;
+}
+
+std::vector<double> even(int legs) {
+  std::vector<double> extremes;
+  for (int i = 0; i <= legs; ++i) extremes.push_back(i % 2 == 0 ? 0.0 : 2.0);
+  return extremes;
+}
+
+// Three half-swings of 79 ms are 237 ms; of 81 ms, 243: those need six legs. Of 259 ms each the sixth leg
+// fires, of 262 ms none.
+TEST(OscillationRows, FireAtTheFourthLegWithinTwoHundredAndFortyMillisecondsElseAtTheSixth) {
+  EXPECT_EQ(fires_at_leg(even(12), 79), 4);
+  EXPECT_EQ(fires_at_leg(even(12), 81), 6);
+  EXPECT_EQ(fires_at_leg(even(12), 119), 6) << "two of them are within 240 ms";
+  EXPECT_EQ(fires_at_leg(even(12), 259), 6);
+  EXPECT_EQ(fires_at_leg(even(12), 262), 0);
+}
+
+// At the fourth leg the legs before were 4, 3 and x N: the last is held against half the first, 2 N.
+TEST(OscillationRows, DoNotFireWhereTheThirdSwingIsBelowHalfTheFirst) {
+  EXPECT_EQ(fires_at_leg({0.0, 4.0, 1.0, 3.0, 0.0}, 40), 4) << "2 N";
+  EXPECT_EQ(fires_at_leg({0.0, 4.0, 1.0, 2.875, 0.0}, 40), 0) << "1.875 N, of 3 N more than half";
+}
+
+// The same of the sixth: legs of 4, 4, 4, 4 and x N, 100 ms each.
+TEST(OscillationRows, DoNotFireAtTheSixthLegWhereTheFifthSwingIsBelowHalfTheFirst) {
+  EXPECT_EQ(fires_at_leg({0.0, 4.0, 0.0, 4.0, 0.0, 2.0, 0.0}, 100), 6);
+  EXPECT_EQ(fires_at_leg({0.0, 4.0, 0.0, 4.0, 0.0, 1.875, 0.0}, 100), 0);
+}
+
+// Every step of 200 Hz another extreme is a half-swing of 5 ms and counts; of 1 kHz one of 3 ms is noise.
+TEST(OscillationRows, TakeHalfSwingsBelowFourMillisecondsForNoise) {
+  EXPECT_EQ(fires_at_leg(even(40), 5), 4);
+  EXPECT_EQ(fires_at_leg(even(400), 3), 0);
+}
+
+}  // namespace
+}  // namespace phalanx
