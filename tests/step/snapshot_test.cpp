@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a step writes down of a contact, worked out again from the poses that it writes down beside it.
+#include <gtest/gtest.h>
+
+#include "phalanx/step/haptic_step.h"
+#include "support/simple_hand.h"
+#include "support/stabilised_hands.h"
+
+namespace phalanx {
+namespace {
+
+constexpr std::size_t kTip = 3 * test::kIndex + 2;  ///< the index finger's distal segment
+
+/// Into the floor, along it, and out again: `n` from 0 to 240.
+JointArray press_and_leave(int n) {
+  const double down = n < 80 ? 0.4 * n / 80.0 : n < 160 ? 0.4 : 0.4 * (240 - n) / 80.0;
+  const double along = n < 80 ? 0.0 : n < 160 ? 0.3 * (n - 80) / 80.0 : 0.3;
+  return test::index_angles(down, 0.0, 0.0, along);
+}
+
+// Hooke's law and nothing behind it: the force is 500 N/m times the depth that is written down, which is
+// never negative, also in the ticks in which a contact is there and not deep.
+TEST(StepSnapshot, TheDepthIsTheForceOverTheStiffnessAndNeverNegative) {
+  HapticModel model = test::floor_model(Stabiliser::kNone);
+  test::turn_limits_off(model);
+  model.force.stiffness = 500.0;
+  test::Runner hand(model);
+  int deep = 0;
+  int not_deep = 0;
+  for (int n = 0; n <= 240; ++n) {
+    const SegmentSnapshot& tip = hand.tick(press_and_leave(n)).segment[kTip];
+    EXPECT_GE(tip.depth, 0.0) << n;
+    EXPECT_NEAR(tip.force_raw, 500.0 * tip.depth, 1e-12) << n;
+    deep += tip.contact && tip.depth > 0.0 ? 1 : 0;
+    not_deep += tip.contact && tip.force_raw == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(deep, 100);
+  EXPECT_GT(not_deep, 0) << "or the test has not tested that";
+}
+
+// The floor's normal is +Y. The contact's point lies on the shown finger; the same material point of the
+// measured one is elsewhere, and how far in the floor's plane is what has slid.
+TEST(StepSnapshot, WhatHasSlidIsTheWayInThePlaneOfTheContact) {
+  const HapticModel model = test::floor_model(Stabiliser::kNone);
+  test::Runner hand(model);
+  double largest = 0.0;
+  int seen = 0;
+  for (int n = 0; n <= 240; ++n) {
+    const Snapshot& now = hand.tick(press_and_leave(n));
+    const SegmentSnapshot& tip = now.segment[kTip];
+    if (!tip.contact || tip.normal != Vec3::UnitY()) continue;
+    const Vec3 apart = now.hcp_pose[kTip] * (now.gdp_pose[kTip].inverse() * tip.point) - tip.point;
+    EXPECT_NEAR(tip.slid, std::hypot(apart.x(), apart.z()), 1e-9) << n;
+    EXPECT_GT(std::abs(apart.y()) + 1e-9, tip.depth);
+    largest = std::max(largest, tip.slid);
+    ++seen;
+  }
+  EXPECT_GT(seen, 100);
+  EXPECT_GT(largest, 1e-3);
+}
+
+// Under smoothing a force is still sent after the finger has left: at the same material point, which goes
+// with the shown finger.
+TEST(StepSnapshot, AForceThatDecaysActsAtItsMaterialPoint) {
+  HapticModel model = test::floor_model(Stabiliser::kSmoothing);
+  model.limits.joint_speed = 1e4;
+  test::Runner hand(model);
+  for (int n = 0; n <= 150; ++n) hand.tick(press_and_leave(n));
+  const SegmentSnapshot before = hand.now().segment[kTip];
+  ASSERT_TRUE(before.contact);
+  ASSERT_GT(before.force, 1.0);
+  const Vec3 p_S = hand.now().gdp_pose[kTip].inverse() * before.point;
+  int decaying = 0;
+  for (int n = 1; n <= 40; ++n) {
+    const Snapshot& now = hand.tick(test::index_angles(0.1 - 0.01 * n));
+    const SegmentSnapshot& tip = now.segment[kTip];
+    if (tip.contact || tip.force == 0.0) continue;
+    EXPECT_LT((tip.point - now.gdp_pose[kTip] * p_S).norm(), 1e-12) << n;
+    EXPECT_EQ(tip.normal, before.normal);
+    EXPECT_EQ(tip.depth, 0.0);
+    ++decaying;
+  }
+  EXPECT_GT(decaying, 5);
+}
+
+}  // namespace
+}  // namespace phalanx
