@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/hand/sensor_mapping.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+
+// 0.02 x -1 x 30 + 0.25 = -0.35; clamped to -0.2 .. 0.4.
+TEST(SensorMapping, IsGainTimesSignTimesRawPlusOffsetAndThenClamped) {
+  JointMapping mapping{.joint = 6, .source = "s", .sign = -1.0, .gain = 0.02, .offset = 0.25};
+  EXPECT_NEAR(mapped_angle(mapping, 30.0), -0.35, 1e-15);
+  EXPECT_EQ(mapped_angle(mapping, 0.0), 0.25);
+  mapping.clamp_min = -0.2;
+  mapping.clamp_max = 0.4;
+  EXPECT_NEAR(mapped_angle(mapping, 30.0), -0.35, 1e-15) << "not asked to clamp";
+  mapping.clamped = true;
+  EXPECT_EQ(mapped_angle(mapping, 30.0), -0.2);
+  EXPECT_EQ(mapped_angle(mapping, -30.0), 0.4);
+  EXPECT_EQ(mapped_angle(mapping, 0.0), 0.25);
+  EXPECT_EQ(mapped_angle(mapping, -std::numeric_limits<double>::infinity()), 0.4);
+}
+
+// What is not a number says that the sensor is silent: a clamp must not make an angle of it.
+TEST(SensorMapping, LeavesWhatIsNotANumberAlsoWhereItClamps) {
+  JointMapping mapping{.source = "s", .clamp_min = -0.2, .clamp_max = 0.4, .clamped = true};
+  EXPECT_TRUE(std::isnan(mapped_angle(mapping, std::numeric_limits<double>::quiet_NaN())));
+  mapping.clamped = false;
+  EXPECT_TRUE(std::isnan(mapped_angle(mapping, std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(SensorMapping, TheIdentityReadsEachJointFromTheColumnOfItsName) {
+  const SensorMapping mapping = identity_mapping();
+  EXPECT_NO_THROW(check_mapping(mapping));
+  ASSERT_EQ(mapping.joints.size(), static_cast<std::size_t>(kJoints));
+  for (int joint = 0; joint < kJoints; ++joint) {
+    const JointMapping& entry = mapping.joints[static_cast<std::size_t>(joint)];
+    EXPECT_EQ(entry.joint, joint);
+    EXPECT_EQ(entry.source, joint_name(joint));
+    EXPECT_EQ(mapped_angle(entry, 0.7), 0.7);
+  }
+}
+
+std::string refusal_of(const std::function<void(SensorMapping&)>& change) {
+  SensorMapping mapping = identity_mapping();
+  change(mapping);
+  try {
+    check_mapping(mapping);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SensorMapping, IsRefusedByTheNameOfTheJointAndWhatIsWrong) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const int joint : {-1, kJoints, kJoints + 1}) {
+    EXPECT_THAT(refusal_of([&](SensorMapping& m) { m.joints[3].joint = joint; }),
+                HasSubstr("joint number " + std::to_string(joint)));
+  }
+  EXPECT_THAT(refusal_of([](SensorMapping& m) { m.joints[3].joint = 6; }),
+              HasSubstr("index_pip_flexion is mapped twice"));
+  EXPECT_THAT(refusal_of([](SensorMapping& m) { m.joints[6].source.clear(); }),
+              HasSubstr("index_pip_flexion has an empty source"));
+  for (const double sign : {0.0, 2.0, -0.5, nan})
+    EXPECT_THAT(refusal_of([&](SensorMapping& m) { m.joints[6].sign = sign; }), HasSubstr("sign")) << sign;
+  for (const double gain : {0.0, -1.0, nan, infinite})
+    EXPECT_THAT(refusal_of([&](SensorMapping& m) { m.joints[6].gain = gain; }), HasSubstr("gain")) << gain;
+  for (const double offset : {nan, -infinite})
+    EXPECT_THAT(refusal_of([&](SensorMapping& m) { m.joints[6].offset = offset; }), HasSubstr("offset"));
+  const auto clamp = [](double low, double high) {
+    return refusal_of([&](SensorMapping& m) {
+      m.joints[6].clamp_min = low;
+      m.joints[6].clamp_max = high;
+      m.joints[6].clamped = true;
+    });
+  };
+  EXPECT_EQ(clamp(-0.1, 0.1), "");
+  EXPECT_THAT(clamp(0.1, 0.1), HasSubstr("clamp")) << "every count would be the same angle";
+  EXPECT_THAT(clamp(0.2, 0.1), HasSubstr("clamp"));
+  EXPECT_THAT(clamp(-infinite, 0.1), HasSubstr("clamp"));
+  EXPECT_THAT(clamp(0.1, nan), HasSubstr("clamp"));
+}
+
+TEST(SensorMapping, WithSignMinusOneAndAnUnusedClampIsFine) {
+  EXPECT_EQ(refusal_of([](SensorMapping& m) {
+              m.joints[6].sign = -1.0;
+              m.joints[6].clamp_min = m.joints[6].clamp_max = 1.0;
+            }),
+            "");
+  EXPECT_EQ(refusal_of([](SensorMapping& m) { m.joints.clear(); }), "") << "the others stay open";
+}
+
+}  // namespace
+}  // namespace phalanx
