@@ -26,8 +26,8 @@ namespace phalanx {
 /// Colgate, Stanley, Brown, "Issues in the haptic display of tool use", IROS 1995; Adams, Hannaford, "Stable
 /// haptic interaction with virtual environments", IEEE Trans. Robotics Automation 15(3), 1999.
 /// @param moved  d - d', change of the depth in this step [m]
-/// @param proxy  xp' on entry, xp on return [m], within 0 .. d: never deeper than d by itself, and 0 where the
-/// finger leaves so fast that the damper would pull it out of the wall
+/// @param proxy  xp' on entry, xp on return [m], within 0 .. d: never deeper than d by itself, and 0 where
+/// the finger leaves so fast that the damper would pull it out of the wall
 [[nodiscard]] double coupled_force(double law_force, double depth, double moved, double coupling_stiffness,
                                    double coupling_damping, double period, double& proxy) noexcept;
 
