@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each number that a sensor is judged by, from both sides, on samples that are written by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "phalanx/station/sensor_watch.h"
+#include "station/fake_samples.h"
+
+namespace phalanx {
+namespace {
+
+using test::kMcp;
+using test::kPip;
+
+/// A watch alone, a sample a millisecond; the device renders what it is told in full.
+class Watch {
+ public:
+  explicit Watch(std::vector<MotorWitness> witnesses = {},
+                 const std::vector<DeviceChannel>& channels = test::two_joint_channels())
+      : map_(channels, {}, test::ranged_hand()),
+        watch(SafetySettings{}, map_, test::ranged_hand(), witnesses) {
+    at(0.5, 0.5);
+    sample.factor = 1.0;
+  }
+  void at(double mcp, double pip) {
+    sample.raw[0] = static_cast<std::int32_t>(std::lround(mcp / test::kCount));
+    sample.raw[1] = static_cast<std::int32_t>(std::lround(pip / test::kCount));
+  }
+  SensorFinding judge(std::uint64_t later_us = 1000) {
+    sample.time_us += later_us;
+    return watch.judge(sample, torque, force);
+  }
+  /// The first finding within so many samples.
+  SensorFinding judge_many(int count) {
+    for (int i = 0; i < count; ++i)
+      if (const SensorFinding found = judge(); found.fault != Fault::kNone) return found;
+    return {};
+  }
+
+ private:
+  ChannelMap map_;
+
+ public:
+  SensorWatch watch;
+  DeviceSample sample;
+  JointArray torque{};
+  DigitArray force{};
+};
+
+TEST(SensorWatchBounds, TheEndsOfASensorsRawRangeAreGood) {
+  std::vector<DeviceChannel> channels = test::two_joint_channels();
+  channels[0].raw_min = -3000;
+  channels[0].raw_max = 15000;
+  for (const auto& [end, beyond] : {std::pair{-3000, -3001}, std::pair{15000, 15001}}) {
+    Watch bench({}, channels);
+    bench.sample.raw[0] = end;
+    EXPECT_EQ(bench.judge_many(10).fault, Fault::kNone) << end;
+    EXPECT_TRUE(bench.watch.all_good());
+    bench.sample.raw[0] = beyond;
+    EXPECT_EQ(bench.judge_many(2).fault, Fault::kNone);
+    EXPECT_FALSE(bench.watch.all_good());
+    EXPECT_EQ(bench.judge().fault, Fault::kSensorRange);
+  }
+}
+
+// The range of -0.3 .. 1.5 rad and 20 degrees beyond, 0.34907 rad: -0.64907 .. 1.84907.
+TEST(SensorWatchBounds, AJointMayBeTwentyDegreesBeyondThePatientsRangeBothWays) {
+  for (const auto& [good, bad] : {std::pair{-0.6490, -0.6492}, std::pair{1.8490, 1.8492}}) {
+    Watch bench;
+    bench.at(good, 0.5);
+    EXPECT_EQ(bench.judge_many(10).fault, Fault::kNone) << good;
+    bench.at(bad, 0.5);
+    EXPECT_EQ(bench.judge_many(2).fault, Fault::kNone) << bad;
+    const SensorFinding found = bench.judge();
+    EXPECT_EQ(found.fault, Fault::kOutOfRange) << bad;
+    EXPECT_EQ(found.channel, 0);
+  }
+}
+
+// 40 rad/s over a millisecond and 2 degrees: 0.04 + 0.03491 = 0.0749 rad; over 5 ms 0.2349 rad.
+TEST(SensorWatchBounds, AJumpIsWhatNoHandDoesInTheTimeBeyondTwoDegrees) {
+  for (const double sign : {1.0, -1.0}) {
+    Watch bench;
+    bench.judge();
+    bench.at(0.5 + sign * 0.0748, 0.5);
+    bench.judge();
+    EXPECT_TRUE(bench.watch.all_good());
+    bench.at(0.5, 0.5);
+    bench.judge(5000);
+    bench.at(0.5 + sign * 0.0750, 0.5);
+    bench.judge();
+    EXPECT_FALSE(bench.watch.all_good());
+  }
+  Watch slow;
+  slow.judge();
+  slow.at(0.5 + 0.2348, 0.5);
+  slow.judge(5000);
+  EXPECT_TRUE(slow.watch.all_good());
+}
+
+TEST(SensorWatchBounds, AClockThatStandsStillIsABadOneAndOneGoodSampleForgivesIt) {
+  Watch bench;
+  bench.judge();
+  EXPECT_EQ(bench.judge(0).fault, Fault::kNone);
+  EXPECT_FALSE(bench.watch.all_good()) << "a reset waits";
+  EXPECT_EQ(bench.judge(0).fault, Fault::kNone);
+  EXPECT_EQ(bench.judge(1).fault, Fault::kNone);
+  EXPECT_TRUE(bench.watch.all_good());
+  EXPECT_EQ(bench.judge(0).fault, Fault::kNone);
+  EXPECT_EQ(bench.judge(0).fault, Fault::kNone);
+  EXPECT_EQ(bench.judge(0).fault, Fault::kClockBackwards);
+}
+
+// ---- a sensor that stands still ----
+
+/// Motor 0 winds 10 mm a radian of the knuckle and 5 mm a radian of the middle joint.
+std::vector<MotorWitness> one_tendon_over_two_joints(double slack) {
+  MotorWitness witness{.channel = 2, .arm = {}, .slack = slack};
+  witness.arm[kMcp] = 0.01;
+  witness.arm[kPip] = 0.005;
+  return {witness};
+}
+
+// The middle joint bends by 0.5 rad and winds 2.5 mm: of that the knuckle's sensor, which rests, is not
+// guilty. Then the motor winds 0.5 mm that no sensor sees: 0.05 rad of the knuckle.
+TEST(SensorWatchBounds, AMotorsMotionThatAnotherJointExplainsIsNotAStuckSensor) {
+  Watch bench(one_tendon_over_two_joints(0.0));
+  const auto wind = [&](double mcp, double pip) {
+    bench.sample.raw[2] = static_cast<std::int32_t>(std::lround((0.01 * mcp + 0.005 * pip) / 1e-6));
+  };
+  wind(0.5, 0.5);
+  bench.judge();
+  for (int i = 1; i <= 2000; ++i) {
+    const double pip = 0.5 + 0.5 * i / 2000.0;
+    bench.at(0.5, pip);
+    wind(0.5, pip);
+    ASSERT_EQ(bench.judge().fault, Fault::kNone) << i;
+  }
+  wind(0.55, 1.0);
+  const SensorFinding found = bench.judge();
+  EXPECT_EQ(found.fault, Fault::kStuckSensor);
+  EXPECT_EQ(found.channel, 0);
+}
+
+// 2 mm of slack over 10 mm are 0.2 rad, and 10 counts 0.001 rad: 2.00 mm are believed, 2.02 mm are not.
+TEST(SensorWatchBounds, AMotorMayTakeUpItsSlackBeforeASensorIsStuck) {
+  MotorWitness witness{.channel = 2, .arm = {}, .slack = 2e-3};
+  witness.arm[kMcp] = -0.01;
+  for (const double way : {1.0, -1.0}) {
+    Watch bench({witness});
+    bench.judge_many(600);
+    bench.sample.raw[2] = static_cast<std::int32_t>(way * 2000);
+    EXPECT_EQ(bench.judge_many(600).fault, Fault::kNone);
+    bench.sample.raw[2] = static_cast<std::int32_t>(way * 2020);
+    EXPECT_EQ(bench.judge().fault, Fault::kStuckSensor);
+  }
+}
+
+// By hand: arms of -20 and 10 mm, at most 0.5 Nm: 0.5 / 0.02 = 25 N, below the motor's 40 N, and a bias of 3
+// N: 28 N. Over 7000 N/m that is 4 mm, both ways 8 mm, and 1 mm of backlash. A motor of 15 N: 18 N, 5.143 mm
+// + 1 mm.
+TEST(SensorWatchBounds, ATendonsSlackIsItsStretchBothWaysAndItsPlay) {
+  Exoskeleton exoskeleton;
+  exoskeleton.motors.resize(3);
+  for (ExoMotor& motor : exoskeleton.motors) {
+    motor.arm[kMcp] = -0.02;
+    motor.arm[kPip] = 0.01;
+    motor.force_limit = 40.0;
+    motor.bias = 3.0;
+    motor.tendon_stiffness = 7000.0;
+    motor.backlash = 1e-3;
+  }
+  exoskeleton.motors[1].force_limit = 15.0;
+  exoskeleton.motors[2].arm = {};
+  std::vector<DeviceChannel> channels(5);
+  for (int m = 0; m < 4; ++m)
+    channels[static_cast<std::size_t>(m) + 1] = {.kind = ChannelKind::kMotor, .index = m};
+  const std::vector<MotorWitness> witnesses = motor_witnesses(exoskeleton, channels, 0.5);
+  ASSERT_EQ(witnesses.size(), 2U) << "one motor moves nothing, and of one the device file says nothing";
+  EXPECT_EQ(witnesses[0].channel, 1);
+  EXPECT_EQ(witnesses[1].channel, 2);
+  EXPECT_NEAR(witnesses[0].slack, 2.0 * 28.0 / 7000.0 + 1e-3, 1e-12);
+  EXPECT_NEAR(witnesses[1].slack, 2.0 * 18.0 / 7000.0 + 1e-3, 1e-12);
+  EXPECT_EQ(witnesses[0].arm[kMcp], -0.02);
+}
+
+// ---- torque and force that disagree ----
+
+// -0.4 Nm commanded: 0.15 + 0.5 x 0.4 = 0.35 Nm are believed, either way round.
+TEST(SensorWatchBounds, TorqueMayDisagreeByItsBoundOfEitherSign) {
+  for (const double sign : {1.0, -1.0}) {
+    Watch bench;
+    bench.torque[kMcp] = sign * 0.4;
+    bench.sample.raw[4] = static_cast<std::int32_t>(sign * 510);
+    EXPECT_EQ(bench.judge_many(500).fault, Fault::kNone) << "0.349 Nm less";
+    bench.sample.raw[4] = static_cast<std::int32_t>(sign * 7490);
+    EXPECT_EQ(bench.judge_many(500).fault, Fault::kNone) << "0.349 Nm more";
+    bench.sample.raw[4] = static_cast<std::int32_t>(sign * 490);
+    const SensorFinding found = bench.judge_many(500);
+    EXPECT_EQ(found.fault, Fault::kTorqueDisagrees) << "0.351 Nm less";
+    EXPECT_EQ(found.channel, 4);
+  }
+}
+
+// 0.2 s without a break: 0.19 s twice, with one sample between that agrees, are forgiven.
+TEST(SensorWatchBounds, TorqueThatAgreesOnceHasItsWholeTimeAgain) {
+  Watch bench;
+  bench.torque[kMcp] = 0.4;
+  for (int round = 0; round < 5; ++round) {
+    bench.sample.raw[4] = 0;
+    EXPECT_EQ(bench.judge_many(190).fault, Fault::kNone) << round;
+    bench.sample.raw[4] = 4000;
+    EXPECT_EQ(bench.judge().fault, Fault::kNone);
+  }
+  bench.sample.raw[4] = 0;
+  EXPECT_EQ(bench.judge_many(200).fault, Fault::kNone);
+  EXPECT_EQ(bench.judge_many(2).fault, Fault::kTorqueDisagrees)
+      << "0.2 s after the first, or a rounding later";
+}
+
+// A device that still ramps renders its factor of what it is told.
+TEST(SensorWatchBounds, MeasuredTorqueAndForceAreHeldAgainstTheDevicesOwnFactor) {
+  Watch bench;
+  bench.sample.factor = 0.1;
+  bench.torque[kMcp] = 2.0;
+  bench.force[1] = 10.0;
+  bench.sample.raw[4] = 2000;  // 0.2 Nm
+  bench.sample.raw[5] = 1000;  // 1 N
+  EXPECT_EQ(bench.judge_many(500).fault, Fault::kNone);
+  bench.sample.raw[4] = 20000;  // 2 Nm
+  EXPECT_EQ(bench.judge_many(500).channel, 4);
+  Watch tip;
+  tip.sample.factor = 0.1;
+  tip.force[1] = 10.0;
+  tip.sample.raw[5] = 3400;  // 1 N and 2 + 0.5 N are 3.5 N
+  EXPECT_EQ(tip.judge_many(500).fault, Fault::kNone);
+  tip.sample.raw[5] = 3600;
+  EXPECT_EQ(tip.judge_many(500).channel, 5);
+}
+
+}  // namespace
+}  // namespace phalanx
