@@ -163,6 +163,29 @@ TEST(ChannelMap, RefusesWhatItCannotMean) {
   JointFollowers bad_copy;
   bad_copy.copy[2].of = 5;
   EXPECT_NE(refusal({}, bad_copy).find("middle"), std::string::npos);
+  for (const double gain : {nan, std::numeric_limits<double>::infinity()}) {
+    bad_copy = {};
+    bad_copy.copy[2] = {.of = 4, .gain = gain};
+    EXPECT_NE(refusal({}, bad_copy).find("middle"), std::string::npos);
+  }
+  for (const CoupledJoint& bad :
+       {CoupledJoint{.joint = 7, .of = 20}, CoupledJoint{.joint = -1, .of = 6},
+        CoupledJoint{.joint = 7, .of = -1}, CoupledJoint{.joint = 7, .of = 6, .ratio = nan},
+        CoupledJoint{.joint = 7, .of = 6, .ratio = 1.0, .offset = nan}})
+    EXPECT_NE(refusal({}, {.coupled = {bad}, .copy = {}}).find("coupled joint"), std::string::npos);
+}
+
+// What a device does not measure is not a number, whatever the sample held before.
+TEST(ChannelMap, LeavesNothingOfTheSampleBefore) {
+  const ChannelMap map({channel(ChannelKind::kAngle, 4, 0.001)}, {}, hand());
+  Sample sample;
+  sample.measured_torque.fill(0.5);
+  sample.measured_force.fill(0.5);
+  sample.angle.fill(0.5);
+  map.convert(DeviceSample{}, sample);
+  for (const double torque : sample.measured_torque) EXPECT_TRUE(std::isnan(torque));
+  for (const double force : sample.measured_force) EXPECT_TRUE(std::isnan(force));
+  for (std::size_t j = 0; j < kJoints; ++j) EXPECT_EQ(sample.angle[j], j == 4 ? 0.0 : 0.1);
 }
 
 TEST(ChannelMap, ConvertingAllocatesNothing) {

@@ -151,6 +151,37 @@ TEST(CalibrationFile, WithABadNumber) {
                          {"poses", "write a table"});
 }
 
+// Each number at its largest and smallest, and just beyond.
+TEST(CalibrationFile, TakesEachNumberUpToItsBoundAndNoFurther) {
+  struct Bound {
+    const char* name;
+    const char* good;
+    const char* bad;
+  };
+  const auto text_with = [](const std::string& name, const std::string& number) {
+    const auto of = [&](const char* key, const char* usual) {
+      return key == name ? number : std::string(usual);
+    };
+    return kHead + kAngle + "gain = " + of("gain", "1") + "\noffset = " + of("offset", "0") +
+           "\nresidual_rad = " + of("residual_rad", "0") +
+           "\nposes = [{ name = \"a\", raw = " + of("raw", "0") + ", value = " + of("value", "0") + " }]\n";
+  };
+  for (const Bound& bound : {Bound{"gain", "100", "100.001"},
+                             {"gain", "-100", "-100.001"},
+                             {"offset", "1e6", "1000001"},
+                             {"offset", "-1e6", "-1000001"},
+                             {"residual_rad", "10", "10.001"},
+                             {"residual_rad", "0", "-0.001"},
+                             {"raw", "2147483647", "2147483648"},
+                             {"raw", "-2147483648", "-2147483649"},
+                             {"value", "100", "100.001"},
+                             {"value", "-100", "-100.001"}}) {
+    EXPECT_NO_THROW(static_cast<void>(parse_calibration(text_with(bound.name, bound.good), "good.toml")))
+        << bound.name << " = " << bound.good;
+    expect_refused(text_with(bound.name, bound.bad), {"bad.toml", bound.name});
+  }
+}
+
 // Any single byte of a good file changed: it is read, or refused with a message; nothing else.
 TEST(CalibrationFile, WithADamagedByteIsReadOrRefused) {
   constexpr unsigned kSeed = 5;
