@@ -175,6 +175,18 @@ TEST(LinkDecode, RefusesAWelcomeOfAnImpossibleDevice) {
   welcome("gain 0", [](phx_welcome& w) { w.channel[1].gain = 0.0F; });
 }
 
+// A channel that can read one number only is a poor one, but not an impossible one: the host's map refuses
+// it.
+TEST(LinkDecode, TakesAWelcomeAtTheEdgesOfWhatIsPossible) {
+  phx_message message{};
+  message.header.type = PHX_WELCOME;
+  message.as.welcome.rate_hz = 1;
+  message.as.welcome.channel_count = 2;
+  message.as.welcome.channel[0] = {PHX_CHANNEL_ANGLE, PHX_JOINTS - 1, 7, 7, -1e-30F, 0.0F};
+  message.as.welcome.channel[1] = {PHX_CHANNEL_MOTOR, PHX_CHANNELS - 1, INT32_MIN, INT32_MAX, 1.0F, 0.0F};
+  EXPECT_EQ(decoded(encoded(message)), PHX_OK);
+}
+
 TEST(LinkDecode, RefusesNegativeLimitsAndWallsThatPull) {
   expect_bad_number(PHX_CONFIGURE, "limit", [](auto& as) { as.configure.torque_limit = -0.1F; });
   expect_bad_number(PHX_CONFIGURE, "rate", [](auto& as) { as.configure.torque_rate = -0.1F; });

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the host's side repeats and for how long, and which frames of others it believes; time is a number.
+#include <gtest/gtest.h>
+
+#include "device/link/link_session.h"
+#include "device/link/session_bench.h"
+
+namespace phalanx {
+namespace {
+
+using test::SessionBench;
+using Phase = LinkSession::Phase;
+
+constexpr std::uint64_t kBenchHost = 77;
+
+/// A frame that the controller did not send reaches the host.
+void forge(SessionBench& bench, phx_message message) {
+  std::array<std::uint8_t, PHX_FRAME_MAX> frame{};
+  const std::size_t size = phx_encode(&message, frame.data(), frame.size());
+  ASSERT_GT(size, 0U);
+  bench.to_host(frame.data(), size);
+}
+
+phx_message forged(std::uint8_t type, std::uint32_t epoch) {
+  phx_message message{};
+  message.header.type = type;
+  message.header.epoch = epoch;
+  return message;
+}
+
+/// Open, commanded, and latched by an emergency stop that is released again.
+void latch(SessionBench& bench) {
+  bench.open();
+  bench.run_commanding(100);
+  bench.estop = true;
+  bench.run_commanding(5);
+  bench.estop = false;
+  bench.run_commanding(5);
+  ASSERT_EQ(bench.controller.state, PHX_STATE_LATCHED);
+}
+
+// ---- reset ----
+
+// 0.2 s: a stop that is let go of within that time clears, one that is let go of later needs another reset.
+TEST(LinkRepeat, AResetIsRepeatedForTwoTenthsOfASecond) {
+  for (const int released_after : {150, 250}) {
+    SessionBench bench(40);
+    bench.open();
+    bench.run_commanding(100);
+    bench.estop = true;
+    bench.run(20);
+    bench.reset();
+    bench.run(released_after);
+    bench.estop = false;
+    bench.run(300);
+    EXPECT_EQ(bench.controller.state, released_after < 200 ? PHX_STATE_READY : PHX_STATE_LATCHED)
+        << released_after;
+  }
+}
+
+// Once a sample says that the latch is off no RESET is on its way any more that could clear the next latch.
+TEST(LinkRepeat, AResetThatHasWorkedDoesNotClearTheNextLatch) {
+  SessionBench bench(41);
+  latch(bench);
+  bench.reset();
+  bench.run(20);
+  ASSERT_EQ(bench.controller.state, PHX_STATE_READY);
+  bench.estop = true;
+  bench.run(10);
+  bench.estop = false;
+  bench.run(300);
+  EXPECT_EQ(bench.controller.state, PHX_STATE_LATCHED);
+}
+
+// The step of before a reset is younger than 20 ms, and must not go out again: neither the one that is
+// repeated nor one that was written and not sent yet.
+TEST(LinkRepeat, NothingThatWasCommandedBeforeAResetIsSentAfterIt) {
+  SessionBench bench(42);
+  bench.open();
+  bench.run_commanding(100);
+  const int before = bench.sent(PHX_COMMAND);
+  bench.reset();
+  bench.run(15);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), before);
+  bench.command(true);
+  bench.reset();
+  bench.run(15);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), before);
+  bench.command(true);
+  bench.run(3);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), before + 3) << "what comes after it is";
+}
+
+// The session that a reset asks for opens half a second later: the RESET itself has its time from there.
+TEST(LinkRepeat, AResetThatOpensTheSessionAgainClearsTheLatchInItHoweverLongThatTakes) {
+  SessionBench bench(43);
+  latch(bench);
+  bench.faults.cut_to_controller = true;
+  bench.run(1300);
+  ASSERT_FALSE(bench.controller.session);
+  bench.faults.cut_to_controller = false;
+  bench.run(300);
+  ASSERT_EQ(bench.fault(), Fault::kControllerRestarted);
+  bench.faults.cut_to_controller = true;
+  bench.reset();
+  bench.run(500);
+  ASSERT_EQ(bench.session().phase(), Phase::kAsking);
+  bench.faults.cut_to_controller = false;
+  bench.run(300);
+  EXPECT_EQ(bench.fault(), Fault::kNone);
+  EXPECT_EQ(bench.controller.fault, PHX_FAULT_NONE);
+  EXPECT_EQ(bench.controller.state, PHX_STATE_READY);
+}
+
+// ---- commands ----
+
+TEST(LinkRepeat, TheLastCommandsOfAHostSayFaultWithANewerTick) {
+  SessionBench bench(44);
+  bench.open();
+  bench.run_commanding(50);
+  const std::uint64_t newest = bench.controller.step.command.tick;
+  bench.controller_got.clear();
+  bench.session().send_disabled();
+  bench.controller_tick();
+  ASSERT_FALSE(bench.controller_got.empty());
+  const phx_message& message = bench.controller_got.back();
+  EXPECT_EQ(message.header.type, PHX_COMMAND);
+  EXPECT_EQ(message.as.command.flags, PHX_COMMAND_FAULT);
+  EXPECT_GT(message.as.command.tick, newest);
+  for (const float torque : message.as.command.torque) EXPECT_EQ(torque, 0.0F);
+}
+
+// A command that was late by 0.7 ms: the next one half a period after it, 0.5 ms, and not a whole one.
+TEST(LinkRepeat, TheNextCommandIsDueWithinAPeriodAndSoonerAfterALateOne) {
+  SessionBench bench(45);
+  bench.open();
+  EXPECT_NEAR(bench.session().next_due(bench.now()), bench.now() + 1e-3, 1e-12) << "nothing to repeat";
+  bench.run_commanding(10);
+  const double late = bench.session().next_due(bench.now()) + 0.7e-3;
+  bench.session().send_due(late);
+  EXPECT_NEAR(bench.session().next_due(late), late + 0.5e-3, 1e-9);
+}
+
+// ---- frames of others ----
+
+TEST(LinkRepeat, AWelcomeOfALaterEpochIsNotBelievedOnceTheSessionIsSettled) {
+  SessionBench bench(46);
+  bench.open();
+  bench.run_commanding(50);
+  phx_message welcome = forged(PHX_WELCOME, bench.controller.epoch + 1);
+  welcome.as.welcome = bench.session().welcome();
+  welcome.as.welcome.host_id = kBenchHost;
+  const std::uint64_t refused = bench.counters().refused;
+  forge(bench, welcome);
+  bench.run_commanding(50);
+  EXPECT_EQ(bench.counters().refused, refused + 1);
+  EXPECT_EQ(bench.controller.refused, 0U) << "and nothing was sent in its epoch";
+  EXPECT_EQ(bench.session().phase(), Phase::kRunning);
+  EXPECT_EQ(bench.fault(), Fault::kNone);
+}
+
+// While samples come a refusal is the late answer to an earlier HELLO; in silence another host has the
+// device.
+TEST(LinkRepeat, ARefusalCountsOnlyInSilence) {
+  SessionBench bench(47);
+  bench.open();
+  bench.run_commanding(50);
+  phx_message refusal = forged(PHX_REFUSED, 0);
+  refusal.as.refused = {.host_id = kBenchHost, .reason = PHX_REFUSED_BUSY, .version = PHX_VERSION};
+  forge(bench, refusal);
+  bench.run_commanding(5);
+  EXPECT_EQ(bench.fault(), Fault::kNone);
+  bench.controller_off = true;
+  bench.run_commanding(30);
+  ASSERT_EQ(bench.fault(), Fault::kNone);
+  refusal.as.refused.host_id = kBenchHost + 1;
+  forge(bench, refusal);
+  bench.run_commanding(2);
+  EXPECT_EQ(bench.fault(), Fault::kNone) << "to another host";
+  refusal.as.refused.host_id = kBenchHost;
+  forge(bench, refusal);
+  bench.run_commanding(2);
+  EXPECT_EQ(bench.fault(), Fault::kRefused);
+}
+
+// A PONG whose clock has begun again says that the controller restarted, but only one that answers a PING of
+// ours since the last sample.
+TEST(LinkRepeat, APongOfNoPingOfOursSaysNothing) {
+  SessionBench bench(48);
+  bench.open();
+  bench.run_commanding(500);
+  bench.controller_off = true;
+  bench.run(30);
+  const auto pings = static_cast<std::uint64_t>(bench.sent(PHX_PING));
+  ASSERT_GE(pings, 1U);
+  phx_message pong = forged(PHX_PONG, 0);
+  pong.as.ping.time_us = 1;
+  for (const std::uint64_t stamp : {kBenchHost, kBenchHost + pings + 100, kBenchHost - 1}) {
+    pong.as.ping.stamp = stamp;
+    forge(bench, pong);
+    bench.run(1);
+    EXPECT_EQ(bench.fault(), Fault::kNone) << stamp;
+  }
+  pong.as.ping.stamp = kBenchHost + 1;
+  forge(bench, pong);
+  bench.run(1);
+  EXPECT_EQ(bench.fault(), Fault::kControllerRestarted);
+}
+
+// ---- who is there after a reset ----
+
+// Another rate, another channel, another range or another kind are another device, whose gains nobody has
+// measured.
+TEST(LinkRepeat, ADeviceThatHasChangedInAnythingIsAnotherOne) {
+  for (int change = 0; change < 6; ++change) {
+    SessionBench bench(49);
+    bench.open();
+    bench.run_commanding(50);
+    if (change == 1) bench.device_.rate_hz = 500;
+    if (change == 2) bench.device_.channel_count = 1;
+    if (change == 3) bench.device_.channel[1].raw_max = 999999;
+    if (change == 4) bench.device_.channel[1].raw_min = -999;
+    if (change == 5) bench.device_.channel[1].index = 7;
+    bench.restart(70);
+    bench.run_commanding(60);
+    ASSERT_EQ(bench.fault(), Fault::kControllerRestarted) << change;
+    bench.reset();
+    bench.run_commanding(60);
+    EXPECT_EQ(bench.fault(), change == 0 ? Fault::kNone : Fault::kDeviceLost) << change;
+    EXPECT_EQ(bench.controller.session, change == 0) << change;
+  }
+}
+
+// What was lost in the session before stays counted in the next.
+TEST(LinkRepeat, LossesAreCountedOverSessions) {
+  SessionBench bench(50);
+  bench.open();
+  bench.faults.cut_to_host = true;
+  bench.run(9);
+  bench.faults.cut_to_host = false;
+  bench.run(100);
+  ASSERT_EQ(bench.counters().lost, 9U);
+  bench.restart(70);
+  bench.run_commanding(60);
+  bench.reset();
+  bench.run_commanding(100);
+  ASSERT_EQ(bench.fault(), Fault::kNone);
+  EXPECT_EQ(bench.counters().lost, 9U);
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host's Device on a wire in memory: the controller ticks when the link's thread looks, and its clock
+// counts these ticks. So what is lost, doubled or damaged is counted to the frame on a busy machine too.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <thread>
+
+#include "device/link/session_bench.h"
+#include "phalanx/device/clock.h"
+#include "phalanx/device/link/link_device.h"
+
+namespace phalanx {
+namespace {
+
+/// What happens to every tenth sample of the controller.
+enum class Mishap { kNone, kTwice, kDropped, kDamaged, kForeign };
+
+class MemoryWire final : public Transport {
+ public:
+  MemoryWire() {
+    device_ = test::bench_device();
+    phx_controller_init(&controller_, &device_, 100);
+  }
+
+  std::atomic<Mishap> mishap{Mishap::kNone};
+  std::atomic<bool> restarted{false};  ///< the controller begins anew
+  std::atomic<bool> held{false};       ///< the link's thread stands still in receive()
+  std::atomic<bool> standing{false};   ///< and is there now
+  std::atomic<bool> complaining{
+      false};  ///< the controller has dropped 3, refused 5 and found 7 outdated frames
+
+  [[nodiscard]] std::size_t receive(std::span<std::uint8_t> out, Peer&) noexcept override {
+    while (held) {
+      standing = true;
+      std::this_thread::yield();
+    }
+    standing = false;
+    if (waiting_.empty()) {
+      if (ticked_) {
+        ticked_ = false;  // one sample for each look
+        return 0;
+      }
+      tick();
+      ticked_ = true;
+    }
+    if (waiting_.empty()) return 0;
+    const test::Bytes frame = waiting_.front();
+    waiting_.pop_front();
+    std::copy(frame.begin(), frame.end(), out.begin());
+    return frame.size();
+  }
+  bool send(std::span<const std::uint8_t> frame, Peer) noexcept override {
+    std::array<std::uint8_t, PHX_FRAME_MAX> reply{};
+    std::size_t size = 0;
+    phx_controller_receive(&controller_, frame.data(), frame.size(), time_us_, reply.data(), &size);
+    if (size > 0) waiting_.emplace_back(reply.begin(), reply.begin() + static_cast<std::ptrdiff_t>(size));
+    return true;
+  }
+  bool wait(double seconds) noexcept override {
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    return true;
+  }
+  [[nodiscard]] bool lost() const noexcept override { return false; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return 0; }
+  [[nodiscard]] std::string address() const override { return "memory"; }
+
+ private:
+  void tick() {
+    if (restarted.exchange(false)) {
+      phx_controller_init(&controller_, &device_, 1000);
+      time_us_ = 0;
+    }
+    if (complaining) {
+      controller_.corrupt = 3;
+      controller_.refused = 5;
+      controller_.outdated = 7;
+    }
+    time_us_ += 1000;
+    const std::array<std::int32_t, PHX_CHANNELS> raw{};
+    phx_output output{};
+    phx_controller_tick(&controller_, time_us_, raw.data(), false, false, &output);
+    if (output.sample_size == 0) return;
+    test::Bytes sample(output.sample, output.sample + output.sample_size);
+    const Mishap now = ++samples_ % 10 == 0 ? mishap.load() : Mishap::kNone;
+    if (now == Mishap::kDropped) return;
+    if (now == Mishap::kDamaged) sample[20] ^= 1U;
+    waiting_.push_back(sample);
+    if (now == Mishap::kTwice) waiting_.push_back(sample);
+    if (now != Mishap::kForeign) return;
+    phx_message message{};
+    phx_decode(sample.data(), sample.size(), &message);
+    message.header.epoch += 500;
+    phx_encode(&message, sample.data(), sample.size());
+    waiting_.push_back(sample);
+  }
+
+  phx_device device_{};
+  phx_controller controller_{};
+  std::deque<test::Bytes> waiting_;
+  std::uint64_t time_us_ = 0;
+  std::uint64_t samples_ = 0;
+  bool ticked_ = false;
+};
+
+/// A device whose session is open, and its wire.
+struct OnMemory {
+  OnMemory() {
+    auto made = std::make_unique<MemoryWire>();
+    wire = made.get();
+    device = make_link_device(std::move(made), clock, {});
+    device->open();
+    EXPECT_TRUE(eventually([&] { return fetch() > 0; }));
+  }
+  std::size_t fetch() {
+    std::array<DeviceSample, 64> out{};
+    return device->receive(0.0, out);
+  }
+  /// Polls; false after 5 minutes.
+  static bool eventually(const std::function<bool()>& holds) {
+    for (int i = 0; i < 300000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+  /// Until `more` samples have been taken in, with this mishap; then what the link's thread has counted.
+  LinkStatistics after(Mishap mishap, std::uint64_t more = 200) {
+    const std::uint64_t goal = device->statistics().received + more;
+    wire->mishap = mishap;
+    EXPECT_TRUE(eventually([&] {
+      static_cast<void>(fetch());
+      return device->statistics().received >= goal;
+    }));
+    wire->mishap = Mishap::kNone;
+    return device->statistics();
+  }
+
+  Clock clock;
+  MemoryWire* wire = nullptr;  ///< the device's
+  std::unique_ptr<LinkDevice> device;
+};
+
+TEST(LinkStatistics, SamplesThatComeTwiceAreOutdatedAndNothingIsLost) {
+  OnMemory bench;
+  const LinkStatistics counted = bench.after(Mishap::kTwice);
+  EXPECT_GE(counted.outdated, 19U);
+  EXPECT_EQ(counted.lost, 0U);
+  EXPECT_EQ(counted.corrupt, 0U);
+  EXPECT_EQ(counted.refused, 0U);
+}
+
+TEST(LinkStatistics, SamplesThatDoNotComeAreLostAndNothingIsOutdated) {
+  OnMemory bench;
+  const LinkStatistics counted = bench.after(Mishap::kDropped);
+  EXPECT_GE(counted.lost, 10U) << "those of the last 64 may still come";
+  EXPECT_EQ(counted.outdated, 0U);
+  EXPECT_EQ(counted.corrupt, 0U);
+}
+
+TEST(LinkStatistics, DamagedSamplesAreCorruptAndLost) {
+  OnMemory bench;
+  const LinkStatistics counted = bench.after(Mishap::kDamaged);
+  EXPECT_GE(counted.corrupt, 20U);
+  EXPECT_GE(counted.lost, 10U);
+  EXPECT_EQ(counted.outdated, 0U);
+  EXPECT_EQ(counted.refused, 0U);
+}
+
+TEST(LinkStatistics, SamplesOfAnotherSessionAreRefused) {
+  OnMemory bench;
+  const LinkStatistics counted = bench.after(Mishap::kForeign);
+  EXPECT_GE(counted.refused, 19U);
+  EXPECT_EQ(counted.corrupt, 0U);
+  EXPECT_EQ(counted.outdated, 0U);
+}
+
+TEST(LinkStatistics, WhatTheControllerHasCountedIsPassedOnByItsName) {
+  OnMemory bench;
+  bench.wire->complaining = true;
+  const LinkStatistics counted = bench.after(Mishap::kNone, 20);
+  EXPECT_EQ(counted.device_corrupt, 3U);
+  EXPECT_EQ(counted.device_refused, 5U);
+  EXPECT_EQ(counted.device_outdated, 7U);
+  EXPECT_EQ(counted.sent, 0U);
+}
+
+// 512 samples have room; a loop that fetches none loses what comes after, and then the oldest of those for
+// which its own array has no room.
+TEST(LinkStatistics, SamplesThatTheLoopDoesNotFetchOverflow) {
+  OnMemory bench;
+  const LinkStatistics before = bench.device->statistics();
+  ASSERT_TRUE(OnMemory::eventually(
+      [&] { return bench.device->statistics().received >= before.received + SampleQueue::kCapacity + 100; }));
+  const std::uint64_t overflowed = bench.device->statistics().overflowed;
+  EXPECT_GE(overflowed, before.overflowed + 99);
+  EXPECT_EQ(bench.fetch(), 64U);
+  EXPECT_GE(bench.device->statistics().overflowed, overflowed + SampleQueue::kCapacity - 64);
+}
+
+// Between reset() and the moment in which the link's thread sees it, the fault of before is not there any
+// more: a station would take it for a new one.
+TEST(LinkStatistics, AResetTakesTheConnectionsFaultAwayBeforeTheLinksThreadSeesIt) {
+  OnMemory bench;
+  ASSERT_TRUE(OnMemory::eventually([&] {
+    DeviceCommand command;
+    command.tick = 1;
+    bench.device->send(command);
+    return bench.device->statistics().sent > 0;
+  }));
+  bench.wire->restarted = true;
+  ASSERT_TRUE(
+      OnMemory::eventually([&] { return bench.device->connection_fault() == Fault::kControllerRestarted; }));
+  bench.wire->held = true;
+  ASSERT_TRUE(OnMemory::eventually([&] { return bench.wire->standing.load(); }));
+  bench.device->reset();
+  EXPECT_EQ(bench.device->connection_fault(), Fault::kNone);
+  bench.wire->held = false;
+  const std::uint64_t received = bench.device->statistics().received;
+  EXPECT_TRUE(OnMemory::eventually([&] { return bench.device->statistics().received > received + 5; }));
+  EXPECT_EQ(bench.device->connection_fault(), Fault::kNone);
+}
+
+}  // namespace
+}  // namespace phalanx
