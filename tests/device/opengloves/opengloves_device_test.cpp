@@ -276,5 +276,57 @@ TEST(OpenGlovesDevice, AllocatesNothingInTheLoop) {
   EXPECT_EQ(test::allocations(), before);
 }
 
+// The device's factor is all or nothing: a glove has no ramp.
+TEST(OpenGlovesDevice, SaysAFactorOfOneWhileItActsAndZeroElse) {
+  Fixture glove(kOpenGlove);
+  glove.device->open();
+  ASSERT_TRUE(glove.sample_where([](const DeviceSample&) { return true; }));
+  EXPECT_EQ(glove.sample.state, DeviceState::kReady);
+  EXPECT_EQ(glove.sample.factor, 0.0);
+  ASSERT_TRUE(glove.sample_where([&](const DeviceSample& s) {
+    glove.device->send(stopped_index(0.75));
+    return s.state == DeviceState::kActive;
+  }));
+  EXPECT_EQ(glove.sample.factor, 1.0);
+  ASSERT_TRUE(glove.sample_where([](const DeviceSample& s) { return s.state == DeviceState::kReady; }))
+      << "the loop is silent";
+  EXPECT_EQ(glove.sample.factor, 0.0);
+}
+
+// Two whole lines in 0.1 s have one period between them: 10 Hz. One line says nothing of a rate: 1 Hz.
+TEST(OpenGlovesDevice, LearnsItsRateFromThePeriodsBetweenLines) {
+  for (const auto& [lines, rate_hz] : {std::pair{1, 1.0}, std::pair{2, 10.0}, std::pair{5, 40.0}}) {
+    Fixture glove("");
+    std::string bytes = "\n";
+    for (int i = 0; i < lines; ++i) bytes += "A0B0C0D0E0\n";
+    glove.firmware.blurt(bytes);
+    glove.device->open();
+    EXPECT_NEAR(glove.device->info().rate_hz, rate_hz, 1e-9) << lines;
+  }
+}
+
+// A clock so slow that it stands: lines that come at one time are still one after the other.
+TEST(OpenGlovesDevice, GivesNoTwoSamplesTheSameTimeAlsoWhereTheClockStands) {
+  const Clock standing(1e9);
+  GloveFirmware firmware("A0B0C0D0E0");
+  const auto device =
+      make_opengloves_device(firmware.host_descriptor(), standing,
+                             {.full_scale = 0, .hello_timeout = 1e-6, .learn_for = 1e-10, .serial = ""});
+  device->open();
+  std::uint64_t time_us = 0;
+  std::uint32_t count = 0;
+  ASSERT_TRUE(Fixture::eventually([&] {
+    std::array<DeviceSample, 64> inbox;
+    const std::size_t came = device->receive(0.0, inbox);
+    for (std::size_t i = 0; i < came; ++i) {
+      EXPECT_GT(inbox[i].time_us, time_us);
+      time_us = inbox[i].time_us;
+      ++count;
+    }
+    return count >= 20;
+  }));
+  device->close();
+}
+
 }  // namespace
 }  // namespace phalanx
