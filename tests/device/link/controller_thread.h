@@ -84,11 +84,11 @@ class ControllerThread {
       }
       phx_output output{};
       phx_controller_tick(&controller_, time_us(), raw.data(), false, false, &output);
-      if (output.sample_size > 0) transport_->send({output.sample, output.sample_size}, host_);
-      {
+      {  // before the sample leaves: who has it may look at the controller that sent it
         const std::lock_guard lock(mutex_);
         shown_ = controller_;
       }
+      if (output.sample_size > 0) transport_->send({output.sample, output.sample_size}, host_);
       next = std::max(next + 1e-3, clock_.now());
       clock_.sleep_until(next);
     }

@@ -32,6 +32,11 @@ class MemoryWire final : public Transport {
   std::atomic<bool> standing{false};   ///< and is there now
   std::atomic<bool> complaining{
       false};  ///< the controller has dropped 3, refused 5 and found 7 outdated frames
+  std::atomic<std::uint64_t> no_frames{0};  ///< pieces of the wire that were none
+  // What the host has sent last; to be read once its thread has ended.
+  int farewells = 0;  ///< commands in a row that said FAULT, before GOODBYE
+  int goodbyes = 0;
+  bool newer = true;  ///< each of these commands had a newer tick
 
   [[nodiscard]] std::size_t receive(std::span<std::uint8_t> out, Peer&) noexcept override {
     while (held) {
@@ -54,6 +59,15 @@ class MemoryWire final : public Transport {
     return frame.size();
   }
   bool send(std::span<const std::uint8_t> frame, Peer) noexcept override {
+    phx_message message{};
+    phx_decode(frame.data(), frame.size(), &message);
+    if (message.header.type == PHX_GOODBYE) ++goodbyes;
+    if (message.header.type == PHX_COMMAND) {
+      const phx_command& command = message.as.command;
+      farewells = command.flags == PHX_COMMAND_FAULT && goodbyes == 0 ? farewells + 1 : 0;
+      newer = newer && (farewells <= 1 || command.tick > last_tick_);
+      last_tick_ = command.tick;
+    }
     std::array<std::uint8_t, PHX_FRAME_MAX> reply{};
     std::size_t size = 0;
     phx_controller_receive(&controller_, frame.data(), frame.size(), time_us_, reply.data(), &size);
@@ -65,7 +79,7 @@ class MemoryWire final : public Transport {
     return true;
   }
   [[nodiscard]] bool lost() const noexcept override { return false; }
-  [[nodiscard]] std::uint64_t dropped() const noexcept override { return 0; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return no_frames; }
   [[nodiscard]] std::string address() const override { return "memory"; }
 
  private:
@@ -103,6 +117,7 @@ class MemoryWire final : public Transport {
   std::deque<test::Bytes> waiting_;
   std::uint64_t time_us_ = 0;
   std::uint64_t samples_ = 0;
+  std::uint64_t last_tick_ = 0;
   bool ticked_ = false;
 };
 
@@ -199,6 +214,29 @@ TEST(LinkStatistics, SamplesThatTheLoopDoesNotFetchOverflow) {
   EXPECT_GE(overflowed, before.overflowed + 99);
   EXPECT_EQ(bench.fetch(), 64U);
   EXPECT_GE(bench.device->statistics().overflowed, overflowed + SampleQueue::kCapacity - 64);
+}
+
+// The wire itself has dropped 3 pieces: that is counted once, however often it is asked.
+TEST(LinkStatistics, WhatTheWireHasDroppedIsCountedOnce) {
+  OnMemory bench;
+  bench.wire->no_frames = 3;
+  EXPECT_EQ(bench.after(Mishap::kNone, 50).corrupt, 3U);
+  bench.wire->no_frames = 4;
+  EXPECT_EQ(bench.after(Mishap::kNone, 50).corrupt, 4U);
+}
+
+// Who closes says FAULT in 50 commands, each newer than the one before, and then GOODBYE: a lost frame leaves
+// no torque.
+TEST(LinkStatistics, AClosedDeviceHasSaidFaultFiftyTimesAndThenGoodbye) {
+  OnMemory bench;
+  DeviceCommand command;
+  command.tick = 7;
+  command.enable = true;
+  bench.device->send(command);
+  bench.device->close();
+  EXPECT_EQ(bench.wire->farewells, 50);
+  EXPECT_TRUE(bench.wire->newer);
+  EXPECT_GE(bench.wire->goodbyes, 1);
 }
 
 // Between reset() and the moment in which the link's thread sees it, the fault of before is not there any

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "phalanx/device/link/phalanx_link.h"
@@ -183,6 +184,47 @@ TEST(SerialTransport, FindsTheNextFrameAfterNoise) {
   ASSERT_TRUE(heard);
   EXPECT_THAT(heard->frame, testing::AnyOf(frame_of(1), frame_of(2)));
   EXPECT_GE(controller->dropped(), 1u);
+}
+
+// What another program has half sent ends at the zero byte that a host begins with, so that its first frame
+// is read.
+TEST(SerialTransport, AHostsFirstFrameIsReadAfterHalfAFrameOfAnother) {
+  const auto controller = open_pseudo_terminal();
+  const int line = ::open(after_scheme(*controller).c_str(), O_RDWR | O_NOCTTY);
+  ASSERT_GE(line, 0);
+  const Bytes half = {20, 1, 2, 3};  // 16 bytes of the block are to come
+  ASSERT_EQ(::write(line, half.data(), half.size()), static_cast<ssize_t>(half.size()));
+  ::close(line);
+  std::array<std::uint8_t, PHX_FRAME_MAX> buffer{};
+  Peer from = 0;
+  ASSERT_TRUE(controller->wait(kTransportPatience));
+  ASSERT_EQ(controller->receive(buffer, from), 0u);
+  const auto host = open_serial(after_scheme(*controller));
+  ASSERT_TRUE(host->send(frame_of(7), 0));
+  const auto heard = next(*controller);
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->frame, frame_of(7));
+  EXPECT_EQ(controller->dropped(), 1u) << "the half one";
+}
+
+// A frame of 40 bytes fits into 40; into 39 it does not, and is dropped and counted.
+TEST(SerialTransport, AFrameMayBeAsLargeAsTheRoomForItAndNotLarger) {
+  const auto controller = open_pseudo_terminal();
+  const auto host = open_serial(after_scheme(*controller));
+  ASSERT_TRUE(host->send(frame_of(1), 0));
+  ASSERT_TRUE(host->send(frame_of(2), 0));
+  std::array<std::uint8_t, 40> room{};
+  Peer from = 0;
+  const auto take = [&](std::span<std::uint8_t> into, const std::function<bool()>& there) {
+    for (int i = 0; i < 1000 && !there(); ++i) {
+      if (const std::size_t size = controller->receive(into, from); size > 0) return size;
+      controller->wait(kTransportPatience / 1000);
+    }
+    return std::size_t{0};
+  };
+  EXPECT_EQ(take(room, [] { return false; }), 40u);
+  EXPECT_EQ(take(std::span(room).first(39), [&] { return controller->dropped() > 0; }), 0u);
+  EXPECT_EQ(controller->dropped(), 1u);
 }
 
 // Nobody reads: what the line cannot hold is dropped by whole frames, whatever the system took of one.
