@@ -244,6 +244,19 @@ TEST(ForceStage, TheDigitsSumIsCappedAndSaid) {
   EXPECT_NEAR(stage.sent(kDistal), 2.0, 1e-12);
 }
 
+// The law's forces are brought within the cap before they are smoothed: 8 N, of which 5 N are capped, and 2 N
+// become 5/7 of 5 and 2 N. After it alone the two would come to other shares.
+TEST(ForceStage, TheDigitsSumIsCappedBeforeTheStabiliserToo) {
+  Stage stage;
+  stage.limits.fingertip_force_enabled = true;
+  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.press(kDistal, 16e-3);
+  stage.press(kProximal, 4e-3);
+  stage.ticks(100);
+  EXPECT_NEAR(stage.sent(kDistal), 25.0 / 7.0, 1e-9);
+  EXPECT_NEAR(stage.sent(kProximal), 10.0 / 7.0, 1e-9);
+}
+
 // A damper may bring a contact above the cap; smoothing keeps below the law by itself.
 TEST(ForceStage, AMethodThatAddsToTheLawIsCappedOnEachContactAgain) {
   Stage stage;
@@ -296,6 +309,8 @@ TEST(ForceStage, TorqueIsLimitedAndRateLimitedBothWaysAndEachIsSaid) {
 TEST(ForceStage, AFreeDigitIsWatchedUntilTheVerdictOfEachSegmentHasEnded) {
   for (const int k : {kProximal, 1, kDistal}) {
     Stage stage;
+    stage.ticks(3);
+    ASSERT_TRUE(stage.state.resting[idx(test::kIndex)]) << "it has rested once";
     for (int n = 0; n < 100; ++n) {
       stage.press(k, n % 20 < 10 ? 2e-3 : 6e-3);  // 1 and 3 N, 10 Hz
       stage.tick();
@@ -486,6 +501,17 @@ TEST(ForceStage, WallsMayNotReachTheHostsForceWhereSomeOfThemAloneWouldBreakTheC
   }
 }
 
+// After an oscillation the law is halved: 250 N/m, 0.5 N at 2 mm, and the wall with it.
+TEST(ForceStage, AWallHasTheHalvedStiffness) {
+  Stage stage = walled();
+  for (int n = 0; n < 50; ++n) stage.state.stiffness_factor.advance(true, kTick);
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 0.5, 1e-12);
+  EXPECT_NEAR(stage.wall(kDistal).stiffness, 250.0, 1e-9);
+  EXPECT_NEAR(stage.wall(kDistal).d_ref, 2e-3, 1e-15);
+}
+
 /// A wall at 2 mm whose contact has let go, `moved` from where the finger was.
 Stage left_by(const Vec3& moved) {
   Stage stage = walled();
@@ -520,6 +546,22 @@ TEST(ForceStage, AWallThatWasLeftIsKeptForAQuarterOfASecond) {
   EXPECT_TRUE(stage.wall(kDistal).active) << "0.245 s";
   stage.ticks(2);
   EXPECT_FALSE(stage.wall(kDistal).active) << "0.255 s";
+}
+
+// The method is exchanged while the finger touches, and the finger leaves under the other one: what was known
+// of the wall is forgotten with the contact.
+TEST(ForceStage, AWallIsForgottenWhereTheFingerLeavesUnderAnotherMethod) {
+  Stage stage = walled();
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  ASSERT_TRUE(stage.wall(kDistal).active);
+  stage.stabiliser.method = Stabiliser::kNone;
+  stage.tick();
+  stage.leave(kDistal);
+  stage.ticks(2);
+  stage.stabiliser.method = Stabiliser::kLocalWall;
+  stage.tick();
+  EXPECT_FALSE(stage.wall(kDistal).active);
 }
 
 // Once the measured hand is not known any more, no wall is known either, also after samples come again.

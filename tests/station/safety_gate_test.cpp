@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -496,6 +497,42 @@ TEST(SafetyGate, MeasuredFingertipForceIsHeldAgainstWhatTheRampLetsThrough) {
   EXPECT_EQ(bench.safety.state(), SafetyState::kStarting);
   bench.steps(1500);
   EXPECT_EQ(bench.safety.fault().fault, Fault::kTorqueDisagrees) << "in full it is a fault";
+}
+
+// 0.15 s of rest twice, with a step between in which the device acts, are not 0.2 s.
+TEST(SafetyGate, ADeviceThatActsAgainHasItsWholeTimeAgain) {
+  Bench bench;
+  bench.run_with(0.1);
+  for (int round = 0; round < 4; ++round) {
+    bench.obeys = false;
+    bench.steps(150);
+    bench.obeys = true;
+    bench.steps(2);
+  }
+  EXPECT_EQ(bench.safety.state(), SafetyState::kRunning);
+}
+
+// 0.7 Nm against a limit of 0.5 Nm, either way.
+TEST(SafetyGate, TorqueIsLimitedBothWays) {
+  for (const double sign : {1.0, -1.0}) {
+    Bench bench;
+    bench.run_with(sign * 0.7);
+    EXPECT_NEAR(bench.command.torque[kMcp], sign * 0.5, 1e-12);
+  }
+}
+
+// An angle that is not a number has no place in the range: what leaves for that joint is zero, and the others
+// go on.
+TEST(SafetyGate, WhatLeavesIsFiniteAlsoWhereTheShownAngleIsNot) {
+  Bench bench;
+  bench.run_with(0.2);
+  bench.snapshot.torque[0] = 0.2;
+  bench.snapshot.hcp_angle[0] = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 5; ++i) {
+    bench.step();
+    EXPECT_EQ(bench.command.torque[0], 0.0);
+    EXPECT_NEAR(bench.command.torque[kMcp], 0.2, 1e-12);
+  }
 }
 
 // A device that fades acts: it holds a step that is old.

@@ -64,6 +64,13 @@ TEST(SensorWatchBounds, TheEndsOfASensorsRawRangeAreGood) {
   }
 }
 
+TEST(SensorWatchBounds, OfTwoSensorsThatAreBadAtOnceTheFirstIsNamed) {
+  Watch bench;
+  bench.sample.raw[0] = bench.sample.raw[1] = 32767;
+  EXPECT_EQ(bench.judge_many(2).fault, Fault::kNone);
+  EXPECT_EQ(bench.judge().channel, 0);
+}
+
 // The range of -0.3 .. 1.5 rad and 20 degrees beyond, 0.34907 rad: -0.64907 .. 1.84907.
 TEST(SensorWatchBounds, AJointMayBeTwentyDegreesBeyondThePatientsRangeBothWays) {
   for (const auto& [good, bad] : {std::pair{-0.6490, -0.6492}, std::pair{1.8490, 1.8492}}) {

@@ -18,6 +18,17 @@ JointArray press_and_leave(int n) {
   return test::index_angles(down, 0.0, 0.0, along);
 }
 
+TEST(StepSnapshot, CountsItsTicksFromOne) {
+  const HapticModel model = test::floor_model(Stabiliser::kNone);
+  HapticState state(model);
+  EXPECT_EQ(state.snapshot().tick, 0U);
+  for (std::uint64_t n = 1; n <= 3; ++n) {
+    step(model, Sample{0.005 * static_cast<double>(n), JointArray{}}, state);
+    EXPECT_EQ(state.snapshot().tick, n);
+    EXPECT_EQ(state.snapshot().time_s, 0.005 * static_cast<double>(n));
+  }
+}
+
 // Hooke's law and nothing behind it: the force is 500 N/m times the depth that is written down, which is
 // never negative, also in the ticks in which a contact is there and not deep.
 TEST(StepSnapshot, TheDepthIsTheForceOverTheStiffnessAndNeverNegative) {

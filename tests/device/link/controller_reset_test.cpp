@@ -170,6 +170,17 @@ TEST_F(LinkReset, ANewLimitHoldsAtOnceForATorqueOnItsWayDown) {
   EXPECT_NEAR(rig.tick(), 0.1F, 1e-6F);
 }
 
+// Of the time before the very first tick nothing can be said: one period counts, 1 mNm at 1 Nm/s. The ramp
+// alone would let through 5 mNm after 10 ms.
+TEST_F(LinkReset, TheFirstTickOfAllCountsOnePeriod) {
+  rig.hello();
+  rig.configure(kLimit, 1.0F);
+  phx_message first = rig.next_command(kLimit);
+  first.as.command.sample_time_us = rig.now;
+  ASSERT_EQ(rig.send(first), PHX_USED);
+  EXPECT_NEAR(rig.tick(10 * kPeriod), 1e-3F, 1e-8F);
+}
+
 // ENABLE beside FAULT is FAULT.
 TEST_F(LinkReset, AHostInFaultIsNotEnabledWhateverEnableSays) {
   rig.open_and_act(kLimit);
