@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-# phalanx_module(NAME SOURCES ... [LIBRARIES external ...])
+# phalanx_module(NAME SOURCES ... [LIBRARIES external ...] [PRECOMPILED header])
 # One folder of src/ as an object library `phalanx_NAME`, so that its tests link it and what it uses and nothing else.
+# PRECOMPILED is a header of its own to compile first, instead of the one that the other modules share.
 function(phalanx_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;LIBRARIES" ${ARGN})
   add_library(phalanx_${name} OBJECT ${ARG_SOURCES})
   target_include_directories(phalanx_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(phalanx_${name} PUBLIC Eigen3::Eigen PRIVATE phalanx_options ${ARG_LIBRARIES})
-  target_precompile_headers(phalanx_${name} REUSE_FROM phalanx_precompiled_product)
+  if(ARG_PRECOMPILED)
+    target_precompile_headers(phalanx_${name} PRIVATE ${ARG_PRECOMPILED})
+  else()
+    target_precompile_headers(phalanx_${name} REUSE_FROM phalanx_precompiled_product)
+  endif()
   set_target_properties(phalanx_${name} PROPERTIES PHALANX_LIBRARIES "${ARG_LIBRARIES}")
 endfunction()
 

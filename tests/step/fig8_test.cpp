@@ -202,7 +202,7 @@ TEST(S1Fig8, GTheMiddlePhalanxAloneLoadsMcpAndPip) {
 TEST(S1Fig8, ABarOnAFloorStopsAndPushesAsTrigonometrySays) {
   constexpr double kHalf = 0.004;    // half the bars' thickness
   constexpr double kFloor = -0.020;  // height of the floor
-  constexpr double kMargin = 50e-6;
+  constexpr double kFigureMargin = 50e-6;
   HandParameters parameters = test::simple_parameters();
   SegmentMeshes meshes = make_capsule_meshes(parameters, Handedness::kRight, 2250);
   const std::array<double, 3> length = {test::kLength1, test::kLength2, test::kLength3};
@@ -223,8 +223,8 @@ TEST(S1Fig8, ABarOnAFloorStopsAndPushesAsTrigonometrySays) {
   // -(a sin q + c cos q).
   const double a = test::kLength1 + test::kLength2 + test::kLength3;
   const double c = kHalf;
-  const double stop = std::asin((-kFloor - kMargin) / std::hypot(a, c)) - std::atan2(c, a);
-  const double depth = a * std::sin(hcp) + c * std::cos(hcp) + kFloor + kMargin;
+  const double stop = std::asin((-kFloor - kFigureMargin) / std::hypot(a, c)) - std::atan2(c, a);
+  const double depth = a * std::sin(hcp) + c * std::cos(hcp) + kFloor + kFigureMargin;
   const double force = kStiffness * depth;
   const auto back = [&](double along) {
     return along * std::cos(stop);
