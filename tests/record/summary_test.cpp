@@ -106,6 +106,47 @@ TEST(SummaryJson, HoldsWhatTheDocumentationPromises) {
   EXPECT_EQ(json["made"]["commit"], "c");
 }
 
+// Every field of summary.json, each with a number of its own.
+TEST(SummaryJson, EveryFieldIsInTheUnitOfItsName) {
+  Summary summary = two_ticks();
+  summary.scene = "press";
+  summary.rate_hz = 200.0;
+  summary.seconds = 0.01;
+  summary.hand_triangles = 2248;
+  summary.object_triangles = 992;
+  summary.step_us = {.p50 = 1.5, .p90 = 2.5, .p99 = 3.5, .p999 = 4.5, .max = 5.5, .mean = 6.5};
+  summary.made = {.commit = "c", .cpu = "x", .compiler = "g", .build_type = "Release", .date = "d"};
+  const auto json = nlohmann::json::parse(summary_json(summary));
+  const auto number = [](double value) { return nlohmann::json(value); };
+  EXPECT_EQ(json["seconds"], number(0.01));
+  EXPECT_EQ(json["step_us"],
+            (nlohmann::json{{"p50", 1.5}, {"p90", 2.5}, {"p99", 3.5}, {"p999", 4.5}, {"max", 5.5}}));
+  // 1.5 N on the fingertip and 1.0 N on the thumb at once, at 0 s; later 2.0 N alone.
+  EXPECT_EQ(json["peak_total_force"], (nlohmann::json{{"force_n", 2.5}, {"time_s", 0.0}}));
+  EXPECT_EQ(json["contact_ticks"]["thumb-metacarpal"], 1);
+  EXPECT_EQ(json["peak_force_n"]["thumb-metacarpal"], number(1.0));
+  EXPECT_EQ(json["peak_force_n"].size(), static_cast<std::size_t>(kSegments));
+  EXPECT_EQ(
+      json["limiter_ticks"],
+      (nlohmann::json{{"fingertip_force", 2}, {"joint_torque", 0}, {"torque_rate", 0}, {"joint_speed", 1}}));
+  EXPECT_EQ(json["status_ticks"]["force_limited"], 2);
+  EXPECT_EQ(json["status_ticks"]["sample_jump"], 1);
+  EXPECT_EQ(json["made"],
+            (nlohmann::json{
+                {"commit", "c"}, {"cpu", "x"}, {"compiler", "g"}, {"build_type", "Release"}, {"date", "d"}}));
+  EXPECT_EQ(json.size(), 14U) << "a field without a check";
+}
+
+// A torque of -0.08 Nm is larger than one of 0.05 Nm that comes after it, and smaller than one of 0.09 Nm.
+TEST(Summary, ThePeakTorqueIsTheLargestWhicheverItsSign) {
+  Summary summary = two_ticks();
+  EXPECT_EQ(summary.peak_torque[4], 0.08);
+  Snapshot later;
+  later.torque[4] = 0.09;
+  add_tick(summary, later);
+  EXPECT_EQ(summary.peak_torque[4], 0.09);
+}
+
 TEST(MadeHere, FillsEveryField) {
   const Made made = made_here();
   EXPECT_FALSE(made.commit.empty());
