@@ -119,6 +119,19 @@ TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
   EXPECT_EQ(host->state()->overrides.size(), 0U);
 }
 
+TEST_F(PageRequestsTest, ExactlyAsMuchAsMayBeSetIsTaken) {
+  const PageRequest asked = handed(set("description", std::string(4096, 'v'), 64));
+  EXPECT_EQ(asked.code, "set");
+  EXPECT_EQ(refused, "");
+  ASSERT_EQ(state().changed_size(), 1);
+  EXPECT_EQ(state().changed(0).value().size(), 4096U);
+  EXPECT_THAT(why_not(set("description", std::string(4097, 'v'), 64)), HasSubstr("4097"));
+  EXPECT_THAT(why_not(set("description", "v", 65)), HasSubstr("65"));
+  // A key of 200 bytes is read, and then known to nobody.
+  handed(set(std::string(200, 'k'), "1"));
+  EXPECT_THAT(refused, HasSubstr("nobody knows this key"));
+}
+
 TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsAreHandedOver) {
   wire::ToHost message;
   message.mutable_scene()->set_name("pinch_ball");

@@ -161,6 +161,42 @@ TEST_F(SeatsTest, ASecretIsForgottenInTheEndAndSoAreTheOldestOfTooMany) {
   EXPECT_NE(seats.find(come(kHere, earliest))->number, number);
 }
 
+// The grace is [0, kGrace): at its end the seat is free.
+TEST_F(SeatsTest, TheGraceEndsAfterExactlyTenSeconds) {
+  const PageId first = come();
+  seats.leave(first, now);
+  now += Seats::kGrace - 1e-9;
+  EXPECT_NE(operating(), "");
+  now = 100.0 + Seats::kGrace;
+  EXPECT_EQ(operating(), "");
+  EXPECT_TRUE(seats.operates(come()));
+}
+
+// The oldest of kRemembered is known, the oldest of one more is not; and an hour to the second is not too
+// long.
+TEST_F(SeatsTest, ExactlySoManyAreRememberedForExactlySoLong) {
+  for (const std::size_t others : {Seats::kRemembered - 1, Seats::kRemembered}) {
+    const PageId oldest = come();
+    const std::string mine = secret(oldest);
+    const std::uint32_t number = seats.find(oldest)->number;
+    seats.leave(oldest, now);
+    now += 1e-3;
+    for (std::size_t i = 0; i < others; ++i) seats.leave(come(), now);
+    const PageId back = come(kHere, mine);
+    EXPECT_EQ(seats.find(back)->number == number, others < Seats::kRemembered) << others;
+    now += 2.0 * Seats::kRemember;
+  }
+  now = 0.0;
+  Seats fresh;
+  fresh.join(1, kHere, "mine", now);
+  const std::uint32_t number = fresh.find(1)->number;
+  fresh.leave(1, now);
+  now = Seats::kRemember;
+  fresh.join(2, kHere, "other", now);
+  fresh.come_back(2, "mine", now);
+  EXPECT_EQ(fresh.find(2)->number, number);
+}
+
 TEST_F(SeatsTest, ANameIsOneShortLine) {
   const PageId page = come();
   seats.name(page, "A\nn\u202Ena");

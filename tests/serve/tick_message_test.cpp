@@ -91,6 +91,47 @@ TEST(TickMessage, OnlySegmentsThatTouchOrStillPushAreContacts) {
   EXPECT_EQ(tick.hcp_angle_size(), kJoints);
 }
 
+// Every number another, exact in single precision.
+TEST(TickMessage, EveryFieldOfAContactHasItsOwnNumber) {
+  StationView view = a_view();
+  view.snapshot.segment[5] = {.contact = true,
+                              .depth = 0.001953125,
+                              .force_raw = 2.5,
+                              .force = 1.5,
+                              .point = Vec3(0.125, 0.25, 0.375),
+                              .normal = Vec3(0.5, -0.5, 0.75),
+                              .slid = 0.0078125};
+  view.snapshot.segment[5].oscillating = true;
+  view.snapshot.segment[5].oscillation_frequency = 7.5;
+  view.snapshot.segment[5].oscillation_swing = 0.625;
+  view.snapshot.stiffness_factor = 0.875;
+  view.snapshot.status = static_cast<Status>(6);
+  view.snapshot.measured_force[2] = 3.25;
+  wire::Tick tick;
+  write_tick(view, tick);
+  ASSERT_EQ(tick.contact_size(), 1);
+  const wire::Contact& contact = tick.contact(0);
+  EXPECT_EQ(contact.depth(), 0.001953125F);
+  EXPECT_EQ(contact.force_raw(), 2.5F);
+  EXPECT_EQ(contact.force(), 1.5F);
+  ASSERT_EQ(contact.point_size(), 3);
+  ASSERT_EQ(contact.normal_size(), 3);
+  const float point[] = {0.125F, 0.25F, 0.375F};
+  const float normal[] = {0.5F, -0.5F, 0.75F};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(contact.point(k), point[k]) << k;
+    EXPECT_EQ(contact.normal(k), normal[k]) << k;
+  }
+  EXPECT_EQ(contact.slid(), 0.0078125F);
+  EXPECT_TRUE(contact.oscillating());
+  EXPECT_EQ(contact.frequency(), 7.5F);
+  EXPECT_EQ(contact.swing(), 0.625F);
+  EXPECT_EQ(tick.stiffness_factor(), 0.875F);
+  EXPECT_EQ(tick.status(), 6U);
+  ASSERT_GT(tick.measured_force_size(), 2);
+  EXPECT_EQ(tick.measured_force(2), 3.25F);
+}
+
 TEST(TickMessage, EveryStateHasItsNameOnTheWire) {
   EXPECT_EQ(wire_state(SafetyState::kWaiting), wire::SAFETY_WAITING);
   EXPECT_EQ(wire_state(SafetyState::kStarting), wire::SAFETY_STARTING);
