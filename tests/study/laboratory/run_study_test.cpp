@@ -17,6 +17,7 @@
 #include "phalanx/study/laboratory/outputs.h"
 #include "record/temporary_folder.h"
 #include "study/laboratory/expect_refusal.h"
+#include "study/laboratory/journal.h"
 #include "study/laboratory/synthetic.h"
 
 namespace phalanx {
@@ -247,6 +248,18 @@ TEST_F(Shards, AreListedIfTheyAreMissing) {
   EXPECT_FALSE(std::filesystem::exists(folder / "all"));
 }
 
+// Of 12 points 1, 2, 3, 5, 6, 9 and 11 are gone: three in a row, two in a row, and two alone.
+TEST_F(Shards, MissingPointsInARowAreListedAsARange) {
+  const std::vector<PointResult> whole =
+      run_study(twelve_points(), no_inputs, synthetic_trial, folder / "a", options_for(2));
+  JournalContent left = read_journal(folder / "a" / "points.jsonl");
+  left.points.clear();
+  for (const int kept : {0, 4, 7, 8, 10}) left.points.push_back(whole[static_cast<std::size_t>(kept)]);
+  write_text_file(folder / "a" / "points.jsonl", journal_text(left));
+  expect_refusal([&] { static_cast<void>(merge_studies({folder / "a"}, folder / "all")); },
+                 {"7 of 12 points are missing: 1-3, 5-6, 9, 11;"});
+}
+
 TEST_F(Shards, OfAnotherStudyAreRefused) {
   run(1, "a");
   StudyOptions options = options_for(2);
@@ -325,6 +338,111 @@ TEST(StudyOutputs, SummariseWithEveryCheckedStiffness) {
   EXPECT_EQ(point["checked"].size(), results[6].checked.size());
   EXPECT_EQ(point["checked"][0]["verdict"], "stable");
   EXPECT_EQ(read_file(folder / "study.csv"), expected_csv());
+}
+
+/// Every number is another: 2.5 N/mm are 2500 N/m, 1.25 mm are 1.25e-3 m, 31 ms are 0.031 s, 2 mJ are 0.002
+/// J.
+PointResult numbered_result() {
+  PointResult result;
+  result.index = 6;
+  result.k_lim = 2500.0;
+  result.at_least = true;
+  result.non_monotone = false;
+  result.ends_in_invalid = true;
+  result.stable = false;
+  result.measured_at = 2400.0;
+  result.k_eff = 1900.0;
+  result.k_eff_seeds = 4;
+  result.peak_depth = 1.25e-3;
+  result.force_swing = 0.375;
+  result.position_swing = 0.02e-3;
+  result.ghost_s = {.mean = 0.031, .largest = 0.042};
+  result.ghost_energy = {.mean = 0.002, .largest = 0.003};
+  result.trials = 62;
+  result.invalid_trials = 3;
+  result.why_invalid = "say \"no\"";
+  result.checked = {{.n_per_mm = 2.6,
+                     .verdict = Verdict::kUnstable,
+                     .seeds_run = 5,
+                     .force_swing = 2.25,
+                     .position_swing = 0.875e-3}};
+  return result;
+}
+
+TEST(StudyOutputs, EveryColumnIsInTheUnitOfItsName) {
+  const Made made{.commit = "c", .cpu = "p", .compiler = "g", .build_type = "b", .date = "d"};
+  const auto summary = nlohmann::json::parse(study_summary_json(twelve_points(), {numbered_result()}, made));
+  EXPECT_EQ(
+      summary["made"],
+      (nlohmann::json{{"commit", "c"}, {"cpu", "p"}, {"compiler", "g"}, {"build_type", "b"}, {"date", "d"}}));
+  ASSERT_EQ(summary["points"].size(), 1U);
+  EXPECT_EQ(summary["points"][0], (nlohmann::json{{"point", 6},
+                                                  {"variant", "smoothing"},
+                                                  {"values", {{"synthetic.friction", 0.2}}},
+                                                  {"k_lim_n_per_mm", 2.5},
+                                                  {"at_least", true},
+                                                  {"non_monotone", false},
+                                                  {"ends_in_invalid", true},
+                                                  {"stable", false},
+                                                  {"measured_at_n_per_mm", 2.4},
+                                                  {"k_eff_n_per_mm", 1.9},
+                                                  {"k_eff_seeds", 4},
+                                                  {"peak_depth_mm", 1.25},
+                                                  {"force_swing_n", 0.375},
+                                                  {"position_swing_mm", 0.02},
+                                                  {"ghost_mean_ms", 31.0},
+                                                  {"ghost_largest_ms", 42.0},
+                                                  {"ghost_energy_mean_mj", 2.0},
+                                                  {"ghost_energy_largest_mj", 3.0},
+                                                  {"trials", 62},
+                                                  {"invalid_trials", 3},
+                                                  {"why_invalid", "say \"no\""},
+                                                  {"checked",
+                                                   {{{"n_per_mm", 2.6},
+                                                     {"verdict", "unstable"},
+                                                     {"seeds_run", 5},
+                                                     {"force_swing_n", 2.25},
+                                                     {"position_swing_mm", 0.875}}}}}));
+  EXPECT_THAT(
+      study_csv(twelve_points(), {numbered_result()}),
+      HasSubstr("\n6,smoothing,0.2,2.5,true,false,true,false,2.4,1.9,4,1.25,0.375,0.02,31.0,42.0,2.0,3.0,"
+                "62,3,\"say \"\"no\"\"\"\n"));
+}
+
+// The journal keeps SI units, to the last bit.
+TEST(StudyOutputs, EveryFieldOfAJournalsLineIsInTheUnitOfItsName) {
+  const auto line = nlohmann::json::parse(result_line(numbered_result()));
+  EXPECT_EQ(line, (nlohmann::json{{"point", 6},
+                                  {"k_lim_n_per_m", 2500.0},
+                                  {"at_least", true},
+                                  {"non_monotone", false},
+                                  {"ends_in_invalid", true},
+                                  {"stable", false},
+                                  {"measured_at_n_per_m", 2400.0},
+                                  {"k_eff_n_per_m", 1900.0},
+                                  {"k_eff_seeds", 4},
+                                  {"peak_depth_m", 1.25e-3},
+                                  {"force_swing_n", 0.375},
+                                  {"position_swing_m", 0.02e-3},
+                                  {"ghost_s", {{"mean", 0.031}, {"largest", 0.042}}},
+                                  {"ghost_energy_j", {{"mean", 0.002}, {"largest", 0.003}}},
+                                  {"trials", 62},
+                                  {"invalid_trials", 3},
+                                  {"why_invalid", "say \"no\""},
+                                  {"checked",
+                                   {{{"n_per_mm", 2.6},
+                                     {"verdict", "unstable"},
+                                     {"seeds_run", 5},
+                                     {"force_swing_n", 2.25},
+                                     {"position_swing_m", 0.875e-3}}}}}));
+}
+
+// (0.7 - 0.1) / 0.1 is 5.999... in binary: 0.1, 0.2, ..., 0.7 are seven values whatever the last bit says.
+TEST(StiffnessGrid, HasItsLastValueHoweverTheStepIsRounded) {
+  const StiffnessGrid grid{.min_n_per_mm = 0.1, .max_n_per_mm = 0.7, .step_n_per_mm = 0.1};
+  ASSERT_EQ(grid.size(), 7);
+  EXPECT_EQ(grid.n_per_mm(6), 0.7);
+  EXPECT_EQ(grid.at(2), 300.0) << "0.3 N/mm";
 }
 
 }  // namespace
