@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "phalanx/record/output_file.h"
+
 namespace phalanx {
 namespace {
 
@@ -33,7 +35,26 @@ void synchronise_folder_of(const std::filesystem::path& file) {
   ::close(descriptor);
 }
 
+/// @throws std::runtime_error
+void synchronise(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool done = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (done) return;
+  throw std::runtime_error(
+      fmt::format("{}: cannot be written to the disk: {}", file.string(), std::strerror(reason)));
+}
+
 }  // namespace
+
+void replace_journal(const std::filesystem::path& file, const JournalContent& content) {
+  write_then_rename(file, [&](const std::filesystem::path& partial) {
+    write_text_file(partial, journal_text(content));
+    synchronise(partial);
+  });
+  synchronise_folder_of(file);
+}
 
 Journal::Journal(std::filesystem::path file, const JournalHeader& header, bool restart)
     : file_(std::move(file)),

@@ -40,6 +40,11 @@ struct JournalContent {
 /// or if a line is damaged.
 [[nodiscard]] JournalContent read_journal(const std::filesystem::path& file);
 
+/// Puts a whole journal in the place of `file`. It is on the disk before it takes the name, and the name
+/// before this returns: after a loss of power `file` is the old journal or the new one, whole.
+/// @throws std::runtime_error naming the file and the system's reason if it cannot be written
+void replace_journal(const std::filesystem::path& file, const JournalContent& content);
+
 /// A journal that is being written. It is locked (flock) as long as this object or its process lives, so that
 /// two processes cannot write to one.
 class Journal {

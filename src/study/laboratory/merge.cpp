@@ -114,7 +114,7 @@ MergedStudy merge_studies(const std::vector<fs::path>& folders, const fs::path& 
   prepare_output_folder(out);
   const fs::path file = out / journal_name(1, 1);
   const Journal held(file, content.header, false);  // nobody else may be writing what is replaced here
-  write_text_file(file, journal_text(content));
+  replace_journal(file, content);
   return {.study = content.header.study, .results = content.points};
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "phalanx/record/output_file.h"
+#include "phalanx/study/laboratory/outputs.h"
 #include "record/temporary_folder.h"
 #include "study/laboratory/journal.h"
 #include "study/laboratory/synthetic.h"
@@ -116,6 +117,24 @@ TEST(JournalOnDisk, ADiskThatDoesNotTakeAPointIsAnError) {
     the_error = 0;
   }
   EXPECT_NO_THROW(journal.append(point(1)));
+}
+
+// What is merged may replace a journal whose points were on the disk: it is there itself before it takes the
+// name.
+TEST(JournalOnDisk, AMergedJournalIsSynchronisedBeforeItTakesItsName) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "part");
+  JournalContent whole{.header = header(), .points = {}};
+  for (int index = 0; index < 12; ++index) whole.points.push_back(point(index));
+  write_text_file(folder / "part" / "points.jsonl", journal_text(whole));
+  static_cast<void>(merge_studies({folder / "part"}, folder / "all"));
+  const auto made = calls();
+  ASSERT_GE(made.size(), 2U);
+  const Synchronised& file = made[made.size() - 2];
+  EXPECT_EQ(file.file, inode_of(folder / "all" / "points.jsonl")) << "under another name then";
+  EXPECT_EQ(file.length, journal_text(whole).size());
+  EXPECT_TRUE(made.back().folder);
+  EXPECT_EQ(made.back().file, inode_of(folder / "all"));
 }
 
 }  // namespace
