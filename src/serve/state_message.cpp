@@ -42,15 +42,6 @@ void put(const FaultEvent& event, wire::Fault& out) {
   out.set_from_device(event.from_device);
 }
 
-void put(const LinkStatistics& link, wire::Link& out) {
-  out.set_received(link.received);
-  out.set_lost(link.lost);
-  out.set_corrupt(link.corrupt);
-  out.set_refused(link.refused);
-  out.set_outdated(link.outdated);
-  out.set_sent(link.sent);
-}
-
 void put(const Histogram& histogram, wire::Durations& out) {
   out.set_p50_us(static_cast<float>(histogram.percentile_us(50.0)));
   out.set_p99_us(static_cast<float>(histogram.percentile_us(99.0)));
@@ -132,6 +123,15 @@ wire::ChangeKind wire_change(const std::string& path) {
 
 }  // namespace
 
+void write_link(const LinkStatistics& link, wire::Link& out) {
+  out.set_received(link.received);
+  out.set_lost(link.lost);
+  out.set_corrupt(link.corrupt);
+  out.set_refused(link.refused);
+  out.set_outdated(link.outdated);
+  out.set_sent(link.sent);
+}
+
 void write_state(const StationHost& host, wire::State& out) {
   const auto state = host.state();
   const StationView view = host.view();
@@ -144,7 +144,7 @@ void write_state(const StationHost& host, wire::State& out) {
   out.set_degraded(view.degraded);
   out.set_device_state(device_state_name(view.device));
   out.set_estop(view.estop);
-  put(view.link, *out.mutable_link());
+  write_link(view.link, *out.mutable_link());
   put(host.deadlines(), *out.mutable_loop());
   if (state->source == HandSource::kSliders)
     for (const double angle : host.sliders()) out.add_slider(static_cast<float>(angle));

@@ -11,6 +11,9 @@ namespace phalanx {
 /// but for the place of a fault's report.
 void write_state(const StationHost& host, wire::State& out);
 
+/// The device's counters.
+void write_link(const LinkStatistics& link, wire::Link& out);
+
 /// Who is here.
 void write_seats(const Seats& seats, double now, wire::State& out);
 

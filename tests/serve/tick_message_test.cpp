@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "serve/state_message.h"
+
 namespace phalanx {
 namespace {
 
@@ -130,6 +132,24 @@ TEST(TickMessage, EveryFieldOfAContactHasItsOwnNumber) {
   EXPECT_EQ(tick.status(), 6U);
   ASSERT_GT(tick.measured_force_size(), 2);
   EXPECT_EQ(tick.measured_force(2), 3.25F);
+}
+
+TEST(StateMessage, EveryCounterOfTheLinkHasItsOwnNumber) {
+  wire::Link link;
+  write_link({.received = 901,
+              .lost = 902,
+              .outdated = 903,
+              .corrupt = 904,
+              .refused = 905,
+              .overflowed = 906,
+              .sent = 907},
+             link);
+  EXPECT_EQ(link.received(), 901U);
+  EXPECT_EQ(link.lost(), 902U);
+  EXPECT_EQ(link.outdated(), 903U);
+  EXPECT_EQ(link.corrupt(), 904U);
+  EXPECT_EQ(link.refused(), 905U);
+  EXPECT_EQ(link.sent(), 907U);
 }
 
 TEST(TickMessage, EveryStateHasItsNameOnTheWire) {
