@@ -112,6 +112,13 @@ TEST(TrialObserver, AllowsHalfAMillimetre) {
   }
 }
 
+// 2.0 N and 2.5 N are exactly half a newton apart, which is still allowed.
+TEST(TrialObserver, AllowsASwingOfExactlyItsBound) {
+  const TrialResult result = with_one_swing(0.5, 0.0);
+  EXPECT_EQ(result.force_swing, 0.5);
+  EXPECT_TRUE(result.stable);
+}
+
 // 10 mm aside is no swing along n.
 TEST(TrialObserver, LooksAlongTheNormalAlone) {
   Watching watching;
@@ -204,6 +211,18 @@ TEST(TrialObserver, IsInvalidIfALimiterActedBeforeTheRelease) {
     EXPECT_FALSE(result.valid) << name;
     EXPECT_EQ(result.why_invalid, name);
     EXPECT_TRUE(result.stable) << name;
+  }
+}
+
+// The finger begins at 0.2 s, 20 mm before the wall, and ends 3 N (3.5e-4 + 1e-3) m/N = 4.05 mm behind it.
+// The window begins at 2.7 s, and the finger is to rest for 0.3 s before: it may need 2.2 s for the 24.05 mm.
+TEST(TrialObserver, TheFingerRestsBeforeTheWindow) {
+  for (const auto& [needs, valid] : {std::pair{2.19, true}, std::pair{2.21, false}, std::pair{2.49, false}}) {
+    Watching watching;
+    watching.expect(3.0, 24.05e-3 / needs);
+    watching.fill_window(tip_at(2e-3, 2.0));
+    EXPECT_EQ(watching.result().valid, valid) << needs;
+    EXPECT_EQ(watching.result().why_invalid, valid ? "" : "the finger was still on its way") << needs;
   }
 }
 

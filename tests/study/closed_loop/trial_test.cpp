@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -47,6 +48,18 @@ TEST(Trial, IsTheSameInTwoThreadsAtOnce) {
   }
   expect_same_bits(alone, beside[0]);
   expect_same_bits(alone, beside[1]);
+}
+
+// A trial is judged from 2.7 s on: a bump from 2.2 s on may last 500 ms, and no longer.
+TEST(Trial, IsNotJudgedWhileTheBumpLasts) {
+  const auto set_up = [](const char* newtons, const char* milliseconds) {
+    return make_trial_setup(load_scene("stability_press", {{"patient.bump_n", newtons},
+                                                           {"patient.bump_start_s", "2.2"},
+                                                           {"patient.bump_duration_ms", milliseconds}}));
+  };
+  EXPECT_EQ(set_up("1", "500")->patient.bump, 1.0);
+  EXPECT_THROW(static_cast<void>(set_up("1", "501")), std::invalid_argument);
+  EXPECT_EQ(set_up("0", "501")->patient.bump, 0.0) << "there is none";
 }
 
 // The scene says 0.9 N/mm, the patient 3 N.
