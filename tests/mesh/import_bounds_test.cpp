@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is just inside a limit of the import, and what is just outside.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mesh/mesh_files.h"
+#include "mesh/near_vertices.h"
+#include "mesh/repair.h"
+#include "mesh/weld.h"
+#include "phalanx/core/math.h"
+#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/isolation_helper.h"
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string refusal_in_bounds(const std::string& content, const std::string& format,
+                              const ImportOptions& options = {}) {
+  try {
+    (void)import_and_check_from_memory(content.data(), content.size(), format, options);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+/// A .glb with the first `from` in its JSON replaced.
+std::string with_json(const std::string& glb, const std::string& from, const std::string& to) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, sizeof length);
+  std::string json = glb.substr(20, length);
+  const std::size_t at = json.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  if (at != std::string::npos) json.replace(at, from.size(), to);
+  while (json.size() % 4 != 0) json += ' ';
+  const std::string bin = glb.substr(20 + length);
+  std::string out = "glTF";
+  test::put(out, std::uint32_t{2});
+  test::put(out, static_cast<std::uint32_t>(20 + json.size() + bin.size()));
+  test::put(out, static_cast<std::uint32_t>(json.size()));
+  return out + "JSON" + json + bin;
+}
+
+// Counted from 0: of n vertices the last is n - 1.
+TEST(ImportBounds, TheFirstVertexThatDoesNotExistIsRefusedInEveryFormat) {
+  const TriangleMesh good = make_sphere(0.1, 40);
+  TriangleMesh bad = good;
+  const std::size_t n = good.vertices.size();
+  bad.triangles[5][2] = static_cast<std::int32_t>(n);
+  const std::string names = "face 5 names vertex " + std::to_string(n);
+  for (const auto& [format, write] :
+       {std::pair{"ply", &test::to_ply_text}, {"ply", &test::to_ply_binary}, {"3ds", &test::to_3ds}}) {
+    EXPECT_EQ(refusal_in_bounds(write(good), format), "accepted") << format;
+    EXPECT_THAT(refusal_in_bounds(write(bad), format),
+                AllOf(HasSubstr("face 5"), HasSubstr("vertex " + std::to_string(n))))
+        << format;
+  }
+  EXPECT_EQ(refusal_in_bounds(test::to_glb(good), "glb"), "accepted");
+  EXPECT_THAT(refusal_in_bounds(test::to_glb(bad), "glb"), HasSubstr(names));
+}
+
+// A glTF accessor has an offset of its own beside its view's; here the indices' view begins with the
+// positions.
+TEST(ImportBounds, AGlbsIndicesAreReadWhereItsAccessorSays) {
+  const auto shifted = [](const TriangleMesh& mesh) {
+    const std::string positions = std::to_string(12 * mesh.vertices.size());
+    const std::string indices = std::to_string(12 * mesh.triangles.size());
+    const std::string both = std::to_string(12 * (mesh.vertices.size() + mesh.triangles.size()));
+    const std::string view = with_json(
+        test::to_glb(mesh), R"({"buffer":0,"byteOffset":)" + positions + R"(,"byteLength":)" + indices + "}",
+        R"({"buffer":0,"byteLength":)" + both + "}");
+    return with_json(view, R"({"bufferView":1,)", R"({"bufferView":1,"byteOffset":)" + positions + ",");
+  };
+  TriangleMesh mesh = make_sphere(0.1, 40);
+  EXPECT_EQ(refusal_in_bounds(shifted(mesh), "glb"), "accepted");
+  mesh.triangles[7][1] = static_cast<std::int32_t>(mesh.vertices.size());
+  EXPECT_THAT(refusal_in_bounds(shifted(mesh), "glb"), HasSubstr("face 7"));
+}
+
+TEST(ImportBounds, AGlbsTrianglesHaveThreeCornersEach) {
+  const TriangleMesh mesh = make_sphere(0.1, 40);
+  const std::size_t corners = 3 * mesh.triangles.size();
+  const auto count = [](std::size_t n) { return R"("SCALAR","count":)" + std::to_string(n); };
+  for (const std::size_t fewer : {1U, 2U}) {
+    EXPECT_THAT(
+        refusal_in_bounds(with_json(test::to_glb(mesh), count(corners), count(corners - fewer)), "glb"),
+        AllOf(HasSubstr(std::to_string(corners - fewer) + " corners"), HasSubstr("3 does not divide")));
+  }
+}
+
+TEST(ImportBounds, AsManyTrianglesAsMayBeAreTaken) {
+  const std::string cube = test::to_obj(make_box({0.1, 0.1, 0.1}, 12));
+  EXPECT_EQ(refusal_in_bounds(cube, "obj", {.most_triangles = 12}), "accepted");
+  EXPECT_THAT(refusal_in_bounds(cube, "obj", {.most_triangles = 11}),
+              AllOf(HasSubstr("12 triangles"), HasSubstr("the limit is 11")));
+}
+
+// Vertices 0 and 3 stand at one place: whichever two corners they are, the triangle has no area.
+TEST(WeldBounds, DropsATriangleWhicheverTwoOfItsCornersAreOne) {
+  TriangleMesh soup;
+  soup.vertices = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0}};
+  for (const Triangle& flat : {Triangle{0, 3, 1}, Triangle{1, 0, 3}, Triangle{0, 1, 3}}) {
+    soup.triangles = {{0, 1, 2}, flat};
+    mesh::WeldCounts counts;
+    const TriangleMesh welded = mesh::weld(soup, &counts);
+    EXPECT_EQ(counts.degenerate, 1U);
+    EXPECT_EQ(counts.duplicates, 1U);
+    EXPECT_EQ(welded.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  }
+}
+
+// An edge of 40 sqrt(2) mm, aslant, so that the box around it holds the vertex beside it in any case. Its
+// largest extent is 40 mm, the tolerance 1e-5 of that, and a step may move a point by a sixth of it: 0.0667
+// um.
+TEST(RepairBounds, AVertexBesideAnEdgeIsPutOnItWithinASixthOfTheTolerance) {
+  for (const double off : {0.06e-6, 0.075e-6, 0.12e-6}) {
+    const Vec3 along = Vec3(1, 1, 0).normalized();
+    const Vec3 across = Vec3(-1, 1, 0).normalized();
+    const auto at = [&](double x, double y) { return Vec3(x * along + y * across); };
+    TriangleMesh strip;
+    strip.vertices = {at(0, 0),        at(0.0282842712, off), at(0.0565685425, 0),
+                      at(0.028, 0.02), at(0.014, -0.02),      at(0.042, -0.02)};
+    strip.triangles = {{0, 2, 3}, {0, 4, 1}, {1, 5, 2}};
+    MeshReport report;
+    (void)mesh::repair(strip, {}, "test", report);
+    EXPECT_EQ(report.finding(FindingKind::kTJunctions).found, off < report.tolerance / 6.0 ? 1U : 0U) << off;
+    EXPECT_LT(report.tolerance / 6.0, 0.0755e-6);
+    EXPECT_GT(report.tolerance / 6.0, 0.0605e-6);
+  }
+}
+
+// Two triangles side by side, 0.05 um apart at two corners. Those of the right one move onto the left one's;
+// what they had moved before, 0.02 um, counts on.
+TEST(RepairBounds, WhatAVertexHadMovedBeforeCountsWhereItGoes) {
+  constexpr double kGap = 0.05e-6;
+  constexpr double kBefore = 0.02e-6;
+  TriangleMesh mesh;
+  mesh.vertices = {{-0.04, 0, 0}, {0, 0, 0}, {0, 0.04, 0}, {kGap, 0, 0}, {0.04, 0.04, 0}, {kGap, 0.04, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  mesh::Allowance allowance{0.06e-6, 0.4e-6, {0.0, 0.0, 0.0, kBefore, 0.0, kBefore}};
+  const mesh::Mended mended = mesh::merge_near_vertices(mesh, allowance);
+  EXPECT_EQ(mended.count, 2U);
+  ASSERT_EQ(mesh.vertices.size(), 4U);
+  ASSERT_EQ(allowance.spent.size(), 4U);
+  for (std::size_t v = 0; v < 4; ++v) {
+    const bool taken = mesh.vertices[v].x() == 0.0;
+    EXPECT_NEAR(allowance.spent[v], taken ? kBefore + kGap : 0.0, 1e-15) << v;
+  }
+}
+
+// The second triangle hangs on the first one's corner and goes through it: its far edge, from (2, 1, 1) to
+// (1, 2, -1) cm, meets z = 0 in (1.5, 1.5, 0) cm, where x + y < 4 cm. They cross from the corner to there.
+TEST(RepairBounds, TrianglesThatShareACornerMayCross) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.04, 0, 0}, {0, 0.04, 0}, {0.02, 0.01, 0.01}, {0.01, 0.02, -0.01}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
+  MeshReport report;
+  (void)mesh::repair(mesh, {}, "test", report);
+  const MeshFinding crossing = report.finding(FindingKind::kSelfIntersections);
+  EXPECT_EQ(crossing.found, 1U);
+  EXPECT_NEAR(crossing.size, 0.015 * std::sqrt(2.0), 1e-12);
+  // Folded along a common edge they touch, however sharp the fold.
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
+  (void)mesh::repair(mesh, {}, "test", report);
+  EXPECT_EQ(report.finding(FindingKind::kSelfIntersections).found, 0U);
+}
+
+TEST(UnitAdvice, TakesThreeMillimetresToThreeMetres) {
+  EXPECT_EQ(unit_advice(3e-3, 1.0), "");
+  EXPECT_EQ(unit_advice(3.0, 1.0), "");
+  EXPECT_NE(unit_advice(2.999e-3, 1.0), "");
+  EXPECT_NE(unit_advice(3.001, 1.0), "");
+}
+
+std::string own_niceness(const std::string&) { return std::to_string(::getpriority(PRIO_PROCESS, 0)); }
+
+// The loop may run at nice 0, where the system grants nothing better.
+TEST(IsolationHelperBounds, GivesWayToTheLoop) {
+  const mesh::IsolationHelper helper;
+  EXPECT_GE(std::stoi(mesh::run_isolated_work(own_niceness, "", "cup.obj", {})), 5);
+}
+
+}  // namespace
+}  // namespace phalanx
