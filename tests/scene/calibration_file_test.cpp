@@ -178,7 +178,7 @@ TEST(CalibrationFile, TakesEachNumberUpToItsBoundAndNoFurther) {
                              {"value", "-100", "-100.001"}}) {
     EXPECT_NO_THROW(static_cast<void>(parse_calibration(text_with(bound.name, bound.good), "good.toml")))
         << bound.name << " = " << bound.good;
-    expect_refused(text_with(bound.name, bound.bad), {"bad.toml", bound.name});
+    expect_bad_calibration(text_with(bound.name, bound.bad), {"bad.toml", bound.name});
   }
 }
 

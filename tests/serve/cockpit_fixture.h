@@ -192,7 +192,7 @@ class CockpitTest : public ::testing::Test {
   }
 
   const testing::TemporaryFolder folder_;
-  const Clock clock_{kHostSlowdown};
+  const Clock clock_;
   const Clock real_;
   const bool still_;
   std::atomic<double> skipped_{0.0};

@@ -99,10 +99,10 @@ Vec3 meeting_point(const HandModel& hand, const Motion& motion) {
   double floor = lowest(placed(hand.mesh(kPalm), hand.palm_pose())).z();
   for (int s = 0; s < kPalm; ++s)
     floor = std::min(floor, lowest(placed(hand.mesh(s), pose_of(poses, s))).z());
-  constexpr int kTip = segment_index(static_cast<int>(Digit::kIndex), 2);
+  constexpr int kIndexTip = segment_index(static_cast<int>(Digit::kIndex), 2);
   for (double t = 0.0; t < motion.duration(); t += 0.01) {
     hand.poses(motion.at(t), poses);
-    const Vec3 tip = lowest(placed(hand.mesh(kTip), pose_of(poses, kTip)));
+    const Vec3 tip = lowest(placed(hand.mesh(kIndexTip), pose_of(poses, kIndexTip)));
     if (tip.z() < floor - 1e-3) return tip;
   }
   throw std::logic_error("the finger never comes below the hand");

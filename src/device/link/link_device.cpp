@@ -179,7 +179,10 @@ void WiredDevice::take_leave() noexcept {
     const double next = begin + i * kFarewellPeriod;
     session_.receive(clock_.now());
     session_.send_disabled();
-    while (clock_.now() < next) wait_until(next);
+    while (clock_.now() < next) {
+      wait_until(next);
+      session_.receive(clock_.now());  // a sample that stays unread would end every further wait at once
+    }
   }
   for (int i = 0; i < kGoodbyes && session_.phase() == LinkSession::Phase::kRunning; ++i) {
     session_.send_goodbye();

@@ -15,13 +15,14 @@ int main(int argc, char** argv) {
   try {
     if (argc != 3) throw std::invalid_argument("usage: slow_study OUT TRIAL_US");
     const std::chrono::microseconds pause(std::stoi(argv[2]));
-    const Study study = testing::study_of(testing::kTwelvePoints);
+    const Study study = phalanx::testing::study_of(phalanx::testing::kTwelvePoints);
     const auto trial = [pause](const Overrides& overrides, double stiffness, double press,
                                std::uint64_t seed) {
       std::this_thread::sleep_for(pause);
-      return testing::synthetic_trial(overrides, stiffness, press, seed);
+      return phalanx::testing::synthetic_trial(overrides, stiffness, press, seed);
     };
-    const auto results = run_study(study, testing::no_inputs, trial, argv[1], testing::options_for(2));
+    const auto results =
+        run_study(study, phalanx::testing::no_inputs, trial, argv[1], phalanx::testing::options_for(2));
     write_study_outputs(argv[1], study, results,
                         {.commit = "", .cpu = "", .compiler = "", .build_type = "", .date = ""});
     return 0;

@@ -252,6 +252,7 @@ void HeldClock::move_to(std::int64_t t) {
 
 void HeldClock::advance_to(double t) {
   ::prctl(PR_SET_TIMERSLACK, 1);
+  ask_for_the_processor(2);
   const std::int64_t until = ClockPage::kBegin + static_cast<std::int64_t>(1e9 * t);
   std::int64_t before = -1;
   double moved = real_seconds();
@@ -275,6 +276,7 @@ void HeldClock::advance_to(double t) {
 
 void HeldClock::run(const std::function<bool()>& ended, double pace) {
   ::prctl(PR_SET_TIMERSLACK, 1);
+  ask_for_the_processor(2);
   double nap = kShortestNap;
   double moved = real_seconds();
   while (!ended()) {

@@ -23,7 +23,7 @@ namespace phalanx::test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr int kFreeReads = 1000;         ///< of the clock by a thread that never waits; each more takes kSpin
+constexpr int kFreeLooks = 1000;         ///< of the clock by a thread that never waits; each more takes kSpin
 constexpr std::int64_t kSpin = 1000;     ///< [ns]: a loop that waits for a time by reading the clock must end
 constexpr std::int64_t kYield = 20'000;  ///< [ns]: the same for a loop that yields
 constexpr long kNap = 500'000;           ///< real time between two looks from a condition variable [ns]
@@ -55,7 +55,21 @@ struct Place {
   ClockWait* wait = nullptr;
 };
 thread_local Place own_place;
-thread_local int reads = 0;
+/// This thread's reads of the clock, and waits that something ended, since time last moved on.
+thread_local int looks = 0;
+thread_local std::int64_t last_look = 0;
+
+/// Time goes on for a thread that looks at the clock again and again.
+bool looks_too_often(ClockPage& page) noexcept {
+  const std::int64_t now = page.now.load();
+  if (now != last_look) looks = 0;
+  last_look = now;
+  return ++looks > kFreeLooks;
+}
+void spend(ClockPage& page, std::int64_t time) noexcept {
+  last_look = page.now.fetch_add(time) + time;
+  looks = kFreeLooks;
+}
 
 std::int64_t of(const timespec& t) noexcept { return t.tv_sec * kSecond + t.tv_nsec; }
 timespec to_timespec(std::int64_t ns) noexcept { return {ns / kSecond, ns % kSecond}; }
@@ -64,7 +78,7 @@ timespec to_timespec(std::int64_t ns) noexcept { return {ns / kSecond, ns % kSec
 /// wait
 template <class Look>
 bool wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look) noexcept {
-  reads = 0;
+  if (looks_too_often(page)) spend(page, kSpin);
   ClockWait& wait = *own_place.take(page);
   wait.woken.store(0);
   wait.deadline.store(deadline);
@@ -142,13 +156,6 @@ void block_wake_signal() noexcept {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
-/// Where it is allowed, a thread that wakes up is run at once, whatever else a busy computer does: under a
-/// held clock threads wake up some hundred thousand times a test. Elsewhere the same test takes longer.
-void ask_for_the_processor() noexcept {
-  const sched_param first{1};
-  ::syscall(SYS_sched_setscheduler, 0, SCHED_RR, &first);
-}
-
 void before_fork() {
   if (ClockPage* page = held.load()) page->forking.fetch_add(1);
 }
@@ -180,7 +187,7 @@ void after_fork_in_child() {
 
 void hold(ClockPage* page) noexcept {
   block_wake_signal();
-  ask_for_the_processor();
+  ask_for_the_processor(1);
   pthread_atfork(before_fork, nullptr, after_fork_in_child);
   enter_process(*page, ::getpid());
   held.store(page);
@@ -199,7 +206,7 @@ extern "C" {
 int clock_gettime(clockid_t id, timespec* t) noexcept {
   ClockPage* page = phalanx::test::held.load(std::memory_order_acquire);
   if (page == nullptr || id != CLOCK_MONOTONIC) return static_cast<int>(::syscall(SYS_clock_gettime, id, t));
-  if (++phalanx::test::reads > phalanx::test::kFreeReads) page->now.fetch_add(phalanx::test::kSpin);
+  if (phalanx::test::looks_too_often(*page)) phalanx::test::spend(*page, phalanx::test::kSpin);
   *t = phalanx::test::to_timespec(page->now.load());
   return 0;
 }
@@ -232,7 +239,7 @@ int usleep(useconds_t us) {
 
 int sched_yield() noexcept {
   ClockPage* page = phalanx::test::held.load();
-  if (page != nullptr && ++phalanx::test::reads > phalanx::test::kFreeReads)
+  if (page != nullptr && phalanx::test::looks_too_often(*page))
     return phalanx::test::sleep_until(*page, page->now.load() + phalanx::test::kYield), 0;
   return static_cast<int>(::syscall(SYS_sched_yield));
 }

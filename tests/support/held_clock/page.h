@@ -3,6 +3,7 @@
 #pragma once
 
 #include <linux/futex.h>
+#include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -48,6 +49,14 @@ inline int wake_signal() noexcept { return SIGRTMAX - 3; }
 
 inline long futex(std::atomic<std::uint32_t>* word, int what, std::uint32_t value) noexcept {
   return ::syscall(SYS_futex, word, what, value, nullptr, nullptr, 0);
+}
+
+/// Where it is allowed, the calling thread runs as soon as it wakes up, whatever else a busy computer does:
+/// under a held clock threads wake up some hundred thousand times a test. Elsewhere the same test takes
+/// longer.
+inline void ask_for_the_processor(int priority) noexcept {
+  const sched_param wanted{priority};
+  ::syscall(SYS_sched_setscheduler, 0, SCHED_RR, &wanted);
 }
 
 /// Enters a process; a second time does nothing.
