@@ -15,6 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
+  clock_.sleep_until(1.0);
   Page page(port(), "", "Anna");
   EXPECT_EQ(page.welcome.protocol(), Cockpit::kProtocol);
   EXPECT_EQ(page.welcome.version(), "1.2.3");
@@ -22,7 +23,8 @@ TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   EXPECT_EQ(page.welcome.secret().size(), 22U);
   EXPECT_TRUE(page.welcome.may_operate());
   EXPECT_GT(page.welcome.key_size(), 0);
-  EXPECT_GT(page.welcome.clock(), 0.0);
+  EXPECT_GE(page.welcome.clock(), 1.0);
+  EXPECT_LE(page.welcome.clock(), host_->now());
   EXPECT_EQ(page.state.operator_page(), 1U);
   EXPECT_EQ(page.state.operator_name(), "Anna");
   EXPECT_EQ(page.state.scene(), "first_touch");

@@ -84,9 +84,10 @@ struct HeldClock::Threads {
 
     std::int32_t pid;
     std::int32_t tid;
-    unsigned long seen = 0;  ///< turns() at the first look
-    int siblings = 0;        ///< threads of its process, at the last state()
-    int listed = 0;          ///< that are known
+    ClockWait* wait = nullptr;  ///< its place on the page; nullptr: none known
+    unsigned long seen = 0;     ///< turns() at the first look
+    int siblings = 0;           ///< threads of its process, at the last state()
+    int listed = 0;             ///< that are known
 
    private:
     int state_ = -1;
@@ -131,6 +132,16 @@ struct HeldClock::Threads {
     ::closedir(directory);
     for (std::size_t i = first; i < all.size(); ++i) all[i].listed = count;
     return true;
+  }
+  /// It has entered its sleep and has not been woken: the kernel need not be asked.
+  static bool sleeps_for_time(ThreadFiles& thread, ClockPage& page) {
+    if (thread.wait == nullptr || thread.wait->tid.load() != thread.tid) {
+      thread.wait = nullptr;
+      for (ClockWait& wait : page.wait)
+        if (wait.tid.load() == thread.tid) thread.wait = &wait;
+    }
+    return thread.wait != nullptr && thread.wait->kind.load() == WaitKind::kSleep &&
+           thread.wait->woken.load() == 0;
   }
   [[nodiscard]] bool stopped(std::int32_t tid) {
     for (ThreadFiles& thread : all)
@@ -194,6 +205,8 @@ bool HeldClock::all_sleep() {
   bool others = false;  // than those that are known
   for (int look = 0; look < 2; ++look) {
     for (auto& thread : threads_->all) {
+      if (thread.tid != thread.pid && Threads::sleeps_for_time(thread, *page_))
+        continue;  // the first one tells of new ones
       const unsigned long turns = thread.turns();
       const char state = thread.state();
       others = others || state == 0 || state == 'X' ||

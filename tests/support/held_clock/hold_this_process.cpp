@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program that has this file runs under a held clock from its beginning to its end: time passes while all
 // its threads sleep.
+#include "support/held_clock/hold_this_process.h"
+
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -24,4 +26,9 @@ HeldClock* const kProcessClock = [] {
 }();
 
 }  // namespace
+
+void pass_time(double seconds) {
+  kProcessClock->page().now.fetch_add(static_cast<std::int64_t>(1e9 * seconds));
+}
+
 }  // namespace phalanx::test

@@ -180,6 +180,7 @@ void after_fork_in_child() {
     std::abort();
   }
   ::close(descriptor);
+  ask_for_the_processor(1);
   hold(static_cast<ClockPage*>(memory));
 }
 
@@ -187,7 +188,6 @@ void after_fork_in_child() {
 
 void hold(ClockPage* page) noexcept {
   block_wake_signal();
-  ask_for_the_processor(1);
   pthread_atfork(before_fork, nullptr, after_fork_in_child);
   enter_process(*page, ::getpid());
   held.store(page);
