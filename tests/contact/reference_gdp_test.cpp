@@ -445,6 +445,59 @@ void expect_rare(const Compared& out) {
   EXPECT_LE(out.grazing + out.hovering, 3 + out.stops / 20);
 }
 
+/// A glove's recording in this hand's angles: a column of the same name counts, with flexion negative, as the
+/// gloves have it; the hand's range of motion clamps. Every sample is a tick.
+std::vector<JointArray> recorded(const std::string& file, const HandParameters& hand) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  std::vector<int> joint_of_column;
+  std::stringstream header(line);
+  for (std::string name; std::getline(header, name, ',');) {
+    const std::string flexion = name.ends_with("abduction") ? name : name + "_flexion";
+    std::string full = flexion;
+    for (const char* digit : {"index", "middle", "ring", "little"}) {
+      if (name == std::string(digit) + "_abduction") full = std::string(digit) + "_mcp_abduction";
+    }
+    joint_of_column.push_back(find_joint(full).value_or(-1));
+  }
+  std::vector<JointArray> out;
+  while (std::getline(in, line)) {
+    JointArray q = hand.open_angle;
+    std::stringstream row(line);
+    std::string cell;
+    for (std::size_t c = 0; c < joint_of_column.size() && std::getline(row, cell, ','); ++c) {
+      if (joint_of_column[c] < 0) continue;
+      const auto j = static_cast<std::size_t>(joint_of_column[c]);
+      const bool abduction = j % kJointsPerDigit == kAbductionJoint;
+      q[j] = std::clamp((abduction ? 1.0 : -1.0) * std::stod(cell), hand.min_angle[j], hand.max_angle[j]);
+    }
+    out.push_back(q);
+  }
+  return out;
+}
+
+TEST(ReferenceGdp, AgreesFromItsOwnStateOverRecordingsGivenByHand) {
+  const char* files = std::getenv("PHALANX_REFERENCE_MOTION");
+  if (files == nullptr) GTEST_SKIP() << "PHALANX_REFERENCE_MOTION names no recording";
+  std::vector<Place> objects = places();
+  if (const char* mesh = std::getenv("PHALANX_REFERENCE_MESH")) {
+    objects = {{mesh, test::moved(import_mesh(mesh, 0.06), test::at(0.0, -0.05, -0.045))}};
+  }
+  std::stringstream list(files);
+  for (std::string file; std::getline(list, file, ':');) {
+    for (const Place& place : objects) {
+      SCOPED_TRACE(file + " before " + place.name);
+      const HapticModel model = model_before(place.object);
+      Beside beside(model, From::kOwnState);
+      for (const JointArray& q : recorded(file, model.hand.parameters()))
+        ASSERT_NO_FATAL_FAILURE(beside.tick(q));
+      beside.out.print(file + " before " + place.name);
+      expect_rare(beside.out);
+    }
+  }
+}
+
 TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) {
   const int seeds = runs_whole_range() ? 20 : 1;
   for (const Place& place : places()) {

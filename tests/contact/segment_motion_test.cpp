@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A segment's velocity and acceleration along a straight way in joint space against differences of the hand's
-// poses, and the bounds on its speed and jerk against what its points do all along the way.
+// poses, and the bounds on its speed, bend and jerk against what its points do all along the way.
 #include "phalanx/contact/segment_motion.h"
 
 #include <gmock/gmock.h>
@@ -95,6 +95,55 @@ TEST(SegmentMotion, VelocityAndAccelerationAreTheDifferencesOfThePoses) {
         motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(motion.velocity(x));
     ASSERT_LE((a - expected).norm(), motion.jerk * turned * g * g / 12.0 + 4e-9);
   });
+}
+
+// The bend by differences of poses alone, so that no formula of the program is trusted. Their error is the
+// fourth derivative's: at most (sum |w|)^4 R h^2 / 12, and an ulp of 1 m / h^2.
+TEST(SegmentMotion, BendBoundsTheSecondDifferencesAllAlongTheWay) {
+  double most = 0.0;
+  for_each_way(13, [&](Random& random, const Way& way) {
+    const SegmentMotion motion = way.motion(0.0);
+    const double s = between(random, -1.0, 1.0);
+    const double h = 1e-3;
+    const double bend = (way.place(s + h) - 2.0 * way.place(s) + way.place(s - h)).norm() / (h * h);
+    double turned = 0.0;
+    for (const double w : way.rate) turned += std::abs(w);
+    ASSERT_LE(bend, motion.bend + motion.jerk * turned * h * h / 12.0 + 4e-9);
+    if (motion.bend > 0.0) most = std::max(most, bend / motion.bend);
+  });
+  EXPECT_GT(most, 0.5) << "a bound, not a wall far away";
+}
+
+// One joint that turns by w = 2 a unit of s, 40 mm before a segment whose farthest point is R from it: the
+// point goes round a circle at w R, is drawn to the centre by w^2 R, and that turns by w^3 R.
+TEST(SegmentMotion, OfOneJointTheBoundsAreACircles) {
+  const HandModel hand = test::simple_hand(Handedness::kRight, Pose{}, 800);
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    DigitPose pose;
+    hand.digit_pose(test::kIndex, {}, pose);
+    const SegmentMotion motion = segment_motion(hand, test::kIndex, pose, {2.0, 0.0, 0.0, 0.0}, k);
+    const double bones = k == 0 ? 0.0 : test::kLength1 + (k == 1 ? 0.0 : test::kLength2);
+    double own = 0.0;
+    for (const Vec3& v : hand.mesh(segment_index(test::kIndex, k)).vertices) own = std::max(own, v.norm());
+    const double R = bones + own;
+    EXPECT_NEAR(motion.speed, 2.0 * R, 1e-15);
+    EXPECT_NEAR(motion.bend, 4.0 * R, 1e-15);
+    EXPECT_NEAR(motion.jerk, 8.0 * R, 1e-15);
+  }
+}
+
+// Two joints at once, w = 1 and -2: V is 1, then 3.
+TEST(SegmentMotion, OfTwoJointsTheBoundsAreTheSumsByHand) {
+  const HandModel hand = test::simple_hand(Handedness::kRight, Pose{}, 800);
+  DigitPose pose;
+  hand.digit_pose(test::kIndex, {}, pose);
+  const SegmentMotion motion = segment_motion(hand, test::kIndex, pose, {1.0, 0.0, -2.0, 0.0}, 1);
+  const double near = hand.reach(test::kIndex, 2, 1);
+  const double far = hand.reach(test::kIndex, 0, 1);
+  EXPECT_NEAR(far - near, test::kLength1, 1e-15);
+  EXPECT_NEAR(motion.speed, far + 2.0 * near, 1e-15);
+  EXPECT_NEAR(motion.bend, far + (9.0 - 1.0) * near, 1e-15);
+  EXPECT_NEAR(motion.jerk, far + (27.0 - 1.0) * near, 1e-15);
 }
 
 TEST(SegmentMotion, SpeedAndJerkBoundEveryPointAllAlongTheWay) {
