@@ -13,9 +13,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "contact/normal_fan.h"
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
+#include "phalanx/contact/triangle_distance.h"
 #include "phalanx/core/index.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
@@ -164,6 +167,67 @@ TEST(GdpByHand, ABlockedContactKeepsItsOffsetWhileTheHcpIsBeyondIt) {
   EXPECT_NEAR(paper.record(1).depth, y2(0.5, 0.7) - y2(0.60, 1.10) - offset_by_hand(), kPlace);
 }
 
+double y3(double p, double q, double r) {
+  return -40e-3 * std::sin(p) - 25e-3 * std::sin(q) - 20e-3 * std::sin(r) - 1e-3 * std::cos(r);
+}
+double f3(double p, double q, double r) {
+  return 40e-3 * std::cos(p) + 25e-3 * std::cos(q) + 20e-3 * std::cos(r) - 1e-3 * std::sin(r);
+}
+
+// Any segment nearer the palm that pushes makes a d0: here the proximal phalanx pushes, while the middle one
+// has a record that does not. The last tick takes the DIP's HCP from 0 to 0.1, all else stands at MCP 0.54,
+// PIP 0.25; the distal corner meets its plate at DIP 0.05.
+TEST(GdpByHand, TheOffsetNeedsOneNearerSegmentThatPushesNotAll) {
+  TriangleMesh object = two_steps();
+  append(object, plate(f3(0.5, 0.7, 0.75), y3(0.5, 0.7, 0.75)));
+  const HapticModel model = paper_model(object);
+  Paper paper(model);
+  for (const JointArray& q :
+       {index_angles(0.4), index_angles(0.55), index_angles(0.60, 0.5), index_angles(0.54, 0.25)})
+    paper.tick(q);
+  ASSERT_TRUE(paper.record(1).active);
+  ASSERT_LT(paper.record(1).depth, 0.0);
+  ASSERT_GT(paper.record(0).depth, 0.0);
+  ASSERT_FALSE(paper.record(2).active);
+  paper.tick(index_angles(0.54, 0.25, 0.1));
+  ASSERT_TRUE(paper.record(2).active);
+  EXPECT_NEAR(paper.gdp(3), 0.05, 1e-6);
+  EXPECT_NEAR(paper.record(2).offset, y3(0.5, 0.7, 0.75) - y3(0.54, 0.79, 0.84), 2.0 * kPlace);
+  EXPECT_GT(paper.record(2).offset, 1e-3);
+}
+
+// A cone of 36 sides, which fold by less than 30 degrees, so that all its normals at the apex are its axis.
+// The proximal corner meets the apex 60 degrees beside the axis: the force may turn from there towards the
+// axis by 30.
+TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDegrees) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const double lean = 60.0 * kDegree;
+  TriangleMesh cone;  // apex up at the origin, half angle 20 degrees
+  cone.vertices = {Vec3::Zero(), Vec3(0.0, -5e-3, 0.0)};
+  const double radius = 5e-3 * std::tan(20.0 * kDegree);
+  for (int i = 0; i < 36; ++i)
+    cone.vertices.emplace_back(radius * std::cos(10.0 * i * kDegree), -5e-3,
+                               -radius * std::sin(10.0 * i * kDegree));
+  for (int i = 0; i < 36; ++i) {
+    const int a = 2 + i;
+    const int b = 2 + (i + 1) % 36;
+    cone.triangles.push_back({0, a, b});
+    cone.triangles.push_back({1, b, a});
+  }
+  const double f = f1(0.5) - kPaperMargin * std::sin(lean);
+  const double y = y1(0.5) - kPaperMargin * std::cos(lean);
+  const HapticModel model = paper_model(test::moved(cone, test::at(0.0, y, -f)));
+  Paper paper(model);
+  paper.tick(index_angles(0.4));
+  paper.tick(index_angles(0.6));
+  ASSERT_TRUE(paper.record(0).active);
+  EXPECT_NEAR(paper.gdp(0), 0.5, 1e-6);
+  // 10 nm of the margin's 50 um are 2e-4 rad.
+  EXPECT_LT((paper.record(0).n_c - Vec3(0.0, std::cos(lean), -std::sin(lean))).norm(), 2e-4);
+  const double turned = 30.0 * kDegree;
+  EXPECT_LT((paper.record(0).force_normal - Vec3(0.0, std::cos(turned), -std::sin(turned))).norm(), 2e-4);
+}
+
 // Both corners reach their plates at s = 0.5 of one tick: MCP 0.4 to 0.6, PIP 0 to -0.1, that is at MCP 0.5
 // and PIP -0.05. The middle phalanx decides, so that the PIP stops too, although its way from there leads off
 // the plate. The middle one's plate is 0.2 nm higher: whatever rounding does, where the proximal one closes
@@ -189,6 +253,168 @@ TEST(GdpByHand, OfTwoAtTheSameMomentTheDistalOneDecides) {
   const double second = 500.0 * (y2(0.5, 0.45) - y2(0.6, 0.5));
   EXPECT_NEAR(index_torque(hand.now(), 0), -first * f1(0.5) - second * f2(0.5, 0.45), 3e-6);
   EXPECT_NEAR(index_torque(hand.now(), 2), -second * (20e-3 * std::cos(0.45) - 1e-3 * std::sin(0.45)), 1e-6);
+}
+
+// The same where the distal one is slow and near the tick's end: at s = 0.9999 both are at the margin, MCP
+// 0.5 and PIP -0.27. The proximal corner closes at 1.7 mm a tick, the middle one at 0.24: when the proximal
+// one must stop, nothing urges to look at the middle one, and yet it decides.
+TEST(GdpByHand, ADistalSegmentThatIsWithinTheMarginDecidesHoweverSlowlyItCloses) {
+  TriangleMesh object = plate(f1(0.5), y1(0.5));
+  append(object, plate(f2(0.5, 0.23), y2(0.5, 0.23)));
+  const HapticModel model = paper_model(object);
+  Paper paper(model);
+  paper.tick(index_angles(0.4));
+  paper.tick(index_angles(0.4 + 0.1 / 0.9999, -0.27 / 0.9999));
+  ASSERT_TRUE(paper.record(0).active);
+  ASSERT_TRUE(paper.record(1).active);
+  EXPECT_NEAR(paper.gdp(2), -0.27, 6e-6);
+}
+
+// The corner slides sideways 52 um over a floor, beyond the margin, into a wall: 5 um more than the wall's 50
+// um would tie, but the segment does not run into the floor. Abduction by a takes the corner at the side to
+// 20 sin a + cos a.
+TEST(GdpByHand, AFloorThatTheSegmentSlidesOverIsNoPartOfTheWallsContact) {
+  const double wall = -20e-3 * std::sin(0.2) - 1e-3 * std::cos(0.2) - kPaperMargin;
+  TriangleMesh object =
+      test::moved(make_box(Vec3(0.03, 0.002, 0.01), 12), test::at(0.0, -2e-3 - 52e-6, -0.02));
+  append(object, make_box(Vec3(0.002, 0.01, 0.01), 12), test::at(wall - 1e-3, 0.0, -0.02));
+  const HapticModel model = paper_model(object);
+  Paper paper(model);
+  paper.tick(index_angles(0.0, 0.0, 0.0, 0.1));
+  paper.tick(index_angles(0.0, 0.0, 0.0, 0.3));
+  ASSERT_TRUE(paper.record(0).active);
+  EXPECT_NEAR(paper.gdp(1), 0.2, 1e-6);
+  EXPECT_LT((paper.record(0).n_c - Vec3::UnitX()).norm(), 1e-12);
+}
+
+/// A 2 mm cube so far from a wall towards +x and from a floor towards -y, moving at `velocity`: its contact
+/// within 50 um.
+ContactPatch before_wall_and_floor(double wall, double floor, const Vec3& velocity) {
+  TriangleMesh walls = test::moved(make_box(Vec3(0.04, 0.002, 0.04), 12), test::at(0.0, -1e-3, 0.0));
+  append(walls, make_box(Vec3(0.002, 0.04, 0.04), 12), test::at(1e-3, 0.0, 0.0));
+  const ObjectModel object(walls);
+  const SegmentTree cube(make_box(Vec3::Constant(2e-3), 12));
+  SearchScratch scratch(cube);
+  const Pose X{Mat3::Identity(), Vec3(-1e-3 - wall, 1e-3 + floor, 0.0)};
+  SegmentMotion motion;
+  motion.linear = velocity;
+  return contact_patch({cube, X, scratch}, object, 50e-6, &motion);
+}
+
+TEST(ContactPatchByHand, CountsWhatClosesAtLeastHalfAsFastAsTheFastest) {
+  const Vec3 off_wall = -Vec3::UnitX();
+  const Vec3 off_floor = Vec3::UnitY();
+  // Towards the wall alone: the floor, though it is nearer, has no part in it.
+  ContactPatch patch = before_wall_and_floor(48e-6, 47e-6, Vec3(1.0, 0.0, 0.0));
+  EXPECT_NEAR(patch.distance, 48e-6, 1e-12);
+  EXPECT_LT((patch.direction - off_wall).norm(), 1e-12);
+  // 0.4 of the wall's speed towards the floor: less than half, so the same.
+  patch = before_wall_and_floor(48e-6, 47e-6, Vec3(1.0, -0.4, 0.0));
+  EXPECT_LT((patch.direction - off_wall).norm(), 1e-12);
+  // 0.6 of it: both count.
+  patch = before_wall_and_floor(48e-6, 47e-6, Vec3(1.0, -0.6, 0.0));
+  EXPECT_NEAR(patch.distance, 47e-6, 1e-12);
+  EXPECT_GT(patch.direction.dot(off_wall), 0.5);
+  EXPECT_GT(patch.direction.dot(off_floor), 0.5);
+  // Away from the floor at the wall: the floor does not close.
+  patch = before_wall_and_floor(48e-6, 47e-6, Vec3(1.0, 2.0, 0.0));
+  EXPECT_LT((patch.direction - off_wall).norm(), 1e-12);
+  // A wall beyond the 50 um leads nothing, however fast it comes.
+  patch = before_wall_and_floor(53e-6, 47e-6, Vec3(1.0, -0.3, 0.0));
+  EXPECT_NEAR(patch.distance, 47e-6, 1e-12);
+  EXPECT_LT((patch.direction - off_floor).norm(), 1e-12);
+  // Nothing closes: all count.
+  patch = before_wall_and_floor(48e-6, 47e-6, Vec3(-1.0, 1.0, 0.0));
+  EXPECT_GT(patch.direction.dot(off_wall), 0.5);
+  EXPECT_GT(patch.direction.dot(off_floor), 0.5);
+}
+
+// A spike's lowest corner in a groove of two walls at 45 degrees, 48 um from the one and 49 from the other:
+// one point of the spike, two places on the walls. Within 53 um they count 1 and 1 - 1 um / 5 um.
+TEST(ContactPatchByHand, OnePointOfTheSegmentBeforeTwoWallsIsTwoPlaces) {
+  const double half = std::numbers::sqrt2 / 2.0;
+  const Vec3 left(half, half, 0.0);  // out of the wall on the left
+  const Vec3 right(-half, half, 0.0);
+  const auto wall = [&](const Vec3& n, double apart) {
+    const Mat3 R = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), n).toRotationMatrix();
+    // Off the middle, where the face's two triangles meet.
+    return test::moved(make_box(Vec3(0.04, 0.002, 0.03), 12),
+                       Pose{R, -(apart + 1e-3) * n + Vec3(0, 0, 3e-3)});
+  };
+  TriangleMesh groove = wall(left, 48e-6);
+  append(groove, wall(right, 49e-6));
+  TriangleMesh spike;
+  spike.vertices = {Vec3::Zero(), Vec3(2e-4, 2e-3, 1e-4), Vec3(-2e-4, 2e-3, 1e-4), Vec3(0, 2e-3, -2e-4)};
+  spike.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  const SegmentTree segment(spike);
+  SearchScratch scratch(segment);
+  const Pose X;
+  const ContactPatch patch = contact_patch({segment, X, scratch}, ObjectModel(groove), 1e-4);
+  EXPECT_NEAR(patch.distance, 48e-6, 1e-12);
+  EXPECT_LT((patch.direction - (left + 0.8 * right).normalized()).norm(), 1e-6);
+  // Feet at -48 um left and -49 um right, weighed the same way.
+  EXPECT_LT((patch.on_object + (48e-6 * left + 0.8 * 49e-6 * right) / 1.8).norm(), 1e-10);
+}
+
+// A triangle with legs of 3 and 4 mm lies 50 um over a large one: A = 6 mm^2, its edges 3, 5 and 4 mm.
+TEST(TiedRegionByHand, OfAFaceOverAFaceIsTheFaceWidenedByTheBand) {
+  const double e = 5e-6;
+  const double up = 50e-6;
+  const Corners small = {Vec3(0, 0, up), Vec3(3e-3, 0, up), Vec3(0, 4e-3, up)};
+  const Corners large = {Vec3(-1, -1, 0), Vec3(3, -1, 0), Vec3(-1, 3, 0)};
+  const TiedRegion region = tied_region(small, large, triangle_distance(small, large), up + e, e);
+  const double disc = std::numbers::pi * e * e;
+  const double weight = 6e-6 + 12e-3 * e + disc;
+  EXPECT_NEAR(region.weight, weight, 1e-17);
+  const Vec3 centroid(1e-3, 4e-3 / 3.0, 0.0);  // also the corners' mean
+  const Vec3 rim = 3e-3 * Vec3(1.5e-3, 0, 0) + 5e-3 * Vec3(1.5e-3, 2e-3, 0) + 4e-3 * Vec3(0, 2e-3, 0);
+  const Vec3 middle = ((6e-6 + disc) * centroid + e * rim) / weight;
+  EXPECT_LT((region.on_a - middle - Vec3(0, 0, up)).norm(), 1e-14);
+  EXPECT_LT((region.on_b - middle).norm(), 1e-14);
+}
+
+// A right-angled crease along y, one face z = 0 towards -x, one down from it. The contact is 5 um before the
+// crease on the first face: the second face counts by half (10 um is the edge's width), so the fan reaches
+// from z to the middle of z and x, 45 degrees. An n_c 60 degrees from z gets that end; one of 20 degrees
+// itself.
+TEST(NormalFanByHand, BesideACreaseTheOtherFaceCountsByHowNearItIs) {
+  const TriangleMesh crease{
+      {{-0.03, -0.03, 0}, {0, -0.03, 0}, {0, 0.03, 0}, {-0.03, 0.03, 0}, {0, -0.03, -0.03}, {0, 0.03, -0.03}},
+      {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}};
+  const ObjectModel object(crease);
+  TiedTriangles tied;
+  for (int slot = 0; slot < object.tree().size(); ++slot) tied.add(slot);
+  const auto leaning = [](double degrees) {
+    const double a = degrees * std::numbers::pi / 180.0;
+    return Vec3(std::sin(a), 0.0, std::cos(a));
+  };
+  const Vec3 contact(-5e-6, 1e-3, 0.0);
+  EXPECT_LT((normal_at_contact(object, tied, contact, leaning(60.0)) - leaning(45.0)).norm(), 1e-6);
+  EXPECT_LT((normal_at_contact(object, tied, contact, leaning(20.0)) - leaning(20.0)).norm(), 1e-6);
+}
+
+// Links with offsets along their axes: 30 mm at the first segment's own joint, 20 mm at the second's. From
+// joint to joint the first is hypot(40, 30) = 50 mm long.
+TEST(ReachByHand, CountsTheOffsetsAlongTheAxes) {
+  HandParameters parameters = test::simple_parameters();
+  parameters.digits[test::kIndex].dh[1].d = 0.030;
+  parameters.digits[test::kIndex].dh[2].d = -0.020;
+  SegmentMeshes meshes = make_capsule_meshes(parameters, Handedness::kRight, 800);
+  for (int k = 0; k < kSegmentsPerDigit; ++k) meshes[idx(segment_index(test::kIndex, k))] = diamond();
+  const HandModel hand(parameters, Handedness::kRight, Pose{}, std::move(meshes));
+  constexpr double kOwn = 21e-3;  // a diamond's farthest corner
+  EXPECT_NEAR(hand.reach(test::kIndex, 1, 0), kOwn + 0.030, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, 0, 0), kOwn + 0.030, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, 2, 1), kOwn + 0.020, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, 1, 1), kOwn + 0.020 + 0.050, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, 2, 2), kOwn + std::hypot(test::kLength2, 0.020), 1e-15);
+}
+
+// A point beyond a corner's angle has no negative share: (1, 1) mm before the legs x + y = 1 mm.
+TEST(BarycentricByHand, APointBesideTheTriangleHasNoNegativeWeight) {
+  const Corners t = {Vec3(0, 0, 0), Vec3(1e-3, 0, 0), Vec3(0, 1e-3, 0)};
+  EXPECT_LT((barycentric(t, Vec3(1e-3, 1e-3, 0.0)) - Vec3(0.0, 0.5, 0.5)).norm(), 1e-12);
+  EXPECT_LT((barycentric(t, Vec3(-1e-3, 0.5e-3, 0.0)) - Vec3(0.5, 0.0, 0.5)).norm(), 1e-12);
 }
 
 // Steps shorter than the margin: what is known of the distance is spent to the last micrometre before it is

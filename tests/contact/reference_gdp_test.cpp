@@ -323,7 +323,8 @@ class Beside {
     // moves the point by that share of the extent of what ties, and turns a direction by that.
     EXPECT_LE(point, 1e-10 + 1e-7 * expected.extent);
     EXPECT_LE(direction, 1e-7 + expected.doubt);
-    EXPECT_LE(normal, 1e-6 + expected.doubt) << "the program takes normals within 1e-6 for one";
+    EXPECT_LE(normal, 1e-6 + expected.doubt + expected.normal_doubt)
+        << "the program takes normals within 1e-6 for one";
     out.point = std::max(out.point, point);
     out.direction = std::max(out.direction, direction);
     out.normal = std::max(out.normal, normal);

@@ -212,6 +212,22 @@ TEST(Step, AJumpIsSlewedAtTheFastestThatAJointMoves) {
   EXPECT_NEAR(s.hcp_angle[joint_index(1, 2)], 0.3, 1e-15);
 }
 
+// 10 rad/s: 0.05 rad in a period of 5 ms, 0.2 in 20 ms, and 0.5 after any gap, for the slew counts 50 ms at
+// most.
+TEST(Step, AJumpAfterAGapIsSlewedByTheGapsLengthUpToFiftyMilliseconds) {
+  HapticModel model = floor_model();
+  model.limits.joint_speed = 10.0;
+  const std::pair<double, double> cases[] = {
+      {0.001, 0.05}, {0.005, 0.05}, {0.02, 0.2}, {0.05, 0.5}, {3.0, 0.5}};
+  for (const auto& [gap, allowed] : cases) {
+    HapticState state(model);
+    step(model, Sample{1.0, index_angles(0.0)}, state);
+    const Status status = step(model, Sample{1.0 + gap, index_angles(0.0, 1.4)}, state);
+    EXPECT_TRUE(has(status, Status::kSampleJump)) << gap;
+    EXPECT_NEAR(state.snapshot().hcp_angle[joint_index(1, 2)], allowed, 1e-12) << gap;
+  }
+}
+
 TEST(Step, AnAngleOutsideTheAnatomyIsClamped) {
   const HapticModel model = floor_model();
   Runner hand(model);

@@ -466,12 +466,14 @@ ReferencePatch ReferenceGdp::patch(int digit, int k, const DigitAngles& angle,
   out.on_segment /= weight;
   on_object /= weight;
   out.n_c = direction.norm() > 0.1 * weight ? Vec3(direction.normalized()) : pairs.front().direction();
-  out.force_normal =
-      parameters_.normal == ForceNormal::kContact ? out.n_c : object_normal(pairs, on_object, out.n_c);
+  out.force_normal = parameters_.normal == ForceNormal::kContact
+                         ? out.n_c
+                         : object_normal(pairs, on_object, out.n_c, out.normal_doubt);
   return out;
 }
 
-Vec3 ReferenceGdp::object_normal(const std::vector<Pair>& tied, const Vec3& contact, const Vec3& n_c) const {
+Vec3 ReferenceGdp::object_normal(const std::vector<Pair>& tied, const Vec3& contact, const Vec3& n_c,
+                                 double& doubt) const {
   struct Foot {
     std::size_t triangle;
     Vec3 at;
@@ -496,6 +498,15 @@ Vec3 ReferenceGdp::object_normal(const std::vector<Pair>& tied, const Vec3& cont
       normal += share * normals_.corner[pair.theirs][i];
     }
     normal.normalize();
+    // Weights shift by no more than the way beside the triangle, in heights of it.
+    double longest = 0.0;
+    double spread = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      longest = std::max(longest, (t[(i + 1) % 3] - t[i]).norm());
+      spread = std::max(
+          spread, angle_apart(normals_.corner[pair.theirs][i], normals_.corner[pair.theirs][(i + 1) % 3]));
+    }
+    doubt += spread * std::min(1.0, 3.0 * (at - contact).norm() * longest / area);
     if (normal.dot(n_c) < 0.0) normal = -normal;
     feet.push_back({pair.theirs, at, normal, (at - contact).norm()});
   }

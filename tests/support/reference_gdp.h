@@ -58,6 +58,9 @@ struct ReferencePatch {
   /// How far n_c may turn with the order in which pairs are gathered into places: 0 where every order gives
   /// the same places [rad].
   double doubt = 0.0;
+  /// How far the force's direction may turn with the place on a triangle that the contact is beside, not on:
+  /// a mean of several places. "Nearest" is there what a weight of its corners makes of it [rad].
+  double normal_doubt = 0.0;
 };
 
 /// Force of each segment and torque of each joint, by Hooke's law, with the fingertip cap.
@@ -129,7 +132,8 @@ class ReferenceGdp {
   /// How fast the point x of the segment closes along -n, by a difference of poses [m per unit of s].
   [[nodiscard]] double closing_speed(int digit, int k, const DigitAngles& angle, const DigitAngles& rate,
                                      const Vec3& n, const Vec3& x) const;
-  [[nodiscard]] Vec3 object_normal(const std::vector<Pair>& tied, const Vec3& contact, const Vec3& n_c) const;
+  [[nodiscard]] Vec3 object_normal(const std::vector<Pair>& tied, const Vec3& contact, const Vec3& n_c,
+                                   double& doubt) const;
 
   HandParameters hand_;
   bool left_;
