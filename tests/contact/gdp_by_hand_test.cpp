@@ -200,14 +200,14 @@ TEST(GdpByHand, TheOffsetNeedsOneNearerSegmentThatPushesNotAll) {
 // The proximal corner meets the apex 60 degrees beside the axis: the force may turn from there towards the
 // axis by 30.
 TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDegrees) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  const double lean = 60.0 * kDegree;
+  constexpr double kOneDegree = std::numbers::pi / 180.0;
+  const double lean = 60.0 * kOneDegree;
   TriangleMesh cone;  // apex up at the origin, half angle 20 degrees
   cone.vertices = {Vec3::Zero(), Vec3(0.0, -5e-3, 0.0)};
-  const double radius = 5e-3 * std::tan(20.0 * kDegree);
+  const double radius = 5e-3 * std::tan(20.0 * kOneDegree);
   for (int i = 0; i < 36; ++i)
-    cone.vertices.emplace_back(radius * std::cos(10.0 * i * kDegree), -5e-3,
-                               -radius * std::sin(10.0 * i * kDegree));
+    cone.vertices.emplace_back(radius * std::cos(10.0 * i * kOneDegree), -5e-3,
+                               -radius * std::sin(10.0 * i * kOneDegree));
   for (int i = 0; i < 36; ++i) {
     const int a = 2 + i;
     const int b = 2 + (i + 1) % 36;
@@ -224,7 +224,7 @@ TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDeg
   EXPECT_NEAR(paper.gdp(0), 0.5, 1e-6);
   // 10 nm of the margin's 50 um are 2e-4 rad.
   EXPECT_LT((paper.record(0).n_c - Vec3(0.0, std::cos(lean), -std::sin(lean))).norm(), 2e-4);
-  const double turned = 30.0 * kDegree;
+  const double turned = 30.0 * kOneDegree;
   EXPECT_LT((paper.record(0).force_normal - Vec3(0.0, std::cos(turned), -std::sin(turned))).norm(), 2e-4);
 }
 
