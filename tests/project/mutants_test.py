@@ -7,6 +7,7 @@ import importlib.util
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 sys.dont_write_bytecode = True
@@ -79,8 +80,8 @@ class Operators(unittest.TestCase):
 class Watched(unittest.TestCase):
     def watch(self, script: str) -> tuple[str, dict[str, float]]:
         with tempfile.TemporaryDirectory() as place:
-            run = mutants.Run(["bash", "-c", script], place, {}, {"A.one": 0.1, "A.two": 0.1, "A.three": 0.1})
-            return mutants.watch(run, Path(place), 10.0, True)
+            run = mutants.Run(["bash", "-c", script], place, {}, {"A.one": 0.01, "A.two": 0.01, "A.three": 0.01})
+            return mutants.watch(run, Path(place), True)
 
     def test_the_test_that_failed_is_named_and_not_one_that_was_skipped_after_it(self) -> None:
         script = r"""printf '[ RUN      ] A.one\n[       OK ] A.one (30 ms)\n[ RUN      ] A.two\n[  FAILED  ] A.two (1 ms)\n'
@@ -90,6 +91,11 @@ class Watched(unittest.TestCase):
     def test_a_crash_is_laid_to_the_test_that_ran(self) -> None:
         script = r"""printf '[ RUN      ] A.one\n[       OK ] A.one (0 ms)\n[ RUN      ] A.two\n'; kill -SEGV $$"""
         self.assertEqual(self.watch(script), ("A.two (crashes)", {"A.one": 0.0}))
+
+    def test_a_test_that_waits_and_one_that_computes_without_end_hang(self) -> None:
+        for least, script in (("LEAST_SECONDS", "exec sleep 600"), ("LEAST_PROCESSOR_SECONDS", "while :; do :; done")):
+            with unittest.mock.patch.object(mutants, least, 0.1):
+                self.assertEqual(self.watch(r"printf '[ RUN      ] A.one\n'; " + script), ("A.one (hangs)", {}), least)
 
     def test_what_passes_kills_nothing(self) -> None:
         self.assertEqual(self.watch(r"""printf '[ RUN      ] A.one\n[       OK ] A.one (0 ms)\n'"""), ("", {"A.one": 0.0}))
