@@ -98,7 +98,12 @@ class Watched(unittest.TestCase):
                 self.assertEqual(self.watch(r"printf '[ RUN      ] A.one\n'; " + script), ("A.one (hangs)", {}), least)
 
     def test_what_passes_kills_nothing(self) -> None:
-        self.assertEqual(self.watch(r"""printf '[ RUN      ] A.one\n[       OK ] A.one (0 ms)\n'"""), ("", {"A.one": 0.0}))
+        script = r"""for test in one two three; do printf '[ RUN      ] A.%s\n[       OK ] A.%s (0 ms)\n' $test $test; done"""
+        self.assertEqual(self.watch(script), ("", {"A.one": 0.0, "A.two": 0.0, "A.three": 0.0}))
+
+    def test_a_program_that_ends_before_its_last_test_does_not_pass(self) -> None:
+        script = r"""printf '[ RUN      ] A.one\n[       OK ] A.one (0 ms)\n[ RUN      ] A.two\n'; exit 0"""
+        self.assertEqual(self.watch(script), ("A.two (does not pass)", {"A.one": 0.0}))
 
 
 class MadeTree(unittest.TestCase):
