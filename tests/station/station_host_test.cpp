@@ -504,12 +504,11 @@ TEST_F(StationHostTest, TheTorqueIsZeroBeforeAChangeOnItsWayIsDone) {
   bool resumed = false;
   bool at_rest_while_busy = false;
   for (int i = 0; i < 1000 && !at_rest_while_busy; ++i) {
-    const double time = host->view().time;
+    StationView view = host->view();
+    const double time = view.time;
     test::pass_time(0.005);  // a step
-    while (host->view().time <= time) {
-    }
+    while (view.time <= time && !(view.state == SafetyState::kStopped && view.at_rest)) view = host->view();
     resumed = resumed || host->resume(host->stops());
-    const StationView view = host->view();
     at_rest_while_busy =
         view.state == SafetyState::kStopped && view.at_rest && host->state()->geometry->revision == 1;
   }

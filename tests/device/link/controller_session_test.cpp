@@ -5,9 +5,9 @@
 namespace phalanx::link_test {
 namespace {
 
-class LinkSession : public LinkController {};
+class LinkControllerSession : public LinkController {};
 
-TEST_F(LinkSession, OpensWithAWelcomeThatSaysWhoTheControllerIsAndTheNextEpoch) {
+TEST_F(LinkControllerSession, OpensWithAWelcomeThatSaysWhoTheControllerIsAndTheNextEpoch) {
   EXPECT_EQ(rig.hello(), PHX_NEW_SESSION);
   ASSERT_TRUE(rig.reply);
   EXPECT_EQ(rig.reply->header.type, PHX_WELCOME);
@@ -20,14 +20,14 @@ TEST_F(LinkSession, OpensWithAWelcomeThatSaysWhoTheControllerIsAndTheNextEpoch) 
   EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
 }
 
-TEST_F(LinkSession, AnswersWithTheSequenceOfTheQuestion) {
+TEST_F(LinkControllerSession, AnswersWithTheSequenceOfTheQuestion) {
   phx_message hello = rig.frame(PHX_HELLO);
   hello.header.sequence = 4711;
   rig.send(hello);
   EXPECT_EQ(rig.reply->header.sequence, 4711U);
 }
 
-TEST_F(LinkSession, SendsASampleEveryTickWhileItIsOpenAndNoneBefore) {
+TEST_F(LinkControllerSession, SendsASampleEveryTickWhileItIsOpenAndNoneBefore) {
   rig.raw[1] = 123;
   rig.tick();
   EXPECT_FALSE(rig.has_sample);
@@ -45,7 +45,7 @@ TEST_F(LinkSession, SendsASampleEveryTickWhileItIsOpenAndNoneBefore) {
   }
 }
 
-TEST_F(LinkSession, SaysOnceConfigureHasArrived) {
+TEST_F(LinkControllerSession, SaysOnceConfigureHasArrived) {
   rig.hello();
   rig.tick();
   EXPECT_EQ(rig.sample.flags, 0);
@@ -54,7 +54,7 @@ TEST_F(LinkSession, SaysOnceConfigureHasArrived) {
   EXPECT_EQ(rig.sample.flags, PHX_SAMPLE_CONFIGURED);
 }
 
-TEST_F(LinkSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
+TEST_F(LinkControllerSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
   rig.open_and_act(0.2F);
   EXPECT_EQ(rig.hello(99), PHX_ANSWERED);
   ASSERT_TRUE(rig.reply);
@@ -65,7 +65,7 @@ TEST_F(LinkSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
   EXPECT_FLOAT_EQ(rig.drive(0.2F, 5), 0.2F);  // and the first goes on undisturbed
 }
 
-TEST_F(LinkSession, GoesToAnotherHostOnceTheFirstWasSilentForASecond) {
+TEST_F(LinkControllerSession, GoesToAnotherHostOnceTheFirstWasSilentForASecond) {
   rig.open();
   rig.silent(998);  // one tick in open()
   EXPECT_EQ(rig.hello(99), PHX_ANSWERED);
@@ -74,7 +74,7 @@ TEST_F(LinkSession, GoesToAnotherHostOnceTheFirstWasSilentForASecond) {
   EXPECT_EQ(rig.reply->header.epoch, rig.epoch + 1);
 }
 
-TEST_F(LinkSession, ThatExpiresWithNothingEnabledEndsWithoutAFault) {
+TEST_F(LinkControllerSession, ThatExpiresWithNothingEnabledEndsWithoutAFault) {
   rig.open();
   rig.silent(998);
   EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
@@ -85,7 +85,7 @@ TEST_F(LinkSession, ThatExpiresWithNothingEnabledEndsWithoutAFault) {
   EXPECT_FALSE(rig.has_sample);
 }
 
-TEST_F(LinkSession, IsKeptByAnyFrameOfItsHost) {
+TEST_F(LinkControllerSession, IsKeptByAnyFrameOfItsHost) {
   rig.open();
   for (int i = 0; i < 5; ++i) {
     rig.silent(900);
@@ -94,7 +94,7 @@ TEST_F(LinkSession, IsKeptByAnyFrameOfItsHost) {
   EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
 }
 
-TEST_F(LinkSession, BeginsAnewForTheSameHostAndStopsWhatActed) {
+TEST_F(LinkControllerSession, BeginsAnewForTheSameHostAndStopsWhatActed) {
   rig.open_and_act(0.2F);
   const std::uint32_t before = rig.epoch;
   EXPECT_EQ(rig.hello(), PHX_NEW_SESSION);
@@ -105,7 +105,7 @@ TEST_F(LinkSession, BeginsAnewForTheSameHostAndStopsWhatActed) {
   EXPECT_EQ(rig.sample.acted_tick, 0U);
 }
 
-TEST_F(LinkSession, IsNotDisturbedByAHelloThatTheNetworkHasDoubledOrDelayed) {
+TEST_F(LinkControllerSession, IsNotDisturbedByAHelloThatTheNetworkHasDoubledOrDelayed) {
   phx_message hello = rig.frame(PHX_HELLO);
   hello.header.epoch = 0;
   hello.as.hello.host_id = kHost;
@@ -126,14 +126,14 @@ TEST_F(LinkSession, IsNotDisturbedByAHelloThatTheNetworkHasDoubledOrDelayed) {
   }
 }
 
-TEST_F(LinkSession, NeverHasEpochZero) {
+TEST_F(LinkControllerSession, NeverHasEpochZero) {
   const phx_device device = bench_device();
   phx_controller_init(&rig.controller, &device, 0xFFFFFFFFU);
   rig.hello();
   EXPECT_EQ(rig.epoch, 1U);
 }
 
-TEST_F(LinkSession, RefusesAndCountsEveryFrameOfAnotherEpoch) {
+TEST_F(LinkControllerSession, RefusesAndCountsEveryFrameOfAnotherEpoch) {
   rig.open_and_act(0.2F);
   const std::uint32_t right = rig.epoch;
   std::uint32_t count = 0;
@@ -150,7 +150,7 @@ TEST_F(LinkSession, RefusesAndCountsEveryFrameOfAnotherEpoch) {
   EXPECT_EQ(rig.sample.refused, count);
 }
 
-TEST_F(LinkSession, RefusesTheEpochOfBeforeARestart) {
+TEST_F(LinkControllerSession, RefusesTheEpochOfBeforeARestart) {
   rig.open_and_act(0.2F);
   const phx_device device = bench_device();
   phx_controller_init(&rig.controller, &device, 500);
@@ -160,7 +160,7 @@ TEST_F(LinkSession, RefusesTheEpochOfBeforeARestart) {
   EXPECT_EQ(rig.epoch, 501U);
 }
 
-TEST_F(LinkSession, RefusesAHelloOfAnotherVersionEvenIfTheRestOfItIsUnknown) {
+TEST_F(LinkControllerSession, RefusesAHelloOfAnotherVersionEvenIfTheRestOfItIsUnknown) {
   rig.open_and_act(0.2F);
   Bytes hello{'P', 'X', 2, PHX_HELLO, 1, 2, 3, 4, 5, 0, 0, 0, 0};
   close_again(hello);
@@ -172,7 +172,7 @@ TEST_F(LinkSession, RefusesAHelloOfAnotherVersionEvenIfTheRestOfItIsUnknown) {
   EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
 }
 
-TEST_F(LinkSession, DropsAndCountsOtherFramesOfAnotherVersion) {
+TEST_F(LinkControllerSession, DropsAndCountsOtherFramesOfAnotherVersion) {
   rig.open();
   Bytes frame = encoded(rig.next_command(0.1F));
   frame[2] = 2;
@@ -182,7 +182,7 @@ TEST_F(LinkSession, DropsAndCountsOtherFramesOfAnotherVersion) {
   EXPECT_FALSE(rig.reply);
 }
 
-TEST_F(LinkSession, AnswersAPingOfAnybodyAndIsNotKeptByIt) {
+TEST_F(LinkControllerSession, AnswersAPingOfAnybodyAndIsNotKeptByIt) {
   phx_message ping = rig.frame(PHX_PING);
   ping.as.ping.stamp = 0xFEED;
   EXPECT_EQ(rig.send(ping), PHX_ANSWERED);
@@ -198,7 +198,7 @@ TEST_F(LinkSession, AnswersAPingOfAnybodyAndIsNotKeptByIt) {
   EXPECT_EQ(rig.controller.state, PHX_STATE_NO_SESSION);
 }
 
-TEST_F(LinkSession, EndsWithGoodbyeAndZeroTorqueAtTheNextTick) {
+TEST_F(LinkControllerSession, EndsWithGoodbyeAndZeroTorqueAtTheNextTick) {
   rig.open_and_act(0.2F);
   EXPECT_EQ(rig.send(rig.frame(PHX_GOODBYE)), PHX_USED);
   EXPECT_EQ(rig.tick(), 0.0F);
@@ -209,7 +209,7 @@ TEST_F(LinkSession, EndsWithGoodbyeAndZeroTorqueAtTheNextTick) {
   EXPECT_EQ(rig.hello(99), PHX_NEW_SESSION);  // another may have it at once
 }
 
-TEST_F(LinkSession, DropsAndCountsItsOwnFramesComingBack) {
+TEST_F(LinkControllerSession, DropsAndCountsItsOwnFramesComingBack) {
   rig.open();
   std::mt19937_64 random(631);
   for (const std::uint8_t type : {PHX_WELCOME, PHX_REFUSED, PHX_SAMPLE, PHX_PONG}) {
@@ -221,7 +221,7 @@ TEST_F(LinkSession, DropsAndCountsItsOwnFramesComingBack) {
   EXPECT_EQ(rig.controller.corrupt, 4U);
 }
 
-TEST_F(LinkSession, DropsAndCountsCorruptFramesAndGoesOn) {
+TEST_F(LinkControllerSession, DropsAndCountsCorruptFramesAndGoesOn) {
   rig.open_and_act(0.2F);
   std::mt19937_64 random(632);
   for (std::uint32_t i = 1; i <= 200; ++i) {

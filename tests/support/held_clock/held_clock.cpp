@@ -5,9 +5,11 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -37,119 +39,124 @@ void real_sleep(double seconds) noexcept {
 
 }  // namespace
 
+/// The threads of all processes under the clock, as /proc tells of them. Its files stay open: they are read
+/// thousands of times.
 struct HeldClock::Threads {
-  /// What the kernel says of one thread. Its files stay open: they are read thousands of times.
-  class ThreadFiles {
+  class File {
    public:
-    ThreadFiles(std::int32_t process, std::int32_t thread) : pid(process), tid(thread) {
-      const std::string folder = "/proc/" + std::to_string(pid) + "/task/" + std::to_string(tid);
-      state_ = ::open((folder + "/stat").c_str(), O_RDONLY | O_CLOEXEC);
-      turns_ = ::open((folder + "/schedstat").c_str(), O_RDONLY | O_CLOEXEC);
+    explicit File(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+    File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    File& operator=(File&&) = delete;
+    ~File() {
+      if (descriptor_ >= 0) ::close(descriptor_);
     }
-    ThreadFiles(ThreadFiles&& other) noexcept
-        : pid(other.pid),
-          tid(other.tid),
-          state_(std::exchange(other.state_, -1)),
-          turns_(std::exchange(other.turns_, -1)) {}
-    ThreadFiles(const ThreadFiles&) = delete;
-    ThreadFiles& operator=(const ThreadFiles&) = delete;
-    ThreadFiles& operator=(ThreadFiles&&) = delete;
-    ~ThreadFiles() {
-      if (state_ >= 0) ::close(state_);
-      if (turns_ >= 0) ::close(turns_);
+    /// @returns the text, ended by a zero; empty if what it tells of has ended
+    template <std::size_t kSize>
+    const char* read(std::array<char, kSize>& text) const noexcept {
+      const ssize_t size = ::pread(descriptor_, text.data(), kSize - 1, 0);
+      text[size > 0 ? static_cast<std::size_t>(size) : 0] = '\0';
+      return text.data();
+    }
+    /// Of a folder that lists threads: how many there are; 0 if it is gone.
+    [[nodiscard]] std::size_t entries() const noexcept {
+      struct stat folder{};
+      return ::fstat(descriptor_, &folder) == 0 && folder.st_nlink > 2 ? folder.st_nlink - 2 : 0;
     }
 
-    /// 'S' sleeping, 'R' running or ready, 'T' stopped, ...; 0: it has ended
-    [[nodiscard]] char state() noexcept {
-      char text[512];
-      const ssize_t size = ::pread(state_, text, sizeof text - 1, 0);
-      if (size <= 0) return 0;
-      text[size] = '\0';
-      const char* field = std::strrchr(text, ')');  // the name before it may hold anything
-      if (field == nullptr || field[1] != ' ') return 0;
-      const char state = field[2];
-      for (int i = 2; i < 20 && field != nullptr; ++i) field = std::strchr(field + 1, ' ');
-      siblings = field != nullptr ? std::atoi(field) : 0;
-      return state;
+   private:
+    int descriptor_ = -1;
+  };
+
+  struct Process {
+    File folder;
+    std::size_t threads = 0;  ///< that are listed
+  };
+
+  struct Thread {
+    Thread(const std::string& folder, std::int32_t id)
+        : tid(id), stat(folder + "/stat"), schedstat(folder + "/schedstat") {}
+
+    /// 'S' sleeping, 'R' running or ready, 'T' stopped, 'Z' a process that nobody has waited for; 0: it has
+    /// ended
+    [[nodiscard]] char state() const noexcept {
+      std::array<char, 128> text{};
+      const char* field = std::strrchr(stat.read(text), ')');  // the name before it may hold anything
+      return field != nullptr && field[1] == ' ' ? field[2] : '\0';
     }
     /// How often it has been given a processor.
     [[nodiscard]] unsigned long turns() const noexcept {
-      char text[96];
-      const ssize_t size = ::pread(turns_, text, sizeof text - 1, 0);
-      if (size <= 0) return 0;
-      text[size] = '\0';
-      const char* last = std::strrchr(text, ' ');
+      std::array<char, 96> text{};
+      const char* last = std::strrchr(schedstat.read(text), ' ');
       return last != nullptr ? std::strtoul(last, nullptr, 10) : 0;
     }
+    /// It has entered its sleep and has not been woken: the kernel need not be asked.
+    [[nodiscard]] bool sleeps_for_time(ClockPage& page) noexcept {
+      if (wait == nullptr || wait->tid.load() != tid) {
+        wait = nullptr;
+        for (ClockWait& place : page.wait)
+          if (place.tid.load() == tid) wait = &place;
+      }
+      return wait != nullptr && wait->kind.load() == WaitKind::kSleep && wait->woken.load() == 0;
+    }
 
-    std::int32_t pid;
     std::int32_t tid;
+    File stat;
+    File schedstat;
     ClockWait* wait = nullptr;  ///< its place on the page; nullptr: none known
     unsigned long seen = 0;     ///< turns() at the first look
-    int siblings = 0;           ///< threads of its process, at the last state()
-    int listed = 0;             ///< that are known
-
-   private:
-    int state_ = -1;
-    int turns_ = -1;
   };
 
-  std::vector<ThreadFiles> all;
+  static bool works(char state) noexcept { return state == 'R' || state == 'D'; }
+
+  std::vector<Process> processes;
+  std::vector<Thread> all;
   std::uint32_t changes = 0;
   std::vector<std::int32_t> watched;  ///< of this process
   std::vector<std::int32_t> ignored;
-  std::size_t busy = 0;  ///< of all: who was at work at the last look, and is looked at first
+  std::size_t busy = 0;  ///< of all: the one that was at work at the last look, which is looked at first
 
   void read(ClockPage& page) {
     all.clear();
+    processes.clear();
     for (auto& place : page.process) {
       const std::int32_t pid = place.load();
       if (pid != 0 && !read_process(pid)) place.store(0);
     }
-    for (const std::int32_t tid : watched) all.emplace_back(::getpid(), tid);
-    for (ClockWait& wait : page.wait) {  // of what has ended
+    for (const std::int32_t tid : watched) all.emplace_back("/proc/self/task/" + std::to_string(tid), tid);
+    for (ClockWait& wait : page.wait) {
       const std::int32_t tid = wait.tid.load();
-      const bool there =
-          std::ranges::any_of(all, [&](const ThreadFiles& thread) { return thread.tid == tid; });
-      if (tid != 0 && !there && ::kill(wait.pid.load(), 0) != 0) {
-        wait.kind.store(WaitKind::kNone);
-        wait.tid.store(0);
-      }
+      if (tid == 0 || knows(tid) || ::kill(wait.pid.load(), 0) == 0) continue;
+      wait.kind.store(WaitKind::kNone);  // its process has ended
+      wait.tid.store(0);
     }
   }
+  /// @returns false: it is gone
   bool read_process(std::int32_t pid) {
     const std::string folder = "/proc/" + std::to_string(pid) + "/task";
     DIR* directory = ::opendir(folder.c_str());
     if (directory == nullptr) return false;
-    const std::size_t first = all.size();
-    int count = 0;
+    Process& process = processes.emplace_back(Process{.folder = File(folder), .threads = 0});
     while (const dirent* entry = ::readdir(directory)) {
       const std::int32_t tid = std::atoi(entry->d_name);
       if (tid <= 0) continue;
-      ++count;
-      if (std::ranges::find(ignored, tid) == ignored.end()) all.emplace_back(pid, tid);
+      ++process.threads;
+      if (std::ranges::find(ignored, tid) == ignored.end())
+        all.emplace_back(folder + "/" + entry->d_name, tid);
     }
     ::closedir(directory);
-    for (std::size_t i = first; i < all.size(); ++i) all[i].listed = count;
     return true;
   }
-  /// It has entered its sleep and has not been woken: the kernel need not be asked.
-  static bool sleeps_for_time(ThreadFiles& thread, ClockPage& page) {
-    if (thread.wait == nullptr || thread.wait->tid.load() != thread.tid) {
-      thread.wait = nullptr;
-      for (ClockWait& wait : page.wait)
-        if (wait.tid.load() == thread.tid) thread.wait = &wait;
-    }
-    return thread.wait != nullptr && thread.wait->kind.load() == WaitKind::kSleep &&
-           thread.wait->woken.load() == 0;
+  [[nodiscard]] bool knows(std::int32_t tid) const {
+    return std::ranges::any_of(all, [&](const Thread& thread) { return thread.tid == tid; });
   }
-  [[nodiscard]] bool stopped(std::int32_t tid) {
-    for (ThreadFiles& thread : all)
-      if (thread.tid == tid) {
-        const char state = thread.state();
-        return state == 'T' || state == 'Z' || state == 'X' || state == 0;
-      }
-    return true;
+  /// A thread that has ended, or of a process that is stopped: it does not end its wait.
+  [[nodiscard]] bool does_not_wake(std::int32_t tid) const {
+    const auto thread = std::ranges::find_if(all, [&](const Thread& one) { return one.tid == tid; });
+    if (thread == all.end()) return true;
+    const char state = thread->state();
+    return state == 'T' || state == 'Z' || state == 'X' || state == 0;
   }
 };
 
@@ -199,26 +206,31 @@ void HeldClock::ignore_thread(std::int32_t tid) {
 /// Looks twice: a thread that was woken between the looks runs at the second, or has had another turn.
 bool HeldClock::all_sleep() {
   if (page_->forking.load() > 0) return false;
-  const auto works = [](char state) { return state == 'R' || state == 'D'; };
+  std::vector<Threads::Thread>& all = threads_->all;
   std::size_t& busy = threads_->busy;
-  if (busy < threads_->all.size() && works(threads_->all[busy].state())) return false;
-  bool others = false;  // than those that are known
+  if (busy < all.size() && Threads::works(all[busy].state())) return false;
   for (int look = 0; look < 2; ++look) {
-    for (auto& thread : threads_->all) {
-      if (thread.tid != thread.pid && Threads::sleeps_for_time(thread, *page_))
-        continue;  // the first one tells of new ones
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Threads::Thread& thread = all[i];
+      if (thread.sleeps_for_time(*page_)) continue;
       const unsigned long turns = thread.turns();
       const char state = thread.state();
-      others = others || state == 0 || state == 'X' ||
-               (state != 'Z' && thread.listed != 0 && thread.siblings != thread.listed);
-      if (works(state) || (look == 1 && turns != thread.seen)) {
-        busy = static_cast<std::size_t>(&thread - threads_->all.data());
+      if (state == 0 || state == 'X') {  // it has ended, and another may have taken its place
+        page_->changes.fetch_add(1);
+        return false;
+      }
+      if (Threads::works(state) || (look == 1 && turns != thread.seen)) {
+        busy = i;
         return false;
       }
       thread.seen = turns;
     }
+    for (const Threads::Process& process : threads_->processes) {
+      if (process.folder.entries() == process.threads) continue;
+      page_->changes.fetch_add(1);  // threads or processes have come or gone
+      return false;
+    }
   }
-  if (others) page_->changes.fetch_add(1);
   return threads_->changes == page_->changes.load();
 }
 
@@ -245,15 +257,26 @@ std::optional<std::int64_t> HeldClock::next_wait() {
   const std::int64_t now = page_->now.load();
   wake_due(now);
   if (!all_sleep()) return std::nullopt;
-  std::int64_t next = kNever;
-  for (const ClockWait& wait : page_->wait) {
-    if (wait.kind.load() == WaitKind::kNone) continue;
-    const std::int64_t deadline = wait.deadline.load();
-    if (deadline >= next || threads_->stopped(wait.tid.load())) continue;
-    if (deadline <= now) return std::nullopt;  // it is waking up
-    next = deadline;
+  std::vector<const ClockWait*> left_out;  // of threads that do not wake
+  for (;;) {
+    const ClockWait* first = nullptr;
+    std::int64_t next = kNever;
+    for (const ClockWait& wait : page_->wait) {
+      const std::int64_t deadline = wait.deadline.load();
+      if (wait.kind.load() == WaitKind::kNone || deadline >= next ||
+          std::ranges::find(left_out, &wait) != left_out.end())
+        continue;
+      first = &wait;
+      next = deadline;
+    }
+    if (first == nullptr) return kNever;
+    if (threads_->does_not_wake(first->tid.load())) {
+      left_out.push_back(first);
+      continue;
+    }
+    if (next <= now) return std::nullopt;  // it is waking up
+    return next;
   }
-  return next;
 }
 
 void HeldClock::move_to(std::int64_t t) {
