@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { ChoiceBox } from "../../../src/panels/choice_box";
-import { listenToKeys } from "../../../src/panels/keyboard";
+import { listenInThisFile } from "./window_keys";
 
 const picked = vi.fn();
 const stop = vi.fn();
 let box: ChoiceBox;
-listenToKeys(window, { stop, pause: () => {}, help: () => {}, camera: () => {}, zoom: () => {} });
+listenInThisFile({ stop, pause: () => {}, help: () => {}, camera: () => {}, zoom: () => {} });
 
 beforeEach(() => {
   vi.clearAllMocks();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import { beforeAll, beforeEach, describe, expect, it, vi } from "vitest";
-import { listenToKeys } from "../../../src/panels/keyboard";
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { listenInThisFile } from "./window_keys";
 
 const actions = { stop: vi.fn(), pause: vi.fn(), help: vi.fn(), camera: vi.fn(), zoom: vi.fn() };
 
@@ -15,7 +15,7 @@ function add<K extends keyof HTMLElementTagNameMap>(tag: K, type = ""): HTMLElem
   return element;
 }
 
-beforeAll(() => listenToKeys(window, actions));
+listenInThisFile(actions);
 beforeEach(() => {
   vi.clearAllMocks();
   document.body.replaceChildren();
