@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import { defineConfig } from "vitest/config";
+import WhatFailed from "./tests/what_failed";
+
+const kHangMs = 900_000; // against hangs only, long enough for a wait to say what it saw instead
 
 export default defineConfig({
   test: {
-    fileParallelism: false, // two cores, and browsers with software rendering
+    reporters: ["default", new WhatFailed()],
+    maxWorkers: 2, // processes of browser stories
+    minWorkers: 1,
     projects: [
       {
         test: {
@@ -11,7 +16,7 @@ export default defineConfig({
           include: ["tests/unit/**/*.test.ts"],
           environment: "happy-dom",
           setupFiles: ["tests/unit/clean_page.ts"],
-          testTimeout: 900_000, // against hangs only
+          testTimeout: kHangMs,
           poolOptions: { forks: { isolate: false, singleFork: true } }, // a process for each file would take four times the processor time
         },
       },
@@ -20,8 +25,10 @@ export default defineConfig({
           name: "browser",
           include: ["tests/browser/**/*.test.ts"],
           environment: "node",
-          testTimeout: 120_000,
-          hookTimeout: 120_000,
+          globalSetup: ["tests/browser/support/setup.ts"],
+          testTimeout: kHangMs,
+          hookTimeout: kHangMs,
+          poolOptions: { forks: { isolate: false } },
         },
       },
     ],

@@ -11,12 +11,13 @@ import { small, stage } from "./support/stage";
 import { until } from "./support/until";
 
 const kMostTabs = 80;
+const kFlightMs = 400; // camera_rig.ts: so long the camera is on its way, by the page's clock
 const play = stage();
 let cockpit: CockpitPage;
 let seen: string[] = [];
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station({ scene: "first_touch" })).url, small);
+  cockpit = await play.open((await play.station("first_touch")).url, { ...small, reducedMotion: "no-preference" });
   await cockpit.untilRunning();
 });
 
@@ -81,9 +82,12 @@ describe("by keyboard", () => {
   it("chooses views by 1 to 4, zooms by + and -, turns by arrow keys", async () => {
     const view = cockpit.page.getByRole("application", { name: strings.view.label });
     await cockpit.page.evaluate(() => (document.activeElement as HTMLElement).blur());
+    const pageTime = () => cockpit.page.evaluate(() => performance.now());
     const look = async () => {
-      const frames = (await cockpit.probe())!.frames;
-      await until("the camera has arrived", async () => (await cockpit.probe())!.frames > frames + 12);
+      const begun = await pageTime();
+      await until("the camera has arrived", async () => (await pageTime()) - begun > kFlightMs);
+      const { frames } = (await cockpit.probe())!;
+      await until("two more frames", async () => (await cockpit.probe())!.frames > frames + 1);
       return view.screenshot();
     };
     let before = await look();

@@ -9,9 +9,9 @@ import { arrowMetresPerNewton } from "../../src/view3d/arrow_scale";
 import type { CockpitPage } from "./support/cockpit_page";
 import { curveHeight } from "./support/pictures";
 import { dataFolder } from "./support/program";
-import { stage, type Station } from "./support/stage";
+import { small, stage, type Station } from "./support/stage";
 import { distance, origins, skinAt, type Point } from "./support/geometry";
-import { pause, until } from "./support/until";
+import { until } from "./support/until";
 
 const kMillimetre = 1e-3;
 const kLeastForce = 1e-3; // [N]; less has no arrow
@@ -24,7 +24,7 @@ let cockpit: CockpitPage;
 
 beforeAll(async () => {
   station = await play.station();
-  cockpit = await play.open(station.url);
+  cockpit = await play.open(station.url, small);
 });
 
 describe("the first look", () => {
@@ -48,7 +48,6 @@ describe("the first look", () => {
       for (const { vertex, at } of probe.skin) worst = Math.max(worst, distance(skinAt(skin, tick.gdpPose, vertex), at));
       first ??= origins(tick.hcpPose);
       moved = Math.max(moved, ...origins(tick.hcpPose).map((origin, segment) => distance(origin, first![segment]!)));
-      await pause(150);
       return seen.size >= 8 && moved > kMillimetre;
     }, () => cockpit.brief());
     console.log(`farthest from the stream: ${(worst * 1e6).toFixed(3)} um, over ${seen.size} ticks in which the hand moved ${(moved * 1000).toFixed(1)} mm`);

@@ -6,15 +6,16 @@ import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, cube, noise } from "./support/meshes";
 import { shootReadable } from "./support/readable";
-import { stage, type Station } from "./support/stage";
-import { pause, until } from "./support/until";
+import { stage, type OwnStation } from "./support/stage";
+import { until } from "./support/until";
 
+const kInPlots = 0.4; // [s] of the station
 const play = stage();
-let station: Station;
+let station: OwnStation; // killed in the end
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  station = await play.station();
+  station = await play.ownStation();
   cockpit = await play.open(station.url);
 });
 
@@ -40,7 +41,7 @@ describe("the page looks right", () => {
   it("while it shakes", async () => {
     await cockpit.setStiffness(1.6);
     await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
-    await pause(1500); // some of it in the plots
+    await cockpit.untilLater(kInPlots);
     await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
     await shootReadable(cockpit, "03_shaking");
   });
@@ -48,7 +49,7 @@ describe("the page looks right", () => {
   it("when it has settled", async () => {
     await cockpit.switch(strings.calm.smoothing).click();
     await until("steady", async () => (await cockpit.verdict()) === "steady", () => cockpit.brief());
-    await pause(1500);
+    await cockpit.untilLater(kInPlots);
     await until("steady", async () => (await cockpit.verdict()) === "steady", () => cockpit.brief());
     await shootReadable(cockpit, "04_settled");
   });
@@ -63,7 +64,7 @@ describe("the page looks right", () => {
   it("stopped", async () => {
     await cockpit.stopButton.click();
     await cockpit.untilStopped();
-    await pause(500);
+    await until("the page says stopped", async () => (await cockpit.stopBox.textContent())?.includes(strings.safety.stopped), () => cockpit.brief());
     await shootReadable(cockpit, "06_stopped");
     await cockpit.button(strings.stop.resume).click();
   });
@@ -93,7 +94,7 @@ describe("the page looks right", () => {
     await cockpit.button(strings.hand.sources[HandSource.HAND_SLIDERS]!).click();
     await cockpit.untilState("the sliders", (state) => state.source === HandSource.HAND_SLIDERS && !state.stationGone);
     await cockpit.button(strings.hand.fist).click();
-    await pause(1500);
+    await cockpit.untilAtRest();
     await shootReadable(cockpit, "12_sliders");
   });
 
@@ -114,12 +115,18 @@ describe("the page looks right", () => {
   });
 
   it("without the program", async () => {
+    const telephone = await play.open(station.url, { viewport: { width: 844, height: 340 }, hasTouch: true, isMobile: true });
     await station.program.kill();
-    await until("the page knows", () => cockpit.lost());
-    await pause(1000);
+    for (const page of [cockpit, telephone]) {
+      await until("the page knows", () => page.lost());
+      await until("the picture is drawn as lost", async () => (await page.probe())!.lost);
+      await page.page.getByRole("alert").filter({ hasText: strings.lost.closed }).waitFor();
+    }
     await shootReadable(cockpit, "17_lost");
     await cockpit.page.keyboard.press("Space");
-    await until("the failure of Stop", async () => cockpit.page.getByText(strings.stop.failed).isVisible());
+    await telephone.stopButton.click();
+    for (const { page } of [cockpit, telephone]) await until("the failure of Stop", () => page.getByText(strings.stop.failed).isVisible());
     await shootReadable(cockpit, "18_lost_stop");
+    await shootReadable(telephone, "26_telephone_sideways");
   });
 });

@@ -4,19 +4,17 @@ import { beforeAll, describe, expect, it } from "vitest";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { shootReadable } from "./support/readable";
-import { stage, type OwnDevice, type Station } from "./support/stage";
-import { pause, until } from "./support/until";
+import { stage, type OwnDevice } from "./support/stage";
+import { until } from "./support/until";
 
-const kSlow = process.env["PHALANX_COCKPIT_SLOW_MOTION"] ?? "20"; // two processes and a browser on two cores: pictures, no reaction times
 const play = stage();
 let device: OwnDevice;
-let station: Station;
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  device = await play.device("grasp_teapot", [], kSlow);
-  station = await play.station({ scene: "grasp_teapot", slow: kSlow, args: ["--device", device.address] });
-  cockpit = await play.open(station.url);
+  const wired = await play.wired("grasp_teapot");
+  device = wired.device;
+  cockpit = await play.open(wired.station.url);
 });
 
 /// The station goes on and sends steps, but of a hand that nobody measures: it is grey, and the page says why. (While the computer stands
@@ -32,7 +30,7 @@ async function untilUnmeasured(): Promise<void> {
 
 describe("a device on a wire", () => {
   it("has a panel", async () => {
-    await cockpit.untilFaultless();
+    await cockpit.untilRunning();
     await cockpit.tab("device");
     await shootReadable(cockpit, "30_device");
     expect(await cockpit.page.getByText(device.address).isVisible()).toBe(true);
@@ -56,14 +54,18 @@ describe("a device on a wire", () => {
       await until("the next pose", () => (cockpit.stream.state!.wizard?.pose ?? 0) > pose, () => cockpit.brief());
       if ((cockpit.stream.state!.wizard?.pose ?? 0) >= wizard!.name.length) break;
     }
-    await pause(500);
+    const { problem, result } = await until("what was refused", () => {
+      const { wizard: now } = cockpit.stream.state!;
+      return now !== undefined && now.problem.length > 0 && now;
+    }, () => cockpit.brief());
+    for (const words of [...problem, ...result]) await cockpit.page.getByText(words).first().waitFor();
     await shootReadable(cockpit, "33_wizard_refused");
     await cockpit.button(words.abandon).click();
     await cockpit.untilState("no wizard any more", (state) => state.wizard === undefined && !state.stationGone && state.busy === "");
   });
 
   it("whose cable is pulled is a fault that says what to do, and one again after a Reset that changes nothing", async () => {
-    await cockpit.untilFaultless();
+    await cockpit.untilRunning();
     await device.program.kill();
     await cockpit.untilState("the fault", (state) => state.fault !== undefined);
     const fault = cockpit.stream.state!.fault!;
@@ -71,11 +73,10 @@ describe("a device on a wire", () => {
     await card.waitFor();
     for (const words of [fault.meaning, fault.remedy]) expect(await card.innerText()).toContain(words);
     await until("the report's place", () => (cockpit.stream.state!.fault?.report ?? "") !== "", () => cockpit.brief());
-    await pause(1000);
-    await shootReadable(cockpit, "34_fault");
     await untilUnmeasured();
+    await shootReadable(cockpit, "34_fault");
     await card.getByRole("button", { name: strings.fault.reset, exact: true }).click();
-    await cockpit.untilState("the fault anew", (state) => (state.fault?.time ?? 0) > fault.time);
+    await until("the fault again", () => (cockpit.stream.state!.fault?.time ?? 0) > fault.time, () => cockpit.brief());
     expect(cockpit.stream.state!.fault!.name).toBe(fault.name);
     await untilUnmeasured();
   });

@@ -5,14 +5,16 @@ import { beforeAll, describe, it } from "vitest";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { shootReadable } from "./support/readable";
+import { stiffnessKey } from "./support/settings";
 import { stage, type Station } from "./support/stage";
-import { pause, until } from "./support/until";
+import { until } from "./support/until";
 
+const kInPlots = 0.25; // [s] of the station
 const play = stage();
 let station: Station;
 
 beforeAll(async () => {
-  station = await play.station({ args: ["--set", "force.stiffness_n_per_mm=1.6"] });
+  station = await play.station("first_touch", { [stiffnessKey]: "1.6" });
 });
 
 const looks: readonly { name: string; options: BrowserContextOptions; act?: (cockpit: CockpitPage) => Promise<void> }[] = [
@@ -31,21 +33,10 @@ describe("the page looks right", () => {
       await cockpit.untilRunning();
       await act?.(cockpit);
       await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
-      await pause(1000);
+      await cockpit.untilLater(kInPlots);
       await shootReadable(cockpit, name);
       await cockpit.page.context().close();
+      await play.freeControl(station);
     });
   }
-
-  it("26_telephone_sideways, where Stop was pressed and nobody confirms it", async () => {
-    const own = await play.station();
-    const cockpit = await play.open(own.url, { viewport: { width: 844, height: 340 }, hasTouch: true, isMobile: true });
-    await cockpit.untilRunning();
-    await own.program.kill();
-    await until("the page knows", () => cockpit.lost());
-    await cockpit.stopButton.click();
-    await until("the failure of Stop", async () => cockpit.page.getByText(strings.stop.failed).isVisible());
-    await shootReadable(cockpit, "26_telephone_sideways");
-    await cockpit.page.context().close();
-  });
 });

@@ -28,7 +28,7 @@ const controls = (cockpit: CockpitPage) => [
 
 async function untilMayOperate(cockpit: CockpitPage, may: boolean): Promise<void> {
   for (const control of controls(cockpit)) {
-    await until(`${String(control)} is ${may ? "on" : "off"}`, async () => (await control.isEnabled({ timeout: 5000 })) === may, () => cockpit.brief());
+    await until(`${String(control)} is ${may ? "on" : "off"}`, async () => (await control.isEnabled()) === may, () => cockpit.brief());
   }
 }
 
@@ -129,7 +129,7 @@ describe("roles", () => {
     expect(cleo.stream.newest!.stiffness).toBeCloseTo(900, 2);
     const history = (await cleo.page.evaluate(() => window.phalanx.history())).samples;
     await until("the history grows", async () => (await cleo.page.evaluate(() => window.phalanx.history())).samples > history + 30);
-    expect(cleo.stream.notices.some((notice) => notice.code === "set" && notice.text.includes("0.9")), "what happened before the reload").toBe(true);
+    expect(cleo.stream.notices.some((notice) => notice.code === "set" && notice.who.includes("Bert") && notice.text.includes("0.9")), "what happened before the reload").toBe(true);
     await anna.untilState("the same operator, and three pages", (state) => state.operatorPage === number && state.pages === 3);
   });
 });

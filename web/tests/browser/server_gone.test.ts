@@ -2,8 +2,9 @@
 // The program is killed: the page must not look alive. It comes back: the page does, too.
 import { expect, it } from "vitest";
 import { strings } from "../../src/strings";
+import type { CockpitPage } from "./support/cockpit_page";
 import { differing } from "./support/pictures";
-import { small, stage } from "./support/stage";
+import { small, stage, type OwnStation } from "./support/stage";
 import { until } from "./support/until";
 
 declare global {
@@ -13,6 +14,8 @@ declare global {
 }
 
 const play = stage();
+let cockpit: CockpitPage;
+let second: OwnStation;
 
 /// In the page, before anything of it runs.
 function countFrames(): void {
@@ -34,8 +37,8 @@ function countFrames(): void {
 }
 
 it("greys the hand before the next frame and says so when the program is gone, and comes back by itself", async () => {
-  const first = await play.station();
-  const cockpit = await play.open(first.url, small);
+  const first = await play.ownStation();
+  cockpit = await play.open(first.url, small);
   await cockpit.page.addInitScript(countFrames);
   await cockpit.page.reload();
   await cockpit.ready();
@@ -55,7 +58,7 @@ it("greys the hand before the next frame and says so when the program is gone, a
   const probe = (await cockpit.probe())!;
   expect(probe.arrows, "arrows would look alive").toEqual([]);
   expect(await until("frames counted", () => cockpit.page.evaluate(() => window.framesUntilGrey)), "frames of the old picture").toBe(0);
-  expect(await band.isVisible()).toBe(true);
+  await until("words over the view", () => band.isVisible());
   expect(await root.getAttribute("data-lost")).toBe("true");
   expect(await cockpit.verdict()).toBe("unknown");
   expect(await cockpit.page.getByRole("group", { name: strings.forcePerDigit }).innerText()).not.toMatch(/\d/);
@@ -71,7 +74,7 @@ it("greys the hand before the next frame and says so when the program is gone, a
   await cockpit.stopButton.click();
   await until("the page says that Stop did not get through", async () => cockpit.page.getByText(strings.stop.failed).isVisible());
 
-  const second = await play.station({ port: first.port });
+  second = await play.ownStation([], first.port);
   expect(second.url).toBe(first.url);
   const connections = cockpit.stream.connections;
   await until("the page is back", async () => !(await cockpit.lost()) && !(await cockpit.probe())!.lost, () => cockpit.brief());
@@ -93,13 +96,11 @@ it("greys the hand before the next frame and says so when the program is gone, a
 });
 
 it("says so when the line stands but nothing new comes", async () => {
-  const station = await play.station();
-  const cockpit = await play.open(station.url, small);
   await cockpit.untilRunning();
-  station.program.signal("SIGSTOP");
+  second.program.signal("SIGSTOP");
   await until("the page knows", () => cockpit.lost());
   await until("the picture is drawn as lost", async () => (await cockpit.probe())!.lost);
   await until("words over the view", async () => cockpit.page.getByText(strings.lost.stale, { exact: true }).or(cockpit.page.getByText(strings.lost.closed, { exact: true })).isVisible());
-  station.program.signal("SIGCONT");
+  second.program.signal("SIGCONT");
   await until("it goes on", async () => !(await cockpit.lost()) && !(await cockpit.probe())!.lost, () => cockpit.brief());
 });

@@ -14,7 +14,7 @@ const play = stage();
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station({ scene: "squeeze_ball" })).url, small);
+  cockpit = await play.open((await play.station("squeeze_ball")).url, small);
   await cockpit.untilRunning();
   await cockpit.tab("hand");
 });

@@ -16,7 +16,7 @@ const play = stage();
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station({ scene: "grasp_box" })).url, small);
+  cockpit = await play.open((await play.station("grasp_box")).url, small);
   await cockpit.untilRunning();
   await cockpit.choose(words.kind, "file");
 });

@@ -10,9 +10,7 @@ import type { ViewProbe } from "../../../src/view3d/hand_view";
 import { Stream } from "./stream";
 import { kHangMs, until } from "./until";
 
-const kPressMs = 2000;
-const kTooBusy = "overload"; // docs/safety.md
-const isStopped = (state: State) => state.heldStopped && state.safety === SafetyState.SAFETY_STOPPED;
+const kStill = 2e-4; // [rad]
 
 export class CockpitPage {
   readonly stream: Stream;
@@ -120,57 +118,44 @@ export class CockpitPage {
 
   // ---- waiting
 
+  /// @throws Error at once where the station is in fault, unless that is what is waited for
   untilState(what: string, is: (state: State) => boolean): Promise<true> {
-    return until(what, () => this.stream.state !== undefined && is(this.stream.state) && (true as const), () => this.brief());
-  }
-
-  /// Running; of faults only that of a computer which is too busy is reset.
-  untilRunning(): Promise<true> {
-    return this.untilReset("the station runs", (state) => Promise.resolve(state.safety === SafetyState.SAFETY_RUNNING), [kTooBusy]);
-  }
-
-  /// Running, whatever a busy computer has done to the link between two programs: a fault is reset and a hold resumed, as a person would.
-  untilRunningAgain(): Promise<true> {
-    return this.untilResumed("the station runs", (state) => state.safety === SafetyState.SAFETY_RUNNING);
-  }
-
-  untilResumed(what: string, is: (state: State) => boolean): Promise<true> {
-    return this.untilReset(what, async (state) => {
-      if (state.heldStopped) await this.press(this.button(strings.stop.resume));
-      return is(state);
-    });
-  }
-
-  /// No fault, likewise.
-  untilFaultless(): Promise<true> {
-    return this.untilReset("no fault", () => Promise.resolve(true));
-  }
-
-  untilStopped(): Promise<true> {
-    return this.untilState("the station has stopped", isStopped);
-  }
-
-  /// Stopped, likewise: a stop outlives a fault and its reset.
-  untilStoppedAfterAll(): Promise<true> {
-    return this.untilReset("the station has stopped", (state) => Promise.resolve(isStopped(state)));
-  }
-
-  private untilReset(what: string, is: (state: State) => Promise<boolean>, only?: readonly string[]): Promise<true> {
     return until(
       what,
-      async () => {
+      () => {
         const { state } = this.stream;
-        if (state === undefined || state.stationGone) return false;
-        if (!state.fault) return (await is(state)) && (true as const);
-        if (!only || only.includes(state.fault.name)) await this.press(this.button(strings.fault.reset).first());
+        if (state !== undefined && is(state)) return true as const;
+        if (state?.fault) throw new Error(`waited for: ${what}, when a fault came. ${this.brief()}`);
         return false;
       },
       () => this.brief(),
     );
   }
 
-  private async press(button: Locator): Promise<void> {
-    if (await button.isEnabled({ timeout: kPressMs }).catch(() => false)) await button.click({ timeout: kPressMs }).catch(() => undefined); // it may have gone
+  untilRunning(): Promise<true> {
+    return this.untilState("the station runs", (state) => !state.stationGone && state.safety === SafetyState.SAFETY_RUNNING);
+  }
+
+  untilStopped(): Promise<true> {
+    return this.untilState("the station has stopped", (state) => state.heldStopped && state.safety === SafetyState.SAFETY_STOPPED);
+  }
+
+  /// So much later by the station's clock: there is more to see in the plots.
+  async untilLater(seconds: number): Promise<void> {
+    const begun = this.stream.newest!.time;
+    await until(`${seconds} s more`, () => this.stream.newest!.time - begun >= seconds, () => this.brief());
+  }
+
+  /// The hand stands still: from step to step no joint moves by a hundredth of a degree.
+  async untilAtRest(): Promise<void> {
+    await until(
+      "a hand at rest",
+      async () => {
+        const [first, ...later] = await this.stream.next(4);
+        return later.every(({ hcpAngle }) => hcpAngle.every((angle, joint) => Math.abs(angle - first!.hcpAngle[joint]!) < kStill));
+      },
+      () => this.brief(),
+    );
   }
 
   /// A contact with force at full factor.

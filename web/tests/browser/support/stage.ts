@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a story needs, and its end: folders, stations, devices, a browser. Everything is taken down when the file is through.
+// What a story needs, and its end: folders, stations, devices, pages of the browser. Everything is taken down when the file is through.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium, type Browser, type BrowserContextOptions } from "playwright-core";
-import { afterAll, afterEach, expect, vi } from "vitest";
+import { afterAll, afterEach, expect, inject } from "vitest";
 import { CockpitPage } from "./cockpit_page";
-import { Program, projectFolder } from "./program";
-
-/// All time of a station and its device, time limits included, passes so many times more slowly: a computer that also draws with its
-/// processor makes no faults of its own.
-export const slowMotion = process.env["PHALANX_COCKPIT_SLOW_MOTION"] ?? "4";
-
-export interface StationWishes {
-  readonly scene?: string;
-  readonly args?: readonly string[];
-  readonly port?: number; // 0: any
-  readonly slow?: string;
-}
+import { bringToKnownState, freeControl, type Values } from "./known_state";
+import { addressOf, runDevice, runStation, slowMotion, type Program } from "./program";
+import { slowScreen } from "./slow_screen";
+import type {} from "./setup"; // what it provides
 
 export interface Station {
-  readonly program: Program;
   readonly url: string;
+}
+
+export interface OwnStation extends Station {
+  readonly program: Program;
   readonly port: number;
   readonly folder: string;
 }
@@ -32,59 +27,66 @@ export interface OwnDevice {
   readonly log: string;
 }
 
-/// Large enough to hold all controls, small enough for several pages drawn by a processor.
-export const small: BrowserContextOptions = { viewport: { width: 1000, height: 640 } };
+export interface PageWishes extends BrowserContextOptions {
+  readonly hertz?: number; // of its screen; else what the browser can
+}
 
-const kTestMs = 900_000; // of a whole test; only against hangs, as all limits here, and long enough for a wait to say what it saw instead
+/// All pixels, for pictures.
+export const full: PageWishes = { viewport: { width: 1000, height: 640 } };
+/// For stories that are not about looks: large enough to hold all controls, drawn with a quarter of the pixels, ten times a second.
+export const small: PageWishes = { ...full, deviceScaleFactor: 0.5, hertz: 10 };
 
+const kDemonstration = "first_touch"; // the scene of a station that is told none
 const kLastWords = 600; // characters
-
-/// A program whose test was killed ends by itself after half an hour; its clock is the slowed one.
-const forgotten = (slow: string) => ["--seconds", String(Math.ceil(1800 / Number(slow)))];
-
-const browserFlags = [
-  "--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-background-networking", "--disable-component-update",
-  "--disable-sync", "--no-first-run", "--mute-audio",
-];
 
 export class Stage {
   private readonly programs: Program[] = [];
   private readonly folders: string[] = [];
   private readonly pages: CockpitPage[] = [];
   private browser: Promise<Browser> | undefined;
+  private shared = "";
 
-  folder(): string {
-    const made = mkdtempSync(join(tmpdir(), "phalanx-cockpit-"));
-    this.folders.push(made);
-    return made;
+  /// The station that the stories of this process share, with a scene as its file has it, and values laid over its keys.
+  async station(scene = kDemonstration, values: Values = {}): Promise<Station> {
+    this.shared = `${inject("stations")}${process.env["VITEST_POOL_ID"] ?? "1"}`;
+    const answer = await fetch(this.shared);
+    const url = await answer.text();
+    if (!answer.ok) throw new Error(url);
+    await bringToKnownState(url, scene, values);
+    return { url };
   }
 
-  /// `phalanx run` with its page, in a folder of its own.
-  async station(wishes: StationWishes = {}): Promise<Station> {
-    const folder = this.folder();
-    const slow = wishes.slow ?? slowMotion;
-    const program = this.run(folder, [
-      "run", ...(wishes.scene ? [wishes.scene] : []), "--no-realtime", "--quiet", "--port", String(wishes.port ?? 0), "--slow-motion", slow,
-      ...forgotten(slow), ...(wishes.args ?? []),
-    ]);
-    const [, url, port] = await program.line(/Cockpit: (http:\/\/127\.0\.0\.1:(\d+)\/)/);
-    return { program, url: url!, port: Number(port), folder };
+  /// A page that has gone keeps control for a while, in case it comes back; this ends it.
+  freeControl(station: Station): Promise<void> {
+    return freeControl(station.url);
   }
 
-  /// `phalanx device simulate`: the exoskeleton's controller as a process of its own, with a row a tick in its log.
-  async device(scene: string, args: readonly string[] = [], slow = slowMotion): Promise<OwnDevice> {
+  /// A station of the story's own, which it may kill.
+  async ownStation(args: readonly string[] = [], port = 0): Promise<OwnStation> {
     const folder = this.folder();
+    const program = this.add(runStation(folder, this.clock(), slowMotion.alone, [...args, "--port", String(port)]));
+    return { program, ...(await addressOf(program)), folder };
+  }
+
+  /// A controller in a process of its own, with a row a tick in its log, and a station with it.
+  /// @param values  laid over the scene's keys, of both
+  async wired(scene: string, values: Values = {}, args: readonly string[] = []): Promise<{ device: OwnDevice; station: OwnStation }> {
+    const slow = slowMotion.wired;
+    const folder = this.folder();
+    const set = Object.entries(values).flatMap(([key, value]) => ["--set", `${key}=${value}`]);
     const log = join(folder, "controller.csv");
-    const program = this.run(folder, ["device", "simulate", scene, "--udp", "127.0.0.1:0", "--log", log, "--slow-motion", slow, ...forgotten(slow), ...args]);
-    const [, address] = await program.line(/listening on (\S+)/);
-    return { program, address: address!, log };
+    const controller = this.add(runDevice(folder, this.clock(), slow, [scene, "--log", log, ...set]));
+    const address = (await controller.line(/listening on (\S+)/))[1]!;
+    const program = this.add(runStation(folder, this.clock(), slow, [scene, "--device", address, "--port", "0", ...set, ...args]));
+    return { device: { program: controller, address, log }, station: { program, ...(await addressOf(program)), folder } };
   }
 
   /// The page of a station in a browser profile of its own.
-  async open(url: string, options: BrowserContextOptions = {}): Promise<CockpitPage> {
-    this.browser ??= chromium.launch({ executablePath: join(projectFolder, "web/tests/browser/support/chromium.sh"), args: browserFlags });
+  async open(url: string, { hertz, ...options }: PageWishes = {}): Promise<CockpitPage> {
+    this.browser ??= chromium.connect(inject("browser"));
     const browser = await this.browser;
-    const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", ...options });
+    const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", reducedMotion: "reduce", ...options });
+    if (hertz !== undefined) await context.addInitScript(slowScreen, hertz);
     const page = new CockpitPage(await context.newPage());
     this.pages.push(page);
     await page.go(url);
@@ -92,22 +94,33 @@ export class Stage {
   }
 
   /// What every page knew last, and the last words of every program.
-  brief(): string {
+  async brief(): Promise<string> {
     const pages = this.pages.map((page, i) => `page ${i + 1}: ${page.brief()}`);
     const programs = this.programs.map((program) => `phalanx ${program.args[0]}${program.ended ? ", ended" : ""}: ${(program.output + program.errors).slice(-kLastWords)}`);
-    return [...pages, ...programs].join("\n");
+    const shared = this.shared === "" ? [] : [`the shared station: ${await (await fetch(`${this.shared}/words`)).text()}`];
+    return [...pages, ...programs, ...shared].join("\n");
   }
 
   async close(): Promise<void> {
     const errors = this.pages.flatMap((page) => page.errors);
     await (await this.browser?.catch(() => undefined))?.close();
-    for (const program of this.programs) await program.end();
+    for (const program of this.programs) await program.kill();
     for (const folder of this.folders) rmSync(folder, { recursive: true, force: true });
     expect(errors, "exceptions that nobody caught in a page").toEqual([]);
   }
 
-  private run(folder: string, args: readonly string[]): Program {
-    const program = new Program(args, folder);
+  private folder(): string {
+    const made = mkdtempSync(join(tmpdir(), "phalanx-cockpit-"));
+    this.folders.push(made);
+    return made;
+  }
+
+  /// Of all programs of this stage.
+  private clock(): string {
+    return join(this.folders[0] ?? this.folder(), "clock");
+  }
+
+  private add(program: Program): Program {
     this.programs.push(program);
     return program;
   }
@@ -115,10 +128,9 @@ export class Stage {
 
 /// One for a file of stories.
 export function stage(): Stage {
-  vi.setConfig({ testTimeout: kTestMs, hookTimeout: kTestMs });
   const made = new Stage();
-  afterEach(({ task }) => {
-    if (task.result?.state === "fail") console.log(`when "${task.name}" failed:\n${made.brief()}`);
+  afterEach(async ({ task }) => {
+    if (task.result?.state === "fail") console.log(`when "${task.name}" failed:\n${await made.brief()}`);
   });
   afterAll(() => made.close());
   return made;

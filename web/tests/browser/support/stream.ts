@@ -14,7 +14,6 @@ export class Stream {
   notices: Notice[] = [];
   ticks: Tick[] = []; // oldest first, of the present connection
   connections = 0;
-  readonly faults = new Set<number>(); // when each began, on the station's clock [s]
 
   constructor(page: Page) {
     page.on("websocket", (socket) => {
@@ -54,7 +53,6 @@ export class Stream {
       this.notices = [...what.value.past];
     } else if (what.case === "state") {
       this.state = what.value;
-      if (what.value.fault) this.faults.add(what.value.fault.time);
     } else if (what.case === "notice") {
       this.notices.push(what.value);
     } else if (what.case === "tick") {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import { chromium } from "playwright-core";
-import type { Browser } from "playwright-core";
+import { chromium, type Browser } from "playwright-core";
+import { browserOptions } from "../support/browser";
 
-/// Debian's Chromium with WebGL drawn by the processor.
+/// A browser of its own, for programs that are no tests.
 export function launch(): Promise<Browser> {
-  return chromium.launch({
-    executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
-    args: [
-      "--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-background-networking",
-      "--disable-component-update", "--no-first-run", "--mute-audio",
-    ],
-  });
+  return chromium.launch(browserOptions);
 }

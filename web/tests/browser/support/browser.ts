@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Debian's Chromium with WebGL drawn by the processor.
+import { join } from "node:path";
+import type { LaunchOptions } from "playwright-core";
+import { projectFolder } from "./program";
+
+export const browserOptions: LaunchOptions = {
+  executablePath: join(projectFolder, "web/tests/browser/support/chromium.sh"),
+  args: [
+    "--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--no-first-run", "--mute-audio",
+  ],
+};
