@@ -23,6 +23,16 @@ else()
   set(PHALANX_FULL_LABEL ${PHALANX_TREE}_full)
 endif()
 
+# What ./test -R and ./test --affected choose programs by: each program's sources, and what tests that are no GoogleTest suites need.
+file(WRITE ${CMAKE_BINARY_DIR}/test_programs.txt "")
+file(WRITE ${CMAKE_BINARY_DIR}/other_tests.txt "")
+add_custom_target(no_program)
+function(phalanx_test_needs target)
+  foreach(test ${ARGN})
+    file(APPEND ${CMAKE_BINARY_DIR}/other_tests.txt "${test} ${target}\n")
+  endforeach()
+endfunction()
+
 # phalanx_test_level(LEVEL [TARGETS target ...] [TESTS name ...])
 # Puts programs and tests that add_test() made into a level: `default` or `full`.
 function(phalanx_test_level level)
@@ -67,6 +77,10 @@ function(phalanx_test name)
   endif()
   list(TRANSFORM ARG_MODULES PREPEND phalanx_ OUTPUT_VARIABLE modules)
   add_executable(${name} ${ARG_SOURCES})
+  foreach(source ${ARG_SOURCES})
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+    file(APPEND ${CMAKE_BINARY_DIR}/test_programs.txt "${source} ${name}\n")
+  endforeach()
   # The product's objects stand first on the linker's line: of an inline function the first copy counts, the one as shipped.
   target_link_libraries(${name} PRIVATE phalanx_options phalanx_test_options ${modules} ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
