@@ -36,7 +36,7 @@ Sitting sit(const std::string& name) {
   const Motion motion = build_motion(scene);
   const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);
   Sitting sitting{.name = scene.name,
-                  .hand = load_display_meshes(scene.hand),
+                  .hand = load_display_meshes(scene.hand, model->hand.meshes()),
                   .object = model->object.mesh(),
                   .snapshot = {},
                   .largest_force = 0.0};

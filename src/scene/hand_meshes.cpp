@@ -135,8 +135,8 @@ SegmentMeshes collision_meshes(const Source& source, const HandDescription& hand
 
 bool has_own_display(const Source& source) { return source.files && !source.files->display.empty(); }
 
-SegmentMeshes display_meshes(const Source& source, const HandDescription& hand) {
-  if (!has_own_display(source)) return collision_meshes(source, hand);
+SegmentMeshes display_meshes(const Source& source, const SegmentMeshes& collision) {
+  if (!has_own_display(source)) return collision;
   return of_the_hand(source, MeshReader(*source.files).read(source.files->display, false));
 }
 
@@ -164,7 +164,7 @@ LoadedHand load_hand(const HandDescription& hand) {
   LoadedHand loaded;
   loaded.handedness = source.handedness;
   loaded.meshes.collision = collision_meshes(source, hand);
-  loaded.meshes.display = has_own_display(source) ? display_meshes(source, hand) : loaded.meshes.collision;
+  loaded.meshes.display = display_meshes(source, loaded.meshes.collision);
   loaded.parameters = std::move(source.parameters);
   return loaded;
 }
@@ -173,7 +173,9 @@ SegmentMeshes load_collision_meshes(const HandDescription& hand) {
   return collision_meshes(open(hand), hand);
 }
 
-SegmentMeshes load_display_meshes(const HandDescription& hand) { return display_meshes(open(hand), hand); }
+SegmentMeshes load_display_meshes(const HandDescription& hand, const SegmentMeshes& collision) {
+  return display_meshes(open(hand), collision);
+}
 
 std::optional<HandSkin> load_hand_skin(const HandDescription& hand) {
   const Source source = open(hand);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -36,10 +37,13 @@ std::string read_text_file(const std::string& path, const std::string& what) {
   if (!file)
     throw SceneError(
         fmt::format("{}: cannot be opened as a {}; check the path and its permissions", path, what));
-  std::string text(kMostTextBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text;
+  std::array<char, 16384> block;
+  while (file && text.size() <= kMostTextBytes) {
+    file.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
   if (file.bad()) throw SceneError(fmt::format("{}: cannot be read as a {}; is it a folder?", path, what));
-  text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > kMostTextBytes) {
     throw SceneError(
         fmt::format("{}: is larger than 16 MB; a {} file is a few kilobytes of TOML", path, what));

@@ -26,7 +26,7 @@ std::shared_ptr<HostGeometry> geometry_of(const SceneDescription& scene, const H
   geometry->hand = model.hand.parameters();
   geometry->X_WH = model.hand.palm_pose();
   geometry->segment = model.hand.meshes();
-  geometry->display = load_display_meshes(scene.hand);
+  geometry->display = load_display_meshes(scene.hand, geometry->segment);
   geometry->skin = load_hand_skin(scene.hand);
   geometry->object = model.object.mesh();
   geometry->rate_hz = model.rate_hz;

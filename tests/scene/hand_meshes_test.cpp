@@ -94,8 +94,8 @@ TEST(HandMeshes, ToShowMayDifferFromThoseThatCollideAndMayBeOpen) {
   const HandDescription hand =
       described(folder.write_hand(kCollision + "display = \"meshes/shown {segment}.obj\"\n"));
   const LoadedHand loaded = load_hand(hand);
-  const SegmentMeshes shown = load_display_meshes(hand);
   const SegmentMeshes colliding = load_collision_meshes(hand);
+  const SegmentMeshes shown = load_display_meshes(hand, colliding);
   for (std::size_t s = 0; s < kSegments; ++s) {
     EXPECT_EQ(loaded.meshes.display[s].triangles.size(), open[s].triangles.size());
     EXPECT_EQ(difference(shown[s], loaded.meshes.display[s]), 0.0);

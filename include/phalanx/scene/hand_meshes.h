@@ -42,7 +42,8 @@ struct LoadedHand {
 
 /// The display meshes of load_hand() alone: what a picture draws in the segments' frames. Throws as
 /// load_hand().
-[[nodiscard]] SegmentMeshes load_display_meshes(const HandDescription& hand);
+/// @param collision  of the same hand: what is shown where it has no other meshes to be shown
+[[nodiscard]] SegmentMeshes load_display_meshes(const HandDescription& hand, const SegmentMeshes& collision);
 
 /// The continuous skin of the hand that a scene describes, fitted if it names a profile, of its handedness.
 /// None if its hand file names none, or the scene says `hand.meshes = "capsules"`.
