@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -61,7 +62,7 @@ struct HeldClock::Threads {
     }
     /// Of a folder that lists threads: how many there are; 0 if it is gone.
     [[nodiscard]] std::size_t entries() const noexcept {
-      struct stat folder{};
+      struct stat folder {};
       return ::fstat(descriptor_, &folder) == 0 && folder.st_nlink > 2 ? folder.st_nlink - 2 : 0;
     }
 
@@ -115,6 +116,7 @@ struct HeldClock::Threads {
   std::uint32_t changes = 0;
   std::vector<std::int32_t> watched;  ///< of this process
   std::vector<std::int32_t> ignored;
+  std::atomic<const char*> ignored_name{nullptr};
   std::size_t busy = 0;  ///< of all: the one that was at work at the last look, which is looked at first
 
   void read(ClockPage& page) {
@@ -142,11 +144,17 @@ struct HeldClock::Threads {
       const std::int32_t tid = std::atoi(entry->d_name);
       if (tid <= 0) continue;
       ++process.threads;
-      if (std::ranges::find(ignored, tid) == ignored.end())
-        all.emplace_back(folder + "/" + entry->d_name, tid);
+      const std::string path = folder + "/" + entry->d_name;
+      if (std::ranges::find(ignored, tid) == ignored.end() && !has_ignored_name(path))
+        all.emplace_back(path, tid);
     }
     ::closedir(directory);
     return true;
+  }
+  [[nodiscard]] bool has_ignored_name(const std::string& thread) const {
+    const char* name = ignored_name.load();
+    std::array<char, 32> text{};
+    return name != nullptr && File(thread + "/comm").read(text) == std::string(name) + "\n";
   }
   [[nodiscard]] bool knows(std::int32_t tid) const {
     return std::ranges::any_of(all, [&](const Thread& thread) { return thread.tid == tid; });
@@ -200,6 +208,11 @@ void HeldClock::watch_thread(std::int32_t tid) {
 
 void HeldClock::ignore_thread(std::int32_t tid) {
   threads_->ignored.push_back(tid);
+  page_->changes.fetch_add(1);
+}
+
+void HeldClock::ignore_threads_named(const char* name) {
+  threads_->ignored_name.store(name);
   page_->changes.fetch_add(1);
 }
 

@@ -43,6 +43,8 @@ class HeldClock {
   void watch_thread(std::int32_t tid);
   /// A thread of this process that is not waited for, although the process is attached.
   void ignore_thread(std::int32_t tid);
+  /// Threads of a name that are not waited for, from whatever thread it is called. @param name  nullptr: none
+  void ignore_threads_named(const char* name);
 
   /// Lets time pass until `t`, and what is due then be done. @throws std::runtime_error if a thread runs for
   /// two minutes
