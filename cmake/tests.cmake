@@ -54,13 +54,14 @@ endfunction()
 
 # phalanx_test(NAME SOURCES file ... [MODULES module ...] [LIBRARIES external ...]
 #              [IN_ASAN] [IN_TSAN] [FULL_LEVEL] [COUNTS_ALLOCATIONS] [HELD_CLOCK]
-#              [FULL filter ...] [EACH_CASE suite ...] [ALONE suite ...] [SHARDS suite=count ...] [USES_PROGRAM] [DEFINITIONS ...])
+#              [FULL filter ...] [FULL_IN_ASAN filter ...] [EACH_CASE suite ...] [ALONE suite ...] [SHARDS suite=count ...] [USES_PROGRAM] [DEFINITIONS ...])
 # A GoogleTest program. ctest sees one test for each suite, named as the suite; a failure names the case.
 #   IN_ASAN, IN_TSAN      ./test runs it in that sanitized tree; elsewhere in such a tree it belongs to --full
 #   FULL_LEVEL            all of it belongs to --full
 #   COUNTS_ALLOCATIONS    links tests/support/count_allocations.cpp, with malloc and its like wrapped
 #   HELD_CLOCK            runs under a held clock, see tests/support/held_clock/held_clock.h
 #   FULL                  GoogleTest filters: cases that only --full runs
+#   FULL_IN_ASAN          the same, of the tree with AddressSanitizer
 #   EACH_CASE             suites of which each case has a process to itself, since it changes what belongs to the process
 #   ALONE                 suites beside which nothing else runs
 #   SHARDS                suites that take long: split into so many processes
@@ -68,7 +69,7 @@ endfunction()
 # Suites whose name begins with Soak have the label soak.
 function(phalanx_test name)
   cmake_parse_arguments(ARG "IN_ASAN;IN_TSAN;FULL_LEVEL;COUNTS_ALLOCATIONS;HELD_CLOCK;USES_PROGRAM" ""
-                        "SOURCES;MODULES;LIBRARIES;FULL;EACH_CASE;ALONE;SHARDS;DEFINITIONS" ${ARGN})
+                        "SOURCES;MODULES;LIBRARIES;FULL;FULL_IN_ASAN;EACH_CASE;ALONE;SHARDS;DEFINITIONS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "phalanx_test(${name}): ${ARG_UNPARSED_ARGUMENTS}?")
   endif()
@@ -112,6 +113,9 @@ function(phalanx_test name)
     set(label ${PHALANX_FULL_LABEL})
   endif()
 
+  if(PHALANX_TREE STREQUAL "asan")
+    list(APPEND ARG_FULL ${ARG_FULL_IN_ASAN})
+  endif()
   set(tests ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
   foreach(argument FULL EACH_CASE ALONE SHARDS)
     list(JOIN ARG_${argument} ":" ${argument})

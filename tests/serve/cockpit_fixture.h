@@ -134,6 +134,7 @@ class CockpitTest : public ::testing::Test {
     StationHostSettings station;
     station.scene = "first_touch";
     station.device = "sliders";
+    station.overrides = {{"hand.meshes", "\"capsules\""}};  // no files to read for each test
     station.ask_for_realtime = false;
     host_ = std::make_unique<StationHost>(station, clock_);
     cockpit_ = std::make_unique<Cockpit>(

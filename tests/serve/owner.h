@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A StationHost with an owner of its own, moved by sliders, in slow motion.
+// A StationHost with an owner of its own, moved by sliders.
 #pragma once
 
 #include <atomic>

@@ -74,14 +74,6 @@ class WiredHostTest : public HostTest {
       measure();
     }
   }
-  /// As until(). Where the machine stands still, the station hears nothing for too long: reset, and go on.
-  bool until_over_faults(const std::function<bool(const StationView&)>& so) {
-    return until([&] {
-      const StationView view = host->view();
-      if (host->state()->running && view.state == SafetyState::kFault) host->reset();
-      return host->state()->running && so(view);
-    });
-  }
   void begin() {
     ASSERT_EQ(calibrate(Step::kBegin), "");
     ASSERT_NE(host->state()->wizard, nullptr);
@@ -225,13 +217,12 @@ TEST_F(WiredHostTest, AStationThatWasLostComesBackStoppedWhateverBringsItBack) {
       host->reset();
     else
       EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.6"}}), "");
-    ASSERT_TRUE(
-        until_over_faults([](const StationView& view) { return view.state == SafetyState::kStopped; }));
+    ASSERT_TRUE(until([&] { return host->state()->running && host->view().state == SafetyState::kStopped; }));
     pass(0.5);
     for (const StepRecord& record : records) EXPECT_EQ(record.factor, 0.0);
     EXPECT_TRUE(host->held_stopped());
     EXPECT_TRUE(host->resume(host->stops()));
-    EXPECT_TRUE(until_over_faults([](const StationView& view) { return view.factor > 0.0; }));
+    EXPECT_TRUE(until([&] { return host->view().factor > 0.0; }));
   }
 }
 

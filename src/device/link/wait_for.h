@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace phalanx {
 
@@ -14,9 +15,9 @@ namespace phalanx {
 /// only lets the time pass. @returns the events that have come, errors among them; 0: none, or a signal.
 inline short wait_for(int descriptor, short events, double seconds) noexcept {
   const double bounded = std::isfinite(seconds) ? std::clamp(seconds, 0.0, 3600.0) : 0.0;
-  timespec time{};
-  time.tv_sec = static_cast<time_t>(bounded);
-  time.tv_nsec = static_cast<long>((bounded - std::floor(bounded)) * 1e9);
+  // Rounded up: a wait of less than 1 ns that ends at once would be begun again and again.
+  const auto ns = static_cast<std::int64_t>(std::ceil(bounded * 1e9));
+  const timespec time{.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
   pollfd poll_for{.fd = descriptor, .events = events, .revents = 0};
   return ::ppoll(&poll_for, 1, &time, nullptr) > 0 ? poll_for.revents : short{0};
 }

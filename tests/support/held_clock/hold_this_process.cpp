@@ -25,6 +25,15 @@ HeldClock* const kProcessClock = [] {
   return clock;
 }();
 
+/// At the end of the process its clock is the computer's again: a leak checker stops all threads, that of the
+/// held clock among them, and yields until they have.
+const struct Release {
+  Release() = default;
+  Release(const Release&) = delete;
+  Release& operator=(const Release&) = delete;
+  ~Release() { hold(nullptr); }
+} kRelease;
+
 }  // namespace
 
 TimePassesBeside::TimePassesBeside(const char* threads) { kProcessClock->ignore_threads_named(threads); }

@@ -187,6 +187,7 @@ void after_fork_in_child() {
 }  // namespace
 
 void hold(ClockPage* page) noexcept {
+  if (page == nullptr) return held.store(nullptr);
   block_wake_signal();
   pthread_atfork(before_fork, nullptr, after_fork_in_child);
   enter_process(*page, ::getpid());
