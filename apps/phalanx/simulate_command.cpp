@@ -177,7 +177,9 @@ int simulate_scene(const SimulateOptions& options) {
   summary.seconds = static_cast<double>(ticks) / scene.rate_hz;
   summary.hand_triangles = model->hand.triangle_count();
   summary.object_triangles = model->object.triangle_count();
-  { const HapticState checked(*model); }  // a hand that starts inside is reported before any file is touched
+  {
+    const HapticState checked(*model);
+  }  // a hand that starts inside is reported before any file is touched
   RunOutputs outputs(
       output_plan, *model,
       output_plan.picture.empty() ? SegmentMeshes() : load_display_meshes(scene.hand, model->hand.meshes()));

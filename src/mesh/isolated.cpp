@@ -74,7 +74,8 @@ template <typename Result>
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
   }
-  // Assimp clears buffers of 16 MB: in fresh memory that costs less than in the parent's, page by page copied.
+  // Assimp clears buffers of 16 MB: in fresh memory that costs less than in the parent's, page by page
+  // copied.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 18);
   bool sent = false;
   try {

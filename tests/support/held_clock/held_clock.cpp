@@ -62,7 +62,7 @@ struct HeldClock::Threads {
     }
     /// Of a folder that lists threads: how many there are; 0 if it is gone.
     [[nodiscard]] std::size_t entries() const noexcept {
-      struct stat folder {};
+      struct stat folder{};
       return ::fstat(descriptor_, &folder) == 0 && folder.st_nlink > 2 ? folder.st_nlink - 2 : 0;
     }
 

@@ -149,7 +149,7 @@ int poll_until(ClockPage& page, std::int64_t deadline, const sigset_t* given, Ca
 }
 
 void block_wake_signal() noexcept {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = note_signal;
   sigaction(wake_signal(), &action, nullptr);
   const sigset_t set = only_wake_signal();
