@@ -136,6 +136,8 @@ endfunction()
 
 # Test code is compiled cheaply. The modules under test are the program's own objects, optimised as shipped.
 add_library(phalanx_test_options INTERFACE)
-if(CMAKE_BUILD_TYPE STREQUAL "Release")
+if(PHALANX_SANITIZE)
+  target_compile_options(phalanx_test_options INTERFACE -O0)
+elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_options(phalanx_test_options INTERFACE -O1)
 endif()

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -15,6 +16,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <exception>
@@ -54,6 +56,22 @@ void end_with(pid_t parent) {
   if (::getppid() != parent) ::_exit(1);  // it was gone before that
 }
 
+/// Assimp clears a buffer of 16 MB for each file that it reads. In pages of 2 MB at the heap's end these are
+/// 8 page faults instead of 4096.
+void prepare_memory() {
+  constexpr std::size_t kBytes = std::size_t{24} << 20;
+  constexpr std::uintptr_t kLargePage = std::uintptr_t{2} << 20;
+  ::mallopt(M_MMAP_THRESHOLD, 2 * kBytes);
+  ::mallopt(M_TRIM_THRESHOLD, 4 * kBytes);
+  void* const memory = std::malloc(kBytes);
+  if (memory == nullptr) return;
+  const std::uintptr_t begin =
+      (reinterpret_cast<std::uintptr_t>(memory) + kLargePage - 1) / kLargePage * kLargePage;
+  const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(memory) + kBytes) / kLargePage * kLargePage;
+  ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  std::free(memory);
+}
+
 template <typename Result>
 [[noreturn]] void run_child(const std::function<Result()>& work, int fd, const std::string& origin,
                             const IsolationLimits& limits) {
@@ -74,9 +92,7 @@ template <typename Result>
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
   }
-  // Assimp clears buffers of 16 MB: in fresh memory that costs less than in the parent's, page by page
-  // copied.
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 18);
+  prepare_memory();
   bool sent = false;
   try {
     const Result result = work();

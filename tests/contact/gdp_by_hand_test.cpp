@@ -336,7 +336,7 @@ TEST(ContactPatchByHand, OnePointOfTheSegmentBeforeTwoWallsIsTwoPlaces) {
   const Vec3 left(half, half, 0.0);  // out of the wall on the left
   const Vec3 right(-half, half, 0.0);
   const auto wall = [&](const Vec3& n, double apart) {
-    const Mat3 R = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), n).toRotationMatrix();
+    const Mat3 R = Eigen::AngleAxisd(std::atan2(-n.x(), n.y()), Vec3::UnitZ()).toRotationMatrix();
     // Off the middle, where the face's two triangles meet.
     return test::moved(make_box(Vec3(0.04, 0.002, 0.03), 12),
                        Pose{R, -(apart + 1e-3) * n + Vec3(0, 0, 3e-3)});

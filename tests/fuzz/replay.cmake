@@ -6,8 +6,7 @@ set(targets
     fuzz_mesh
     fuzz_motion
     fuzz_opengloves
-    fuzz_scene
-    fuzz_study)
+    fuzz_scene)
 set(sources ${CMAKE_CURRENT_LIST_DIR}/replay_test.cpp)
 foreach(target ${targets})
   set(source ${CMAKE_CURRENT_LIST_DIR}/${target}.cpp)
@@ -18,5 +17,5 @@ phalanx_test(
   fuzz_replay_test
   IN_ASAN
   SOURCES ${sources}
-  MODULES study record scene opengloves device step force contact hand mesh
+  MODULES scene opengloves device step force contact hand mesh
   LIBRARIES assimp::assimp fmt::fmt nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus Threads::Threads)

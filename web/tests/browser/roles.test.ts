@@ -4,7 +4,7 @@ import { beforeAll, describe, expect, it } from "vitest";
 import { strings } from "../../src/strings";
 import { stiffnessKey, valueOf } from "./support/settings";
 import type { CockpitPage } from "./support/cockpit_page";
-import { small, stage, type Station } from "./support/stage";
+import { stage, unseen, type Station } from "./support/stage";
 import { until } from "./support/until";
 
 const play = stage();
@@ -15,9 +15,9 @@ let cleo: CockpitPage;
 
 beforeAll(async () => {
   station = await play.station();
-  anna = await play.open(station.url, small);
-  bert = await play.open(station.url, small);
-  cleo = await play.open(station.url, small);
+  anna = await play.open(station.url, unseen);
+  bert = await play.open(station.url, unseen);
+  cleo = await play.open(station.url, unseen);
   await anna.untilRunning();
 });
 
@@ -87,10 +87,12 @@ describe("roles", () => {
   });
 
   it("refuses what a viewer sends past the page's own controls", async () => {
-    // As somebody might with the developer tools: the fieldset is enabled by hand.
-    await bert.page.evaluate(() => document.querySelectorAll("fieldset").forEach((fieldset) => (fieldset.disabled = false)));
-    await bert.stiffnessField.fill("3", { force: true });
-    await bert.stiffnessField.press("Enter");
+    // As somebody might with the developer tools: the fieldset is enabled by hand. In one go: the next state disables it again.
+    await bert.stiffnessField.evaluate((field: HTMLInputElement) => {
+      field.closest("fieldset")!.disabled = false;
+      field.value = "3";
+      field.dispatchEvent(new Event("change", { bubbles: true }));
+    });
     await until("the host's refusal beside the control", async () => (await bert.page.getByRole("alert").filter({ hasText: /control|operat/i }).count()) > 0, () => bert.brief());
     await anna.stream.next(20);
     expect(anna.stream.newest!.stiffness).toBeLessThan(1000);

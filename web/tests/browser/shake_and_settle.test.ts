@@ -4,7 +4,7 @@ import { beforeAll, describe, expect, it } from "vitest";
 import { strings } from "../../src/strings";
 import type { Tick } from "../../src/gen/phalanx/tick_pb";
 import type { CockpitPage } from "./support/cockpit_page";
-import { small, stage, type Station } from "./support/stage";
+import { stage, unseen, type Station } from "./support/stage";
 import { until } from "./support/until";
 
 const kShaking = 1.6; // [N/mm], docs/scenes.md
@@ -19,7 +19,7 @@ const shakes = (tick: Tick) => tick.contact.some((contact) => contact.oscillatin
 
 beforeAll(async () => {
   station = await play.station("first_touch");
-  cockpit = await play.open(station.url, small);
+  cockpit = await play.open(station.url, unseen);
   await cockpit.untilRunning();
 });
 

@@ -4,7 +4,7 @@ import { beforeAll, describe, expect, it } from "vitest";
 import type { Tick } from "../../src/gen/phalanx/tick_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
-import { small, stage } from "./support/stage";
+import { stage, unseen } from "./support/stage";
 import { until } from "./support/until";
 
 const kAtWork = 0.02; // [Nm]; a stop of a motor that rests proves nothing
@@ -15,8 +15,8 @@ let viewer: CockpitPage;
 
 beforeAll(async () => {
   const station = await play.station("grasp_teapot", { "motion.hold_s": "600" }); // the patient does not let go
-  operator = await play.open(station.url, small);
-  viewer = await play.open(station.url, small);
+  operator = await play.open(station.url, unseen);
+  viewer = await play.open(station.url, unseen);
 });
 
 const largest = (tick: Tick) => Math.max(...tick.torque.map(Math.abs));

@@ -6,7 +6,7 @@ import type { Tick } from "../../src/gen/phalanx/tick_pb";
 import { SafetyState } from "../../src/gen/phalanx/tick_pb";
 import { strings } from "../../src/strings";
 import { Log } from "./support/logs";
-import { small, stage } from "./support/stage";
+import { stage, unseen } from "./support/stage";
 import { until } from "./support/until";
 
 const kStopRampTicks = 200; // docs/safety.md: 200 ms, at the controller's 1 kHz
@@ -18,7 +18,7 @@ const largest = (tick: Tick) => Math.max(...tick.torque.map(Math.abs));
 
 it("brings a device on a wire to zero torque within the stop ramp and the age of a step, and keeps it there until Resume", async () => {
   const { device, station } = await play.wired("grasp_teapot", { "motion.hold_s": "600" }, ["--log", "host.csv"]); // the patient does not let go
-  const page = await play.open(station.url, small);
+  const page = await play.open(station.url, unseen);
   const ways = [() => page.stopButton.click(), () => page.page.keyboard.press("Escape")];
   /// Of the last ten ticks all, so that the controller has had time to follow.
   const untilAtWork = async () => {

@@ -5,7 +5,7 @@ import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, cube, noise } from "./support/meshes";
 import { valueOf } from "./support/settings";
-import { small, stage } from "./support/stage";
+import { stage, unseen } from "./support/stage";
 import { until } from "./support/until";
 
 const words = strings.object;
@@ -16,7 +16,7 @@ const play = stage();
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station("grasp_box")).url, small);
+  cockpit = await play.open((await play.station("grasp_box")).url, unseen);
   await cockpit.untilRunning();
   await cockpit.choose(words.kind, "file");
 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A screen with fewer frames a second: what the processor draws with costs less, and the page goes through the same steps.
+// What makes a page cheaper that the processor draws, while it goes through the same steps. Both run in the page, before anything of its own.
 
-/// Runs in the page, before anything of its own.
+/// A screen with fewer frames a second.
 export function slowScreen(hertz: number): void {
   const own = window.requestAnimationFrame.bind(window);
   let waiting = new Map<number, FrameRequestCallback>();
@@ -20,4 +20,11 @@ export function slowScreen(hertz: number): void {
     return number;
   };
   window.cancelAnimationFrame = (which) => void waiting.delete(which);
+}
+
+/// The calls that paint triangles do nothing.
+export function paintNothing(): void {
+  for (const name of ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced", "drawRangeElements"] as const) {
+    WebGL2RenderingContext.prototype[name] = () => undefined;
+  }
 }

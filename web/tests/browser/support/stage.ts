@@ -8,7 +8,7 @@ import { afterAll, afterEach, expect, inject } from "vitest";
 import { CockpitPage } from "./cockpit_page";
 import { bringToKnownState, freeControl, type Values } from "./known_state";
 import { addressOf, runDevice, runStation, slowMotion, type Program } from "./program";
-import { slowScreen } from "./slow_screen";
+import { paintNothing, slowScreen } from "./slow_screen";
 import type {} from "./setup"; // what it provides
 
 export interface Station {
@@ -29,12 +29,15 @@ export interface OwnDevice {
 
 export interface PageWishes extends BrowserContextOptions {
   readonly hertz?: number; // of its screen; else what the browser can
+  readonly unseen?: boolean; // nothing in the 3D view is painted
 }
 
 /// All pixels, for pictures.
 export const full: PageWishes = { viewport: { width: 1000, height: 640 } };
 /// For stories that are not about looks: large enough to hold all controls, drawn with a quarter of the pixels, ten times a second.
 export const small: PageWishes = { ...full, deviceScaleFactor: 0.5, hertz: 10 };
+/// For stories in which nobody looks at the 3D view: all of it is computed, none of it painted, which takes the most of a page's time here.
+export const unseen: PageWishes = { ...small, unseen: true };
 
 const kDemonstration = "first_touch"; // the scene of a station that is told none
 const kLastWords = 600; // characters
@@ -82,11 +85,12 @@ export class Stage {
   }
 
   /// The page of a station in a browser profile of its own.
-  async open(url: string, { hertz, ...options }: PageWishes = {}): Promise<CockpitPage> {
+  async open(url: string, { hertz, unseen: blind = false, ...options }: PageWishes = {}): Promise<CockpitPage> {
     this.browser ??= chromium.connect(inject("browser"));
     const browser = await this.browser;
     const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", reducedMotion: "reduce", ...options });
     if (hertz !== undefined) await context.addInitScript(slowScreen, hertz);
+    if (blind) await context.addInitScript(paintNothing);
     const page = new CockpitPage(await context.newPage());
     this.pages.push(page);
     await page.go(url);
