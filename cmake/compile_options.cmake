@@ -8,9 +8,9 @@ target_compile_options(
             # Same samples, same bits at every optimisation level: no fused multiply-add behind our back.
             -ffp-contract=off)
 # What no tick and no simulation spends its time in: files, pages, commands. Optimised little, since it takes the compiler a third less, and
-# not at all with a sanitizer, where it takes half.
+# not at all with a sanitizer, where it takes half; a fuzzer spends its time there.
 add_library(phalanx_cold_options INTERFACE)
-if(PHALANX_SANITIZE)
+if(PHALANX_SANITIZE AND NOT PHALANX_BUILD_FUZZERS)
   target_compile_options(phalanx_cold_options INTERFACE -O0)
 elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_options(phalanx_cold_options INTERFACE -O1)

@@ -3,11 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "contact/containment.h"
+#include "contact/search/views.h"
 #include "phalanx/contact/triangle_distance.h"
 #include "phalanx/mesh/primitives.h"
 
@@ -111,6 +113,25 @@ TEST(WindingNumber, IsOneInsideZeroOutside) {
   EXPECT_NEAR(winding_number(torus, Vec3(0.04, 0, 0)), 1.0, 1e-9);
   EXPECT_NEAR(winding_number(torus, Vec3(0, 0, 0)), 0.0, 1e-9);
   EXPECT_NEAR(winding_number(torus, Vec3(0.2, 0.1, 0)), 0.0, 1e-9);
+}
+
+// A box of 100 x 60 x 40 mm around (0.1, 0, 0.2) m and a segment of 20 x 20 x 10 mm at (0.8, 0.1, -0.3) m:
+// apart by 0.7 m along x, half a width of 50 mm, and 15 mm from the segment's origin to its corner. A dozen
+// roundings of 6e-8 are 7.2e-7 of that; the search allows 2e-6.
+TEST(SegmentView, AllowsForTheRoundingOfAllThatSinglePrecisionHolds) {
+  TriangleMesh box = make_box(Vec3(0.10, 0.06, 0.04), 12);
+  for (Vec3& v : box.vertices) v += Vec3(0.1, 0.0, 0.2);
+  const ObjectTree object(box);
+  const SegmentTree segment(make_box(Vec3(0.02, 0.02, 0.01), 12));
+  SearchScratch scratch(segment);
+  const Pose X{Mat3::Identity(), Vec3(0.8, 0.1, -0.3)};
+  const search::SegmentView view = search::view_of({segment, X, scratch}, object);
+  EXPECT_NEAR(view.slack, 2e-6 * (0.7 + 0.015 + 0.05), 1e-12);
+  const std::array apart{0.7, 0.1, -0.5};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(view.lens_p[i], apart[i], 1e-6);
+    EXPECT_EQ(view.p[i], X.p[static_cast<Eigen::Index>(i)]);
+  }
 }
 
 TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {

@@ -24,6 +24,7 @@ class ChildProcess {
 
   /// Writes a line to its standard input; nothing happens if it has ended.
   void type(const std::string& line) const;
+  /// SIGKILL returns when it has ended.
   void signal(int number) const;
   /// Waits for its end. @returns its exit code, 128 + N after signal N; empty: it still ran after `seconds`
   std::optional<int> wait(double seconds);

@@ -21,6 +21,24 @@ JointArray random_angles(std::mt19937_64& random) {
   return q;
 }
 
+// docs/link.md: four joints and three segments a digit, from the thumb on; then the palm.
+TEST(JointNames, EachIsFoundWhereItStands) {
+  EXPECT_EQ(find_joint("thumb_cmc_flexion"), 0);
+  EXPECT_EQ(find_joint("index_mcp_flexion"), 4);
+  EXPECT_EQ(find_joint("middle_mcp_abduction"), 9);
+  EXPECT_EQ(find_joint("little_dip_flexion"), 19);
+  EXPECT_EQ(find_segment("thumb-metacarpal"), 0);
+  EXPECT_EQ(find_segment("middle-finger-phalanx-distal"), 8);
+  EXPECT_EQ(find_segment("wrist"), 15);
+  for (int joint = 0; joint < kJoints; ++joint) EXPECT_EQ(find_joint(joint_name(joint)), joint);
+  for (int segment = 0; segment < kSegments; ++segment)
+    EXPECT_EQ(find_segment(segment_name(segment)), segment);
+  for (const char* name : {"", "thumb", "thumb_cmc_flexio", "thumb_cmc_flexion ", "little"}) {
+    EXPECT_EQ(find_joint(name), std::nullopt) << name;
+    EXPECT_EQ(find_segment(name), std::nullopt) << name;
+  }
+}
+
 Pose somewhere(std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   return Pose{rotation_about(Vec3(u(random), u(random), u(random)).normalized(), 3.0 * u(random)),

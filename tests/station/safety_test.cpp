@@ -279,6 +279,15 @@ TEST(Safety, WallsOfADigitWhoseTorqueTheGateHasChangedAreNotSent) {
   EXPECT_EQ(bench.command.wall_valid_for, 0.0);
 }
 
+// The step has set what was not finite to zero, and says so by its status alone.
+TEST(Safety, AStepThatSaysItWasNotFiniteIsAFaultThoughAllThatItSendsIsFinite) {
+  Bench bench;
+  bench.run_with(0.3);
+  bench.snapshot.status = Status::kCommandNotFinite;
+  bench.step();
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kCommandNotFinite);
+}
+
 TEST(Safety, AStepThatIsNotFiniteIsAFaultAndWhatLeavesIsFinite) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
