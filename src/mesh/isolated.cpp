@@ -56,8 +56,8 @@ void end_with(pid_t parent) {
   if (::getppid() != parent) ::_exit(1);  // it was gone before that
 }
 
-/// Assimp clears a buffer of 16 MB for each file that it reads. In pages of 2 MB at the heap's end these are
-/// 8 page faults instead of 4096.
+/// Assimp clears a buffer of 16 MB for each file that it reads. In pages of 2 MB at the heap's end, where
+/// the kernel has them, these are 8 page faults instead of 4096.
 void prepare_memory() {
   constexpr std::size_t kBytes = std::size_t{24} << 20;
   constexpr std::uintptr_t kLargePage = std::uintptr_t{2} << 20;

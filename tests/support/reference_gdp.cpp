@@ -155,8 +155,8 @@ Vec3 nearest_in(const std::vector<Vec3>& fan, const Vec3& n) {
     for (std::size_t j = 0; j < i; ++j) {
       const Vec3 across = fan[i].cross(fan[j]);
       if (across.norm() < 1e-12) continue;
-      const double w_i = n.cross(fan[j]).dot(across);
-      const double w_j = fan[i].cross(n).dot(across);
+      const double w_i = n.cross(fan[j]).dot(across) / across.squaredNorm();
+      const double w_j = fan[i].cross(n).dot(across) / across.squaredNorm();
       if (w_i >= 0.0 && w_j >= 0.0) offer(w_i * fan[i] + w_j * fan[j]);
       for (std::size_t k = 0; k < j; ++k) {
         Mat3 three;

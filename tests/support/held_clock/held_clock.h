@@ -17,8 +17,9 @@ namespace phalanx::test {
 /// The time of all programs that attach to one ClockPage. It stands still while any of their threads runs,
 /// and moves to the next moment that one of them waits for once all sleep in the kernel: nothing that they do
 /// takes time, and a busy computer changes nothing. A thread that asks for the time a thousand times without
-/// waiting makes it pass by 1 us each time. Processes that are stopped (SIGSTOP) are not waited for. One
-/// thread at a time.
+/// waiting makes it pass by 1 us each time. Processes that are stopped (SIGSTOP) are not waited for. A
+/// thread that SIGKILL ends in its sleep counts as asleep: who kills a program waits for its end before time
+/// goes on. One thread at a time.
 class HeldClock {
  public:
   /// A page of its own, in memory. @throws std::runtime_error

@@ -87,7 +87,7 @@ describe("roles", () => {
   });
 
   it("refuses what a viewer sends past the page's own controls", async () => {
-    // As somebody might with the developer tools: the fieldset is enabled by hand. In one go: the next state disables it again.
+    // As with the developer tools of a browser: the fieldset is enabled by hand. In one step, since the next state disables it again.
     await bert.stiffnessField.evaluate((field: HTMLInputElement) => {
       field.closest("fieldset")!.disabled = false;
       field.value = "3";

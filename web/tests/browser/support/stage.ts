@@ -36,7 +36,7 @@ export interface PageWishes extends BrowserContextOptions {
 export const full: PageWishes = { viewport: { width: 1000, height: 640 } };
 /// For stories that are not about looks: large enough to hold all controls, drawn with a quarter of the pixels, ten times a second.
 export const small: PageWishes = { ...full, deviceScaleFactor: 0.5, hertz: 10 };
-/// For stories in which nobody looks at the 3D view: all of it is computed, none of it painted, which takes the most of a page's time here.
+/// For stories that do not compare pictures of the 3D view: all of it is computed and none of it painted. Painting takes most of a page's time here.
 export const unseen: PageWishes = { ...small, unseen: true };
 
 const kDemonstration = "first_touch"; // the scene of a station that is told none
