@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes to OUT an add_test() for each suite of the GoogleTest program PROGRAM, see phalanx_test() in tests.cmake.
 cmake_minimum_required(VERSION 3.25)
-execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing RESULT_VARIABLE result ERROR_VARIABLE errors)
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests TIMEOUT 120 OUTPUT_VARIABLE listing RESULT_VARIABLE result ERROR_VARIABLE errors)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "${PROGRAM} does not list its tests (${result}):\n${listing}${errors}")
 endif()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Test programs and their levels. Each test has one ctest label:
-#   release, asan, tsan               ./test; in this order the build without a sanitizer and the two with one
-#   full, asan_full, tsan_full        ./test --full
-#   soak                              ./test --soak
-# The target default_tests builds the programs of the first row and all_tests every program of this tree.
+#   release, asan                     ./test: the tree without a sanitizer, the tree with AddressSanitizer
+#   full, asan_full, tsan             ./test --full, beside those above
+#   soak                              ./test --soak, beside those above
+#   tsan_full                         nobody: tests that the tree with ThreadSanitizer could build
+# The target default_tests builds the programs of release, asan and tsan, and all_tests every program of this tree.
 add_custom_target(default_tests)
 add_custom_target(all_tests)
 add_dependencies(all_tests default_tests)

@@ -21,16 +21,16 @@ FOLDERS: dict[str, tuple[int, str, list[str]]] = {
     "step": (95, "step device scene station study", ["*/step/*"]),
     "safety": (95, "station faults serve", ["*/station/safety*", "*/station/sensor_watch*"]),
     "link": (95, "device/link device station faults", ["*/device/link/*"]),
-    "import": (90, "mesh scene step serve study", [f"*/mesh/{name}.*" for name in IMPORT.split()]),
-    "scene": (90, "scene study device station serve", ["*/scene/*"]),
-    "serve": (90, "serve faults", ["*/serve/*"]),
-    "study": (90, "study", ["*/study/*"]),
-    "record": (90, "record study station", ["*/record/*"]),
+    "import": (90, "mesh scene step serve study cli", [f"*/mesh/{name}.*" for name in IMPORT.split()]),
+    "scene": (90, "scene study device station serve cli", ["*/scene/*"]),
+    "serve": (90, "serve faults cli", ["*/serve/*"]),
+    "study": (90, "study cli", ["*/study/*"]),
+    "record": (90, "record study station cli", ["*/record/*"]),
 }
 FURTHER: dict[str, tuple[int, str, list[str]]] = {
     "core": (90, "core hand contact force step scene", ["*/core/*"]),
     "device": (90, "device scene study station faults", ["src/device/*.*", "include/phalanx/device/*.h"]),
-    "gloves": (90, "device/opengloves device faults", ["*/device/opengloves/*"]),
+    "gloves": (90, "device/opengloves device faults cli", ["*/device/opengloves/*"]),
     "mesh": (90, "mesh scene step study", ["*/mesh/*"]),
     "station": (90, "station serve faults", ["*/station/*"]),
 }

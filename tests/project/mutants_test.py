@@ -106,6 +106,21 @@ class Watched(unittest.TestCase):
         self.assertEqual(self.watch(script), ("A.two (does not pass)", {"A.one": 0.0}))
 
 
+class Listed(unittest.TestCase):
+    def test_a_listing_names_the_cases_of_plain_and_parameterised_suites(self) -> None:
+        listing = ("Running main() from gtest_main.cc\nGdp.\n  Stops\n  DISABLED_Later\nFiles/Sweep.\n  Over/0  # GetParam() = a. b\n"
+                   "Typed/0.  # TypeParam = double\n  Holds\n")
+        self.assertEqual(mutants.cases_of(listing), ["Gdp.Stops", "Files/Sweep.Over/0", "Typed/0.Holds"])
+
+    def test_a_build_tree_without_tests_is_an_error_and_no_survivor(self) -> None:
+        with tempfile.TemporaryDirectory() as place:
+            copy = mutants.Copy(Path(place), Path(place))
+            copy.build.mkdir(parents=True)
+            (copy.build / "test_programs.txt").write_text("")
+            with self.assertRaises(SystemExit):
+                mutants.Tests(copy, 1).listed("force")
+
+
 class MadeTree(unittest.TestCase):
     def setUp(self) -> None:
         kept = tempfile.TemporaryDirectory()

@@ -50,9 +50,10 @@ TEST(Typed, EveryWordIsLoggedAsTheTerminals) {
 TEST(Typed, AResumeDoesNotUndoAStopThatCameAfterWhatItsPersonSaw) {
   const testing::TemporaryFolder folder;
   const std::string script = R"(
-    until_there() { for _ in $(seq 600); do grep -qs -- "$1" "$2" && return; sleep 0.2; done; echo "no $1 in $2" >&2; exit 1; }
+    until_there() { echo "waits for $1 in $2" >&2; grep -qm1 -- "$1" <(tail --pid=$$ -n +1 -F "$2" 2>/dev/null); }
     mkfifo typed
     "$PROGRAM" run --device sliders --port 0 --no-realtime --quiet --audit changes.jsonl <typed >out 2>err &
+    station=$!
     exec 4>typed
     until_there http: out
     port=$(sed -n 's|.*http://127.0.0.1:\([0-9]*\)/.*|\1|p' out | head -n 1)
@@ -66,7 +67,7 @@ TEST(Typed, AResumeDoesNotUndoAStopThatCameAfterWhatItsPersonSaw) {
     echo resume >&4
     until_there resumed changes.jsonl
     echo quit >&4
-    wait $!
+    wait $station
   )";
   std::ofstream(folder / "story.sh") << script;
   const std::string command = "cd '" + folder.path().string() +

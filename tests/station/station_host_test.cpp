@@ -390,7 +390,10 @@ TEST_F(StationHostTest, EndsWhileWorkIsOnItsWayWithoutTorqueOrAnAnswer) {
     host->set({{"objects.0.size_mm", "50"}}, done);
     own();
     ASSERT_FALSE(host->state()->busy.empty());
-    std::this_thread::sleep_for(std::chrono::milliseconds(20 * i));  // wherever the work has come to
+    {
+      const test::TimePassesBeside building("phalanx-build");
+      std::this_thread::sleep_for(std::chrono::milliseconds(20 * i));  // wherever the work has come to
+    }
     host->shut_down();
     EXPECT_EQ(host->view().factor, 0.0);
     EXPECT_FALSE(any_torque(host->view()));

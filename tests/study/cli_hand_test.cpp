@@ -22,9 +22,9 @@ TEST(CliHand, ShowSaysSizesRangesAndHowFarTheyAreFromThePublishedMeans) {
   const TemporaryFolder folder;
   const auto result = run_program(folder, "hand show --profile stiff-hand");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  // (184 - 193.8) / 9.8 = -1.0;  the stated 41 mm: (41 - 39.78) / 4.94 = +0.2.
+  // (184 - 193.8) / 9.8 = -1.0, (82 - 90.4) / 4.2 = -2.0;  the stated 41 mm: (41 - 39.78) / 4.94 = +0.2.
   for (const char* word :
-       {"stiff hand: a right hand", "184.00 mm   -1.0 SD of men", "82.00 mm", "triangles: "})
+       {"stiff hand: a right hand", "184.00 mm   -1.0 SD of men", "82.00 mm   -2.0 SD of men", "triangles: "})
     EXPECT_THAT(result.out, HasSubstr(word));
   EXPECT_THAT(result.out,
               ::testing::ContainsRegex("index-finger-phalanx-proximal +41\\.00 +\\+0\\.2 +21\\.00"));

@@ -40,8 +40,9 @@ struct TiedRegion {
 [[nodiscard]] TiedRegion tied_region(const Corners& a, const Corners& b, const TriangleDistance& closest,
                                      double limit, double excess) noexcept;
 
-/// Barycentric coordinates of the point of triangle `t` that is nearest to `p` (p is assumed to lie on or
-/// near it). Sums to 1. Real-time.
+/// Barycentric coordinates of p's foot on the plane of triangle `t`, those of its second and third corner
+/// clamped to 0 .. 1, that of the first to >= 0, and all divided by their sum: of a point of t, the nearest
+/// to p only if the foot lies in t. A triangle without area: 1/3 each. Real-time.
 [[nodiscard]] Vec3 barycentric(const Corners& t, const Vec3& p) noexcept;
 
 }  // namespace phalanx

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Serves the page and recordings: each is simulated when it is asked for first, into a temporary folder.
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync } from "node:fs";
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -17,6 +17,16 @@ const here = dirname(fileURLToPath(import.meta.url));
 const program = process.env["PHALANX_PROGRAM"] ?? resolve(here, "../../../../build/release/bin/phalanx");
 const skinFile = resolve(here, "../../../../assets/hands/generic/skin.json");
 const recordings = new Map<string, Recording>();
+let folderOfThisProcess = "";
+
+/// Of this process, until it ends.
+function folderOfRecordings(): string {
+  if (folderOfThisProcess === "") {
+    folderOfThisProcess = mkdtempSync(join(tmpdir(), "phalanx_recordings_"));
+    process.on("exit", () => rmSync(folderOfThisProcess, { recursive: true, force: true }));
+  }
+  return folderOfThisProcess;
+}
 
 /// Name: SCENE, SCENE,left or SCENE,KEY=VALUE,...; and at last ,skin or ,made for a skin.
 export function recording(name: string): Recording {
@@ -25,11 +35,8 @@ export function recording(name: string): Recording {
   const [scene, ...words] = name.split(",");
   const left = words.includes("left");
   const settings = words.filter((word) => word.includes("=")).concat(left ? ["mirror=true"] : []);
-  const folder = join(tmpdir(), "phalanx_view3d", name.replaceAll(/[^\w,=.-]/g, "_"));
-  if (!existsSync(join(folder, "summary.json"))) {
-    mkdirSync(folder, { recursive: true });
-    execFileSync(program, ["simulate", scene!, "--out", folder, "--poses", "--quiet", ...settings.flatMap((word) => ["--set", word])]);
-  }
+  const folder = join(folderOfRecordings(), name.replaceAll(/[^\w,=.-]/g, "_"));
+  execFileSync(program, ["simulate", scene!, "--out", folder, "--poses", "--quiet", ...settings.flatMap((word) => ["--set", word])]);
   const skin = words.includes("skin") ? skinFile : words.includes("made") ? "made" : "none";
   // The teapot's grasp begins with all joints at zero.
   const straight = skin === skinFile ? recording(left ? "grasp_teapot,left" : "grasp_teapot").ticks[0]!.gdpPose : [];

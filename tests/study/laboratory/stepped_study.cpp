@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// slow_study OUT TRIAL_US: the twelve synthetic points, each trial as slow as asked for; somebody else kills
-// it.
-#include <chrono>
+// stepped_study OUT: the twelve synthetic points. Each trial waits for a byte on the standard input; who
+// writes them decides how far the study comes, and kills it.
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
-#include <string>
-#include <thread>
+#include <stdexcept>
 
 #include "phalanx/study/laboratory/outputs.h"
 #include "study/laboratory/synthetic.h"
@@ -13,12 +13,11 @@
 int main(int argc, char** argv) {
   using namespace phalanx;
   try {
-    if (argc != 3) throw std::invalid_argument("usage: slow_study OUT TRIAL_US");
-    const std::chrono::microseconds pause(std::stoi(argv[2]));
+    if (argc != 2) throw std::invalid_argument("usage: stepped_study OUT");
     const Study study = phalanx::testing::study_of(phalanx::testing::kTwelvePoints);
-    const auto trial = [pause](const Overrides& overrides, double stiffness, double press,
-                               std::uint64_t seed) {
-      std::this_thread::sleep_for(pause);
+    const auto trial = [](const Overrides& overrides, double stiffness, double press, std::uint64_t seed) {
+      char step = 0;
+      if (::read(STDIN_FILENO, &step, 1) != 1) throw std::runtime_error("nobody steps it any more");
       return phalanx::testing::synthetic_trial(overrides, stiffness, press, seed);
     };
     const auto results =
@@ -27,7 +26,7 @@ int main(int argc, char** argv) {
                         {.commit = "", .cpu = "", .compiler = "", .build_type = "", .date = ""});
     return 0;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "slow_study: %s\n", error.what());
+    std::fprintf(stderr, "stepped_study: %s\n", error.what());
     return 1;
   }
 }
