@@ -476,13 +476,12 @@ void expect_rare(const Compared& out) {
   EXPECT_LE(out.exhausted, 1) << "1,000 places in one tick are for ways that no hand takes";
 }
 
-/// What is compared happens: the hand touches, in its way and with a nearer segment that pushes.
-void expect_all_kinds(const Compared& all) {
+/// What is compared happens: the hand touches, also where a nearer segment already pushes.
+void expect_touches(const Compared& all) {
   if (test::kSanitized) return;  // few ticks
   EXPECT_GT(all.stops, 0);
   EXPECT_GT(all.records, 0);
   EXPECT_GT(all.offsets, 0);
-  EXPECT_GT(all.renewed, 0);
 }
 
 /// A glove's recording in this hand's angles: a column of the same name counts, with flexion negative, as the
@@ -539,8 +538,8 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverRecordingsGivenByHand) {
 }
 
 TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) {
-  const int seeds = runs_whole_range() ? 20 : 1;
-  Compared all_kinds;
+  const int seeds = runs_whole_range() ? 20 : test::kSanitized ? 1 : 3;
+  Compared all;
   for (const Place& place : places()) {
     SCOPED_TRACE(place.name);
     const HapticModel model = model_before(place.object);
@@ -552,15 +551,15 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) {
       for (int n = 0; n < ticks; ++n) ASSERT_NO_FATAL_FAILURE(beside.tick(motion.next(0.005)));
       beside.out.print(place.name + " human, seed " + std::to_string(seed));
       expect_rare(beside.out);
-      all_kinds.add(beside.out);
+      all.add(beside.out);
     }
   }
-  expect_all_kinds(all_kinds);
+  expect_touches(all);
 }
 
 TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
   const int seeds = runs_whole_range() ? 20 : 1;
-  Compared all_kinds;
+  Compared sum;
   const std::vector<Place> all = places();
   for (std::size_t p = 0; p < all.size(); ++p) {
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -590,10 +589,13 @@ TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
       }
       beside.out.print(all[p].name + " random, seed " + std::to_string(seed));
       expect_rare(beside.out);
-      all_kinds.add(beside.out);
+      sum.add(beside.out);
     }
   }
-  expect_all_kinds(all_kinds);
+  expect_touches(sum);
+  if (!test::kSanitized) {
+    EXPECT_GT(sum.renewed, 0);
+  }
 }
 
 }  // namespace

@@ -502,7 +502,7 @@ TEST_F(StationHostTest, TheTorqueIsZeroBeforeAChangeOnItsWayIsDone) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
   host->set({{"objects.0.triangles", "200000"}}, {});
-  const test::TimePassesBeside building("phalanx-build");
+  std::optional<test::TimePassesBeside> building("phalanx-build");
   ASSERT_TRUE(until([&] { return !host->state()->busy.empty(); }));
   std::thread ending([&] { host->shut_down(); });
   bool resumed = false;
@@ -514,6 +514,7 @@ TEST_F(StationHostTest, TheTorqueIsZeroBeforeAChangeOnItsWayIsDone) {
     at_rest_while_busy =
         view.state == SafetyState::kStopped && view.at_rest && host->state()->geometry->revision == 1;
   }
+  building.reset();
   EXPECT_TRUE(at_rest_while_busy);
   EXPECT_TRUE(host->held_stopped());
   ending.join();
