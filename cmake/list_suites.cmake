@@ -64,6 +64,8 @@ foreach(suite IN LISTS suites)
     set(timeout 900)
     if(level STREQUAL "full")
       set(label ${FULL_LABEL})
+    endif()
+    if(label STREQUAL FULL_LABEL)
       set(timeout 3600)
     endif()
     string(REGEX REPLACE "^.*/([^/]*[A-Za-z_][^/]*)(/[0-9]+)?$" "\\1" plain ${suite}) # of Instance/Suite and Suite/0: Suite
