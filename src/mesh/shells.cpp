@@ -164,7 +164,7 @@ class Containment {
       constexpr double kGrazing = 1e-9;
       if (std::abs(slope) <= kGrazing * area) {
         // In the triangle's plane: harmless unless it runs through the triangle.
-        grazed = std::abs((from - a).dot(normal)) <= kGrazing * area * std::sqrt(area);
+        grazed = grazed || std::abs((from - a).dot(normal)) <= kGrazing * area * std::sqrt(area);
         return;
       }
       const double distance = (a - from).dot(normal) / slope;

@@ -110,5 +110,17 @@ TEST(Smoothing, OffIsTheLawItself) {
   EXPECT_EQ(smoothed_force(SmoothingParameters{.enabled = false}, 3.0, 0.0, kPeriod), 3.0);
 }
 
+// What nobody has set protects the patient: every limit is on.
+TEST(LimitParameters, AreOnByDefault) {
+  constexpr LimitParameters kLimits;
+  EXPECT_TRUE(kLimits.fingertip_force_enabled);
+  EXPECT_TRUE(kLimits.joint_torque_enabled);
+  EXPECT_TRUE(kLimits.torque_rate_enabled);
+  EXPECT_EQ(kLimits.fingertip_force, 5.0);
+  EXPECT_EQ(kLimits.joint_torque, 0.5);
+  EXPECT_EQ(kLimits.torque_rate, 10.0);
+  EXPECT_EQ(kLimits.joint_speed, 40.0);
+}
+
 }  // namespace
 }  // namespace phalanx

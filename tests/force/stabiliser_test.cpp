@@ -239,5 +239,15 @@ TEST(Stabiliser, IsFiniteAndNeverPullsWhateverArrives) {
   }
 }
 
+// What damps by the speed adds to the law's force where the finger presses in; the cap comes once more after
+// it.
+TEST(StabiliserMethods, ThoseThatAddToTheLawsForceAreKnown) {
+  for (const Stabiliser method : test::kAllStabilisers) {
+    const bool adds = method == Stabiliser::kKelvinVoigt || method == Stabiliser::kPassivity ||
+                      method == Stabiliser::kEnergyBounding;
+    EXPECT_EQ(keeps_below_law(method), !adds) << static_cast<int>(method);
+  }
+}
+
 }  // namespace
 }  // namespace phalanx

@@ -246,6 +246,32 @@ TEST(Repair, KnowsASolidWithinAHollow) {
   EXPECT_NEAR(r.report.volume, 125e-6 - 27e-6 + 1e-6, 1e-13);
 }
 
+// The first direction of shells.cpp, from the middle of the inner solid's first triangle, runs through a
+// corner of the outer one: it tells nothing, and the next one tells.
+TEST(Repair, KnowsAHollowWhereTheFirstRayGrazesACorner) {
+  const Vec3 u = Vec3(0.61803, 0.37139, 0.69317).normalized();
+  const Vec3 v = u.unitOrthogonal();
+  const Vec3 w = u.cross(v);
+  TriangleMesh mesh;
+  mesh.vertices = {0.01 * Vec3(1, 0, 0), 0.01 * Vec3(0, 1, 0), 0.01 * Vec3(-1, -1, 0), 0.01 * Vec3(0, 0, -1)};
+  mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}};
+  TriangleMesh octahedron;
+  for (const Vec3& axis : {u, v, w}) {
+    octahedron.vertices.push_back(0.05 * axis);
+    octahedron.vertices.push_back(-0.05 * axis);
+  }
+  for (std::int32_t i = 0; i < 2; ++i) {
+    for (std::int32_t j = 2; j < 4; ++j) {
+      for (std::int32_t k = 4; k < 6; ++k)
+        octahedron.triangles.push_back((i + j + k) % 2 == 0 ? Triangle{i, j, k} : Triangle{j, i, k});
+    }
+  }
+  append(mesh, octahedron);
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.report.solids, 1U);
+  EXPECT_EQ(r.report.cavities, 1U);
+}
+
 TEST(Repair, TakesNeitherOfTwoCrossingSolidsForAHollow) {
   TriangleMesh mesh = cube(0.05);
   append(mesh, turned(cube(0.05, Vec3::Constant(0.02))));

@@ -64,6 +64,18 @@ TEST(SensorWatchBounds, TheEndsOfASensorsRawRangeAreGood) {
   }
 }
 
+// A channel whose gain overflows: 1e305 rad a count, 10,000 counts. It is no angle beyond the range, but none
+// at all.
+TEST(SensorWatchBounds, WhatIsNoNumberIsSaidToBeNone) {
+  std::vector<DeviceChannel> channels = test::two_joint_channels();
+  channels[0].gain = 1e305;
+  Watch bench({}, channels);
+  bench.sample.raw[0] = 10000;
+  EXPECT_EQ(bench.judge_many(2).fault, Fault::kNone);
+  EXPECT_FALSE(bench.watch.all_good());
+  EXPECT_EQ(bench.judge().fault, Fault::kSampleNotFinite);
+}
+
 TEST(SensorWatchBounds, OfTwoSensorsThatAreBadAtOnceTheFirstIsNamed) {
   Watch bench;
   bench.sample.raw[0] = bench.sample.raw[1] = 32767;

@@ -131,7 +131,6 @@ void HttpSession::become_page() {
 
 void HttpSession::hand_over() {
   large_body_.reset();
-  line_.transport().expires_never();
   house_.waiting[this] = shared_from_this();
   // The answer may outlive the server, so it must not keep this alive.
   auto deliver = [weak = weak_from_this()](WebAnswer given) {
