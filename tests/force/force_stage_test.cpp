@@ -379,6 +379,23 @@ TEST(ForceStage, WallsOfADigitWhoseTorqueWasLimitedAreWithheld) {
   }
 }
 
+// Long after the last contact of a digit none of its segments has a wall any more, also where another
+// stabiliser has taken over meanwhile.
+TEST(ForceStage, ADigitThatTouchesNothingHasNoWall) {
+  for (int i = 0; i < 2 * kSegmentsPerDigit; ++i) {
+    const int k = i / 2;
+    Stage stage = walled();
+    stage.press(k, 0.2e-3);
+    stage.tick();
+    ASSERT_TRUE(stage.wall(k).active) << k;
+    stage.leave(k);
+    if (i % 2 == 1) stage.stabiliser.method = Stabiliser::kSmoothing;
+    stage.ticks(500);
+    EXPECT_FALSE(stage.wall(k).active) << k;
+    EXPECT_EQ(stage.wall(k).stiffness, 0.0) << k;
+  }
+}
+
 // By hand: 500 N/m at 2 mm; lever arms of the point 75 mm from the knuckle, 35 and 10 mm from the other
 // joints; no force along +Y turns abduction. Without caps f_max is what no device renders.
 TEST(ForceStage, AWallIsTheContactAsTheControllerNeedsIt) {
