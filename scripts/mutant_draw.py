@@ -17,7 +17,7 @@ IMPORT = "import weld repair assimp_reader obj_reduce isolated isolation_helper 
 FOLDERS: dict[str, tuple[int, str, list[str]]] = {
     "contact": (95, "contact step scene device study station", ["*/contact/*"]),
     "force": (95, "force step device scene study station", ["*/force/*"]),
-    "hand": (90, "hand contact step scene device study", ["*/hand/*"]),
+    "hand": (90, "hand contact step scene device study cli", ["*/hand/*"]),
     "step": (95, "step device scene station study", ["*/step/*"]),
     "safety": (95, "station faults serve", ["*/station/safety*", "*/station/sensor_watch*"]),
     "link": (95, "device/link device station faults", ["*/device/link/*"]),

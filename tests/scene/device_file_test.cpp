@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "expect_error.h"
+#include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
 
 namespace phalanx {
@@ -280,6 +281,55 @@ TEST(DeviceText, IsTheSameForTheSameNumbersAndHoldsEachOfThem) {
                              "[defaults.motor]\npull_only = true\n", "[defaults.motor]\nbacklash_mm = 1\n",
                              "[defaults.joint]\nstatic_ratio = 1.5\n"})
     EXPECT_NE(text, device_text(parse_text(kJoint + kMotor + change))) << change;
+}
+
+TEST(DeviceText, ChangesWithEveryNumberOfADevice) {
+  Exoskeleton exo = parse_text(kJoint + kMotor);
+  exo.coupled.push_back({.joint = exo.joints[0].joint + 1, .of = exo.joints[0].joint});
+  const std::string text = device_text(exo);
+  ExoJoint& joint = exo.joints[0];
+  ExoMotor& motor = exo.motors[0];
+  ExoController& controller = exo.controller;
+  for (double* number : {&joint.inertia,
+                         &joint.damping,
+                         &joint.friction.coulomb,
+                         &joint.friction.static_ratio,
+                         &joint.friction.stribeck_speed,
+                         &joint.friction.capstan,
+                         &joint.sensor_lsb,
+                         &joint.sensor_noise,
+                         &exo.coupled[0].ratio,
+                         &exo.coupled[0].offset,
+                         &motor.arm[idx(joint.joint)],
+                         &motor.lag,
+                         &motor.force_limit,
+                         &motor.bias,
+                         &motor.force_constant,
+                         &motor.mass,
+                         &motor.damping,
+                         &motor.tendon_stiffness,
+                         &motor.tendon_damping,
+                         &motor.backlash,
+                         &motor.sheath.coulomb,
+                         &motor.sheath.static_ratio,
+                         &motor.sheath.stribeck_speed,
+                         &motor.sheath.capstan,
+                         &controller.rate_hz,
+                         &controller.compute_delay,
+                         &controller.return_delay,
+                         &controller.copy[3].gain}) {
+    const double before = *number;
+    *number += 0.125;
+    EXPECT_NE(device_text(exo), text) << "the number that is " << before;
+    *number = before;
+  }
+  for (bool* flag : {&joint.torque_sensor, &motor.pull_only}) {
+    *flag = !*flag;
+    EXPECT_NE(device_text(exo), text);
+    *flag = !*flag;
+  }
+  controller.copy[3].of = 1;
+  EXPECT_NE(device_text(exo), text);
 }
 
 }  // namespace
