@@ -194,9 +194,9 @@ TEST(ChannelMap, ConvertingAllocatesNothing) {
   const ChannelMap map({channel(ChannelKind::kCurl, kIndex, 1.0)}, followers, hand());
   const DeviceSample in{};
   Sample out;
-  const std::size_t before = allocations();
+  const std::size_t before = allocations_of_this_thread();
   for (int i = 0; i < 100; ++i) map.convert(in, out);
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
 }  // namespace

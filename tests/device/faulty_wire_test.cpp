@@ -125,13 +125,13 @@ TEST(FaultyLine, KeepsNoMoreThanItHasRoomForAndAllocatesNothing) {
   std::array<std::uint8_t, PHX_FRAME_MAX> bytes{};
   const std::vector<std::uint8_t> too_large(PHX_FRAME_MAX + 1, 1);
   Peer peer = 0;
-  const std::size_t before = test::allocations();
+  const std::size_t before = test::allocations_of_this_thread();
   for (std::size_t i = 0; i < 2 * FaultyLine::kRoom; ++i) line.put(0.0, {}, packet(static_cast<int>(i)), 1);
   std::size_t count = 0;
   while (line.take(0.0, bytes, peer) > 0) ++count;
   line.put(0.0, {}, too_large, 1);
   const std::size_t after = line.take(0.0, bytes, peer);
-  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(test::allocations_of_this_thread(), before);
   EXPECT_EQ(count, FaultyLine::kRoom);
   EXPECT_EQ(after, 0U);
 }

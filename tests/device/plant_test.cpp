@@ -225,9 +225,9 @@ TEST(Plant, AdvancesWithoutAllocation) {
   Plant plant(exo, no_patient(), {});
   PlantInput input = no_input(exo);
   input.motor_force = {3.0, -2.0};
-  const std::size_t before = test::allocations();
+  const std::size_t before = test::allocations_of_this_thread();
   for (int i = 0; i < 100; ++i) plant.advance(input, 1e-3);
-  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(test::allocations_of_this_thread(), before);
 }
 
 }  // namespace

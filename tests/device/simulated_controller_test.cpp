@@ -245,12 +245,12 @@ TEST(SimulatedController, ATickAllocatesNothing) {
   SimulatedController controller = controller_of();
   MemoryHost host(controller);
   ASSERT_TRUE(host.open());
-  const std::size_t before = allocations();
+  const std::size_t before = allocations_of_this_thread();
   host.run(2000, {.noise_channel = 0, .noise_counts = 20.0});
   controller.restart(300);
   controller.skip(3);
   host.run(10);
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
 TEST(SimulatedController, ARateThatTheLinkCannotCarryIsRefused) {

@@ -214,11 +214,11 @@ TEST(SimulatedDevice, TheControllerRendersTheCommandsWalls) {
 TEST(SimulatedDevice, TheLoopsCallsAllocateNothing) {
   Loop loop;
   loop.run(10);
-  const std::size_t before = allocations();
+  const std::size_t before = allocations_of_this_thread();
   loop.run(400);
   loop.device().reset();
   loop.run(10);
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
 TEST(SimulatedDevice, AHostWithoutARateIsRefused) {

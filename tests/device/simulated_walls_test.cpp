@@ -61,13 +61,13 @@ TEST(SimulatedExoskeleton, TicksWithoutAllocation) {
   exo.controller.return_delay = 3e-3;
   SimulatedExoskeleton device(exo, no_patient(), {}, posture(0.32, 0.0), 1);
   const Snapshot command = wall_command(0.0, 0.02);
-  const std::size_t before = test::allocations();
+  const std::size_t before = test::allocations_of_this_thread();
   for (int tick = 0; tick < 100; ++tick) {
     device.begin_tick();
     device.send(command, device.time_s());
     device.end_tick({});
   }
-  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(test::allocations_of_this_thread(), before);
 }
 
 TEST(SimulatedExoskeleton, StaysFiniteWithWhateverTheHostSends) {

@@ -246,9 +246,9 @@ TEST(Transmission, AllocatesNothingAndGivesTheSameBits) {
     JointArray wanted{};
     for (double& torque : wanted) torque = random.between(-0.3, 0.3);
     Rendered first, second;
-    const std::size_t before = test::allocations();
+    const std::size_t before = test::allocations_of_this_thread();
     transmission.render(wanted, first);
-    EXPECT_EQ(test::allocations(), before);
+    EXPECT_EQ(test::allocations_of_this_thread(), before);
     transmission.render(wanted, second);
     EXPECT_EQ(std::memcmp(first.force.data(), second.force.data(), sizeof(first.force)), 0);
     EXPECT_EQ(std::memcmp(first.unrendered.data(), second.unrendered.data(), sizeof(first.unrendered)), 0);

@@ -19,9 +19,9 @@ namespace phalanx::test {
 /// 1 kHz of `clock`. Every raw value counts the controller's ticks since it was made, until hold().
 class ControllerThread {
  public:
-  ControllerThread(std::unique_ptr<Transport> transport, const Clock& clock)
-      : transport_(std::move(transport)), clock_(clock), address_(transport_->address()) {
-    device_ = bench_device();
+  ControllerThread(std::unique_ptr<Transport> transport, const Clock& clock,
+                   const phx_device& device = bench_device())
+      : transport_(std::move(transport)), clock_(clock), address_(transport_->address()), device_(device) {
     boot(1000);
     thread_ = std::thread([this] { run(); });
   }
@@ -97,7 +97,7 @@ class ControllerThread {
   std::unique_ptr<Transport> transport_;
   const Clock& clock_;
   std::string address_;
-  phx_device device_{};
+  phx_device device_;
   phx_controller controller_{};
   phx_controller shown_{};
   double booted_ = 0.0;

@@ -293,7 +293,7 @@ TEST(Transports, AllocateNothingOnceOpen) {
   std::array<std::uint8_t, PHX_FRAME_MAX> buffer{};
   Peer from = 0;
   std::size_t received = 0;
-  const std::size_t before = test::allocations();
+  const std::size_t before = test::allocations_of_this_thread();
   for (int i = 0; i < 100; ++i) {
     client->send(frame, 0);
     port->send(frame, 0);
@@ -305,7 +305,7 @@ TEST(Transports, AllocateNothingOnceOpen) {
     client->wait(0.1);
     received += client->receive(buffer, from);
   }
-  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(test::allocations_of_this_thread(), before);
   EXPECT_GT(received, 0u);
 }
 

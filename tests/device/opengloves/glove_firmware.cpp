@@ -14,6 +14,7 @@
 namespace phalanx::test {
 namespace {
 
+constexpr auto kPeriod = std::chrono::milliseconds(1);  // of its loop
 constexpr auto kPatience = std::chrono::minutes(5);
 
 int new_master() {
@@ -144,6 +145,7 @@ void GloveFirmware::run() {
     write_all(bytes);
     if (speaks) ++lines_sent_;
     listen(speaks);
+    std::this_thread::sleep_for(kPeriod);
   }
 }
 

@@ -21,7 +21,6 @@
 namespace phalanx::test {
 namespace {
 
-constexpr std::int64_t kNever = INT64_MAX;
 constexpr double kShortestNap = 10e-6;  ///< real time between two looks at the threads [s]
 constexpr double kLongestNap = 500e-6;
 constexpr double kHang = 120.0;  ///< real seconds for which a thread may run without a wait
@@ -247,6 +246,19 @@ bool HeldClock::all_sleep() {
   return threads_->changes == page_->changes.load();
 }
 
+/// A thread of the kernel hands on what is written to a terminal, and a busy computer makes it late; a poll()
+/// that begins waits for it. @returns whether a thread has been sent to its poll() again, since a wait has
+/// begun after it was last there
+bool HeldClock::look_at_terminals() {
+  const std::uint32_t waits = page_->waits.load();
+  if (std::exchange(waits_seen_, waits) == waits) return false;
+  bool sent = false;
+  for (const ClockWait& wait : page_->wait)
+    if (wait.kind.load() == WaitKind::kPoll && wait.terminal.load())
+      sent |= ::syscall(SYS_tgkill, wait.pid.load(), wait.tid.load(), wake_signal()) == 0;
+  return sent;
+}
+
 /// Ends the waits whose time has come.
 void HeldClock::wake_due(std::int64_t now) {
   for (ClockWait& wait : page_->wait) {
@@ -269,7 +281,7 @@ std::optional<std::int64_t> HeldClock::next_wait() {
   }
   const std::int64_t now = page_->now.load();
   wake_due(now);
-  if (!all_sleep()) return std::nullopt;
+  if (!all_sleep() || look_at_terminals()) return std::nullopt;
   std::vector<const ClockWait*> left_out;  // of threads that do not wake
   for (;;) {
     const ClockWait* first = nullptr;

@@ -19,7 +19,8 @@ namespace phalanx::test {
 /// takes time, and a busy computer changes nothing. A thread that asks for the time a thousand times without
 /// waiting makes it pass by 1 us each time. Processes that are stopped (SIGSTOP) are not waited for. A
 /// thread that SIGKILL ends in its sleep counts as asleep: who kills a program waits for its end before time
-/// goes on. One thread at a time.
+/// goes on. What is written to a terminal arrives before time goes on where its reader waits in poll().
+/// One thread at a time.
 class HeldClock {
  public:
   /// A page of its own, in memory. @throws std::runtime_error
@@ -61,11 +62,13 @@ class HeldClock {
   void move_to(std::int64_t t);
   void wake_due(std::int64_t now);
   [[nodiscard]] bool all_sleep();
+  bool look_at_terminals();
 
   int descriptor_ = -1;
   std::string file_;
   ClockPage* page_ = nullptr;
   std::unique_ptr<Threads> threads_;
+  std::uint32_t waits_seen_ = 0;  ///< ClockPage::waits at the last look_at_terminals()
 };
 
 }  // namespace phalanx::test

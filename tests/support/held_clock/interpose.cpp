@@ -77,10 +77,13 @@ timespec to_timespec(std::int64_t ns) noexcept { return {ns / kSecond, ns % kSec
 /// Enters the wait, then calls `look` until it returns false. @returns whether the clock's holder ended the
 /// wait
 template <class Look>
-bool wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look) noexcept {
+bool wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look,
+                bool terminal = false) noexcept {
   if (looks_too_often(page)) spend(page, kSpin);
   ClockWait& wait = *own_place.take(page);
+  page.waits.fetch_add(1);
   wait.woken.store(0);
+  wait.terminal.store(terminal);
   wait.deadline.store(deadline);
   wait.kind.store(kind);
   while (look(wait)) {
@@ -115,6 +118,14 @@ sigset_t mask_for_waiting(const sigset_t* given) noexcept {
   return mask;
 }
 
+bool has_terminal(const pollfd* descriptors, nfds_t count) noexcept {
+  const int error = errno;
+  const bool has = std::any_of(descriptors, descriptors + count,
+                               [](const pollfd& one) { return one.fd >= 0 && ::isatty(one.fd) == 1; });
+  errno = error;
+  return has;
+}
+
 sigset_t only_wake_signal() noexcept {
   sigset_t set;
   sigemptyset(&set);
@@ -128,17 +139,19 @@ void note_signal(int) { signalled = 1; }
 
 /// `call(mask, over)` waits for descriptors with that mask, not at all once the time is over.
 template <class Call>
-int poll_until(ClockPage& page, std::int64_t deadline, const sigset_t* given, Call call) noexcept {
+int poll_until(ClockPage& page, std::int64_t deadline, const sigset_t* given, bool terminal,
+               Call call) noexcept {
   const sigset_t mask = mask_for_waiting(given);
   int result = 0;
   int error = 0;
   signalled = 0;
-  const bool ended = wait_until(page, WaitKind::kPoll, deadline, [&](ClockWait&) {
+  const auto look = [&](ClockWait&) {
     const bool over = page.now.load() >= deadline;
     result = call(mask, over);
     error = errno;
     return result < 0 && error == EINTR && signalled != 0 && !over;
-  });
+  };
+  const bool ended = wait_until(page, WaitKind::kPoll, deadline, look, terminal);
   if (ended && signalled == 0) {  // its signal is on its way, and must not end the next wait
     const sigset_t set = only_wake_signal();
     const timespec second{1, 0};
@@ -253,11 +266,13 @@ int ppoll(pollfd* descriptors, nfds_t count, const timespec* timeout, const sigs
   };
   ClockPage* page = phalanx::test::held.load();
   const bool at_once = timeout != nullptr && phalanx::test::of(*timeout) == 0;
-  if (page == nullptr || timeout == nullptr || at_once) return now(timeout, mask);
+  if (page == nullptr || at_once) return now(timeout, mask);
+  const bool terminal = phalanx::test::has_terminal(descriptors, count);
+  if (timeout == nullptr && !terminal) return now(nullptr, mask);
   const timespec zero{};
   return phalanx::test::poll_until(
-      *page, page->now.load() + phalanx::test::of(*timeout), mask,
-      [&](const sigset_t& m, bool over) { return now(over ? &zero : nullptr, &m); });
+      *page, timeout == nullptr ? phalanx::test::kNever : page->now.load() + phalanx::test::of(*timeout),
+      mask, terminal, [&](const sigset_t& m, bool over) { return now(over ? &zero : nullptr, &m); });
 }
 
 int poll(pollfd* descriptors, nfds_t count, int milliseconds) {
@@ -272,7 +287,7 @@ int epoll_pwait(int epoll, epoll_event* events, int count, int milliseconds, con
   };
   ClockPage* page = phalanx::test::held.load();
   if (page == nullptr || milliseconds <= 0) return now(milliseconds, mask);
-  return phalanx::test::poll_until(*page, page->now.load() + 1'000'000LL * milliseconds, mask,
+  return phalanx::test::poll_until(*page, page->now.load() + 1'000'000LL * milliseconds, mask, false,
                                    [&](const sigset_t& m, bool over) { return now(over ? 0 : -1, &m); });
 }
 
