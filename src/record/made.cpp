@@ -39,8 +39,7 @@ std::string compiler_name() {
 }
 
 std::string build_type() {
-  std::string type = PHALANX_BUILD_TYPE;
-  if (type.empty()) type = "none";
+  const std::string type = PHALANX_BUILD_TYPE;
   const std::string sanitizers = PHALANX_SANITIZERS;
   return sanitizers.empty() ? type : type + "+" + sanitizers;
 }

@@ -189,11 +189,11 @@ Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInFo
   Json answer = Json::parse(
       mesh::run_isolated_work(check_packed, packed(mesh, extension.substr(1)), mesh.name, kImportLimits));
   if (!answer["ok"].get<bool>()) return answer;
-  const Overrides values = values_now(in_force);
+  static_cast<void>(values_now(in_force));
   fs::create_directories(folder);
   const fs::path file = fs::absolute(folder) / file_name(mesh, extension);
   write_text_file(file, mesh.bytes);
-  keep_newest(folder, values);
+  keep_newest(folder, values_now(in_force));
   answer["file"] = file.lexically_normal().string();
   return answer;
 }

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -118,6 +120,10 @@ TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
   const auto good = nlohmann::json::parse(body_of(post("/mesh?name=a.obj&unit=mm", mesh, mine)));
   ASSERT_TRUE(good["ok"].get<bool>()) << good.dump();
   page.notice("upload");
+  const std::filesystem::path folder = std::filesystem::path(good["file"].get<std::string>()).parent_path();
+  constexpr int kOlder = 60;  // more than it keeps
+  for (int i = 0; i < kOlder; ++i)
+    std::ofstream(folder / ("old-" + std::string(14, '0') + std::to_string(10 + i) + ".obj")) << "older";
   // The next one is written to a pipe that nobody reads until the end.
   const std::string pipe = good["file"].get<std::string>() + ".partial";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -143,6 +149,11 @@ TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
   }
   EXPECT_EQ(written, mesh.size()) << "it was still being written";
   ::close(reader);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));  // of the held clock: what it does then is done
+  int older = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    older += entry.path().filename().string().starts_with("old-") ? 1 : 0;
+  EXPECT_EQ(older, kOlder) << "nobody waits for it any more: it removes nothing";
 }
 
 }  // namespace

@@ -121,6 +121,30 @@ TEST(PlotSvg, SurvivesNumbersThatAreNotFinite) {
 
 TEST(PlotSvg, RefusesARunWithoutTicks) { EXPECT_THROW((void)plot_svg({}, {}), std::invalid_argument); }
 
+// 100 points for each second, and 20 for each newton of the axis from 0 to 4, downwards.
+TEST(DrawPanel, PutsEachSampleAndEachTickWhereItsTimeAndValueBelong) {
+  const Panel panel{.title = "force",
+                    .y_label = "N",
+                    .solid_means = "",
+                    .dashed_means = "",
+                    .note = "",
+                    .empty = "",
+                    .curves = {{.label = "index", .solid = {0.0, 4.0, 2.0}, .dashed = {}}}};
+  const PanelFrame frame{.x = 100.0,
+                         .y = 50.0,
+                         .width = 200.0,
+                         .height = 80.0,
+                         .legend_x = 310.0,
+                         .time_low = 1.0,
+                         .time_high = 3.0,
+                         .time_ticks = {1.0, 2.0, 3.0},
+                         .time_labels = true};
+  const std::string svg = draw_panel(panel, frame, {1.0, 2.0, 3.0}, "clip");
+  EXPECT_THAT(svg, HasSubstr("d=\"M100.00,130.00L200.00,50.00L300.00,90.00\""));
+  EXPECT_THAT(svg, HasSubstr("M200.00,50.00v80.00"));
+  EXPECT_THAT(svg, HasSubstr("M100.00,90.00h200.00"));
+}
+
 TEST(NiceTicks, AreRoundNumbersAroundTheData) {
   EXPECT_THAT(nice_ticks(0.0, 3.9, 5), ElementsAre(0, 1, 2, 3, 4));
   EXPECT_THAT(nice_ticks(-0.3, 0.0, 4), ElementsAre(::testing::DoubleEq(-0.3), ::testing::DoubleEq(-0.2),
