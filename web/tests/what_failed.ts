@@ -15,9 +15,15 @@ export default class WhatFailed implements Reporter {
     for (const module of modules.filter((one) => !one.ok())) {
       const failed = [...module.children.allTests("failed")].map((test) => test.fullName);
       for (const what of failed.length > 0 ? failed : ["the file itself"]) console.log(`FAILED: ${name(module)} > ${what}`);
-      console.log(`  again: cd web && npx vitest run --project ${module.project.name} ${name(module)}`);
+      console.log(`  again: cd web && ${settings()}npx vitest run --project ${module.project.name} ${name(module)}`);
     }
   }
+}
+
+/** What the tests were told by the environment, as a shell reads it. */
+function settings(): string {
+  const told = ["PHALANX_PROGRAM", "PHALANX_LAUNCHER"].filter((variable) => process.env[variable]);
+  return told.map((variable) => `${variable}='${process.env[variable]}' `).join("");
 }
 
 function name(module: TestModule): string {

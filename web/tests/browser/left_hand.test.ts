@@ -28,13 +28,17 @@ function handedness(points: readonly Point[]): number {
   return dot(cross(minus(index, palm), minus(little, palm)), minus(thumb, palm));
 }
 
+/// @param skin  of the station; until the page has loaded it, it shows the one before
 async function drawnAsSent(cockpit: CockpitPage, skin: Skin): Promise<readonly Point[]> {
   const seen = new Set<bigint>();
+  let loaded = false;
   let drawn: readonly Point[] = [];
   await until("four drawn ticks", async () => {
     const probe = await cockpit.probe();
     const tick = probe && cockpit.stream.tick(probe.tick);
     if (!probe || !tick || probe.shown.length !== 16 || seen.has(tick.tick)) return false;
+    loaded ||= probe.skin.length > 0 && probe.skin.every(({ vertex, at }) => distance(skinAt(skin, tick.gdpPose, vertex), at) < kMillimetre);
+    if (!loaded) return false;
     seen.add(tick.tick);
     origins(tick.gdpPose).forEach((origin, segment) => expect(distance(origin, probe.shown[segment]!), `segment ${segment}`).toBeLessThan(kMillimetre));
     origins(tick.hcpPose).forEach((origin, segment) => expect(distance(origin, probe.ghost[segment]!), `segment ${segment}`).toBeLessThan(kMillimetre));

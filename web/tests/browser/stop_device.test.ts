@@ -17,7 +17,7 @@ const play = stage();
 const largest = (tick: Tick) => Math.max(...tick.torque.map(Math.abs));
 
 it("brings a device on a wire to zero torque within the stop ramp and the age of a step, and keeps it there until Resume", async () => {
-  const { device, station } = await play.wired("grasp_teapot", { "motion.hold_s": "600" }, ["--log", "host.csv"]); // the patient does not let go
+  const { device, station } = await play.wired("grasp_teapot", {}, ["--log", "host.csv"]);
   const page = await play.open(station.url, unseen);
   const ways = [() => page.stopButton.click(), () => page.page.keyboard.press("Escape")];
   /// Of the last ten ticks all, so that the controller has had time to follow.
@@ -25,15 +25,19 @@ it("brings a device on a wire to zero torque within the stop ramp and the age of
     await page.untilRunning();
     await until("torque", () => page.stream.ticks.length >= 10 && page.stream.ticks.slice(-10).every((tick) => largest(tick) > 2 * kAtWork), () => page.brief());
   };
+  const stops: { readonly atWork: boolean }[] = [];
   for (const stop of ways) {
-    await untilAtWork();
-    await stop();
-    await page.untilStopped();
-    const last = page.stream.ticks.filter((tick) => tick.state === SafetyState.SAFETY_RUNNING).at(-1)!;
-    expect(largest(last), "the motors push when the stop comes").toBeGreaterThan(2 * kAtWork);
-    for (const tick of await page.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
-    await page.button(strings.stop.resume).click();
-    await page.untilState("resumed", (state) => !state.heldStopped);
+    // The patient lets go every five seconds; a stop that comes only then proves nothing, and is given again.
+    do {
+      await untilAtWork();
+      await stop();
+      await page.untilStopped();
+      const last = page.stream.ticks.filter((tick) => tick.state === SafetyState.SAFETY_RUNNING).at(-1)!;
+      stops.push({ atWork: largest(last) > 2 * kAtWork });
+      for (const tick of await page.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
+      await page.button(strings.stop.resume).click();
+      await page.untilState("resumed", (state) => !state.heldStopped);
+    } while (!stops.at(-1)!.atWork);
   }
   await untilAtWork();
   await station.program.end();
@@ -48,7 +52,7 @@ it("brings a device on a wire to zero torque within the stop ramp and the age of
   const isIn = (state: string) => (at: number) => host.text(at, "state") === state;
   const torqueAt = (at: number) => controller.number(at, "max_abs_torque_nm");
   let [step, row] = [0, 0];
-  for (const [i] of ways.entries()) {
+  for (const [i, { atWork }] of stops.entries()) {
     const what = `stop ${i + 1}`;
     step = host.first(step, isIn("stopping"));
     const stopped = host.first(step, isIn("stopped"));
@@ -60,7 +64,7 @@ it("brings a device on a wire to zero torque within the stop ramp and the age of
     const up = controller.first(zero, (at) => torqueAt(at) !== 0);
     const resumed = controller.first(zero, (at) => controller.number(at, "acted_tick") >= host.number(again, "tick"));
     console.log(`${what}: from ${(1000 * peak).toFixed(0)} mNm to zero in ${zero - before} ticks of the controller; zero for ${up - zero} ticks`);
-    expect(peak, `${what}: torque before it`).toBeGreaterThan(kAtWork);
+    if (atWork) expect(peak, `${what}: torque before it`).toBeGreaterThan(kAtWork);
     expect(zero - before, `${what}: ticks to zero torque`).toBeLessThanOrEqual(kStopRampTicks + kOldestStepTicks);
     expect(up, `${what}: torque before Resume`).toBeGreaterThanOrEqual(resumed);
     expect(up, `${what}: no torque came back`).toBeLessThan(controller.rows.length);
