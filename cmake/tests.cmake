@@ -55,7 +55,7 @@ endfunction()
 
 # phalanx_test(NAME SOURCES file ... [MODULES module ...] [LIBRARIES external ...]
 #              [IN_ASAN] [IN_TSAN] [FULL_LEVEL] [COUNTS_ALLOCATIONS] [HELD_CLOCK]
-#              [FULL filter ...] [FULL_IN_ASAN filter ...] [EACH_CASE suite ...] [ALONE suite ...] [SHARDS suite=count ...] [USES_PROGRAM] [DEFINITIONS ...])
+#              [FULL filter ...] [FULL_IN_ASAN filter ...] [FULL_SOURCES_IN_ASAN file ...] [EACH_CASE suite ...] [ALONE suite ...] [SHARDS suite=count ...] [USES_PROGRAM] [DEFINITIONS ...])
 # A GoogleTest program. ctest sees one test for each suite, named as the suite; a failure names the case.
 #   IN_ASAN, IN_TSAN      ./test runs it in that sanitized tree; elsewhere in such a tree it belongs to --full
 #   FULL_LEVEL            all of it belongs to --full
@@ -63,6 +63,8 @@ endfunction()
 #   HELD_CLOCK            runs under a held clock, see tests/support/held_clock/held_clock.h
 #   FULL                  GoogleTest filters: cases that only --full runs
 #   FULL_IN_ASAN          the same, of the tree with AddressSanitizer
+#   FULL_SOURCES_IN_ASAN  further sources; in the tree with AddressSanitizer they are a program of their own, NAME_full, of --full. A file that both
+#                         need is named in both lists
 #   EACH_CASE             suites of which each case has a process to itself, since it changes what belongs to the process
 #   ALONE                 suites beside which nothing else runs
 #   SHARDS                suites that take long: split into so many processes
@@ -70,9 +72,15 @@ endfunction()
 # Suites whose name begins with Soak have the label soak.
 function(phalanx_test name)
   cmake_parse_arguments(ARG "IN_ASAN;IN_TSAN;FULL_LEVEL;COUNTS_ALLOCATIONS;HELD_CLOCK;USES_PROGRAM" ""
-                        "SOURCES;MODULES;LIBRARIES;FULL;FULL_IN_ASAN;EACH_CASE;ALONE;SHARDS;DEFINITIONS" ${ARGN})
+                        "SOURCES;MODULES;LIBRARIES;FULL;FULL_IN_ASAN;FULL_SOURCES_IN_ASAN;EACH_CASE;ALONE;SHARDS;DEFINITIONS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "phalanx_test(${name}): ${ARG_UNPARSED_ARGUMENTS}?")
+  endif()
+  if(ARG_FULL_SOURCES_IN_ASAN AND PHALANX_TREE STREQUAL "asan")
+    phalanx_test(${name}_full FULL_LEVEL SOURCES ${ARG_FULL_SOURCES_IN_ASAN} MODULES ${ARG_MODULES} LIBRARIES ${ARG_LIBRARIES})
+  else()
+    list(APPEND ARG_SOURCES ${ARG_FULL_SOURCES_IN_ASAN})
+    list(REMOVE_DUPLICATES ARG_SOURCES)
   endif()
   if("link" IN_LIST ARG_MODULES OR "web" IN_LIST ARG_MODULES)
     list(APPEND ARG_MODULES asio) # their functions of it that are no templates
