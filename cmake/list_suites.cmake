@@ -70,6 +70,9 @@ foreach(suite IN LISTS suites)
     endif()
     string(REGEX REPLACE "^.*/([^/]*[A-Za-z_][^/]*)(/[0-9]+)?$" "\\1" plain ${suite}) # of Instance/Suite and Suite/0: Suite
     if(plain MATCHES "^Soak")
+      if(PREFIX) # of the release tree only
+        continue()
+      endif()
       set(label soak)
       set(timeout 7200)
     endif()

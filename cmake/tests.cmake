@@ -2,7 +2,7 @@
 # Test programs and their levels. Each test has one ctest label:
 #   release, asan                     ./test: the tree without a sanitizer, the tree with AddressSanitizer
 #   full, asan_full, tsan             ./test --full, beside those above
-#   soak                              ./test --soak, beside those above
+#   soak                              ./test --soak
 #   tsan_full                         nobody: tests that the tree with ThreadSanitizer could build
 # The target default_tests builds the programs of release, asan and tsan, and all_tests every program of this tree.
 add_custom_target(default_tests)
@@ -75,6 +75,9 @@ function(phalanx_test name)
                         "SOURCES;MODULES;LIBRARIES;FULL;FULL_IN_ASAN;FULL_SOURCES_IN_ASAN;EACH_CASE;ALONE;SHARDS;DEFINITIONS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "phalanx_test(${name}): ${ARG_UNPARSED_ARGUMENTS}?")
+  endif()
+  if(ARG_FULL_SOURCES_IN_ASAN AND (ARG_COUNTS_ALLOCATIONS OR ARG_HELD_CLOCK OR ARG_USES_PROGRAM OR ARG_DEFINITIONS))
+    message(FATAL_ERROR "phalanx_test(${name}): FULL_SOURCES_IN_ASAN passes on modules and libraries only")
   endif()
   if(ARG_FULL_SOURCES_IN_ASAN AND PHALANX_TREE STREQUAL "asan")
     phalanx_test(${name}_full FULL_LEVEL SOURCES ${ARG_FULL_SOURCES_IN_ASAN} MODULES ${ARG_MODULES} LIBRARIES ${ARG_LIBRARIES})

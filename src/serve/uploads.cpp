@@ -131,12 +131,15 @@ std::string in_the_files_words(std::string refusal, const std::string& name) {
   return refusal;
 }
 
-/// @throws std::runtime_error  nobody waits any more
+/// @throws std::runtime_error  the station has ended
 Overrides values_now(const ValuesInForce& in_force) {
   std::optional<Overrides> values = in_force();
   if (!values) throw std::runtime_error("the station has ended");
   return std::move(*values);
 }
+
+/// @throws std::runtime_error  the station has ended
+void require_station(const ValuesInForce& in_force) { static_cast<void>(values_now(in_force)); }
 
 /// A file's name may hold any bytes.
 std::string as_text(const Json& answer) {
@@ -185,11 +188,11 @@ std::string packed(const UploadedMesh& mesh, const std::string& format) {
 
 Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
   const std::string extension = extension_of(mesh.name);
-  static_cast<void>(values_now(in_force));
+  require_station(in_force);
   Json answer = Json::parse(
       mesh::run_isolated_work(check_packed, packed(mesh, extension.substr(1)), mesh.name, kImportLimits));
   if (!answer["ok"].get<bool>()) return answer;
-  static_cast<void>(values_now(in_force));
+  require_station(in_force);
   fs::create_directories(folder);
   const fs::path file = fs::absolute(folder) / file_name(mesh, extension);
   write_text_file(file, mesh.bytes);

@@ -153,7 +153,7 @@ TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
   int older = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     older += entry.path().filename().string().starts_with("old-") ? 1 : 0;
-  EXPECT_EQ(older, kOlder) << "nobody waits for it any more: it removes nothing";
+  EXPECT_EQ(older, kOlder) << "abandoned work removes nothing";
 }
 
 }  // namespace

@@ -328,7 +328,7 @@ TEST(LinkDevice, AnUnpluggedPortIsADeviceLost) {
   EXPECT_TRUE(loop.until([&] { return device->connection_fault() == Fault::kDeviceLost; }));
   device->close();
   EXPECT_THAT(message_of_open(*device), HasSubstr("is the device plugged in?"));
-  EXPECT_EQ(device->connection_fault(), Fault::kNone) << "that of no connection";
+  EXPECT_EQ(device->connection_fault(), Fault::kNone) << "a device that is not open has no connection fault";
 }
 
 }  // namespace

@@ -23,7 +23,9 @@ namespace {
 
 constexpr double kShortestNap = 10e-6;  ///< real time between two looks at the threads [s]
 constexpr double kLongestNap = 500e-6;
-constexpr double kHang = 120.0;  ///< real seconds for which a thread may run without a wait
+constexpr std::int64_t kLongStep = 1'000'000'000;  ///< [ns]; before it the threads are looked at once more
+constexpr double kLookAgain = 2e-3;                ///< real time until then [s]
+constexpr double kHang = 120.0;                    ///< real seconds for which a thread may run without a wait
 
 double real_seconds() noexcept {
   timespec t{};
@@ -76,7 +78,7 @@ struct HeldClock::Threads {
 
   struct Thread {
     Thread(const std::string& folder, std::int32_t id)
-        : tid(id), stat(folder + "/stat"), schedstat(folder + "/schedstat") {}
+        : tid(id), stat(folder + "/stat"), schedstat(folder + "/schedstat"), call(folder + "/syscall") {}
 
     /// 'S' sleeping, 'R' running or ready, 'T' stopped, 'Z' a process that nobody has waited for; 0: it has
     /// ended
@@ -91,6 +93,13 @@ struct HeldClock::Threads {
       const char* last = std::strrchr(schedstat.read(text), ' ');
       return last != nullptr ? std::strtoul(last, nullptr, 10) : 0;
     }
+    /// It is not on a processor and does not wait for one. The state is 'S' before a thread has found that it
+    /// must sleep (waitpid() reaps a child in this state), and stays so if it is preempted there: state() and
+    /// turns() do not tell that it will run on. Where this file must not be read, true.
+    [[nodiscard]] bool is_off_processors() const noexcept {
+      std::array<char, 16> text{};
+      return std::strncmp(call.read(text), "running", 7) != 0;
+    }
     /// It has entered its sleep and has not been woken: the kernel need not be asked.
     [[nodiscard]] bool sleeps_for_time(ClockPage& page) noexcept {
       if (wait == nullptr || wait->tid.load() != tid) {
@@ -104,6 +113,7 @@ struct HeldClock::Threads {
     std::int32_t tid;
     File stat;
     File schedstat;
+    File call;
     ClockWait* wait = nullptr;  ///< its place on the page; nullptr: none known
     unsigned long seen = 0;     ///< turns() at the first look
   };
@@ -129,8 +139,7 @@ struct HeldClock::Threads {
     for (ClockWait& wait : page.wait) {
       const std::int32_t tid = wait.tid.load();
       if (tid == 0 || knows(tid) || ::kill(wait.pid.load(), 0) == 0) continue;
-      wait.kind.store(WaitKind::kNone);  // its process has ended
-      wait.tid.store(0);
+      wait.give_back();  // its process has ended
     }
   }
   /// @returns false: it is gone
@@ -215,7 +224,8 @@ void HeldClock::ignore_threads_named(const char* name) {
   page_->changes.fetch_add(1);
 }
 
-/// Looks twice: a thread that was woken between the looks runs at the second, or has had another turn.
+/// Looks twice. A thread that is off the processors after its turns are counted, and at the second look is
+/// not ready and has had no other turn, was asleep when the first look ended; so all were at that moment.
 bool HeldClock::all_sleep() {
   if (page_->forking.load() > 0) return false;
   std::vector<Threads::Thread>& all = threads_->all;
@@ -226,12 +236,13 @@ bool HeldClock::all_sleep() {
       Threads::Thread& thread = all[i];
       if (thread.sleeps_for_time(*page_)) continue;
       const unsigned long turns = thread.turns();
+      const bool runs = look == 0 && !thread.is_off_processors();
       const char state = thread.state();
       if (state == 0 || state == 'X') {  // it has ended, and another may have taken its place
         page_->changes.fetch_add(1);
         return false;
       }
-      if (Threads::works(state) || (look == 1 && turns != thread.seen)) {
+      if (runs || Threads::works(state) || (look == 1 && turns != thread.seen)) {
         busy = i;
         return false;
       }
@@ -246,15 +257,16 @@ bool HeldClock::all_sleep() {
   return threads_->changes == page_->changes.load();
 }
 
-/// A thread of the kernel hands on what is written to a terminal, and a busy computer makes it late; a poll()
-/// that begins waits for it. @returns whether a thread has been sent to its poll() again, since a wait has
-/// begun after it was last there
+/// The kernel delivers a terminal's bytes in a thread of its own, which a busy computer delays; a poll() that
+/// begins waits for that thread. Once after each new wait, threads that poll a terminal begin again.
+/// @returns true if there is one
 bool HeldClock::look_at_terminals() {
   const std::uint32_t waits = page_->waits.load();
   if (std::exchange(waits_seen_, waits) == waits) return false;
   bool sent = false;
   for (const ClockWait& wait : page_->wait)
-    if (wait.kind.load() == WaitKind::kPoll && wait.terminal.load())
+    if (wait.kind.load() == WaitKind::kPoll && wait.terminal.load() &&
+        !threads_->does_not_wake(wait.tid.load()))
       sent |= ::syscall(SYS_tgkill, wait.pid.load(), wait.tid.load(), wake_signal()) == 0;
   return sent;
 }
@@ -281,7 +293,10 @@ std::optional<std::int64_t> HeldClock::next_wait() {
   }
   const std::int64_t now = page_->now.load();
   wake_due(now);
-  if (!all_sleep() || look_at_terminals()) return std::nullopt;
+  if (!all_sleep() || look_at_terminals()) {
+    looked_again_ = false;
+    return std::nullopt;
+  }
   std::vector<const ClockWait*> left_out;  // of threads that do not wake
   for (;;) {
     const ClockWait* first = nullptr;
@@ -300,6 +315,10 @@ std::optional<std::int64_t> HeldClock::next_wait() {
       continue;
     }
     if (next <= now) return std::nullopt;  // it is waking up
+    if (next - now > kLongStep && !std::exchange(looked_again_, true)) {
+      real_sleep(kLookAgain);  // such a step mostly ends at a limit against hangs, which would be a false one
+      return std::nullopt;
+    }
     return next;
   }
 }
@@ -308,6 +327,7 @@ void HeldClock::move_to(std::int64_t t) {
   std::int64_t now = page_->now.load();
   while (now < t && !page_->now.compare_exchange_weak(now, t)) {
   }
+  looked_again_ = false;
   wake_due(t);
 }
 

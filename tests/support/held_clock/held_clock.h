@@ -19,8 +19,8 @@ namespace phalanx::test {
 /// takes time, and a busy computer changes nothing. A thread that asks for the time a thousand times without
 /// waiting makes it pass by 1 us each time. Processes that are stopped (SIGSTOP) are not waited for. A
 /// thread that SIGKILL ends in its sleep counts as asleep: who kills a program waits for its end before time
-/// goes on. What is written to a terminal arrives before time goes on where its reader waits in poll().
-/// One thread at a time.
+/// goes on. What is written to a terminal arrives before time goes on if its reader waits in poll() and its
+/// writer waits for a time afterwards. One thread at a time.
 class HeldClock {
  public:
   /// A page of its own, in memory. @throws std::runtime_error
@@ -68,6 +68,7 @@ class HeldClock {
   std::string file_;
   ClockPage* page_ = nullptr;
   std::unique_ptr<Threads> threads_;
+  bool looked_again_ = false;     ///< since a thread was last seen at work
   std::uint32_t waits_seen_ = 0;  ///< ClockPage::waits at the last look_at_terminals()
 };
 

@@ -33,9 +33,7 @@ std::atomic<ClockPage*> held{nullptr};
 /// This thread's place on the page, given back at its end.
 struct Place {
   ~Place() {
-    if (wait == nullptr) return;
-    wait->kind.store(WaitKind::kNone);
-    wait->tid.store(0);
+    if (wait != nullptr) wait->give_back();
   }
   ClockWait* take(ClockPage& page) noexcept {
     const auto tid = static_cast<std::int32_t>(::syscall(SYS_gettid));
@@ -74,10 +72,9 @@ void spend(ClockPage& page, std::int64_t time) noexcept {
 std::int64_t of(const timespec& t) noexcept { return t.tv_sec * kSecond + t.tv_nsec; }
 timespec to_timespec(std::int64_t ns) noexcept { return {ns / kSecond, ns % kSecond}; }
 
-/// Enters the wait, then calls `look` until it returns false. @returns whether the clock's holder ended the
-/// wait
+/// Enters the wait, then calls `look` until it returns false.
 template <class Look>
-bool wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look,
+void wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look,
                 bool terminal = false) noexcept {
   if (looks_too_often(page)) spend(page, kSpin);
   ClockWait& wait = *own_place.take(page);
@@ -88,9 +85,8 @@ bool wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look
   wait.kind.store(kind);
   while (look(wait)) {
   }
-  const bool ended = wait.woken.exchange(2) == 1;
+  wait.woken.store(2);
   wait.kind.store(WaitKind::kNone);
-  return ended;
 }
 
 /// @returns 0, or EINTR where a signal's handler ran
@@ -133,9 +129,9 @@ sigset_t only_wake_signal() noexcept {
   return set;
 }
 
-/// Whether this thread has been signalled in its present wait.
-thread_local volatile sig_atomic_t signalled = 0;
-void note_signal(int) { signalled = 1; }
+/// How often the clock has signalled this thread. Atomic: ThreadSanitizer runs handlers at atomic operations.
+thread_local std::atomic<unsigned> signals{0};
+void note_signal(int) { signals.fetch_add(1); }
 
 /// `call(mask, over)` waits for descriptors with that mask, not at all once the time is over.
 template <class Call>
@@ -144,19 +140,14 @@ int poll_until(ClockPage& page, std::int64_t deadline, const sigset_t* given, bo
   const sigset_t mask = mask_for_waiting(given);
   int result = 0;
   int error = 0;
-  signalled = 0;
   const auto look = [&](ClockWait&) {
-    const bool over = page.now.load() >= deadline;
-    result = call(mask, over);
+    const unsigned before = signals.load();
+    result = call(mask, page.now.load() >= deadline);
     error = errno;
-    return result < 0 && error == EINTR && signalled != 0 && !over;
+    return result < 0 && error == EINTR &&
+           signals.load() != before;  // the clock's signal, perhaps an older one
   };
-  const bool ended = wait_until(page, WaitKind::kPoll, deadline, look, terminal);
-  if (ended && signalled == 0) {  // its signal is on its way, and must not end the next wait
-    const sigset_t set = only_wake_signal();
-    const timespec second{1, 0};
-    ::syscall(SYS_rt_sigtimedwait, &set, nullptr, &second, _NSIG / 8);
-  }
+  wait_until(page, WaitKind::kPoll, deadline, look, terminal);
   errno = error;
   return result;
 }

@@ -21,7 +21,7 @@ inline constexpr const char* kClockVariable = "PHALANX_HELD_CLOCK";
 enum class WaitKind : std::uint32_t {
   kNone,   ///< the thread does not wait for a time
   kSleep,  ///< on `woken`, for nothing else
-  kPoll,   ///< in ppoll() or epoll_pwait(): a descriptor may end it; time ends it by wake_signal()
+  kPoll,   ///< in ppoll() or epoll_pwait(): a descriptor may end it; wake_signal() makes it look at the time
   kNap,    ///< on a condition variable: it looks at the time again and again
 };
 
@@ -33,6 +33,12 @@ struct ClockWait {
   std::atomic<std::int64_t> deadline{0};  ///< [ns]
   std::atomic<std::uint32_t> woken{0};    ///< futex: set to 1 once the deadline has come
   std::atomic<bool> terminal{false};      ///< one of the descriptors of a kPoll is a terminal
+
+  void give_back() noexcept {
+    kind.store(WaitKind::kNone);
+    pid.store(0);  // who takes it next has no process until it says so, rather than one that may have ended
+    tid.store(0);
+  }
 };
 
 inline constexpr std::int64_t kNever = INT64_MAX;  ///< the deadline of a wait that time does not end
@@ -48,7 +54,7 @@ struct ClockPage {
   std::array<ClockWait, 512> wait{};
 };
 
-/// Ends a wait of WaitKind::kPoll; blocked outside of it.
+/// Makes a thread in WaitKind::kPoll look at the time and at its descriptors again; blocked outside of it.
 inline int wake_signal() noexcept { return SIGRTMAX - 3; }
 
 inline long futex(std::atomic<std::uint32_t>* word, int what, std::uint32_t value) noexcept {

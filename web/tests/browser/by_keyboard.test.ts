@@ -18,7 +18,7 @@ let seen: string[] = [];
 
 beforeAll(async () => {
   cockpit = await play.open((await play.station("first_touch")).url, { ...small, reducedMotion: "no-preference" });
-  cockpit.page.on("filechooser", () => undefined); // asks the browser now to report it: asked just before the key, it may come too late
+  cockpit.page.on("filechooser", () => undefined); // the browser reports a file chooser only once asked, and just before the key may be too late
   await cockpit.untilRunning();
 });
 

@@ -28,7 +28,7 @@ function handedness(points: readonly Point[]): number {
   return dot(cross(minus(index, palm), minus(little, palm)), minus(thumb, palm));
 }
 
-/// @param skin  of the station; until the page has loaded it, it shows the one before
+/// @param skin  the station's; until the page has loaded this skin it shows the previous one
 async function drawnAsSent(cockpit: CockpitPage, skin: Skin): Promise<readonly Point[]> {
   const seen = new Set<bigint>();
   let loaded = false;

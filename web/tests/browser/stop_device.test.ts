@@ -37,6 +37,7 @@ it("brings a device on a wire to zero torque within the stop ramp and the age of
       for (const tick of await page.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
       await page.button(strings.stop.resume).click();
       await page.untilState("resumed", (state) => !state.heldStopped);
+      expect(stops.length, "stops, nearly all of motors at rest").toBeLessThan(8);
     } while (!stops.at(-1)!.atWork);
   }
   await untilAtWork();
