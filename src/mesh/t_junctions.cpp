@@ -18,10 +18,7 @@ struct Hit {
   double off;    ///< distance from the edge [m]
   std::int32_t vertex;
   friend bool operator<(const Hit& a, const Hit& b) {
-    if (a.edge != b.edge) return a.edge < b.edge;
-    if (a.along < b.along) return true;
-    if (b.along < a.along) return false;
-    return a.vertex < b.vertex;
+    return a.edge != b.edge ? a.edge < b.edge : a.along < b.along;
   }
 };
 
@@ -86,7 +83,7 @@ std::vector<Hit> find_hits(const TriangleMesh& mesh, const Allowance& allowance,
         hits.push_back({c, along, off, v});
     });
   }
-  std::sort(hits.begin(), hits.end());
+  std::stable_sort(hits.begin(), hits.end());  // they were found in the order of their vertices
   return hits;
 }
 

@@ -142,6 +142,16 @@ Stops check_stops(std::uint64_t seed, MovingDigit& digit, int ways, int places, 
   return count;
 }
 
+TEST(FirstContact, WithoutEvaluationsLeftTheDigitStandsStillAsAWholeAndSaysSo) {
+  MovingDigit digit(ball_in_reach(300));
+  digit.aim({}, {0.1, 0.0, 0.2, 0.3});
+  Status status = Status::kOk;
+  const Stop stop = digit.advance(status, kMaxEvaluations);
+  EXPECT_EQ(stop.s, 0.0);
+  EXPECT_EQ(stop.segment, kSegmentsPerDigit - 1) << "the most distal: no joint moves on";
+  EXPECT_TRUE(has(status, Status::kSearchExhausted));
+}
+
 TEST(FirstContact, IsTheFirstPlaceWithinTheMarginThatCloses) {
   std::cout << "seed 23\n";
   MovingDigit digit(ball_in_reach(300));

@@ -58,6 +58,23 @@ TEST(OscillationRows, DoNotFireAtTheSixthLegWhereTheFifthSwingIsBelowHalfTheFirs
   EXPECT_EQ(fires_at_leg({0.0, 4.0, 0.0, 4.0, 0.0, 1.875, 0.0}, 100), 0);
 }
 
+// A force that rests at zero for some steps swings by the whole of 2 N, eight steps of 5 ms to and fro: 25
+// Hz.
+TEST(OscillationRows, MeasureTheWholeSwingOfAForceThatRestsAtZero) {
+  OscillationObserver observer;
+  for (int n = 0; n < 80; ++n) observer.watch(n % 8 < 4 ? 0.0 : 2.0, 0.5, 5.0 * kMillisecond);
+  EXPECT_EQ(observer.swing(), 2.0);
+  EXPECT_DOUBLE_EQ(observer.frequency(), 25.0);
+}
+
+TEST(OscillationRows, ForgetAtZeroWhatNeverSwung) {
+  OscillationObserver observer;
+  observer.watch(0.4, 0.5, kMillisecond);
+  EXPECT_FALSE(observer.idle());
+  observer.watch(0.0, 0.5, kMillisecond);
+  EXPECT_TRUE(observer.idle());
+}
+
 // Every step of 200 Hz another extreme is a half-swing of 5 ms and counts; of 1 kHz one of 3 ms is noise.
 TEST(OscillationRows, TakeHalfSwingsBelowFourMillisecondsForNoise) {
   EXPECT_EQ(fires_at_leg(even(40), 5), 4);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <span>
+#include <vector>
 
 namespace phalanx {
 namespace {
@@ -14,6 +16,19 @@ TEST(Anthropometry, RangesReachFromTheSmallestGroupsToTheLargestGroupsFourDeviat
   EXPECT_NEAR(plausible_hand_length().max, 0.2330, 1e-12);
   EXPECT_NEAR(plausible_hand_breadth().min, 0.0642, 1e-12);
   EXPECT_NEAR(plausible_hand_breadth().max, 0.1072, 1e-12);
+}
+
+TEST(Anthropometry, NormsAreThePublishedMeansAndDeviationsOfMenAndWomen) {
+  const auto expect_norms = [](std::span<const Norm> norms, const std::vector<Norm>& published) {
+    ASSERT_EQ(norms.size(), published.size());
+    for (std::size_t i = 0; i < published.size(); ++i) {
+      EXPECT_EQ(norms[i].group, published[i].group);
+      EXPECT_NEAR(norms[i].mean, published[i].mean, 1e-12);
+      EXPECT_NEAR(norms[i].sd, published[i].sd, 1e-12);
+    }
+  };
+  expect_norms(hand_length_norms(), {{"men", 0.1938, 0.0098}, {"women", 0.1805, 0.0097}});
+  expect_norms(hand_breadth_norms(), {{"men", 0.0904, 0.0042}, {"women", 0.0794, 0.0038}});
 }
 
 // The middle finger's middle phalanx: 26.33 +- 4 x 3.00;  its metacarpal: 64.60 +- 4 x 5.38.

@@ -125,6 +125,10 @@ TEST(ImportRefuses, GlTf1AndUtf16InWords) {
   EXPECT_THAT(report_refusal(std::string("\xFE\xFF\0v\0 ", 6), "obj", {}), HasSubstr("UTF-16"));
 }
 
+TEST(ImportRefuses, WhatIsNoFileOfItsFormatWithTheReadersOwnWords) {
+  EXPECT_THAT(report_refusal("solid", "stl", {}), HasSubstr("mesh in memory: cannot be read as .stl ("));
+}
+
 // Four thousand million vertices in 200 bytes.
 TEST(ImportRefuses, AHeaderThatClaimsMoreThanAnyMachineHolds) {
   const std::string answer = report_refusal(

@@ -326,6 +326,25 @@ TEST(Repair, TellsCracksFromHoles) {
   EXPECT_LT((*hole.at - Vec3(kEdge, kEdge / 2, kEdge / 2)).norm(), 20e-6);
 }
 
+// A plate of 60 mm and, 10 um beside its first quarter, one of 14 mm. The long edge has a neighbour along
+// less than half of its length: it stays a border, and the slit is as long as the short edge.
+TEST(Repair, TakesAnEdgeForASlitsOnlyWhereMostOfItFacesTheOtherSide) {
+  TriangleMesh mesh;
+  const auto add_plate = [&](double x, double y, double size) {
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+      mesh.vertices.emplace_back(x + i * size, y + j * size, 0.0);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  };
+  add_plate(0.0, 0.0, 0.060);
+  add_plate(0.003, -0.014 - 10e-6, 0.014);
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.found(FindingKind::kSlits), 1U);
+  EXPECT_NEAR(r.report.finding(FindingKind::kSlits).size, 0.014, 1e-6);
+  EXPECT_NEAR(r.report.finding(FindingKind::kSlits).width, 10e-6, 1e-9);
+}
+
 TEST(Repair, FindsNoHoleInALoneTriangle) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.03, 0}};

@@ -37,6 +37,14 @@ TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   EXPECT_GT(second.time(), first.time());
 }
 
+TEST_F(CockpitTest, ThePagesFirstStateFollowsItsWelcomeBeforeAnyTick) {
+  const Page operating(port());
+  clock_.sleep_until(1.0);
+  const Page watching(port(), "", "Ben");
+  EXPECT_EQ(watching.ticks, 0);
+  EXPECT_EQ(watching.state.operator_page(), 1U);
+}
+
 TEST_F(CockpitTest, AViewerIsRefusedChangesButStopsAndItIsLoggedWhoDid) {
   Page operating(port());
   Page watching(port(), "", "Ben");

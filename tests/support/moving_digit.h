@@ -76,7 +76,8 @@ class MovingDigit {
   }
 
   /// @param status  what the search said
-  Stop advance(Status& status) {
+  /// @param evaluations  that the digit has used up before
+  Stop advance(Status& status, int evaluations = 0) {
     const DigitPose end = pose(1.0);
     DigitTick tick{.digit = kIndex,
                    .hcp_from = path_.from,
@@ -84,7 +85,6 @@ class MovingDigit {
                    .hcp_pose = end,
                    .angle = path_.from,
                    .pose = pose(0.0)};
-    int evaluations = 0;
     const Stop stop = first_contact(model(), path_, 0.0, evaluations, tick, state_);
     status = tick.status;
     return stop;

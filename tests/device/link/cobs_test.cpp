@@ -65,8 +65,8 @@ TEST_F(Cobs, EncodesTheKnownExamples) {
 }
 
 TEST_F(Cobs, WritesNothingBeyondItsCapacityAndFitsExactlyIntoItsSize) {
-  for (const Bytes& frame :
-       {counted(0, 10), counted(1, 254), counted(1, 255), Bytes(600, 7), Bytes(600, 0)}) {
+  for (const Bytes& frame : {Bytes{}, Bytes{7}, Bytes{0}, counted(0, 10), counted(1, 254), counted(1, 255),
+                             Bytes(600, 7), Bytes(600, 0)}) {
     const std::size_t size = stuffed(frame).size();
     for (std::size_t capacity = 0; capacity <= size; ++capacity) {
       Bytes out(capacity);

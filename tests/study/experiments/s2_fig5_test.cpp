@@ -2,9 +2,11 @@
 // S2 fig. 5 in closed loop: a power grasp of the teapot at 1.4 N/mm with +-0.1 N a step.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
+#include <vector>
 
 #include "phalanx/device/simulated_exoskeleton.h"
 #include "study/experiments/s2_experiments.h"
@@ -26,6 +28,21 @@ TEST(S2Fig5, GraspsWithFivePhalangesAndIsSteady) {
   for (const TrialResult& trial : run.trials) EXPECT_TRUE(trial.valid) << trial.why_invalid;
   EXPECT_LE(run.largest_force_swing(), 0.5);
   EXPECT_LE(run.largest_position_swing(), 0.5e-3);
+}
+
+TEST(LoopRun, ATouchCountsHoweverLightItIs) {
+  const LoopRun run = run_loop("soft", "stability_press", {{"force.stiffness_n_per_mm", "0.02"}}, 1);
+  std::vector<int> pressed;
+  double largest = 0.0;
+  for (int s = 0; s < kSegments; ++s) {
+    const std::vector<double>& force = run.curves.force[static_cast<std::size_t>(s)];
+    const double peak = *std::max_element(force.begin(), force.end());
+    if (peak > 0.0) pressed.push_back(s);
+    largest = std::max(largest, peak);
+  }
+  EXPECT_EQ(run.curves.touching, pressed);
+  EXPECT_FALSE(pressed.empty());
+  EXPECT_LT(largest, 1.0) << "N";
 }
 
 // Middle, ring and little finger copy the index: what their contacts ask for is recorded and felt by nobody.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <regex>
 #include <stdexcept>
 
 #include "phalanx/study/report/chart.h"
@@ -165,6 +166,21 @@ TEST(VerdictMapSvg, PutsTheLimitOnTopOfItsCell) {
   EXPECT_THAT(svg, HasSubstr("class=\"limit\" d=\"M36.00,64.00h30.00\""));
   EXPECT_THAT(svg, HasSubstr("class=\"limit\" d=\"M66.00,44.00h30.00\""));
   EXPECT_THAT(svg, HasSubstr("class=\"limit\" d=\"M96.00,84.00h30.00\""));
+}
+
+// 12 pt from the left edge of a colour that is 9 wide, and before the next colour.
+TEST(VerdictMapSvg, NamesEachColourBesideIt) {
+  const std::string svg = verdict_map_svg(verdicts());
+  const std::regex entry(R"re(<rect x="([0-9.]+)"[^>]*width="9" height="7"[^>]*/>\s*<text x="([0-9.]+)")re");
+  double words = 0.0;
+  int entries = 0;
+  for (std::sregex_iterator found(svg.begin(), svg.end(), entry), none; found != none; ++found, ++entries) {
+    const double colour = std::stod((*found)[1]);
+    EXPECT_GT(colour, words);
+    words = std::stod((*found)[2]);
+    EXPECT_NEAR(words - colour, 12.0, 0.02);
+  }
+  EXPECT_EQ(entries, 4);
 }
 
 TEST(VerdictMapSvg, SurvivesNothingAndEscapesAllWords) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+namespace phalanx::test {
+
+/// Whether each number of a T that nobody has set is 0, each flag false and each pointer null. Numbers
+/// without a default count as 0.
+template <typename T>
+[[nodiscard]] bool begins_as_zero() {
+  static_assert(std::is_trivially_destructible_v<T>);
+  static T fresh;  // static memory is zero before the constructor runs, also between the members
+  const T* seen = &fresh;
+  asm volatile("" : "+r"(seen) : : "memory");
+  return std::ranges::all_of(std::as_bytes(std::span(seen, 1)),
+                             [](std::byte byte) { return byte == std::byte{}; });
+}
+
+}  // namespace phalanx::test
