@@ -29,8 +29,8 @@ TriangleMesh slanted_sheet(int n, const Vec3& normal) {
   return mesh;
 }
 
-// A box bounds what is in it by a slab across the mean normal, too: of a flat sheet it has no thickness but
-// for single precision's rounding, while the boxes are millimetres thick.
+// A box bounds what is in it by a slab across the mean normal, too. Of a flat sheet the slab has no thickness
+// but for single precision's rounding, while the boxes are millimetres thick.
 TEST(ObjectTree, TheSlabsOfAFlatSheetLieAlongItAndAreThin) {
   const Vec3 normal = Vec3(1.0, 2.0, 3.0).normalized();
   const ObjectTree tree(slanted_sheet(12, normal));

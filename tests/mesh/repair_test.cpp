@@ -328,7 +328,7 @@ TEST(Repair, TellsCracksFromHoles) {
 
 // A plate of 60 mm and, 10 um beside its first quarter, one of 14 mm. The long edge has a neighbour along
 // less than half of its length: it stays a border, and the slit is as long as the short edge.
-TEST(Repair, TakesAnEdgeForASlitsOnlyWhereMostOfItFacesTheOtherSide) {
+TEST(Repair, CountsAnEdgeAsASlitOnlyIfMostOfItFacesTheOtherSide) {
   TriangleMesh mesh;
   const auto add_plate = [&](double x, double y, double size) {
     const auto first = static_cast<std::int32_t>(mesh.vertices.size());

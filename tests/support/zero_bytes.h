@@ -14,9 +14,9 @@ template <typename T>
 [[nodiscard]] bool begins_as_zero() {
   static_assert(std::is_trivially_destructible_v<T>);
   static T fresh;  // static memory is zero before the constructor runs, also between the members
-  const T* seen = &fresh;
-  asm volatile("" : "+r"(seen) : : "memory");
-  return std::ranges::all_of(std::as_bytes(std::span(seen, 1)),
+  const T* object = &fresh;
+  asm volatile("" : "+r"(object) : : "memory");
+  return std::ranges::all_of(std::as_bytes(std::span(object, 1)),
                              [](std::byte byte) { return byte == std::byte{}; });
 }
 

@@ -138,7 +138,8 @@ struct HeldClock::Threads {
     for (const std::int32_t tid : watched) all.emplace_back("/proc/self/task/" + std::to_string(tid), tid);
     for (ClockWait& wait : page.wait) {
       const std::int32_t tid = wait.tid.load();
-      if (tid == 0 || knows(tid) || ::kill(wait.pid.load(), 0) == 0) continue;
+      // A place that is just being taken has no process yet; kill(0, 0) succeeds.
+      if (tid == 0 || knows(tid) || ::kill(wait.pid.load(), 0) == 0 || errno != ESRCH) continue;
       wait.give_back();  // its process has ended
     }
   }
@@ -235,9 +236,10 @@ bool HeldClock::all_sleep() {
     for (std::size_t i = 0; i < all.size(); ++i) {
       Threads::Thread& thread = all[i];
       if (thread.sleeps_for_time(*page_)) continue;
-      const unsigned long turns = thread.turns();
+      const unsigned long before = thread.turns();
       const bool runs = look == 0 && !thread.is_off_processors();
       const char state = thread.state();
+      const unsigned long turns = look == 0 ? before : thread.turns();  // the last word of the second look
       if (state == 0 || state == 'X') {  // it has ended, and another may have taken its place
         page_->changes.fetch_add(1);
         return false;
@@ -315,12 +317,18 @@ std::optional<std::int64_t> HeldClock::next_wait() {
       continue;
     }
     if (next <= now) return std::nullopt;  // it is waking up
-    if (next - now > kLongStep && !std::exchange(looked_again_, true)) {
-      real_sleep(kLookAgain);  // such a step mostly ends at a limit against hangs, which would be a false one
-      return std::nullopt;
-    }
     return next;
   }
+}
+
+/// A step of more than a second mostly ends at a limit against hangs, which would be a false one if a thread
+/// had been missed: one whose processor may not be asked about (is_off_processors()), or that the kernel has
+/// something to deliver to. All threads are looked at again, a moment later.
+/// @returns whether that is still to be done
+bool HeldClock::look_again_before(std::int64_t t) {
+  if (t - page_->now.load() <= kLongStep || std::exchange(looked_again_, true)) return false;
+  real_sleep(kLookAgain);
+  return true;
 }
 
 void HeldClock::move_to(std::int64_t t) {
@@ -342,7 +350,7 @@ void HeldClock::advance_to(double t) {
     const std::optional<std::int64_t> next = next_wait();
     const std::int64_t now = page_->now.load();
     if (next && now >= until) return;
-    if (next) {
+    if (next && !look_again_before(std::min(*next, until))) {
       move_to(std::min(*next, until));
       nap = kShortestNap;
     } else {
@@ -365,7 +373,7 @@ void HeldClock::run(const std::function<bool()>& ended, double pace) {
     std::int64_t until = kNever;
     if (pace > 0.0)
       until = page_->now.load() + static_cast<std::int64_t>(1e9 * pace * (real_seconds() - moved));
-    if (next && *next != kNever && *next <= until) {
+    if (next && *next != kNever && *next <= until && !look_again_before(*next)) {
       move_to(*next);
       moved = real_seconds();  // what a busy computer has made late is not made up for
       nap = kShortestNap;

@@ -20,7 +20,9 @@ namespace phalanx::test {
 /// waiting makes it pass by 1 us each time. Processes that are stopped (SIGSTOP) are not waited for. A
 /// thread that SIGKILL ends in its sleep counts as asleep: who kills a program waits for its end before time
 /// goes on. What is written to a terminal arrives before time goes on if its reader waits in poll() and its
-/// writer waits for a time afterwards. One thread at a time.
+/// writer waits for a time afterwards. The holder needs the right to read /proc/PID/syscall of the programs,
+/// as their ancestor or root has; without it, a thread that is preempted while it falls asleep may count as
+/// asleep. One thread at a time.
 class HeldClock {
  public:
   /// A page of its own, in memory. @throws std::runtime_error
@@ -63,12 +65,13 @@ class HeldClock {
   void wake_due(std::int64_t now);
   [[nodiscard]] bool all_sleep();
   bool look_at_terminals();
+  [[nodiscard]] bool look_again_before(std::int64_t t);
 
   int descriptor_ = -1;
   std::string file_;
   ClockPage* page_ = nullptr;
   std::unique_ptr<Threads> threads_;
-  bool looked_again_ = false;     ///< since a thread was last seen at work
+  bool looked_again_ = false;     ///< since a thread was last seen at work, or time has moved
   std::uint32_t waits_seen_ = 0;  ///< ClockPage::waits at the last look_at_terminals()
 };
 

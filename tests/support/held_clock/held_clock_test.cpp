@@ -36,10 +36,13 @@ timespec real_time() {
 TEST(HeldClock, StandsStillWhileAThreadComputes) {
   std::this_thread::sleep_for(milliseconds(1));
   const Clock::time_point before = Clock::now();
+  std::thread sleeper([before] { std::this_thread::sleep_until(before + milliseconds(1)); });
   const timespec begin = real_time();
   while (real_time().tv_sec - begin.tv_sec < 2) {
   }
   EXPECT_EQ(Clock::now(), before);
+  sleeper.join();
+  EXPECT_EQ(Clock::now(), before + milliseconds(1));
 }
 
 TEST(HeldClock, MovesToEachDeadlineInTurnOnceAllThreadsSleep) {
@@ -80,7 +83,7 @@ class Children {
   explicit Children(int count) {
     const pid_t parent = ::getpid();
     for (int i = 0; i < count; ++i) {
-      const auto child = static_cast<pid_t>(::syscall(SYS_fork));
+      const auto child = static_cast<pid_t>(::syscall(SYS_clone, SIGCHLD, 0, 0, 0, 0));
       if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
         while (::getppid() == parent) ::pause();
@@ -93,6 +96,7 @@ class Children {
     for (const pid_t child : ids_) ::kill(child, SIGKILL);
     for (const pid_t child : ids_) ::waitpid(child, nullptr, 0);
   }
+  [[nodiscard]] std::size_t count() const { return ids_.size(); }
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
@@ -103,6 +107,7 @@ class Children {
 // While waitpid() looks through the children, its thread has the state of one that sleeps.
 TEST(HeldClock, AThreadThatLooksForEndedChildrenIsWaitedFor) {
   const Children children(50);
+  ASSERT_EQ(children.count(), 50U);
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
   const Clock::time_point begin = Clock::now();

@@ -39,16 +39,19 @@ struct Place {
     const auto tid = static_cast<std::int32_t>(::syscall(SYS_gettid));
     if (wait != nullptr && wait->tid.load() == tid) return wait;
     for (ClockWait& place : page.wait)  // of the program that this process was before exec()
-      if (place.tid.load() == tid) return wait = &place;
+      if (place.tid.load() == tid) return own(place);
     for (ClockWait& place : page.wait) {
       std::int32_t free = 0;
       if (!place.tid.compare_exchange_strong(free, tid)) continue;
-      place.pid.store(::getpid());
-      place.kind.store(WaitKind::kNone);
-      return wait = &place;
+      return own(place);
     }
     std::fputs("held clock: more threads than it has places for\n", stderr);
     std::abort();
+  }
+  ClockWait* own(ClockWait& place) noexcept {
+    place.pid.store(::getpid());
+    place.kind.store(WaitKind::kNone);
+    return wait = &place;
   }
   ClockWait* wait = nullptr;
 };
@@ -83,8 +86,7 @@ void wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look
   wait.terminal.store(terminal);
   wait.deadline.store(deadline);
   wait.kind.store(kind);
-  while (look(wait)) {
-  }
+  while (look(wait)) wait.woken.store(0);  // the clock may have meant an earlier wait
   wait.woken.store(2);
   wait.kind.store(WaitKind::kNone);
 }
@@ -93,7 +95,7 @@ void wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look
 int sleep_until(ClockPage& page, std::int64_t deadline) noexcept {
   int result = 0;
   wait_until(page, WaitKind::kSleep, deadline, [&](ClockWait& wait) {
-    if (wait.woken.load() != 0 || page.now.load() >= deadline) return false;
+    if (page.now.load() >= deadline) return false;
     if (futex(&wait.woken, FUTEX_WAIT, 0) != 0 && errno == EINTR) {
       result = EINTR;
       return false;
@@ -145,7 +147,7 @@ int poll_until(ClockPage& page, std::int64_t deadline, const sigset_t* given, bo
     result = call(mask, page.now.load() >= deadline);
     error = errno;
     return result < 0 && error == EINTR &&
-           signals.load() != before;  // the clock's signal, perhaps an older one
+           signals.load() != before;  // the clock's signal, perhaps left pending by an earlier wait
   };
   wait_until(page, WaitKind::kPoll, deadline, look, terminal);
   errno = error;
