@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A key that nobody knows is refused by name in every table that a shipped file has.
+// An unknown key is refused by name in every table of the shipped files.
 #include <gmock/gmock.h>
 
 #include <algorithm>

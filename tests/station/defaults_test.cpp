@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds where nobody says otherwise.
+// Default values of the station.
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program gets that leaves a member out.
+// Default values of the public structures of contact, force, hand and step.
 #include <gtest/gtest.h>
 
 #include <cmath>

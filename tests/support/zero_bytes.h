@@ -8,8 +8,8 @@
 
 namespace phalanx::test {
 
-/// Whether each number of a T that nobody has set is 0, each flag false and each pointer null. Numbers
-/// without a default count as 0.
+/// Whether a default-initialised T holds zeros: numbers 0, flags false, pointers null. A member without a
+/// default value counts as 0.
 template <typename T>
 [[nodiscard]] bool begins_as_zero() {
   static_assert(std::is_trivially_destructible_v<T>);
