@@ -103,6 +103,18 @@ inline TriangleMesh meridians(int n) {
   return mesh;
 }
 
+/// Three corners on a line, to rounding: the normal of such a triangle may point anywhere. Each has the
+/// length of a finger.
+inline TriangleMesh needles(Random& random, int n) {
+  TriangleMesh mesh;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 a = in_cube(random, 0.02);
+    const Vec3 b = a + 0.03 * (any_rotation(random) * Vec3::UnitX());
+    add_triangle(mesh, a, b, a + between(random, 0.3, 0.7) * (b - a));
+  }
+  return mesh;
+}
+
 struct SearchCase {
   std::string name;
   TriangleMesh segment;
@@ -154,6 +166,8 @@ inline std::vector<SearchCase> search_cases(Random& random) {
     cases.push_back({"degenerate segment, slivers " + std::to_string(std::log10(width)),
                      degenerate_triangles(random, 60, width), torus, around(0.12)});
   }
+  cases.push_back({"needles on a segment", needles(random, 12), make_sphere(0.02, 60), around(0.05)});
+  cases.push_back({"an object of needles", finger, needles(random, 12), around(0.04)});
   cases.push_back({"flat on flat", cube, table, on_the_face});
   cases.push_back({"edge on edge", cube, table, edge_on_edge});
   cases.push_back({"corner on face", cube, table, corner_on_face});

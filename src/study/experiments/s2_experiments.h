@@ -29,6 +29,8 @@ struct LimitRow {
 [[nodiscard]] ExperimentReport s2_fig4();
 [[nodiscard]] ExperimentReport s2_fig5();
 [[nodiscard]] ExperimentReport s2_limit();
+/// @param rows  at least one; the first is held against the paper
+[[nodiscard]] ExperimentReport s2_limit_report(const std::vector<LimitRow>& rows);
 [[nodiscard]] ExperimentReport s2_sensitivity();
 [[nodiscard]] ExperimentReport s2_fit();
 

@@ -114,10 +114,13 @@ LimitRow find_limits(const std::string& change, const Overrides& set, int seeds,
 }
 
 ExperimentReport s2_limit() {
-  std::vector<LimitRow> rows = {
-      find_limits("as it is, seeds 1 to 20", {}, kLoopSeeds, 1),
-      find_limits("as it is, seeds 21 to 40", {}, kLoopSeeds, 21),
-      find_limits("no friction in the sheaths", {{"device.scale.sheath_friction", "0"}}, kLoopSeeds)};
+  return s2_limit_report(
+      {find_limits("as it is, seeds 1 to 20", {}, kLoopSeeds, 1),
+       find_limits("as it is, seeds 21 to 40", {}, kLoopSeeds, 21),
+       find_limits("no friction in the sheaths", {{"device.scale.sheath_friction", "0"}}, kLoopSeeds)});
+}
+
+ExperimentReport s2_limit_report(const std::vector<LimitRow>& rows) {
   ExperimentReport report;
   nlohmann::ordered_json json;
   json["experiment"] = "s2-limit";

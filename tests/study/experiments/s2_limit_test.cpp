@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "phalanx/study/laboratory/limit_search.h"
 #include "study/experiments/s2_experiments.h"
@@ -84,6 +85,51 @@ TEST(S2Limit, GivesTheSameVerdictsAtOneAndTwoNewtonsAMillimetreWithHalfTheStep) 
     EXPECT_FALSE(Press(kUnsmoothed, step).stable_at(2000.0));
     EXPECT_FALSE(Press(kSmoothing, step).stable_at(2000.0));
   }
+}
+
+// Three rows by hand, with each flag set in one place.
+TEST(S2LimitReport, GivesEachLimitItsFlagsAndThePapers) {
+  PointResult below_the_grid;
+  below_the_grid.k_lim = 0.0;
+  PointResult not_monotone;
+  not_monotone.k_lim = 700.0;
+  not_monotone.non_monotone = true;
+  not_monotone.checked.resize(2);
+  not_monotone.checked[0].n_per_mm = 0.7;
+  not_monotone.checked[0].verdict = Verdict::kStable;
+  not_monotone.checked[1].n_per_mm = 0.8;
+  not_monotone.checked[1].verdict = Verdict::kUnstable;
+  PointResult ends_above;
+  ends_above.k_lim = 4000.0;
+  ends_above.at_least = true;
+  const ExperimentReport report =
+      s2_limit_report({{.change = "as it is", .none = not_monotone, .smoothing = ends_above},
+                       {.change = "softer", .none = below_the_grid, .smoothing = not_monotone}});
+
+  const auto json = nlohmann::json::parse(report.json);
+  EXPECT_EQ(json.at("k_lim_n_per_mm"), nlohmann::json::parse(R"({"none": 0.7, "smoothing": 4.0})"));
+  EXPECT_EQ(json.at("paper_n_per_mm"), nlohmann::json::parse(R"({"none": 0.7, "smoothing": 1.6})"));
+  EXPECT_EQ(json.at("rows"), nlohmann::json::parse(R"([
+    {"change": "as it is",
+     "none": {"k_lim_n_per_mm": 0.7, "at_least": false, "non_monotone": true,
+              "checked": [{"n_per_mm": 0.7, "verdict": "stable"}, {"n_per_mm": 0.8, "verdict": "unstable"}]},
+     "smoothing": {"k_lim_n_per_mm": 4.0, "at_least": true, "non_monotone": false}},
+    {"change": "softer",
+     "none": {"k_lim_n_per_mm": 0.0, "at_least": false, "non_monotone": false},
+     "smoothing": {"k_lim_n_per_mm": 0.7, "at_least": false, "non_monotone": true,
+                   "checked": [{"n_per_mm": 0.7, "verdict": "stable"}, {"n_per_mm": 0.8, "verdict": "unstable"}]}}])"));
+
+  EXPECT_EQ(report.csv, "change,none_n_per_mm,smoothing_n_per_mm\nas it is,0.7,4\nsofter,0,0.7\n");
+  ASSERT_EQ(report.rows.size(), 2U);
+  EXPECT_EQ(report.rows[0].paper, "0.7");
+  EXPECT_EQ(report.rows[0].ours, "0.7");
+  EXPECT_EQ(report.rows[0].difference, "+0.0");
+  EXPECT_EQ(report.rows[1].paper, "1.6");
+  EXPECT_EQ(report.rows[1].ours, ">= 4.0");
+  EXPECT_EQ(report.rows[1].difference, "+2.4");
+  const std::vector<std::vector<std::string>> table = {{"as it is", "0.7", ">= 4.0"},
+                                                       {"softer", "< 0.1", "0.7"}};
+  EXPECT_EQ(report.sections.at(0).table.rows, table);
 }
 
 TEST(SoakS2Limit, MovesByAtMostOneStepOfTheGridWithHalfTheStep) {
