@@ -176,5 +176,11 @@ TEST(Thinned, DropsOnlyTheInsideOfLevelStretchesOfAShortCurve) {
   EXPECT_THAT(thinned({1, 1, 1, 2, 3, 3, 3}, 10), ElementsAre(0, 2, 3, 4, 6));
 }
 
+TEST(Thinned, KeepsTheLastPointWhateverLiesBehindIt) {
+  std::vector<double> level(4, 1.0);
+  level.pop_back();  // its memory still holds a fourth value that is the same
+  EXPECT_THAT(thinned(level, 10), ElementsAre(0, 2));
+}
+
 }  // namespace
 }  // namespace phalanx

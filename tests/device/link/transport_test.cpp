@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -14,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "device/descriptor.h"
 #include "phalanx/device/link/phalanx_link.h"
 #include "support/count_allocations.h"
 
@@ -158,6 +160,21 @@ TEST(SerialTransport, CarriesFramesBothWaysOverAPseudoTerminal) {
   EXPECT_EQ(host->dropped() + controller->dropped(), 0u);
 }
 
+// What one read brought and receive() has not handed out yet is there without any further byte on the line.
+TEST(SerialTransport, DoesNotWaitWhileItHoldsAFrame) {
+  const auto controller = open_pseudo_terminal();
+  const auto host = open_serial(after_scheme(*controller));
+  for (int i = 0; i < 20; ++i) {  // the terminal may hand over the two one by one; seldom each time
+    ASSERT_TRUE(host->send(frame_of(1), 0));
+    ASSERT_TRUE(host->send(frame_of(2), 0));
+    ASSERT_TRUE(next(*controller));
+    ASSERT_TRUE(controller->wait(kTransportPatience));
+    const auto second = next(*controller);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->frame, frame_of(2));
+  }
+}
+
 TEST(SerialTransport, HostsComeAndGoAtAPseudoTerminal) {
   const auto controller = open_pseudo_terminal();
   for (std::uint8_t i = 0; i < 3; ++i) {
@@ -262,6 +279,26 @@ TEST(SerialTransport, IsLostWhenItsOtherEndGoes) {
   EXPECT_TRUE(host->lost());
   EXPECT_FALSE(host->send(frame_of(1), 0));
   EXPECT_FALSE(host->wait(0.001));
+}
+
+// Another program may have left the port with two stop bits and flow control, which a pseudo-terminal keeps,
+// too. (It has neither parity nor seven bits.)
+TEST(SerialTransport, SetsOneStopBitAndNoFlowControlWhateverThePortHadBefore) {
+  const auto controller = open_pseudo_terminal();
+  const Descriptor line(::open(after_scheme(*controller).c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  termios settings{};
+  ASSERT_EQ(::tcgetattr(line.value(), &settings), 0);
+  settings.c_cflag |= CSTOPB | CRTSCTS;
+  settings.c_iflag |= IXON | IXOFF;
+  ASSERT_EQ(::tcsetattr(line.value(), TCSANOW, &settings), 0);
+  ASSERT_EQ(::tcgetattr(line.value(), &settings), 0);
+  ASSERT_EQ(settings.c_cflag & CSTOPB, static_cast<tcflag_t>(CSTOPB)) << "the terminal took it";
+
+  const auto host = open_serial(after_scheme(*controller));
+  ASSERT_EQ(::tcgetattr(line.value(), &settings), 0);
+  EXPECT_EQ(settings.c_cflag & (CSTOPB | CRTSCTS | PARENB), 0U);
+  EXPECT_EQ(settings.c_cflag & CSIZE, static_cast<tcflag_t>(CS8));
+  EXPECT_EQ(settings.c_iflag & (IXON | IXOFF), 0U);
 }
 
 TEST(SerialTransport, BelongsToOneProgramAtATime) {

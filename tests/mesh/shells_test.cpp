@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/shells.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <utility>
+
+#include "phalanx/mesh/primitives.h"
+
+namespace phalanx::mesh {
+namespace {
+
+constexpr double kTolerance = 1e-3;
+
+TriangleMesh inside_out(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+Shells turned(TriangleMesh& mesh, TurnedShells& result) {
+  const EdgeTable edges(mesh);
+  const Patches patches = orient_patches(mesh, edges);
+  Shells shells = find_shells(mesh, edges, patches);
+  result = turn_shells_outward(mesh, shells, triangle_boxes(mesh), {}, kTolerance);
+  return shells;
+}
+
+// A cube within a cube within a cube, the two outer ones inside out.
+TEST(Shells, ACavityPointsIntoItsHollowAndWhatLiesInItOutAgain) {
+  TriangleMesh mesh = inside_out(make_box(Vec3(3, 3, 3), 12));
+  append(mesh, make_box(Vec3(2, 2, 2), 12));
+  append(mesh, make_box(Vec3(1, 1, 1), 12));
+  TurnedShells result;
+  const Shells shells = turned(mesh, result);
+  ASSERT_EQ(shells.shell.size(), 3U);
+  EXPECT_FALSE(shells.shell[0].cavity);
+  EXPECT_TRUE(shells.shell[1].cavity);
+  EXPECT_FALSE(shells.shell[2].cavity);
+  EXPECT_NEAR(shells.shell[0].volume, 27.0, 1e-9);
+  EXPECT_NEAR(shells.shell[1].volume, -8.0, 1e-9);
+  EXPECT_NEAR(shells.shell[2].volume, 1.0, 1e-9);
+  EXPECT_EQ(result.count, 2U);
+  EXPECT_NEAR(result.area, 6.0 * 9.0 + 6.0 * 4.0, 1e-9);
+  EXPECT_NEAR(result.largest.size, 3.0, 1e-6);
+}
+
+// A tetrahedron, a second one around it that touches it everywhere, and a box that holds both and touches the
+// base. Whether the tetrahedron lies in the box can be told from the middles of its sides alone, where it
+// touches one other shell (with three triangles), and not from the middle of its base, where it touches two
+// (with one triangle each).
+TEST(Shells, IsJudgedWhereItTouchesTheFewestOthers) {
+  const std::array<Vec3, 4> corner = {Vec3(0.1, 0, 0), Vec3(1, 0, 0), Vec3(0.2, 1, 0), Vec3(0.3, 0.3, 1)};
+  TriangleMesh mesh{{corner.begin(), corner.end()}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  TriangleMesh around{mesh.vertices, {mesh.triangles[0]}};
+  for (std::size_t side = 1; side < 4; ++side) {
+    const auto [a, b, c] = mesh.triangles[side];
+    const Vec3 p = corner[static_cast<std::size_t>(a)];
+    const Vec3 q = corner[static_cast<std::size_t>(b)];
+    const Vec3 r = corner[static_cast<std::size_t>(c)];
+    const auto middle = static_cast<std::int32_t>(around.vertices.size());
+    around.vertices.push_back((p + q + r) / 3.0 + 0.1 * kTolerance * (q - p));  // no ray starts on an edge
+    around.triangles.insert(around.triangles.end(), {{a, b, middle}, {b, c, middle}, {c, a, middle}});
+  }
+  append(mesh, around);
+  append(mesh, make_box(Vec3(5, 5, 3), 12), Pose{Mat3::Identity(), Vec3(0.5, 0.5, 1.5)});
+  TurnedShells result;
+  const Shells shells = turned(mesh, result);
+  ASSERT_EQ(shells.shell.size(), 3U);
+  EXPECT_TRUE(shells.shell[0].cavity);
+  EXPECT_FALSE(shells.shell[2].cavity);
+}
+
+}  // namespace
+}  // namespace phalanx::mesh
