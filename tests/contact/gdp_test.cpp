@@ -491,5 +491,38 @@ TEST(GdpTrajectory, StopsAtARecordedPoseThatWasFree) {
   EXPECT_EQ(hand.now().gdp_angle, hand.now().hcp_angle);
 }
 
+TEST(AngleRing, HoldsTheLast64AnglesNewestFirst) {
+  AngleRing ring;
+  EXPECT_EQ(ring.size(), 0);
+  for (int i = 0; i < 100; ++i) {
+    DigitAngles angle{};
+    angle[0] = i;
+    ring.push(angle);
+    EXPECT_EQ(ring.size(), std::min(i + 1, 64));
+    for (int age = 0; age < ring.size(); ++age) ASSERT_EQ(ring.back(age)[0], i - age);
+  }
+}
+
+// From within the floor into a slab above in one tick. Of the 64 recorded poses those in the floor are not
+// free; the one before them is, as long as it is still among the 64.
+TEST(GdpTrajectory, HoldsStillAndSaysSoOnceNoRecordedPoseIsFree) {
+  TriangleMesh slabs = floor_below();
+  append(slabs, floor_below(), at(0.0, 0.060, 0.0));
+  HapticModel model = model_of(slabs);
+  model.contact.method = GdpMethod::kTrajectory;
+  for (const int pressed : {1, 62, 63, 64, 65, 100}) {
+    SCOPED_TRACE(pressed);
+    Runner hand(model);
+    hand.tick(index_angles(0.1));
+    ASSERT_FALSE(index_segment(hand.now(), 2).contact);
+    for (int i = 0; i < pressed; ++i) hand.tick(index_angles(0.4));
+    ASSERT_TRUE(index_segment(hand.now(), 2).contact);
+    const Snapshot s = hand.tick(index_angles(-0.5));
+    EXPECT_EQ(has(s.status, Status::kTrajectoryExhausted), pressed >= 64);
+    EXPECT_TRUE(index_segment(s, 2).contact);
+    EXPECT_EQ(index_gdp(s, 0), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace phalanx
