@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,9 @@ namespace phalanx {
 struct Pace {
   /// So many may be on their way: at 60 a second, 0.2 s of them.
   static constexpr std::uint64_t kOnTheirWay = 12;
-  std::uint64_t sent = 0;  ///< since its welcome; what a newer one has replaced aside
-  std::uint64_t seen = 0;  ///< of these, as the page says
-  double newest = -1.0;    ///< time of the newest that it was sent [s]
+  std::uint64_t sent = 0;        ///< since its welcome; what a newer one has replaced aside
+  std::uint64_t seen = 0;        ///< of these, as the page says
+  std::optional<double> newest;  ///< time of the newest that it was sent [s]; none yet
 
   [[nodiscard]] bool keeps_up() const noexcept { return sent - seen < kOnTheirWay; }
 };
