@@ -105,6 +105,10 @@ int sleep_until(ClockPage& page, std::int64_t deadline) noexcept {
   return result;
 }
 
+/// Of a signal mask, as the kernel counts it. As wide as the kernel reads it: the last of six arguments
+/// stands on the stack, and the upper half of an int's place there holds anything.
+constexpr std::size_t kMaskBytes = _NSIG / 8;
+
 /// The thread's signal mask without the signal that ends a poll.
 sigset_t mask_for_waiting(const sigset_t* given) noexcept {
   sigset_t mask;
@@ -254,8 +258,8 @@ int sched_yield() noexcept {
 int ppoll(pollfd* descriptors, nfds_t count, const timespec* timeout, const sigset_t* mask) {
   const auto now = [&](const timespec* t, const sigset_t* m) {
     timespec copy = t != nullptr ? *t : timespec{};
-    return static_cast<int>(
-        ::syscall(SYS_ppoll, descriptors, count, t != nullptr ? &copy : nullptr, m, _NSIG / 8));
+    return static_cast<int>(::syscall(SYS_ppoll, descriptors, count, t != nullptr ? &copy : nullptr, m,
+                                      phalanx::test::kMaskBytes));
   };
   ClockPage* page = phalanx::test::held.load();
   const bool at_once = timeout != nullptr && phalanx::test::of(*timeout) == 0;
@@ -276,7 +280,8 @@ int poll(pollfd* descriptors, nfds_t count, int milliseconds) {
 
 int epoll_pwait(int epoll, epoll_event* events, int count, int milliseconds, const sigset_t* mask) {
   const auto now = [&](int ms, const sigset_t* m) {
-    return static_cast<int>(::syscall(SYS_epoll_pwait, epoll, events, count, ms, m, _NSIG / 8));
+    return static_cast<int>(
+        ::syscall(SYS_epoll_pwait, epoll, events, count, ms, m, phalanx::test::kMaskBytes));
   };
   ClockPage* page = phalanx::test::held.load();
   if (page == nullptr || milliseconds <= 0) return now(milliseconds, mask);

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search's bounds on single pairs, by hand. One that is too loose changes no result and costs time at
+// every tick; no test of results can notice it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#define PHALANX_SEARCH_SET by_hand
+#define PHALANX_DOUBLES 2
+#define PHALANX_FLOATS 4
+#include "contact/search/search_impl.h"
+#undef PHALANX_SEARCH_SET
+#undef PHALANX_DOUBLES
+#undef PHALANX_FLOATS
+
+namespace phalanx::search {
+namespace {
+
+using namespace by_hand;  // NOLINT(google-build-using-namespace): the set that this file has compiled
+
+// ---- a lens and a box ----
+
+struct LensAndBox {
+  float centre[3] = {0, 0, 0};
+  float axis[3] = {0, 0, 1};
+  float way[3] = {0, 0, 0};
+  float radius = 2;
+  float half = 0.5F;
+  float low[3] = {-1, -1, -1};
+  float high[3] = {1, 1, 1};
+  float across[3] = {1, 0, 0};  ///< the box's slab
+  float from = -1000, to = 1000;
+  LensMotion motion{};
+
+  template <bool kMoving>
+  [[nodiscard]] double bound() const {
+    Lenses lens;
+    Boxes box;
+    for (int k = 0; k < 3; ++k) {
+      lens.centre[k] = all(centre[k]);
+      lens.axis[k] = all(axis[k]);
+      lens.way[k] = all(way[k]);
+      box.min[k] = all(low[k]);
+      box.max[k] = all(high[k]);
+      box.axis[k] = all(across[k]);
+    }
+    lens.radius = all(radius);
+    lens.half = all(half);
+    box.low = all(from);
+    box.high = all(to);
+    const Floats found = lens_box_bound<kMoving>(lens, box, motion);
+    for (int i = 1; i < kFloats; ++i) EXPECT_EQ(found[i], found[0]);
+    return static_cast<double>(found[0]);
+  }
+};
+
+constexpr double kSingle = 2e-5;
+
+// The box begins 3 and 4 beyond the centre's x and y: 5 away, less the radius.
+TEST(LensBoxBound, OfTheSphereAndTheBox) {
+  LensAndBox pair{.low = {3, 4, -1}, .high = {9, 9, 1}};
+  EXPECT_NEAR(pair.bound<false>(), 5.0 - 2.0, kSingle);
+  LensAndBox behind{.centre = {10, 20, 30}, .half = 2, .low = {0, 0, 0}, .high = {8, 20, 28}};
+  EXPECT_NEAR(behind.bound<false>(), std::sqrt(8.0) - 2.0, kSingle);
+  LensAndBox around{.low = {-9, -9, -9}, .high = {9, 9, 9}};
+  EXPECT_LE(around.bound<false>(), 0.0);
+}
+
+// A box over a wide, thin lens: 6 to 8 along its axis. Tilted by 45 degrees, half the box's edge of 2 counts
+// along both axes.
+TEST(LensBoxBound, OfTheLensesOwnSlabAndTheBox) {
+  LensAndBox over{.radius = 100, .low = {-1, -1, 6}, .high = {1, 1, 8}};
+  EXPECT_NEAR(over.bound<false>(), 6.0 - 0.5, kSingle);
+  LensAndBox under{.radius = 100, .low = {-1, -1, -8}, .high = {1, 1, -6}};
+  EXPECT_NEAR(under.bound<false>(), 6.0 - 0.5, kSingle);
+  const float s = static_cast<float>(std::sqrt(0.5));
+  LensAndBox tilted{.axis = {s, 0, -s}, .radius = 100, .low = {9, -1, -1}, .high = {11, 1, 1}};
+  EXPECT_NEAR(tilted.bound<false>(), (10.0 - 2.0) * std::sqrt(0.5) - 0.5, kSingle);
+}
+
+// The box reaches around the lens, what is in it lies between 7 and 8 along an axis. Across that axis the
+// lens reaches as far as its half thickness, along it as far as its radius, in between as a disc with a rim,
+// and never farther than its sphere.
+TEST(LensBoxBound, OfTheLensAndTheBoxesSlab) {
+  LensAndBox flat{
+      .half = 0.25F, .low = {-9, -9, -9}, .high = {9, 9, 9}, .across = {0, 0, 1}, .from = 7, .to = 8};
+  EXPECT_NEAR(flat.bound<false>(), 7.0 - 0.25, 3e-3) << "the sine of 0 is taken for a thousandth, to be safe";
+  LensAndBox on_edge = flat;
+  on_edge.axis[0] = 1;
+  on_edge.axis[2] = 0;
+  EXPECT_NEAR(on_edge.bound<false>(), 7.0 - 2.0, kSingle);
+  LensAndBox slanted = flat;
+  slanted.axis[0] = 0.6F;
+  slanted.axis[2] = -0.8F;
+  EXPECT_NEAR(slanted.bound<false>(), 7.0 - (0.25 * 0.8 + 2.0 * 0.6), kSingle);
+  LensAndBox thick = slanted;
+  thick.half = 2;
+  EXPECT_NEAR(thick.bound<false>(), 7.0 - 2.0, kSingle);
+  LensAndBox below = flat;
+  below.from = -8;
+  below.to = -7;
+  EXPECT_NEAR(below.bound<false>(), 7.0 - 0.25, 3e-3);
+}
+
+// The same three, while the lens goes 1.5 towards the box, or 1.5 away from it: no nearer then than at the
+// beginning. The sphere's bound takes the farthest that any point goes; slabs take the way of the centre
+// along their axis, what turning moves the rim, and higher orders.
+TEST(LensBoxBound, WhileTheLensMoves) {
+  LensAndBox sphere{.low = {3, 4, -1}, .high = {9, 9, 1}};
+  sphere.motion.reach = 1.25F;
+  EXPECT_NEAR(sphere.bound<true>(), 3.0 - 1.25, kSingle);
+
+  for (const float side : {1.0F, -1.0F}) {
+    LensAndBox slab{.way = {0, 0, 1.5F * side}, .radius = 100, .low = {-1, -1, 6}, .high = {1, 1, 8}};
+    if (side < 0) {
+      slab.low[2] = -8;
+      slab.high[2] = -6;
+    }
+    slab.motion.reach = 1000;
+    EXPECT_NEAR(slab.bound<true>(), 5.5 - 1.5, kSingle);
+    slab.motion.spin = 0.01F;
+    slab.motion.bend = 0.125F;
+    EXPECT_NEAR(slab.bound<true>(), 5.5 - 1.5 - 100 * 0.01 - 0.125, kSingle);
+    slab.way[2] = -slab.way[2];
+    EXPECT_NEAR(slab.bound<true>(), 5.5 - 100 * 0.01 - 0.125, kSingle);
+
+    LensAndBox sheet{.axis = {1, 0, 0},
+                     .way = {0, 0, 1.5F * side},
+                     .low = {-9, -9, -9},
+                     .high = {9, 9, 9},
+                     .across = {0, 0, 1}};
+    sheet.from = side > 0 ? 7.0F : -8.0F;
+    sheet.to = side > 0 ? 8.0F : -7.0F;
+    sheet.motion.spin = 0.05F;
+    sheet.motion.bend = 0.125F;
+    sheet.motion.reach = 1000;
+    EXPECT_NEAR(sheet.bound<true>(), 5.0 - 1.5 - 2 * 0.05 - 0.125, kSingle);
+    sheet.way[2] = -sheet.way[2];
+    EXPECT_NEAR(sheet.bound<true>(), 5.0 - 2 * 0.05 - 0.125, kSingle);
+  }
+}
+
+// Rounded to the safe side, by little.
+TEST(LensBoxBound, ACapInSinglePrecisionIsNoSmallerAndHardlyLarger) {
+  for (const double cap : {0.0, 1e-9, 0.1, 1.0 / 3.0, 7.0, 1e14}) {
+    EXPECT_GE(static_cast<double>(single_cap(cap)), cap);
+    EXPECT_LE(static_cast<double>(single_cap(cap)), cap * 1.000002 + 2e-12);
+  }
+  EXPECT_EQ(single_cap(1e300), 1e15F);
+}
+
+// ---- how a segment moves, for lenses ----
+
+// Within 0.5 of the parameter. The velocity at the object's centre (0, 0, 2): angular x r + linear = (8, 0,
+// 0) + (1, 2, 3).
+TEST(LensMotionOf, AMotionOverAHorizon) {
+  SegmentView segment{};
+  segment.object_centre[2] = 2;
+  MotionView motion{};
+  motion.angular[1] = 4;
+  motion.linear[0] = 1;
+  motion.linear[1] = 2;
+  motion.linear[2] = 3;
+  motion.speed = 20;
+  motion.bend = 12;
+  const LensMotion lens = lens_motion(segment, motion, 0.5);
+  EXPECT_NEAR(lens.angular[1], 2.0, 1e-6);
+  EXPECT_NEAR(lens.linear[0], 4.5, 1e-6);
+  EXPECT_NEAR(lens.linear[1], 1.0, 1e-6);
+  EXPECT_NEAR(lens.linear[2], 1.5, 1e-6);
+  EXPECT_GE(lens.spin, 2.0F);
+  EXPECT_NEAR(lens.spin, 2.0, 1e-5);
+  EXPECT_GE(lens.bend, 1.5F);  // 12 x 0.5^2 / 2
+  EXPECT_NEAR(lens.bend, 1.5, 1e-4);
+  EXPECT_GE(lens.reach, 10.0F);
+  EXPECT_NEAR(lens.reach, 10.0, 1e-4);
+}
+
+// ---- two triangles ----
+
+/// One triangle of a segment, placed in the world as it is, and one of an object.
+struct TrianglePair {
+  double mine[3][3];
+  double theirs[3][3];
+  MotionView motion{};
+  double horizon = 1.0;
+  double margin = 0.0;
+  double floor = 0.0;
+
+  [[nodiscard]] SegmentView segment() {
+    SegmentView view{};
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k) triangle.corner[c][k] = mine[c][k];
+    for (int k = 0; k < 3; ++k) view.R[k][k] = 1.0;
+    placed.query = 6;
+    view.triangles = &triangle;
+    view.placed = &placed;
+    view.query = 7;
+    return view;
+  }
+  [[nodiscard]] ObjectView object() {
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k)
+        for (int lane = 0; lane < kWide; ++lane) block.corner[c][k][lane] = theirs[c][k];
+    return {nullptr, &block, 1};
+  }
+  [[nodiscard]] PairStep advanced() {
+    const PairIndex pair{0, 0};
+    PairStep step{};
+    advance(segment(), object(), motion, horizon, margin, floor, &pair, 1, &step);
+    return step;
+  }
+  /// @param jerk  the third order within the horizon [m]
+  [[nodiscard]] double separated(bool moving, double jerk = 0.0) {
+    const SegmentView view = segment();
+    const Sweep sweep{moving ? &motion : nullptr, horizon, jerk};
+    const PlacedTriangle& swept = placed_triangle(view, 0, sweep);
+    const Doubles found = separation(swept, block_triangles(*object().blocks, 0), sweep);
+    EXPECT_EQ(found[0], found[1]);
+    return found[0];
+  }
+
+  // What the views look into.
+  SegmentTriangle triangle{};
+  PlacedTriangle placed{};
+  TriangleBlock block{};
+};
+
+/// A triangle in the plane z = height, and one in the plane z = 0 below it.
+TrianglePair facing(double height) {
+  TrianglePair pair{.mine = {{0, 0, height}, {1, 0, height}, {0, 1, height}},
+                    .theirs = {{-2, -2, 0}, {4, -2, 0}, {-2, 4, 0}}};
+  return pair;
+}
+
+TEST(PairStepByHand, AtASteadySpeedIsTheWayDownToTheFloor) {
+  TrianglePair pair = facing(0.5);
+  pair.motion.linear[2] = -2.0;
+  pair.floor = 0.1;
+  PairStep step = pair.advanced();
+  EXPECT_NEAR(step.step, 0.2, 1e-12);
+  EXPECT_FALSE(step.blocked);
+  EXPECT_TRUE(step.near) << "beyond the margin only to the horizon's half";
+  pair.motion.linear[2] = 2.0;
+  step = pair.advanced();
+  EXPECT_EQ(step.step, pair.horizon) << "it goes away";
+  EXPECT_FALSE(step.near);
+  pair.motion.linear[2] = 0.0;
+  EXPECT_EQ(pair.advanced().step, pair.horizon);
+}
+
+// The nearest corner counts: 0.5 above the plane, the others 1.5.
+TEST(PairStepByHand, IsTheLeastOfTheCorners) {
+  TrianglePair pair = facing(1.5);
+  pair.mine[2][2] = 0.5;
+  pair.motion.linear[2] = -2.0;
+  EXPECT_NEAR(pair.advanced().step, 0.25, 1e-12);
+}
+
+// From rest, g = a h^2 / 2; against the speed, the braking way v^2 / 2 a is enough, or not.
+TEST(PairStepByHand, WithAnAcceleration) {
+  TrianglePair pair = facing(0.09);
+  pair.motion.linear_rate[2] = -2.0;
+  EXPECT_NEAR(pair.advanced().step, 0.3, 1e-12);
+  pair.motion.linear_rate[2] = 2.0;
+  pair.motion.linear[2] = -0.59;
+  EXPECT_EQ(pair.advanced().step, pair.horizon) << "stands after 0.087";
+  pair.motion.linear[2] = -1.0;  // 0.09 - h + h^2 = 0
+  EXPECT_NEAR(pair.advanced().step, 0.1, 1e-12);
+  pair.motion.linear_rate[2] = -2.0;
+  pair.motion.linear[2] = 0.7;  // 0.09 + 0.7 h - h^2 = 0
+  EXPECT_NEAR(pair.advanced().step, 0.81097722286, 1e-9);
+}
+
+// 0.001 = 0.6 h^3 / 6 at h = 0.2154. With a third order of at most 0.6 h^2 limit / 6 it is 0.1 for the limit
+// 1, and for the limit sqrt(0.1 x 1) it is 0.1778.
+TEST(PairStepByHand, WithAThirdOrderIsBoundedTwice) {
+  TrianglePair pair = facing(0.001);
+  pair.motion.jerk = 0.6;
+  EXPECT_NEAR(pair.advanced().step, std::sqrt(0.01 / std::sqrt(0.1)), 1e-12);
+}
+
+// The velocity and the acceleration of a point x that turns about the origin: w x x, and w' x x + w x (w x
+// x).
+TEST(PairStepByHand, TurnsWithItsSegment) {
+  TrianglePair pair = facing(0.5);
+  pair.motion.angular[1] = 2.0;  // the corner at x = 1 falls at 2, and w x (w x x) = -4 x takes 2 of 0.5 away
+  const double first_corner = 0.5;  // at x = 0: no speed, g = 2 h^2 (0.5)
+  EXPECT_NEAR(pair.advanced().step, (std::sqrt(4.0 + 4.0 * first_corner) - 2.0) / 2.0, 1e-12);
+  pair.motion.angular_rate[1] = 4.0;  // further 4 of acceleration for the corner at x = 1
+  EXPECT_NEAR(pair.advanced().step, (std::sqrt(4.0 + 2.0 * 6.0 * 0.5) - 2.0) / 6.0, 1e-12);
+}
+
+// At the end of the horizon: height less the way, and half the acceleration, but never more than it is now.
+TEST(PairStepByHand, IsNearWhatMayBeWithinTheMarginAtTheHorizon) {
+  TrianglePair pair = facing(1.0);
+  pair.floor = -10.0;
+  pair.horizon = 0.5;
+  pair.margin = 0.25;
+  pair.motion.linear[2] = -1.0;  // 0.5 left
+  EXPECT_FALSE(pair.advanced().near);
+  pair.margin = 0.499;
+  EXPECT_FALSE(pair.advanced().near);
+  pair.margin = 0.501;
+  EXPECT_TRUE(pair.advanced().near);
+  pair.margin = 0.25;
+  pair.motion.linear_rate[2] = -1.0;  // 0.375 left
+  EXPECT_FALSE(pair.advanced().near);
+  pair.margin = 0.374;
+  EXPECT_FALSE(pair.advanced().near);
+  pair.margin = 0.376;
+  EXPECT_TRUE(pair.advanced().near);
+  pair.motion.jerk = 1.0;  // 0.125 / 6 = 0.0208 less
+  pair.margin = 0.354;
+  EXPECT_FALSE(pair.advanced().near);
+  pair.margin = 0.355;
+  EXPECT_TRUE(pair.advanced().near);
+}
+
+// Within the margin what closes is stopped, but for less than 1e-9 above the floor; what does not close goes
+// on, and counts from half a nanometre below where it is.
+TEST(PairStepByHand, WithinTheMarginStopsWhatCloses) {
+  TrianglePair pair = facing(1e-4);
+  pair.margin = 2e-4;
+  pair.floor = 5e-5;
+  pair.motion.linear[2] = -1e-3;
+  EXPECT_TRUE(pair.advanced().blocked);
+  EXPECT_EQ(pair.advanced().step, 0.0);
+  EXPECT_TRUE(pair.advanced().near);
+  pair.motion.linear[2] = -0.9e-9;
+  EXPECT_FALSE(pair.advanced().blocked);
+  pair.motion.linear[2] = -1.1e-9;
+  EXPECT_TRUE(pair.advanced().blocked);
+  pair.floor = 1e-4;
+  pair.motion.linear[2] = -1e-12;
+  EXPECT_TRUE(pair.advanced().blocked) << "no room above the floor";
+
+  pair.motion.linear[2] = 0.0;
+  pair.motion.linear_rate[2] = -2.0;
+  pair.floor = 2e-4;  // below it already
+  const PairStep step = pair.advanced();
+  EXPECT_FALSE(step.blocked);
+  EXPECT_NEAR(step.step, std::sqrt(5e-10), 1e-8);
+  pair.theirs[0][2] = pair.theirs[1][2] = pair.theirs[2][2] = 1e-4;
+  EXPECT_TRUE(pair.advanced().blocked) << "at no distance there is no direction";
+}
+
+// Triangles in planes 0.5 apart; the upper one 0.1 higher at a corner, or 0.2 lower; edge-on, where the
+// planes say nothing.
+TEST(Separation, IsTheGapAcrossOneOfThePlanes) {
+  EXPECT_NEAR(facing(0.5).separated(false), 0.5, 1e-12);
+  EXPECT_NEAR(facing(-0.5).separated(false), 0.5, 1e-12);
+  TrianglePair raised = facing(0.5);
+  raised.mine[2][2] = 0.6;
+  EXPECT_NEAR(raised.separated(false), 0.5, 1e-12);
+  raised.mine[2][2] = 0.3;
+  EXPECT_NEAR(raised.separated(false), 0.3, 1e-12);
+  TrianglePair beside = facing(0.0);
+  for (auto& corner : beside.mine) corner[0] += 10.0;
+  EXPECT_NEAR(beside.separated(false), 0.0, 1e-12);
+  // The object's triangle lies in the plane z = (x + 2) / 6, under the corner at x = 1 by 1.25 - 0.5 along z.
+  TrianglePair slanted = facing(1.25);
+  slanted.theirs[1][2] = 1.0;
+  EXPECT_NEAR(slanted.separated(false), 0.75 / std::sqrt(1.0 + 1.0 / 36.0), 1e-12);
+}
+
+// Half a unit of the parameter: 0.2 towards the other plane at first order, 0.05 at second, 0.01 at third.
+TEST(Separation, WhileTheSegmentMoves) {
+  TrianglePair pair = facing(0.5);
+  pair.horizon = 0.5;
+  pair.motion.linear[2] = -0.4;
+  EXPECT_NEAR(pair.separated(true), 0.5 - 0.2, 1e-12);
+  pair.motion.linear_rate[2] = -0.4;
+  EXPECT_NEAR(pair.separated(true), 0.5 - 0.2 - 0.05, 1e-12);
+  EXPECT_NEAR(pair.separated(true, 0.01), 0.5 - 0.2 - 0.05 - 0.01, 1e-12);
+  pair.motion.linear[2] = 0.4;  // away: first and second order count by themselves
+  EXPECT_NEAR(pair.separated(true), 0.5 - 0.05, 1e-12);
+  pair.motion.linear_rate[2] = 0.4;
+  EXPECT_NEAR(pair.separated(true), 0.5, 1e-12);
+  pair.motion.linear[0] = 3.0;  // along the planes
+  EXPECT_NEAR(pair.separated(true), 0.5, 1e-12);
+
+  TrianglePair above = facing(-0.5);  // from below
+  above.horizon = 0.5;
+  above.motion.linear[2] = 0.4;
+  above.motion.linear_rate[2] = 0.4;
+  EXPECT_NEAR(above.separated(true), 0.5 - 0.2 - 0.05, 1e-12);
+}
+
+}  // namespace
+}  // namespace phalanx::search
