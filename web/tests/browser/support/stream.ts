@@ -31,15 +31,15 @@ export class Stream {
     return this.ticks.filter((tick) => tick.tick === number).at(-1);
   }
 
-  /// Ticks that come from now on, so many of the stream's.
+  /// Ticks that come from now on, so many of the stream's. Not told by their numbers: these begin anew with another device.
   async next(count: number): Promise<Tick[]> {
-    const newest = this.newest?.tick ?? -1n;
+    const newest = this.newest;
     const connection = this.connections;
     return until(
       `${count} more ticks`,
       () => {
         if (this.connections !== connection) throw new Error("the page has connected anew meanwhile");
-        const fresh = this.ticks.filter((tick) => tick.tick > newest);
+        const fresh = newest === undefined ? this.ticks : this.ticks.slice(this.ticks.lastIndexOf(newest) + 1);
         return fresh.length >= count && fresh;
       },
       () => `the newest is ${this.newest?.tick}`,
