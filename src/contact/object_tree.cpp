@@ -67,7 +67,10 @@ class Bounder {
       node.min[k][lane] = below(low[k] - centre_[k] - slack);
       node.max[k][lane] = above(high[k] - centre_[k] + slack);
     }
-    set_slab(node, lane, first, last, normal);
+    const double length = normal.norm();
+    const Vec3 axis = length > 0.0 ? Vec3(normal / length) : Vec3(Vec3::UnitZ());
+    for (int k = 0; k < 3; ++k) node.axis[k][lane] = static_cast<float>(axis[k]);
+    set_heights(node, lane, first, last);
   }
 
  private:
@@ -81,11 +84,11 @@ class Bounder {
     return 1e-15 * (std::abs(low) + std::abs(high) + centre_.cwiseAbs().maxCoeff());
   }
 
-  void set_slab(BoxNode& node, int lane, std::size_t first, std::size_t last, const Vec3& normal) const {
-    const double length = normal.norm();
-    const Eigen::Vector3f single =
-        length > 0.0 ? Eigen::Vector3f((normal / length).cast<float>()) : Eigen::Vector3f::UnitZ();
-    const Vec3 axis = single.cast<double>();
+  /// Between which heights along the node's axis the blocks lie. The axis is as it stands there, in single
+  /// precision: a function of its own, as set_extent() of segment_tree.cpp is.
+  [[gnu::noinline]] void set_heights(BoxNode& node, int lane, std::size_t first, std::size_t last) const {
+    Vec3 axis;
+    for (int k = 0; k < 3; ++k) axis[k] = static_cast<double>(node.axis[k][lane]);
     double low = 1e300;
     double high = -low;
     for (std::size_t b = first; b < last; ++b) {
@@ -98,7 +101,6 @@ class Bounder {
       }
     }
     const double slack = 4.0 * rounding(low, high);
-    for (int k = 0; k < 3; ++k) node.axis[k][lane] = single[k];
     node.low[lane] = below(low - slack);
     node.high[lane] = above(high + slack);
   }

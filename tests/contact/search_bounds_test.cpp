@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search's bounds on single pairs, by hand. One that is too loose changes no result and costs time at
-// every tick; no test of results can notice it.
+// The search's bounds on single pairs, by hand. A bound that is too loose changes no result, so that no test
+// of results notices it; it makes every tick slower. The functions are compiled here once more, as the
+// portable set is.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -228,9 +229,8 @@ struct TrianglePair {
 
 /// A triangle in the plane z = height, and one in the plane z = 0 below it.
 TrianglePair facing(double height) {
-  TrianglePair pair{.mine = {{0, 0, height}, {1, 0, height}, {0, 1, height}},
-                    .theirs = {{-2, -2, 0}, {4, -2, 0}, {-2, 4, 0}}};
-  return pair;
+  return TrianglePair{.mine = {{0, 0, height}, {1, 0, height}, {0, 1, height}},
+                      .theirs = {{-2, -2, 0}, {4, -2, 0}, {-2, 4, 0}}};
 }
 
 TEST(PairStepByHand, AtASteadySpeedIsTheWayDownToTheFloor) {
@@ -240,7 +240,7 @@ TEST(PairStepByHand, AtASteadySpeedIsTheWayDownToTheFloor) {
   PairStep step = pair.advanced();
   EXPECT_NEAR(step.step, 0.2, 1e-12);
   EXPECT_FALSE(step.blocked);
-  EXPECT_TRUE(step.near) << "beyond the margin only to the horizon's half";
+  EXPECT_TRUE(step.near) << "it reaches the plane after a quarter of the horizon";
   pair.motion.linear[2] = 2.0;
   step = pair.advanced();
   EXPECT_EQ(step.step, pair.horizon) << "it goes away";
@@ -280,41 +280,43 @@ TEST(PairStepByHand, WithAThirdOrderIsBoundedTwice) {
   EXPECT_NEAR(pair.advanced().step, std::sqrt(0.01 / std::sqrt(0.1)), 1e-12);
 }
 
-// The velocity and the acceleration of a point x that turns about the origin: w x x, and w' x x + w x (w x
-// x).
+// A point x that turns about the origin has the velocity w x x and the acceleration w' x x + w x (w x x).
+// Here the corner (1, 0, 0.5) is the first to reach the plane: it falls at 2, and the z part of w x (w x x)
+// is -4 z = -2.
 TEST(PairStepByHand, TurnsWithItsSegment) {
   TrianglePair pair = facing(0.5);
-  pair.motion.angular[1] = 2.0;  // the corner at x = 1 falls at 2, and w x (w x x) = -4 x takes 2 of 0.5 away
-  const double first_corner = 0.5;  // at x = 0: no speed, g = 2 h^2 (0.5)
-  EXPECT_NEAR(pair.advanced().step, (std::sqrt(4.0 + 4.0 * first_corner) - 2.0) / 2.0, 1e-12);
-  pair.motion.angular_rate[1] = 4.0;  // further 4 of acceleration for the corner at x = 1
+  pair.motion.angular[1] = 2.0;  // 0.5 - 2 h - 2 h^2 / 2 = 0
+  EXPECT_NEAR(pair.advanced().step, (std::sqrt(4.0 + 2.0 * 2.0 * 0.5) - 2.0) / 2.0, 1e-12);
+  pair.motion.angular_rate[1] = 4.0;  // 0.5 - 2 h - 6 h^2 / 2 = 0
   EXPECT_NEAR(pair.advanced().step, (std::sqrt(4.0 + 2.0 * 6.0 * 0.5) - 2.0) / 6.0, 1e-12);
 }
 
-// At the end of the horizon: height less the way, and half the acceleration, but never more than it is now.
+// At the end of the horizon it is at least at its height less the way, half the acceleration times h^2, and a
+// sixth of the third order times h^3. What goes away counts as standing still.
 TEST(PairStepByHand, IsNearWhatMayBeWithinTheMarginAtTheHorizon) {
   TrianglePair pair = facing(1.0);
   pair.floor = -10.0;
   pair.horizon = 0.5;
-  pair.margin = 0.25;
+  const auto is_near_within = [&](double margin) {
+    pair.margin = margin;
+    return pair.advanced().near;
+  };
   pair.motion.linear[2] = -1.0;  // 0.5 left
-  EXPECT_FALSE(pair.advanced().near);
-  pair.margin = 0.499;
-  EXPECT_FALSE(pair.advanced().near);
-  pair.margin = 0.501;
-  EXPECT_TRUE(pair.advanced().near);
-  pair.margin = 0.25;
+  EXPECT_FALSE(is_near_within(0.499));
+  EXPECT_TRUE(is_near_within(0.501));
+  pair.motion.linear_rate[2] = 1.0;  // braking counts for nothing
+  EXPECT_FALSE(is_near_within(0.499));
+  EXPECT_TRUE(is_near_within(0.501));
   pair.motion.linear_rate[2] = -1.0;  // 0.375 left
-  EXPECT_FALSE(pair.advanced().near);
-  pair.margin = 0.374;
-  EXPECT_FALSE(pair.advanced().near);
-  pair.margin = 0.376;
-  EXPECT_TRUE(pair.advanced().near);
+  EXPECT_FALSE(is_near_within(0.374));
+  EXPECT_TRUE(is_near_within(0.376));
   pair.motion.jerk = 1.0;  // 0.125 / 6 = 0.0208 less
-  pair.margin = 0.354;
-  EXPECT_FALSE(pair.advanced().near);
-  pair.margin = 0.355;
-  EXPECT_TRUE(pair.advanced().near);
+  EXPECT_FALSE(is_near_within(0.354));
+  EXPECT_TRUE(is_near_within(0.355));
+  pair.motion.jerk = 0.0;
+  pair.motion.linear[2] = 1.0;  // it goes away, and is pulled back by 0.125
+  EXPECT_FALSE(is_near_within(0.874));
+  EXPECT_TRUE(is_near_within(0.876));
 }
 
 // Within the margin what closes is stopped, but for less than 1e-9 above the floor; what does not close goes
@@ -331,7 +333,7 @@ TEST(PairStepByHand, WithinTheMarginStopsWhatCloses) {
   EXPECT_FALSE(pair.advanced().blocked);
   pair.motion.linear[2] = -1.1e-9;
   EXPECT_TRUE(pair.advanced().blocked);
-  pair.floor = 1e-4;
+  pair.floor = 1.001e-4;
   pair.motion.linear[2] = -1e-12;
   EXPECT_TRUE(pair.advanced().blocked) << "no room above the floor";
 
@@ -345,8 +347,8 @@ TEST(PairStepByHand, WithinTheMarginStopsWhatCloses) {
   EXPECT_TRUE(pair.advanced().blocked) << "at no distance there is no direction";
 }
 
-// Triangles in planes 0.5 apart; the upper one 0.1 higher at a corner, or 0.2 lower; edge-on, where the
-// planes say nothing.
+// Triangles in planes 0.5 apart; the upper one 0.1 higher at a corner, or 0.2 lower; side by side in one
+// plane, which tells nothing.
 TEST(Separation, IsTheGapAcrossOneOfThePlanes) {
   EXPECT_NEAR(facing(0.5).separated(false), 0.5, 1e-12);
   EXPECT_NEAR(facing(-0.5).separated(false), 0.5, 1e-12);
@@ -385,6 +387,45 @@ TEST(Separation, WhileTheSegmentMoves) {
   above.motion.linear[2] = 0.4;
   above.motion.linear_rate[2] = 0.4;
   EXPECT_NEAR(above.separated(true), 0.5 - 0.2 - 0.05, 1e-12);
+}
+
+/// The other way round than facing(): a wide triangle of the segment in the plane z = height, and below it
+/// one of the object that hangs down from z = 0. Its own plane is so steep that it does not separate them.
+TrianglePair hanging(double height) {
+  return TrianglePair{.mine = {{-2, -2, height}, {4, -2, height}, {-2, 4, height}},
+                      .theirs = {{0, 0, 0}, {1, 0, 0}, {0, 1, -1}}};
+}
+TrianglePair upside_down(TrianglePair pair) {
+  for (int c = 0; c < 3; ++c) {
+    pair.mine[c][2] = -pair.mine[c][2];
+    pair.theirs[c][2] = -pair.theirs[c][2];
+  }
+  pair.motion.linear[2] = -pair.motion.linear[2];
+  pair.motion.linear_rate[2] = -pair.motion.linear_rate[2];
+  return pair;
+}
+
+// Still; at first and at second order; of the two planes one alone separates.
+TEST(Separation, IsAcrossThePlaneOfEitherTriangleAlone) {
+  TrianglePair raised = facing(0.5);  // across the object's plane: the segment's is slanted
+  raised.mine[2][2] = 0.3;
+  for (TrianglePair pair : {hanging(0.5), raised}) {
+    const double gap = pair.mine[2][2];
+    EXPECT_NEAR(pair.separated(false), gap, 1e-12);
+    EXPECT_NEAR(upside_down(pair).separated(false), gap, 1e-12);
+    pair.horizon = 0.5;
+    pair.motion.linear[2] = -0.2;
+    EXPECT_NEAR(pair.separated(true), gap - 0.1, 1e-12);
+    EXPECT_NEAR(upside_down(pair).separated(true), gap - 0.1, 1e-12);
+    pair.motion.linear_rate[2] = -0.4;
+    EXPECT_NEAR(pair.separated(true), gap - 0.15, 1e-12);
+    EXPECT_NEAR(upside_down(pair).separated(true), gap - 0.15, 1e-12);
+    EXPECT_NEAR(pair.separated(true, 0.01), gap - 0.16, 1e-12);
+    pair.motion.linear[2] = 0.2;
+    pair.motion.linear_rate[2] = 0.4;
+    EXPECT_NEAR(pair.separated(true), gap, 1e-12);
+    EXPECT_NEAR(upside_down(pair).separated(true), gap, 1e-12);
+  }
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ std::vector<Vec3> corners_below(const ObjectTree& tree, const BoxNode& node, int
   return found;
 }
 
-/// Single precision's rounding, outwards: at or below x, and by no more than a few of its steps.
+/// At or below x, and by little more than one step of single precision, 2^-23 of x.
 void expect_just_below(float bound, double x, double held) {
   EXPECT_LE(static_cast<double>(bound), x);
   EXPECT_GE(static_cast<double>(bound), x - 1.3e-7 * std::abs(x) - 1e-14 * held);

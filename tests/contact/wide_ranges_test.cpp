@@ -80,8 +80,8 @@ TEST(WideRanges, HaveFullNodes) {
   EXPECT_EQ(wide_ranges(test::soup(random, 4096), kWide).nodes.size(), 74U);
 }
 
-// Eight groups of eight at the corners of a box of 30 x 20 x 10, whichever of its edges lies along x: split
-// across the longest first, each group is a leaf. The mesh has the groups' triangles in turn.
+// Eight groups of eight at the corners of a box of 60 x 40 x 20 cm, whichever of its edges lies along x:
+// split across the longest first, each group is a leaf. The mesh has the groups' triangles in turn.
 TEST(WideRanges, SplitAtTheMedianAcrossTheLongestEdge) {
   const std::array<Vec3, 3> boxes = {Vec3(0.3, 0.2, 0.1), Vec3(0.1, 0.3, 0.2), Vec3(0.2, 0.1, 0.3)};
   for (const Vec3& box : boxes) {

@@ -26,7 +26,7 @@ Shells turned(TriangleMesh& mesh, TurnedShells& result) {
   return shells;
 }
 
-// A cube within a cube within a cube, the two outer ones inside out.
+// A cube within a cube within a cube; the normals of the two outer ones point the wrong way.
 TEST(Shells, ACavityPointsIntoItsHollowAndWhatLiesInItOutAgain) {
   TriangleMesh mesh = inside_out(make_box(Vec3(3, 3, 3), 12));
   append(mesh, make_box(Vec3(2, 2, 2), 12));

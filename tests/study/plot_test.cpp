@@ -178,7 +178,8 @@ TEST(Thinned, DropsOnlyTheInsideOfLevelStretchesOfAShortCurve) {
 
 TEST(Thinned, KeepsTheLastPointWhateverLiesBehindIt) {
   std::vector<double> level(4, 1.0);
-  level.pop_back();  // its memory still holds a fourth value that is the same
+  level.pop_back();  // behind the end stands the fourth value still, which would make the last point an inner
+                     // one
   EXPECT_THAT(thinned(level, 10), ElementsAre(0, 2));
 }
 

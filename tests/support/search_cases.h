@@ -103,8 +103,8 @@ inline TriangleMesh meridians(int n) {
   return mesh;
 }
 
-/// Three corners on a line, to rounding: the normal of such a triangle may point anywhere. Each has the
-/// length of a finger.
+/// Three corners on a line, to rounding: the normal of such a triangle may point anywhere. Each is
+/// 30 mm long.
 inline TriangleMesh needles(Random& random, int n) {
   TriangleMesh mesh;
   for (int i = 0; i < n; ++i) {

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "phalanx/scene/scene.h"
@@ -121,6 +122,7 @@ ExperimentReport s2_limit() {
 }
 
 ExperimentReport s2_limit_report(const std::vector<LimitRow>& rows) {
+  assert(!rows.empty());
   ExperimentReport report;
   nlohmann::ordered_json json;
   json["experiment"] = "s2-limit";

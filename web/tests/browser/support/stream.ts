@@ -31,7 +31,7 @@ export class Stream {
     return this.ticks.filter((tick) => tick.tick === number).at(-1);
   }
 
-  /// Ticks that come from now on, so many of the stream's. Not told by their numbers: these begin anew with another device.
+  /// Ticks that come from now on, `count` of them or more. Their numbers do not tell new ones from old ones: they start again when the device changes.
   async next(count: number): Promise<Tick[]> {
     const newest = this.newest;
     const connection = this.connections;
@@ -39,7 +39,7 @@ export class Stream {
       `${count} more ticks`,
       () => {
         if (this.connections !== connection) throw new Error("the page has connected anew meanwhile");
-        const fresh = newest === undefined ? this.ticks : this.ticks.slice(this.ticks.lastIndexOf(newest) + 1);
+        const fresh = this.ticks.slice(newest === undefined ? 0 : this.ticks.lastIndexOf(newest) + 1);
         return fresh.length >= count && fresh;
       },
       () => `the newest is ${this.newest?.tick}`,
