@@ -54,33 +54,18 @@ inline bool projects_inside(const Corners& t, const Face& face, const Vec3& p) n
   return true;
 }
 
-/// Corner-face pairs of `points` against `t`, and whether an edge of `points` pierces `t`; `heights` are
-/// signed, times |normal|.
+/// Corner-face pairs of `points` against `t`.
 template <class Keep>
-bool corners_against_face(const Corners& points, const Corners& t, const Face& face, Keep&& keep) noexcept {
-  if (!(face.normal_squared > 0.0)) return false;  // a segment or a point: its edges say it all
-  std::array<double, 3> height{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    height[i] = face.normal.dot(points[i] - face.corner);
-    const Vec3 foot = points[i] - (height[i] / face.normal_squared) * face.normal;
-    if (projects_inside(t, face, points[i])) keep(points[i], foot);
+void corners_against_face(const Corners& points, const Corners& t, const Face& face, Keep&& keep) noexcept {
+  if (!(face.normal_squared > 0.0)) return;  // a segment or a point: its edges say it all
+  for (const Vec3& point : points) {
+    const double height = face.normal.dot(point - face.corner);  // times |normal|
+    if (projects_inside(t, face, point)) keep(point, point - (height / face.normal_squared) * face.normal);
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double from = height[i];
-    const double to = height[(i + 1) % 3];
-    if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0)) {
-      const Vec3 pierced = points[i] + (from / (from - to)) * (points[(i + 1) % 3] - points[i]);
-      if (projects_inside(t, face, pierced)) {
-        keep(pierced, pierced);
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
-/// Hands every pair of features' closest points to keep(on_a, on_b), in a fixed order; stops early where the
-/// triangles cross.
+/// Hands every pair of features' closest points to keep(on_a, on_b), in a fixed order. The triangles do not
+/// cross.
 template <class Keep>
 void for_each_feature_pair(const Corners& a, const Corners& b, Keep&& keep) noexcept {
   const std::array<Vec3, 3> ea = {a[1] - a[0], a[2] - a[1], a[0] - a[2]};
@@ -88,7 +73,7 @@ void for_each_feature_pair(const Corners& a, const Corners& b, Keep&& keep) noex
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) edge_edge(a[i], ea[i], b[j], eb[j], keep);
   }
-  if (corners_against_face(a, b, face_of(b), keep)) return;
+  corners_against_face(a, b, face_of(b), keep);
   corners_against_face(b, a, face_of(a), [&](const Vec3& corner, const Vec3& foot) { keep(foot, corner); });
 }
 

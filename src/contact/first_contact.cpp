@@ -77,7 +77,6 @@ class Search {
     list.begin = {};
     double horizon = std::min(1.0, s_ + std::max(kLongestReach / speed_.back(), known_to_be_clear()));
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
-      list.begin[idx(k)] = list.count;
       if (!is_clear(k, horizon)) {
         horizon =
             gather_pairs({placed(k), model_.object.tree(), motion(k), stop_band(model_.parameters.margin)},

@@ -109,7 +109,6 @@ void make_record(const ContactModel& model, const DigitTick& tick, int k, double
   record.force_normal = model.parameters.normal == ForceNormal::kContact
                             ? patch.direction
                             : within_cone(patch.object_normal, patch.direction);
-  record.silent = state.inside[idx(tick.digit)];
   if (model.parameters.depth == DepthOrigin::kContinuous && k > 0) {
     // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes.
     DigitAngles hcp_angle{};

@@ -102,7 +102,6 @@ class Round {
     mesh_.triangles[other] = one;
     mesh_.triangles[t] = two;
     ++mended_.count;
-    mended_.moved = std::max(mended_.moved, h);
     return true;
   }
 
@@ -179,7 +178,6 @@ class Round {
     renamed_ = true;
     mended_.worst.take(longest_edge_of(mesh_, mesh_.triangles[t]));
     ++mended_.count;
-    mended_.moved = std::max(mended_.moved, least);
   }
   [[nodiscard]] Vec3 normal(const Triangle& t) const {
     return (point(mesh_, t[1]) - point(mesh_, t[0])).cross(point(mesh_, t[2]) - point(mesh_, t[0]));
@@ -235,7 +233,6 @@ Mended remove_flat_faces(TriangleMesh& mesh, double flat, Allowance& allowance) 
     const Mended now = Round(mesh, flat, allowance).run();
     mended.complete = mended.complete && now.complete;
     if (now.count == 0) break;
-    mended.moved = std::max(mended.moved, now.moved);
     mended.worst.take(now.worst);
     left = count_flat_faces(mesh, flat);
     looked_at += mesh.triangles.size();

@@ -134,7 +134,6 @@ Mended merge_near_vertices(TriangleMesh& mesh, Allowance& allowance) {
     if (idx(to[v]) == v) continue;
     ++mended.count;
     const double gap = (mesh.vertices[v] - mesh.vertices[idx(to[v])]).norm();
-    mended.moved = std::max(mended.moved, gap);
     mended.worst.take(gap, mesh.vertices[v]);
     spent[idx(to[v])] = std::max(spent[idx(to[v])], spent[v] + gap);
   }

@@ -11,7 +11,6 @@ namespace phalanx::mesh {
 
 struct Mended {
   std::size_t count = 0;
-  double moved = 0.0;    ///< largest distance by which one step moved the surface [m]
   bool complete = true;  ///< false: more was in each other's way than is looked at
   Spot worst = {};       ///< the widest gap; for flat triangles the longest edge, and its middle
 };

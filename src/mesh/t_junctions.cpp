@@ -122,7 +122,6 @@ Mended split_t_junctions(TriangleMesh& mesh, Allowance& allowance) {
           from = hits[h].vertex;
           at = hits[h].along;
           ++mended.count;
-          mended.moved = std::max(mended.moved, hits[h].off);
           mended.worst.take(hits[h].off, mesh.vertices[idx(hits[h].vertex)]);
           double& spent = allowance.spent[idx(hits[h].vertex)];
           spent = std::max(spent, moved);

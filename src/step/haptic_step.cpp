@@ -61,7 +61,6 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
 HapticState::HapticState(const HapticModel& model)
     : guard_((check_parameters(model), model.hand.parameters().open_angle)), gdp_(contact_model(model)) {
   model.hand.poses(model.hand.parameters().open_angle, hcp_);
-  force_.hcp_before = hcp_;
   record(model, 0.0, hcp_, gdp_, force_, Status::kOk, snapshot_);
   snapshot_.tick = 0;
 }
