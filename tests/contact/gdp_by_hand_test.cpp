@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "contact/normal_fan.h"
@@ -78,13 +79,15 @@ class Paper {
     model_.hand.poses(hcp, poses);
     std::array<bool, kDigits> measured{};
     measured.fill(true);
-    advance_gdp(contact_, hcp, poses, measured, state_);
+    status = advance_gdp(contact_, hcp, poses, measured, state_);
     return state_;
   }
   [[nodiscard]] const ContactRecord& record(int k) const {
     return state_.record[idx(segment_index(test::kIndex, k))];
   }
   [[nodiscard]] double gdp(int i) const { return state_.angle[idx(joint_index(test::kIndex, i))]; }
+
+  Status status = Status::kOk;  ///< of the last tick
 
  private:
   const HapticModel& model_;
@@ -194,6 +197,104 @@ TEST(GdpByHand, TheOffsetNeedsOneNearerSegmentThatPushesNotAll) {
   EXPECT_NEAR(paper.gdp(3), 0.05, 1e-6);
   EXPECT_NEAR(paper.record(2).offset, y3(0.5, 0.7, 0.75) - y3(0.54, 0.79, 0.84), 2.0 * kPlace);
   EXPECT_GT(paper.record(2).offset, 1e-3);
+}
+
+// The first tick of all knows no HCP before it: d0 is taken with the HCP where it is now. MCP 0.4 and PIP 0.3
+// against plates at MCP 0.3 and, from there, PIP 0.27.
+TEST(GdpByHand, TheOffsetInTheFirstTickIsTakenWithTheHcpAsItIs) {
+  TriangleMesh object = plate(f1(0.3), y1(0.3));
+  append(object, plate(f2(0.3, 0.57), y2(0.3, 0.57)));
+  const HapticModel model = paper_model(object);
+  Paper paper(model);
+  paper.tick(index_angles(0.4, 0.3));
+  ASSERT_TRUE(paper.record(0).active);
+  ASSERT_TRUE(paper.record(1).active);
+  EXPECT_NEAR(paper.gdp(0), 0.3, 1e-6);
+  EXPECT_NEAR(paper.gdp(2), 0.27, 1e-6);
+  EXPECT_NEAR(paper.record(1).offset, y2(0.3, 0.57) - y2(0.4, 0.7), kPlace);
+  EXPECT_NEAR(paper.record(1).depth, 0.0, kPlace);
+}
+
+// ---- S1's recorded trajectory ----
+
+// The proximal corner is in the plate at MCP 0.4, and was above it at 0.2, a tick before: there the finger
+// stays. Then the middle one is in its plate at PIP 0.3, and was not at 0.15: its d0 is taken with the HCP of
+// this tick, MCP 0.4 and PIP 0.3, so that its depth begins at 0.
+TEST(TrajectoryByHand, AContactIsAtTheLastFreePoseAndItsOffsetAtTheTicksEnd) {
+  TriangleMesh object = plate(f1(0.3), y1(0.3));
+  append(object, plate(f2(0.2, 0.45), y2(0.2, 0.45)));
+  HapticModel model = paper_model(object);
+  model.contact.method = GdpMethod::kTrajectory;
+  Paper paper(model);
+  paper.tick(index_angles(0.2));
+  ASSERT_FALSE(paper.record(0).active);
+  paper.tick(index_angles(0.4));
+  ASSERT_TRUE(paper.record(0).active);
+  EXPECT_EQ(paper.gdp(0), 0.2);
+  EXPECT_EQ(paper.record(0).offset, 0.0);
+  EXPECT_NEAR(paper.record(0).depth, y1(0.2) - y1(0.4), kPlace);
+  paper.tick(index_angles(0.4, 0.15));
+  ASSERT_FALSE(paper.record(1).active);
+  paper.tick(index_angles(0.4, 0.3));
+  ASSERT_TRUE(paper.record(1).active);
+  EXPECT_EQ(paper.gdp(0), 0.2);
+  EXPECT_EQ(paper.gdp(2), 0.15);
+  EXPECT_NEAR(paper.record(1).offset, y2(0.2, 0.35) - y2(0.4, 0.7), kPlace);
+  EXPECT_NEAR(paper.record(1).depth, 0.0, 1e-12);
+}
+
+// ---- where the search gives up ----
+
+// A hundred radians in a tick, and nothing within reach: the finger gets as far as so many poses take it. Its
+// record says so, but neither pushes nor holds, and the next ticks go on from there until the finger arrives.
+TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
+  const HapticModel model =
+      paper_model(test::moved(make_box(Vec3(0.02, 0.02, 0.02), 12), test::at(0.0, -0.3, 0.0)));
+  Paper paper(model);
+  paper.tick(index_angles(0.0));
+  int gave_up = 0;
+  double before = 0.0;
+  while (paper.gdp(0) != 100.0) {
+    ASSERT_LT(gave_up, 20);
+    paper.tick(index_angles(100.0));
+    EXPECT_GT(paper.gdp(0), before);
+    before = paper.gdp(0);
+    if (before == 100.0) break;
+    ++gave_up;
+    EXPECT_TRUE(has(paper.status, Status::kSearchExhausted));
+    ASSERT_TRUE(paper.record(2).active);
+    EXPECT_EQ(paper.record(2).offset, std::numeric_limits<double>::infinity());
+    EXPECT_LT(paper.record(2).depth, 0.0);
+  }
+  EXPECT_GE(gave_up, 1);
+  EXPECT_FALSE(has(paper.status, Status::kSearchExhausted));
+  for (int k = 0; k < kSegmentsPerDigit; ++k) EXPECT_FALSE(paper.record(k).active) << k;
+}
+
+// The corner comes within the margin by 0.1 nm just at the tick's end, while the PIP still moves: that is a
+// stop like any other, and no search that gave up. 5.86e-9 rad are 0.1 nm of its way of 17 mm.
+TEST(GdpByHand, AStopAtTheVeryEndOfATickIsAStop) {
+  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  Paper paper(model);
+  paper.tick(index_angles(0.4));
+  paper.tick(index_angles(0.5 + 5.86e-9, 0.05));
+  EXPECT_EQ(paper.status, Status::kOk);
+  EXPECT_TRUE(paper.record(0).active);
+  EXPECT_FALSE(paper.record(1).active);
+  EXPECT_FALSE(paper.record(2).active);
+  EXPECT_EQ(paper.gdp(2), 0.05);
+}
+
+// ---- the open hand ----
+
+// The lowest corner is 30 um above a plate, within the margin.
+TEST(GdpByHand, AnOpenFingerWithinTheMarginIsASetUpErrorThatSaysHowNear) {
+  const HapticModel model = paper_model(plate(f1(0.0), y1(0.0) + 20e-6));
+  EXPECT_THAT([&] { Paper paper(model); },
+              ::testing::ThrowsMessage<std::invalid_argument>(
+                  ::testing::AllOf(::testing::HasSubstr("the open hand (index-finger-phalanx-proximal)"),
+                                   ::testing::HasSubstr(" is 0.030000 mm from the object"),
+                                   ::testing::HasSubstr("the margin of 0.050000 mm"))));
 }
 
 // A cone of 36 sides, which fold by less than 30 degrees, so that all its normals at the apex are its axis.
@@ -352,6 +453,7 @@ TEST(ContactPatchByHand, OnePointOfTheSegmentBeforeTwoWallsIsTwoPlaces) {
   const ContactPatch patch = contact_patch({segment, X, scratch}, ObjectModel(groove), 1e-4);
   EXPECT_NEAR(patch.distance, 48e-6, 1e-12);
   EXPECT_LT((patch.direction - (left + 0.8 * right).normalized()).norm(), 1e-6);
+  EXPECT_LT((patch.object_normal - patch.direction).norm(), 1e-6) << "between the walls' normals: itself";
   // Feet at -48 um left and -49 um right, weighed the same way.
   EXPECT_LT((patch.on_object + (48e-6 * left + 0.8 * 49e-6 * right) / 1.8).norm(), 1e-10);
 }

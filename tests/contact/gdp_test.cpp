@@ -257,6 +257,10 @@ TEST(Gdp, ThePalmWithinTheMarginIsContactWithoutForce) {
   EXPECT_TRUE(palm.contact);
   EXPECT_EQ(palm.depth, 0.0);
   EXPECT_EQ(palm.force, 0.0);
+  EXPECT_EQ(palm.slid, 0.0);
+  EXPECT_NEAR(palm.point.y(), lowest.y(), 5e-6) << "on the palm: what ties lies within 5 um";
+  EXPECT_NEAR(palm.point.x(), lowest.x(), 0.01) << "above the box";
+  EXPECT_NEAR(palm.point.z(), lowest.z(), 0.01);
 }
 
 TEST(Gdp, TheOpenHandOnTheObjectIsASetUpError) {

@@ -43,6 +43,36 @@ TriangleMesh square_sheet() {
   return {{{-0.03, -0.03, 0}, {0.03, -0.03, 0}, {0.03, 0.03, 0}, {-0.03, 0.03, 0}}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
+/// Adds a pair at `x` on both bodies.
+void add_place(MeanDirection& mean, double x, double squared, const Vec3& direction, double weight) {
+  mean.add({squared, Vec3(x, 0, 0), Vec3(x, 0, 0)}, direction, weight);
+}
+
+// Two places that face each other cancel out where their sum is at most a tenth of their weights: (1.15 - 1)
+// / 2.15 = 0.070, but (1.35 - 1) / 2.35 = 0.149. Then the nearer one says the direction.
+TEST(MeanDirectionByHand, WhereOppositeDirectionsCancelTheNearestDecides) {
+  for (const double weight : {1.0, 1.15, 1.35}) {
+    MeanDirection mean(1e-6);
+    add_place(mean, 0.0, 4.0, Vec3::UnitZ(), weight);
+    add_place(mean, 1.0, 1.0, -Vec3::UnitZ(), 1.0);
+    EXPECT_EQ(mean.unit().z(), weight > 1.2 ? 1.0 : -1.0) << weight;
+  }
+}
+
+// Of more than 32 places all count. 32 x and, of weight 32, one y: halfway between. And 31 x, one y, which is
+// the nearest, and, of weight 27, one -x: (4, 1) of 59 is less than a tenth, so that y decides.
+TEST(MeanDirectionByHand, PlacesThatRunOverCountToo) {
+  MeanDirection halfway(1e-6);
+  for (int i = 0; i < 32; ++i) add_place(halfway, 1e-3 * i, 1.0, Vec3::UnitX(), 1.0);
+  add_place(halfway, 1.0, 1.0, Vec3::UnitY(), 32.0);
+  EXPECT_LT((halfway.unit() - Vec3(1.0, 1.0, 0.0).normalized()).norm(), 1e-12);
+  MeanDirection cancelled(1e-6);
+  for (int i = 0; i < 31; ++i) add_place(cancelled, 1e-3 * i, 4.0, Vec3::UnitX(), 1.0);
+  add_place(cancelled, 1.0, 1.0, Vec3::UnitY(), 1.0);
+  add_place(cancelled, 2.0, 4.0, -Vec3::UnitX(), 27.0);
+  EXPECT_EQ(cancelled.unit(), Vec3(Vec3::UnitY()));
+}
+
 TEST(NormalFan, TakesTheNearestDirectionOfItsCone) {
   NormalFan fan;
   EXPECT_EQ(fan.nearest(Vec3::UnitX()), Vec3(Vec3::UnitX())) << "an empty fan has no say";

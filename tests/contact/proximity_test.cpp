@@ -82,6 +82,39 @@ TEST(Proximity, AFlatTouchPicksTheMiddle) {
   }
 }
 
+// As above with a lower face of 1800 triangles: more pairs tie than are kept, and they are sought anew for
+// each question.
+TEST(Proximity, ATouchOfMorePairsThanAreKeptIsTheSame) {
+  const ObjectModel table(make_box(Vec3(0.2, 0.2, 0.2), 12));
+  const SegmentTree box(make_box(Vec3(0.02, 0.02, 0.02), 10800));
+  SearchScratch scratch(box);
+  const Pose X{Mat3::Identity(), Vec3(0.013, -0.007, 0.11 + 50e-6)};
+  SegmentMotion down;
+  down.linear = Vec3(0.0, 0.0, -1.0);
+  const SegmentMotion* motions[] = {nullptr, &down};
+  for (const SegmentMotion* motion : motions) {
+    const ContactPatch patch = contact_patch({box, X, scratch}, table, 51e-6, motion);
+    EXPECT_GT(patch.pairs, static_cast<int>(SearchScratch::kNearPairs));
+    EXPECT_NEAR(patch.distance, 50e-6, 1e-15);
+    EXPECT_NEAR(patch.on_segment.x(), 0.013, 2e-5);
+    EXPECT_NEAR(patch.on_segment.y(), -0.007, 2e-5);
+    EXPECT_NEAR(patch.direction.z(), 1.0, 1e-12);
+    EXPECT_NEAR(patch.object_normal.z(), 1.0, 1e-12);
+  }
+}
+
+// Two parallel triangles 1 mm apart, whose boxes are as far apart as they are: what single precision may be
+// off, 2e-6 of 10 + 10 + 30 mm = 0.1 um, comes off the bound, so that a cap of 10 nm more than the distance
+// finds it.
+TEST(Proximity, ABoundAllowsForTheRoundingOfSinglePrecision) {
+  const ObjectModel floor(
+      TriangleMesh{{Vec3(-0.02, -0.02, 0), Vec3(0.04, -0.02, 0), Vec3(-0.02, 0.04, 0)}, {{0, 1, 2}}});
+  const SegmentTree segment(TriangleMesh{{Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0, 0.01, 0)}, {{0, 1, 2}}});
+  SearchScratch scratch(segment);
+  const Pose X{Mat3::Identity(), Vec3(0.0, 0.0, 1e-3)};
+  EXPECT_NEAR(distance({segment, X, scratch}, floor.tree(), 1e-3 + 1e-8), 1e-3, 1e-12);
+}
+
 TEST(Proximity, AnEdgeLyingOnAFacePicksTheMiddleOfTheEdge) {
   const ObjectModel table(make_box(Vec3(0.2, 0.2, 0.2), 300));
   const SegmentTree box(make_box(Vec3(0.02, 0.02, 0.02), 12));
@@ -134,12 +167,38 @@ TEST(SegmentView, AllowsForTheRoundingOfAllThatSinglePrecisionHolds) {
   }
 }
 
+TEST(ObjectModel, RefusesAVertexThatIsMoreThanTenKilometresAwayAlongAnyAxis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      TriangleMesh mesh{{Vec3::Zero(), Vec3::Ones(), Vec3(1.0, 0.0, 0.0)}, {{0, 1, 2}}};
+      mesh.vertices[0][axis] = sign * 9999.0;
+      EXPECT_NO_THROW(ObjectModel{mesh}) << axis;
+      mesh.vertices[0][axis] = sign * 10001.0;
+      EXPECT_THAT([&] { ObjectModel{mesh}; },
+                  ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("10001.0")))
+          << axis;
+    }
+  }
+}
+
 TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
   const TriangleMesh small = make_sphere(0.01, 100);
   const TriangleMesh large = make_sphere(0.1, 400);
   EXPECT_TRUE(Containment(large).with(small, Pose{}));
   EXPECT_TRUE(Containment(small).with(large, Pose{}));
   EXPECT_FALSE(Containment(large).with(small, Pose{Mat3::Identity(), Vec3(0.2, 0, 0)}));
+}
+
+// The object is a ball of 5 mm inside a segment of 50 mm that has turned and moved; 30 mm off its middle in
+// the segment's frame, and once as far on the outside.
+TEST(Containment, SeesAnObjectInsideASegmentWhereverThatIs) {
+  const TriangleMesh segment = make_sphere(0.1, 400);
+  const Pose X{rotation_about(Vec3::UnitZ(), 1.2), Vec3(0.3, -0.1, 0.2)};
+  for (const double off : {0.03, 0.09}) {
+    TriangleMesh ball = make_sphere(0.01, 100);
+    for (Vec3& v : ball.vertices) v += X * Vec3(off, 0.0, 0.0);
+    EXPECT_EQ(Containment(ball).with(segment, X), off < 0.05) << off;
+  }
 }
 
 TEST(Containment, DoesNotCountVerticesThatNoTriangleUses) {
@@ -154,6 +213,12 @@ TEST(Containment, SeesThroughAnInsideOutSolidAndDuplicateFaces) {
   TriangleMesh inside_out = make_sphere(0.1, 400);
   for (Triangle& t : inside_out.triangles) std::swap(t[1], t[2]);
   EXPECT_TRUE(Containment(inside_out).with(small, Pose{}));
+  for (const bool turned : {false, true}) {  // one face twice, once as it is and once the other way round
+    TriangleMesh twice = make_sphere(0.1, 400);
+    const Triangle t = twice.triangles.front();
+    twice.triangles.push_back(turned ? Triangle{t[0], t[2], t[1]} : Triangle{t[1], t[2], t[0]});
+    EXPECT_TRUE(Containment(twice).with(small, Pose{})) << turned;
+  }
   TriangleMesh sheet;  // a large table, every triangle twice, 3 cm away: contains nothing
   sheet.vertices = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}};

@@ -103,6 +103,59 @@ TEST(LensBoxBound, OfTheLensAndTheBoxesSlab) {
   EXPECT_NEAR(below.bound<false>(), 7.0 - 0.25, 3e-3);
 }
 
+// A turn that takes x to y, y to z and z to x, then (10, 20, 30): (1, 2, 3) comes to (13, 21, 32), the axis
+// (0.6, 0, 0.8) to (0.8, 0.6, 0). With w = (4, 5, 6) and (0.1, 0.2, 0.3) a period it goes w x x + that:
+// (34.1, -49.8, 19.3). Each lane has a lens of its own. They are placed once a query.
+TEST(PlacedLensesByHand, AreTurnedMovedAndGoTheirWay) {
+  LensNode node{};
+  for (int lane = 0; lane < kWide; ++lane) {
+    const float more = 2.0F * static_cast<float>(lane);
+    const float centre[3] = {1.0F + more, 2.0F + more, 3.0F + more};
+    const float axis[3] = {0.6F, 0.0F, 0.8F};
+    for (int k = 0; k < 3; ++k) {
+      node.centre[k][lane] = centre[k];
+      node.axis[k][lane] = axis[k];
+    }
+  }
+  const LensMotion motion{
+      .angular = {4, 5, 6}, .linear = {0.1F, 0.2F, 0.3F}, .spin = 9, .bend = 0, .reach = 99};
+  for (const bool moving : {false, true}) {
+    PlacedLenses placed{};
+    SegmentView segment{};
+    segment.nodes = &node;
+    segment.lenses = &placed;
+    segment.query = 7;
+    const float turn[3][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+    const float at[3] = {10, 20, 30};
+    for (int k = 0; k < 3; ++k) {
+      segment.lens_p[k] = at[k];
+      for (int i = 0; i < 3; ++i) segment.lens_R[k][i] = turn[k][i];
+    }
+    for (int again = 0; again < 2; ++again) {
+      const PlacedLenses& found =
+          moving ? placed_lenses<true>(segment, motion, 0) : placed_lenses<false>(segment, motion, 0);
+      ASSERT_EQ(&found, &placed);
+      EXPECT_EQ(found.query, 7U);
+      for (int lane = 0; lane < kWide; ++lane) {
+        const float more = 2.0F * static_cast<float>(lane);
+        EXPECT_FLOAT_EQ(found.centre[0][lane], 13.0F + more);
+        EXPECT_FLOAT_EQ(found.centre[1][lane], 21.0F + more);
+        EXPECT_FLOAT_EQ(found.centre[2][lane], 32.0F + more);
+        EXPECT_FLOAT_EQ(found.axis[0][lane], 0.8F);
+        EXPECT_FLOAT_EQ(found.axis[1][lane], 0.6F);
+        EXPECT_FLOAT_EQ(found.axis[2][lane], 0.0F);
+        if (!moving) continue;
+        // (5 - 6, 6 - 4, 4 - 5) more for each step by (1, 1, 1)
+        EXPECT_NEAR(found.way[0][lane], 34.1F - more, 1e-5F);
+        EXPECT_NEAR(found.way[1][lane], -49.8F + 2.0F * more, 1e-5F);
+        EXPECT_NEAR(found.way[2][lane], 19.3F - more, 1e-5F);
+      }
+      node.centre[0][0] += 100.0F;  // the second time nothing is looked at
+    }
+    node.centre[0][0] -= 200.0F;
+  }
+}
+
 // The same three, while the lens goes 1.5 towards the box, or 1.5 away from it: no nearer then than at the
 // beginning. The sphere's bound takes the farthest that any point goes; slabs take the way of the centre
 // along their axis, what turning moves the rim, and higher orders.

@@ -110,6 +110,16 @@ TEST(TriangleDistance, OfACornerAboveAFaceIsItsHeight) {
   EXPECT_EQ(found.on_b, Vec3(0, 0, 0));
 }
 
+// One triangle over another: every pair of corners is as near. The first in the fixed order gives the points.
+TEST(TriangleDistance, OfPairsThatTieTakesTheFirst) {
+  const Corners low = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  const Corners high = {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 1)};
+  const TriangleDistance found = triangle_distance(high, low);
+  EXPECT_EQ(found.squared, 1.0);
+  EXPECT_EQ(found.on_a, Vec3(0, 0, 1));
+  EXPECT_EQ(found.on_b, Vec3(0, 0, 0));
+}
+
 TEST(TriangleDistance, OfCrossedEdgesIsTheirCommonPerpendicular) {
   const Corners a = {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)};
   const Corners b = {Vec3(0, -1, 2), Vec3(0, 1, 2), Vec3(0, 0, 3)};

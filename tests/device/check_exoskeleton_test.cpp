@@ -88,6 +88,8 @@ TEST(CheckExoskeleton, RefusesWhatDoesNotFitTogether) {
     expect_refused([&](Exoskeleton& e) { e.motors[1].name = name; }, {"begins with a letter"});
   expect_refused([](Exoskeleton& e) { e.coupled[0].joint = 6; },
                  {"coupled joint index_pip_flexion", "keep one"});
+  expect_refused([](Exoskeleton& e) { e.coupled.push_back(e.coupled[0]); },
+                 {"coupled joint index_dip_flexion", "coupled twice; keep one"});
   expect_refused([](Exoskeleton& e) { e.coupled[0].of = 7; }, {"follows index_dip_flexion"});
   expect_refused([](Exoskeleton& e) { e.coupled[0].ratio = kNaN; }, {"ratio = nan"});
   expect_refused(

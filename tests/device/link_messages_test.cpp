@@ -46,6 +46,14 @@ TEST(LinkMessages, ACommandKeepsItsNumbers) {
     EXPECT_EQ(static_cast<double>(out.as.command.torque[j]), command.torque[j]);
 }
 
+TEST(LinkMessages, AnEnabledCommandOfAHostInFaultSaysFaultAlone) {
+  DeviceCommand command = a_command();
+  command.fault = true;
+  phx_message message{};
+  write_command(command, message);
+  EXPECT_EQ(message.as.command.flags, PHX_COMMAND_FAULT);
+}
+
 TEST(LinkMessages, ACommandWithAWallCarriesAllOfThem) {
   DeviceCommand command = a_command();
   command.enable = false;
@@ -129,6 +137,21 @@ TEST(LinkMessages, AControllerIsReadyOnceItIsConfigured) {
   EXPECT_EQ(read_sample(message, 0.0).state, DeviceState::kConnecting);
   message.as.sample.fault = PHX_FAULT_DRIVE;
   EXPECT_EQ(read_sample(message, 0.0).fault_channel, -1) << "a drive has no channel";
+}
+
+// From 64 on the numbers are the host's own: a device that sends one means something of its own.
+TEST(LinkMessages, AFaultFromSixtyFourOnIsTheDevicesDrive) {
+  phx_message message{};
+  message.header.type = PHX_SAMPLE;
+  message.as.sample.fault_channel = 7;
+  message.as.sample.fault = 63;
+  EXPECT_EQ(read_sample(message, 0.0).fault, static_cast<Fault>(63));
+  EXPECT_EQ(read_sample(message, 0.0).fault_channel, -1);
+  for (const std::uint16_t number : {std::uint16_t{64}, std::uint16_t{65}}) {
+    message.as.sample.fault = number;
+    EXPECT_EQ(read_sample(message, 0.0).fault, Fault::kDrive) << number;
+    EXPECT_EQ(read_sample(message, 0.0).fault_channel, -1) << number;
+  }
 }
 
 TEST(LinkMessages, ChannelsAndSerialNumberComeBack) {

@@ -220,6 +220,15 @@ TEST(Plant, RefusesAStepThatItsTendonsDoNotBear) {
   EXPECT_THROW(Plant(one_motor(0.01), no_patient(), start), std::invalid_argument);
 }
 
+// w = sqrt(1e4 Nm/rad / 1e-4 kg m^2) = 1e4 rad/s, and the longest step is 1 / w = 1e-4 s.
+TEST(Plant, RefusesAStepThatThePatientsSpringDoesNotBear) {
+  const Exoskeleton exo = bare_joint(1e-4, 0.0);
+  PatientParameters patient = no_patient();
+  patient.stiffness[at(kMcp)] = 1e4;
+  EXPECT_NO_THROW(Plant(exo, patient, {}, 0.99e-4));
+  EXPECT_THROW(Plant(exo, patient, {}, 1.01e-4), std::invalid_argument);
+}
+
 TEST(Plant, AdvancesWithoutAllocation) {
   const Exoskeleton exo = two_joint_device();
   Plant plant(exo, no_patient(), {});

@@ -46,6 +46,23 @@ TEST(SimulatedChannels, AnAnglesRangeIsItsJointsAndTwentyDegrees) {
   EXPECT_EQ(channels[0].raw_max, std::lround((2.0 + 20.0 * kDegree) / 10e-6));
 }
 
+// With 20 degrees beyond it the flexion goes from -0.849066 to 2.349066 rad. The tendons' arms are -12.5 and
+// -10 mm: they wind from -29.3633 to 10.6133 mm and from -23.4907 to 8.4907 mm, and 5 mm more either way.
+// Four times what 30 N do on these arms are 1.5 and 1.2 Nm.
+TEST(SimulatedChannels, AMotorsAndATorquesRangeHaveTheirReserve) {
+  const SimulatedDeviceSettings settings = squeezing_settings();
+  const auto channels = simulated_channels(settings.exoskeleton, settings.hand);
+  ASSERT_EQ(channels.size(), 6U);
+  EXPECT_EQ(channels[2].raw_min, -34363);
+  EXPECT_EQ(channels[2].raw_max, 15613);
+  EXPECT_EQ(channels[3].raw_min, -28491);
+  EXPECT_EQ(channels[3].raw_max, 13491);
+  EXPECT_EQ(channels[4].raw_min, -15000);
+  EXPECT_EQ(channels[4].raw_max, 15000);
+  EXPECT_EQ(channels[5].raw_min, -12000);
+  EXPECT_EQ(channels[5].raw_max, 12000);
+}
+
 TEST(SimulatedChannels, AnAngleComesBackWithinHalfACount) {
   const SimulatedDeviceSettings settings = squeezing_settings();
   const auto channels = simulated_channels(settings.exoskeleton, settings.hand);

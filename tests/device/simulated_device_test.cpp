@@ -130,6 +130,16 @@ TEST(SimulatedDevice, ASqueezeIsFeltThroughTheInterface) {
   EXPECT_EQ(loop.device().connection_fault(), Fault::kNone);
 }
 
+// The wall asks for more than 0.15 Nm there, of which 0.05 Nm are granted.
+TEST(SimulatedDevice, NoTorqueGoesAboveTheLimitThatTheHostConfigures) {
+  SimulatedDeviceSettings settings = squeezing_settings();
+  settings.torque_limit = 0.05;
+  Loop loop(settings);
+  loop.run(800);
+  EXPECT_LT(loop.torque()[idx(kMcp)], -0.15);
+  EXPECT_NEAR(1e-4 * loop.newest().raw[kTorqueChannel], -0.05, 0.001) << "measured";
+}
+
 TEST(SimulatedDevice, AHostThatFallsSilentIsLatchedAndResumesAfterReset) {
   Loop loop;
   loop.run(800);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "phalanx/core/index.h"
 #include "phalanx/force/force_law.h"
@@ -167,6 +168,59 @@ TEST(ForceStage, TheClosingSpeedIsLowPassedAndForgottenWithTheContact) {
   EXPECT_EQ(force.speed, 0.0);
 }
 
+// The law's own damper takes the low-passed speed: 1 N + 2 N s/m x 0.2 m/s x 0.61034.
+TEST(ForceStage, TheLawTakesTheLowPassedSpeed) {
+  Stage stage;
+  stage.law = {
+      .law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 30.0};
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.0 + 0.4 * (1.0 - std::exp(-0.3 * 3.14159265358979323846)), 1e-12);
+}
+
+// The depth is along the triangle's normal, and so is its rate: 1.4 N as above, whatever the direction of the
+// force. Along that one it would be 0.16 m/s.
+TEST(ForceStage, TheClosingSpeedIsAlongTheTrianglesNormal) {
+  Stage stage;
+  stage.law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
+  stage.press(kDistal, 2e-3).force_normal = Vec3(0.6, 0.8, 0.0);
+  stage.tick();
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 2e-3).force_normal = Vec3(0.6, 0.8, 0.0);
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.4, 1e-12);
+}
+
+// Before the first tick the hand was nowhere: no speed is made of the way from there.
+TEST(ForceStage, TheFirstTickOfAllKnowsNoSpeed) {
+  Stage stage;
+  stage.state = {};
+  stage.law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
+  stage.press(kDistal, 2e-3, Vec3::UnitZ());
+  stage.tick();
+  EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
+}
+
+// A contact without depth sends nothing; when it goes, so does its speed.
+TEST(ForceStage, AContactThatWasNeverFeltLeavesNothingBehind) {
+  Stage stage;
+  stage.law.velocity_lowpass_hz = 30.0;
+  const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
+  stage.press(kDistal, 0.0);
+  stage.tick();
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 0.0);
+  stage.tick();
+  EXPECT_NEAR(force.speed, 0.2 * (1.0 - std::exp(-0.3 * 3.14159265358979323846)), 1e-12);
+  stage.leave(kDistal);
+  stage.tick();
+  EXPECT_EQ(force.speed, 0.0);
+  EXPECT_EQ(force.normal, Vec3::Zero());
+}
+
 // A damper of 4 N s/m beside Hooke's law takes the low-passed speed, time-domain passivity that of the step.
 TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
   const double gain = 1.0 - std::exp(-0.3 * 3.14159265358979323846);
@@ -199,6 +253,40 @@ TEST(ForceStage, ASilentContactAndAStaleHandPushNothing) {
   stage.stale = false;
   stage.tick();
   EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
+}
+
+// 1e110 m into a cubic law are more than a number holds, and a point that is none has no torque: nothing is
+// sent, and it is said.
+TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
+  Stage overflow;
+  overflow.limits.fingertip_force_enabled = true;
+  overflow.law = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
+  overflow.press(kDistal, 1e110);
+  EXPECT_TRUE(has(overflow.tick(), Status::kCommandNotFinite));
+  EXPECT_EQ(overflow.sent(kDistal), 0.0);
+  EXPECT_EQ(overflow.torque(0), 0.0);
+
+  for (const bool limited : {false, true}) {
+    Stage nowhere;
+    nowhere.limits.joint_torque_enabled = nowhere.limits.torque_rate_enabled = limited;
+    nowhere.press(kDistal, 2e-3).p_S.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(has(nowhere.tick(), Status::kCommandNotFinite));
+    for (int i = 0; i < kJointsPerDigit; ++i) EXPECT_EQ(nowhere.torque(i), 0.0) << i;
+    nowhere.press(kDistal, 2e-3);
+    nowhere.ticks(20);
+    EXPECT_NEAR(nowhere.torque(0), -0.075, 1e-12) << "and the next command is whole";
+  }
+}
+
+// What is not felt turns at once: after a contact without depth along +Y the first force goes along +X.
+TEST(ForceStage, ADirectionThatIsNotFeltIsNotKept) {
+  Stage stage;
+  stage.stabiliser.method = Stabiliser::kDirection;
+  stage.press(kDistal, 0.0, Vec3::UnitY());
+  stage.tick();
+  stage.press(kDistal, 2e-3, Vec3::UnitX());
+  stage.tick();
+  EXPECT_EQ(stage.state.segment[idx(segment_index(test::kIndex, kDistal))].normal, Vec3::UnitX());
 }
 
 // The direction of a force that still decays stays; once nothing is sent and nothing touches, it is
@@ -272,6 +360,37 @@ TEST(ForceStage, AMethodThatAddsToTheLawIsCappedOnEachContactAgain) {
   EXPECT_NEAR(stage.sent(kDistal), 1.2, 1e-12);
 }
 
+// Two times 2 N, and two times 2.8 N with a damper of 4 N s/m at 0.2 m/s: each within 5 N, together 5.6 N.
+TEST(ForceStage, ASumThatTheStabiliserBringsAboveTheCapIsCappedAndSaid) {
+  Stage stage;
+  stage.limits.fingertip_force_enabled = true;
+  stage.law.velocity_lowpass_hz = 1e6;
+  stage.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
+  stage.press(kDistal, 4e-3);
+  stage.press(kProximal, 4e-3);
+  EXPECT_FALSE(has(stage.tick(), Status::kForceLimited));
+  EXPECT_NEAR(stage.sent(kDistal), 2.0, 1e-12);
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 4e-3);
+  stage.press(kProximal, 4e-3);
+  EXPECT_TRUE(has(stage.tick(), Status::kForceLimited));
+  EXPECT_NEAR(stage.sent(kDistal), 2.5, 1e-12);
+  EXPECT_NEAR(stage.sent(kProximal), 2.5, 1e-12);
+}
+
+// 4 mm into 500 N/m, capped to 1 N: a wall of 250 N/m in series with 1000 N/m, whose share is 3.2 mm: 0.8 N
+// at rest. What would be sent without the cap is looked at, but does not move the proxy.
+TEST(ForceStage, TheCouplingSettlesUnderTheCapAsByHand) {
+  Stage stage;
+  stage.limits.fingertip_force_enabled = true;
+  stage.limits.fingertip_force = 1.0;
+  stage.stabiliser = {
+      .method = Stabiliser::kVirtualCoupling, .coupling_stiffness = 1000.0, .coupling_damping = 4.0};
+  stage.press(kDistal, 4e-3);
+  stage.ticks(200);
+  EXPECT_NEAR(stage.sent(kDistal), 0.8, 1e-9);
+}
+
 // 75 mm x 4 N = 0.3 Nm wanted. A limit of 0.2 Nm, and a rate of 10 Nm/s: 0.05 Nm a tick, down and up alike.
 TEST(ForceStage, TorqueIsLimitedAndRateLimitedBothWaysAndEachIsSaid) {
   Stage stage;
@@ -303,6 +422,20 @@ TEST(ForceStage, TorqueIsLimitedAndRateLimitedBothWaysAndEachIsSaid) {
 }
 
 // ---- oscillation ----
+
+// 1 and 3 N at 10 Hz: a swing of 2 N, which is one where a swing is more than 0.5 N, and none above 3 N.
+TEST(ForceStage, ASwingIsWhatTheParametersSay) {
+  for (const double swing : {0.5, 3.0}) {
+    Stage stage;
+    stage.oscillation.swing = swing;
+    Status any = Status::kOk;
+    for (int n = 0; n < 200; ++n) {
+      stage.press(kDistal, n % 20 < 10 ? 2e-3 : 6e-3);
+      any |= stage.tick();
+    }
+    EXPECT_EQ(has(any, Status::kOscillating), swing < 2.0) << swing;
+  }
+}
 
 // The verdict on a finger that has left ends half a second later, also where its other segments were always
 // at rest.
@@ -412,6 +545,31 @@ TEST(ForceStage, AWallIsTheContactAsTheControllerNeedsIt) {
   EXPECT_NEAR(wall.g[1], 0.0, 1e-12);
   EXPECT_NEAR(wall.g[2], -0.035, 1e-12);
   EXPECT_NEAR(wall.g[3], -0.010, 1e-12);
+}
+
+// A contact whose depth begins 0.3 mm further in: so does its wall.
+TEST(ForceStage, AWallThatIsNotReachedYetBeginsWhereItsDepthDoes) {
+  Stage stage = walled();
+  stage.press(kDistal, -0.3e-3);
+  stage.tick();
+  ASSERT_TRUE(stage.wall(kDistal).active);
+  EXPECT_NEAR(stage.wall(kDistal).d_ref, -0.3e-3, 1e-15);
+  EXPECT_EQ(stage.wall(kDistal).stiffness, 500.0);
+  EXPECT_EQ(stage.wall(kDistal).host_force, 0.0);
+}
+
+// What the host does not push, the controller does not either.
+TEST(ForceStage, ASilentContactAndAStaleHandHaveNoWall) {
+  Stage stage = walled();
+  stage.press(kDistal, 2e-3).silent = true;
+  stage.tick();
+  EXPECT_FALSE(stage.wall(kDistal).active);
+  stage.press(kDistal, 2e-3).silent = false;
+  stage.tick();
+  EXPECT_TRUE(stage.wall(kDistal).active);
+  stage.stale = true;
+  stage.tick();
+  EXPECT_FALSE(stage.wall(kDistal).active);
 }
 
 // A law with a slope of its own: Duffing at 2 mm is 1.4 N with 1100 N/m, so that d_ref = 1.4 / 1100 m.
@@ -555,6 +713,21 @@ TEST(ForceStage, AWallThatWasLeftIsKeptNearItsPlaceAtTheFingersHeight) {
     EXPECT_TRUE(left_by(Vec3(0.0, 4e-3, 0.0) + 2.9e-3 * side).wall(kDistal).active);
     EXPECT_FALSE(left_by(Vec3(0.0, 4e-3, 0.0) + 3.1e-3 * side).wall(kDistal).active);
   }
+}
+
+// Its plane is where the shown finger stopped: one that was 2 mm deep and went 3 mm up is 1 mm above it.
+TEST(ForceStage, AWallThatWasLeftStaysWhereTheShownFingerStopped) {
+  Stage stage = walled();
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  stage.move_hcp({0.0, -2e-3, 0.0});
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  stage.leave(kDistal);
+  stage.move_hcp({0.0, 3e-3, 0.0});
+  stage.tick();
+  ASSERT_TRUE(stage.wall(kDistal).active);
+  EXPECT_NEAR(stage.wall(kDistal).d_ref, -1e-3, 1e-12);
 }
 
 TEST(ForceStage, AWallThatWasLeftIsKeptForAQuarterOfASecond) {

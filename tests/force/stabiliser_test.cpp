@@ -74,6 +74,14 @@ TEST(Stabiliser, SmoothingBoundsBothWaysAndRiseOnlyOne) {
   EXPECT_EQ(rising.press(-1e-3), 0.0);
 }
 
+// 500 N/m, 1000 N/m and 4 N s/m over 5 ms, the proxy at 1 mm: by a hop of 3 mm it would come to 4.2 N over
+// 2300 N/m = 1.83 mm. It stays within the depth of 1 mm, and the force at the law's 0.5 N.
+TEST(Stabiliser, TheCouplingsProxyStaysWithinTheDepthWhereAContactHops) {
+  double proxy = 1e-3;
+  EXPECT_NEAR(coupled_force(0.5, 1e-3, 3e-3, 1000.0, 4.0, kStabiliserPeriod, proxy), 0.5, 1e-15);
+  EXPECT_EQ(proxy, 1e-3);
+}
+
 // After 1 / (2 pi f) seconds a step has come to 1 - 1/e of its height, exactly: 10 periods at f = 10 / pi Hz
 // and T = 5 ms. It ends: a force that has decayed below 0.1 mN is 0.
 TEST(Stabiliser, TheLowPassIsExactAtItsTimeConstantAndEnds) {

@@ -138,6 +138,79 @@ TEST(Fit, WhatIsNotStatedFollowsTheHandsLengthAndBreadth) {
   EXPECT_NEAR(fit_hand(base, all).palm_length, 1.2, 1e-12);
 }
 
+// A breadth of two neighbours' mean at each joint; at the knuckle the palm's.
+TEST(Fit, AFingerIsAsBroadAsThePalmAtItsKnuckle) {
+  const HandParameters base = forward_knuckles();
+  const int s = segment_index(1, 0);
+  HandSize size;
+  size.hand_breadth = hand_breadth(base);
+  size.segment[idx(s)].breadth = 1.2 * segment_breadth(base, s);
+  const HandFit fit = fit_hand(base, size);
+  EXPECT_NEAR(fit.segment[idx(s)].breadth_base, 1.0, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(s)].breadth_middle, 1.2, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(s)].breadth_end, 1.1, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(s + 1)].breadth_base, 1.1, 1e-12);
+}
+
+// Only a breadth is stated: the hand keeps its proportions.
+TEST(Fit, LengthsFollowABreadthThatAloneIsStated) {
+  const HandParameters base = forward_knuckles();
+  HandSize size;
+  size.hand_breadth = 0.9 * hand_breadth(base);
+  const HandFit fit = fit_hand(base, size);
+  EXPECT_NEAR(fit.palm_length, 0.9, 1e-12);
+  for (const SegmentFit& own : fit.segment) EXPECT_NEAR(own.length, 0.9, 1e-12);
+}
+
+// 4 mm of soft tip beyond a bone of 20 mm: with a length of 1.1 both grow by it, so that the mesh ends where
+// the hand's length says; a middle segment's end grows with its breadth of 0.9.
+TEST(Fit, ASoftTipGrowsWithItsBone) {
+  const HandParameters base = forward_knuckles();
+  HandSize size;
+  size.hand_length = 1.1 * hand_length(base);
+  size.hand_breadth = 0.9 * hand_breadth(base);
+  const HandFit fit = fit_hand(base, size);
+  for (const int k : {1, 2}) {
+    const int s = segment_index(1, k);
+    const double bone = segment_length(base, s);
+    EXPECT_NEAR(moved(base, fit, s, {0.0, 0.0, -bone - 4e-3}).z(), -1.1 * bone - (k == 2 ? 1.1 : 0.9) * 4e-3,
+                1e-12)
+        << k;
+  }
+}
+
+// Capsule and palm of a fit that is written by hand. The segment's ends take 0.9 and 1.1 of their radii, then
+// both the factor that makes their sum 1.2 times the base's; only the palm's offset along z goes with its
+// length.
+TEST(Fit, ScalesCapsulesAndPalmAsByHand) {
+  HandParameters base = forward_knuckles();
+  const int s = segment_index(1, 0);
+  base.segments[idx(s)].radius_base = 8e-3;
+  base.segments[idx(s)].radius_tip = 7e-3;
+  base.segments[idx(s)].length = 40e-3;
+  base.palm = {.length = 0.08,
+               .wrist_breadth = 0.06,
+               .wrist_thickness = 0.03,
+               .knuckle_breadth = 0.08,
+               .knuckle_thickness = 0.025,
+               .offset = Vec3(0.01, -0.02, 0.15)};
+  HandFit fit;
+  fit.segment[idx(s)] = {.length = 1.0, .breadth_base = 0.9, .breadth_middle = 1.2, .breadth_end = 1.1};
+  fit.palm_length = 1.2;
+  fit.palm_breadth = 0.9;
+  const HandParameters hand = fitted_parameters(base, fit);
+  const double sum = 0.9 * 8.0 + 1.1 * 7.0;  // 14.9 mm, which 1.2 x 15 mm = 18 mm are
+  EXPECT_NEAR(hand.segments[idx(s)].radius_base, 7.2e-3 * 18.0 / sum, 1e-15);
+  EXPECT_NEAR(hand.segments[idx(s)].radius_tip, 7.7e-3 * 18.0 / sum, 1e-15);
+  EXPECT_NEAR(hand.segments[idx(s)].length, 40e-3, 1e-15);
+  EXPECT_NEAR(hand.palm.length, 0.096, 1e-15);
+  EXPECT_NEAR(hand.palm.wrist_breadth, 0.054, 1e-15);
+  EXPECT_NEAR(hand.palm.wrist_thickness, 0.027, 1e-15);
+  EXPECT_NEAR(hand.palm.knuckle_breadth, 0.072, 1e-15);
+  EXPECT_NEAR(hand.palm.knuckle_thickness, 0.0225, 1e-15);
+  EXPECT_LT((hand.palm.offset - Vec3(0.009, -0.018, 0.18)).norm(), 1e-15);
+}
+
 // Around a joint both segments are scaled by one number in all directions, so that turning them against each
 // other opens no gap that the base hand's did not have.
 TEST(Fit, ScalesBothSegmentsOfAJointAlikeAroundIt) {

@@ -252,6 +252,9 @@ TEST(HandModel, RefusesAPoseThatIsNotRigid) {
   Pose scaled;
   scaled.R *= 2.0;
   EXPECT_THROW((void)simple_hand(Handedness::kRight, scaled), std::invalid_argument);
+  Pose reflected;
+  reflected.R = Vec3(-1.0, 1.0, 1.0).asDiagonal();
+  EXPECT_THROW((void)simple_hand(Handedness::kRight, reflected), std::invalid_argument);
 }
 
 TEST(HandModel, EverySegmentIsOneClosedMeshAndTheCountIsNearWhatWasAsked) {
@@ -270,6 +273,20 @@ TEST(HandModel, RefusesAnEmptyRangeOfMotion) {
   bad.max_angle[5] = bad.min_angle[5];
   EXPECT_THAT([&] { (void)make_hand_model(bad, Handedness::kRight, {}, 2250); },
               ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("index_mcp_abduction")));
+}
+
+TEST(HandModel, RefusesAHandThatIsOpenOutsideItsRangeOfMotion) {
+  const HandParameters good = simple_parameters();
+  for (const double open : {good.min_angle[5] - 1e-3, good.max_angle[5] + 1e-3}) {
+    HandParameters bad = good;
+    bad.open_angle[5] = open;
+    EXPECT_THAT([&] { (void)make_hand_model(bad, Handedness::kRight, {}, 2250); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::AllOf(
+                    ::testing::HasSubstr("index_mcp_abduction"), ::testing::HasSubstr("open outside"))));
+  }
+  HandParameters at_its_end = good;
+  at_its_end.open_angle[5] = good.max_angle[5];
+  EXPECT_NO_THROW((void)make_hand_model(at_its_end, Handedness::kRight, {}, 2250));
 }
 
 TEST(Joints, NamesAndNumbersAgree) {

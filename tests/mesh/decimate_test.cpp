@@ -64,6 +64,37 @@ TEST(Deviation, SeesWhatOneSideHasAndTheOtherLacks) {
   EXPECT_NEAR(d.inward, 0.1 + 0.0005 - 0.025, 1e-12) << "but not the reverse";
 }
 
+// A box of 8 vertices, 12 triangles and 18 edges has 8 + 12 + 18 = 38 probes.
+TEST(Deviation, ProbesVerticesCentresAndTheMiddleOfEachEdgeOnce) {
+  const TriangleMesh box = make_box({0.05, 0.05, 0.05}, 12);
+  EXPECT_EQ(measure_deviation(box, box).probes, 76U);
+}
+
+// In mm: one triangle, and the same outline with a dent down to (2, 2, -1). The triangle's centre (2, 2, 0)
+// is sqrt(2/3) from the dent's third side, x + y - 2 z = 6, and farther from the other two, y + 2 z = 0 and
+// x + 2 z = 0. An edge is probed in the triangle that runs through it from the lower to the higher number,
+// which leaves out the one from 2 to 0: 4 + 3 + 5 probes of the dent, 3 + 1 + 2 of the triangle.
+TEST(Deviation, OfADentUnderATrianglesCentre) {
+  const TriangleMesh dent{{{0, 0, 0}, {6e-3, 0, 0}, {0, 6e-3, 0}, {2e-3, 2e-3, -1e-3}},
+                          {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const TriangleMesh flat{{dent.vertices[0], dent.vertices[1], dent.vertices[2]}, {{0, 1, 2}}};
+  const SurfaceDeviation d = measure_deviation(dent, flat);
+  EXPECT_NEAR(d.inward, std::sqrt(2.0 / 3.0) * 1e-3, 1e-12);
+  EXPECT_NEAR(d.outward, 1e-3, 1e-12);
+  EXPECT_EQ(d.probes, 18U);
+}
+
+// In mm: a triangle over (-1, 0, 0), (1, 0, 0), (0, 1, 0), and the same with the middle of its first edge
+// pulled down to (0, 0, -1). That middle is 1/sqrt(3) from both halves, +-x + y - z = 1; the centre is
+// nearer, by a third. Whichever of the triangle's corners is its first.
+TEST(Deviation, OfADentUnderTheMiddleOfAnEdge) {
+  const TriangleMesh dent{{{-1e-3, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, -1e-3}}, {{0, 3, 2}, {3, 1, 2}}};
+  for (const Triangle& corners : {Triangle{0, 1, 2}, Triangle{2, 0, 1}, Triangle{1, 2, 0}}) {
+    const TriangleMesh flat{{dent.vertices[0], dent.vertices[1], dent.vertices[2]}, {corners}};
+    EXPECT_NEAR(measure_deviation(dent, flat).inward, 1e-3 / std::sqrt(3.0), 1e-12) << corners[0];
+  }
+}
+
 TEST(Decimate, KeepsASolidClosedAndNearTheOriginal) {
   const TriangleMesh fine = make_torus(0.08, 0.03, 20'000);
   const TriangleMesh coarse = decimate(fine, 2000, "torus");
@@ -114,6 +145,22 @@ TEST(ImportAndCheck, DecimatesAndReportsHowFarItIsOff) {
   // The facets of an inscribed sphere of 500 triangles are some 0.5 mm below the surface.
   EXPECT_GT(d.deviation.outward, 0.1e-3);
   EXPECT_LT(d.deviation.outward, 2e-3);
+  // The rest of the report is of what is handed back, too, and lists nothing that was not found.
+  const MeshReport& report = imported.report;
+  EXPECT_EQ(report.triangles, imported.mesh.triangles.size());
+  EXPECT_EQ(report.vertices, imported.mesh.vertices.size());
+  EXPECT_NEAR(report.volume, signed_volume(imported.mesh), 1e-12);
+  EXPECT_LT((report.extent - test::extents(imported.mesh)).norm(), 1e-15);
+  for (const MeshFinding& finding : report.findings)
+    EXPECT_GT(finding.found, 0U) << finding_name(finding.kind);
+}
+
+TEST(ImportAndCheck, LeavesAMeshOfAsManyTrianglesAsAskedForUndecimated) {
+  const std::string text = test::to_obj(make_box({0.05, 0.05, 0.05}, 12));
+  const ImportedMesh imported =
+      import_and_check_from_memory(text.data(), text.size(), "obj", {.triangles = 12});
+  EXPECT_FALSE(imported.report.decimation.has_value());
+  EXPECT_EQ(imported.mesh.triangles.size(), 12U);
 }
 
 TEST(ImportAndCheck, DecimatesASheetWithoutMovingItsOutline) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mesh/mesh_files.h"
 #include "mesh/near_vertices.h"
@@ -100,6 +101,70 @@ TEST(ImportBounds, AGlbsTrianglesHaveThreeCornersEach) {
   }
 }
 
+/// A .glb of a tetrahedron's four corners, with indices of this type in its BIN chunk behind 48 bytes of
+/// positions.
+template <typename Index>
+std::string glb_of_four_corners(const std::vector<int>& indices, int component_type, int mode) {
+  std::string buffer;
+  for (const Vec3& v : {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1)})
+    test::put(buffer, v);
+  for (const int i : indices) test::put(buffer, static_cast<Index>(i));
+  const auto number = [](auto n) { return std::to_string(n); };
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":)" +
+      number(mode) + R"(}]}],"buffers":[{"byteLength":)" + number(buffer.size()) +
+      R"(}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":)" +
+      number(buffer.size() - 48) +
+      R"(}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":4,)"
+      R"("min":[0,0,0],"max":[0.1,0.1,0.1]},{"bufferView":1,"componentType":)" +
+      number(component_type) + R"(,"type":"SCALAR","count":)" + number(indices.size()) + "}]}";
+  while (json.size() % 4 != 0) json += ' ';
+  std::string out = "glTF";
+  test::put(out, std::uint32_t{2});
+  test::put(out, static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + buffer.size()));
+  test::put(out, static_cast<std::uint32_t>(json.size()));
+  out += "JSON" + json;
+  test::put(out, static_cast<std::uint32_t>(buffer.size()));
+  return out + std::string("BIN\0", 4) + buffer;
+}
+
+// 12 indices are 12 or 24 bytes. Counted from 0, the sixth index is the last corner of face 1.
+TEST(ImportBounds, AGlbsIndicesMayBeOneOrTwoBytesWide) {
+  std::vector<int> indices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  for (const int bad : {0, 4}) {
+    if (bad != 0) indices[5] = bad;
+    for (const std::string& glb : {glb_of_four_corners<std::uint8_t>(indices, 5121, 4),
+                                   glb_of_four_corners<std::uint16_t>(indices, 5123, 4)}) {
+      if (bad != 0) {
+        EXPECT_THAT(refusal_in_bounds(glb, "glb"), HasSubstr("face 1 names vertex 4, but its mesh has 4"));
+      } else {
+        EXPECT_EQ(import_mesh_from_memory(glb.data(), glb.size(), "glb", 0.0).triangles.size(), 4U);
+      }
+    }
+  }
+}
+
+// Mode 5 is a strip: n corners are n - 2 triangles, whether 3 divides n or not.
+TEST(ImportBounds, AGlbsStripMayHaveFourCorners) {
+  const std::string glb = glb_of_four_corners<std::uint8_t>({0, 1, 2, 3}, 5121, 5);
+  EXPECT_EQ(refusal_in_bounds(glb, "glb"), "accepted");
+  EXPECT_EQ(import_mesh_from_memory(glb.data(), glb.size(), "glb", 0.0).triangles.size(), 2U);
+}
+
+// Looks and lights change no surface; what packs the numbers otherwise does.
+TEST(ImportBounds, AGlbMayRequireExtensionsForItsLooksOnly) {
+  const auto requiring = [](const std::string& extension) {
+    return with_json(test::to_glb(make_sphere(0.1, 40)), R"({"asset")",
+                     R"({"extensionsRequired":[")" + extension + R"("],"asset")");
+  };
+  for (const char* looks :
+       {"KHR_materials_unlit", "KHR_texture_transform", "EXT_texture_webp", "KHR_lights_punctual"})
+    EXPECT_EQ(refusal_in_bounds(requiring(looks), "glb"), "accepted") << looks;
+  EXPECT_THAT(refusal_in_bounds(requiring("EXT_meshopt_compression"), "glb"),
+              HasSubstr("requires the glTF extension 'EXT_meshopt_compression'"));
+}
+
 TEST(ImportBounds, AsManyTrianglesAsMayBeAreTaken) {
   const std::string cube = test::to_obj(make_box({0.1, 0.1, 0.1}, 12));
   EXPECT_EQ(refusal_in_bounds(cube, "obj", {.most_triangles = 12}), "accepted");
@@ -135,7 +200,13 @@ TEST(RepairBounds, AVertexBesideAnEdgeIsPutOnItWithinASixthOfTheTolerance) {
     strip.triangles = {{0, 2, 3}, {0, 4, 1}, {1, 5, 2}};
     MeshReport report;
     (void)mesh::repair(strip, {}, "test", report);
-    EXPECT_EQ(report.finding(FindingKind::kTJunctions).found, off < report.tolerance / 6.0 ? 1U : 0U) << off;
+    const MeshFinding beside = report.finding(FindingKind::kTJunctions);
+    EXPECT_EQ(beside.found, off < report.tolerance / 6.0 ? 1U : 0U) << off;
+    if (beside.found > 0) {
+      EXPECT_NEAR(beside.size, off, 1e-12);
+      ASSERT_TRUE(beside.at);
+      EXPECT_LT((*beside.at - strip.vertices[1]).norm(), 1e-12);
+    }
     EXPECT_LT(report.tolerance / 6.0, 0.0755e-6);
     EXPECT_GT(report.tolerance / 6.0, 0.0605e-6);
   }

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "mesh/mesh_checks.h"
 #include "mesh/mesh_files.h"
@@ -157,6 +158,14 @@ TEST(Import, TakesNumbersThatStartWithAPoint) {
   EXPECT_EQ(got.vertices[0], Vec3(0.5, -0.25, 0));
   EXPECT_EQ(got.vertices[1], Vec3(1, 0.5, 0));
   EXPECT_EQ(got.vertices[2], Vec3(0, 1, 0.125));
+}
+
+// A fourth number is a weight that divides the three; six numbers are a place and a colour.
+TEST(Import, DividesByAWeightAndLeavesAColourOut) {
+  for (const char* first : {"v 2 0 0 2\n", "v 1 0 0 0.5 0.5 0.5\n", "v 1 0 0 .5 .5 .5\n"}) {
+    const TriangleMesh got = import_text(std::string(first) + "v 0 1 0\nv 0 0 1\nf 1 2 3\n", "obj");
+    EXPECT_EQ(got.vertices, (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})) << first;
+  }
 }
 
 TEST(Import, TakesAnOpenMesh) {

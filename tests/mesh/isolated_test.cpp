@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <new>
@@ -16,6 +17,7 @@
 #include <string>
 
 #include "phalanx/mesh/primitives.h"
+#include "support/sanitized.h"
 
 namespace phalanx::mesh {
 namespace {
@@ -104,6 +106,23 @@ TEST(RunIsolated, EndsAReaderThatSleeps) {
 
 TEST(RunIsolated, SaysWhenMemoryRunsOut) {
   EXPECT_THAT(reading_refusal([]() -> TriangleMesh { throw std::bad_alloc(); }), HasSubstr("memory"));
+}
+
+// 256 MiB where 64 MiB may be had. A sanitizer's own allocator ends the process instead of throwing.
+TEST(RunIsolated, GivesTheWorkNoMoreMemoryThanItsLimit) {
+  const auto greedy = [] {
+    const std::string text(std::size_t{256} << 20, 'x');
+    return text.substr(text.size() - 1);
+  };
+  try {
+    (void)run_isolated_text(greedy, "cup.obj", {.memory_bytes = std::uint64_t{64} << 20});
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), StartsWith("cup.obj: "));
+    if (!test::kSanitized) {
+      EXPECT_THAT(e.what(), HasSubstr("wanted more than 64 MiB"));
+    }
+  }
 }
 
 }  // namespace

@@ -311,6 +311,18 @@ TEST(Peg, HasTheVolumeOfADowelWithChamfers) {
   EXPECT_NEAR(signed_volume(make_peg(0.009, 0.032, 0.0, 200'000)) / (volume * 1e-9), 1.0, 1e-3);
 }
 
+// By hand, in mm: half a ball of radius 0.5 (a tenth of the barrel's), a cone of length 15 (one and a half
+// diameters) from there to the radius 5, the barrel of length 140 - 0.5 - 15 - 2.5, and the end, rounded with
+// 2.5 (a quarter of the diameter): pi 2.5^3 times the integral of (1 + cos a)^2 cos a over a right angle,
+// which is 5/3 + pi/2. In all 0.26 + 435.90 + 9581.86 + 158.92 mm^3.
+TEST(Pen, HasTheVolumeOfItsParts) {
+  const double tip = 2.0 / 3.0 * kPi * 0.5 * 0.5 * 0.5;
+  const double cone = kPi * 15.0 / 3.0 * (0.5 * 0.5 + 0.5 * 5.0 + 5.0 * 5.0);
+  const double barrel = kPi * 5.0 * 5.0 * 122.0;
+  const double end = kPi * 2.5 * 2.5 * 2.5 * (5.0 / 3.0 + 0.5 * kPi);
+  EXPECT_NEAR(spun_volume(mesh::pen_shape(0.01, 0.14)) * 1e9, tip + cone + barrel + end, 1e-3);
+}
+
 TEST(Cup, IsHollow) {
   // The point halfway up on the axis is outside the material: the cup's volume is far below its hull's.
   const double hull = kPi / 12.0 * 0.09 * (0.075 * 0.075 + 0.075 * 0.0525 + 0.0525 * 0.0525);

@@ -122,11 +122,13 @@ TEST(RepairAttack, NestedShellsAreSolidAndHollowInTurn) {
   EXPECT_TRUE(r.report.complete);
 }
 
-// Work that grows with the square of their number stops: it says so and leaves the rest as it was.
+// Work that grows with the square of their number stops: it says so and leaves the rest as it was, and all of
+// them wind like solids.
 TEST(RepairAttack, TooManyNestedShellsAreSaidToBe) {
   const AttackRepaired r = attacked(nested(20000));
   EXPECT_FALSE(r.report.complete);
   EXPECT_EQ(r.report.solids + r.report.cavities, 20000U);
+  EXPECT_GT(r.report.solids, r.report.cavities);
 }
 
 /// A convex polygon cut into a fan from its first corner.

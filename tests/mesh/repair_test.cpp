@@ -164,6 +164,10 @@ TEST(Repair, FlipsAFlatTriangleAway) {
   EXPECT_TRUE(r.report.closed);
   EXPECT_EQ(r.mesh.triangles.size(), 14U);
   EXPECT_NEAR(r.report.volume, kVolume, 1e-15);
+  const MeshFinding flat = r.report.finding(FindingKind::kDegenerateFaces);
+  EXPECT_NEAR(flat.size, kEdge * std::numbers::sqrt2, 1e-12) << "from vertex 1 to vertex 2";
+  ASSERT_TRUE(flat.at);
+  EXPECT_LT((*flat.at - Vec3(kEdge / 2, kEdge / 2, 0)).norm(), 1e-12);
 }
 
 TEST(Repair, CollapsesANeedle) {
@@ -181,6 +185,11 @@ TEST(Repair, CollapsesANeedle) {
   EXPECT_TRUE(r.report.closed);
   EXPECT_EQ(r.mesh.triangles.size(), 12U);
   EXPECT_NEAR(r.report.moved, 2e-9, 1e-12);
+  // The first needle, {5, 7, 8}, is as long as the cube's upright edge from 5 to 7.
+  const MeshFinding needle = r.report.finding(FindingKind::kDegenerateFaces);
+  EXPECT_NEAR(needle.size, kEdge, 1e-12);
+  ASSERT_TRUE(needle.at);
+  EXPECT_LT((*needle.at - Vec3(kEdge, kEdge / 2, kEdge)).norm(), 3e-9);
 }
 
 TEST(Repair, KeepsAFlatTriangleThatNothingCovers) {
@@ -281,18 +290,31 @@ TEST(Repair, TakesNeitherOfTwoCrossingSolidsForAHollow) {
   EXPECT_GT(r.found(FindingKind::kSelfIntersections), 0U);
 }
 
-// 2 x 4 triangles around the open side; the rim is the face's outline.
+// 2 x 4 triangles around the open side; the rim is the face's outline. Five squares are left of the surface,
+// and its first triangle is {0, 2, 1}.
 TEST(Repair, MeasuresAHoleAndLeavesItOpen) {
   TriangleMesh mesh = cube(kEdge);
   mesh.triangles.resize(10);
   const Repaired r = repaired(mesh);
+  const auto expect_open_box = [](const MeshFinding& sheet) {
+    EXPECT_NEAR(sheet.size, kEdge, 1e-12);
+    EXPECT_NEAR(sheet.area, 5 * kEdge * kEdge, 1e-15);
+    ASSERT_TRUE(sheet.at);
+    EXPECT_LT((*sheet.at - Vec3(kEdge / 3, kEdge / 3, 0)).norm(), 1e-12);
+  };
   EXPECT_EQ(findings(r), "holes 1/0, sheets 1/0");
   EXPECT_NEAR(r.report.finding(FindingKind::kHoles).size, 4 * kEdge, 1e-12);
   EXPECT_NEAR(r.report.finding(FindingKind::kHoles).width, kEdge, 1e-12);
-  EXPECT_NEAR(r.report.finding(FindingKind::kSheets).size, kEdge, 1e-12);
+  expect_open_box(r.report.finding(FindingKind::kSheets));
   EXPECT_EQ(r.report.solids, 0U);
   EXPECT_FALSE(r.report.closed);
   EXPECT_EQ(r.mesh.triangles.size(), 10U);
+  // A larger cube beside it is closed, and so no part of the sheet.
+  append(mesh, cube(2 * kEdge, Vec3(0.2, 0, 0)));
+  const Repaired beside = repaired(mesh);
+  EXPECT_EQ(findings(beside), "holes 1/0, sheets 1/0");
+  EXPECT_EQ(beside.report.solids, 1U);
+  expect_open_box(beside.report.finding(FindingKind::kSheets));
 }
 
 // Every triangle by itself, shrunk so that 10 um lie between neighbours: nothing for a finger to go through.
@@ -525,6 +547,9 @@ TEST(Repair, RefusesNumbersTooLargeForSinglePrecision) {
   EXPECT_THAT(repair_refusal(cube(0.09, Vec3(9000, 0, 0)), {.size = 0.09}), HasSubstr("origin"));
   const Repaired r = repaired(cube(0.09, Vec3(100, 0, 0)));
   EXPECT_NEAR(r.report.finding(FindingKind::kCoarseNumbers).size, 100.09 * std::pow(2.0, -23), 1e-9);
+  // The contact margin is 50 um: 400.09 m x 2^-23 = 47.7 um, 430.09 m x 2^-23 = 51.3 um.
+  EXPECT_EQ(repair_refusal(cube(0.09, Vec3(400, 0, 0))), "accepted");
+  EXPECT_THAT(repair_refusal(cube(0.09, Vec3(430, 0, 0))), HasSubstr("single precision"));
 }
 
 TEST(Repair, RefusesWhatIsFartherThanTenKilometres) {
@@ -538,6 +563,17 @@ TEST(Repair, RefusesTrianglesWithoutAnyArea) {
   for (const double x : {0.0, 0.01, 0.05}) line.vertices.emplace_back(x, 0, 0);
   line.triangles = {{0, 1, 2}};
   EXPECT_THAT(repair_refusal(line), HasSubstr("area"));
+}
+
+// From 0.1 mm on in mm, from 1 m on in m.
+TEST(FindingWords, SayAWidthInItsUnit) {
+  for (const auto& [width, words] :
+       {std::pair{10e-6, "10 um"}, {99e-6, "99 um"}, {0.2e-3, "0.2 mm"}, {2.5e-3, "2.5 mm"}, {2.0, "2 m"}}) {
+    for (const FindingKind kind : {FindingKind::kSlits, FindingKind::kHoles}) {
+      EXPECT_THAT(finding_meaning({.kind = kind, .found = 1, .size = 0.05, .width = width}),
+                  HasSubstr(std::string("the widest is ") + words));
+    }
+  }
 }
 
 TEST(FindingWords, AreThereForEveryKind) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "phalanx/mesh/primitives.h"
 
@@ -24,6 +25,16 @@ Shells turned(TriangleMesh& mesh, TurnedShells& result) {
   Shells shells = find_shells(mesh, edges, patches);
   result = turn_shells_outward(mesh, shells, triangle_boxes(mesh), {}, kTolerance);
   return shells;
+}
+
+// Two triangles of a unit square that both run from vertex 1 to vertex 2, so that they wind against each
+// other: of one and one the first is right, and the second is turned.
+TEST(Patches, OfTwoTrianglesThatDisagreeTheFirstStaysAsItIs) {
+  TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}};
+  const EdgeTable edges(square);
+  const Patches patches = orient_patches(square, edges);
+  EXPECT_EQ(patches.turned, 1U);
+  EXPECT_EQ(square.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
 }
 
 // A cube within a cube within a cube; the normals of the two outer ones point the wrong way.

@@ -108,6 +108,17 @@ TEST(WriteThenRename, RemovesThePartWhenTheWriterThrows) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(WriteThenRename, LeavesAPipeWhereItIsAndRemovesThePart) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(
+      write_then_rename(folder / "pipe",
+                        [](const std::filesystem::path& partial) { write_text_file(partial, "whole"); }),
+      std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pipe.partial"));
+}
+
 TEST(PrepareOutputFolder, MakesParents) {
   const TemporaryFolder folder;
   prepare_output_folder(folder.path() / "a" / "b");

@@ -44,6 +44,18 @@ TEST(Summary, CountsTicksAndKeepsPeaks) {
   EXPECT_EQ(summary.peak_total_force_time_s, 0.0);
 }
 
+TEST(Summary, ThePeakForcesTimeIsThatOfItsFirstTick) {
+  Summary summary;
+  for (const double time : {0.0, 0.005}) {
+    Snapshot snapshot;
+    snapshot.time_s = time;
+    snapshot.segment[kIndexDistal] = {.contact = true, .force = 2.0};
+    add_tick(summary, snapshot);
+  }
+  EXPECT_EQ(summary.peak_total_force, 2.0);
+  EXPECT_EQ(summary.peak_total_force_time_s, 0.0);
+}
+
 TEST(Summary, ReportsLimitersByTheTicksInWhichTheyActed) {
   const auto activity = limiters(two_ticks());
   EXPECT_STREQ(activity[0].name, "fingertip_force");

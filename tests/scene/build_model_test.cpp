@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "expect_error.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/hand/hand_meshes.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
@@ -41,6 +42,19 @@ TEST(BuildModel, RefusesMoreTrianglesThanOneSceneMayHave) {
   const std::string large = "[[objects]]\nkind = \"sphere\"\ntriangles = 2000000\n";
   expect_scene_error([&] { static_cast<void>(make_world_mesh(parse_objects(large + large + large))); },
                      {"objects[2]", "6000000", "4000000", "decimate_to"});
+}
+
+// Two spheres are as many as there may be, and are counted before any object is made; the file's 12 triangles
+// are counted when it is read, which is before the spheres are made.
+TEST(BuildModel, CountsAFilesTrianglesWhenItIsRead) {
+  const fs::path file = fs::temp_directory_path() / ("phalanx_count_" + std::to_string(getpid()) + ".obj");
+  write_obj(make_box({1.0, 2.0, 4.0}, 12), file, "box");
+  const std::string sphere = "[[objects]]\nkind = \"sphere\"\ntriangles = 2000000\n";
+  const SceneDescription scene = parse_objects("[[objects]]\nkind = \"file\"\nsize_mm = 80\nfile = \"" +
+                                               file.string() + "\"\n" + sphere + sphere);
+  expect_scene_error([&] { static_cast<void>(make_world_mesh(scene)); },
+                     {"objects[0]: with its 12 triangles", "4000012"});
+  fs::remove(file);
 }
 
 TEST(BuildModel, ImportsAFileInItsSize) {
@@ -181,6 +195,24 @@ TEST(BuildModel, MirrorsHandAndObjectsTogether) {
     EXPECT_LT((left.segment[s].normal - mirrored).norm(), 1e-6) << segment_name(static_cast<int>(s));
   }
   EXPECT_GE(contacts, 3);
+}
+
+// In the mirror x = 0 a turn about x stays, and one about y or z goes the other way round.
+TEST(BuildModel, MirrorsTheHandsPose) {
+  struct Turn {
+    const char* degrees;
+    Vec3 axis;
+    double angle;  ///< in the mirror [deg]
+  };
+  for (const Turn& turn : {Turn{"[30, 0, 0]", Vec3::UnitX(), 30.0}, Turn{"[0, 30, 0]", Vec3::UnitY(), -30.0},
+                           Turn{"[0, 0, 30]", Vec3::UnitZ(), -30.0}}) {
+    const SceneDescription scene = parse_objects(
+        std::string("mirror = true\n[hand]\nmeshes = \"capsules\"\nposition_mm = [10, 20, 30]\n") +
+        "rotation_deg = " + turn.degrees);
+    const Pose pose = build_model(scene).hand.palm_pose();
+    EXPECT_LT((pose.p - Vec3(-0.01, 0.02, 0.03)).norm(), 1e-15);
+    EXPECT_LT((pose.R - rotation_about(turn.axis, turn.angle * kDeg)).norm(), 1e-14) << turn.degrees;
+  }
 }
 
 TEST(BuildModel, MirrorsTheSceneForTheProfileOfALeftHand) {

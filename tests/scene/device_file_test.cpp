@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "expect_error.h"
 #include "phalanx/core/index.h"
@@ -193,6 +196,71 @@ TEST(DeviceFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
                      "tendon_stiffness_n_per_mm = 1000\n",
                  {"d.toml: motor mcp: moves no joint"});
   expect_refused(kJoint + "[motors.mcp]\nmass_kg = = 1\n", {"d.toml:4", "not valid TOML"});
+}
+
+// The number in question stands in the first line. The others leave room for it: a tendon that only pulls,
+// with the largest force limit, may have the largest bias.
+TEST(DeviceFile, TakesEachNumberUpToItsBoundAndNoFurther) {
+  const std::string joint = "joints.index_mcp_flexion.";
+  const std::string coupled = "coupled.index_pip_flexion.";
+  const std::string motor = "motors.mcp.";
+  const std::vector<std::pair<std::string, std::string>> others = {
+      {joint + "inertia_kg_m2", "1e-3"},  {coupled + "of", "\"index_mcp_flexion\""},
+      {coupled + "ratio", "1"},           {motor + "arms_mm.index_mcp_flexion", "-12"},
+      {motor + "force_limit_n", "10000"}, {motor + "pull_only", "true"},
+      {motor + "mass_kg", "22"},          {motor + "tendon_stiffness_n_per_mm", "1000"},
+      {"copy.middle.of", "\"index\""}};
+  const auto text_with = [&](const std::string& key, const std::string& number) {
+    std::string text = key + " = " + number + "\n";
+    for (const auto& [other, usual] : others)
+      if (other != key) text.append(other).append(" = ").append(usual).append("\n");
+    return text;
+  };
+  struct KeyBounds {
+    std::string key;
+    const char* below;
+    const char* least;
+    const char* most;
+    const char* above;
+  };
+  std::vector<KeyBounds> all = {{joint + "inertia_kg_m2", "0", "1e-9", "1", "1.001"},
+                                {joint + "damping_nms_per_rad", "-1e-9", "0", "100", "100.1"},
+                                {joint + "friction_nm", "-1e-9", "0", "10", "10.01"},
+                                {joint + "static_ratio", "0.999", "1", "10", "10.01"},
+                                {joint + "stribeck_rad_per_s", "0", "1e-9", "1000", "1000.1"},
+                                {joint + "sensor_lsb_rad", "-1e-9", "0", "1", "1.001"},
+                                {joint + "sensor_noise_rad", "-1e-9", "0", "1", "1.001"},
+                                {coupled + "ratio", "-10.01", "-10", "10", "10.01"},
+                                {coupled + "offset_deg", "-180.1", "-180", "180", "180.1"},
+                                {motor + "arms_mm.index_mcp_flexion", "-100.1", "-100", "100", "100.1"},
+                                {motor + "lag_ms", "-1e-9", "0", "1000", "1000.1"},
+                                {motor + "force_limit_n", "0", "1e-9", "10000", "10000.1"},
+                                {motor + "bias_n", "-1e-9", "0", "10000", "10000.1"},
+                                {motor + "force_constant_n_per_a", "0", "1e-9", "1000000", "1000000.1"},
+                                {motor + "mass_kg", "0", "1e-9", "1000", "1000.1"},
+                                {motor + "damping_ns_per_m", "-1e-9", "0", "100000", "100000.1"},
+                                {motor + "tendon_stiffness_n_per_mm", "0", "1e-9", "100000", "100000.1"},
+                                {motor + "tendon_damping_ns_per_m", "-1e-9", "0", "1000000", "1000000.1"},
+                                {motor + "backlash_mm", "-1e-9", "0", "100", "100.1"},
+                                {motor + "friction_n", "-1e-9", "0", "10000", "10000.1"},
+                                {motor + "static_ratio", "0.999", "1", "10", "10.01"},
+                                {motor + "stribeck_mm_per_s", "0", "1e-9", "1000000", "1000000.1"},
+                                {motor + "capstan", "-1e-9", "0", "10", "10.01"},
+                                {"controller.rate_hz", "0.999", "1", "100000", "100000.1"},
+                                {"controller.compute_delay_ms", "-1e-9", "0", "1000", "1000.1"},
+                                {"controller.return_delay_ms", "-1e-9", "0", "1000", "1000.1"},
+                                {"copy.middle.gain", "-1e-9", "0", "10", "10.01"},
+                                {"scale.inertia", "0", "1e-9", "1000", "1000.1"},
+                                {"scale.tendon_stiffness", "0", "1e-9", "1000", "1000.1"}};
+  for (const char* name : {"damping", "joint_friction", "sheath_friction", "tendon_damping", "backlash",
+                           "lag", "sensor_lsb", "sensor_noise", "compute_delay", "return_delay"})
+    all.push_back({std::string("scale.") + name, "-1e-9", "0", "1000", "1000.1"});
+  for (const KeyBounds& b : all) {
+    for (const char* good : {b.least, b.most})
+      EXPECT_NO_THROW(static_cast<void>(parse_text(text_with(b.key, good)))) << b.key << " = " << good;
+    for (const char* bad : {b.below, b.above})
+      expect_refused(text_with(b.key, bad), {"d.toml:1: " + b.key + " = ", "must be"});
+  }
 }
 
 TEST(DeviceFile, StandsOnAnother) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <random>
 
+#include "phalanx/force/force_parameters.h"
 #include "phalanx/mesh/primitives.h"
 #include "scene/hand_files.h"
 #include "scene/mass_properties.h"
@@ -122,6 +123,8 @@ TEST_P(HandExport, AsUrdfHasOurForwardKinematicsAndLimitsInUrdfdom) {
     EXPECT_EQ(joint->type, urdf::Joint::REVOLUTE);
     EXPECT_EQ(joint->limits->lower, hand_.parameters.min_angle[static_cast<std::size_t>(j)]);
     EXPECT_EQ(joint->limits->upper, hand_.parameters.max_angle[static_cast<std::size_t>(j)]);
+    EXPECT_EQ(joint->limits->effort, LimitParameters{}.joint_torque);
+    EXPECT_EQ(joint->limits->velocity, LimitParameters{}.joint_speed);
   }
   Difference worst;
   at_random_angles([&](const JointArray& q, const auto& pose_of) {
@@ -134,7 +137,7 @@ TEST_P(HandExport, AsUrdfHasOurForwardKinematicsAndLimitsInUrdfdom) {
   RecordProperty("rotation", ::testing::PrintToString(worst.rotation));
 }
 
-TEST_P(HandExport, AsUrdfNamesItsMeshesAndItsMass) {
+TEST_P(HandExport, AsUrdfNamesItsMeshesItsMassAndItsInertia) {
   const auto robot = urdf::parseURDF(urdf_text(hand_, {.collision = "c", .display = "d & e"}));
   ASSERT_TRUE(robot);
   double mass = 0.0;
@@ -142,7 +145,18 @@ TEST_P(HandExport, AsUrdfNamesItsMeshesAndItsMass) {
     const std::string name(segment_name(s));
     const auto link = robot->getLink(name);
     ASSERT_TRUE(link && link->inertial && link->visual && link->collision) << name;
-    mass += link->inertial->mass;
+    const urdf::Inertial& inertial = *link->inertial;
+    mass += inertial.mass;
+    const MassProperties expected =
+        mass_properties(hand_.meshes.collision[static_cast<std::size_t>(s)], kHandDensity);
+    Mat3 inertia;
+    inertia << inertial.ixx, inertial.ixy, inertial.ixz,  //
+        inertial.ixy, inertial.iyy, inertial.iyz,         //
+        inertial.ixz, inertial.iyz, inertial.izz;
+    EXPECT_LT((inertia - expected.inertia).norm(), 1e-12 * expected.inertia.trace()) << name;
+    const Pose at = of_urdf(inertial.origin);
+    EXPECT_LT((at.p - expected.centre).norm(), 1e-12) << name;
+    EXPECT_LT((at.R - Mat3::Identity()).norm(), 1e-15) << name;
     const auto mesh_of = [](const urdf::GeometrySharedPtr& geometry) {
       return std::dynamic_pointer_cast<urdf::Mesh>(geometry)->filename;
     };
@@ -157,11 +171,13 @@ TEST_P(HandExport, AsUrdfNamesItsMeshesAndItsMass) {
 /// MuJoCo's model of a text, its meshes written beside it; fails the test with MuJoCo's own words.
 class MujocoHand {
  public:
-  explicit MujocoHand(const LoadedHand& hand) {
+  explicit MujocoHand(const LoadedHand& hand, const ExportedMeshes& meshes = {}) {
     folder_.write_meshes(hand.meshes.collision, 1.0);
     folder_.write_meshes(hand.meshes.display, 1.0);
+    if (meshes.display != meshes.collision)
+      std::filesystem::copy(folder_.path() / meshes.collision, folder_.path() / meshes.display);
     const std::string file = (folder_.path() / "hand.xml").string();
-    std::ofstream(file) << mjcf_text(hand, {});
+    std::ofstream(file) << mjcf_text(hand, meshes);
     std::array<char, 1000> error{};
     model_.reset(mj_loadXML(file.c_str(), nullptr, error.data(), static_cast<int>(error.size())));
     EXPECT_TRUE(model_) << error.data();
@@ -244,7 +260,14 @@ TEST_P(HandExport, AsMjcfKeepsItsMeshesAndMassesInPlace) {
     const MassProperties mass = mass_properties(mesh, kHandDensity);
     EXPECT_NEAR(m.body_mass[body], mass.mass, 1e-12);
     EXPECT_LT((Eigen::Map<const Vec3>(m.body_ipos + 3 * body) - mass.centre).norm(), 1e-12);
-    EXPECT_NEAR(Eigen::Map<const Vec3>(m.body_inertia + 3 * body).sum(), mass.inertia.trace(), 1e-12);
+    // MuJoCo keeps the moments about the main axes and a turn to them. It stops turning where what is left
+    // beside the diagonal is below 1e-12 kg m^2, or the next turn below 1.4e-6 rad.
+    const Eigen::Map<const Vec3> moments(m.body_inertia + 3 * body);
+    EXPECT_NEAR(moments.sum(), mass.inertia.trace(), 1e-12);
+    const Eigen::Map<const Eigen::Vector4d> turn(m.body_iquat + 4 * body);
+    const Mat3 Q = Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
+    const Mat3 inertia = Q * moments.asDiagonal() * Q.transpose();
+    EXPECT_LT((inertia - mass.inertia).norm(), 5e-12 + 5e-6 * mass.inertia.trace()) << segment_name(s);
   }
 }
 
@@ -260,6 +283,25 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"LargeManLeft", "large-man", Handedness::kRight, HandMeshSource::kFile},
                       Case{"StiffHandRight", "stiff-hand", Handedness::kRight, HandMeshSource::kFile}),
     [](const auto& test) { return std::string(test.param.name); });
+
+// A mesh that is shown and met is read once, two that differ are both. Contacts are left out between the palm
+// and each of the 15 other segments, and between the first ones of the 4 pairs of neighbouring digits.
+TEST(HandAsMjcf, ReadsBothSetsOfMeshesAndLeavesOutWhatAlwaysTouches) {
+  const LoadedHand hand = load(Case{"CapsulesRight", "", Handedness::kRight});
+  const MujocoHand one(hand);
+  ASSERT_TRUE(one.model());
+  EXPECT_EQ(one.model()->nmesh, kSegments);
+  EXPECT_EQ(one.model()->nexclude, 15 + 4);
+  const MujocoHand two(hand, {.collision = "meshes", .display = "shown"});
+  ASSERT_TRUE(two.model());
+  EXPECT_EQ(two.model()->nmesh, 2 * kSegments);
+  const std::string text = mjcf_text(hand, {});
+  for (const char* pair :
+       {R"(body1="wrist" body2="thumb-metacarpal")", R"(body1="wrist" body2="pinky-finger-phalanx-distal")",
+        R"(body1="thumb-metacarpal" body2="index-finger-phalanx-proximal")",
+        R"(body1="ring-finger-phalanx-proximal" body2="pinky-finger-phalanx-proximal")"})
+    EXPECT_THAT(text, ::testing::HasSubstr(std::string("<exclude ") + pair + "/>"));
+}
 
 // A box of a x b x c: m = rho a b c, Ixx = m (b^2 + c^2) / 12.
 TEST(MassProperties, OfABoxAreThoseOfTheTextbook) {

@@ -128,6 +128,46 @@ TEST(HandFile, WithANegativeRadius) {
                       {"thumb.segments.0.radius_tip_mm = -11.5", "> 0"});
 }
 
+// Each number in the place of the adult's first one of that name.
+TEST(HandFile, TakesEachNumberUpToItsBoundAndNoFurther) {
+  struct Bound {
+    const char* key;
+    const char* before;  ///< what stands there before the number
+    const char* usual;
+    const char* good;
+    const char* bad;
+  };
+  for (const Bound& b : {Bound{"thumb.base_mm", "base_mm = [", "-28.03", "300", "300.1"},
+                         Bound{"thumb.base_mm", "base_mm = [", "-28.03", "-300", "-300.1"},
+                         Bound{"thumb.distal", "distal = [", "-0.519", "1000", "1000.1"},
+                         Bound{"thumb.distal", "distal = [", "-0.519", "-1000", "-1000.1"},
+                         Bound{"thumb.joints.0.a_mm", " a_mm = ", "0.0", "200", "200.1"},
+                         Bound{"thumb.joints.0.a_mm", " a_mm = ", "0.0", "0", "-0.001"},
+                         Bound{"thumb.joints.0.alpha_deg", "alpha_deg = ", "90.0", "180", "180.1"},
+                         Bound{"thumb.joints.0.alpha_deg", "alpha_deg = ", "90.0", "-180", "-180.1"},
+                         Bound{"thumb.joints.0.d_mm", " d_mm = ", "0.0", "300", "300.1"},
+                         Bound{"thumb.joints.0.d_mm", " d_mm = ", "0.0", "-300", "-300.1"},
+                         Bound{"thumb.joints.0.theta_deg", "theta_deg = ", "0.0", "180", "180.1"},
+                         Bound{"thumb.joints.0.theta_deg", "theta_deg = ", "0.0", "-180", "-180.1"},
+                         Bound{"thumb.joints.0.min_deg", "min_deg = ", "-18.0", "-180", "-180.1"},
+                         Bound{"thumb.joints.0.max_deg", "max_deg = ", "35.0", "180", "180.1"},
+                         Bound{"thumb.joints.0.open_deg", "open_deg = ", "0.0", "35", "35.1"},
+                         Bound{"thumb.joints.0.open_deg", "open_deg = ", "0.0", "-18", "-18.1"},
+                         Bound{"thumb.segments.0.length_mm", " length_mm = ", "46.22", "200", "200.1"},
+                         Bound{"thumb.segments.0.radius_tip_mm", "radius_tip_mm = ", "11.5", "1e-9", "0"},
+                         Bound{"palm.wrist_breadth_mm", "wrist_breadth_mm = ", "58.0", "200", "200.1"},
+                         Bound{"palm.wrist_breadth_mm", "wrist_breadth_mm = ", "58.0", "1e-9", "0"},
+                         Bound{"palm.offset_mm", "offset_mm = [", "5.0", "300", "300.1"},
+                         Bound{"meshes.unit_mm", "unit_mm = ", "1\n", "1000000\n", "1000000.1\n"},
+                         Bound{"meshes.unit_mm", "unit_mm = ", "1\n", "0.01\n", "0.0099\n"}}) {
+    const std::string before = b.before;
+    EXPECT_NO_THROW(static_cast<void>(parse_hand(changed(before + b.usual, before + b.good), "good.toml")))
+        << b.key << " = " << b.good;
+    SCOPED_TRACE(b.bad);
+    expect_hand_refused(changed(before + b.usual, before + b.bad), {std::string(b.key) + " = ", "must be"});
+  }
+}
+
 TEST(HandFile, WithAnEmptyRangeOfMotion) {
   expect_hand_refused(changed("max_deg = 35.0", "max_deg = -18.0"),
                       {"thumb.joints.0.max_deg = -18", "> -18"});

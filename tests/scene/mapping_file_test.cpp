@@ -65,7 +65,7 @@ TEST(MappingFile, IsReadInRadiansOrDegrees) {
     sign = -1
     gain = 0.5
     offset_deg = 10
-    clamp_deg = [0, 100]
+    clamp_deg = [-20, 100]
     [thumb_ip_flexion]
     source = "b"
     offset_rad = 0.25
@@ -78,11 +78,13 @@ TEST(MappingFile, IsReadInRadiansOrDegrees) {
   EXPECT_EQ(thumb.sign, 1.0);
   EXPECT_EQ(thumb.gain, 1.0);
   EXPECT_EQ(thumb.offset, 0.25);
+  EXPECT_EQ(thumb.clamp_min, -0.1);
   EXPECT_EQ(thumb.clamp_max, 0.2);
   const JointMapping& index = mapping.joints[1];
   EXPECT_EQ(index.source, "a");
   EXPECT_EQ(index.sign, -1.0);
   EXPECT_DOUBLE_EQ(index.offset, 10.0 * kDeg);
+  EXPECT_DOUBLE_EQ(index.clamp_min, -20.0 * kDeg);
   EXPECT_DOUBLE_EQ(index.clamp_max, 100.0 * kDeg);
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/patient_file.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "expect_error.h"
 
 namespace phalanx {
@@ -71,6 +75,51 @@ TEST(PatientFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
                          {"p.toml:4: scale.stifness = 2", "scale.stiffness"});
 }
 
+// The number in question stands in the first line. The others leave room for it: what is to be the lesser of
+// two is as small, and the greater one as large, as it may be.
+TEST(PatientFile, TakesEachNumberUpToItsBoundAndNoFurther) {
+  const std::string joint = "joints.index_mcp_flexion.";
+  const std::vector<std::pair<std::string, std::string>> others = {{joint + "stiffness_nm_per_rad", "10"},
+                                                                   {"approach_min_mm_per_s", "1e-9"},
+                                                                   {"approach_max_mm_per_s", "10000"},
+                                                                   {"tremor_min_hz", "1e-9"},
+                                                                   {"tremor_max_hz", "100"}};
+  const auto text_with = [&](const std::string& key, const std::string& number) {
+    std::string text = key + " = " + number + "\n";
+    for (const auto& [other, usual] : others)
+      if (other != key) text.append(other).append(" = ").append(usual).append("\n");
+    return text;
+  };
+  struct KeyBounds {
+    std::string key;
+    const char* below;
+    const char* least;
+    const char* most;
+    const char* above;
+  };
+  for (const KeyBounds& b : {KeyBounds{joint + "stiffness_nm_per_rad", "-1e-9", "0", "10000", "10000.1"},
+                             KeyBounds{joint + "damping_nms_per_rad", "-1e-9", "0", "1000", "1000.1"},
+                             KeyBounds{"press_n", "-1e-9", "0", "100", "100.1"},
+                             KeyBounds{"press_spread", "-1e-9", "0", "1", "1.001"},
+                             KeyBounds{"approach_min_mm_per_s", "0", "1e-9", "10000", "10000.1"},
+                             KeyBounds{"approach_max_mm_per_s", "0", "1e-9", "10000", "10000.1"},
+                             KeyBounds{"tremor_um", "-1e-9", "0", "100000", "100000.1"},
+                             KeyBounds{"tremor_min_hz", "0", "1e-9", "100", "100.1"},
+                             KeyBounds{"tremor_max_hz", "0", "1e-9", "100", "100.1"},
+                             KeyBounds{"bump_n", "-1e-9", "0", "100", "100.1"},
+                             KeyBounds{"bump_start_s", "-1e-9", "0", "86400", "86400.1"},
+                             KeyBounds{"bump_duration_ms", "-1e-9", "0", "1000000", "1000000.1"},
+                             KeyBounds{"scale.stiffness", "-1e-9", "0", "1000", "1000.1"},
+                             KeyBounds{"scale.damping", "-1e-9", "0", "1000", "1000.1"},
+                             KeyBounds{"scale.tremor", "-1e-9", "0", "1000", "1000.1"},
+                             KeyBounds{"scale.bump", "-1e-9", "0", "1000", "1000.1"}}) {
+    for (const char* good : {b.least, b.most})
+      EXPECT_NO_THROW(static_cast<void>(parse_toml(text_with(b.key, good)))) << b.key << " = " << good;
+    for (const char* bad : {b.below, b.above})
+      expect_patient_refused(text_with(b.key, bad), {"p.toml:1: " + b.key + " = ", "must be"});
+  }
+}
+
 TEST(PatientInAScene, IsOverlaidByTheScenesOwnKeys) {
   const SceneDescription s =
       parse_scene("patient.press_n = 4", "s.toml", ".", {{"patient.scale.stiffness", "0.5"}});
@@ -100,6 +149,9 @@ TEST(PatientText, HoldsEveryNumber) {
         "approach_max_mm_per_s = 91\n", "tremor_um = 1\n", "tremor_min_hz = 4\n", "tremor_max_hz = 13\n",
         "bump_n = 1\n", "bump_start_s = 1\n", "bump_duration_ms = 1\n"})
     EXPECT_NE(text, patient_text(parse_toml(change + kPatientJoint))) << change;
+  const std::string joint = "[joints.index_mcp_flexion]\nstiffness_nm_per_rad = ";
+  for (const char* change : {"11\n", "10\ndamping_nms_per_rad = 0.05\n"})
+    EXPECT_NE(text, patient_text(parse_toml(joint + change))) << change;
 }
 
 }  // namespace

@@ -71,6 +71,8 @@ TEST(Overrides, AreCheckedLikeTheFile) {
                      {"--set force.stifness=1", "nearest known one is force.stiffness_n_per_mm"});
   expect_scene_error([] { static_cast<void>(parse_with({{"objects.0.diameter_mm", "-1"}})); },
                      {"--set objects.0.diameter_mm=-1", "> 0"});
+  expect_scene_error([] { static_cast<void>(parse_with({{"objects", "[{kind = \"spere\"}]"}})); },
+                     {"--set objects=[{kind = \"spere\"}]: objects.0.kind", "sphere"});
   expect_scene_error([] { static_cast<void>(parse_with({{"force.stiffness_n_per_mm", "1\nrate_hz = 5"}})); },
                      {"is a string"});
 }

@@ -28,8 +28,9 @@ using testing::read_file;
 /// A browser's page as the cockpit knows it.
 class Page {
  public:
-  explicit Page(std::uint16_t port, const std::string& secret = "", const std::string& name = "")
-      : client_(port) {
+  explicit Page(std::uint16_t port, const std::string& secret = "", const std::string& name = "",
+                const std::string& path = "/")
+      : client_(std::make_unique<RawClient>(port), PageClient::head(PageClient::good_fields(), path)) {
     wire::ToHost hello;
     hello.mutable_hello()->set_protocol(Cockpit::kProtocol);
     hello.mutable_hello()->set_secret(secret);
@@ -142,20 +143,28 @@ class CockpitTest : public ::testing::Test {
                                 .uploads = folder_ / "up",
                                 .version = "1.2.3",
                                 .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); }});
+    serve();
+  }
+  ~CockpitTest() override {
+    owner_.reset();
+    server_.reset();
+    cockpit_.reset();
+  }
+  /// A server in place of the one that is there.
+  void serve(const std::string& operator_token = "", const std::string& viewer_token = "") {
+    owner_.reset();
+    server_.reset();
     WebServerSettings settings;
     settings.port = 0;
     settings.site_missing = "none";
+    settings.operator_token = operator_token;
+    settings.viewer_token = viewer_token;
     // Whoever waits with one page does not answer another's pings, and a slow machine makes that long.
     settings.idle_timeout = settings.request_timeout = settings.proof_timeout = 600.0;
     server_ = std::make_unique<WebServer>(settings, *cockpit_);
     cockpit_->attach(*server_, {kLookOn});
     server_->start();
     owner_ = std::make_unique<Owner>(*host_);
-  }
-  ~CockpitTest() override {
-    owner_.reset();
-    server_.reset();
-    cockpit_.reset();
   }
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   /// So long passes for the cockpit at once.

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -50,6 +51,34 @@ TEST_F(CockpitHttp, TheShapesAreFetchedByTheirRevision) {
   EXPECT_GT(geometry.object().position_size(), 0);
   for (const std::string wrong : {"2", "", "1x", "../1", "-1", "01", "99999999999999999999"})
     EXPECT_EQ(status_of(ask(port(), get("/geometry/" + wrong))) / 100, 4) << wrong;
+  wire::ToHost scene;
+  scene.mutable_scene()->set_name("pinch_ball");
+  EXPECT_TRUE(page.ask(scene).ok());
+  page.until([](const wire::State& s) { return s.geometry() == 2; });
+  ASSERT_TRUE(geometry.ParseFromString(body_of(ask(port(), get("/geometry/2")))));
+  EXPECT_EQ(geometry.revision(), 2U) << "not the one that was fetched before";
+}
+
+TEST_F(CockpitHttp, WhoLooksOnSendsNoMeshAlsoWithTheOperatorsSecret) {
+  const Page page(port());
+  WebRequest request;
+  request.method = "POST";
+  request.path = "/mesh";
+  request.page_secret = page.welcome.secret();
+  request.visitor.may_operate = false;
+  std::promise<int> status;
+  std::size_t limit_of_viewer = 1;
+  std::size_t limit_of_operator = 0;
+  server_->post([&] {
+    limit_of_viewer = cockpit_->body_limit(request);
+    WebRequest operators = request;
+    operators.visitor.may_operate = true;
+    limit_of_operator = cockpit_->body_limit(operators);
+    cockpit_->requested(request, [&](const WebAnswer& answer) { status.set_value(answer.status); });
+  });
+  EXPECT_EQ(status.get_future().get(), 403);
+  EXPECT_EQ(limit_of_viewer, 0U);
+  EXPECT_EQ(limit_of_operator, Cockpit::kUploadLimit);
 }
 
 TEST_F(CockpitHttp, TheOperatorSendsAMeshAndGraspsIt) {

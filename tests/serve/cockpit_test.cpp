@@ -158,6 +158,48 @@ TEST_F(CockpitTest, APageIsSentOnlyTwelveTicksThatItHasNotSeen) {
   EXPECT_EQ(silent.replies, 4 * 3) << "nobody answers to what was seen";
 }
 
+// A state at least every 0.5 s; where something has changed, at most every 0.05 s. Of 20 ticks at most 12
+// were on their way before the time was skipped: the others come behind the state that is due then.
+TEST_F(StillCockpitTest, AStateComesWhenItIsDueOrSomethingHasChangedAndOnlyOnce) {
+  const auto rests = [this](SafetyState state) {
+    for (int i = 0; i < 60'000 && host_->view().state != state; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return host_->view().state == state;
+  };
+  ASSERT_TRUE(rests(SafetyState::kRunning));
+  Page page(port());
+  page.hear(wire::ToPage::kState);  // the first that all pages are sent
+  // That come with 20 ticks.
+  const auto states = [&page] {
+    int count = 0;
+    for (int ticks = 0; ticks < 20;) {
+      const wire::ToPage message =
+          page.hear([](const wire::ToPage& m) { return m.has_tick() || m.has_state(); });
+      if (!message.has_tick() && !message.has_state()) return -1;
+      count += message.has_state() ? 1 : 0;
+      if (!message.has_tick()) continue;
+      ++ticks;
+      page.say(to_see(static_cast<std::uint64_t>(page.ticks)));
+    }
+    return count;
+  };
+  skip(1.0);
+  EXPECT_EQ(states(), 1);
+  EXPECT_EQ(states(), 0) << "no time passes";
+  skip(0.3);
+  EXPECT_EQ(states(), 0) << "nothing has changed";
+  skip(0.3);
+  EXPECT_EQ(states(), 1) << "0.6 s after the last one";
+  EXPECT_TRUE(page.ask(to_be_named("Anna")).ok());
+  EXPECT_EQ(states(), 0) << "too soon";
+  skip(0.1);
+  EXPECT_EQ(states(), 1) << "a page has changed";
+  host_->stop();  // at the terminal
+  ASSERT_TRUE(rests(SafetyState::kStopped));
+  skip(0.1);
+  EXPECT_EQ(states(), 1) << "the station has changed";
+}
+
 TEST_F(CockpitTest, AStopAtTheEndOfABurstIsObeyedAndNothingElse) {
   Page operating(port());
   Page hasty(port(), "", "Ben");
@@ -169,6 +211,36 @@ TEST_F(CockpitTest, AStopAtTheEndOfABurstIsObeyedAndNothingElse) {
   EXPECT_TRUE(host_->held_stopped());
   EXPECT_EQ(logged("operator_taken"), 1U) << "the first, when it came";
   EXPECT_THAT(hasty.client().hear_end().reason(), HasSubstr("too many"));
+}
+
+TEST_F(CockpitTest, AViewersTokenLetsItLookOnAndNoMore) {
+  serve("operator-token-16", "viewers-token--16");
+  Page viewer(port(), "", "Ben", "/?token=viewers-token--16");
+  EXPECT_FALSE(viewer.welcome.may_operate());
+  EXPECT_EQ(viewer.welcome.viewer_url_size(), 0);
+  EXPECT_EQ(viewer.state.operator_page(), 0U);
+  EXPECT_FALSE(viewer.ask(to_take()).ok());
+  Page operating(port(), "", "Anna", "/?token=operator-token-16");
+  EXPECT_TRUE(operating.welcome.may_operate());
+  ASSERT_EQ(operating.welcome.viewer_url_size(), 1);
+  EXPECT_EQ(operating.welcome.viewer_url(0), kLookOn);
+  EXPECT_EQ(operating.state.operator_name(), "Anna");
+}
+
+TEST_F(CockpitTest, ASecondHelloOfAPageIsNothing) {
+  Page page(port());
+  wire::ToHost again;
+  again.mutable_hello()->set_protocol(Cockpit::kProtocol);
+  page.say(again);
+  wire::ToHost take = to_take();
+  take.set_request(9);
+  page.say(take);
+  int welcomes = 0;
+  page.hear([&](const wire::ToPage& m) {
+    welcomes += m.has_welcome() ? 1 : 0;
+    return m.has_reply();
+  });
+  EXPECT_EQ(welcomes, 0);
 }
 
 TEST_F(CockpitTest, APageThatIsOpenedAgainTakesItsOwnPlace) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "phalanx/device/fault.h"
 #include "serve/state_message.h"
 #include "station/host_fixture.h"
 
@@ -206,6 +207,36 @@ TEST_F(PageRequestsTest, AResumeOrAResetThatANewerStopOrFaultHasOvertakenIsRefus
   message.mutable_reset()->set_fault_time(state().fault().time());
   EXPECT_EQ(handed(message).code, "reset");
   EXPECT_TRUE(until_running());
+}
+
+// The loop goes on meanwhile: what is shown lies between what it had counted before and after.
+TEST_F(PageRequestsTest, AFaultIsShownInWordsBesideTheLoopsLateSteps) {
+  ASSERT_TRUE(until_running());
+  overload();
+  const DeadlineStatistics before = host->deadlines();
+  const wire::State shown = state();
+  const DeadlineStatistics after = host->deadlines();
+  EXPECT_EQ(shown.fault().name(), "overload");
+  EXPECT_EQ(shown.fault().meaning(), fault_meaning(Fault::kOverload));
+  EXPECT_EQ(shown.fault().remedy(), fault_remedy(Fault::kOverload));
+  EXPECT_GT(before.overruns, 0U);
+  EXPECT_GE(shown.loop().overruns(), before.overruns);
+  EXPECT_LE(shown.loop().overruns(), after.overruns);
+  EXPECT_GT(before.skipped, 0U);
+  EXPECT_GE(shown.loop().skipped(), before.skipped);
+  EXPECT_LE(shown.loop().skipped(), after.skipped);
+}
+
+TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandWhereTheyAreAskedTo) {
+  wire::ToHost message;
+  message.mutable_source()->set_source(wire::HAND_PATIENT);
+  EXPECT_EQ(handed(message).text, "the simulated patient moves the hand");
+  EXPECT_EQ(refused, "");
+  EXPECT_EQ(state().source(), wire::HAND_PATIENT);
+  message.mutable_source()->set_source(wire::HAND_SLIDERS);
+  EXPECT_EQ(handed(message).text, "the sliders move the hand");
+  EXPECT_EQ(refused, "");
+  EXPECT_EQ(state().source(), wire::HAND_SLIDERS);
 }
 
 TEST(Choices, AreEveryKeySceneAndProfile) {

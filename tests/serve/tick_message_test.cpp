@@ -34,6 +34,7 @@ TEST(TickMessage, HasTheOrderAndUnitsOfTheSchema) {
   view.snapshot.hcp_pose[3].p = Vec3(1.0, 2.0, 3.0);
   // A quarter turn about z: x y z w = 0 0 sin 45 cos 45.
   view.snapshot.hcp_pose[3].R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  view.snapshot.gdp_pose[3].p = Vec3(4.0, 5.0, 6.0);
   wire::Tick tick;
   write_tick(view, tick);
   EXPECT_EQ(tick.tick(), 2500U);
@@ -47,6 +48,9 @@ TEST(TickMessage, HasTheOrderAndUnitsOfTheSchema) {
   const double half = std::sqrt(0.5);
   const double expected[] = {1, 2, 3, 0, 0, half, half};
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(static_cast<double>(tick.hcp_pose(21 + i)), expected[i], 1e-6);
+  EXPECT_EQ(tick.gdp_pose(21), 4.0F);
+  EXPECT_EQ(tick.gdp_pose(22), 5.0F);
+  EXPECT_EQ(tick.gdp_pose(23), 6.0F);
   EXPECT_EQ(tick.stiffness(), 700.0F);
   EXPECT_EQ(tick.state(), wire::SAFETY_STOPPING);
   EXPECT_EQ(tick.factor(), 0.25F);

@@ -94,6 +94,14 @@ TEST(Uploads, ASizeThatNoHandCanGraspIsNotKept) {
   EXPECT_EQ(files_in(folder / "up"), 0U);
 }
 
+// Its numbers would be 60 m.
+TEST(Uploads, TheSizeThatIsSaidIsInMillimetresWhateverTheFilesNumbersAre) {
+  const TemporaryFolder folder;
+  const auto answer = taken("name=a.obj&unit=m&size_mm=60", solid(60), folder / "up");
+  ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
+  for (const auto& extent : answer["report"]["extent_m"]) EXPECT_NEAR(extent.get<double>(), 0.06, 1e-6);
+}
+
 TEST(Uploads, AFolderThatCannotBeWrittenIsSaid) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";

@@ -71,6 +71,24 @@ TEST_F(Pressing, AStifferWallComesOverTwoHundredMillisecondsWithoutATorqueStepBe
               allowed);
 }
 
+// 20 of 40 steps at 200 Hz: damping is half way in a straight line, 5 of 10 N s/m; bounds that grow fourfold
+// have doubled.
+TEST_F(Pressing, HalfWayDampingIsAtItsMiddleAndBoundsAreAtTheirGeometricMiddle) {
+  const BlendedParameters before = blended_of(live_.model());
+  ASSERT_EQ(scene_.rate_hz, 200.0);
+  ASSERT_TRUE(before.smoothing);
+  BlendedParameters target = before;
+  target.damping += 10.0;
+  target.min_rate *= 4.0;
+  target.max_rate *= 4.0;
+  live_.blend_to(target);
+  for (int i = 0; i < 20; ++i) step();
+  EXPECT_TRUE(live_.blending());
+  EXPECT_NEAR(live_.model().force.damping, before.damping + 5.0, 1e-9);
+  EXPECT_NEAR(live_.model().smoothing.min_rate, 2.0 * before.min_rate, 1e-9);
+  EXPECT_NEAR(live_.model().smoothing.max_rate, 2.0 * before.max_rate, 1e-9);
+}
+
 TEST_F(Pressing, SmoothingIsTurnedOffAndOnWithoutATorqueStepBeyondTheRateLimit) {
   const double allowed = live_.model().limits.torque_rate / scene_.rate_hz + 1e-12;
   for (const bool on : {false, true}) {

@@ -233,6 +233,25 @@ TEST(SafetyGate, WallsInsideTheTaperAreNotSentEitherWhereTheTorquePointsInward) 
   EXPECT_FALSE(bench.command.wall[wall_of_digit(1, 2)].active);
 }
 
+// 0.3 Nm at once is more than the 0.01 Nm that the rate limit lets through in a step, so that the gate
+// changes the torque of this joint, and only of this one.
+TEST(SafetyGate, WallsOfADigitAreNotSentWhicheverOfItsJointsTheGateHasChanged) {
+  for (int joint = 0; joint < kJoints; ++joint) {
+    const int digit = digit_of_joint(joint);
+    Bench bench;
+    bench.run_with(0.0);
+    bench.snapshot.wall_valid_for = 0.014;
+    for (int k = 0; k < kSegmentsPerDigit; ++k) bench.snapshot.wall[wall_of_digit(digit, k)].active = true;
+    bench.step();
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      EXPECT_TRUE(bench.command.wall[wall_of_digit(digit, k)].active) << joint;
+    bench.snapshot.torque[static_cast<std::size_t>(joint)] = 0.3;
+    bench.step();
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      EXPECT_FALSE(bench.command.wall[wall_of_digit(digit, k)].active) << joint;
+  }
+}
+
 TEST(SafetyGate, WallsAreSentOnlyInFullOperation) {
   Bench bench;
   bench.snapshot.wall_valid_for = 0.014;
@@ -447,23 +466,26 @@ TEST(SafetyGate, ACommandNamesTheSampleThatItsStepUsedAndTheHandThatIsShown) {
 // A digit is stopped where one of its segments touches, while torque may flow; never while we wait or in
 // fault.
 TEST(SafetyGate, ADigitIsStoppedOnlyWhileTheDeviceIsCommanded) {
-  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+  for (int segment = 0; segment < kDigits * kSegmentsPerDigit; ++segment) {
+    const int touched = segment / kSegmentsPerDigit;
+    const auto digit = static_cast<std::size_t>(touched);
+    const auto other = static_cast<std::size_t>((touched + 1) % kDigits);
     Bench bench;
-    bench.snapshot.segment[wall_of_digit(1, k)].contact = true;
+    bench.snapshot.segment[wall_of_digit(touched, segment % kSegmentsPerDigit)].contact = true;
     bench.samples.sample.state = DeviceState::kConnecting;
     bench.steps(5);
     ASSERT_EQ(bench.safety.state(), SafetyState::kWaiting);
-    EXPECT_FALSE(bench.command.stopped[1]);
+    EXPECT_FALSE(bench.command.stopped[digit]) << segment;
     bench.samples.sample.state = DeviceState::kReady;
     bench.steps(5);
-    EXPECT_TRUE(bench.command.stopped[1]);
-    EXPECT_FALSE(bench.command.stopped[2]);
+    EXPECT_TRUE(bench.command.stopped[digit]) << segment;
+    EXPECT_FALSE(bench.command.stopped[other]) << segment;
     bench.snapshot.torque[kMcp] = 0.3;
     bench.steps(1200);
     bench.samples.sample.estop = true;
     bench.step();
     EXPECT_TRUE(bench.command.enable) << "the fault's ramp";
-    EXPECT_FALSE(bench.command.stopped[1]);
+    EXPECT_FALSE(bench.command.stopped[digit]) << segment;
   }
 }
 
@@ -482,6 +504,24 @@ TEST(SafetyGate, EachSegmentsForceIsJudgedBesideTheSum) {
   distal.force = middle.force = 5.6;
   bench.step();
   EXPECT_EQ(bench.safety.fault().fault, Fault::kForceCeiling);
+}
+
+// 1.1 x 5 N are 5.5 N, on every segment of every digit.
+TEST(SafetyGate, TheForceOnEverySegmentOfEveryDigitIsJudged) {
+  for (int digit = 0; digit < kDigits; ++digit) {
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      Bench bench;
+      bench.run_with(0.1);
+      SegmentSnapshot& segment = bench.snapshot.segment[wall_of_digit(digit, k)];
+      segment.normal = Vec3::UnitZ();
+      segment.force = 5.4;
+      bench.step();
+      EXPECT_EQ(bench.safety.state(), SafetyState::kRunning) << digit << k;
+      segment.force = 5.6;
+      bench.step();
+      EXPECT_EQ(bench.safety.fault().fault, Fault::kForceCeiling) << digit << k;
+    }
+  }
 }
 
 // In the start ramp a fingertip feels its part of the step's force: 8 N at a factor below 0.3 are at most 2.4
@@ -573,6 +613,25 @@ TEST(SafetyGateSettings, AllowTheLargestOfEachAndRefuseMore) {
   EXPECT_NO_THROW(static_cast<void>(make_safety_settings(limits, ""))) << "5 N need no clinician";
   limits.joint_speed = kInfinity;
   EXPECT_THROW(static_cast<void>(make_safety_settings(limits, "Dr A")), std::invalid_argument);
+}
+
+TEST(SafetyGateSettings, RefuseEveryLimitThatIsOffByItsName) {
+  struct Case {
+    bool LimitParameters::* enabled;
+    const char* key;
+  };
+  for (const Case& c : {Case{&LimitParameters::fingertip_force_enabled, "limits.fingertip_force_n"},
+                        {&LimitParameters::joint_torque_enabled, "limits.joint_torque_nm"},
+                        {&LimitParameters::torque_rate_enabled, "limits.torque_rate_nm_per_s"}}) {
+    LimitParameters limits;
+    limits.*c.enabled = false;
+    try {
+      static_cast<void>(make_safety_settings(limits, "Dr A"));
+      ADD_FAILURE() << c.key << " may be off";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(c.key), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(SafetyGateSettings, AreTheScenesLimits) {

@@ -106,11 +106,22 @@ TEST(Safety, AResetIsRefusedWhileTheEmergencyStopIsPressedAndThenBringsAFreshRam
   EXPECT_NEAR(bench.command.torque[kMcp], 0.2, 0.002);
 }
 
+TEST(Safety, ADeviceThatIsSilentFromTheBeginningHasHalfASecond) {
+  Bench bench;
+  for (int i = 0; i < 490; ++i) bench.step(true);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  for (int i = 0; i < 20; ++i) bench.step(true);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kFault);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNoSample);
+}
+
 TEST(Safety, ADeviceThatIsLatchedWhenWeComeIsAFaultThatSomebodyMustReset) {
   Bench bench;
   bench.samples.sample.state = DeviceState::kLatched;
   bench.samples.sample.fault = Fault::kStepTooOld;
-  bench.steps(600);
+  bench.steps(490);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting) << "it has 0.5 s";
+  bench.steps(20);
   EXPECT_EQ(bench.safety.state(), SafetyState::kFault);
   EXPECT_EQ(bench.safety.fault().fault, Fault::kStepTooOld);
   EXPECT_TRUE(bench.safety.fault().from_device);

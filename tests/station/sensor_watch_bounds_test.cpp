@@ -64,6 +64,24 @@ TEST(SensorWatchBounds, TheEndsOfASensorsRawRangeAreGood) {
   }
 }
 
+// What says how far a whole digit is closed or spread is judged as a joint's angle is.
+TEST(SensorWatchBounds, AnOpenSensorOfADigitsCurlOrSplayIsFoundToo) {
+  std::vector<DeviceChannel> channels = test::two_joint_channels();
+  for (const ChannelKind kind : {ChannelKind::kCurl, ChannelKind::kSplay})
+    channels.push_back(
+        {.kind = kind, .index = 2, .raw_min = 0, .raw_max = 4095, .gain = 1.0 / 4095.0, .offset = 0.0});
+  for (const int channel : {6, 7}) {
+    Watch bench({}, channels);
+    EXPECT_EQ(bench.judge_many(10).fault, Fault::kNone) << channel;
+    bench.sample.raw[static_cast<std::size_t>(channel)] = 5000;
+    EXPECT_EQ(bench.judge_many(2).fault, Fault::kNone) << channel;
+    EXPECT_FALSE(bench.watch.all_good()) << channel;
+    const SensorFinding found = bench.judge();
+    EXPECT_EQ(found.fault, Fault::kSensorRange) << channel;
+    EXPECT_EQ(found.channel, channel);
+  }
+}
+
 // A channel whose gain overflows: 1e305 rad a count, 10,000 counts. It is no angle beyond the range, but none
 // at all.
 TEST(SensorWatchBounds, WhatIsNoNumberIsSaidToBeNone) {
@@ -162,6 +180,18 @@ TEST(SensorWatchBounds, AMotorsMotionThatAnotherJointExplainsIsNotAStuckSensor) 
   EXPECT_EQ(found.channel, 0);
 }
 
+// The other way round: the knuckle, whose channel is the first, bends by 0.5 rad and winds 5 mm, which would
+// be 1 rad of the middle joint, whose sensor rests.
+TEST(SensorWatchBounds, AMotionThatTheFirstChannelExplainsIsNotAnothersStuckSensor) {
+  Watch bench(one_tendon_over_two_joints(0.0));
+  for (int i = 0; i <= 2000; ++i) {
+    const double mcp = 0.5 + 0.5 * i / 2000.0;
+    bench.at(mcp, 0.5);
+    bench.sample.raw[2] = static_cast<std::int32_t>(std::lround((0.01 * mcp + 0.005 * 0.5) / 1e-6));
+    ASSERT_EQ(bench.judge().fault, Fault::kNone) << i;
+  }
+}
+
 // 2 mm of slack over 10 mm are 0.2 rad, and 10 counts 0.001 rad: 2.00 mm are believed, 2.02 mm are not.
 TEST(SensorWatchBounds, AMotorMayTakeUpItsSlackBeforeASensorIsStuck) {
   MotorWitness witness{.channel = 2, .arm = {}, .slack = 2e-3};
@@ -236,6 +266,16 @@ TEST(SensorWatchBounds, TorqueThatAgreesOnceHasItsWholeTimeAgain) {
   EXPECT_EQ(bench.judge_many(200).fault, Fault::kNone);
   EXPECT_EQ(bench.judge_many(2).fault, Fault::kTorqueDisagrees)
       << "0.2 s after the first, or a rounding later";
+}
+
+// A device that has been on for 10 s, and disagrees from the first sample on: 0.2 s from there.
+TEST(SensorWatchBounds, TorqueThatDisagreesFromTheFirstSampleOnHasItsWholeTimeToo) {
+  Watch bench;
+  bench.sample.time_us = 10'000'000 - 1000;
+  bench.torque[kMcp] = 0.4;
+  bench.sample.raw[4] = 0;
+  EXPECT_EQ(bench.judge_many(200).fault, Fault::kNone);
+  EXPECT_EQ(bench.judge_many(2).fault, Fault::kTorqueDisagrees);
 }
 
 // A device that still ramps renders its factor of what it is told.

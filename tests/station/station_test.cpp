@@ -52,6 +52,13 @@ class StationTest : public testing::Test {
       return view.state == SafetyState::kRunning && index_force(view) > newtons;
     });
   }
+  /// Asks for the exchange of the teapot for one of 125 mm.
+  void exchange_teapot() {
+    const SceneDescription other =
+        load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", {{"objects.0.size_mm", "125"}});
+    StationModel made = make_station_model(other, "");
+    station_->replace(std::make_unique<LiveModel>(std::move(made.model)));
+  }
   static double index_force(const StationView& view) {
     double force = 0.0;
     for (int k = 0; k < kSegmentsPerDigit; ++k)
@@ -113,10 +120,7 @@ TEST_F(StationTest, OfStopAndResumeTheLastWordCounts) {
 TEST_F(StationTest, AnObjectIsSwappedInContactWithoutATorqueStepBeyondTheRateLimit) {
   start();
   ASSERT_TRUE(until_pressing(1.0));
-  const SceneDescription other =
-      load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", {{"objects.0.size_mm", "125"}});
-  StationModel made = make_station_model(other, "");
-  station_->replace(std::make_unique<LiveModel>(std::move(made.model)));
+  exchange_teapot();
   ASSERT_TRUE(
       until([](const StationView& view) { return !view.changing && view.state == SafetyState::kRunning; }));
   ASSERT_TRUE(until_pressing(0.5));
@@ -124,6 +128,21 @@ TEST_F(StationTest, AnObjectIsSwappedInContactWithoutATorqueStepBeyondTheRateLim
   EXPECT_LE(device_->largest_step, allowed_step());
   std::printf("object swapped in contact: largest torque step %.4f of %.4f Nm allowed\n",
               device_->largest_step.load(), allowed_step());
+}
+
+// The exchange has a stop of its own, of 0.2 s, and a start after it. Whoever says stop in between means it.
+TEST_F(StationTest, AStopWhileAnObjectIsExchangedHoldsAfterTheExchange) {
+  start();
+  ASSERT_TRUE(until_pressing(1.0));
+  exchange_teapot();
+  ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kStopping; }));
+  station_->stop_torque();
+  ASSERT_TRUE(until([](const StationView& view) { return !view.changing; }));
+  const double asked = station_->view().time;
+  ASSERT_TRUE(until([&](const StationView& view) { return view.time > asked + 1.5; }));
+  EXPECT_EQ(station_->view().state, SafetyState::kStopped);
+  EXPECT_EQ(station_->view().factor, 0.0);
+  EXPECT_TRUE(device_->at_zero);
 }
 
 TEST_F(StationTest, SmoothingOffAndAStifferWallInContactStayWithinTheRateLimit) {
@@ -165,6 +184,7 @@ TEST_F(StationTest, AnEmergencyStopLatchesUntilItIsReleasedAndReset) {
   ASSERT_TRUE(
       until([](const StationView& view) { return view.state == SafetyState::kFault && view.at_rest; }));
   EXPECT_EQ(station_->view().fault.fault, Fault::kEmergencyStop);
+  EXPECT_TRUE(station_->take_fault_report().has_value());
   station_->reset();
   const double asked = station_->view().time;
   ASSERT_TRUE(until([&](const StationView& view) { return view.time > asked + 0.5; }));
@@ -173,6 +193,10 @@ TEST_F(StationTest, AnEmergencyStopLatchesUntilItIsReleasedAndReset) {
   ASSERT_TRUE(until([](const StationView& view) { return !view.estop; }));
   station_->reset();
   ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
+  device_->estop = true;
+  ASSERT_TRUE(
+      until([](const StationView& view) { return view.state == SafetyState::kFault && view.at_rest; }));
+  EXPECT_TRUE(station_->take_fault_report().has_value()) << "the next fault has a report of its own";
 }
 
 TEST_F(StationTest, StepsThatAreTooLongAreCountedShownAndStoppedAfterTenInARow) {

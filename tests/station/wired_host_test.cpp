@@ -88,6 +88,16 @@ class WiredHostTest : public HostTest {
   bool disk_full = false;
 };
 
+// The limits that connect() lays over the scene. A sample is not connecting any more once CONFIGURE has come.
+TEST_F(WiredHostTest, TheControllerIsToldTheStationsLimits) {
+  connect();
+  ASSERT_TRUE(until([&] { return host->view().device != DeviceState::kConnecting; }));
+  const phx_controller told = controller->controller();
+  EXPECT_TRUE(told.configured);
+  EXPECT_EQ(told.configure.torque_limit, 0.4F);
+  EXPECT_EQ(told.configure.torque_rate, 80.0F);
+}
+
 TEST_F(WiredHostTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
   connect();
   begin();
@@ -115,6 +125,10 @@ TEST_F(WiredHostTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
   })) << "until then the last station's is shown";
   for (std::size_t c = 0; c < middle.size(); ++c)
     EXPECT_NEAR(host->view().snapshot.hcp_angle[kJoint[c]], middle[c], 2e-3);
+  ASSERT_TRUE(until([&] { return host->view().device != DeviceState::kConnecting; }));
+  const phx_controller told = controller->controller();
+  for (std::size_t c = 0; c < middle.size(); ++c)
+    EXPECT_NEAR(static_cast<double>(told.configure.offset[c]), -kTooMuch, 0.01) << "for its walls";
 }
 
 TEST_F(WiredHostTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {

@@ -100,6 +100,25 @@ TEST(SampleGuard, FollowsAClockThatRestartedOnlyWhereItsTimesIncreaseAmongThemse
   EXPECT_FALSE(has(hand.at(9.0, 1.5), Status::kTimeNotIncreasing));
 }
 
+// Five in a row: a sample of the old clock between them ends the row, and the next row begins with any time.
+TEST(SampleGuard, FollowsNoClockWhoseSamplesAreMixedWithThoseOfTheOldOne) {
+  Guarded hand;
+  hand.at(1000.0, 0.0);
+  for (const double time : {1.0, 2.0, 3.0})
+    EXPECT_TRUE(has(hand.at(time, 1.5), Status::kTimeNotIncreasing)) << time;
+  EXPECT_FALSE(has(hand.at(1000.005, 0.0), Status::kTimeNotIncreasing));
+  for (const double time : {4.0, 5.0, 6.0, 7.0})
+    EXPECT_TRUE(has(hand.at(time, 1.5), Status::kTimeNotIncreasing)) << time;
+  EXPECT_EQ(hand.angle(), 0.0);
+  EXPECT_FALSE(has(hand.at(8.0, 1.5), Status::kTimeNotIncreasing)) << "the fifth in a row";
+  for (const double time : {6.0, 7.0})
+    EXPECT_TRUE(has(hand.at(time, 1.5), Status::kTimeNotIncreasing)) << time;
+  EXPECT_FALSE(has(hand.at(9.0, 1.5), Status::kTimeNotIncreasing));
+  for (const double time : {1.0, 2.0, 3.0, 4.0})
+    EXPECT_TRUE(has(hand.at(time, 1.5), Status::kTimeNotIncreasing)) << time;
+  EXPECT_FALSE(has(hand.at(5.0, 1.5), Status::kTimeNotIncreasing)) << "the first of a row may be any time";
+}
+
 TEST(SampleGuard, BelievesNoClockThatIsNotANumber) {
   Guarded hand;
   for (const double time : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity})

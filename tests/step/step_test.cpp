@@ -244,6 +244,7 @@ TEST(Step, TimeThatDoesNotIncreaseIsReportedAndTheSampleNotUsed) {
     const Status status = step(model, Sample{time, index_angles(0.15)}, state);
     EXPECT_TRUE(has(status, Status::kTimeNotIncreasing));
     EXPECT_EQ(state.snapshot().hcp_angle, index_angles(0.1));
+    EXPECT_EQ(state.snapshot().time_s, 1.0) << "of the last sample that was used";
   }
 }
 

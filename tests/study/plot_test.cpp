@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "phalanx/study/trace.h"
 #include "study/plot/panel.h"
 #include "study/plot/polyline.h"
 #include "study/plot/ticks.h"
@@ -117,6 +118,23 @@ TEST(PlotSvg, SurvivesNumbersThatAreNotFinite) {
   EXPECT_TRUE(well_formed(svg));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(TraceTick, HasTheSnapshotsForcesTorquesAndAngles) {
+  Snapshot snapshot;
+  snapshot.time_s = 0.25;
+  snapshot.segment[5].force_raw = 2.0;
+  snapshot.segment[5].force = 1.5;
+  snapshot.hcp_angle[4] = 0.6;
+  snapshot.gdp_angle[4] = 0.5;
+  snapshot.torque[4] = -0.1;
+  const TraceTick tick = trace_tick(snapshot);
+  EXPECT_EQ(tick.time_s, 0.25);
+  EXPECT_EQ(tick.force_raw[5], 2.0);
+  EXPECT_EQ(tick.force[5], 1.5);
+  EXPECT_EQ(tick.hcp_angle[4], 0.6);
+  EXPECT_EQ(tick.gdp_angle[4], 0.5);
+  EXPECT_EQ(tick.torque[4], -0.1);
 }
 
 TEST(PlotSvg, RefusesARunWithoutTicks) { EXPECT_THROW((void)plot_svg({}, {}), std::invalid_argument); }

@@ -133,6 +133,18 @@ TEST_F(Cobs, DropsAFrameLargerThanTheLargestOnceHoweverLongItIs) {
   EXPECT_EQ(take(stuffed(frame)), std::vector<Bytes>{frame});
 }
 
+TEST_F(Cobs, AReceiverThatIsInitialisedHasForgottenWhatItWasIn) {
+  receiver_.size = 9;
+  receiver_.left = 7;
+  receiver_.broken = true;
+  receiver_.begun = true;
+  receiver_.dropped = 3;
+  phx_receiver_init(&receiver_);
+  const Bytes frame = counted(0, 20);
+  EXPECT_EQ(take(stuffed(frame)), std::vector<Bytes>{frame});
+  EXPECT_EQ(receiver_.dropped, 0U);
+}
+
 TEST_F(Cobs, CountsAFrameOfNoBytesAsBroken) {
   EXPECT_TRUE(take({0x01, 0x00}).empty());
   EXPECT_EQ(receiver_.dropped, 1U);

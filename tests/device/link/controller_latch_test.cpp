@@ -185,6 +185,17 @@ TEST_F(LinkLatch, ResetWaitsUntilTheSensorsAreGood) {
   EXPECT_EQ(rig.sample.state, PHX_STATE_READY);
 }
 
+// 256 bad ticks are one more than a byte counts to.
+TEST_F(LinkLatch, ASensorThatIsBadForLongIsNotTakenForAGoodOne) {
+  rig.open_and_act(0.3F);
+  rig.raw[1] = 5000;
+  rig.silent(256);
+  reset();
+  rig.tick();
+  expect_latched(PHX_FAULT_SENSOR_RANGE);
+  EXPECT_EQ(rig.sample.fault_channel, 1);
+}
+
 TEST_F(LinkLatch, ResetChangesNothingWhileNothingIsLatched) {
   rig.open_and_act(0.3F);
   reset();

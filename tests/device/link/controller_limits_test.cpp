@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Torque limit, torque rate, finite numbers, whatever the commands, the sensors and the clock do.
 #include <limits>
+#include <utility>
 
 #include "device/link/controller_rig.h"
 
@@ -36,20 +37,25 @@ TEST_F(LinkLimits, DoNotChangeUnderAnActingStep) {
 }
 
 TEST_F(LinkLimits, OfZeroGiveZeroTorque) {
-  rig.hello();
-  rig.configure(0.0F, kRate);
-  rig.tick();
-  EXPECT_EQ(rig.drive(0.4F, 1100), 0.0F);
+  for (const auto& [limit, rate] : {std::pair{0.0F, kRate}, std::pair{kLimit, 0.0F}}) {
+    rig = Rig();
+    rig.hello();
+    EXPECT_EQ(rig.configure(limit, rate), PHX_USED) << limit;
+    rig.tick();
+    EXPECT_EQ(rig.drive(0.4F, 1100), 0.0F) << limit;
+  }
 }
 
 TEST_F(LinkLimits, OfADeviceThatAreNoNumbersGiveZeroTorque) {
-  for (const float limit :
-       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1.0F}) {
-    phx_device device = bench_device();
-    device.torque_limit = limit;
-    rig = Rig(device);
-    rig.open();
-    EXPECT_EQ(rig.drive(0.4F, 1100), 0.0F);
+  for (float phx_device::* number : {&phx_device::torque_limit, &phx_device::torque_rate}) {
+    for (const float none :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1.0F}) {
+      phx_device device = bench_device();
+      device.*number = none;
+      rig = Rig(device);
+      rig.open();
+      EXPECT_EQ(rig.drive(0.4F, 1100), 0.0F) << none;
+    }
   }
 }
 

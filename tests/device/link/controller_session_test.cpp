@@ -20,6 +20,18 @@ TEST_F(LinkControllerSession, OpensWithAWelcomeThatSaysWhoTheControllerIsAndTheN
   EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
 }
 
+TEST_F(LinkControllerSession, HasNoMoreChannelsThanAWelcomeHasRoomFor) {
+  phx_device device = bench_device();
+  const phx_channel same = device.channel[0];
+  for (phx_channel& channel : device.channel) channel = same;
+  device.channel_count = 33;
+  rig = Rig(device);
+  ASSERT_EQ(rig.controller.device.channel_count, 32);
+  ASSERT_EQ(rig.hello(), PHX_NEW_SESSION);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->as.welcome.channel_count, 32);
+}
+
 TEST_F(LinkControllerSession, AnswersWithTheSequenceOfTheQuestion) {
   phx_message hello = rig.frame(PHX_HELLO);
   hello.header.sequence = 4711;
@@ -63,6 +75,20 @@ TEST_F(LinkControllerSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
   EXPECT_EQ(rig.reply->as.refused.reason, PHX_REFUSED_BUSY);
   EXPECT_EQ(rig.reply->as.refused.host_id, 99U);
   EXPECT_FLOAT_EQ(rig.drive(0.2F, 5), 0.2F);  // and the first goes on undisturbed
+}
+
+// Neither belongs to a session, whatever epoch the question names.
+TEST_F(LinkControllerSession, ARefusalAndAPongHaveEpochZero) {
+  rig.open();
+  for (const std::uint8_t type : {PHX_HELLO, PHX_PING}) {
+    phx_message question = rig.frame(type);
+    question.header.epoch = 7;
+    if (type == PHX_HELLO) question.as.hello.host_id = 99;
+    EXPECT_EQ(rig.send(question), PHX_ANSWERED);
+    ASSERT_TRUE(rig.reply);
+    EXPECT_EQ(rig.reply->header.type, type == PHX_HELLO ? PHX_REFUSED : PHX_PONG);
+    EXPECT_EQ(rig.reply->header.epoch, 0U);
+  }
 }
 
 TEST_F(LinkControllerSession, GoesToAnotherHostOnceTheFirstWasSilentForASecond) {
@@ -169,7 +195,26 @@ TEST_F(LinkControllerSession, RefusesAHelloOfAnotherVersionEvenIfTheRestOfItIsUn
   EXPECT_EQ(rig.reply->header.type, PHX_REFUSED);
   EXPECT_EQ(rig.reply->as.refused.reason, PHX_REFUSED_VERSION);
   EXPECT_EQ(rig.reply->as.refused.version, PHX_VERSION);
+  EXPECT_EQ(rig.reply->as.refused.host_id, 0U) << "13 bytes have no room for one";
   EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
+}
+
+// A HELLO of 28 bytes, header, host_id and CRC, says whom to answer; one that is a byte shorter does not.
+TEST_F(LinkControllerSession, NamesTheHostOfAHelloOfAnotherVersionIfThatIsWhole) {
+  phx_message message = rig.frame(PHX_HELLO);
+  message.as.hello.host_id = 0x0102030405060708U;
+  Bytes hello = encoded(message);
+  ASSERT_EQ(hello.size(), 28U);
+  hello[2] = 2;
+  close_again(hello);
+  EXPECT_EQ(rig.receive(hello), PHX_ANSWERED);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->as.refused.host_id, 0x0102030405060708U);
+  hello.erase(hello.begin() + 16);
+  close_again(hello);
+  EXPECT_EQ(rig.receive(hello), PHX_ANSWERED);
+  ASSERT_TRUE(rig.reply);
+  EXPECT_EQ(rig.reply->as.refused.host_id, 0U);
 }
 
 TEST_F(LinkControllerSession, DropsAndCountsOtherFramesOfAnotherVersion) {

@@ -98,6 +98,21 @@ TEST_F(LinkWalls, TakeAChannelConfiguredWithGainZeroForUnmeasured) {
   EXPECT_NEAR(settled(400), 0.05F, 1e-6F);
 }
 
+// Raw 100 and an offset of 10 mrad are 0.11 rad: 10 mrad further open than q_ref, so again 0.75 N, 0.0375 Nm.
+TEST_F(LinkWalls, AddTheConfiguredOffsetToTheAngle) {
+  rig.raw[1] = 100;
+  rig.hello();
+  phx_message configure = rig.frame(PHX_CONFIGURE);
+  configure.as.configure.gain[1] = 1e-3F;
+  configure.as.configure.offset[1] = 0.01F;
+  configure.as.configure.torque_limit = kLimit;
+  configure.as.configure.torque_rate = kRate;
+  rig.send(configure);
+  rig.tick();
+  for (int i = 0; i <= 1000; ++i) drive();
+  EXPECT_NEAR(settled(100), 0.0375F, 1e-6F);
+}
+
 TEST_F(LinkWalls, StayWithinTheTorqueLimitAndRate) {
   act();
   rig.raw[1] = -3000;

@@ -112,7 +112,78 @@ TEST(LinkRepeat, AResetThatOpensTheSessionAgainClearsTheLatchInItHoweverLongThat
   EXPECT_EQ(bench.controller.state, PHX_STATE_READY);
 }
 
+// What was asked for before the host forgot its session, sent already or not, was not meant for the next one.
+TEST(LinkRepeat, AResetOfBeforeASessionClearsNoLatchInIt) {
+  for (const bool sent : {true, false}) {
+    SessionBench bench(51);
+    bench.open();
+    bench.run_commanding(100);
+    bench.estop = true;
+    bench.run(20);
+    ASSERT_EQ(bench.controller.state, PHX_STATE_LATCHED);
+    if (sent) {
+      bench.reset();
+      bench.run(3);
+    }
+    bench.session().forget();
+    if (!sent) bench.reset();
+    bench.estop = false;
+    bench.open();
+    bench.run(100);
+    EXPECT_EQ(bench.controller.state, PHX_STATE_LATCHED) << sent;
+    EXPECT_EQ(bench.controller.fault, PHX_FAULT_EMERGENCY_STOP) << sent;
+  }
+}
+
+// The session opens again a few milliseconds after the reset. Before a sample of it says that CONFIGURE has
+// come, a later HELLO of ours, of which the host knows nothing any more, opens another one: that counts.
+TEST(LinkRepeat, OfTwoSessionsAfterAResetTheLaterOneCounts) {
+  SessionBench bench(53);
+  bench.open();
+  bench.run_commanding(50);
+  bench.restart(70);
+  bench.run_commanding(60);
+  ASSERT_EQ(bench.fault(), Fault::kControllerRestarted);
+  bench.reset();
+  bench.run(2);
+  ASSERT_EQ(bench.session().phase(), Phase::kRunning);
+  ASSERT_EQ(bench.controller.epoch, 71U);
+  ASSERT_FALSE(bench.controller.configured);
+  phx_message hello = forged(PHX_HELLO, 0);
+  hello.header.sequence = 1000;
+  hello.as.hello.host_id = kBenchHost;
+  std::array<std::uint8_t, PHX_FRAME_MAX> frame{}, reply{};
+  const std::size_t size = phx_encode(&hello, frame.data(), frame.size());
+  std::size_t reply_size = 0;
+  ASSERT_EQ(phx_controller_receive(&bench.controller, frame.data(), size, bench.time_us(), reply.data(),
+                                   &reply_size),
+            PHX_NEW_SESSION);
+  bench.to_host(reply.data(), reply_size);
+  bench.run(100);
+  EXPECT_EQ(bench.fault(), Fault::kNone);
+  EXPECT_EQ(bench.session().phase(), Phase::kRunning);
+  EXPECT_EQ(bench.controller.epoch, 72U);
+  EXPECT_TRUE(bench.controller.configured);
+}
+
 // ---- commands ----
+
+// A command that was written before the session was asked for, and one that was sent in the session before:
+// both are younger than 20 ms.
+TEST(LinkRepeat, NothingThatWasCommandedBeforeASessionIsSentInIt) {
+  SessionBench bench(52);
+  bench.command(true);
+  bench.open();
+  bench.run(5);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), 0);
+  bench.run_commanding(100);
+  const int before = bench.sent(PHX_COMMAND);
+  EXPECT_GT(before, 0);
+  bench.session().forget();
+  bench.open();
+  bench.run(5);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), before);
+}
 
 TEST(LinkRepeat, TheLastCommandsOfAHostSayFaultWithANewerTick) {
   SessionBench bench(44);
@@ -212,7 +283,7 @@ TEST(LinkRepeat, APongOfNoPingOfOursSaysNothing) {
 // Another rate, another channel, another range or another kind are another device, whose gains nobody has
 // measured.
 TEST(LinkRepeat, ADeviceThatHasChangedInAnythingIsAnotherOne) {
-  for (int change = 0; change < 6; ++change) {
+  for (int change = 0; change < 7; ++change) {
     SessionBench bench(49);
     bench.open();
     bench.run_commanding(50);
@@ -221,6 +292,7 @@ TEST(LinkRepeat, ADeviceThatHasChangedInAnythingIsAnotherOne) {
     if (change == 3) bench.device_.channel[1].raw_max = 999999;
     if (change == 4) bench.device_.channel[1].raw_min = -999;
     if (change == 5) bench.device_.channel[1].index = 7;
+    if (change == 6) bench.device_.channel[1].kind = PHX_CHANNEL_TORQUE;
     bench.restart(70);
     bench.run_commanding(60);
     ASSERT_EQ(bench.fault(), Fault::kControllerRestarted) << change;

@@ -216,6 +216,20 @@ TEST(LinkStatistics, SamplesThatTheLoopDoesNotFetchOverflow) {
   EXPECT_GE(bench.device->statistics().overflowed, overflowed + SampleQueue::kCapacity - 64);
 }
 
+// A hundred samples that nobody has fetched are of the session before: the controller counts from 1 again,
+// and that is the first one to be fetched.
+TEST(LinkStatistics, ADeviceThatIsOpenedAgainBeginsWithTheFirstSampleOfItsSession) {
+  OnMemory bench;
+  const LinkStatistics before = bench.device->statistics();
+  ASSERT_TRUE(
+      OnMemory::eventually([&] { return bench.device->statistics().received >= before.received + 100; }));
+  bench.device->close();
+  bench.device->open();
+  std::array<DeviceSample, 64> out{};
+  ASSERT_TRUE(OnMemory::eventually([&] { return bench.device->receive(0.0, out) > 0; }));
+  EXPECT_EQ(out[0].sequence, 1U);
+}
+
 // The wire itself has dropped 3 pieces: that is counted once, however often it is asked.
 TEST(LinkStatistics, WhatTheWireHasDroppedIsCountedOnce) {
   OnMemory bench;

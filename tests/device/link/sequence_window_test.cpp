@@ -35,6 +35,13 @@ TEST(SequenceWindow, CountsAGapThatIsLongerThanTheWindow) {
   EXPECT_EQ(window.lost() + window.missing(), 999u);
 }
 
+TEST(SequenceWindow, CountsAGapThatIsJustAsLongAsTheWindow) {
+  SequenceWindow window;
+  window.take(1);
+  window.take(65);  // 2 .. 64 have not come
+  EXPECT_EQ(window.lost() + window.missing(), 63u);
+}
+
 TEST(SequenceWindow, NumbersWrapAround) {
   SequenceWindow window;
   EXPECT_EQ(window.take(0xfffffffeu), Frame::kNew);

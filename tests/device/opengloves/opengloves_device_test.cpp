@@ -260,6 +260,19 @@ TEST(OpenGlovesDevice, TakesOnlyACalibrationOfItsOwnChannels) {
   EXPECT_THROW(glove.device->set_calibration(channels), std::invalid_argument);
 }
 
+// Half the curl is raw (0.5 + 0.5) 2000 = 2000 of 4095, and the stop 1000 (1 - 2000 / 4095) = 511.6.
+TEST(OpenGlovesDevice, StopsWhereTheCalibrationSays) {
+  Fixture glove(kOpenGlove);
+  glove.device->open();
+  auto channels = glove.device->info().channels;
+  ASSERT_EQ(channels[2].kind, ChannelKind::kCurl);
+  ASSERT_EQ(channels[2].index, test::kIndex);
+  channels[2].gain = 1.0 / 2000.0;
+  channels[2].offset = -0.5;
+  glove.device->set_calibration(channels);
+  EXPECT_TRUE(glove.told(stopped_index(0.75), "A0B512C0D0E0"));
+}
+
 TEST(OpenGlovesDevice, AllocatesNothingInTheLoop) {
   Fixture glove(kOpenGlove);
   glove.device->open();

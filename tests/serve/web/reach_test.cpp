@@ -152,6 +152,32 @@ TEST_F(Certificate, IsUsedAgainWhileItFits) {
   EXPECT_NE(text_of(files.certificate), first) << "it was not for this address";
 }
 
+// It is to last another week.
+TEST_F(Certificate, IsMadeAnewBeforeItEnds) {
+  const CertificateFiles files = make_self_signed_certificate(folder_, {});
+  const std::unique_ptr<BIO, decltype(&BIO_free_all)> file(BIO_new_file(files.certificate.c_str(), "r"),
+                                                           &BIO_free_all);
+  const std::unique_ptr<BIO, decltype(&BIO_free_all)> key_file(BIO_new_file(files.key.c_str(), "r"),
+                                                               &BIO_free_all);
+  const std::unique_ptr<X509, decltype(&X509_free)> made(
+      PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr), &X509_free);
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
+      PEM_read_bio_PrivateKey(key_file.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
+  ASSERT_TRUE(made && key);
+  for (const int days : {10, 3}) {
+    X509_gmtime_adj(X509_getm_notAfter(made.get()), days * 24L * 60 * 60);
+    ASSERT_GT(X509_sign(made.get(), key.get(), EVP_sha256()), 0);
+    {
+      const std::unique_ptr<BIO, decltype(&BIO_free_all)> out(BIO_new_file(files.certificate.c_str(), "w"),
+                                                              &BIO_free_all);
+      ASSERT_EQ(PEM_write_bio_X509(out.get(), made.get()), 1);
+    }
+    const std::string written = text_of(files.certificate);
+    (void)make_self_signed_certificate(folder_, {});
+    EXPECT_EQ(text_of(files.certificate) == written, days == 10) << days;
+  }
+}
+
 TEST_F(Certificate, IsMadeAnewIfWhatIsThereIsBroken) {
   const CertificateFiles files = make_self_signed_certificate(folder_, {});
   const std::string first = text_of(files.certificate);

@@ -296,6 +296,7 @@ TEST_F(WebRequests, ViewersLeaveAnEighthOfThePlacesToWhoMayOperate) {
 
 TEST_F(WebRequests, WhoOnlyConnectsOrHasNoRightHostIsLetGoSoon) {
   settings_.proof_timeout = 3.0;
+  settings_.request_timeout = 3600.0;
   start();
   RawClient silent(port());
   RawClient wrong(port());

@@ -42,6 +42,18 @@ TEST(ReducedModel, RestsAtThePressOnASoftWallWithoutFriction) {
   }
 }
 
+// The finger rests at 30 mm from 1.3 s on; at 1.6 s 2 N push it for 0.1 s, by 2 N / (700 + 100 N/m) = 2.5 mm
+// at least. Without them it is deepest where it arrives, less than 1 mm beyond its rest (50 mm/s / 58 rad/s).
+TEST(ReducedModel, IsPushedDeeperByTheBump) {
+  const auto peak_with = [](double bump) {
+    ReducedModel model = frictionless(3.0);
+    model.patient.approach_min = model.patient.approach_max = 0.05;
+    model.patient.bump = bump;
+    return run_reduced_trial(model, kSmoothingOff, 100.0, 1).peak_depth;
+  };
+  EXPECT_GT(peak_with(2.0) - peak_with(0.0), 1.0e-3);
+}
+
 // Dry friction of 0.40 N may hold the finger off by Fc / (kh + k): the force by k Fc / (kh + k).
 TEST(ReducedModel, RestsWithinItsDryFrictionOfThePress) {
   for (const double wall : {300.0, 500.0, 1000.0}) {

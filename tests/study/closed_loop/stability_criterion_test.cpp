@@ -165,6 +165,22 @@ TEST(TrialObserver, IsUnstableIfOneOfSeveralContactsSwings) {
   EXPECT_NEAR(result.mean_force, 3.0, 1e-12);  // of the contact that presses most
 }
 
+// Only the index finger is meant to press: what the middle finger does is no press, and of two phalanges of
+// the index finger the one with the larger force counts.
+TEST(TrialObserver, SaysHowTheDigitThatIsMeantToPressDoes) {
+  Watching watching;
+  Snapshot snapshot = tip_at(2e-3, 2.0);
+  press(snapshot, kOther, 1e-3, 5.0);
+  watching.fill_window(snapshot);
+  EXPECT_NEAR(watching.result().mean_force, 2.0, 1e-12);
+  EXPECT_NEAR(watching.result().mean_depth, 2e-3, 1e-12);
+  Watching phalanges;
+  snapshot = tip_at(2e-3, 1.0);
+  press(snapshot, kTip - 1, 1e-3, 3.0);
+  phalanges.fill_window(snapshot);
+  EXPECT_NEAR(phalanges.result().mean_force, 3.0, 1e-12);
+}
+
 // It was at 0 N before: 0.51 N is a swing of 0.51 N, however steadily it stays.
 TEST(TrialObserver, CountsTheForceOfAContactThatAppearsInTheWindow) {
   for (const double force : {0.49, 0.51}) {

@@ -107,6 +107,19 @@ TEST(S2Fig4, ComesToRestWhereTheStiffnessIsHalvedOnceItOscillates) {
   }
 }
 
+// One seed is stable and proves it, the other is stable but not valid: neither steady nor oscillating.
+TEST(StabilityRow, AgreesWithNoPaperWhereNothingIsProven) {
+  LoopRun run;
+  run.trials.resize(2);
+  for (TrialResult& trial : run.trials) trial.stable = true;
+  run.trials[1].valid = false;
+  for (const bool stable_in_paper : {false, true}) {
+    const PaperRow row = stability_row("e", "q", run, stable_in_paper);
+    EXPECT_EQ(row.ours, "not proven (1 of 2 seeds stable, 0 not)");
+    EXPECT_EQ(row.difference, "differs") << row.paper;
+  }
+}
+
 TEST(S2Fig4, ReportsWhatItFound) {
   const ExperimentReport report = s2_fig4();
   const auto json = nlohmann::json::parse(report.json);

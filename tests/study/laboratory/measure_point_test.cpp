@@ -121,31 +121,37 @@ TEST(MeasurePoint, DoesNotCountAnInvalidTrialAsStable) {
   EXPECT_EQ(result.invalid_trials, invalid);  // seed 2 once at each of them
 }
 
-// The light press of seed 1 shakes, the firm press of seed 2 comes no deeper: three seeds are left.
+// The light press of seed 1 shakes, the firm press of seed 2 comes no deeper, that of seed 3 proves nothing:
+// two of five seeds are left.
 TEST(MeasurePoint, LeavesSeedsOutOfTheEffectiveStiffnessThatHaveNone) {
   const auto trial = [](const Overrides& overrides, double k, double press, std::uint64_t seed) {
     TrialResult result = synthetic_trial(overrides, k, press, seed);
     if (seed == 1 && press == 2.0) result.stable = false;
     if (seed == 2 && press == 4.0) result.mean_depth = 0.0;
+    if (seed == 3 && press == 4.0) result.valid = false;
     return result;
   };
   const PointResult result = measure_point(study_of(testing::kTwelvePoints), 6, trial);
-  EXPECT_EQ(result.k_eff_seeds, 3);
+  EXPECT_EQ(result.k_eff_seeds, 2);
   EXPECT_NEAR(result.k_eff, 2000.0, 1e-9);
 }
 
 TEST(MeasurePoint, MeasuresAtTheScenesStiffnessIfThereIsNoGrid) {
-  const Study study = study_of("scene = \"a\"\nseeds = 3\nset = { \"synthetic.friction\" = 0.1 }");
+  const Study study =
+      study_of("scene = \"a\"\nseeds = 3\nfirst_seed = 21\nset = { \"synthetic.friction\" = 0.1 }");
   std::mutex mutex;
+  std::set<std::uint64_t> seeds;
   std::set<std::tuple<bool, double, std::uint64_t>> runs;
   const PointResult result =
       measure_point(study, 0, [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
         const std::lock_guard<std::mutex> guard(mutex);
         EXPECT_TRUE(std::isnan(k));
         runs.emplace(std::isnan(press), std::isnan(press) ? 0.0 : press, seed);
+        seeds.insert(seed);
         return synthetic_trial(overrides, k, press, seed);
       });
   EXPECT_EQ(runs.size(), 9U);
+  EXPECT_THAT(seeds, ::testing::ElementsAre(21U, 22U, 23U));
   EXPECT_EQ(result.trials, 9);
   EXPECT_TRUE(std::isnan(result.k_lim) && std::isnan(result.measured_at));
   EXPECT_TRUE(result.stable);

@@ -95,6 +95,27 @@ TEST(RunStudy, GoesOnWhereItStoppedAndRepeatsNothing) {
   EXPECT_EQ(csv_of(again), expected_csv());
 }
 
+// What was written of the whole study stays while it is whole, and goes before a point is measured anew.
+TEST(RunStudy, RemovesTheOutputsOfAStudyThatIsNoLongerWhole) {
+  const TemporaryFolder folder;
+  const auto run = [&](const TrialFunction& trial) {
+    return run_study(twelve_points(), no_inputs, trial, folder.path(), options_for(2));
+  };
+  const TrialFunction broken = [](const Overrides&, double, double, std::uint64_t) -> TrialResult {
+    throw std::runtime_error("the tendon broke");
+  };
+  write_study_outputs(folder.path(), twelve_points(), run(synthetic_trial), {});
+  static_cast<void>(run(broken));  // nothing is left to measure
+  EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "study.csv"));
+  std::string text = read_file(folder / "points.jsonl");
+  text.resize(text.rfind('\n', text.size() - 2) + 1);
+  write_text_file(folder / "points.jsonl", text);
+  EXPECT_THROW(static_cast<void>(run(broken)), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "summary.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "study.csv"));
+}
+
 TEST(RunStudy, ReportsItsProgress) {
   const TemporaryFolder folder;
   StudyOptions options = options_for(2);

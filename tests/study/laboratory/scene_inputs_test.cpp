@@ -35,6 +35,32 @@ TEST(SceneInputs, NameTheFilesOfSceneAndHand) {
   EXPECT_FALSE(names(capsules, "index-finger-phalanx-distal.obj"));
 }
 
+TEST(SceneInputs, NameTheProfile) {
+  const StudyInputs inputs =
+      scene_check(study_of("scene = \"press_teapot\""))({{"hand.profile", "\"large-man\""}});
+  EXPECT_TRUE(names(inputs, "large-man.toml"));
+  EXPECT_TRUE(names(inputs, "adult.toml")) << "the hand that the profile is of";
+}
+
+TEST(SceneInputs, AreTheFilesOfObjectAndMotionTooAndWhatIsInThem) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "mine.toml",
+                  "[[objects]]\nkind = \"file\"\nfile = \"t.obj\"\nsize_mm = 40\n"
+                  "[motion]\nfile = \"walk.csv\"\n");
+  write_text_file(folder / "t.obj", "v 0 0 0\n");
+  write_text_file(folder / "walk.csv", "time_s\n");
+  const Study study = parse_study("scene = \"./mine.toml\"", "s.toml", folder.path());
+  const StudyInputs inputs = scene_check(study)({});
+  EXPECT_TRUE(names(inputs, "t.obj"));
+  EXPECT_TRUE(names(inputs, "walk.csv"));
+  const std::string before = check_study(study, scene_check(study));
+  write_text_file(folder / "t.obj", "v 0 0 1\n");
+  const std::string other_object = check_study(study, scene_check(study));
+  EXPECT_NE(other_object, before);
+  write_text_file(folder / "walk.csv", "time_s,\n");
+  EXPECT_NE(check_study(study, scene_check(study)), other_object);
+}
+
 TEST(SceneInputs, DependOnDeviceAndPatient) {
   const StudyCheck check = scene_check(study_of("scene = \"press_teapot\""));
   const std::string as_it_is = check({}).text;

@@ -94,6 +94,20 @@ values = ["adult", "hands/mine.toml", "/abs/hand.toml"]
   EXPECT_EQ(hand(2), "\"/abs/hand.toml\"");
 }
 
+// A mesh is never looked for by its name: also a bare one is a file beside the study.
+TEST(StudyFile, ResolvesEveryFileOfAnObject) {
+  const Study study = parse_study(R"(
+scene = "a"
+[[axis]]
+key = "objects.0.file"
+values = ["a.obj", "m/b.obj", "/abs/c.obj"]
+)",
+                                  "s.toml", "/studies");
+  std::vector<std::string> files;
+  for (int i = 0; i < 3; ++i) files.push_back(point_overrides(study, study_point(study, i)).back().second);
+  EXPECT_THAT(files, ElementsAre("\"/studies/a.obj\"", "\"/studies/m/b.obj\"", "\"/abs/c.obj\""));
+}
+
 TEST(StudyFile, SurvivesTheJournalsForm) {
   const Study study = study_of(testing::kTwelvePoints);
   const OrderedJson json = study_to_json(study);

@@ -69,6 +69,42 @@ TEST(StudyReport, OfTwoAxesHasAMapForEachVariantAndQuantity) {
             7U * 4U * 2U);  // over friction: a curve for each delay and variant
 }
 
+/// The d of every curve's path, in the page's order.
+std::vector<std::string> curves_of(const std::string& page) {
+  const std::string before = "class=\"curve\" d=\"";
+  std::vector<std::string> curves;
+  for (std::size_t at = page.find(before); at != std::string::npos; at = page.find(before, at + 1)) {
+    const std::size_t begin = at + before.size();
+    curves.push_back(page.substr(begin, page.find('"', begin) - begin));
+  }
+  return curves;
+}
+
+// k_lim stands first: 1 and 2 N/mm for a, 3 and 3.5 for b.
+TEST(StudyReport, EachVariantsCurveIsOfItsOwnPoints) {
+  const Study study = synthetic_study({"a", "b"}, {numbers("x.y", "x.y", {0, 1})});
+  std::vector<PointResult> results;
+  for (const int limit : {9, 19, 29, 34})
+    results.push_back(synthetic_result(study, static_cast<int>(results.size()), limit));
+  const std::vector<std::string> curves = curves_of(study_report_html(study, results, kMadeUp));
+  ASSERT_EQ(curves.size(), 7U * 2U);
+  EXPECT_NE(curves[0], curves[1]);
+}
+
+// k_eff is 1.13, 1.23, ... 1.83 N/mm, which no scale has a mark at and nothing else is: each stands in one
+// cell.
+TEST(StudyReport, EachVariantsMapIsOfItsOwnPoints) {
+  const Study study = synthetic_study({"a", "b"}, {words("x.y", {"u", "v"}), words("x.z", {"u", "v"})});
+  std::vector<PointResult> results;
+  for (int i = 0; i < 8; ++i) {
+    results.push_back(synthetic_result(study, i, 9));
+    results.back().k_eff = 1130.0 + 100.0 * i;
+  }
+  const std::string page = study_report_html(study, results, kMadeUp);
+  for (const char* cell : {"1.13", "1.23", "1.33", "1.43", "1.53", "1.63", "1.73", "1.83"})
+    EXPECT_EQ(count_of(page, '>' + std::string(cell) + "</text>"), 1U) << cell;
+}
+
 TEST(StudyReport, OfVariantsAloneHasBars) {
   const Study study = synthetic_study({"none", "smoothing +-0.1", "smoothing +-0.05", "local wall"}, {});
   const std::string page = page_of(study, "variants.html");
