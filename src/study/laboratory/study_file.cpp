@@ -103,7 +103,8 @@ std::vector<StudyValue> listed_values(TomlTable& table, const toml::table& raw) 
 int whole_steps(const TomlTable& table, double from, double to, double step, std::string_view step_key) {
   const double steps = (to - from) / step;
   if (steps >= kMostValues)
-    table.fail(step_key, fmt::format("makes {:.0f} values; {} are the most", steps, kMostValues));
+    table.fail(step_key,
+               fmt::format("makes {:.0f} values; {} are the most", std::floor(steps) + 1.0, kMostValues));
   if (std::abs(steps - std::round(steps)) > 1e-6)
     table.fail(step_key,
                fmt::format("does not divide the way from {} to {}; choose ends a whole number of steps apart",

@@ -100,18 +100,55 @@ TEST(StudyFile, ResolvesEveryFileOfAnObject) {
 scene = "a"
 [[axis]]
 key = "objects.0.file"
-values = ["a.obj", "m/b.obj", "/abs/c.obj"]
+values = ["a.obj", "m/b.obj", "/abs/c.obj", "d", ""]
 )",
                                   "s.toml", "/studies");
   std::vector<std::string> files;
-  for (int i = 0; i < 3; ++i) files.push_back(point_overrides(study, study_point(study, i)).back().second);
-  EXPECT_THAT(files, ElementsAre("\"/studies/a.obj\"", "\"/studies/m/b.obj\"", "\"/abs/c.obj\""));
+  for (int i = 0; i < 5; ++i) files.push_back(point_overrides(study, study_point(study, i)).back().second);
+  EXPECT_THAT(files, ElementsAre("\"/studies/a.obj\"", "\"/studies/m/b.obj\"", "\"/abs/c.obj\"",
+                                 "\"/studies/d\"", "\"\""));
 }
 
 TEST(StudyFile, SurvivesTheJournalsForm) {
-  const Study study = study_of(testing::kTwelvePoints);
-  const OrderedJson json = study_to_json(study);
-  EXPECT_EQ(study_to_json(study_from_json(OrderedJson::parse(json.dump()))), json);
+  for (const char* text : {testing::kTwelvePoints,
+                           "scene = \"a\"\nfirst_seed = 21\nset = { x.y = 1 }\n[[axis]]\nkey = \"p\"\nvalues "
+                           "= [\"light\", 2]"}) {
+    const OrderedJson json = study_to_json(study_of(text));
+    EXPECT_EQ(study_to_json(study_from_json(OrderedJson::parse(json.dump()))), json);
+  }
+}
+
+// A journal may be anybody's. Each bad grid has one thing wrong: the least value, the order, the largest
+// value, the step's sign, 30,001 values.
+TEST(StudyFile, RefusesAJournalWhoseNumbersNoStudyFileMayHold) {
+  const OrderedJson good = study_to_json(study_of(testing::kTwelvePoints));
+  const auto with_grid = [&](double min, double max, double step) {
+    OrderedJson json = good;
+    json["stiffness"] = {{"min_n_per_mm", min}, {"max_n_per_mm", max}, {"step_n_per_mm", step}};
+    static_cast<void>(study_from_json(json));
+  };
+  EXPECT_NO_THROW(with_grid(0.1, 0.1, 0.1));
+  EXPECT_NO_THROW(with_grid(1.0, 1000.0, 1.0));
+  EXPECT_THROW(with_grid(0.0, 4.0, 0.1), std::out_of_range);
+  EXPECT_THROW(with_grid(0.2, 0.1, 0.1), std::out_of_range);
+  EXPECT_THROW(with_grid(1.0, 1001.0, 1.0), std::out_of_range);
+  EXPECT_THROW(with_grid(1.0, 4.0, -1.0), std::out_of_range);
+  EXPECT_THROW(with_grid(1.0, 4.0, 1e-4), std::out_of_range);
+  const auto with_number = [&](const char* key, const OrderedJson& number) {
+    OrderedJson json = good;
+    json[key] = number;
+    static_cast<void>(study_from_json(json));
+  };
+  EXPECT_NO_THROW(with_number("seeds", 1));
+  EXPECT_NO_THROW(with_number("seeds", 10'000));
+  EXPECT_NO_THROW(with_number("first_seed", 0));
+  EXPECT_NO_THROW(with_number("first_seed", 1'000'000'000'000'000));
+  EXPECT_THROW(with_number("seeds", 0), std::out_of_range);
+  EXPECT_THROW(with_number("seeds", 10'001), std::out_of_range);
+  EXPECT_THROW(with_number("seeds", 2.0), std::out_of_range);
+  EXPECT_THROW(with_number("first_seed", -1), std::out_of_range);
+  EXPECT_THROW(with_number("first_seed", 1'000'000'000'000'001), std::out_of_range);
+  EXPECT_THROW(with_number("variants", OrderedJson::array()), std::out_of_range) << "no point at all";
 }
 
 struct Refused {
@@ -130,7 +167,8 @@ TEST(StudyFile, RefusesInWords) {
       {"scene = \"a\"\n[[axis]]\nkey = \"b\"", {"axis.0.from", "is missing"}},
       {"scene = \"a\"\n[[axis]]\nkey = \"b\"\nvalues = [1]\nstep = 1", {"beside from"}},
       {"scene = \"a\"\n[[axis]]\nkey = \"b\"\nfrom = 0\nto = 1\nstep = 0.3", {"does not divide"}},
-      {"scene = \"a\"\n[[axis]]\nkey = \"b\"\nfrom = 0\nto = 1\nstep = 1e-6", {"10000 are the most"}},
+      {"scene = \"a\"\n[[axis]]\nkey = \"b\"\nfrom = 0\nto = 10000\nstep = 1",
+       {"makes 10001 values; 10000 are the most"}},
       {"scene = \"a\"\n[[axis]]\nkey = \"b\"\nvalues = [1979-05-27]", {"a date"}},
       {"scene = \"a\"\n[[axis]]\nkey = \"b\"\nvalues = [1]\n[[axis]]\nkey = \"b\"\nvalues = [2]",
        {"two axes"}},
@@ -160,6 +198,21 @@ TEST(StudyFile, RefusesMorePointsThanAnybodyWaitsFor) {
   for (const char* key : {"a", "b", "c"})
     text += std::string("[[axis]]\nkey = \"") + key + "\"\nfrom = 1\nto = 101\nstep = 1\n";
   expect_refusal([&] { static_cast<void>(study_of(text)); }, {"1030301 points"});
+}
+
+// 10,000 values of an axis, 10,000 seeds and a million points are the most.
+TEST(StudyFile, TakesAsMuchAsMayBeAndNoMore) {
+  const auto axis = [](const std::string& key, int last) {
+    return "[[axis]]\nkey = \"" + key + "\"\nfrom = 1\nto = " + std::to_string(last) + "\nstep = 1\n";
+  };
+  const std::string scene = "scene = \"a\"\n";
+  EXPECT_EQ(point_count(study_of(scene + axis("b", 10'000))), 10'000);
+  expect_refusal([&] { static_cast<void>(study_of(scene + axis("b", 10'001))); }, {"10000 are the most"});
+  EXPECT_EQ(study_of(scene + "seeds = 10000").seeds, 10'000);
+  expect_refusal([&] { static_cast<void>(study_of(scene + "seeds = 10001")); }, {"<= 10000"});
+  EXPECT_EQ(point_count(study_of(scene + axis("b", 1000) + axis("c", 1000))), 1'000'000);
+  expect_refusal([&] { static_cast<void>(study_of(scene + axis("b", 1000) + axis("c", 1001))); },
+                 {"1001000 points"});
 }
 
 // 40 stiffnesses: at most 16 are tried if stability is monotone, and two presses, of 5 seeds.
