@@ -16,6 +16,7 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/gdp_digit.h"
 #include "contact/normal_fan.h"
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
@@ -271,6 +272,69 @@ TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
   for (int k = 0; k < kSegmentsPerDigit; ++k) EXPECT_FALSE(paper.record(k).active) << k;
 }
 
+// The record of a search that gave up 10 um beyond the margin of a plate says so; 10 um within it, it is a
+// contact like any other, and so it is where the search came to its end. (1 rad of the corner's way is 17 mm
+// of height there.)
+TEST(GdpByHand, ARecordOfASearchThatGaveUpIsAContactWithinTheMargin) {
+  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  const ContactModel contact{model.hand, model.trees, model.object, model.contact};
+  for (const double beyond : {10e-6, -10e-6}) {
+    for (const bool gave_up : {true, false}) {
+      SCOPED_TRACE(::testing::Message() << beyond << (gave_up ? " given up" : ""));
+      GdpState state(contact);
+      const DigitAngles angle = digit_angles(index_angles(0.5 - beyond / f1(0.5)), test::kIndex);
+      DigitPose pose;
+      model.hand.digit_pose(test::kIndex, angle, pose);
+      DigitTick tick{.digit = test::kIndex,
+                     .hcp_from = angle,
+                     .hcp = angle,
+                     .hcp_pose = pose,
+                     .angle = angle,
+                     .pose = pose};
+      if (gave_up) tick.status = Status::kSearchExhausted;
+      make_record(contact, tick, 0, 0.0, 1.0, nullptr, state);
+      const ContactRecord& record = record_of(state, tick, 0);
+      ASSERT_TRUE(record.active);
+      EXPECT_EQ(record.offset, gave_up && beyond > 0.0 ? std::numeric_limits<double>::infinity() : 0.0);
+    }
+  }
+}
+
+// The HCP comes back to where the proximal phalanx has stopped, and from there only the PIP moves: the
+// proximal record stands until its own phalanx moves away.
+TEST(GdpByHand, ARecordStandsWhileOnlyFartherJointsMove) {
+  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  Paper paper(model);
+  paper.tick(index_angles(0.4));
+  paper.tick(index_angles(0.55));
+  ASSERT_TRUE(paper.record(0).active);
+  const double stop = paper.gdp(0);
+  paper.tick(index_angles(stop));
+  ASSERT_TRUE(paper.record(0).active);
+  paper.tick(index_angles(stop, 0.1));
+  EXPECT_EQ(paper.gdp(2), 0.1);
+  EXPECT_TRUE(paper.record(0).active);
+  paper.tick(index_angles(stop - 0.01, 0.1));
+  EXPECT_EQ(paper.gdp(0), stop - 0.01);
+  EXPECT_FALSE(paper.record(0).active);
+}
+
+// Of the way from the GDP's point to the HCP's only what lies along the plate counts: from MCP 0.5 to 0.87
+// the corner goes 4.94 mm forward (and 5.47 mm down, 7.4 mm in all), to 0.88 it goes 5.10 mm. `slid` begins
+// at 5.
+TEST(GdpByHand, SlidIsTheWayAlongTheSurface) {
+  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  ASSERT_LT(f1(0.5) - f1(0.87), 5e-3);
+  ASSERT_GT(f1(0.5) - f1(0.88), 5e-3);
+  Paper paper(model);
+  paper.tick(index_angles(0.4));
+  for (const double p : {0.87, 0.88, 0.87}) {
+    paper.tick(index_angles(p));
+    ASSERT_TRUE(paper.record(0).active) << p;
+    EXPECT_EQ(has(paper.status, Status::kSlid), p > 0.875) << p;
+  }
+}
+
 // The corner comes within the margin by 0.1 nm just at the tick's end, while the PIP still moves: that is a
 // stop like any other, and no search that gave up. 5.86e-9 rad are 0.1 nm of its way of 17 mm.
 TEST(GdpByHand, AStopAtTheVeryEndOfATickIsAStop) {
@@ -430,24 +494,30 @@ TEST(ContactPatchByHand, CountsWhatClosesAtLeastHalfAsFastAsTheFastest) {
   EXPECT_GT(patch.direction.dot(off_floor), 0.5);
 }
 
+/// A slab whose face has the unit normal n, in the xy plane, and is so far from the origin.
+TriangleMesh wall_facing(const Vec3& n, double apart) {
+  const Mat3 R = Eigen::AngleAxisd(std::atan2(-n.x(), n.y()), Vec3::UnitZ()).toRotationMatrix();
+  // Off the middle, where the face's two triangles meet.
+  return test::moved(make_box(Vec3(0.04, 0.002, 0.03), 12), Pose{R, -(apart + 1e-3) * n + Vec3(0, 0, 3e-3)});
+}
+
+/// A narrow pyramid that stands on its apex, which is at the origin.
+TriangleMesh spike_down() {
+  TriangleMesh spike;
+  spike.vertices = {Vec3::Zero(), Vec3(2e-4, 2e-3, 1e-4), Vec3(-2e-4, 2e-3, 1e-4), Vec3(0, 2e-3, -2e-4)};
+  spike.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  return spike;
+}
+
 // A spike's lowest corner in a groove of two walls at 45 degrees, 48 um from the one and 49 from the other:
 // one point of the spike, two places on the walls. Within 53 um they count 1 and 1 - 1 um / 5 um.
 TEST(ContactPatchByHand, OnePointOfTheSegmentBeforeTwoWallsIsTwoPlaces) {
   const double half = std::numbers::sqrt2 / 2.0;
   const Vec3 left(half, half, 0.0);  // out of the wall on the left
   const Vec3 right(-half, half, 0.0);
-  const auto wall = [&](const Vec3& n, double apart) {
-    const Mat3 R = Eigen::AngleAxisd(std::atan2(-n.x(), n.y()), Vec3::UnitZ()).toRotationMatrix();
-    // Off the middle, where the face's two triangles meet.
-    return test::moved(make_box(Vec3(0.04, 0.002, 0.03), 12),
-                       Pose{R, -(apart + 1e-3) * n + Vec3(0, 0, 3e-3)});
-  };
-  TriangleMesh groove = wall(left, 48e-6);
-  append(groove, wall(right, 49e-6));
-  TriangleMesh spike;
-  spike.vertices = {Vec3::Zero(), Vec3(2e-4, 2e-3, 1e-4), Vec3(-2e-4, 2e-3, 1e-4), Vec3(0, 2e-3, -2e-4)};
-  spike.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
-  const SegmentTree segment(spike);
+  TriangleMesh groove = wall_facing(left, 48e-6);
+  append(groove, wall_facing(right, 49e-6));
+  const SegmentTree segment(spike_down());
   SearchScratch scratch(segment);
   const Pose X;
   const ContactPatch patch = contact_patch({segment, X, scratch}, ObjectModel(groove), 1e-4);
@@ -456,6 +526,40 @@ TEST(ContactPatchByHand, OnePointOfTheSegmentBeforeTwoWallsIsTwoPlaces) {
   EXPECT_LT((patch.object_normal - patch.direction).norm(), 1e-6) << "between the walls' normals: itself";
   // Feet at -48 um left and -49 um right, weighed the same way.
   EXPECT_LT((patch.on_object + (48e-6 * left + 0.8 * 49e-6 * right) / 1.8).norm(), 1e-10);
+}
+
+// A spike 480 um over a floor and 481 um from a wall that leans by `lean` against it. It comes down at a
+// slant of `slant` away from the wall: the floor closes at cos(slant), the wall at cos(slant + lean). At a
+// slant of 50 degrees that is less than half as fast, and the wall counts only if it leans by less than 30
+// degrees.
+TEST(ContactPatchByHand, CountsWhatFacesWithinThirtyDegreesOfTheFastestHoweverSlowlyItCloses) {
+  constexpr double kOneDegree = std::numbers::pi / 180.0;
+  struct Approach {
+    double lean;
+    double slant;
+    bool both;
+  };
+  for (const Approach& way : {Approach{25.0, 50.0, true},
+                              {29.0, 50.0, true},
+                              {31.0, 50.0, false},
+                              {35.0, 50.0, false},
+                              {35.0, 0.0, true}}) {
+    SCOPED_TRACE(::testing::Message() << way.lean << " degrees, at a slant of " << way.slant);
+    const double lean = way.lean * kOneDegree;
+    const double slant = way.slant * kOneDegree;
+    const Vec3 wall(-std::sin(lean), std::cos(lean), 0.0);
+    TriangleMesh object = wall_facing(Vec3::UnitY(), 480e-6);
+    append(object, wall_facing(wall, 481e-6));
+    const SegmentTree segment(spike_down());
+    SearchScratch scratch(segment);
+    const Pose X;
+    SegmentMotion motion;
+    motion.linear = Vec3(-std::sin(slant), -std::cos(slant), 0.0);
+    const ContactPatch patch = contact_patch({segment, X, scratch}, ObjectModel(object), 1e-3, &motion);
+    EXPECT_NEAR(patch.distance, 480e-6, 1e-12);
+    const Vec3 expected = way.both ? Vec3((Vec3::UnitY() + 0.8 * wall).normalized()) : Vec3(Vec3::UnitY());
+    EXPECT_LT((patch.direction - expected).norm(), 1e-6);
+  }
 }
 
 // A triangle with legs of 3 and 4 mm lies 50 um over a large one: A = 6 mm^2, its edges 3, 5 and 4 mm.
@@ -473,6 +577,59 @@ TEST(TiedRegionByHand, OfAFaceOverAFaceIsTheFaceWidenedByTheBand) {
   const Vec3 middle = ((6e-6 + disc) * centroid + e * rim) / weight;
   EXPECT_LT((region.on_a - middle - Vec3(0, 0, up)).norm(), 1e-14);
   EXPECT_LT((region.on_b - middle).norm(), 1e-14);
+}
+
+// In mm: the triangle (0, 0), (6, 0), (0, 6), 50 um over (1, 1), (9, -1), (3, 9). They overlap in (1, 1), a
+// corner of the lower one; (5, 0), where two edges cross; (6, 0), a corner of the upper one; and (1.8, 4.2),
+// where two edges cross again. The shoelace formula's terms are -5, 0, 25.2 and -2.4, so that A = 8.9 mm^2,
+// and 6 A times the centroid is (159.84, 88.36).
+TEST(TiedRegionByHand, OfTwoFacesIsWhereTheyOverlap) {
+  const double e = 5e-6;
+  const Vec3 up(0, 0, 50e-6);
+  const auto in_mm = [](double x, double y) { return Vec3(1e-3 * x, 1e-3 * y, 0.0); };
+  const Corners upper = {in_mm(0, 0) + up, in_mm(6, 0) + up, in_mm(0, 6) + up};
+  const Corners lower = {in_mm(1, 1), in_mm(9, -1), in_mm(3, 9)};
+  const std::array<Vec3, 4> corner = {in_mm(1, 1), in_mm(5, 0), in_mm(6, 0), in_mm(1.8, 4.2)};
+  const double disc = std::numbers::pi * e * e;
+  double weight = 8.9e-6 + disc;
+  Vec3 sum = 8.9e-6 * in_mm(159.84, 88.36) / (6.0 * 8.9);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3& next = corner[(i + 1) % 4];
+    const double band = e * (next - corner[i]).norm();
+    weight += band;
+    sum += 0.5 * band * (corner[i] + next) + 0.25 * disc * corner[i];
+  }
+  const Vec3 middle = sum / weight;
+  const TiedRegion region = tied_region(upper, lower, triangle_distance(upper, lower), up.z() + e, e);
+  EXPECT_NEAR(region.weight, weight, 1e-15);
+  EXPECT_LT((region.on_a - middle - up).norm(), 1e-11);
+  EXPECT_LT((region.on_b - middle).norm(), 1e-11);
+  const TiedRegion turned = tied_region(lower, upper, triangle_distance(lower, upper), up.z() + e, e);
+  EXPECT_NEAR(turned.weight, weight, 1e-15);
+  EXPECT_LT((turned.on_a - middle).norm(), 1e-11);
+  EXPECT_LT((turned.on_b - middle - up).norm(), 1e-11);
+}
+
+// A triangle that stands on an edge of 2 mm, 50 um over the middle of a ridge of 6 mm: the line is one of 2
+// mm, there and back, with no area. Its ends are found several times, which moves the middle by the disc's
+// share of 0.4 % of less than 1 mm, but along the line alone.
+TEST(TiedRegionByHand, OfAnEdgeOverAnEdgeIsALineOnEach) {
+  const double e = 5e-6;
+  const double up = 50e-6;
+  const Corners standing = {Vec3(-1e-3, 0, up), Vec3(1e-3, 0, up), Vec3(0, 1e-3, 5e-3)};
+  const Corners ridge = {Vec3(-3e-3, 0, 0), Vec3(3e-3, 0, 0), Vec3(0, 1e-3, -5e-3)};
+  for (const bool first : {true, false}) {
+    const Corners& a = first ? standing : ridge;
+    const Corners& b = first ? ridge : standing;
+    const TiedRegion region = tied_region(a, b, triangle_distance(a, b), up + e, e);
+    EXPECT_NEAR(region.weight, 4e-3 * e + std::numbers::pi * e * e, 1e-14);
+    EXPECT_NEAR(region.on_a.x(), 0.0, 4e-6);
+    EXPECT_NEAR(region.on_b.x(), 0.0, 4e-6);
+    EXPECT_NEAR(region.on_a.y(), 0.0, 1e-12);
+    EXPECT_NEAR(region.on_b.y(), 0.0, 1e-12);
+    EXPECT_NEAR(region.on_a.z(), first ? up : 0.0, 1e-12);
+    EXPECT_NEAR(region.on_b.z(), first ? 0.0 : up, 1e-12);
+  }
 }
 
 // A right-angled crease along y, one face z = 0 towards -x, one down from it. The contact is 5 um before the
@@ -493,6 +650,41 @@ TEST(NormalFanByHand, BesideACreaseTheOtherFaceCountsByHowNearItIs) {
   const Vec3 contact(-5e-6, 1e-3, 0.0);
   EXPECT_LT((normal_at_contact(object, tied, contact, leaning(60.0)) - leaning(45.0)).norm(), 1e-6);
   EXPECT_LT((normal_at_contact(object, tied, contact, leaning(20.0)) - leaning(20.0)).norm(), 1e-6);
+  // A mean of places that hovers 4 um below the first face and 3 um before the second: the second is nearest,
+  // the first counts by 1 - (4 - 3) / (10 + 3) = 12 / 13, and the fan ends at (1, 0, 12).
+  const Vec3 hovering(-3e-6, 1e-3, -4e-6);
+  const Vec3 end = Vec3(1.0, 0.0, 12.0).normalized();
+  EXPECT_LT((normal_at_contact(object, tied, hovering, leaning(1.0)) - end).norm(), 1e-6);
+  EXPECT_LT((normal_at_contact(object, tied, contact, Vec3::Zero()) - leaning(0.0)).norm(), 1e-12)
+      << "they touch: the nearest face's own";
+  EXPECT_EQ(normal_at_contact(object, {}, contact, leaning(20.0)), leaning(20.0)) << "no face has a say";
+}
+
+// A sheet in the plane z = 0. 2.5 um inside any of its rims the way out counts by 3 / 4, 5 um inside by a
+// half, 20 um inside not at all: the fan ends at 0.75 out + 0.25 up, halfway, or straight up.
+TEST(NormalFanByHand, BesideARimTheWayOutCountsByHowNearItIs) {
+  const ObjectModel object(TriangleMesh{{{-0.03, -0.03, 0}, {0, -0.03, 0}, {0, 0.03, 0}, {-0.03, 0.03, 0}},
+                                        {{0, 1, 2}, {0, 2, 3}}});
+  TiedTriangles tied;
+  for (int slot = 0; slot < object.tree().size(); ++slot) tied.add(slot);
+  struct Rim {
+    Vec3 place;
+    Vec3 out;
+  };
+  const Rim rims[] = {{Vec3(0, 1e-3, 0), Vec3::UnitX()},
+                      {Vec3(-0.01, -0.03, 0), -Vec3::UnitY()},
+                      {Vec3(-0.02, 0.03, 0), Vec3::UnitY()},
+                      {Vec3(-0.03, 0.01, 0), -Vec3::UnitX()}};
+  for (const Rim& rim : rims) {
+    SCOPED_TRACE(::testing::Message() << "out along " << rim.out.transpose());
+    const Vec3 n_c = (Vec3::UnitZ() + 20.0 * rim.out).normalized();
+    const auto normal_inside = [&](double depth) {
+      return normal_at_contact(object, tied, rim.place - depth * rim.out, n_c);
+    };
+    EXPECT_LT((normal_inside(2.5e-6) - (Vec3::UnitZ() + 3.0 * rim.out).normalized()).norm(), 1e-6);
+    EXPECT_LT((normal_inside(5e-6) - (Vec3::UnitZ() + rim.out).normalized()).norm(), 1e-6);
+    EXPECT_LT((normal_inside(20e-6) - Vec3::UnitZ()).norm(), 1e-6);
+  }
 }
 
 // Links with offsets along their axes: 30 mm at the first segment's own joint, 20 mm at the second's. From
@@ -517,6 +709,14 @@ TEST(BarycentricByHand, APointBesideTheTriangleHasNoNegativeWeight) {
   const Corners t = {Vec3(0, 0, 0), Vec3(1e-3, 0, 0), Vec3(0, 1e-3, 0)};
   EXPECT_LT((barycentric(t, Vec3(1e-3, 1e-3, 0.0)) - Vec3(0.0, 0.5, 0.5)).norm(), 1e-12);
   EXPECT_LT((barycentric(t, Vec3(-1e-3, 0.5e-3, 0.0)) - Vec3(0.5, 0.0, 0.5)).norm(), 1e-12);
+}
+
+// (0.2, 0.3) of the legs, 5 mm above the triangle. And three corners on a line.
+TEST(BarycentricByHand, WithinTheTriangleTheyAreTheShares) {
+  const Corners t = {Vec3(0, 0, 0), Vec3(1e-3, 0, 0), Vec3(0, 1e-3, 0)};
+  EXPECT_LT((barycentric(t, Vec3(0.2e-3, 0.3e-3, 5e-3)) - Vec3(0.5, 0.2, 0.3)).norm(), 1e-12);
+  const Corners line = {Vec3(0, 0, 0), Vec3(1.0, 0, 0), Vec3(2.0, 0, 0)};
+  EXPECT_EQ(barycentric(line, Vec3(0.5, 0.1, 0.2)), Vec3(Vec3::Constant(1.0 / 3.0)));
 }
 
 // Steps shorter than the margin: what is known of the distance is spent to the last micrometre before it is

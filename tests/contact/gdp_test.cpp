@@ -263,6 +263,29 @@ TEST(Gdp, ThePalmWithinTheMarginIsContactWithoutForce) {
   EXPECT_NEAR(palm.point.z(), lowest.z(), 0.01);
 }
 
+// The same with a hand that stands turned and moved: the contact is 30 um over the box, it faces from the box
+// to the palm, and its point is the palm's own wherever that is.
+TEST(Gdp, ThePalmsContactFacesThePalmAndStandsInItsFrame) {
+  const Pose X_WH{rotation_about(Vec3::UnitZ(), 0.4), Vec3(0.1, -0.2, 0.05)};
+  const HandModel probe = test::simple_hand(Handedness::kRight, X_WH);
+  const Pose X = probe.palm_pose();
+  Vec3 lowest = Vec3::Zero();
+  for (const Vec3& v : probe.mesh(kPalm).vertices) {
+    if (v.y() < lowest.y()) lowest = v;
+  }
+  const TriangleMesh box =
+      moved(make_box(Vec3(0.02, 0.02, 0.02), 12), X * at(lowest.x(), lowest.y() - 0.01 - 30e-6, lowest.z()));
+  const HapticModel model(test::simple_hand(Handedness::kRight, X_WH), ObjectModel(box));
+  const GdpState state({model.hand, model.trees, model.object, model.contact});
+  const ContactRecord& palm = state.record[kPalm];
+  ASSERT_TRUE(palm.active);
+  EXPECT_GT(palm.n_c.dot(X.R * Vec3::UnitY()), 0.99);
+  EXPECT_EQ(palm.force_normal, palm.n_c);
+  EXPECT_EQ(palm.p_hcp, palm.p_gdp);
+  EXPECT_NEAR(palm.p_S.y(), lowest.y(), 5e-6) << "what ties lies within 5 um";
+  EXPECT_LT((X * palm.p_S - palm.p_gdp).norm(), 1e-12);
+}
+
 TEST(Gdp, TheOpenHandOnTheObjectIsASetUpError) {
   const HapticModel model = model_of(moved(make_sphere(0.02, 500), at(0.0, 0.0, -0.05)));
   EXPECT_THAT([&] { HapticState state(model); }, ::testing::ThrowsMessage<std::invalid_argument>(

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
@@ -71,6 +72,51 @@ TEST(MeanDirectionByHand, PlacesThatRunOverCountToo) {
   add_place(cancelled, 1.0, 1.0, Vec3::UnitY(), 1.0);
   add_place(cancelled, 2.0, 4.0, -Vec3::UnitX(), 27.0);
   EXPECT_EQ(cancelled.unit(), Vec3(Vec3::UnitY()));
+}
+
+// Five pairs; two places are one if they are less than 1 um apart on both bodies. The first three are one
+// place of weight 3, which faces as the nearest of them, the second, does. The fourth is 2 um aside on b
+// alone, the fifth on a alone.
+TEST(MeanDirectionByHand, PairsOfOnePlaceFaceAsTheNearestOfThem) {
+  const Vec3 here = Vec3::Zero();
+  const Vec3 beside(0.5e-6, 0, 0);
+  const Vec3 away(2e-6, 0, 0);
+  MeanDirection mean(1e-6);
+  mean.add({4.0, here, here}, Vec3::UnitZ(), 1.0);
+  mean.add({1.0, beside, here}, Vec3::UnitX(), 1.0);
+  mean.add({2.0, here, beside}, Vec3::UnitY(), 1.0);
+  mean.add({4.0, here, away}, Vec3::UnitY(), 4.0);
+  mean.add({4.0, away, here}, Vec3::UnitZ(), 12.0);
+  EXPECT_LT((mean.unit() - Vec3(3.0, 4.0, 12.0) / 13.0).norm(), 1e-12);
+}
+
+// Twenty, each shown twice, and ten more, of which four have room.
+TEST(TiedTriangles, HoldTheFirst24EachOnceInTheirOrder) {
+  TiedTriangles tied;
+  EXPECT_EQ(tied.begin(), tied.end());
+  std::vector<int> expected;
+  for (int i = 0; i < 20; ++i) {
+    tied.add(100 - 3 * i);
+    tied.add(100 - 3 * (i / 2));
+    expected.push_back(100 - 3 * i);
+  }
+  for (int i = 0; i < 10; ++i) {
+    tied.add(200 + i);
+    if (i < 4) expected.push_back(200 + i);
+  }
+  EXPECT_EQ(std::vector<int>(tied.begin(), tied.end()), expected);
+}
+
+// Up, the same again, ten between it and x, then x, the twelfth. There is no room for y.
+TEST(NormalFan, HoldsTwelveDirectionsEachOnce) {
+  NormalFan fan;
+  fan.add(Vec3::UnitZ());
+  fan.add(Vec3::UnitZ());
+  for (int i = 1; i <= 10; ++i) fan.add(Vec3(std::sin(8.0 * i * kDegree), 0.0, std::cos(8.0 * i * kDegree)));
+  fan.add(Vec3::UnitX());
+  fan.add(Vec3::UnitY());
+  EXPECT_LT((fan.nearest(Vec3::UnitX()) - Vec3::UnitX()).norm(), 1e-9);
+  EXPECT_NEAR(fan.nearest(Vec3::UnitY()).y(), 0.0, 1e-9);
 }
 
 TEST(NormalFan, TakesTheNearestDirectionOfItsCone) {

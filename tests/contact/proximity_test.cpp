@@ -208,6 +208,27 @@ TEST(Containment, DoesNotCountVerticesThatNoTriangleUses) {
   EXPECT_FALSE(Containment(sheet).with(make_sphere(0.01, 100), Pose{}));
 }
 
+// Seen from its middle, a ball with a triangle missing covers nearly the whole sphere.
+TEST(Containment, AnOpenShellContainsNothingHoweverMuchItSurrounds) {
+  const TriangleMesh small = make_sphere(0.01, 100);
+  TriangleMesh open = make_sphere(0.1, 400);
+  EXPECT_TRUE(Containment(open).with(small, Pose{}));
+  open.triangles.pop_back();
+  ASSERT_GT(winding_number(open, Vec3::Zero()), 0.9);
+  EXPECT_FALSE(Containment(open).with(small, Pose{}));
+}
+
+// Two balls of 50 mm, 0.5 m apart, and a sheet that is open: each by itself.
+TEST(Containment, LooksAtEveryPartOfTheObjectByItself) {
+  TriangleMesh object = make_sphere(0.1, 400);
+  append(object, make_sphere(0.1, 300), Pose{Mat3::Identity(), Vec3(0.5, 0, 0)});
+  append(object, TriangleMesh{{Vec3(-1, -1, 1), Vec3(1, -1, 1), Vec3(0, 1, 1)}, {{0, 1, 2}}});
+  const Containment containment(object);
+  const TriangleMesh small = make_sphere(0.01, 100);
+  for (const double x : {0.0, 0.25, 0.5})
+    EXPECT_EQ(containment.with(small, Pose{Mat3::Identity(), Vec3(x, 0, 0)}), x != 0.25) << x;
+}
+
 TEST(Containment, SeesThroughAnInsideOutSolidAndDuplicateFaces) {
   const TriangleMesh small = make_sphere(0.01, 100);
   TriangleMesh inside_out = make_sphere(0.1, 400);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/contact/proximity.h"
 #include "phalanx/contact/segment_tree.h"
 #include "support/search_cases.h"
 
@@ -156,6 +157,36 @@ TEST(ObjectTree, AnEmptyLaneIsInsideOut) {
       EXPECT_EQ(tree.nodes()[0].max[k][lane], -1e30F);
     }
   }
+}
+
+// Four triangles at the heights 0 to 3, each once either way round: their normals cancel out, and both trees
+// look along z. From a triangle 5 above the lowest the distance is 5; the next is 3.7 aside and 4 below.
+TEST(SearchTrees, LookAlongZWhereTheNormalsCancel) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 a(4.0 * i, 0.0, i);
+    const Vec3 b = a + Vec3::UnitX();
+    const Vec3 c = a + Vec3::UnitY();
+    test::add_triangle(mesh, a, b, c);
+    test::add_triangle(mesh, a, c, b);
+  }
+  const ObjectTree object(mesh);
+  EXPECT_EQ(lane_of(object.nodes()[0].axis, 0), Vec3(Vec3::UnitZ()));
+  EXPECT_NEAR(object.nodes()[0].low[0], -1.5, 1e-6);
+  EXPECT_NEAR(object.nodes()[0].high[0], 1.5, 1e-6);
+  const SegmentTree lenses(mesh);
+  EXPECT_EQ(lane_of(lenses.nodes()[0].axis, 0), Vec3(Vec3::UnitZ()));
+  EXPECT_NEAR((lane_of(lenses.nodes()[0].centre, 0) - Vec3(6.5, 0.5, 1.5)).norm(), 0.0, 1e-5);
+  EXPECT_NEAR(lenses.nodes()[0].half[0], 1.5, 1e-5);
+
+  TriangleMesh above;
+  test::add_triangle(above, Vec3(0.2, 0.2, 5.0), Vec3(0.3, 0.2, 5.0), Vec3(0.2, 0.3, 5.0));
+  const SegmentTree segment(above);
+  SearchScratch scratch(segment);
+  const Pose X;
+  EXPECT_NEAR(distance({segment, X, scratch}, object, 10.0), 5.0, 1e-12);
+  SearchScratch wide(lenses);
+  EXPECT_NEAR(distance({lenses, X, wide}, ObjectTree(above), 10.0), 5.0, 1e-12);
 }
 
 /// The radius of the smallest circle around a triangle: half its longest edge where the angle opposite is

@@ -255,6 +255,17 @@ TEST(UnitAdvice, TakesThreeMillimetresToThreeMetres) {
   EXPECT_NE(unit_advice(3.001, 1.0), "");
 }
 
+// The first unit that makes it 20 mm to 1 m wide: 20 of 1 mm do, 19.9 do not, but 19.9 of 1 cm.
+TEST(UnitAdvice, NamesTheFirstUnitThatMakesItTwentyMillimetresToAMetreWide) {
+  const auto advises = [](double largest, const std::string& words) {
+    return unit_advice(largest, 1.0).find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(advises(20.0, "are mm (20 mm)"));
+  EXPECT_TRUE(advises(19.9, "are cm (199 mm)"));
+  EXPECT_TRUE(advises(1000.0, "are mm (1 m)"));
+  EXPECT_TRUE(advises(1001.0, "no object for a hand"));
+}
+
 std::string own_niceness(const std::string&) { return std::to_string(::getpriority(PRIO_PROCESS, 0)); }
 
 // The loop may run at nice 0, where the system grants nothing better.

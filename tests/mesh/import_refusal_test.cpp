@@ -98,6 +98,18 @@ TEST(ImportRefuses, AnObjFaceThatNamesAVertexThatDoesNotExist) {
               AllOf(HasSubstr("line 4"), HasSubstr("'x'")));
 }
 
+// What a message repeats of a file is at most 40 characters long and printable.
+TEST(ImportRefuses, AnObjWordInPrintableCharactersAndShortened) {
+  const auto with_word = [](const std::string& word) {
+    return refusal("v 0 0 0\nv 1 " + word + " 0\n", "obj");
+  };
+  EXPECT_THAT(with_word(std::string(40, 'x')),
+              AllOf(HasSubstr("line 2"), HasSubstr("'" + std::string(40, 'x') + "'")));
+  EXPECT_THAT(with_word(std::string(41, 'x')), HasSubstr("'" + std::string(40, 'x') + "...'"));
+  EXPECT_THAT(with_word("!\x1F~\x7F\xE9"), HasSubstr("'!?~?"
+                                                     "?'"));
+}
+
 TEST(ImportRefuses, AFaceOfAnyFormatThatNamesAVertexThatDoesNotExist) {
   TriangleMesh mesh = make_sphere(0.1, 40);
   mesh.triangles[5][2] = 1000;

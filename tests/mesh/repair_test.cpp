@@ -568,12 +568,27 @@ TEST(Repair, RefusesTrianglesWithoutAnyArea) {
 // From 0.1 mm on in mm, from 1 m on in m.
 TEST(FindingWords, SayAWidthInItsUnit) {
   for (const auto& [width, words] :
-       {std::pair{10e-6, "10 um"}, {99e-6, "99 um"}, {0.2e-3, "0.2 mm"}, {2.5e-3, "2.5 mm"}, {2.0, "2 m"}}) {
+       {std::pair{10e-6, "10 um"}, {99e-6, "99 um"}, {1e-4, "0.1 mm"}, {2.5e-3, "2.5 mm"}, {1.0, "1 m"}}) {
     for (const FindingKind kind : {FindingKind::kSlits, FindingKind::kHoles}) {
       EXPECT_THAT(finding_meaning({.kind = kind, .found = 1, .size = 0.05, .width = width}),
                   HasSubstr(std::string("the widest is ") + words));
     }
   }
+}
+
+TEST(FindingWords, TellWhatWasRepairedFromWhatRemains) {
+  const auto flat = [](std::size_t repaired) {
+    return finding_meaning({.kind = FindingKind::kDegenerateFaces, .found = 3, .repaired = repaired});
+  };
+  EXPECT_THAT(flat(3), HasSubstr("covered by its neighbours"));
+  EXPECT_THAT(flat(3), ::testing::Not(HasSubstr("thin lines")));
+  EXPECT_THAT(flat(0), HasSubstr("thin lines"));
+  EXPECT_THAT(flat(0), ::testing::Not(HasSubstr("covered by its neighbours")));
+  EXPECT_THAT(flat(1), HasSubstr("covered by its neighbours; those that remain: met as thin lines"));
+  EXPECT_THAT(finding_meaning({.kind = FindingKind::kUnits, .found = 1, .size = 2e-3}),
+              HasSubstr("too small"));
+  EXPECT_THAT(finding_meaning({.kind = FindingKind::kUnits, .found = 1, .size = 90.0}),
+              HasSubstr("too large"));
 }
 
 TEST(FindingWords, AreThereForEveryKind) {

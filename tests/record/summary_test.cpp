@@ -65,6 +65,27 @@ TEST(Summary, ReportsLimitersByTheTicksInWhichTheyActed) {
   EXPECT_EQ(activity[1].ticks + activity[2].ticks, 0U);
 }
 
+// Torques were limited in two ticks, their rate in three; a contact slid in two.
+TEST(Summary, TellsEachLimiterByItsTicksAndTheKeyThatSetsIt) {
+  Summary summary;
+  for (const Status status :
+       {Status::kTorqueLimited | Status::kTorqueRateLimited, Status::kTorqueLimited | Status::kSlid,
+        Status::kTorqueRateLimited | Status::kSlid, Status::kTorqueRateLimited}) {
+    Snapshot snapshot;
+    snapshot.status = status;
+    add_tick(summary, snapshot);
+  }
+  const auto activity = limiters(summary);
+  EXPECT_EQ(activity[0].ticks, 0U);
+  EXPECT_STREQ(activity[1].name, "joint_torque");
+  EXPECT_STREQ(activity[1].key, "limits.joint_torque_nm");
+  EXPECT_EQ(activity[1].ticks, 2U);
+  EXPECT_STREQ(activity[2].name, "torque_rate");
+  EXPECT_STREQ(activity[2].key, "limits.torque_rate_nm_per_s");
+  EXPECT_EQ(activity[2].ticks, 3U);
+  EXPECT_THAT(warnings(summary), ElementsAre(HasSubstr("2 ticks: a contact slid")));
+}
+
 TEST(Summary, WarnsOfWhatMakesTheResultLessThanItLooks) {
   EXPECT_THAT(warnings(two_ticks()), ElementsAre(HasSubstr("1 tick: a measured angle moved faster"),
                                                  HasSubstr("slid, up to 6.0 mm")));

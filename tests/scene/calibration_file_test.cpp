@@ -95,8 +95,15 @@ TEST(CalibrationFile, HoldsOnlyWhatPosesCanCalibrate) {
   Calibration c = example();
   c.channels[0].channel.kind = ChannelKind::kMotor;
   EXPECT_THROW(static_cast<void>(calibration_text(c)), std::invalid_argument);
-  c.channels[0].channel = {.kind = ChannelKind::kCurl, .index = 5};
-  EXPECT_THROW(static_cast<void>(calibration_text(c)), std::invalid_argument);
+  for (const auto& [kind, index] : {std::pair{ChannelKind::kCurl, 5},
+                                    {ChannelKind::kSplay, -1},
+                                    {ChannelKind::kAngle, kJoints},
+                                    {ChannelKind::kAngle, -1}}) {
+    c.channels[0].channel = {.kind = kind, .index = index};
+    EXPECT_THROW(static_cast<void>(calibration_text(c)), std::invalid_argument) << index;
+  }
+  c.channels[0].channel = {.kind = ChannelKind::kAngle, .index = kJoints - 1};
+  EXPECT_NO_THROW(static_cast<void>(calibration_text(c)));
 }
 
 TEST(CalibrationFile, OfAnotherFormatIsRefused) {
@@ -125,6 +132,16 @@ TEST(CalibrationFile, WithoutAChannelOrWithTooMany) {
 TEST(CalibrationFile, WithAChannelTwice) {
   expect_bad_calibration(kHead + kAngle + kNumbers + kAngle + kNumbers,
                          {"angle of index_pip_flexion", "twice"});
+}
+
+// Two of one kind, and two of one digit, are four channels.
+TEST(CalibrationFile, TellsChannelsByKindAndPlace) {
+  const std::string curl = "[[channel]]\nkind = \"curl\"\ndigit = \"thumb\"\n" + kNumbers;
+  const std::string text = kHead + kAngle + kNumbers +
+                           "[[channel]]\nkind = \"angle\"\njoint = \"index_mcp_flexion\"\n" + kNumbers +
+                           "[[channel]]\nkind = \"splay\"\ndigit = \"thumb\"\n" + kNumbers + curl;
+  EXPECT_EQ(parse_calibration(text, "good.toml").channels.size(), 4U);
+  expect_bad_calibration(text + curl, {"bad.toml", "twice"});
 }
 
 TEST(CalibrationFile, WithANameThatNobodyKnows) {

@@ -11,6 +11,7 @@
 #include "expect_error.h"
 #include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
+#include "record/temporary_folder.h"
 
 namespace phalanx {
 namespace {
@@ -296,6 +297,16 @@ TEST(DeviceFile, ThatStandsOnItselfIsRefused) {
   expect_scene_error([&] { static_cast<void>(load_device_file("a.toml", folder)); },
                      {"base = ", "in a circle"});
   std::filesystem::remove_all(folder);
+}
+
+TEST(DeviceFile, MayStandOnEightOthersAndNoMore) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "d0.toml") << kJoint << kMotor;
+  for (int i = 1; i <= 9; ++i)
+    std::ofstream(folder / ("d" + std::to_string(i) + ".toml")) << "base = \"d" << i - 1 << ".toml\"\n";
+  EXPECT_EQ(load_device_file("d8.toml", folder.path()).joints.size(), 1U);
+  expect_scene_error([&] { static_cast<void>(load_device_file("d9.toml", folder.path())); },
+                     {"d1.toml:1: base = ", "in a circle"});
 }
 
 TEST(DeviceFile, ThatShipsIsReadWhole) {

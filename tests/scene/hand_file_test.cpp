@@ -188,6 +188,11 @@ TEST(HandFile, WithABackAlongTheFinger) {
                       {"thumb.dorsal", "parallel"});
 }
 
+TEST(HandFile, WithADirectionThatIsNone) {
+  expect_hand_refused(changed("distal = [-0.519, -0.462, -0.719]", "distal = [0, 0, 0]"),
+                      {"thumb.distal", "has no direction"});
+}
+
 TEST(HandFile, ThatIsMissing) {
   expect_scene_error([] { static_cast<void>(load_hand_file("adlt")); },
                      {"hand \"adlt\"", "did you mean \"adult\"?"});

@@ -188,6 +188,28 @@ TEST(HandMeshes, InAnAbsurdUnitAreRefused) {
       {"mm long, less than 3 mm", "1000 for a file in metres"});
 }
 
+// A box of 20 mm whose far corners lie 298 or 301 mm down the z axis and 10 mm beside it twice: 298.3 mm,
+// 301.3 mm.
+TEST(HandMeshes, MayBeThreeMillimetresLongAndReachThreeHundred) {
+  const auto box = [](double edge, double z) {
+    TriangleMesh mesh = make_box({edge, edge, edge}, 12);
+    for (Vec3& v : mesh.vertices) v.z() += z;
+    return mesh;
+  };
+  for (const TriangleMesh& good : {box(3.01e-3, 0.0), box(0.02, -0.288)}) {
+    const HandFolder folder;
+    SegmentMeshes meshes = capsules();
+    meshes[3] = good;
+    folder.write_meshes(meshes);
+    const std::string file = folder.write_hand(kCollision);
+    EXPECT_NO_THROW((void)load_hand(described(file)));
+  }
+  expect_meshes_refused([&](TriangleMesh& mesh) { mesh = box(2.99e-3, 0.0); },
+                        {"is 2.99 mm long, less than 3 mm"});
+  expect_meshes_refused([&](TriangleMesh& mesh) { mesh = box(0.02, -0.291); },
+                        {"reaches 301.3 mm from the segment's joint, more than 300 mm"});
+}
+
 TEST(HandMeshes, ThatAreMissingAreRefusedByTheirName) {
   const HandFolder folder;
   folder.write_meshes(capsules());

@@ -203,6 +203,27 @@ TEST(LoadHandSkin, WithWrongWeightsIsRefused) {
   expect_skin_refused(&SkinText::influences, "[[[0, 1]]]", {"influences", "1 entries for 4 vertices"});
 }
 
+// 300 mm from the wrist; weights whose sum is within a thousandth of 1; four segments at a vertex.
+TEST(LoadHandSkin, MayReachItsBoundsAndNoFurther) {
+  const auto expect_taken = [](std::string SkinText::* part, const std::string& value) {
+    const HandFolder folder;
+    SkinText text;
+    text.*part = value;
+    EXPECT_NO_THROW((void)load_hand_skin(described(folder, text))) << value;
+  };
+  expect_taken(&SkinText::vertices, "[[0, 0, 300], [10, 0, 0], [0, 10, 0], [0, 0, 10]]");
+  expect_skin_refused(&SkinText::vertices, "[[0, 0, 300.1], [10, 0, 0], [0, 10, 0], [0, 0, 10]]",
+                      {"vertices_mm[0]", "more than 300 mm"});
+  const std::string rest = ", [[0, 1]], [[0, 1]], [[0, 1]]]";
+  expect_taken(&SkinText::influences, "[[[0, 0.25], [1, 0.25], [0, 0.25], [1, 0.25]]" + rest);
+  for (const char* near_enough : {"0.9991", "1.0009"})
+    expect_taken(&SkinText::influences, "[[[0, " + std::string(near_enough) + "]]" + rest);
+  expect_skin_refused(&SkinText::influences, "[[[0, 1.0011]]" + rest, {"1.0011 is no weight"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 0]]" + rest, {"0 is no weight"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 0.5], [1, 0.4989]]" + rest, {"sum is 0.9989"});
+  expect_skin_refused(&SkinText::influences, "[[[0, 0.5], [1, 0.5011]]" + rest, {"sum is 1.0011"});
+}
+
 TEST(LoadHandSkin, WithAnIndexWithoutAVertexIsRefused) {
   expect_skin_refused(&SkinText::triangles, "[[0, 1, 2], [1, 2, 4]]",
                       {"triangles[1] = [1,2,4]", "no vertex 4", "0 to 3"});

@@ -140,6 +140,34 @@ TEST(MotionFile, WithAHugeLine) {
   expect_motion_refused(std::string(70'000, 'x'), {"m.csv:1", "more than 65536"});
 }
 
+TEST(MotionFile, WithACellThatIsShownInFortyPrintableCharacters) {
+  const auto expect_shown = [](const std::string& cell, const std::string& shown) {
+    expect_motion_refused("time_s,index_pip_flexion\n0," + cell + "\n",
+                          {": \"" + shown + "\" is not a number"});
+  };
+  expect_shown(std::string(40, 'x'), std::string(40, 'x'));
+  expect_shown(std::string(41, 'x'), std::string(40, 'x') + "...");
+  expect_shown("be\x1F nt\x7F~", "be? nt?~");
+  expect_shown("\"\"", "");
+  expect_shown("\"", "\"");
+}
+
+// 2 pi in binary, and the next number.
+TEST(MotionFile, MayTurnAJointByAFullTurnAndNoFurther) {
+  EXPECT_EQ(parse_csv("time_s,index_pip_flexion\n0,6.283185307179586\n").angle[0][kPip],
+            2.0 * std::numbers::pi);
+  for (const char* angle : {"6.283185307179587", "-6.283185307179587"})
+    expect_motion_refused("time_s,index_pip_flexion\n0," + std::string(angle) + "\n",
+                          {"m.csv:2", "more than a full turn"});
+}
+
+// The first trial has a time twice.
+TEST(MotionFile, IsReadThoughATrialThatNobodyWantsIsBroken) {
+  const std::string text = "time_s,index_pip_flexion\n0,0.1\n0,0.2\n-1,0.3\n";
+  EXPECT_EQ(parse_csv(text, 2).time_s, (std::vector<double>{-1.0}));
+  expect_motion_refused(text, {"m.csv:3", "stands twice"}, 1);
+}
+
 constexpr const char* kThreeTrials = "time_s,index_pip_flexion\n4,0.1\n5,0.2\n4.5,0.3\n5,0.4\n6,0.5\n0,0.6\n";
 
 TEST(MotionFile, WhoseTimeRunsBackwardsNamesItsTrials) {

@@ -69,6 +69,14 @@ TEST(SceneErrors, WrongType) {
   expect_scene_refused("objects = [3]", {"objects.0", "is a table"});
 }
 
+// 80 characters are shown, two of them the quotes; of what is longer the first 77.
+TEST(SceneErrors, LongValueIsShownShortened) {
+  expect_scene_refused("rate_hz = \"" + std::string(78, 'x') + "\"",
+                       {"rate_hz = '" + std::string(78, 'x') + "': is a string"});
+  expect_scene_refused("rate_hz = \"" + std::string(79, 'x') + "\"",
+                       {"rate_hz = '" + std::string(76, 'x') + "...: is a string"});
+}
+
 TEST(SceneErrors, UnknownChoice) {
   expect_scene_refused("force.law = \"hook\"",
                        {"bad.toml:1", "force.law = ", "hook", "did you mean \"hooke\"?", "duffing"});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -99,6 +100,109 @@ TEST(Scene, ConvertsItsUnitsToSi) {
   EXPECT_DOUBLE_EQ(scene.motion.script.tremor_rad, std::numbers::pi / 20.0);
   EXPECT_DOUBLE_EQ(scene.objects[0].diameter, 0.04);
   EXPECT_TRUE(scene.objects[0].pose.p.isApprox(Vec3(0.001, -0.0025, 0.003), 1e-15));
+}
+
+// Times, closures, laws and limits: every number another.
+TEST(Scene, KeepsEachNumberInItsOwnPlace) {
+  const SceneDescription scene = parse(R"(
+    seconds = 6.5
+    contact.slid_mm = 7
+    [motion]
+    start_s = 0.125
+    close_s = 2
+    hold_s = 3
+    open_s = 4
+    repeat = 5
+    closure = 0.75
+    thumb = 0.5
+    index = 1.5
+    middle = 2.5
+    ring = 3.5
+    little = 4.5
+    trial = 9
+    [force]
+    damping_ns_per_m = 3.25
+    velocity_lowpass_hz = 40
+    exponent = 1.25
+    hunt_crossley_damping_s_per_m = 2.25
+    linear_depth_mm = 8
+    [smoothing]
+    min_n_per_s = -30
+    max_n_per_s = 50
+    [limits]
+    fingertip_force_n = 4.5
+    joint_torque_nm = 0.25
+    torque_rate_nm_per_s = 8.5
+    joint_speed_rad_per_s = 35)");
+  EXPECT_EQ(scene.seconds, 6.5);
+  EXPECT_DOUBLE_EQ(scene.contact.slid_distance, 7e-3);
+  EXPECT_EQ(scene.motion.script.start_s, 0.125);
+  EXPECT_EQ(scene.motion.script.close_s, 2.0);
+  EXPECT_EQ(scene.motion.script.hold_s, 3.0);
+  EXPECT_EQ(scene.motion.script.open_s, 4.0);
+  EXPECT_EQ(scene.motion.script.repeat, 5);
+  EXPECT_EQ(scene.motion.script.closure, 0.75);
+  EXPECT_EQ(scene.motion.script.digit_closure, (std::array<double, kDigits>{0.5, 1.5, 2.5, 3.5, 4.5}));
+  EXPECT_EQ(scene.motion.trial, 9);
+  EXPECT_EQ(scene.force.damping, 3.25);
+  EXPECT_EQ(scene.force.velocity_lowpass_hz, 40.0);
+  EXPECT_EQ(scene.force.hunt_crossley_exponent, 1.25);
+  EXPECT_EQ(scene.force.hunt_crossley_damping, 2.25);
+  EXPECT_DOUBLE_EQ(scene.force.linear_depth, 8e-3);
+  EXPECT_EQ(scene.smoothing.min_rate, -30.0);
+  EXPECT_EQ(scene.smoothing.max_rate, 50.0);
+  EXPECT_EQ(scene.limits.fingertip_force, 4.5);
+  EXPECT_EQ(scene.limits.joint_torque, 0.25);
+  EXPECT_EQ(scene.limits.torque_rate, 8.5);
+  EXPECT_EQ(scene.limits.joint_speed, 35.0);
+}
+
+TEST(Scene, KeepsEachSizeOfAnObjectInItsOwnPlace) {
+  const auto object = [](const std::string& keys) { return parse("[[objects]]\n" + keys).objects.at(0); };
+  const ObjectDescription key = object("kind = \"key\"\nlength_mm = 51\nbreadth_mm = 21\nthickness_mm = 3");
+  EXPECT_DOUBLE_EQ(key.length, 0.051);
+  EXPECT_DOUBLE_EQ(key.breadth, 0.021);
+  EXPECT_DOUBLE_EQ(key.thickness, 0.003);
+  const ObjectDescription ball = object("kind = \"therapy_ball\"\ndiameter_mm = 66\nbump_mm = 5");
+  EXPECT_DOUBLE_EQ(ball.diameter, 0.066);
+  EXPECT_DOUBLE_EQ(ball.bump, 0.005);
+  EXPECT_DOUBLE_EQ(object("kind = \"peg\"\nhead_diameter_mm = 31").head_diameter, 0.031);
+  EXPECT_DOUBLE_EQ(object("kind = \"jar\"\nlid_diameter_mm = 76").lid_diameter, 0.076);
+  const ObjectDescription torus = object("kind = \"torus\"\nring_diameter_mm = 91\ntube_diameter_mm = 16");
+  EXPECT_DOUBLE_EQ(torus.ring_diameter, 0.091);
+  EXPECT_DOUBLE_EQ(torus.tube_diameter, 0.016);
+  const ObjectDescription box = object("kind = \"box\"\nextent_mm = [41, 42, 43]\ntriangles = 99");
+  EXPECT_TRUE(box.extent.isApprox(Vec3(0.041, 0.042, 0.043), 1e-15));
+  EXPECT_EQ(box.triangles, 99);
+  const ObjectDescription file =
+      object("kind = \"file\"\nfile = \"m.obj\"\nsize_mm = 0\nunit = \"in\"\ndecimate_to = 77");
+  EXPECT_EQ(file.size, 0.0);
+  EXPECT_EQ(file.unit, 0.0254);
+  EXPECT_EQ(file.decimate_to, 77);
+}
+
+// The table of docs/scenes.md: diameter and length [mm] of what has sizes of its own.
+TEST(Scene, OfAnObjectWithoutSizesHasThoseOfItsKind) {
+  struct KindSizes {
+    const char* kind;
+    double diameter, length;
+  };
+  for (const KindSizes& sizes : {KindSizes{"bottle", 65, 205},
+                                 {"cup", 75, 90},
+                                 {"pen", 10, 140},
+                                 {"peg", 9, 32},
+                                 {"jar", 80, 110},
+                                 {"tap_handle", 60, 50}}) {
+    const ObjectDescription object =
+        parse("[[objects]]\nkind = \"" + std::string(sizes.kind) + "\"").objects.at(0);
+    EXPECT_DOUBLE_EQ(object.diameter, 1e-3 * sizes.diameter) << sizes.kind;
+    EXPECT_DOUBLE_EQ(object.length, 1e-3 * sizes.length) << sizes.kind;
+  }
+  EXPECT_DOUBLE_EQ(parse("[[objects]]\nkind = \"therapy_ball\"").objects.at(0).diameter, 0.07);
+  EXPECT_DOUBLE_EQ(parse("[[objects]]\nkind = \"key\"").objects.at(0).length, 0.057);
+  EXPECT_TRUE(parse("[[objects]]\nkind = \"putty_bar\"")
+                  .objects.at(0)
+                  .extent.isApprox(Vec3(0.1, 0.035, 0.03), 1e-15));
 }
 
 // Rz(90) Ry(90) Rx(90): x goes by Rx to x, by Ry to -z, by Rz to -z; y goes to z, to x, to y.

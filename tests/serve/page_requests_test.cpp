@@ -8,7 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "phalanx/core/index.h"
 #include "phalanx/device/fault.h"
+#include "phalanx/scene/scene.h"
+#include "phalanx/scene/scene_keys.h"
 #include "serve/state_message.h"
 #include "station/host_fixture.h"
 
@@ -89,8 +92,9 @@ TEST_F(PageRequestsTest, ASetIsLaidOverTheSceneAndShown) {
   EXPECT_FALSE(shown.has_fault());
   EXPECT_GT(shown.time(), 0.0);
   EXPECT_EQ(shown.loop().lateness().octave_size(), 27);
-  handed(set("force.stiffness_n_per_mm", ""));
+  EXPECT_EQ(handed(set("force.stiffness_n_per_mm", "")).text, "force.stiffness_n_per_mm = as in the scene");
   EXPECT_EQ(state().changed_size(), 0);
+  EXPECT_EQ(handed(set("description", "v", 2)).text, "description = v, description = v");
 }
 
 TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
@@ -253,6 +257,23 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
   EXPECT_EQ(change_of("force.law"), wire::CHANGE_AT_ZERO_TORQUE);
   EXPECT_EQ(change_of("objects[].kind"), wire::CHANGE_AT_ZERO_TORQUE);
   EXPECT_EQ(change_of("rate_hz"), wire::CHANGE_NEW_STATION);
+  const std::vector<SceneKey> keys = scene_keys();
+  ASSERT_EQ(idx(welcome.key_size()), keys.size());
+  for (int i = 0; i < welcome.key_size(); ++i) {
+    const SceneKey& key = keys[idx(i)];
+    EXPECT_EQ(welcome.key(i).path(), key.path);
+    EXPECT_EQ(welcome.key(i).type(), key.type) << key.path;
+    EXPECT_EQ(welcome.key(i).unit(), key.unit) << key.path;
+    EXPECT_EQ(welcome.key(i).range(), key.range) << key.path;
+    EXPECT_EQ(welcome.key(i).default_value(), key.default_value) << key.path;
+    EXPECT_EQ(welcome.key(i).meaning(), key.meaning) << key.path;
+  }
+  const std::vector<SceneInfo> scenes = list_scenes();
+  ASSERT_EQ(idx(welcome.scene_size()), scenes.size()) << "all that are shipped can be read";
+  for (int i = 0; i < welcome.scene_size(); ++i) {
+    EXPECT_EQ(welcome.scene(i).name(), scenes[idx(i)].name);
+    EXPECT_EQ(welcome.scene(i).meaning(), scenes[idx(i)].description);
+  }
   ASSERT_GT(welcome.scene_size(), 10);
   ASSERT_GT(welcome.profile_size(), 1);
   EXPECT_LT(welcome.profile(0).name(), welcome.profile(1).name());

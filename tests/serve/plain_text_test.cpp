@@ -21,6 +21,29 @@ TEST(PlainText, WhatIsNoUtf8BecomesAMarkForEachByte) {
   EXPECT_EQ(as_utf8(std::string("\0x", 2)), std::string("\0x", 2));
 }
 
+// The first and the last character of each length, those beside the surrogates, and what is one beyond.
+TEST(PlainText, EachLengthOfCharacterIsTakenFromItsFirstToItsLast) {
+  for (const char* whole : {"\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
+                            "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
+    EXPECT_EQ(as_utf8(whole), whole);
+  for (const std::string broken :
+       {"\x80", "\xC1\xBF", "\xE0\x9F\xBF", "\xED\xBF\xBF", "\xF0\x8F\xBF\xBF", "\xF5\x80\x80\x80"}) {
+    std::string marks;
+    for (std::size_t i = 0; i < broken.size(); ++i) marks += kMark;
+    EXPECT_EQ(as_utf8(broken), marks);
+  }
+}
+
+// Each range of characters that are left out, with its neighbours, which stay.
+TEST(PlainText, ANameKeepsWhatIsBesideTheCharactersThatItLeavesOut) {
+  for (const char* kept :
+       {" ", "~", "\u00A0", "\u061B", "\u061D", "\u200D", "\u2010", "\u2027", "\u202F", "\u2065", "\u206A"})
+    EXPECT_EQ(one_line(kept), kept);
+  for (const char* gone : {"\x1F", "\x7F", "\u0080", "\u009F", "\u061C", "\u200E", "\u200F", "\u2028",
+                           "\u2029", "\u202A", "\u202E", "\u2066", "\u2069"})
+    EXPECT_EQ(one_line(gone), "");
+}
+
 TEST(PlainText, ANameIsOneLineAndDoesNotTurnTheWriting) {
   EXPECT_EQ(one_line("An\nna\r\t\x7F\x1b[31m"), "Anna[31m");
   EXPECT_EQ(one_line("\u202Eanna\u202C \u2066x\u2069\u200F"), "anna x");

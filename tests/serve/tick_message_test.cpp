@@ -71,7 +71,7 @@ TEST(TickMessage, SensorsThatAreNotThereAreLeftOutAndOneOfManyIsAllOfThem) {
   EXPECT_EQ(tick.measured_torque(4), 0.5F);
 }
 
-TEST(TickMessage, OnlySegmentsThatTouchOrStillPushAreContacts) {
+TEST(TickMessage, OnlySegmentsThatTouchOrStillPushOrSwingAreContacts) {
   StationView view = a_view();
   view.snapshot.segment[5].contact = true;
   view.snapshot.segment[5].depth = 0.002;
@@ -81,10 +81,11 @@ TEST(TickMessage, OnlySegmentsThatTouchOrStillPushAreContacts) {
   view.snapshot.segment[5].force = 1.5;
   view.snapshot.segment[9].force = 0.1;  // decays
   view.snapshot.segment[11].depth = 1.0;
+  view.snapshot.segment[12].oscillating = true;
   wire::Tick tick;
   write_tick(view, tick);
   write_tick(view, tick);  // the second time nothing is left of the first
-  ASSERT_EQ(tick.contact_size(), 2);
+  ASSERT_EQ(tick.contact_size(), 3);
   EXPECT_EQ(tick.contact(0).segment(), 5U);
   EXPECT_TRUE(tick.contact(0).touching());
   EXPECT_EQ(tick.contact(0).force_raw(), 2.0F);
@@ -94,6 +95,7 @@ TEST(TickMessage, OnlySegmentsThatTouchOrStillPushAreContacts) {
   EXPECT_EQ(tick.contact(0).normal(2), 1.0F);
   EXPECT_EQ(tick.contact(1).segment(), 9U);
   EXPECT_FALSE(tick.contact(1).touching());
+  EXPECT_EQ(tick.contact(2).segment(), 12U);
   EXPECT_EQ(tick.hcp_angle_size(), kJoints);
 }
 

@@ -53,6 +53,10 @@ TEST(Uploads, TheQuerySaysNameSizeAndUnit) {
   EXPECT_THROW(static_cast<void>(upload_of("name=a.obj", "")), std::invalid_argument);
   EXPECT_EQ(upload_of("name=%zz%4", "x").name, "%zz%4");
   EXPECT_EQ(upload_of("&&=&name", "x").name, "");
+  EXPECT_EQ(upload_of("name=%30%39%4a%4A%c3%A9%2f%2F", "x").name, "09JJ\u00E9//");
+  EXPECT_EQ(upload_of("size_mm=2000", "x").size_mm, 2000.0);
+  EXPECT_EQ(upload_of("size_mm=0", "x").size_mm, 0.0);
+  EXPECT_THROW(static_cast<void>(upload_of("size_mm=2000.001", "x")), std::invalid_argument);
 }
 
 TEST(Uploads, AGoodMeshIsKeptUnderANameOfOurOwn) {
@@ -69,6 +73,9 @@ TEST(Uploads, AGoodMeshIsKeptUnderANameOfOurOwn) {
   EXPECT_EQ(same["file"], answer["file"]);
   const auto other = taken("name=passwd.obj&unit=mm", solid(61), folder / "up");
   EXPECT_NE(other["file"], answer["file"]);
+  const auto lengthy = taken("name=" + std::string(41, 'n') + ".obj&unit=mm", solid(60), folder / "up");
+  EXPECT_THAT(std::filesystem::path(lengthy["file"].get<std::string>()).filename().string(),
+              ::testing::MatchesRegex("n{40}-[0-9a-f]{16}\\.obj"));
 }
 
 TEST(Uploads, WhatIsNoMeshIsRefusedInWordsAndLeavesNothing) {

@@ -347,6 +347,27 @@ TEST(SafetyGate, AGloveIsStaleAfterFiveOfItsPeriods) {
   }
 }
 
+// A simulated device's time is the number of steps: 5 s of the clock in one step are a period of silence. The
+// reset forgets a silence of 0.6 s, so that the next one has its half a second.
+TEST(SafetyGate, TheSilenceOfASimulatedDeviceIsCountedInStepsAndAResetForgetsIt) {
+  DeviceInfo info = device_of(1000.0, true);
+  info.simulated = true;
+  SlowBench bench(info);
+  bench.steps(1200);
+  ASSERT_EQ(bench.safety.state(), SafetyState::kRunning);
+  bench.safety.observe({}, Fault::kNone, false, bench.now() + 5.0);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kRunning);
+  bench.step();
+  EXPECT_EQ(bench.silent_until_fault(), 10);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNoSample);
+  for (int i = 0; i < 600; ++i) bench.step(true);
+  ASSERT_TRUE(bench.safety.reset(Fault::kNone, bench.now()));
+  for (int i = 0; i < 490; ++i) bench.step(true);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  for (int i = 0; i < 20; ++i) bench.step(true);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNoSample);
+}
+
 // Enabled commands and a device that stays at rest: 0.2 s for a motor, five periods for a slow glove.
 TEST(SafetyGate, AGloveMayTakeFiveOfItsPeriodsToActOnWhatItIsSent) {
   for (const auto& [rate_hz, least] : {std::pair{10.0, 0.5}, std::pair{100.0, 0.2}}) {
@@ -362,6 +383,19 @@ TEST(SafetyGate, AGloveMayTakeFiveOfItsPeriodsToActOnWhatItIsSent) {
 }
 
 // ---- what a reset and a start find ----
+
+// Two bad samples are no fault, and yet no time to begin.
+TEST(SafetyGate, ASensorThatIsBadAtTheBeginningIsWaitedFor) {
+  Bench bench;
+  const std::int32_t good = bench.samples.sample.raw[1];
+  bench.samples.sample.raw[1] = kOpenSensor;
+  bench.steps(2);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  EXPECT_FALSE(bench.command.enable);
+  bench.samples.sample.raw[1] = good;
+  bench.step();
+  EXPECT_EQ(bench.safety.state(), SafetyState::kStarting);
+}
 
 // Where samples stopped coming there is nothing to judge: the reset itself asks for them again.
 TEST(SafetyGate, AResetAfterSilenceIsGrantedWithoutASample) {

@@ -202,6 +202,21 @@ TEST(Safety, ADeviceThatIsLatchedAndDoesNotSayWhyIsAFaultToo) {
   EXPECT_EQ(bench.safety.fault().fault, Fault::kDrive);
 }
 
+TEST(Safety, AFaultNamesItsStepAndTheSensorThatTheDeviceNames) {
+  Bench bench;
+  bench.run_with(0.3);
+  bench.samples.sample.state = DeviceState::kLatched;
+  bench.samples.sample.fault = Fault::kSensorRange;
+  bench.samples.sample.fault_channel = 3;
+  bench.step();
+  const std::uint64_t tick = bench.command.tick;
+  bench.steps(5);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kSensorRange);
+  EXPECT_EQ(bench.safety.fault().channel, 3);
+  EXPECT_GT(tick, 1000U);
+  EXPECT_EQ(bench.safety.fault().tick, tick);
+}
+
 TEST(Safety, AStopRightAfterAResetDoesNotBringTheOldFaultBack) {
   Bench bench;
   bench.run_with(0.3);

@@ -206,6 +206,20 @@ TEST(SensorWatchBounds, AMotorMayTakeUpItsSlackBeforeASensorIsStuck) {
   }
 }
 
+// A device that has been on for 10 s, its motor wound by 5 mm, 0.5 rad: the knuckle reads zero counts in the
+// first sample as in all others, and the motor rests. Then it winds 20 um: 0.002 rad, 20 counts.
+TEST(SensorWatchBounds, ASensorThatReadsZeroCountsFromTheFirstSampleOnIsNotStuck) {
+  MotorWitness witness{.channel = 2, .arm = {}, .slack = 0.0};
+  witness.arm[kMcp] = 0.01;
+  Watch bench({witness});
+  bench.sample.time_us = 10'000'000;
+  bench.at(0.0, 0.5);
+  bench.sample.raw[2] = 5000;
+  EXPECT_EQ(bench.judge_many(1000).fault, Fault::kNone);
+  bench.sample.raw[2] = 5020;
+  EXPECT_EQ(bench.judge().fault, Fault::kStuckSensor);
+}
+
 // By hand: arms of -20 and 10 mm, at most 0.5 Nm: 0.5 / 0.02 = 25 N, below the motor's 40 N, and a bias of 3
 // N: 28 N. Over 7000 N/m that is 4 mm, both ways 8 mm, and 1 mm of backlash. A motor of 15 N: 18 N, 5.143 mm
 // + 1 mm.

@@ -189,14 +189,39 @@ TEST_F(StationTest, AnEmergencyStopLatchesUntilItIsReleasedAndReset) {
   const double asked = station_->view().time;
   ASSERT_TRUE(until([&](const StationView& view) { return view.time > asked + 0.5; }));
   EXPECT_EQ(station_->view().state, SafetyState::kFault);
+  EXPECT_EQ(station_->view().resets_refused, 1U);
   device_->estop = false;
   ASSERT_TRUE(until([](const StationView& view) { return !view.estop; }));
   station_->reset();
   ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
+  EXPECT_EQ(station_->view().resets_refused, 1U);
   device_->estop = true;
   ASSERT_TRUE(
       until([](const StationView& view) { return view.state == SafetyState::kFault && view.at_rest; }));
   EXPECT_TRUE(station_->take_fault_report().has_value()) << "the next fault has a report of its own";
+}
+
+TEST_F(StationTest, ARecordSaysWhatTheViewOfItsStepShows) {
+  start();
+  ASSERT_TRUE(until_pressing(1.0));
+  const StationView shown = station_->view();
+  StepRecord record;
+  bool found = false;
+  while (!found && station_->next_record(record)) found = record.time == shown.time;
+  ASSERT_TRUE(found);
+  for (int digit = 0; digit < kDigits; ++digit) {
+    double force = 0.0;
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      force += shown.snapshot.segment[static_cast<std::size_t>(segment_index(digit, k))].force;
+    EXPECT_NEAR(record.force[static_cast<std::size_t>(digit)], force, 1e-12) << digit;
+  }
+  EXPECT_EQ(record.angle, shown.snapshot.hcp_angle);
+  EXPECT_EQ(record.torque, shown.sent);
+  EXPECT_EQ(record.state, shown.state);
+  EXPECT_EQ(record.factor, shown.factor);
+  EXPECT_EQ(record.stiffness, shown.stiffness);
+  EXPECT_EQ(record.duration, shown.duration);
+  EXPECT_GT(record.samples, 0U);
 }
 
 TEST_F(StationTest, StepsThatAreTooLongAreCountedShownAndStoppedAfterTenInARow) {

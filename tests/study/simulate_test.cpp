@@ -15,6 +15,7 @@ TEST(TickCount, IsSecondsTimesRate) {
   EXPECT_EQ(tick_count(3.2, 200.0), 640U);
   EXPECT_EQ(tick_count(0.0, 200.0), 1U);
   EXPECT_EQ(tick_count(0.1 + 0.2, 10.0), 3U);
+  EXPECT_EQ(tick_count(0.29, 100.0), 29U) << "28.999999999999996 in binary";
 }
 
 TEST(TickCount, RefusesWhatCannotBeCounted) {

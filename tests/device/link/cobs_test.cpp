@@ -69,9 +69,10 @@ TEST_F(Cobs, WritesNothingBeyondItsCapacityAndFitsExactlyIntoItsSize) {
                              Bytes(600, 7), Bytes(600, 0)}) {
     const std::size_t size = stuffed(frame).size();
     for (std::size_t capacity = 0; capacity <= size; ++capacity) {
-      Bytes out(capacity);
+      Bytes out(capacity + 4, 0xEE);
       EXPECT_EQ(phx_cobs_encode(frame.data(), frame.size(), out.data(), capacity),
                 capacity == size ? size : 0U);
+      EXPECT_EQ(Bytes(out.end() - 4, out.end()), Bytes(4, 0xEE)) << size << " into " << capacity;
     }
   }
 }

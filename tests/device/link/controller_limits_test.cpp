@@ -62,13 +62,23 @@ TEST_F(LinkLimits, OfADeviceThatAreNoNumbersGiveZeroTorque) {
 TEST_F(LinkLimits, TheRateCountsTheRealTimeSinceTheLastTickButAtMostTwoPeriods) {
   rig.open_and_act(0.0F);
   float last = 0.0F;
-  for (const std::uint64_t after : {1000U, 500U, 2000U, 9000U}) {
+  for (const std::uint64_t after : {1000U, 500U, 0U, 2000U, 9000U}) {
     rig.command(0.4F);
     const float torque = rig.tick(after);
     EXPECT_NEAR(torque - last, kRate * 1e-6F * static_cast<float>(std::min<std::uint64_t>(after, 2000)),
                 1e-6F);
     last = torque;
   }
+}
+
+// Without a rate a period is a millisecond: 0.01 Nm, and at most two of them.
+TEST_F(LinkLimits, OfADeviceThatNamesNoRateCountMilliseconds) {
+  rig.open_and_act(0.0F);
+  rig.controller.device.rate_hz = 0;
+  rig.command(0.4F);
+  EXPECT_NEAR(rig.tick(1000), 0.01F, 1e-6F);
+  rig.command(0.4F);
+  EXPECT_NEAR(rig.tick(9000), 0.03F, 1e-6F);
 }
 
 TEST_F(LinkLimits, TheRateCountsOnePeriodIfTheClockHasRunBackwards) {

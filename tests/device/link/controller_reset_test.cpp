@@ -110,6 +110,41 @@ TEST_F(LinkReset, RightAfterTheLatchFindsTheTorqueAtRest) {
     EXPECT_NEAR(rig.drive(-kLimit, 1), -kLimit * 1e-3F * static_cast<float>(i), 1e-7F);
 }
 
+// 0.3 Nm on all twenty: half of it at 17 ms, one step of the rate more with the next command, nothing with
+// the latch, and a thousandth at the beginning of the next ramp.
+TEST_F(LinkReset, EveryJointFadesAndRisesAndComesToRest) {
+  const auto drive_all = [&] {
+    phx_message message = rig.next_command(0.3F);
+    for (float& torque : message.as.command.torque) torque = 0.3F;
+    rig.send(message);
+  };
+  const auto expect_all = [&](float expected) {
+    for (const float torque : rig.output.torque) EXPECT_NEAR(torque, expected, 1e-6F);
+  };
+  rig.open();
+  for (int i = 0; i <= 1000; ++i) {
+    drive_all();
+    rig.tick();
+  }
+  expect_all(0.3F);
+  drive_all();
+  rig.silent(17);
+  expect_all(0.15F);
+  drive_all();
+  rig.tick();
+  expect_all(0.16F);
+  rig.estop = true;
+  rig.tick();
+  expect_all(0.0F);
+  rig.estop = false;
+  rig.tick();
+  reset();
+  rig.tick();
+  drive_all();
+  rig.tick();
+  expect_all(0.3e-3F);
+}
+
 // Between two ticks nothing is latched yet: the RESET does nothing, and the tick latches all the same.
 TEST_F(LinkReset, BeforeTheTickThatSeesTheStopChangesNothing) {
   rig.open_and_act(0.3F);

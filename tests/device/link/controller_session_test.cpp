@@ -16,6 +16,8 @@ TEST_F(LinkControllerSession, OpensWithAWelcomeThatSaysWhoTheControllerIsAndTheN
   EXPECT_EQ(rig.reply->as.welcome.serial[0], 'B');
   EXPECT_EQ(rig.reply->as.welcome.rate_hz, 1000);
   EXPECT_EQ(rig.reply->as.welcome.channel_count, 3);
+  EXPECT_EQ(rig.reply->as.welcome.channel[0].index, 4);
+  EXPECT_EQ(rig.reply->as.welcome.channel[0].raw_max, 4000);
   EXPECT_EQ(rig.reply->as.welcome.channel[2].kind, PHX_CHANNEL_FORCE);
   EXPECT_EQ(rig.controller.state, PHX_STATE_READY);
 }
@@ -37,6 +39,22 @@ TEST_F(LinkControllerSession, AnswersWithTheSequenceOfTheQuestion) {
   hello.header.sequence = 4711;
   rig.send(hello);
   EXPECT_EQ(rig.reply->header.sequence, 4711U);
+}
+
+// Whoever asks may use one number for all frames: 99 are left from the last.
+TEST_F(LinkControllerSession, SaysOfEveryFrameThatIsNotAnsweredThatThereIsNoAnswer) {
+  rig.open();
+  const Bytes good = encoded(rig.next_command(0.1F));
+  Bytes damaged = good;
+  damaged[20] ^= 1U;
+  std::array<std::uint8_t, PHX_FRAME_MAX> answer{};
+  for (const Bytes& frame : {damaged, good}) {
+    std::size_t size = 99;
+    EXPECT_EQ(
+        phx_controller_receive(&rig.controller, frame.data(), frame.size(), rig.now, answer.data(), &size),
+        frame == good ? PHX_USED : PHX_DROPPED);
+    EXPECT_EQ(size, 0U);
+  }
 }
 
 TEST_F(LinkControllerSession, SendsASampleEveryTickWhileItIsOpenAndNoneBefore) {
@@ -129,6 +147,7 @@ TEST_F(LinkControllerSession, BeginsAnewForTheSameHostAndStopsWhatActed) {
   EXPECT_EQ(rig.sample.state, PHX_STATE_READY);
   EXPECT_EQ(rig.sample.flags, 0);
   EXPECT_EQ(rig.sample.acted_tick, 0U);
+  EXPECT_EQ(rig.sample.acted_age_us, 0U);
 }
 
 TEST_F(LinkControllerSession, IsNotDisturbedByAHelloThatTheNetworkHasDoubledOrDelayed) {

@@ -86,6 +86,16 @@ TEST_F(LinkWalls, TakeAJointWhoseSensorIsOutOfRangeToStandAtItsReference) {
   EXPECT_EQ(drive(), 0.0F);  // the third: latched
 }
 
+// A torque sensor on the same joint reads 400, which as an angle were 0.4 rad.
+TEST_F(LinkWalls, TakeAnglesFromAngleChannelsAlone) {
+  phx_device device = bench_device();
+  device.channel[2] = {PHX_CHANNEL_TORQUE, 5, 0, 4095, 1e-3F, 0.0F};
+  rig = Rig(device);
+  rig.raw[2] = 400;
+  act();
+  EXPECT_NEAR(settled(110), 0.0375F, 1e-6F);
+}
+
 TEST_F(LinkWalls, TakeAChannelConfiguredWithGainZeroForUnmeasured) {
   rig.raw[1] = 100;
   rig.hello();

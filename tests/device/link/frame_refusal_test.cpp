@@ -45,6 +45,17 @@ TEST(LinkDecode, RefusesEveryOtherLength) {
   }
 }
 
+TEST(LinkDecode, RefusesAFrameOfWhichOnlyOneOfTheFirstTwoBytesIsRight) {
+  std::mt19937_64 random(617);
+  const Bytes frame = encoded(random_message(PHX_COMMAND, random));
+  for (const std::size_t at : {0U, 1U}) {
+    Bytes other = frame;
+    other[at] ^= 1U;
+    close_again(other);
+    EXPECT_EQ(decoded(other), PHX_NOT_A_FRAME) << "byte " << at;
+  }
+}
+
 TEST(LinkDecode, RefusesASizeFieldThatIsNotTheFramesAndReservedBytesThatAreNotZero) {
   std::mt19937_64 random(613);
   const Bytes frame = encoded(random_message(PHX_COMMAND, random));
@@ -82,7 +93,13 @@ TEST(LinkDecode, NamesAnotherVersionAndWhoAsksIfTheCrcIsRight) {
   frame.insert(frame.begin() + 24, 11, 0x55);  // a later version may be longer
   close_again(frame);
   phx_message message{};
+  message.header.size = 7;  // of the last one, and so are the next two
+  message.header.epoch = 5;
+  message.header.sequence = 6;
   EXPECT_EQ(phx_decode(frame.data(), frame.size(), &message), PHX_OTHER_VERSION);
+  EXPECT_EQ(message.header.size, 39);  // 28 + 11
+  EXPECT_EQ(message.header.epoch, 0U);
+  EXPECT_EQ(message.header.sequence, 0U);
   EXPECT_EQ(message.header.version, 2);
   EXPECT_EQ(message.header.type, PHX_HELLO);
   EXPECT_EQ(message.as.hello.host_id, 0xABCDEF0123456789U);
@@ -94,6 +111,18 @@ TEST(LinkDecode, OfAnotherVersionReadsNothingBeyondTheShortestFrame) {
   phx_message message{};
   EXPECT_EQ(phx_decode(frame.data(), frame.size(), &message), PHX_OTHER_VERSION);
   EXPECT_EQ(message.as.hello.host_id, 0U);
+}
+
+TEST(LinkDecode, OfAnotherVersionReadsTheLargestFrameAndNoLargerOne) {
+  for (const std::size_t more : {0U, 1U}) {
+    Bytes frame(PHX_FRAME_MAX + more, 0);
+    frame[0] = 'P';
+    frame[1] = 'X';
+    frame[2] = 9;
+    frame[3] = PHX_HELLO;
+    close_again(frame);
+    EXPECT_EQ(decoded(frame), more == 0 ? PHX_OTHER_VERSION : PHX_NOT_A_FRAME);
+  }
 }
 
 struct Floats {
@@ -140,6 +169,7 @@ TEST(LinkDecode, IgnoresWhatStandsInAWelcomeBehindItsChannels) {
   for (std::size_t i = 16 + 27 + 18; i < frame.size(); ++i) frame[i] = 0xFF;
   close_again(frame);
   phx_message read{};
+  for (phx_channel& channel : read.as.welcome.channel) channel = {9, 9, 9, 9, 9.0F, 9.0F};  // of another use
   ASSERT_EQ(phx_decode(frame.data(), frame.size(), &read), PHX_OK);
   EXPECT_EQ(read.as.welcome.channel[1].index, 0);
   EXPECT_EQ(read.as.welcome.channel[1].gain, 0.0F);
@@ -165,6 +195,7 @@ TEST(LinkDecode, RefusesAWelcomeOfAnImpossibleDevice) {
   welcome("rate 0", [](phx_welcome& w) { w.rate_hz = 0; });
   welcome("33 channels", [](phx_welcome& w) { w.channel_count = 33; });
   welcome("kind 6", [](phx_welcome& w) { w.channel[1].kind = 6; });
+  welcome("kind 6 of the first", [](phx_welcome& w) { w.channel[0].kind = 6; });
   welcome("joint 20", [](phx_welcome& w) { w.channel[1].index = 20; });
   welcome("torque 20", [](phx_welcome& w) { w.channel[1] = {PHX_CHANNEL_TORQUE, 20, 0, 1, 1.0F, 0.0F}; });
   welcome("force 5", [](phx_welcome& w) { w.channel[1] = {PHX_CHANNEL_FORCE, 5, 0, 1, 1.0F, 0.0F}; });

@@ -55,6 +55,9 @@ TEST(LinkRepeat, AResetIsRepeatedForTwoTenthsOfASecond) {
     bench.run(300);
     EXPECT_EQ(bench.controller.state, released_after < 200 ? PHX_STATE_READY : PHX_STATE_LATCHED)
         << released_after;
+    if (released_after < 200) continue;
+    EXPECT_GE(bench.sent(PHX_RESET), 34) << "every 5 ms, or by a rounding every 6";
+    EXPECT_LE(bench.sent(PHX_RESET), 41);
   }
 }
 
@@ -102,9 +105,11 @@ TEST(LinkRepeat, AResetThatOpensTheSessionAgainClearsTheLatchInItHoweverLongThat
   bench.run(300);
   ASSERT_EQ(bench.fault(), Fault::kControllerRestarted);
   bench.faults.cut_to_controller = true;
+  const int hellos = bench.sent(PHX_HELLO);
   bench.reset();
   bench.run(500);
   ASSERT_EQ(bench.session().phase(), Phase::kAsking);
+  EXPECT_EQ(bench.sent(PHX_HELLO), hellos + 5) << "every 0.1 s";
   bench.faults.cut_to_controller = false;
   bench.run(300);
   EXPECT_EQ(bench.fault(), Fault::kNone);
@@ -190,14 +195,18 @@ TEST(LinkRepeat, TheLastCommandsOfAHostSayFaultWithANewerTick) {
   bench.open();
   bench.run_commanding(50);
   const std::uint64_t newest = bench.controller.step.command.tick;
+  const std::uint64_t sent = bench.counters().sent;
   bench.controller_got.clear();
   bench.session().send_disabled();
+  EXPECT_EQ(bench.counters().sent, sent + 1);
   bench.controller_tick();
   ASSERT_FALSE(bench.controller_got.empty());
   const phx_message& message = bench.controller_got.back();
   EXPECT_EQ(message.header.type, PHX_COMMAND);
   EXPECT_EQ(message.as.command.flags, PHX_COMMAND_FAULT);
   EXPECT_GT(message.as.command.tick, newest);
+  EXPECT_EQ(message.as.command.sample_time_us, bench.time_us()) << "of the newest sample";
+  EXPECT_EQ(bench.controller.step.command.tick, message.as.command.tick) << "so that it is not outdated";
   for (const float torque : message.as.command.torque) EXPECT_EQ(torque, 0.0F);
 }
 
@@ -252,6 +261,49 @@ TEST(LinkRepeat, ARefusalCountsOnlyInSilence) {
   forge(bench, refusal);
   bench.run_commanding(2);
   EXPECT_EQ(bench.fault(), Fault::kRefused);
+  bench.controller_off = false;
+  const std::uint64_t received = bench.counters().received;
+  bench.run(5);
+  EXPECT_EQ(bench.counters().received, received) << "what comes of a session that is over";
+}
+
+// What is no frame says nothing of versions, and what was refused once may be granted the next time.
+TEST(LinkRepeat, ARefusalIsOneThatWasSaidSinceTheLastQuestion) {
+  SessionBench bench(54);
+  bench.controller_off = true;
+  bench.session().ask(bench.now());
+  const std::array<std::uint8_t, 40> noise{1, 2, 3};
+  bench.to_host(noise.data(), noise.size());
+  bench.run(1);
+  EXPECT_EQ(bench.counters().corrupt, 1U);
+  EXPECT_FALSE(bench.session().refusal().has_value());
+  phx_message refusal = forged(PHX_REFUSED, 0);
+  refusal.as.refused = {.host_id = kBenchHost, .reason = PHX_REFUSED_VERSION, .version = 9};
+  forge(bench, refusal);
+  bench.run(1);
+  ASSERT_TRUE(bench.session().refusal().has_value());
+  EXPECT_EQ(bench.session().refusal()->reason, PHX_REFUSED_VERSION);
+  EXPECT_EQ(bench.session().refusal()->version, 9);
+  bench.session().ask(bench.now());
+  EXPECT_FALSE(bench.session().refusal().has_value());
+}
+
+// Another session's sample among ours is one that was late; in silence our session is over.
+TEST(LinkRepeat, ASampleOfAnotherSessionCountsOnlyInSilence) {
+  SessionBench bench(57);
+  bench.open();
+  bench.run(50);
+  const phx_message sample = forged(PHX_SAMPLE, bench.controller.epoch + 1);
+  forge(bench, sample);
+  bench.run(1);
+  EXPECT_EQ(bench.counters().refused, 1U);
+  EXPECT_EQ(bench.fault(), Fault::kNone);
+  bench.controller_off = true;
+  bench.run(15);
+  ASSERT_EQ(bench.fault(), Fault::kNone);
+  forge(bench, sample);
+  bench.run(1);
+  EXPECT_EQ(bench.fault(), Fault::kControllerRestarted);
 }
 
 // A PONG whose clock has begun again says that the controller restarted, but only one that answers a PING of
@@ -276,6 +328,56 @@ TEST(LinkRepeat, APongOfNoPingOfOursSaysNothing) {
   forge(bench, pong);
   bench.run(1);
   EXPECT_EQ(bench.fault(), Fault::kControllerRestarted);
+}
+
+// The PING of an earlier silence is answered late: that says nothing of this one. And the 0.1 s in which
+// PONGs may come without a sample begin with the first PONG of this one.
+TEST(LinkRepeat, APongOfAnEarlierSilenceSaysNothingOfThisOne) {
+  SessionBench bench(56);
+  bench.open();
+  bench.run(500);
+  phx_message pong = forged(PHX_PONG, 0);
+  const auto answered = [&](int ping, std::uint64_t time_us) {
+    pong.as.ping = {.stamp = kBenchHost + static_cast<std::uint64_t>(ping), .time_us = time_us};
+    forge(bench, pong);
+    bench.run(1);
+    return bench.fault();
+  };
+  bench.controller_off = true;
+  bench.run(15);
+  const int first = bench.sent(PHX_PING);
+  ASSERT_GE(first, 1);
+  EXPECT_EQ(answered(first, bench.time_us()), Fault::kNone);
+  bench.controller_off = false;
+  bench.run(200);
+  bench.controller_off = true;
+  bench.run(15);
+  const int second = bench.sent(PHX_PING);
+  ASSERT_EQ(second, first + 1);
+  EXPECT_EQ(answered(first, 1), Fault::kNone);
+  EXPECT_EQ(answered(second, bench.time_us()), Fault::kNone);
+  EXPECT_EQ(answered(second, 1), Fault::kControllerRestarted);
+}
+
+// 10 ms, or three periods of a slower controller, and then every 10 ms: 10 in the 99 ms after the first, one
+// more or less by a rounding of a millisecond.
+TEST(LinkRepeat, SilenceIsAskedAboutAfterThreePeriodsAndEveryTenMilliseconds) {
+  for (const auto& [rate_hz, patience] : {std::pair{1000, 10}, std::pair{100, 30}}) {
+    SessionBench bench(55);
+    bench.device_.rate_hz = static_cast<std::uint16_t>(rate_hz);
+    bench.restart(100);
+    bench.open();
+    bench.run(20);
+    const int before = bench.sent(PHX_PING);
+    bench.controller_off = true;
+    bench.run(patience - 1);
+    EXPECT_EQ(bench.sent(PHX_PING), before) << rate_hz;
+    bench.run(3);
+    EXPECT_EQ(bench.sent(PHX_PING), before + 1) << rate_hz;
+    bench.run(98);
+    EXPECT_GE(bench.sent(PHX_PING), before + 10) << rate_hz;
+    EXPECT_LE(bench.sent(PHX_PING), before + 11) << rate_hz;
+  }
 }
 
 // ---- who is there after a reset ----

@@ -40,6 +40,17 @@ TEST(MeasurePoint, FindsTheLimitThatAllSeedsBear) {
   EXPECT_EQ(checked_at(result, 2.6).verdict, Verdict::kUnstable);
 }
 
+// Of five seeds the last swings most, by 0.05 N; at 2.6 N/mm the first one alone was run, which swings by 2
+// N.
+TEST(MeasurePoint, SaysOfEachStiffnessByHowMuchItsSeedsSwung) {
+  const PointResult result = measure_point(study_of(testing::kTwelvePoints), 6, synthetic_trial);
+  EXPECT_NEAR(checked_at(result, 2.5).force_swing, 0.05, 1e-15);
+  EXPECT_NEAR(checked_at(result, 2.5).position_swing, 0.05 / 2500.0, 1e-15);
+  EXPECT_EQ(checked_at(result, 2.6).seeds_run, 1);
+  EXPECT_EQ(checked_at(result, 2.6).force_swing, 2.0);
+  EXPECT_NEAR(checked_at(result, 2.6).position_swing, 2.0 / 2600.0, 1e-15);
+}
+
 // Seed s swings by 0.01 s N, ghosts for 0.1 s; 3 N at 0.8 x 2500 N/m press 1.5 mm deep, the peak is half as
 // deep again.
 TEST(MeasurePoint, MeasuresAtTheLimit) {
@@ -119,6 +130,21 @@ TEST(MeasurePoint, DoesNotCountAnInvalidTrialAsStable) {
     invalid += checked.verdict == Verdict::kInvalid ? 1 : 0;
   EXPECT_GT(invalid, 3);
   EXPECT_EQ(result.invalid_trials, invalid);  // seed 2 once at each of them
+}
+
+// Three seeds and three presses, each invalid but with the first seed: six of nine.
+TEST(MeasurePoint, SaysWhyTheFirstInvalidTrialProvesNothing) {
+  const auto trial = [](const Overrides&, double, double, std::uint64_t seed) {
+    TrialResult result;
+    result.stable = true;
+    result.valid = seed == 1;
+    if (!result.valid) result.why_invalid = "seed " + std::to_string(seed);
+    return result;
+  };
+  const PointResult result = measure_point(study_of("scene = \"a\"\nseeds = 3"), 0, trial);
+  EXPECT_EQ(result.trials, 9);
+  EXPECT_EQ(result.invalid_trials, 6);
+  EXPECT_EQ(result.why_invalid, "seed 2");
 }
 
 // The light press of seed 1 shakes, the firm press of seed 2 comes no deeper, that of seed 3 proves nothing:

@@ -18,6 +18,7 @@
 #include "record/temporary_folder.h"
 #include "study/laboratory/expect_refusal.h"
 #include "study/laboratory/journal.h"
+#include "study/laboratory/study_json.h"
 #include "study/laboratory/synthetic.h"
 
 namespace phalanx {
@@ -131,6 +132,31 @@ TEST(RunStudy, ReportsItsProgress) {
   static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options));
   ASSERT_EQ(seen.size(), 1U);
   EXPECT_EQ(seen[0].resumed, 12);
+}
+
+// At the pace of this run: of twelve points ten are there from before, so that after the first of the two as
+// much time is left as it took.
+TEST(RunStudy, TellsTheTimeThatIsLeftAtThePaceOfThisRunAlone) {
+  const TemporaryFolder folder;
+  StudyOptions options = options_for(2);
+  std::vector<StudyProgress> seen;
+  options.progress = [&](const StudyProgress& progress) { seen.push_back(progress); };
+  const auto expect_pace = [&](int from, int to) {
+    ASSERT_EQ(seen.size(), static_cast<std::size_t>(to - from + 1));
+    for (const StudyProgress& now : seen) {
+      EXPECT_EQ(now.resumed, from);
+      if (now.done == from) continue;
+      EXPECT_DOUBLE_EQ(now.remaining_s, now.elapsed_s / (now.done - from) * (to - now.done)) << now.done;
+    }
+  };
+  static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options));
+  expect_pace(0, 12);
+  std::string text = read_file(folder / "points.jsonl");
+  for (int i = 0; i < 2; ++i) text.resize(text.rfind('\n', text.size() - 2) + 1);
+  write_text_file(folder / "points.jsonl", text);
+  seen.clear();
+  static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options));
+  expect_pace(10, 12);
 }
 
 // Friction 0.2 fails at first: its three points are missing, the nine others are kept; then it works.
@@ -456,6 +482,16 @@ TEST(StudyOutputs, EveryFieldOfAJournalsLineIsInTheUnitOfItsName) {
                                      {"seeds_run", 5},
                                      {"force_swing_n", 2.25},
                                      {"position_swing_m", 0.875e-3}}}}}));
+}
+
+// What was yes is no the second time.
+TEST(StudyOutputs, EveryFieldOfAJournalsLineIsReadBack) {
+  for (const bool yes : {false, true}) {
+    PointResult result = numbered_result();
+    result.at_least = result.ends_in_invalid = yes;
+    result.non_monotone = result.stable = !yes;
+    EXPECT_EQ(result_line(result_from_json(result_to_json(result))), result_line(result));
+  }
 }
 
 // (0.7 - 0.1) / 0.1 is 5.999... in binary: 0.1, 0.2, ..., 0.7 are seven values whatever the last bit says.

@@ -29,7 +29,8 @@ TEST(SceneInputs, NameTheFilesOfSceneAndHand) {
   const StudyInputs inputs = scene_check(study)({});
   EXPECT_TRUE(names(inputs, "press_teapot.toml"));
   EXPECT_TRUE(names(inputs, "adult.toml"));
-  EXPECT_TRUE(names(inputs, "index-finger-phalanx-distal.obj"));
+  for (const char* segment : {"thumb-metacarpal.obj", "index-finger-phalanx-distal.obj", "wrist.obj"})
+    EXPECT_TRUE(names(inputs, segment)) << segment;
   for (const auto& file : inputs.files) EXPECT_TRUE(std::filesystem::is_regular_file(file)) << file;
   const StudyInputs capsules = scene_check(study)({{"hand.meshes", "\"capsules\""}});
   EXPECT_FALSE(names(capsules, "index-finger-phalanx-distal.obj"));
@@ -46,13 +47,14 @@ TEST(SceneInputs, AreTheFilesOfObjectAndMotionTooAndWhatIsInThem) {
   const TemporaryFolder folder;
   write_text_file(folder / "mine.toml",
                   "[[objects]]\nkind = \"file\"\nfile = \"t.obj\"\nsize_mm = 40\n"
-                  "[motion]\nfile = \"walk.csv\"\n");
+                  "[motion]\nfile = \"walk.csv\"\nmapping = \"cyberglove\"\n");
   write_text_file(folder / "t.obj", "v 0 0 0\n");
   write_text_file(folder / "walk.csv", "time_s\n");
   const Study study = parse_study("scene = \"./mine.toml\"", "s.toml", folder.path());
   const StudyInputs inputs = scene_check(study)({});
   EXPECT_TRUE(names(inputs, "t.obj"));
   EXPECT_TRUE(names(inputs, "walk.csv"));
+  EXPECT_TRUE(names(inputs, "cyberglove.toml"));
   const std::string before = check_study(study, scene_check(study));
   write_text_file(folder / "t.obj", "v 0 0 1\n");
   const std::string other_object = check_study(study, scene_check(study));

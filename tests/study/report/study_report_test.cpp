@@ -172,6 +172,37 @@ TEST(StudyReport, WarnsOfWhatIsMissingInvalidOrAtTheEdge) {
     EXPECT_THAT(page, HasSubstr(words));
 }
 
+// Ten points of 31 have nothing that is stable and end in invalid runs, two each: 20 of 100 + ... + 109 runs.
+// Eight of the points are named, and of the axis' values all but the last but one.
+TEST(StudyReport, NamesTheFirstEightOfManyPointsAndCountsTheRest) {
+  std::vector<double> values;
+  for (int i = 0; i < 31; ++i) values.push_back(i);
+  const Study study = synthetic_study({}, {numbers("x.y", "x.y", values)});
+  std::vector<PointResult> results;
+  for (int i = 0; i < 31; ++i) {
+    results.push_back(synthetic_result(study, i, i < 10 ? -1 : 9));
+    if (i >= 10) continue;
+    results.back().ends_in_invalid = true;
+    results.back().invalid_trials = 2;
+    results.back().why_invalid = "no contact";
+  }
+  const std::string page = study_report_html(study, results, kMadeUp);
+  EXPECT_EQ(flaw_of(page), "");
+  const std::string ten = "10 points (x.y 0; x.y 1; x.y 2; x.y 3; x.y 4; x.y 5; x.y 6; x.y 7; and 2 more).";
+  EXPECT_THAT(page,
+              HasSubstr("Already at the smallest stiffness, 0.1 N/mm, a run is invalid; nothing is known "
+                        "of the limit, which is shown as 0: " +
+                        ten));
+  EXPECT_THAT(
+      page, HasSubstr("20 of 1045 runs were invalid and count as not stable, at " +
+                      ten.substr(0, ten.size() - 1) + ". Why the first one at each point was: no contact."));
+  EXPECT_THAT(page, Not(HasSubstr("Not even the smallest stiffness")));
+  EXPECT_THAT(page, Not(HasSubstr("What ends the search")));
+  EXPECT_THAT(page, HasSubstr("27, 28, \u2026, 30 (31 values)"));
+  values.pop_back();
+  EXPECT_THAT(page_of(synthetic_study({}, {numbers("x.y", "x.y", values)})), HasSubstr("27, 28, 29<"));
+}
+
 TEST(StudyReport, WithoutAnyResultIsStillAPage) {
   for (const Study& study :
        {synthetic_study({}, {}), synthetic_study({"a", "b"}, {}), synthetic_study({}, {kFriction, kDelay})}) {
