@@ -49,7 +49,7 @@ class Stage {
     for (Pose& segment : hcp.digit[idx(test::kIndex)].segment) segment.p += by;
   }
   Status tick() {
-    return compute_command({hand_, law, smoothing, limits, kTick, stabiliser, oscillation}, contacts_, hcp,
+    return compute_command({hand_, law, smoothing, limits, period, stabiliser, oscillation}, contacts_, hcp,
                            stale, state);
   }
   Status ticks(int count) {
@@ -75,6 +75,7 @@ class Stage {
   ForceState state;
   HandPoses hcp;
   bool stale = false;
+  double period = kTick;
 
  private:
   HandModel hand_ = test::simple_hand();
@@ -204,21 +205,23 @@ TEST(ForceStage, TheFirstTickOfAllKnowsNoSpeed) {
   EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
 }
 
-// A contact without depth sends nothing; when it goes, so does its speed.
+// A contact without depth sends nothing; when it goes, so does its speed, whichever segment's it is.
 TEST(ForceStage, AContactThatWasNeverFeltLeavesNothingBehind) {
-  Stage stage;
-  stage.law.velocity_lowpass_hz = 30.0;
-  const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
-  stage.press(kDistal, 0.0);
-  stage.tick();
-  stage.move_hcp({0.0, -1e-3, 0.0});
-  stage.press(kDistal, 0.0);
-  stage.tick();
-  EXPECT_NEAR(force.speed, 0.2 * (1.0 - std::exp(-0.3 * 3.14159265358979323846)), 1e-12);
-  stage.leave(kDistal);
-  stage.tick();
-  EXPECT_EQ(force.speed, 0.0);
-  EXPECT_EQ(force.normal, Vec3::Zero());
+  for (const int k : {kProximal, 1, kDistal}) {
+    Stage stage;
+    stage.law.velocity_lowpass_hz = 30.0;
+    const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, k))];
+    stage.press(k, 0.0);
+    stage.tick();
+    stage.move_hcp({0.0, -1e-3, 0.0});
+    stage.press(k, 0.0);
+    stage.tick();
+    EXPECT_NEAR(force.speed, 0.2 * (1.0 - std::exp(-0.3 * 3.14159265358979323846)), 1e-12) << k;
+    stage.leave(k);
+    stage.tick();
+    EXPECT_EQ(force.speed, 0.0) << k;
+    EXPECT_EQ(force.normal, Vec3::Zero()) << k;
+  }
 }
 
 // A damper of 4 N s/m beside Hooke's law takes the low-passed speed, time-domain passivity that of the step.
@@ -236,6 +239,18 @@ TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
     stage.tick();
     // E = 0.005 x 1 N x -0.2 = -1 mJ, a = 1e-3 / (0.005 x 0.04) = 5 N s/m, 1 - 5 x 0.2 = 0.
     EXPECT_NEAR(stage.sent(kDistal), method == Stabiliser::kPassivity ? 0.0 : 1.0 - 4.0 * 0.2 * gain, 1e-12);
+  }
+}
+
+// At 1 kHz smoothing's 20 N/s are 0.02 N a step.
+TEST(ForceStage, TheStabiliserTakesTheModelsPeriod) {
+  Stage stage;
+  stage.period = 1e-3;
+  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.press(kDistal, 2e-3);
+  for (int n = 1; n <= 3; ++n) {
+    stage.tick();
+    EXPECT_NEAR(stage.sent(kDistal), 0.02 * n, 1e-12) << n;
   }
 }
 
@@ -343,6 +358,31 @@ TEST(ForceStage, TheDigitsSumIsCappedBeforeTheStabiliserToo) {
   stage.ticks(100);
   EXPECT_NEAR(stage.sent(kDistal), 25.0 / 7.0, 1e-9);
   EXPECT_NEAR(stage.sent(kProximal), 10.0 / 7.0, 1e-9);
+}
+
+// Of 5 N and half a micronewton the cap takes what nobody feels: it has not acted. One and a half is said.
+TEST(ForceStage, ACapThatTakesLessThanAMicronewtonHasNotActed) {
+  for (const double beyond : {0.5e-6, 1.5e-6}) {
+    Stage stage;
+    stage.limits.fingertip_force_enabled = true;
+    stage.press(kDistal, 10e-3 + beyond / 500.0);
+    EXPECT_EQ(has(stage.tick(), Status::kForceLimited), beyond > 1e-6) << beyond;
+    EXPECT_NEAR(stage.sent(kDistal), 5.0, 1e-12) << beyond;
+  }
+}
+
+// 12 mm into 500 N/m are 6 N, also beside a damper where no cap is on. With one of 5 N, 10 mm are 5 N, which
+// the cap leaves alone.
+TEST(ForceStage, ACapThatIsOffOrJustReachedLeavesADampedContactAlone) {
+  Stage stage;
+  stage.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
+  stage.press(kDistal, 12e-3);
+  EXPECT_EQ(stage.tick(), Status::kOk);
+  EXPECT_NEAR(stage.sent(kDistal), 6.0, 1e-12);
+  stage.limits.fingertip_force_enabled = true;
+  stage.press(kDistal, 10e-3);
+  EXPECT_EQ(stage.tick(), Status::kOk);
+  EXPECT_EQ(stage.sent(kDistal), 5.0);
 }
 
 // A damper may bring a contact above the cap; smoothing keeps below the law by itself.
@@ -526,6 +566,7 @@ TEST(ForceStage, ADigitThatTouchesNothingHasNoWall) {
     stage.ticks(500);
     EXPECT_FALSE(stage.wall(k).active) << k;
     EXPECT_EQ(stage.wall(k).stiffness, 0.0) << k;
+    EXPECT_TRUE(stage.state.resting[idx(test::kIndex)]) << k;
   }
 }
 
@@ -556,6 +597,23 @@ TEST(ForceStage, AWallThatIsNotReachedYetBeginsWhereItsDepthDoes) {
   EXPECT_NEAR(stage.wall(kDistal).d_ref, -0.3e-3, 1e-15);
   EXPECT_EQ(stage.wall(kDistal).stiffness, 500.0);
   EXPECT_EQ(stage.wall(kDistal).host_force, 0.0);
+}
+
+// Half a newton a metre is a stiffness. With none there is no wall, deep or not, and no number of it is left.
+TEST(ForceStage, AWallNeedsAStiffnessHoweverSmall) {
+  Stage stage = walled();
+  stage.law.stiffness = 0.5;
+  stage.press(kDistal, 2e-3);
+  stage.tick();
+  EXPECT_TRUE(stage.wall(kDistal).active);
+  EXPECT_EQ(stage.wall(kDistal).stiffness, 0.5);
+  stage.law.stiffness = 0.0;
+  for (const double depth : {2e-3, -0.3e-3}) {
+    stage.press(kDistal, depth);
+    stage.tick();
+    EXPECT_FALSE(stage.wall(kDistal).active) << depth;
+    EXPECT_EQ(stage.wall(kDistal).d_ref, 0.0) << depth;
+  }
 }
 
 // What the host does not push, the controller does not either.
@@ -688,11 +746,11 @@ TEST(ForceStage, AWallHasTheHalvedStiffness) {
 }
 
 /// A wall at 2 mm whose contact has let go, `moved` from where the finger was.
-Stage left_by(const Vec3& moved) {
+Stage left_by(const Vec3& moved, int k = kDistal) {
   Stage stage = walled();
-  stage.press(kDistal, 2e-3);
+  stage.press(k, 2e-3);
   stage.tick();
-  stage.leave(kDistal);
+  stage.leave(k);
   stage.move_hcp(moved);
   stage.tick();
   return stage;
@@ -709,6 +767,7 @@ TEST(ForceStage, AWallThatWasLeftIsKeptNearItsPlaceAtTheFingersHeight) {
   EXPECT_FALSE(left_by({0.0, 10.1e-3, 0.0}).wall(kDistal).active);
   EXPECT_FALSE(left_by({0.0, -0.1e-3, 0.0}).wall(kDistal).active)
       << "below: the object is not there any more";
+  EXPECT_TRUE(left_by(Vec3::Zero()).wall(kDistal).active) << "on the plane itself";
   for (const Vec3& side : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.0, -1.0), Vec3(-0.6, 0.0, 0.8)}) {
     EXPECT_TRUE(left_by(Vec3(0.0, 4e-3, 0.0) + 2.9e-3 * side).wall(kDistal).active);
     EXPECT_FALSE(left_by(Vec3(0.0, 4e-3, 0.0) + 3.1e-3 * side).wall(kDistal).active);
@@ -728,6 +787,16 @@ TEST(ForceStage, AWallThatWasLeftStaysWhereTheShownFingerStopped) {
   stage.tick();
   ASSERT_TRUE(stage.wall(kDistal).active);
   EXPECT_NEAR(stage.wall(kDistal).d_ref, -1e-3, 1e-12);
+}
+
+// Also where it is the only thing that the digit has left: one tick later nothing is sent any more.
+TEST(ForceStage, AWallThatWasLeftIsKeptForEachSegment) {
+  for (const int k : {kProximal, 1, kDistal}) {
+    Stage stage = left_by({0.0, 4e-3, 0.0}, k);
+    stage.tick();
+    EXPECT_TRUE(stage.wall(k).active) << k;
+    EXPECT_NEAR(stage.wall(k).d_ref, -4e-3, 1e-12) << k;
+  }
 }
 
 TEST(ForceStage, AWallThatWasLeftIsKeptForAQuarterOfASecond) {

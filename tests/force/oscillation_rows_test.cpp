@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "phalanx/force/oscillation.h"
@@ -79,6 +80,51 @@ TEST(OscillationRows, ForgetAtZeroWhatNeverSwung) {
 TEST(OscillationRows, TakeHalfSwingsBelowFourMillisecondsForNoise) {
   EXPECT_EQ(fires_at_leg(even(40), 5), 4);
   EXPECT_EQ(fires_at_leg(even(400), 3), 0);
+}
+
+/// From 0 to 2 N and back, one step each.
+/// @returns the leg at which the observer fires first; 0: none
+int fires_at_step(double period) {
+  OscillationObserver observer;
+  observer.watch(0.0, 0.5, period);
+  for (int leg = 1; leg <= 20; ++leg)
+    if (observer.watch(leg % 2 == 1 ? 2.0 : 0.0, 0.5, period)) return leg;
+  return 0;
+}
+
+// A half-swing of 4 ms is none of noise, three of 80 ms are 240 ms, and 260 ms are not too long for six legs.
+TEST(OscillationRows, FireAtTheirBoundsThemselves) {
+  EXPECT_EQ(fires_at_step(4.0 * kMillisecond), 4);
+  EXPECT_EQ(fires_at_step(80.0 * kMillisecond), 4);
+  EXPECT_EQ(fires_at_step(260.0 * kMillisecond), 6);
+}
+
+// Steps of 0.25 s: after two of them without a leg the verdict still holds, after three it does not.
+TEST(OscillationRows, HoldTheirVerdictForHalfASecondItself) {
+  OscillationObserver observer;
+  for (int leg = 0; leg <= 6; ++leg) observer.watch(leg % 2 == 1 ? 2.0 : 0.0, 0.5, 0.25);
+  ASSERT_TRUE(observer.oscillating());
+  for (int n = 1; n <= 3; ++n) {
+    observer.watch(0.0, 0.5, 0.25);
+    EXPECT_EQ(observer.oscillating(), n <= 2) << n;
+  }
+}
+
+// A rise and a fall of 0.5 N are not more than 0.5 N.
+TEST(OscillationRows, NeedMoreThanTheSwingItself) {
+  OscillationObserver observer;
+  for (const double force : {0.0, 0.5, 0.0}) observer.watch(force, 0.5, 5.0 * kMillisecond);
+  EXPECT_TRUE(observer.idle());
+}
+
+TEST(OscillationRows, TakeWhatIsNotFiniteOrNegativeForNoForce) {
+  for (const double force :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity(), -2.0}) {
+    OscillationObserver observer;
+    EXPECT_FALSE(observer.watch(force, 0.5, 5.0 * kMillisecond)) << force;
+    EXPECT_TRUE(observer.idle()) << force;
+  }
 }
 
 }  // namespace

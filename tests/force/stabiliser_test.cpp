@@ -205,6 +205,65 @@ TEST(Stabiliser, TheDirectionTurnsToTheOppositeToo) {
   }
 }
 
+// By 0.3 rad, whichever direction it starts from: the one across it is made of another axis.
+TEST(Stabiliser, TheTurnToTheOppositeIsByTheBoundFromAnyDirection) {
+  const std::array<Vec3, 4> directions = {Vec3(0.6, 0.8, 0.0), Vec3(0.96, 0.28, 0.0), Vec3(0.0, -0.6, 0.8),
+                                          Vec3(-1.0, 0.0, 0.0)};
+  for (const Vec3& from : directions) {
+    const Vec3 next = turned_direction(from, -from, 0.3);
+    EXPECT_NEAR(next.norm(), 1.0, 1e-12) << from.transpose();
+    EXPECT_NEAR(from.dot(next), std::cos(0.3), 1e-12) << from.transpose();
+  }
+}
+
+// At a depth of exactly 0 the damper of 4 N s/m would push 0.8 N, passivity's at its largest of 10 N s/m 2 N,
+// and energy bounding would hold its 1 N. The finger arrives with the first depth above 0.
+TEST(Stabiliser, AContactWithoutDepthPushesNothingAndHasNotArrived) {
+  for (const Stabiliser method : {Stabiliser::kKelvinVoigt, Stabiliser::kVirtualCoupling,
+                                  Stabiliser::kPassivity, Stabiliser::kEnergyBounding}) {
+    StabiliserMemory memory;
+    memory.energy = -1.0;
+    const StabiliserInput input{.force = 0.0,
+                                .depth = 0.0,
+                                .speed = 0.2,
+                                .speed_now = 0.2,
+                                .sent = 1.0,
+                                .pressing = true,
+                                .period = kStabiliserPeriod};
+    EXPECT_EQ(stabilised_force({.method = method}, {}, input, memory), 0.0) << static_cast<int>(method);
+    EXPECT_FALSE(memory.touching) << static_cast<int>(method);
+  }
+  double proxy = 1e-3;
+  EXPECT_EQ(coupled_force(0.0, 0.0, 0.0, 1000.0, 4.0, kStabiliserPeriod, proxy), 0.0);
+  EXPECT_EQ(proxy, 0.0);
+}
+
+// Each number by itself: no force, no force sent (0.1 N is one step of smoothing from there), no depth and no
+// speed.
+TEST(Stabiliser, CountsWhatIsNotFiniteAsNothing) {
+  const auto sent = [](Stabiliser method, StabiliserInput input) {
+    input.pressing = true;
+    input.period = kStabiliserPeriod;
+    StabiliserMemory memory;
+    return stabilised_force({.method = method}, {}, input, memory);
+  };
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    EXPECT_EQ(sent(Stabiliser::kNone, {.force = bad, .depth = 1e-3}), 0.0) << bad;
+    EXPECT_NEAR(sent(Stabiliser::kSmoothing, {.force = 1.0, .depth = 1e-3, .sent = bad}), 0.1, 1e-15) << bad;
+    EXPECT_EQ(sent(Stabiliser::kKelvinVoigt, {.force = 1.0, .depth = bad, .speed = 0.1}), 0.0) << bad;
+    EXPECT_EQ(sent(Stabiliser::kKelvinVoigt, {.force = 1.0, .depth = 1e-3, .speed = bad}), 1.0) << bad;
+  }
+}
+
+// 4 N s/m times 1e308 m/s are more than a number holds: nothing is sent, and the contact begins anew.
+TEST(Stabiliser, ForgetsAContactWhoseForceIsNotFinite) {
+  StabiliserMemory memory;
+  const StabiliserInput input{
+      .force = 1.0, .depth = 1e-3, .speed = 1e308, .pressing = true, .period = kStabiliserPeriod};
+  EXPECT_EQ(stabilised_force({.method = Stabiliser::kKelvinVoigt, .damping = 4.0}, {}, input, memory), 0.0);
+  EXPECT_FALSE(memory.touching);
+}
+
 // A contact that is gone leaves nothing behind but what decays.
 TEST(Stabiliser, ForgetsAContactThatIsGone) {
   for (const Stabiliser method : test::kAllStabilisers) {

@@ -60,6 +60,7 @@ TEST(Anthropometry, SegmentsAreInTheOrderOfTheirNames) {
   const int segment = find_segment("middle-finger-phalanx-intermediate").value();
   EXPECT_NEAR(plausible_segment_length(segment).min, 0.01433, 1e-12);
   EXPECT_NEAR(plausible_segment_length(segment).max, 0.03833, 1e-12);
+  EXPECT_NEAR(plausible_palm_ratio().min, 1.0 - 4.0 * 5.38 / 64.60, 1e-12);
   EXPECT_NEAR(plausible_palm_ratio().max, 1.0 + 4.0 * 5.38 / 64.60, 1e-12);
   EXPECT_EQ(segment_length_norm(find_segment("thumb-metacarpal").value()).mean,
             metacarpal_length_norm(0).mean);

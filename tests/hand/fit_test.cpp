@@ -3,7 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "phalanx/core/index.h"
 #include "phalanx/hand/hand_meshes.h"
@@ -211,6 +217,94 @@ TEST(Fit, ScalesCapsulesAndPalmAsByHand) {
   EXPECT_LT((hand.palm.offset - Vec3(0.009, -0.018, 0.18)).norm(), 1e-15);
 }
 
+// Each row of the D-H table goes with the segment that its joint moves, both MCP axes with the first one; a
+// distal capsule ends where its bone and its soft tip do: 1.3 x 25 mm less the tip's 5 mm. What the fit does
+// not name stays.
+TEST(Fit, ScalesDhRowsAndLengthsWithTheirSegments) {
+  HandParameters base = forward_knuckles();
+  DigitParameters& index = base.digits[test::kIndex];
+  index.dh[0].a = 5e-3;
+  const std::array<double, kJointsPerDigit> offset = {2e-3, -3e-3, 4e-3, 1e-3};
+  for (std::size_t i = 0; i < kJointsPerDigit; ++i) index.dh[i].d = offset[i];
+  HandFit fit;
+  for (int k = 0; k < kSegmentsPerDigit; ++k)
+    fit.segment[idx(segment_index(test::kIndex, k))].length = 1.1 + 0.1 * k;
+  const HandParameters hand = fitted_parameters(base, fit);
+  const std::array<double, kJointsPerDigit> a = {5.5e-3, 44e-3, 30e-3, 26e-3};
+  const std::array<double, kJointsPerDigit> d = {2.2e-3, -3.3e-3, 4.8e-3, 1.3e-3};
+  for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
+    EXPECT_NEAR(hand.digits[test::kIndex].dh[i].a, a[i], 1e-15) << i;
+    EXPECT_NEAR(hand.digits[test::kIndex].dh[i].d, d[i], 1e-15) << i;
+    EXPECT_EQ(hand.digits[kMiddle].dh[i].a, base.digits[kMiddle].dh[i].a) << i;
+  }
+  EXPECT_NEAR(hand.segments[idx(segment_index(test::kIndex, 0))].length, 44e-3, 1e-15);
+  EXPECT_NEAR(hand.segments[idx(segment_index(test::kIndex, 1))].length, 30e-3, 1e-15);
+  EXPECT_NEAR(hand.segments[idx(segment_index(test::kIndex, 2))].length, 27.5e-3, 1e-15);
+  for (std::size_t s = 0; s < kSegments - 1; ++s) {
+    EXPECT_NEAR(hand.segments[s].radius_base, base.segments[s].radius_base, 1e-15) << s;
+    EXPECT_NEAR(hand.segments[s].radius_tip, base.segments[s].radius_tip, 1e-15) << s;
+  }
+  EXPECT_EQ(hand.digits[kMiddle].base, base.digits[kMiddle].base);
+  EXPECT_EQ(hand.palm.length, base.palm.length);
+  EXPECT_EQ(hand.palm.knuckle_breadth, base.palm.knuckle_breadth);
+}
+
+// Thumb tip 1.2, index proximal 0.8, the rest 1: a tip has no neighbour beyond it, least of all the next
+// digit's first segment.
+TEST(Fit, ATipIsAsBroadAtItsEndAsInItsMiddle) {
+  const HandParameters base = forward_knuckles();
+  HandSize size;
+  size.hand_breadth = hand_breadth(base);
+  size.segment[idx(segment_index(0, 2))].breadth = 1.2 * segment_breadth(base, segment_index(0, 2));
+  size.segment[idx(segment_index(1, 0))].breadth = 0.8 * segment_breadth(base, segment_index(1, 0));
+  const HandFit fit = fit_hand(base, size);
+  EXPECT_NEAR(fit.segment[idx(segment_index(0, 1))].breadth_end, 1.1, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(segment_index(0, 2))].breadth_base, 1.1, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(segment_index(0, 2))].breadth_end, 1.2, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(segment_index(1, 0))].breadth_base, 1.0, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(segment_index(1, 0))].breadth_end, 0.9, 1e-12);
+  EXPECT_NEAR(fit.segment[idx(segment_index(1, 2))].breadth_end, 1.0, 1e-12);
+}
+
+// All fifteen breadths, and nothing else: what they have in common is the hand's.
+TEST(Fit, ThePalmAndTheLengthsFollowTheBreadthsIfAllAreStated) {
+  const HandParameters base = forward_knuckles();
+  HandSize size;
+  for (int s = 0; s < kSegments - 1; ++s) size.segment[idx(s)].breadth = 0.9 * segment_breadth(base, s);
+  HandFit fit = fit_hand(base, size);
+  EXPECT_NEAR(fit.palm_breadth, 0.9, 1e-12);
+  EXPECT_NEAR(fit.palm_length, 0.9, 1e-12);
+  for (const SegmentFit& own : fit.segment) EXPECT_NEAR(own.length, 0.9, 1e-12);
+  size.segment.back().breadth.reset();
+  fit = fit_hand(base, size);
+  EXPECT_EQ(fit.palm_breadth, 1.0) << "one is not stated";
+}
+
+// By hand, on a bone of 40 mm. Smooth steps from 0.9 through 1.2 to 1.1: at an eighth 0.9 + 0.3 x 0.15625, at
+// five eighths 1.2 - 0.1 x 0.15625. Along it 1.2 t^2 (3 - 2 t) + 0.9 t (1 - t)^2 - 1.1 t^2 (1 - t):
+// 0.12265625 and 0.73828125.
+TEST(Fit, MovesAPointBesideABoneAsByHand) {
+  const HandParameters base = forward_knuckles();
+  const int s = segment_index(1, 0);
+  HandFit fit;
+  fit.segment[idx(s)] = {.length = 1.2, .breadth_base = 0.9, .breadth_middle = 1.2, .breadth_end = 1.1};
+  const Vec3 eighth = moved(base, fit, s, {0.01, -0.005, -0.005});
+  EXPECT_LT((eighth - Vec3(0.00946875, -0.004734375, -0.00490625)).norm(), 1e-15);
+  const Vec3 five_eighths = moved(base, fit, s, {0.01, -0.005, -0.025});
+  EXPECT_LT((five_eighths - Vec3(0.01184375, -0.005921875, -0.02953125)).norm(), 1e-15);
+}
+
+// A bone of 0.4 of its length between joints of 1.2 and 1.3 times their breadth: beyond its ends the mesh
+// grows by 2.5 x 0.4 = 1 at most, so that 4 mm stay 4 mm.
+TEST(Fit, AShortBoneKeepsItsEndsSlopesWithinTwoAndAHalfTimesItsLength) {
+  const HandParameters base = forward_knuckles();
+  const int s = segment_index(1, 0);
+  HandFit fit;
+  fit.segment[idx(s)] = {.length = 0.4, .breadth_base = 1.2, .breadth_middle = 1.2, .breadth_end = 1.3};
+  EXPECT_NEAR(moved(base, fit, s, {0.0, 0.0, 0.004}).z(), 0.004, 1e-15);
+  EXPECT_NEAR(moved(base, fit, s, {0.0, 0.0, -0.044}).z(), -0.020, 1e-15);
+}
+
 // Around a joint both segments are scaled by one number in all directions, so that turning them against each
 // other opens no gap that the base hand's did not have.
 TEST(Fit, ScalesBothSegmentsOfAJointAlikeAroundIt) {
@@ -252,6 +346,36 @@ TEST(Fit, ScalesThePalmAroundAKnuckleAsTheFinger) {
   EXPECT_LT((moved(base, fit, kPalm, wrist) - Vec3(0.018, 0.0, 0.0)).norm(), 1e-12);
 }
 
+// From 10 to 35 mm of a knuckle the palm passes from its breadth's ratio to its length's. At 22.5 mm, half of
+// it: 1.2 z - 0.3 x 0.5 x 13.5 mm. At 16.25 mm, a quarter, 1 - 0.15625 of it: 1.2 z - 0.3 x 0.84375 x 9.75
+// mm.
+TEST(Fit, ThePalmPassesSmoothlyFromItsKnucklesToItsWhole) {
+  HandParameters base = forward_knuckles();
+  for (int d = 0; d < kDigits; ++d) base.digits[idx(d)].base = {0.06 * (d - 2), 0.0, -0.08};
+  HandFit fit;
+  fit.palm_length = 1.2;
+  fit.palm_breadth = 0.9;
+  const Vec3 half = moved(base, fit, kPalm, {0.0, 0.018, -0.0665});
+  EXPECT_LT((half - Vec3(0.0, 0.0162, -0.081825)).norm(), 1e-12);
+  const Vec3 quarter = moved(base, fit, kPalm, {0.0, 0.013, -0.07025});
+  EXPECT_LT((quarter - Vec3(0.0, 0.0117, -0.08676796875)).norm(), 1e-12);
+}
+
+// Four knuckles 10 mm away at z = -80 mm, one 20 mm away at -60 mm, of a sixteenth of the weight of each: the
+// height is (-64 x 80 - 60) / 65 mm = -80 mm + 20/65 mm. At a knuckle it is that knuckle's alone.
+TEST(Fit, ThePalmWeighsItsKnucklesByTheInverseFourthPowerOfTheirDistance) {
+  HandParameters base = forward_knuckles();
+  for (DigitParameters& digit : base.digits) digit.base = {0.0, 0.0, -0.08};
+  base.digits.back().base = {0.0, 0.010, -0.06};
+  HandFit fit;
+  fit.palm_length = 1.2;
+  fit.palm_breadth = 0.9;
+  const Vec3 between = moved(base, fit, kPalm, {0.0, 0.010, -0.08});
+  EXPECT_LT((between - Vec3(0.0, 0.009, -0.096 + 0.3 * 0.02 / 65.0)).norm(), 1e-12);
+  const Vec3 knuckle = moved(base, fit, kPalm, {0.0, 0.010, -0.06});
+  EXPECT_LT((knuckle - Vec3(0.0, 0.009, -0.072)).norm(), 1e-12);
+}
+
 TEST(Fit, KeepsMeshesClosedAndOutwardAtTheExtremes) {
   const HandParameters base = forward_knuckles();
   std::mt19937_64 random(13);
@@ -274,13 +398,59 @@ TEST(Fit, RefusesAMiddleFingerThatIsLongerThanTheHand) {
               ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("longer than the hand")));
 }
 
+TEST(Fit, RefusesABaseHandWhoseMiddleFingerDoesNotBeginBeyondTheWrist) {
+  for (const double z : {0.0, 0.01}) {
+    HandParameters base = forward_knuckles();
+    base.digits[kMiddle].base.z() = z;
+    HandSize size;
+    size.hand_length = 0.1;
+    size.segment[idx(segment_index(kMiddle, 0))].length = 0.04;
+    EXPECT_THAT([&] { (void)fit_hand(base, size); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("beyond the wrist")))
+        << z;
+  }
+}
+
+// Radii of 8 and 7 mm: spheres less than 1 mm apart lie one inside the other.
+TEST(Fit, RefusesASegmentThatIsNotLongerThanTheDifferenceOfItsRadii) {
+  HandParameters base = forward_knuckles();
+  SegmentShape& shape = base.segments[idx(segment_index(1, 0))];
+  for (const bool thicker_tip : {false, true}) {
+    shape.radius_base = thicker_tip ? 7e-3 : 8e-3;
+    shape.radius_tip = thicker_tip ? 8e-3 : 7e-3;
+    shape.length = 1.5e-3;
+    EXPECT_NO_THROW((void)fitted_parameters(base, {})) << thicker_tip;
+    shape.length = 0.5e-3;
+    EXPECT_THAT([&] { (void)fitted_parameters(base, {}); },
+                ::testing::ThrowsMessage<std::invalid_argument>(
+                    ::testing::HasSubstr("index-finger-phalanx-proximal is too short")))
+        << thicker_tip;
+  }
+}
+
 TEST(Fit, RefusesSizesThatAreNoLengths) {
   const HandParameters base = forward_knuckles();
   for (const double bad : {0.0, -0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const auto expect_refused = [&](const HandSize& size, const char* what) {
+      EXPECT_THAT([&] { (void)fit_hand(base, size); },
+                  ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr(what)))
+          << bad;
+    };
     HandSize size;
     size.hand_breadth = bad;
-    EXPECT_THAT([&] { (void)fit_hand(base, size); },
-                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("hand breadth")));
+    expect_refused(size, "hand breadth is");
+    size = {};
+    size.hand_length = bad;
+    expect_refused(size, "hand length is");
+    for (const auto& [segment, name] :
+         {std::pair{0, "thumb-metacarpal"}, {14, "pinky-finger-phalanx-distal"}}) {
+      size = {};
+      size.segment[idx(segment)].length = bad;
+      expect_refused(size, (std::string(name) + ": length is").c_str());
+      size = {};
+      size.segment[idx(segment)].breadth = bad;
+      expect_refused(size, (std::string(name) + ": breadth is").c_str());
+    }
   }
 }
 

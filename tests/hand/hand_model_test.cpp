@@ -3,7 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include "support/simple_hand.h"
 
@@ -245,6 +250,31 @@ TEST(HandModel, ReachHoldsForLinkOffsetsToo) {
   }
 }
 
+// Straight, by hand: the mesh's farthest point is the tip's pole, 20 + 5, 25 + 6 and 40 + 7 mm from the
+// segment's joint; then the bones before it. Offsets of 3 mm and of 7 mm beside 24 mm: sqrt(24^2 + 7^2) = 25.
+TEST(HandModel, ReachIsNoFartherThanTheStraightDigit) {
+  HandParameters parameters = simple_parameters();
+  const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
+  const auto expect = [](const HandModel& of, int joint, int k, double reach) {
+    EXPECT_NEAR(of.reach(test::kIndex, joint, k), reach, 1e-12) << joint << " " << k;
+  };
+  expect(hand, 3, 2, 0.025);
+  expect(hand, 2, 2, 0.050);
+  expect(hand, 1, 2, 0.090);
+  expect(hand, 0, 2, 0.090);
+  expect(hand, 2, 1, 0.031);
+  expect(hand, 0, 1, 0.071);
+  expect(hand, 0, 0, 0.047);
+  parameters.digits[test::kIndex].dh[2].a = 0.024;
+  parameters.digits[test::kIndex].dh[2].d = 0.007;
+  parameters.digits[test::kIndex].dh[3].d = -0.003;
+  const HandModel offset = make_hand_model(parameters, Handedness::kRight, {}, 800);
+  expect(offset, 3, 2, 0.028);
+  expect(offset, 2, 2, 0.053);
+  expect(offset, 0, 2, 0.093);
+  expect(offset, 2, 1, 0.038);
+}
+
 TEST(HandModel, RefusesAPoseThatIsNotRigid) {
   Pose nan;
   nan.p.x() = std::nan("");
@@ -265,6 +295,88 @@ TEST(HandModel, EverySegmentIsOneClosedMeshAndTheCountIsNearWhatWasAsked) {
       EXPECT_TRUE(is_closed(hand.mesh(s))) << segment_name(s);
       EXPECT_GT(signed_volume(hand.mesh(s)), 0.0) << segment_name(s);
     }
+  }
+}
+
+// Of 2250 triangles a sixteenth is 140: 10 sides to 7 rings, 2 x 10 x 7. The palm takes the 150 that are
+// left: 2 x 11 x 7 = 154 is nearest to that. Of 800 each capsule takes the fewest, 6 sides to 4 rings, and
+// the palm the 80 that are left, 10 sides to 4 rings.
+TEST(CapsuleMeshes, HaveAboutTenSidesToSevenRingsAndThePalmTakesWhatIsLeft) {
+  struct Expected {
+    int asked, triangles, sides, palm_triangles, palm_sides;
+  };
+  for (const Expected& expected : {Expected{2250, 140, 10, 154, 11}, Expected{800, 48, 6, 80, 10}}) {
+    const SegmentMeshes meshes = make_capsule_meshes(simple_parameters(), Handedness::kRight, expected.asked);
+    for (std::size_t s = 0; s < kSegments; ++s) {
+      const TriangleMesh& mesh = meshes[s];
+      const auto tip = std::min_element(mesh.vertices.begin(), mesh.vertices.end(),
+                                        [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+      const auto pole = tip - mesh.vertices.begin();
+      const auto sides = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        return t[0] == pole || t[1] == pole || t[2] == pole;
+      });
+      EXPECT_EQ(static_cast<int>(mesh.triangles.size()),
+                s == kPalm ? expected.palm_triangles : expected.triangles)
+          << expected.asked << " " << s;
+      EXPECT_EQ(sides, s == kPalm ? expected.palm_sides : expected.sides) << expected.asked << " " << s;
+    }
+  }
+}
+
+TEST(CapsuleMeshes, AreOfEightHundredToTwoMillionTriangles) {
+  for (const int asked : {799, 2'000'001}) {
+    EXPECT_THAT([&] { (void)make_capsule_meshes(simple_parameters(), Handedness::kRight, asked); },
+                ::testing::ThrowsMessage<std::invalid_argument>(
+                    ::testing::HasSubstr(std::to_string(asked) + " triangles asked for")));
+  }
+}
+
+// Each number of a digit by itself, and directions that leave no axis to flex about.
+TEST(HandModel, RefusesADigitThatIsNotFiniteOrHasNoFlexionAxis) {
+  using Number = double& (*)(DigitParameters&);
+  const Number numbers[] = {
+      [](DigitParameters& d) -> double& { return d.base.x(); },
+      [](DigitParameters& d) -> double& { return d.distal.y(); },
+      [](DigitParameters& d) -> double& { return d.dorsal.z(); },
+      [](DigitParameters& d) -> double& { return d.dh[0].a; },
+      [](DigitParameters& d) -> double& { return d.dh[1].alpha; },
+      [](DigitParameters& d) -> double& { return d.dh[2].d; },
+      [](DigitParameters& d) -> double& { return d.dh[3].theta; },
+  };
+  const auto expect_refused = [](const HandParameters& hand) {
+    EXPECT_THAT([&] { (void)make_hand_model(hand, Handedness::kRight, {}, 800); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("digit ring has")));
+  };
+  for (const Number number : numbers) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      HandParameters hand = simple_parameters();
+      number(hand.digits[3]) = bad;
+      expect_refused(hand);
+    }
+  }
+  HandParameters hand = simple_parameters();
+  hand.digits[3].dorsal = Vec3(0.0, 0.0, 2.0);
+  expect_refused(hand);
+}
+
+TEST(HandModel, RefusesAMeshWithoutATriangle) {
+  for (const int s : {0, 7, kPalm}) {
+    SegmentMeshes meshes = make_capsule_meshes(simple_parameters(), Handedness::kRight, 800);
+    meshes[static_cast<std::size_t>(s)].triangles.clear();
+    EXPECT_THAT([&] { (void)HandModel(simple_parameters(), Handedness::kRight, {}, meshes); },
+                ::testing::ThrowsMessage<std::invalid_argument>(
+                    ::testing::HasSubstr("segment " + std::string(segment_name(s)))));
+  }
+}
+
+TEST(HandModel, RefusesARangeOfMotionWithoutAnEnd) {
+  HandParameters downwards = simple_parameters();
+  downwards.min_angle[5] = -std::numeric_limits<double>::infinity();
+  HandParameters upwards = simple_parameters();
+  upwards.max_angle[5] = std::numeric_limits<double>::infinity();
+  for (const HandParameters& bad : {downwards, upwards}) {
+    EXPECT_THAT([&] { (void)make_hand_model(bad, Handedness::kRight, {}, 800); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("index_mcp_abduction")));
   }
 }
 
@@ -298,6 +410,8 @@ TEST(Joints, NamesAndNumbersAgree) {
   for (int j = 0; j < kJoints; ++j) EXPECT_EQ(find_joint(joint_name(j)), j);
   for (int s = 0; s < kSegments; ++s) EXPECT_EQ(find_segment(segment_name(s)), s);
   EXPECT_FALSE(find_joint("index_mcp").has_value());
+  for (int s = 0; s < kPalm; ++s) EXPECT_EQ(digit_of_segment(s), s / 3) << s;
+  EXPECT_EQ(digit_of_segment(kPalm), -1);
 }
 
 }  // namespace

@@ -96,6 +96,16 @@ TEST(CheckParameters, TakesEachNumberUpToItsBoundAndNoFurther) {
   }
 }
 
+TEST(CheckParameters, SaysTheRangeOfWhatItRefuses) {
+  HapticModel model = floor_model();
+  model.contact.slid_distance = -1.0;
+  expect_refused(model, "contact.slid_distance [m] = -1.000000 is outside 0.000000 .. any finite number",
+                 -1.0);
+  model.contact.slid_distance = 0.0;
+  model.rate_hz = 5000.0;
+  expect_refused(model, "rate_hz = 5000.000000 is outside 1.000000 .. 4000.000000", 5000.0);
+}
+
 TEST(CheckParameters, ALimitThatIsOffMayBeAnything) {
   HapticModel model = floor_model();
   model.limits = {.fingertip_force_enabled = false,

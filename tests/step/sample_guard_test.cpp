@@ -124,6 +124,7 @@ TEST(SampleGuard, BelievesNoClockThatIsNotANumber) {
   for (const double time : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity})
     for (int n = 0; n < 10; ++n) EXPECT_TRUE(has(hand.at(time, 1.5), Status::kTimeNotIncreasing));
   EXPECT_EQ(hand.angle(), 0.0);
+  EXPECT_EQ(hand.guard.time_s(), 0.0) << "no sample has been used yet";
   EXPECT_FALSE(has(hand.at(-5.0, 1.5), Status::kTimeNotIncreasing)) << "the first of all may be any number";
   EXPECT_EQ(hand.angle(), 1.5) << "and is not slewed";
   EXPECT_EQ(hand.guard.time_s(), -5.0);
@@ -164,6 +165,22 @@ TEST(SampleGuard, IsStaleOverFiftyMillisecondsAfterTheLastWholeSample) {
     }
     EXPECT_FALSE(has(hand.at(2.0, 0.3), Status::kSampleStale));
     EXPECT_FALSE(hand.guard.stale());
+  }
+}
+
+// Two periods of 25 ms are 50 ms, which is not over them; they begin with the guard.
+TEST(SampleGuard, IsNotStaleAtFiftyMillisecondsThemselvesAlsoBeforeTheFirstWholeSample) {
+  const HandParameters hand = test::simple_parameters();
+  const LimitParameters limits;
+  SampleGuard guard{JointArray{}};
+  EXPECT_FALSE(guard.stale());
+  Sample sample;
+  sample.angle[0] = std::numeric_limits<double>::quiet_NaN();
+  for (int n = 1; n <= 3; ++n) {
+    sample.time_s = 0.025 * n;
+    const Status status = guard.accept(sample, hand, limits, 0.025);
+    EXPECT_EQ(guard.stale(), n > 2) << n;
+    EXPECT_EQ(has(status, Status::kSampleStale), n > 2) << n;
   }
 }
 

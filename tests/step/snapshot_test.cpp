@@ -2,6 +2,8 @@
 // What a step writes down of a contact, worked out again from the poses that it writes down beside it.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
 #include "support/stabilised_hands.h"
@@ -26,6 +28,37 @@ TEST(StepSnapshot, CountsItsTicksFromOne) {
     step(model, Sample{0.005 * static_cast<double>(n), JointArray{}}, state);
     EXPECT_EQ(state.snapshot().tick, n);
     EXPECT_EQ(state.snapshot().time_s, 0.005 * static_cast<double>(n));
+  }
+}
+
+// The hand stands 20 mm along +Z, its index finger open at -0.2 rad, which is towards +Y: the distal
+// segment's joint is 40 + 25 mm from the knuckle.
+TEST(StepSnapshot, IsTheOpenHandBeforeTheFirstStep) {
+  HandParameters parameters = test::simple_parameters();
+  parameters.open_angle = test::index_angles(-0.2);
+  const Pose X_WH = test::at(0.0, 0.0, 0.020);
+  const HapticModel model(
+      make_hand_model(parameters, Handedness::kRight, X_WH, 2250),
+      ObjectModel(test::moved(make_box(Vec3(0.06, 0.02, 0.3), 12), test::at(0.0, -0.030, 0.0))));
+  const HapticState state(model);
+  const Snapshot& now = state.snapshot();
+  EXPECT_EQ(now.time_s, 0.0);
+  EXPECT_EQ(now.status, Status::kOk);
+  EXPECT_EQ(now.hcp_angle, parameters.open_angle);
+  EXPECT_EQ(now.gdp_angle, parameters.open_angle);
+  const Vec3 tip(0.0, 0.065 * std::sin(0.2), 0.020 - 0.065 * std::cos(0.2));
+  for (const auto& pose : {now.hcp_pose, now.gdp_pose}) {
+    EXPECT_LT((pose[kTip].p - tip).norm(), 1e-15);
+    EXPECT_EQ(pose[kPalm].p, X_WH.p);
+  }
+}
+
+TEST(StepSnapshot, ASegmentThatTouchesNothingHasNeitherPointNorNormal) {
+  const HapticModel model = test::floor_model(Stabiliser::kNone);
+  test::Runner hand(model);
+  for (const SegmentSnapshot& segment : hand.tick(JointArray{}).segment) {
+    EXPECT_EQ(segment.point, Vec3::Zero());
+    EXPECT_EQ(segment.normal, Vec3::Zero());
   }
 }
 
