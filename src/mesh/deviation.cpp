@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "mesh/box_tree.h"
 #include "mesh/edge_table.h"
@@ -60,16 +63,15 @@ double farthest(const TriangleMesh& from, const Surface& to, std::size_t& probes
     ++probes;
   };
   for (const Vec3& v : from.vertices) probe(v);
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  edges.reserve(3 * from.triangles.size());
   for (const Triangle& t : from.triangles) {
-    const Vec3& a = from.vertices[idx(t[0])];
-    const Vec3& b = from.vertices[idx(t[1])];
-    const Vec3& c = from.vertices[idx(t[2])];
-    probe((a + b + c) / 3.0);
-    // An edge's other triangle has the same midpoint.
-    if (t[0] < t[1]) probe(0.5 * (a + b));
-    if (t[1] < t[2]) probe(0.5 * (b + c));
-    if (t[2] < t[0]) probe(0.5 * (c + a));
+    probe((from.vertices[idx(t[0])] + from.vertices[idx(t[1])] + from.vertices[idx(t[2])]) / 3.0);
+    for (std::size_t i = 0; i < 3; ++i) edges.push_back(std::minmax({t[i], t[(i + 1) % 3]}));
   }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (const auto& [a, b] : edges) probe(0.5 * (from.vertices[idx(a)] + from.vertices[idx(b)]));
   return worst;
 }
 
