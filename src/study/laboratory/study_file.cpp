@@ -102,14 +102,16 @@ std::vector<StudyValue> listed_values(TomlTable& table, const toml::table& raw) 
 /// Number of steps from one end to the other. @throws if it is no whole number.
 int whole_steps(const TomlTable& table, double from, double to, double step, std::string_view step_key) {
   const double steps = (to - from) / step;
-  if (steps >= kMostValues)
-    table.fail(step_key,
-               fmt::format("makes {:.0f} values; {} are the most", std::floor(steps) + 1.0, kMostValues));
-  if (std::abs(steps - std::round(steps)) > 1e-6)
+  const double nearest = std::round(steps);
+  const bool divides = std::abs(steps - nearest) <= 1e-6;
+  const double values = (divides ? nearest : std::floor(steps)) + 1.0;
+  if (values > kMostValues)
+    table.fail(step_key, fmt::format("makes {:.0f} values; {} are the most", values, kMostValues));
+  if (!divides)
     table.fail(step_key,
                fmt::format("does not divide the way from {} to {}; choose ends a whole number of steps apart",
                            from, to));
-  return static_cast<int>(std::lround(steps));
+  return static_cast<int>(nearest);
 }
 
 std::vector<StudyValue> stepped_values(TomlTable& table) {

@@ -96,7 +96,7 @@ TEST(RunStudy, GoesOnWhereItStoppedAndRepeatsNothing) {
   EXPECT_EQ(csv_of(again), expected_csv());
 }
 
-// What was written of the whole study stays while it is whole, and goes before a point is measured anew.
+// What was written of the whole study stays while it is whole, and goes before a point is measured again.
 TEST(RunStudy, RemovesTheOutputsOfAStudyThatIsNoLongerWhole) {
   const TemporaryFolder folder;
   const auto run = [&](const TrialFunction& trial) {

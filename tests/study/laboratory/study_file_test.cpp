@@ -118,8 +118,8 @@ TEST(StudyFile, SurvivesTheJournalsForm) {
   }
 }
 
-// A journal may be anybody's. Each bad grid has one thing wrong: the least value, the order, the largest
-// value, the step's sign, 30,001 values.
+// A journal may come from elsewhere. Each bad grid has one thing wrong: the least value, the order, the
+// largest value, the step's sign, 30,001 values.
 TEST(StudyFile, RefusesAJournalWhoseNumbersNoStudyFileMayHold) {
   const OrderedJson good = study_to_json(study_of(testing::kTwelvePoints));
   const auto with_grid = [&](double min, double max, double step) {
@@ -207,7 +207,13 @@ TEST(StudyFile, TakesAsMuchAsMayBeAndNoMore) {
   };
   const std::string scene = "scene = \"a\"\n";
   EXPECT_EQ(point_count(study_of(scene + axis("b", 10'000))), 10'000);
-  expect_refusal([&] { static_cast<void>(study_of(scene + axis("b", 10'001))); }, {"10000 are the most"});
+  expect_refusal([&] { static_cast<void>(study_of(scene + axis("b", 10'001))); }, {"makes 10001 values"});
+  // Divided, these are 9999.999999999998 and 10000.999999999998 steps.
+  const std::string stepped = scene + "[[axis]]\nkey = \"b\"\n";
+  expect_refusal([&] { static_cast<void>(study_of(stepped + "from = 0\nto = 700\nstep = 0.07")); },
+                 {"makes 10001 values"});
+  expect_refusal([&] { static_cast<void>(study_of(stepped + "from = 2.7\nto = 1002.8\nstep = 0.1")); },
+                 {"makes 10002 values"});
   EXPECT_EQ(study_of(scene + "seeds = 10000").seeds, 10'000);
   expect_refusal([&] { static_cast<void>(study_of(scene + "seeds = 10001")); }, {"<= 10000"});
   EXPECT_EQ(point_count(study_of(scene + axis("b", 1000) + axis("c", 1000))), 1'000'000);
