@@ -172,14 +172,15 @@ TEST(SoakFirstContact, IsTheFirstPlaceWithinTheMarginThatCloses) {
       test::moved(test::soup(shapes, 60), test::at(0.0, -0.13, -0.05))};
   for (const TriangleMesh& object : objects) {
     MovingDigit digit(object);
-    // The independent distance looks at every pair of triangles: as many ways as take about as long for each
-    // object.
+    // The independent distance looks at every pair of triangles, so the number of ways falls with the number
+    // of triangles.
     const int ways = std::clamp(60'000 / static_cast<int>(object.triangles.size()), 10, 300);
+    int stops = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       std::cout << "seed " << seed << ", " << ways << " ways\n";
-      for (const double length : {1.0, 0.1, 0.01})
-        EXPECT_GE(check_stops(seed, digit, ways, 32, length).stops, 0);
+      for (const double length : {1.0, 0.1, 0.01}) stops += check_stops(seed, digit, ways, 32, length).stops;
     }
+    EXPECT_GT(stops, 3) << object.triangles.size() << " triangles";
   }
 }
 

@@ -21,6 +21,7 @@
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
 #include "phalanx/contact/triangle_distance.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
@@ -365,14 +366,13 @@ TEST(GdpByHand, AnOpenFingerWithinTheMarginIsASetUpErrorThatSaysHowNear) {
 // The proximal corner meets the apex 60 degrees beside the axis: the force may turn from there towards the
 // axis by 30.
 TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDegrees) {
-  constexpr double kOneDegree = std::numbers::pi / 180.0;
-  const double lean = 60.0 * kOneDegree;
+  const double lean = 60.0 * kDeg;
   TriangleMesh cone;  // apex up at the origin, half angle 20 degrees
   cone.vertices = {Vec3::Zero(), Vec3(0.0, -5e-3, 0.0)};
-  const double radius = 5e-3 * std::tan(20.0 * kOneDegree);
+  const double radius = 5e-3 * std::tan(20.0 * kDeg);
   for (int i = 0; i < 36; ++i)
-    cone.vertices.emplace_back(radius * std::cos(10.0 * i * kOneDegree), -5e-3,
-                               -radius * std::sin(10.0 * i * kOneDegree));
+    cone.vertices.emplace_back(radius * std::cos(10.0 * i * kDeg), -5e-3,
+                               -radius * std::sin(10.0 * i * kDeg));
   for (int i = 0; i < 36; ++i) {
     const int a = 2 + i;
     const int b = 2 + (i + 1) % 36;
@@ -389,7 +389,7 @@ TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDeg
   EXPECT_NEAR(paper.gdp(0), 0.5, 1e-6);
   // 10 nm of the margin's 50 um are 2e-4 rad.
   EXPECT_LT((paper.record(0).n_c - Vec3(0.0, std::cos(lean), -std::sin(lean))).norm(), 2e-4);
-  const double turned = 30.0 * kOneDegree;
+  const double turned = 30.0 * kDeg;
   EXPECT_LT((paper.record(0).force_normal - Vec3(0.0, std::cos(turned), -std::sin(turned))).norm(), 2e-4);
 }
 
@@ -533,7 +533,6 @@ TEST(ContactPatchByHand, OnePointOfTheSegmentBeforeTwoWallsIsTwoPlaces) {
 // slant of 50 degrees that is less than half as fast, and the wall counts only if it leans by less than 30
 // degrees.
 TEST(ContactPatchByHand, CountsWhatFacesWithinThirtyDegreesOfTheFastestHoweverSlowlyItCloses) {
-  constexpr double kOneDegree = std::numbers::pi / 180.0;
   struct Approach {
     double lean;
     double slant;
@@ -545,8 +544,8 @@ TEST(ContactPatchByHand, CountsWhatFacesWithinThirtyDegreesOfTheFastestHoweverSl
                               {35.0, 50.0, false},
                               {35.0, 0.0, true}}) {
     SCOPED_TRACE(::testing::Message() << way.lean << " degrees, at a slant of " << way.slant);
-    const double lean = way.lean * kOneDegree;
-    const double slant = way.slant * kOneDegree;
+    const double lean = way.lean * kDeg;
+    const double slant = way.slant * kDeg;
     const Vec3 wall(-std::sin(lean), std::cos(lean), 0.0);
     TriangleMesh object = wall_facing(Vec3::UnitY(), 480e-6);
     append(object, wall_facing(wall, 481e-6));
@@ -657,7 +656,8 @@ TEST(NormalFanByHand, BesideACreaseTheOtherFaceCountsByHowNearItIs) {
   EXPECT_LT((normal_at_contact(object, tied, hovering, leaning(1.0)) - end).norm(), 1e-6);
   EXPECT_LT((normal_at_contact(object, tied, contact, Vec3::Zero()) - leaning(0.0)).norm(), 1e-12)
       << "they touch: the nearest face's own";
-  EXPECT_EQ(normal_at_contact(object, {}, contact, leaning(20.0)), leaning(20.0)) << "no face has a say";
+  EXPECT_EQ(normal_at_contact(object, {}, contact, leaning(20.0)), leaning(20.0))
+      << "without a face there is no other";
 }
 
 // A sheet in the plane z = 0. 2.5 um inside any of its rims the way out counts by 3 / 4, 5 um inside by a

@@ -90,7 +90,7 @@ TEST(MeanDirectionByHand, PairsOfOnePlaceFaceAsTheNearestOfThem) {
   EXPECT_LT((mean.unit() - Vec3(3.0, 4.0, 12.0) / 13.0).norm(), 1e-12);
 }
 
-// Twenty, each shown twice, and ten more, of which four have room.
+// Twenty, the first ten of them three times, and ten more, of which four have room.
 TEST(TiedTriangles, HoldTheFirst24EachOnceInTheirOrder) {
   TiedTriangles tied;
   EXPECT_EQ(tied.begin(), tied.end());

@@ -82,7 +82,7 @@ TEST(Proximity, AFlatTouchPicksTheMiddle) {
   }
 }
 
-// As above with a lower face of 1800 triangles: more pairs tie than are kept, and they are sought anew for
+// As above with a lower face of 1800 triangles: more pairs tie than are kept, and they are sought again for
 // each question.
 TEST(Proximity, ATouchOfMorePairsThanAreKeptIsTheSame) {
   const ObjectModel table(make_box(Vec3(0.2, 0.2, 0.2), 12));
@@ -189,8 +189,8 @@ TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
   EXPECT_FALSE(Containment(large).with(small, Pose{Mat3::Identity(), Vec3(0.2, 0, 0)}));
 }
 
-// The object is a ball of 5 mm inside a segment of 50 mm that has turned and moved; 30 mm off its middle in
-// the segment's frame, and once as far on the outside.
+// The object is a ball of 5 mm radius, the segment one of 50 mm that has turned and moved. In the segment's
+// frame the object is 30 mm off the middle, inside, or 90 mm, outside.
 TEST(Containment, SeesAnObjectInsideASegmentWhereverThatIs) {
   const TriangleMesh segment = make_sphere(0.1, 400);
   const Pose X{rotation_about(Vec3::UnitZ(), 1.2), Vec3(0.3, -0.1, 0.2)};

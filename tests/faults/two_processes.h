@@ -72,6 +72,7 @@ class TwoProcesses {
   [[nodiscard]] std::unique_ptr<ChildProcess> start(const std::vector<std::string>& command,
                                                     const std::string& output);
   /// Lets time pass until the program has ended. @returns its exit status; nothing: it goes on after a minute
+  /// of the clock and, that standing still, four real ones
   std::optional<int> wait_for(ChildProcess& process);
 
  private:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/force/force_law.h"
 #include "phalanx/mesh/primitives.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr double kTick = 0.005;  // [s]
 constexpr int kProximal = 0;
 constexpr int kDistal = 2;
+const double kGain = 1.0 - std::exp(-2.0 * kPi * 30.0 * kTick);  ///< of a low-pass of 30 Hz: 0.61034
 
 /// The simple hand, open and straight along -Z, with records of our own and every limiter off.
 class Stage {
@@ -157,8 +159,7 @@ TEST(ForceStage, TheClosingSpeedIsLowPassedAndForgottenWithTheContact) {
   stage.press(kDistal, 2e-3);
   stage.tick();
   const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
-  const double gain = 1.0 - std::exp(-0.3 * 3.14159265358979323846);
-  for (const double expected : {0.2 * gain, 0.2 * (1.0 - (1.0 - gain) * (1.0 - gain))}) {
+  for (const double expected : {0.2 * kGain, 0.2 * (1.0 - (1.0 - kGain) * (1.0 - kGain))}) {
     stage.move_hcp({0.0, -1e-3, 0.0});
     stage.press(kDistal, 2e-3);
     stage.tick();
@@ -179,7 +180,7 @@ TEST(ForceStage, TheLawTakesTheLowPassedSpeed) {
   stage.move_hcp({0.0, -1e-3, 0.0});
   stage.press(kDistal, 2e-3);
   stage.tick();
-  EXPECT_NEAR(stage.sent(kDistal), 1.0 + 0.4 * (1.0 - std::exp(-0.3 * 3.14159265358979323846)), 1e-12);
+  EXPECT_NEAR(stage.sent(kDistal), 1.0 + 0.4 * kGain, 1e-12);
 }
 
 // The depth is along the triangle's normal, and so is its rate: 1.4 N as above, whatever the direction of the
@@ -216,7 +217,7 @@ TEST(ForceStage, AContactThatWasNeverFeltLeavesNothingBehind) {
     stage.move_hcp({0.0, -1e-3, 0.0});
     stage.press(k, 0.0);
     stage.tick();
-    EXPECT_NEAR(force.speed, 0.2 * (1.0 - std::exp(-0.3 * 3.14159265358979323846)), 1e-12) << k;
+    EXPECT_NEAR(force.speed, 0.2 * kGain, 1e-12) << k;
     stage.leave(k);
     stage.tick();
     EXPECT_EQ(force.speed, 0.0) << k;
@@ -226,7 +227,6 @@ TEST(ForceStage, AContactThatWasNeverFeltLeavesNothingBehind) {
 
 // A damper of 4 N s/m beside Hooke's law takes the low-passed speed, time-domain passivity that of the step.
 TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
-  const double gain = 1.0 - std::exp(-0.3 * 3.14159265358979323846);
   for (const Stabiliser method : {Stabiliser::kKelvinVoigt, Stabiliser::kPassivity}) {
     Stage stage;
     stage.law.velocity_lowpass_hz = 30.0;
@@ -238,7 +238,7 @@ TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
     stage.press(kDistal, 2e-3);
     stage.tick();
     // E = 0.005 x 1 N x -0.2 = -1 mJ, a = 1e-3 / (0.005 x 0.04) = 5 N s/m, 1 - 5 x 0.2 = 0.
-    EXPECT_NEAR(stage.sent(kDistal), method == Stabiliser::kPassivity ? 0.0 : 1.0 - 4.0 * 0.2 * gain, 1e-12);
+    EXPECT_NEAR(stage.sent(kDistal), method == Stabiliser::kPassivity ? 0.0 : 1.0 - 4.0 * 0.2 * kGain, 1e-12);
   }
 }
 
@@ -270,8 +270,8 @@ TEST(ForceStage, ASilentContactAndAStaleHandPushNothing) {
   EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
 }
 
-// 1e110 m into a cubic law are more than a number holds, and a point that is none has no torque: nothing is
-// sent, and it is said.
+// 1e110 m into a cubic law overflow, and a point whose x is not a number has no torque: nothing is sent, and
+// the status says so.
 TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
   Stage overflow;
   overflow.limits.fingertip_force_enabled = true;
@@ -360,7 +360,8 @@ TEST(ForceStage, TheDigitsSumIsCappedBeforeTheStabiliserToo) {
   EXPECT_NEAR(stage.sent(kProximal), 10.0 / 7.0, 1e-9);
 }
 
-// Of 5 N and half a micronewton the cap takes what nobody feels: it has not acted. One and a half is said.
+// Of 5 N and half a micronewton the cap takes half a micronewton: it does not count as having acted. With one
+// and a half it does.
 TEST(ForceStage, ACapThatTakesLessThanAMicronewtonHasNotActed) {
   for (const double beyond : {0.5e-6, 1.5e-6}) {
     Stage stage;

@@ -92,7 +92,8 @@ int fires_at_step(double period) {
   return 0;
 }
 
-// A half-swing of 4 ms is none of noise, three of 80 ms are 240 ms, and 260 ms are not too long for six legs.
+// A half-swing of 4 ms is not taken for noise, three of 80 ms are 240 ms, and 260 ms are not too long for six
+// legs.
 TEST(OscillationRows, FireAtTheirBoundsThemselves) {
   EXPECT_EQ(fires_at_step(4.0 * kMillisecond), 4);
   EXPECT_EQ(fires_at_step(80.0 * kMillisecond), 4);

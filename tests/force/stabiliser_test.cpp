@@ -255,7 +255,7 @@ TEST(Stabiliser, CountsWhatIsNotFiniteAsNothing) {
   }
 }
 
-// 4 N s/m times 1e308 m/s are more than a number holds: nothing is sent, and the contact begins anew.
+// 4 N s/m times 1e308 m/s overflow: nothing is sent, and the contact's memory is cleared.
 TEST(Stabiliser, ForgetsAContactWhoseForceIsNotFinite) {
   StabiliserMemory memory;
   const StabiliserInput input{

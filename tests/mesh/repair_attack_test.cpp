@@ -122,8 +122,8 @@ TEST(RepairAttack, NestedShellsAreSolidAndHollowInTurn) {
   EXPECT_TRUE(r.report.complete);
 }
 
-// Work that grows with the square of their number stops: it says so and leaves the rest as it was, and all of
-// them wind like solids.
+// Work that grows with the square of their number stops, and the report says so. In the file all shells wind
+// like solids: those that are not reached stay so, and they are the majority.
 TEST(RepairAttack, TooManyNestedShellsAreSaidToBe) {
   const AttackRepaired r = attacked(nested(20000));
   EXPECT_FALSE(r.report.complete);

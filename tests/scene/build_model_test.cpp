@@ -10,6 +10,7 @@
 #include "phalanx/hand/hand_meshes.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
+#include "record/temporary_folder.h"
 
 namespace phalanx {
 namespace {
@@ -44,17 +45,17 @@ TEST(BuildModel, RefusesMoreTrianglesThanOneSceneMayHave) {
                      {"objects[2]", "6000000", "4000000", "decimate_to"});
 }
 
-// Two spheres are as many as there may be, and are counted before any object is made; the file's 12 triangles
-// are counted when it is read, which is before the spheres are made.
+// Two spheres of 2,000,000 triangles reach the limit. The file's 12 triangles are counted when it is read,
+// before any sphere is made.
 TEST(BuildModel, CountsAFilesTrianglesWhenItIsRead) {
-  const fs::path file = fs::temp_directory_path() / ("phalanx_count_" + std::to_string(getpid()) + ".obj");
+  const testing::TemporaryFolder folder;
+  const fs::path file = folder / "box.obj";
   write_obj(make_box({1.0, 2.0, 4.0}, 12), file, "box");
   const std::string sphere = "[[objects]]\nkind = \"sphere\"\ntriangles = 2000000\n";
   const SceneDescription scene = parse_objects("[[objects]]\nkind = \"file\"\nsize_mm = 80\nfile = \"" +
                                                file.string() + "\"\n" + sphere + sphere);
   expect_scene_error([&] { static_cast<void>(make_world_mesh(scene)); },
                      {"objects[0]: with its 12 triangles", "4000012"});
-  fs::remove(file);
 }
 
 TEST(BuildModel, ImportsAFileInItsSize) {

@@ -203,7 +203,7 @@ TEST(LoadHandSkin, WithWrongWeightsIsRefused) {
   expect_skin_refused(&SkinText::influences, "[[[0, 1]]]", {"influences", "1 entries for 4 vertices"});
 }
 
-// 300 mm from the wrist; weights whose sum is within a thousandth of 1; four segments at a vertex.
+// 300 mm from the wrist; weights whose sum is within a thousandth of 1; four influences at a vertex.
 TEST(LoadHandSkin, MayReachItsBoundsAndNoFurther) {
   const auto expect_taken = [](std::string SkinText::* part, const std::string& value) {
     const HandFolder folder;

@@ -162,7 +162,7 @@ TEST(MotionFile, MayTurnAJointByAFullTurnAndNoFurther) {
 }
 
 // The first trial has a time twice.
-TEST(MotionFile, IsReadThoughATrialThatNobodyWantsIsBroken) {
+TEST(MotionFile, IsReadThoughAnotherTrialThanTheChosenOneIsBroken) {
   const std::string text = "time_s,index_pip_flexion\n0,0.1\n0,0.2\n-1,0.3\n";
   EXPECT_EQ(parse_csv(text, 2).time_s, (std::vector<double>{-1.0}));
   expect_motion_refused(text, {"m.csv:3", "stands twice"}, 1);

@@ -130,7 +130,8 @@ TEST_F(StationTest, AnObjectIsSwappedInContactWithoutATorqueStepBeyondTheRateLim
               device_->largest_step.load(), allowed_step());
 }
 
-// The exchange has a stop of its own, of 0.2 s, and a start after it. Whoever says stop in between means it.
+// The exchange has a stop of its own, of 0.2 s, and a start after it. A stop in between
+// holds beyond it.
 TEST_F(StationTest, AStopWhileAnObjectIsExchangedHoldsAfterTheExchange) {
   start();
   ASSERT_TRUE(until_pressing(1.0));

@@ -41,7 +41,7 @@ TEST_F(LinkControllerSession, AnswersWithTheSequenceOfTheQuestion) {
   EXPECT_EQ(rig.reply->header.sequence, 4711U);
 }
 
-// Whoever asks may use one number for all frames: 99 are left from the last.
+// The size of a reply is written for every frame: the 99 stand for what is left from the frame before.
 TEST_F(LinkControllerSession, SaysOfEveryFrameThatIsNotAnsweredThatThereIsNoAnswer) {
   rig.open();
   const Bytes good = encoded(rig.next_command(0.1F));

@@ -216,8 +216,8 @@ TEST(LinkStatistics, SamplesThatTheLoopDoesNotFetchOverflow) {
   EXPECT_GE(bench.device->statistics().overflowed, overflowed + SampleQueue::kCapacity - 64);
 }
 
-// A hundred samples that nobody has fetched are of the session before: the controller counts from 1 again,
-// and that is the first one to be fetched.
+// A hundred samples of the session before have not been fetched. The controller counts from 1 again, and that
+// sample is the first to be fetched.
 TEST(LinkStatistics, ADeviceThatIsOpenedAgainBeginsWithTheFirstSampleOfItsSession) {
   OnMemory bench;
   const LinkStatistics before = bench.device->statistics();

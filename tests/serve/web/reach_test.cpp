@@ -153,7 +153,7 @@ TEST_F(Certificate, IsUsedAgainWhileItFits) {
 }
 
 // It is to last another week.
-TEST_F(Certificate, IsMadeAnewBeforeItEnds) {
+TEST_F(Certificate, IsReplacedBeforeItEnds) {
   const CertificateFiles files = make_self_signed_certificate(folder_, {});
   const std::unique_ptr<BIO, decltype(&BIO_free_all)> file(BIO_new_file(files.certificate.c_str(), "r"),
                                                            &BIO_free_all);

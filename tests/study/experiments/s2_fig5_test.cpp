@@ -28,7 +28,8 @@ TEST(S2Fig5, GraspsWithFivePhalangesAndIsSteady) {
   for (const TrialResult& trial : run.trials) EXPECT_TRUE(trial.valid) << trial.why_invalid;
   EXPECT_LE(run.largest_force_swing(), 0.5);
   EXPECT_LE(run.largest_position_swing(), 0.5e-3);
-  // What the three digits that copy the index are asked for, each at one joint at least.
+  // The three digits that copy the index have no motor of their own: more than 0.01 Nm of what is asked of
+  // them is not rendered, at one joint each at least.
   for (int digit = 2; digit < kDigits; ++digit) {
     const auto* const first = &run.unrendered[static_cast<std::size_t>(joint_index(digit, 0))];
     EXPECT_GT(*std::max_element(first, first + kJointsPerDigit), 0.01) << digit_name(digit);

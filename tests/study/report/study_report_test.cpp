@@ -89,6 +89,12 @@ TEST(StudyReport, EachVariantsCurveIsOfItsOwnPoints) {
   const std::vector<std::string> curves = curves_of(study_report_html(study, results, kMadeUp));
   ASSERT_EQ(curves.size(), 7U * 2U);
   EXPECT_NE(curves[0], curves[1]);
+  // The other way round the two change places.
+  std::swap(results[0].k_lim, results[2].k_lim);
+  std::swap(results[1].k_lim, results[3].k_lim);
+  const std::vector<std::string> exchanged = curves_of(study_report_html(study, results, kMadeUp));
+  EXPECT_EQ(exchanged[0], curves[1]);
+  EXPECT_EQ(exchanged[1], curves[0]);
 }
 
 // k_eff is 1.13, 1.23, ... 1.83 N/mm, which no scale has a mark at and nothing else is: each stands in one
