@@ -205,25 +205,11 @@ TEST(DeviceFile, TakesEachNumberUpToItsBoundAndNoFurther) {
   const std::string joint = "joints.index_mcp_flexion.";
   const std::string coupled = "coupled.index_pip_flexion.";
   const std::string motor = "motors.mcp.";
-  const std::vector<std::pair<std::string, std::string>> others = {
-      {joint + "inertia_kg_m2", "1e-3"},  {coupled + "of", "\"index_mcp_flexion\""},
-      {coupled + "ratio", "1"},           {motor + "arms_mm.index_mcp_flexion", "-12"},
-      {motor + "force_limit_n", "10000"}, {motor + "pull_only", "true"},
-      {motor + "mass_kg", "22"},          {motor + "tendon_stiffness_n_per_mm", "1000"},
-      {"copy.middle.of", "\"index\""}};
-  const auto text_with = [&](const std::string& key, const std::string& number) {
-    std::string text = key + " = " + number + "\n";
-    for (const auto& [other, usual] : others)
-      if (other != key) text.append(other).append(" = ").append(usual).append("\n");
-    return text;
-  };
-  struct KeyBounds {
-    std::string key;
-    const char* below;
-    const char* least;
-    const char* most;
-    const char* above;
-  };
+  const KeyValues others = {{joint + "inertia_kg_m2", "1e-3"},  {coupled + "of", "\"index_mcp_flexion\""},
+                            {coupled + "ratio", "1"},           {motor + "arms_mm.index_mcp_flexion", "-12"},
+                            {motor + "force_limit_n", "10000"}, {motor + "pull_only", "true"},
+                            {motor + "mass_kg", "22"},          {motor + "tendon_stiffness_n_per_mm", "1000"},
+                            {"copy.middle.of", "\"index\""}};
   std::vector<KeyBounds> all = {{joint + "inertia_kg_m2", "0", "1e-9", "1", "1.001"},
                                 {joint + "damping_nms_per_rad", "-1e-9", "0", "100", "100.1"},
                                 {joint + "friction_nm", "-1e-9", "0", "10", "10.01"},
@@ -258,9 +244,10 @@ TEST(DeviceFile, TakesEachNumberUpToItsBoundAndNoFurther) {
     all.push_back({std::string("scale.") + name, "-1e-9", "0", "1000", "1000.1"});
   for (const KeyBounds& b : all) {
     for (const char* good : {b.least, b.most})
-      EXPECT_NO_THROW(static_cast<void>(parse_text(text_with(b.key, good)))) << b.key << " = " << good;
+      EXPECT_NO_THROW(static_cast<void>(parse_text(text_with(b.key, good, others))))
+          << b.key << " = " << good;
     for (const char* bad : {b.below, b.above})
-      expect_refused(text_with(b.key, bad), {"d.toml:1: " + b.key + " = ", "must be"});
+      expect_refused(text_with(b.key, bad, others), {"d.toml:1: " + b.key + " = ", "must be"});
   }
 }
 

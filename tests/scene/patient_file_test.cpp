@@ -79,24 +79,11 @@ TEST(PatientFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
 // two is as small, and the greater one as large, as it may be.
 TEST(PatientFile, TakesEachNumberUpToItsBoundAndNoFurther) {
   const std::string joint = "joints.index_mcp_flexion.";
-  const std::vector<std::pair<std::string, std::string>> others = {{joint + "stiffness_nm_per_rad", "10"},
-                                                                   {"approach_min_mm_per_s", "1e-9"},
-                                                                   {"approach_max_mm_per_s", "10000"},
-                                                                   {"tremor_min_hz", "1e-9"},
-                                                                   {"tremor_max_hz", "100"}};
-  const auto text_with = [&](const std::string& key, const std::string& number) {
-    std::string text = key + " = " + number + "\n";
-    for (const auto& [other, usual] : others)
-      if (other != key) text.append(other).append(" = ").append(usual).append("\n");
-    return text;
-  };
-  struct KeyBounds {
-    std::string key;
-    const char* below;
-    const char* least;
-    const char* most;
-    const char* above;
-  };
+  const KeyValues others = {{joint + "stiffness_nm_per_rad", "10"},
+                            {"approach_min_mm_per_s", "1e-9"},
+                            {"approach_max_mm_per_s", "10000"},
+                            {"tremor_min_hz", "1e-9"},
+                            {"tremor_max_hz", "100"}};
   for (const KeyBounds& b : {KeyBounds{joint + "stiffness_nm_per_rad", "-1e-9", "0", "10000", "10000.1"},
                              KeyBounds{joint + "damping_nms_per_rad", "-1e-9", "0", "1000", "1000.1"},
                              KeyBounds{"press_n", "-1e-9", "0", "100", "100.1"},
@@ -114,9 +101,10 @@ TEST(PatientFile, TakesEachNumberUpToItsBoundAndNoFurther) {
                              KeyBounds{"scale.tremor", "-1e-9", "0", "1000", "1000.1"},
                              KeyBounds{"scale.bump", "-1e-9", "0", "1000", "1000.1"}}) {
     for (const char* good : {b.least, b.most})
-      EXPECT_NO_THROW(static_cast<void>(parse_toml(text_with(b.key, good)))) << b.key << " = " << good;
+      EXPECT_NO_THROW(static_cast<void>(parse_toml(text_with(b.key, good, others))))
+          << b.key << " = " << good;
     for (const char* bad : {b.below, b.above})
-      expect_patient_refused(text_with(b.key, bad), {"p.toml:1: " + b.key + " = ", "must be"});
+      expect_patient_refused(text_with(b.key, bad, others), {"p.toml:1: " + b.key + " = ", "must be"});
   }
 }
 
