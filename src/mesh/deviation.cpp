@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
-#include <vector>
+#include <span>
 
 #include "mesh/box_tree.h"
 #include "mesh/edge_table.h"
@@ -63,15 +62,11 @@ double farthest(const TriangleMesh& from, const Surface& to, std::size_t& probes
     ++probes;
   };
   for (const Vec3& v : from.vertices) probe(v);
-  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  edges.reserve(3 * from.triangles.size());
-  for (const Triangle& t : from.triangles) {
+  for (const Triangle& t : from.triangles)
     probe((from.vertices[idx(t[0])] + from.vertices[idx(t[1])] + from.vertices[idx(t[2])]) / 3.0);
-    for (std::size_t i = 0; i < 3; ++i) edges.push_back(std::minmax({t[i], t[(i + 1) % 3]}));
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (const auto& [a, b] : edges) probe(0.5 * (from.vertices[idx(a)] + from.vertices[idx(b)]));
+  EdgeTable(from).for_each([&](std::span<const HalfEdge> edge) {
+    probe(0.5 * (from.vertices[idx(edge[0].low)] + from.vertices[idx(edge[0].high)]));
+  });
   return worst;
 }
 

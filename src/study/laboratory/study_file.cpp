@@ -118,8 +118,9 @@ std::vector<StudyValue> stepped_values(TomlTable& table) {
   const double from = table.number("from", {});
   const double to = table.number("to", {.min = from});
   const double step = table.number("step", {.min = 0.0, .min_open = true});
+  const int steps = whole_steps(table, from, to, step, "step");
   std::vector<StudyValue> values;
-  for (int i = 0; i <= whole_steps(table, from, to, step, "step"); ++i) {
+  for (int i = 0; i <= steps; ++i) {
     const double number = short_number(from + i * step);
     values.push_back(
         {.toml = fmt::format("{}", number), .shown = fmt::format("{}", number), .number = number});
