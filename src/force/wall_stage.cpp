@@ -18,14 +18,16 @@ constexpr double kKeptFor = 0.25;        // [s]
 constexpr double kHighest = 10e-3;       // [m]
 constexpr double kFarthestAside = 3e-3;  // [m]
 constexpr double kUncapped = 1e6;        // f_max without a cap: what no device renders [N]
+constexpr double kRounding = 1e-12;      // of the square of a force that is as large as the cap
 
-/// Largest s in 0 .. 1 with |a + s b| <= cap; 0 if there is none.
+/// Largest s in 0 .. 1 with |a + s b| <= cap, up to rounding; 0 if a itself is longer.
 double largest_share(const Vec3& a, const Vec3& b, double cap) noexcept {
-  if ((a + b).squaredNorm() <= cap * cap) return 1.0;
-  const double room = cap * cap - a.squaredNorm();
-  const double bb = b.squaredNorm();
-  if (!(room > 0.0) || !(bb > 0.0)) return 0.0;
+  const double most = (1.0 + kRounding) * cap * cap;
+  const double room = most - a.squaredNorm();
+  if (room < 0.0) return 0.0;
+  if ((a + b).squaredNorm() <= most) return 1.0;
   const double ab = a.dot(b);
+  const double bb = b.squaredNorm();
   return std::clamp((std::sqrt(ab * ab + bb * room) - ab) / bb, 0.0, 1.0);
 }
 
@@ -48,7 +50,6 @@ void share_the_cap(const DigitWalls& wall, const DigitNormals& normal, double ca
     if (size > cap) scale = std::min(scale, cap / size);
     share = std::min(share, largest_share(held, room, cap));
   }
-  if (scale < 1.0) share = 0.0;
   for (LocalWall* w : wall) {
     const double host = std::min(w->host_force, cap);
     w->force_max = w->active ? scale * (host + share * (cap - host)) : 0.0;

@@ -126,7 +126,7 @@ Mended split_t_junctions(TriangleMesh& mesh, Allowance& allowance) {
           double& spent = allowance.spent[idx(hits[h].vertex)];
           spent = std::max(spent, moved);
         }
-        mesh.triangles.push_back({from, last, apex});
+        if (from != first) mesh.triangles.push_back({from, last, apex});
       }
       i = end;
     }

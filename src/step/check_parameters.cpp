@@ -28,6 +28,7 @@ void check_parameters(const HapticModel& model) {
   within("contact.margin [m]", model.contact.margin, 1e-6, 1e-3);
   within("contact.slid_distance [m]", model.contact.slid_distance, 0.0, kAny);
   const ForceLawParameters& law = model.force;
+  within("force.law", static_cast<double>(law.law), 0.0, static_cast<double>(ForceLaw::kLinearThenCubic));
   within("force.stiffness [N/m]", law.stiffness, 0.0, 1e6);
   within("force.damping [N s/m]", law.damping, 0.0, 1e6);
   within("force.velocity_lowpass_hz", law.velocity_lowpass_hz, 1e-3, 1e6);
@@ -46,6 +47,8 @@ void check_parameters(const HapticModel& model) {
   within("stabiliser.passivity_damping_max [N s/m]", stabiliser.passivity_damping_max, 0.0, 1e6);
   within("stabiliser.device_damping [N s/m]", stabiliser.device_damping, 0.0, 1e6);
   within("stabiliser.wall_valid [s]", stabiliser.wall_valid, kTiny, 1.0);
+  const double reaction = static_cast<double>(model.oscillation.reaction);
+  within("oscillation.reaction", reaction, 0.0, static_cast<double>(OscillationReaction::kHalve));
   within("oscillation.swing [N]", model.oscillation.swing, 1e-3, 1e3);
   if (model.smoothing.enabled || stabiliser.method == Stabiliser::kRiseOnly) {
     within("-smoothing.min_rate [N/s]", -model.smoothing.min_rate, kTiny, kInfinity);

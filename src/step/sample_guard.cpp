@@ -50,7 +50,7 @@ Status SampleGuard::accept(const Sample& sample, const HandParameters& hand, con
   if (!takes_time(sample.time_s))
     return Status::kTimeNotIncreasing | (stale() ? Status::kSampleStale : Status::kOk);
 
-  const double longest = limits.joint_speed * (since > period ? std::min(since, kStaleAfter) : period);
+  const double longest = limits.joint_speed * std::max(period, std::min(since, kStaleAfter));
   for (std::size_t j = 0; j < kJoints; ++j) {
     const double measured = sample.angle[j];
     if (!std::isfinite(measured)) {

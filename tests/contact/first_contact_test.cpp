@@ -46,6 +46,7 @@ TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
   Random random(21);
   MovingDigit digit(ball_in_reach(300));
   int met = 0;
+  int most = 0;
   for (int n = 0; n < 40; ++n) {
     aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.1);
     const DigitPose start = digit.pose(0.0);
@@ -58,6 +59,8 @@ TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
         const PairList::Pair& pair = list.pair[static_cast<std::size_t>(i)];
         listed.emplace(pair.triangle, digit.object().tree().source(pair.slot));
       }
+      ASSERT_EQ(static_cast<int>(listed.size()), list.count) << "each pair once, seed 21 way " << n;
+      most = std::max(most, list.count);
       for (int step = 0; step <= 16; ++step) {
         for (const test::ExactPair& pair : digit.pairs_within(horizon * step / 16.0, k, kMargin)) {
           ++met;
@@ -67,6 +70,7 @@ TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
     }
   }
   EXPECT_GT(met, 1000);
+  EXPECT_GT(most, 256) << "more than reach the list at once";
 }
 
 TEST(PairList, NoPairGoesBelowTheFloorBeforeItIsDue) {

@@ -25,6 +25,7 @@
 #include "phalanx/core/index.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
+#include "support/search_cases.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -247,11 +248,18 @@ TEST(TrajectoryByHand, AContactIsAtTheLastFreePoseAndItsOffsetAtTheTicksEnd) {
 
 // ---- where the search gives up ----
 
-// A hundred radians in a tick, and nothing within reach: the finger gets as far as so many poses take it. Its
-// record says so, but neither pushes nor holds, and the next ticks go on from there until the finger arrives.
+/// Nothing is within reach.
+HapticModel far_model() {
+  return paper_model(test::moved(make_box(Vec3(0.02, 0.02, 0.02), 12), test::at(0.0, -0.3, 0.0)));
+}
+/// The tip's farthest point from the MCP: two bones and the distal diamond's 21 mm.
+constexpr double kTipReach = 86e-3;
+
+// A hundred radians in a tick, and nothing within reach: the finger gets as far as so many poses take it,
+// which is 1,000 times 2.5 mm of the tip's way in the first tick. Its record says so, but neither pushes nor
+// holds, and the next ticks go on from there until the finger arrives.
 TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
-  const HapticModel model =
-      paper_model(test::moved(make_box(Vec3(0.02, 0.02, 0.02), 12), test::at(0.0, -0.3, 0.0)));
+  const HapticModel model = far_model();
   Paper paper(model);
   paper.tick(index_angles(0.0));
   int gave_up = 0;
@@ -262,7 +270,9 @@ TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
     EXPECT_GT(paper.gdp(0), before);
     before = paper.gdp(0);
     if (before == 100.0) break;
-    ++gave_up;
+    if (++gave_up == 1) {
+      EXPECT_NEAR(before, 1000 * 2.5e-3 / kTipReach, 1e-6);
+    }
     EXPECT_TRUE(has(paper.status, Status::kSearchExhausted));
     ASSERT_TRUE(paper.record(2).active);
     EXPECT_EQ(paper.record(2).offset, std::numeric_limits<double>::infinity());
@@ -631,6 +641,58 @@ TEST(TiedRegionByHand, OfAnEdgeOverAnEdgeIsALineOnEach) {
   }
 }
 
+// In um: a face with the corners (0, 0), (20, 15) and (30, -15), 50 over the x axis. All of it is within 55
+// of the axis, for 15 aside make 52.2; nearest are its first corner and the middle of the opposite edge. A =
+// |20 (-15) - 30 15| / 2 = 375. On the axis it is the line from 0 to 30, there and back.
+TEST(TiedRegionByHand, OfASmallFaceOverALineIsTheWholeFace) {
+  const double um = 1e-6;
+  const double e = 5.0 * um;
+  const double up = 50.0 * um;
+  const Corners face = {Vec3(0, 0, up), Vec3(20 * um, 15 * um, up), Vec3(30 * um, -15 * um, up)};
+  const Corners line = {Vec3(-1e-3, 0, 0), Vec3(1e-3, 0, 0), Vec3(1e-3, 0, 0)};
+  const double disc = std::numbers::pi * e * e;
+  const double rim = (25.0 + std::sqrt(1125.0) + std::sqrt(1000.0)) * um;
+  const TiedRegion region = tied_region(face, line, triangle_distance(face, line), up + e, e);
+  EXPECT_NEAR(region.weight, 375.0 * um * um + e * rim + disc, 1e-15);
+  const TiedRegion turned = tied_region(line, face, triangle_distance(line, face), up + e, e);
+  EXPECT_GE(turned.weight, e * 60.0 * um + disc - 1e-15);
+}
+
+// Edges that cross 2 apart. Where rounding makes the limit a little less than that, nothing ties: the region
+// is the closest point.
+TEST(TiedRegionByHand, OfNothingWithinTheLimitIsTheClosestPoint) {
+  const Corners a = {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)};
+  const Corners b = {Vec3(0, -1, 2), Vec3(0, 1, 2), Vec3(0, 0, 3)};
+  const TiedRegion region = tied_region(a, b, triangle_distance(a, b), 2.0 - 1e-12, 0.5);
+  EXPECT_NEAR(region.weight, std::numbers::pi / 4.0, 1e-12);
+  EXPECT_EQ(region.on_a, Vec3(0, 0, 0));
+  EXPECT_EQ(region.on_b, Vec3(0, 0, 2));
+}
+
+// Twelve faces, 5 um beside the contact and turned by 20 to 75 degrees, tie before the one that the contact
+// lies on. Each counts by half, so that they fill the fan with 10 to 37.5 degrees; that one's own normal is
+// in it all the same.
+TEST(NormalFanByHand, TheNearestFacesOwnNormalHasRoomHoweverManyTieBeforeIt) {
+  TriangleMesh mesh;
+  const auto add_face = [&](double turn, double apart) {
+    const Vec3 normal(std::sin(turn), 0.0, std::cos(turn));
+    const Vec3 u = 1e-3 * Vec3(std::cos(turn), 0.0, -std::sin(turn));
+    const Vec3 v = 1e-3 * Vec3::UnitY();
+    const Vec3 foot = -apart * normal;
+    test::add_triangle(mesh, foot - u - v, foot + u - v, foot + v);
+  };
+  for (int i = 0; i < 12; ++i) add_face((20.0 + 5.0 * i) * kDeg, 5e-6);
+  add_face(0.0, 0.0);
+  const ObjectModel object(mesh);
+  TiedTriangles tied;
+  for (const bool nearest : {false, true}) {
+    for (int slot = 0; slot < object.tree().size(); ++slot)
+      if ((object.tree().source(slot) == 12) == nearest) tied.add(slot);
+  }
+  const Vec3 normal = normal_at_contact(object, tied, Vec3::Zero(), Vec3::UnitZ());
+  EXPECT_LT((normal - Vec3::UnitZ()).norm(), 1e-9);
+}
+
 // A right-angled crease along y, one face z = 0 towards -x, one down from it. The contact is 5 um before the
 // crease on the first face: the second face counts by half (10 um is the edge's width), so the fan reaches
 // from z to the middle of z and x, 45 degrees. An n_c 60 degrees from z gets that end; one of 20 degrees
@@ -737,6 +799,36 @@ TEST(GdpByHand, ASlowApproachStopsAtTheMargin) {
       }
     }
     EXPECT_NEAR(paper.gdp(0), 0.5, 1e-6);
+  }
+}
+
+// A distance is asked for as far as the tip would go in 16 ticks, but for 0.3 mm at least and 4 mm at most,
+// or twice what this tick needs; beyond the margin. The tick spends what the tip goes. Where nothing is
+// within reach, the answer is all that was asked for.
+TEST(GdpByHand, WhatIsKnownOfADistanceIsWhatWasAskedForLessTheWay) {
+  struct Tick {
+    double way;
+    double asked;
+  };
+  const HapticModel model = far_model();
+  const std::size_t tip = idx(segment_index(test::kIndex, 2));
+  for (const Tick& tick : {Tick{10e-6, 0.3e-3}, {100e-6, 1.6e-3}, {400e-6, 4e-3}, {2.4e-3, 4.8e-3}}) {
+    Paper paper(model);
+    const GdpState& state = paper.tick(index_angles(tick.way / kTipReach));
+    EXPECT_NEAR(state.clearance[tip].bound(), kPaperMargin + tick.asked - tick.way, 1e-12) << tick.way;
+  }
+}
+
+// 4.05 mm are known, and each tick spends 0.39 mm. The tenth needs 0.44 with the margin, and 0.54 are left;
+// the eleventh, for which 0.15 are left, asks again at once.
+TEST(GdpByHand, ADistanceThatSufficedIsAskedForAgainWhenItIsSpent) {
+  const HapticModel model = far_model();
+  const std::size_t tip = idx(segment_index(test::kIndex, 2));
+  Paper paper(model);
+  for (int n = 1; n <= 11; ++n) {
+    const GdpState& state = paper.tick(index_angles(n * 0.39e-3 / kTipReach));
+    const double spent = 0.39e-3 * (n <= 10 ? n : 1);
+    EXPECT_NEAR(state.clearance[tip].bound(), 4.05e-3 - spent, 1e-12) << n;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iostream>
 
+#include "contact/search/search_functions.h"
 #include "phalanx/contact/proximity.h"
 #include "support/count_allocations.h"
 #include "support/search_cases.h"
@@ -159,6 +160,22 @@ class EverySet : public ::testing::TestWithParam<InstructionSet> {
   }
 };
 
+TEST_P(EverySet, IsInUseOnceItIsChosen) {
+  const UsedSet used(GetParam());
+  EXPECT_EQ(instruction_set(), GetParam());
+  switch (GetParam()) {
+    case InstructionSet::kPortable:
+      EXPECT_EQ(&search::functions(), search::portable_functions());
+      break;
+    case InstructionSet::kAvx2:
+      EXPECT_EQ(&search::functions(), search::avx2_functions());
+      break;
+    case InstructionSet::kAvx512:
+      EXPECT_EQ(&search::functions(), search::avx512_functions());
+      break;
+  }
+}
+
 TEST_P(EverySet, DistancesBoundsAndPatchesAreTheSameBits) {
   std::cout << "seed 31\n";
   expect_same_as_portable([] { return searched(31, 12); });
@@ -209,6 +226,23 @@ TEST_P(SoakEverySet, SearchesAndStepsAreTheSameBits) {
 }
 INSTANTIATE_TEST_SUITE_P(SoakSets, SoakEverySet,
                          ::testing::Values(InstructionSet::kAvx2, InstructionSet::kAvx512), name_of);
+
+// A set that went missing would only be skipped above.
+TEST(InstructionSet, ThereAreThoseThatTheProcessorHasAndTheBestIsTheWidest) {
+#if defined(__x86_64__)
+  const bool avx2 = __builtin_cpu_supports("avx2") != 0;
+  const bool avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+                      __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+#else
+  const bool avx2 = false;
+  const bool avx512 = false;
+#endif
+  EXPECT_EQ(has_instruction_set(InstructionSet::kAvx2), avx2);
+  EXPECT_EQ(has_instruction_set(InstructionSet::kAvx512), avx512);
+  EXPECT_EQ(best_instruction_set(), avx512 ? InstructionSet::kAvx512
+                                    : avx2 ? InstructionSet::kAvx2
+                                           : InstructionSet::kPortable);
+}
 
 TEST(InstructionSet, ThePortableOneIsEverywhereAndAnUnknownOneIsRefused) {
   EXPECT_TRUE(has_instruction_set(InstructionSet::kPortable));

@@ -58,10 +58,15 @@ TEST(MeanDirectionByHand, WhereOppositeDirectionsCancelTheNearestDecides) {
     add_place(mean, 1.0, 1.0, -Vec3::UnitZ(), 1.0);
     EXPECT_EQ(mean.unit().z(), weight > 1.2 ? 1.0 : -1.0) << weight;
   }
+  MeanDirection tied(1e-6);
+  add_place(tied, 0.0, 1.0, Vec3::UnitZ(), 1.0);
+  add_place(tied, 1.0, 1.0, -Vec3::UnitZ(), 1.0);
+  EXPECT_EQ(tied.unit(), Vec3(Vec3::UnitZ())) << "the first of two that are as near";
 }
 
 // Of more than 32 places all count. 32 x and, of weight 32, one y: halfway between. And 31 x, one y, which is
-// the nearest, and, of weight 27, one -x: (4, 1) of 59 is less than a tenth, so that y decides.
+// the nearest of these 32, and, of weight 27, one -x, whose distance is not kept: (4, 1) of 59 is less than a
+// tenth, so that y decides.
 TEST(MeanDirectionByHand, PlacesThatRunOverCountToo) {
   MeanDirection halfway(1e-6);
   for (int i = 0; i < 32; ++i) add_place(halfway, 1e-3 * i, 1.0, Vec3::UnitX(), 1.0);
@@ -70,7 +75,7 @@ TEST(MeanDirectionByHand, PlacesThatRunOverCountToo) {
   MeanDirection cancelled(1e-6);
   for (int i = 0; i < 31; ++i) add_place(cancelled, 1e-3 * i, 4.0, Vec3::UnitX(), 1.0);
   add_place(cancelled, 1.0, 1.0, Vec3::UnitY(), 1.0);
-  add_place(cancelled, 2.0, 4.0, -Vec3::UnitX(), 27.0);
+  add_place(cancelled, 2.0, 0.25, -Vec3::UnitX(), 27.0);
   EXPECT_EQ(cancelled.unit(), Vec3(Vec3::UnitY()));
 }
 
@@ -131,6 +136,16 @@ TEST(NormalFan, TakesTheNearestDirectionOfItsCone) {
   fan.add(Vec3::UnitY());
   const Vec3 inside = Vec3(0.2, 0.3, 0.9).normalized();
   EXPECT_EQ(fan.nearest(inside), inside);
+}
+
+// Three directions all around a plane, one of which leans out of it by what may be rounding: across the plane
+// there is nothing.
+TEST(NormalFan, ThreeDirectionsInAPlaneDoNotEncloseWhatIsAcrossIt) {
+  NormalFan fan;
+  fan.add(Vec3::UnitX());
+  fan.add(Vec3::UnitY());
+  fan.add(Vec3(-0.6, -0.8, 1e-12));
+  EXPECT_NEAR(fan.nearest(Vec3::UnitZ()).z(), 0.0, 1e-9);
 }
 
 TEST(NormalFan, NearestIsWhatADenseSearchFinds) {

@@ -115,6 +115,30 @@ TEST(Proximity, ABoundAllowsForTheRoundingOfSinglePrecision) {
   EXPECT_NEAR(distance({segment, X, scratch}, floor.tree(), 1e-3 + 1e-8), 1e-3, 1e-12);
 }
 
+// The segment is a right-angled triangle whose longest edge reaches from (-1, 0, 0) to (1, 0, 0), so that its
+// lens is a disc of radius 1 around the origin. Everything of the object is 2 away, and seen from the lens
+// its boxes are 1 away. Where edges cross no plane separates the triangles: each pair is measured, but of 257
+// the last is believed to be as near as its box. A floor's own plane separates it by 2: eight pairs are
+// measured, and for the others that is enough.
+TEST(Proximity, ABoundMeasures256PairsAndBelievesWhatIsLeft) {
+  const auto bound = [](const TriangleMesh& mine, TriangleMesh theirs, std::size_t times) {
+    theirs.triangles.assign(times, Triangle{0, 1, 2});
+    const ObjectTree object(theirs);
+    const SegmentTree segment(mine);
+    SearchScratch scratch(segment);
+    const Pose X;
+    return distance_bound({segment, X, scratch}, object, 10.0);
+  };
+  const TriangleMesh hanging{{Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)}, {{0, 1, 2}}};
+  const TriangleMesh across{{Vec3(0, -1, 2), Vec3(0, 1, 2), Vec3(0, 0, 3)}, {{0, 1, 2}}};
+  EXPECT_NEAR(bound(hanging, across, 1), 2.0, 1e-8);
+  EXPECT_NEAR(bound(hanging, across, 256), 2.0, 1e-8);
+  EXPECT_NEAR(bound(hanging, across, 257), 1.0, 1e-4);
+  const TriangleMesh standing{{Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}, {{0, 1, 2}}};
+  const TriangleMesh floor{{Vec3(-5, -5, -2), Vec3(5, -5, -2), Vec3(0, 5, -2)}, {{0, 1, 2}}};
+  EXPECT_NEAR(bound(standing, floor, 300), 2.0, 1e-8);
+}
+
 TEST(Proximity, AnEdgeLyingOnAFacePicksTheMiddleOfTheEdge) {
   const ObjectModel table(make_box(Vec3(0.2, 0.2, 0.2), 300));
   const SegmentTree box(make_box(Vec3(0.02, 0.02, 0.02), 12));
@@ -167,6 +191,64 @@ TEST(SegmentView, AllowsForTheRoundingOfAllThatSinglePrecisionHolds) {
   }
 }
 
+TEST(MotionView, HasEveryNumberOfTheMotion) {
+  SegmentMotion motion;
+  motion.angular = Vec3(1, 2, 3);
+  motion.linear = Vec3(4, 5, 6);
+  motion.angular_rate = Vec3(7, 8, 9);
+  motion.linear_rate = Vec3(10, 11, 12);
+  motion.speed = 13;
+  motion.bend = 14;
+  motion.jerk = 15;
+  const search::MotionView view = search::view_of(motion);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(view.angular[i], 1.0 + i);
+    EXPECT_EQ(view.linear[i], 4.0 + i);
+    EXPECT_EQ(view.angular_rate[i], 7.0 + i);
+    EXPECT_EQ(view.linear_rate[i], 10.0 + i);
+  }
+  EXPECT_EQ(view.speed, 13.0);
+  EXPECT_EQ(view.bend, 14.0);
+  EXPECT_EQ(view.jerk, 15.0);
+}
+
+// 24 triangles are three blocks of eight, all within the margin. Before a block there must be room for eight:
+// of 24 places there is, of 23 not before the third block, of 15 neither before the second nor the third.
+TEST(Gather, AsksForRoomBeforeABlockThatMightNotFit) {
+  TriangleMesh mesh{{Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(0, 1, 0)}, {}};
+  mesh.triangles.assign(24, Triangle{0, 1, 2});
+  const ObjectTree object(mesh);
+  const SegmentTree segment(TriangleMesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}});
+  SearchScratch scratch(segment);
+  const Pose X{Mat3::Identity(), Vec3(0.0, 0.0, 0.5)};
+  struct Room {
+    std::array<search::PairIndex, 64> pair{};
+    search::PairStore store{};
+    int calls = 0;
+    int taken = 0;
+  };
+  for (const int capacity : {24, 23, 15}) {
+    SCOPED_TRACE(capacity);
+    Room room;
+    room.store = {room.pair.data(),
+                  0,
+                  capacity,
+                  1.0,
+                  [](void* self) {
+                    Room& full = *static_cast<Room*>(self);
+                    ++full.calls;
+                    full.taken += full.store.count;
+                    full.store.count = 0;
+                  },
+                  &room};
+    search::functions().gather(search::view_of({segment, X, scratch}, object), search::view_of(object),
+                               search::view_of(SegmentMotion{}), 1.0, room.store);
+    EXPECT_EQ(room.calls, capacity == 24 ? 0 : capacity == 23 ? 1 : 2);
+    EXPECT_EQ(room.taken, 8 * (capacity == 24 ? 0 : 2));
+    EXPECT_EQ(room.taken + room.store.count, 24);
+  }
+}
+
 TEST(ObjectModel, RefusesAVertexThatIsMoreThanTenKilometresAwayAlongAnyAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
@@ -190,14 +272,15 @@ TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
 }
 
 // The object is a ball of 5 mm radius, the segment one of 50 mm that has turned and moved. In the segment's
-// frame the object is 30 mm off the middle, inside, or 90 mm, outside.
+// frame the object is 30 mm off the middle, inside, or 90 mm, outside, or 45 mm along each axis: 78 mm off,
+// outside, though within the box around the segment.
 TEST(Containment, SeesAnObjectInsideASegmentWhereverThatIs) {
   const TriangleMesh segment = make_sphere(0.1, 400);
   const Pose X{rotation_about(Vec3::UnitZ(), 1.2), Vec3(0.3, -0.1, 0.2)};
-  for (const double off : {0.03, 0.09}) {
+  for (const Vec3& off : {Vec3(0.03, 0.0, 0.0), Vec3(0.09, 0.0, 0.0), Vec3(0.045, 0.045, 0.045)}) {
     TriangleMesh ball = make_sphere(0.01, 100);
-    for (Vec3& v : ball.vertices) v += X * Vec3(off, 0.0, 0.0);
-    EXPECT_EQ(Containment(ball).with(segment, X), off < 0.05) << off;
+    for (Vec3& v : ball.vertices) v += X * off;
+    EXPECT_EQ(Containment(ball).with(segment, X), off.norm() < 0.05) << off.transpose();
   }
 }
 

@@ -489,26 +489,35 @@ TrianglePair upside_down(TrianglePair pair) {
   return pair;
 }
 
-// Still; at first and at second order; of the two planes one alone separates.
+// Still; at first and at second order; of the two planes one alone separates. Wherever they are, and also
+// after they have moved.
 TEST(Separation, IsAcrossThePlaneOfEitherTriangleAlone) {
   TrianglePair raised = facing(0.5);  // across the object's plane: the segment's is slanted
   raised.mine[2][2] = 0.3;
-  for (TrianglePair pair : {hanging(0.5), raised}) {
-    const double gap = pair.mine[2][2];
-    EXPECT_NEAR(pair.separated(false), gap, 1e-12);
-    EXPECT_NEAR(upside_down(pair).separated(false), gap, 1e-12);
-    pair.horizon = 0.5;
-    pair.motion.linear[2] = -0.2;
-    EXPECT_NEAR(pair.separated(true), gap - 0.1, 1e-12);
-    EXPECT_NEAR(upside_down(pair).separated(true), gap - 0.1, 1e-12);
-    pair.motion.linear_rate[2] = -0.4;
-    EXPECT_NEAR(pair.separated(true), gap - 0.15, 1e-12);
-    EXPECT_NEAR(upside_down(pair).separated(true), gap - 0.15, 1e-12);
-    EXPECT_NEAR(pair.separated(true, 0.01), gap - 0.16, 1e-12);
-    pair.motion.linear[2] = 0.2;
-    pair.motion.linear_rate[2] = 0.4;
-    EXPECT_NEAR(pair.separated(true), gap, 1e-12);
-    EXPECT_NEAR(upside_down(pair).separated(true), gap, 1e-12);
+  for (const double up : {0.0, 10.0, -10.0}) {
+    for (TrianglePair pair : {hanging(0.5), raised}) {
+      const double gap = pair.mine[2][2];
+      for (int c = 0; c < 3; ++c) {
+        pair.mine[c][2] += up;
+        pair.theirs[c][2] += up;
+      }
+      EXPECT_NEAR(pair.separated(false), gap, 1e-12);
+      EXPECT_NEAR(upside_down(pair).separated(false), gap, 1e-12);
+      pair.horizon = 0.5;
+      pair.motion.linear[2] = -0.2;
+      EXPECT_NEAR(pair.separated(true), gap - 0.1, 1e-12);
+      EXPECT_NEAR(upside_down(pair).separated(true), gap - 0.1, 1e-12);
+      EXPECT_NEAR(pair.separated(false), gap, 1e-12) << "still again";
+      pair.motion.linear_rate[2] = -0.4;
+      EXPECT_NEAR(pair.separated(true), gap - 0.15, 1e-12);
+      EXPECT_NEAR(upside_down(pair).separated(true), gap - 0.15, 1e-12);
+      EXPECT_NEAR(pair.separated(true, 0.01), gap - 0.16, 1e-12);
+      EXPECT_NEAR(pair.separated(false), gap, 1e-12) << "still again";
+      pair.motion.linear[2] = 0.2;
+      pair.motion.linear_rate[2] = 0.4;
+      EXPECT_NEAR(pair.separated(true), gap, 1e-12);
+      EXPECT_NEAR(upside_down(pair).separated(true), gap, 1e-12);
+    }
   }
 }
 

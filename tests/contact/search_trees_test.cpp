@@ -147,6 +147,24 @@ TEST(ObjectTree, BoxesAndSlabsHoldWhatIsBelowThemAndNothingMore) {
   }
 }
 
+// The middle is (1, 1, 3), so that the box ends at -1 and 1, which single precision has, and the slab at 0.
+// For what a subtraction rounds the box is larger by 1e-15 of |low| + |high| + 3: along x and y the next
+// number outside, along z 9e-15. The slab is larger by four times that, of which only the 3 is not 0.
+TEST(ObjectTree, BoxesAndSlabsAreLargerByWhatASubtractionMayRound) {
+  TriangleMesh mesh;
+  test::add_triangle(mesh, Vec3(0, 0, 3), Vec3(2, 0, 3), Vec3(0, 2, 3));
+  const ObjectTree tree(mesh);
+  const BoxNode& root = tree.nodes()[0];
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(root.min[k][0], std::nextafter(-1.0F, -2.0F)) << k;
+    EXPECT_EQ(root.max[k][0], std::nextafter(1.0F, 2.0F)) << k;
+  }
+  EXPECT_FLOAT_EQ(root.min[2][0], -9e-15F);
+  EXPECT_FLOAT_EQ(root.max[2][0], 9e-15F);
+  EXPECT_FLOAT_EQ(root.low[0], -12e-15F);
+  EXPECT_FLOAT_EQ(root.high[0], 12e-15F);
+}
+
 // A search that looks at an empty lane finds a box that is inside out by more than any cap.
 TEST(ObjectTree, AnEmptyLaneIsInsideOut) {
   test::Random random(32);
@@ -225,6 +243,7 @@ TEST(SegmentTree, LensesHoldWhatIsBelowThemAndLittleMore) {
     for (const Vec3& v : mesh.vertices) farthest = std::max(farthest, v.norm());
     EXPECT_EQ(tree.extent(), farthest);
     int seen = 0;
+    int nodes = 1;
     for (std::vector<std::pair<int, int>> open = {{0, 0}}; !open.empty();) {
       const auto [at, lane] = open.back();
       open.pop_back();
@@ -262,10 +281,12 @@ TEST(SegmentTree, LensesHoldWhatIsBelowThemAndLittleMore) {
         ++seen;
         continue;
       }
+      ++nodes;
       for (int i = 0; i < kWide; ++i)
         if (tree.nodes()[node.child[lane]].radius[i] >= 0.0F) open.emplace_back(node.child[lane], i);
     }
     EXPECT_EQ(seen, size);
+    EXPECT_EQ(tree.node_count(), nodes);
   }
 }
 

@@ -120,6 +120,22 @@ TEST(TriangleDistance, OfPairsThatTieTakesTheFirst) {
   EXPECT_EQ(found.on_b, Vec3(0, 0, 0));
 }
 
+// (0, 0, 0) and (1, 1, 1) are nearest, whichever corners of their triangles they are.
+TEST(TriangleDistance, OfTwoCornersIsBetweenThoseWhateverTheirPlaces) {
+  const Corners a = {Vec3(0, 0, 0), Vec3(-3, 0, 0), Vec3(0, -3, 0)};
+  const Corners b = {Vec3(1, 1, 1), Vec3(4, 1, 1), Vec3(1, 4, 1)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Corners mine = {a[i], a[(i + 1) % 3], a[(i + 2) % 3]};
+      const Corners theirs = {b[j], b[(j + 1) % 3], b[(j + 2) % 3]};
+      const TriangleDistance found = triangle_distance(mine, theirs);
+      EXPECT_EQ(found.squared, 3.0) << i << j;
+      EXPECT_EQ(found.on_a, Vec3(0, 0, 0)) << i << j;
+      EXPECT_EQ(found.on_b, Vec3(1, 1, 1)) << i << j;
+    }
+  }
+}
+
 TEST(TriangleDistance, OfCrossedEdgesIsTheirCommonPerpendicular) {
   const Corners a = {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)};
   const Corners b = {Vec3(0, -1, 2), Vec3(0, 1, 2), Vec3(0, 0, 3)};

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string>
 
 namespace phalanx {
 namespace {
@@ -176,9 +179,17 @@ TEST(LinkMessages, ChannelsAndSerialNumberComeBack) {
 }
 
 TEST(LinkMessages, ALongSerialNumberIsCut) {
-  char serial[PHX_SERIAL_SIZE];
-  write_serial("0123456789abcdefghij", serial);
-  EXPECT_EQ(read_serial(serial), "0123456789abcdef");
+  struct {
+    char serial[PHX_SERIAL_SIZE];
+    char behind[PHX_SERIAL_SIZE];
+  } place;
+  std::fill(std::begin(place.serial), std::end(place.serial), 'x');
+  std::fill(std::begin(place.behind), std::end(place.behind), 'x');
+  write_serial("0123456789abcdefghij", place.serial);
+  EXPECT_EQ(read_serial(place.serial), "0123456789abcdef");
+  EXPECT_EQ(std::string(place.behind, PHX_SERIAL_SIZE), std::string(PHX_SERIAL_SIZE, 'x'));
+  write_serial("PX", place.serial);
+  EXPECT_EQ(std::string(place.serial, PHX_SERIAL_SIZE), "PX" + std::string(PHX_SERIAL_SIZE - 2, '\0'));
 }
 
 TEST(LinkMessages, ConfigureCarriesTheCalibration) {

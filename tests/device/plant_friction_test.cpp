@@ -115,5 +115,29 @@ TEST(PlantFriction, ATensionedTendonSticksToItsSheathTheHarder) {
   EXPECT_NEAR(breakaway_tension(1.0, 1.5), 2.5, 6e-3);
 }
 
+// The motor winds up against the tension T of a joint that stands still, which adds c T, c = 0.5, to 1 N:
+// with 4 N it comes to T = 3 N / 1.5. Let go, the rotor holds as long as T less the motor's force is at most
+// 1 N + T c / (1 + c): down to 0.333 N. The same where the motor pushes.
+TEST(PlantFriction, ASheathHoldsTheHarderWhatIsWoundUpAgainstTheTension) {
+  for (const double side : {1.0, -1.0}) {
+    Exoskeleton exo = one_motor(0.01);
+    exo.joints[0].friction.coulomb = 100.0;
+    exo.motors[0].sheath = {.coulomb = 1.0, .static_ratio = 1.0, .stribeck_speed = 1e-3, .capstan = 0.5};
+    Plant plant(exo, no_patient(), {});
+    PlantInput input = no_input(exo);
+    for (int i = 0; i <= 4000; ++i) {  // 1 mN a tick
+      input.motor_force[0] = side * 1e-3 * i;
+      plant.advance(input, 1e-3);
+    }
+    EXPECT_NEAR(plant.tendon(0).tension, side * 2.0, 0.01);
+    input.motor_force[0] = side * 0.36;
+    plant.advance(input, 0.1);
+    EXPECT_NEAR(plant.tendon(0).tension, side * 2.0, 0.01);
+    input.motor_force[0] = side * 0.30;
+    plant.advance(input, 0.1);
+    EXPECT_LT(side * plant.tendon(0).tension, 1.97);
+  }
+}
+
 }  // namespace
 }  // namespace phalanx

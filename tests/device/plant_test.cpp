@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/device/plant.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,6 +26,25 @@ using test::one_motor;
 using test::two_joint_device;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+// 0.3 rad on an arm of 10 mm are wound up as 3 mm.
+TEST(Plant, BeginsAtRestWithoutTension) {
+  JointArray start{};
+  start[at(kMcp)] = 0.3;
+  const Plant plant(one_motor(0.01), no_patient(), start);
+  EXPECT_EQ(plant.angle(), start);
+  EXPECT_EQ(plant.speed(), JointArray{});
+  EXPECT_EQ(plant.tendon_torque(), JointArray{});
+  EXPECT_DOUBLE_EQ(plant.tendon(0).wound, 3e-3);
+  EXPECT_EQ(plant.tendon(0).speed, 0.0);
+  EXPECT_EQ(plant.tendon(0).motor_force, 0.0);
+  EXPECT_EQ(plant.tendon(0).tension, 0.0);
+  EXPECT_NEAR(plant.stored_energy(), 0.0, 1e-20);
+  EXPECT_EQ(plant.energy().motors, 0.0);
+  EXPECT_EQ(plant.energy().patient, 0.0);
+  EXPECT_EQ(plant.energy().dissipated, 0.0);
+  EXPECT_EQ(plant.energy().turned_over, 0.0);
+}
 
 // 2 mm of play on an arm of 10 mm: 0.2 rad. 0.01 Nm are 1 N on the tendon, which gives 0.1 mm, 0.01 rad.
 TEST(Plant, ATendonWithBacklashHasItsPlayAndNoTensionInside) {
@@ -86,6 +106,39 @@ TEST(Plant, APullOnlyTendonNeverPushesHoweverItIsDamped) {
     }
     EXPECT_GT(slack, 1000);
     EXPECT_GT(pulling, 1000);
+  }
+}
+
+// 0.5 N on 10 mm against a spring of 0.5 Nm/rad: 0.01 rad.
+TEST(Plant, APullOnlyTendonHoldsAPullHoweverSmall) {
+  Exoskeleton exo = one_motor(0.01);
+  exo.motors[0].pull_only = true;
+  exo.motors[0].damping = 20.0;
+  exo.motors[0].tendon_damping = 5.0;
+  PatientParameters patient = no_patient();
+  patient.stiffness[at(kMcp)] = 0.5;
+  Plant plant(exo, patient, {});
+  PlantInput input = no_input(exo);
+  input.motor_force[0] = 0.5;
+  plant.advance(input, 5.0);
+  EXPECT_NEAR(plant.tendon(0).tension, 0.5, 1e-6);
+  EXPECT_NEAR(plant.angle()[at(kMcp)], 0.01, 1e-8);
+}
+
+// 1 N for 0.1 s are 0.1 N s, which the rotor of 0.2 kg and the joint, 1e-4 kg m^2 on 10 mm, share: whatever
+// the tendon does between the two, m y' + I q' / r stays what it is.
+TEST(Plant, ATendonNeitherGivesNorTakesMomentumHoweverItIsDamped) {
+  for (const double damping : {0.0, 1.0, 5.0}) {
+    Exoskeleton exo = one_motor(0.01);
+    exo.joints[0].damping = 0.0;
+    exo.motors[0].tendon_damping = damping;
+    Plant plant(exo, no_patient(), {});
+    PlantInput input = no_input(exo);
+    input.motor_force[0] = 1.0;
+    plant.advance(input, 0.1);
+    input.motor_force[0] = 0.0;
+    plant.advance(input, 1.0);
+    EXPECT_NEAR(0.2 * plant.tendon(0).speed + 1e-4 / 0.01 * plant.speed()[at(kMcp)], 0.1, 1e-7) << damping;
   }
 }
 
@@ -212,12 +265,23 @@ TEST(Plant, RefusesAStepThatItsTendonsDoNotBear) {
   EXPECT_NO_THROW(Plant(exo, no_patient(), {}, 1e-3));
   exo.motors[0].tendon_stiffness = 1e7;  // 7746 rad/s
   EXPECT_NO_THROW(Plant(exo, no_patient(), {}, 1.29e-4));
-  EXPECT_THROW(Plant(exo, no_patient(), {}, 1.30e-4), std::invalid_argument);
+  EXPECT_THAT([&] { Plant(exo, no_patient(), {}, 1.30e-4); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::AllOf(
+                  testing::HasSubstr("frequency of 7746 rad/s"), testing::HasSubstr("at most 0.000129 s"))));
   for (const double step : {0.0, 9e-8, 1.1e-3, kNotANumber})
     EXPECT_THROW(Plant(one_motor(0.01), no_patient(), {}, step), std::invalid_argument) << step;
   JointArray start{};
   start[at(kMcp)] = kNotANumber;
   EXPECT_THROW(Plant(one_motor(0.01), no_patient(), start), std::invalid_argument);
+}
+
+TEST(Plant, RefusesADeviceAndAPatientThatCannotBe) {
+  Exoskeleton exo = one_motor(0.01);
+  exo.motors[0].force_limit = 0.0;
+  EXPECT_THROW(Plant(exo, no_patient(), {}), std::invalid_argument);
+  PatientParameters patient = no_patient();
+  patient.damping[at(kMcp)] = kNotANumber;
+  EXPECT_THROW(Plant(one_motor(0.01), patient, {}), std::invalid_argument);
 }
 
 // w = sqrt(1e4 Nm/rad / 1e-4 kg m^2) = 1e4 rad/s, and the longest step is 1 / w = 1e-4 s.
@@ -227,6 +291,10 @@ TEST(Plant, RefusesAStepThatThePatientsSpringDoesNotBear) {
   patient.stiffness[at(kMcp)] = 1e4;
   EXPECT_NO_THROW(Plant(exo, patient, {}, 0.99e-4));
   EXPECT_THROW(Plant(exo, patient, {}, 1.01e-4), std::invalid_argument);
+  // 1 / w = 63 us: the default of 50 us is short enough.
+  patient.stiffness[at(kMcp)] = 2.5e4;
+  EXPECT_NO_THROW(Plant(exo, patient, {}));
+  EXPECT_THROW(Plant(exo, patient, {}, 64e-6), std::invalid_argument);
 }
 
 TEST(Plant, AdvancesWithoutAllocation) {

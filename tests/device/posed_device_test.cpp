@@ -94,6 +94,8 @@ TEST(PosedDevice, EachCallGivesOneSampleOnePeriodLater) {
   EXPECT_EQ(loop.device.statistics().sent, 9U);
   EXPECT_EQ(loop.device.receive(1.0, {}), 0U);
   EXPECT_EQ(loop.device.statistics().overflowed, 1U);
+  loop.run(10.0);  // 3010 periods of 1/300 s since the beginning
+  EXPECT_EQ(loop.newest.time_us, 10'033'333U);
 }
 
 TEST(PosedDevice, StartsAtItsStartWithinTheRange) {

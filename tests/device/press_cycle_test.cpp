@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "device/pressing_finger.h"
 
@@ -76,6 +77,23 @@ TEST(PressCycle, NothingJumpsBetweenTwoSqueezes) {
   EXPECT_GT(gap, 3.0 * holding) << "this seed would have shown a jump";
   EXPECT_LT(seam, 2.0 * holding);
   EXPECT_LT(seam, pressing);
+}
+
+// The share x^2 (3 - 2 x) of the way over, by hand: 5/32 at a quarter of the seam, a half in its middle,
+// 27/32 at three quarters.
+TEST(PressCycle, TheSeamIsCrossedSmoothly) {
+  const Squeezing s(3e-4);
+  const JointArray begin = s.intent.angle(0.0);
+  const JointArray end = s.intent.angle(s.schedule.end);
+  for (const auto& [before_the_end, share] :
+       {std::pair{0.1875, 5.0 / 32.0}, {0.125, 0.5}, {0.0625, 27.0 / 32.0}}) {
+    const double t = s.schedule.end - before_the_end;
+    const JointArray intended = s.intent.angle(t);
+    const JointArray shown = s.cycle.angle(t);
+    for (std::size_t j = 0; j < shown.size(); ++j)
+      EXPECT_NEAR(shown[j], intended[j] + share * (begin[j] - end[j]), 1e-12)
+          << joint_name(static_cast<int>(j));
+  }
 }
 
 TEST(PressCycle, ASqueezeThatDoesNotEndIsRefused) {

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "phalanx/device/motion.h"
 
@@ -49,6 +51,15 @@ TEST(ScriptedMotion, HoldsItsInvariantAndLastsAsLongAsItsPhases) {
   }
 }
 
+// 3.2005 s are no whole number of milliseconds: the last key is at the end all the same.
+TEST(ScriptedMotion, EndsWithItsLastPhaseBetweenTwoKeys) {
+  ScriptedMotion longer = script("press");
+  longer.hold_s = 1.0005;
+  const Motion motion = make_motion(longer, simple_hand());
+  EXPECT_DOUBLE_EQ(motion.duration(), 3.2005);
+  EXPECT_NEAR(motion.angle.back()[kIndexFlexion], 0.1, 1e-12);
+}
+
 // Open 0.1, end of range 1.5, closure 0.6: the hold is at 0.1 + 0.6 * 1.4 = 0.94, by hand.
 TEST(ScriptedMotion, ClosesByItsClosureOfTheWayToTheEndOfTheRange) {
   const Motion motion = make_motion(script("press"), simple_hand());
@@ -79,6 +90,31 @@ TEST(ScriptedMotion, MovesTheDigitsOfItsKindAndNoOthers) {
       EXPECT_EQ(held[first] != 0.1, moves[static_cast<std::size_t>(digit)])
           << name << ", " << digit_name(digit);
     }
+  }
+}
+
+// Half way through the closing each digit that moves is half closed: 0.1 + 0.84 / 2.
+TEST(ScriptedMotion, ClosesAllDigitsAtOnceUnlessItWaves) {
+  for (const std::string name : {"press", "pinch", "tripod", "power_grasp"}) {
+    const Motion motion = make_motion(script(name), simple_hand());
+    for (int digit = 0; digit < kDigits; ++digit) {
+      const auto first = static_cast<std::size_t>(joint_index(digit, 0));
+      const bool moves = motion.at(1.7)[first] != 0.1;
+      EXPECT_NEAR(motion.at(0.7)[first], moves ? 0.52 : 0.1, 1e-9) << name << ", " << digit_name(digit);
+    }
+  }
+}
+
+// At closure 0.6 a joint that goes all the way is at 0.94. The thumb flexes and opposes all the way and bends
+// its two hinges 0.6 of it; a finger does not spread, and bends its end joint 0.7 of the way.
+TEST(ScriptedMotion, ClosesEachJointOfADigitByItsWeight) {
+  const JointArray held = make_motion(script("power_grasp"), simple_hand()).at(1.7);
+  constexpr std::array<double, kJointsPerDigit> kThumb = {1.0, 1.0, 0.6, 0.6};
+  constexpr std::array<double, kJointsPerDigit> kFinger = {1.0, 0.0, 1.0, 0.7};
+  for (int j = 0; j < kJoints; ++j) {
+    const auto i = static_cast<std::size_t>(j % kJointsPerDigit);
+    const double weight = digit_of_joint(j) == 0 ? kThumb[i] : kFinger[i];
+    EXPECT_NEAR(held[static_cast<std::size_t>(j)], 0.1 + 0.84 * weight, 1e-12) << joint_name(j);
   }
 }
 

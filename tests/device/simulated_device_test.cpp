@@ -125,6 +125,7 @@ TEST(SimulatedDevice, ASqueezeIsFeltThroughTheInterface) {
   EXPECT_EQ(loop.newest().state, DeviceState::kActive);
   EXPECT_EQ(loop.newest().factor, 1.0);
   EXPECT_EQ(loop.newest().acted_tick, 799U) << "the last command acts from the next tick on";
+  EXPECT_EQ(loop.device().statistics().sent, 800U);
   EXPECT_NEAR(loop.torque()[idx(kMcp)], -0.15, 0.0015);
   EXPECT_NEAR(1e-4 * loop.newest().raw[kTorqueChannel], -0.15, 0.0015) << "measured";
   EXPECT_EQ(loop.device().connection_fault(), Fault::kNone);

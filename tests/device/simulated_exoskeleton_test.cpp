@@ -54,6 +54,17 @@ TEST(SimulatedExoskeleton, ShowsTheOpenHandAndWhatFollowsWhereItHasNoSensor) {
   EXPECT_DOUBLE_EQ(q[at(18)], 0.18 + 0.5 * (0.4 - 0.06));
 }
 
+TEST(SimulatedExoskeleton, StampsEachSampleWithTheTimeOfItsTick) {
+  Exoskeleton exo = held_device();
+  exo.controller.rate_hz = 500.0;
+  SimulatedExoskeleton device(exo, no_patient(), {}, {}, 1);
+  for (int tick = 0; tick < 4; ++tick) {
+    device.begin_tick();
+    EXPECT_DOUBLE_EQ(device.sample().time_s, 2e-3 * tick);
+    device.end_tick({});
+  }
+}
+
 TEST(SimulatedExoskeleton, RoundsToTheSensorsLeastSignificantBit) {
   Exoskeleton exo = held_device();
   exo.joints[0].sensor_lsb = 0.25;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -92,6 +93,26 @@ TEST(Transmission, SharesEquallyAmongEqualMotors) {
   EXPECT_NEAR(r.force[0], 5.0, 1e-5 * 5.0);
   EXPECT_NEAR(r.force[2], 5.0, 1e-5 * 5.0);
   EXPECT_NEAR(r.unrendered[4], 0.0, 1e-9);
+}
+
+/// Leaves what is no number on the part of the stack that the next call uses.
+[[gnu::noinline]] void leave_nothing_sensible_on_the_stack() {
+  std::array<double, 8192> used;
+  used.fill(std::numeric_limits<double>::quiet_NaN());
+  const double* held = used.data();
+  asm volatile("" : : "r"(held) : "memory");
+}
+
+TEST(Transmission, SharesAmongMotorsWhateverTheStackHeld) {
+  Exoskeleton exo = two_joint_device();
+  exo.motors.push_back(motor_on("mcp_too", 4, -0.0125));
+  const Transmission transmission(exo);
+  const JointArray wanted = torque_on(4, -0.125);
+  Rendered r;
+  leave_nothing_sensible_on_the_stack();
+  transmission.render(wanted, r);
+  EXPECT_NEAR(r.force[0], 5.0, 1e-5 * 5.0);
+  EXPECT_NEAR(r.force[2], 5.0, 1e-5 * 5.0);
 }
 
 // An antagonist pair of tendons that only pull: one pulls, the other rests.

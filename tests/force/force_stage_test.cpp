@@ -6,11 +6,13 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/force/force_law.h"
 #include "phalanx/mesh/primitives.h"
+#include "support/all_stabilisers.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -19,6 +21,7 @@ namespace {
 constexpr double kTick = 0.005;  // [s]
 constexpr int kProximal = 0;
 constexpr int kDistal = 2;
+constexpr int kThumbBefore = 0;                                  ///< the digit before the index finger
 const double kGain = 1.0 - std::exp(-2.0 * kPi * 30.0 * kTick);  ///< of a low-pass of 30 Hz: 0.61034
 
 /// The simple hand, open and straight along -Z, with records of our own and every limiter off.
@@ -270,6 +273,26 @@ TEST(ForceStage, ASilentContactAndAStaleHandPushNothing) {
   EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
 }
 
+// The same of each method while the finger goes on into the object, where a damper would push and a bound on
+// the energy hold what was sent. Smoothing and the low-pass let it decay.
+TEST(ForceStage, NoMethodPushesForASilentContactOrAStaleHand) {
+  for (const Stabiliser method : test::kAllStabilisers) {
+    if (method == Stabiliser::kSmoothing || method == Stabiliser::kLowPass) continue;
+    for (const bool silent : {false, true}) {
+      Stage stage;
+      stage.stabiliser.method = method;
+      stage.press(kDistal, 2e-3);
+      stage.tick();
+      EXPECT_GT(stage.sent(kDistal), 0.0) << static_cast<int>(method);
+      stage.stale = !silent;
+      stage.move_hcp({0.0, -1e-3, 0.0});
+      stage.press(kDistal, 3e-3).silent = silent;
+      stage.tick();
+      EXPECT_EQ(stage.sent(kDistal), 0.0) << static_cast<int>(method) << " " << silent;
+    }
+  }
+}
+
 // 1e110 m into a cubic law overflow, and a point whose x is not a number has no torque: nothing is sent, and
 // the status says so.
 TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
@@ -291,6 +314,10 @@ TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
     nowhere.ticks(20);
     EXPECT_NEAR(nowhere.torque(0), -0.075, 1e-12) << "and the next command is whole";
   }
+
+  Stage unfelt;
+  unfelt.press(kDistal, 0.0).p_S.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(unfelt.tick(), Status::kOk) << "what pushes nothing has no torque, wherever it is";
 }
 
 // What is not felt turns at once: after a contact without depth along +Y the first force goes along +X.
@@ -326,6 +353,36 @@ TEST(ForceStage, TheNormalOutlivesTheContactAsLongAsAForceIsSent) {
   stage.press(kDistal, 0.0);
   stage.tick();
   EXPECT_EQ(force.normal, Vec3::UnitY()) << "a contact without depth has one";
+}
+
+// The digit is not free, for its first segment still presses.
+TEST(ForceStage, ASegmentThatLetsGoBesideOneThatPressesHasNoNormal) {
+  Stage stage;
+  stage.press(kDistal, 2e-3);
+  stage.press(kProximal, 2e-3);
+  stage.tick();
+  stage.leave(kDistal);
+  stage.tick();
+  EXPECT_EQ(stage.state.segment[idx(segment_index(test::kIndex, kDistal))].normal, Vec3::Zero());
+  EXPECT_EQ(stage.state.segment[idx(segment_index(test::kIndex, kProximal))].normal, Vec3::UnitY());
+}
+
+// ---- digits ----
+
+// The thumb is the digit before the index finger, whose first segment presses all the while: 1 N, of which
+// smoothing sends 0.1 N more each tick, 10 mm from the knuckle. The thumb's 0.05 N are 75 mm from its own.
+TEST(ForceStage, ADigitLeavesTheNextOneAlone) {
+  Stage stage;
+  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.press(kDistal, 0.1e-3, Vec3::UnitY(), kThumbBefore);
+  stage.press(kProximal, 2e-3);
+  stage.ticks(2);
+  EXPECT_NEAR(stage.torque(0, kThumbBefore), -0.075 * 0.05, 1e-12);
+  EXPECT_NEAR(stage.torque(0), -0.010 * 0.2, 1e-12);
+  stage.leave(kDistal, kThumbBefore);
+  stage.ticks(3);
+  EXPECT_TRUE(stage.state.resting[idx(kThumbBefore)]);
+  EXPECT_NEAR(stage.sent(kProximal), 0.5, 1e-12);
 }
 
 // ---- limits ----
@@ -370,6 +427,14 @@ TEST(ForceStage, ACapThatTakesLessThanAMicronewtonHasNotActed) {
     EXPECT_EQ(has(stage.tick(), Status::kForceLimited), beyond > 1e-6) << beyond;
     EXPECT_NEAR(stage.sent(kDistal), 5.0, 1e-12) << beyond;
   }
+  // 1 um into 2 N/m are 2 uN, of which a cap of 1 uN takes one.
+  Stage stage;
+  stage.limits.fingertip_force_enabled = true;
+  stage.limits.fingertip_force = 1e-6;
+  stage.law.stiffness = 2.0;
+  stage.press(kDistal, 1e-6);
+  EXPECT_FALSE(has(stage.tick(), Status::kForceLimited)) << "a micronewton itself";
+  EXPECT_EQ(stage.sent(kDistal), 1e-6);
 }
 
 // 12 mm into 500 N/m are 6 N, also beside a damper where no cap is on. With one of 5 N, 10 mm are 5 N, which
@@ -399,6 +464,13 @@ TEST(ForceStage, AMethodThatAddsToTheLawIsCappedOnEachContactAgain) {
   stage.press(kDistal, 2e-3);
   EXPECT_TRUE(has(stage.tick(), Status::kForceLimited)) << "1 N + 0.8 N";
   EXPECT_NEAR(stage.sent(kDistal), 1.2, 1e-12);
+  // Against each other two such contacts add up to nothing, so that the sum says nothing of either.
+  stage.move_hcp({0.0, -1e-3, 0.0});
+  stage.press(kDistal, 2e-3);
+  stage.press(kProximal, 2e-3).force_normal = -Vec3::UnitY();
+  EXPECT_TRUE(has(stage.tick(), Status::kForceLimited));
+  EXPECT_NEAR(stage.sent(kDistal), 1.2, 1e-12);
+  EXPECT_NEAR(stage.sent(kProximal), 1.2, 1e-12);
 }
 
 // Two times 2 N, and two times 2.8 N with a damper of 4 N s/m at 0.2 m/s: each within 5 N, together 5.6 N.
@@ -478,6 +550,20 @@ TEST(ForceStage, ASwingIsWhatTheParametersSay) {
   }
 }
 
+// 1 and 3 N, 50 ms each, on the index finger's first segment: 10 Hz, also while the thumb, the digit before,
+// is watched.
+TEST(ForceStage, AnOscillationHasItsOwnFrequencyBesideAnotherDigit) {
+  Stage stage;
+  stage.press(kDistal, 2e-3, Vec3::UnitY(), kThumbBefore);
+  const OscillationObserver& observer = stage.state.observer[idx(segment_index(test::kIndex, kProximal))];
+  for (int n = 0; n < 100; ++n) {
+    stage.press(kProximal, n % 20 < 10 ? 2e-3 : 6e-3);
+    stage.tick();
+    EXPECT_FALSE(observer.idle()) << n;
+  }
+  EXPECT_NEAR(observer.frequency(), 10.0, 1e-9);
+}
+
 // The verdict on a finger that has left ends half a second later, also where its other segments were always
 // at rest.
 TEST(ForceStage, AFreeDigitIsWatchedUntilTheVerdictOfEachSegmentHasEnded) {
@@ -540,13 +626,15 @@ TEST(ForceStage, WallsOfADigitWhoseTorqueWasLimitedAreWithheld) {
     stage.limits.joint_torque_enabled = !rate;
     stage.limits.joint_torque = 0.2;
     stage.limits.torque_rate_enabled = rate;
-    stage.press(kDistal, 8e-3);                      // 4 N: 0.3 Nm
-    stage.press(kProximal, 0.2e-3);                  // of the same digit
-    stage.press(kDistal, 0.2e-3, Vec3::UnitY(), 3);  // 0.1 N: 7.5 mNm on the ring finger
+    stage.press(kDistal, 8e-3);                        // 4 N: 0.3 Nm
+    stage.press(kProximal, 0.2e-3);                    // of the same digit
+    stage.press(kDistal, 0.2e-3, Vec3::UnitY(), 3);    // 0.1 N: 7.5 mNm on the ring finger
+    stage.press(kProximal, 0.2e-3, Vec3::UnitY(), 2);  // of the next digit: 1 mNm
     stage.tick();
     EXPECT_FALSE(stage.wall(kDistal).active);
     EXPECT_FALSE(stage.wall(kProximal).active);
     EXPECT_TRUE(stage.wall(kDistal, 3).active);
+    EXPECT_TRUE(stage.wall(kProximal, 2).active);
     stage.press(kDistal, 0.2e-3);
     stage.ticks(20);
     EXPECT_TRUE(stage.wall(kDistal).active) << "and come back with the torque";
@@ -609,11 +697,16 @@ TEST(ForceStage, AWallNeedsAStiffnessHoweverSmall) {
   EXPECT_TRUE(stage.wall(kDistal).active);
   EXPECT_EQ(stage.wall(kDistal).stiffness, 0.5);
   stage.law.stiffness = 0.0;
-  for (const double depth : {2e-3, -0.3e-3}) {
-    stage.press(kDistal, depth);
-    stage.tick();
-    EXPECT_FALSE(stage.wall(kDistal).active) << depth;
-    EXPECT_EQ(stage.wall(kDistal).d_ref, 0.0) << depth;
+  for (const bool capped : {false, true}) {
+    stage.limits.fingertip_force_enabled = capped;
+    for (const double depth : {2e-3, -0.3e-3}) {
+      stage.press(kDistal, depth);
+      stage.tick();
+      EXPECT_FALSE(stage.wall(kDistal).active) << depth;
+      EXPECT_EQ(stage.wall(kDistal).d_ref, 0.0) << depth;
+      EXPECT_EQ(stage.wall(kDistal).force_max, 0.0) << depth << " " << capped;
+      EXPECT_FALSE(stage.state.remembered[idx(segment_index(test::kIndex, kDistal))].kept) << depth;
+    }
   }
 }
 
@@ -720,6 +813,52 @@ TEST(ForceStage, TheWallsOfADigitTogetherKeepTheFingertipCap) {
   EXPECT_NEAR(stage.wall(kProximal).force_max, 0.5 + 3.5 * 4.5 / 8.5, 1e-9);
 }
 
+// 6 N, capped to 5 N, and against it a wall that is not reached yet: whatever both do, the sum is within 5 N.
+TEST(ForceStage, AWallAgainstOneThatIsAtTheCapHasAllOfIt) {
+  Stage stage = walled();
+  stage.limits.fingertip_force_enabled = true;
+  stage.press(kDistal, 12e-3);
+  stage.press(kProximal, -0.3e-3, -Vec3::UnitY());
+  stage.tick();
+  EXPECT_NEAR(stage.wall(kDistal).force_max, 5.0, 1e-12);
+  EXPECT_NEAR(stage.wall(kProximal).force_max, 5.0, 1e-12);
+}
+
+// 5 N of 5 N at an angle of 100 degrees to a wall that is not reached yet, whose force f leans back: with
+// |5 n + f m|^2 = 25 + f^2 - 10 f cos(80 degrees) it is within 5 N up to f = 1.736 N, whatever the last bits
+// of the normals are.
+TEST(ForceStage, AWallBesideOneThatIsAtTheCapHasWhatLeansBack) {
+  std::mt19937_64 random(1016);
+  std::normal_distribution<double> number;
+  const auto direction = [&] { return Vec3(number(random), number(random), number(random)).normalized(); };
+  const double angle = 100.0 * kPi / 180.0;
+  for (int n = 0; n < 200; ++n) {
+    Stage stage = walled();
+    stage.limits.fingertip_force_enabled = true;
+    const Vec3 held = direction();
+    const Vec3 across = held.cross(direction()).normalized();
+    stage.press(kDistal, 12e-3, held);
+    stage.press(kProximal, -0.3e-3, std::cos(angle) * held + std::sin(angle) * across);
+    stage.tick();
+    EXPECT_NEAR(stage.wall(kDistal).force_max, 5.0, 1e-9) << "seed 1016, draw " << n;
+    EXPECT_NEAR(stage.wall(kProximal).force_max, 10.0 * std::cos(80.0 * kPi / 180.0), 1e-9)
+        << "seed 1016, draw " << n;
+  }
+}
+
+// 0.51 of either's force is along +Y, and of the rest nothing is left: 1.02 f is at most 5 N. The host sends
+// 4.88 N of each, which leaves 0.022 N of room.
+TEST(ForceStage, TheRoomUpToTheCapIsUsedHoweverSmallItIs) {
+  Stage stage = walled();
+  stage.limits.fingertip_force_enabled = true;
+  const double aside = std::sqrt(1.0 - 0.51 * 0.51);
+  stage.press(kDistal, 9.76e-3, Vec3(aside, 0.51, 0.0));
+  stage.press(kProximal, 9.76e-3, Vec3(-aside, 0.51, 0.0));
+  stage.tick();
+  EXPECT_NEAR(stage.wall(kDistal).force_max, 5.0 / 1.02, 1e-9);
+  EXPECT_NEAR(stage.wall(kProximal).force_max, 5.0 / 1.02, 1e-9);
+}
+
 // 4 N, 4 N and, against them, 4 N: the sum is within 5 N, but without the third it would be 8 N. So no wall
 // may reach what the host sends: 5/8 of 4 N each.
 TEST(ForceStage, WallsMayNotReachTheHostsForceWhereSomeOfThemAloneWouldBreakTheCap) {
@@ -806,6 +945,43 @@ TEST(ForceStage, AWallThatWasLeftIsKeptForAQuarterOfASecond) {
   EXPECT_TRUE(stage.wall(kDistal).active) << "0.245 s";
   stage.ticks(2);
   EXPECT_FALSE(stage.wall(kDistal).active) << "0.255 s";
+}
+
+// 10 mm above, 3 mm aside and 0.25 s after, each exactly: two ticks of 0.125 s.
+TEST(ForceStage, AWallThatWasLeftIsKeptAtItsBoundsThemselves) {
+  for (const Vec3& place : {Vec3(0.0, 10e-3, 0.0), Vec3(3e-3, 0.0, 0.0), Vec3(0.0, 0.0, -3e-3)}) {
+    Stage stage = walled();
+    stage.period = 0.125;
+    ContactRecord& record = stage.press(kDistal, 2e-3);
+    record.p_S = Vec3::Zero();
+    record.p_gdp = Vec3::Zero();
+    stage.tick();
+    stage.leave(kDistal);
+    stage.hcp.digit[idx(test::kIndex)].segment[idx(kDistal)].p = place;
+    for (int n = 1; n <= 3; ++n) {
+      stage.tick();
+      EXPECT_EQ(stage.wall(kDistal).active, n <= 2) << n << ": " << place.transpose();
+    }
+  }
+}
+
+// The wall of the index finger's first segment, while the thumb, the digit before, rests, and then leaves a
+// wall that it forgets at once: it is below that.
+TEST(ForceStage, AWallIsNotThatOfTheDigitBefore) {
+  Stage stage = walled();
+  stage.press(kProximal, 2e-3);
+  stage.ticks(2);
+  EXPECT_TRUE(stage.state.resting[idx(kThumbBefore)]);
+  stage.press(kDistal, 0.2e-3, Vec3::UnitY(), kThumbBefore);
+  stage.tick();
+  EXPECT_TRUE(stage.wall(kDistal, kThumbBefore).active);
+  stage.leave(kProximal);
+  stage.leave(kDistal, kThumbBefore);
+  stage.move_hcp({0.0, 1e-3, 0.0});
+  for (Pose& segment : stage.hcp.digit[idx(kThumbBefore)].segment) segment.p.y() -= 1e-3;
+  stage.ticks(3);
+  EXPECT_TRUE(stage.state.resting[idx(kThumbBefore)]);
+  EXPECT_TRUE(stage.wall(kProximal).active);
 }
 
 // The method is exchanged while the finger touches, and the finger leaves under the other one: what was known

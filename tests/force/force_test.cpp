@@ -65,6 +65,13 @@ TEST(ForceLaw, NoneOfThemPushesWithoutDepth) {
   }
 }
 
+// A law that is none of them, as only a program by hand can ask for it.
+TEST(ForceLaw, ANumberThatIsNoLawPushesNothing) {
+  const ForceLawParameters law{.law = static_cast<ForceLaw>(77), .stiffness = 500.0};
+  EXPECT_EQ(law_force(law, 2e-3, 0.1), 0.0);
+  EXPECT_EQ(law_slope(law, 2e-3), 0.0);
+}
+
 TEST(ForceLaw, LowPassReachesSixtyThreePercentAfterItsTimeConstant) {
   const double corner = 20.0;
   const double time_constant = 1.0 / (2.0 * std::numbers::pi * corner);

@@ -100,6 +100,37 @@ TEST(OscillationRows, FireAtTheirBoundsThemselves) {
   EXPECT_EQ(fires_at_step(260.0 * kMillisecond), 6);
 }
 
+/// Steps to and fro between 0 and 2 N, so many milliseconds after each other; the first is a leg by itself.
+/// @returns the leg at which the observer fires first; 0: none
+int fires_at_leg_after(const std::vector<int>& half_swings) {
+  OscillationObserver observer;
+  observer.watch(0.0, 0.5, kMillisecond);
+  double force = 2.0;
+  observer.watch(force, 0.5, kMillisecond);
+  int leg = 1;
+  for (const int half_swing : half_swings) {
+    for (int i = 1; i < half_swing; ++i) observer.watch(force, 0.5, kMillisecond);
+    force = 2.0 - force;
+    ++leg;
+    if (observer.watch(force, 0.5, kMillisecond)) return leg;
+  }
+  return 0;
+}
+
+// The fourth leg fires where all three half-swings together take at most 240 ms, each counted once: 220 ms
+// do, whether the short one is the first or the last; 250 ms do not, though two of them are 40 ms.
+TEST(OscillationRows, AddUpThreeHalfSwingsOfDifferentLengths) {
+  EXPECT_EQ(fires_at_leg_after({100, 100, 20}), 4);
+  EXPECT_EQ(fires_at_leg_after({20, 100, 100}), 4);
+  EXPECT_EQ(fires_at_leg_after({210, 20, 20}), 0);
+  EXPECT_EQ(fires_at_leg_after({20, 210, 20}), 0);
+}
+
+// Half a second after the first leg the second begins a new row: the sixth of that is the seventh of all.
+TEST(OscillationRows, BeginAgainWithALegThatComesAfterMoreThanTheLongestHalfSwing) {
+  EXPECT_EQ(fires_at_leg_after({500, 100, 100, 100, 100, 100}), 7);
+}
+
 // Steps of 0.25 s: after two of them without a leg the verdict still holds, after three it does not.
 TEST(OscillationRows, HoldTheirVerdictForHalfASecondItself) {
   OscillationObserver observer;

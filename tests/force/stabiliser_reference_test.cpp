@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 
 #include "phalanx/core/random.h"
@@ -279,6 +280,16 @@ TEST(StabiliserReference, ALocalWallIsItsFormulaOverRandomAngles) {
   }
   EXPECT_GT(at_zero, 200);
   EXPECT_GT(at_most, 200);
+}
+
+// 2 mm of 500 N/m are 1 N; at an angle that is not a number, none.
+TEST(StabiliserReference, ALocalWallPushesNothingAtAnAngleThatIsNotANumber) {
+  LocalWall wall{.active = true, .d_ref = 2e-3, .stiffness = 500.0, .force_max = 5.0};
+  wall.g[0] = 0.075;
+  DigitJoints q{};
+  EXPECT_NEAR(local_wall_force(wall, q, {}), 1.0, 1e-12);
+  q[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(local_wall_force(wall, q, {}), 0.0);
 }
 
 }  // namespace

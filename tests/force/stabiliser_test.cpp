@@ -60,6 +60,8 @@ TEST(Stabiliser, NoneDirectionAndLocalWallSendTheLawsForce) {
     EXPECT_DOUBLE_EQ(contact.press(4e-3), 2.0);
     EXPECT_EQ(contact.press(-1e-3), 0.0);
   }
+  Contact unknown({.method = static_cast<Stabiliser>(77)});
+  EXPECT_DOUBLE_EQ(unknown.press(4e-3), 2.0) << "a number that is no method is none";
 }
 
 // 20 N/s at 200 Hz: 0.1 N a step, up and down; rise-only falls at once.
@@ -96,6 +98,7 @@ TEST(Stabiliser, TheLowPassIsExactAtItsTimeConstantAndEnds) {
     ++steps;
   }
   EXPECT_EQ(steps, 95);
+  EXPECT_EQ(low_passed_force(0.0, 1e-4, 3.0, 0.0), 1e-4) << "0.1 mN itself, of which no time takes anything";
 }
 
 // 4 mm at +0.1 m/s into 500 N/m and 4 N s/m: 2 + 0.4 N; leaving at 1 m/s it would pull: 0.
@@ -161,6 +164,15 @@ TEST(Stabiliser, ThePassivityControllersEnergyReturnsToZero) {
   EXPECT_NEAR(energy, 0.0, 1e-12);
 }
 
+// 1 mJ at 1 m/s: a = 1e-3 / (0.005 x 1) = 0.2 N s/m, 0.2 N. Where no energy is missing the law's force stays,
+// also at a speed whose square is too small for a number.
+TEST(Stabiliser, ThePassivityControllerTakesEachSpeed) {
+  double missing = -1e-3;
+  EXPECT_NEAR(passive_force(3.0, 0.0, 1.0, 50.0, kStabiliserPeriod, missing), 3.2, 1e-12);
+  double none = 0.0;
+  EXPECT_EQ(passive_force(2.0, 0.0, 1e-200, 50.0, kStabiliserPeriod, none), 2.0);
+}
+
 // b = 1 N s/m at 200 Hz: 400 N/m at most. Into a wall of 2000 N/m, 1 mm a step: 0.4 N a step. At rest it
 // stays; on the way out it stays until the law has come down to it.
 TEST(Stabiliser, EnergyBoundingIsNeverStifferThanTwiceTheDampingOverThePeriod) {
@@ -178,6 +190,7 @@ TEST(Stabiliser, EnergyBoundingLeavesASoftWallAlone) {
   Contact contact({.method = Stabiliser::kEnergyBounding, .device_damping = 2.0}, 500.0);
   for (const double depth : {1e-3, 2e-3, 4e-3, 3e-3, 1e-3})
     EXPECT_NEAR(contact.press(depth), 500.0 * depth, 1e-12);
+  EXPECT_EQ(energy_bounded_force(2.0, 2.0, 0.0, 2.0, kStabiliserPeriod), 2.0) << "and at rest";
 }
 
 TEST(Stabiliser, TheDirectionTurnsByTheBoundAndThenIsThere) {
@@ -192,6 +205,8 @@ TEST(Stabiliser, TheDirectionTurnsByTheBoundAndThenIsThere) {
   }
   EXPECT_EQ(turned_direction(direction, Vec3::UnitX(), step), Vec3::UnitX()) << "pi / 2 is 15.7 steps";
   EXPECT_EQ(turned_direction(Vec3::Zero(), Vec3::UnitY(), step), Vec3::UnitY()) << "the first one";
+  EXPECT_EQ(turned_direction(Vec3::UnitZ(), Vec3::UnitX(), std::numbers::pi / 2), Vec3::UnitX())
+      << "the bound itself is there";
 }
 
 TEST(Stabiliser, TheDirectionTurnsToTheOppositeToo) {
@@ -214,6 +229,8 @@ TEST(Stabiliser, TheTurnToTheOppositeIsByTheBoundFromAnyDirection) {
     EXPECT_NEAR(next.norm(), 1.0, 1e-12) << from.transpose();
     EXPECT_NEAR(from.dot(next), std::cos(0.3), 1e-12) << from.transpose();
   }
+  const Vec3 almost(-1.0, 0.0, 1.5e-9);  // opposite to +X but for 1.5 nrad towards +Z: the way is by +Z
+  EXPECT_NEAR(turned_direction(Vec3::UnitX(), almost, 0.3).z(), std::sin(0.3), 1e-12);
 }
 
 // At a depth of exactly 0 the damper of 4 N s/m would push 0.8 N, passivity's at its largest of 10 N s/m 2 N,
@@ -252,6 +269,8 @@ TEST(Stabiliser, CountsWhatIsNotFiniteAsNothing) {
     EXPECT_NEAR(sent(Stabiliser::kSmoothing, {.force = 1.0, .depth = 1e-3, .sent = bad}), 0.1, 1e-15) << bad;
     EXPECT_EQ(sent(Stabiliser::kKelvinVoigt, {.force = 1.0, .depth = bad, .speed = 0.1}), 0.0) << bad;
     EXPECT_EQ(sent(Stabiliser::kKelvinVoigt, {.force = 1.0, .depth = 1e-3, .speed = bad}), 1.0) << bad;
+    const StabiliserInput input{.force = 1.0, .depth = 1e-3, .speed_now = bad, .sent = 0.5};
+    EXPECT_EQ(sent(Stabiliser::kPassivity, input), 1.0) << bad;
   }
 }
 

@@ -114,5 +114,12 @@ TEST(Anthropometry, NoJointsRangeMayReachBeyondTheseAngles) {
   EXPECT_EQ(plausible_breadth_ratio().max, 1.6);
 }
 
+TEST(Anthropometry, NormsAndRangesAreZeroUntilStated) {
+  EXPECT_EQ(Norm{}.mean, 0.0);
+  EXPECT_EQ(Norm{}.sd, 0.0);
+  EXPECT_EQ(PlausibleRange{}.min, 0.0);
+  EXPECT_EQ(PlausibleRange{}.max, 0.0);
+}
+
 }  // namespace
 }  // namespace phalanx

@@ -408,6 +408,9 @@ TEST(Fit, RefusesABaseHandWhoseMiddleFingerDoesNotBeginBeyondTheWrist) {
     EXPECT_THAT([&] { (void)fit_hand(base, size); },
                 ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("beyond the wrist")))
         << z;
+    // With no segment of that finger stated the palm goes with the hand: 40 + 25 + 20 + 5 mm less z are 100.
+    size.segment[idx(segment_index(kMiddle, 0))].length.reset();
+    EXPECT_NEAR(fit_hand(base, size).palm_length, 0.1 / (0.09 - z), 1e-12);
   }
 }
 
@@ -452,6 +455,18 @@ TEST(Fit, RefusesSizesThatAreNoLengths) {
       expect_refused(size, (std::string(name) + ": breadth is").c_str());
     }
   }
+}
+
+// Two people's sizes side by side: what is wrong with the second one's does not concern the first one's.
+TEST(Fit, ReadsTheSegmentsOfOnePersonAlone) {
+  const HandParameters base = forward_knuckles();
+  std::array<HandSize, 2> people;
+  for (int s = 0; s < kSegments - 1; ++s) people[0].segment[idx(s)].length = 1.2 * segment_length(base, s);
+  people[1].hand_length = -0.1;
+  people[1].hand_breadth = -0.1;
+  HandFit fit;
+  ASSERT_NO_THROW(fit = fit_hand(base, people[0]));
+  EXPECT_NEAR(fit.palm_length, 1.2, 1e-12);
 }
 
 }  // namespace

@@ -414,5 +414,26 @@ TEST(Joints, NamesAndNumbersAgree) {
   EXPECT_EQ(digit_of_segment(kPalm), -1);
 }
 
+// Before a file states anything: no length, breadth or angle, and digits that point away from the wrist.
+TEST(HandParameters, AreZeroUntilStated) {
+  const HandParameters hand{};
+  for (const DigitParameters& digit : hand.digits) {
+    EXPECT_EQ(digit.base, Vec3(0, 0, 0));
+    EXPECT_EQ(digit.distal, Vec3(0, 0, -1));
+    EXPECT_EQ(digit.dorsal, Vec3(0, 1, 0));
+    for (const DhRow& row : digit.dh)
+      for (const double number : {row.a, row.alpha, row.d, row.theta}) EXPECT_EQ(number, 0.0);
+  }
+  for (const SegmentShape& shape : hand.segments)
+    for (const double number : {shape.length, shape.radius_base, shape.radius_tip}) EXPECT_EQ(number, 0.0);
+  const PalmShape& palm = hand.palm;
+  for (const double number :
+       {palm.length, palm.wrist_breadth, palm.wrist_thickness, palm.knuckle_breadth, palm.knuckle_thickness})
+    EXPECT_EQ(number, 0.0);
+  EXPECT_EQ(palm.offset, Vec3(0, 0, 0));
+  for (const JointArray& angles : {hand.min_angle, hand.max_angle, hand.open_angle})
+    for (const double angle : angles) EXPECT_EQ(angle, 0.0);
+}
+
 }  // namespace
 }  // namespace phalanx

@@ -70,8 +70,8 @@ TEST(SensorMapping, IsRefusedByTheNameOfTheJointAndWhatIsWrong) {
   }
   EXPECT_THAT(refusal_of([](SensorMapping& m) { m.joints[3].joint = 6; }),
               HasSubstr("index_pip_flexion is mapped twice"));
-  EXPECT_THAT(refusal_of([](SensorMapping& m) { m.joints[6].source.clear(); }),
-              HasSubstr("index_pip_flexion has an empty source"));
+  EXPECT_EQ(refusal_of([](SensorMapping& m) { m.joints[6].source.clear(); }),
+            "mapping \"joint names\": index_pip_flexion has an empty source; name a column or sensor");
   for (const double sign : {0.0, 2.0, -0.5, nan})
     EXPECT_THAT(refusal_of([&](SensorMapping& m) { m.joints[6].sign = sign; }), HasSubstr("sign")) << sign;
   for (const double gain : {0.0, -1.0, nan, infinite})
@@ -99,6 +99,15 @@ TEST(SensorMapping, WithSignMinusOneAndAnUnusedClampIsFine) {
             }),
             "");
   EXPECT_EQ(refusal_of([](SensorMapping& m) { m.joints.clear(); }), "") << "the others stay open";
+}
+
+// What is not stated: joint 0, the source's own angle, and a clamp that begins or ends at 0.
+TEST(SensorMapping, LeavesTheAngleAsItIsWhereNothingIsStated) {
+  EXPECT_EQ(JointMapping{}.joint, 0);
+  EXPECT_EQ(mapped_angle({}, 0.7), 0.7);
+  EXPECT_EQ(mapped_angle({}, -0.7), -0.7);
+  EXPECT_EQ(mapped_angle({.source = "s", .clamp_max = 0.4, .clamped = true}, -0.7), 0.0);
+  EXPECT_EQ(mapped_angle({.source = "s", .clamp_min = -0.4, .clamped = true}, 0.7), 0.0);
 }
 
 }  // namespace

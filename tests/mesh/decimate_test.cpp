@@ -131,12 +131,14 @@ TEST(Decimate, RefusesATargetThatDestroysTheMesh) {
 }
 
 TEST(ImportAndCheck, DecimatesAndReportsHowFarItIsOff) {
-  const std::string text = test::to_obj(make_sphere(0.09, 5000));
+  const TriangleMesh ball = make_sphere(0.09, 5000);
+  const std::string text = test::to_obj(ball);
   const ImportedMesh imported =
       import_and_check_from_memory(text.data(), text.size(), "obj", {.triangles = 500});
   ASSERT_TRUE(imported.report.decimation.has_value());
   const DecimationReport& d = *imported.report.decimation;
   EXPECT_EQ(d.asked, 500);
+  EXPECT_EQ(d.before, ball.triangles.size());
   EXPECT_EQ(d.after, imported.mesh.triangles.size());
   EXPECT_LE(d.after, 500U);
   EXPECT_TRUE(d.was_closed);

@@ -15,6 +15,7 @@
 #include "mesh/mesh_files.h"
 #include "mesh/near_vertices.h"
 #include "mesh/repair.h"
+#include "mesh/t_junctions.h"
 #include "mesh/weld.h"
 #include "phalanx/core/math.h"
 #include "phalanx/mesh/import.h"
@@ -229,6 +230,39 @@ TEST(RepairBounds, WhatAVertexHadMovedBeforeCountsWhereItGoes) {
     const bool taken = mesh.vertices[v].x() == 0.0;
     EXPECT_NEAR(allowance.spent[v], taken ? kBefore + kGap : 0.0, 1e-15) << v;
   }
+}
+
+// Three corners in a row, 0.05 um apart, where a step may move a point by 0.06: the second moves to the
+// first, and having moved takes in no other.
+TEST(RepairBounds, AVertexThatHasMovedTakesNoOtherIn) {
+  TriangleMesh mesh;
+  for (std::int32_t i = 0; i < 3; ++i) {
+    mesh.vertices.emplace_back(0.05e-6 * i, 0, 0);
+    mesh.vertices.emplace_back(0.04, 0.01 * (2 * i), 0);
+    mesh.vertices.emplace_back(0.04, 0.01 * (2 * i + 1), 0);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  mesh::Allowance allowance{0.06e-6, 0.4e-6, std::vector<double>(9, 0.0)};
+  EXPECT_EQ(mesh::merge_near_vertices(mesh, allowance).count, 1U);
+  EXPECT_EQ(mesh.vertices.size(), 8U);
+}
+
+// Vertex 3 lies 0.9 um beside the first triangle's first edge and is taken in. Vertex 6 lies 0.9 um beside
+// the edge from 3 to 4, a quarter of the way: with three quarters of what 3 has moved that is 1.575 um, more
+// than the 1.2 um that all steps may move a point. So the second triangle stays as it is, once.
+TEST(RepairBounds, AnEdgeWhoseEndHasMovedMeanwhileIsNotSplit) {
+  constexpr double kUm = 1e-6;
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0},   {100, 0, 0},     {50, -80, 0}, {50, 0.9, 0}, {50, 100.9, 0},
+                   {90, 60, 0}, {49.1, 25.9, 0}, {10, 60, 0},  {10, 20, 0}};
+  for (Vec3& vertex : mesh.vertices) vertex *= kUm;
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+  mesh::Allowance allowance{1.0 * kUm, 1.2 * kUm, std::vector<double>(mesh.vertices.size(), 0.0)};
+  const mesh::Mended mended = mesh::split_t_junctions(mesh, allowance);
+  EXPECT_EQ(mended.count, 1U);
+  EXPECT_NEAR(allowance.spent[3], 0.9 * kUm, 1e-15);
+  const std::vector<Triangle> expected = {{0, 3, 2}, {3, 4, 5}, {6, 7, 8}, {3, 1, 2}};
+  EXPECT_EQ(mesh.triangles, expected);
 }
 
 // The second triangle hangs on the first one's corner and goes through it: its far edge, from (2, 1, 1) to

@@ -6,11 +6,15 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "mesh/mesh_files.h"
 #include "phalanx/mesh/import.h"
@@ -56,6 +60,21 @@ TEST(ImportRefuses, AFolder) {
   std::filesystem::remove(folder);
 }
 
+// A file that is all hole. Where files may not be so large the test says nothing.
+TEST(ImportRefuses, AFileOfMoreThanTwoGibibytes) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("phalanx_large_" + std::to_string(::getpid()) + ".obj");
+  std::ofstream(file) << "v";
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  std::error_code error;
+  std::filesystem::resize_file(file, (std::uintmax_t{2} << 30) + 1, error);
+  std::signal(SIGXFSZ, before);
+  const std::string words = error ? "" : file_refusal(file.string());
+  std::filesystem::remove(file);
+  if (error) GTEST_SKIP() << error.message();
+  EXPECT_THAT(words, HasSubstr("2147483649 bytes are more than the 2147483648 that are read"));
+}
+
 TEST(ImportRefuses, AFileWithoutExtension) {
   EXPECT_THAT(file_refusal("cup"), HasSubstr("unknown mesh format ''"));
 }
@@ -79,7 +98,7 @@ TEST(ImportRefuses, WhatIsNotOfItsFormat) {
 }
 
 TEST(ImportRefuses, AMeshWithoutTriangles) {
-  EXPECT_THAT(refusal(std::string(kCorner) + "p 1\nl 1 2\n", "obj"), HasSubstr("no triangle"));
+  EXPECT_THAT(refusal(std::string(kCorner) + "p 1\nl 1 2\n", "obj"), HasSubstr("no triangle in 5 lines"));
   // All corners on one line through one point: welding leaves nothing.
   EXPECT_THAT(refusal("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "obj"), HasSubstr("no triangle"));
 }

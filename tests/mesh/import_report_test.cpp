@@ -53,6 +53,33 @@ TEST(ImportReport, CountsAnObjsOwnVertices) {
   EXPECT_NEAR(r.volume, 125e-6, 1e-10);
 }
 
+// Vertex 4 is named by a face of two corners, which is no surface.
+TEST(ImportReport, CountsAVertexOfALineOnlyAsUnreferenced) {
+  const std::string text = "v 0 0 0\nv .06 0 0\nv 0 .06 0\nv .06 .06 .06\nf 4 1\nf 1 2 3\n";
+  const MeshReport r = import_with_report(text, "obj").report;
+  EXPECT_EQ(r.finding(FindingKind::kUnreferencedVertices).found, 1U);
+  EXPECT_EQ(r.vertices_in_file, 4U);
+  EXPECT_EQ(r.vertices, 3U);
+}
+
+TEST(ImportReport, OfNothingYetSaysThatNothingWasFound) {
+  const MeshReport r{};
+  for (const std::size_t count : {r.vertices_in_file, r.triangles_in_file, r.vertices, r.triangles, r.solids,
+                                  r.cavities, r.sheets, r.findings.size()})
+    EXPECT_EQ(count, 0U);
+  for (const double number : {r.tolerance, r.moved, r.volume, r.extent.norm(), r.origin.norm()})
+    EXPECT_EQ(number, 0.0);
+  EXPECT_EQ(r.scale, 1.0);
+  EXPECT_FALSE(r.closed);
+  EXPECT_TRUE(r.complete);
+  EXPECT_FALSE(r.decimation);
+  const DecimationReport d{};
+  EXPECT_EQ(d.asked, 0);
+  EXPECT_FALSE(d.was_closed);
+  for (const std::size_t count : {d.before, d.after, d.deviation.probes}) EXPECT_EQ(count, 0U);
+  for (const double metres : {d.deviation.outward, d.deviation.inward}) EXPECT_EQ(metres, 0.0);
+}
+
 TEST(ImportReport, KnowsThatAnStlHasItsCornersApart) {
   const ImportedMesh imported = import_with_report(test::to_stl_binary(make_box({0.1, 0.1, 0.1}, 12)), "stl");
   EXPECT_EQ(imported.report.finding(FindingKind::kDuplicateVertices).found, 28U);
@@ -117,6 +144,7 @@ TEST(ImportRefuses, AnOptionThatMakesNoSense) {
   EXPECT_THAT(report_refusal(text, "obj", {.unit = std::numeric_limits<double>::infinity()}),
               HasSubstr("unit is inf m"));
   EXPECT_THAT(report_refusal(text, "obj", {.triangles = -5}), HasSubstr("-5 triangles"));
+  EXPECT_THAT(report_refusal(text, "obj", {.triangles = 1}), HasSubstr("decimated to 1 triangles"));
 }
 
 TEST(ImportRefuses, GlTf1AndUtf16InWords) {

@@ -120,6 +120,19 @@ TEST(Import, KeepsTheOutsideOutWhenANodeMirrors) {
   EXPECT_NEAR(bounds(got).max.x(), -bounds(sample()).min.x(), 1e-7);
 }
 
+// A triangle that faces +z does so when a node has shrunk it, and when it has mirrored it as well.
+TEST(Import, KeepsTheSideOfAnOpenSurfaceWhateverANodeDoes) {
+  const TriangleMesh made{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  for (const char* scale : {"[0.5,0.5,0.5]", "[-0.5,0.5,0.5]"}) {
+    const TriangleMesh got =
+        import_text(test::to_glb(made, std::string(R"({"mesh":0,"scale":)") + scale + "}"), "glb");
+    ASSERT_EQ(got.triangles.size(), 1U) << scale;
+    const Triangle& t = got.triangles[0];
+    const Vec3 a = test::corner(got, t[0]);
+    EXPECT_GT((test::corner(got, t[1]) - a).cross(test::corner(got, t[2]) - a).z(), 0.0) << scale;
+  }
+}
+
 TEST(Import, CutsPolygonsAndLeavesPointsAndLinesOut) {
   const std::string cube =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 9 9 9\nv 8 8 8\n"

@@ -5,12 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -121,6 +125,50 @@ TEST(RunIsolated, GivesTheWorkNoMoreMemoryThanItsLimit) {
   } catch (const std::invalid_argument& e) {
     EXPECT_THAT(e.what(), AllOf(StartsWith("cup.obj: "), HasSubstr("wanted more than 64 MiB")));
   }
+}
+
+// A call of before that was interrupted is no reason to try again: one reader has ended, one is too slow.
+TEST(RunIsolated, IsNotMisledByAnErrorOfBefore) {
+  const auto end_at_once = []() -> TriangleMesh { std::_Exit(0); };
+  errno = EINTR;
+  EXPECT_THAT(reading_refusal(end_at_once), HasSubstr("crashed"));
+  const auto too_slow = []() -> std::string {
+    for (;;) ::pause();
+  };
+  try {
+    errno = EINTR;
+    (void)run_isolated_text(too_slow, "cup.obj", {.cpu_seconds = 1, .wall_seconds = 0.0});
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), HasSubstr("not done after 0 s"));
+  }
+}
+
+TEST(RunIsolated, ShowsNobodyWhatAReaderPrints) {
+  const auto outputs = [] {
+    return std::filesystem::read_symlink("/proc/self/fd/1").string() + " " +
+           std::filesystem::read_symlink("/proc/self/fd/2").string();
+  };
+  EXPECT_EQ(run_isolated_text(outputs, "cup.obj", {}), "/dev/null /dev/null");
+}
+
+// Address space alone, without a page of memory: 1.5 GiB more than the program has can be had, 2.5 GiB not.
+TEST(RunIsolated, GivesTheWorkTwoGibibytesAndThreeSecondsIfNothingElseIsAskedFor) {
+  const auto mapped = [](std::size_t bytes) -> std::string {
+    return ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0) == MAP_FAILED
+               ? "none"
+               : "some";
+  };
+  EXPECT_EQ(run_isolated_text([&] { return mapped(std::size_t{3} << 29); }, "cup.obj", {}), "some");
+  EXPECT_EQ(run_isolated_text([&] { return mapped(std::size_t{5} << 29); }, "cup.obj", {}), "none");
+  const auto limits = [] {
+    rlimit seconds{};
+    rlimit core{};
+    ::getrlimit(RLIMIT_CPU, &seconds);
+    ::getrlimit(RLIMIT_CORE, &core);
+    return std::to_string(seconds.rlim_cur) + " " + std::to_string(core.rlim_cur);
+  };
+  EXPECT_EQ(run_isolated_text(limits, "cup.obj", {}), "3 0");
 }
 
 }  // namespace

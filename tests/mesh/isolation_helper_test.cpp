@@ -3,9 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -57,6 +60,28 @@ TEST(IsolationHelper, ForksInThisProcessesPlaceWhileItLives) {
   }
   EXPECT_FALSE(has_isolation_helper());
   EXPECT_EQ(forker(), self);
+}
+
+// A call of before that was interrupted is no reason to wait for the helper twice.
+TEST(IsolationHelper, EndsOnceWhateverTheErrorOfBefore) {
+  {
+    const IsolationHelper helper;
+    errno = EINTR;
+  }
+  EXPECT_FALSE(has_isolation_helper());
+}
+
+// Without a standard input the job that reaches the helper has number 0.
+TEST(IsolationHelper, WorksForAProgramWithoutAStandardInput) {
+  const int kept = ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 100);
+  ::close(STDIN_FILENO);
+  {
+    const IsolationHelper helper;
+    EXPECT_NE(forker(), std::to_string(::getpid()));
+  }
+  if (kept < 0) return;
+  ::dup2(kept, STDIN_FILENO);
+  ::close(kept);
 }
 
 TEST(IsolationHelper, HandsBytesAndMeshesThroughBitByBit) {

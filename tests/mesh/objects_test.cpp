@@ -19,6 +19,7 @@
 #include "mesh/mesh_checks.h"
 #include "mesh/object_shapes.h"
 #include "phalanx/core/constants.h"
+#include "phalanx/mesh/primitives.h"
 #include "support/sanitized.h"
 
 namespace phalanx {
@@ -303,6 +304,135 @@ TEST_P(Object, IsTheSameBitsEachTime) {
 INSTANTIATE_TEST_SUITE_P(All, Object, ::testing::ValuesIn(things()),
                          [](const auto& each) { return each.param.name; });
 
+// By hand from the proportions in object_shapes.h: where the pieces of each profile end, (radius, z) in mm. A
+// piece begins where the one before it ends, to the last bit.
+TEST(ObjectShapes, HaveTheProfilesThatTheirProportionsMake) {
+  struct Profile {
+    const char* name;
+    SpunShape shape;
+    std::vector<std::pair<double, double>> ends;
+  };
+  const double rise = 12.0 / 98.4;  // of a cup's radius, 28 to 40 mm over the 98.4 mm from bottom to rim
+  const Profile profiles[] = {
+      {"bottle",
+       mesh::bottle_shape(100, 300),
+       {{42, -150}, {50, -142}, {50, 83}, {21, 123}, {21, 128}, {24, 128}, {24, 147}, {21, 150}, {0, 150}}},
+      {"cup",
+       mesh::cup_shape(80, 100),
+       {{24 + 4 * rise, -50},
+        {28 + 4 * rise, -46},
+        {40, 48.4},
+        {38.4, 50},
+        {36.8, 48.4},
+        {24.8 + 12.8 * rise, -37.2},
+        {16.8 + 12.8 * rise, -45.2},
+        {0, -45.2}}},
+      {"pen", mesh::pen_shape(10, 140), {{0.5, -69.5}, {5, -54.5}, {5, 67.5}, {2.5, 70}, {0, 70}}},
+      {"peg",
+       mesh::peg_shape(10, 50, 24),
+       {{3.8, -25}, {5, -23.8}, {5, 5}, {10.8, 5}, {12, 6.2}, {12, 23.8}, {10.8, 25}, {0, 25}}},
+      {"short dowel", mesh::peg_shape(10, 10, 0), {{4, -5}, {5, -4}, {5, 4}, {4, 5}, {0, 5}}},
+      {"jar",
+       mesh::jar_shape(80, 110, 70),
+       {{33.6, -55},
+        {40, -48.6},
+        {40, 24.6},
+        {31.5, 34.2},
+        {31.5, 37.4},
+        {35, 37.4},
+        {35, 52.6},
+        {32.6, 55},
+        {0, 55}}},
+      {"tap handle",
+       mesh::tap_handle_shape(60, 40),
+       {{12, -20}, {12, -4}, {25.2, -4}, {30, 0.8}, {30, 12}, {25.2, 16.8}, {0, 20}}},
+      {"long tap handle",
+       mesh::tap_handle_shape(60, 100),
+       {{12, -50}, {12, -10}, {24, -10}, {30, -4}, {30, 36}, {24, 42}, {0, 50}}}};
+  for (const Profile& profile : profiles) {
+    SCOPED_TRACE(profile.name);
+    const std::vector<mesh::ProfilePiece>& pieces = profile.shape.pieces();
+    ASSERT_EQ(pieces.size(), profile.ends.size());
+    Eigen::Vector2d at = pieces[0].rz(0.0);
+    EXPECT_EQ(at.x(), 0.0);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      EXPECT_EQ(pieces[i].rz(0.0), at) << i;
+      at = pieces[i].rz(1.0);
+      EXPECT_NEAR(at.x(), profile.ends[i].first, 1e-9) << i;
+      EXPECT_NEAR(at.y(), profile.ends[i].second, 1e-9) << i;
+    }
+  }
+}
+
+// In mm, with c = cos 45 degrees. Half way along a quarter arc: the bottle's foot from (42, -150) to (50,
+// -142) leaves along r, the jar's shoulder from (40, 24.6) to (31.5, 34.2) along z. A quarter along a half
+// cosine: the bottle's shoulder from (50, 83) to (21, 123), the tap handle's dome from (25.2, 16.8) to (0,
+// 20), whose lobes, 0.3 deep, have gone down to 3/4 of that.
+TEST(ObjectShapes, HaveArcsAndHalfCosinesBetweenTheirEnds) {
+  const double c = std::sqrt(0.5);
+  const auto expect = [](const SpunShape& shape, std::size_t piece, double f, double r, double z) {
+    const Eigen::Vector2d rz = shape.pieces()[piece].rz(f);
+    EXPECT_NEAR(rz.x(), r, 1e-12);
+    EXPECT_NEAR(rz.y(), z, 1e-12);
+  };
+  expect(mesh::bottle_shape(100, 300), 1, 0.5, 42 + 8 * c, -150 + 8 * (1 - c));
+  expect(mesh::jar_shape(80, 110, 70), 3, 0.5, 40 - 8.5 * (1 - c), 24.6 + 9.6 * c);
+  expect(mesh::bottle_shape(100, 300), 3, 0.25, 50 - 14.5 * (1 - c), 93);
+  const SpunShape tap = mesh::tap_handle_shape(60, 40);
+  expect(tap, 6, 0.25, 18.9, 16.8 + 1.6 * (1 - c));
+  const double between = 18.9 * (1.0 - 0.75 * 0.3) * c;
+  EXPECT_LT((tap.point({c, c}, 6, 0.25) - Vec3(between, between, 16.8 + 1.6 * (1 - c))).norm(), 1e-12);
+}
+
+// By hand: 0.1 and 0.05 m long and broad, so that the bow's centre is at x = -25 mm; hole and blade are 0.42
+// and 0.38 of its radius of 25 mm.
+TEST(Key, HasItsHoleItsBladeAndItsFiveCuts) {
+  double hole = 1.0;
+  double blade = 0.0;
+  for (const Vec3& v : make_key(0.1, 0.05, 0.005, 2000).vertices) {
+    hole = std::min(hole, std::hypot(v.x() + 0.025, v.y()));
+    if (v.x() > 0.0) blade = std::max(blade, v.y());
+  }
+  EXPECT_NEAR(hole, 0.0105, 1e-12);
+  EXPECT_NEAR(blade, 0.0095, 1e-12);
+  // Five cuts, each 0.05 of the blade long, 0.14 apart, with 0.06 of its breadth cut away between them.
+  const std::vector<std::pair<double, double>> lower = {
+      {0.0, 0.0},    {0.22, 0.0},  {0.275, 0.30}, {0.325, 0.30}, {0.37, 0.06}, {0.415, 0.18},
+      {0.465, 0.18}, {0.51, 0.06}, {0.555, 0.36}, {0.605, 0.36}, {0.65, 0.06}, {0.695, 0.22},
+      {0.745, 0.22}, {0.79, 0.06}, {0.835, 0.32}, {0.885, 0.32}, {0.93, 0.10}, {1.0, 0.45}};
+  const std::vector<std::pair<double, double>> upper = {{0.0, 0.0}, {0.93, 0.0}, {1.0, 0.35}};
+  for (const auto& [edge, corners] :
+       {std::pair{&mesh::key_lower_edge(), &lower}, {&mesh::key_upper_edge(), &upper}}) {
+    ASSERT_EQ(edge->size(), corners->size());
+    for (std::size_t i = 0; i < edge->size(); ++i) {
+      EXPECT_NEAR((*edge)[i].along, (*corners)[i].first, 1e-12) << i;
+      EXPECT_NEAR((*edge)[i].depth, (*corners)[i].second, 1e-12) << i;
+    }
+  }
+}
+
+// A bump of 4 mm on a ball of 70 mm ends 11 degrees from its top; half way down its height is (1 - 1/4)^2 of
+// that.
+TEST(TherapyBall, HasBumpsOfElevenDegrees) {
+  const auto radius = [](double degrees) {
+    const double angle = degrees * kPi / 180.0;
+    return mesh::ball_radius(0.07, 0.004, {std::cos(angle), 0.0, std::sin(angle)});
+  };
+  EXPECT_NEAR(radius(0.0), 0.035, 1e-15);
+  EXPECT_NEAR(radius(5.5), 0.03325, 1e-12);
+  EXPECT_NEAR(radius(11.0), 0.031, 1e-12);
+  EXPECT_GT(radius(10.9), 0.031);
+  EXPECT_NEAR(radius(30.0), 0.035, 1e-12) << "the next row";
+}
+
+// 30 mm is the smallest length: the flat top ends 9 mm from the sides.
+TEST(PuttyBar, IsRoundedByThreeTenthsOfItsSmallestLength) {
+  Vec3 flat = Vec3::Zero();
+  for (const Vec3& v : make_putty_bar(kBar, 2000).vertices)
+    if (v.z() == 0.5 * kBar.z()) flat = flat.cwiseMax(v);
+  EXPECT_LT((flat - Vec3(0.041, 0.0085, 0.015)).norm(), 1e-12);
+}
+
 // By hand: cylinder of 9 mm between two frusta from 9 to 6.84 mm (chamfer 0.12 * 9 mm = 1.08 mm).
 TEST(Peg, HasTheVolumeOfADowelWithChamfers) {
   const double r = 4.5;
@@ -352,6 +482,114 @@ TEST(Objects, AreMadeForTheWholeRangeOfProportions) {
     EXPECT_EQ(test::self_intersections(made[i]), 0U) << i;
     EXPECT_GT(signed_volume(made[i]), 0.0) << i;
   }
+}
+
+// Every length of every maker, and the count.
+TEST(ObjectRefusals, NameEachLengthThatIsNone) {
+  using Lengths = std::vector<double>;
+  struct Maker {
+    std::string name;
+    std::vector<std::string> names;
+    Lengths good;
+    std::function<TriangleMesh(const Lengths&, int)> make;
+  };
+  const std::string any = "a length";
+  const std::string edge = "an edge length";
+  const std::vector<Maker> makers = {
+      {"make_bottle",
+       {"diameter", "length"},
+       {0.06, 0.2},
+       [](const Lengths& l, int n) { return make_bottle(l[0], l[1], n); }},
+      {"make_cup",
+       {"diameter", "length"},
+       {0.07, 0.09},
+       [](const Lengths& l, int n) { return make_cup(l[0], l[1], n); }},
+      {"make_pen",
+       {"diameter", "length"},
+       {0.01, 0.14},
+       [](const Lengths& l, int n) { return make_pen(l[0], l[1], n); }},
+      {"make_peg",
+       {"diameter", "length", "head_diameter"},
+       {0.01, 0.05, 0.024},
+       [](const Lengths& l, int n) { return make_peg(l[0], l[1], l[2], n); }},
+      {"make_jar",
+       {"diameter", "length", "lid_diameter"},
+       {0.08, 0.11, 0.07},
+       [](const Lengths& l, int n) { return make_jar(l[0], l[1], l[2], n); }},
+      {"make_tap_handle",
+       {"diameter", "length"},
+       {0.06, 0.05},
+       [](const Lengths& l, int n) { return make_tap_handle(l[0], l[1], n); }},
+      {"make_key",
+       {"length", "breadth", "thickness"},
+       {0.057, 0.025, 0.0022},
+       [](const Lengths& l, int n) { return make_key(l[0], l[1], l[2], n); }},
+      {"make_therapy_ball",
+       {"diameter"},
+       {0.07},
+       [](const Lengths& l, int n) { return make_therapy_ball(l[0], 0.004, n); }},
+      {"make_putty_bar",
+       {any, any, any},
+       {0.1, 0.035, 0.03},
+       [](const Lengths& l, int n) { return make_putty_bar({l[0], l[1], l[2]}, n); }},
+      {"make_box",
+       {edge, edge, edge},
+       {0.1, 0.1, 0.1},
+       [](const Lengths& l, int n) { return make_box({l[0], l[1], l[2]}, n); }},
+      {"make_sphere", {"diameter"}, {0.1}, [](const Lengths& l, int n) { return make_sphere(l[0], n); }},
+      {"make_cylinder",
+       {"diameter", "length"},
+       {0.1, 0.1},
+       [](const Lengths& l, int n) { return make_cylinder(l[0], l[1], n); }},
+      {"make_torus",
+       {"ring_diameter", "tube_diameter"},
+       {0.1, 0.03},
+       [](const Lengths& l, int n) { return make_torus(l[0], l[1], n); }},
+      {"make_mug",
+       {"diameter", "height"},
+       {0.08, 0.1},
+       [](const Lengths& l, int n) { return make_mug(l[0], l[1], n); }},
+      {"make_teapot", {"length"}, {0.2}, [](const Lengths& l, int n) { return make_teapot(l[0], n); }}};
+  for (const Maker& maker : makers) {
+    EXPECT_EQ(maker_refusal([&] { (void)maker.make(maker.good, 0); }),
+              maker.name + ": triangles is 0; give 1 to 50000000");
+    for (std::size_t i = 0; i < maker.good.size(); ++i) {
+      for (const auto& [bad, words] :
+           {std::pair{-0.01, "-0.01"}, {std::numeric_limits<double>::quiet_NaN(), "nan"}}) {
+        Lengths lengths = maker.good;
+        lengths[i] = bad;
+        EXPECT_EQ(maker_refusal([&] { (void)maker.make(lengths, 300); }),
+                  maker.name + ": " + maker.names[i] + " is " + words + " m; give a finite length above 0");
+      }
+    }
+  }
+}
+
+// A thousandth beyond each end of each range of proportions in objects.h.
+TEST(ObjectRefusals, NameTheRangeOfEachProportion) {
+  struct Proportion {
+    double least, most;
+    std::string words;
+    std::function<TriangleMesh(double)> make;
+  };
+  const std::vector<Proportion> proportions = {
+      {1.5, 8.0, "make_bottle: a length", [](double k) { return make_bottle(0.06, 0.06 * k, 300); }},
+      {0.5, 3.0, "make_cup: a length", [](double k) { return make_cup(0.07, 0.07 * k, 300); }},
+      {4.0, 40.0, "make_pen: a length", [](double k) { return make_pen(0.01, 0.01 * k, 300); }},
+      {1.0, 20.0, "make_peg: a length", [](double k) { return make_peg(0.01, 0.01 * k, 0.0, 300); }},
+      {1.2, 6.0, "make_peg: a head_diameter", [](double k) { return make_peg(0.01, 0.05, 0.01 * k, 300); }},
+      {0.7, 5.0, "make_jar: a length", [](double k) { return make_jar(0.08, 0.08 * k, 0.07, 300); }},
+      {0.5, 1.05, "make_jar: a lid_diameter", [](double k) { return make_jar(0.08, 0.1, 0.08 * k, 300); }},
+      {0.3, 2.0, "make_tap_handle: a length", [](double k) { return make_tap_handle(0.06, 0.06 * k, 300); }},
+      {1.8, 4.0, "make_key: a length", [](double k) { return make_key(0.025 * k, 0.025, 0.002, 300); }},
+      {0.02, 0.3, "make_key: a thickness", [](double k) { return make_key(0.05, 0.025, 0.025 * k, 300); }},
+      {0.5, 3.0, "make_mug: a height", [](double k) { return make_mug(0.08, 0.08 * k, 300); }}};
+  for (const Proportion& proportion : proportions)
+    for (const double ratio : {0.999 * proportion.least, 1.001 * proportion.most})
+      EXPECT_EQ(maker_refusal([&] { (void)proportion.make(ratio); }).find(proportion.words), 0U)
+          << proportion.words << " " << ratio;
+  EXPECT_NE(maker_refusal([] { (void)make_putty_bar({0.2002, 0.02, 0.02}, 300); }).find("give 1 to 10 times"),
+            std::string::npos);
 }
 
 TEST(ObjectRefusals, NameTheMakerTheValueAndTheRemedy) {

@@ -54,6 +54,13 @@ TEST(CutPolygon, CoversAQuadWithAReflexCorner) {
   expect_covers({{1, 0.2, 0}, {2, 0, 0}, {1, 2, 0}, {0, 0, 0}});
 }
 
+// What stands in memory behind the last corner, here one that was taken off again, is not the polygon's.
+TEST(CutPolygon, LooksAtNothingBehindTheLastCorner) {
+  std::vector<Vec3> polygon = {{1, 0.2, 0}, {2, 0, 0}, {1, 2, 0}, {0, 0, 0}, {1, 0.2, 1e6}};
+  polygon.pop_back();
+  expect_covers(polygon);
+}
+
 TEST(CutPolygon, CoversFlatCornersAndARepeatedOne) {
   expect_covers({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0, 1, 0}});
 }

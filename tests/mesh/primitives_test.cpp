@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -100,6 +101,22 @@ TEST_P(Primitive, DoesNotCrossItself) {
 
 INSTANTIATE_TEST_SUITE_P(All, Primitive, ::testing::ValuesIn(solids()),
                          [](const auto& each) { return each.param.name; });
+
+// With n vertices around the edge a cell there is 2 pi r / n wide, and the cap's rings are as far apart.
+TEST(Cylinder, HasCapsWithCellsAsDeepAsWide) {
+  for (const int n : {1000, 5000, 20'000}) {
+    std::set<long> radii;  // [nm]
+    int around = 0;
+    for (const Vec3& v : make_cylinder(0.06, 0.12, n).vertices) {
+      if (v.z() < 0.06) continue;
+      const double r = v.head<2>().norm();
+      radii.insert(std::lround(r * 1e9));
+      if (r > 0.03 - 1e-9) ++around;
+    }
+    EXPECT_EQ(static_cast<long>(radii.size()) - 1, std::lround(around / (2.0 * kPi)))
+        << n << ", and the centre";
+  }
+}
 
 TEST(PrimitiveRefusals, NameTheMakerTheValueAndTheRemedy) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

@@ -90,6 +90,9 @@ TEST(Repair, CountsUnreferencedVertices) {
   const Repaired r = repaired(mesh);
   EXPECT_EQ(findings(r), "unreferenced_vertices 2/2");
   EXPECT_EQ(r.mesh.vertices.size(), 8U);
+  const MeshFinding unused = r.report.finding(FindingKind::kUnreferencedVertices);
+  for (const double number : {unused.size, unused.width, unused.area}) EXPECT_EQ(number, 0.0);
+  EXPECT_FALSE(unused.at);
 }
 
 TEST(Repair, WeldsEqualVertices) {
@@ -192,6 +195,67 @@ TEST(Repair, CollapsesANeedle) {
   EXPECT_LT((*needle.at - Vec3(kEdge, kEdge / 2, kEdge)).norm(), 3e-9);
 }
 
+// Vertex 8 on the edge from 6 to 7, as far from 7 as a step may move a point, or a little farther: the flat
+// triangle between them goes as 8 and 7 become one, or by a flip, which leaves as many triangles.
+TEST(Repair, MakesTwoCornersOneUpToASixthOfTheTolerance) {
+  const double reach = 1e-5 * kEdge / 6.0;
+  for (const double gap : {reach, 1.01 * reach}) {
+    TriangleMesh mesh = cube(kEdge, Vec3(-kEdge, 0, 0));
+    mesh.vertices.push_back(mesh.vertices[7] - Vec3(gap, 0, 0));
+    mesh.triangles[7] = {3, 6, 8};
+    mesh.triangles.push_back({3, 8, 7});
+    mesh.triangles.push_back({6, 7, 8});
+    ASSERT_TRUE(is_closed(mesh));
+    const Repaired r = repaired(mesh);
+    EXPECT_EQ(findings(r), "degenerate_faces 1/1") << gap;
+    EXPECT_EQ(r.mesh.triangles.size(), gap > reach ? 14U : 12U) << gap;
+  }
+}
+
+// A sheet with a flat triangle from 0 and 1, which are 50 nm apart, to 2. It goes as 1 moves to 0, unless the
+// line from 5 to 6 passes between them: then the triangle 1, 6, 5 would be turned over.
+TEST(Repair, TurnsNoTriangleOverForAFlatOne) {
+  for (const double line : {25e-9, 75e-9}) {
+    TriangleMesh sheet;
+    sheet.vertices = {{-50e-9, 0, 0}, {0, 0, 0},         {0.02, 0, 0},     {-0.02, -0.01, 0},
+                      {0, 0.02, 0},   {-line, -0.02, 0}, {-line, -0.01, 0}};
+    sheet.triangles = {{1, 2, 0}, {1, 0, 3}, {1, 3, 6}, {1, 6, 5},
+                       {1, 5, 2}, {3, 5, 6}, {0, 2, 4}, {0, 4, 3}};
+    const Repaired r = repaired(sheet);
+    EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 1U) << line;
+    EXPECT_EQ(r.repaired(FindingKind::kDegenerateFaces), line > 50e-9 ? 1U : 0U) << line;
+    EXPECT_EQ(r.mesh.triangles.size(), line > 50e-9 ? 6U : 8U) << line;
+  }
+}
+
+// Two needles that hang together along their short side of 2 nm: no other triangle lies along their lines.
+TEST(Repair, KeepsTwoFlatTrianglesThatCoverEachOtherAlone) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0.1, 0, 0}, {0.1, 2e-9, 0}, {0.12, 0, 0}, {0.08, 0, 0}};
+  mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
+  append(mesh, cube(kEdge));
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 2U);
+  EXPECT_EQ(r.repaired(FindingKind::kDegenerateFaces), 0U);
+  EXPECT_EQ(r.mesh.triangles.size(), 14U);
+}
+
+// Two corners of a needle in the air are 0.05 um apart. They stay two, and the crack of the cube is closed.
+TEST(Repair, KeepsANeedleInTheAirAndClosesACrackElsewhere) {
+  TriangleMesh mesh = cube(kEdge);
+  for (const std::size_t v : {1U, 3U, 7U, 5U})
+    mesh.vertices.push_back(mesh.vertices[v] + Vec3(0.05e-6, 0, 0));
+  mesh.triangles[10] = {8, 9, 11};
+  mesh.triangles[11] = {9, 10, 11};
+  for (const Vec3& p : {Vec3(0.1, 0, 0), Vec3(0.1, 0.05e-6, 0), Vec3(0.12, 0, 0)}) mesh.vertices.push_back(p);
+  mesh.triangles.push_back({12, 13, 14});
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.repaired(FindingKind::kNearVertices), 4U);
+  EXPECT_EQ(r.mesh.triangles.size(), 13U);
+  EXPECT_EQ(r.report.solids, 1U);
+  EXPECT_TRUE(r.report.complete);
+}
+
 TEST(Repair, KeepsAFlatTriangleThatNothingCovers) {
   TriangleMesh mesh = cube(kEdge);
   for (const double x : {0.1, 0.11, 0.12}) mesh.vertices.emplace_back(x, 0, 0);
@@ -200,6 +264,13 @@ TEST(Repair, KeepsAFlatTriangleThatNothingCovers) {
   EXPECT_EQ(r.found(FindingKind::kDegenerateFaces), 1U);
   EXPECT_EQ(r.repaired(FindingKind::kDegenerateFaces), 0U);
   EXPECT_EQ(r.mesh.triangles.size(), 13U) << "it can be met, so it stays";
+  mesh.triangles.push_back({0, 0, 1});  // longer, but it goes
+  for (const Repaired& with : {r, repaired(mesh)}) {
+    const MeshFinding flat = with.report.finding(FindingKind::kDegenerateFaces);
+    EXPECT_NEAR(flat.size, 0.02, 1e-12) << "where to look is what remains";
+    ASSERT_TRUE(flat.at);
+    EXPECT_LT((*flat.at - Vec3(0.11, 0, 0)).norm(), 1e-12);
+  }
 }
 
 TEST(Repair, DropsDuplicateFacesInEitherWinding) {
@@ -367,6 +438,26 @@ TEST(Repair, CountsAnEdgeAsASlitOnlyIfMostOfItFacesTheOtherSide) {
   EXPECT_NEAR(r.report.finding(FindingKind::kSlits).width, 10e-6, 1e-9);
 }
 
+// In mm. A plate 1 mm above a larger one: the larger one's surface lies below the other's edge. A narrow
+// strip whose end looks along a plate's edge. A spike that points at a strip's end. All within 3 mm, and no
+// slit.
+TEST(Repair, TakesEdgesThatDoNotFaceEachOtherForNoSlit) {
+  const auto plate = [](const Vec3& low, const Vec3& high) {
+    return TriangleMesh{{low, Vec3(high.x(), low.y(), low.z()), high, Vec3(low.x(), high.y(), low.z())},
+                        {{0, 1, 2}, {0, 2, 3}}};
+  };
+  const TriangleMesh spike{{{0, 0, 0}, {-30, 1, 0}, {-30, -1, 0}}, {{0, 1, 2}}};
+  const std::pair<TriangleMesh, TriangleMesh> pairs[] = {
+      {plate({-30, -30, 0}, {30, 30, 0}), plate({-29, -29, 1}, {29, 29, 1})},
+      {plate({-3, -30, 0}, {0, 0, 0}), plate({1, -10, 0}, {31, 20, 0})},
+      {spike, plate({2, -1.5, 0}, {32, 1.5, 0})}};
+  for (const auto& [one, other] : pairs) {
+    TriangleMesh mesh = one;
+    append(mesh, other);
+    EXPECT_EQ(findings(repaired(mesh, {.unit = 1e-3})), "outlines 2/0, sheets 2/0") << one.vertices[0].x();
+  }
+}
+
 TEST(Repair, FindsNoHoleInALoneTriangle) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.03, 0}};
@@ -374,14 +465,18 @@ TEST(Repair, FindsNoHoleInALoneTriangle) {
   EXPECT_EQ(findings(repaired(mesh)), "outlines 1/0, sheets 1/0");
 }
 
-// A plate of 60 x 60 mm with an opening of 40 x `width` in the middle: the rim outside and the one inside.
+// A plate of 60 x 60 mm with an opening of 40 x `width` in the middle: the rim outside and the one inside. An
+// opening is measured along its longest edge and across, however the plate lies.
 TEST(Repair, TellsAPlatesOutlineFromTheHoleInIt) {
-  for (const double width : {0.01, 0.002}) {
+  const Mat3 aslant = rotation_about(Vec3(1, 2, 3).normalized(), 0.7);
+  for (const auto& [width, turned_by] :
+       {std::pair{0.01, Mat3(Mat3::Identity())}, {0.002, Mat3(Mat3::Identity())}, {0.01, aslant}}) {
     TriangleMesh mesh;
     const double h = width / 2;
     mesh.vertices = {{-0.03, -0.03, 0}, {0.03, -0.03, 0}, {0.03, 0.03, 0}, {-0.03, 0.03, 0},
                      {-0.02, -h, 0},    {0.02, -h, 0},    {0.02, h, 0},    {-0.02, h, 0}};
     mesh.triangles = {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+    for (Vec3& v : mesh.vertices) v = turned_by * v;
     const Repaired r = repaired(mesh);
     EXPECT_NEAR(r.report.finding(FindingKind::kOutlines).size, 0.24, 1e-12);
     EXPECT_EQ(r.found(FindingKind::kHoles), width > 0.003 ? 1U : 0U);
@@ -414,6 +509,9 @@ TEST(Repair, SaysWhereInTheFilesNumbers) {
     expect(FindingKind::kDuplicateFaces, diagonal, Vec3(100 + 50 / 3.0, 200 + 50 / 3.0, 300));
     expect(FindingKind::kInconsistentWinding, diagonal, Vec3(100 + 50 / 3.0, 200, 300 + 50 / 3.0));
     EXPECT_NEAR(r.report.finding(FindingKind::kInconsistentWinding).area, 1250 * mm * mm, 1e-12);
+    expect(FindingKind::kSheets, 50, Vec3(100 + 50 / 3.0, 200 + 50 / 3.0, 300));
+    for (const MeshFinding& f : r.report.findings)
+      EXPECT_NEAR(f.width, f.kind == FindingKind::kHoles ? 50 * mm : 0.0, 1e-12) << finding_name(f.kind);
   }
 }
 
@@ -444,6 +542,51 @@ TEST(Repair, CountsAPinchVertex) {
   EXPECT_EQ(r.report.solids, 2U);
 }
 
+// Of the edges that end in the common corner the one to (-40, -10) mm is the longest.
+TEST(Repair, MeasuresThePinchOfTwoLooseTriangles) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.03, 0, 0}, {0.03, 0.02, 0}, {-0.04, 0, 0}, {-0.04, -0.01, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
+  const MeshFinding pinch = repaired(mesh).report.finding(FindingKind::kPinchVertices);
+  EXPECT_EQ(pinch.found, 1U);
+  EXPECT_NEAR(pinch.size, std::hypot(0.04, 0.01), 1e-12);
+  ASSERT_TRUE(pinch.at);
+  EXPECT_EQ(*pinch.at, Vec3(0, 0, 0));
+}
+
+// Three triangles on one edge of 30 mm, 20 mm and twice sqrt(500) mm high: one sheet beside a solid.
+TEST(Repair, TakesAFanOnOneEdgeForOneSheet) {
+  TriangleMesh mesh = cube(kEdge);
+  for (const Vec3& p :
+       {Vec3(0.1, 0, 0), Vec3(0.1, 0, 0.03), Vec3(0.12, 0, 0), Vec3(0.09, 0.02, 0), Vec3(0.09, -0.02, 0)})
+    mesh.vertices.push_back(p);
+  for (const std::int32_t tip : {10, 11, 12}) mesh.triangles.push_back({8, 9, tip});
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.report.solids, 1U);
+  EXPECT_EQ(r.found(FindingKind::kSheets), 1U);
+  EXPECT_NEAR(r.report.finding(FindingKind::kSheets).area, 0.015 * (0.02 + 2.0 * std::sqrt(5e-4)), 1e-12);
+}
+
+// Tetrahedra around one edge, two triangles of each: up to 64 there are looked at one by one, more count as
+// open, all of them.
+TEST(Repair, TakesAnEdgeOfMoreThanSixtyFourTrianglesForOpen) {
+  for (const int count : {32, 33}) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {0, 0, 0.05}};
+    for (int i = 0; i < count; ++i) {
+      for (const double share : {0.0, 0.5}) {
+        const double angle = 2.0 * std::numbers::pi * (i + share) / count;
+        mesh.vertices.emplace_back(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.02);
+      }
+      const std::int32_t a = 2 + 2 * i;
+      mesh.triangles.insert(mesh.triangles.end(), {{0, a, 1}, {0, 1, a + 1}, {1, a, a + 1}, {a, 0, a + 1}});
+    }
+    const Repaired r = repaired(mesh);
+    EXPECT_EQ(r.report.solids, count == 32 ? 32U : 0U);
+    EXPECT_EQ(r.report.sheets, count == 32 ? 0U : 1U);
+  }
+}
+
 // Two triangles meet one across their common long edge.
 TEST(Repair, SplitsATJunction) {
   TriangleMesh strip;
@@ -454,6 +597,19 @@ TEST(Repair, SplitsATJunction) {
   EXPECT_EQ(findings(r), "t_junctions 1/1, outlines 1/0, sheets 1/0");
   EXPECT_EQ(r.mesh.triangles.size(), 4U);
   EXPECT_EQ(r.report.sheets, 1U) << "three triangles became one surface";
+}
+
+// A needle stands on the long edge with two corners that are 0.05 um apart. They stay two, for nothing else
+// covers it. At the first one the edge is split; the piece to the second would be shorter than 0.067 um,
+// which is what a step may move a point.
+TEST(Repair, SplitsAnEdgeIntoNoPieceShorterThanASixthOfTheTolerance) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0},    {0.04, 0, 0},           {0.02, 0.02, 0},
+                   {0.01, 0, 0}, {0.01 + 0.05e-6, 0, 0}, {0.01, 0, 0.02}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const Repaired r = repaired(mesh);
+  EXPECT_EQ(r.repaired(FindingKind::kTJunctions), 1U);
+  EXPECT_EQ(r.mesh.triangles.size(), 3U);
 }
 
 TEST(Repair, SplitsAllThreeEdgesOfATriangle) {
@@ -549,13 +705,23 @@ TEST(Repair, RefusesNumbersTooLargeForSinglePrecision) {
   EXPECT_NEAR(r.report.finding(FindingKind::kCoarseNumbers).size, 100.09 * std::pow(2.0, -23), 1e-9);
   // The contact margin is 50 um: 400.09 m x 2^-23 = 47.7 um, 430.09 m x 2^-23 = 51.3 um.
   EXPECT_EQ(repair_refusal(cube(0.09, Vec3(400, 0, 0))), "accepted");
-  EXPECT_THAT(repair_refusal(cube(0.09, Vec3(430, 0, 0))), HasSubstr("single precision"));
+  EXPECT_THAT(repair_refusal(cube(0.09, Vec3(430, 0, 0))),
+              AllOf(HasSubstr("single precision"), HasSubstr("contact margin of 0.05 mm")));
+  // On the other side: 419.48 m x 2^-23 = 50.006 um, 419.39 m x 2^-23 = 49.995 um.
+  EXPECT_THAT(repair_refusal(cube(0.09, Vec3(-419.48, 0, 0))), HasSubstr("single precision"));
+  EXPECT_EQ(repair_refusal(cube(0.09, Vec3(-419.39, 0, 0))), "accepted");
+}
+
+// 0.1 m of 1e-310 units would be 1e309 m a unit, which no double holds.
+TEST(Repair, RefusesASizeToWhichItCannotBeScaled) {
+  EXPECT_THAT(repair_refusal(cube(1e-310), {.size = 0.1}), HasSubstr("cannot be scaled"));
 }
 
 TEST(Repair, RefusesWhatIsFartherThanTenKilometres) {
   EXPECT_THAT(repair_refusal(cube(20'000)), HasSubstr("10 km"));
   EXPECT_THAT(repair_refusal(cube(20'000)), HasSubstr("in mm"));
   EXPECT_EQ(repair_refusal(cube(20'000), {.size = 0.1}), "accepted");
+  EXPECT_THAT(repair_refusal(cube(20e6), {.unit = 1e-3}), HasSubstr("it is 2e+04 m wide"));
 }
 
 TEST(Repair, RefusesTrianglesWithoutAnyArea) {

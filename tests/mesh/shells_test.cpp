@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -80,6 +82,55 @@ TEST(Shells, IsJudgedWhereItTouchesTheFewestOthers) {
   ASSERT_EQ(shells.shell.size(), 3U);
   EXPECT_TRUE(shells.shell[0].cavity);
   EXPECT_FALSE(shells.shell[2].cavity);
+}
+
+// The outer solid shares three sides of the tetrahedron and bulges below the fourth, the first in the file.
+// From the middle of that one alone it can be told that the tetrahedron lies inside: the upper side, in
+// x + y + 0.6 z = 1, is hit.
+TEST(Shells, IsJudgedFromItsFirstTriangleIfOnlyThatOneIsFree) {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, 1}},
+                    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  TriangleMesh around = mesh;
+  around.vertices.emplace_back(0.3, 0.3, -0.5);
+  around.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 4}, {2, 1, 4}, {1, 0, 4}};
+  append(mesh, around);
+  TurnedShells result;
+  const Shells shells = turned(mesh, result);
+  ASSERT_EQ(shells.shell.size(), 2U);
+  EXPECT_TRUE(shells.shell[0].cavity);
+  EXPECT_FALSE(shells.shell[1].cavity);
+}
+
+TEST(Shells, OfALooseTriangleIsOpenAndHoldsNothing) {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  TurnedShells result;
+  const Shells shells = turned(mesh, result);
+  ASSERT_EQ(shells.shell.size(), 1U);
+  EXPECT_EQ(shells.shell[0].first, 0U);
+  EXPECT_EQ(shells.shell[0].triangles, 1U);
+  EXPECT_FALSE(shells.shell[0].closed);
+  EXPECT_TRUE(shells.shell[0].two_sided);
+  EXPECT_FALSE(shells.shell[0].cavity);
+  EXPECT_EQ(shells.shell[0].volume, 0.0);
+  EXPECT_EQ(result.count, 0U);
+}
+
+// A tetrahedron's six edges, each with the corners from which its two triangles run through it.
+TEST(EdgeTable, VisitsEdgesInTheOrderOfTheirVertices) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  using Seen = std::array<std::int64_t, 4>;
+  std::vector<Seen> seen;
+  const EdgeTable table(mesh);
+  table.for_each([&](std::span<const HalfEdge> edge) {
+    ASSERT_EQ(edge.size(), 2U);
+    seen.push_back({edge[0].low, edge[0].high, edge[0].start, edge[1].start});
+  });
+  EXPECT_EQ(seen, (std::vector<Seen>{
+                      {0, 1, 2, 3}, {0, 2, 0, 9}, {0, 3, 5, 10}, {1, 2, 1, 6}, {1, 3, 4, 8}, {2, 3, 7, 11}}));
+  ASSERT_EQ(table.at(3, 1).size(), 2U);
+  EXPECT_EQ(table.at(3, 1)[0].start, 4U);
+  EXPECT_TRUE(table.at(0, 0).empty());
 }
 
 }  // namespace

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "mesh/mesh_checks.h"
 #include "mesh/mug_shape.h"
 #include "mesh/newell_teapot.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/sanitized.h"
 
@@ -136,6 +138,85 @@ TEST(Mug, HasItsExactDiameterAndHeightAndItsHandleOnTheXSide) {
   }
 }
 
+// By hand, in mm. Of a diameter of 80 and a height of 100 the least is 80: wall 0.05, foot 0.06, inner fillet
+// 0.1, floor 0.07, handle 0.075 and 0.052 of it; the handle spans 0.29 of the height to both sides and
+// reaches 0.3 of the diameter out, but at most 0.9 of its half span: 15.66 where the mug is 100 wide and 60
+// high.
+TEST(MugShape, FollowsFromDiameterAndHeight) {
+  const mesh::MugShape s = mesh::mug_shape(80, 100);
+  const std::pair<double, double> numbers[] = {{s.radius, 40},
+                                               {s.half_height, 50},
+                                               {s.wall, 4},
+                                               {s.floor, 5.6},
+                                               {s.foot_fillet, 4.8},
+                                               {s.inner_fillet, 8},
+                                               {s.handle_reach, 24},
+                                               {s.handle_half_span, 29},
+                                               {s.handle_half_width, 6},
+                                               {s.handle_half_thickness, 4.16},
+                                               {s.flare, 0.45}};
+  for (const auto& [number, expected] : numbers) EXPECT_NEAR(number, expected, 1e-12);
+  EXPECT_NEAR(mesh::mug_shape(100, 60).handle_reach, 15.66, 1e-12);
+}
+
+// The same mug, with c = cos 45 degrees: bottom, foot, outer wall, rim, inner wall, inner fillet, floor.
+TEST(MugShape, HasABodyOfSevenPiecesByHand) {
+  const RevolvedSurface body = mesh::mug_body(mesh::mug_shape(80, 100));
+  const double c = std::sqrt(0.5);
+  struct Place {
+    double t, r, z;
+  };
+  for (const Place& p : {Place{0.0, 0, -50},
+                         {0.5, 17.6, -50},
+                         {1.0, 35.2, -50},
+                         {1.5, 40 - 4.8 * (1 - c), -50 + 4.8 * (1 - c)},
+                         {2.0, 40, -45.2},
+                         {2.5, 40, 1.4},
+                         {3.0, 40, 48},
+                         {3.25, 40 - 2 * (1 - c), 50 - 2 * (1 - c)},
+                         {3.5, 38, 50},
+                         {4.0, 36, 48},
+                         {4.5, 36, 5.8},
+                         {5.0, 36, -36.4},
+                         {5.5, 36 - 8 * (1 - c), -44.4 + 8 * (1 - c)},
+                         {6.0, 28, -44.4},
+                         {6.5, 14, -44.4},
+                         {7.0, 0, -44.4}}) {
+    EXPECT_NEAR(body.profile(p.t).x(), p.r, 1e-12) << p.t;
+    EXPECT_NEAR(body.profile(p.t).y(), p.z, 1e-12) << p.t;
+  }
+  EXPECT_LT((body.quarter(0.5) - Eigen::Vector2d(c, c)).norm(), 1e-12);
+  EXPECT_EQ(body.wall_begin, 2);
+  EXPECT_EQ(body.wall_end, 3);
+}
+
+// The same mug's handle: stubs of 2 mm inside the wall, a half ellipse of 24 x 29 mm, and a section that
+// is 1.45 times as large at the wall. At 45 degrees of it the outward normal goes with (29, 24); where it has
+// come 6 mm out, the section is 1 + 0.45 (1 - 6 / 13.2)^2 times as large.
+TEST(MugShape, HasAHandleByHand) {
+  const Tube handle = mesh::mug_handle(mesh::mug_shape(80, 100));
+  const auto expect = [&](double a, double v, const Vec3& p) {
+    EXPECT_LT((handle.point(a, v) - p).norm(), 1e-9) << a << " " << v;
+  };
+  expect(0.5, 0.0, {38, 0, 29 + 1.45 * 4.16});
+  expect(0.0, 0.0, {38, 0, 29 - 1.45 * 4.16});
+  expect(0.25, 0.0, {38, 1.45 * 6, 29});
+  expect(0.5, 0.06, {40, 0, 29 + 1.45 * 4.16});
+  expect(0.5, 0.5, {64 + 4.16, 0, 0});
+  expect(0.0, 0.5, {64 - 4.16, 0, 0});
+  expect(0.25, 0.5, {64, 6, 0});
+  expect(0.75, 0.5, {64, -6, 0});
+  expect(0.5, 1.0, {38, 0, -29 - 1.45 * 4.16});
+  const double c = std::sqrt(0.5);
+  const Vec3 out = Vec3(29, 0, 24).normalized();
+  expect(0.5, 0.06 + 0.88 * 0.25, Vec3(40 + 24 * c, 0, 29 * c) + 4.16 * out);
+  const double angle = std::asin(0.25);
+  const double blend = 1.0 - 6.0 / 13.2;
+  const double scale = 1.0 + 0.45 * blend * blend;
+  expect(0.25, 0.06 + 0.88 * angle / kPi, {46, 6 * scale, 29 * std::cos(angle)});
+  EXPECT_TRUE(handle.returns);
+}
+
 TEST(Mug, HasEveryVertexOnItsBodyOrItsHandle) {
   const mesh::MugShape shape = mesh::mug_shape(0.082, 0.095);
   const RevolvedSurface body = mesh::mug_body(shape);
@@ -196,6 +277,32 @@ TEST(Teapot, SurfacesPassThroughNewellsCornerPoints) {
   EXPECT_LT((mesh::newell_handle().point(0.0, 0.0) - Vec3(-1.6, 0, 2.025)).norm(), 1e-15);
   EXPECT_LT((mesh::newell_handle().point(0.5, 0.5) - Vec3(-3.0, 0, 1.8)).norm(), 1e-15);
   EXPECT_LT((mesh::newell_spout().point(0.5, 1.0) - Vec3(3.2, 0, 2.4)).norm(), 1e-15);
+}
+
+// In the middle of a cubic the four control points weigh 1, 3, 3, 1 over 8, in the middle of a patch rows and
+// points alike. Of the handle's upper patch for one: the rows' means in x are -1.55, -2.4, -2.85 and -2.85,
+// and theirs is -20.15 / 8. Newell's numbers, each of which counts here.
+TEST(Teapot, SurfacesPassThroughTheMiddlesOfNewellsPatches) {
+  const RevolvedSurface body = mesh::newell_body();
+  const std::pair<double, double> middles[] = {{1.284375, 0.046875},  {1.75, 0.384375}, {1.84375, 1.621875},
+                                               {1.403125, 2.4984375}, {1.35, 2.4},      {0.825, 2.55},
+                                               {0.325, 2.98125}};
+  double t = 0.5;
+  for (const auto& [r, z] : middles) {
+    EXPECT_LT((body.profile(t) - Eigen::Vector2d(r, z)).norm(), 1e-12) << t;
+    t += 1.0;
+  }
+  EXPECT_LT((body.quarter(0.5) - Eigen::Vector2d(0.71, 0.71)).norm(), 1e-12);
+  for (const double side : {-1.0, 1.0}) {
+    const double a = 0.5 + 0.25 * side;
+    const auto expect = [&](const Tube& tube, double v, double x, double y, double z) {
+      EXPECT_LT((tube.point(a, v) - Vec3(x, side * y, z)).norm(), 1e-12) << a << " " << v;
+    };
+    expect(mesh::newell_handle(), 0.25, -2.51875, 0.225, 2.0953125);
+    expect(mesh::newell_handle(), 0.75, -2.634375, 0.225, 1.25390625);
+    expect(mesh::newell_spout(), 0.25, 2.5375, 0.34125, 1.621875);
+    expect(mesh::newell_spout(), 0.75, 3.1265625, 0.15, 2.466796875);
+  }
 }
 
 }  // namespace

@@ -87,6 +87,12 @@ TEST(MeshReportJson, EveryFieldIsInTheUnitOfItsName) {
   EXPECT_EQ(json.size(), 19U) << "a field without a check";
 }
 
+TEST(MeshReportJson, AMeshWithoutFaultHasAnEmptyListOfFindings) {
+  MeshReport report = numbered_report();
+  report.findings.clear();
+  EXPECT_EQ(Json::parse(mesh_report_json("cup.stl", report)).at("findings"), Json::array());
+}
+
 TEST(MeshReportJson, TheVerdictSaysWhatMayBeUsed) {
   MeshReport report = numbered_report();
   report.solids = 1;

@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "record/temporary_folder.h"
 
@@ -95,6 +98,60 @@ TEST(OutputFile, FailsWhenTheDeviceIsFull) {
   out.text("tick");
   EXPECT_THROW(out.commit(), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+}
+
+// 200,000 times 18 characters or more are over 3 MB, more than the buffers in between: they reach the disk
+// before all is taken.
+TEST(OutputFile, FailsAsSoonAsTheDeviceIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const std::vector<std::function<void(OutputFile&)>> writes = {
+      [](OutputFile& out) { out.text("eighteen or so chars"); },
+      [](OutputFile& out) { out.number(1.0 / 3.0); },
+      [](OutputFile& out) { out.integer(18446744073709551615U); }};
+  for (const auto& write : writes) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder / "a.txt";
+    std::filesystem::create_symlink("/dev/full", folder / "a.txt.partial");
+    OutputFile out(file);
+    const auto write_much = [&] {
+      for (int i = 0; i < 200'000; ++i) write(out);
+    };
+    EXPECT_THAT(write_much, ::testing::ThrowsMessage<std::runtime_error>(
+                                HasSubstr("cannot write '" + file.string() + "'")));
+  }
+}
+
+TEST(OutputFile, LeavesWhatReachedTheDiskWhenItIsGivenUp) {
+  const TemporaryFolder folder;
+  const std::string written(2U << 20U, 'x');  // more than the buffers
+  {
+    OutputFile out(folder / "a.txt");
+    out.text(written);
+    out.text("y");
+    EXPECT_EQ(out.leave_partial(), folder / "a.txt.partial");
+  }
+  EXPECT_TRUE(read_file(folder / "a.txt.partial").starts_with(written));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+}
+
+TEST(OutputFile, LeavesThePartOfTheNextAloneOnceItIsCommitted) {
+  const TemporaryFolder folder;
+  auto first = std::make_unique<OutputFile>(folder / "a.txt");
+  first->text("old");
+  first->commit();
+  OutputFile second(folder / "a.txt");
+  second.text("new");
+  first.reset();
+  second.commit();
+  EXPECT_EQ(read_file(folder / "a.txt"), "new");
+}
+
+TEST(WriteThenRename, PutsTheWholeUnderItsName) {
+  const TemporaryFolder folder;
+  write_then_rename(folder / "a.obj",
+                    [](const std::filesystem::path& partial) { write_text_file(partial, "whole"); });
+  EXPECT_EQ(read_file(folder / "a.obj"), "whole");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.obj.partial"));
 }
 
 TEST(WriteThenRename, RemovesThePartWhenTheWriterThrows) {

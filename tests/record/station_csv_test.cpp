@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -199,9 +200,9 @@ TEST(StationCsv, EveryColumnOfAFaultReportIsInTheUnitOfItsName) {
   EXPECT_EQ(json["found_by"], "host");
 }
 
-// By hand, of 10,000 durations: rank 5,000 is among the first 9,000, rank 9,900 among the next 950, rank
-// 9,990 among the next 45. A bin is [0.1 us 2^k, 1.0625 of that), so its middle is 0.103125 us 2^k; the
-// largest is exact.
+// By hand, of 10,000 durations: rank 5,000 is the one behind the first 4,999, rank 9,900 the last of the next
+// 4,900, rank 9,990 among the next 95. A bin is [0.1 us 2^k, 1.0625 of that), so its middle is 0.103125 us
+// 2^k; the largest is exact.
 TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   const auto add = [](Histogram& histogram, int count, double duration) {
     for (int i = 0; i < count; ++i) histogram.add(duration);
@@ -213,13 +214,15 @@ TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   deadlines.overruns_in_row = 3;
   deadlines.longest_run = 7;
   deadlines.skipped = 41;
-  add(deadlines.lateness, 9000, 3.3e-6);  // k = 5: the middle of [3.2, 3.4) us
-  add(deadlines.lateness, 950, 6.6e-6);
-  add(deadlines.lateness, 45, 13.2e-6);
+  add(deadlines.lateness, 4999, 1.65e-6);
+  add(deadlines.lateness, 1, 3.3e-6);  // k = 5: the middle of [3.2, 3.4) us
+  add(deadlines.lateness, 4900, 6.6e-6);
+  add(deadlines.lateness, 95, 13.2e-6);
   add(deadlines.lateness, 5, 27e-6);
-  add(deadlines.step, 9000, 105.6e-6);  // k = 10: the middle of [102.4, 108.8) us
-  add(deadlines.step, 950, 211.2e-6);
-  add(deadlines.step, 45, 422.4e-6);
+  add(deadlines.step, 4999, 52.8e-6);
+  add(deadlines.step, 1, 105.6e-6);  // k = 10: the middle of [102.4, 108.8) us
+  add(deadlines.step, 4900, 211.2e-6);
+  add(deadlines.step, 95, 422.4e-6);
   add(deadlines.step, 4, 850e-6);
   StationView last;
   last.state = SafetyState::kFault;
@@ -289,6 +292,23 @@ TEST(StationCsv, TwoReportsOfTheSameSecondDoNotShareAFolder) {
   EXPECT_NE(first, second);
   EXPECT_TRUE(std::filesystem::exists(first / "report.json"));
   EXPECT_TRUE(std::filesystem::exists(second / "report.json"));
+}
+
+// A second may end between two reports: then they are no pair, and the next two are, in a folder of their
+// own.
+TEST(StationCsv, TheSecondAndTheThirdReportOfASecondAreNumbered) {
+  bool seen = false;
+  for (int attempt = 0; attempt < 5 && !seen; ++attempt) {
+    const TemporaryFolder folder;
+    std::array<std::string, 3> name;
+    for (std::string& one : name)
+      one = write_fault_report(folder.path(), report_of_three_samples()).filename().string();
+    if (!name[2].starts_with(name[0])) continue;
+    seen = true;
+    EXPECT_EQ(name[1], name[0] + "-2");
+    EXPECT_EQ(name[2], name[0] + "-3");
+  }
+  EXPECT_TRUE(seen) << "no three reports within a second";
 }
 
 }  // namespace

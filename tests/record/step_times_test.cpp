@@ -35,7 +35,11 @@ TEST(StepTimes, OfOneStepAreThatStep) {
   EXPECT_EQ(times.max, 4.2);
 }
 
-TEST(StepTimes, OfNoStepsAreZero) { EXPECT_EQ(step_times({}).max, 0.0); }
+TEST(StepTimes, OfNoStepsAreZero) {
+  const StepTimes times = step_times({});
+  for (const double time : {times.p50, times.p90, times.p99, times.p999, times.max, times.mean})
+    EXPECT_EQ(time, 0.0);
+}
 
 }  // namespace
 }  // namespace phalanx

@@ -17,13 +17,13 @@ constexpr std::size_t kIndexDistal = 5;
 Summary two_ticks() {
   Summary summary;
   Snapshot a;
-  a.time_s = 0.0;
+  a.time_s = 0.25;
   a.segment[kIndexDistal] = {.contact = true, .depth = 2e-3, .force = 1.5};
   a.segment[0] = {.contact = true, .force = 1.0};
   a.torque[4] = -0.08;
   a.status = Status::kForceLimited | Status::kSampleJump;
   Snapshot b;
-  b.time_s = 0.005;
+  b.time_s = 0.255;
   b.segment[kIndexDistal] = {.contact = true, .depth = 1e-3, .force = 2.0, .slid = 6e-3};
   b.torque[4] = 0.05;
   b.status = Status::kSlid | Status::kForceLimited;
@@ -41,19 +41,31 @@ TEST(Summary, CountsTicksAndKeepsPeaks) {
   EXPECT_EQ(summary.peak_depth[kIndexDistal], 2e-3);
   EXPECT_EQ(summary.peak_torque[4], 0.08);
   EXPECT_EQ(summary.peak_total_force, 2.5);
+  EXPECT_EQ(summary.peak_total_force_time_s, 0.25);
+}
+
+TEST(Summary, OfNoTicksIsNothing) {
+  const Summary summary{};
+  EXPECT_EQ(summary.ticks, 0U);
+  EXPECT_EQ(summary.rate_hz, 0.0);
+  EXPECT_EQ(summary.seconds, 0.0);
+  EXPECT_EQ(summary.hand_triangles, 0);
+  EXPECT_EQ(summary.object_triangles, 0);
+  EXPECT_EQ(summary.peak_total_force, 0.0);
   EXPECT_EQ(summary.peak_total_force_time_s, 0.0);
+  EXPECT_EQ(summary.largest_slid, 0.0);
 }
 
 TEST(Summary, ThePeakForcesTimeIsThatOfItsFirstTick) {
   Summary summary;
-  for (const double time : {0.0, 0.005}) {
+  for (const double time : {0.25, 0.255}) {
     Snapshot snapshot;
     snapshot.time_s = time;
     snapshot.segment[kIndexDistal] = {.contact = true, .force = 2.0};
     add_tick(summary, snapshot);
   }
   EXPECT_EQ(summary.peak_total_force, 2.0);
-  EXPECT_EQ(summary.peak_total_force_time_s, 0.0);
+  EXPECT_EQ(summary.peak_total_force_time_s, 0.25);
 }
 
 TEST(Summary, ReportsLimitersByTheTicksInWhichTheyActed) {
@@ -154,8 +166,8 @@ TEST(SummaryJson, EveryFieldIsInTheUnitOfItsName) {
   EXPECT_EQ(json["seconds"], number(0.01));
   EXPECT_EQ(json["step_us"],
             (nlohmann::json{{"p50", 1.5}, {"p90", 2.5}, {"p99", 3.5}, {"p999", 4.5}, {"max", 5.5}}));
-  // 1.5 N on the fingertip and 1.0 N on the thumb at once, at 0 s; later 2.0 N alone.
-  EXPECT_EQ(json["peak_total_force"], (nlohmann::json{{"force_n", 2.5}, {"time_s", 0.0}}));
+  // 1.5 N on the fingertip and 1.0 N on the thumb at once, at 0.25 s; later 2.0 N alone.
+  EXPECT_EQ(json["peak_total_force"], (nlohmann::json{{"force_n", 2.5}, {"time_s", 0.25}}));
   EXPECT_EQ(json["contact_ticks"]["thumb-metacarpal"], 1);
   EXPECT_EQ(json["peak_force_n"]["thumb-metacarpal"], number(1.0));
   EXPECT_EQ(json["peak_force_n"].size(), static_cast<std::size_t>(kSegments));

@@ -115,7 +115,9 @@ TEST(CalibrationFile, OfAnotherFormatIsRefused) {
 
 TEST(CalibrationFile, WithAHeadThatIsNone) {
   expect_bad_calibration("format = 1\ndevice = 3\n", {"device = 3", "write a string"});
-  for (const char* date : {"yesterday", "2026-05-04", "2026-05-04 09:30:00Z", "2026-05-04T09:30:00+02:00"}) {
+  // The characters next to the digits are '/' and ':'.
+  for (const char* date : {"yesterday", "2026-05-04", "2026-05-04 09:30:00Z", "2026-05-04T09:30:00+02:00",
+                           "2026-05-/4T09:30:00Z", "2026-05-:4T09:30:00Z"}) {
     expect_bad_calibration(
         "format = 1\ndevice = \"d\"\nserial = \"s\"\ndate = \"" + std::string(date) + "\"\nphalanx = \"1\"\n",
         {"bad.toml:4", "date", "2026-05-04T09:30:00Z"});

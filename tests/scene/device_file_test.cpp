@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/device_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -189,6 +190,13 @@ TEST(DeviceFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
   expect_refused(kJoint + "[copy]\nmiddel = { of = \"index\" }\n", {"d.toml:4: copy.middel", "copy.middle"});
   expect_refused(kJoint + "[coupled.index_dip_flexion]\nof = \"index_pip\"\nratio = 1\n",
                  {"d.toml:4: coupled.index_dip_flexion.of", "nearest one is \"index_pip_flexion\""});
+  expect_refused(kJoint + "[coupled.index_dip_flexoin]\nof = \"index_mcp_flexion\"\nratio = 1\n",
+                 {"d.toml:3: coupled.index_dip_flexoin", "nearest known one is coupled.index_dip_flexion"});
+  expect_refused(
+      kJoint + "[coupled.index_dip_flexion]\nof = \"index_mcp_flexion\"\nratio = 1\nofset_deg = 2\n",
+      {"d.toml:6: coupled.index_dip_flexion.ofset_deg = 2", "coupled.index_dip_flexion.offset_deg"});
+  expect_refused(kJoint + "[defaults.joints]\nsensor_lsb_rad = 1\n",
+                 {"d.toml:3: defaults.joints", "nearest known one is defaults.joint"});
   expect_refused(kJoint + "[motors.mcp]\nmass_kg = 1\n", {"d.toml:3: motors.mcp.arms_mm: is missing"});
   expect_refused(kJoint + "[motors.mcp]\narms_mm = { index_mcp = -12 }\n",
                  {"d.toml:4: motors.mcp.arms_mm.index_mcp = -12", "motors.mcp.arms_mm.index_mcp_flexion"});
@@ -337,6 +345,9 @@ TEST(DeviceFile, WithAnyBytesChangedIsReadOrRefused) {
 
 TEST(DeviceText, IsTheSameForTheSameNumbersAndHoldsEachOfThem) {
   const std::string text = device_text(parse_text(kJoint + kMotor));
+  // A line for each of the joint's 9 numbers, the motor's 14 and its one arm, the controller's 3 and
+  // each digit's 2.
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 9 + 14 + 1 + 3 + 5 * 2);
   EXPECT_EQ(text, device_text(parse_text(kMotor + kJoint)));
   EXPECT_EQ(text, device_text(parse_text("description = \"another\"\n" + kJoint + kMotor)));
   for (const char* change : {"[scale]\ninertia = 1.0000000001\n", "[scale]\ntendon_stiffness = 2\n",

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <random>
+#include <sstream>
 
 #include "phalanx/force/force_parameters.h"
 #include "phalanx/mesh/primitives.h"
@@ -138,7 +139,7 @@ TEST_P(HandExport, AsUrdfHasOurForwardKinematicsAndLimitsInUrdfdom) {
 }
 
 TEST_P(HandExport, AsUrdfNamesItsMeshesItsMassAndItsInertia) {
-  const auto robot = urdf::parseURDF(urdf_text(hand_, {.collision = "c", .display = "d & e"}));
+  const auto robot = urdf::parseURDF(urdf_text(hand_, {.collision = "c <1> \"2\"", .display = "d & e"}));
   ASSERT_TRUE(robot);
   double mass = 0.0;
   for (int s = 0; s < kSegments; ++s) {
@@ -160,7 +161,7 @@ TEST_P(HandExport, AsUrdfNamesItsMeshesItsMassAndItsInertia) {
     const auto mesh_of = [](const urdf::GeometrySharedPtr& geometry) {
       return std::dynamic_pointer_cast<urdf::Mesh>(geometry)->filename;
     };
-    EXPECT_EQ(mesh_of(link->collision->geometry), "c/" + name + ".obj");
+    EXPECT_EQ(mesh_of(link->collision->geometry), "c <1> \"2\"/" + name + ".obj");
     EXPECT_EQ(mesh_of(link->visual->geometry), "d & e/" + name + ".obj");
   }
   double volume = 0.0;
@@ -301,6 +302,23 @@ TEST(HandAsMjcf, ReadsBothSetsOfMeshesAndLeavesOutWhatAlwaysTouches) {
         R"(body1="thumb-metacarpal" body2="index-finger-phalanx-proximal")",
         R"(body1="ring-finger-phalanx-proximal" body2="pinky-finger-phalanx-proximal")"})
     EXPECT_THAT(text, ::testing::HasSubstr(std::string("<exclude ") + pair + "/>"));
+}
+
+TEST(HandAsMjcf, IsIndentedByTwoBlanksForEachElementThatIsOpen) {
+  std::istringstream text(mjcf_text(load(Case{"CapsulesRight", "", Handedness::kRight}), {}));
+  std::size_t open = 0;
+  std::size_t lines = 0;
+  for (std::string line; std::getline(text, line); ++lines) {
+    const std::size_t begin = line.find_first_not_of(' ');
+    ASSERT_NE(begin, std::string::npos);
+    const bool closes = line.compare(begin, 2, "</") == 0;
+    if (closes) --open;
+    EXPECT_EQ(begin, 2 * open) << line;
+    const bool closed_within = line.ends_with("/>") || line.find("</") != std::string::npos;
+    if (!closed_within) ++open;
+  }
+  EXPECT_EQ(open, 0U);
+  EXPECT_GT(lines, static_cast<std::size_t>(4 * kSegments)) << "a body, its inertia and its two meshes";
 }
 
 // A box of a x b x c: m = rho a b c, Ixx = m (b^2 + c^2) / 12.

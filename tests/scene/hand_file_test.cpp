@@ -84,6 +84,35 @@ TEST(AdultHand, OpensWithinItsRangeOfMotion) {
   EXPECT_NEAR(hand.max_angle[6], 100.0 * std::numbers::pi / 180.0, 1e-12) << "index PIP";
 }
 
+// One joint's line with a number of its own in each place, and the numbers that the file has for the palm and
+// for the thumb's first segment.
+TEST(HandFile, StatesEachNumberInItsUnit) {
+  const HandParameters hand =
+      parse_hand(changed("a_mm = 0.0,   alpha_deg = 90.0,  d_mm = 0.0, theta_deg = 0.0, min_deg = -18.0, "
+                         "max_deg = 35.0, open_deg = 0.0",
+                         "a_mm = 4, alpha_deg = 80, d_mm = -3, theta_deg = 20, min_deg = -15, max_deg = 30, "
+                         "open_deg = 5"),
+                 "good.toml");
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const DhRow& row = hand.digits[0].dh[0];
+  EXPECT_DOUBLE_EQ(row.a, 0.004);
+  EXPECT_DOUBLE_EQ(row.alpha, 80.0 * kDegree);
+  EXPECT_DOUBLE_EQ(row.d, -0.003);
+  EXPECT_DOUBLE_EQ(row.theta, 20.0 * kDegree);
+  EXPECT_DOUBLE_EQ(hand.min_angle[0], -15.0 * kDegree);
+  EXPECT_DOUBLE_EQ(hand.max_angle[0], 30.0 * kDegree);
+  EXPECT_DOUBLE_EQ(hand.open_angle[0], 5.0 * kDegree);
+  EXPECT_DOUBLE_EQ(hand.segments[0].length, 46.22e-3);
+  EXPECT_DOUBLE_EQ(hand.segments[0].radius_base, 13e-3);
+  EXPECT_DOUBLE_EQ(hand.segments[0].radius_tip, 11.5e-3);
+  EXPECT_DOUBLE_EQ(hand.palm.length, 66e-3);
+  EXPECT_DOUBLE_EQ(hand.palm.wrist_breadth, 58e-3);
+  EXPECT_DOUBLE_EQ(hand.palm.wrist_thickness, 36e-3);
+  EXPECT_DOUBLE_EQ(hand.palm.knuckle_breadth, 81.5e-3);
+  EXPECT_DOUBLE_EQ(hand.palm.knuckle_thickness, 30.5e-3);
+  EXPECT_LT((hand.palm.offset - Vec3(5e-3, -7e-3, -14e-3)).norm(), 1e-15);
+}
+
 // Neighbouring straight fingers: the least distance of their centre lines against the sum of the radii there.
 TEST(AdultHand, KeepsItsOpenFingersApart) {
   const HandParameters hand = load_hand_file("adult");

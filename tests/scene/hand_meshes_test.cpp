@@ -188,15 +188,16 @@ TEST(HandMeshes, InAnAbsurdUnitAreRefused) {
       {"mm long, less than 3 mm", "1000 for a file in metres"});
 }
 
-// A box of 20 mm whose far corners lie 298 or 301 mm down the z axis and 10 mm beside it twice: 298.3 mm,
-// 301.3 mm.
+// Its longest edge counts. A box of 20 mm whose far corners lie 298 or 301 mm down the z axis and 10 mm
+// beside it twice: 298.3 mm, 301.3 mm.
 TEST(HandMeshes, MayBeThreeMillimetresLongAndReachThreeHundred) {
   const auto box = [](double edge, double z) {
     TriangleMesh mesh = make_box({edge, edge, edge}, 12);
     for (Vec3& v : mesh.vertices) v.z() += z;
     return mesh;
   };
-  for (const TriangleMesh& good : {box(3.01e-3, 0.0), box(0.02, -0.288)}) {
+  for (const TriangleMesh& good :
+       {box(3.01e-3, 0.0), box(0.02, -0.288), make_box({2e-3, 2e-3, 3.01e-3}, 12)}) {
     const HandFolder folder;
     SegmentMeshes meshes = capsules();
     meshes[3] = good;

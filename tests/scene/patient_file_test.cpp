@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/patient_file.h"
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,21 @@ TEST(PatientFile, ScalesWhatItNames) {
   EXPECT_EQ(p.damping[4], 3.0);
   EXPECT_DOUBLE_EQ(p.tremor, 40e-6);
   EXPECT_EQ(p.bump, 0.0);
+}
+
+// Each scale doubles, and only doubles, what it names.
+TEST(PatientFile, ScalesNothingElse) {
+  const std::string text = "tremor_um = 10\nbump_n = 3\n" + kPatientJoint + "damping_nms_per_rad = 1\n";
+  const auto values = [](const PatientParameters& p) {
+    return std::array<double, 4>{p.stiffness[4], p.damping[4], p.tremor, p.bump};
+  };
+  const std::array<const char*, 4> names = {"stiffness", "damping", "tremor", "bump"};
+  const auto plain = values(parse_toml(text));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto scaled = values(parse_toml(text + "[scale]\n" + names[i] + " = 2\n"));
+    for (std::size_t k = 0; k < names.size(); ++k)
+      EXPECT_EQ(scaled[k], plain[k] * (k == i ? 2.0 : 1.0)) << names[k] << " with a scale of " << names[i];
+  }
 }
 
 TEST(PatientFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {

@@ -69,6 +69,18 @@ TEST(SceneErrors, WrongType) {
   expect_scene_refused("objects = [3]", {"objects.0", "is a table"});
 }
 
+TEST(SceneErrors, WrongTypeIsCalledByItsName) {
+  for (const auto& [value, type] : {std::pair<const char*, const char*>{"3", "an integer"},
+                                    {"3.5", "a number"},
+                                    {"true", "true or false"},
+                                    {"[1]", "an array"},
+                                    {"{}", "a table"},
+                                    {"1979-05-27", "a date or time"}})
+    expect_scene_refused(
+        std::string("description = ") + value,
+        {"bad.toml:1: description", "is " + std::string(type) + "; write a string in quotes"});
+}
+
 // 80 characters are shown, two of them the quotes; of what is longer the first 77.
 TEST(SceneErrors, LongValueIsShownShortened) {
   expect_scene_refused("rate_hz = \"" + std::string(78, 'x') + "\"",

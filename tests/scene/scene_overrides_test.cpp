@@ -45,6 +45,14 @@ TEST(Overrides, AppendAnElementOnePastTheEnd) {
   EXPECT_DOUBLE_EQ(scene.objects[1].tube_diameter, 0.01);
 }
 
+TEST(Overrides, BeginAnArrayThatTheFileDoesNotHave) {
+  const SceneDescription scene = parse_scene("", "test.toml", "/somewhere",
+                                             {{"objects.0.kind", "sphere"}, {"objects.0.diameter_mm", "30"}});
+  ASSERT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects[0].kind, "sphere");
+  EXPECT_DOUBLE_EQ(scene.objects[0].diameter, 0.03);
+}
+
 TEST(Overrides, ReplaceAWholeArray) {
   const SceneDescription scene = parse_with({{"objects", "[{kind = \"box\"}, {kind = \"mug\"}]"}});
   ASSERT_EQ(scene.objects.size(), 2U);

@@ -81,6 +81,23 @@ TEST(Scene, OfAnObjectWithoutSizesHasTheDefaultOnes) {
   }
 }
 
+// What one kind alone has.
+TEST(Scene, OfAnObjectWithoutItsOwnSizesHasTheStructs) {
+  const auto object = [](const std::string& keys) {
+    return parse("[[objects]]\nkind = " + keys).objects.at(0);
+  };
+  const ObjectDescription expected;
+  EXPECT_DOUBLE_EQ(object("\"key\"").breadth, expected.breadth);
+  EXPECT_DOUBLE_EQ(object("\"key\"").thickness, expected.thickness);
+  EXPECT_DOUBLE_EQ(object("\"therapy_ball\"").bump, expected.bump);
+  EXPECT_EQ(object("\"peg\"").head_diameter, expected.head_diameter);
+  EXPECT_DOUBLE_EQ(object("\"jar\"").lid_diameter, expected.lid_diameter);
+  const ObjectDescription file = object("\"file\"\nfile = \"m.obj\"");
+  EXPECT_DOUBLE_EQ(file.size, expected.size);
+  EXPECT_EQ(file.unit, expected.unit);
+  EXPECT_EQ(file.decimate_to, expected.decimate_to);
+}
+
 TEST(Scene, ConvertsItsUnitsToSi) {
   const SceneDescription scene = parse(R"(
     [contact]

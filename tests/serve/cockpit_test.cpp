@@ -2,6 +2,7 @@
 // Pages, the server and a station: who may do what, and what everybody is told. docs/cockpit.md
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <string>
 
 #include "serve/cockpit_fixture.h"
@@ -14,9 +15,21 @@ using namespace test;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+/// [s]
+double since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   clock_.sleep_until(1.0);
+  const double before = since_1970();
   Page page(port(), "", "Anna");
+  const double after = since_1970();
+  ASSERT_EQ(page.welcome.past_size(), 1) << "that it operates";
+  for (const double told : {page.welcome.unix_time(), page.welcome.past(0).unix_time()}) {
+    EXPECT_GE(told, before);
+    EXPECT_LE(told, after);
+  }
   EXPECT_EQ(page.welcome.protocol(), Cockpit::kProtocol);
   EXPECT_EQ(page.welcome.version(), "1.2.3");
   EXPECT_EQ(page.welcome.page(), 1U);
@@ -35,6 +48,21 @@ TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   EXPECT_EQ(first.gdp_pose_size(), 7 * kSegments);
   const wire::Tick second = page.hear(wire::ToPage::kTick).tick();
   EXPECT_GT(second.time(), first.time());
+}
+
+// Frames come more often than steps where a station is slow.
+TEST_F(CockpitTest, AStepIsSentOnceHoweverManyFramesItIsShownIn) {
+  Page page(port());
+  double last = -1.0;
+  for (int i = 0; i < 10; ++i) {
+    server_->post([this] {
+      for (int k = 0; k < 3; ++k) cockpit_->frame();
+    });
+    const wire::Tick tick = page.hear(wire::ToPage::kTick).tick();
+    EXPECT_GT(tick.time(), last);
+    last = tick.time();
+    page.say(to_see(static_cast<std::uint64_t>(page.ticks)));
+  }
 }
 
 TEST_F(CockpitTest, ThePagesFirstStateFollowsItsWelcomeBeforeAnyTick) {
@@ -249,7 +277,10 @@ TEST_F(CockpitTest, APageThatIsOpenedAgainTakesItsOwnPlace) {
   EXPECT_EQ(again.welcome.page(), 1U);
   EXPECT_EQ(again.state.operator_page(), 1U);
   EXPECT_EQ(again.state.operator_name(), "Anna");
-  EXPECT_EQ(first.notice("replaced").text(), "this page was opened again elsewhere");
+  const wire::Notice why = first.notice("replaced");
+  EXPECT_EQ(why.text(), "this page was opened again elsewhere");
+  EXPECT_EQ(why.level(), wire::Notice::WARNING);
+  EXPECT_GT(why.unix_time(), 0.0);
   EXPECT_THAT(first.client().hear_end().reason(), HasSubstr("opened again elsewhere"));
   again.until([](const wire::State& s) { return s.pages() == 1; });
   EXPECT_TRUE(again.set("force.stiffness_n_per_mm", "0.8").ok());

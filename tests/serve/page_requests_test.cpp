@@ -5,10 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "device/link/controller_thread.h"
 #include "phalanx/core/index.h"
+#include "phalanx/device/calibration_poses.h"
 #include "phalanx/device/fault.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
@@ -18,6 +24,7 @@
 namespace phalanx {
 namespace {
 
+using test::ControllerThread;
 using test::HostTest;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -175,6 +182,26 @@ TEST_F(PageRequestsTest, SlidersOfWhateverNumberStayInsideTheHand) {
   EXPECT_THAT(why_not(message), HasSubstr("21"));
 }
 
+// Each joint another angle inside its range, from its lower end on; the page's numbers are of single
+// precision.
+TEST_F(PageRequestsTest, EachSliderMovesItsOwnJoint) {
+  const auto geometry = host->state()->geometry;
+  const HandParameters& hand = geometry->hand;
+  wire::ToHost message;
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const double share = 0.03 * static_cast<double>(j + 1);
+    message.mutable_sliders()->add_angle(
+        static_cast<float>(hand.min_angle[j] + share * (hand.max_angle[j] - hand.min_angle[j])));
+  }
+  handed(message);
+  const wire::State shown = state();
+  ASSERT_EQ(shown.slider_size(), kJoints);
+  for (int j = 0; j < kJoints; ++j) {
+    EXPECT_EQ(host->sliders()[idx(j)], static_cast<double>(message.sliders().angle(j))) << j;
+    EXPECT_EQ(shown.slider(j), message.sliders().angle(j)) << j;
+  }
+}
+
 TEST_F(PageRequestsTest, SlidersThatMoveNothingAreRefused) {
   EXPECT_EQ(move_by(HandSource::kPatient), "");
   wire::ToHost message;
@@ -241,6 +268,80 @@ TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandWhereTheyAreAskedTo) {
   EXPECT_EQ(handed(message).text, "the sliders move the hand");
   EXPECT_EQ(refused, "");
   EXPECT_EQ(state().source(), wire::HAND_SLIDERS);
+}
+
+/// A station with a device on a wire, two sensors of angles.
+class WiredPagesTest : public HostTest {
+ protected:
+  using Step = CalibrationSession::Step;
+
+  WiredPagesTest() {
+    StationHostSettings settings = with(controller.address(), "grasp_teapot");
+    settings.overrides = {{"limits.joint_torque_nm", "0.4"}, {"limits.torque_rate_nm_per_s", "80"}};
+    start(settings);
+  }
+  ~WiredPagesTest() override { host.reset(); }
+
+  /// What pages are shown of the calibration is what the station says of it.
+  void expect_shown() {
+    const auto view = host->state()->wizard;
+    ASSERT_NE(view, nullptr);
+    wire::State state;
+    write_state(*host, state);
+    const wire::Wizard& shown = state.wizard();
+    EXPECT_EQ(shown.pose(), view->pose);
+    EXPECT_EQ(std::vector<std::string>(shown.name().begin(), shown.name().end()), view->names);
+    EXPECT_EQ(shown.instruction(), view->instruction);
+    EXPECT_EQ(shown.measuring(), view->measuring);
+    EXPECT_EQ(shown.measured(), static_cast<float>(view->measured));
+    EXPECT_EQ(std::vector<bool>(shown.done().begin(), shown.done().end()), view->done);
+    EXPECT_EQ(std::vector<std::int32_t>(shown.raw().begin(), shown.raw().end()), view->raw);
+    EXPECT_EQ(std::vector<std::string>(shown.problem().begin(), shown.problem().end()), view->problems);
+    EXPECT_EQ(std::vector<std::string>(shown.result().begin(), shown.result().end()), view->results);
+    EXPECT_EQ(shown.finished(), view->finished);
+  }
+
+  ControllerThread controller{listen_udp("127.0.0.1:0"), clock};
+};
+
+// All poses are left out, then the first two, which are about both sensors, are measured: that is enough.
+TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShownAsTheyStand) {
+  ASSERT_EQ(calibrate(Step::kBegin), "");
+  ASSERT_TRUE(until([&] { return !host->state()->wizard->raw.empty(); }));
+  expect_shown();
+  wire::State state;
+  write_state(*host, state);
+  EXPECT_EQ(state.source(), wire::HAND_DEVICE);
+  EXPECT_EQ(state.device_spec(), controller.address());
+  EXPECT_EQ(state.device_name(), host->state()->device.name);
+  EXPECT_EQ(state.device_serial(), "BENCH-1");
+  EXPECT_FALSE(state.device_simulated());
+  EXPECT_EQ(state.slider_size(), 0);
+  EXPECT_EQ(std::vector<int>(state.sensed_joint().begin(), state.sensed_joint().end()),
+            host->state()->sensed_joints);
+  const std::size_t poses = host->state()->wizard->names.size();
+  for (std::size_t p = 0; p < poses; ++p) ASSERT_EQ(calibrate(Step::kSkip), "");
+  EXPECT_FALSE(host->state()->wizard->problems.empty());
+  expect_shown();
+  const std::vector<CalibrationPose> known =
+      calibration_poses(host->state()->device.channels, host->state()->geometry->hand);
+  for (std::size_t p = 0; p < 2; ++p) {
+    ASSERT_EQ(calibrate(Step::kGoTo, p), "");
+    std::vector<std::int32_t> raw;  // 1,000 counts a radian, and 1 rad too much
+    for (std::size_t c = 0; c < 2; ++c)
+      raw.push_back(static_cast<std::int32_t>(std::lround(1000.0 * (known[p].value[c].value() + 1.0))));
+    controller.hold({raw[0], raw[1]});
+    ASSERT_TRUE(until([&] { return host->state()->wizard->raw == raw; }));
+    ASSERT_EQ(calibrate(Step::kMeasure), "");
+    pass(0.3);
+    EXPECT_TRUE(host->state()->wizard->measuring);
+    EXPECT_GT(host->state()->wizard->measured, 0.0);
+    expect_shown();
+    ASSERT_TRUE(until([&] { return !host->state()->wizard->measuring; }));
+  }
+  EXPECT_TRUE(host->state()->wizard->finished);
+  EXPECT_EQ(host->state()->wizard->results.size(), 2U);
+  expect_shown();
 }
 
 TEST(Choices, AreEveryKeySceneAndProfile) {

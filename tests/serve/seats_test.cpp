@@ -197,6 +197,22 @@ TEST_F(SeatsTest, ExactlySoManyAreRememberedForExactlySoLong) {
   EXPECT_EQ(fresh.find(2)->number, number);
 }
 
+// Of kRemembered places one is the oldest's, and none is the one's that has left and come back since.
+TEST_F(SeatsTest, APageThatIsBackIsNoneOfThoseThatHaveLeft) {
+  const PageId oldest = come();
+  const PageId reloaded = come();
+  const std::string mine = secret(oldest);
+  const std::string theirs = secret(reloaded);
+  const std::uint32_t number = seats.find(oldest)->number;
+  seats.leave(oldest, now);
+  now += 1e-3;
+  seats.leave(reloaded, now);
+  come(kHere, theirs);
+  now += 1e-3;
+  for (std::size_t i = 1; i < Seats::kRemembered; ++i) seats.leave(come(), now);
+  EXPECT_EQ(seats.find(come(kHere, mine))->number, number);
+}
+
 TEST_F(SeatsTest, ANameIsOneShortLine) {
   const PageId page = come();
   seats.name(page, "A\nn\u202Ena");

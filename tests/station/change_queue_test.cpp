@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
 
 namespace phalanx {
 namespace {
@@ -88,6 +89,14 @@ TEST_F(ChangeQueueTest, IsBoundedInRequestsPartsAndAnswers) {
   EXPECT_THROW(queue.ask_set({{"a", "1"}}, to(1)), std::runtime_error);
   EXPECT_TRUE(queue.take().has_value());
   EXPECT_NO_THROW(queue.ask_set({{"a", "1"}}, to(1))) << "taken ones count no more";
+}
+
+// "k = " and 296 letters are 300 bytes, after which one more change is told; a letter more, and it is not.
+TEST_F(ChangeQueueTest, ALongTextIsCutBetweenTwoChanges) {
+  const std::string most(296, 'v');
+  EXPECT_EQ(text_of({{"k", most}, {"m", "1"}}), "k = " + most + ", m = 1");
+  EXPECT_EQ(text_of({{"k", most + "v"}, {"m", "1"}}), "k = " + most + "v, ...");
+  EXPECT_EQ(text_of({{"rate_hz", ""}}), "rate_hz = as in the scene");
 }
 
 TEST_F(ChangeQueueTest, OneTryToMakeAStationIsEnough) {

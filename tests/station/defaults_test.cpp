@@ -9,6 +9,8 @@
 #include "phalanx/station/safety.h"
 #include "phalanx/station/safety_settings.h"
 #include "phalanx/station/sensor_watch.h"
+#include "phalanx/station/station_device.h"
+#include "phalanx/station/station_host.h"
 #include "support/zero_bytes.h"
 
 namespace phalanx {
@@ -62,11 +64,66 @@ TEST(StationDefaults, ACommandThatNobodyFillsMovesNothing) {
   EXPECT_TRUE(test::begins_as_zero<DeviceCommand>());
 }
 
-TEST(StationDefaults, RealTimeIsAskedFor) {
+TEST(StationDefaults, RealTimeIsAskedForAndNotGranted) {
   const RealtimeRequest request;
   EXPECT_EQ(request.priority, 80);
   EXPECT_EQ(request.cpu, -1);
   EXPECT_TRUE(request.lock_memory);
+  EXPECT_TRUE(StationOptions{}.ask_for_realtime);
+  EXPECT_TRUE(StationHostSettings{}.ask_for_realtime);
+  EXPECT_TRUE(WiredDeviceSettings{}.ask_for_realtime);
+  const RealtimeGrant grant;
+  EXPECT_EQ(grant.scheduler, "SCHED_OTHER");
+  EXPECT_FALSE(grant.fifo);
+  EXPECT_FALSE(grant.memory_locked);
+  EXPECT_EQ(grant.cpu, -1);
+}
+
+TEST(StationDefaults, NothingHasHappenedBeforeTheFirstStep) {
+  EXPECT_TRUE(test::begins_as_zero<StepRecord>());
+  EXPECT_TRUE(test::begins_as_zero<Wake>());
+  const StationView view{};
+  EXPECT_EQ(view.time, 0.0);
+  EXPECT_EQ(view.stiffness, 0.0);
+  EXPECT_EQ(view.duration, 0.0);
+  EXPECT_EQ(view.sent, JointArray{});
+  EXPECT_EQ(view.state, SafetyState::kWaiting);
+  EXPECT_EQ(view.factor, 0.0);
+  EXPECT_TRUE(view.at_rest);
+  EXPECT_FALSE(view.degraded);
+  EXPECT_FALSE(view.ending);
+  EXPECT_FALSE(view.changing);
+  EXPECT_FALSE(view.estop);
+  EXPECT_EQ(view.device, DeviceState::kConnecting);
+  EXPECT_EQ(view.resets_refused, 0U);
+  EXPECT_EQ(view.records_lost, 0U);
+  const DeadlineStatistics deadlines{};
+  EXPECT_EQ(deadlines.period, 1e-3);
+  EXPECT_EQ(deadlines.steps + deadlines.overruns + deadlines.overruns_in_row, 0U);
+  EXPECT_EQ(deadlines.longest_run + deadlines.skipped + deadlines.step.count(), 0U);
+  EXPECT_EQ(deadlines.last_overrun, 0.0);
+}
+
+TEST(StationDefaults, AHostThatIsToldNothingRunsTheFirstSceneWithoutADevice) {
+  const StationHostSettings settings;
+  EXPECT_EQ(settings.scene, "first_touch");
+  EXPECT_EQ(settings.device, "simulated");
+  const HostState state{};
+  EXPECT_EQ(state.revision, 0U);
+  EXPECT_EQ(state.source, HandSource::kPatient);
+  EXPECT_EQ(state.fingertip_force, 0.0);
+  EXPECT_FALSE(state.running);
+  const HostGeometry geometry{};
+  EXPECT_EQ(geometry.revision, 0U);
+  EXPECT_EQ(geometry.handedness, Handedness::kRight);
+  EXPECT_EQ(geometry.rate_hz, 0.0);
+  EXPECT_FALSE(ChangeOutcome{}.overtaken);
+  const BlendedParameters blended;
+  EXPECT_TRUE(blended.smoothing);
+  EXPECT_EQ(blended.stiffness, 0.0);
+  EXPECT_EQ(blended.damping, 0.0);
+  EXPECT_EQ(blended.min_rate, 0.0);
+  EXPECT_EQ(blended.max_rate, 0.0);
 }
 
 }  // namespace

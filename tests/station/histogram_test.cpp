@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -136,6 +137,33 @@ TEST(Histogram, PrintsOneLineForEveryOctave) {
   EXPECT_THAT(text, HasSubstr("longest 12.0 us"));
   EXPECT_THAT(text, HasSubstr("3.2 .. 6.4 us          3   75.000 % " + std::string(38, '#') + "\n"));
   EXPECT_THAT(text, HasSubstr("6.4 .. 12.8 us          1   25.000 % " + std::string(13, '#') + "\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+}
+
+// Of 2,000 durations the ranks 1,000, 1,980 and 1,998: 40.5 of the bin [40, 42) x 0.1 us, 202 of [200, 208)
+// and 1,000 of [992, 1024), of which the middles are 4.1, 20.4 and 100.8 us. No percentile a per cent further
+// on is the same.
+TEST(Histogram, PrintsThreePercentilesAndTheLongest) {
+  Histogram h;
+  const auto add = [&h](int count, double us) {
+    for (int i = 0; i < count; ++i) h.add(1e-6 * us);
+  };
+  add(1010, 4.05);
+  add(980, 20.2);
+  add(9, 100.0);
+  add(1, 300.0);
+  EXPECT_THAT(histogram_text(h, "steps"),
+              HasSubstr("steps: 2000 measured; 50 % 4.1, 99 % 20.4, 99.9 % 100.8, longest 300.0 us\n"));
+}
+
+// One of four below 0.1 us and three above 13.4 s: 12.5 and 37.5 of 50 characters, 13 and 38 are drawn.
+TEST(Histogram, PrintsWhatLiesOutsideItsRange) {
+  Histogram h;
+  h.add(5e-8);
+  for (int i = 0; i < 3; ++i) h.add(20.0);
+  const std::string text = histogram_text(h, "steps");
+  EXPECT_THAT(text, HasSubstr("under 0.1 us          1   25.000 % " + std::string(13, '#') + "\n"));
+  EXPECT_THAT(text, HasSubstr("longer us          3   75.000 % " + std::string(38, '#') + "\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace phalanx {
 namespace {
@@ -30,9 +31,47 @@ TEST(OpenDevice, AnAddressThatIsNoneIsAnsweredWithWhatIsPossible) {
   }
 }
 
+TEST(OpenDevice, SaysWhichPartOfAnAddressIsWrong) {
+  for (const auto& [spec, said] : {std::pair{"udp", "not an address"},
+                                   {"tcp:127.0.0.1:1", "no kind of device is called 'tcp'"},
+                                   {"serial::9600", "no port"},
+                                   {"serial:/dev/null:fast", "'fast' is no baud rate"},
+                                   {"serial:/dev/null:12x", "'12x' is no baud rate"},
+                                   {"serial:/dev/null:0", "'0' is no baud rate"},
+                                   {"opengloves:/dev/null:", "'' is no baud rate"}})
+    EXPECT_NE(refusal(spec).find(said), std::string::npos) << spec << ": " << refusal(spec);
+}
+
 TEST(OpenDevice, APortThatIsNotThereIsNamed) {
-  EXPECT_NE(refusal("serial:/dev/phalanx-has-no-such-port").find("/dev/phalanx-has-no-such-port"),
-            std::string::npos);
+  for (const char* rate : {"", ":9600"})
+    EXPECT_EQ(refusal(std::string("serial:/dev/phalanx-has-no-such-port") + rate)
+                  .find("wire: serial:/dev/phalanx-has-no-such-port: cannot open"),
+              0U);
+}
+
+// A serial wire's address ends in its rate, and a glove that does not answer is asked whether it has that
+// rate.
+TEST(OpenDevice, AWireIsOpenedAtTheRateThatIsTypedOrElseAtTheUsualOne) {
+  EXPECT_EQ(open_transport("udp:127.0.0.1:9")->address(), "udp:127.0.0.1:9");
+  const auto terminal = open_pseudo_terminal();
+  const std::string serial = terminal->address();
+  const std::string glove = "opengloves" + serial.substr(serial.find(':'));
+  EXPECT_EQ(open_transport(serial)->address(), serial + ":2000000");
+  EXPECT_EQ(open_transport(serial + ":9600")->address(), serial + ":9600");
+  const Clock clock;
+  LinkSettings settings;
+  settings.hello_timeout = 0.05;
+  for (const auto& [rate, expected] : {std::pair{"", "115200"}, {":9600", "9600"}}) {
+    const auto device = open_device(glove + rate, clock, settings);
+    try {
+      device->open();
+      ADD_FAILURE() << "nobody is there";
+    } catch (const DeviceError& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string("is ") + expected + " its baud rate"),
+                std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 TEST(OpenDevice, AGloveDoesNotSpeakTheLink) {

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <functional>
@@ -83,6 +85,24 @@ std::uint64_t status_kib(const std::string& key) {
   return 0;
 }
 
+/// The number behind these words; 0: they are not there.
+std::uint64_t number_after(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? 0 : std::stoull(text.substr(at + words.size()));
+}
+
+/// Whether no limit binds this process: it locks a page under a limit of none.
+bool locks_beyond_limits() {
+  rlimit before{};
+  getrlimit(RLIMIT_MEMLOCK, &before);
+  const rlimit none{0, before.rlim_max};
+  alignas(4096) static char page[4096];
+  const bool may = setrlimit(RLIMIT_MEMLOCK, &none) == 0 && mlock(page, sizeof page) == 0;
+  munlock(page, sizeof page);
+  setrlimit(RLIMIT_MEMLOCK, &before);
+  return may;
+}
+
 /// Whether 64 more MiB can be had and written, in blocks that malloc takes from the system one by one.
 bool can_still_allocate() {
   for (int i = 0; i < 64; ++i) {
@@ -95,9 +115,13 @@ bool can_still_allocate() {
 }
 
 TEST(Realtime, SaysWhatAnOrdinaryUserIsNotGrantedAndHowToAllowIt) {
-  const std::string text = in_child([](std::ostream& out) {
-    if (!become_ordinary(64U << 10U)) return;
+  rlimit own{};
+  ASSERT_EQ(getrlimit(RLIMIT_MEMLOCK, &own), 0);
+  const rlim_t memlock = std::min<rlim_t>(own.rlim_max, 4U << 20U);  // less than the room that must stay
+  const std::string text = in_child([memlock](std::ostream& out) {
+    if (!become_ordinary(memlock)) return;
     print(make_realtime({.priority = 80, .cpu = -1, .lock_memory = true}), out);
+    out << "own size " << (status_kib("VmSize") >> 10U) << '\n';
     out << "slack " << prctl(PR_GET_TIMERSLACK) << '\n';
     out << "policy " << sched_getscheduler(0) << '\n';
     out << "allocates " << can_still_allocate() << '\n';
@@ -109,6 +133,10 @@ TEST(Realtime, SaysWhatAnOrdinaryUserIsNotGrantedAndHowToAllowIt) {
   if (!kSanitized) {
     EXPECT_THAT(text, HasSubstr("memory not locked, any CPU, kernel "));
     EXPECT_THAT(text, HasSubstr("missing: memory is not locked (the process has "));
+    EXPECT_NEAR(static_cast<double>(number_after(text, "the process has ")),
+                static_cast<double>(number_after(text, "own size ")), 8.0);
+    EXPECT_THAT(text, HasSubstr(" MiB and needs 16 more to grow, the limit is " +
+                                std::to_string(memlock >> 20U) + " MiB)"));
     EXPECT_THAT(text, HasSubstr("`memlock unlimited` for the group `realtime`"));
   }
   EXPECT_THAT(text, HasSubstr("docs/realtime.md"));
@@ -124,6 +152,7 @@ TEST(Realtime, LocksOnlyWhatThereIsUnderALimitSoThatLaterAllocationsWork) {
     const std::uint64_t limit = (status_kib("VmSize") << 10U) + (24U << 20U);
     if (!become_ordinary(limit)) return;
     print(make_realtime({}), out);
+    out << "own limit " << (limit >> 20U) << '\n';
     out << "locks something " << (status_kib("VmLck") > 0) << '\n';
     out << "allocates " << can_still_allocate() << '\n';
   });
@@ -131,6 +160,7 @@ TEST(Realtime, LocksOnlyWhatThereIsUnderALimitSoThatLaterAllocationsWork) {
     GTEST_SKIP() << "the hard limit on locked memory is too low here to be set to what this needs";
   EXPECT_THAT(text, HasSubstr("memory locked"));
   EXPECT_THAT(text, HasSubstr("missing: memory allocated from now on is not locked (the limit is "));
+  EXPECT_EQ(number_after(text, "(the limit is "), number_after(text, "own limit "));
   EXPECT_THAT(text, HasSubstr("locks something 1\n"));
   EXPECT_THAT(text, HasSubstr("allocates 1\n"));
 }
@@ -148,8 +178,10 @@ TEST(LockableMemory, IsAllWithoutALimitAndNothingThatFillsOne) {
 
 TEST(Realtime, SaysWhatTheKernelSays) {
   const std::string text = in_child([](std::ostream& out) {
+    const bool bound = !locks_beyond_limits();
     const RealtimeGrant grant = make_realtime({.priority = 7, .cpu = -1, .lock_memory = true});
     print(grant, out);
+    out << "limit heeded " << (bound || grant.memory_locked) << '\n';
     sched_param parameters{};
     sched_getparam(0, &parameters);
     const bool fifo = sched_getscheduler(0) == (SCHED_FIFO | SCHED_RESET_ON_FORK);
@@ -160,9 +192,9 @@ TEST(Realtime, SaysWhatTheKernelSays) {
     out << "reason given " << ((grant.fifo && grant.memory_locked) || !grant.missing.empty()) << '\n';
     out << "allocates " << can_still_allocate() << '\n';
   });
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("fifo agrees 1\n"), HasSubstr("priority agrees 1\n"),
-                    HasSubstr("lock agrees 1\n"), HasSubstr("reason given 1\n"), HasSubstr("allocates 1\n")));
+  EXPECT_THAT(text, AllOf(HasSubstr("limit heeded 1\n"), HasSubstr("fifo agrees 1\n"),
+                          HasSubstr("priority agrees 1\n"), HasSubstr("lock agrees 1\n"),
+                          HasSubstr("reason given 1\n"), HasSubstr("allocates 1\n")));
 }
 
 TEST(Realtime, ActsOnTheCallingThreadAloneAndNotOnThoseItMakes) {

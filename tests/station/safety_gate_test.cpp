@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -86,6 +87,7 @@ TEST(SafetyGate, AStopEndsWhereTheTorqueIsAtRest) {
   EXPECT_EQ(bench.safety.factor(), 0.0);
   EXPECT_NEAR(bench.command.torque[kMcp], 0.4 - 0.3, 2e-3);
   EXPECT_EQ(bench.safety.state(), SafetyState::kStopping);
+  EXPECT_EQ(bench.safety.settings().torque_rate, 1.0);
   EXPECT_TRUE(bench.command.enable);
   bench.steps(110);
   EXPECT_EQ(bench.command.torque[kMcp], 0.0);
@@ -368,6 +370,16 @@ TEST(SafetyGate, TheSilenceOfASimulatedDeviceIsCountedInStepsAndAResetForgetsIt)
   EXPECT_EQ(bench.safety.fault().fault, Fault::kNoSample);
 }
 
+TEST(SafetyGate, ASimulatedDeviceThatIsSilentFromTheBeginningHasHalfASecondToo) {
+  DeviceInfo info = device_of(1000.0, true);
+  info.simulated = true;
+  SlowBench bench(info);
+  for (int i = 0; i < 490; ++i) bench.step(true);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  for (int i = 0; i < 20; ++i) bench.step(true);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNoSample);
+}
+
 // Enabled commands and a device that stays at rest: 0.2 s for a motor, five periods for a slow glove.
 TEST(SafetyGate, AGloveMayTakeFiveOfItsPeriodsToActOnWhatItIsSent) {
   for (const auto& [rate_hz, least] : {std::pair{10.0, 0.5}, std::pair{100.0, 0.2}}) {
@@ -379,6 +391,98 @@ TEST(SafetyGate, AGloveMayTakeFiveOfItsPeriodsToActOnWhatItIsSent) {
     while (bench.safety.state() != SafetyState::kFault && bench.now() < begin + 2.0) bench.step();
     EXPECT_EQ(bench.safety.fault().fault, Fault::kNotActing) << rate_hz;
     EXPECT_NEAR(bench.safety.fault().time - begin, least + 0.5 / rate_hz, 0.5 / rate_hz + 2e-3) << rate_hz;
+  }
+}
+
+// ---- how it begins, and what a fault names ----
+
+// Nine late steps in a row from the very first on are not ten.
+TEST(SafetyGate, BeginsAtRestAndWithNothingCounted) {
+  Bench bench;
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  EXPECT_TRUE(bench.safety.at_rest());
+  EXPECT_EQ(bench.safety.factor(), 0.0);
+  EXPECT_EQ(bench.safety.late_in_a_row(), 0);
+  for (int i = 1; i <= 9; ++i) {
+    EXPECT_EQ(bench.step(false, Fault::kNone, true).tick, static_cast<std::uint64_t>(i));
+    EXPECT_EQ(bench.safety.late_in_a_row(), i);
+  }
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNone);
+}
+
+// 0.5 s from the first look, also where the clock stood at 0 then.
+TEST(SafetyGate, SilenceIsCountedFromAClockThatBeginsAtZeroToo) {
+  Bench bench;
+  for (const double now : {0.0, 0.3}) bench.safety.observe({}, Fault::kNone, false, now);
+  EXPECT_EQ(bench.safety.state(), SafetyState::kWaiting);
+  bench.safety.observe({}, Fault::kNone, false, 0.5);
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kNoSample);
+}
+
+void push_index(Bench& bench, int k, double force) {
+  SegmentSnapshot& segment = bench.snapshot.segment[wall_of_digit(1, k)];
+  segment.normal = Vec3::UnitZ();
+  segment.force = force;
+}
+
+// What no sensor is guilty of names none, and what the host has found is not said to be the device's. 6 N are
+// too much for one segment, and 4 N on each of two for their digit.
+TEST(SafetyGate, AFaultThatIsNotOneSensorsNamesNoChannelAndIsTheHosts) {
+  struct Case {
+    Fault fault;
+    void (*cause)(Bench&);
+  };
+  const Case cases[] = {
+      {Fault::kNoSample,
+       [](Bench& b) {
+         for (int i = 0; i < 20; ++i) b.step(true);
+       }},
+      {Fault::kControllerRestarted, [](Bench& b) { b.step(false, Fault::kControllerRestarted); }},
+      {Fault::kOverload,
+       [](Bench& b) {
+         for (int i = 0; i < 10; ++i) b.step(false, Fault::kNone, true);
+       }},
+      {Fault::kNotActing,
+       [](Bench& b) {
+         b.obeys = false;
+         b.steps(300);
+       }},
+      {Fault::kForceCeiling,
+       [](Bench& b) {
+         push_index(b, 2, 6.0);
+         b.step();
+       }},
+      {Fault::kForceCeiling,
+       [](Bench& b) {
+         push_index(b, 1, 4.0);
+         push_index(b, 2, 4.0);
+         b.step();
+       }},
+      {Fault::kCommandNotFinite,
+       [](Bench& b) {
+         b.snapshot.status = Status::kCommandNotFinite;
+         b.step();
+       }},
+      {Fault::kCommandNotFinite,
+       [](Bench& b) {
+         b.snapshot.torque[kMcp] = std::numeric_limits<double>::quiet_NaN();
+         b.step();
+       }},
+      {Fault::kClockBackwards,
+       [](Bench& b) {
+         for (int i = 0; i < 3; ++i) {
+           b.samples.sample.time_us -= 5000;
+           b.step();
+         }
+       }},
+  };
+  for (const Case& c : cases) {
+    Bench bench;
+    bench.run_with(0.1);
+    c.cause(bench);
+    EXPECT_EQ(bench.safety.fault().fault, c.fault) << fault_name(c.fault);
+    EXPECT_EQ(bench.safety.fault().channel, -1) << fault_name(c.fault);
+    EXPECT_FALSE(bench.safety.fault().from_device) << fault_name(c.fault);
   }
 }
 
@@ -436,7 +540,9 @@ TEST(SafetyGate, AResetForgetsTheSamplesOfBefore) {
   ASSERT_TRUE(bench.safety.reset(Fault::kControllerRestarted, bench.now));
   bench.samples.sample.time_us = 0;
   bench.samples.at(1.2, 0.1);
-  bench.steps(5);
+  bench.step();
+  EXPECT_EQ(bench.safety.state(), SafetyState::kStarting) << "its first sample will do";
+  bench.steps(4);
   EXPECT_EQ(bench.safety.state(), SafetyState::kStarting);
 }
 

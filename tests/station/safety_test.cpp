@@ -361,6 +361,15 @@ TEST(Safety, WhateverTheStepSaysTheCommandIsFiniteLimitedAndRateLimited) {
   EXPECT_NE(bench.safety.state(), SafetyState::kFault);
 }
 
+TEST(SafetyStates, HaveTheNamesThatLogsAndPagesShow) {
+  EXPECT_EQ(safety_state_name(SafetyState::kWaiting), "waiting");
+  EXPECT_EQ(safety_state_name(SafetyState::kStarting), "starting");
+  EXPECT_EQ(safety_state_name(SafetyState::kRunning), "running");
+  EXPECT_EQ(safety_state_name(SafetyState::kStopping), "stopping");
+  EXPECT_EQ(safety_state_name(SafetyState::kStopped), "stopped");
+  EXPECT_EQ(safety_state_name(SafetyState::kFault), "fault");
+}
+
 TEST(SafetySettings, AStationRefusesLimitsThatAreOffAndForcesThatNobodyAnswersFor) {
   LimitParameters limits;
   EXPECT_NO_THROW(static_cast<void>(make_safety_settings(limits, "")));

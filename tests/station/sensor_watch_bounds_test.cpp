@@ -248,6 +248,17 @@ TEST(SensorWatchBounds, ATendonsSlackIsItsStretchBothWaysAndItsPlay) {
   EXPECT_EQ(witnesses[0].arm[kMcp], -0.02);
 }
 
+TEST(SensorWatchBounds, AMotorThatIsTheFirstChannelIsAWitnessToo) {
+  Exoskeleton exoskeleton;
+  exoskeleton.motors.resize(1);
+  exoskeleton.motors[0].arm[kMcp] = 0.01;
+  exoskeleton.motors[0].tendon_stiffness = 7000.0;
+  const std::vector<DeviceChannel> channels = {{.kind = ChannelKind::kMotor}};
+  const std::vector<MotorWitness> witnesses = motor_witnesses(exoskeleton, channels, 0.5);
+  ASSERT_EQ(witnesses.size(), 1U);
+  EXPECT_EQ(witnesses[0].channel, 0);
+}
+
 // ---- torque and force that disagree ----
 
 // -0.4 Nm commanded: 0.15 + 0.5 x 0.4 = 0.35 Nm are believed, either way round.

@@ -48,8 +48,14 @@ TEST_F(StationHostTest, RunsTheSceneAndSaysWhatIsSet) {
   EXPECT_EQ(state->busy, "");
   EXPECT_THAT(state->overrides, IsEmpty());
   EXPECT_THAT(state->values, Contains(Pair("force.stiffness_n_per_mm", "0.5")));
+  EXPECT_THAT(state->description, HasSubstr("a first session"));
+  EXPECT_EQ(state->fingertip_force, 5.0) << "the scene states none";
   EXPECT_EQ(state->geometry->revision, 1U);
   EXPECT_FALSE(state->geometry->object.vertices.empty());
+  for (const SegmentMeshes* meshes : {&state->geometry->segment, &state->geometry->display})
+    for (const TriangleMesh& mesh : *meshes) EXPECT_FALSE(mesh.vertices.empty());
+  EXPECT_LT((state->geometry->X_WH.p - Vec3(0.014, -0.114, 0.098)).norm(), 1e-12) << "the scene's hand";
+  EXPECT_EQ(state->geometry->rate_hz, 200.0);
   EXPECT_THAT(state->sensed_joints, ::testing::Not(IsEmpty()));
   EXPECT_EQ(state->wizard, nullptr);
 }
@@ -94,8 +100,11 @@ TEST_F(StationHostTest, AnotherObjectIsExchangedAtZeroTorqueOrGetsANewStationWit
 TEST_F(StationHostTest, AnotherLawIsExchangedAndTheShapesStay) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
-  EXPECT_EQ(set({{"force.law", "kelvin_voigt"}}), "");
+  EXPECT_EQ(set({{"force.law", "kelvin_voigt"}, {"description", "'another law'"}}), "");
   EXPECT_EQ(value("force.law"), R"("kelvin_voigt")");
+  EXPECT_THAT(host->state()->overrides,
+              ElementsAre(Pair("force.law", "kelvin_voigt"), Pair("description", "'another law'")));
+  EXPECT_EQ(host->state()->description, "another law");
   EXPECT_EQ(host->state()->geometry->revision, 1U);
   EXPECT_TRUE(until_running());
 }
@@ -196,7 +205,18 @@ TEST_F(StationHostTest, MoreThanSoManyChangesAreRefusedAtTheDoor) {
 TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) {
   start(with("simulated"));
   ASSERT_TRUE(until_running());
-  EXPECT_EQ(move_by(HandSource::kSliders), "");
+  // What is said of the host while it is done.
+  const auto busy_with = [&](HandSource source) {
+    auto [answer, done] = awaited();
+    host->set_source(source, std::move(done));
+    host->go_on();
+    const std::string busy = host->state()->busy;
+    const auto got = answer;
+    EXPECT_TRUE(until([&] { return got->refused.has_value(); }));
+    EXPECT_EQ(got->refused, "");
+    return busy;
+  };
+  EXPECT_EQ(busy_with(HandSource::kSliders), "sliders");
   EXPECT_EQ(host->state()->source, HandSource::kSliders);
   JointArray wanted = host->sliders();
   const auto index_pip = static_cast<std::size_t>(joint_index(1, 2));
@@ -213,7 +233,7 @@ TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) 
   EXPECT_TRUE(std::isfinite(host->sliders()[little]));
   EXPECT_TRUE(until([&] { return std::abs(host->view().snapshot.hcp_angle[index_pip] - most) < 0.02; }));
   EXPECT_NE(host->view().state, SafetyState::kFault);
-  EXPECT_EQ(move_by(HandSource::kPatient), "");
+  EXPECT_EQ(busy_with(HandSource::kPatient), "simulated patient");
   EXPECT_FALSE(host->set_sliders(wanted)) << "it moves nothing";
   EXPECT_TRUE(until_running());
   EXPECT_TRUE(host->state()->device.simulated);
@@ -236,7 +256,7 @@ TEST_F(StationHostTest, AStopIsObeyedByTheNextStepWhileASceneIsBuilt) {
   auto [answer, done] = awaited();
   host->load_scene("grasp_teapot", done);
   host->go_on();
-  ASSERT_FALSE(host->state()->busy.empty());
+  ASSERT_EQ(host->state()->busy, "scene grasp_teapot");
   host->stop();
   const double stopped = clock.now();
   const auto got = answer;

@@ -5,13 +5,18 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "phalanx/scene/build_model.h"
 #include "phalanx/station/assemble.h"
+#include "station/small_station.h"
 #include "station/watched_device.h"
 #include "support/sanitized.h"
 
@@ -87,6 +92,9 @@ TEST_F(StationTest, SqueezesTheTeapotFor30SecondsAt1KHzWithoutAFaultOrAnAllocati
   EXPECT_LE(device_->largest_torque, scene_.limits.joint_torque);
   station_->shut_down();
   EXPECT_TRUE(device_->at_zero);
+  // Nobody has fetched a record, and 8,192 have room.
+  const std::uint64_t steps = station_->deadlines().steps;
+  EXPECT_EQ(station_->view().records_lost, steps > 8192 ? steps - 8192 : 0);
 }
 
 TEST_F(StationTest, StopGoesToZeroAndResumeComesBackOverTheRamp) {
@@ -223,6 +231,11 @@ TEST_F(StationTest, ARecordSaysWhatTheViewOfItsStepShows) {
   EXPECT_EQ(record.stiffness, shown.stiffness);
   EXPECT_EQ(record.duration, shown.duration);
   EXPECT_GT(record.samples, 0U);
+  EXPECT_EQ(shown.records_lost, 0U);
+  // The longest of all steps, each counted to a moment after its command left: known once the next has begun.
+  ASSERT_TRUE(until([&](const StationView& view) { return view.time > shown.time; }));
+  EXPECT_GE(record.duration, 0.0);
+  EXPECT_LE(record.duration, 1e-6 * station_->deadlines().step.max_us() + 1e-9);
 }
 
 TEST_F(StationTest, StepsThatAreTooLongAreCountedShownAndStoppedAfterTenInARow) {
@@ -240,6 +253,44 @@ TEST_F(StationTest, ARateOutsideItsRangeIsRefused) {
   EXPECT_THROW(start({{"rate_hz", "2500"}}), std::invalid_argument);
   start({{"rate_hz", "2000"}});
   ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
+}
+
+/// A hand that rests, whose device keeps each step waiting for 40 ms once it is drowsy.
+class DrowsyDevice final : public Device {
+ public:
+  explicit DrowsyDevice(const Clock& clock) : clock_(clock), device_(test::resting_device()) {}
+  void open() override {}
+  void close() noexcept override { device_->close(); }
+  [[nodiscard]] const DeviceInfo& info() const override { return device_->info(); }
+  [[nodiscard]] std::size_t receive(double now, std::span<DeviceSample> out) noexcept override {
+    if (drowsy) clock_.sleep_until(clock_.now() + 0.04);
+    return device_->receive(now, out);
+  }
+  void send(const DeviceCommand& command) noexcept override { device_->send(command); }
+  void reset() noexcept override { device_->reset(); }
+
+  std::atomic<bool> drowsy{false};
+
+ private:
+  const Clock& clock_;
+  std::unique_ptr<Device> device_;
+};
+
+// The ramp's 40 steps of 5 ms take 40 or 45 ms each, 1.8 s at most: who shuts down waits for 2 s beyond 0.2
+// s.
+TEST(StationEnd, WaitsForARampWhoseStepsAreSlow) {
+  const Clock clock;
+  auto device = std::make_unique<DrowsyDevice>(clock);
+  DrowsyDevice& drowsy = *device;
+  const RunningStation running = test::small_station(std::move(device), clock);
+  running.station->start();
+  const auto state = [&] { return running.station->view().state; };
+  for (int i = 0; i < 1000 && state() != SafetyState::kRunning; ++i) clock.sleep_until(clock.now() + 0.01);
+  ASSERT_EQ(state(), SafetyState::kRunning);
+  drowsy.drowsy = true;
+  running.station->shut_down();
+  EXPECT_EQ(state(), SafetyState::kStopped);
+  EXPECT_EQ(running.station->view().factor, 0.0);
 }
 
 }  // namespace

@@ -129,6 +129,13 @@ TEST_F(WiredHostTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
   const phx_controller told = controller->controller();
   for (std::size_t c = 0; c < middle.size(); ++c)
     EXPECT_NEAR(static_cast<double>(told.configure.offset[c]), -kTooMuch, 0.01) << "for its walls";
+  // With its file gone neither the new rate nor the old one gets a station: that was tried once.
+  std::filesystem::remove(folder / "found.toml");
+  ASSERT_NE(host->view().state, SafetyState::kFault) << "which would hold the torque, too";
+  const std::uint64_t stops = host->stops();
+  EXPECT_THAT(set({{"rate_hz", "250"}}), HasSubstr("found.toml"));
+  EXPECT_FALSE(host->state()->running);
+  EXPECT_EQ(host->stops(), stops + 1);
 }
 
 TEST_F(WiredHostTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {
@@ -160,6 +167,14 @@ TEST_F(WiredHostTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation) {
   EXPECT_FALSE(any_torque(host->view()));
   const std::size_t poses = host->state()->wizard->names.size();
   ASSERT_GT(poses, 2U);
+  EXPECT_EQ(calibrate(Step::kSkip), "");
+  EXPECT_EQ(host->state()->wizard->pose, 1U);
+  EXPECT_EQ(calibrate(Step::kGoTo, 2), "");
+  EXPECT_EQ(host->state()->wizard->pose, 2U);
+  for (const std::size_t before : {std::size_t{1}, std::size_t{0}}) {
+    EXPECT_EQ(calibrate(Step::kBack), "");
+    EXPECT_EQ(host->state()->wizard->pose, before);
+  }
   for (std::size_t i = 0; i < poses; ++i) {
     measure();
   }
@@ -246,7 +261,16 @@ TEST_F(WiredHostTest, ADeviceThatDoesNotOpenAgainIsTroubleUntilAReset) {
   ASSERT_TRUE(until([&] { return host->view().snapshot.tick > 0; }));
   controller.reset();
   const auto before = host->state();
-  EXPECT_FALSE(set({{"rate_hz", "250"}}).empty());
+  // Two that wait together are tried together, and the device is not asked once more for each.
+  auto [rate, rate_done] = awaited();
+  auto [force, force_done] = awaited();
+  host->set({{"rate_hz", "250"}}, std::move(rate_done));
+  host->set({{"force.stiffness_n_per_mm", "0.6"}}, std::move(force_done));
+  const auto first = rate;
+  const auto second = force;
+  ASSERT_TRUE(until([&] { return first->refused.has_value() && second->refused.has_value(); }));
+  EXPECT_THAT(*first->refused, HasSubstr("no controller answers"));
+  EXPECT_EQ(second->refused, first->refused);
   EXPECT_FALSE(host->state()->running);
   EXPECT_FALSE(host->state()->trouble.empty());
   EXPECT_FALSE(any_torque(host->view()));

@@ -139,6 +139,23 @@ TEST(CheckParameters, ThereIsNoMethodBeyondTheLast) {
   }
 }
 
+TEST(CheckParameters, ThereIsNoLawAndNoReactionBeyondTheLast) {
+  HapticModel model = floor_model();
+  model.force.law = ForceLaw::kLinearThenCubic;
+  model.oscillation.reaction = OscillationReaction::kHalve;
+  EXPECT_NO_THROW(check_parameters(model));
+  for (const int number : {static_cast<int>(ForceLaw::kLinearThenCubic) + 1, -1}) {
+    HapticModel unknown = floor_model();
+    unknown.force.law = static_cast<ForceLaw>(number);
+    expect_refused(unknown, "force.law", number);
+  }
+  for (const int number : {static_cast<int>(OscillationReaction::kHalve) + 1, -1}) {
+    HapticModel unknown = floor_model();
+    unknown.oscillation.reaction = static_cast<OscillationReaction>(number);
+    expect_refused(unknown, "oscillation.reaction", number);
+  }
+}
+
 TEST(CheckParameters, AStateIsNotMadeWithoutIt) {
   HapticModel model = floor_model();
   model.force.stiffness = -1.0;

@@ -93,6 +93,11 @@ TEST(Defaults, OfStabilisersAndTheObserver) {
   EXPECT_EQ(stabiliser.passivity_damping_max, 10.0);
   EXPECT_EQ(stabiliser.device_damping, 1.6);
   EXPECT_EQ(stabiliser.wall_valid, 14e-3);
+  const StabiliserInput input;
+  for (const double number : {input.force, input.depth, input.speed, input.speed_now, input.sent})
+    EXPECT_EQ(number, 0.0);
+  EXPECT_FALSE(input.pressing);
+  EXPECT_EQ(input.period, 0.005);
   const OscillationParameters oscillation;
   EXPECT_EQ(oscillation.reaction, OscillationReaction::kReport);
   EXPECT_EQ(oscillation.swing, 0.5);

@@ -74,6 +74,21 @@ TEST(SampleGuard, SlewsOverAPeriodAtLeast) {
   EXPECT_NEAR(hand.angle(), 0.05, 1e-12);
 }
 
+// At 8 Hz a period is longer than 50 ms and counts as a whole: 1.25 rad.
+TEST(SampleGuard, SlewsOverTheWholePeriodOfASlowLoop) {
+  const HandParameters hand = test::simple_parameters();
+  LimitParameters limits;
+  limits.joint_speed = 10.0;
+  SampleGuard guard{JointArray{}};
+  Sample sample;
+  sample.time_s = 1.0;
+  guard.accept(sample, hand, limits, 0.125);
+  sample.time_s = 1.125;
+  sample.angle[kGuardJoint] = 1.5;
+  EXPECT_TRUE(has(guard.accept(sample, hand, limits, 0.125), Status::kSampleJump));
+  EXPECT_NEAR(guard.angle()[kGuardJoint], 1.25, 1e-12);
+}
+
 // After a device's restart its clock begins at 0: since the last sample that was used time has run backwards,
 // which counts as one period.
 TEST(SampleGuard, SlewsOverAPeriodWhereTheClockHasBegunAgain) {
@@ -186,15 +201,20 @@ TEST(SampleGuard, IsNotStaleAtFiftyMillisecondsThemselvesAlsoBeforeTheFirstWhole
 
 TEST(SampleGuard, PassesMeasuredChannelsOnlyOfASampleThatIsUsed) {
   Sample sample;
-  sample.measured_torque[3] = 0.25;
+  for (std::size_t j = 0; j < kJoints; ++j) sample.measured_torque[j] = 0.25 * static_cast<double>(j);
+  for (std::size_t d = 0; d < kDigits; ++d) sample.measured_force[d] = 2.0 + static_cast<double>(d);
   sample.measured_torque[4] = -kInfinity;
-  sample.measured_force[1] = 2.0;
   Snapshot snapshot;
   pass_measured(sample, Status::kSampleOutOfRange, snapshot);
-  EXPECT_EQ(snapshot.measured_torque[3], 0.25);
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    if (j != 4) {
+      EXPECT_EQ(snapshot.measured_torque[j], 0.25 * static_cast<double>(j)) << j;
+    }
+  }
   EXPECT_TRUE(std::isnan(snapshot.measured_torque[4]));
-  EXPECT_EQ(snapshot.measured_force[1], 2.0);
+  EXPECT_EQ(snapshot.measured_force, sample.measured_force);
   pass_measured(sample, Status::kTimeNotIncreasing | Status::kSampleStale, snapshot);
+  EXPECT_EQ(snapshot.stiffness_factor, 1.0) << "what comes after them in the snapshot is left alone";
   for (const double torque : snapshot.measured_torque) EXPECT_TRUE(std::isnan(torque));
   for (const double force : snapshot.measured_force) EXPECT_TRUE(std::isnan(force));
 }

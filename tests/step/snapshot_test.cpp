@@ -51,6 +51,13 @@ TEST(StepSnapshot, IsTheOpenHandBeforeTheFirstStep) {
     EXPECT_LT((pose[kTip].p - tip).norm(), 1e-15);
     EXPECT_EQ(pose[kPalm].p, X_WH.p);
   }
+  HandPoses open_hand;
+  model.hand.poses(parameters.open_angle, open_hand);
+  for (std::size_t s = 0; s < kPalm; ++s) {
+    const Vec3& place = open_hand.digit[s / kSegmentsPerDigit].segment[s % kSegmentsPerDigit].p;
+    EXPECT_EQ(now.hcp_pose[s].p, place) << s;
+    EXPECT_EQ(now.gdp_pose[s].p, place) << s;
+  }
 }
 
 TEST(StepSnapshot, ASegmentThatTouchesNothingHasNeitherPointNorNormal) {

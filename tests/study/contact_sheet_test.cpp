@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "study/picture/letters.h"
 
@@ -101,6 +103,42 @@ TEST(Letters, AreAllDrawnWithinTheirWidthAndNoTwoAlike) {
   picture::letter_strokes('5', none);
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(picture::letter_advance('5'), 0.0F);
+}
+
+/// Whether the strokes meet, but for the rounding of their ends.
+bool meet(const std::pair<Eigen::Vector2f, Eigen::Vector2f>& one,
+          const std::pair<Eigen::Vector2f, Eigen::Vector2f>& other) {
+  const Eigen::Vector2f along = other.second - other.first;
+  for (int i = 0; i <= 100; ++i) {
+    const Eigen::Vector2f p = one.first + (static_cast<float>(i) / 100.0F) * (one.second - one.first);
+    const float t = std::clamp((p - other.first).dot(along) / along.squaredNorm(), 0.0F, 1.0F);
+    if ((p - other.first - t * along).norm() < 0.1F) return true;
+  }
+  return false;
+}
+
+// Each letter is of one piece; an i and a j have their dot.
+TEST(Letters, HangTogether) {
+  for (const char c : std::string("abcdefghijklmnopqrstuvwxyz")) {
+    picture::Strokes left;
+    picture::letter_strokes(c, left);
+    int pieces = 0;
+    while (!left.empty()) {
+      ++pieces;
+      picture::Strokes piece{left.back()};
+      left.pop_back();
+      for (std::size_t k = 0; k < piece.size(); ++k) {
+        const auto of_piece = [&](const auto& stroke) {
+          return meet(stroke, piece[k]) || meet(piece[k], stroke);
+        };
+        const auto rest =
+            std::partition(left.begin(), left.end(), [&](const auto& stroke) { return !of_piece(stroke); });
+        piece.insert(piece.end(), rest, left.end());
+        left.erase(rest, left.end());
+      }
+    }
+    EXPECT_EQ(pieces, c == 'i' || c == 'j' ? 2 : 1) << c;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
+#include "phalanx/study/experiment_report.h"
 #include "study/experiments/timing.h"
 
 namespace phalanx {
@@ -78,6 +81,67 @@ TEST_F(S1Fig8, ReportsEverySituation) {
   EXPECT_THAT(text, ::testing::HasSubstr("not printed"));
   const std::string csv = fig8_csv(*situations_);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 8);
+}
+
+/// Made up: the numbers of joints 4, 6 and 7 and of segments 3, 4 and 5 all differ, as do what S1 says of the
+/// contacts and what there is.
+Fig8Situation made_up_situation() {
+  Fig8Situation s;
+  s.letter = 'c';
+  s.title = "made up";
+  s.touching = {true, true, false};
+  s.ball_diameter = 0.05;
+  s.ball_centre = Vec3(0.5, 0.25, -0.125);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const double quarters = 0.25 * static_cast<double>(j + 1);
+    s.held.hcp_angle[kJointNumbers[j]] = 1.0 + quarters;
+    s.held.gdp_angle[kJointNumbers[j]] = 2.0 + quarters;
+    s.held.torque[kJointNumbers[j]] = -3.0 - quarters;
+  }
+  s.held.segment[3].contact = s.held.segment[5].contact = true;
+  s.held.segment[3].depth = 0.001;
+  s.held.segment[3].force = 0.5;
+  s.held.segment[5].depth = 0.002;
+  s.held.segment[5].force = 1.5;
+  return s;
+}
+
+TEST(Fig8Csv, NamesEveryNumber) {
+  EXPECT_EQ(fig8_csv({made_up_situation()}),
+            "situation,mcp_hcp_rad,mcp_gdp_rad,mcp_torque_nm,pip_hcp_rad,pip_gdp_rad,pip_torque_nm,"
+            "dip_hcp_rad,dip_gdp_rad,dip_torque_nm,proximal_contact,proximal_depth_m,proximal_force_n,"
+            "middle_contact,middle_depth_m,middle_force_n,distal_contact,distal_depth_m,distal_force_n\n"
+            "c,1.25,2.25,-3.25,1.5,2.5,-3.5,1.75,2.75,-3.75,1,0.001,0.5,0,0,0,1,0.002,1.5\n");
+}
+
+TEST(Fig8Json, NamesEveryNumber) {
+  auto json = nlohmann::json::parse(fig8_json({made_up_situation()}));
+  EXPECT_TRUE(json.contains("made"));
+  json.erase("made");
+  const auto expected = nlohmann::json::parse(R"json({
+    "experiment": "s1-fig8", "paper": "S1 fig. 8", "paper_values": "not printed",
+    "situations": [{
+      "situation": "c", "title": "made up",
+      "ball": {"diameter_m": 0.05, "centre_m": [0.5, 0.25, -0.125]},
+      "joints": {
+        "MCP flexion": {"hcp_rad": 1.25, "gdp_rad": 2.25, "torque_nm": -3.25, "carries_torque_in_s1": true},
+        "PIP": {"hcp_rad": 1.5, "gdp_rad": 2.5, "torque_nm": -3.5, "carries_torque_in_s1": true},
+        "DIP": {"hcp_rad": 1.75, "gdp_rad": 2.75, "torque_nm": -3.75, "carries_torque_in_s1": false}},
+      "segments": {
+        "proximal": {"contact": true, "in_contact_in_s1": true, "depth_m": 0.001, "force_n": 0.5},
+        "middle": {"contact": false, "in_contact_in_s1": true, "depth_m": 0.0, "force_n": 0.0},
+        "distal": {"contact": true, "in_contact_in_s1": false, "depth_m": 0.002, "force_n": 1.5}}}]})json");
+  EXPECT_EQ(json, expected);
+}
+
+TEST(Experiments, BeginWithTheSevenSituationsThatAllAgree) {
+  const Experiment& first = experiments().front();
+  EXPECT_EQ(first.name, "s1-fig8");
+  const ExperimentReport report = first.run();
+  ASSERT_EQ(report.rows.size(), 1U);
+  EXPECT_EQ(report.rows[0].ours, "7 of 7");
+  EXPECT_EQ(report.rows[0].difference, "agrees");
+  EXPECT_EQ(std::count(report.csv.begin(), report.csv.end(), '\n'), 8);
 }
 
 int rounds_down_to_tens(int request, const SceneDescription&) { return request / 10 * 10; }

@@ -102,6 +102,17 @@ TEST(PlotSvg, SaysHowManyOfManyCurvesItShows) {
   EXPECT_THAT(svg, HasSubstr(">middle proximal<"));
 }
 
+// The law asks for 100 N of the ring finger and nothing is sent to it: the eight that are sent a force come
+// first.
+TEST(PlotSvg, ShowsWhatIsSentBeforeWhatTheLawAlone) {
+  Trace trace = trace_with(8);
+  for (TraceTick& tick : trace) tick.force_raw[9] = 100.0;
+  const std::string svg = plot_svg(trace, {});
+  EXPECT_THAT(svg, HasSubstr(">8 of 9 shown<"));
+  EXPECT_THAT(svg, HasSubstr(">thumb metacarpal<"));
+  EXPECT_THAT(svg, Not(HasSubstr(">ring proximal<")));
+}
+
 TEST(PlotSvg, SaysWhenNothingTouched) {
   const Trace rest(10);
   const std::string svg = plot_svg(rest, {});
@@ -161,6 +172,56 @@ TEST(DrawPanel, PutsEachSampleAndEachTickWhereItsTimeAndValueBelong) {
   EXPECT_THAT(svg, HasSubstr("d=\"M100.00,130.00L200.00,50.00L300.00,90.00\""));
   EXPECT_THAT(svg, HasSubstr("M200.00,50.00v80.00"));
   EXPECT_THAT(svg, HasSubstr("M100.00,90.00h200.00"));
+  EXPECT_THAT(svg, Not(HasSubstr("stroke=\"#888\"")));  // no line at zero inside the frame
+}
+
+std::string panel_of(Curve curve) {
+  const Panel panel{.title = "force",
+                    .y_label = "N",
+                    .solid_means = "sent",
+                    .dashed_means = "asked",
+                    .note = "note",
+                    .empty = "",
+                    .curves = {std::move(curve)},
+                    .clip_dashed = true};
+  const PanelFrame frame{.x = 100.0,
+                         .y = 50.0,
+                         .width = 200.0,
+                         .height = 90.0,
+                         .legend_x = 310.0,
+                         .time_low = 1.0,
+                         .time_high = 3.0,
+                         .time_ticks = {1.0, 2.0, 3.0},
+                         .time_labels = true};
+  return draw_panel(panel, frame, {1.0, 2.0, 3.0}, "clip");
+}
+
+// The solid curve reaches 2 and the dashed one five times that: the axis ends at 1.5 times 2, 30 points for
+// each newton, and the dashed curve a frame's height above it. The legend's lines are 11.5 points apart, 1.5
+// more below the curves.
+TEST(DrawPanel, LeavesADashedCurveOutsideThatWouldDwarfTheSolidOne) {
+  const std::string svg = panel_of({.label = "index", .solid = {0.0, 2.0, 1.0}, .dashed = {0.0, 10.0, 0.0}});
+  for (const char* piece :
+       {"class=\"solid\" d=\"M100.00,140.00L200.00,80.00L300.00,110.00\"",
+        "class=\"dashed\" d=\"M100.00,140.00L200.00,-40.00L300.00,140.00\"", "d=\"M310.00,53.00h18\"",
+        "translate(319.00,53.00)", "<text x=\"333.00\" y=\"55.80\" fill=\"#000\">index<",
+        "d=\"M310.00,66.00h18\"", "<text x=\"333.00\" y=\"68.80\" fill=\"#555\">sent<",
+        "d=\"M310.00,77.50h18\"", "<text x=\"333.00\" y=\"80.30\" fill=\"#555\">asked<",
+        "<text x=\"310.00\" y=\"91.80\" fill=\"#555\">dashed up to 10, off scale<",
+        "<text x=\"310.00\" y=\"103.30\" fill=\"#555\">note<"})
+    EXPECT_EQ(count(svg, piece), 1U) << piece;
+}
+
+// Two and a half times as high is still drawn whole, on an axis from 0 to 6.
+TEST(DrawPanel, KeepsADashedCurveThatFits) {
+  const std::string svg = panel_of({.label = "index", .solid = {0.0, 2.0, 1.0}, .dashed = {0.0, 5.0, 0.0}});
+  EXPECT_THAT(svg, Not(HasSubstr("off scale")));
+  EXPECT_THAT(svg, HasSubstr("class=\"dashed\" d=\"M100.00,140.00L200.00,65.00L300.00,140.00\""));
+}
+
+TEST(DrawPanel, DrawsALineAtZeroInsideTheFrame) {
+  EXPECT_THAT(panel_of({.label = "index", .solid = {-2.0, 0.0, 2.0}, .dashed = {}}),
+              HasSubstr("d=\"M100.00,95.00h200.00\" stroke=\"#888\""));
 }
 
 TEST(NiceTicks, AreRoundNumbersAroundTheData) {
@@ -175,6 +236,7 @@ TEST(TickLabel, HasTheDecimalsThatTheSpacingNeeds) {
   EXPECT_EQ(tick_label(-0.02, 0.02), "\u22120.02");
   EXPECT_EQ(tick_label(200.0, 50.0), "200");
   EXPECT_EQ(tick_label(-1e-17, 0.5), "0");
+  EXPECT_EQ(tick_label(100.2, 100.3 - 100.2), "100.2");  // a little less than 0.1 by rounding
 }
 
 TEST(Thinned, KeepsEveryExtreme) {

@@ -131,7 +131,6 @@ void LinkSession::begin(double now) noexcept {
   first_pong_ = -1.0;
   pings_before_sample_ = pings_;
   next_configure_ = now;
-  next_command_ = now;
   if (reset_until_ >= 0.0) reset_until_ = now + kResetFor;
   phase_ = Phase::kRunning;
   shared_.fault.store(Fault::kNone, std::memory_order_release);
@@ -266,7 +265,8 @@ void LinkSession::send_command(double now) noexcept {
   if (fresh) has_command_ = true;
   const SentCommand& newest = shared_.command.value();
   if (!has_command_ || now - newest.at > kRepeatFor || (!fresh && now < next_command_)) return;
-  next_command_ = std::max(next_command_ + kCommandPeriod, now + 0.5 * kCommandPeriod);
+  next_command_ =
+      std::clamp(next_command_ + kCommandPeriod, now + 0.5 * kCommandPeriod, now + 1.5 * kCommandPeriod);
   phx_message message{};
   write_command(newest.command, message);
   last_tick_ = newest.command.tick;

@@ -8,6 +8,7 @@
 
 #include "phalanx/study/human_names.h"
 #include "study/laboratory/study_json.h"
+#include "study/laboratory/study_values.h"
 
 namespace phalanx {
 namespace {
@@ -99,7 +100,7 @@ std::string curves_csv(const std::vector<LoopRun>& runs) {
   text += "\n";
   for (const LoopRun& run : runs) {
     for (std::size_t i = 0; i < run.curves.time_s.size(); ++i) {
-      text += fmt::format("{},{}", run.name, run.curves.time_s[i]);
+      text += fmt::format("{},{}", csv_text(run.name), run.curves.time_s[i]);
       for (const int segment : segments) {
         const auto s = static_cast<std::size_t>(segment);
         const double into = run.curves.position[s][i];

@@ -25,7 +25,7 @@ inline constexpr int kLoopSeeds = 20;
 [[nodiscard]] ChartPanel position_panel(const LoopRun& run, const std::string& title);
 /// The bump and the window of the criterion.
 [[nodiscard]] std::vector<ChartWindow> trial_windows(const PatientParameters& patient);
-/// run,time_s,<segment>_force_n,<segment>_position_m... of the runs' first seeds
+/// run,time_s,<segment>_force_n,<segment>_into_m... of the runs' first seeds
 [[nodiscard]] std::string curves_csv(const std::vector<LoopRun>& runs);
 /// One row of the page: whether a run is as the paper prints.
 [[nodiscard]] PaperRow stability_row(const std::string& experiment, const std::string& quantity,

@@ -46,14 +46,6 @@ constexpr Column kColumns[] = {
     {"why_invalid", [](const PointResult& r) { return OrderedJson(r.why_invalid); }},
 };
 
-/// RFC 4180: in quotes if it has to be.
-std::string csv_text(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string csv_field(const OrderedJson& value) {
   if (value.is_null()) return "";
   return value.is_string() ? csv_text(value.get<std::string>()) : value.dump();
@@ -96,6 +88,13 @@ OrderedJson point_json(const Study& study, const PointResult& result) {
 }
 
 }  // namespace
+
+std::string csv_text(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
 
 std::string study_csv(const Study& study, const std::vector<PointResult>& results) {
   std::string text = "point";

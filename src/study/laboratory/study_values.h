@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace phalanx {
 
@@ -11,5 +12,8 @@ namespace phalanx {
 
 /// As a TOML basic string, with its quotes.
 [[nodiscard]] std::string toml_quoted(const std::string& text);
+
+/// As a field of a CSV file: in quotes if it has to be (RFC 4180).
+[[nodiscard]] std::string csv_text(std::string_view text);
 
 }  // namespace phalanx

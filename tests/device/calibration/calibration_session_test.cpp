@@ -98,6 +98,7 @@ TEST_F(CalibrationSessionTest, AMeasurementTakesItsTimeAndLeadsToTheNextPose) {
   EXPECT_EQ(session.view().pose, 1U);
   EXPECT_GE(session.samples(), 40U);
   EXPECT_LE(session.samples(), 48U) << "eight a call, none from before";
+  EXPECT_EQ(session.samples() % 8, 0U);
 }
 
 TEST_F(CalibrationSessionTest, AWholeWalkFindsTheGainsAndCommandsNothing) {
@@ -124,6 +125,16 @@ TEST_F(CalibrationSessionTest, AWholeWalkFindsTheGainsAndCommandsNothing) {
   session.skip();
   wait();
   EXPECT_TRUE(session.view().finished) << "at the end there is nothing to measure or skip";
+}
+
+// Values 0, 2, 2 and -0.5 rad at 1000, 3040, 3000 and 500 counts: the deviations from their means 0.875 and
+// 1885 give the gain 5232.5 / 5278700, and the fist is 1155 gain - 1.125 = 0.01989 rad off.
+TEST_F(CalibrationSessionTest, AResultSaysHowFarTheWorstPoseIsOff) {
+  while (!session.at_end()) measure(session.view().pose == fist() ? 40 : 0);
+  ASSERT_THAT(session.view().results, SizeIs(2));
+  EXPECT_EQ(
+      session.view().results[1],
+      "angle of index_pip_flexion: 9.9125e-04 a count, offset -0.9935, from 4 poses, at most 1.14 deg off");
 }
 
 TEST_F(CalibrationSessionTest, ASkippedPoseStaysUnmeasuredAndIsLeftOut) {
@@ -252,6 +263,20 @@ TEST(CalibrationSession, NeedsSomethingToCalibrate) {
   test::HeldDevice device;
   device.keep_only_motors();
   EXPECT_THROW((CalibrationSession{device, test::simple_parameters()}), CalibrationError);
+}
+
+TEST(CalibrationSession, MeasuresAPoseForASecondUnlessItIsToldOtherwise) {
+  test::HeldDevice device;
+  CalibrationSession session{device, test::simple_parameters()};
+  device.hold(session.poses()[0]);
+  session.measure(10.0);
+  session.go_on(10.25);
+  EXPECT_EQ(session.view().measured, 0.25);
+  session.go_on(10.75);
+  EXPECT_TRUE(session.measuring());
+  session.go_on(11.0);
+  EXPECT_FALSE(session.measuring());
+  EXPECT_TRUE(session.view().done[0]);
 }
 
 TEST(CalibrationSession, NeedsTimeForAPose) {

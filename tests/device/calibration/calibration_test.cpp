@@ -59,12 +59,14 @@ TEST(RawAverage, OfAStraightLineHasItsMeanAndDriftAndNoNoise) {
   EXPECT_NEAR(average.noise(), 0.0, 1e-4);
 }
 
-// Up and down by one: rms 1, and no drift.
+// Up and down by one: rms 1, and no drift, however large the counts are.
 TEST(RawAverage, OfAnAlternationIsItsRms) {
-  RawAverage average;
-  for (int i = 0; i < 1001; ++i) average.add(i % 2 == 0 ? 101 : 99);
-  EXPECT_NEAR(average.noise(), 1.0, 1e-3);
-  EXPECT_NEAR(average.drift(), 0.0, 1e-9);
+  for (const int counts : {100, 2000000000}) {
+    RawAverage average;
+    for (int i = 0; i < 1001; ++i) average.add(i % 2 == 0 ? counts + 1 : counts - 1);
+    EXPECT_NEAR(average.noise(), 1.0, 1e-3);
+    EXPECT_NEAR(average.drift(), 0.0, 1e-9);
+  }
 }
 
 TEST(RawAverage, OfNothingOrOneIsQuiet) {
@@ -193,6 +195,28 @@ TEST(CalibrationFit, RefusesAnOpenSensorAndWhatIsNotANumber) {
       expect_refused(readings, {"half way", "not finite"});
     }
   }
+}
+
+// ---- names ----
+
+TEST(ChannelLabel, SaysWhatIsMeasuredAndWhere) {
+  struct Label {
+    ChannelKind kind;
+    int index;
+    const char* text;
+  };
+  for (const Label& label : {Label{ChannelKind::kAngle, 6, "angle of index_pip_flexion"},
+                             {ChannelKind::kTorque, 4, "torque on index_mcp_flexion"},
+                             {ChannelKind::kForce, 0, "force on thumb"},
+                             {ChannelKind::kMotor, 3, "motor 3"},
+                             {ChannelKind::kCurl, 4, "curl of little"},
+                             {ChannelKind::kSplay, 2, "splay of middle"},
+                             {ChannelKind::kAngle, 20, "angle of joint 20"},
+                             {ChannelKind::kTorque, -1, "torque on joint -1"},
+                             {ChannelKind::kCurl, 5, "curl of digit 5"},
+                             {ChannelKind::kForce, -1, "force on digit -1"},
+                             {static_cast<ChannelKind>(9), 0, "channel of kind 9"}})
+    EXPECT_EQ(channel_label(label.kind, label.index), label.text);
 }
 
 // ---- whose it is ----

@@ -130,6 +130,20 @@ TEST_F(LinkAge, RisesAfterAFadeFromWhatWasSentAndByTheRateLimit) {
   EXPECT_FLOAT_EQ(rig.drive(0.3F, 2), 0.3F);
 }
 
+// At 19 ms a sixth of 0.3 Nm is sent, 0.05 Nm. The fresher step is itself 17 ms old at the next tick, a half:
+// before its fade the torque goes on from 0.05 / 0.5 = 0.1 Nm, rises by the rate's 0.01 Nm, and half of that
+// is sent.
+TEST_F(LinkAge, RisesFromWhatWasSentAlsoIfTheFresherStepFades) {
+  rig.open_and_act(0.3F);
+  rig.command(0.3F);
+  EXPECT_NEAR(rig.silent(19), 0.05F, 1e-6F);
+  phx_message fresher = rig.next_command(0.3F);
+  fresher.as.command.sample_time_us -= 16000;
+  ASSERT_EQ(rig.send(fresher), PHX_USED);
+  EXPECT_NEAR(rig.tick(), 0.055F, 1e-6F);
+  EXPECT_EQ(rig.sample.state, PHX_STATE_FADING);
+}
+
 // 10 ms jitter of a slow host, 5 ms steps: nothing fades, nothing latches.
 TEST_F(LinkAge, RunsOnWithAStepEvery5MsOfWhichTwoInThreeAreLost) {
   rig.open_and_act(0.3F);

@@ -103,6 +103,7 @@ TEST_F(LinkLatch, FreshCommandsChangeNothingWhileLatched) {
 TEST_F(LinkLatch, ResetLeadsToReadyAndANewerStepToANewStartRamp) {
   latch_by_age();
   EXPECT_EQ(reset(), PHX_USED);
+  EXPECT_EQ(rig.controller.state, PHX_STATE_READY) << "before the tick, too";
   rig.silent(3);
   EXPECT_EQ(rig.sample.state, PHX_STATE_READY);
   EXPECT_EQ(rig.sample.fault, PHX_FAULT_NONE);
@@ -206,6 +207,7 @@ TEST_F(LinkLatch, ResetChangesNothingWhileNothingIsLatched) {
 TEST_F(LinkLatch, SurvivesANewSessionAndAnotherHost) {
   latch_by_age();
   rig.hello();
+  EXPECT_EQ(rig.controller.state, PHX_STATE_LATCHED) << "before the tick, too";
   rig.configure();
   rig.tick();
   expect_latched(PHX_FAULT_STEP_TOO_OLD);
@@ -225,6 +227,7 @@ TEST_F(LinkLatch, SurvivesANewSessionAndAnotherHost) {
 TEST_F(LinkLatch, SurvivesAGoodbye) {
   latch_by_age();
   rig.send(rig.frame(PHX_GOODBYE));
+  EXPECT_EQ(rig.controller.state, PHX_STATE_LATCHED) << "before the tick, too";
   rig.tick();
   EXPECT_EQ(rig.controller.state, PHX_STATE_LATCHED);
   EXPECT_FALSE(rig.has_sample);

@@ -91,6 +91,15 @@ TEST_F(LinkLimits, TheRateCountsOnePeriodIfTheClockHasRunBackwards) {
   EXPECT_NEAR(rig.tick(1000), 0.01F, 1e-6F);
 }
 
+// Should the torque of the last tick be no number, as after a fault of the memory: zero, and from there by
+// the rate.
+TEST_F(LinkLimits, HoldWhereTheTorqueOfTheLastTickIsNoNumber) {
+  rig.open_and_act(0.3F);
+  rig.controller.torque[kJoint] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(rig.drive(0.3F, 1), 0.0F);
+  EXPECT_NEAR(rig.drive(0.3F, 1), 0.01F, 1e-6F);
+}
+
 TEST_F(LinkLimits, TheStepFromOneTorqueToItsOppositeTakesTheRatesTime) {
   rig.open_and_act(0.5F);
   for (int i = 1; i <= 100; ++i)

@@ -84,6 +84,17 @@ TEST_F(LinkControllerSession, SaysOnceConfigureHasArrived) {
   EXPECT_EQ(rig.sample.flags, PHX_SAMPLE_CONFIGURED);
 }
 
+// A controller that was switched on in this moment: its clock stands at 0, as its first sample does.
+TEST_F(LinkControllerSession, TakesACommandFromTheSampleOfTimeZero) {
+  rig.now = 0;
+  rig.hello();
+  rig.configure();
+  rig.tick(0);
+  ASSERT_EQ(rig.sample.time_us, 0U);
+  EXPECT_EQ(rig.command(0.1F), PHX_USED);
+  EXPECT_EQ(rig.controller.outdated, 0U);
+}
+
 TEST_F(LinkControllerSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
   rig.open_and_act(0.2F);
   EXPECT_EQ(rig.hello(99), PHX_ANSWERED);
@@ -91,6 +102,7 @@ TEST_F(LinkControllerSession, IsRefusedToASecondHostWhileTheFirstIsHeard) {
   EXPECT_EQ(rig.reply->header.type, PHX_REFUSED);
   EXPECT_EQ(rig.reply->header.epoch, 0U);
   EXPECT_EQ(rig.reply->as.refused.reason, PHX_REFUSED_BUSY);
+  EXPECT_EQ(rig.reply->as.refused.version, PHX_VERSION);
   EXPECT_EQ(rig.reply->as.refused.host_id, 99U);
   EXPECT_FLOAT_EQ(rig.drive(0.2F, 5), 0.2F);  // and the first goes on undisturbed
 }
@@ -165,6 +177,7 @@ TEST_F(LinkControllerSession, IsNotDisturbedByAHelloThatTheNetworkHasDoubledOrDe
   for (const std::uint32_t sequence : {5U, 6U}) {
     hello.header.sequence = sequence;
     EXPECT_EQ(rig.send(hello), PHX_USED);
+    ASSERT_TRUE(rig.reply);
     EXPECT_EQ(rig.reply->header.type, PHX_WELCOME);
     EXPECT_EQ(rig.reply->header.epoch, rig.epoch);
     EXPECT_FLOAT_EQ(rig.drive(0.2F, 1), 0.2F);
@@ -265,6 +278,8 @@ TEST_F(LinkControllerSession, AnswersAPingOfAnybodyAndIsNotKeptByIt) {
 TEST_F(LinkControllerSession, EndsWithGoodbyeAndZeroTorqueAtTheNextTick) {
   rig.open_and_act(0.2F);
   EXPECT_EQ(rig.send(rig.frame(PHX_GOODBYE)), PHX_USED);
+  EXPECT_EQ(rig.controller.state, PHX_STATE_NO_SESSION) << "before the tick, too";
+  EXPECT_FALSE(rig.controller.configured);
   EXPECT_EQ(rig.tick(), 0.0F);
   EXPECT_EQ(rig.controller.state, PHX_STATE_NO_SESSION);
   EXPECT_FALSE(rig.has_sample);

@@ -72,6 +72,18 @@ TEST_F(LinkWalls, EndWithACommandWithoutWalls) {
   EXPECT_NEAR(rig.drive(0.05F, 5), 0.05F, 1e-6F);
 }
 
+// The tick comes in the very microsecond of the sample that the command names: from 0.0375 Nm the rate lets
+// 0.01 Nm through.
+TEST_F(LinkWalls, EndWithACommandWithoutWallsOfAgeZeroToo) {
+  act();
+  settled(110);
+  rig.now += kPeriod;
+  phx_message message = rig.next_command(0.05F);
+  message.as.command.sample_time_us = rig.now;
+  ASSERT_EQ(rig.send(message), PHX_USED);
+  EXPECT_NEAR(rig.tick(0), 0.0475F, 1e-6F);
+}
+
 TEST_F(LinkWalls, TakeAnUnmeasuredJointToStandAtItsReference) {
   rig.controller.device.channel_count = 1;  // joint 5 is not measured any more
   act();

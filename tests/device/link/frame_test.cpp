@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <iterator>
+#include <utility>
+
 #include "device/link/frame_bytes.h"
 
 namespace phalanx::link_test {
@@ -169,6 +172,23 @@ TEST(LinkFrame, DecodesASampleToTheNumbersThatItHolds) {
   EXPECT_EQ(sample.outdated, 10U);
   EXPECT_EQ(sample.raw[0], -16000);
   EXPECT_EQ(sample.raw[31], 15000);
+}
+
+// The tables of docs/link.md: firmware that others wrote knows the numbers and not their names.
+TEST(LinkFrame, NumbersAreThoseOfTheDocumentation) {
+  unsigned next = 1;
+  for (const std::uint8_t type : kAllTypes) EXPECT_EQ(unsigned{type}, next++);
+  const std::pair<unsigned, unsigned> numbers[] = {
+      {PHX_REFUSED_BUSY, 1},       {PHX_REFUSED_VERSION, 2},    {PHX_CHANNEL_ANGLE, 0},
+      {PHX_CHANNEL_TORQUE, 1},     {PHX_CHANNEL_FORCE, 2},      {PHX_CHANNEL_MOTOR, 3},
+      {PHX_CHANNEL_CURL, 4},       {PHX_CHANNEL_SPLAY, 5},      {PHX_FAULT_NONE, 0},
+      {PHX_FAULT_STEP_TOO_OLD, 1}, {PHX_FAULT_SENSOR_RANGE, 2}, {PHX_FAULT_EMERGENCY_STOP, 3},
+      {PHX_FAULT_DRIVE, 4},        {PHX_STATE_NO_SESSION, 0},   {PHX_STATE_READY, 1},
+      {PHX_STATE_STARTING, 2},     {PHX_STATE_ACTIVE, 3},       {PHX_STATE_FADING, 4},
+      {PHX_STATE_LATCHED, 5},      {PHX_SAMPLE_ESTOP, 1},       {PHX_SAMPLE_CONFIGURED, 2},
+      {PHX_COMMAND_ENABLE, 1},     {PHX_COMMAND_FAULT, 2}};
+  for (std::size_t i = 0; i < std::size(numbers); ++i)
+    EXPECT_EQ(numbers[i].first, numbers[i].second) << "row " << i;
 }
 
 TEST(LinkFrame, OfEveryTypeComesBackAsItWas) {

@@ -6,7 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
 
 #include "device/link/controller_thread.h"
 #include "device/link/frame_bytes.h"
@@ -230,6 +235,41 @@ TEST(LinkDevice, SaysThatNobodyAnswers) {
   EXPECT_THAT(message_of_open(*device), HasSubstr("no controller answers within 0.3 s"));
 }
 
+/// Nobody is at its other end.
+class DeafWire final : public Transport {
+ public:
+  explicit DeafWire(int& waits) : waits_(waits) {}
+  [[nodiscard]] std::size_t receive(std::span<std::uint8_t>, Peer&) noexcept override { return 0; }
+  bool send(std::span<const std::uint8_t>, Peer) noexcept override { return true; }
+  bool wait(double seconds) noexcept override {
+    ++waits_;
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    return false;
+  }
+  [[nodiscard]] bool lost() const noexcept override { return false; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return 0; }
+  [[nodiscard]] std::string address() const override { return "deaf"; }
+
+ private:
+  int& waits_;
+};
+
+// Every 5 ms of 0.3 s: it waits in between and does not ask the wire again and again.
+TEST(LinkDevice, LooksForAnAnswerEveryFiveMilliseconds) {
+  const Clock clock;
+  int waits = 0;
+  const auto device = make_link_device(std::make_unique<DeafWire>(waits), clock, {.hello_timeout = 0.3});
+  EXPECT_THAT(message_of_open(*device), HasSubstr("deaf: no controller answers within 0.3 s"));
+  EXPECT_NEAR(waits, 60, 2);
+}
+
+TEST(LinkDevice, HasADefaultForEachLimit) {
+  const LinkSettings settings;
+  EXPECT_EQ(settings.torque_limit, 0.5);
+  EXPECT_EQ(settings.torque_rate, 10.0);
+  EXPECT_EQ(settings.hello_timeout, 3.0);
+}
+
 TEST(LinkDevice, WaitsForAControllerThatComesUpLater) {
   const Clock clock;
   std::string address;
@@ -260,6 +300,7 @@ TEST(LinkDevice, ASecondHostIsRefusedAndTheFirstGoesOn) {
   const double began = clock.now();
   EXPECT_THAT(message_of_open(*second), HasSubstr("belongs to another host"));
   EXPECT_GT(clock.now() - began, 1e-6 * PHX_SESSION_US) << "a host that was killed would lose it by then";
+  EXPECT_LT(clock.now() - began, 1.3) << "1.25 s, and no longer as for one that is silent";
   EXPECT_EQ(controller.controller().epoch, epoch);
   EXPECT_EQ(first->connection_fault(), Fault::kNone);
   first->close();

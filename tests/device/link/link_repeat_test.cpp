@@ -2,6 +2,8 @@
 // What the host's side repeats and for how long, and which frames of others it believes; time is a number.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "device/link/link_session.h"
 #include "device/link/session_bench.h"
 
@@ -188,6 +190,22 @@ TEST(LinkRepeat, NothingThatWasCommandedBeforeASessionIsSentInIt) {
   bench.open();
   bench.run(5);
   EXPECT_EQ(bench.sent(PHX_COMMAND), before);
+}
+
+// However many commands came within a millisecond, the last one is repeated 1.5 ms later and from then on
+// each millisecond.
+TEST(LinkRepeat, TheLastCommandOfALoopThatIsFasterThanTheRepetitionIsRepeatedAtOnce) {
+  SessionBench bench(58);
+  bench.open();
+  for (int i = 0; i < 200; ++i) {
+    bench.command(true);
+    bench.session().send_due(bench.now());
+  }
+  const int before = bench.sent(PHX_COMMAND);
+  bench.run(1);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), before);
+  bench.run(9);
+  EXPECT_EQ(bench.sent(PHX_COMMAND), before + 9);
 }
 
 TEST(LinkRepeat, TheLastCommandsOfAHostSayFaultWithANewerTick) {
@@ -378,6 +396,54 @@ TEST(LinkRepeat, SilenceIsAskedAboutAfterThreePeriodsAndEveryTenMilliseconds) {
     EXPECT_GE(bench.sent(PHX_PING), before + 10) << rate_hz;
     EXPECT_LE(bench.sent(PHX_PING), before + 11) << rate_hz;
   }
+}
+
+// Of 96 Hz they are exactly 1/32 s, which a double between 1 and 2 takes without rounding.
+TEST(LinkRepeat, ThreePeriodsThemselvesAreNoSilenceYet) {
+  SessionBench bench(60);
+  bench.device_.rate_hz = 96;
+  bench.restart(100);
+  bench.open();
+  bench.run(5);
+  const double late = bench.session().heard() + 3.0 / 96.0;
+  ASSERT_LT(late, 2.0);
+  const int before = bench.sent(PHX_PING);
+  bench.session().send_due(late);
+  EXPECT_EQ(bench.sent(PHX_PING), before);
+  bench.session().send_due(std::nextafter(late, 2.0));
+  EXPECT_EQ(bench.sent(PHX_PING), before + 1);
+}
+
+// The controller has restarted, WELCOME comes, and no sample. Its clock is behind that of the last session's
+// samples, which means nothing in this one; but after 0.1 s of PONGs alone it is asked for the session again.
+TEST(LinkRepeat, ASessionThatBringsNoSampleIsAskedForAgain) {
+  SessionBench bench(59);
+  bench.open();
+  bench.run(500);
+  bench.restart(70);
+  bench.run_commanding(60);
+  ASSERT_EQ(bench.fault(), Fault::kControllerRestarted);
+  bench.controller_off = true;
+  bench.reset();
+  bench.run(1);
+  ASSERT_EQ(bench.session().phase(), Phase::kAsking);
+  phx_message welcome = forged(PHX_WELCOME, 200);
+  welcome.as.welcome = bench.session().welcome();
+  forge(bench, welcome);
+  bench.run(1);
+  ASSERT_EQ(bench.session().phase(), Phase::kRunning);
+  bench.run(15);
+  phx_message pong = forged(PHX_PONG, 0);
+  const auto after_pong = [&] {
+    pong.as.ping = {.stamp = kBenchHost + static_cast<std::uint64_t>(bench.sent(PHX_PING)), .time_us = 1};
+    forge(bench, pong);
+    bench.run(1);
+    return bench.session().phase();
+  };
+  EXPECT_EQ(after_pong(), Phase::kRunning);
+  bench.run(110);
+  EXPECT_EQ(after_pong(), Phase::kAsking);
+  EXPECT_EQ(bench.fault(), Fault::kNone);
 }
 
 // ---- who is there after a reset ----

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <map>
+
 #include "device/link/session_bench.h"
 
 namespace phalanx {
@@ -25,6 +29,31 @@ TEST(LinkSession, OpensASessionAndRepeatsConfigureUntilItHasArrived) {
   bench.run(200);
   EXPECT_EQ(bench.sent(PHX_CONFIGURE), configures);
   EXPECT_EQ(bench.controller.configure.torque_rate, 10.0f);
+}
+
+TEST(LinkSession, BeginsWithNothingCountedAndNothingRefused) {
+  const LinkCounters c;
+  for (const auto* counter : {&c.received, &c.lost, &c.outdated, &c.corrupt, &c.refused, &c.overflowed,
+                              &c.sent, &c.device_corrupt, &c.device_refused, &c.device_outdated})
+    EXPECT_EQ(counter->load(), 0U);
+  EXPECT_EQ(LinkSession::Refusal{}.reason, 0);
+  EXPECT_EQ(LinkSession::Refusal{}.version, 0);
+}
+
+TEST(LinkSession, AHelloAndAPingBelongToNoSessionAndAllElseToTheOneThatIsOpen) {
+  SessionBench bench(32);
+  bench.open();
+  bench.run_commanding(20);
+  bench.faults.cut_to_host = true;
+  bench.run(30);
+  std::map<int, int> seen;
+  for (const phx_message& message : bench.controller_got) {
+    const int type = message.header.type;
+    ++seen[type];
+    EXPECT_EQ(message.header.epoch, type == PHX_HELLO || type == PHX_PING ? 0U : bench.controller.epoch)
+        << type;
+  }
+  for (const int type : {PHX_HELLO, PHX_CONFIGURE, PHX_COMMAND, PHX_PING}) EXPECT_GE(seen[type], 1) << type;
 }
 
 TEST(LinkSession, SamplesAreConnectingUntilTheControllerIsConfigured) {
@@ -386,6 +415,20 @@ TEST(LinkSession, AnUnpluggedPortIsADeviceLost) {
   bench.reset();
   bench.run(10);
   EXPECT_EQ(bench.fault(), Fault::kDeviceLost);
+}
+
+// Twice as many frames as there is room for samples, 1,024: a flood of them does not keep the link's thread
+// from what it has to send.
+TEST(LinkSession, TakesNoMoreThanSoManyFramesAtATime) {
+  SessionBench bench(31);
+  bench.open();
+  constexpr std::uint64_t kMost = 1024;
+  const std::array<std::uint8_t, 3> noise{1, 2, 3};
+  for (std::uint64_t i = 0; i < kMost + 5; ++i) bench.to_host(noise.data(), noise.size());
+  bench.session().receive(bench.now());
+  EXPECT_EQ(bench.counters().corrupt, kMost);
+  bench.session().receive(bench.now());
+  EXPECT_EQ(bench.counters().corrupt, kMost + 5);
 }
 
 TEST(LinkSession, DropsRandomBytesAndOtherVersionsAndGoesOn) {

@@ -3,11 +3,13 @@
 // counts these ticks. So what is lost, doubled or damaged is counted to the frame on a busy machine too.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <deque>
 #include <functional>
 #include <thread>
+#include <utility>
 
 #include "device/link/session_bench.h"
 #include "phalanx/device/clock.h"
@@ -33,9 +35,11 @@ class MemoryWire final : public Transport {
   std::atomic<bool> complaining{
       false};  ///< the controller has dropped 3, refused 5 and found 7 outdated frames
   std::atomic<std::uint64_t> no_frames{0};  ///< pieces of the wire that were none
+  std::atomic<int> lost_goodbyes{0};        ///< so many do not arrive
   // What the host has sent last; to be read once its thread has ended.
   int farewells = 0;  ///< commands in a row that said FAULT, before GOODBYE
   int goodbyes = 0;
+  int waits_after_goodbye = 0;
   bool newer = true;  ///< each of these commands had a newer tick
 
   [[nodiscard]] std::size_t receive(std::span<std::uint8_t> out, Peer&) noexcept override {
@@ -53,7 +57,7 @@ class MemoryWire final : public Transport {
       ticked_ = true;
     }
     if (waiting_.empty()) return 0;
-    const test::Bytes frame = waiting_.front();
+    const test::WireBytes frame = waiting_.front();
     waiting_.pop_front();
     std::copy(frame.begin(), frame.end(), out.begin());
     return frame.size();
@@ -61,7 +65,7 @@ class MemoryWire final : public Transport {
   bool send(std::span<const std::uint8_t> frame, Peer) noexcept override {
     phx_message message{};
     phx_decode(frame.data(), frame.size(), &message);
-    if (message.header.type == PHX_GOODBYE) ++goodbyes;
+    if (message.header.type == PHX_GOODBYE && ++goodbyes <= lost_goodbyes) return true;
     if (message.header.type == PHX_COMMAND) {
       const phx_command& command = message.as.command;
       farewells = command.flags == PHX_COMMAND_FAULT && goodbyes == 0 ? farewells + 1 : 0;
@@ -74,8 +78,10 @@ class MemoryWire final : public Transport {
     if (size > 0) waiting_.emplace_back(reply.begin(), reply.begin() + static_cast<std::ptrdiff_t>(size));
     return true;
   }
+  /// After a millisecond there is a sample.
   bool wait(double seconds) noexcept override {
-    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    if (goodbyes > 0) ++waits_after_goodbye;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(seconds, 1e-3)));
     return true;
   }
   [[nodiscard]] bool lost() const noexcept override { return false; }
@@ -98,7 +104,7 @@ class MemoryWire final : public Transport {
     phx_output output{};
     phx_controller_tick(&controller_, time_us_, raw.data(), false, false, &output);
     if (output.sample_size == 0) return;
-    test::Bytes sample(output.sample, output.sample + output.sample_size);
+    test::WireBytes sample(output.sample, output.sample + output.sample_size);
     const Mishap now = ++samples_ % 10 == 0 ? mishap.load() : Mishap::kNone;
     if (now == Mishap::kDropped) return;
     if (now == Mishap::kDamaged) sample[20] ^= 1U;
@@ -114,7 +120,7 @@ class MemoryWire final : public Transport {
 
   phx_device device_{};
   phx_controller controller_{};
-  std::deque<test::Bytes> waiting_;
+  std::deque<test::WireBytes> waiting_;
   std::uint64_t time_us_ = 0;
   std::uint64_t samples_ = 0;
   std::uint64_t last_tick_ = 0;
@@ -239,18 +245,32 @@ TEST(LinkStatistics, WhatTheWireHasDroppedIsCountedOnce) {
   EXPECT_EQ(bench.after(Mishap::kNone, 50).corrupt, 4U);
 }
 
-// Who closes says FAULT in 50 commands, each newer than the one before, and then GOODBYE: a lost frame leaves
-// no torque.
+// Who closes says FAULT in 50 commands, one a millisecond and each newer than the one before, and then
+// GOODBYE: a lost frame leaves no torque.
 TEST(LinkStatistics, AClosedDeviceHasSaidFaultFiftyTimesAndThenGoodbye) {
   OnMemory bench;
   DeviceCommand command;
   command.tick = 7;
   command.enable = true;
   bench.device->send(command);
+  const double began = bench.clock.now();
   bench.device->close();
+  EXPECT_GT(bench.clock.now() - began, 0.049);
+  EXPECT_LT(bench.clock.now() - began, 0.058);
   EXPECT_EQ(bench.wire->farewells, 50);
   EXPECT_TRUE(bench.wire->newer);
-  EXPECT_GE(bench.wire->goodbyes, 1);
+  EXPECT_EQ(bench.wire->goodbyes, 1) << "no sample has come since";
+  EXPECT_GE(bench.wire->waits_after_goodbye, 1) << "for samples that go on";
+}
+
+// Samples that go on say that GOODBYE was lost: it is said again, five times at most.
+TEST(LinkStatistics, AGoodbyeThatIsLostIsSaidAgain) {
+  for (const auto& [lost, said] : {std::pair{1, 2}, std::pair{3, 4}, std::pair{100, 5}}) {
+    OnMemory bench;
+    bench.wire->lost_goodbyes = lost;
+    bench.device->close();
+    EXPECT_EQ(bench.wire->goodbyes, said) << lost;
+  }
 }
 
 // Between reset() and the moment in which the link's thread sees it, the fault of before is not there any

@@ -18,7 +18,7 @@
 
 namespace phalanx::test {
 
-using Bytes = std::vector<std::uint8_t>;
+using WireBytes = std::vector<std::uint8_t>;
 
 /// Of each frame, each way.
 struct WireFaults {
@@ -35,18 +35,18 @@ class Wire {
  public:
   explicit Wire(std::uint64_t seed) : random_(seed) {}
 
-  void put(const Bytes& frame, double now, const WireFaults& faults, bool cut) {
+  void put(const WireBytes& frame, double now, const WireFaults& faults, bool cut) {
     if (cut || chance(faults.drop)) return;
     const int copies = chance(faults.duplicate) ? 2 : 1;
     for (int i = 0; i < copies; ++i) {
-      Bytes copy = frame;
+      WireBytes copy = frame;
       if (chance(faults.corrupt))
         copy[random_() % copy.size()] ^= static_cast<std::uint8_t>(1 + random_() % 255);
       const double delay = faults.delay > 0.0 ? uniform() * faults.delay : 0.0;
       on_their_way_.emplace(now + delay, copy);
     }
   }
-  [[nodiscard]] bool get(double now, Bytes& frame) {
+  [[nodiscard]] bool get(double now, WireBytes& frame) {
     const auto first = on_their_way_.begin();
     if (first == on_their_way_.end() || first->first > now) return false;
     frame = first->second;
@@ -59,7 +59,7 @@ class Wire {
   bool chance(double probability) { return probability > 0.0 && uniform() < probability; }
 
   std::mt19937_64 random_;
-  std::multimap<double, Bytes> on_their_way_;
+  std::multimap<double, WireBytes> on_their_way_;
 };
 
 inline phx_device bench_device() {
@@ -100,7 +100,7 @@ class SessionBench : public Transport {
 
   // ---- the transport that the session has ----
   [[nodiscard]] std::size_t receive(std::span<std::uint8_t> out, Peer&) noexcept override {
-    Bytes frame;
+    WireBytes frame;
     if (!to_host_.get(now_, frame)) return 0;
     std::copy(frame.begin(), frame.end(), out.begin());
     return frame.size();
@@ -118,7 +118,7 @@ class SessionBench : public Transport {
   // ---- time ----
   void controller_tick() {
     std::array<std::uint8_t, PHX_FRAME_MAX> reply{};
-    Bytes frame;
+    WireBytes frame;
     while (to_controller_.get(now_, frame)) {
       phx_message message{};
       if (phx_decode(frame.data(), frame.size(), &message) == PHX_OK) controller_got.push_back(message);
@@ -135,7 +135,7 @@ class SessionBench : public Transport {
   template <class Loop>
   void tick(const Loop& loop) {
     now_ += 1e-3;
-    Bytes unheard;
+    WireBytes unheard;
     if (!controller_off) controller_tick();
     while (controller_off && to_controller_.get(now_, unheard)) {
     }

@@ -75,6 +75,11 @@ std::string GloveFirmware::last_answer() const {
   return answers_.empty() ? std::string() : answers_.back();
 }
 
+std::size_t GloveFirmware::newlines() const {
+  const std::lock_guard lock(mutex_);
+  return newlines_;
+}
+
 template <class Condition>
 bool GloveFirmware::wait_until(Condition condition) {
   std::unique_lock lock(mutex_);
@@ -87,11 +92,7 @@ bool GloveFirmware::wait_for_answers(std::size_t more) {
 }
 
 bool GloveFirmware::wait_for_newlines(std::size_t more) {
-  std::size_t goal = more;
-  {
-    const std::lock_guard lock(mutex_);
-    goal += newlines_;
-  }
+  const std::size_t goal = newlines() + more;
   return wait_until([&] { return newlines_ >= goal; });
 }
 

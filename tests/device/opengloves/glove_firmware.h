@@ -37,6 +37,8 @@ class GloveFirmware {
   /// Host's lines that were not empty, in order.
   [[nodiscard]] std::vector<std::string> answers() const;
   [[nodiscard]] std::string last_answer() const;
+  /// Host's lines that were empty.
+  [[nodiscard]] std::size_t newlines() const;
   /// Waits until the host has sent so many more of these; false: it did not within 5 minutes.
   [[nodiscard]] bool wait_for_answers(std::size_t more);
   [[nodiscard]] bool wait_for_newlines(std::size_t more);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glove's port and what is learnt of its lines, without a clock or thread.
+// A glove's port and what is learnt of its lines, without a thread.
 #include "device/opengloves/glove_wire.h"
 
 #include <fcntl.h>
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "device/opengloves/glove_channels.h"
+#include "phalanx/device/clock.h"
 
 namespace phalanx {
 namespace {
@@ -74,6 +75,58 @@ TEST(GloveWire, WritesAWholeAnswerOrNoneWhereThePortIsFull) {
   EXPECT_FALSE(port.wire->lost());
 }
 
+TEST(GloveWire, WritesWhatIsLeftOfAnAnswerWhileItWaits) {
+  PortEnds port;
+  port.fill();
+  EXPECT_TRUE(port.wire->send("A1B1C1D1E1\n"));
+  EXPECT_EQ(port.read_all(), "");
+  port.wire->wait(10.0);
+  EXPECT_EQ(port.read_all(), "A1B1C1D1E1\n");
+}
+
+// The system counts whole milliseconds: 10.5 of them are 11, or a loop would come back too early again and
+// again.
+TEST(GloveWire, WaitsForItsTimeUnlessSomethingCanBeRead) {
+  PortEnds port;
+  const Clock clock;
+  port.wire->wait(0.0105);
+  EXPECT_NEAR(clock.now(), 0.011, 1e-6);
+  port.say("A");
+  port.wire->wait(10.0);
+  EXPECT_NEAR(clock.now(), 0.011, 1e-6);
+}
+
+// The glove says no more but would still listen: the answer that waits goes nowhere, and a wait lasts its
+// time.
+TEST(GloveWire, WritesNothingMoreOnceItIsLost) {
+  PortEnds port;
+  port.fill();
+  EXPECT_TRUE(port.wire->send("A1B1C1D1E1\n"));
+  ::shutdown(port.glove, SHUT_WR);
+  EXPECT_EQ(port.wire->next(), GloveWire::Piece::kNone);
+  ASSERT_TRUE(port.wire->lost());
+  EXPECT_EQ(port.read_all(), "");
+  EXPECT_FALSE(port.wire->send("A2B2C2D2E2\n"));
+  const Clock clock;
+  port.wire->wait(0.0105);
+  EXPECT_NEAR(clock.now(), 0.011, 1e-6);
+  EXPECT_EQ(port.read_all(), "");
+}
+
+// The end of a pipe that can only be written, one that can only be read, and none at all.
+TEST(GloveWire, IsLostWhereItCannotBeReadOrWritten) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  GloveWire deaf(ends[1]);
+  EXPECT_FALSE(deaf.lost());
+  EXPECT_EQ(deaf.next(), GloveWire::Piece::kNone);
+  EXPECT_TRUE(deaf.lost());
+  GloveWire mute(ends[0]);
+  EXPECT_FALSE(mute.send("A0\n"));
+  EXPECT_TRUE(mute.lost());
+  EXPECT_TRUE(GloveWire(-1).lost());
+}
+
 // 512 bytes are a line, 513 are too many; the line after it is whole again.
 TEST(GloveWire, GivesLinesOfUpToFiveHundredAndTwelveBytesAndForgetsALongerOne) {
   PortEnds port;
@@ -90,6 +143,13 @@ TEST(GloveWire, GivesLinesOfUpToFiveHundredAndTwelveBytesAndForgetsALongerOne) {
   EXPECT_EQ(port.wire->line(), "D2");
   EXPECT_EQ(port.wire->next(), Piece::kLine);
   EXPECT_EQ(port.wire->line(), "");
+  for (const char* byte : {"E", "7"}) {
+    port.say(byte);
+    EXPECT_EQ(port.wire->next(), Piece::kNone);
+  }
+  port.say("\n");
+  EXPECT_EQ(port.wire->next(), Piece::kLine);
+  EXPECT_EQ(port.wire->line(), "E7") << "byte by byte";
 }
 
 TEST(GloveWire, IsLostWhereTheOtherEndIsClosed) {

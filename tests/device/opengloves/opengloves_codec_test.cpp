@@ -46,6 +46,15 @@ TEST(OpenGlovesCodec, SkipsJoystickAndButtons) {
   EXPECT_EQ(line.largest, 2048) << "the joystick says how wide the numbers are";
 }
 
+// From A to Z, alone or in parentheses; the characters beside these two are no keys.
+TEST(OpenGlovesCodec, SkipsALetterThatIsNoKeyWithItsNumber) {
+  const GloveLine line = parse_glove_line("A1Z2000(ZZ)3000(AZ)5");
+  EXPECT_TRUE(line.usable());
+  EXPECT_EQ(numbers_in(line), 1);
+  EXPECT_EQ(line.largest, 3000);
+  EXPECT_EQ(parse_glove_line("A1@4000[4000").largest, 1);
+}
+
 TEST(OpenGlovesCodec, ReadsJointsOneByOne) {
   const GloveLine line = parse_glove_line("B7(BAA)1(BAB)2(BAC)3(BAD)4(EAC)9");
   EXPECT_EQ(line.value[glove_joint_key(1, 0)], 1);

@@ -2,12 +2,19 @@
 // The glove's driver against firmware that waits for an answer at every loop.
 #include "phalanx/device/opengloves/opengloves_device.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <regex>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "device/opengloves/glove_firmware.h"
 #include "device/opengloves/quick_settings.h"
@@ -78,12 +85,47 @@ TEST(OpenGlovesDevice, LearnsItsChannelsFromTheFirstLines) {
   Fixture glove(kOpenGlove);
   glove.device->open();
   const DeviceInfo& info = glove.device->info();
+  EXPECT_EQ(info.name, "opengloves");
   ASSERT_EQ(info.channels.size(), 10U);
   EXPECT_EQ(info.channels[0].kind, ChannelKind::kCurl);
   EXPECT_EQ(info.channels[1].kind, ChannelKind::kSplay);
   EXPECT_FALSE(info.renders_torque);
   EXPECT_EQ(info.channels[0].raw_max, 4095) << "the joystick at rest says so, with a hand that is open";
   EXPECT_DOUBLE_EQ(info.channels[0].gain, 1.0 / 4095.0);
+}
+
+TEST(OpenGlovesDevice, BearsTheSerialNumberThatItIsGiven) {
+  auto settings = quick();
+  settings.serial = "L-7";
+  Fixture glove(kOpenGlove, settings);
+  glove.device->open();
+  EXPECT_EQ(glove.device->info().serial, "L-7");
+}
+
+// Five lines within the second that it learns for are four periods: 4 Hz.
+TEST(OpenGlovesDevice, WaitsForThreeSecondsAndLearnsForOneUnlessItIsToldOtherwise) {
+  Fixture silent("", {});
+  EXPECT_THAT([&] { silent.device->open(); }, ::testing::ThrowsMessage<DeviceError>(HasSubstr("within 3 s")));
+  Fixture glove("", {});
+  std::string bytes = "\n";
+  for (int i = 0; i < 5; ++i) bytes += "A0B0C0D0E0\n";
+  glove.firmware.blurt(bytes);
+  glove.device->open();
+  EXPECT_NEAR(glove.device->info().rate_hz, 4.0, 1e-9);
+}
+
+// Standard input, for one.
+TEST(OpenGlovesDevice, TakesTheDescriptorZeroAsWell) {
+  GloveFirmware firmware("");
+  const int descriptor = firmware.host_descriptor();
+  ASSERT_EQ(::dup2(descriptor, 0), 0);
+  ::close(descriptor);
+  const Clock clock;
+  const auto device = make_opengloves_device(0, clock, quick());
+  firmware.blurt("\nA0B0\n");
+  EXPECT_NO_THROW(device->open());
+  EXPECT_EQ(device->info().channels.size(), 2U);
+  device->close();
 }
 
 TEST(OpenGlovesDevice, TakesNarrowNumbersForWhatTheyAre) {
@@ -119,7 +161,9 @@ TEST(OpenGlovesDevice, BelievesTheFullScaleThatItIsGiven) {
 TEST(OpenGlovesDevice, AnswersEveryLineWithAllFive) {
   Fixture glove(kOpenGlove);
   glove.device->open();
-  ASSERT_TRUE(glove.firmware.wait_for_answers(200));
+  const std::size_t newlines = glove.firmware.newlines();
+  ASSERT_TRUE(glove.firmware.wait_for_answers(200));  // a millisecond each, at least
+  EXPECT_EQ(glove.firmware.newlines(), newlines) << "where lines come every millisecond";
   const auto lines = static_cast<std::size_t>(glove.firmware.lines_sent());
   const std::vector<std::string> answers = glove.firmware.answers();
   const std::regex all_five("A[0-9]+B[0-9]+C[0-9]+D[0-9]+E[0-9]+");
@@ -142,7 +186,66 @@ TEST(OpenGlovesDevice, GivesSamplesInOrderWithRawNumbers) {
   }));
   const std::array<std::int32_t, 10> expected = {1, 6, 2, 7, 3, 8, 4, 9, 5, 10};
   for (std::size_t c = 0; c < expected.size(); ++c) EXPECT_EQ(glove.sample.raw[c], expected[c]) << c;
+  EXPECT_EQ(glove.sample.raw[10], 0) << "there is no such channel";
   EXPECT_EQ(glove.sample.state, DeviceState::kReady);
+  EXPECT_GT(glove.sample.received, 0.1) << "it has learnt for so long";
+  EXPECT_NEAR(glove.sample.received, 1e-6 * static_cast<double>(glove.sample.time_us), 1e-3);
+}
+
+// By hand: while it learns an empty line and two whole ones are answered, and give no sample. Of the four
+// lines that follow one is a part, and one has a number that is too large.
+TEST(OpenGlovesDevice, CountsWhatComesAndWhatIsLost) {
+  Fixture glove("");
+  const LinkStatistics none = glove.device->statistics();
+  EXPECT_EQ(none.received + none.corrupt + none.overflowed + none.sent + none.device_corrupt, 0U);
+  glove.firmware.blurt("\nA0B0C0D0E0\nA0B0C0D0E0\n");
+  glove.device->open();
+  glove.firmware.blurt("A1B1C1D1E1\nA2B2C2D2E2\nA3\nA3B3C3D3E5000\n");
+  ASSERT_TRUE(glove.eventually([&] { return glove.device->statistics().received >= 3; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until the glove's thread sleeps, too
+  const LinkStatistics counted = glove.device->statistics();
+  EXPECT_EQ(counted.received, 3U);
+  EXPECT_EQ(counted.corrupt, 1U);
+  EXPECT_EQ(counted.device_corrupt, 1U);
+  EXPECT_EQ(counted.sent, 7U);
+  EXPECT_EQ(counted.overflowed, 0U);
+  std::array<DeviceSample, 1> room;
+  ASSERT_EQ(glove.device->receive(0.0, room), 1U);
+  EXPECT_EQ(room[0].raw[3], 3);
+  EXPECT_EQ(room[0].raw[4], 4095);
+  EXPECT_EQ(glove.device->statistics().overflowed, 2U);
+}
+
+// A glove that speaks and does not listen: its port is full after a few answers.
+TEST(OpenGlovesDevice, CountsOnlyTheAnswersThatThePortTakes) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+  const int least = 1;  // the system takes its own least
+  ASSERT_EQ(::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &least, sizeof(least)), 0);
+  const Clock clock;
+  const auto device = make_opengloves_device(ends[1], clock, quick());
+  const auto say = [&](int lines) {
+    std::string text;
+    for (int i = 0; i < lines; ++i) text += "A0B0C0D0E0\n";
+    EXPECT_EQ(::write(ends[0], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  };
+  say(3);
+  device->open();
+  say(2000);
+  ASSERT_TRUE(Fixture::eventually([&] { return device->statistics().received >= 2000; }));
+  const std::uint64_t sent = device->statistics().sent;
+  EXPECT_LT(sent, 2000U) << "or the port was never full";
+  ASSERT_EQ(::fcntl(ends[0], F_SETFL, O_NONBLOCK), 0);
+  std::uint64_t answers = 0;
+  EXPECT_TRUE(Fixture::eventually([&] {
+    std::array<char, 4096> piece{};
+    const ssize_t size = ::read(ends[0], piece.data(), piece.size());
+    if (size > 0) answers += static_cast<std::uint64_t>(std::count(piece.begin(), piece.begin() + size, 'E'));
+    return answers == sent;
+  })) << answers
+      << " of " << sent;
+  device->close();
+  ::close(ends[0]);
 }
 
 TEST(OpenGlovesDevice, StopsTheDigitThatIsStoppedAndLetsGoAgain) {
@@ -182,7 +285,12 @@ TEST(OpenGlovesDevice, KeepsASilentGloveAliveWithNewlines) {
   Fixture glove(kOpenGlove);
   glove.device->open();
   glove.firmware.say("");
-  EXPECT_TRUE(glove.firmware.wait_for_newlines(3));
+  EXPECT_TRUE(glove.firmware.wait_for_newlines(1));
+  const double first = glove.clock.now();
+  EXPECT_TRUE(glove.firmware.wait_for_newlines(10));
+  // Every 100 ms, and up to 11 ms more until it looks again.
+  EXPECT_GT(glove.clock.now() - first, 0.98);
+  EXPECT_LT(glove.clock.now() - first, 1.3);
   glove.firmware.say(kOpenGlove);
   EXPECT_TRUE(glove.firmware.wait_for_answers(3)) << "and goes on where it speaks again";
   EXPECT_EQ(glove.device->connection_fault(), Fault::kNone);

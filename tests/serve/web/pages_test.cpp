@@ -156,6 +156,16 @@ TEST_F(WebPages, NotForLongerThanABurst) {
   EXPECT_LE(application_.last_words().size(), 9U) << "64 KiB";
 }
 
+// A message counts with 6 bytes of its frame: 1024 x (58 + 6) are the 64 KiB, and one more is too much.
+TEST_F(WebPages, LastWordsAreHeardUpTo64KiBTheirFramesIncluded) {
+  settings_.messages_per_second = 50;
+  start();
+  PageClient page(port());
+  page.say_at_once(std::vector<std::string>(50 + 1200, std::string(58, 'x')));
+  EXPECT_TRUE(application_.await_left(1));
+  EXPECT_EQ(application_.last_words().size(), 1025U);
+}
+
 TEST_F(WebPages, PingsCount) {
   settings_.messages_per_second = 50;
   start();

@@ -9,6 +9,7 @@
 #include "serve/web/doorstep.h"
 #include "serve/web/message_rate.h"
 #include "serve/web/page_queue.h"
+#include "serve/web/patience.h"
 #include "serve/web/request_path.h"
 
 namespace phalanx::web {
@@ -84,6 +85,20 @@ TEST(ReadTarget, TakesUtf8AndNothingBroken) {
   for (const char* broken : {"/%C3", "/%C0%80", "/%ED%A0%80", "/%F5%80%80%80", "/%80", "/%0A", "/%7F", ""}) {
     EXPECT_FALSE(read_target(broken)) << broken;
   }
+}
+
+TEST(ReadTarget, TakesNoSegmentThatIsEmptyOrLeadsElsewhere) {
+  for (const char* odd :
+       {"//", "//a", "/.", "/..", "/./a", "/../a", "/a//", "/a//b", "/a/.", "/a/..", "/a/./b", "/a/../b"})
+    EXPECT_FALSE(read_target(odd)) << odd;
+  for (const char* plain : {"/", "/a", "/a/", "/a.", "/.a", "/a./b", "/a../b", "/...", "/a/.b/"})
+    EXPECT_TRUE(read_target(plain)) << plain;
+}
+
+// 32,000 bytes at 16 kB/s: 2 s more.
+TEST(Patience, IsTheTimeToBeIdleAndThatOfASlowLine) {
+  EXPECT_EQ(patience(20.0, 0), 20.0);
+  EXPECT_EQ(patience(20.0, 32'000), 22.0);
 }
 
 TEST(AcceptsGzip, ReadsWeights) {

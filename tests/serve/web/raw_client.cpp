@@ -30,16 +30,16 @@ std::string small(std::string text) {
 
 }  // namespace
 
-RawClient::RawClient(std::uint16_t port, int receive_buffer)
+RawClient::RawClient(std::uint16_t port, int receive_buffer, const char* address)
     : descriptor_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (receive_buffer > 0) {
     ::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
   }
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  sockaddr_in there{};
+  there.sin_family = AF_INET;
+  there.sin_port = htons(port);
+  const bool known = ::inet_pton(AF_INET, address, &there.sin_addr) == 1;
+  if (!known || ::connect(descriptor_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0) {
     ::close(descriptor_);
     throw std::runtime_error("cannot connect");
   }
@@ -49,8 +49,8 @@ RawClient::~RawClient() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-std::unique_ptr<RawClient> RawClient::secure(std::uint16_t port) {
-  auto client = std::make_unique<RawClient>(port);
+std::unique_ptr<RawClient> RawClient::secure(std::uint16_t port, const char* address) {
+  auto client = std::make_unique<RawClient>(port, 0, address);
   client->context_.reset(SSL_CTX_new(TLS_client_method()));
   client->tls_.reset(SSL_new(client->context_.get()));
   SSL_set_fd(client->tls_.get(), client->descriptor_);

@@ -15,9 +15,10 @@ namespace phalanx {
 class RawClient {
  public:
   /// @param receive_buffer  of the socket [bytes]; 0: as the system has it
-  explicit RawClient(std::uint16_t port, int receive_buffer = 0);
+  /// @param address         of this machine
+  explicit RawClient(std::uint16_t port, int receive_buffer = 0, const char* address = "127.0.0.1");
   /// With TLS, whatever the certificate says. @throws std::runtime_error  no handshake
-  static std::unique_ptr<RawClient> secure(std::uint16_t port);
+  static std::unique_ptr<RawClient> secure(std::uint16_t port, const char* address = "127.0.0.1");
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
   ~RawClient();

@@ -1,25 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
+// The linker leads the calls of getifaddrs() and freeifaddrs() in this program to the functions below
+// (--wrap).
 #include "phalanx/serve/reach.h"
 
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 #include <qrencode.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
+
+#include "serve/web/secret_file.h"
+
+namespace phalanx {
+namespace {
+
+/// What getifaddrs() says; null: what the system says.
+ifaddrs* the_interfaces = nullptr;
+
+}  // namespace
+}  // namespace phalanx
+
+extern "C" int __real_getifaddrs(ifaddrs** list);
+extern "C" void __real_freeifaddrs(ifaddrs* list);
+extern "C" int __wrap_getifaddrs(ifaddrs** list);
+extern "C" int __wrap_getifaddrs(ifaddrs** list) {
+  if (phalanx::the_interfaces == nullptr) return __real_getifaddrs(list);
+  *list = phalanx::the_interfaces;
+  return 0;
+}
+extern "C" void __wrap_freeifaddrs(ifaddrs* list);
+extern "C" void __wrap_freeifaddrs(ifaddrs* list) {
+  if (list != phalanx::the_interfaces) __real_freeifaddrs(list);
+}
 
 namespace phalanx {
 namespace {
 
 using testing::Contains;
 using testing::Each;
+using testing::ElementsAre;
 using testing::EndsWith;
 using testing::MatchesRegex;
 using testing::StartsWith;
@@ -40,6 +76,61 @@ TEST(LanUrls, NameEveryAddressAndTheToken) {
   EXPECT_THAT(urls, Each(EndsWith(":8480/?token=abc")));
   EXPECT_THAT(lan_urls(8480, ""), Each(EndsWith(":8480/")));
   EXPECT_THAT(machine_addresses(), testing::Not(Contains("127.0.0.1")));
+}
+
+struct Interface {
+  int flags = 0;
+  std::string address;  ///< empty: none; "hardware": none of IP
+};
+
+/// While it lives the machine has these interfaces.
+class TheseInterfaces {
+ public:
+  explicit TheseInterfaces(const std::vector<Interface>& interfaces) : all_(interfaces.size()) {
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      Entry& entry = all_[i];
+      const std::string& address = interfaces[i].address;
+      entry.listed.ifa_flags = static_cast<unsigned>(interfaces[i].flags);
+      entry.listed.ifa_next = i + 1 < all_.size() ? &all_[i + 1].listed : nullptr;
+      if (address.empty()) continue;
+      const bool is_v4 = ::inet_pton(AF_INET, address.c_str(), &entry.v4.sin_addr) == 1;
+      const bool is_v6 = ::inet_pton(AF_INET6, address.c_str(), &entry.v6.sin6_addr) == 1;
+      entry.v4.sin_family = AF_INET;
+      entry.v6.sin6_family = static_cast<sa_family_t>(is_v6 ? AF_INET6 : AF_PACKET);
+      entry.listed.ifa_addr =
+          is_v4 ? reinterpret_cast<sockaddr*>(&entry.v4) : reinterpret_cast<sockaddr*>(&entry.v6);
+    }
+    the_interfaces = &all_.front().listed;
+  }
+  TheseInterfaces(const TheseInterfaces&) = delete;
+  TheseInterfaces& operator=(const TheseInterfaces&) = delete;
+  ~TheseInterfaces() { the_interfaces = nullptr; }
+
+ private:
+  struct Entry {
+    ifaddrs listed{};
+    sockaddr_in v4{};
+    sockaddr_in6 v6{};
+  };
+  std::vector<Entry> all_;
+};
+
+// 169.254/16 and fe80::/10 are link-local.
+TEST(MachineAddresses, AreThoseThatOthersReachIPv4First) {
+  const TheseInterfaces these({{IFF_UP | IFF_LOOPBACK, "127.0.0.1"},
+                               {IFF_UP | IFF_LOOPBACK, "::1"},
+                               {IFF_UP, "hardware"},
+                               {IFF_UP, ""},
+                               {IFF_UP, "2001:db8::7"},
+                               {IFF_UP, "fe80::7"},
+                               {0, "192.0.2.1"},
+                               {IFF_UP | IFF_RUNNING, "192.0.2.7"},
+                               {IFF_UP, "169.254.0.7"},
+                               {IFF_UP, "169.253.0.7"}});
+  EXPECT_THAT(machine_addresses(), ElementsAre("192.0.2.7", "169.253.0.7", "2001:db8::7"));
+  EXPECT_THAT(lan_urls(8480, "abc"),
+              ElementsAre("https://192.0.2.7:8480/?token=abc", "https://169.253.0.7:8480/?token=abc",
+                          "https://[2001:db8::7]:8480/?token=abc"));
 }
 
 TEST(SshLine, IsForThoseWhoCameBySsh) {
@@ -117,8 +208,8 @@ class Certificate : public testing::Test {
 };
 
 TEST_F(Certificate, IsForTheNamesAndItsKeyIsSecret) {
-  const CertificateFiles files =
-      make_self_signed_certificate(folder_ / "deep", {"station", "192.0.2.2", "fd00::2"});
+  const CertificateFiles files = make_self_signed_certificate(
+      folder_ / "deep", {"station", "192.0.2.2", "fd00::2", "", "x,IP:192.0.2.66"});
   EXPECT_EQ(mode_of(files.key), 0600U);
   EXPECT_EQ(mode_of(folder_ / "deep"), 0700U);
   const std::unique_ptr<BIO, decltype(&BIO_free_all)> file(BIO_new_file(files.certificate.c_str(), "r"),
@@ -133,10 +224,21 @@ TEST_F(Certificate, IsForTheNamesAndItsKeyIsSecret) {
   for (const char* address : {"192.0.2.2", "fd00::2", "127.0.0.1", "::1"}) {
     EXPECT_EQ(X509_check_ip_asc(made.get(), address, 0), 1) << address;
   }
+  EXPECT_EQ(X509_check_ip_asc(made.get(), "192.0.2.66", 0), 0) << "a name with a comma is none";
+  std::array<char, 64> common{};
+  X509_NAME_get_text_by_NID(X509_get_subject_name(made.get()), NID_commonName, common.data(),
+                            static_cast<int>(common.size()));
+  EXPECT_STREQ(common.data(), "Phalanx station");
+  EXPECT_GE(X509_get_ext_by_NID(made.get(), NID_basic_constraints, -1), 0);
+  EXPECT_EQ(X509_check_ca(made.get()), 0) << "it signs no others";
+  EXPECT_EQ(X509_get_key_usage(made.get()), std::uint32_t{KU_DIGITAL_SIGNATURE});
+  EXPECT_EQ(X509_get_extended_key_usage(made.get()), std::uint32_t{XKU_SSL_SERVER});
   int days = 0;
   int rest = 0;
   ASSERT_EQ(ASN1_TIME_diff(&days, &rest, X509_get0_notBefore(made.get()), X509_get0_notAfter(made.get())), 1);
   EXPECT_EQ(days, 397);
+  ASSERT_EQ(ASN1_TIME_diff(&days, &rest, X509_get0_notBefore(made.get()), nullptr), 1);
+  EXPECT_EQ(days, 1) << "until now: another computer's clock may be behind";
   EXPECT_EQ(X509_verify(made.get(), X509_get0_pubkey(made.get())), 1) << "signed by itself";
   EXPECT_THAT(certificate_fingerprint(files.certificate), MatchesRegex("([0-9A-F]{2}:){31}[0-9A-F]{2}"));
 }
@@ -145,7 +247,9 @@ TEST_F(Certificate, IsUsedAgainWhileItFits) {
   const CertificateFiles files = make_self_signed_certificate(folder_, {"station", "odd name; is left out"});
   const std::string first = text_of(files.certificate);
   ASSERT_EQ(::chmod(files.key.c_str(), 0644), 0);
-  (void)make_self_signed_certificate(folder_, {"station", "odd name; is left out"});
+  const CertificateFiles again = make_self_signed_certificate(folder_, {"station", "odd name; is left out"});
+  EXPECT_EQ(again.certificate, files.certificate);
+  EXPECT_EQ(again.key, files.key);
   EXPECT_EQ(text_of(files.certificate), first);
   EXPECT_EQ(mode_of(files.key), 0600U) << "closed again";
   (void)make_self_signed_certificate(folder_, {"station", "192.0.2.9"});
@@ -185,6 +289,13 @@ TEST_F(Certificate, IsMadeAnewIfWhatIsThereIsBroken) {
   (void)make_self_signed_certificate(folder_, {});
   EXPECT_NE(text_of(files.certificate), first);
   EXPECT_THAT(text_of(files.key), StartsWith("-----BEGIN PRIVATE KEY-----"));
+}
+
+TEST_F(Certificate, ASecretMayBeOneByteLong) {
+  std::filesystem::create_directories(folder_);
+  web::write_secret_file(folder_ / "secret", "x");
+  EXPECT_EQ(text_of(folder_ / "secret"), "x");
+  EXPECT_EQ(mode_of(folder_ / "secret"), 0600U);
 }
 
 TEST_F(Certificate, SaysWhereItCannotBeWritten) {

@@ -2,8 +2,11 @@
 // Which requests get in, how far, and how they are answered.
 #include <gmock/gmock.h>
 
+#include <future>
 #include <random>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "serve/web/page_client.h"
 #include "serve/web/web_fixture.h"
@@ -70,6 +73,34 @@ TEST_F(WebRequests, OnlyThreeMethodsAreUnderstood) {
     EXPECT_EQ(status_of(answer), 405) << method;
     EXPECT_EQ(field_of(answer, "Allow"), "GET, HEAD, POST") << method;
   }
+}
+
+// Each door ends the request that it refuses: nobody behind it hears of it.
+TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
+  start();
+  const std::string closes = "Connection: close\r\n\r\n";
+  std::string another_version = PageClient::good_fields();
+  another_version.replace(another_version.find("Version: 13"), 11, "Version: 12");
+  const std::vector<std::pair<std::string, int>> refused{
+      {"GET /none HTTP/1.1\r\nHost: evil.example\r\n" + closes, 421},
+      {"GET /none HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n" + closes, 400},
+      {"PUT /none HTTP/1.1\r\nHost: 127.0.0.1\r\n" + closes, 405},
+      {get("/" + std::string(2048, 'a')), 414},
+      {get("/%00"), 400},
+      {"POST /none HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n" + closes, 403},
+      {get("/none", "Upgrade: h2c\r\n"), 400},
+      {PageClient::head(another_version, "/none"), 426},
+      {PageClient::head(PageClient::good_fields(), "/none") + "too early", 400}};
+  for (const auto& [request, status] : refused) {
+    RawClient client(port());
+    client.say(request);
+    EXPECT_EQ(status_of(client.hear_answer()), status) << request;
+  }
+  expect_alive();
+  EXPECT_THAT(application_.requests(), IsEmpty());
+  EXPECT_THAT(application_.joined_pages(), IsEmpty());
+  EXPECT_EQ(status_of(ask(get("/" + std::string(2047, 'a')))), 404) << "2048 bytes are not too many";
+  EXPECT_THAT(application_.requests(), testing::SizeIs(1));
 }
 
 TEST_F(WebRequests, AHeadHasALimit) {
@@ -181,7 +212,27 @@ TEST_F(WebRequests, AnAnswerMayComeLaterFromAnyThreadAndOnce) {
 TEST_F(WebRequests, AnAnswerThatIsForgottenIsSaidToBe) {
   application_.on_requested = [](const WebRequest&, const std::function<void(WebAnswer)>&) {};
   start();
-  EXPECT_EQ(status_of(ask(get("/forgotten"))), 500);
+  const std::string answer = ask(get("/forgotten"));
+  EXPECT_EQ(status_of(answer), 500);
+  EXPECT_EQ(body_of(answer), "The station has no answer to this.\n");
+}
+
+// The second request has come with the first one, and its sender has gone before that is answered.
+TEST_F(WebRequests, BehindAnAnswerThatNobodyTakesNothingIsAsked) {
+  std::promise<std::function<void(WebAnswer)>> first;
+  int asked = 0;
+  application_.on_requested = [&](const WebRequest&, std::function<void(WebAnswer)> answer) {
+    if (++asked == 1) first.set_value(std::move(answer));
+  };
+  start();
+  RawClient client(port());
+  const std::string request = "GET /none HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  client.say(request + request);
+  const std::function<void(WebAnswer)> answer = first.get_future().get();
+  client.vanish();
+  answer(WebAnswer{});
+  for (int i = 0; i < 3; ++i) expect_alive();
+  EXPECT_THAT(application_.requests(), testing::SizeIs(1));
 }
 
 TEST_F(WebRequests, AnAnswerMayComeWhenTheServerIsNoMore) {
@@ -254,6 +305,7 @@ TEST_F(WebRequests, FilesLeaveASixteenthOfThePlacesToPagesAndAPostNeedsNone) {
   EXPECT_THAT(application_.requests(), testing::SizeIs(50));
   application_.limit = 10;
   EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\n") + "x")), 503) << "a body needs one";
+  EXPECT_THAT(application_.requests(), testing::SizeIs(50));
 }
 
 TEST_F(WebRequests, APostThatHasNoPlaceIsTheLastOfItsConnection) {
@@ -316,6 +368,29 @@ TEST_F(WebRequests, WhoOnlyConnectsKeepsNobodyOut) {
   EXPECT_EQ(silent[100]->hear_all(), "") << "the oldest went";
   silent.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(status_of(silent.back()->hear_answer()), 200) << "the newest stay";
+}
+
+// They connect while the server's thread is busy, so that it takes them in without a moment between them.
+TEST_F(WebRequests, OfManyWhoConnectAtOnceOnlyTheNewestStay) {
+  settings_.unproven_connections = 2;
+  settings_.proof_timeout = 3600.0;
+  settings_.request_timeout = 3600.0;
+  start();
+  std::promise<void> busy;
+  std::promise<void> connected;
+  server_->post([&busy, have = connected.get_future().share()] {
+    busy.set_value();
+    have.wait();
+  });
+  busy.get_future().wait();
+  std::vector<std::unique_ptr<RawClient>> silent;
+  for (int i = 0; i < 12; ++i) silent.push_back(std::make_unique<RawClient>(port()));
+  connected.set_value();
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(silent[i]->hear_all(), "") << i;
+  for (std::size_t i = 10; i < 12; ++i) {
+    silent[i]->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(status_of(silent[i]->hear_answer()), 200) << i;
+  }
 }
 
 TEST_F(WebRequests, AThousandConnectsLeaveItWorking) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <functional>
 #include <future>
 #include <sstream>
 
@@ -102,10 +103,48 @@ TEST_F(WebServing, LimitsAreSensible) {
   EXPECT_THAT(refusal(), HasSubstr("timeout"));
 }
 
+TEST_F(WebServing, EveryLimitHasItsBounds) {
+  using Settings = WebServerSettings;
+  const Settings good = settings_;
+  const auto says = [&](const std::function<void(Settings&)>& change) {
+    settings_ = good;
+    change(settings_);
+    return refusal();
+  };
+  for (const double rate : {1.0, 1000.0}) EXPECT_EQ(says([&](Settings& s) { s.frame_rate_hz = rate; }), "");
+  for (const double rate : {0.99, 1000.1})
+    EXPECT_THAT(says([&](Settings& s) { s.frame_rate_hz = rate; }), HasSubstr("frame rate")) << rate;
+  for (const auto timeout : {&Settings::request_timeout, &Settings::idle_timeout, &Settings::proof_timeout}) {
+    EXPECT_EQ(says([&](Settings& s) { s.*timeout = 3600.0; }), "");
+    for (const double wrong : {0.0, 3600.1})
+      EXPECT_THAT(says([&](Settings& s) { s.*timeout = wrong; }), HasSubstr("timeout")) << wrong;
+  }
+  for (const auto limit : {&Settings::message_limit, &Settings::messages_per_second, &Settings::queue_limit,
+                           &Settings::queue_bytes, &Settings::connections, &Settings::unproven_connections,
+                           &Settings::unproven_per_address}) {
+    EXPECT_EQ(says([&](Settings& s) { s.*limit = 1; }), "");
+    EXPECT_THAT(says([&](Settings& s) { s.*limit = 0; }), HasSubstr("at least 1"));
+  }
+  EXPECT_EQ(says([](Settings& s) { s.messages_per_second = 100'000; }), "");
+  EXPECT_THAT(says([](Settings& s) { s.messages_per_second = 100'001; }), HasSubstr("at most 100,000"));
+  for (const std::size_t bytes : {256U, 1'048'576U})
+    EXPECT_EQ(says([&](Settings& s) { s.header_limit = bytes; }), "");
+  for (const std::size_t bytes : {255U, 1'048'577U})
+    EXPECT_THAT(says([&](Settings& s) { s.header_limit = bytes; }), HasSubstr("256 to 1048576")) << bytes;
+}
+
+// 1024 files and folders may be in it, and 64 MiB.
 TEST_F(WebServing, AFolderThatIsNoFrontEndIsNotReadWhole) {
-  for (int i = 0; i < 1100; ++i) write("many/" + std::to_string(i), "");
+  for (int i = 0; i < 1024; ++i) write("many/" + std::to_string(i), "");
   settings_.site = folder_ / "many";
-  EXPECT_THAT(refusal(), HasSubstr("no built front-end"));
+  EXPECT_EQ(refusal(), "");
+  write("many/one-more", "");
+  EXPECT_THAT(refusal(), HasSubstr("more than 1024 files and folders, which is no built front-end"));
+  write("large/film", "");
+  std::filesystem::resize_file(folder_ / "large/film",
+                               64U * 1024U * 1024U + 1U);  // takes no room on the disk
+  settings_.site = folder_ / "large";
+  EXPECT_THAT(refusal(), HasSubstr("more than 64 MiB, which is no built front-end"));
 }
 
 /// A line of a file in /proc, behind its name.

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Over TLS, by token.
 #include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <array>
 
 #include "phalanx/serve/reach.h"
 #include "serve/web/page_client.h"
@@ -122,6 +126,38 @@ TEST_F(WebTls, AHandshakeThatDoesNotComeIsLetGo) {
   RawClient silent(port());
   EXPECT_EQ(silent.hear_all(), "");
   EXPECT_EQ(status_of(ask("/", cookie_by(settings_.operator_token))), 200);
+}
+
+// 127.0.0.2 is this machine's as all of 127/8 are, but it is none of its names. Who passes this door is asked
+// for a token by the next one (403).
+TEST_F(WebTls, WhoCameByAnAddressOfOursMaySaySo) {
+  settings_.address = "0.0.0.0";
+  start();
+  const auto status = [this](const char* reached) {
+    const auto client = RawClient::secure(port(), reached);
+    client->say("GET / HTTP/1.1\r\nHost: 127.0.0.2\r\nConnection: close\r\n\r\n");
+    return status_of(client->hear_all());
+  };
+  EXPECT_EQ(status("127.0.0.2"), 403);
+  EXPECT_EQ(status("127.0.0.1"), 421);
+}
+
+// More noise than is read at once: if what is left of it were not taken in, the end would be a reset, which
+// may take back an answer before it is read.
+TEST_F(WebTls, ALineThatTurnsIntoNoiseEndsWithoutAReset) {
+  start();
+  const auto client = RawClient::secure(port());
+  const std::string noise(100'000, 'x');
+  ASSERT_EQ(::send(client->descriptor(), noise.data(), noise.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(noise.size()));
+  std::array<char, 4096> piece{};
+  ssize_t got = 1;
+  while (got > 0) {
+    pollfd comes{.fd = client->descriptor(), .events = POLLIN, .revents = 0};
+    ASSERT_EQ(::poll(&comes, 1, 300'000), 1);
+    got = ::recv(client->descriptor(), piece.data(), piece.size(), 0);
+  }
+  EXPECT_EQ(got, 0);
 }
 
 TEST_F(WebTls, PlainHttpGetsNothing) {

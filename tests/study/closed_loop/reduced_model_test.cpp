@@ -29,6 +29,42 @@ ReducedModel frictionless(double press) {
   return model;
 }
 
+// docs/device-file.md, "The shipped devices": the column of beihang, what all have, and the patient `adult`.
+TEST(ReducedModel, HasTheNumbersOfTheShippedDevice) {
+  const ReducedModel model = make_reduced_model();
+  ASSERT_EQ(model.exoskeleton.joints.size(), 1U);
+  ASSERT_EQ(model.exoskeleton.motors.size(), 1U);
+  const ExoJoint& joint = model.exoskeleton.joints[0];
+  const ExoMotor& motor = model.exoskeleton.motors[0];
+  const auto j = static_cast<std::size_t>(joint.joint);
+  EXPECT_EQ(motor.mass, 0.20);
+  EXPECT_EQ(joint.inertia, 0.04);
+  EXPECT_EQ(motor.damping, 0.8);
+  EXPECT_EQ(joint.damping, 0.8);
+  EXPECT_EQ(motor.sheath.coulomb, 0.34);
+  EXPECT_EQ(joint.friction.coulomb, 0.06);
+  for (const DryFriction& friction : {motor.sheath, joint.friction}) {
+    EXPECT_EQ(friction.static_ratio, 1.05);
+    EXPECT_EQ(friction.stribeck_speed, 2e-3);
+    EXPECT_EQ(friction.capstan, 0.0);
+  }
+  EXPECT_EQ(motor.tendon_stiffness, 10e3);
+  EXPECT_EQ(motor.tendon_damping, 5.0);
+  EXPECT_EQ(motor.backlash, 0.1e-3);
+  EXPECT_EQ(motor.lag, 4e-3);
+  EXPECT_EQ(motor.force_limit, 10.0);
+  EXPECT_EQ(motor.arm[j], -1.0);
+  EXPECT_EQ(motor.name, "wall");
+  EXPECT_EQ(joint.sensor_lsb, 25e-6);
+  EXPECT_EQ(joint.sensor_noise, 10e-6);
+  EXPECT_EQ(model.exoskeleton.controller.rate_hz, 1000.0);
+  EXPECT_EQ(model.exoskeleton.controller.compute_delay, 4.5e-3);
+  EXPECT_EQ(model.exoskeleton.controller.return_delay, 1e-3);
+  EXPECT_EQ(model.patient.stiffness[j], 700.0);
+  EXPECT_EQ(model.patient.damping[j], 2.8);
+  EXPECT_EQ(model.patient.bump, 2.0);
+}
+
 // F = k x and kh (x_end - x) = F at x_end = F (1/kh + 1/k). What is left is the sensor: 25 um in 100 N/m, and
 // a tremor of 30 um that has no mean.
 TEST(ReducedModel, RestsAtThePressOnASoftWallWithoutFriction) {

@@ -120,10 +120,37 @@ TEST(StabilityRow, AgreesWithNoPaperWhereNothingIsProven) {
   }
 }
 
+// The columns are of both runs' segments, in the hand's order; a position that there is not yet stays empty.
+TEST(CurvesCsv, HasTheSegmentsOfAllRunsInTheirOrder) {
+  LoopRun tip;
+  tip.name = "tip";
+  tip.curves.time_s = {0.0, 0.005};
+  tip.curves.touching = {5};
+  tip.curves.force[3] = {0.0, 0.0};
+  tip.curves.position[3] = {kSceneValue, kSceneValue};
+  tip.curves.force[5] = {1.5, 2.5};
+  tip.curves.position[5] = {kSceneValue, 0.001};
+  LoopRun both;
+  both.name = "both, 0.1 N";
+  both.curves.time_s = {0.25};
+  both.curves.touching = {3, 5};
+  both.curves.force[3] = {0.5};
+  both.curves.position[3] = {0.002};
+  both.curves.force[5] = {3.5};
+  both.curves.position[5] = {0.003};
+  EXPECT_EQ(curves_csv({tip, both}),
+            "run,time_s,index-finger-phalanx-proximal_force_n,index-finger-phalanx-proximal_into_m,"
+            "index-finger-phalanx-distal_force_n,index-finger-phalanx-distal_into_m\n"
+            "tip,0,0,,1.5,\n"
+            "tip,0.005,0,,2.5,0.001\n"
+            "\"both, 0.1 N\",0.25,0.5,0.002,3.5,0.003\n");
+}
+
 TEST(S2Fig4, ReportsWhatItFound) {
   const ExperimentReport report = s2_fig4();
   const auto json = nlohmann::json::parse(report.json);
   EXPECT_EQ(json["experiment"], "s2-fig4");
+  EXPECT_EQ(json["paper_values"], "not printed");
   EXPECT_EQ(json["none"]["stable_seeds"], 0);
   EXPECT_EQ(json["smoothing"]["stable_seeds"], kLoopSeeds);
   EXPECT_EQ(json["none"]["trials"].size(), static_cast<std::size_t>(kLoopSeeds));
@@ -137,6 +164,12 @@ TEST(S2Fig4, ReportsWhatItFound) {
   EXPECT_THAT(report.text, ::testing::HasSubstr("stable in 20 of 20 seeds"));
   EXPECT_THAT(report.csv, ::testing::StartsWith("run,time_s,index-finger-phalanx-distal_force_n,"));
   EXPECT_THAT(report.svg, ::testing::HasSubstr("</svg>"));
+  ASSERT_EQ(report.sections.size(), 1U);
+  ASSERT_EQ(report.sections[0].text.size(), 3U);
+  EXPECT_THAT(report.sections[0].text[0],
+              ::testing::StartsWith("Without smoothing: stable in 0 of 20 seeds"));
+  EXPECT_THAT(report.sections[0].text[1],
+              ::testing::StartsWith("With at most 0.05 N a step: stable in 20 of 20 seeds"));
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "phalanx/device/simulated_exoskeleton.h"
@@ -84,8 +86,15 @@ TEST(S2Fig5, ReportsEveryTouchingPhalanx) {
   const ExperimentReport report = s2_fig5();
   ASSERT_EQ(report.rows.size(), 2U);
   for (const PaperRow& row : report.rows) EXPECT_EQ(row.difference, "agrees") << row.quantity;
+  EXPECT_THAT(report.json, ::testing::StartsWith("{\n  \"experiment\": \"s2-fig5\",\n"));
+  const auto json = nlohmann::json::parse(report.json);
+  EXPECT_EQ(json["paper_values"], "not printed");
+  EXPECT_EQ(json["grasp"]["stable_seeds"], kLoopSeeds);
+  EXPECT_EQ(json["index_alone"]["stable_seeds"], kLoopSeeds);
+  const auto touching = json["touching"].get<std::string>();
+  EXPECT_THAT(report.text, ::testing::HasSubstr("\ntouching: " + touching + "\n"));
   for (const char* name : {"thumb distal", "index distal", "middle distal", "ring distal", "little distal"})
-    EXPECT_THAT(report.text, ::testing::HasSubstr(name));
+    EXPECT_THAT(touching, ::testing::HasSubstr(name));
   EXPECT_THAT(report.csv, ::testing::HasSubstr("pinky-finger-phalanx-distal_force_n"));
   EXPECT_THAT(report.svg, ::testing::HasSubstr("</svg>"));
 }

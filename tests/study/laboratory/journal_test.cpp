@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/laboratory/journal.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "phalanx/record/output_file.h"
 #include "record/temporary_folder.h"
@@ -175,6 +179,28 @@ TEST(Journal, EndsWithItsLastCompleteLineIfTheDiskIsFull) {
   }
   journal.append(point(3));
   EXPECT_EQ(read_journal(file).points.size(), 4U);
+}
+
+// A file in memory that may grow and not shrink: what is torn cannot be cut off, nor the rest thrown away.
+TEST(Journal, SaysThatATornLineCannotBeCutOff) {
+  const int memory = ::memfd_create("journal", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  ASSERT_GE(memory, 0);
+  const std::string text = journal_text({.header = header(), .points = {point(0)}}) + "torn";
+  ASSERT_EQ(::write(memory, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  ASSERT_EQ(::fcntl(memory, F_ADD_SEALS, F_SEAL_SHRINK), 0);
+  const auto file = std::filesystem::path("/proc/self/fd") / std::to_string(memory);
+  const auto why_not = [&](bool restart) -> std::string {
+    try {
+      const Journal journal(file, header(), restart);
+      return "";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_THAT(why_not(false), ::testing::HasSubstr("cannot be shortened: "));
+  EXPECT_THAT(why_not(true), ::testing::HasSubstr("cannot be emptied: "));
+  EXPECT_EQ(read_file(file), text);
+  ::close(memory);
 }
 
 TEST(Journal, RefusesADevice) {

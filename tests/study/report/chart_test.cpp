@@ -75,6 +75,10 @@ TEST(LineChartSvg, StacksPanelsOverOneAxisWithMarksAndWindows) {
     EXPECT_EQ(count_of(svg, words), 1U) << words;
   EXPECT_EQ(count_of(svg, "class=\"curve\""), 4U);
   EXPECT_EQ(count_of(svg, "class=\"mark\""), 1U);
+  // Over the window's middle, 1.65 s of 4.999 s in a frame of 326.24 pt; 3 pt above the first frame, which
+  // begins at 15 + 12 + 7 of the heading + 24.
+  EXPECT_THAT(svg, HasSubstr("<text x=\"153.68\" y=\"55.00\" text-anchor=\"middle\" font-size=\"7\" "
+                             "fill=\"#6B6650\">bump<"));
 }
 
 TEST(LineChartSvg, GivesTheSameBytesForTheSameNumbers) {
@@ -104,6 +108,22 @@ TEST(LineChartSvg, PutsEveryPointWhereItsNumbersSay) {
   // Top: heading 15 + 7, and 18 above the first frame = 40; y from 0 to 4: 2 is in the middle of 100 pt.
   EXPECT_THAT(svg, HasSubstr("translate(271.12,90.00)"));
   EXPECT_THAT(svg, HasSubstr("d=\"M56.72,140.00L271.12,90.00L485.52,40.00\""));
+  // The frame; through the middle a line of the grid and a stroke outside for either axis.
+  for (const char* piece : {"d=\"M46.00,40.00V140.00H496.24\"", "M46.00,90.00h450.24M",
+                            "M271.12,40.00v100.00", "M46.00,90.00h-3M", "M271.12,140.00v3"})
+    EXPECT_EQ(count_of(svg, piece), 1U) << piece;
+}
+
+TEST(LineChartSvg, MarksZeroInsideTheFrameOnly) {
+  const auto drawn = [](std::vector<double> y) {
+    LineChart chart = chart_of({short_series("", std::move(y))});
+    chart.panels[0].height = 100.0;
+    return line_chart_svg(chart);
+  };
+  EXPECT_THAT(drawn({-2.0, 0.0, 2.0}), HasSubstr("d=\"M46.00,90.00h450.24\" stroke=\"#888\""));
+  EXPECT_EQ(count_of(drawn({-2.0, 0.0, 2.0}), "stroke=\"#888\""), 1U);
+  EXPECT_THAT(drawn({0.0, 2.0, 4.0}), Not(HasSubstr("stroke=\"#888\"")));
+  EXPECT_THAT(drawn({-4.0, -2.0, -1.0}), Not(HasSubstr("stroke=\"#888\"")));
 }
 
 TEST(LineChartSvg, BreaksTheLineAtWhatIsNotFinite) {
@@ -160,6 +180,29 @@ TEST(LineChartSvg, TellsHowManyOfTooManyCurvesItShows) {
   keep("many.svg", svg);
   EXPECT_EQ(count_of(svg, "class=\"curve\""), kMostSeries);
   EXPECT_THAT(svg, HasSubstr(">24 of 30 curves shown<"));
+  // It ends 6 pt below the legend: 22 + 18 above the frame, 24 curves and the line that says so, 10.5 pt
+  // each.
+  EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 510.24 308.50\""));
+}
+
+// The second of three panels, 50 pt high each, has ten curves: 105 pt of legend from 22 + 18 + 50 + 18 = 108
+// on. A third panel with a legend of its own begins below it, 18 pt further down; one without, below the
+// second frame.
+TEST(LineChartSvg, LetsALongLegendPassAPanelWithoutOne) {
+  std::vector<ChartSeries> ten;
+  for (int i = 0; i < 10; ++i) ten.push_back(short_series(fmt::format("curve {}", i), {1.0, 2.0}));
+  LineChart chart = chart_of({short_series("", {1.0, 2.0})});
+  chart.panels[0].height = 50.0;
+  chart.panels.resize(3, chart.panels[0]);
+  chart.panels[0].legend = false;
+  chart.panels[1].series = ten;
+  const std::string below = line_chart_svg(chart);
+  EXPECT_THAT(below, HasSubstr("d=\"M46.00,231.00V281.00H372.24\""));
+  EXPECT_THAT(below, HasSubstr("viewBox=\"0 0 510.24 312.00\""));
+  chart.panels[2].legend = false;
+  const std::string beside = line_chart_svg(chart);
+  EXPECT_THAT(beside, HasSubstr("d=\"M46.00,176.00V226.00H372.24\""));
+  EXPECT_THAT(beside, HasSubstr("viewBox=\"0 0 510.24 257.00\""));
 }
 
 TEST(LineChartSvg, RefusesWhatDoesNotFitTogether) {
@@ -184,6 +227,32 @@ TEST(BarChartSvg, DrawsEveryBarToScaleWithItsNumber) {
   for (const char* words : {">0.7<", ">1.6<", ">\u22653.2<", ">15<", ">111<", ">1.4<", ">20<", ">\u2013<"})
     EXPECT_THAT(svg, HasSubstr(words));
   EXPECT_EQ(count_of(svg, "class=\"bar\""), 3U + 2U + 2U);
+}
+
+// A letter is 4.32 wide: the names end at 8 + 8.64 and the bars begin 6 further right. The rest of 510.24 - 4
+// is for two quantities, 241.80 each; a longest bar has all of that but 40, which is 201.80. Rows are 14 high
+// from 22 + 28 on, bars 4 less.
+TEST(BarChartSvg, PutsEveryBarWhereItsNumbersSay) {
+  const std::string svg =
+      bar_chart_svg({.title = "t",
+                     .names = {"a", "bb"},
+                     .quantities = {{.label = "q", .value = {1, 2}}, {.label = "r", .value = {4, 1}}}});
+  for (const char* piece :
+       {R"(x="22.64" y="52.00" width="100.90" height="10.00")",
+        R"(x="22.64" y="66.00" width="201.80" height="10.00")",
+        R"(x="264.44" y="52.00" width="201.80" height="10.00")",
+        R"(x="264.44" y="66.00" width="50.45" height="10.00")",
+        R"(<text x="126.54" y="59.80" text-anchor="start">1<)",
+        R"(<text x="227.44" y="73.80" text-anchor="start">2<)",
+        R"(<text x="469.24" y="59.80" text-anchor="start">4<)",
+        R"(<text x="317.89" y="73.80" text-anchor="start">1<)",
+        R"(<text x="22.64" y="44.00" text-anchor="start" font-weight="bold">q<)",
+        R"(<text x="264.44" y="44.00" text-anchor="start" font-weight="bold">r<)",
+        R"(<text x="16.64" y="59.80" text-anchor="end">a<)",
+        R"(<text x="16.64" y="73.80" text-anchor="end">bb<)", R"(d="M22.64,50.00v28.00")",
+        R"(d="M264.44,50.00v28.00")", R"(<rect x="4" y="50.00" width="502.24" height="14.00")",
+        R"(viewBox="0 0 510.24 84.00")"})
+    EXPECT_EQ(count_of(svg, piece), 1U) << piece;
 }
 
 TEST(BarChartSvg, RefusesAValueWithoutAName) {

@@ -87,6 +87,8 @@ TEST(ExperimentsReport, SetsEveryNumberBesideThePapers) {
                             ">1 to 20<"})
     EXPECT_THAT(page, HasSubstr(words));
   EXPECT_EQ(count_of(page, "<svg"), 2U);
+  EXPECT_EQ(count_of(page, "<figure>"), 1U);  // the second section has none
+  EXPECT_EQ(count_of(page, "<table>"), 3U);   // the numbers, the second section's, and where it was made
   EXPECT_EQ(count_of(page, "<?xml"), 0U);
   EXPECT_EQ(page, experiments_html(rows(), sections(), kMadeUp, "1 to 20"));
 }

@@ -9,8 +9,10 @@
 #include <stdexcept>
 
 #include "phalanx/study/report/chart.h"
+#include "study/report/column_names.h"
 #include "study/report/page_checks.h"
 #include "study/report/palette.h"
+#include "study/report/svg.h"
 
 namespace phalanx {
 namespace {
@@ -44,6 +46,69 @@ TEST(HeatMapSvg, WritesEveryNumberAndHatchesWhatIsMissing) {
   EXPECT_EQ(count_of(svg, "fill=\"url(#hatch)\""), 2U);  // the cell and the legend
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_EQ(svg, heat_map_svg(small_map()));
+}
+
+// 88 mm are 249.45 pt. Left of the cells 8 and two letters of 4.32, right of them 58 + 16: a fifth of the
+// rest is 31.76. The heading's 22 and 6 are above them, and rows are 17 high where there is room.
+TEST(HeatMapSvg, PutsEveryCellAndNameInItsPlace) {
+  const HeatMap map{.title = "t",
+                    .quantity = "q",
+                    .x_label = "x",
+                    .y_label = "",
+                    .columns = {"a", "b", "c", "d", "e"},
+                    .rows = {"1", "2", "3", "4", "5", "6", "7", "8", "9", "10"},
+                    .value = std::vector<double>(50, 1.5),
+                    .width_mm = 88.0};
+  const std::string svg = heat_map_svg(map);
+  for (const char* piece :
+       {R"(<rect x="16.64" y="28.00" width="31.76" height="17.00")",
+        R"(<rect x="143.69" y="28.00" width="31.76" height="17.00")",
+        R"(<rect x="143.69" y="181.00" width="31.76" height="17.00")",
+        R"(<rect x="16.64" y="28.00" width="158.81" height="170.00" fill="none")",
+        R"(<text x="32.52" y="209.00" text-anchor="middle">a<)",
+        R"(<text x="96.04" y="221.00" text-anchor="middle">x<)",
+        R"(<text x="12.64" y="39.30" text-anchor="end">1<)", R"(viewBox="0 0 249.45 229.00")"})
+    EXPECT_EQ(count_of(svg, piece), 1U) << piece;
+}
+
+// However few they are: a column is no wider than 80 pt.
+TEST(HeatMapSvg, GivesOneColumnAllTheRoomItMayHave) {
+  const HeatMap map{.title = "",
+                    .quantity = "",
+                    .x_label = "",
+                    .y_label = "y",
+                    .columns = {"twenty letters' name"},
+                    .rows = {"1"},
+                    .value = {1.5},
+                    .width_mm = 88.0};
+  EXPECT_THAT(heat_map_svg(map), HasSubstr("width=\"80.00\""));
+}
+
+TEST(MapsSvg, Are180MillimetresWideUnlessSaidOtherwise) {
+  EXPECT_THAT(heat_map_svg({}), HasSubstr("width=\"180.00mm\""));
+  EXPECT_THAT(verdict_map_svg({}), HasSubstr("width=\"180.00mm\""));
+}
+
+// A letter is 4.32 wide, and 1.5 are between two names. A number in a cell of 4 has room for itself at every
+// second one; a word that is too wide stands upright.
+TEST(ColumnNames, StandUnderTheirColumns) {
+  const auto drawn = [](const std::vector<std::string>& names, double cell, double end) {
+    Svg svg(200.0);
+    EXPECT_NEAR(draw_column_names(svg, names, 10.0, cell, 100.0), end, 1e-9);
+    return svg.document(200.0, "");
+  };
+  const std::string numbered = drawn({"0", "1", "2"}, 20.0, 111.0);
+  for (const char* piece : {R"(<text x="20.00" y="111.00" text-anchor="middle">0<)",
+                            R"(<text x="40.00" y="111.00" text-anchor="middle">1<)",
+                            R"(<text x="60.00" y="111.00" text-anchor="middle">2<)"})
+    EXPECT_THAT(numbered, HasSubstr(piece));
+  const std::string thinned_out = drawn({"0", "1", "2"}, 4.0, 111.0);
+  EXPECT_THAT(thinned_out, HasSubstr(R"(<text x="12.00" y="111.00" text-anchor="middle">0<)"));
+  EXPECT_THAT(thinned_out, HasSubstr(R"(<text x="20.00" y="111.00" text-anchor="middle">2<)"));
+  EXPECT_EQ(count_of(thinned_out, "<text"), 2U);
+  const std::string upright = drawn({"left", "right"}, 20.0, 126.6);
+  EXPECT_THAT(upright, HasSubstr(R"x(translate(22.80,105.00) rotate(-90)" text-anchor="end">left<)x"));
+  EXPECT_THAT(upright, HasSubstr(R"x(translate(42.80,105.00) rotate(-90)" text-anchor="end">right<)x"));
 }
 
 TEST(HeatMapSvg, ColoursTheSmallestDarkAndTheLargestBright) {

@@ -13,10 +13,10 @@
 namespace phalanx {
 
 /// Empty if every element is closed by its own end tag, in order, every attribute is quoted, no & or < stands
-/// bare and no id is there twice; else what is wrong.
+/// bare, no id is there twice and what is filled with url(#id) has it; else what is wrong.
 inline std::string flaw_of(const std::string& xml) {
   std::vector<std::string> open;
-  std::set<std::string> ids;
+  std::set<std::string> ids, wanted;
   for (std::size_t i = 0; i < xml.size();) {
     const auto c = static_cast<unsigned char>(xml[i]);
     if (c < 0x20 && c != '\n') return "control character " + std::to_string(c);
@@ -49,7 +49,12 @@ inline std::string flaw_of(const std::string& xml) {
       const std::string id = tag.substr(at + 5, tag.find('"', at + 5) - at - 5);
       if (!ids.insert(id).second) return "second id " + id;
     }
+    if (const std::size_t at = tag.find("=\"url(#"); at != std::string::npos)
+      wanted.insert(tag.substr(at + 7, tag.find(')', at) - at - 7));
     if (tag.back() != '/') open.push_back(tag.substr(0, tag.find(' ')));
+  }
+  for (const std::string& id : wanted) {
+    if (ids.count(id) == 0) return "nothing has the id " + id;
   }
   return open.empty() ? "" : "no end of " + open.back();
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "phalanx/study/laboratory/report.h"
 #include "study/report/page_checks.h"
+#include "study/report/study_view.h"
 #include "study/report/synthetic_study.h"
 
 namespace phalanx {
@@ -39,6 +41,63 @@ TEST(StudyReport, OfOneNumericAxisHasACurveForEachVariant) {
         ">ghost energy [mJ]<", ">force swing [N]<", ">position swing [mm]<", "device.scale.sheath_friction",
         "step.rate = 200", "Made-up numbers", "0.1 to 4 N/mm", ">1 to 20 (20 a point)<", "more than 0.5 N"})
     EXPECT_THAT(page, HasSubstr(words));
+  // Columns of numbers are set flush right.
+  EXPECT_THAT(page, HasSubstr("<thead>\n<tr><th>variant</th><th class=\"n\">sheath friction [N]</th>"
+                              "<th class=\"n\">k_lim [N/mm]</th><th class=\"n\">k_eff [N/mm]</th>"
+                              "<th class=\"n\">peak penetration [mm]</th>"
+                              "<th class=\"n\">ghost time [ms] mean (largest)</th>"
+                              "<th class=\"n\">ghost energy [mJ] mean (largest)</th>"
+                              "<th class=\"n\">force swing [N]</th><th class=\"n\">position swing [mm]</th>"
+                              "<th class=\"n\">runs</th><th>notes</th></tr>\n</thead>"));
+  EXPECT_EQ(count_of(page, "width=\"88.00mm\""), 3U);  // a map of verdicts for each variant
+}
+
+// Of up to eight columns: two of them fit beside each other. Curves are always as wide as the page.
+TEST(StudyReport, TakesHalfAPageForAMapOfFewColumns) {
+  std::vector<double> values = {1, 2, 3, 4, 5, 6, 7, 8};
+  EXPECT_EQ(count_of(page_of(synthetic_study({}, {numbers("x.y", "x.y", values)})), "width=\"88.00mm\""), 1U);
+  values.push_back(9);
+  EXPECT_EQ(count_of(page_of(synthetic_study({}, {numbers("x.y", "x.y", values)})), "width=\"88.00mm\""), 0U);
+}
+
+TEST(StudyView, ShowsEachNumberInTheUnitThatItsLabelNames) {
+  const Study study = synthetic_study({}, {});
+  PointResult result;
+  result.k_lim = 2500.0;
+  result.k_eff = 1900.0;
+  result.peak_depth = 1.25e-3;
+  result.ghost_s = {.mean = 0.031, .largest = 0.042};
+  result.ghost_energy = {.mean = 0.002, .largest = 0.003};
+  result.force_swing = 0.375;
+  result.position_swing = 0.02e-3;
+  struct Expected {
+    const char* label;
+    double value;
+    double largest = PointResult::kNone;
+    double criterion = PointResult::kNone;
+  };
+  const std::vector<Expected> expected = {{"k_lim [N/mm]", 2.5},
+                                          {"k_eff [N/mm]", 1.9},
+                                          {"peak penetration [mm]", 1.25},
+                                          {"ghost time [ms]", 31.0, 42.0},
+                                          {"ghost energy [mJ]", 2.0, 3.0},
+                                          {"force swing [N]", 0.375, PointResult::kNone, 0.5},
+                                          {"position swing [mm]", 0.02, PointResult::kNone, 0.5}};
+  const std::vector<Quantity> quantities = StudyView(study, {}).quantities();
+  ASSERT_EQ(quantities.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(quantities[i].label(), expected[i].label);
+    EXPECT_NEAR(quantities[i].value(result), expected[i].value, 1e-9) << expected[i].label;
+    ASSERT_EQ(quantities[i].largest != nullptr, std::isfinite(expected[i].largest)) << expected[i].label;
+    if (quantities[i].largest != nullptr) {
+      EXPECT_NEAR(quantities[i].largest(result), expected[i].largest, 1e-9) << expected[i].label;
+    }
+    ASSERT_EQ(std::isfinite(quantities[i].criterion), std::isfinite(expected[i].criterion))
+        << expected[i].label;
+    if (std::isfinite(quantities[i].criterion)) {
+      EXPECT_NEAR(quantities[i].criterion, expected[i].criterion, 1e-9) << expected[i].label;
+    }
+  }
 }
 
 TEST(StudyReport, SaysWhereItWasMade) {
@@ -67,6 +126,8 @@ TEST(StudyReport, OfTwoAxesHasAMapForEachVariantAndQuantity) {
   EXPECT_EQ(count_of(page, "class=\"scale\""), 24U * 7U * 2U);  // steps of a scale x quantities x variants
   EXPECT_EQ(count_of(page, "class=\"curve\""),
             7U * 4U * 2U);  // over friction: a curve for each delay and variant
+  // Of half a page: a map of each quantity and variant, and one of the verdicts for each delay and variant.
+  EXPECT_EQ(count_of(page, "width=\"88.00mm\""), 7U * 2U + 4U * 2U);
 }
 
 /// The d of every curve's path, in the page's order.
@@ -97,6 +158,19 @@ TEST(StudyReport, EachVariantsCurveIsOfItsOwnPoints) {
   EXPECT_EQ(exchanged[1], curves[0]);
 }
 
+// 1, 2 and 3 N/mm for x.z 0, 1.5, 2.5 and 3.5 for x.z 1. The frame is 96 pt high from 18 pt on for
+// 0 to 4 N/mm, and 326.24 pt wide from 46 pt on for -0.05 to 2.05.
+TEST(StudyReport, EachCurveIsOfItsOwnChoice) {
+  const Study study = synthetic_study({}, {numbers("x.y", "x.y", {0, 1, 2}), numbers("x.z", "x.z", {0, 1})});
+  std::vector<PointResult> results;
+  for (const int limit : {9, 14, 19, 24, 29, 34})
+    results.push_back(synthetic_result(study, static_cast<int>(results.size()), limit));
+  const std::vector<std::string> curves = curves_of(study_report_html(study, results, kMadeUp));
+  ASSERT_EQ(curves.size(), 7U * 2U);
+  EXPECT_EQ(curves[0], "M53.77,90.00L209.12,66.00L364.47,42.00");
+  EXPECT_EQ(curves[1], "M53.77,78.00L209.12,54.00L364.47,30.00");
+}
+
 // k_eff is 1.13, 1.23, ... 1.83 N/mm, which no scale has a mark at and nothing else is: each stands in one
 // cell.
 TEST(StudyReport, EachVariantsMapIsOfItsOwnPoints) {
@@ -109,12 +183,21 @@ TEST(StudyReport, EachVariantsMapIsOfItsOwnPoints) {
   const std::string page = study_report_html(study, results, kMadeUp);
   for (const char* cell : {"1.13", "1.23", "1.33", "1.43", "1.53", "1.63", "1.73", "1.83"})
     EXPECT_EQ(count_of(page, '>' + std::string(cell) + "</text>"), 1U) << cell;
+  // Row after row, with the first axis' words along the bottom and the second one's changing fastest in the
+  // results.
+  std::size_t last = 0;
+  for (const char* cell : {"1.13", "1.33", "1.23", "1.43", "1.53", "1.73", "1.63", "1.83"}) {
+    const std::size_t at = page.find('>' + std::string(cell) + "</text>");
+    EXPECT_GT(at, last) << cell;
+    last = at;
+  }
 }
 
 TEST(StudyReport, OfVariantsAloneHasBars) {
   const Study study = synthetic_study({"none", "smoothing +-0.1", "smoothing +-0.05", "local wall"}, {});
   const std::string page = page_of(study, "variants.html");
   EXPECT_EQ(count_of(page, "class=\"bar\""), 7U * 4U);
+  EXPECT_THAT(page, Not(HasSubstr("To note")));
   EXPECT_THAT(page, Not(HasSubstr("class=\"curve\"")));
 }
 

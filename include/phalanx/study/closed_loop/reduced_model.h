@@ -11,8 +11,7 @@
 namespace phalanx {
 
 /// Device and finger as felt at the fingertip along the press: one joint whose coordinate is the way x into
-/// the wall [m] instead of an angle, one motor with the lever arm -1.       docs/stability.md, "Device and
-/// finger"
+/// the wall [m] instead of an angle, one motor with the lever arm -1.
 struct ReducedModel {
   Exoskeleton exoskeleton;
   PatientParameters patient;
@@ -20,7 +19,8 @@ struct ReducedModel {
   double force_cap = 10.0;  ///< on the wall's force [N]
 };
 
-/// The numbers of the table. `patient.bump` is the table's 2 N; the fit replaces it.
+/// The numbers of the table in docs/device-file.md, "The shipped devices". `patient.bump` is the table's 2 N;
+/// the fit replaces it.
 [[nodiscard]] ReducedModel make_reduced_model();
 
 /// A press of one seed on a wall F = k x with S2's smoothing, judged by the same criterion as a trial on a

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "station/shared_station.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "station/small_station.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// Says what it senses and never sends a sample.
+class SilentDevice final : public Device {
+ public:
+  explicit SilentDevice(std::vector<DeviceChannel> channels) { info_.channels = std::move(channels); }
+  void open() override {}
+  void close() noexcept override {}
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  [[nodiscard]] std::size_t receive(double, std::span<DeviceSample>) noexcept override { return 0; }
+  void send(const DeviceCommand&) noexcept override {}
+  void reset() noexcept override {}
+
+ private:
+  DeviceInfo info_;
+};
+
+class SharedStationTest : public testing::Test {
+ protected:
+  SharedStationTest() {
+    shared.change_state([](HostState& s) { s.geometry = std::make_shared<HostGeometry>(); });
+  }
+  void begin(std::unique_ptr<Device> device) {
+    shared.begin(std::make_shared<RunningStation>(test::small_station(std::move(device), clock)));
+  }
+
+  const Clock clock;
+  SharedStation shared;
+};
+
+// The index finger's curl sets its joints 4, 6 and 7, its splay joint 5, and the last channel is joint 2. A
+// force sensor says nothing of a joint.
+TEST_F(SharedStationTest, TheJointsThatADeviceSensesAreInTheirOrder) {
+  const auto channel = [](ChannelKind kind, int index) {
+    return DeviceChannel{.kind = kind, .index = index, .raw_min = 0, .raw_max = 4095, .gain = 1.0 / 4095.0};
+  };
+  begin(std::make_unique<SilentDevice>(
+      std::vector{channel(ChannelKind::kCurl, 1), channel(ChannelKind::kForce, 3),
+                  channel(ChannelKind::kSplay, 1), channel(ChannelKind::kAngle, 2)}));
+  EXPECT_THAT(shared.state()->sensed_joints, ElementsAre(2, 4, 5, 6, 7));
+  shared.retire();
+}
+
+// Each station's steps are counted from 1. Of six that nobody has asked for their records four are left.
+TEST_F(SharedStationTest, TheRecordsOfTheLastFourStationsThatEndedAreKept) {
+  for (int i = 0; i < 6; ++i) {
+    begin(test::resting_device());
+    shared.retire();
+  }
+  int stations = 0;
+  StepRecord record;
+  while (shared.next_record(record)) stations += record.tick == 1 ? 1 : 0;
+  EXPECT_EQ(stations, 4);
+}
+
+TEST_F(SharedStationTest, AStationThatHasEndedIsShownAtRestWithItsDeadlines) {
+  begin(test::resting_device());
+  for (int i = 0; i < 1000 && !(shared.view().factor > 0.0); ++i) clock.sleep_until(clock.now() + 0.005);
+  const double ran = shared.view().time;
+  ASSERT_GT(shared.view().factor, 0.0);
+  shared.retire();
+  EXPECT_FALSE(shared.state()->running);
+  EXPECT_EQ(shared.current(), nullptr);
+  const StationView last = shared.view();
+  EXPECT_GE(last.time, ran);
+  EXPECT_EQ(last.factor, 0.0);
+  EXPECT_TRUE(last.at_rest);
+  EXPECT_EQ(last.sent, JointArray{});
+  EXPECT_GT(shared.deadlines().steps, 0U);
+  EXPECT_EQ(shared.deadlines().period, 1.0 / 200.0);
+  EXPECT_FALSE(shared.held()) << "nobody said stop";
+}
+
+}  // namespace
+}  // namespace phalanx
