@@ -24,7 +24,7 @@ constexpr double kRounding = 1e-12;      // of the square of a force that is as 
 double largest_share(const Vec3& a, const Vec3& b, double cap) noexcept {
   const double most = (1.0 + kRounding) * cap * cap;
   const double room = most - a.squaredNorm();
-  if (room < 0.0) return 0.0;
+  if (!(room >= 0.0)) return 0.0;  // also for what is not a number
   if ((a + b).squaredNorm() <= most) return 1.0;
   const double ab = a.dot(b);
   const double bb = b.squaredNorm();

@@ -341,7 +341,7 @@ TEST(SerialTransport, BelongsToOneProgramAtATime) {
 
 TEST(SerialTransport, SaysWhatIsWrongWithAPort) {
   EXPECT_THAT(message_of([] { (void)open_serial("/dev/ttyNotThere"); }), HasSubstr("/dev/serial/by-id"));
-  const std::string file = testing::TempDir() + "not_a_port";
+  const std::string file = testing::TempDir() + "not_a_port_" + std::to_string(::getpid());
   std::ofstream(file) << "x";
   EXPECT_THAT(message_of([&] { (void)open_serial(file); }), HasSubstr("is it a serial port?"));
   std::filesystem::remove(file);
@@ -352,7 +352,7 @@ TEST(SerialTransport, SaysWhatIsWrongWithAPort) {
 
 // Ports belong to a group. Root may open them all, unless its thread gives that up for a moment.
 TEST(SerialTransport, SaysWhichGroupAPortBelongsTo) {
-  const std::string file = testing::TempDir() + "not_my_port";
+  const std::string file = testing::TempDir() + "not_my_port_" + std::to_string(::getpid());
   std::ofstream(file) << "x";
   std::filesystem::permissions(file, std::filesystem::perms::none);
   const int self = ::setfsuid(65534);
