@@ -260,11 +260,15 @@ void LinkSession::send_ping(double now) noexcept {
   send(ping, 0);
 }
 
+bool LinkSession::repeats_command(double now) const noexcept {
+  return has_command_ && now - shared_.command.value().at <= kRepeatFor;
+}
+
 void LinkSession::send_command(double now) noexcept {
   const bool fresh = shared_.command.update();
   if (fresh) has_command_ = true;
+  if (!repeats_command(now) || (!fresh && now < next_command_)) return;
   const SentCommand& newest = shared_.command.value();
-  if (!has_command_ || now - newest.at > kRepeatFor || (!fresh && now < next_command_)) return;
   next_command_ =
       std::clamp(next_command_ + kCommandPeriod, now + 0.5 * kCommandPeriod, now + 1.5 * kCommandPeriod);
   phx_message message{};
@@ -288,7 +292,7 @@ void LinkSession::send_disabled() noexcept {
 double LinkSession::next_due(double now) const noexcept {
   // Within a period: the loop may have a command or a reset for us at any time.
   const double soonest = now + kCommandPeriod;
-  return phase_ == Phase::kRunning && has_command_ ? std::min(next_command_, soonest) : soonest;
+  return phase_ == Phase::kRunning && repeats_command(now) ? std::min(next_command_, soonest) : soonest;
 }
 
 void LinkSession::send(std::uint8_t type, std::uint32_t epoch) noexcept {

@@ -65,6 +65,7 @@ class LinkSession {
   void send_configure(double now) noexcept;
   void send_reset(double now) noexcept;
   void send_ping(double now) noexcept;
+  [[nodiscard]] bool repeats_command(double now) const noexcept;
   void send_command(double now) noexcept;
   [[nodiscard]] bool silent(double now) const noexcept { return now - heard_ > silence_; }
   void fail(Fault fault) noexcept;

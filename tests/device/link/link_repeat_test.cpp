@@ -194,18 +194,23 @@ TEST(LinkRepeat, NothingThatWasCommandedBeforeASessionIsSentInIt) {
 
 // However many commands came within a millisecond, the last one is repeated 1.5 ms later and from then on
 // each millisecond.
-TEST(LinkRepeat, TheLastCommandOfALoopThatIsFasterThanTheRepetitionIsRepeatedAtOnce) {
+TEST(LinkRepeat, TheLastCommandOfALoopThatIsFasterThanTheRepetitionIsRepeatedAfterOneAndAHalfPeriods) {
   SessionBench bench(58);
   bench.open();
   for (int i = 0; i < 200; ++i) {
     bench.command(true);
     bench.session().send_due(bench.now());
   }
-  const int before = bench.sent(PHX_COMMAND);
-  bench.run(1);
-  EXPECT_EQ(bench.sent(PHX_COMMAND), before);
-  bench.run(9);
-  EXPECT_EQ(bench.sent(PHX_COMMAND), before + 9);
+  const std::uint64_t before = bench.counters().sent;
+  const double last = bench.now();
+  bench.session().send_due(last + 1.49e-3);
+  EXPECT_EQ(bench.counters().sent, before);
+  bench.session().send_due(last + 1.51e-3);
+  EXPECT_EQ(bench.counters().sent, before + 1);
+  bench.session().send_due(last + 2.49e-3);
+  EXPECT_EQ(bench.counters().sent, before + 1);
+  bench.session().send_due(last + 2.52e-3);
+  EXPECT_EQ(bench.counters().sent, before + 2);
 }
 
 TEST(LinkRepeat, TheLastCommandsOfAHostSayFaultWithANewerTick) {
@@ -237,6 +242,16 @@ TEST(LinkRepeat, TheNextCommandIsDueWithinAPeriodAndSoonerAfterALateOne) {
   const double late = bench.session().next_due(bench.now()) + 0.7e-3;
   bench.session().send_due(late);
   EXPECT_NEAR(bench.session().next_due(late), late + 0.5e-3, 1e-9);
+}
+
+// A command is repeated for 20 ms. After that its time of repetition lies in the past, and a link thread that
+// slept until then would not sleep at all.
+TEST(LinkRepeat, ACommandThatIsNoLongerRepeatedIsNotWaitedFor) {
+  SessionBench bench(45);
+  bench.open();
+  bench.run_commanding(10);
+  bench.run(25);
+  EXPECT_NEAR(bench.session().next_due(bench.now()), bench.now() + 1e-3, 1e-12);
 }
 
 // ---- frames of others ----
@@ -377,8 +392,8 @@ TEST(LinkRepeat, APongOfAnEarlierSilenceSaysNothingOfThisOne) {
   EXPECT_EQ(answered(second, 1), Fault::kControllerRestarted);
 }
 
-// 10 ms, or three periods of a slower controller, and then every 10 ms: 9 or 10 in the 98 ms after the first
-// two, depending on how the sum of milliseconds is rounded.
+// After 10 ms, or three periods of a slower controller, and then every 10 ms: 9 or 10 in the 98 ms after the
+// first two, depending on how the sum of milliseconds is rounded.
 TEST(LinkRepeat, SilenceIsAskedAboutAfterThreePeriodsAndEveryTenMilliseconds) {
   for (const auto& [rate_hz, silence_ms] : {std::pair{1000, 10}, std::pair{100, 30}}) {
     SessionBench bench(55);
