@@ -34,7 +34,7 @@ class MeanDirection {
   explicit MeanDirection(double radius) noexcept : radius_squared_(radius * radius) {}
   /// Real-time: O(kMost).
   void add(const TriangleDistance& closest, const Vec3& direction, double weight) noexcept;
-  /// Unit; that of the nearest pair of all where opposite directions cancel out.
+  /// Unit; where opposite directions cancel out, that of the nearest pair among the first kMost places.
   [[nodiscard]] Vec3 unit() const noexcept;
 
  private:

@@ -59,7 +59,6 @@ OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)), par
 
 OutputFile::~OutputFile() {
   if (!stream_) return;
-  stream_.reset();
   std::error_code ignored;
   std::filesystem::remove(partial_, ignored);
 }

@@ -66,10 +66,9 @@ void write_samples(OutputFile& file, const FaultReport& report) {
 }
 
 /// A folder that did not exist: two faults within a second do not share one.
-std::filesystem::path new_folder(const std::filesystem::path& folder, Fault fault) {
+std::filesystem::path new_folder(const std::filesystem::path& folder, Fault fault, std::time_t now) {
   prepare_output_folder(folder);
-  const std::string name =
-      fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), fault_name(fault));
+  const std::string name = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(now), fault_name(fault));
   std::filesystem::path path = folder / name;
   for (int i = 2; !std::filesystem::create_directory(path); ++i)
     path = folder / fmt::format("{}-{}", name, i);
@@ -101,8 +100,9 @@ void write_step(OutputFile& file, const StepRecord& record) {
   file.text("\n");
 }
 
-std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report) {
-  const std::filesystem::path path = new_folder(folder, report.event.fault);
+std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report,
+                                         std::time_t now) {
+  const std::filesystem::path path = new_folder(folder, report.event.fault, now);
   OutputFile samples(path / "samples.csv");
   write_samples(samples, report);
   samples.commit();

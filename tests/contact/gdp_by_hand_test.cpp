@@ -255,9 +255,9 @@ HapticModel far_model() {
 /// The tip's farthest point from the MCP: two bones and the distal diamond's 21 mm.
 constexpr double kTipReach = 86e-3;
 
-// A hundred radians in a tick, and nothing within reach: the finger gets as far as so many poses take it,
-// which is 1,000 times 2.5 mm of the tip's way in the first tick. Its record says so, but neither pushes nor
-// holds, and the next ticks go on from there until the finger arrives.
+// The joint moves by a hundred radians in one tick, and no object is near. One tick computes at most 1,000
+// poses, 2.5 mm of the tip's way apart. The record says that the limit was reached, no force acts, and the
+// following ticks go on until the finger arrives.
 TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
   const HapticModel model = far_model();
   Paper paper(model);

@@ -4,9 +4,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <fstream>
+#include <initializer_list>
 #include <iostream>
+#include <string>
+#include <string_view>
 
 #include "contact/search/search_functions.h"
 #include "phalanx/contact/proximity.h"
@@ -227,16 +232,23 @@ TEST_P(SoakEverySet, SearchesAndStepsAreTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(SoakSets, SoakEverySet,
                          ::testing::Values(InstructionSet::kAvx2, InstructionSet::kAvx512), name_of);
 
+/// Whether the kernel lists all of these features of the first processor.
+bool kernel_lists(std::initializer_list<std::string_view> features) {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("flags")) continue;
+    line += ' ';
+    return std::ranges::all_of(features, [&](std::string_view feature) {
+      return line.find(" " + std::string(feature) + " ") != std::string::npos;
+    });
+  }
+  return false;
+}
+
 // A set that went missing would only be skipped above.
-TEST(InstructionSet, ThereAreThoseThatTheProcessorHasAndTheBestIsTheWidest) {
-#if defined(__x86_64__)
-  const bool avx2 = __builtin_cpu_supports("avx2") != 0;
-  const bool avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-                      __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512vl") != 0;
-#else
-  const bool avx2 = false;
-  const bool avx512 = false;
-#endif
+TEST(InstructionSet, ThereAreThoseThatTheKernelListsAndTheBestIsTheWidest) {
+  const bool avx2 = kernel_lists({"avx2"});
+  const bool avx512 = kernel_lists({"avx512f", "avx512dq", "avx512bw", "avx512vl"});
   EXPECT_EQ(has_instruction_set(InstructionSet::kAvx2), avx2);
   EXPECT_EQ(has_instruction_set(InstructionSet::kAvx512), avx512);
   EXPECT_EQ(best_instruction_set(), avx512 ? InstructionSet::kAvx512

@@ -10,7 +10,7 @@
 namespace phalanx {
 namespace {
 
-// A thread of its own, for it cannot take it back. What the system refuses beforehand leaves it as it was.
+// In a thread of its own, because the change cannot be undone. Where the system refuses it, nothing changes.
 TEST(GiveWay, MakesTheThreadOrdinaryAndNiceAndNamesIt) {
   for (const int nicer : {0, 11}) {
     std::thread([&] {

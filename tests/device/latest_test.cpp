@@ -6,8 +6,7 @@
 namespace phalanx {
 namespace {
 
-// Whatever the order of writing and reading: the reader looks at what its last update found, and at nothing
-// newer.
+// In any order of writes and reads the reader sees the value of its last update, and no newer one.
 TEST(Latest, TheReaderKeepsItsValueUntilItAsksForTheNewest) {
   Latest<int> latest(-1);
   EXPECT_FALSE(latest.update());

@@ -65,7 +65,7 @@ TEST(ForceLaw, NoneOfThemPushesWithoutDepth) {
   }
 }
 
-// A law that is none of them, as only a program by hand can ask for it.
+// A number that names no law, as a caller of the library may set it.
 TEST(ForceLaw, ANumberThatIsNoLawPushesNothing) {
   const ForceLawParameters law{.law = static_cast<ForceLaw>(77), .stiffness = 500.0};
   EXPECT_EQ(law_force(law, 2e-3, 0.1), 0.0);

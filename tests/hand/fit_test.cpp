@@ -457,7 +457,7 @@ TEST(Fit, RefusesSizesThatAreNoLengths) {
   }
 }
 
-// Two people's sizes side by side: what is wrong with the second one's does not concern the first one's.
+// An error in the second person's sizes does not affect the first person's.
 TEST(Fit, ReadsTheSegmentsOfOnePersonAlone) {
   const HandParameters base = forward_knuckles();
   std::array<HandSize, 2> people;

@@ -101,7 +101,7 @@ TEST(SensorMapping, WithSignMinusOneAndAnUnusedClampIsFine) {
   EXPECT_EQ(refusal_of([](SensorMapping& m) { m.joints.clear(); }), "") << "the others stay open";
 }
 
-// What is not stated: joint 0, the source's own angle, and a clamp that begins or ends at 0.
+// The defaults of a mapping: joint 0, the source's own angle, limits of 0.
 TEST(SensorMapping, LeavesTheAngleAsItIsWhereNothingIsStated) {
   EXPECT_EQ(JointMapping{}.joint, 0);
   EXPECT_EQ(mapped_angle({}, 0.7), 0.7);

@@ -127,7 +127,7 @@ TEST(RunIsolated, GivesTheWorkNoMoreMemoryThanItsLimit) {
   }
 }
 
-// A call of before that was interrupted is no reason to try again: one reader has ended, one is too slow.
+// An errno of EINTR that an earlier call left causes no second try: one reader has ended, one is too slow.
 TEST(RunIsolated, IsNotMisledByAnErrorOfBefore) {
   const auto end_at_once = []() -> TriangleMesh { std::_Exit(0); };
   errno = EINTR;

@@ -62,7 +62,7 @@ TEST(IsolationHelper, ForksInThisProcessesPlaceWhileItLives) {
   EXPECT_EQ(forker(), self);
 }
 
-// A call of before that was interrupted is no reason to wait for the helper twice.
+// An errno of EINTR that an earlier call left does not make it wait for the helper twice.
 TEST(IsolationHelper, EndsOnceWhateverTheErrorOfBefore) {
   {
     const IsolationHelper helper;

@@ -54,7 +54,7 @@ TEST(CutPolygon, CoversAQuadWithAReflexCorner) {
   expect_covers({{1, 0.2, 0}, {2, 0, 0}, {1, 2, 0}, {0, 0, 0}});
 }
 
-// What stands in memory behind the last corner, here one that was taken off again, is not the polygon's.
+// Memory behind the last corner, here a corner that was removed again, is not read.
 TEST(CutPolygon, LooksAtNothingBehindTheLastCorner) {
   std::vector<Vec3> polygon = {{1, 0.2, 0}, {2, 0, 0}, {1, 2, 0}, {0, 0, 0}, {1, 0.2, 1e6}};
   polygon.pop_back();

@@ -707,7 +707,7 @@ TEST(Repair, RefusesNumbersTooLargeForSinglePrecision) {
   EXPECT_EQ(repair_refusal(cube(0.09, Vec3(400, 0, 0))), "accepted");
   EXPECT_THAT(repair_refusal(cube(0.09, Vec3(430, 0, 0))),
               AllOf(HasSubstr("single precision"), HasSubstr("contact margin of 0.05 mm")));
-  // On the other side: 419.48 m x 2^-23 = 50.006 um, 419.39 m x 2^-23 = 49.995 um.
+  // At the bound, on both sides: 419.48 m x 2^-23 = 50.006 um, 419.39 m x 2^-23 = 49.995 um.
   EXPECT_THAT(repair_refusal(cube(0.09, Vec3(-419.48, 0, 0))), HasSubstr("single precision"));
   EXPECT_EQ(repair_refusal(cube(0.09, Vec3(-419.39, 0, 0))), "accepted");
 }

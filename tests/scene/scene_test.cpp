@@ -81,7 +81,7 @@ TEST(Scene, OfAnObjectWithoutSizesHasTheDefaultOnes) {
   }
 }
 
-// What one kind alone has.
+// Keys that exist for one kind of object only.
 TEST(Scene, OfAnObjectWithoutItsOwnSizesHasTheStructs) {
   const auto object = [](const std::string& keys) {
     return parse("[[objects]]\nkind = " + keys).objects.at(0);

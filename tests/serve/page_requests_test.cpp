@@ -182,8 +182,7 @@ TEST_F(PageRequestsTest, SlidersOfWhateverNumberStayInsideTheHand) {
   EXPECT_THAT(why_not(message), HasSubstr("21"));
 }
 
-// Each joint another angle inside its range, from its lower end on; the page's numbers are of single
-// precision.
+// A different angle for each joint, from the lower end of its range upwards; the page sends single precision.
 TEST_F(PageRequestsTest, EachSliderMovesItsOwnJoint) {
   const auto geometry = host->state()->geometry;
   const HandParameters& hand = geometry->hand;
@@ -270,7 +269,7 @@ TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandWhereTheyAreAskedTo) {
   EXPECT_EQ(state().source(), wire::HAND_SLIDERS);
 }
 
-/// A station with a device on a wire, two sensors of angles.
+/// A station with a wired device of two angle sensors.
 class WiredPagesTest : public HostTest {
  protected:
   using Step = CalibrationSession::Step;
@@ -282,7 +281,7 @@ class WiredPagesTest : public HostTest {
   }
   ~WiredPagesTest() override { host.reset(); }
 
-  /// What pages are shown of the calibration is what the station says of it.
+  /// The pages show the station's calibration state.
   void expect_shown() {
     const auto view = host->state()->wizard;
     ASSERT_NE(view, nullptr);
@@ -304,7 +303,7 @@ class WiredPagesTest : public HostTest {
   ControllerThread controller{listen_udp("127.0.0.1:0"), clock};
 };
 
-// All poses are left out, then the first two, which are about both sensors, are measured: that is enough.
+// All poses are skipped, then the first two are measured. They concern both sensors, so that is enough.
 TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShownAsTheyStand) {
   ASSERT_EQ(calibrate(Step::kBegin), "");
   ASSERT_TRUE(until([&] { return !host->state()->wizard->raw.empty(); }));

@@ -197,7 +197,7 @@ TEST_F(SeatsTest, ExactlySoManyAreRememberedForExactlySoLong) {
   EXPECT_EQ(fresh.find(2)->number, number);
 }
 
-// Of kRemembered places one is the oldest's, and none is the one's that has left and come back since.
+// kRemembered visitors are kept. The oldest one is forgotten, one that has left and come back is not.
 TEST_F(SeatsTest, APageThatIsBackIsNoneOfThoseThatHaveLeft) {
   const PageId oldest = come();
   const PageId reloaded = come();

@@ -28,7 +28,7 @@ WebAnswer answer_to(Shapes& shapes, std::uint32_t revision) {
   return answered->get_future().get();
 }
 
-/// While it lives no thread begins: its stack would be larger than all addresses.
+/// No thread can be started while it lives: its stack would exceed the address space.
 class NoThreads {
  public:
   NoThreads() {

@@ -425,8 +425,8 @@ void push_index(Bench& bench, int k, double force) {
   segment.force = force;
 }
 
-// What no sensor is guilty of names none, and what the host has found is not said to be the device's. 6 N are
-// too much for one segment, and 4 N on each of two for their digit.
+// A fault that no sensor caused names no channel, and a fault that the host found is not attributed to the
+// device. 6 N exceed the limit of one segment, and 4 N on each of two segments that of their digit.
 TEST(SafetyGate, AFaultThatIsNotOneSensorsNamesNoChannelAndIsTheHosts) {
   struct Case {
     Fault fault;

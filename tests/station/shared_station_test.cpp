@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// Says what it senses and never sends a sample.
+/// A device that states its channels and never sends a sample.
 class SilentDevice final : public Device {
  public:
   explicit SilentDevice(std::vector<DeviceChannel> channels) { info_.channels = std::move(channels); }
@@ -57,7 +57,8 @@ TEST_F(SharedStationTest, TheJointsThatADeviceSensesAreInTheirOrder) {
   shared.retire();
 }
 
-// Each station's steps are counted from 1. Of six that nobody has asked for their records four are left.
+// A new station counts its steps from 1. The record of steps holds four: of six that were not fetched the
+// last four are there.
 TEST_F(SharedStationTest, TheRecordsOfTheLastFourStationsThatEndedAreKept) {
   for (int i = 0; i < 6; ++i) {
     begin(test::resting_device());

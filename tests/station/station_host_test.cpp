@@ -205,7 +205,7 @@ TEST_F(StationHostTest, MoreThanSoManyChangesAreRefusedAtTheDoor) {
 TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) {
   start(with("simulated"));
   ASSERT_TRUE(until_running());
-  // What is said of the host while it is done.
+  // The host's state while the change is made.
   const auto busy_with = [&](HandSource source) {
     auto [answer, done] = awaited();
     host->set_source(source, std::move(done));

@@ -92,7 +92,7 @@ TEST_F(StationTest, SqueezesTheTeapotFor30SecondsAt1KHzWithoutAFaultOrAnAllocati
   EXPECT_LE(device_->largest_torque, scene_.limits.joint_torque);
   station_->shut_down();
   EXPECT_TRUE(device_->at_zero);
-  // Nobody has fetched a record, and 8,192 have room.
+  // The record of steps holds 8,192, and none has been fetched.
   const std::uint64_t steps = station_->deadlines().steps;
   EXPECT_EQ(station_->view().records_lost, steps > 8192 ? steps - 8192 : 0);
 }
@@ -138,8 +138,7 @@ TEST_F(StationTest, AnObjectIsSwappedInContactWithoutATorqueStepBeyondTheRateLim
               device_->largest_step.load(), allowed_step());
 }
 
-// The exchange has a stop of its own, of 0.2 s, and a start after it. A stop in between
-// holds beyond it.
+// An exchange stops for 0.2 s and starts again. A stop that is asked for meanwhile outlasts it.
 TEST_F(StationTest, AStopWhileAnObjectIsExchangedHoldsAfterTheExchange) {
   start();
   ASSERT_TRUE(until_pressing(1.0));
@@ -232,7 +231,8 @@ TEST_F(StationTest, ARecordSaysWhatTheViewOfItsStepShows) {
   EXPECT_EQ(record.duration, shown.duration);
   EXPECT_GT(record.samples, 0U);
   EXPECT_EQ(shown.records_lost, 0U);
-  // The longest of all steps, each counted to a moment after its command left: known once the next has begun.
+  // The longest of all steps. A step's duration ends after its command was sent, and is known once the next
+  // step has begun.
   ASSERT_TRUE(until([&](const StationView& view) { return view.time > shown.time; }));
   EXPECT_GE(record.duration, -1e-12) << "of two readings of a clock that stands still, but for rounding";
   EXPECT_LE(record.duration, 1e-6 * station_->deadlines().step.max_us() + 1e-9);

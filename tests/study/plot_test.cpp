@@ -150,6 +150,19 @@ TEST(TraceTick, HasTheSnapshotsForcesTorquesAndAngles) {
 
 TEST(PlotSvg, RefusesARunWithoutTicks) { EXPECT_THROW((void)plot_svg({}, {}), std::invalid_argument); }
 
+/// From 1 to 3 s, 200 points wide.
+PanelFrame frame_of(double height) {
+  return {.x = 100.0,
+          .y = 50.0,
+          .width = 200.0,
+          .height = height,
+          .legend_x = 310.0,
+          .time_low = 1.0,
+          .time_high = 3.0,
+          .time_ticks = {1.0, 2.0, 3.0},
+          .time_labels = true};
+}
+
 // 100 points for each second, and 20 for each newton of the axis from 0 to 4, downwards.
 TEST(DrawPanel, PutsEachSampleAndEachTickWhereItsTimeAndValueBelong) {
   const Panel panel{.title = "force",
@@ -159,16 +172,7 @@ TEST(DrawPanel, PutsEachSampleAndEachTickWhereItsTimeAndValueBelong) {
                     .note = "",
                     .empty = "",
                     .curves = {{.label = "index", .solid = {0.0, 4.0, 2.0}, .dashed = {}}}};
-  const PanelFrame frame{.x = 100.0,
-                         .y = 50.0,
-                         .width = 200.0,
-                         .height = 80.0,
-                         .legend_x = 310.0,
-                         .time_low = 1.0,
-                         .time_high = 3.0,
-                         .time_ticks = {1.0, 2.0, 3.0},
-                         .time_labels = true};
-  const std::string svg = draw_panel(panel, frame, {1.0, 2.0, 3.0}, "clip");
+  const std::string svg = draw_panel(panel, frame_of(80.0), {1.0, 2.0, 3.0}, "clip");
   EXPECT_THAT(svg, HasSubstr("d=\"M100.00,130.00L200.00,50.00L300.00,90.00\""));
   EXPECT_THAT(svg, HasSubstr("M200.00,50.00v80.00"));
   EXPECT_THAT(svg, HasSubstr("M100.00,90.00h200.00"));
@@ -184,16 +188,7 @@ std::string panel_of(Curve curve) {
                     .empty = "",
                     .curves = {std::move(curve)},
                     .clip_dashed = true};
-  const PanelFrame frame{.x = 100.0,
-                         .y = 50.0,
-                         .width = 200.0,
-                         .height = 90.0,
-                         .legend_x = 310.0,
-                         .time_low = 1.0,
-                         .time_high = 3.0,
-                         .time_ticks = {1.0, 2.0, 3.0},
-                         .time_labels = true};
-  return draw_panel(panel, frame, {1.0, 2.0, 3.0}, "clip");
+  return draw_panel(panel, frame_of(90.0), {1.0, 2.0, 3.0}, "clip");
 }
 
 // The solid curve reaches 2 and the dashed one five times that: the axis ends at 1.5 times 2, 30 points for

@@ -3,6 +3,7 @@
 // columns.
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <string>
 
@@ -16,9 +17,10 @@ void write_step_header(OutputFile& file);
 void write_step(OutputFile& file, const StepRecord& record);
 
 /// report.json (what, where, when, device, link), samples.csv (raw counts) and steps.csv in a new folder
-/// below `folder`, named by date, time and fault.
+/// below `folder`, named by `now` (local date and time) and the fault; where that is taken, with -2, -3, ...
 /// @returns the folder. @throws std::runtime_error or std::invalid_argument as OutputFile. Not real-time.
-std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report);
+std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report,
+                                         std::time_t now = std::time(nullptr));
 
 /// Percentiles, overruns, link and grant of a whole run as JSON.
 [[nodiscard]] std::string station_summary_json(const DeadlineStatistics& deadlines, const StationView& last,

@@ -22,8 +22,8 @@ using Bytes = std::shared_ptr<const std::string>;
 
 /// Who is at the other end.
 struct Visitor {
-  std::string address;      ///< "127.0.0.1"
-  bool may_operate = true;  ///< false: came with the viewers' token
+  std::string address;       ///< "127.0.0.1"
+  bool may_operate = false;  ///< false: came with the viewers' token
 };
 
 struct WebRequest {

@@ -32,8 +32,8 @@ class GloveWire {
   /// A whole answer, or none: what the system does not take now is written before the next one, which is
   /// dropped if that still does not go. @returns whether it was taken
   bool send(std::string_view answer) noexcept;
-  /// Until something can be read, or what is left of an answer be written; at most `seconds` of real time,
-  /// rounded up to a millisecond.
+  /// Until something can be read, or what is left of an answer be written; at most one millisecond more
+  /// than `seconds` of real time.
   void wait(double seconds) noexcept;
   /// The port is gone (unplugged).
   [[nodiscard]] bool lost() const noexcept { return lost_; }

@@ -31,11 +31,11 @@ class HostDoor {
 class TokenDoor {
  public:
   struct Entry {
-    bool may_operate = true;
+    bool may_operate = false;
   };
   /// Come in by the token of the address: to go on by this cookie.
   struct Cookie {
-    bool may_operate = true;
+    bool may_operate = false;
     std::string field;  ///< of Set-Cookie
   };
   using Verdict = std::variant<Reply, Entry, Cookie>;

@@ -91,8 +91,8 @@ TEST_F(LinkLimits, TheRateCountsOnePeriodIfTheClockHasRunBackwards) {
   EXPECT_NEAR(rig.tick(1000), 0.01F, 1e-6F);
 }
 
-// Should the torque of the last tick be no number, as after a fault of the memory: zero, and from there by
-// the rate.
+// If the torque of the last tick is not a number (a fault of the memory), the torque begins at zero and rises
+// by the rate.
 TEST_F(LinkLimits, HoldWhereTheTorqueOfTheLastTickIsNoNumber) {
   rig.open_and_act(0.3F);
   rig.controller.torque[kJoint] = std::numeric_limits<float>::quiet_NaN();

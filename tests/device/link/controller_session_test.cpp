@@ -41,7 +41,7 @@ TEST_F(LinkControllerSession, AnswersWithTheSequenceOfTheQuestion) {
   EXPECT_EQ(rig.reply->header.sequence, 4711U);
 }
 
-// The size of a reply is written for every frame: the 99 stand for what is left from the frame before.
+// The size of the reply is written for each frame; 99 is the size that an earlier frame left.
 TEST_F(LinkControllerSession, SaysOfEveryFrameThatIsNotAnsweredThatThereIsNoAnswer) {
   rig.open();
   const Bytes good = encoded(rig.next_command(0.1F));

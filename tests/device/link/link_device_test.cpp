@@ -235,7 +235,7 @@ TEST(LinkDevice, SaysThatNobodyAnswers) {
   EXPECT_THAT(message_of_open(*device), HasSubstr("no controller answers within 0.3 s"));
 }
 
-/// Nobody is at its other end.
+/// A transport without a controller at its other end.
 class DeafWire final : public Transport {
  public:
   explicit DeafWire(int& waits) : waits_(waits) {}
@@ -254,7 +254,7 @@ class DeafWire final : public Transport {
   int& waits_;
 };
 
-// Every 5 ms of 0.3 s: it waits in between and does not ask the wire again and again.
+// It asks the transport every 5 ms for 0.3 s, and sleeps in between.
 TEST(LinkDevice, LooksForAnAnswerEveryFiveMilliseconds) {
   const Clock clock;
   int waits = 0;

@@ -417,8 +417,7 @@ TEST(LinkSession, AnUnpluggedPortIsADeviceLost) {
   EXPECT_EQ(bench.fault(), Fault::kDeviceLost);
 }
 
-// Twice as many frames as there is room for samples, 1,024: a flood of them does not keep the link's thread
-// from what it has to send.
+// 1,024 frames arrive, twice as many as samples can be stored: the link's thread still sends what is due.
 TEST(LinkSession, TakesNoMoreThanSoManyFramesAtATime) {
   SessionBench bench(31);
   bench.open();

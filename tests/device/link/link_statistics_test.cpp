@@ -222,8 +222,8 @@ TEST(LinkStatistics, SamplesThatTheLoopDoesNotFetchOverflow) {
   EXPECT_GE(bench.device->statistics().overflowed, overflowed + SampleQueue::kCapacity - 64);
 }
 
-// A hundred samples of the session before have not been fetched. The controller counts from 1 again, and that
-// sample is the first to be fetched.
+// A hundred samples of the earlier session have not been fetched. The new session's controller counts from 1
+// again, and its first sample is fetched first.
 TEST(LinkStatistics, ADeviceThatIsOpenedAgainBeginsWithTheFirstSampleOfItsSession) {
   OnMemory bench;
   const LinkStatistics before = bench.device->statistics();
@@ -245,8 +245,8 @@ TEST(LinkStatistics, WhatTheWireHasDroppedIsCountedOnce) {
   EXPECT_EQ(bench.after(Mishap::kNone, 50).corrupt, 4U);
 }
 
-// Who closes says FAULT in 50 commands, one a millisecond and each newer than the one before, and then
-// GOODBYE: a lost frame leaves no torque.
+// Closing sends 50 commands with the flag FAULT, one a millisecond with increasing ticks, and then GOODBYE,
+// so that no single lost frame leaves a torque.
 TEST(LinkStatistics, AClosedDeviceHasSaidFaultFiftyTimesAndThenGoodbye) {
   OnMemory bench;
   DeviceCommand command;
@@ -263,7 +263,7 @@ TEST(LinkStatistics, AClosedDeviceHasSaidFaultFiftyTimesAndThenGoodbye) {
   EXPECT_GE(bench.wire->waits_after_goodbye, 1) << "for samples that go on";
 }
 
-// Samples that go on say that GOODBYE was lost: it is said again, five times at most.
+// GOODBYE is sent again while samples still arrive, five times at most.
 TEST(LinkStatistics, AGoodbyeThatIsLostIsSaidAgain) {
   for (const auto& [lost, said] : {std::pair{1, 2}, std::pair{3, 4}, std::pair{100, 5}}) {
     OnMemory bench;

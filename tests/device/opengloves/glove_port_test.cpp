@@ -114,8 +114,8 @@ TEST(OpenGlovesPort, IsSetUpForBytesAtTheRateThatIsAskedFor) {
   }
 }
 
-// The first time it sends a splay, the second time two curls alone. What stands before the first line end
-// that the host sees may be the second half of a line, each time.
+// The first time the glove sends a splay, the second time two curls only. Each time, the bytes before the
+// first line end that the host sees may be the second half of a line.
 TEST(OpenGlovesPort, IsLearntAnewEachTimeItIsOpened) {
   GloveFirmware firmware("");
   const Clock clock;

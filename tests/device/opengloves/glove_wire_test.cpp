@@ -84,20 +84,21 @@ TEST(GloveWire, WritesWhatIsLeftOfAnAnswerWhileItWaits) {
   EXPECT_EQ(port.read_all(), "A1B1C1D1E1\n");
 }
 
-// The system counts whole milliseconds: 10.5 of them are 11, or a loop would come back too early again and
-// again.
+// The system counts whole milliseconds, and a wait is never too short: of 10 or 10.5 of them it makes 11.
 TEST(GloveWire, WaitsForItsTimeUnlessSomethingCanBeRead) {
   PortEnds port;
   const Clock clock;
   port.wire->wait(0.0105);
   EXPECT_NEAR(clock.now(), 0.011, 1e-6);
+  port.wire->wait(0.010);
+  EXPECT_NEAR(clock.now(), 0.022, 1e-6);
   port.say("A");
   port.wire->wait(10.0);
-  EXPECT_NEAR(clock.now(), 0.011, 1e-6);
+  EXPECT_NEAR(clock.now(), 0.022, 1e-6);
 }
 
-// The glove says no more but would still listen: the answer that waits goes nowhere, and a wait lasts its
-// time.
+// The glove has closed its sending side but could still read: the waiting answer is not written, and a wait
+// lasts its full time.
 TEST(GloveWire, WritesNothingMoreOnceItIsLost) {
   PortEnds port;
   port.fill();

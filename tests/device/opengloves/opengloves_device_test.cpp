@@ -114,14 +114,40 @@ TEST(OpenGlovesDevice, WaitsForThreeSecondsAndLearnsForOneUnlessItIsToldOtherwis
   EXPECT_NEAR(glove.device->info().rate_hz, 4.0, 1e-9);
 }
 
-// Standard input, for one.
+/// Keeps the standard input, whatever is made of its descriptor meanwhile.
+class KeptStandardInput {
+ public:
+  KeptStandardInput() : kept_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 100)) {}
+  ~KeptStandardInput() {
+    if (kept_ < 0) {
+      ::close(STDIN_FILENO);
+      return;
+    }
+    ::dup2(kept_, STDIN_FILENO);
+    ::close(kept_);
+  }
+  KeptStandardInput(const KeptStandardInput&) = delete;
+  KeptStandardInput& operator=(const KeptStandardInput&) = delete;
+
+ private:
+  int kept_;  ///< negative: there is none
+};
+
+// A program without a standard input opens its glove as that. The device owns the descriptor and closes it.
 TEST(OpenGlovesDevice, TakesTheDescriptorZeroAsWell) {
+  const KeptStandardInput kept;
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(nothing, 0);
+  if (nothing != STDIN_FILENO) {
+    ASSERT_EQ(::dup2(nothing, STDIN_FILENO), STDIN_FILENO);
+    ::close(nothing);
+  }
   GloveFirmware firmware("");
   const int descriptor = firmware.host_descriptor();
-  ASSERT_EQ(::dup2(descriptor, 0), 0);
+  ASSERT_EQ(::dup2(descriptor, STDIN_FILENO), STDIN_FILENO);
   ::close(descriptor);
   const Clock clock;
-  const auto device = make_opengloves_device(0, clock, quick());
+  const auto device = make_opengloves_device(STDIN_FILENO, clock, quick());
   firmware.blurt("\nA0B0\n");
   EXPECT_NO_THROW(device->open());
   EXPECT_EQ(device->info().channels.size(), 2U);
@@ -216,7 +242,7 @@ TEST(OpenGlovesDevice, CountsWhatComesAndWhatIsLost) {
   EXPECT_EQ(glove.device->statistics().overflowed, 2U);
 }
 
-// A glove that speaks and does not listen: its port is full after a few answers.
+// The glove sends and does not read: its port is full after a few answers.
 TEST(OpenGlovesDevice, CountsOnlyTheAnswersThatThePortTakes) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);

@@ -75,7 +75,7 @@ TEST_F(WebRequests, OnlyThreeMethodsAreUnderstood) {
   }
 }
 
-// Each door ends the request that it refuses: nobody behind it hears of it.
+// A request that is refused is not passed on to the application.
 TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
   start();
   const std::string closes = "Connection: close\r\n\r\n";

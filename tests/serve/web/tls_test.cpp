@@ -128,8 +128,8 @@ TEST_F(WebTls, AHandshakeThatDoesNotComeIsLetGo) {
   EXPECT_EQ(status_of(ask("/", cookie_by(settings_.operator_token))), 200);
 }
 
-// 127.0.0.2 is this machine's as all of 127/8 are, but it is none of its names. Who passes this door is asked
-// for a token by the next one (403).
+// 127.0.0.2 belongs to this machine, as all of 127/8 do, but is none of the names that are accepted. A
+// request by an accepted name is asked for its token (403).
 TEST_F(WebTls, WhoCameByAnAddressOfOursMaySaySo) {
   settings_.address = "0.0.0.0";
   start();
@@ -142,8 +142,8 @@ TEST_F(WebTls, WhoCameByAnAddressOfOursMaySaySo) {
   EXPECT_EQ(status("127.0.0.1"), 421);
 }
 
-// More noise than is read at once: if what is left of it were not taken in, the end would be a reset, which
-// may take back an answer before it is read.
+// More bytes than one read takes. If the rest stayed unread, the connection would end with a reset, which may
+// discard the answer before the client has read it.
 TEST_F(WebTls, ALineThatTurnsIntoNoiseEndsWithoutAReset) {
   start();
   const auto client = RawClient::secure(port());

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The force stage on contact records that are written by hand: what a search would find does not matter here.
+#pragma once
+
+#include <cmath>
+
+#include "phalanx/core/constants.h"
+#include "phalanx/core/index.h"
+#include "phalanx/force/force_stage.h"
+#include "phalanx/mesh/primitives.h"
+#include "support/simple_hand.h"
+
+namespace phalanx::test {
+
+inline constexpr double kTick = 0.005;  // [s]
+inline constexpr int kProximal = 0;
+inline constexpr int kDistal = 2;
+inline constexpr int kThumbBefore = 0;  ///< the digit before the index finger
+
+/// The simple hand, open and straight along -Z, with records of our own and every limiter off.
+class ForceStageFixture {
+ public:
+  ForceStageFixture() {
+    limits.fingertip_force_enabled = false;
+    limits.joint_torque_enabled = false;
+    limits.torque_rate_enabled = false;
+    hand_.poses(hand_.parameters().open_angle, hcp);
+    state.hcp_before = hcp;
+  }
+
+  /// The segment's point 10 mm from its joint presses something below it: the finger is pushed towards +Y.
+  ContactRecord& press(int k, double depth, const Vec3& normal = Vec3::UnitY(), int digit = kIndex) {
+    ContactRecord& record = contacts_.record[idx(segment_index(digit, k))];
+    record.active = true;
+    record.p_S = Vec3(0.0, 0.0, -0.010);
+    record.n_c = record.force_normal = normal;
+    record.depth = depth;
+    record.p_hcp = hcp.digit[idx(digit)].segment[idx(k)] * record.p_S;
+    record.p_gdp = contacts_.poses.digit[idx(digit)].segment[idx(k)] * record.p_S;
+    return record;
+  }
+  void leave(int k, int digit = kIndex) { contacts_.record[idx(segment_index(digit, k))].active = false; }
+  /// The measured finger moves by so much, all segments alike.
+  void move_hcp(const Vec3& by) {
+    for (Pose& segment : hcp.digit[idx(kIndex)].segment) segment.p += by;
+  }
+  Status tick() {
+    return compute_command({hand_, law, smoothing, limits, period, stabiliser, oscillation}, contacts_, hcp,
+                           stale, state);
+  }
+  Status ticks(int count) {
+    Status status = Status::kOk;
+    for (int i = 0; i < count; ++i) status = tick();
+    return status;
+  }
+  [[nodiscard]] double sent(int k, int digit = kIndex) const {
+    return state.segment[idx(segment_index(digit, k))].sent;
+  }
+  [[nodiscard]] const LocalWall& wall(int k, int digit = kIndex) const {
+    return state.wall[idx(segment_index(digit, k))];
+  }
+  [[nodiscard]] double torque(int i, int digit = kIndex) const {
+    return state.torque[idx(joint_index(digit, i))];
+  }
+
+  ForceLawParameters law{.law = ForceLaw::kHooke, .stiffness = 500.0};
+  SmoothingParameters smoothing;
+  LimitParameters limits;
+  StabiliserParameters stabiliser{.method = Stabiliser::kNone};
+  OscillationParameters oscillation;
+  ForceState state;
+  HandPoses hcp;
+  bool stale = false;
+  double period = kTick;
+
+ private:
+  HandModel hand_ = simple_hand();
+  SegmentTrees trees_ = make_segment_trees(hand_);
+  ObjectModel object_{moved(make_box(Vec3(0.01, 0.01, 0.01), 12), at(10.0, 0.0, 0.0))};
+  ContactParameters parameters_;
+  GdpState contacts_{ContactModel{hand_, trees_, object_, parameters_}};
+};
+
+}  // namespace phalanx::test
