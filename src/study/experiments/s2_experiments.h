@@ -21,6 +21,12 @@ struct LimitRow {
   PointResult none;
   PointResult smoothing;  ///< +-0.1 N a step
 };
+/// The two limits of the reduced model at one size of the bump.
+struct FitRow {
+  double bump = 0.0;       ///< [N]
+  double none = 0.0;       ///< [N/m]
+  double smoothing = 0.0;  ///< +-0.1 N a step [N/m]
+};
 /// Limits of the press on the scene.
 /// @param set  of scene, device and patient, for both
 [[nodiscard]] LimitRow find_limits(const std::string& change, const Overrides& set, int seeds,
@@ -32,6 +38,9 @@ struct LimitRow {
 /// @param rows  at least one; the first is held against the paper
 [[nodiscard]] ExperimentReport s2_limit_report(const std::vector<LimitRow>& rows);
 [[nodiscard]] ExperimentReport s2_sensitivity();
+[[nodiscard]] ExperimentReport s2_sensitivity_report(const std::vector<LimitRow>& rows);
 [[nodiscard]] ExperimentReport s2_fit();
+/// @param rows  at least one, by increasing bump
+[[nodiscard]] ExperimentReport s2_fit_report(const std::vector<FitRow>& rows);
 
 }  // namespace phalanx

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "phalanx/study/closed_loop/reduced_model.h"
@@ -18,21 +19,15 @@ namespace {
 
 constexpr double kStep = 100.0;  // of the stiffness grid [N/m]
 
-struct FitRow {
-  double bump = 0.0;       // [N]
-  double none = 0.0;       // [N/m]
-  double smoothing = 0.0;  // +-0.1 N a step [N/m]
-
-  /// Sum of the squared deviations from what S2 prints, in steps of the grid.
-  [[nodiscard]] int deviation() const {
-    const auto steps = [](double ours, double paper) {
-      return static_cast<int>(std::lround((ours - paper) / kStep));
-    };
-    const int a = steps(none, 700.0);
-    const int b = steps(smoothing, 1600.0);
-    return a * a + b * b;
-  }
-};
+/// Sum of the squared deviations from what S2 prints, in steps of the grid.
+int deviation(const FitRow& row) {
+  const auto steps = [](double ours, double paper) {
+    return static_cast<int>(std::lround((ours - paper) / kStep));
+  };
+  const int a = steps(row.none, 700.0);
+  const int b = steps(row.smoothing, 1600.0);
+  return a * a + b * b;
+}
 
 double limit_at(const ReducedModel& model, const SmoothingParameters& smoothing) {
   const auto stable = [&](int index) {
@@ -58,9 +53,14 @@ ExperimentReport s2_fit() {
   std::vector<FitRow> rows(13);
   tbb::parallel_for(std::size_t{0}, rows.size(),
                     [&](std::size_t i) { rows[i] = fit_row(0.5 * static_cast<double>(i)); });
+  return s2_fit_report(rows);
+}
+
+ExperimentReport s2_fit_report(const std::vector<FitRow>& rows) {
+  assert(!rows.empty());
   const FitRow* best = &rows.front();
   for (const FitRow& row : rows)
-    if (row.deviation() <= best->deviation()) best = &row;
+    if (deviation(row) <= deviation(*best)) best = &row;
   const double fitted = best->bump;
 
   ExperimentReport report;
@@ -79,15 +79,15 @@ ExperimentReport s2_fit() {
                     .rows = {}};
   for (const FitRow& row : rows) {
     report.csv +=
-        fmt::format("{},{},{},{}\n", row.bump, row.none / 1000.0, row.smoothing / 1000.0, row.deviation());
+        fmt::format("{},{},{},{}\n", row.bump, row.none / 1000.0, row.smoothing / 1000.0, deviation(row));
     report.text += fmt::format("bump {:4.1f} N: {:.1f} and {:.1f} N/mm{}\n", row.bump, row.none / 1000.0,
                                row.smoothing / 1000.0, row.bump == fitted ? "  fitted" : "");
     table.rows.push_back({fmt::format("{:.1f}", row.bump), fmt::format("{:.1f}", row.none / 1000.0),
-                          fmt::format("{:.1f}", row.smoothing / 1000.0), fmt::format("{}", row.deviation())});
+                          fmt::format("{:.1f}", row.smoothing / 1000.0), fmt::format("{}", deviation(row))});
     json["rows"].push_back({{"bump_n", row.bump},
                             {"none_n_per_mm", row.none / 1000.0},
                             {"smoothing_n_per_mm", row.smoothing / 1000.0},
-                            {"deviation", row.deviation()}});
+                            {"deviation", deviation(row)}});
   }
   report.text += fmt::format("fitted: {} N\n", fitted);
   json["made"] = made_json(made_here());

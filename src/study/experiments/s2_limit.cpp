@@ -170,7 +170,10 @@ ExperimentReport s2_sensitivity() {
       {"bump 2 N", {{"patient.bump_n", "2"}}},
       {"bump 6 N", {{"patient.bump_n", "6"}}},
   };
-  const std::vector<LimitRow> rows = find_all(changes);
+  return s2_sensitivity_report(find_all(changes));
+}
+
+ExperimentReport s2_sensitivity_report(const std::vector<LimitRow>& rows) {
   ExperimentReport report;
   nlohmann::ordered_json json;
   json["experiment"] = "s2-sensitivity";

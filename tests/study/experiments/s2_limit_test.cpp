@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // S2's largest stable stiffness, and what it must not depend on.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tbb/parallel_for.h>
@@ -15,6 +16,9 @@
 
 namespace phalanx {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 constexpr double kGrid = 100.0;            // [N/m]
 constexpr double kOneStep = 100.0 + 1e-6;  // [N/m]
@@ -129,6 +133,36 @@ TEST(S2LimitReport, GivesEachLimitItsFlagsAndThePapers) {
   EXPECT_EQ(report.rows[1].difference, "+2.4");
   const std::vector<std::vector<std::string>> table = {{"as it is", "0.7", ">= 4.0"},
                                                        {"softer", "< 0.1", "0.7"}};
+  EXPECT_EQ(report.sections.at(0).table.rows, table);
+}
+
+// The sensitivities have a table of their own and nothing of the papers.
+TEST(S2SensitivityReport, HasEachChangeWithItsTwoLimits) {
+  PointResult low;
+  low.k_lim = 600.0;
+  PointResult high;
+  high.k_lim = 1700.0;
+  const ExperimentReport report =
+      s2_sensitivity_report({{.change = "as it is", .none = low, .smoothing = high},
+                             {.change = "softer", .none = low, .smoothing = low}});
+  const auto json = nlohmann::json::parse(report.json);
+  EXPECT_EQ(json.at("experiment"), "s2-sensitivity");
+  EXPECT_EQ(json.at("paper"), "not in the papers");
+  EXPECT_EQ(json.at("rows"), nlohmann::json::parse(R"([
+    {"change": "as it is",
+     "none": {"k_lim_n_per_mm": 0.6, "at_least": false, "non_monotone": false},
+     "smoothing": {"k_lim_n_per_mm": 1.7, "at_least": false, "non_monotone": false}},
+    {"change": "softer",
+     "none": {"k_lim_n_per_mm": 0.6, "at_least": false, "non_monotone": false},
+     "smoothing": {"k_lim_n_per_mm": 0.6, "at_least": false, "non_monotone": false}}])"));
+  EXPECT_TRUE(json.contains("made"));
+  EXPECT_EQ(report.csv, "change,none_n_per_mm,smoothing_n_per_mm\nas it is,0.6,1.7\nsofter,0.6,0.6\n");
+  EXPECT_TRUE(report.rows.empty());
+  EXPECT_THAT(report.text, StartsWith("What moves the two limits of s2-limit (each with 20 seeds).\n"));
+  EXPECT_THAT(
+      report.text,
+      HasSubstr("softer                                                   0.6                   0.6\n"));
+  const std::vector<std::vector<std::string>> table = {{"as it is", "0.6", "1.7"}, {"softer", "0.6", "0.6"}};
   EXPECT_EQ(report.sections.at(0).table.rows, table);
 }
 
