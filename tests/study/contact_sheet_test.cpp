@@ -105,6 +105,65 @@ TEST(Letters, AreAllDrawnWithinTheirWidthAndNoTwoAlike) {
   EXPECT_EQ(picture::letter_advance('5'), 0.0F);
 }
 
+/// Whether a stroke passes within 0.45 of the point.
+bool inked(const picture::Strokes& lines, const Eigen::Vector2f& p) {
+  return std::ranges::any_of(lines, [&](const auto& stroke) {
+    const Eigen::Vector2f along = stroke.second - stroke.first;
+    const float t = std::clamp((p - stroke.first).dot(along) / along.squaredNorm(), 0.0F, 1.0F);
+    return (p - stroke.first - t * along).norm() < 0.45F;
+  });
+}
+
+// As read by eye: a row for each height from 6 to -2, a column each 0.85, seven of them for m and w, five for
+// the others, and two blank ones behind each letter.
+TEST(Letters, LookLikeLetters) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> bands = {
+      {"abcdefghi",
+       {"       #                 #           ##          #       #     ",
+        "       #                 #          #            #             ",
+        " ####  ####    ###    ####   ###   ####    ####  ####    #     ",
+        "#   #  #   #  #      #   #  #   #   #     #   #  #   #   #     ",
+        "#   #  #   #  #      #   #  #####   #     #   #  #   #   #     ",
+        "#   #  #   #  #      #   #  #       #     #   #  #   #   #     ",
+        " ####  ####    ###    ####   ###    #      ####  #   #   #     ",
+        "                                              #                ",
+        "                                           ###                 "}},
+      {"jklmnopqr",
+       {"  #    #       #                                                 ",
+        "       #       #                                                 ",
+        "  #    #  #    #     ### ##   ####    ###   ####    ####  ####   ",
+        "  #    # #     #     #  #  #  #   #  #   #  #   #  #   #  ##     ",
+        "  #    ###     #     #  #  #  #   #  #   #  #   #  #   #  #      ",
+        "  #    #  #    #     #  #  #  #   #  #   #  #   #  #   #  #      ",
+        "  #    #  ##   #     #  #  #  #   #   ###   ####    ####  #      ",
+        "  #                                         #          #         ",
+        "##                                          #          #         "}},
+      {"stuvwxyz_",
+       {"                                                                 ",
+        "        #                                                        ",
+        " ###   ####   #   #  #   #  #  #  #  #   #  #   #  #####         ",
+        "#       #     #   #  ## ##  #  #  #   # #   ## ##     #          ",
+        " ###    #     #   #   # #    ## ##     #     # #     #           ",
+        "   ##   #     #   #   ###    ## ##    # #    ###    #            ",
+        " ###     ##    ####    #     ##  #   #   #    #    #####         ",
+        "                                             ##           #####  ",
+        "                                             #                   "}}};
+  for (const auto& [letters, rows] : bands) {
+    for (int row = 0; row < 9; ++row) {
+      std::string drawn;
+      for (const char c : letters) {
+        picture::Strokes lines;
+        picture::letter_strokes(c, lines);
+        for (int column = 0; column < (c == 'm' || c == 'w' ? 7 : 5); ++column)
+          drawn +=
+              inked(lines, {0.85F * static_cast<float>(column), static_cast<float>(6 - row)}) ? '#' : ' ';
+        drawn += "  ";
+      }
+      EXPECT_EQ(drawn, rows.at(static_cast<std::size_t>(row))) << letters << ", row " << row;
+    }
+  }
+}
+
 /// Whether the strokes meet, but for the rounding of their ends.
 bool meet(const std::pair<Eigen::Vector2f, Eigen::Vector2f>& one,
           const std::pair<Eigen::Vector2f, Eigen::Vector2f>& other) {

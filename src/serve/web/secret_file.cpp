@@ -17,8 +17,8 @@ namespace {
 
 constexpr mode_t kOwnerOnly = S_IRUSR | S_IWUSR;
 
-[[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
-  throw std::runtime_error(fmt::format("{}: {} ({})", path.string(), what, std::strerror(errno)));
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what, int error = errno) {
+  throw std::runtime_error(fmt::format("{}: {} ({})", path.string(), what, std::strerror(error)));
 }
 
 bool write_whole(int descriptor, std::string_view text) {
@@ -48,10 +48,9 @@ void write_secret_file(const std::filesystem::path& path, std::string_view text)
   if (file.value() < 0) fail(path, "cannot be written");
   const bool written = write_whole(file.value(), text) && ::fsync(file.value()) == 0;
   if (written && ::rename(name.c_str(), path.c_str()) == 0) return;
-  const int problem = errno;
+  const int error = errno;
   ::unlink(name.c_str());
-  errno = problem;
-  fail(path, "cannot be written");
+  fail(path, "cannot be written", error);
 }
 
 void keep_secret(const std::filesystem::path& path) {

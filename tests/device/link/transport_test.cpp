@@ -4,13 +4,16 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/serial.h>
 #include <sys/fsuid.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdarg>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -25,6 +28,31 @@
 namespace phalanx {
 namespace {
 
+/// The settings of a serial driver, which a pseudo-terminal has not; null: none answers.
+serial_struct* the_driver = nullptr;
+
+}  // namespace
+}  // namespace phalanx
+
+// The linker leads the calls of ioctl() in this program here (--wrap).
+extern "C" int __real_ioctl(int descriptor, unsigned long request, void* argument);
+extern "C" int __wrap_ioctl(int descriptor, unsigned long request, ...);
+extern "C" int __wrap_ioctl(int descriptor, unsigned long request, ...) {
+  std::va_list arguments;
+  va_start(arguments, request);
+  void* const argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if (phalanx::the_driver == nullptr || (request != TIOCGSERIAL && request != TIOCSSERIAL))
+    return __real_ioctl(descriptor, request, argument);
+  auto* const settings = static_cast<serial_struct*>(argument);
+  (request == TIOCGSERIAL ? *settings : *phalanx::the_driver) =
+      request == TIOCGSERIAL ? *phalanx::the_driver : *settings;
+  return 0;
+}
+
+namespace phalanx {
+namespace {
+
 using Bytes = std::vector<std::uint8_t>;
 using testing::HasSubstr;
 
@@ -33,7 +61,7 @@ constexpr double kTransportPatience = 60.0;
 
 struct Received {
   Bytes frame;
-  Peer from = 0;
+  Peer from = 99;  ///< what the transport has to replace
 };
 
 std::optional<Received> next(Transport& transport, double patience = kTransportPatience) {
@@ -173,10 +201,12 @@ TEST(SerialTransport, CarriesFramesBothWaysOverAPseudoTerminal) {
     const auto heard = next(*controller);
     ASSERT_TRUE(heard);
     EXPECT_EQ(heard->frame, frame_of(i, 20u + 40u * i));
+    EXPECT_EQ(heard->from, 0U);
     ASSERT_TRUE(controller->send(heard->frame, heard->from));
     const auto echo = next(*host);
     ASSERT_TRUE(echo);
     EXPECT_EQ(echo->frame, heard->frame);
+    EXPECT_EQ(echo->from, 0U);
   }
   EXPECT_EQ(host->dropped() + controller->dropped(), 0u);
 }
@@ -330,6 +360,18 @@ TEST(SerialTransport, SetsOneStopBitAndNoFlowControlWhateverThePortHadBefore) {
   EXPECT_EQ(settings.c_iflag & (IXON | IXOFF), 0U);
 }
 
+TEST(SerialTransport, AsksTheDriverForLowLatencyAndLeavesItsOtherSettings) {
+  serial_struct driver{};
+  driver.flags = ASYNC_SKIP_TEST;
+  driver.closing_wait = 77;
+  const auto controller = open_pseudo_terminal();
+  the_driver = &driver;
+  const auto host = open_serial(after_scheme(*controller));
+  the_driver = nullptr;
+  EXPECT_EQ(driver.flags, static_cast<int>(ASYNC_SKIP_TEST | ASYNC_LOW_LATENCY));
+  EXPECT_EQ(driver.closing_wait, 77);
+}
+
 TEST(SerialTransport, BelongsToOneProgramAtATime) {
   const auto controller = open_pseudo_terminal();
   auto host = open_serial(after_scheme(*controller));
@@ -360,7 +402,7 @@ TEST(SerialTransport, SaysWhichGroupAPortBelongsTo) {
   const bool refused = plain.value() < 0 && errno == EACCES;
   const std::string said = message_of([&] { (void)open_serial(file); });
   ::setfsuid(static_cast<uid_t>(self));
-  ::prctl(PR_SET_DUMPABLE, 1);  // which the system takes from whoever changes so, and a leak checker needs
+  ::prctl(PR_SET_DUMPABLE, 1);  // setfsuid() clears it, and the leak checker needs it
   std::filesystem::remove(file);
   if (!refused) GTEST_SKIP() << "whoever runs this may open everything";
   EXPECT_THAT(said, HasSubstr("group dialout"));

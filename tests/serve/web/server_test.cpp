@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a server is started with, and the thread that it has.
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <fstream>
 #include <functional>
@@ -9,6 +12,7 @@
 
 #include "phalanx/serve/reach.h"
 #include "serve/web/page_client.h"
+#include "serve/web/raw_client.h"
 #include "serve/web/web_fixture.h"
 #include "support/held_clock/page.h"
 
@@ -56,6 +60,40 @@ TEST_F(WebServing, AnAddressIsOneOfThisMachine) {
   settings_.operator_token = random_token();
   with_certificate();
   EXPECT_THAT(refusal(), HasSubstr("is it an address of this machine?"));
+}
+
+/// The server's end of this client's connection, which is a descriptor of this process as well; -1: none.
+int other_end(const RawClient& client) {
+  sockaddr_in mine{};
+  socklen_t size = sizeof mine;
+  if (::getsockname(client.descriptor(), reinterpret_cast<sockaddr*>(&mine), &size) != 0) return -1;
+  for (int descriptor = 0; descriptor < 1024; ++descriptor) {
+    sockaddr_in peer{};
+    size = sizeof peer;
+    if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &size) != 0) continue;
+    if (peer.sin_family == AF_INET && peer.sin_port == mine.sin_port && descriptor != client.descriptor())
+      return descriptor;
+  }
+  return -1;
+}
+
+int tcp_option(int descriptor, int name) {
+  int value = -1;
+  socklen_t size = sizeof value;
+  ::getsockopt(descriptor, IPPROTO_TCP, name, &value, &size);
+  return value;
+}
+
+// What is sent leaves at once, and of what a slow page does not take at most 16 KiB wait in the system.
+TEST_F(WebServing, AConnectionIsSetUpForTheNewest) {
+  start();
+  RawClient client(port());
+  ASSERT_TRUE(client.say("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"));
+  ASSERT_FALSE(client.hear_answer().empty());
+  const int descriptor = other_end(client);
+  ASSERT_GE(descriptor, 0);
+  EXPECT_EQ(tcp_option(descriptor, TCP_NODELAY), 1);
+  EXPECT_EQ(tcp_option(descriptor, TCP_NOTSENT_LOWAT), 16 * 1024);
 }
 
 TEST_F(WebServing, APortThatIsTakenIsSaidOrTheNextIsTried) {
