@@ -144,7 +144,7 @@ def changes_of_line(code: str, previous: str, is_c: bool) -> Iterator[tuple[str,
             yield "swap", *match.span(), two if match[0] == one else one
     if match := re.search(r"\breturn ([^;{}]+);", code):
         value = match[1]
-        if value not in ("0", "0.0", "false", "nullptr"):
+        if value not in ("0", "0.0", "false", "nullptr", "std::nullopt"):
             yield "return", *match.span(1), "0" if is_c else "{}"
         if re.search(r" (&&|\|\||==|!=|<=?|>=?) |^!", value):
             yield "return", *match.span(1), f"!({value})"
@@ -165,6 +165,8 @@ def mutants_of(file: str, text: str) -> dict[int, list[Mutant]]:
     for line, (code, source) in enumerate(zip(blank(text).split("\n"), text.split("\n")), start=1):
         count: dict[str, int] = defaultdict(int)
         for operator, start, end, new in changes_of_line(code, previous, file.endswith(".c")):
+            if operator == "return" and source[start:end] == '""':
+                continue  # {} is the same
             new = source[start:end].join(new.split(code[start:end])) if operator == "return" and new[0] == "!" else new
             count[operator] += 1
             after = source[:start] + new + source[end:]
