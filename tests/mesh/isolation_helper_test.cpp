@@ -28,6 +28,13 @@ using ::testing::StartsWith;
 
 std::string backwards(const std::string& input) { return {input.rbegin(), input.rend()}; }
 std::string parent_of(const std::string&) { return std::to_string(::getppid()); }
+/// The process whose fork the forker is: with a helper the helper.
+std::string parent_of_forker(const std::string&) {
+  std::ifstream file("/proc/" + std::to_string(::getppid()) + "/status");
+  for (std::string word; file >> word;)
+    if (word == "PPid:" && file >> word) return word;
+  return "0";
+}
 std::string refused(const std::string& input) { throw std::invalid_argument(input); }
 std::string crashed(const std::string&) { std::abort(); }
 std::string endless(const std::string&) {
@@ -60,6 +67,18 @@ TEST(IsolationHelper, ForksInThisProcessesPlaceWhileItLives) {
   }
   EXPECT_FALSE(has_isolation_helper());
   EXPECT_EQ(forker(), self);
+}
+
+// Ctrl-C at a terminal reaches the helper as well as the program, which alone decides what it means.
+TEST(IsolationHelper, GoesOnAfterCtrlC) {
+  const IsolationHelper helper;
+  const auto pid_of_helper = [] { return std::stoi(run_isolated_work(parent_of_forker, "", "cup.obj", {})); };
+  const pid_t pid = pid_of_helper();
+  ASSERT_GT(pid, 1);
+  ASSERT_NE(pid, ::getppid());
+  ASSERT_EQ(::kill(pid, SIGINT), 0);
+  EXPECT_EQ(pid_of_helper(), pid);
+  EXPECT_EQ(pid_of_helper(), pid);
 }
 
 // An errno of EINTR that an earlier call left does not make it wait for the helper twice.

@@ -151,39 +151,46 @@ TEST(SensorWatchBounds, AClockThatStandsStillIsABadOneAndOneGoodSampleForgivesIt
 
 // ---- a sensor that stands still ----
 
-/// Motor 0 winds 10 mm a radian of the knuckle and 5 mm a radian of the middle joint.
-std::vector<MotorWitness> one_tendon_over_two_joints(double slack) {
-  MotorWitness witness{.channel = 2, .arm = {}, .slack = slack};
-  witness.arm[kMcp] = 0.01;
-  witness.arm[kPip] = 0.005;
-  return {witness};
+/// Motor 0 winds 10 mm a radian of the joint of the first channel and 5 mm a radian of that of the second.
+Watch one_tendon_over(int first, int second) {
+  MotorWitness witness{.channel = 2, .arm = {}, .slack = 0.0};
+  witness.arm[static_cast<std::size_t>(first)] = 0.01;
+  witness.arm[static_cast<std::size_t>(second)] = 0.005;
+  std::vector<DeviceChannel> channels = test::two_joint_channels();
+  channels[0].index = first;
+  channels[1].index = second;
+  return Watch({witness}, channels);
 }
 
-// The middle joint bends by 0.5 rad and winds 2.5 mm: of that the knuckle's sensor, which rests, is not
-// guilty. Then the motor winds 0.5 mm that no sensor sees: 0.05 rad of the knuckle.
+// The second joint bends by 0.5 rad and winds 2.5 mm, which explains the motor although the first joint's
+// sensor rests. Then the motor winds 0.5 mm that no sensor sees: 0.05 rad of the first joint.
 TEST(SensorWatchBounds, AMotorsMotionThatAnotherJointExplainsIsNotAStuckSensor) {
-  Watch bench(one_tendon_over_two_joints(0.0));
-  const auto wind = [&](double mcp, double pip) {
-    bench.sample.raw[2] = static_cast<std::int32_t>(std::lround((0.01 * mcp + 0.005 * pip) / 1e-6));
-  };
-  wind(0.5, 0.5);
-  bench.judge();
-  for (int i = 1; i <= 2000; ++i) {
-    const double pip = 0.5 + 0.5 * i / 2000.0;
-    bench.at(0.5, pip);
-    wind(0.5, pip);
-    ASSERT_EQ(bench.judge().fault, Fault::kNone) << i;
+  for (const auto& [first, second] :
+       {std::pair{static_cast<int>(kMcp), static_cast<int>(kPip)}, {1, 0}, {kJoints - 2, kJoints - 1}}) {
+    Watch bench = one_tendon_over(first, second);
+    const auto wind = [&](double by_first, double by_second) {
+      bench.sample.raw[2] =
+          static_cast<std::int32_t>(std::lround((0.01 * by_first + 0.005 * by_second) / 1e-6));
+    };
+    wind(0.5, 0.5);
+    bench.judge();
+    for (int i = 1; i <= 2000; ++i) {
+      const double bent = 0.5 + 0.5 * i / 2000.0;
+      bench.at(0.5, bent);
+      wind(0.5, bent);
+      ASSERT_EQ(bench.judge().fault, Fault::kNone) << i << ", joint " << second;
+    }
+    wind(0.55, 1.0);
+    const SensorFinding found = bench.judge();
+    EXPECT_EQ(found.fault, Fault::kStuckSensor) << first;
+    EXPECT_EQ(found.channel, 0) << first;
   }
-  wind(0.55, 1.0);
-  const SensorFinding found = bench.judge();
-  EXPECT_EQ(found.fault, Fault::kStuckSensor);
-  EXPECT_EQ(found.channel, 0);
 }
 
 // The other way round: the knuckle, whose channel is the first, bends by 0.5 rad and winds 5 mm, which would
 // be 1 rad of the middle joint, whose sensor rests.
 TEST(SensorWatchBounds, AMotionThatTheFirstChannelExplainsIsNotAnothersStuckSensor) {
-  Watch bench(one_tendon_over_two_joints(0.0));
+  Watch bench = one_tendon_over(kMcp, kPip);
   for (int i = 0; i <= 2000; ++i) {
     const double mcp = 0.5 + 0.5 * i / 2000.0;
     bench.at(mcp, 0.5);
