@@ -64,9 +64,9 @@ Lens lens_around(const SegmentTree& tree, const std::vector<std::int32_t>& order
                                   const WideRanges::Lane& lane, LensNode& node, int at) {
   Vec3 centre;
   Vec3 axis;
-  for (int i = 0; i < 3; ++i) {
-    centre[i] = static_cast<double>(node.centre[i][at]);
-    axis[i] = static_cast<double>(node.axis[i][at]);
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = static_cast<double>(node.centre[k][at]);
+    axis[k] = static_cast<double>(node.axis[k][at]);
   }
   double radius = 0.0;
   double half = 0.0;

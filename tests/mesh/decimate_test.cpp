@@ -157,6 +157,24 @@ TEST(ImportAndCheck, DecimatesAndReportsHowFarItIsOff) {
     EXPECT_GT(finding.found, 0U) << finding_name(finding.kind);
 }
 
+// A sphere of 1,000 triangles without each 30th. Where the rims of its holes hold too many triangles they may
+// move, and the holes close.
+TEST(ImportAndCheck, SaysThatDecimationHasClosedTheHoles) {
+  const TriangleMesh whole = make_sphere(0.05, 1000);
+  TriangleMesh ball{whole.vertices, {}};
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t)
+    if (t % 30 != 0) ball.triangles.push_back(whole.triangles[t]);
+  const std::string text = test::to_obj(ball);
+  const ImportedMesh before = import_and_check_from_memory(text.data(), text.size(), "obj");
+  EXPECT_FALSE(before.report.closed);
+  EXPECT_GT(before.report.finding(FindingKind::kHoles).found, 0U);
+  const ImportedMesh after = import_and_check_from_memory(text.data(), text.size(), "obj", {.triangles = 80});
+  EXPECT_FALSE(after.report.decimation.value().was_closed);
+  EXPECT_TRUE(is_closed(after.mesh));
+  EXPECT_TRUE(after.report.closed);
+  EXPECT_EQ(after.report.finding(FindingKind::kHoles).found, 0U);
+}
+
 TEST(ImportAndCheck, LeavesAMeshOfAsManyTrianglesAsAskedForUndecimated) {
   const std::string text = test::to_obj(make_box({0.05, 0.05, 0.05}, 12));
   const ImportedMesh imported =

@@ -45,8 +45,7 @@ struct Contents {
   RenderMesh solid, ghost, arrows;
   std::vector<Sight> contacts;
   std::array<Material, kSegments + 1> material;
-  std::array<Pose, kSegments> pose;       ///< X_WS of the shown hand
-  std::array<float, kSegments> length{};  ///< to the next joint [m]; 0 where there is none
+  std::array<Pose, kSegments> pose;  ///< X_WS of the shown hand
   double full_force = 0.0;
 };
 
@@ -75,8 +74,6 @@ Contents collect(const SegmentMeshes& hand, const TriangleMesh& object, const Sn
     }
     const double share = contents.full_force > 0.0 ? segment.force / contents.full_force : 0.0;
     contents.pose[s] = snapshot.gdp_pose[s];
-    if (part != kPalm && part % kSegmentsPerDigit < kSegmentsPerDigit - 1)
-      contents.length[s] = static_cast<float>((snapshot.gdp_pose[s + 1].p - snapshot.gdp_pose[s].p).norm());
     contents.material[s] = {.albedo = force_colour(static_cast<float>(share)), .gloss = 0.35F};
     if (!(segment.force > 0.0)) continue;
     append_arrow(contents.arrows, segment.point, segment.normal, kArrowAtFull * share, kShaft, part);
@@ -104,7 +101,6 @@ class Renderer {
         device_(make_device()),
         material_(contents.material),
         pose_(contents.pose),
-        length_(contents.length),
         full_force_(contents.full_force),
         solid_(device_.get(), std::move(contents.solid)),
         ghost_(device_.get(), std::move(contents.ghost)),
@@ -200,7 +196,8 @@ class Renderer {
     const auto along = [&](std::size_t k) {
       return static_cast<float>(-(pose_[k].inverse() * point.cast<double>()).z());
     };
-    return 0.5F * (along(s) - length_[s] + along(s + 1));
+    const auto length = static_cast<float>((pose_[s + 1].p - pose_[s].p).norm());
+    return 0.5F * (along(s) - length + along(s + 1));
   }
 
   [[nodiscard]] Material material_at(int part, const Vec3f& point) const {
@@ -244,7 +241,6 @@ class Renderer {
   Device device_;
   std::array<Material, kSegments + 1> material_;
   std::array<Pose, kSegments> pose_;
-  std::array<float, kSegments> length_;
   double full_force_;
   RayScene solid_, ghost_, arrows_;
   Camera camera_;
