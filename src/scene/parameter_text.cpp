@@ -34,9 +34,10 @@ void lines(std::string& text, const ExoJoint& joint) {
 
 void lines(std::string& text, const ExoMotor& motor) {
   const std::string key = fmt::format("motors.{}", motor.name);
-  for (int j = 0; j < kJoints; ++j) {
-    const double arm = motor.arm[static_cast<std::size_t>(j)];
-    if (arm != 0.0) line(text, fmt::format("{}.arm.{}", key, joint_name(j)), arm);
+  int joint = 0;
+  for (const double arm : motor.arm) {
+    if (arm != 0.0) line(text, fmt::format("{}.arm.{}", key, joint_name(joint)), arm);
+    ++joint;
   }
   line(text, key + ".lag", motor.lag);
   line(text, key + ".force_limit", motor.force_limit);

@@ -587,6 +587,26 @@ TEST(Repair, TakesAnEdgeOfMoreThanSixtyFourTrianglesForOpen) {
   }
 }
 
+// Edges of three triangles each: one of 40 mm about the origin, one of 30 mm a metre away.
+TEST(Repair, NamesTheLongestEdgeOfMoreThanTwoTrianglesWhereverItLies) {
+  TriangleMesh mesh;
+  for (const auto& [x, length] : {std::pair{0.0, 0.04}, {1.0, 0.03}}) {
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{x, 0, -0.5 * length}, {x, 0, 0.5 * length}});
+    for (const int corner : {2, 3, 4}) {
+      const double angle = 2.0 * std::numbers::pi * corner / 3.0;
+      mesh.vertices.emplace_back(x + 0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.0);
+      mesh.triangles.push_back({first, first + 1, first + corner});
+    }
+  }
+  const Repaired r = repaired(mesh);
+  const MeshFinding found = r.report.finding(FindingKind::kNonManifoldEdges);
+  EXPECT_EQ(found.found, 2U);
+  EXPECT_NEAR(found.size, 0.07, 1e-12);
+  ASSERT_TRUE(found.at.has_value());
+  EXPECT_LT(found.at->norm(), 1e-9);
+}
+
 // Two triangles meet one across their common long edge.
 TEST(Repair, SplitsATJunction) {
   TriangleMesh strip;
