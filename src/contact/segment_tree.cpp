@@ -57,17 +57,23 @@ Lens lens_around(const SegmentTree& tree, const std::vector<std::int32_t>& order
   return {middle.x() * u + middle.y() * v + middle.z() * axis, axis};
 }
 
+/// One vector of a node, whose lanes lie side by side for each axis.
+Vec3 lane_of(const float (&node)[3][kWide], int at) noexcept {
+  return Eigen::Vector3f(node[0][at], node[1][at], node[2][at]).cast<double>();
+}
+void set_lane(float (&node)[3][kWide], int at, const Vec3& v) noexcept {
+  node[0][at] = static_cast<float>(v.x());
+  node[1][at] = static_cast<float>(v.y());
+  node[2][at] = static_cast<float>(v.z());
+}
+
 /// The largest distance of the lane's corners from the lens's centre and from its plane, as both stand in the
 /// node in single precision. A function of its own: where GCC 12 sees a number rounded to single precision
 /// and used in double again, it leaves the rounding out (two numbers at a time, from -O2 on).
 [[gnu::noinline]] void set_extent(const SegmentTree& tree, const std::vector<std::int32_t>& order,
                                   const WideRanges::Lane& lane, LensNode& node, int at) {
-  Vec3 centre;
-  Vec3 axis;
-  for (int k = 0; k < 3; ++k) {
-    centre[k] = static_cast<double>(node.centre[k][at]);
-    axis[k] = static_cast<double>(node.axis[k][at]);
-  }
+  const Vec3 centre = lane_of(node.centre, at);
+  const Vec3 axis = lane_of(node.axis, at);
   double radius = 0.0;
   double half = 0.0;
   for (std::int32_t i = lane.first; i < lane.first + lane.count; ++i) {
@@ -85,19 +91,15 @@ Lens lens_around(const SegmentTree& tree, const std::vector<std::int32_t>& order
 void set_lens(const SegmentTree& tree, const std::vector<std::int32_t>& order, const WideRanges::Lane& lane,
               LensNode& node, int at) {
   const Lens lens = lens_around(tree, order, lane);
-  for (int i = 0; i < 3; ++i) {
-    node.centre[i][at] = static_cast<float>(lens.centre[i]);
-    node.axis[i][at] = static_cast<float>(lens.axis[i]);
-  }
+  set_lane(node.centre, at, lens.centre);
+  set_lane(node.axis, at, lens.axis);
   set_extent(tree, order, lane, node, at);
   node.child[at] = lane.child >= 0 ? lane.child : ~order[idx(lane.first)];
 }
 
 void set_empty(LensNode& node, int at) noexcept {
-  for (int i = 0; i < 3; ++i) {
-    node.centre[i][at] = 0.0F;
-    node.axis[i][at] = 0.0F;
-  }
+  set_lane(node.centre, at, Vec3::Zero());
+  set_lane(node.axis, at, Vec3::Zero());
   node.radius[at] = -1e15F;  // its square is finite; radius + cap stays negative
   node.half[at] = -1e15F;
   node.child[at] = 0;

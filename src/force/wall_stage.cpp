@@ -93,7 +93,8 @@ LocalWall wall_left(const ForceModel& model, const Pose& hcp, RememberedWall& le
 }
 
 bool usable(const LocalWall& wall) noexcept {
-  return wall.stiffness > 0.0 && std::isfinite(wall.stiffness) && std::isfinite(wall.d_ref);
+  return wall.stiffness > 0.0 && std::isfinite(wall.stiffness) && std::isfinite(wall.d_ref) &&
+         std::ranges::all_of(wall.g, [](double arm) { return std::isfinite(arm); });
 }
 
 }  // namespace
@@ -134,6 +135,9 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
     } else if (remembered.kept && !record.active) {
       wall = wall_left(model, hcp.digit[idx(digit)].segment[idx(k)], remembered);
     }
+    JointArray unit_torque{};
+    add_torques(gdp, digit, k, gdp.segment[idx(k)] * remembered.p_S, remembered.normal, unit_torque);
+    for (int i = 0; i < kJointsPerDigit; ++i) wall.g[idx(i)] = unit_torque[idx(joint_index(digit, i))];
     wall.active = usable(wall);
     if (!wall.active) {
       wall = {};
@@ -141,9 +145,6 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
       continue;
     }
     normal[idx(k)] = remembered.normal;
-    JointArray unit_torque{};
-    add_torques(gdp, digit, k, gdp.segment[idx(k)] * remembered.p_S, remembered.normal, unit_torque);
-    for (int i = 0; i < kJointsPerDigit; ++i) wall.g[idx(i)] = unit_torque[idx(joint_index(digit, i))];
   }
   if (model.limits.fingertip_force_enabled) {
     share_the_cap(walls, normal, model.limits.fingertip_force);

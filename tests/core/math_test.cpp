@@ -3,25 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 
-#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {
 
 constexpr double kRight = std::numbers::pi / 2.0;
-
-TEST(Constants, SayHowManyUnitsMakeOneOfThose) {
-  EXPECT_DOUBLE_EQ(kPi, 3.14159265358979323846);
-  EXPECT_DOUBLE_EQ(1000.0 * kMilli, 1.0);
-  EXPECT_DOUBLE_EQ(1000.0 * kMm, 1.0);
-  EXPECT_DOUBLE_EQ(180.0 * kDeg, 3.14159265358979323846);
-  EXPECT_DOUBLE_EQ(3.14159265358979323846 * kRadToDeg, 180.0);
-  EXPECT_TRUE(std::isinf(kInfinity) && kInfinity > 0.0);
-}
 
 TEST(Rotation, TurnsByTheRightHand) {
   EXPECT_LT((rotation_about(Vec3::UnitZ(), kRight) * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 1e-15);

@@ -2,9 +2,6 @@
 // The force stage on contact records that are written by hand: what a search would find does not matter here.
 #pragma once
 
-#include <cmath>
-
-#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/force/force_stage.h"
 #include "phalanx/mesh/primitives.h"
@@ -15,7 +12,7 @@ namespace phalanx::test {
 inline constexpr double kTick = 0.005;  // [s]
 inline constexpr int kProximal = 0;
 inline constexpr int kDistal = 2;
-inline constexpr int kThumbBefore = 0;  ///< the digit before the index finger
+inline constexpr int kThumb = 0;
 
 /// The simple hand, open and straight along -Z, with records of our own and every limiter off.
 class ForceStageFixture {

@@ -20,7 +20,7 @@ namespace {
 using Stage = test::ForceStageFixture;
 using test::kDistal;
 using test::kProximal;
-using test::kThumbBefore;
+using test::kThumb;
 using test::kTick;
 
 const double kGain = 1.0 - std::exp(-2.0 * kPi * 30.0 * kTick);  ///< of a low-pass of 30 Hz: 0.61034
@@ -309,14 +309,14 @@ TEST(ForceStage, ASegmentThatLetsGoBesideOneThatPressesHasNoNormal) {
 TEST(ForceStage, ADigitLeavesTheNextOneAlone) {
   Stage stage;
   stage.stabiliser.method = Stabiliser::kSmoothing;
-  stage.press(kDistal, 0.1e-3, Vec3::UnitY(), kThumbBefore);
+  stage.press(kDistal, 0.1e-3, Vec3::UnitY(), kThumb);
   stage.press(kProximal, 2e-3);
   stage.ticks(2);
-  EXPECT_NEAR(stage.torque(0, kThumbBefore), -0.075 * 0.05, 1e-12);
+  EXPECT_NEAR(stage.torque(0, kThumb), -0.075 * 0.05, 1e-12);
   EXPECT_NEAR(stage.torque(0), -0.010 * 0.2, 1e-12);
-  stage.leave(kDistal, kThumbBefore);
+  stage.leave(kDistal, kThumb);
   stage.ticks(3);
-  EXPECT_TRUE(stage.state.resting[idx(kThumbBefore)]);
+  EXPECT_TRUE(stage.state.resting[idx(kThumb)]);
   EXPECT_NEAR(stage.sent(kProximal), 0.5, 1e-12);
 }
 
@@ -489,7 +489,7 @@ TEST(ForceStage, ASwingIsWhatTheParametersSay) {
 // is watched.
 TEST(ForceStage, AnOscillationHasItsOwnFrequencyBesideAnotherDigit) {
   Stage stage;
-  stage.press(kDistal, 2e-3, Vec3::UnitY(), kThumbBefore);
+  stage.press(kDistal, 2e-3, Vec3::UnitY(), kThumb);
   const OscillationObserver& observer = stage.state.observer[idx(segment_index(test::kIndex, kProximal))];
   for (int n = 0; n < 100; ++n) {
     stage.press(kProximal, n % 20 < 10 ? 2e-3 : 6e-3);

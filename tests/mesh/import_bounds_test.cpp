@@ -14,6 +14,7 @@
 
 #include "mesh/mesh_files.h"
 #include "mesh/near_vertices.h"
+#include "mesh/obj_reduce.h"
 #include "mesh/repair.h"
 #include "mesh/t_junctions.h"
 #include "mesh/weld.h"
@@ -164,6 +165,9 @@ TEST(ImportBounds, AGlbMayRequireExtensionsForItsLooksOnly) {
     EXPECT_EQ(refusal_in_bounds(requiring(looks), "glb"), "accepted") << looks;
   EXPECT_THAT(refusal_in_bounds(requiring("EXT_meshopt_compression"), "glb"),
               HasSubstr("requires the glTF extension 'EXT_meshopt_compression'"));
+  // Assimp itself reads this one, if it was built to.
+  EXPECT_THAT(refusal_in_bounds(requiring("KHR_draco_mesh_compression"), "glb"),
+              ::testing::Not(HasSubstr("requires the glTF extension")));
 }
 
 TEST(ImportBounds, AsManyTrianglesAsMayBeAreTaken) {
@@ -306,6 +310,81 @@ std::string own_niceness(const std::string&) { return std::to_string(::getpriori
 TEST(IsolationHelperBounds, GivesWayToTheLoop) {
   const mesh::IsolationHelper helper;
   EXPECT_GE(std::stoi(mesh::run_isolated_work(own_niceness, "", "cup.obj", {})), 5);
+}
+
+// The second buffer is another file's. It is not opened, and this file's own bytes are not taken for it.
+TEST(ImportBounds, AGlbsOtherFilesAreNotOpened) {
+  const TriangleMesh mesh = make_sphere(0.1, 40);
+  const std::string other =
+      with_json(test::to_glb(mesh), R"(}],"bufferViews":[{"buffer":0)",
+                R"(},{"uri":"other.bin","byteLength":)" + std::to_string(12 * mesh.vertices.size()) +
+                    R"(}],"bufferViews":[{"buffer":1)");
+  EXPECT_THAT(refusal_in_bounds(other, "glb"),
+              AllOf(HasSubstr("cannot be read as .glb ("), HasSubstr("other.bin")));
+}
+
+// The last triangle names a vertex that does not exist, and the accessor ends before it: the index that
+// follows is none of the mesh's.
+TEST(ImportBounds, AGlbsIndicesEndWhereItsAccessorSays) {
+  TriangleMesh mesh = make_sphere(0.1, 40);
+  mesh.triangles.back()[0] = static_cast<std::int32_t>(mesh.vertices.size());
+  const std::size_t corners = 3 * mesh.triangles.size();
+  const auto count = [](std::size_t n) { return R"("SCALAR","count":)" + std::to_string(n); };
+  EXPECT_EQ(refusal_in_bounds(with_json(test::to_glb(mesh), count(corners), count(corners - 3)), "glb"),
+            "accepted");
+}
+
+// 12 bytes of header, 8 of the first chunk's length and name.
+TEST(ImportBounds, AGlbThatEndsInItsFirstChunksHeaderIsRefusedByItsReader) {
+  const std::string glb = test::to_glb(make_sphere(0.1, 40));
+  for (const std::size_t bytes : {15U, 16U, 19U, 20U})
+    EXPECT_THAT(refusal_in_bounds(glb.substr(0, bytes), "glb"), HasSubstr("cannot be read as .glb")) << bytes;
+}
+
+// Behind the mesh its object has another chunk of 8 bytes that is named as the mesh's vertices are, and says
+// that there is one. The lengths of the main, editor and object chunks stand at 2, 8 and 14.
+TEST(ImportBounds, A3dsMeshEndsWhereItsChunkEnds) {
+  std::string more;
+  test::put(more, std::uint16_t{1});
+  std::string file = test::to_3ds(make_sphere(0.1, 40)) + test::chunk_3ds(0x4110, more);
+  for (const std::size_t at : {2U, 8U, 14U}) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, file.data() + at, sizeof length);
+    length += 8;
+    std::memcpy(file.data() + at, &length, sizeof length);
+  }
+  EXPECT_EQ(refusal_in_bounds(file, "3ds"), "accepted");
+}
+
+// The largest float is 3.4028234663852886e38; 3.402823466385289e38 is the next double.
+TEST(ImportBounds, AnObjsCoordinateMayBeAsLargeAsAFloat) {
+  const auto reduced = [](const std::string& x) {
+    (void)mesh::reduce_obj("v " + x + " 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", "cup.obj");
+  };
+  EXPECT_NO_THROW(reduced("3.4028234663852886e38"));
+  EXPECT_NO_THROW(reduced("-3.4028234663852886e38"));
+  EXPECT_THROW(reduced("3.402823466385289e38"), std::invalid_argument);
+  EXPECT_THROW(reduced("-3.402823466385289e38"), std::invalid_argument);
+}
+
+// In um. Vertex 3 lies 0.9 beside the first triangle's first edge, both of whose ends have moved by 0.9: that
+// is 1.8, more than the 1.2 that all steps may move a point. Vertex 6 lies in the middle of its second edge,
+// of whose ends one has moved: that is 0.45. So the second edge is split, whatever is beside the first.
+TEST(RepairBounds, AnEdgeIsSplitThoughAnotherOfItsTriangleMayNotBe) {
+  constexpr double kUm = 1e-6;
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0},   {100, 0, 0},  {50, -80, 0},  {50, 0.9, 0}, {50, 100.9, 0},
+                   {90, 60, 0}, {75, -40, 0}, {150, -40, 0}, {150, -80, 0}};
+  for (Vec3& vertex : mesh.vertices) vertex *= kUm;
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+  mesh::Allowance allowance{1.0 * kUm, 1.2 * kUm, std::vector<double>(mesh.vertices.size(), 0.0)};
+  allowance.spent[0] = allowance.spent[1] = 0.9 * kUm;
+  const mesh::Mended mended = mesh::split_t_junctions(mesh, allowance);
+  EXPECT_EQ(mended.count, 1U);
+  EXPECT_NEAR(allowance.spent[6], 0.45 * kUm, 1e-15);
+  EXPECT_EQ(allowance.spent[3], 0.0);
+  const std::vector<Triangle> expected = {{1, 6, 0}, {3, 4, 5}, {6, 7, 8}, {6, 2, 0}};
+  EXPECT_EQ(mesh.triangles, expected);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(ImportRefuses, AFolder) {
   std::filesystem::remove(folder);
 }
 
-/// The file is removed again.
+/// A file of holes alone, removed by the destructor.
 class SparseFile {
  public:
   explicit SparseFile(std::uintmax_t bytes) {
@@ -74,7 +74,7 @@ class SparseFile {
   SparseFile& operator=(const SparseFile&) = delete;
 
   [[nodiscard]] std::string path() const { return path_.string(); }
-  /// Why there is none; empty: there is.
+  /// The system's message; empty on success.
   [[nodiscard]] std::string error() const { return error_ ? error_.message() : ""; }
 
  private:
@@ -127,7 +127,10 @@ TEST(ImportRefuses, AnObjFaceThatNamesAVertexThatDoesNotExist) {
               AllOf(HasSubstr("line 4"), HasSubstr("vertex 0")));
   EXPECT_THAT(refusal(std::string(kCorner) + "f -1 -2 -4\n", "obj"),
               AllOf(HasSubstr("line 4"), HasSubstr("vertex -4")));
-  EXPECT_THAT(refusal(std::string(kCorner) + "f 1 2 99999999999999999999\n", "obj"), HasSubstr("line 4"));
+  EXPECT_THAT(refusal(std::string(kCorner) + "f 1 2 99999999999999999999\n", "obj"),
+              AllOf(HasSubstr("line 4"), HasSubstr("'99999999999999999999'")));
+  EXPECT_THAT(refusal(std::string(kCorner) + "f 1 2x 3\n", "obj"),
+              AllOf(HasSubstr("line 4"), HasSubstr("'2x'")));
   EXPECT_THAT(refusal(std::string(kCorner) + "f 1 2 x\n", "obj"),
               AllOf(HasSubstr("line 4"), HasSubstr("'x'")));
 }
@@ -165,7 +168,7 @@ TEST(ImportRefuses, ANanOrInfiniteVertexInText) {
   EXPECT_THAT(refusal("v 0 0 0\nv 1 0 zero\nv 0 1 0\nf 1 2 3\n", "obj"),
               AllOf(HasSubstr("line 2"), HasSubstr("'zero'")));
   EXPECT_THAT(refusal(test::ply_header("ascii", 3, 1) + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", "ply"),
-              HasSubstr("not finite"));
+              AllOf(HasSubstr(" of mesh '"), HasSubstr("not finite")));
 }
 
 TEST(ImportRefuses, ANanOrInfiniteVertexInBinary) {
@@ -227,6 +230,16 @@ TEST(ImportRefuses, DamagedFilesInWordsIfAtAll) {
       EXPECT_TRUE(answer == "accepted" || answer.starts_with("mesh in memory: "))
           << format << " " << i << " seed " << kSeed << ": " << answer;
     }
+  }
+}
+
+// Before the file is looked at.
+TEST(ImportRefuses, ASizeOfAFileThatMakesNoSense) {
+  try {
+    (void)import_mesh("/no/such/cup.obj", -0.1);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), AllOf(StartsWith("/no/such/cup.obj: "), HasSubstr("size is -0.1 m")));
   }
 }
 

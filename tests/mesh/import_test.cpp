@@ -120,10 +120,11 @@ TEST(Import, KeepsTheOutsideOutWhenANodeMirrors) {
   EXPECT_NEAR(bounds(got).max.x(), -bounds(sample()).min.x(), 1e-7);
 }
 
-// A triangle that faces +z does so when a node has shrunk it, and when it has mirrored it as well.
+// A triangle that faces +z does so when a node has shrunk it, when it has mirrored it, and when it has
+// pressed flat along z what is flat already.
 TEST(Import, KeepsTheSideOfAnOpenSurfaceWhateverANodeDoes) {
   const TriangleMesh made{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-  for (const char* scale : {"[0.5,0.5,0.5]", "[-0.5,0.5,0.5]"}) {
+  for (const char* scale : {"[0.5,0.5,0.5]", "[-0.5,0.5,0.5]", "[0.5,0.5,0]"}) {
     const TriangleMesh got =
         import_text(test::to_glb(made, std::string(R"({"mesh":0,"scale":)") + scale + "}"), "glb");
     ASSERT_EQ(got.triangles.size(), 1U) << scale;
@@ -232,6 +233,13 @@ TEST(WriteObj, NamesTheFileThatCannotBeWritten) {
   } catch (const std::runtime_error& e) {
     EXPECT_NE(std::string(e.what()).find("/no/such/folder/a.obj"), std::string::npos);
   }
+}
+
+// Blanks at a line's end, and the carriage returns of other systems, are no part of it.
+TEST(Import, TakesBlanksAtTheEndsOfLines) {
+  const TriangleMesh got = import_text("v 0 0 0 \r\nv 1 0 0\t\r\nv 0 1 0\r\nf 1 2 3 \r\n", "obj");
+  EXPECT_EQ(got.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(got.triangles, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
 }  // namespace

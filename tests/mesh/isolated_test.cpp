@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -169,6 +172,88 @@ TEST(RunIsolated, GivesTheWorkTwoGibibytesAndThreeSecondsIfNothingElseIsAskedFor
     return std::to_string(seconds.rlim_cur) + " " + std::to_string(core.rlim_cur);
   };
   EXPECT_EQ(run_isolated_text(limits, "cup.obj", {}), "3 0");
+}
+
+/// Into the one pipe that a child has, which leads to its parent; then the child ends.
+[[noreturn]] void say_and_end(const std::string& bytes) {
+  for (int fd = STDERR_FILENO + 1; fd < 1024; ++fd) {
+    struct stat status{};
+    if (::fstat(fd, &status) != 0 || !S_ISFIFO(status.st_mode)) continue;
+    if (::write(fd, bytes.data(), bytes.size()) < 0) std::_Exit(1);
+  }
+  std::_Exit(0);
+}
+
+/// The first byte says that a result follows, the next eight how many letters it has.
+std::string claim_of_letters(std::uint64_t count, const std::string& letters) {
+  std::string bytes(1, '\1');
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  return bytes + letters;
+}
+
+// A reader that has written over its own memory: 100 letters are announced and three come.
+TEST(RunIsolated, TakesNoResultThatBreaksOff) {
+  try {
+    (void)run_isolated_text([]() -> std::string { say_and_end(claim_of_letters(100, "cup")); }, "cup.obj",
+                            {});
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), AllOf(StartsWith("cup.obj: "), HasSubstr("crashed")));
+  }
+}
+
+// 2^60 letters are fewer than the limit of 2^61 and more than this process can have: that is no crash of the
+// reader's.
+TEST(RunIsolated, SaysThatItsOwnMemoryRanOut) {
+  if (test::kSanitized) GTEST_SKIP() << "the sanitizer's allocator ends the process in its own words";
+  const auto claim = []() -> std::string { say_and_end(claim_of_letters(std::uint64_t{1} << 60, "cup")); };
+  EXPECT_THROW((void)run_isolated_text(claim, "cup.obj", {.memory_bytes = std::uint64_t{1} << 61}),
+               std::bad_alloc);
+}
+
+// The program handles a signal after 0.1 of the 0.3 s that the reader takes.
+TEST(RunIsolated, WaitsOnAfterASignal) {
+  static volatile std::sig_atomic_t rung = 0;
+  rung = 0;
+  struct sigaction now{};
+  struct sigaction before{};
+  now.sa_handler = [](int) { rung = 1; };
+  ASSERT_EQ(::sigaction(SIGALRM, &now, &before), 0);
+  itimerval soon{};
+  soon.it_value.tv_usec = 100'000;
+  ASSERT_EQ(::setitimer(ITIMER_REAL, &soon, nullptr), 0);
+  const auto slow = [] {
+    ::usleep(300'000);
+    return std::string("cup");
+  };
+  EXPECT_EQ(run_isolated_text(slow, "cup.obj", {}), "cup");
+  EXPECT_TRUE(rung == 1);
+  ::sigaction(SIGALRM, &before, nullptr);
+}
+
+// Without a standard input the pipe from the reader has number 0.
+TEST(RunIsolated, ClosesAPipeOfNumberNought) {
+  const int kept = ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 100);
+  ::close(STDIN_FILENO);
+  const std::string text = run_isolated_text([] { return std::string("cup"); }, "cup.obj", {});
+  const bool closed = ::fcntl(STDIN_FILENO, F_GETFD) < 0;
+  if (kept >= 0) {
+    ::dup2(kept, STDIN_FILENO);
+    ::close(kept);
+  }
+  EXPECT_EQ(text, "cup");
+  EXPECT_TRUE(closed);
+}
+
+// 40 of 48 MiB. The 24 MiB that were prepared for the reader are part of these, not besides.
+TEST(RunIsolated, LeavesAllItsMemoryToTheWork) {
+  if (test::kSanitized) GTEST_SKIP() << "the sanitizer's allocator has memory of its own";
+  ::malloc_trim(0);  // what this process has to spare would be the reader's
+  const auto large = [] {
+    const std::string text(std::size_t{40} << 20, 'x');
+    return text.substr(text.size() - 3);
+  };
+  EXPECT_EQ(run_isolated_text(large, "cup.obj", {.memory_bytes = std::uint64_t{48} << 20}), "xxx");
 }
 
 }  // namespace

@@ -101,6 +101,22 @@ TEST(Shells, IsJudgedFromItsFirstTriangleIfOnlyThatOneIsFree) {
   EXPECT_FALSE(shells.shell[1].cavity);
 }
 
+// So many tetrahedra, each inside the next, that not all can be judged.
+TEST(Shells, AreNotAllTurnedWhereThereAreTooMany) {
+  for (const int count : {2000, 3000}) {
+    TriangleMesh mesh;
+    for (int i = 1; i <= count; ++i) {
+      const double s = 50.0 * i / count;
+      append(mesh, {{{s, s, s}, {s, -s, -s}, {-s, s, -s}, {-s, -s, s}},
+                    {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}});
+    }
+    TurnedShells result;
+    const Shells shells = turned(mesh, result);
+    EXPECT_EQ(shells.shell.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(result.complete, count == 2000);
+  }
+}
+
 TEST(Shells, OfALooseTriangleIsOpenAndHoldsNothing) {
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   TurnedShells result;
@@ -131,6 +147,24 @@ TEST(EdgeTable, VisitsEdgesInTheOrderOfTheirVertices) {
   ASSERT_EQ(table.at(3, 1).size(), 2U);
   EXPECT_EQ(table.at(3, 1)[0].start, 4U);
   EXPECT_TRUE(table.at(0, 0).empty());
+}
+
+// A tetrahedron whose base is half a square of 0.5 in z = 0. The first direction of shells.cpp, from the
+// middle of the small one's first triangle, goes through the other half of that square in (0.375, 0.375, 0),
+// 0.1 on; all the other planes are behind.
+TEST(Shells, ARayBesideATriangleMissesIt) {
+  const Vec3 start = Vec3(0.375, 0.375, 0) - 0.1 * Vec3(0.61803, 0.37139, 0.69317).normalized();
+  TriangleMesh mesh{{start + Vec3(0.01, 0, 0), start + Vec3(0, 0.01, 0), start + Vec3(-0.01, -0.01, 0),
+                     start + Vec3(0, 0, -0.01)},
+                    {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+  append(mesh, TriangleMesh{{{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}},
+                            {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}});
+  TurnedShells result;
+  const Shells shells = turned(mesh, result);
+  ASSERT_EQ(shells.shell.size(), 2U);
+  EXPECT_FALSE(shells.shell[0].cavity);
+  EXPECT_FALSE(shells.shell[1].cavity);
+  EXPECT_EQ(result.count, 0U);
 }
 
 }  // namespace

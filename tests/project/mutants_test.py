@@ -51,7 +51,7 @@ CODE = {
     'say("a == 2", std::min(a, b));': {"swap": ['say("a == 2", std::max(a, b));'], "statement": [";"]},
     "done = true;": {"boolean": ["done = false;"], "statement": [";"]},
     "return a == b;": {"comparison": ["return a != b;"], "return": ["return {};", "return !(a == b);"]},
-    'return "";': {},
+    'return "";': {"return": ['return "?";']},
     "return std::nullopt;": {},
     'return "text";': {"return": ["return {};"]},
     "int count = 1'000;": {"constant": ["int count = 2000;", "int count = 1001;", "int count = 0;"]},
@@ -112,6 +112,11 @@ class Watched(unittest.TestCase):
     def test_a_program_that_ends_before_its_last_test_does_not_pass(self) -> None:
         script = r"""printf '[ RUN      ] A.one\n[       OK ] A.one (0 ms)\n[ RUN      ] A.two\n'; exit 0"""
         self.assertEqual(self.watch(script), ("A.two (does not pass)", {"A.one"}))
+
+    def test_a_test_that_is_skipped_neither_passes_nor_kills(self) -> None:
+        script = r"""printf '[ RUN      ] A.one\n[       OK ] A.one (0 ms)\n[ RUN      ] A.two\n[  SKIPPED ] A.two (0 ms)\n'
+                     printf '[ RUN      ] A.three\n[       OK ] A.three (0 ms)\n'"""
+        self.assertEqual(self.watch(script), ("", {"A.one", "A.three"}))
 
     def test_seconds_are_measured_here_and_not_by_a_program_whose_clock_is_held(self) -> None:
         script = r"""printf '[ RUN      ] A.one\n[       OK ] A.one (3600000 ms)\n'; exit 1"""

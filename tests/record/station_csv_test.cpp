@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -285,25 +287,24 @@ TEST(StationCsv, AFaultReportSaysWhatAndHoldsEverySample) {
   EXPECT_EQ(std::count(steps.begin(), steps.end(), '\n'), 3);
 }
 
-TEST(StationCsv, TwoReportsOfTheSameSecondDoNotShareAFolder) {
+// 1,700,000,000 s after 1970 it was 22:13:20 on 14 November 2023 in UTC.
+TEST(StationCsv, AReportsFolderIsNamedByItsTimeAndFaultAndNumberedFromTheSecondOn) {
+  const char* const set = std::getenv("TZ");
+  const std::string zone = set == nullptr ? "" : set;
+  ::setenv("TZ", "UTC0", 1);
+  ::tzset();
   const TemporaryFolder folder;
   constexpr std::time_t kNow = 1'700'000'000;
-  const auto first = write_fault_report(folder.path(), report_of_three_samples(), kNow);
-  const auto second = write_fault_report(folder.path(), report_of_three_samples(), kNow);
-  EXPECT_NE(first, second);
-  EXPECT_TRUE(std::filesystem::exists(first / "report.json"));
-  EXPECT_TRUE(std::filesystem::exists(second / "report.json"));
-}
-
-TEST(StationCsv, TheSecondAndTheThirdReportOfASecondAreNumbered) {
-  const TemporaryFolder folder;
-  constexpr std::time_t kNow = 1'700'000'000;
-  const auto name = [&] {
-    return write_fault_report(folder.path(), report_of_three_samples(), kNow).filename().string();
-  };
-  const std::string first = name();
-  EXPECT_EQ(name(), first + "-2");
-  EXPECT_EQ(name(), first + "-3");
+  std::vector<std::string> names;
+  for (int i = 0; i < 3; ++i) {
+    const auto path = write_fault_report(folder.path(), report_of_three_samples(), kNow);
+    EXPECT_TRUE(std::filesystem::exists(path / "report.json"));
+    names.push_back(path.filename().string());
+  }
+  set == nullptr ? ::unsetenv("TZ") : ::setenv("TZ", zone.c_str(), 1);
+  ::tzset();
+  const std::string name = "20231114-221320-" + std::string(fault_name(Fault::kJump));
+  EXPECT_EQ(names, (std::vector<std::string>{name, name + "-2", name + "-3"}));
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(OpenGlovesDevice, WaitsForThreeSecondsAndLearnsForOneUnlessItIsToldOtherwis
   EXPECT_NEAR(glove.device->info().rate_hz, 4.0, 1e-9);
 }
 
-/// Keeps the standard input, whatever is made of its descriptor meanwhile.
+/// Restores standard input at the end of its scope.
 class KeptStandardInput {
  public:
   KeptStandardInput() : kept_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 100)) {}
@@ -133,7 +133,7 @@ class KeptStandardInput {
   int kept_;  ///< negative: there is none
 };
 
-// A program without a standard input opens its glove as that. The device owns the descriptor and closes it.
+// In a program without a standard input the port that it opens has the number 0.
 TEST(OpenGlovesDevice, TakesTheDescriptorZeroAsWell) {
   const KeptStandardInput kept;
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -147,11 +147,13 @@ TEST(OpenGlovesDevice, TakesTheDescriptorZeroAsWell) {
   ASSERT_EQ(::dup2(descriptor, STDIN_FILENO), STDIN_FILENO);
   ::close(descriptor);
   const Clock clock;
-  const auto device = make_opengloves_device(STDIN_FILENO, clock, quick());
+  auto device = make_opengloves_device(STDIN_FILENO, clock, quick());
   firmware.blurt("\nA0B0\n");
   EXPECT_NO_THROW(device->open());
   EXPECT_EQ(device->info().channels.size(), 2U);
   device->close();
+  device.reset();
+  EXPECT_EQ(::fcntl(STDIN_FILENO, F_GETFD), -1) << "the device owned the descriptor";
 }
 
 TEST(OpenGlovesDevice, TakesNarrowNumbersForWhatTheyAre) {
