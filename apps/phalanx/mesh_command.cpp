@@ -73,6 +73,10 @@ void print_report(const std::string& file, const MeshReport& r) {
   fmt::print("  moved        {} at most (tolerance {})\n", r.moved > 0.0 ? length(r.moved) : "0",
              length(r.tolerance));
   if (r.decimation) print_decimation(*r.decimation);
+  if (r.held_back)
+    fmt::print(
+        "  note         some cracks stay open: closing them all would move the surface farther than the "
+        "tolerance\n");
   if (!r.complete)
     fmt::print("  note         too many triangles lie over each other: counts are lower bounds\n");
   if (!r.findings.empty())

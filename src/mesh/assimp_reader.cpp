@@ -200,4 +200,10 @@ TriangleMesh read_with_assimp(const void* data, std::size_t bytes, const std::st
   return collector.take();
 }
 
+IsolationLimits reading_limits(std::size_t bytes) noexcept {
+  return {.cpu_seconds = 2 + bytes / 1'000'000,
+          .memory_bytes = (std::uint64_t{256} << 20) + 16 * std::uint64_t{bytes},
+          .wall_seconds = 60.0 + 1e-5 * static_cast<double>(bytes)};
+}
+
 }  // namespace phalanx::mesh

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "phalanx/mesh/isolated.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx::mesh {
@@ -19,5 +20,11 @@ namespace phalanx::mesh {
 ///         run_isolated().
 [[nodiscard]] TriangleMesh read_with_assimp(const void* data, std::size_t bytes, const std::string& format,
                                             const std::string& origin);
+
+/// What read_with_assimp() may use for so many bytes: 2 s of processor time and 1 s for each 10^6 bytes, 256
+/// MiB and 16 times the bytes of memory, 60 s and 10 s for each 10^6 bytes of waiting. Assimp reads some 10
+/// MB/s and takes up to 7 times a file's size of memory (docs/meshes.md); a file that claims a thousand
+/// million vertices gets no farther than this.
+[[nodiscard]] IsolationLimits reading_limits(std::size_t bytes) noexcept;
 
 }  // namespace phalanx::mesh

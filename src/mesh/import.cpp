@@ -87,11 +87,7 @@ Soup read_soup(const void* data, std::size_t bytes, const std::string& format, c
       std::string_view(static_cast<const char*>(data), bytes).find("end_header") == std::string_view::npos)
     throw std::invalid_argument(
         origin + ": the header has no end_header line; the file is cut off or no .ply, export it again");
-  // Assimp reads some 10 MB/s and takes up to 7 times a file's size of memory (docs/meshes.md); a file that
-  // claims a thousand million vertices gets no farther than this.
-  const mesh::IsolationLimits limits{.cpu_seconds = 2 + bytes / 1'000'000,
-                                     .memory_bytes = (std::uint64_t{256} << 20) + 16 * std::uint64_t{bytes},
-                                     .wall_seconds = 60.0 + 1e-5 * static_cast<double>(bytes)};
+  const mesh::IsolationLimits limits = mesh::reading_limits(bytes);
   const std::string_view text(static_cast<const char*>(data), bytes);
   Soup soup;
   soup.mesh = mesh::has_isolation_helper()

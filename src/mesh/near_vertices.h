@@ -22,8 +22,12 @@ struct Allowance {
   double reach;               ///< what one step may move [m]
   double most;                ///< what all together may [m]
   std::vector<double> spent;  ///< by vertex [m]
+  bool held_back = false;     ///< a step was not allowed
 
-  [[nodiscard]] bool allows(double moved) const noexcept { return moved <= most; }
+  [[nodiscard]] bool allows(double moved) noexcept {
+    if (!(moved <= most)) held_back = true;
+    return moved <= most;
+  }
 };
 
 /// Closes cracks: a vertex on an open edge that is within `reach` of another such vertex that comes first by

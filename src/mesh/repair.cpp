@@ -122,7 +122,6 @@ class Repair {
   void close_cracks(const WeldCounts& welded) {
     const double tolerance = report_.tolerance;
     const double flat = 0.01 * tolerance;
-    // So many steps in one place are rare: what their sum holds back, a second repair would do.
     Allowance allowance{tolerance / 6.0, tolerance, std::vector<double>(mesh_.vertices.size(), 0.0)};
     std::size_t duplicates = 0;
     MeasuredFaces dropped_faces;
@@ -131,6 +130,7 @@ class Repair {
     Mended flats;
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
+      allowance.held_back = false;  // what counts is what the last round, which finds nothing more, leaves
       const std::size_t dropped = drop_duplicate_faces(mesh_, &dropped_faces);
       const Mended n = merge_near_vertices(mesh_, allowance);
       const Mended t = split_t_junctions(mesh_, allowance);
@@ -144,10 +144,10 @@ class Repair {
       flats.worst.take(f.worst);
       for (const Mended& m : {n, t, f}) report_.complete = report_.complete && m.complete;
       for (const double moved : allowance.spent) report_.moved = std::max(report_.moved, moved);
-      if (mesh_.triangles.empty()) refuse("all its triangles are without area; export a surface");
       if (n.count + t.count + f.count == 0) break;
       report_.complete = report_.complete && round + 1 < kRounds;
     }
+    report_.held_back = allowance.held_back;
     const std::size_t still_flat = count_flat_faces(mesh_, flat);
     if (still_flat == mesh_.triangles.size())
       refuse("none of its ", still_flat, " triangles has an area; export a surface");

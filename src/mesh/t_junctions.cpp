@@ -36,7 +36,7 @@ double spent_at(const Allowance& allowance, std::int32_t a, std::int32_t b, doub
   return (1.0 - share) * allowance.spent[idx(a)] + share * allowance.spent[idx(b)];
 }
 
-std::vector<Hit> find_hits(const TriangleMesh& mesh, const Allowance& allowance, bool& complete) {
+std::vector<Hit> find_hits(const TriangleMesh& mesh, Allowance& allowance, bool& complete) {
   const double tolerance = allowance.reach;
   std::vector<Corner> open = open_edges(mesh);
   const auto point = [&](std::int32_t v) -> const Vec3& { return mesh.vertices[idx(v)]; };

@@ -38,6 +38,7 @@ std::string mesh_report_json(const std::string& file, const MeshReport& r) {
   j["sheets"] = r.sheets;
   j["tolerance_m"] = r.tolerance;
   j["moved_m"] = r.moved;
+  j["held_back"] = r.held_back;
   j["complete"] = r.complete;
   j["findings"] = Json::array();
   for (const MeshFinding& f : r.findings) {

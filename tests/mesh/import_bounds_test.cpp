@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/assimp_reader.h"
 #include "mesh/mesh_files.h"
 #include "mesh/near_vertices.h"
 #include "mesh/obj_reduce.h"
@@ -385,6 +386,18 @@ TEST(RepairBounds, AnEdgeIsSplitThoughAnotherOfItsTriangleMayNotBe) {
   EXPECT_EQ(allowance.spent[3], 0.0);
   const std::vector<Triangle> expected = {{1, 6, 0}, {3, 4, 5}, {6, 7, 8}, {6, 2, 0}};
   EXPECT_EQ(mesh.triangles, expected);
+}
+
+// 4 million bytes: 2 s + 4 s of processor time, 256 MiB + 64 million bytes, 60 s + 40 s.
+TEST(ImportBounds, TheReadersLimitsGrowWithTheFile) {
+  const mesh::IsolationLimits none = mesh::reading_limits(0);
+  EXPECT_EQ(none.cpu_seconds, 2U);
+  EXPECT_EQ(none.memory_bytes, 268'435'456U);
+  EXPECT_EQ(none.wall_seconds, 60.0);
+  const mesh::IsolationLimits large = mesh::reading_limits(4'000'000);
+  EXPECT_EQ(large.cpu_seconds, 6U);
+  EXPECT_EQ(large.memory_bytes, 332'435'456U);
+  EXPECT_NEAR(large.wall_seconds, 100.0, 1e-9);
 }
 
 }  // namespace

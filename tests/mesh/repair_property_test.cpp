@@ -91,6 +91,7 @@ TEST_P(DamagedMesh, NeedsNoSecondRepair) {
     if (seed % 3 == 0) soup.triangles.resize(soup.triangles.size() * 9 / 10);  // with holes
     MeshReport first;
     const TriangleMesh once = repair(soup, {}, "test", first);
+    EXPECT_FALSE(first.held_back);
     MeshReport second;
     const TriangleMesh twice = repair(once, {}, "test", second);
     for (const MeshFinding& f : second.findings) EXPECT_EQ(f.repaired, 0U) << finding_name(f.kind);

@@ -900,6 +900,34 @@ TEST(Repair, SaysThatFlatTrianglesWereLeftWhereVeryManyMeet) {
   }
 }
 
+// Eight triangles on a grid of 10 mm that a fuzzer found; the fourth number moves a corner by steps of 0.2 um
+// along x. Their extent of 70 mm gives a tolerance of 0.7 um, a step moves at most a sixth of it, and here
+// the steps follow one another: six of the widest would come to the tolerance.
+TEST(Repair, HoldsBackAStepThatWouldMoveTheSurfaceFartherThanTheTolerance) {
+  constexpr int kHeap[8][3][4] = {
+      {{0, 4, 0, 4}, {2, 1, 0, 0}, {2, 6, 5, 7}}, {{5, 4, 1, 1}, {4, 6, 5, 4}, {0, 4, 0, 3}},
+      {{4, 5, 5, 7}, {1, 4, 1, 2}, {0, 4, 0, 5}}, {{6, 4, 5, 0}, {3, 4, 5, 2}, {0, 4, 0, 1}},
+      {{4, 7, 5, 4}, {0, 4, 0, 6}, {1, 5, 5, 1}}, {{2, 1, 4, 2}, {6, 5, 1, 2}, {7, 3, 1, 4}},
+      {{0, 4, 0, 2}, {0, 4, 0, 7}, {0, 6, 4, 2}}, {{0, 6, 4, 3}, {0, 4, 0, 0}, {6, 5, 4, 0}}};
+  TriangleMesh soup;
+  for (const auto& triangle : kHeap) {
+    const auto first = static_cast<std::int32_t>(soup.vertices.size());
+    for (const auto& [x, y, z, moved] : triangle)
+      soup.vertices.emplace_back(0.01 * x + 0.2e-6 * moved, 0.01 * y, 0.01 * z);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  const Repaired once = repaired(soup);
+  EXPECT_NEAR(once.report.tolerance, 0.7e-6, 1e-11);
+  EXPECT_TRUE(once.report.held_back);
+  EXPECT_GT(once.report.moved, once.report.tolerance * 5 / 6) << "another step would be too far";
+  EXPECT_LE(once.report.moved, once.report.tolerance);
+  // What it leaves is found by a second repair, which has moved nothing yet.
+  const Repaired twice = repaired(once.mesh);
+  EXPECT_EQ(twice.repaired(FindingKind::kTJunctions), 1U);
+  EXPECT_FALSE(twice.report.held_back);
+  EXPECT_EQ(repaired(twice.mesh).repaired(FindingKind::kTJunctions), 0U);
+}
+
 // 500 x 200 squares of 0.1 mm are 200,000 triangles; a loose one more is too many. (Two repairs of so many
 // triangles, a second or two: release only, if the sanitizer's level is to stay quick.)
 TEST(Repair, CallsMoreThanTwoHundredThousandTrianglesMany) {

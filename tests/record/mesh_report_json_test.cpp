@@ -22,6 +22,7 @@ MeshReport numbered_report() {
   report.scale = 1e-3;
   report.tolerance = 1e-6;
   report.moved = 0.5e-6;
+  report.held_back = true;
   report.closed = true;
   report.volume = 0.0078125;
   report.solids = 2;
@@ -64,6 +65,7 @@ TEST(MeshReportJson, EveryFieldIsInTheUnitOfItsName) {
   EXPECT_EQ(json["sheets"], 0);
   EXPECT_EQ(json["tolerance_m"], 1e-6);
   EXPECT_EQ(json["moved_m"], 0.5e-6);
+  EXPECT_EQ(json["held_back"], true);
   EXPECT_EQ(json["complete"], true);
   ASSERT_EQ(json["findings"].size(), 2U);
   EXPECT_EQ(json["findings"][0], (Json{{"kind", "degenerate_faces"},
@@ -84,7 +86,7 @@ TEST(MeshReportJson, EveryFieldIsInTheUnitOfItsName) {
                                       {"original_to_decimated_m", 0.25e-3},
                                       {"decimated_to_original_m", 0.125e-3},
                                       {"points", 4096}}));
-  EXPECT_EQ(json.size(), 19U) << "a field without a check";
+  EXPECT_EQ(json.size(), 20U) << "a field without a check";
 }
 
 TEST(MeshReportJson, AMeshWithoutFaultHasAnEmptyListOfFindings) {

@@ -83,6 +83,9 @@ struct MeshReport {
   std::size_t solids = 0;             ///< closed shells that bound a solid from outside
   std::size_t cavities = 0;           ///< closed shells inside a solid, that face into the hollow
   std::size_t sheets = 0;             ///< shells that are not closed: met from both sides
+  /// A step of the repair was left out because all steps together would have moved the surface farther than
+  /// the tolerance. Rare: it takes seven steps in one place. A second import would do it.
+  bool held_back = false;
   bool complete = true;               ///< false: a search for T-junctions or crossings was cut short
   std::vector<MeshFinding> findings;  ///< by kind; only those found
   std::optional<DecimationReport> decimation;
