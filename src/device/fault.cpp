@@ -61,6 +61,9 @@ constexpr std::array kEntries{
           "anew."},
     Entry{Fault::kNotActing, "not_acting", "The device does not act on the commands that it is sent.",
           "Check that it is the right device and that its firmware follows docs/link.md, then reset."},
+    Entry{Fault::kOscillation, "oscillation",
+          "The force oscillated again within 10 s of its return after an oscillation.",
+          "Lower the stiffness or narrow the smoothing's bounds, then reset."},
 };
 
 const Entry& entry(Fault fault) noexcept {

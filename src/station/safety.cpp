@@ -18,6 +18,8 @@ constexpr double kDeviceAnswers = 0.5;
 constexpr double kObeys = 0.2;
 /// A step keeps the fingertip limit itself; this much more and it is wrong.
 constexpr double kForceTolerance = 1.1;
+/// An oscillation so soon after the torque has begun to return from an earlier one is a fault [s].
+constexpr double kComesBack = 10.0;
 /// Sums of periods are not exact: far below any period [s].
 constexpr double kClock = 1e-9;
 
@@ -49,7 +51,8 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
       period_(period),
       timeout_(timeout_of(settings, device)),
       obeys_within_(device.renders_torque ? kObeys : std::max(kObeys, 5.0 / device.rate_hz)),
-      simulated_(device.simulated) {}
+      simulated_(device.simulated),
+      may_oscillate_(device.simulated || !device.renders_torque) {}
 
 // ---- what is judged ----
 
@@ -123,20 +126,37 @@ void Safety::judge_obedience(double now) noexcept {
   if (ignored_for_ >= obeys_within_) trip(Fault::kNotActing, -1, now);
 }
 
+/// An oscillation feeds energy into the hand. The first one fades the torque as stop() does; the torque
+/// returns over the start ramp once the observers are quiet. The next one soon after that is a fault.
+void Safety::judge_oscillation(const Snapshot& snapshot, double now) noexcept {
+  if (may_oscillate_) return;
+  oscillates_ = false;
+  for (std::size_t s = 0; s < kSegments; ++s) {
+    observer_[s].watch(factor_ * snapshot.segment[s].force, kDefaultOscillation.swing, period_);
+    oscillates_ = oscillates_ || observer_[s].oscillating();
+  }
+  if (!oscillates_ || (state_ != SafetyState::kStarting && state_ != SafetyState::kRunning)) return;
+  if (faded_ && now - returned_ <= kComesBack) return trip(Fault::kOscillation, -1, now);
+  faded_ = true;
+  state_ = SafetyState::kStopping;
+}
+
 // ---- how torque comes and goes ----
 
 void Safety::go_on(double now) noexcept {
   const bool ready = heard_ && last_.state != DeviceState::kConnecting &&
-                     last_.state != DeviceState::kLatched && watch_.all_good();
-  if (state_ == SafetyState::kWaiting && ready)
+                     last_.state != DeviceState::kLatched && watch_.all_good() && !oscillates_;
+  if (state_ == SafetyState::kWaiting && ready) {
     state_ = held_ ? SafetyState::kStopped : SafetyState::kStarting;
+    returned_ = now;
+  }
   if (state_ == SafetyState::kStarting) {
     factor_ = std::min(1.0, factor_ + period_ / settings_.start_ramp);
     if (factor_ >= 1.0) state_ = SafetyState::kRunning;
   }
   if (state_ == SafetyState::kStopping) {
     factor_ = std::max(0.0, factor_ - period_ / settings_.stop_ramp);
-    if (factor_ <= 0.0 && at_rest_) state_ = SafetyState::kStopped;
+    if (factor_ <= 0.0 && at_rest_) state_ = held_ ? SafetyState::kStopped : SafetyState::kWaiting;
   }
   if (state_ == SafetyState::kFault) ramp_to_zero_after_fault(now);
 }
@@ -172,6 +192,7 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
                      DeviceCommand& out) noexcept {
   judge_step(snapshot, now);
   judge_obedience(now);
+  judge_oscillation(snapshot, now);
   go_on(now);
   at_rest_ = true;
   const double change = settings_.torque_rate * period_;
@@ -220,6 +241,7 @@ void Safety::choose_walls(const Snapshot& snapshot, DeviceCommand& out) const no
 
 void Safety::start() noexcept {
   held_ = false;
+  if (state_ == SafetyState::kStopping && oscillates_) return;  // the fade goes to its end first
   if (state_ == SafetyState::kStopping && factor_ > 0.0) {
     state_ = SafetyState::kStarting;
   } else if (state_ == SafetyState::kStopping || state_ == SafetyState::kStopped) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "faults/fault_suite.h"
@@ -81,6 +82,52 @@ TEST(Faults, StiffnessChangesInContactWithoutAStep) {
   EXPECT_DOUBLE_EQ(o.logs.host.back().stiffness, 1200.0);
   EXPECT_NE(o.logs.host.front().stiffness, 1200.0);
   expect_gentle(o, "stiffness changed in contact");
+}
+
+// A stiff wall without smoothing shakes the simulated finger. The first time the force fades and comes back,
+// the second time it stays away.
+const Registered kOscillation(
+    "AnOscillationFadesTheForceAndTheNextOneStopsTheHost", "",
+    {.both = {"--set", "smoothing.enabled=false", "--set", "force.stiffness_n_per_mm=1.6"}, .seconds = 8.0});
+TEST(Faults, AnOscillationFadesTheForceAndTheNextOneStopsTheHost) {
+  const Outcome& o = outcome("AnOscillationFadesTheForceAndTheNextOneStopsTheHost");
+  expect_sane(o);
+  const HostRows& rows = o.logs.host;
+  const auto is = [](const char* state) {
+    return [state](const HostRow& row) { return row.state == state; };
+  };
+  const auto at_zero = [](const HostRow& row) { return row.largest == 0.0; };
+  const auto largest_of = [](HostRows::const_iterator from, HostRows::const_iterator to) {
+    double largest = 0.0;
+    for (; from != to; ++from) largest = std::max(largest, from->largest);
+    return largest;
+  };
+  const std::size_t seen = first_row(rows, 0, is("stopping"));
+  const std::size_t zero = first_row(rows, seen, at_zero);
+  const std::size_t back = first_row(rows, zero, is("starting"));
+  const std::size_t fault = first_row(rows, 0, in_fault);
+  ASSERT_LT(fault, rows.size());
+  ASSERT_LT(back, fault) << "it did not fade first";
+  ASSERT_GT(seen, 100U);
+  const auto row = [&](std::size_t i) { return rows.begin() + static_cast<std::ptrdiff_t>(i); };
+  const double first = largest_of(row(seen - 100), row(seen));
+  EXPECT_GT(first, 0.02);
+  EXPECT_LE(static_cast<double>(zero - seen) * kHostPeriod, 0.2 + 1e-9);
+  EXPECT_EQ(largest_of(row(zero), row(back)), 0.0) << "torque while the force still oscillates";
+  EXPECT_EQ(rows[fault].fault, "oscillation");
+  EXPECT_LE(static_cast<double>(fault - back) * kHostPeriod, 10.0);
+  EXPECT_EQ(largest_of(row(fault + 1), rows.end()), 0.0);
+  EXPECT_EQ(o.faults, std::vector<std::string>{"oscillation"});
+  EXPECT_EQ(o.host_exit, 1);
+  print_row(
+      "oscillation: 1.6 N/mm without smoothing",
+      "the force fades within 200 ms; fault if it comes back within 10 s",
+      fmt::format(
+          "from {:.0f} mNm to zero {:.0f} ms after the observer fired, no fault; back after {:.1f} s, "
+          "`oscillation` {:.1f} s later at {:.0f} mNm",
+          1e3 * first, 1e3 * kHostPeriod * static_cast<double>(zero - seen),
+          kHostPeriod * static_cast<double>(back - zero), kHostPeriod * static_cast<double>(fault - back),
+          1e3 * largest_of(row(fault - 100), row(fault))));
 }
 
 // The patient's hand is in the new object when it appears: it is felt from the next squeeze on, at 6.3 s.

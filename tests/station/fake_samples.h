@@ -99,11 +99,12 @@ class FakeSamples {
 
 /// Safety under test with its samples, a step a millisecond.
 struct Bench {
-  explicit Bench(SafetySettings the_settings = {}, double the_period = 1e-3)
+  explicit Bench(SafetySettings the_settings = {}, double the_period = 1e-3,
+                 const DeviceInfo& device = info())
       : settings(the_settings),
         period(the_period),
         map(two_joint_channels(), {}, ranged_hand()),
-        safety(settings, map, info(), ranged_hand(), two_witnesses(), period) {}
+        safety(settings, map, device, ranged_hand(), two_witnesses(), period) {}
 
   static DeviceInfo info() {
     DeviceInfo out;

@@ -29,6 +29,7 @@ enum class Fault : std::uint16_t {
   kCommandNotFinite,     ///< a step came out not finite
   kDeviceLost,           ///< the device's port or socket failed
   kNotActing,            ///< the device does not act on what it is sent
+  kOscillation,          ///< the force oscillated again soon after it had faded because it oscillated
 };
 
 /// "step_too_old", ... as it appears in files and on the screen; "fault_123" has no name here and is

@@ -3,11 +3,13 @@
 // passes Safety::command(); docs/safety.md is its page.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
 #include "phalanx/device/channel_map.h"
 #include "phalanx/device/device.h"
+#include "phalanx/force/oscillation.h"
 #include "phalanx/hand/hand_parameters.h"
 #include "phalanx/station/safety_settings.h"
 #include "phalanx/station/sensor_watch.h"
@@ -16,7 +18,7 @@
 namespace phalanx {
 
 enum class SafetyState : std::uint8_t {
-  kWaiting,   ///< zero torque, until the device is ready and its samples are good
+  kWaiting,   ///< zero torque, until the device is ready, its samples are good and no force oscillates
   kStarting,  ///< torque rises over SafetySettings::start_ramp
   kRunning,
   kStopping,  ///< torque falls over SafetySettings::stop_ramp
@@ -42,8 +44,11 @@ struct FaultEvent {
 ///   command()   the step's torques -> what leaves
 /// What leaves is finite; no joint's torque is above its limit; none changes by more than its rate limit a
 /// step but downwards at a fault; none pushes a joint beyond the patient's range of motion; and it is zero in
-/// every state but kStarting, kRunning and kStopping, and 5 ms after a fault. Real-time but for the
-/// constructor: no allocation, lock, throw or I/O.
+/// every state but kStarting, kRunning and kStopping, and 5 ms after a fault. On a device with motors that is
+/// not simulated, each segment's force that leaves is watched by an OscillationObserver with its default
+/// swing, whatever the scene says. The first oscillation fades the torque over stop_ramp; the torque returns
+/// by itself once the observers are quiet. An oscillation within 10 s of that return is the fault
+/// kOscillation. Real-time but for the constructor: no allocation, lock, throw or I/O.
 class Safety {
  public:
   /// @param period  of the loop [s]
@@ -76,6 +81,9 @@ class Safety {
   [[nodiscard]] bool at_rest() const noexcept { return at_rest_; }
   [[nodiscard]] double factor() const noexcept { return factor_; }  ///< on the step's torques, 0 .. 1
   [[nodiscard]] int late_in_a_row() const noexcept { return late_in_a_row_; }
+  /// A force that leaves oscillates, or did within the last 0.5 s, on a device where that takes the torque
+  /// away.
+  [[nodiscard]] bool oscillates() const noexcept { return oscillates_; }
   [[nodiscard]] const SafetySettings& settings() const noexcept { return settings_; }
 
  private:
@@ -85,6 +93,7 @@ class Safety {
   [[nodiscard]] double silent_for(double now) const noexcept;
   [[nodiscard]] double outward_room(const Snapshot& snapshot, std::size_t joint) const noexcept;
   void judge_obedience(double now) noexcept;
+  void judge_oscillation(const Snapshot& snapshot, double now) noexcept;
   void go_on(double now) noexcept;
   void ramp_to_zero_after_fault(double now) noexcept;
   void choose_walls(const Snapshot& snapshot, DeviceCommand& out) const noexcept;
@@ -99,6 +108,7 @@ class Safety {
   double timeout_;       ///< of samples [s]
   double obeys_within_;  ///< how long the device may be enabled and not act [s]
   bool simulated_;       ///< the device's time is the number of steps: so is its silence
+  bool may_oscillate_;   ///< nothing moves a hand: simulated, or without motors
   SafetyState state_ = SafetyState::kWaiting;
   FaultEvent fault_;
   double factor_ = 0.0;
@@ -108,6 +118,10 @@ class Safety {
   bool held_ = false;           ///< somebody has said stop()
   double ignored_for_ = 0.0;    ///< how long the device has not acted on enabled commands [s]
   double fault_left_ = 0.0;     ///< of the fault's ramp, 1 .. 0
+  std::array<OscillationObserver, kSegments> observer_{};  ///< of the forces that leave
+  bool oscillates_ = false;                                ///< an observer's verdict holds
+  bool faded_ = false;     ///< an oscillation has taken the torque away before
+  double returned_ = 0.0;  ///< when the torque last began to rise from zero [s]
   bool at_rest_ = true;
   DeviceSample last_{};          ///< the newest sample
   double silence_ = 0.0;         ///< steps without a sample, in nominal time [s]
