@@ -5,6 +5,7 @@
 
 #include "phalanx/study/experiment_report.h"
 #include "phalanx/study/experiments.h"
+#include "study/experiments/felt_stiffness.h"
 #include "study/experiments/s2_experiments.h"
 
 namespace phalanx {
@@ -81,6 +82,8 @@ const std::vector<Experiment>& experiments() {
        s2_limit},
       {"s2-sensitivity", "What moves these two limits: friction, delay, the patient's stiffness, the bump",
        s2_sensitivity},
+      {"felt-stiffness", "What each stabiliser costs in feel: the stiffness felt at a speed of approach",
+       felt_stiffness_experiment},
   };
   return kExperiments;
 }
