@@ -32,7 +32,7 @@ struct SimulateOptions {
   std::vector<std::string> set;
   std::string object, motion, mapping, profile;
   std::optional<int> trial;
-  std::optional<double> object_size_mm, seconds, rate_hz;
+  std::optional<double> object_size_mm, seconds, rate_hz, lead_in;
   std::optional<std::int64_t> seed;
   std::string out, plot, picture;
   CLI::Option* plot_asked = nullptr;
@@ -75,6 +75,7 @@ std::vector<KeyOption> key_options(const SimulateOptions& o) {
   if (!o.motion.empty()) result.push_back(text_option("--motion", "motion.file", o.motion));
   if (!o.mapping.empty()) result.push_back(text_option("--mapping", "motion.mapping", o.mapping));
   if (o.trial) result.push_back(integer_option("--trial", "motion.trial", *o.trial));
+  if (o.lead_in) result.push_back(number_option("--lead-in", "motion.lead_in_s", *o.lead_in));
   if (o.seconds) result.push_back(number_option("--seconds", "seconds", *o.seconds));
   if (o.rate_hz) result.push_back(number_option("--rate-hz", "rate_hz", *o.rate_hz));
   if (o.seed) result.push_back(integer_option("--seed", "seed", *o.seed));
@@ -137,6 +138,7 @@ SceneDescription described(const SimulateOptions& options) {
           fmt::format("{}: the scene plays no motion file; add --motion FILE or leave it out", option));
     };
     if (options.trial) refuse(fmt::format("--trial {}", *options.trial));
+    if (options.lead_in) refuse(fmt::format("--lead-in {}", *options.lead_in));
     if (!options.mapping.empty()) refuse(fmt::format("--mapping {}", options.mapping));
   }
   return scene;
@@ -262,6 +264,11 @@ void add_simulate_command(CLI::App& app, Job& job) {
       ->add_option("--trial", options->trial,
                    "which trial of a motion file whose time runs backwards, from 1")
       ->type_name("N");
+  command
+      ->add_option(
+          "--lead-in", options->lead_in,
+          "bring the hand from the open hand to the motion file's first sample in this time, before it [0]")
+      ->type_name("S");
   command->add_option("--seconds", options->seconds, "how long [the motion's length]")->type_name("S");
   command->add_option("--rate-hz", options->rate_hz, "steps per second [the scene's]")->type_name("HZ");
   command->add_option("--seed", options->seed, "of everything random in the motion")->type_name("N");

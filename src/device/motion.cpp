@@ -49,4 +49,26 @@ void check_motion(const Motion& motion) {
   }
 }
 
+double minimum_jerk(double u) noexcept {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+}
+
+Motion led_in(Motion motion, const JointArray& from, double seconds) {
+  const auto keys = static_cast<std::size_t>(std::ceil(1000.0 * seconds));
+  if (keys == 0) return motion;
+  const JointArray to = motion.angle.front();
+  const double begin = motion.time_s.front() - seconds;
+  std::vector<double> time(keys);
+  std::vector<JointArray> angle(keys);
+  for (std::size_t i = 0; i < keys; ++i) {
+    const double u = static_cast<double>(i) / static_cast<double>(keys);
+    time[i] = begin + u * seconds;
+    for (std::size_t j = 0; j < kJoints; ++j) angle[i][j] = from[j] + minimum_jerk(u) * (to[j] - from[j]);
+  }
+  motion.time_s.insert(motion.time_s.begin(), time.begin(), time.end());
+  motion.angle.insert(motion.angle.begin(), angle.begin(), angle.end());
+  return motion;
+}
+
 }  // namespace phalanx

@@ -43,12 +43,6 @@ const Grip& grip_of(const std::string& name) {
   return *kGrips[static_cast<std::size_t>(it - names.begin())];
 }
 
-/// Position along a point-to-point movement at the fraction u of its time: least jerk from rest to rest.
-double minimum_jerk(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
-}
-
 /// The part of a ripple's closing (or opening) in which `digit` moves: half of it, the little finger first.
 double ripple_fraction(double u, int digit) {
   const double begin = 0.5 * (kDigits - 1 - digit) / (kDigits - 1);

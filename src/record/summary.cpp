@@ -16,6 +16,17 @@ std::uint64_t ticks_with(const Summary& summary, Status bit) {
 
 std::string ticks_text(std::uint64_t ticks) { return fmt::format("{} tick{}", ticks, ticks == 1 ? "" : "s"); }
 
+/// "index (812 ticks), ring (3 ticks)"
+std::string silent_digits(const Summary& summary) {
+  std::string text;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const std::uint64_t ticks = summary.inside_ticks[static_cast<std::size_t>(digit)];
+    if (ticks > 0)
+      text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", digit_name(digit), ticks_text(ticks));
+  }
+  return text;
+}
+
 }  // namespace
 
 double total_force(const Snapshot& snapshot) {
@@ -33,6 +44,8 @@ void add_tick(Summary& summary, const Snapshot& snapshot) {
     summary.peak_depth[s] = std::max(summary.peak_depth[s], segment.depth);
     summary.largest_slid = std::max(summary.largest_slid, segment.slid);
   }
+  for (std::size_t d = 0; d < summary.inside_ticks.size(); ++d)
+    if (snapshot.started_inside[d]) ++summary.inside_ticks[d];
   for (std::size_t j = 0; j < snapshot.torque.size(); ++j) {
     summary.peak_torque[j] = std::max(summary.peak_torque[j], std::abs(snapshot.torque[j]));
   }
@@ -68,9 +81,12 @@ std::vector<std::string> warnings(const Summary& summary) {
   warn(Status::kTimeNotIncreasing, "a sample's time did not increase; its angles were not used");
   warn(Status::kSampleStale,
        "no sample had been wholly good for 50 ms; forces decay to zero until one comes");
-  warn(Status::kStartInside,
-       "a digit that started inside the object gives no force until it has once been clear; start from a "
-       "more open hand");
+  warn(
+      Status::kStartInside,
+      fmt::format(
+          "{} started inside the object and gives no force until it has once been clear; lead a recording in "
+          "from the open hand (motion.lead_in_s = 1), or move the object",
+          silent_digits(summary)));
   warn(Status::kOscillating,
        "the force of a segment oscillated; lower force.stiffness_n_per_mm, or choose another "
        "stabiliser.method");

@@ -127,7 +127,8 @@ Motion build_motion(const SceneDescription& scene) {
   if (motion.file.empty()) return make_motion(motion.script, hand);
   std::optional<SensorMapping> mapping;
   if (!motion.mapping.empty()) mapping = load_mapping_file(motion.mapping);
-  return load_motion(motion.file, mapping, motion.trial, hand.open_angle);
+  return led_in(load_motion(motion.file, mapping, motion.trial, hand.open_angle), hand.open_angle,
+                motion.lead_in_s);
 }
 
 double simulation_seconds(const SceneDescription& scene, const Motion& motion) {

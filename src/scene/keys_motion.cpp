@@ -47,5 +47,8 @@ void add_motion_keys(std::vector<KeySpec>& keys) {
   keys.push_back(integer("motion.trial", between(1, 1000000), "",
                          "which trial of a CSV that holds several, from 1",
                          [](T t, V v) { t.scene.motion.trial = static_cast<int>(v.integer); }));
+  keys.push_back(number("motion.lead_in_s", "s", between(0, 10), "0",
+                        "time in which the hand comes from the open hand to the CSV's first sample",
+                        [](T t, V v) { t.scene.motion.lead_in_s = v.number; }));
 }
 }  // namespace phalanx

@@ -18,6 +18,7 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
   out.status = status;
   out.hcp_angle = gdp.hcp_angle;
   out.gdp_angle = gdp.angle;
+  out.started_inside = gdp.inside;
   out.torque = force.torque;
   out.stiffness_factor = force.stiffness_factor.value();
   if (model.stabiliser.method == Stabiliser::kLocalWall) {

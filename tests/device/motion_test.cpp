@@ -52,6 +52,25 @@ TEST(Motion, OfOneKeyStandsStill) {
   EXPECT_EQ(motion.at(7.0), all(0.5));
 }
 
+// 0.5 at half time, 0.103515625 after a quarter: 10/64 - 15/256 + 6/1024.
+TEST(Motion, IsLedInAlongAMinimumJerkProfileBeforeItsFirstKey) {
+  const Motion led = led_in(two_keys(), all(0.0), 0.4);
+  check_motion(led);
+  EXPECT_NEAR(led.duration(), 2.4, 1e-12);
+  EXPECT_EQ(led.time_s.size(), 402U);
+  EXPECT_EQ(led.at(0.0), all(0.0));
+  EXPECT_NEAR(led.at(0.1)[7], 0.103515625, 1e-9);
+  EXPECT_NEAR(led.at(0.2)[0], 0.5, 1e-9);
+  EXPECT_NEAR(led.at(0.4)[19], 1.0, 1e-9);
+  EXPECT_NEAR(led.at(2.4)[19], 2.0, 1e-9);
+}
+
+TEST(Motion, IsTheSameWithoutATimeToLeadItIn) {
+  const Motion same = led_in(two_keys(), all(0.0), 0.0);
+  EXPECT_EQ(same.time_s, two_keys().time_s);
+  EXPECT_EQ(same.angle, two_keys().angle);
+}
+
 void expect_motion_refused(const Motion& motion, const char* words) {
   try {
     check_motion(motion);

@@ -103,6 +103,19 @@ TEST(Summary, WarnsOfWhatMakesTheResultLessThanItLooks) {
                                                  HasSubstr("slid, up to 6.0 mm")));
 }
 
+TEST(Summary, NamesEachDigitThatGivesNoForceSinceItStartedInside) {
+  Summary summary;
+  for (int tick = 0; tick < 3; ++tick) {
+    Snapshot snapshot;
+    snapshot.status = Status::kStartInside;
+    snapshot.started_inside = {false, true, false, tick == 0, false};
+    add_tick(summary, snapshot);
+  }
+  EXPECT_EQ(summary.inside_ticks, (std::array<std::uint64_t, kDigits>{0, 3, 0, 1, 0}));
+  EXPECT_THAT(warnings(summary),
+              ElementsAre(HasSubstr("3 ticks: index (3 ticks), ring (1 tick) started inside")));
+}
+
 TEST(Summary, WarnsOfNothingInACleanRun) {
   Summary summary;
   add_tick(summary, Snapshot{});

@@ -92,6 +92,26 @@ TEST(CliSimulate, PlaysAMotionFileAndOneTrialOfMany) {
   EXPECT_EQ(lines(ticks), 201);
 }
 
+// The index finger begins pressed into the ball: without a lead-in it has no force, and the warning names it.
+TEST(CliSimulate, LeadsARecordingInFromTheOpenHand) {
+  const TemporaryFolder folder;
+  write_file(folder / "m.csv", "time_s,index_mcp_flexion,index_pip_flexion\n0,0.9,0.9\n1,0.9,0.9\n");
+  const std::string command = "simulate index_ball --motion m.csv";
+  ASSERT_EQ(run_program(folder, command + " --quiet --out a").exit_code, 0);
+  const auto inside = nlohmann::json::parse(read_file(folder / "a/summary.json"));
+  EXPECT_EQ(inside["status_ticks"]["start_inside"], 200);
+  EXPECT_THAT(inside["warnings"].dump(), ::testing::HasSubstr("200 ticks: index (200 ticks) started inside"));
+  EXPECT_EQ(inside["peak_total_force"]["force_n"], 0.0);
+  ASSERT_EQ(run_program(folder, command + " --lead-in 0.5 --quiet --out b").exit_code, 0);
+  const auto led = nlohmann::json::parse(read_file(folder / "b/summary.json"));
+  EXPECT_EQ(led["ticks"], 300);
+  EXPECT_EQ(led["status_ticks"]["start_inside"], 0);
+  EXPECT_GT(led["peak_total_force"]["force_n"], 1.0);
+  const auto refused = run_program(folder, "simulate index_ball --lead-in 0.5");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("--lead-in 0.5"));
+}
+
 TEST(CliSimulate, TakesAnObjectFromAFile) {
   const TemporaryFolder folder;
   write_file(folder / "tetra.obj",

@@ -29,6 +29,15 @@ struct Motion {
 /// @throws std::invalid_argument naming the first key that breaks Motion's invariant. Set-up only.
 void check_motion(const Motion& motion);
 
+/// The motion with a way to its beginning before it: from `from` to the first key in `seconds`, along a
+/// minimum-jerk profile with a key every millisecond. A recording that begins with a closed hand would
+/// otherwise begin inside the object. Unchanged if `seconds` is 0.
+/// @param seconds  [s] finite, >= 0   @pre the motion's invariant. Set-up only.
+[[nodiscard]] Motion led_in(Motion motion, const JointArray& from, double seconds);
+
+/// s(u) = 10 u^3 - 15 u^4 + 6 u^5 for u in 0 .. 1.     Flash, Hogan, J. Neuroscience 5(7), 1985
+[[nodiscard]] double minimum_jerk(double u) noexcept;
+
 /// Parameters of the scripted motions. Each starts at the open hand, waits `start_s`, closes along a
 /// minimum-jerk profile s(u) = 10 u^3 - 15 u^4 + 6 u^5 (Flash & Hogan 1985) in `close_s`, holds for `hold_s`,
 /// opens in `open_s`; the whole repeats `repeat` times.

@@ -28,6 +28,7 @@ struct Summary {
   double peak_total_force = 0.0;         ///< largest sum over all segments of the forces sent [N]
   double peak_total_force_time_s = 0.0;  ///< its first tick's time
   double largest_slid = 0.0;             ///< over all contacts [m]
+  std::array<std::uint64_t, kDigits> inside_ticks{};      ///< in which each digit gave no force: start_inside
   std::array<std::uint64_t, kStatusBits> status_ticks{};  ///< ticks in which each status bit was set
   std::vector<std::string>
       notes;  ///< sentences that the caller adds to the warnings, e.g. on the motion file

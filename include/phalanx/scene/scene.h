@@ -67,6 +67,7 @@ struct MotionDescription {
   std::string
       mapping;  ///< mapping file's name in assets/mappings, or a path; empty: columns are joint names in rad
   std::optional<int> trial;  ///< which trial of a file whose time runs backwards, counted from 1
+  double lead_in_s = 0.0;    ///< from the open hand to the file's first sample, put before the file [s] >= 0
 };
 
 /// A value that a scene lays over a key of another file.

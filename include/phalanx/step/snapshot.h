@@ -57,6 +57,8 @@ struct Snapshot {
   double time_s = 0.0;
   Status status = Status::kOk;
   JointArray hcp_angle{};  ///< [rad]; also the q_ref of the walls
+  std::array<bool, kDigits>
+      started_inside{};    ///< Status::kStartInside: the digits that give no force until clear
   JointArray gdp_angle{};  ///< [rad]
   JointArray torque{};     ///< commanded: what the contacts do to the finger's joints, axis . (r x f) [Nm]
   std::array<SegmentSnapshot, kSegments> segment{};
