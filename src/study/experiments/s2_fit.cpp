@@ -99,9 +99,10 @@ ExperimentReport s2_fit_report(const std::vector<FitRow>& rows) {
             "finger is bumped. "
             "It is fitted on S2's two limits alone, on a model of one degree of freedom, by the least sum of "
             "squared "
-            "deviations in steps of the grid (of several bumps the hardest), and frozen. What else this page "
-            "says of "
-            "stability is predicted with it.",
+            "deviations in steps of the grid (of several bumps the hardest), and frozen. The device's "
+            "numbers "
+            "were chosen on the same two limits, so that what else this page says of S2's figures follows "
+            "largely from these two fits.",
             fmt::format("Fitted: {} N.", fitted)},
        .svg = {},
        .table = table}};

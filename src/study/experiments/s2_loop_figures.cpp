@@ -130,8 +130,9 @@ PaperRow stability_row(const std::string& experiment, const std::string& quantit
                               run.stable(), all, run.unstable()),
           .difference = agrees ? "agrees" : "differs",
           .kind = RowKind::kPredicted,
-          .note = fmt::format("largest swing {:.2f} N, {:.2f} mm", run.largest_force_swing(),
-                              1e3 * run.largest_position_swing())};
+          .note = fmt::format(
+              "follows largely from the fit on S2's two limits; largest swing {:.2f} N, {:.2f} mm",
+              run.largest_force_swing(), 1e3 * run.largest_position_swing())};
 }
 
 }  // namespace phalanx
