@@ -67,12 +67,6 @@ struct PeerGdp::Step {
   bool near = false;  ///< may be within the margin after the step
 };
 
-void measure_record(ContactRecord& record, const Pose& gdp, const Pose& hcp) {
-  record.p_gdp = gdp * record.p_S;
-  record.p_hcp = hcp * record.p_S;
-  record.depth = (record.p_gdp - record.p_hcp).dot(record.n_c) - record.offset;
-}
-
 PeerGdp::PeerGdp(const HapticModel& model, DistanceEngine& engine, Pruning pruning)
     : model_(model),
       engine_(engine),
@@ -104,7 +98,7 @@ Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       ContactRecord& record = state.record[idx(segment_index(d, k))];
       if (!record.active) continue;
-      measure_record(record, tick.pose.segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+      measure(tick, k, tick.hcp, tick.hcp_pose, record);
       record.silent = state.inside[idx(d)];
     }
   }
@@ -112,13 +106,50 @@ Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
   return status;
 }
 
+// Depth and points of a record of segment k.
+void PeerGdp::measure(const Tick& tick, int k, const DigitAngles& hcp_angle, const DigitPose& hcp,
+                      ContactRecord& record) const {
+  record.p_gdp = tick.pose.segment[idx(k)] * record.p_S;
+  record.p_hcp = hcp.segment[idx(k)] * record.p_S;
+  double deep = (record.p_gdp - record.p_hcp).dot(record.n_c);
+  if (record.along) {
+    DigitAngles way{};
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] = hcp_angle[i] - tick.angle[i];
+    const double v = field_of(model_.hand, tick.digit, k, tick.pose, way).closing(record.n_c, record.p_gdp);
+    if (v > 0.0 && v > 2.0 * deep) deep = v * v / (4.0 * (v - deep));
+  }
+  record.depth = deep - record.offset;
+}
+
+bool PeerGdp::nearer_pushes(const Tick& tick, int k, const DigitAngles& hcp_angle, const DigitPose& hcp,
+                            const GdpState& state) const {
+  for (int nearer = 0; nearer < k; ++nearer) {
+    ContactRecord other = state.record[idx(segment_index(tick.digit, nearer))];
+    if (!other.active) continue;
+    measure(tick, nearer, hcp_angle, hcp, other);
+    if (other.depth > 0.0) return true;
+  }
+  return false;
+}
+
+// Whether the digit at its measured angles crosses the object's surface.
+bool PeerGdp::goes_through(const Tick& tick) {
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    list_pairs(segment_index(tick.digit, k), tick.hcp_pose.segment[idx(k)], 1e-9);
+    for (const ClosePair& pair : pairs_)
+      if (!(pair.distance > 0.0)) return true;
+  }
+  return false;
+}
+
 // Rule 1.
-int PeerGdp::held_joints(const Tick& tick, GdpState& state) const {
+int PeerGdp::held_joints(const Tick& tick, GdpState& state) {
   int held = 0;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     ContactRecord& record = state.record[idx(segment_index(tick.digit, k))];
     if (!record.active) continue;
-    measure_record(record, tick.pose.segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+    record.along = record.along && goes_through(tick);
+    measure(tick, k, tick.hcp, tick.hcp_pose, record);
     if (record.depth > 0.0) held = joints_that_move(k);
   }
   return held;
@@ -138,8 +169,10 @@ void PeerGdp::advance_digit(Tick& tick, GdpState& state) {
     if (stop.segment < 0) break;
     ContactRecord& record = state.record[idx(segment_index(tick.digit, stop.segment))];
     if (record.active) {
-      measure_record(record, tick.pose.segment[idx(stop.segment)], tick.hcp_pose.segment[idx(stop.segment)]);
-      if (record.depth + record.offset <= 0.0) record.active = false;
+      measure(tick, stop.segment, tick.hcp, tick.hcp_pose, record);
+      if (record.depth + record.offset <= 0.0 ||
+          (!(record.depth > 0.0) && !nearer_pushes(tick, stop.segment, tick.hcp, tick.hcp_pose, state)))
+        record.active = false;
     }
     const SegmentField field = field_of(model_.hand, tick.digit, stop.segment, tick.pose, tick.rate);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
@@ -248,6 +281,24 @@ void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, Gd
   record.n_c = nearest.direction();
   record.force_normal = record.n_c;
   record.silent = state.inside[idx(tick.digit)];
+  if (field != nullptr && !tick.exhausted && model_.contact.depth == DepthOrigin::kContinuous) {
+    measure(tick, k, tick.hcp, tick.hcp_pose, record);
+    const auto closes = [&](const ClosePair& p) {
+      return p.distance <= cap ? field->closing(p.direction(), p.on_segment) : 0.0;
+    };
+    const auto lead =
+        std::max_element(pairs_.begin(), pairs_.end(),
+                         [&](const ClosePair& p, const ClosePair& q) { return closes(p) < closes(q); });
+    if (!(record.depth > 0.0) && closes(*lead) > 0.0) {
+      const ClosePair alone = *lead;
+      if (goes_through(tick)) {
+        record.along = true;
+        record.p_S = X_WS.R.transpose() * (alone.on_segment - X_WS.p);
+        record.n_c = record.force_normal = alone.direction();
+        tied = {alone};
+      }
+    }
+  }
   record.offset = tick.exhausted && nearest.distance > margin ? std::numeric_limits<double>::infinity()
                                                               : offset_of(tick, k, record, state);
   state.record[idx(segment)] = record;
@@ -261,15 +312,10 @@ double PeerGdp::offset_of(const Tick& tick, int k, ContactRecord record, const G
     hcp_angle[i] = tick.hcp_was[i] + tick.s * (tick.hcp[i] - tick.hcp_was[i]);
   DigitPose hcp;
   model_.hand.digit_pose(tick.digit, hcp_angle, hcp);
-  bool pushed = false;
-  for (int nearer = 0; nearer < k; ++nearer) {
-    ContactRecord other = state.record[idx(segment_index(tick.digit, nearer))];
-    if (!other.active) continue;
-    measure_record(other, tick.pose.segment[idx(nearer)], hcp.segment[idx(nearer)]);
-    pushed = pushed || other.depth > 0.0;
-  }
-  if (!pushed) return 0.0;
-  measure_record(record, tick.pose.segment[idx(k)], hcp.segment[idx(k)]);
+  if (!nearer_pushes(tick, k, hcp_angle, hcp, state) ||
+      !nearer_pushes(tick, k, tick.hcp, tick.hcp_pose, state))
+    return 0.0;
+  measure(tick, k, hcp_angle, hcp, record);
   return std::max(0.0, record.depth);
 }
 

@@ -37,7 +37,12 @@ class PeerGdp {
   struct Stop;
   struct Step;
 
-  [[nodiscard]] int held_joints(const Tick& tick, GdpState& state) const;
+  void measure(const Tick& tick, int k, const DigitAngles& hcp_angle, const DigitPose& hcp,
+               ContactRecord& record) const;
+  [[nodiscard]] bool nearer_pushes(const Tick& tick, int k, const DigitAngles& hcp_angle,
+                                   const DigitPose& hcp, const GdpState& state) const;
+  [[nodiscard]] bool goes_through(const Tick& tick);
+  [[nodiscard]] int held_joints(const Tick& tick, GdpState& state);
   void advance_digit(Tick& tick, GdpState& state);
   [[nodiscard]] Stop next_stop(Tick& tick, GdpState& state);
   [[nodiscard]] Step step_of(const Tick& tick, int k, double longest);
@@ -53,8 +58,5 @@ class PeerGdp {
   std::array<std::vector<ClosePair>, kSegments> tied_;
   long lists_ = 0;
 };
-
-/// Depth and points of a record between two poses of its segment.
-void measure_record(ContactRecord& record, const Pose& gdp, const Pose& hcp);
 
 }  // namespace phalanx::bench

@@ -79,24 +79,66 @@ GdpState::GdpState(const ContactModel& model)
   }
 }
 
-void measure(ContactRecord& record, const Pose& gdp, const Pose& hcp) noexcept {
-  record.p_gdp = gdp * record.p_S;
-  record.p_hcp = hcp * record.p_S;
-  record.depth = (record.p_gdp - record.p_hcp).dot(record.n_c) - record.offset;
+double deepest(double closing, double end) noexcept {
+  return closing > 0.0 && closing > 2.0 * end ? closing * closing / (4.0 * (closing - end)) : end;
 }
 
-int joints_held(GdpState& state, const DigitTick& tick) noexcept {
+void measure(const ContactModel& model, const DigitTick& tick, int k, const DigitAngles& hcp_angle,
+             const DigitPose& hcp, ContactRecord& record) noexcept {
+  record.p_gdp = tick.pose.segment[idx(k)] * record.p_S;
+  record.p_hcp = hcp.segment[idx(k)] * record.p_S;
+  double penetration = (record.p_gdp - record.p_hcp).dot(record.n_c);
+  if (record.along) {
+    DigitAngles way{};
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] = hcp_angle[i] - tick.angle[i];
+    const SegmentMotion motion = segment_motion(model.hand, tick.digit, tick.pose, way, k);
+    penetration = deepest(-record.n_c.dot(motion.velocity(record.p_gdp)), penetration);
+  }
+  record.depth = penetration - record.offset;
+}
+
+bool nearer_pushes(const ContactModel& model, const DigitTick& tick, int k, const DigitAngles& hcp_angle,
+                   const DigitPose& hcp, const GdpState& state) noexcept {
+  for (int nearer = 0; nearer < k; ++nearer) {
+    ContactRecord record = record_of(state, tick, nearer);
+    if (!record.active) continue;
+    measure(model, tick, nearer, hcp_angle, hcp, record);
+    if (record.depth > 0.0) return true;
+  }
+  return false;
+}
+
+namespace {
+
+/// Whether a segment of the digit at its measured angles crosses the object's surface: the palm is outside,
+/// so that some segment does wherever the digit is inside.
+bool hcp_goes_through(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
+  if (tick.hcp_through == Through::kUnknown) {
+    tick.hcp_through = Through::kNo;
+    for (int k = 0; k < kSegmentsPerDigit && tick.hcp_through == Through::kNo; ++k) {
+      const SegmentTree& tree = model.trees[idx(segment_index(tick.digit, k))];
+      if (crosses({tree, tick.hcp_pose.segment[idx(k)], state.scratch}, model.object.tree()))
+        tick.hcp_through = Through::kYes;
+    }
+  }
+  return tick.hcp_through == Through::kYes;
+}
+
+}  // namespace
+
+int joints_held(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
   int held = 0;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     ContactRecord& record = record_of(state, tick, k);
     if (!record.active) continue;
-    measure(record, tick.pose.segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+    record.along = record.along && hcp_goes_through(model, tick, state);
+    measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
     if (record.depth > 0.0) held = joints_that_move(k);
   }
   return held;
 }
 
-void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
+void make_record(const ContactModel& model, DigitTick& tick, int k, double s, double cap,
                  const SegmentMotion* motion, GdpState& state) noexcept {
   const Pose& gdp = tick.pose.segment[idx(k)];
   const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], gdp, state.scratch};
@@ -109,23 +151,27 @@ void make_record(const ContactModel& model, const DigitTick& tick, int k, double
   record.force_normal = model.parameters.normal == ForceNormal::kContact
                             ? patch.direction
                             : within_cone(patch.object_normal, patch.direction);
+  if (motion != nullptr && model.parameters.depth == DepthOrigin::kContinuous) {
+    measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
+    record.along =
+        !(record.depth > 0.0) && !patch.lead_direction.isZero(0.0) && hcp_goes_through(model, tick, state);
+    if (record.along) {  // the mean of several places may not close at all
+      record.p_S = gdp.R.transpose() * (patch.lead - gdp.p);
+      record.n_c = record.force_normal = patch.lead_direction;
+    }
+  }
   if (model.parameters.depth == DepthOrigin::kContinuous && k > 0) {
-    // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes.
+    // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes, and goes
+    // on to.
     DigitAngles hcp_angle{};
     for (int i = 0; i < kJointsPerDigit; ++i) {
       hcp_angle[idx(i)] = tick.hcp_from[idx(i)] + s * (tick.hcp[idx(i)] - tick.hcp_from[idx(i)]);
     }
     DigitPose hcp;
     model.hand.digit_pose(tick.digit, hcp_angle, hcp);
-    bool pushed = false;
-    for (int nearer = 0; nearer < k; ++nearer) {
-      ContactRecord other = record_of(state, tick, nearer);
-      if (!other.active) continue;
-      measure(other, tick.pose.segment[idx(nearer)], hcp.segment[idx(nearer)]);
-      pushed = pushed || other.depth > 0.0;
-    }
-    if (pushed) {
-      measure(record, gdp, hcp.segment[idx(k)]);
+    if (nearer_pushes(model, tick, k, hcp_angle, hcp, state) &&
+        nearer_pushes(model, tick, k, tick.hcp, tick.hcp_pose, state)) {
+      measure(model, tick, k, hcp_angle, hcp, record);
       record.offset = std::max(0.0, record.depth);
     }
   }
@@ -147,7 +193,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
                    .hcp_pose = hcp.digit[idx(d)],
                    .angle = digit_angles(state.angle, d),
                    .pose = state.poses.digit[idx(d)]};
-    tick.fixed = joints_held(state, tick);
+    tick.fixed = joints_held(model, tick, state);
     if (model.parameters.method == GdpMethod::kContinuous) {
       advance_continuous(model, tick, state);
     } else {
@@ -163,7 +209,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       ContactRecord& record = record_of(state, tick, k);
       if (!record.active) continue;
-      measure(record, state.poses.digit[idx(d)].segment[idx(k)], tick.hcp_pose.segment[idx(k)]);
+      measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
       record.silent = state.inside[idx(d)];
       const Vec3 apart = record.p_hcp - record.p_gdp;
       const double slid = (apart - apart.dot(record.n_c) * record.n_c).norm();

@@ -20,12 +20,15 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
     const Stop stop = first_contact(model, path, s, evaluations, tick, state);
     if (stop.segment < 0) break;
     s = stop.s;
-    // Blocked by something else than its record, which the HCP has left: the contact has hopped. Without this
-    // a finger in a corner would rest against the second wall without force.
+    // Blocked although the HCP has left its record, or although nothing is left that d0 makes up for: the
+    // contact has hopped. Without this a finger in a corner would rest against the second wall without force.
     ContactRecord& record = record_of(state, tick, stop.segment);
     if (record.active) {
-      measure(record, tick.pose.segment[idx(stop.segment)], tick.hcp_pose.segment[idx(stop.segment)]);
-      if (record.depth + record.offset <= 0.0) record.active = false;
+      measure(model, tick, stop.segment, tick.hcp, tick.hcp_pose, record);
+      const bool left = record.depth + record.offset <= 0.0;
+      if (left || (!(record.depth > 0.0) &&
+                   !nearer_pushes(model, tick, stop.segment, tick.hcp, tick.hcp_pose, state)))
+        record.active = false;
     }
     const bool exhausted = has(tick.status, Status::kSearchExhausted);
     const SegmentMotion motion = segment_motion(model.hand, tick.digit, tick.pose, path.rate, stop.segment);

@@ -8,6 +8,9 @@
 
 namespace phalanx {
 
+/// Whether a digit goes through the object: asked at most once a tick, and in few ticks.
+enum class Through { kUnknown, kNo, kYes };
+
 /// One digit while its tick is being worked out.
 struct DigitTick {
   int digit;
@@ -18,23 +21,39 @@ struct DigitTick {
   DigitPose pose;     ///< at `angle`
   int fixed = 0;      ///< joints counted from the palm that may not move any more in this tick
   Status status = Status::kOk;
+  Through hcp_through = Through::kUnknown;
 };
 
+[[nodiscard]] inline const ContactRecord& record_of(const GdpState& state, const DigitTick& tick,
+                                                    int k) noexcept {
+  return state.record[idx(segment_index(tick.digit, k))];
+}
 [[nodiscard]] inline ContactRecord& record_of(GdpState& state, const DigitTick& tick, int k) noexcept {
   return state.record[idx(segment_index(tick.digit, k))];
 }
 
-/// Depth and points of a record between the pose `gdp` and the pose `hcp` of its segment.
-void measure(ContactRecord& record, const Pose& gdp, const Pose& hcp) noexcept;
+/// Depth and points of a record of segment k between the GDP and the HCP `hcp_angle`, whose pose is `hcp`.
+void measure(const ContactModel& model, const DigitTick& tick, int k, const DigitAngles& hcp_angle,
+             const DigitPose& hcp, ContactRecord& record) noexcept;
+
+/// Whether a segment nearer the palm than k pushes between the GDP and the HCP `hcp_angle`, whose pose is
+/// `hcp`.
+[[nodiscard]] bool nearer_pushes(const ContactModel& model, const DigitTick& tick, int k,
+                                 const DigitAngles& hcp_angle, const DigitPose& hcp,
+                                 const GdpState& state) noexcept;
+
+/// The deepest place of the parabola that starts at 0, downwards at the rate `closing`, and is `end` deep
+/// at 1.
+[[nodiscard]] double deepest(double closing, double end) noexcept;
 
 /// The joints that a pushing record (d > 0) holds: up to the most distal such segment.       "The GDP,
 /// exactly", 1
-[[nodiscard]] int joints_held(GdpState& state, const DigitTick& tick) noexcept;
+[[nodiscard]] int joints_held(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
 
 /// Gives the segment k a record of its contact at `tick.pose`, if anything is closer than `cap`.
 /// @param s  when in the tick this happens: 0 at its start, 1 at its end; decides the offset d0
 /// @param motion  how the segment was moving, for the one that stopped: what it moves into decides; else null
-void make_record(const ContactModel& model, const DigitTick& tick, int k, double s, double cap,
+void make_record(const ContactModel& model, DigitTick& tick, int k, double s, double cap,
                  const SegmentMotion* motion, GdpState& state) noexcept;
 
 /// Moves one digit. "The GDP, exactly", 2-4.

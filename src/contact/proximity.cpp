@@ -36,7 +36,8 @@ void for_each_pair(const PlacedSegment& segment, const ObjectTree& object, doubl
 struct Lead {
   const SegmentMotion* motion = nullptr;
   Vec3 direction = Vec3::Zero();
-  double speed = 0.0;  ///< 0: nothing closes, every pair counts
+  Vec3 at = Vec3::Zero();  ///< on the segment
+  double speed = 0.0;      ///< 0: nothing closes, every pair counts
 
   [[nodiscard]] double closing_speed(const Vec3& n, const Vec3& x) const noexcept {
     return -n.dot(motion->velocity(x));
@@ -108,6 +109,7 @@ Lead find_lead(const NearPairs& pairs, double cap, const SegmentMotion& motion) 
     if (speed <= lead.speed) return;
     lead.speed = speed;
     lead.direction = n;
+    lead.at = closest.on_a;
   });
   return lead;
 }
@@ -124,7 +126,7 @@ double distance_of_admitted(const NearPairs& pairs, double cap, const Lead& lead
 /// The contact of the pairs that count and are within kPatchBand of `least`.
 ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, const NearPairs& pairs,
                       const Lead& lead, double least) noexcept {
-  ContactPatch patch{.distance = least};
+  ContactPatch patch{.distance = least, .lead = lead.at, .lead_direction = lead.direction};
   const double limit = least + kPatchBand;
   MeanDirection direction(std::sqrt(squared(limit) - squared(least)));
   TiedTriangles tied;
@@ -160,6 +162,16 @@ double distance(const PlacedSegment& segment, const ObjectTree& object, double c
                                    if (closest.squared < best) cap_squared = best = closest.squared;
                                  });
   return std::sqrt(best);
+}
+
+bool crosses(const PlacedSegment& segment, const ObjectTree& object) noexcept {
+  bool found = false;
+  for_each_pair<Order::kNearest>(segment, object, 0.0,
+                                 [&](int, int, const TriangleDistance&, double& cap_squared) {
+                                   found = true;
+                                   cap_squared = -1.0;  // one is enough
+                                 });
+  return found;
 }
 
 double distance_bound(const PlacedSegment& segment, const ObjectTree& object, double cap) noexcept {

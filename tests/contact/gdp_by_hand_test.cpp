@@ -311,6 +311,40 @@ TEST(GdpByHand, ARecordOfASearchThatGaveUpIsAContactWithinTheMargin) {
   }
 }
 
+// The foremost corner, 21 mm from the MCP, meets a plate at 1.3; the HCP turns on to 2.0, past the lowest
+// place, and its corner is above the plate again. In a second plate there the finger is felt: the corner
+// begins to go down at 21 mm cos(1.3) for each radian of 0.7, and ends higher than it began. The parabola of
+// that beginning and end is v^2 / (4 (v - end)) deep. Without the second plate the hand has left, and nothing
+// pushes.
+TEST(GdpByHand, AFingerThatHasTurnedPastTheContactsPlaneIsFeltWhileItIsInTheObject) {
+  constexpr double kStop = 1.3;
+  constexpr double kTo = 2.0;
+  const TriangleMesh first = plate(21e-3 * std::cos(kStop), -21e-3 * std::sin(kStop));
+  TriangleMesh both = first;
+  append(both, plate(20e-3 * std::cos(kTo), -20e-3 * std::sin(kTo)));
+  const double closing = 21e-3 * std::cos(kStop) * (kTo - kStop);
+  const double end = 21e-3 * (std::sin(kTo) - std::sin(kStop));
+  ASSERT_LT(end, -1e-3);
+  for (const bool inside : {true, false}) {
+    const HapticModel model = paper_model(inside ? both : first);
+    Paper paper(model);
+    paper.tick(index_angles(1.0));
+    paper.tick(index_angles(kTo));
+    ASSERT_TRUE(paper.record(0).active);
+    EXPECT_NEAR(paper.gdp(0), kStop, 5e-6);
+    EXPECT_EQ(paper.record(0).along, inside);
+    EXPECT_NEAR(paper.record(0).depth, inside ? closing * closing / (4.0 * (closing - end)) : end, kPlace);
+  }
+}
+
+TEST(GdpByHand, TheDeepestPlaceOfAParabolaIsItsVertexOrItsEnd) {
+  EXPECT_EQ(deepest(4.0, -1.0), 0.8);
+  EXPECT_EQ(deepest(4.0, 2.0), 2.0) << "the vertex is the end";
+  EXPECT_EQ(deepest(4.0, 3.0), 3.0);
+  EXPECT_EQ(deepest(-1.0, -2.0), -2.0) << "it only rises";
+  EXPECT_EQ(deepest(0.0, 0.0), 0.0);
+}
+
 // The HCP comes back to where the proximal phalanx has stopped, and from there only the PIP moves: the
 // proximal record stands until its own phalanx moves away.
 TEST(GdpByHand, ARecordStandsWhileOnlyFartherJointsMove) {

@@ -385,23 +385,50 @@ ReferenceStop ReferenceGdp::first_stop(int digit, const DigitAngles& from, const
 
 double ReferenceGdp::penetration(int digit, int k, const ReferenceRecord& record, const DigitAngles& gdp,
                                  const DigitAngles& hcp) const {
-  return (pose(digit, k, gdp) * record.p_S - pose(digit, k, hcp) * record.p_S).dot(record.n_c);
+  const auto height = [&](const DigitAngles& q) { return (pose(digit, k, q) * record.p_S).dot(record.n_c); };
+  const double end = height(gdp) - height(hcp);
+  if (!record.along) return end;
+  DigitAngles way{};
+  for (std::size_t i = 0; i < way.size(); ++i) way[i] = hcp[i] - gdp[i];
+  constexpr double kH = 1e-3;  // of fourth order: 1e-13 m, from rounding and from the difference
+  const double closing = (height(along(gdp, way, 2.0 * kH)) - height(along(gdp, way, -2.0 * kH)) -
+                          8.0 * (height(along(gdp, way, kH)) - height(along(gdp, way, -kH)))) /
+                         (12.0 * kH);
+  // The parabola closing s - (closing - end) s^2 from s = 0 to 1.
+  double most = end;
+  const double s = 0.5 * closing / (closing - end);
+  if (closing > 0.0 && s > 0.0 && s < 1.0) most = s * (closing - (closing - end) * s);
+  return most;
+}
+
+bool ReferenceGdp::goes_through(int digit, const DigitAngles& angle) const {
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    if (gap(digit, k, angle, 1e-9) == 0.0) return true;
+  }
+  return false;
+}
+
+bool ReferenceGdp::nearer_pushes(int digit, int k, const DigitAngles& gdp, const DigitAngles& hcp,
+                                 const ReferenceState& at) const {
+  for (int nearer = 0; nearer < k; ++nearer) {
+    const ReferenceRecord& other = at.record[idx(segment_index(digit, nearer))];
+    if (other.active && penetration(digit, nearer, other, gdp, hcp) - other.offset > 0.0) return true;
+  }
+  return false;
 }
 
 double ReferenceGdp::offset(int digit, int k, const ReferenceRecord& fresh, const DigitAngles& gdp,
-                            const DigitAngles& hcp, const ReferenceState& at) const {
+                            const DigitAngles& hcp, const DigitAngles& hcp_end,
+                            const ReferenceState& at) const {
   if (parameters_.depth == DepthOrigin::kS1) return 0.0;
-  for (int nearer = 0; nearer < k; ++nearer) {
-    const ReferenceRecord& other = at.record[idx(segment_index(digit, nearer))];
-    if (other.active && penetration(digit, nearer, other, gdp, hcp) - other.offset > 0.0)
-      return std::max(0.0, penetration(digit, k, fresh, gdp, hcp));
-  }
-  return 0.0;
+  if (!nearer_pushes(digit, k, gdp, hcp, at) || !nearer_pushes(digit, k, gdp, hcp_end, at)) return 0.0;
+  return std::max(0.0, penetration(digit, k, fresh, gdp, hcp));
 }
 
 ReferencePatch ReferenceGdp::patch(int digit, int k, const DigitAngles& angle,
                                    const DigitAngles* rate) const {
   const double margin = parameters_.margin + 1e-12;  // of what was found at the margin, to rounding
+  ReferencePatch out;
   std::vector<Pair> pairs;
   for_each_pair(digit, k, angle, margin + kTieBand, [&](const Pair& pair) {
     pairs.push_back(pair);
@@ -414,11 +441,17 @@ ReferencePatch ReferenceGdp::patch(int digit, int k, const DigitAngles& angle,
       return closing_speed(digit, k, angle, *rate, p.direction(), p.on_a);
     };
     double fastest = 0.0;
-    Vec3 lead = Vec3::Zero();
+    Vec3& lead = out.lead_direction;
     for (const Pair& pair : pairs) {
       if (pair.distance > margin || closes(pair) <= fastest) continue;
       fastest = closes(pair);
       lead = pair.direction();
+      out.lead = pair.on_a;
+      out.leads = true;
+    }
+    for (const Pair& pair : pairs) {
+      if (pair.distance > margin || closes(pair) < (1.0 - 1e-6) * fastest) continue;
+      out.lead_extent = std::max(out.lead_extent, (pair.on_a - out.lead).norm());
     }
     if (fastest > 0.0) {
       std::erase_if(pairs, [&](const Pair& pair) {
@@ -426,7 +459,6 @@ ReferencePatch ReferenceGdp::patch(int digit, int k, const DigitAngles& angle,
       });
     }
   }
-  ReferencePatch out;
   if (pairs.empty() || pairs.front().distance > margin) return out;
   out.any = true;
   out.distance = pairs.front().distance;
@@ -550,8 +582,9 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
   DigitAngles angle = from;
   int fixed = 0;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {  // 1. Depth
-    if (record(k).active && penetration(digit, k, record(k), angle, hcp) - record(k).offset > 0.0)
-      fixed = k + 2;
+    if (!record(k).active) continue;
+    record(k).along = record(k).along && goes_through(digit, hcp);
+    if (penetration(digit, k, record(k), angle, hcp) - record(k).offset > 0.0) fixed = k + 2;
   }
   double s = 0.0;
   while (fixed < kJointsPerDigit) {
@@ -570,8 +603,11 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
     if (stop.segment < 0) break;
     stops_.push_back(stop);
     ReferenceRecord& deciding = record(stop.segment);  // 3. Stop
-    if (deciding.active && penetration(digit, stop.segment, deciding, angle, hcp) <= 0.0)
-      deciding.active = false;
+    if (deciding.active) {
+      const double deep = penetration(digit, stop.segment, deciding, angle, hcp);
+      if (deep <= 0.0 || (deep <= deciding.offset && !nearer_pushes(digit, stop.segment, angle, hcp, state)))
+        deciding.active = false;
+    }
     const DigitAngles hcp_now = along(
         hcp_from,
         [&] {
@@ -584,9 +620,17 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
       if (record(k).active) continue;
       const ReferencePatch found = patch(digit, k, angle, k == stop.segment ? &rate : nullptr);
       if (!found.any) continue;
-      ReferenceRecord fresh{true, pose(digit, k, angle).inverse() * found.on_segment, found.n_c,
-                            found.force_normal, 0.0};
-      fresh.offset = offset(digit, k, fresh, angle, hcp_now, state);
+      ReferenceRecord fresh{true,      pose(digit, k, angle).inverse() * found.on_segment,
+                            found.n_c, found.force_normal,
+                            0.0,       false};
+      if (k == stop.segment && parameters_.depth == DepthOrigin::kContinuous)
+        fresh.along =
+            penetration(digit, k, fresh, angle, hcp) <= 0.0 && found.leads && goes_through(digit, hcp);
+      if (fresh.along) {
+        fresh.p_S = pose(digit, k, angle).inverse() * found.lead;
+        fresh.n_c = fresh.force_normal = found.lead_direction;
+      }
+      fresh.offset = offset(digit, k, fresh, angle, hcp_now, hcp, state);
       record(k) = fresh;
     }
     fixed = stop.segment + 2;  // 4. Go on

@@ -26,6 +26,7 @@ struct ReferenceRecord {
   Vec3 n_c = Vec3::Zero();           ///< in W
   Vec3 force_normal = Vec3::Zero();  ///< in W
   double offset = 0.0;               ///< d0 [m]
+  bool along = false;                ///< its depth is counted along the way
 };
 
 /// What is remembered from tick to tick.
@@ -61,6 +62,11 @@ struct ReferencePatch {
   /// How far the force's direction may turn with the place on a triangle that the contact is beside, not on:
   /// a mean of several places. "Nearest" is there what a weight of its corners makes of it [rad].
   double normal_doubt = 0.0;
+  // Of the pair that closes fastest, if one does:
+  bool leads = false;
+  Vec3 lead = Vec3::Zero();            ///< on the segment [m]
+  Vec3 lead_direction = Vec3::Zero();  ///< from the object to the segment
+  double lead_extent = 0.0;            ///< how far others that close as fast are from there [m]
 };
 
 /// Force of each segment and torque of each joint, by Hooke's law, with the fingertip cap.
@@ -88,12 +94,19 @@ class ReferenceGdp {
   /// @param rate  how the joints moved until the segment stopped; null where it did not decide a stop
   [[nodiscard]] ReferencePatch patch(int digit, int k, const DigitAngles& angle,
                                      const DigitAngles* rate) const;
-  /// (p_gdp - p_hcp) . n_c [m].
+  /// How deep the record's point is behind its plane: (p_gdp - p_hcp) . n_c, or along the way [m].
   [[nodiscard]] double penetration(int digit, int k, const ReferenceRecord& record, const DigitAngles& gdp,
                                    const DigitAngles& hcp) const;
-  /// d0 of a new record of segment k: rule 3. `hcp` is the HCP at this moment of the tick.
+  /// Whether a segment nearer the palm than k pushes.
+  [[nodiscard]] bool nearer_pushes(int digit, int k, const DigitAngles& gdp, const DigitAngles& hcp,
+                                   const ReferenceState& at) const;
+  /// Whether a segment of the digit crosses the object at these angles.
+  [[nodiscard]] bool goes_through(int digit, const DigitAngles& angle) const;
+  /// d0 of a new record of segment k: rule 3. `hcp` is the HCP at this moment of the tick, `hcp_end` at its
+  /// end.
   [[nodiscard]] double offset(int digit, int k, const ReferenceRecord& fresh, const DigitAngles& gdp,
-                              const DigitAngles& hcp, const ReferenceState& at) const;
+                              const DigitAngles& hcp, const DigitAngles& hcp_end,
+                              const ReferenceState& at) const;
   /// Forces of `at`'s records between its GDP and its HCP.
   [[nodiscard]] ReferenceCommand command(const ReferenceState& at, const ForceLawParameters& law,
                                          const LimitParameters& limits) const;

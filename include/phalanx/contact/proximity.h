@@ -19,6 +19,9 @@ struct PlacedSegment {
 /// cross. Real-time: no allocation, lock, throw or I/O.
 [[nodiscard]] double distance(const PlacedSegment& segment, const ObjectTree& object, double cap) noexcept;
 
+/// Whether the surfaces of the segment and the object cross or touch. Real-time.
+[[nodiscard]] bool crosses(const PlacedSegment& segment, const ObjectTree& object) noexcept;
+
 /// A lower bound on that distance, at most `cap` [m]: as a rule 0.8 of it or more; less, down to 0, where 256
 /// pairs of triangles do not settle it. Found much sooner. Real-time.
 [[nodiscard]] double distance_bound(const PlacedSegment& segment, const ObjectTree& object,
@@ -36,6 +39,8 @@ struct ContactPatch {
       Vec3::Zero();  ///< the object's interpolated normal there, on the side of `direction`, unit; at a
                      ///< crease the direction between its faces' normals that is nearest to `direction`; W
   int pairs = 0;     ///< 0: nothing is within the cap
+  Vec3 lead = Vec3::Zero();  ///< closest point on the segment of the pair that closes fastest, W [m]
+  Vec3 lead_direction = Vec3::Zero();  ///< of that pair; zero if none closes, or no motion was given; W
 };
 
 /// Pairs whose distance is within `kPatchBand` of the least, in the trees' fixed order, so that a flat touch
