@@ -310,6 +310,7 @@ void add_run_command(CLI::App& app, Job& job) {
   run->callback([options, run, port, &job] {
     refuse_empty_values(*run);
     options->port_stated = port->count() > 0;
+    check_page_options(*options);
     job = [options] {
       end_on_signal();
       const mesh::IsolationHelper helper;  // while there are no threads yet, and little memory

@@ -19,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_loopback(const std::string& address) {
-  return address.starts_with("127.") || address == "localhost" || address == "::1";
-}
-
-bool is_wildcard(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
-
 /// An installed program's page, or that of the source tree.
 fs::path site_folder() {
   const fs::path data = data_folder();
@@ -42,13 +36,10 @@ fs::path own_certificates() {
 }
 
 void secure(const RunOptions& o, WebServerSettings& settings) {
-  if (o.certificate.empty() != o.key.empty())
-    throw std::invalid_argument(
-        "--tls-cert and --tls-key: give both, or neither for a certificate of our own");
   if (o.certificate.empty()) {
     std::vector<std::string> names = machine_names();
     for (const std::string& address : machine_addresses()) names.push_back(address);
-    if (!is_wildcard(o.listen)) names.push_back(o.listen);
+    for (const std::string& address : reachable_addresses(o.listen)) names.push_back(address);
     const CertificateFiles own = make_self_signed_certificate(own_certificates(), names);
     settings.certificate = own.certificate;
     settings.key = own.key;
@@ -74,11 +65,6 @@ WebServerSettings server_settings(const RunOptions& o) {
   return settings;
 }
 
-std::vector<std::string> urls(const RunOptions& o, const WebServer& server, const std::string& token) {
-  if (is_wildcard(o.listen)) return lan_urls(server.port(), token);
-  return {token.empty() ? server.url() : fmt::format("{}?token={}", server.url(), token)};
-}
-
 CockpitSettings cockpit_settings(const RunOptions& o) {
   CockpitSettings settings;
   settings.log = o.audit;
@@ -92,8 +78,8 @@ CockpitSettings cockpit_settings(const RunOptions& o) {
 struct RunPage::Parts {
   Parts(const RunOptions& o, StationHost& host)
       : settings(server_settings(o)), cockpit(host, cockpit_settings(o)), server(settings, cockpit) {
-    cockpit.attach(
-        server, is_loopback(o.listen) ? std::vector<std::string>() : urls(o, server, settings.viewer_token));
+    cockpit.attach(server, is_loopback(o.listen) ? std::vector<std::string>()
+                                                 : lan_urls(o.listen, server.port(), settings.viewer_token));
   }
 
   void introduce(const RunOptions& o) const {
@@ -111,21 +97,38 @@ struct RunPage::Parts {
   }
 
   void introduce_to_the_network(const RunOptions& o) const {
-    const std::vector<std::string> to_operate = urls(o, server, settings.operator_token);
+    const std::vector<std::string> to_operate = lan_urls(o.listen, server.port(), settings.operator_token);
     for (const std::string& url : to_operate) fmt::print("Cockpit, to operate:  {}\n", url);
-    for (const std::string& url : urls(o, server, settings.viewer_token))
+    for (const std::string& url : lan_urls(o.listen, server.port(), settings.viewer_token))
       fmt::print("Cockpit, to look on:  {}\n", url);
     if (o.certificate.empty())
       fmt::print(
           "  the browser asks once whether to trust this machine; its certificate's SHA-256 is\n  {}\n",
           certificate_fingerprint(settings.certificate));
-    if (!to_operate.empty()) fmt::print("{}", qr_text(to_operate.front()));
+    if (to_operate.empty())
+      fmt::print("Cockpit: no other computer reaches this one; connect it to a network and start again\n");
+    else
+      fmt::print("{}", qr_text(to_operate.front()));
   }
 
   const WebServerSettings settings;
   Cockpit cockpit;
   WebServer server;
 };
+
+void check_page_options(const RunOptions& o) {
+  if (o.certificate.empty() != o.key.empty())
+    throw std::invalid_argument(
+        "--tls-cert and --tls-key: give both, or neither for a certificate of our own");
+  if (!o.certificate.empty() && (o.headless || is_loopback(o.listen))) {
+    throw std::invalid_argument(fmt::format(
+        "--tls-cert {}: {}, so no certificate is used; add --listen ADDRESS, such as 0.0.0.0, or leave "
+        "--tls-cert and --tls-key out",
+        o.certificate,
+        o.headless ? "--headless runs without the page"
+                   : fmt::format("on {} the page is for this computer alone, without TLS", o.listen)));
+  }
+}
 
 RunPage::RunPage(const RunOptions& options, StationHost& host)
     : parts_(std::make_unique<Parts>(options, host)) {

@@ -9,6 +9,9 @@
 
 namespace phalanx {
 
+/// @throws std::invalid_argument  options of the page that contradict each other, and what to type instead
+void check_page_options(const RunOptions& options);
+
 /// The cockpit of `phalanx run`, from the making of its server to its end.
 class RunPage {
  public:

@@ -92,7 +92,7 @@ void Cockpit::received(PageId page, std::string_view bytes) {
   try {
     parts_->obey(page, message);
   } catch (const std::exception& refused) {  // what is refused ends nothing
-    parts_->reply(page, message.request(), without_option(refused.what()));
+    parts_->reply(page, message.request(), parts_->for_pages(refused.what()));
   }
 }
 

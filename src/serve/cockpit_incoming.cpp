@@ -123,7 +123,7 @@ void Cockpit::Parts::ask_host(PageId page, const wire::ToHost& message) {
 
 void Cockpit::Parts::answered(PageId page, std::uint32_t number, const std::string& who,
                               const PageRequest& asked, const ChangeOutcome& outcome) {
-  const std::string refused = without_option(outcome.refused);
+  const std::string refused = for_pages(outcome.refused);
   reply(page, number, refused);
   if (outcome.overtaken) return;  // it was no change; the newer one is told
   if (!refused.empty()) {

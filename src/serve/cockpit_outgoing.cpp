@@ -73,6 +73,10 @@ void Cockpit::Parts::reply(PageId page, std::uint32_t request, const std::string
   server->send(page, encoded(message));
 }
 
+std::string Cockpit::Parts::for_pages(const std::string& text) const {
+  return without_option(without_folder(text, shipped));
+}
+
 void Cockpit::Parts::welcome(PageId page) {
   const Seat& seat = *seats.find(page);
   wire::ToPage message;
@@ -105,6 +109,7 @@ Bytes Cockpit::Parts::state_now() {
   wire::ToPage message;
   wire::State& state = *message.mutable_state();
   write_state(host, state);
+  state.set_trouble(for_pages(state.trouble()));
   if (state.has_fault() && state.fault().time() == reported)
     state.mutable_fault()->set_report(as_utf8(report));
   write_seats(seats, now(), state);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "phalanx/cockpit.pb.h"
+#include "phalanx/scene/data_paths.h"
 #include "phalanx/serve/cockpit.h"
 #include "serve/audit_log.h"
 #include "serve/page_requests.h"
@@ -42,6 +44,8 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
             const std::string& text);
   void tell_one(PageId page, const std::string& code, const std::string& text);
   void reply(PageId page, std::uint32_t request, const std::string& refused);
+  /// A message of the station in a page's words: without options, and without the folder of the installation.
+  [[nodiscard]] std::string for_pages(const std::string& text) const;
   void welcome(PageId page);
   void turn_away(PageId page, std::uint32_t protocol);
   [[nodiscard]] Bytes state_now();
@@ -71,6 +75,7 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
   AuditLog log;
   Seats seats;
   wire::Welcome choices;  ///< without what differs from page to page
+  const std::filesystem::path shipped = data_folder();
   std::map<PageId, Pace> greeted;
   std::map<PageId, double> waiting;              ///< for their hello, since [s]
   std::map<std::string, double> stops_told;      ///< a speaker's newest, for kStopToldEvery [s]

@@ -70,6 +70,14 @@ std::string shortened(std::string text, std::size_t bytes) {
   return text + "...";
 }
 
+std::string without_folder(std::string text, const std::filesystem::path& folder) {
+  for (const std::string& written : {(folder / "").string(), (folder / "").lexically_normal().string()}) {
+    for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at))
+      text.erase(at, written.size());
+  }
+  return text;
+}
+
 std::string without_option(std::string refusal) {
   constexpr std::string_view kOption = "--set ";
   if (refusal.starts_with(kOption)) refusal.erase(0, kOption.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,10 @@ namespace phalanx {
 /// At most `bytes`, cut at a whole character of UTF-8, "..." at the end where something is missing.
 /// @pre bytes >= 3
 [[nodiscard]] std::string shortened(std::string text, std::size_t bytes);
+
+/// The text with the files below a folder named from there on: "/usr/share/phalanx/scenes/x.toml:3" becomes
+/// "scenes/x.toml:3".
+[[nodiscard]] std::string without_folder(std::string text, const std::filesystem::path& folder);
 
 /// A refusal without the option that a page never typed: "--set KEY=VALUE: ..." becomes "KEY=VALUE: ...".
 [[nodiscard]] std::string without_option(std::string refusal);

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <string>
+#include <tuple>
 
+#include "phalanx/scene/data_paths.h"
 #include "serve/cockpit_fixture.h"
 #include "serve/full_disk.h"
 
@@ -12,6 +14,7 @@ namespace phalanx {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -367,6 +370,19 @@ TEST_F(CockpitTest, ChangesAreMadeToldAndLoggedAndWhatIsRefusedSaysWhy) {
   EXPECT_EQ(logged("set"), 1U);
   EXPECT_EQ(logged("refused"), 1U);
   EXPECT_EQ(logged("scene"), 1U);
+}
+
+// Both refusals name a shipped file.
+TEST_F(CockpitTest, ARefusalDoesNotShowWhereTheProgramIsInstalled) {
+  Page page(port());
+  for (const auto& [key, value, named] :
+       {std::tuple{"hand.profile", "nobody-has-it", "assets/profiles/nobody-has-it.toml"},
+        std::tuple{"smoothing.min_n", "-0.1", "scenes/first_touch.toml"}}) {
+    const wire::Reply refused = page.set(key, value);
+    EXPECT_FALSE(refused.ok());
+    EXPECT_THAT(refused.error(), AllOf(HasSubstr(named), Not(HasSubstr(data_folder().string()))));
+    EXPECT_THAT(page.notice("refused").text(), Not(HasSubstr(data_folder().string())));
+  }
 }
 
 TEST_F(CockpitTest, AValueThatWasOvertakenIsNoChange) {

@@ -58,6 +58,13 @@ TEST(PlainText, IsCutAtAWholeCharacter) {
   EXPECT_EQ(shortened("手手手", 5), "...");
 }
 
+TEST(PlainText, NamesFilesBelowAFolderFromThereOn) {
+  EXPECT_EQ(without_folder("/opt/x/scenes/a.toml:3: no; see /opt/x/scenes/b.toml, /opt/xy/c", "/opt/x"),
+            "scenes/a.toml:3: no; see scenes/b.toml, /opt/xy/c");
+  EXPECT_EQ(without_folder("/opt/y/../x/a and /opt/x/b", "/opt/y/../x"), "a and b");
+  EXPECT_EQ(without_folder("/opt/x/", "/opt/x"), "");
+}
+
 /// A decoder of its own: what is left is the same after another pass, whatever the bytes were.
 TEST(PlainText, OfAnyBytesAnotherPassChangesNothing) {
   constexpr unsigned kSeed = 20260504;

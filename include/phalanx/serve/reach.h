@@ -19,9 +19,17 @@ namespace phalanx {
 /// Addresses of the machine's interfaces that are up, without loopback and link-local ones; IPv4 first.
 [[nodiscard]] std::vector<std::string> machine_addresses();
 
-/// "https://192.0.2.2:8480/?token=...", for each of machine_addresses(); without the query if the token is
+/// @returns true if only this machine reaches a server that listens there: "localhost", 127/8 or ::1
+[[nodiscard]] bool is_loopback(const std::string& address);
+
+/// Addresses at which a server that listens on `address` answers other machines: of machine_addresses() those
+/// of IPv4 for 0.0.0.0, all for ::; else the address itself.
+[[nodiscard]] std::vector<std::string> reachable_addresses(const std::string& address);
+
+/// "https://192.0.2.2:8480/?token=...", for each of reachable_addresses(); without the query if the token is
 /// empty.
-[[nodiscard]] std::vector<std::string> lan_urls(std::uint16_t port, const std::string& token);
+[[nodiscard]] std::vector<std::string> lan_urls(const std::string& address, std::uint16_t port,
+                                                const std::string& token);
 
 /// What to type at the other end to reach a port of this machine's loopback: "ssh -L 8480:127.0.0.1:8480
 /// user@host", host being the address that the SSH session of the environment (SSH_CONNECTION) came in by.

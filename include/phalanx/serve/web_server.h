@@ -83,9 +83,9 @@ struct WebServerSettings {
   std::filesystem::path site;         ///< folder of the built front-end; read once, into memory
   std::string site_missing;           ///< what to show at / if it is not there (with 503)
 
-  std::filesystem::path certificate;  ///< PEM, with its chain; with key: TLS, 1.2 at least
-  std::filesystem::path key;
-  std::string operator_token;  ///< empty: everybody who gets through is let in (loopback only)
+  std::filesystem::path certificate;  ///< PEM, with its chain; with key: TLS, 1.2 at least, without CBC
+  std::filesystem::path key;          ///< PEM; only its owner may read or write it (mode 0600)
+  std::string operator_token;         ///< empty: everybody who gets through is let in (loopback only)
   std::string viewer_token;  ///< lets in those who may only look; both: 16 letters, digits, '-', '_' or more
 
   double frame_rate_hz = 60.0;
@@ -111,8 +111,11 @@ struct WebServerSettings {
 /// One thread, SCHED_OTHER with nice 5 (the loop comes first), all signals blocked. Doors in this order, each
 /// with its own refusal in plain words (but for the first):
 ///   - more than `unproven_connections` that have asked for nothing yet: the oldest is closed;
-///   - Host: a name of this machine's, localhost, or an address that we listen on, any port (an SSH tunnel
-///     has another): else 421, which stops DNS rebinding;
+///   - framing: Host, Origin, Content-Length, Transfer-Encoding and the WebSocket's key and version at most
+///     once, a Transfer-Encoding only of "chunked" and in HTTP/1.1: else 400, and the connection ends;
+///   - Host: localhost, a loopback address or the address of the connection, any port (an SSH tunnel has
+///     another); where other machines reach the server, also this machine's names and addresses: else 421,
+///     which stops DNS rebinding;
 ///   - form: GET, HEAD or POST (405), an address of at most 2048 bytes (414) that can be read in one way only
 ///     (400: no "..", no "//", no encoded '/', ...), a head of at most header_limit (431);
 ///   - token, where there is one: in the query (?token=...) of the first request, which sets a cookie
@@ -120,7 +123,8 @@ struct WebServerSettings {
 ///     WebSocket or a POST may bring it so itself; compared in constant time; else 403;
 ///   - no place among the `connections`: 503;
 ///   - Origin, for WebSockets and POST: "http(s)://" + Host, exactly; else 403;
-///   - a WebSocket may be asked for at any path; another upgrade: 400;
+///   - a WebSocket may be asked for at any path; another upgrade, or a key that is not 16 bytes in base64:
+///     400;
 ///   - files: an exact path out of the list read at the start, so that no path leads out of the folder;
 ///   - a body: only for what is no file, and no longer than the application allows (413); more than 64 KiB
 ///     of at most two at once (503).

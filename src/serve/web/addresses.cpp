@@ -81,10 +81,29 @@ std::vector<std::string> machine_addresses() {
   return v4;
 }
 
-std::vector<std::string> lan_urls(std::uint16_t port, const std::string& token) {
+bool is_loopback(const std::string& address) {
+  in_addr v4{};
+  if (::inet_pton(AF_INET, address.c_str(), &v4) == 1) return ntohl(v4.s_addr) >> 24U == IN_LOOPBACKNET;
+  in6_addr v6{};
+  if (::inet_pton(AF_INET6, address.c_str(), &v6) == 1) return IN6_IS_ADDR_LOOPBACK(&v6);
+  return address == "localhost";
+}
+
+std::vector<std::string> reachable_addresses(const std::string& address) {
+  in_addr v4{};
+  in6_addr v6{};
+  const bool all_v4 = ::inet_pton(AF_INET, address.c_str(), &v4) == 1 && v4.s_addr == INADDR_ANY;
+  const bool all = ::inet_pton(AF_INET6, address.c_str(), &v6) == 1 && IN6_IS_ADDR_UNSPECIFIED(&v6);
+  if (!all_v4 && !all) return {address};
+  std::vector<std::string> addresses = machine_addresses();
+  if (all_v4) std::erase_if(addresses, is_v6);
+  return addresses;
+}
+
+std::vector<std::string> lan_urls(const std::string& address, std::uint16_t port, const std::string& token) {
   std::vector<std::string> urls;
-  for (const std::string& address : machine_addresses()) {
-    const std::string host = is_v6(address) ? "[" + address + "]" : address;
+  for (const std::string& reached : reachable_addresses(address)) {
+    const std::string host = is_v6(reached) ? "[" + reached + "]" : reached;
     urls.push_back(fmt::format("https://{}:{}/{}", host, port, token.empty() ? "" : "?token=" + token));
   }
   return urls;

@@ -100,6 +100,16 @@ TokenDoor::Verdict TokenDoor::judge(std::string_view query, std::string_view coo
                   "it printed when it started, or scan its code. If you just did, reload this page.");
 }
 
+bool is_websocket_key(std::string_view key) noexcept {
+  constexpr std::size_t kDigits = 22;  // of 6 bits each; the last one holds 2 bits of the key
+  constexpr std::string_view kPadding = "==";
+  const auto is_digit = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '/';
+  };
+  return key.size() == kDigits + kPadding.size() && key.ends_with(kPadding) &&
+         std::all_of(key.begin(), key.begin() + kDigits, is_digit);
+}
+
 std::optional<Reply> origin_refusal(std::string_view origin, std::string_view host, bool tls) {
   if (origin == fmt::format("{}://{}", tls ? "https" : "http", host)) return std::nullopt;
   return sentence(403,

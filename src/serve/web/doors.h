@@ -16,7 +16,8 @@ namespace phalanx::web {
 /// a port. Small letters, no dot at the end, no brackets.
 [[nodiscard]] std::optional<std::string> host_name(std::string_view host);
 
-/// The names that a browser may have called us by: what stops a page of somebody's whose name now leads here.
+/// The names in a Host field that are accepted. A page of another site whose name resolves to this machine
+/// (DNS rebinding) sends its own name and is refused.
 class HostDoor {
  public:
   explicit HostDoor(std::set<std::string> names) : names_(std::move(names)) {}
@@ -56,6 +57,9 @@ class TokenDoor {
 
 /// Whether two texts are the same, in a time that does not tell where they differ.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
+
+/// A Sec-WebSocket-Key as RFC 6455 has it: 16 bytes in base64. @returns true if it is one
+[[nodiscard]] bool is_websocket_key(std::string_view key) noexcept;
 
 /// Exactly the page's own origin.
 [[nodiscard]] std::optional<Reply> origin_refusal(std::string_view origin, std::string_view host, bool tls);

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "phalanx/serve/reach.h"
 #include "serve/web/http_session.h"
 #include "serve/web/names.h"
 #include "serve/web/page_session.h"

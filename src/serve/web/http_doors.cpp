@@ -2,6 +2,7 @@
 // Which requests get in.
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 #include <variant>
 
@@ -12,16 +13,40 @@ namespace {
 
 constexpr std::size_t kLongestTarget = 2048;  // [bytes]
 constexpr std::size_t kShare = 16;            // one in so many of all places
+constexpr unsigned kHttp11 = 11;              // as Beast counts versions
+constexpr std::array kOnlyOnce{http::field::host,
+                               http::field::origin,
+                               http::field::content_length,
+                               http::field::transfer_encoding,
+                               http::field::sec_websocket_key,
+                               http::field::sec_websocket_version};
 
 }  // namespace
 
 std::string HttpSession::field(http::field name) const { return std::string(parser_->get()[name]); }
 
-bool HttpSession::pass_host() {
-  if (parser_->get().count(http::field::host) > 1) {
-    refuse(sentence(400, "This request names two hosts."));
+// Where a request ends and what it means must be beyond doubt: a server in between that reads it otherwise
+// would take a part of its body for the next request. So the connection ends with such a one.
+bool HttpSession::pass_framing() {
+  const auto& head = parser_->get();
+  for (const http::field once : kOnlyOnce) {
+    if (head.count(once) <= 1) continue;
+    exchange_.keep_alive = false;
+    answer(sentence(400, fmt::format("This request has the field {} more than once; send it once.",
+                                     std::string(http::to_string(once)))));
     return false;
   }
+  if (head.count(http::field::transfer_encoding) == 0) return true;
+  const bool chunked = beast::iequals(head[http::field::transfer_encoding], "chunked");
+  if (chunked && head.version() >= kHttp11) return true;
+  exchange_.keep_alive = false;
+  answer(sentence(400,
+                  "This Transfer-Encoding is not understood. Send the body with a Content-Length or, in "
+                  "HTTP/1.1, \"chunked\" and nothing else."));
+  return false;
+}
+
+bool HttpSession::pass_host() {
   const std::string host = field(http::field::host);
   if (const auto refusal = house_.host_door.refusal(host, reached_)) {
     refuse(*refusal);
@@ -130,6 +155,10 @@ bool HttpSession::pass_upgrade() {
     Reply reply = sentence(426, "Only version 13 of the WebSocket protocol is understood here.");
     reply.fields.emplace_back(http::field::sec_websocket_version, "13");
     refuse(reply);
+    return false;
+  }
+  if (!is_websocket_key(field(http::field::sec_websocket_key))) {
+    refuse(sentence(400, "The Sec-WebSocket-Key of this request is not 16 bytes in base64."));
     return false;
   }
   // What a page says before it has been let in would be lost.

@@ -78,7 +78,8 @@ void HttpSession::on_head(error_code error, std::size_t /*bytes*/) {
   request_.method = std::string(head.method_string());
   request_.page_secret = std::string(head["X-Phalanx-Page"]);
   request_.body.clear();
-  if (!pass_host() || !pass_form() || !pass_token() || !pass_origin() || !pass_upgrade()) return;
+  if (!pass_framing() || !pass_host() || !pass_form() || !pass_token() || !pass_origin() || !pass_upgrade())
+    return;
   if (upgrade_) return become_page();
   if (const SiteFile* file = house_.site.find(request_.path)) return serve_file(*file);
   if (request_.path == "/") return refuse(sentence(503, house_.settings.site_missing));

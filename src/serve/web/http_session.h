@@ -33,6 +33,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void refuse_head(error_code error);
 
   // The doors, in their order. Each returns whether the request may go on; if not, it has been answered.
+  bool pass_framing();
   bool pass_host();
   bool pass_form();
   bool pass_token();

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "phalanx/serve/reach.h"
 #include "serve/web/boost.h"
-#include "serve/web/names.h"
 
 namespace phalanx::web {
 namespace {

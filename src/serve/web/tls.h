@@ -8,8 +8,10 @@
 
 namespace phalanx::web {
 
-/// TLS 1.2 and up with the settings' certificate; none if they name none.
-/// @throws WebServerError  a file that is none, or a key of another certificate's
+/// TLS 1.2 and up with the settings' certificate; none if they name none. Of the suites of TLS 1.2 those
+/// without CBC.
+/// @throws WebServerError  a file that cannot be read, a key of another certificate, a
+/// key file that is not its owner's alone
 [[nodiscard]] std::optional<net::ssl::context> tls_context(const WebServerSettings& settings);
 
 }  // namespace phalanx::web

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 #include <variant>
 
+#include "phalanx/serve/reach.h"
+#include "serve/web/names.h"
 #include "serve/web/reply.h"
 
 namespace phalanx::web {
@@ -71,6 +74,26 @@ TEST(SameSecret, IsTheWholeText) {
   EXPECT_FALSE(same_secret("abc", "abd"));
   EXPECT_FALSE(same_secret("abc", "abcd"));
   EXPECT_FALSE(same_secret("", "a"));
+}
+
+// The first is the example of RFC 6455, section 1.3.
+TEST(WebSocketKey, IsSixteenBytesInBase64) {
+  for (const char* key : {"dGhlIHNhbXBsZSBub25jZQ==", "AAAAAAAAAAAAAAAAAAAAAA==", "++++++++++//////////zw=="})
+    EXPECT_TRUE(is_websocket_key(key)) << key;
+  for (const char* key :
+       {"", "==", "dGhlIHNhbXBsZSBub25jZQ", "dGhlIHNhbXBsZSBub25jZQ=", "dGhlIHNhbXBsZSBub25jZQ===",
+        "AAAAAAAAAAAAAAAAAAAAA===", "AAAAAAAAAAAAAAAAAAAAAAA=", "AAAAAAAAAAAAAAAAAAAAAAAAAA==",
+        "AAAAAAAAAA-AAAAAAAAAAA==", "AAAAAAAAAA AAAAAAAAAAA==", "AAAAAAAAAA=AAAAAAAAAAA=="})
+    EXPECT_FALSE(is_websocket_key(key)) << key;
+}
+
+TEST(NamesOfServer, OnLoopbackAreNoNamesOfTheNetwork) {
+  for (const char* address : {"127.0.0.1", "localhost", "::1", "127.3.2.1"}) {
+    std::set<std::string> names{"localhost", "127.0.0.1", "::1"};
+    names.insert(address);
+    EXPECT_EQ(names_of_server(address), names);
+  }
+  for (const std::string& name : machine_names()) EXPECT_TRUE(names_of_server("0.0.0.0").contains(name));
 }
 
 TEST(OriginRefusal, TheSchemeIsTheConnectionsOwn) {

@@ -55,6 +55,8 @@ TEST_F(WebPages, OnlyTheSitesOwnPageBecomesOne) {
   EXPECT_EQ(status_of_upgrade(with(good, "Host: 127.0.0.1", "Host: evil.example")), 421);
   EXPECT_EQ(status_of_upgrade(with(good, "Version: 13", "Version: 8")), 426);
   EXPECT_EQ(status_of_upgrade(with(good, "Upgrade: websocket", "Upgrade: h2c")), 400);
+  EXPECT_EQ(status_of_upgrade(with(good, origin, origin + "Origin: http://evil.example\r\n")), 400);
+  EXPECT_EQ(status_of_upgrade(with(good, "dGhlIHNhbXBsZSBub25jZQ==", "dGhlIHNhbXBsZQ==")), 400);
   EXPECT_EQ(status_of_upgrade(good, "too early"), 400);
   EXPECT_THAT(application_.joined_pages(), IsEmpty());
   expect_alive();

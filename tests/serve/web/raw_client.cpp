@@ -49,9 +49,14 @@ RawClient::~RawClient() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-std::unique_ptr<RawClient> RawClient::secure(std::uint16_t port, const char* address) {
+std::unique_ptr<RawClient> RawClient::secure(std::uint16_t port, const char* address,
+                                             const char* tls12_suites) {
   auto client = std::make_unique<RawClient>(port, 0, address);
   client->context_.reset(SSL_CTX_new(TLS_client_method()));
+  if (tls12_suites != nullptr &&
+      (SSL_CTX_set_max_proto_version(client->context_.get(), TLS1_2_VERSION) != 1 ||
+       SSL_CTX_set_cipher_list(client->context_.get(), tls12_suites) != 1))
+    throw std::invalid_argument("no such suites");
   client->tls_.reset(SSL_new(client->context_.get()));
   SSL_set_fd(client->tls_.get(), client->descriptor_);
   if (SSL_connect(client->tls_.get()) != 1) throw std::runtime_error("no TLS handshake");

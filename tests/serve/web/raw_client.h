@@ -18,7 +18,9 @@ class RawClient {
   /// @param address         of this machine
   explicit RawClient(std::uint16_t port, int receive_buffer = 0, const char* address = "127.0.0.1");
   /// With TLS, whatever the certificate says. @throws std::runtime_error  no handshake
-  static std::unique_ptr<RawClient> secure(std::uint16_t port, const char* address = "127.0.0.1");
+  /// @param tls12_suites  an OpenSSL list: at most TLS 1.2, with these suites only; null: as OpenSSL has it
+  static std::unique_ptr<RawClient> secure(std::uint16_t port, const char* address = "127.0.0.1",
+                                           const char* tls12_suites = nullptr);
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
   ~RawClient();

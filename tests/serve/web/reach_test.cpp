@@ -70,11 +70,11 @@ TEST(RandomToken, IsAHundredAndTwentyEightBitsThatAreNeverTheSame) {
 }
 
 TEST(LanUrls, NameEveryAddressAndTheToken) {
-  const std::vector<std::string> urls = lan_urls(8480, "abc");
+  const std::vector<std::string> urls = lan_urls("::", 8480, "abc");
   EXPECT_EQ(urls.size(), machine_addresses().size());
   EXPECT_THAT(urls, Each(StartsWith("https://")));
   EXPECT_THAT(urls, Each(EndsWith(":8480/?token=abc")));
-  EXPECT_THAT(lan_urls(8480, ""), Each(EndsWith(":8480/")));
+  EXPECT_THAT(lan_urls("::", 8480, ""), Each(EndsWith(":8480/")));
   EXPECT_THAT(machine_addresses(), testing::Not(Contains("127.0.0.1")));
 }
 
@@ -128,9 +128,21 @@ TEST(MachineAddresses, AreThoseThatOthersReachIPv4First) {
                                {IFF_UP, "169.254.0.7"},
                                {IFF_UP, "169.253.0.7"}});
   EXPECT_THAT(machine_addresses(), ElementsAre("192.0.2.7", "169.253.0.7", "2001:db8::7"));
-  EXPECT_THAT(lan_urls(8480, "abc"),
+  EXPECT_THAT(lan_urls("::", 8480, "abc"),
               ElementsAre("https://192.0.2.7:8480/?token=abc", "https://169.253.0.7:8480/?token=abc",
                           "https://[2001:db8::7]:8480/?token=abc"));
+  EXPECT_THAT(lan_urls("0.0.0.0", 8480, "abc"),
+              ElementsAre("https://192.0.2.7:8480/?token=abc", "https://169.253.0.7:8480/?token=abc"))
+      << "a socket of IPv4 does not answer at an address of IPv6";
+  EXPECT_THAT(lan_urls("192.0.2.7", 8480, "abc"), ElementsAre("https://192.0.2.7:8480/?token=abc"));
+  EXPECT_THAT(lan_urls("2001:db8::7", 8480, ""), ElementsAre("https://[2001:db8::7]:8480/"));
+}
+
+TEST(IsLoopback, IsWhatOnlyThisMachineReaches) {
+  for (const char* address : {"127.0.0.1", "127.255.0.9", "::1", "0:0:0:0:0:0:0:1", "localhost"})
+    EXPECT_TRUE(is_loopback(address)) << address;
+  for (const char* address : {"", "0.0.0.0", "::", "128.0.0.1", "126.0.0.1", "127.0.0.1.evil.example", "::2"})
+    EXPECT_FALSE(is_loopback(address)) << address;
 }
 
 TEST(SshLine, IsForThoseWhoCameBySsh) {
@@ -296,6 +308,28 @@ TEST_F(Certificate, ASecretMayBeOneByteLong) {
   web::write_secret_file(folder_ / "secret", "x");
   EXPECT_EQ(text_of(folder_ / "secret"), "x");
   EXPECT_EQ(mode_of(folder_ / "secret"), 0600U);
+}
+
+TEST_F(Certificate, AKeyThatOthersMayReadOrWriteIsRefused) {
+  std::filesystem::create_directories(folder_);
+  const std::filesystem::path key = folder_ / "key.pem";
+  web::write_secret_file(key, "secret");
+  for (const mode_t mode : {0600U, 0400U}) {
+    ASSERT_EQ(::chmod(key.c_str(), mode), 0);
+    EXPECT_EQ(web::read_secret_file(key), "secret");
+  }
+  for (const mode_t mode : {0604U, 0602U, 0640U, 0620U, 0644U, 0666U}) {
+    ASSERT_EQ(::chmod(key.c_str(), mode), 0);
+    try {
+      static_cast<void>(web::read_secret_file(key));
+      ADD_FAILURE() << std::oct << mode;
+    } catch (const std::runtime_error& refused) {
+      EXPECT_THAT(refused.what(), testing::AllOf(testing::HasSubstr("chmod 600"), StartsWith(key.string())));
+    }
+  }
+  EXPECT_THROW(static_cast<void>(web::read_secret_file(folder_ / "none")), std::runtime_error);
+  web::write_secret_file(key, std::string(64 * 1024 + 1, 'x'));
+  EXPECT_THROW(static_cast<void>(web::read_secret_file(key)), std::runtime_error);
 }
 
 TEST_F(Certificate, SaysWhereItCannotBeWritten) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/serve/reach.h"
 #include "serve/web/page_client.h"
 #include "serve/web/web_fixture.h"
 
@@ -38,15 +39,22 @@ std::string with_host(const std::string& host) {
   return "GET / HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n";
 }
 
-TEST_F(WebRequests, ThisMachinesNamesAreLetIn) {
+TEST_F(WebRequests, LoopbackNamesAndAddressesAreLetIn) {
   start();
   for (const char* host :
        {"127.0.0.1", "127.0.0.1:8480", "localhost", "LOCALHOST:1", "localhost.", "[::1]:8480"}) {
     EXPECT_EQ(status_of(ask(with_host(host))), 200) << host;
   }
-  std::string name(256, '\0');
-  ASSERT_EQ(::gethostname(name.data(), name.size() - 1), 0);
-  EXPECT_EQ(status_of(ask(with_host(name.c_str()))), 200) << name;
+}
+
+// Another machine may answer to the name "this-one.local" in the local network, and lead its page here.
+TEST_F(WebRequests, OnLoopbackTheMachinesNetworkNamesAreNotLetIn) {
+  start();
+  std::vector<std::string> names = machine_names();
+  std::erase(names, "localhost");
+  for (const std::string& address : machine_addresses())
+    names.push_back(address.find(':') == std::string::npos ? address : "[" + address + "]");
+  for (const std::string& name : names) EXPECT_EQ(status_of(ask(with_host(name + ":8480"))), 421) << name;
 }
 
 TEST_F(WebRequests, OtherNamesAreNot) {
@@ -101,6 +109,32 @@ TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
   EXPECT_THAT(application_.joined_pages(), IsEmpty());
   EXPECT_EQ(status_of(ask(get("/" + std::string(2047, 'a')))), 404) << "2048 bytes are not too many";
   EXPECT_THAT(application_.requests(), testing::SizeIs(1));
+}
+
+// Whoever reads such a body otherwise than the server takes its end for a request. The answer is the only
+// one.
+TEST_F(WebRequests, ABodyWhoseEndIsInDoubtIsRefusedAndEndsTheConnection) {
+  echo();
+  application_.limit = 100;
+  start();
+  const std::string head = "POST /mesh HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\n";
+  const std::string hidden = "\r\n0\r\n\r\nGET /hidden HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+  for (const char* fields :
+       {"Transfer-Encoding: gzip\r\n", "Transfer-Encoding: identity\r\n", "Transfer-Encoding: xchunked\r\n",
+        "Transfer-Encoding: chunked, gzip\r\n", "Transfer-Encoding: gzip, chunked\r\n",
+        "Transfer-Encoding: chunked, chunked\r\n", "Transfer-Encoding: chunked;x=1\r\n",
+        "Transfer-Encoding:\r\n", "Transfer-Encoding: gzip\r\nTransfer-Encoding: chunked\r\n",
+        "Transfer-Encoding: gzip\r\nContent-Length: 3\r\n", "Content-Length: 5\r\nContent-Length: 5\r\n"}) {
+    const std::string answer = ask(head + fields + hidden);
+    EXPECT_EQ(status_of(answer), 400) << fields;
+    EXPECT_EQ(answer.rfind("HTTP/1.1 "), 0U) << fields << answer;
+  }
+  std::string old = post("/mesh", "Transfer-Encoding: chunked\r\n") + "0\r\n\r\n";
+  old.replace(old.find("HTTP/1.1"), 8, "HTTP/1.0");
+  EXPECT_EQ(status_of(ask(old)), 400) << "HTTP/1.0 has no chunks";
+  EXPECT_THAT(application_.requests(), IsEmpty());
+  EXPECT_EQ(status_of(ask(post("/mesh", "Transfer-Encoding: Chunked\r\n") + "0\r\n\r\n")), 200);
+  expect_alive();
 }
 
 TEST_F(WebRequests, AHeadHasALimit) {
@@ -190,6 +224,7 @@ TEST_F(WebRequests, APostComesFromThePageItself) {
   EXPECT_EQ(from("Origin: http://localhost\r\n"), 403);
   EXPECT_EQ(from("Origin: https://localhost:8480\r\n"), 403);
   EXPECT_EQ(from("Origin: http://localhost:8480.evil.example\r\n"), 403);
+  EXPECT_EQ(from("Origin: http://localhost:8480\r\nOrigin: http://evil.example\r\n"), 400);
 }
 
 TEST_F(WebRequests, AnAnswerMayComeLaterFromAnyThreadAndOnce) {

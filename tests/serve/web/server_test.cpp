@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <functional>
@@ -133,6 +134,9 @@ TEST_F(WebServing, ACertificateIsOneAndItsKeyIsItsOwn) {
   EXPECT_EQ(refusal(), "");
   settings_.key = make_self_signed_certificate(folder_ / "others", {}).key;
   EXPECT_THAT(refusal(), HasSubstr("belongs to"));
+  with_certificate();
+  ASSERT_EQ(::chmod(settings_.key.c_str(), 0640), 0);
+  EXPECT_THAT(refusal(), HasSubstr("others than its owner may read or write it (mode 0640)"));
 }
 
 TEST_F(WebServing, LimitsAreSensible) {

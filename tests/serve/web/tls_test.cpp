@@ -160,6 +160,15 @@ TEST_F(WebTls, ALineThatTurnsIntoNoiseEndsWithoutAReset) {
   EXPECT_EQ(got, 0);
 }
 
+TEST_F(WebTls, OfTls12OnlySuitesWithoutCbcAreTaken) {
+  start();
+  for (const char* suites : {"ECDHE-ECDSA-AES128-GCM-SHA256", "ECDHE-ECDSA-CHACHA20-POLY1305"})
+    EXPECT_NO_THROW((void)RawClient::secure(port(), "127.0.0.1", suites)) << suites;
+  for (const char* suites :
+       {"ECDHE-ECDSA-AES128-SHA256", "ECDHE-ECDSA-AES256-SHA384", "ECDHE-ECDSA-AES128-SHA"})
+    EXPECT_THROW((void)RawClient::secure(port(), "127.0.0.1", suites), std::runtime_error) << suites;
+}
+
 TEST_F(WebTls, PlainHttpGetsNothing) {
   start();
   EXPECT_EQ(status_of(phalanx::ask(port(), get("/?token=" + settings_.operator_token))), 0);
