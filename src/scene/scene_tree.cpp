@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/key_table.h"
+#include "scene/toml_bounds.h"
 
 namespace phalanx {
 namespace {
@@ -35,7 +36,7 @@ std::optional<std::size_t> as_index(std::string_view part) {
 /// The value as TOML; as a string if it is none.
 toml::table parse_value(const std::string& value, const std::string& origin) {
   try {
-    toml::table table = toml::parse("v = " + value, origin);
+    toml::table table = parse_bounded_toml("v = " + value, origin);
     if (table.size() == 1) return table;
   } catch (const toml::parse_error&) {
   }
@@ -99,6 +100,9 @@ void SceneTree::apply(const std::string& key, const std::string& value) {
   make_paths_absolute(leaf, pattern_of(key));
 
   const std::vector<std::string> parts = split(key);
+  if (parts.size() > kMostKeyParts)
+    throw SceneError(fmt::format("--set {:.40}...: the key has {} parts; a key has at most {}", key,
+                                 parts.size(), kMostKeyParts));
   toml::node* at = &root_;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].empty())

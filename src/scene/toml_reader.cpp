@@ -12,6 +12,7 @@
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
+#include "scene/toml_bounds.h"
 
 namespace phalanx {
 
@@ -51,9 +52,14 @@ std::string read_text_file(const std::string& path, const std::string& what) {
   return text;
 }
 
+toml::table parse_bounded_toml(const std::string& text, const std::string& origin) {
+  check_toml_bounds(text, origin);
+  return toml::parse(text, origin);
+}
+
 toml::table parse_toml(const std::string& text, const std::string& origin) {
   try {
-    return toml::parse(text, origin);
+    return parse_bounded_toml(text, origin);
   } catch (const toml::parse_error& error) {
     throw SceneError(fmt::format("{}:{}: not valid TOML: {}; correct this line", origin,
                                  error.source().begin.line, error.description()));

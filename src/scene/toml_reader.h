@@ -36,7 +36,11 @@ struct NumberRange {
 /// is).
 [[nodiscard]] std::string read_text_file(const std::string& path, const std::string& what);
 
-/// Parses TOML. @throws SceneError with file, line and what is wrong.
+/// Parses TOML of bounded depth: all TOML that does not stand in the source goes through here.
+/// @throws toml::parse_error  not TOML; SceneError  beyond check_toml_bounds()
+[[nodiscard]] toml::table parse_bounded_toml(const std::string& text, const std::string& origin);
+
+/// The same. @throws SceneError with file, line and what is wrong.
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& origin);
 
 /// A value as it would stand in a file, shortened.

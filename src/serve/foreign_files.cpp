@@ -58,7 +58,7 @@ bool holds_foreign(const toml::node& node, const std::string& pattern, const fs:
 bool names_foreign_file(const std::string& key, const std::string& value, const fs::path& uploads) {
   const std::string pattern = pattern_of(key);
   try {
-    const toml::table parsed = toml::parse("v = " + value);
+    const toml::table parsed = parse_bounded_toml("v = " + value, key);
     if (parsed.size() == 1) return holds_foreign(*parsed.get("v"), pattern, uploads);
   } catch (const toml::parse_error&) {  // then it is text as it stands
   }
