@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <malloc.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/end_with.h"
 #include "mesh/pipe_io.h"
 
 namespace phalanx::mesh {
@@ -47,13 +47,6 @@ rlim_t address_space() {
     std::fclose(file);
   }
   return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
-}
-
-/// A child whose parent is killed would wait for ever for somebody to read what it writes, and keep every
-/// file of the parent open, with its locks.
-void end_with(pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);  // it was gone before that
 }
 
 /// Assimp clears a buffer of 16 MB for each file that it reads. In pages of 2 MB at the heap's end, where

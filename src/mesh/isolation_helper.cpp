@@ -12,11 +12,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
-#include <optional>
+#include <ctime>
 #include <stdexcept>
 #include <system_error>
 
+#include "mesh/end_with.h"
 #include "mesh/pipe_io.h"
 
 namespace phalanx::mesh {
@@ -26,6 +28,7 @@ constexpr std::uint64_t kMostInput = std::uint64_t{2} << 30;  // [bytes]
 constexpr std::uint64_t kMostWords = std::uint64_t{1} << 16;  // of an origin or a refusal [bytes]
 constexpr double kPatience = 60.0;                            // for input and answer to get through [s]
 constexpr int kNice = 5;  // below the loop where it has no better scheduling
+constexpr timespec kBetweenHelpers{.tv_sec = 0, .tv_nsec = 100'000'000};  // one that cannot live costs little
 
 /// The program's end of the line to its helper; -1: it has none.
 std::atomic<int> the_helper{-1};
@@ -101,20 +104,16 @@ void do_job(const Job& job, int fd) {
   }
 }
 
-[[noreturn]] void serve(int line, pid_t program) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != program) ::_exit(0);  // it was gone before that
+/// The helper: forks once for each job.
+[[noreturn]] void serve(int line, pid_t supervisor) {
+  end_with(supervisor);
   ::prctl(PR_SET_NAME, "phalanx-helper");
-  ::setpriority(PRIO_PROCESS, 0, kNice);
-  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches the whole group; the program decides
-  std::signal(SIGTERM, SIG_DFL);
-  std::signal(SIGCHLD, SIG_IGN);  // nobody asks how a job's process ended
+  std::signal(SIGCHLD, SIG_IGN);  // the end of a job's process needs no answer
   Job job;
   for (int fd = receive_job(line, job); fd >= 0; fd = receive_job(line, job)) {
     const pid_t helper = ::getpid();
     if (::fork() == 0) {
-      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-      if (::getppid() != helper) ::_exit(0);
+      end_with(helper);
       std::signal(SIGCHLD, SIG_DFL);
       do_job(job, fd);
       ::_exit(0);
@@ -124,18 +123,55 @@ void do_job(const Job& job, int fd) {
   ::_exit(0);
 }
 
-/// @returns what came of it; nothing: there is no helper that could be asked
-/// @throws std::invalid_argument  refused, as run_isolated_text()
+/// To standard error in one piece, so that it stays one line beside what the program writes.
+void tell_of_end(int status) {
+  const bool killed = WIFSIGNALED(status);
+  std::array<char, 160> line{};
+  const int length =
+      std::snprintf(line.data(), line.size(),
+                    "phalanx: the process that reads meshes was ended (%s %d); another one "
+                    "takes its place\n",
+                    killed ? "signal" : "exit code", killed ? WTERMSIG(status) : WEXITSTATUS(status));
+  write_all(STDERR_FILENO, line.data(), static_cast<std::size_t>(length));
+}
+
+/// Keeps one helper alive as long as the program lives. Jobs that are sent meanwhile wait in the line.
+[[noreturn]] void supervise(int line, pid_t program) {
+  end_with(program);
+  ::prctl(PR_SET_NAME, "phalanx-superv");
+  ::setpriority(PRIO_PROCESS, 0, kNice);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches the whole group; the program decides
+  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGPIPE, SIG_IGN);  // standard error may be closed
+  const pid_t supervisor = ::getpid();
+  for (;;) {
+    const pid_t helper = ::fork();
+    if (helper == 0) serve(line, supervisor);
+    int status = 0;
+    while (helper > 0 && ::waitpid(helper, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (helper > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) ::_exit(0);  // the program has ended
+    if (helper > 0) tell_of_end(status);
+    ::nanosleep(&kBetweenHelpers, nullptr);
+  }
+}
+
+/// @throws std::invalid_argument  refused, as run_isolated_text(), or no process could be asked
 template <typename Result>
-std::optional<Result> ask_helper(const Job& job, const std::string& input, const std::string& origin) {
-  const int line = the_helper.load();
+Result ask_helper(const Job& job, const std::string& input, const std::string& origin) {
   std::array<int, 2> ends{};
-  if (line < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return std::nullopt;
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw std::invalid_argument(origin + ": no socket for the reader (" + std::strerror(errno) +
+                                "); close other programs");
   const Descriptor ours(ends[0]);
   Descriptor theirs(ends[1]);
-  if (!send_job(line, job, theirs.get())) return std::nullopt;
+  if (!send_job(the_helper.load(), job, theirs.get()))
+    throw std::invalid_argument(origin +
+                                ": the processes that read meshes were ended from outside; end this program "
+                                "and start it again");
   theirs.close();
-  if (!write_sequence(ours.get(), origin) || !write_sequence(ours.get(), input)) return std::nullopt;
+  // What cannot be written is noticed when the answer is read.
+  if (write_sequence(ours.get(), origin)) write_sequence(ours.get(), input);
   const Deadline deadline = deadline_after(job.limits.wall_seconds + kPatience);
   std::uint8_t kind = 0;
   Result answer;
@@ -146,8 +182,9 @@ std::optional<Result> ask_helper(const Job& job, const std::string& input, const
   if (told && kind == kRefusal && read_sequence(ours.get(), refusal, kMostWords, deadline))
     throw std::invalid_argument(refusal);
   throw std::invalid_argument(origin +
-                              ": the process that was to read it has died; close other programs, and try a "
-                              "smaller file");
+                              ": the process that was to read it was ended from outside, perhaps because "
+                              "memory ran out; another one takes its place: try again, with a smaller file "
+                              "if it ends once more");
 }
 
 }  // namespace
@@ -160,7 +197,7 @@ IsolationHelper::IsolationHelper() {
   process_ = ::fork();
   if (process_ == 0) {
     ::close(ends[0]);
-    serve(ends[1], program);
+    supervise(ends[1], program);
   }
   ::close(ends[1]);
   control_ = ends[0];
@@ -173,25 +210,22 @@ IsolationHelper::IsolationHelper() {
 
 IsolationHelper::~IsolationHelper() {
   the_helper = -1;
+  ::kill(process_, SIGKILL);  // what it forked ends with it
   ::close(control_);
-  ::kill(process_, SIGKILL);  // it may be waiting for a fork; what it forked ends with it
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
 }
 
 std::string run_isolated_work(IsolatedWork work, const std::string& input, const std::string& origin,
                               const IsolationLimits& limits) {
-  const Job job{.text = work, .mesh = nullptr, .limits = limits};
-  if (std::optional<std::string> text = ask_helper<std::string>(job, input, origin)) return std::move(*text);
-  return run_isolated_text([&] { return work(input); }, origin, limits);
+  if (!has_isolation_helper()) return run_isolated_text([&] { return work(input); }, origin, limits);
+  return ask_helper<std::string>({.text = work, .mesh = nullptr, .limits = limits}, input, origin);
 }
 
 TriangleMesh run_isolated_mesh(IsolatedReading work, const std::string& input, const std::string& origin,
                                const IsolationLimits& limits) {
-  const Job job{.text = nullptr, .mesh = work, .limits = limits};
-  if (std::optional<TriangleMesh> mesh = ask_helper<TriangleMesh>(job, input, origin))
-    return std::move(*mesh);
-  return run_isolated([&] { return work(input); }, origin, limits);
+  if (!has_isolation_helper()) return run_isolated([&] { return work(input); }, origin, limits);
+  return ask_helper<TriangleMesh>({.text = nullptr, .mesh = work, .limits = limits}, input, origin);
 }
 
 bool has_isolation_helper() noexcept { return the_helper.load() >= 0; }

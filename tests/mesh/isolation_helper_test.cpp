@@ -142,22 +142,59 @@ TEST(IsolationHelper, ImportsTheSameMesh) {
   EXPECT_THROW((void)import_mesh_from_memory("nonsense", 8, "obj", 0.06), std::invalid_argument);
 }
 
-// Killed from outside, as by a system that is out of memory: the program forks itself again.
-TEST(IsolationHelper, IsDoneWithoutOnceItIsDead) {
-  const IsolationHelper helper;
-  std::ifstream children("/proc/self/task/" + std::to_string(::getpid()) + "/children");
-  pid_t process = 0;
-  if (!(children >> process)) GTEST_SKIP() << "this kernel does not list a process's children";
-  ::kill(process, SIGKILL);
-  std::string answer;
-  for (int i = 0; i < 100 && answer != "cba"; ++i) {
+/// Asks until the helper answers: one that is killed may take a job with it.
+std::string answer_of_next_helper(IsolatedWork work) {
+  for (int i = 0; i < 1000; ++i) {
     try {
-      answer = run_isolated_work(backwards, "abc", "cup.obj", {});
-    } catch (const std::invalid_argument&) {  // it died with the job in its hands
+      return run_isolated_work(work, "", "cup.obj", {});
+    } catch (const std::invalid_argument& refused) {
+      EXPECT_THAT(refused.what(), AllOf(StartsWith("cup.obj: "), HasSubstr("was ended from outside")));
+      ::usleep(10'000);
+    }
+  }
+  return "none";
+}
+
+// Killed from outside, as by a system that is out of memory: another one takes its place, not this program.
+TEST(IsolationHelper, IsReplacedOnceItIsKilled) {
+  ::testing::internal::CaptureStderr();
+  const IsolationHelper helper;
+  const std::string self = std::to_string(::getpid());
+  for (int i = 0; i < 2; ++i) {
+    const pid_t killed = std::stoi(answer_of_next_helper(parent_of_forker));
+    ASSERT_EQ(::kill(killed, SIGKILL), 0);
+    const std::string next = answer_of_next_helper(parent_of_forker);
+    EXPECT_NE(next, self);
+    EXPECT_NE(next, std::to_string(::getppid())) << "this process has forked";
+    EXPECT_NE(next, std::to_string(killed));
+    EXPECT_EQ(::kill(killed, 0), -1) << "it stays as a zombie";
+    EXPECT_EQ(run_isolated_work(backwards, "abc", "cup.obj", {}), "cba");
+  }
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("was ended (signal 9); another one takes"));
+}
+
+TEST(IsolationHelper, WorkIsRefusedInWordsWhenItsSupervisorIsKilled) {
+  const IsolationHelper helper;
+  const pid_t first = std::stoi(run_isolated_work(parent_of_forker, "", "cup.obj", {}));
+  std::ifstream status("/proc/" + std::to_string(first) + "/status");
+  std::string word;
+  while (status >> word && word != "PPid:") {
+  }
+  pid_t supervisor = 0;
+  ASSERT_TRUE(status >> supervisor);
+  ASSERT_EQ(::kill(supervisor, SIGKILL), 0);
+  std::string answer;
+  for (int i = 0; i < 1000 && answer.find("start it again") == std::string::npos; ++i) {
+    try {
+      EXPECT_NE(run_isolated_work(parent_of, "", "cup.obj", {}), std::to_string(::getpid()));
+    } catch (const std::invalid_argument& refused) {
+      answer = refused.what();
     }
     ::usleep(10'000);
   }
-  EXPECT_EQ(answer, "cba");
+  EXPECT_EQ(answer,
+            "cup.obj: the processes that read meshes were ended from outside; end this program and start it "
+            "again");
 }
 
 // An errno of EINTR that an earlier call left is inherited by the helper, and makes it ask for no second job
