@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -13,18 +12,11 @@
 #include <string>
 
 #include "commands.h"
+#include "error_line.h"
 #include "phalanx/record/made.h"
 #include "usage.h"
 
 namespace {
-
-/// One line, whatever was typed or read.
-void complain(std::string message) {
-  std::replace_if(
-      message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; },
-      ' ');
-  fmt::print(stderr, "{}\n", message);
-}
 
 int run(int argc, char** argv) {
   using namespace phalanx;
@@ -47,7 +39,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked) == 0 ? kDone : kFailed;
   } catch (const CLI::ParseError& error) {
-    complain(usage_message(app, error));
+    print_error_line(usage_message(app, error));
     return kWrongInput;
   }
   return job();
@@ -58,14 +50,14 @@ int run_and_report(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::invalid_argument& error) {
-    complain(fmt::format("phalanx: {}", error.what()));
+    print_error_line(fmt::format("phalanx: {}", error.what()));
     return kWrongInput;
   } catch (const std::bad_alloc&) {
-    complain("phalanx: out of memory; ask for fewer ticks (--seconds, --rate-hz) or triangles");
+    print_error_line("phalanx: out of memory; ask for fewer ticks (--seconds, --rate-hz) or triangles");
     return kFailed;
   } catch (const std::exception& error) {
     // A failed write to standard output is main's to report.
-    if (std::ferror(stdout) == 0) complain(fmt::format("phalanx: {}", error.what()));
+    if (std::ferror(stdout) == 0) print_error_line(fmt::format("phalanx: {}", error.what()));
     return kFailed;
   }
 }
@@ -82,7 +74,7 @@ int main(int argc, char** argv) {
   } else if (std::ferror(stdout) == 0) {
     return code;
   }
-  complain(fmt::format("phalanx: cannot write to standard output: {}",
-                       reason != 0 ? std::strerror(reason) : "some of it was lost"));
+  phalanx::print_error_line(fmt::format("phalanx: cannot write to standard output: {}",
+                                        reason != 0 ? std::strerror(reason) : "some of it was lost"));
   return phalanx::kFailed;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "error_line.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
@@ -124,7 +125,7 @@ int check_meshes(const MeshCheck& check) {
       if (check.json) {
         all.push_back({{"file", file}, {"usable", false}, {"verdict", refusal.what()}});
       } else {
-        fmt::print("{}\n  refused: {}\n", file, refusal.what());
+        print_error_line(fmt::format("phalanx: {}", refusal.what()));
       }
     }
   }

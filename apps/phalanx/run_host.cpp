@@ -9,6 +9,7 @@
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/calibration_file.h"
+#include "phalanx/station/station.h"
 
 namespace phalanx {
 namespace {
@@ -29,6 +30,7 @@ Overrides overrides_of(const RunOptions& o) {
   Overrides overrides;
   for (const std::string& text : o.set) overrides.push_back(parse_override(text));
   if (!o.profile.empty()) overrides.emplace_back("hand.profile", fmt::format("\"{}\"", o.profile));
+  if (o.rate_hz) check_station_rate(*o.rate_hz);
   if (o.rate_hz) overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *o.rate_hz));
   return overrides;
 }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "commands.h"
+#include "error_line.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
@@ -25,18 +27,31 @@ int print_scenes() {
   return kDone;
 }
 
-/// Everything that `simulate` would refuse before its first step.
+void build_and_print(const std::string& name) {
+  const SceneDescription scene = load_scene(name);
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  const Motion motion = build_motion(scene);
+  const HapticState state(*model);
+  fmt::print("{}: good; triangles: hand {}, object {}; {:.6g} s at {:.6g} Hz\n", name,
+             model->hand.triangle_count(), model->object.triangle_count(), simulation_seconds(scene, motion),
+             scene.rate_hz);
+}
+
+/// Everything that `simulate` would refuse before its first step, a line each.
 int check_scenes(const std::vector<std::string>& names) {
+  int code = kDone;
   for (const std::string& name : names) {
-    const SceneDescription scene = load_scene(name);
-    const auto model = std::make_unique<HapticModel>(build_model(scene));
-    const Motion motion = build_motion(scene);
-    const HapticState state(*model);
-    fmt::print("{}: good; triangles: hand {}, object {}; {:.6g} s at {:.6g} Hz\n", name,
-               model->hand.triangle_count(), model->object.triangle_count(),
-               simulation_seconds(scene, motion), scene.rate_hz);
+    std::vector<std::string> problems;
+    try {
+      problems = problems_of_scene(name);
+      if (problems.empty()) build_and_print(name);
+    } catch (const std::invalid_argument& refused) {
+      problems.emplace_back(refused.what());
+    }
+    for (const std::string& problem : problems) print_error_line(fmt::format("phalanx: {}", problem));
+    if (!problems.empty()) code = kWrongInput;
   }
-  return kDone;
+  return code;
 }
 
 int print_keys(bool markdown) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "phalanx/core/nearest_name.h"
+#include "phalanx/scene/scene_keys.h"
 
 namespace phalanx {
 namespace {
@@ -38,12 +39,61 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// A name that was not typed to its end beats one that is merely spelt alike.
+/// A name that was not typed to its end beats one that is merely spelt alike; empty: none is near.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (name.starts_with(word)) return name;
   }
-  return nearest_name(word, names);
+  return near_name(word, names);
+}
+
+std::vector<std::string> settable_keys() {
+  std::vector<std::string> keys;
+  for (const SceneKey& key : scene_keys()) {
+    keys.push_back(key.path);
+    if (const std::size_t at = keys.back().find("[]"); at != std::string::npos)
+      keys.back().replace(at, 2, ".0");
+  }
+  return keys;
+}
+
+/// An option, or a scene's key where the command takes --set; empty: none is near.
+std::string meant_option(const CLI::App& command, const std::string& word) {
+  const std::vector<std::string> options = option_names(command);
+  std::string option = suggestion(word, options);
+  if (std::find(options.begin(), options.end(), "--set") == options.end()) return option;
+  const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
+  const std::string key = near_name(bare, settable_keys());
+  if (key.empty() || option.starts_with(word)) return option;
+  const bool nearer = option.empty() || name_distance(bare, key) < name_distance(word, option);
+  return nearer ? fmt::format("--set {}=VALUE", key) : option;
+}
+
+std::string question(const std::string& meant) {
+  return meant.empty() ? "" : fmt::format("did you mean '{}'? ", meant);
+}
+
+bool is_number(const std::string& text) {
+  double value = 0.0;
+  return CLI::detail::lexical_cast(text, value);
+}
+
+/// "200Hz" for a number, in words; empty: the mistake is another one.
+std::string number_mistake(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string what = error.what();
+  const bool conversion = what.starts_with("Could not convert: ");
+  if (!conversion && what.find(" not in range ") == std::string::npos) return "";
+  for (const CLI::Option* option : command.get_options()) {
+    if (what.find(option->get_name() + (conversion ? " = " : ": ")) == std::string::npos) continue;
+    for (const std::string& value : option->results()) {
+      if (!is_number(value))
+        return fmt::format("{} {}: is not a number; write its digits alone, without a unit",
+                           option->get_name(), value);
+      if (conversion)
+        return fmt::format("{} {}: is not a whole number; write one", option->get_name(), value);
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -68,19 +118,20 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
     const std::string& word = unknown.front();
     if (word.starts_with("-")) {
       const std::string bare = word.substr(0, word.find('='));
-      return fmt::format("{}: unknown option '{}'; did you mean '{}'? See {} --help", name, bare,
-                         suggestion(bare, option_names(command)), name);
+      return fmt::format("{}: unknown option '{}'; {}See {} --help", name, bare,
+                         question(meant_option(command, bare)), name);
     }
     if (!subcommands.empty()) {
-      return fmt::format("{}: unknown command '{}'; did you mean '{}'? Known: {}", name, word,
-                         suggestion(word, subcommands), fmt::join(subcommands, ", "));
+      return fmt::format("{}: unknown command '{}'; {}Known: {}", name, word,
+                         question(suggestion(word, subcommands)), fmt::join(subcommands, ", "));
     }
     return fmt::format("{}: '{}' is one argument too many; see {} --help", name, word, name);
   }
   if (!subcommands.empty()) {
     return fmt::format("{}: say what to do: {}; see {} --help", name, fmt::join(subcommands, ", "), name);
   }
-  return fmt::format("{}: {}; see {} --help", name, error.what(), name);
+  const std::string mistake = number_mistake(command, error);
+  return fmt::format("{}: {}; see {} --help", name, mistake.empty() ? error.what() : mistake, name);
 }
 
 }  // namespace phalanx

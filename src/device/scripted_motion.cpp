@@ -36,9 +36,8 @@ const Grip& grip_of(const std::string& name) {
   const auto& names = scripted_motion_names();
   const auto it = std::find(names.begin(), names.end(), name);
   if (it == names.end()) {
-    throw std::invalid_argument(
-        fmt::format("motion.name = \"{}\" is not a scripted motion; did you mean \"{}\"? Known: {}", name,
-                    nearest_name(name, names), fmt::join(names, ", ")));
+    throw std::invalid_argument(fmt::format("motion.name = \"{}\" is not a scripted motion; {}Known: {}",
+                                            name, did_you_mean(name, names), fmt::join(names, ", ")));
   }
   return *kGrips[static_cast<std::size_t>(it - names.begin())];
 }

@@ -72,20 +72,26 @@ std::string finding_meaning(const MeshFinding& finding) {
   return std::string(words.repaired) + "; those that remain: " + words.remains;
 }
 
+// What people hold is some 5 to 50 cm wide.
+std::string_view probable_unit(double largest, double scale) {
+  for (const std::string_view name : {"mm", "cm", "in", "m"}) {
+    const double metres = metres_per(name).value();
+    const double would_be = largest / scale * metres;
+    if (metres != scale && would_be >= 0.02 && would_be <= 1.0) return name;
+  }
+  return "";
+}
+
 std::string unit_advice(double largest, double scale) {
   constexpr double kSmallest = 3e-3;
   constexpr double kLargest = 3.0;
   if (largest >= kSmallest && largest <= kLargest) return "";
-  // What people hold is some 5 to 50 cm wide; the first unit that makes it so.
-  for (const std::string_view name : {"mm", "cm", "in", "m"}) {
-    const double metres = metres_per(name).value();
-    const double would_be = largest / scale * metres;
-    if (metres != scale && would_be >= 0.02 && would_be <= 1.0)
-      return "it is " + length_text(largest) + " wide; probably its numbers are " + std::string(name) + " (" +
-             length_text(would_be) + "): give unit \"" + std::string(name) +
-             "\" with size_mm 0, or the size in mm";
-  }
-  return "it is " + length_text(largest) + " wide, no object for a hand; give its size in mm";
+  const std::string unit(probable_unit(largest, scale));
+  if (unit.empty())
+    return "it is " + length_text(largest) + " wide, no object for a hand; give its size in mm";
+  return "it is " + length_text(largest) + " wide; probably its numbers are " + unit + " (" +
+         length_text(largest / scale * metres_per(unit).value()) + "): give unit \"" + unit +
+         "\" with size_mm 0, or the size in mm";
 }
 
 }  // namespace phalanx

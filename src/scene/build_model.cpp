@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -16,6 +17,33 @@
 #include "scene/folder_names.h"
 
 namespace phalanx {
+
+namespace {
+
+/// The mesh of a file, in metres. @param index  of the object in its scene, for messages
+TriangleMesh import_object(const ObjectDescription& object, std::size_t index) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(object.file, ignored))
+    throw SceneError("object file: " + why_no_file(object.file));
+  ImportedMesh imported = import_and_check(
+      object.file, {.size = object.size, .unit = object.unit, .triangles = object.decimate_to});
+  const MeshFinding units = imported.report.finding(FindingKind::kUnits);
+  if (units.found == 0) return std::move(imported.mesh);
+  const double scale = imported.report.scale;
+  const std::string_view unit = probable_unit(units.size, scale);
+  const std::string typed =
+      unit.empty()        ? fmt::format("--set objects.{}.size_mm=100", index)
+      : object.size > 0.0 ? fmt::format("--set objects.{0}.unit={1} --set objects.{0}.size_mm=0", index, unit)
+                          : fmt::format("--set objects.{}.unit={}", index, unit);
+  throw SceneError(
+      fmt::format("{}: {}; type {}", object.file.string(), unit_advice(units.size, scale), typed));
+}
+
+TriangleMesh make_mesh_of(const ObjectDescription& object, std::size_t index) {
+  return object.kind == "file" ? import_object(object, index) : make_object_mesh(object);
+}
+
+}  // namespace
 
 TriangleMesh make_object_mesh(const ObjectDescription& object) {
   if (object.kind == "sphere") return make_sphere(object.diameter, object.triangles);
@@ -36,17 +64,7 @@ TriangleMesh make_object_mesh(const ObjectDescription& object) {
   if (object.kind == "jar")
     return make_jar(object.diameter, object.length, object.lid_diameter, object.triangles);
   if (object.kind == "tap_handle") return make_tap_handle(object.diameter, object.length, object.triangles);
-  if (object.kind == "file") {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(object.file, ignored))
-      throw SceneError("object file: " + why_no_file(object.file));
-    ImportedMesh imported = import_and_check(
-        object.file, {.size = object.size, .unit = object.unit, .triangles = object.decimate_to});
-    if (const MeshFinding units = imported.report.finding(FindingKind::kUnits); units.found > 0)
-      throw SceneError(
-          fmt::format("{}: {}", object.file.string(), unit_advice(units.size, imported.report.scale)));
-    return std::move(imported.mesh);
-  }
+  if (object.kind == "file") return import_object(object, 0);
   throw SceneError(
       fmt::format("objects[].kind = \"{}\": nobody knows this kind; see `phalanx scene keys`", object.kind));
 }
@@ -97,7 +115,7 @@ TriangleMesh make_world_mesh(const SceneDescription& scene) {
   }
   TriangleMesh world;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const TriangleMesh mesh = make_object_mesh(scene.objects[i]);
+    const TriangleMesh mesh = make_mesh_of(scene.objects[i], i);
     if (scene.objects[i].kind == "file") count.add(i, mesh.triangles.size());
     append(world, mesh, scene.objects[i].pose);
   }

@@ -57,8 +57,8 @@ fs::path find_data_file(const std::string& what, const std::string& name, const 
   const fs::path file = root / (name + extension);
   if (fs::is_regular_file(file, ignored)) return file;
   const auto known = names_in_folder(root, extension);
-  throw SceneError(fmt::format("{} \"{}\": there is no {}; did you mean \"{}\"? Known: {}", what, name,
-                               file.string(), nearest_name(name, known), fmt::join(known, ", ")));
+  throw SceneError(fmt::format("{} \"{}\": there is no {}; {}Known: {}", what, name, file.string(),
+                               did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 std::string why_no_file(const fs::path& file) {

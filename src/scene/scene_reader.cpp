@@ -63,8 +63,8 @@ class Reader {
         value.text = *node.value<std::string>();
         const auto it = std::find(key.choices.begin(), key.choices.end(), value.text);
         if (it == key.choices.end()) {
-          tree_.fail(path, fmt::format("did you mean \"{}\"? Known: {}",
-                                       nearest_name(value.text, key.choices), range_text(key)));
+          tree_.fail(path,
+                     fmt::format("{}Known: {}", did_you_mean(value.text, key.choices), range_text(key)));
         }
         value.integer = it - key.choices.begin();
         return value;
@@ -132,24 +132,22 @@ void apply_key(const SceneTree& tree, const Reader& reader, const KeySpec& key, 
   }
 }
 
-ObjectDescription read_object(const SceneTree& tree, const Reader& reader, std::size_t index,
-                              SceneDescription& scene) {
-  ObjectDescription object;
-  const std::string prefix = fmt::format("objects.{}", index);
-  for (const KeySpec& key : key_table()) {
-    if (!is_object_key(key)) continue;
-    const std::string path = fmt::format("{}.{}", prefix, key.path.substr(kObjectPrefix.size()));
-    const bool fits =
-        key.kinds.empty() || has_word(key.kinds, object.kind);  // objects[].kind is the first of its keys
-    if (!fits && tree.find(path) != nullptr) {
-      tree.fail(path, fmt::format("means nothing for a {}; it belongs to: {}. Remove it or change {}.kind",
-                                  object.kind, key.kinds, prefix));
-    }
-    if (!fits) continue;
+/// The value of an object's key, if it belongs to the object's kind.
+void apply_object_key(const SceneTree& tree, const Reader& reader, const KeySpec& key,
+                      const std::string& prefix, const KeyTarget& target) {
+  const std::string path = fmt::format("{}.{}", prefix, key.path.substr(kObjectPrefix.size()));
+  const std::string& kind = target.object.kind;
+  if (key.kinds.empty() || has_word(key.kinds, kind)) {
     KeySpec of_kind = key;
-    of_kind.default_toml = key.default_for(object.kind);
-    apply_key(tree, reader, of_kind, path, {scene, object});
+    of_kind.default_toml = key.default_for(kind);
+    apply_key(tree, reader, of_kind, path, target);
+  } else if (tree.find(path) != nullptr) {
+    tree.fail(path, fmt::format("means nothing for a {}; it belongs to: {}. Remove it or change {}.kind",
+                                kind, key.kinds, prefix));
   }
+}
+
+void check_object(const SceneTree& tree, const ObjectDescription& object, const std::string& prefix) {
   if (object.kind == "teapot" && object.size <= 0.0)
     tree.fail(prefix + ".size_mm", "must be > 0 for a teapot; give its length");
   if (object.kind == "file" && object.file.empty())
@@ -160,6 +158,20 @@ ObjectDescription read_object(const SceneTree& tree, const Reader& reader, std::
   if (object.kind == "torus" && object.tube_diameter >= object.ring_diameter) {
     tree.fail(prefix + ".tube_diameter_mm", "the tube is as thick as its ring is wide; make it thinner");
   }
+}
+
+ObjectDescription read_object(const SceneTree& tree, const Reader& reader, std::size_t index,
+                              SceneDescription& scene, SceneProblems& problems) {
+  ObjectDescription object;
+  const std::string prefix = fmt::format("objects.{}", index);
+  bool good = true;
+  for (const KeySpec& key : key_table()) {
+    if (!is_object_key(key)) continue;
+    const bool read = problems.run([&] { apply_object_key(tree, reader, key, prefix, {scene, object}); });
+    if (!read && key.path == "objects[].kind") return object;  // the first key; the others depend on it
+    good = good && read;
+  }
+  if (good) problems.run([&] { check_object(tree, object, prefix); });
   return object;
 }
 
@@ -201,31 +213,33 @@ void refuse_what_the_profile_says(const SceneTree& tree) {
 }
 
 /// What the scene says about device and patient is checked here already, by reading their files.
-void read_files_with_overlay(const SceneTree& tree, SceneDescription& scene) {
-  scene.device.overlay = tree.values_over_file("device");
-  scene.patient.overlay = tree.values_over_file("patient");
-  if (tree.find("device.file") != nullptr) scene.device.stated_at = tree.statement("device.file");
-  if (tree.find("patient.file") != nullptr) scene.patient.stated_at = tree.statement("patient.file");
-  if (tree.find("device") != nullptr) static_cast<void>(load_device(scene));
-  if (tree.find("patient") != nullptr) static_cast<void>(load_patient(scene));
+void read_files_with_overlay(const SceneTree& tree, SceneDescription& scene, SceneProblems& problems) {
+  problems.run([&] {
+    scene.device.overlay = tree.values_over_file("device");
+    if (tree.find("device.file") != nullptr) scene.device.stated_at = tree.statement("device.file");
+    if (tree.find("device") != nullptr) static_cast<void>(load_device(scene));
+  });
+  problems.run([&] {
+    scene.patient.overlay = tree.values_over_file("patient");
+    if (tree.find("patient.file") != nullptr) scene.patient.stated_at = tree.statement("patient.file");
+    if (tree.find("patient") != nullptr) static_cast<void>(load_patient(scene));
+  });
 }
 
-}  // namespace
-
-SceneDescription parse_scene(const std::string& text, const std::string& origin, const fs::path& folder,
-                             const Overrides& overrides) {
+SceneDescription read_scene(const std::string& text, const std::string& origin, const fs::path& folder,
+                            const Overrides& overrides, SceneProblems& problems) {
   const SceneTree tree(text, origin, overrides);
-  refuse_unknown_keys(tree);
-  refuse_both_smoothing_forms(tree);
-  refuse_two_stabilisers(tree);
-  refuse_what_the_profile_says(tree);
+  refuse_unknown_keys(tree, problems);
+  for (const auto& check :
+       {refuse_both_smoothing_forms, refuse_two_stabilisers, refuse_what_the_profile_says})
+    problems.run([&] { check(tree); });
 
   SceneDescription scene;
   scene.name = fs::path(origin).stem().string();
   const Reader reader(tree, folder);
   ObjectDescription unused;
   for (const KeySpec& key : key_table()) {
-    if (!is_object_key(key)) apply_key(tree, reader, key, key.path, {scene, unused});
+    if (!is_object_key(key)) problems.run([&] { apply_key(tree, reader, key, key.path, {scene, unused}); });
   }
   if (tree.find("hand.triangles") != nullptr)
     scene.hand.triangles_stated_at = tree.statement("hand.triangles");
@@ -233,12 +247,31 @@ SceneDescription parse_scene(const std::string& text, const std::string& origin,
     Handedness& side = scene.hand.handedness;
     side = side == Handedness::kRight ? Handedness::kLeft : Handedness::kRight;
   }
-  if (const toml::node* objects = tree.find("objects")) {
-    for (std::size_t i = 0; i < objects->as_array()->size(); ++i)
-      scene.objects.push_back(read_object(tree, reader, i, scene));
-  }
-  read_files_with_overlay(tree, scene);
+  const toml::node* objects = tree.find("objects");
+  const toml::array* array = objects != nullptr ? objects->as_array() : nullptr;
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
+    scene.objects.push_back(read_object(tree, reader, i, scene, problems));
+  read_files_with_overlay(tree, scene, problems);
   return scene;
+}
+
+}  // namespace
+
+SceneDescription parse_scene(const std::string& text, const std::string& origin, const fs::path& folder,
+                             const Overrides& overrides) {
+  SceneProblems first(nullptr);
+  return read_scene(text, origin, folder, overrides, first);
+}
+
+std::vector<std::string> problems_of_scene(const std::string& scene) {
+  std::vector<std::string> all;
+  SceneProblems problems(&all);
+  problems.run([&] {
+    const fs::path file = find_data_file("scene", scene, "scenes", ".toml", fs::current_path());
+    static_cast<void>(
+        read_scene(read_text_file(file.string(), "scene"), file.string(), file.parent_path(), {}, problems));
+  });
+  return all;
 }
 
 SceneDescription load_scene(const std::string& scene, const Overrides& overrides) {

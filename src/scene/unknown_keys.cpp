@@ -22,7 +22,8 @@ bool is_over_file(std::string_view path) {
   return (table == "device" || table == "patient") && path != table && path.substr(table.size()) != ".file";
 }
 
-void refuse_below(const SceneTree& tree, const toml::node& node, const std::string& path) {
+void refuse_below(const SceneTree& tree, const toml::node& node, const std::string& path,
+                  SceneProblems& problems) {
   const auto& keys = key_table();
   if (!path.empty()) {
     if (is_over_file(path)) return;
@@ -50,15 +51,20 @@ void refuse_below(const SceneTree& tree, const toml::node& node, const std::stri
     return path.empty() ? std::string(part) : fmt::format("{}.{}", path, part);
   };
   if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, child] : *table) refuse_below(tree, child, child_path(key.str()));
+    for (const auto& [key, child] : *table) {
+      const std::string at = child_path(key.str());
+      problems.run([&, &below = child] { refuse_below(tree, below, at, problems); });
+    }
   } else if (const toml::array* array = node.as_array()) {
     for (std::size_t i = 0; i < array->size(); ++i)
-      refuse_below(tree, (*array)[i], child_path(std::to_string(i)));
+      problems.run([&] { refuse_below(tree, (*array)[i], child_path(std::to_string(i)), problems); });
   }
 }
 
 }  // namespace
 
-void refuse_unknown_keys(const SceneTree& tree) { refuse_below(tree, tree.root(), ""); }
+void refuse_unknown_keys(const SceneTree& tree, SceneProblems& problems) {
+  refuse_below(tree, tree.root(), "", problems);
+}
 
 }  // namespace phalanx

@@ -20,15 +20,17 @@ struct Spec {
   std::string place;  ///< what follows the first colon
 };
 
-[[noreturn]] void refuse(const std::string& spec, const std::string& why) {
-  throw std::invalid_argument(fmt::format(
-      "device '{}': {}; possible are udp:HOST:PORT, serial:PORT[:BAUD] and opengloves:PORT[:BAUD]", spec,
-      why));
+constexpr const char* kLinkAddresses = "udp:HOST:PORT and serial:PORT[:BAUD]";
+constexpr const char* kDeviceAddresses = "udp:HOST:PORT, serial:PORT[:BAUD] and opengloves:PORT[:BAUD]";
+
+[[noreturn]] void refuse(const std::string& spec, const std::string& why,
+                         const char* possible = kDeviceAddresses) {
+  throw std::invalid_argument(fmt::format("device '{}': {}; possible are {}", spec, why, possible));
 }
 
-Spec split(const std::string& spec) {
+Spec split(const std::string& spec, const char* possible = kDeviceAddresses) {
   const std::size_t colon = spec.find(':');
-  if (colon == std::string::npos || colon + 1 == spec.size()) refuse(spec, "not an address");
+  if (colon == std::string::npos || colon + 1 == spec.size()) refuse(spec, "not an address", possible);
   return {.kind = spec.substr(0, colon), .place = spec.substr(colon + 1)};
 }
 
@@ -65,8 +67,8 @@ std::unique_ptr<Transport> transport_of(const std::string& spec, const Spec& par
 }  // namespace
 
 std::unique_ptr<Transport> open_transport(const std::string& spec) {
-  auto transport = transport_of(spec, split(spec));
-  if (!transport) refuse(spec, "it does not speak the Phalanx link");
+  auto transport = transport_of(spec, split(spec, kLinkAddresses));
+  if (!transport) refuse(spec, "it does not speak the Phalanx link", kLinkAddresses);
   return transport;
 }
 

@@ -61,10 +61,14 @@ SimulatedDeviceSettings patient_of(const StationBuild& build) {
   try {
     return simulated_settings(build.scene, *build.made.model);
   } catch (const std::invalid_argument& refused) {
+    const bool left_alone = build.scene.hand.handedness == Handedness::kLeft && !build.scene.mirror;
     throw std::invalid_argument(fmt::format(
-        "the simulated patient cannot press here: {}. Or take the sliders instead of the patient, "
+        "the simulated patient cannot press here: {}. {}Or take the sliders instead of the patient, "
         "or another size or place of the object",
-        refused.what()));
+        refused.what(),
+        left_alone ? "For the left hand in a scene made for the right one set mirror=true in place of "
+                     "hand.side=left: it moves the objects, too. "
+                   : ""));
   }
 }
 

@@ -51,6 +51,18 @@ TEST(NearestName, IsTheFirstOfThoseThatAreNearest) {
   EXPECT_EQ(nearest_name("ab", Names{}), "");
 }
 
+TEST(NearName, IsNoneThatSharesLittleWithWhatWasWritten) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(near_name("spere", Names{"box", "sphere"}), "sphere");
+  EXPECT_EQ(near_name("smal-woman", Names{"large-man", "small-woman", "stiff-hand"}), "small-woman");
+  EXPECT_EQ(near_name("adult", Names{"large-man", "small-woman", "stiff-hand"}), "");
+  EXPECT_EQ(near_name("abcd", Names{"abxy"}), "abxy") << "half of it";
+  EXPECT_EQ(near_name("abcd", Names{"axyz"}), "");
+  EXPECT_EQ(near_name("abcd", Names{}), "");
+  EXPECT_EQ(did_you_mean("spere", Names{"sphere"}), "did you mean \"sphere\"? ");
+  EXPECT_EQ(did_you_mean("nothing", Names{"sphere"}), "");
+}
+
 TEST(NearestName, ComparesTwoHundredCharacters) {
   const std::string long_name(200, 'a');
   const std::vector<std::string> known = {long_name + 'b', long_name.substr(1), long_name};

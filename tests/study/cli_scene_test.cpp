@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `phalanx scene list` and `phalanx scene pictures`.
+// `phalanx scene list`, `phalanx scene check` and `phalanx scene pictures`.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -16,6 +16,7 @@ using testing::read_file;
 using testing::run_program;
 using ::testing::StartsWith;
 using testing::TemporaryFolder;
+using testing::write_file;
 
 TEST(CliSceneList, ShowsEverySceneOnceByNameWithItsLineInOneColumn) {
   const TemporaryFolder folder;
@@ -33,6 +34,33 @@ TEST(CliSceneList, ShowsEverySceneOnceByNameWithItsLineInOneColumn) {
   }
   EXPECT_GE(names.size(), 19U);
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+}
+
+TEST(CliSceneCheck, SaysEverythingThatIsWrongALineEach) {
+  const TemporaryFolder folder;
+  write_file(folder / "bad.toml",
+             "rate_hertz = 200\nseconds = -1\n[force]\nlaw = \"hook\"\n[[objects]]\nkind = \"spere\"\n"
+             "size_mm = 3\n[[objects]]\nkind = \"box\"\nsize_mm = 3\n[[objects]]\nkind = \"torus\"\n"
+             "ring_diameter_mm = 10\ntube_diameter_mm = 20\n[device]\nmass = 1\n[patient]\nmass = 1\n");
+  write_file(folder / "broken.toml", "a = \n");
+  write_file(folder / "flat.toml", "objects = 3\nforce = 1\n");
+  const auto result =
+      run_program(folder, "scene check ./bad.toml wave ./broken.toml ./flat.toml ./none.toml");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.out, StartsWith("wave: good"));
+  std::vector<std::string> lines;
+  std::istringstream err(result.err);
+  for (std::string line; std::getline(err, line);) lines.push_back(line);
+  EXPECT_THAT(lines,
+              ::testing::UnorderedElementsAre(
+                  HasSubstr("bad.toml:1: rate_hertz = 200"), HasSubstr("bad.toml:2: seconds = -1"),
+                  HasSubstr("bad.toml:4: force.law = "), HasSubstr("bad.toml:6: objects.0.kind = "),
+                  HasSubstr("bad.toml:10: objects.1.size_mm"),
+                  HasSubstr("bad.toml:14: objects.2.tube_diameter_mm = 20"),
+                  HasSubstr("bad.toml:16: device.mass = 1"), HasSubstr("bad.toml:18: patient.mass = 1"),
+                  HasSubstr("broken.toml:1: not valid TOML"), HasSubstr("flat.toml:1: objects = 3"),
+                  HasSubstr("flat.toml:2: force = 1"), HasSubstr("there is no file")));
+  for (const std::string& line : lines) EXPECT_THAT(line, StartsWith("phalanx: "));
 }
 
 TEST(CliScenePictures, DrawsEachSceneAndTheSheet) {

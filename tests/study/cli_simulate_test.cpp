@@ -131,7 +131,7 @@ TEST(CliSimulate, TakesWhatSetSaysOfTheFileInTheObjectsPlace) {
   const std::string command = "simulate index_ball --seconds 0.1 --object tetra.obj --quiet --out a";
   const auto refused = run_program(folder, command);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, ::testing::HasSubstr("give unit"));
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("type --set objects.0.unit=cm\n"));
   const auto result =
       run_program(folder, command + " --set objects.0.unit=cm --set objects.0.position_mm=[1,2,-500]");
   ASSERT_EQ(result.exit_code, 0) << result.err;

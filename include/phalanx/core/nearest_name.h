@@ -57,4 +57,21 @@ template <typename Names>
   return best;
 }
 
+/// nearest_name(), but empty if even that is farther than half the length of `name`: a guess that shares
+/// little with what was written misleads. Set-up only.
+template <typename Names>
+[[nodiscard]] std::string near_name(std::string_view name, const Names& known) {
+  std::string best = nearest_name(name, known);
+  if (2 * name_distance(name.substr(0, 200), best) > name.size()) best.clear();
+  return best;
+}
+
+/// "did you mean "wave"? " with a blank behind it, for a message that goes on; empty if no name is near.
+/// Set-up only.
+template <typename Names>
+[[nodiscard]] std::string did_you_mean(std::string_view name, const Names& known) {
+  const std::string near = near_name(name, known);
+  return near.empty() ? near : "did you mean \"" + near + "\"? ";
+}
+
 }  // namespace phalanx

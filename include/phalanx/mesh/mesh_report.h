@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "phalanx/core/math.h"
@@ -105,5 +106,8 @@ struct MeshReport {
 /// 90 m: `it is 90 m wide; probably its numbers are mm (90 mm): give unit "mm" with size_mm 0, or the size in
 /// mm`. `scale`: metres per unit of the file that `largest` [m] rests on.
 [[nodiscard]] std::string unit_advice(double largest, double scale);
+/// The unit, other than the one that `scale` stands for, in which the file would be an object for a hand:
+/// "mm", "cm", "in" or "m"; empty: none.
+[[nodiscard]] std::string_view probable_unit(double largest, double scale);
 
 }  // namespace phalanx

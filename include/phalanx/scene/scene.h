@@ -124,6 +124,10 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
                                            const std::filesystem::path& folder,
                                            const Overrides& overrides = {});
 
+/// Everything that load_scene() would refuse about a scene, a sentence each, as far as one problem does not
+/// hide the next; empty: it would refuse nothing. Set-up only.
+[[nodiscard]] std::vector<std::string> problems_of_scene(const std::string& scene);
+
 /// "side_n=3" -> {"side_n", "3"}. @throws SceneError if there is no `=` or nothing before it.
 [[nodiscard]] std::pair<std::string, std::string> parse_override(const std::string& key_and_value);
 

@@ -10,6 +10,7 @@
 #include <boost/asio/ip/udp.hpp>
 #include <charconv>
 #include <optional>
+#include <stdexcept>
 
 #include "device/link/wait_for.h"
 #include "phalanx/device/link/transport.h"
@@ -112,7 +113,7 @@ HostAndPort split(const std::string& text, unsigned lowest_port) {
     if (begin != end && error == std::errc() && stopped == end && port >= lowest_port && port <= 65535)
       return {text.substr(0, colon), static_cast<std::uint16_t>(port)};
   }
-  throw DeviceError(
+  throw std::invalid_argument(
       fmt::format("udp:{}: expected HOST:PORT with a port of {} to 65535, for example udp:192.168.7.2:47800",
                   text, lowest_port));
 }

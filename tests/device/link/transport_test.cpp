@@ -19,6 +19,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "device/descriptor.h"
@@ -200,7 +201,9 @@ TEST(UdpTransport, SaysWhatIsWrongWithAnAddress) {
   EXPECT_THAT(message_of([] { (void)listen_udp("192.0.2.1:47800"); }), HasSubstr("address of this computer"));
   for (const char* address :
        {"127.0.0.1", "127.0.0.1:", ":47800", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:1x", ""})
-    EXPECT_THAT(message_of([&] { (void)connect_udp(address); }), HasSubstr("expected HOST:PORT")) << address;
+    EXPECT_THAT([&] { (void)connect_udp(address); },
+                ::testing::ThrowsMessage<std::invalid_argument>(HasSubstr("expected HOST:PORT")))
+        << address;
   EXPECT_THAT(message_of([] { (void)connect_udp("no-such-host.invalid:47800"); }), HasSubstr("no host"));
 }
 

@@ -38,10 +38,11 @@ class Transport {
   [[nodiscard]] virtual std::string address() const = 0;
 };
 
-/// A client's socket to "HOST:PORT". Peer of its frames is always 0. @throws DeviceError: no such host.
+/// A client's socket to "HOST:PORT". Peer of its frames is always 0. @throws DeviceError: no such host;
+/// std::invalid_argument: not HOST:PORT.
 [[nodiscard]] std::unique_ptr<Transport> connect_udp(const std::string& host_and_port);
 /// A server's socket on "ADDRESS:PORT" (port 0: any free one). @throws DeviceError: port in use, no such
-/// address.
+/// address; std::invalid_argument: not ADDRESS:PORT.
 [[nodiscard]] std::unique_ptr<Transport> listen_udp(const std::string& address_and_port);
 /// A serial port, raw, 8N1, at `baud`. @throws DeviceError: no such port, no permission (group dialout), in
 /// use.

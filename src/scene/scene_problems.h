@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "phalanx/scene/scene_error.h"
+
+namespace phalanx {
+
+/// What becomes of the problems of a scene: the first is thrown, or all are gathered.
+class SceneProblems {
+ public:
+  /// @param all  where they are gathered; null: the first is thrown
+  explicit SceneProblems(std::vector<std::string>* all) : all_(all) {}
+
+  /// Runs a check whose problem hides none of another check. @returns true if it found none
+  /// @throws SceneError  its problem, if none are gathered
+  template <class Check>
+  bool run(const Check& check) {
+    if (all_ == nullptr) {
+      check();
+      return true;
+    }
+    try {
+      check();
+      return true;
+    } catch (const SceneError& problem) {
+      all_->emplace_back(problem.what());
+      return false;
+    }
+  }
+
+ private:
+  std::vector<std::string>* all_;
+};
+
+}  // namespace phalanx
