@@ -35,13 +35,21 @@ missing_packages() {
   done
 }
 
+# ask_root LINE : says that packages are missing and which line root must type, and exits with 2.
+ask_root() {
+  say "phalanx: packages are missing, and installing them needs root. Type this line as root, then again: $0"
+  say "$1"
+  exit 2
+}
+
 # ensure_packages LIST... : installs what is missing, as root or through sudo; nothing missing means no apt call. Without either
-# it prints the one line that root must type and exits with 2. It never prompts unless there is a terminal to answer on.
+# it prints the one line that root must type and exits with 2. It never prompts unless there is a terminal to answer on. What
+# apt-get says goes to build/packages.log, and is shown only if the installation fails.
 ensure_packages() {
   local missing
   missing=$(missing_packages "$@")
   [ -n "$missing" ] || return 0
-  local -a packages as_root=() quiet=()
+  local -a packages as_root=()
   mapfile -t packages <<<"$missing"
   local line="apt-get update && apt-get install -y --no-install-recommends ${packages[*]}"
   if ! command -v apt-get >/dev/null 2>&1; then
@@ -49,20 +57,22 @@ ensure_packages() {
     exit 2
   fi
   if [ "$(id -u)" -ne 0 ]; then
-    if ! command -v sudo >/dev/null 2>&1; then say "$line   # as root, then again: $0"; exit 2; fi
+    if ! command -v sudo >/dev/null 2>&1; then ask_root "$line"; fi
     as_root=(sudo -n)
     if [ -t 0 ] && [ -t 2 ]; then
       say "phalanx: to install: ${packages[*]}"
       as_root=(sudo)
     fi
-    if ! "${as_root[@]}" true 2>/dev/null; then say "$line   # as root, then again: $0"; exit 2; fi
+    if ! "${as_root[@]}" true 2>/dev/null; then ask_root "$line"; fi
   fi
-  [ -t 2 ] || quiet=(-q)
-  say "phalanx: installing ${packages[*]}"
-  local -a apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 "${quiet[@]}")
-  # A source of somebody else's that does not answer is no reason to stop here: the install decides.
-  "${apt[@]}" update </dev/null >&2 || say "phalanx: apt-get update had errors; trying to install all the same"
-  if ! "${apt[@]}" install -y --no-install-recommends "${packages[@]}" </dev/null >&2; then
+  local log=$root/build/packages.log
+  mkdir -p "$root/build"
+  say "phalanx: installing ${#packages[@]} packages (this takes some minutes; the log is $log): ${packages[*]}"
+  local -a apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 -q)
+  # A package source that does not answer is no reason to stop here: the install decides.
+  "${apt[@]}" update </dev/null >"$log" 2>&1 || say "phalanx: apt-get update had errors; trying to install all the same"
+  if ! "${apt[@]}" install -y --no-install-recommends "${packages[@]}" </dev/null >>"$log" 2>&1; then
+    cat "$log" >&2
     say "phalanx: the installation failed (see above). By hand, as root: $line"
     exit 1
   fi

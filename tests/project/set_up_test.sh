@@ -21,7 +21,7 @@ machine() {
   mkdir -p "$work/bin" "$work/tree with spaces/packages"
   : >"$work/calls"
   ln -s "$(type -P bash)" "$work/bin/bash"
-  ln -s "$(type -P env)" "$work/bin/env"
+  ln -s "$(type -P env)" "$(type -P mkdir)" "$(type -P cat)" "$work/bin/"
   ln -s "$(type -P true)" "$work/bin/present-command"
   ln -s "$(type -P true)" "$work/bin/true"
   printf '# a comment\n\nlib-one # another\nlib-two\ntool present-command\nother-tool absent-command\n' >"$work/tree with spaces/packages/run.txt"
@@ -55,6 +55,7 @@ check() {
 }
 called() { grep -q -- "$1" "$work/calls"; }
 not_called() { ! called "$1"; }
+said_before_line() { sed -n 1p "$work/err" | grep -q '^phalanx: packages are missing'; }
 root_line='^apt-get update && apt-get install -y --no-install-recommends lib-two'
 
 machine 0 "lib-one lib-two other-tool" none
@@ -71,6 +72,12 @@ check "root: fetches the lists first" called '^apt-get .*update$'
 check "root: installs what is missing and nothing else" called '^apt-get .*install -y --no-install-recommends lib-two$'
 check "root: standard output stays clean" [ ! -s "$work/out" ]
 
+machine 0 "lib-one other-tool" none
+stub apt-get 'for i in 1 2 3; do echo "Get:$i http://deb"; echo "E: warning" >&2; done'
+ensure
+check "an installation that succeeds: one line" [ "$(wc -l <"$work/err")" -eq 1 ]
+check "an installation that succeeds: apt's output is kept" [ "$(wc -l <"$work/tree with spaces/build/packages.log")" -eq 12 ]
+
 machine 1000 "lib-one other-tool" yes
 ensure
 check "sudo without a terminal: succeeds" [ "$status" -eq 0 ]
@@ -82,7 +89,8 @@ for sudo in no none; do
   machine 1000 "lib-one other-tool" "$sudo"
   ensure
   check "neither root nor sudo ($sudo): exit status 2" [ "$status" -eq 2 ]
-  check "neither root nor sudo ($sudo): one line" [ "$(wc -l <"$work/err")" -eq 1 ]
+  check "neither root nor sudo ($sudo): says first that packages are missing" said_before_line
+  check "neither root nor sudo ($sudo): and one line to type" [ "$(wc -l <"$work/err")" -eq 2 ]
   check "neither root nor sudo ($sudo): the line for root" grep -q "$root_line" "$work/err"
   check "neither root nor sudo ($sudo): no apt call" not_called apt-get
 done
@@ -92,10 +100,22 @@ ensure
 check "a missing command that dpkg does not know either is installed" called 'install -y --no-install-recommends other-tool$'
 
 machine 0 "lib-one other-tool" none
-stub apt-get 'case $* in *install*) exit 100 ;; esac'
+stub apt-get 'case $* in *install*) echo "E: Unable to locate"; exit 100 ;; esac'
 ensure
 check "a failed installation: exit status 1" [ "$status" -eq 1 ]
+check "a failed installation: shows what apt said" grep -q '^E: Unable to locate' "$work/err"
 check "a failed installation: says how to do it by hand" grep -q 'as root: apt-get update' "$work/err"
+
+# ./run --help on a bare machine: no package is looked for, nothing is built.
+machine 1000 "" none
+mkdir "$work/clone"
+cp "$source_root/run" "$work/clone/"
+ln -s "$(type -P sed)" "$(type -P dirname)" "$(type -P readlink)" "$work/bin/"
+status=0
+PATH=$work/bin "$work/clone/run" --help </dev/null >"$work/out" 2>"$work/err" || status=$?
+check "run --help before the first build: succeeds" [ "$status" -eq 0 ]
+check "run --help before the first build: says what there is" grep -q '^./run COMMAND' "$work/out"
+check "run --help before the first build: calls nothing" [ ! -s "$work/calls" ]
 
 if [ "$failures" -gt 0 ]; then echo "$failures checks failed"; exit 1; fi
 echo "all checks passed"
