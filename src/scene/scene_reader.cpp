@@ -297,9 +297,11 @@ std::vector<SceneInfo> list_scenes() {
   std::vector<SceneInfo> scenes;
   for (const std::string& name : names_in_folder(data_folder() / "scenes", ".toml")) {
     try {
-      scenes.push_back({name, load_scene(name).description, true});
+      const SceneDescription scene = load_scene(name);
+      const bool in_free_air = scene.motion.file.empty() && scene.motion.script.name == "wave";
+      scenes.push_back({name, scene.description, true, !in_free_air});
     } catch (const SceneError& error) {
-      scenes.push_back({name, error.what(), false});
+      scenes.push_back({name, error.what(), false, false});
     }
   }
   return scenes;

@@ -37,6 +37,7 @@ Cockpit::Parts::Parts(StationHost& station, CockpitSettings given)
 }
 
 Cockpit::Parts::~Parts() {
+  if (drag) log.add(notice_of(wire::Notice::CHANGE, drag->who, drag->newest.code, drag->newest.text));
   if (upload_work) upload_work->abandon(kWaitForUpload);
 }
 
@@ -76,6 +77,7 @@ void Cockpit::joined(PageId page, const Visitor& visitor) {
 
 void Cockpit::left(PageId page) {
   if (const Seat* seat = parts_->seats.find(page)) parts_->sliders_told.erase(seat->number);
+  if (parts_->drag && parts_->drag->page == page) parts_->tell_drag();
   parts_->greeted.erase(page);
   parts_->waiting.erase(page);
   parts_->seats.leave(page, parts_->now());
@@ -106,6 +108,8 @@ void Cockpit::received_too_much(PageId page, std::string_view last) {
 void Cockpit::frame() {
   parts_->show_out_the_silent();
   parts_->tell_if_log_breaks();
+  parts_->tell_drag_if_due();
+  parts_->give_control_to_only_page();
   if (parts_->greeted.empty()) return;
   parts_->send_state_if_due();
   parts_->send_tick();

@@ -130,10 +130,25 @@ void Cockpit::Parts::answered(PageId page, std::uint32_t number, const std::stri
     tell(wire::Notice::WARNING, who, "refused", refused);
   } else if (!is_told(page, asked)) {
     return;
+  } else if (asked.dragging) {
+    hold(page, who, asked);
   } else {
+    if (continues_drag(page, asked)) drag.reset();
     tell(wire::Notice::CHANGE, who, asked.code, asked.text);
   }
   want_state();
+}
+
+bool Cockpit::Parts::continues_drag(PageId page, const PageRequest& asked) const {
+  return drag && drag->page == page && drag->newest.keys == asked.keys;
+}
+
+void Cockpit::Parts::hold(PageId page, const std::string& who, const PageRequest& asked) {
+  if (!continues_drag(page, asked)) {
+    tell_drag();
+    drag = Drag{.page = page, .who = who, .newest = {}, .since = now()};
+  }
+  drag->newest = asked;
 }
 
 /// Sliders say it thirty times a second.

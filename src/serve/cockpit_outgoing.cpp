@@ -15,6 +15,7 @@ namespace {
 constexpr double kStateEvery = 0.5;         ///< at least [s]
 constexpr double kStateWithin = 0.05;       ///< at most [s]
 constexpr double kHelloWithin = 10.0;       ///< [s]
+constexpr double kDragToldEvery = 10.0;     ///< [s]
 constexpr std::size_t kErrorLength = 4000;  ///< [bytes]
 
 double unix_now() {
@@ -27,22 +28,45 @@ Bytes encoded(const wire::ToPage& message) {
 
 }  // namespace
 
-void Cockpit::Parts::to_all(const Bytes& bytes) {
-  for (const auto& [page, pace] : greeted) server->send(page, bytes);
-}
-
-void Cockpit::Parts::tell(wire::Notice::Level level, const std::string& who, const std::string& code,
-                          const std::string& text) {
+wire::Notice notice_of(wire::Notice::Level level, const std::string& who, const std::string& code,
+                       const std::string& text) {
   wire::Notice notice;
   notice.set_level(level);
   notice.set_unix_time(unix_now());
   notice.set_who(as_utf8(who));
   notice.set_code(code);
   notice.set_text(as_utf8(text));
-  log.add(notice);
+  return notice;
+}
+
+void Cockpit::Parts::to_all(const Bytes& bytes) {
+  for (const auto& [page, pace] : greeted) server->send(page, bytes);
+}
+
+void Cockpit::Parts::tell(wire::Notice::Level level, const std::string& who, const std::string& code,
+                          const std::string& text) {
+  tell_drag();
+  log.add(notice_of(level, who, code, text));
   wire::ToPage message;
   *message.mutable_notice() = log.newest().back();
   to_all(encoded(message));
+}
+
+void Cockpit::Parts::tell_drag() {
+  const std::optional<Drag> ended = std::exchange(drag, std::nullopt);
+  if (ended) tell(wire::Notice::CHANGE, ended->who, ended->newest.code, ended->newest.text);
+}
+
+/// A page that never says that the drag has ended hides nothing.
+void Cockpit::Parts::tell_drag_if_due() {
+  if (drag && now() - drag->since >= kDragToldEvery) tell_drag();
+}
+
+void Cockpit::Parts::give_control_to_only_page() {
+  const Seat* seat = seats.give_to_only_page(now());
+  if (seat == nullptr) return;
+  tell(wire::Notice::CHANGE, seat->label(), "operator_taken", "operates: no other page does");
+  want_state();
 }
 
 /// Told again only when it could be written in between.
@@ -56,11 +80,7 @@ void Cockpit::Parts::tell_if_log_breaks() {
 
 void Cockpit::Parts::tell_one(PageId page, const std::string& code, const std::string& text) {
   wire::ToPage message;
-  wire::Notice& notice = *message.mutable_notice();
-  notice.set_level(wire::Notice::WARNING);
-  notice.set_unix_time(unix_now());
-  notice.set_code(code);
-  notice.set_text(text);
+  *message.mutable_notice() = notice_of(wire::Notice::WARNING, "", code, text);
   server->send(page, encoded(message));
 }
 

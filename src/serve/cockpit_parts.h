@@ -40,8 +40,12 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
 
   // ---- what goes out: cockpit_outgoing.cpp
   void to_all(const Bytes& bytes);
+  /// To all pages and the log, after what is still held of a drag.
   void tell(wire::Notice::Level level, const std::string& who, const std::string& code,
             const std::string& text);
+  void tell_drag();
+  void tell_drag_if_due();
+  void give_control_to_only_page();
   void tell_one(PageId page, const std::string& code, const std::string& text);
   void reply(PageId page, std::uint32_t request, const std::string& refused);
   /// A message of the station in a page's words: without options, and without the folder of the installation.
@@ -80,9 +84,17 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
   std::map<PageId, double> waiting;              ///< for their hello, since [s]
   std::map<std::string, double> stops_told;      ///< a speaker's newest, for kStopToldEvery [s]
   std::map<std::uint32_t, double> sliders_told;  ///< a page's newest [s]
-  std::string report;                            ///< of the fault that began at `reported`
-  double reported = -1.0;                        ///< [s], the host's clock
-  bool log_broken = false;                       ///< all pages have been told
+  /// A change by a control that is being dragged: told when it ends, or something else is told.
+  struct Drag {
+    PageId page = 0;
+    std::string who;
+    PageRequest newest;
+    double since = 0.0;  ///< [s]
+  };
+  std::optional<Drag> drag;
+  std::string report;       ///< of the fault that began at `reported`
+  double reported = -1.0;   ///< [s], the host's clock
+  bool log_broken = false;  ///< all pages have been told
   bool state_wanted = false;
   double state_sent = -1e9;  ///< [s]
   std::uint64_t told_revision = 0;
@@ -97,11 +109,18 @@ struct Cockpit::Parts : std::enable_shared_from_this<Cockpit::Parts> {
   void take(PageId page);
   void release(PageId page);
   [[nodiscard]] bool is_told(PageId page, const PageRequest& asked);
+  /// Whether the drag that is held is of this page and these keys.
+  [[nodiscard]] bool continues_drag(PageId page, const PageRequest& asked) const;
+  void hold(PageId page, const std::string& who, const PageRequest& asked);
   void refuse_unless_operator(PageId page) const;
   void ask_host(PageId page, const wire::ToHost& message);
   void answered(PageId page, std::uint32_t number, const std::string& who, const PageRequest& asked,
                 const ChangeOutcome& outcome);
 };
+
+/// A notice of this moment; any bytes may be in `who` and `text`.
+[[nodiscard]] wire::Notice notice_of(wire::Notice::Level level, const std::string& who,
+                                     const std::string& code, const std::string& text);
 
 /// A line of text.
 [[nodiscard]] WebAnswer plain_answer(int status, std::string text);

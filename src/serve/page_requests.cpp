@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "serve/foreign_files.h"
+#include "serve/settings_text.h"
 
 namespace phalanx {
 namespace {
@@ -22,7 +23,7 @@ PageRequest set(const wire::Set& message, StationHost& host, const std::filesyst
     throw std::invalid_argument(
         fmt::format("{} settings at once; send 1 to {}", message.setting_size(), kMostSettings));
   Overrides changes;
-  PageRequest request{.code = "set", .text = {}, .at_once = false};
+  PageRequest request{.code = "set", .text = {}, .keys = {}, .dragging = message.dragging()};
   for (const wire::Setting& setting : message.setting()) {
     if (setting.key().empty() || setting.key().size() > kLongestKey)
       throw std::invalid_argument(fmt::format("a setting's key of {} bytes; a scene's key has 1 to {}",
@@ -36,9 +37,9 @@ PageRequest set(const wire::Set& message, StationHost& host, const std::filesyst
                       "named where the station is started",
                       setting.key(), setting.value()));
     changes.emplace_back(setting.key(), setting.value());
-    request.text += fmt::format("{}{} = {}", request.text.empty() ? "" : ", ", setting.key(),
-                                setting.value().empty() ? "as in the scene" : setting.value());
+    request.keys += setting.key() + "\n";
   }
+  request.text = settings_text(changes);
   host.set(std::move(changes), std::move(done));
   return request;
 }
@@ -50,7 +51,7 @@ PageRequest load(const std::string& name, StationHost& host, const wire::Welcome
     throw std::invalid_argument(
         fmt::format("scene {}: is not among those shipped; choose one of the list", name));
   host.load_scene(name, std::move(done));
-  return {.code = "scene", .text = name, .at_once = false};
+  return {.code = "scene", .text = name};
 }
 
 PageRequest source(wire::HandSource wanted, StationHost& host, StationHost::Done done) {
@@ -59,8 +60,7 @@ PageRequest source(wire::HandSource wanted, StationHost& host, StationHost::Done
     throw std::invalid_argument("a page switches between the simulated patient and the sliders only");
   host.set_source(sliders ? HandSource::kSliders : HandSource::kPatient, std::move(done));
   return {.code = "source",
-          .text = sliders ? "the sliders move the hand" : "the simulated patient moves the hand",
-          .at_once = false};
+          .text = sliders ? "the sliders move the hand" : "the simulated patient moves the hand"};
 }
 
 void pose(const wire::Sliders& sliders, StationHost& host) {
@@ -95,7 +95,7 @@ PageRequest calibrate(const wire::Calibrate& message, StationHost& host, Station
   host.calibrate(known.step, message.pose(), std::move(done));
   std::string text = fmt::format("calibration: {}", known.words);
   if (known.step == Step::kGoTo) text += fmt::format(" {}", message.pose() + 1);
-  return {.code = "calibrate", .text = std::move(text), .at_once = false};
+  return {.code = "calibrate", .text = std::move(text)};
 }
 
 }  // namespace

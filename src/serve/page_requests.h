@@ -11,9 +11,11 @@ namespace phalanx {
 
 /// What an operator's message asks of the station.
 struct PageRequest {
-  std::string code;      ///< of the notice: "set", "scene", ...
-  std::string text;      ///< for people
-  bool at_once = false;  ///< it is done already: `done` is not called
+  std::string code;       ///< of the notice: "set", "scene", ...
+  std::string text;       ///< for people
+  bool at_once = false;   ///< it is done already: `done` is not called
+  std::string keys = {};  ///< of a "set"
+  bool dragging = false;  ///< a later value of the same keys follows
 };
 
 /// Hands an operator's message to the host. Its values are checked by the code that reads scene files.

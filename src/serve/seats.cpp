@@ -27,6 +27,7 @@ Seats::Return Seats::come_back(PageId page, const std::string& secret, double no
   Return result;
   const auto here = page_.find(page);
   if (here == page_.end()) return result;
+  here->second.greeted = true;
   const PageId same = page_with(secret);
   if (same != 0 && same != page) {
     result.replaced = same;
@@ -67,7 +68,18 @@ std::string Seats::take(PageId page, double now) {
 bool Seats::release(PageId page) {
   if (!operates(page)) return false;
   operator_number_ = 0;
+  page_.at(page).gave_back = true;
   return true;
+}
+
+const Seat* Seats::give_to_only_page(double now) {
+  const Seat* only = nullptr;
+  for (const auto& [id, seat] : page_) {
+    if (!seat.greeted || !seat.visitor.may_operate) continue;
+    if (only != nullptr) return nullptr;
+    only = &seat;
+  }
+  return only != nullptr && !only->gave_back && sit_if_free(*only, now) ? only : nullptr;
 }
 
 void Seats::name(PageId page, const std::string& name) {

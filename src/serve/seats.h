@@ -16,12 +16,15 @@ struct Seat {
   std::string secret;        ///< proves that a page that comes back is the same one
   std::string name;
   Visitor visitor;
+  bool greeted = false;    ///< it has said hello
+  bool gave_back = false;  ///< it had control and released it
 
   [[nodiscard]] std::string label() const;
 };
 
 /// One page at a time operates. The first that may does; when it leaves, its seat is kept for kGrace, so that
-/// a reload changes nothing; then the seat is free, and whoever comes next, or asks first, has it.
+/// a reload changes nothing; then the seat is free, and a page that comes next, asks first, or is the only
+/// one that may operate has it.
 class Seats {
  public:
   static constexpr double kGrace = 10.0;           ///< [s]
@@ -47,6 +50,9 @@ class Seats {
   std::string take(PageId page, double now);
   /// @returns whether the page had it
   bool release(PageId page);
+  /// Gives control to the only page that may operate, if no page has it and this one has not released it.
+  /// @returns the seat of that page; null: nothing changes
+  const Seat* give_to_only_page(double now);
   void name(PageId page, const std::string& name);  ///< its first kNameLength bytes
 
   [[nodiscard]] const Seat* find(PageId page) const;

@@ -140,7 +140,8 @@ void write_state(const StationHost& host, wire::State& out) {
   out.set_safety(wire_state(view.state));
   out.set_stops(host.stops());
   out.set_held_stopped(host.held_stopped());
-  if (view.fault.fault != Fault::kNone) put(view.fault, *out.mutable_fault());
+  // While a calibration is on there is no station: the fault is that of the one before.
+  if (view.fault.fault != Fault::kNone && !state->wizard) put(view.fault, *out.mutable_fault());
   out.set_degraded(view.degraded);
   out.set_device_state(device_state_name(view.device));
   out.set_estop(view.estop);
@@ -170,7 +171,7 @@ void write_choices(wire::Welcome& out) {
     info.set_change(wire_change(key.path));
   }
   for (const SceneInfo& scene : list_scenes()) {
-    if (!scene.readable) continue;
+    if (!scene.readable || !scene.touches) continue;
     wire::Choice& choice = *out.add_scene();
     choice.set_name(scene.name);
     choice.set_meaning(scene.description);

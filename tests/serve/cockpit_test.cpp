@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pages, the server and a station: who may do what, and what everybody is told. docs/cockpit.md
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "phalanx/scene/data_paths.h"
 #include "serve/cockpit_fixture.h"
@@ -17,6 +20,8 @@ using namespace test;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+const std::string kStiffness = "force.stiffness_n_per_mm";
 
 /// [s]
 double since_1970() {
@@ -292,6 +297,57 @@ TEST_F(CockpitTest, APageThatIsOpenedAgainTakesItsOwnPlace) {
   EXPECT_EQ(logged("replaced"), 0U) << "it is for that page alone";
 }
 
+wire::ToHost to_drag(const std::string& key, const std::string& value, bool dragging = true) {
+  wire::ToHost message;
+  auto& setting = *message.mutable_set()->add_setting();
+  setting.set_key(key);
+  setting.set_value(value);
+  message.mutable_set()->set_dragging(dragging);
+  return message;
+}
+
+TEST_F(StillCockpitTest, ADragIsOneLineWithTheValueAtItsEnd) {
+  Page page(port());
+  for (int i = 1; i <= 26; ++i) EXPECT_TRUE(page.ask(to_drag(kStiffness, fmt::format("0.{:02}", i))).ok());
+  EXPECT_TRUE(page.ask(to_drag(kStiffness, "0.26", false)).ok());
+  EXPECT_EQ(page.notice("set").text(), kStiffness + " = 0.26");
+  ASSERT_EQ(logged("set"), 1U);
+}
+
+// It is told with the value that it has then, before whatever comes in between.
+TEST_F(StillCockpitTest, ADragThatDoesNotEndIsToldAllTheSame) {
+  auto here = std::make_unique<Page>(port());
+  Page& page = *here;
+  page.ask(to_drag(kStiffness, "0.1"));
+  page.ask(to_drag(kStiffness, "0.2"));
+  page.ask(to_stop());
+  page.ask(to_drag(kStiffness, "0.3"));
+  page.ask(to_drag("smoothing.max_n_per_s", "2"));
+  page.ask(to_be_named("Anna"));  // what came before has been taken in
+  skip(10.0);
+  EXPECT_EQ(page.hear([](const wire::ToPage& m) {
+                  return m.has_notice() && m.notice().text().find("smoothing") != std::string::npos;
+                })
+                .notice()
+                .code(),
+            "set");
+  page.ask(to_drag(kStiffness, "0.4"));
+  page.ask(to_be_named("Anna"));
+  cockpit_->typed("set", "typed");
+  page.ask(to_drag(kStiffness, "0.5"));
+  page.ask(to_be_named("Anna"));
+  here.reset();
+  std::vector<std::string> texts;
+  for (int i = 0; i < 10'000 && (texts.empty() || texts.back() != kStiffness + " = 0.5"); ++i) {
+    texts.clear();
+    for (const auto& line : log())
+      if (line["code"] == "set" || line["code"] == "stopped") texts.push_back(line["text"]);
+  }
+  EXPECT_EQ(texts, (std::vector<std::string>{kStiffness + " = 0.2", "stopped the torque",
+                                             kStiffness + " = 0.3", "smoothing.max_n_per_s = 2",
+                                             kStiffness + " = 0.4", "typed", kStiffness + " = 0.5"}));
+}
+
 TEST_F(StillCockpitTest, SlidersAreLoggedOnceInTenSeconds) {
   Page page(port());
   wire::ToHost sliders;
@@ -347,8 +403,9 @@ TEST_F(CockpitTest, AReloadKeepsTheRoleForTenSecondsAndNoLonger) {
   page.reset();
   other.until([](const wire::State& s) { return s.pages() == 1; });
   skip(11.0);
-  other.until([](const wire::State& s) { return s.operator_page() == 0; });
-  EXPECT_TRUE(other.ask(to_take()).ok());
+  other.until([](const wire::State& s) { return s.operator_page() == 2; });  // it is alone
+  EXPECT_TRUE(other.set("rate_hz", "250").ok());
+  EXPECT_EQ(logged("operator_taken"), 2U);
   page = std::make_unique<Page>(port(), secret);
   EXPECT_EQ(page->state.operator_page(), 2U);
 }

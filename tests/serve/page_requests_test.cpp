@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,8 +18,10 @@
 #include "phalanx/core/index.h"
 #include "phalanx/device/calibration_poses.h"
 #include "phalanx/device/fault.h"
+#include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
+#include "phalanx/station/assemble.h"
 #include "serve/state_message.h"
 #include "station/host_fixture.h"
 
@@ -102,6 +106,11 @@ TEST_F(PageRequestsTest, ASetIsLaidOverTheSceneAndShown) {
   EXPECT_EQ(handed(set("force.stiffness_n_per_mm", "")).text, "force.stiffness_n_per_mm = as in the scene");
   EXPECT_EQ(state().changed_size(), 0);
   EXPECT_EQ(handed(set("description", "v", 2)).text, "description = v, description = v");
+  EXPECT_FALSE(asked.dragging);
+  wire::ToHost dragged = set("force.stiffness_n_per_mm", "0.9");
+  dragged.mutable_set()->set_dragging(true);
+  EXPECT_TRUE(handed(dragged).dragging);
+  EXPECT_EQ(handed(dragged).keys, asked.keys);
 }
 
 TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
@@ -305,11 +314,17 @@ class WiredPagesTest : public HostTest {
 
 // All poses are skipped, then the first two are measured. They concern both sensors, so that is enough.
 TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShownAsTheyStand) {
+  ASSERT_TRUE(until_running());
+  overload();
+  wire::State state;
+  write_state(*host, state);
+  EXPECT_TRUE(state.has_fault());
   ASSERT_EQ(calibrate(Step::kBegin), "");
   ASSERT_TRUE(until([&] { return !host->state()->wizard->raw.empty(); }));
   expect_shown();
-  wire::State state;
+  state.Clear();
   write_state(*host, state);
+  EXPECT_FALSE(state.has_fault()) << "it was the station's that has ended";
   EXPECT_EQ(state.source(), wire::HAND_DEVICE);
   EXPECT_EQ(state.device_spec(), controller.address());
   EXPECT_EQ(state.device_name(), host->state()->device.name);
@@ -343,6 +358,25 @@ TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShownAsTheyStand) {
   expect_shown();
 }
 
+// What a page can choose, the simulated patient can press.
+TEST(Choices, HoldOnlyScenesThatTheSimulatedPatientMeets) {
+  wire::Welcome welcome;
+  write_choices(welcome);
+  std::vector<std::string> refused;
+  for (const SceneInfo& info : list_scenes()) {
+    const SceneDescription scene = load_scene(info.name, {{"hand.meshes", "\"capsules\""}});
+    const auto model = std::make_unique<HapticModel>(build_model(scene));
+    try {
+      static_cast<void>(simulated_settings(scene, *model));
+    } catch (const std::invalid_argument&) {
+      refused.push_back(info.name);
+    }
+  }
+  for (const wire::Choice& choice : welcome.scene())
+    EXPECT_EQ(std::count(refused.begin(), refused.end(), choice.name()), 0) << choice.name();
+  EXPECT_EQ(idx(welcome.scene_size()) + refused.size(), list_scenes().size());
+}
+
 TEST(Choices, AreEveryKeySceneAndProfile) {
   wire::Welcome welcome;
   write_choices(welcome);
@@ -368,8 +402,10 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
     EXPECT_EQ(welcome.key(i).default_value(), key.default_value) << key.path;
     EXPECT_EQ(welcome.key(i).meaning(), key.meaning) << key.path;
   }
-  const std::vector<SceneInfo> scenes = list_scenes();
-  ASSERT_EQ(idx(welcome.scene_size()), scenes.size()) << "all that are shipped can be read";
+  std::vector<SceneInfo> scenes = list_scenes();
+  for (const SceneInfo& scene : scenes) EXPECT_TRUE(scene.readable) << scene.name;
+  std::erase_if(scenes, [](const SceneInfo& scene) { return !scene.touches; });
+  ASSERT_EQ(idx(welcome.scene_size()), scenes.size());
   for (int i = 0; i < welcome.scene_size(); ++i) {
     EXPECT_EQ(welcome.scene(i).name(), scenes[idx(i)].name);
     EXPECT_EQ(welcome.scene(i).meaning(), scenes[idx(i)].description);

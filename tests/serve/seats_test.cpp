@@ -75,11 +75,47 @@ TEST_F(SeatsTest, AReloadKeepsTheRoleForTenSeconds) {
   seats.leave(again, now);
   now += 10.1;
   EXPECT_EQ(operating(), "");
-  EXPECT_FALSE(seats.operates(second)) << "not by itself: it asks, or comes anew";
+  EXPECT_FALSE(seats.operates(second)) << "not before give_to_only_page()";
   EXPECT_EQ(seats.take(second, now), "") << "from nobody";
   const PageId late = come(kHere, mine);
   EXPECT_FALSE(seats.operates(late));
   EXPECT_EQ(seats.find(late)->number, 1U) << "but it is the same page";
+}
+
+// Closed and opened again within the grace: the new page comes while the old one's seat is kept.
+TEST_F(SeatsTest, TheOnlyPageThatMayOperateDoesOnceTheGraceIsOver) {
+  const PageId first = come();
+  seats.leave(first, now);
+  const PageId second = come();
+  come(kViewer);
+  seats.join(++last, kHere, "has not said hello", now);
+  now += Seats::kGrace - 1e-9;
+  EXPECT_EQ(seats.give_to_only_page(now), nullptr) << "the first may come back";
+  EXPECT_FALSE(seats.operates(second));
+  now += 1e-6;
+  EXPECT_EQ(seats.give_to_only_page(now), seats.find(second));
+  EXPECT_TRUE(seats.operates(second));
+  EXPECT_EQ(seats.give_to_only_page(now), nullptr) << "once";
+}
+
+TEST_F(SeatsTest, OfSeveralPagesNoneIsGivenControl) {
+  const PageId first = come();
+  come();
+  const PageId third = come();
+  seats.leave(first, now);
+  now += Seats::kGrace;
+  EXPECT_EQ(seats.give_to_only_page(now), nullptr);
+  EXPECT_EQ(operating(), "");
+  seats.leave(third, now);
+  EXPECT_NE(seats.give_to_only_page(now), nullptr);
+}
+
+TEST_F(SeatsTest, APageThatHasReleasedControlIsNotGivenItAgain) {
+  const PageId only = come();
+  EXPECT_TRUE(seats.release(only));
+  EXPECT_EQ(seats.give_to_only_page(now), nullptr);
+  seats.take(only, now);
+  EXPECT_TRUE(seats.operates(only));
 }
 
 TEST_F(SeatsTest, WhoeverComesNextSitsWhereNobodyDoes) {

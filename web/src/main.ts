@@ -90,7 +90,7 @@ const app: App = {
 let plots: PlotPanel | undefined;
 const band = lostBand(store);
 const numbers = readouts(store);
-const frame = viewFrame(store, [band.element, faultCard(app), troubleCard(app), toasts(store)]);
+const frame = viewFrame(store, [band.element, faultCard(app), troubleCard(app)]);
 const look = new Look((theme) => {
   frame.setTheme(theme);
   plots?.setTheme(theme);
@@ -108,9 +108,15 @@ const plotPlace = el("div", { class: "plot-slot" });
 document.title = strings.title;
 document.getElementById("opening")?.remove(); // what was painted until now
 document.getElementById("page")?.append(
-  header(app, look),
-  el("main", { class: "scene" }, numbers.element, frame.element, plotPlace, dialogs),
-  el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels.element, stop.element),
+  el(
+    "div",
+    { class: "content" },
+    header(app, look),
+    el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
+    el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels.element),
+  ),
+  dialogs,
+  el("div", { class: "dock" }, toasts(store), stop.element),
 );
 
 listenToKeys(window, {
@@ -134,6 +140,7 @@ let wasDead: boolean | undefined; // the view
 
 /// What follows the clock: told apart from what follows messages, since silence has to be seen too.
 function heartbeat(now: number): void {
+  store.freshness.beat(now);
   const lost = store.lost;
   if (lost !== wasLost) {
     wasLost = lost;

@@ -135,6 +135,7 @@ struct SceneInfo {
   std::string name;
   std::string description;  ///< the scene's own line; if it cannot be read, what is wrong with it
   bool readable = true;
+  bool touches = true;  ///< its motion is not one in free air: the simulated patient can press
 };
 
 /// The scenes in scenes/, by name. @throws SceneError if the folder is not found.

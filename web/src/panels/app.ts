@@ -19,10 +19,10 @@ export function refusal(answer: Answer): string {
   return answer.ok ? "" : answer.error || strings.notSent;
 }
 
-/// Asks for a change as one. @returns the refusal in the host's words; empty: done
-export async function change(app: App, changes: readonly Change[]): Promise<string> {
+/// Asks for a change as one. @param dragging  as Host's. @returns the refusal in the host's words; empty: done
+export async function change(app: App, changes: readonly Change[], dragging = false): Promise<string> {
   for (const [key, value] of changes) app.store.asked(key, value);
-  const answer = await app.host.set(changes);
+  const answer = await app.host.set(changes, dragging);
   for (const [key, value] of changes) app.store.answered(key, value, answer.ok);
   app.store.tell("own");
   return refusal(answer);

@@ -23,8 +23,8 @@ export function lostBand(store: Store): LostBand {
   const why = el("p");
   const element = el("div", { class: "lost-band", hidden: true }, title, since, why);
   const update = (now: number) => {
-    setShown(element, store.viewDead);
-    if (!store.viewDead) return;
+    setShown(element, store.viewDead && !store.busyWithItself);
+    if (element.hidden) return;
     const words = strings.lost;
     const fresh = store.freshness;
     const seconds = (fresh.age(now) / 1000).toFixed(fresh.age(now) < 10_000 ? 1 : 0);

@@ -171,14 +171,14 @@ export function logSliderRow(
     put(field, Number.isFinite(value) ? fromNumber(value) : "");
     tell();
   };
-  const send = (value: string) => {
+  const send = (value: string, dragging: boolean) => {
     made.refuse("");
-    void change(app, [[setting, value]]).then((refused) => {
+    void change(app, [[setting, value]], dragging).then((refused) => {
       made.refuse(refused);
       show();
     });
   };
-  const throttle = new Throttle(send, kSliderPerSecond);
+  const throttle = new Throttle((value: string) => send(value, dragged), kSliderPerSecond);
   slider.addEventListener("input", () => {
     dragged = true;
     const value = rounded(fromScale(Number(slider.value) / kSliderSteps, min, max));
@@ -187,8 +187,10 @@ export function logSliderRow(
     throttle.push(value);
   });
   onLetGo(slider, () => {
-    throttle.flush();
+    if (!dragged) return;
     dragged = false;
+    throttle.push(field.value); // also where it was sent already: now it is the last one
+    throttle.flush();
     show();
   });
   typing(field, () => {

@@ -95,7 +95,7 @@ export function stopBox(app: App): StopBox {
     setAttribute(element, "data-state", state);
     setText(name, strings.safety[state]);
     setText(meaning, store.connected && !known ? strings.stop.silent : strings.safetyMeaning[state]);
-    setShown(resume, held);
+    setShown(resume, held && !known?.wizard); // a calibration rests the station until it ends
     resume.disabled = !mayChange(store.role);
     resume.title = mayChange(store.role) ? strings.stop.resumeHint : strings.stop.resumeViewer;
     setText(refused, trouble);

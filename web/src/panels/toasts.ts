@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest notice over the view; faults stay until they are dismissed. What has a place of its own stays there.
+// The newest notice above Stop; faults stay until they are dismissed. What has a place of its own stays there.
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
-import { continues } from "../state/notices";
 import { strings } from "../strings";
 import { clockTime } from "./clock";
-import { button, el, setText } from "./dom";
+import { button, el } from "./dom";
 
 const kShownMs = 6000;
 const kAtOnce = 3;
@@ -15,41 +14,26 @@ export function toasts(store: Store): HTMLElement {
   const quiet = el("div", { class: "toast-list", role: "status", "aria-live": "polite", "aria-label": strings.notice.region });
   const loud = el("div", { class: "toast-list", role: "alert" });
   let seen: Notice | undefined;
-  let newest: { readonly toast: HTMLElement; readonly when: HTMLElement; readonly text: HTMLElement; over: ReturnType<typeof setTimeout> | undefined } | undefined;
-
-  const head = (notice: Notice) => `${clockTime(notice.unixTime)} ${notice.who || strings.people.station}`;
-  const leave = (toast: HTMLElement) => setTimeout(() => toast.remove(), kShownMs);
-
-  /// The same change anew: the toast that is there says so.
-  function renew(notice: Notice): boolean {
-    if (!newest?.toast.isConnected || !continues(seen, notice)) return false;
-    setText(newest.when, head(notice));
-    setText(newest.text, notice.text);
-    clearTimeout(newest.over);
-    newest.over = leave(newest.toast);
-    return true;
-  }
 
   function show(notice: Notice): void {
     const fault = notice.level === Notice_Level.FAULT;
-    const when = el("small", {}, head(notice));
-    const text = el("p", {}, notice.text);
+    const when = el("small", {}, `${clockTime(notice.unixTime)} ${notice.who || strings.people.station}`);
     const toast = el(
       "div",
       { class: "toast", "data-level": Notice_Level[notice.level]?.toLowerCase() },
-      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, text),
+      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, notice.text)),
     );
     toast.append(button(strings.notice.dismiss, () => toast.remove(), { class: "quiet" }));
     const list = fault ? loud : quiet;
-    list.append(toast);
-    newest = { toast, when, text, over: fault ? undefined : leave(toast) };
-    while (list.childElementCount > kAtOnce) list.firstElementChild?.remove();
+    list.prepend(toast);
+    if (!fault) setTimeout(() => toast.remove(), kShownMs);
+    while (list.childElementCount > kAtOnce) list.lastElementChild?.remove();
   }
   store.on(["notice"], () => {
     const last = store.notices.at(-1);
     // What happened before this page came is in the list; only what happens now pops up.
     const now = last && last !== seen && !kShownElsewhere.has(last.code) && !store.welcome?.past.includes(last);
-    if (now && !renew(last)) show(last);
+    if (now) show(last);
     seen = last;
   });
   return el("div", { class: "toasts" }, loud, quiet);

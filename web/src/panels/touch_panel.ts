@@ -25,7 +25,6 @@ function sceneSection(app: App): HTMLElement {
   const changes = el("span", { class: "hint" });
   const back = button(strings.scene.reset, () => void reset());
   let chosen = "";
-  made.element.querySelector(".row-control")?.append(load);
 
   async function go(): Promise<void> {
     made.refuse("");
@@ -55,7 +54,7 @@ function sceneSection(app: App): HTMLElement {
   const differs = el("div", { class: "buttons" }, changes, back);
   app.store.on(["state", "connection"], update);
   update();
-  return section(strings.scene.title, made.element, description, differs);
+  return section(strings.scene.title, made.element, description, el("div", { class: "buttons" }, load), differs);
 }
 
 function forceSection(app: App): HTMLElement {

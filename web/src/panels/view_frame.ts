@@ -45,13 +45,13 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
   const picture = button(words.picture, () => view && saveFile(`phalanx-${stamp()}.png`, view.picture()));
   const cameras = el(
     "div",
-    { class: "view-tools view-cameras", role: "toolbar", "aria-label": words.camera },
+    { class: "view-cameras", role: "toolbar", "aria-label": words.camera },
     ...presets,
-    button("+", () => zoom(kZoomStep), { "aria-label": words.nearer, title: words.nearer }),
-    button("−", () => zoom(1 / kZoomStep), { "aria-label": words.farther, title: words.farther }),
+    button("+", () => zoom(kZoomStep), { class: "view-zoom", "aria-label": words.nearer, title: words.nearer }),
+    button("−", () => zoom(1 / kZoomStep), { class: "view-zoom", "aria-label": words.farther, title: words.farther }),
   );
   const shown = el("div", { class: "view-parts-list" }, ...switches, picture);
-  const menu = el("details", { class: "view-tools view-parts" }, el("summary", {}, words.partsMenu), shown);
+  const menu = el("details", { class: "view-parts" }, el("summary", {}, words.partsMenu), shown);
 
   host.addEventListener("keydown", (event) => {
     const turn: Readonly<Record<string, readonly [number, number]>> = {
@@ -90,7 +90,7 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
     store.on(["tick"], () => store.tick && view?.show(store.tick));
   }
   return {
-    element: el("div", { class: "view-frame" }, host, wait, viewKey(), cameras, menu, ...over),
+    element: el("div", { class: "view-frame" }, host, wait, viewKey(), el("div", { class: "view-tools" }, cameras, menu), ...over),
     view: () => view,
     load,
     setTheme: (theme) => view?.setTheme(theme),

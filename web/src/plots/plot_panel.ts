@@ -88,14 +88,14 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
   const dead = el("p", { class: "plot-offline", role: "status" });
   const whyDead = () => {
     if (!store.connected) return words.offline;
-    if (!store.lost) return "";
+    if (!store.lost || store.busyWithItself) return "";
     return store.unmeasured ? words.unmeasured : words.silent;
   };
   const live = () => {
     const why = whyDead();
     setText(dead, why);
     setShown(dead, why !== "");
-    area.classList.toggle("plot-dead", why !== "");
+    area.classList.toggle("plot-dead", !store.connected || store.lost);
   };
   store.on(["connection", "tick"], live);
   live();

@@ -4,6 +4,8 @@ import { isMeasured } from "./channels";
 
 /// A picture older than this is not alive [ms].
 export const kStaleMs = 500;
+/// Where the page itself stood still, so much of the pause counts as the station's silence [ms].
+const kPauseMs = 100;
 
 /// Whether what is shown is alive: a newer step, made from a fresh measurement, has come within kStaleMs. A station whose device is
 /// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that slept
@@ -15,9 +17,29 @@ export class Freshness {
   private measured = true; // the newest step
   private step: bigint | undefined;
   private time: number | undefined; // the station's
+  private beatAt: number;
+  private unheardMs = 0; // while the page listened, since the newest step
 
   constructor(now: number) {
     this.since = now;
+    this.beatAt = now;
+  }
+
+  /// The line is open from now on: the station has not been silent yet.
+  listen(): void {
+    this.unheardMs = 0;
+  }
+
+  /// The page runs, and has had the chance to hear: once a frame.
+  beat(now: number): void {
+    this.unheardMs += Math.min(now - this.beatAt, kPauseMs);
+    this.beatAt = now;
+  }
+
+  /// The station has said nothing for kStaleMs although the page listened. A page that was busy with itself, as while it brings in its
+  /// view, has a picture that is stale and a station that is not silent.
+  get silent(): boolean {
+    return this.unheardMs >= kStaleMs;
   }
 
   /// @returns whether the step is a new one
@@ -25,6 +47,7 @@ export class Freshness {
     if (tick.time !== this.time) this.heardAt = now;
     this.time = tick.time;
     if (tick.tick === this.step) return false;
+    this.unheardMs = 0;
     this.step = tick.tick;
     this.measured = isMeasured(tick);
     if (this.measured) this.measuredAt = now;

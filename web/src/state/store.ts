@@ -8,7 +8,6 @@ import { channels, fillRow } from "./channels";
 import { Freshness } from "./freshness";
 import { History } from "./history";
 import { isChanged, valueOf } from "./keys";
-import { continues, merged } from "./notices";
 import { roleOf, type Role } from "./roles";
 import { same } from "./toml";
 import { VerdictLight } from "./verdict";
@@ -84,6 +83,11 @@ export class Store {
     return waits || this.freshness.unmeasured(this.now());
   }
 
+  /// Nothing has come because the page did not listen: its own work took too long.
+  get busyWithItself(): boolean {
+    return this.connected && this.lost && !this.unmeasured && !this.freshness.silent;
+  }
+
   /// What the station is known to be doing now; undefined: no connection, or it has said nothing for too long.
   get known(): State | undefined {
     return this.connected && this.now() - this.stateAt <= kStateStaleMs ? this.state : undefined;
@@ -110,6 +114,8 @@ export class Store {
       this.pending.clear();
       this.shape = undefined; // another station counts its revisions anew
       this.stateAt = -Infinity;
+    } else {
+      this.freshness.listen();
     }
     this.tell("connection");
   }
@@ -130,7 +136,7 @@ export class Store {
     switch (what.case) {
       case "welcome":
         this.welcome = what.value;
-        this.notices = [...merged(what.value.past)];
+        this.notices = [...what.value.past];
         this.tell("connection");
         this.tell("notice");
         break;
@@ -144,7 +150,6 @@ export class Store {
         this.step(what.value);
         break;
       case "notice":
-        if (continues(this.notices.at(-1), what.value)) this.notices.pop();
         this.notices.push(what.value);
         if (this.notices.length > kNoticesKept) this.notices.shift();
         this.tell("notice");

@@ -46,9 +46,10 @@ export class Host {
     ).catch(() => false);
   }
 
-  set(changes: readonly Change[]): Promise<Answer> {
+  /// @param dragging  later values of the same keys follow: the log takes the last one
+  set(changes: readonly Change[], dragging = false): Promise<Answer> {
     const setting = changes.map(([key, value]) => create(SettingSchema, { key, value }));
-    return this.connection.ask({ case: "set", value: create(SetSchema, { setting }) });
+    return this.connection.ask({ case: "set", value: create(SetSchema, { setting, dragging }) });
   }
 
   /// @param stops  of the State that the person sees

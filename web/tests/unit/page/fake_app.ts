@@ -13,6 +13,7 @@ export interface FakeApp {
   readonly app: App;
   readonly store: Store;
   readonly asked: (readonly Change[])[];
+  readonly dragging: boolean[]; // of each of `asked`
   readonly resets: number[]; // times of the faults that were to be reset
   refuse: string; // what the station answers; empty: it does it
   state(state: MessageInitShape<typeof StateSchema>): void;
@@ -33,8 +34,9 @@ export function fakeApp(): FakeApp {
   store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: 1, page: kMe, mayOperate: true, key }) } }));
   const answer = () => Promise.resolve({ ok: made.refuse === "", error: made.refuse });
   const host = {
-    set: (changes: readonly Change[]) => {
+    set: (changes: readonly Change[], dragging: boolean) => {
       made.asked.push(changes);
+      made.dragging.push(dragging);
       return answer();
     },
     reset: (faultTime: number) => {
@@ -47,6 +49,7 @@ export function fakeApp(): FakeApp {
     app: { store, host, dialogs: document.createElement("div"), takeControl: () => {}, upload: () => Promise.reject(new Error("none")) },
     store,
     asked: [],
+    dragging: [],
     resets: [],
     refuse: "",
     state,

@@ -2,6 +2,7 @@
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, it } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import { lostBand, type LostBand } from "../../../src/panels/lost_band";
 import { kStaleMs } from "../../../src/state/freshness";
 import { Store } from "../../../src/state/store";
@@ -17,6 +18,11 @@ const tick = (number: number, status = 0) => receive({ case: "tick", value: { ti
 const said = () => {
   band.update(now);
   return band.element.hidden ? "" : band.element.querySelector("[role=alert]")!.textContent;
+};
+
+/// So long passes in frames of the page, which hears nothing.
+const pass = (ms: number) => {
+  for (const end = now + ms; now < end; ) store.freshness.beat((now += Math.min(16, end - now)));
 };
 
 beforeEach(() => {
@@ -39,11 +45,11 @@ describe("the band over the view", () => {
     tick(2, kSampleStale);
     expect(said()).toBe(words.unmeasured);
     expect(band.element.textContent).toContain(words.unmeasuredWhy);
-    now += 2000;
+    pass(2000);
     tick(3, kSampleStale);
     expect(said()).toBe(words.unmeasured);
     expect(band.element.textContent).toContain(words.measured("2.0"));
-    now += kStaleMs + 1;
+    pass(kStaleMs + 1);
     expect(said()).toBe(words.stale);
     store.setPhase("waiting");
     expect(said()).toBe(words.closed);
@@ -52,5 +58,38 @@ describe("the band over the view", () => {
     store.setGeometry(store.geometry!, 0);
     tick(4);
     expect(said()).toBe("");
+  });
+
+  it("does not call a station silent that the page itself did not listen to, as while it brings in its view", () => {
+    receive({ case: "state", value: { safety: SafetyState.SAFETY_RUNNING } });
+    for (let block = 0; block < 3; ++block) {
+      store.freshness.beat((now += 2000));
+      expect(store.lost, "the picture is old").toBe(true);
+      expect(said()).toBe("");
+      tick(2 + block);
+    }
+    store.freshness.beat((now += 2000));
+    pass(kStaleMs);
+    expect(said(), "it has listened since").toBe(words.stale);
+  });
+
+  it("calls a station silent in the end however slow the page's frames are", () => {
+    receive({ case: "state", value: { safety: SafetyState.SAFETY_RUNNING } });
+    let frames = 0;
+    for (; frames < 20 && said() === ""; ++frames) store.freshness.beat((now += 1000));
+    expect(said()).toBe(words.stale);
+    expect(frames).toBe(5);
+  });
+
+  it("gives a station whose line has just opened as much time as any other", () => {
+    store.setPhase("waiting");
+    pass(10_000);
+    store.setPhase("open");
+    receive({ case: "state", value: { safety: SafetyState.SAFETY_RUNNING } });
+    store.setGeometry(store.geometry!, 0);
+    store.freshness.beat(now);
+    expect(said()).toBe("");
+    pass(kStaleMs);
+    expect(said()).toBe(words.stale);
   });
 });

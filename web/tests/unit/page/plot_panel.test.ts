@@ -95,7 +95,12 @@ describe("the plots", () => {
     const area = panel.element.querySelector(".plot-area")!;
     tick(1);
     expect(said.hidden).toBe(true);
-    now += 5000;
+    now += 5000; // of the page's own, which did not listen
+    store.freshness.beat(now);
+    panel.update();
+    expect(said.hidden).toBe(true);
+    expect(area.classList.contains("plot-dead"), "old all the same").toBe(true);
+    for (let frame = 0; frame < 40; ++frame) store.freshness.beat((now += 16));
     panel.update();
     expect(said.textContent).toBe(words.silent);
     expect(area.classList.contains("plot-dead")).toBe(true);

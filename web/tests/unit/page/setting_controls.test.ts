@@ -43,6 +43,30 @@ describe("controls", () => {
     await vi.advanceTimersByTimeAsync(500);
     expect(fake.asked.length).toBeLessThanOrEqual(12);
     expect(fake.asked.at(-1)).toEqual([[stiffness, "5"]]);
+    expect(fake.dragging.length).toBeGreaterThan(2);
+    expect(fake.dragging, "the last one alone is for the log").toEqual(fake.dragging.map((_, i) => i < fake.dragging.length - 1));
+  });
+
+  it("a key that is held down drags the slider until it comes up, and a click moves it at once", async () => {
+    fake.operate(2);
+    const range = slider().querySelector<HTMLInputElement>("input[type=range]")!;
+    const move = (to: number) => {
+      range.value = String(to);
+      range.dispatchEvent(new Event("input"));
+      range.dispatchEvent(new Event("change"));
+    };
+    for (let i = 1; i <= 3; ++i) {
+      range.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight" }));
+      move(500 + i);
+      await vi.advanceTimersByTimeAsync(200);
+    }
+    range.dispatchEvent(new KeyboardEvent("keyup", { key: "ArrowRight" }));
+    expect(fake.dragging).toEqual([true, true, true, false]);
+    await vi.advanceTimersByTimeAsync(200);
+    move(700);
+    await vi.advanceTimersByTimeAsync(200);
+    range.dispatchEvent(new Event("blur"));
+    expect(fake.dragging.slice(4)).toEqual([true, false]);
   });
 
   it("a number that is dragged or typed is never replaced by an older one while it is on its way", async () => {

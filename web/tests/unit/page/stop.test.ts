@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { FaultSchema, StateSchema, ToPageSchema, WelcomeSchema, type State } from "../../../src/gen/phalanx/cockpit_pb";
+import { FaultSchema, StateSchema, ToPageSchema, WelcomeSchema, WizardSchema, type State } from "../../../src/gen/phalanx/cockpit_pb";
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import type { App } from "../../../src/panels/app";
 import { faultCard } from "../../../src/panels/fault_card";
@@ -47,6 +47,19 @@ const held = (stops: bigint) => state({ heldStopped: true, safety: SafetyState.S
 const words = (element: HTMLElement) => element.querySelector(".stop-said:not([hidden])")?.textContent ?? "";
 const named = (element: HTMLElement, text: string) => [...element.querySelectorAll("button")].find((one) => one.textContent === text)!;
 const flush = () => vi.advanceTimersByTimeAsync(0);
+
+describe("a calibration", () => {
+  it("rests the station: Resume comes back with its end", () => {
+    const { element } = stopBox(app);
+    const resume = named(element, strings.stop.resume);
+    held(1n);
+    expect(resume.hidden).toBe(false);
+    state({ heldStopped: true, stationGone: true, stops: 1n, wizard: create(WizardSchema, { name: ["flat hand"] }) });
+    expect(resume.hidden).toBe(true);
+    held(1n);
+    expect(resume.hidden).toBe(false);
+  });
+});
 
 describe("a stop that is not confirmed", () => {
   it("is said again every second, and with the next welcome, until the station has it", async () => {

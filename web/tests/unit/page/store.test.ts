@@ -177,16 +177,6 @@ describe("listeners", () => {
   });
 });
 
-describe("notices", () => {
-  it("that say the same anew take the place of the last one", () => {
-    const notice = (unixTime: number, text: string) => receive({ case: "notice", value: { unixTime, text, code: "set", who: "page 2" } });
-    notice(1, "a.b = 1");
-    notice(2, "a.b = 2");
-    notice(2, "a.c = 3");
-    expect(store.notices.map((one) => one.text)).toEqual(["a.b = 2", "a.c = 3"]);
-  });
-});
-
 describe("ticks", () => {
   it("are not kept while the plots pause, but still shown", () => {
     tick(1);

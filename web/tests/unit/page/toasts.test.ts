@@ -20,7 +20,7 @@ describe("toasts", () => {
   it("shows what happens, and a warning's own words", () => {
     notice(Notice_Level.CHANGE, "scene", "pinch_ball");
     notice(Notice_Level.WARNING, "log_broken", "the log cannot be written");
-    expect(shown()).toEqual(["pinch_ball", "the log cannot be written"]);
+    expect(shown(), "the newest first").toEqual(["the log cannot be written", "pinch_ball"]);
   });
 
   it("leaves a fault of the station to its card", () => {
