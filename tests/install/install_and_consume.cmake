@@ -14,9 +14,26 @@ file(REMOVE_RECURSE ${WORK_DIR})
 must(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/first)
 file(RENAME ${WORK_DIR}/first ${WORK_DIR}/prefix)
 
-foreach(expected bin/phalanx include/phalanx/step/haptic_step.h share/phalanx/assets share/phalanx/scenes)
+foreach(expected bin/phalanx include/phalanx/step/haptic_step.h share/phalanx/assets share/phalanx/scenes share/phalanx/web/index.html
+                 share/phalanx/link/phalanx_link.c share/doc/phalanx/README.md share/doc/phalanx/docs/device.md
+                 share/doc/phalanx/docs/pictures/cockpit.png)
   if(NOT EXISTS ${WORK_DIR}/prefix/${expected})
     message(FATAL_ERROR "not installed: ${expected}")
+  endif()
+endforeach()
+
+# Firmware takes the reference in C from the installed files alone.
+must(${CC} -c -I${WORK_DIR}/prefix/include ${WORK_DIR}/prefix/share/phalanx/link/phalanx_link.c -o ${WORK_DIR}/phalanx_link.o)
+
+# All that the page names is there.
+file(READ ${WORK_DIR}/prefix/share/phalanx/web/index.html page)
+string(REGEX MATCHALL "\\./assets/[^\"]+" named "${page}")
+if(NOT named)
+  message(FATAL_ERROR "the installed page names no script: ${page}")
+endif()
+foreach(asset ${named})
+  if(NOT EXISTS ${WORK_DIR}/prefix/share/phalanx/web/${asset})
+    message(FATAL_ERROR "not installed: share/phalanx/web/${asset}")
   endif()
 endforeach()
 
