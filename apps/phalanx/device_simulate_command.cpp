@@ -126,7 +126,7 @@ void add_device_simulate(CLI::App& device, Job& job) {
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "end after so long, on the slowed clock [until Ctrl-C]")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_option("--log", options->log, "write a row a tick into this file")->type_name("FILE.csv");
   command->add_option("--seed", options->seed, "of patient, sensors and faults [the scene's]")
       ->type_name("N");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "error_line.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <new>
+#include <system_error>
 
 namespace phalanx {
 
@@ -12,7 +12,21 @@ void print_error_line(std::string message) {
   std::replace_if(
       message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; },
       ' ');
-  fmt::print(stderr, "{}\n", message);
+  message += '\n';
+  std::fputs(message.c_str(), stderr);
+}
+
+std::string reason(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "out of memory";
+  const std::string text = error.what();
+  // The code that could not open something has put the system's reason into a text of its own.
+  for (const std::errc limit : {std::errc::too_many_files_open, std::errc::too_many_files_open_in_system})
+    if (text.find(std::make_error_code(limit).message()) != std::string::npos)
+      return text + "; allow more with `ulimit -n`, or end other programs";
+  const auto* of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again)
+    return text + ": no thread could be made; allow more threads (`ulimit -u`) or memory (`ulimit -v`)";
+  return text;
 }
 
 }  // namespace phalanx

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // phalanx: the command line. One file a command; this one only parses and maps errors to exit codes.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -17,6 +20,18 @@
 #include "usage.h"
 
 namespace {
+
+/// For an exception that a destructor or a thread lets out. A library's destructors may need memory.
+[[noreturn]] void die() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    std::fputs("phalanx: out of memory\n", stderr);
+    ::_exit(phalanx::kFailed);
+  } catch (...) {
+  }
+  std::abort();
+}
 
 int run(int argc, char** argv) {
   using namespace phalanx;
@@ -57,7 +72,7 @@ int run_and_report(int argc, char** argv) {
     return kFailed;
   } catch (const std::exception& error) {
     // A failed write to standard output is main's to report.
-    if (std::ferror(stdout) == 0) print_error_line(fmt::format("phalanx: {}", error.what()));
+    if (std::ferror(stdout) == 0) print_error_line(fmt::format("phalanx: {}", reason(error)));
     return kFailed;
   }
 }
@@ -65,6 +80,8 @@ int run_and_report(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::set_terminate(die);
+  std::signal(SIGXFSZ, SIG_IGN);  // at a file size limit, writing fails instead
   const int code = run_and_report(argc, argv);
   if (code == phalanx::kWrongInput) return code;
   // What is still buffered can fail only here: a full disk must not look like success.

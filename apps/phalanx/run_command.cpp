@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "end_signals.h"
+#include "error_line.h"
 #include "phalanx/mesh/isolation_helper.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
@@ -21,47 +22,59 @@
 #include "run_host.h"
 #include "run_options.h"
 #include "run_page.h"
+#include "run_recorder.h"
+#include "status_line.h"
+#include "typed_lines.h"
 #include "usage.h"
 
 namespace phalanx {
 namespace {
 
-void say(const std::string& line) {
-  fmt::print("{}\n", line);
-  std::fflush(stdout);
-}
-
-void complain(const std::string& what) { fmt::print(stderr, "phalanx run: {}\n", what); }
-
-/// One run of the station, from the terminal's side.
+/// One run of the station, from the terminal's side. This thread waits for neither the terminal nor the disk.
 class Run {
  public:
-  Run(const RunOptions& options, const Clock& clock) : options_(options), clock_(clock) {}
+  Run(const RunOptions& options, const Clock& clock)
+      : options_(options), clock_(clock), recorder_(options.log, options.faults) {}
 
+  /// Whatever happens, the station ends at zero torque first, and its log and summary are written.
   int go() {
-    if (!options_.log.empty()) {
-      log_ = std::make_unique<OutputFile>(options_.log);
-      write_step_header(*log_);
-    }
+    if (const auto earlier = recorder_.finished_earlier(); !earlier.empty())
+      console_.say(
+          fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
     host_ = std::make_unique<StationHost>(host_settings(options_), clock_);
-    look();
-    introduce();
-    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *host_);
-    watch();
+    std::exception_ptr failure;
+    try {
+      serve();
+    } catch (...) {
+      failure = std::current_exception();
+    }
     host_->shut_down();
-    return finish();
+    const bool saved = save();
+    if (failure) std::rethrow_exception(failure);
+    return say_end() && saved ? kDone : kFailed;
   }
 
  private:
+  void serve() {
+    typed_.emplace(*host_);
+    recorder_.begin(*host_);
+    seen_ = look();
+    introduce();
+    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *host_, console_);
+    watch();
+  }
+
   void introduce() {
     const auto state = host_->state();
-    say(fmt::format("scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", state->scene,
-                    state->geometry->rate_hz, state->device.name, state->device.serial,
-                    state->fingertip_force,
-                    options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
+    console_.say(fmt::format(
+        "scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", state->scene,
+        state->geometry->rate_hz, state->device.name, state->device.serial, state->fingertip_force,
+        options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
     if (state->source == HandSource::kDevice && options_.calibration.empty())
-      complain("no --calibration: using the device's own numbers; see `phalanx device calibrate --help`");
-    say("Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
+      console_.complain(
+          "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`");
+    console_.say(
+        "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
         "quit.");
   }
 
@@ -71,101 +84,98 @@ class Run {
     while (asked_to_end == 0 && !quit_) {
       clock_.sleep_until(clock_.now() + 0.02);
       const double seconds = clock_.now() - begin;
+      seconds_ = seconds;
       if (options_.seconds && seconds >= *options_.seconds) break;
       host_->go_on();
       drain();
-      std::string line;
-      while (asked_to_end == 0 && typed_.next(line)) obey(line);
+      obey_typed();
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
       if (options_.quiet) continue;
-      look();
-      say(status_line(host_->view(), host_->deadlines(), seconds));
+      const Seen seen = look();
+      if (console_.status(status_line(host_->view(), host_->deadlines(), seconds, console_.width())))
+        seen_ = seen;
     }
-    seconds_ = clock_.now() - begin;
   }
 
   /// What the person at the terminal is about to be shown. Lines may be read late, and what was typed before
   /// another stop or fault is not about that one.
-  void look() {
-    seen_stops_ = host_->stops();
+  struct Seen {
+    std::uint64_t stops = 0;
+    double fault = 0.0;  ///< FaultEvent::time; 0: none [s]
+  };
+  [[nodiscard]] Seen look() const {
+    const std::uint64_t stops = host_->stops();
     const FaultEvent fault = host_->view().fault;
-    seen_fault_ = fault.fault == Fault::kNone ? 0.0 : fault.time;
+    return {.stops = stops, .fault = fault.fault == Fault::kNone ? 0.0 : fault.time};
   }
 
-  /// Fetches what the loop has put aside.
+  /// Tells what the loop and the recorder have put aside.
   void drain() {
     say_grant();
-    write_log();
-    if (const auto report = host_->take_fault_report()) tell_fault(*report);
+    if (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
+    while (const auto note = recorder_.next_note()) tell(*note);
     const std::uint64_t refused = host_->view().resets_refused;
     if (std::exchange(resets_refused_, refused) < refused) {
       const std::string why =
           "reset refused: the cause is still there, no sample comes, or the torque is not at rest yet";
-      say(why);
+      console_.say(why);
       if (page_) page_->tell("reset_refused", why, false);
     }
   }
 
-  void tell_fault(const FaultReport& report) {
+  void tell_fault(FaultReport report) {
     const FaultEvent& event = report.event;
     const std::string text = fmt::format("{}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
                                          fault_remedy(event.fault));
-    seen_fault_ = event.time;
-    say("FAULT " + text);
+    seen_.fault = event.time;
+    console_.say("FAULT " + text);
     if (page_) page_->tell("fault", text, true);
-    try {
-      const std::string file = write_fault_report(options_.faults, report).string();
-      say("report: " + file);
-      if (page_) page_->fault_reported(file, event.time);
-    } catch (const std::exception& error) {  // the station goes on without it
-      complain(fmt::format("the fault's report could not be written: {}", error.what()));
-    }
+    recorder_.write_report(std::move(report));
   }
 
-  /// A log that fails is given up, in words; the station goes on.
-  void write_log() {
-    StepRecord record;
-    while (host_->next_record(record)) {
-      if (!log_) continue;
-      try {
-        write_step(*log_, record);
-      } catch (const std::exception& error) {
-        lose_log(error);
-      }
-    }
-  }
-
-  void lose_log(const std::exception& error) {
-    complain(fmt::format("the log ends here: {}; what was written is in {}", error.what(),
-                         log_->leave_partial().string()));
-    log_.reset();
-    log_lost_ = true;
+  void tell(const RunRecorder::Note& note) {
+    if (!note.complaint.empty()) return console_.complain(note.complaint);
+    console_.say("report: " + note.report);
+    if (page_) page_->fault_reported(note.report, note.fault_time);
   }
 
   void say_grant() {
     if (granted_) return;
     granted_ = host_->grant();
     if (!granted_) return;
-    say("real time: " + describe(*granted_));
-    for (const std::string& missing : granted_->missing) complain(missing);
+    console_.say("real time: " + describe(*granted_));
+    for (const std::string& missing : granted_->missing) console_.complain(missing);
+    if (page_) page_->say_addresses(console_);  // again, where they are looked for: at the end
   }
 
-  void obey(const std::string& line) {
+  void obey_typed() {
+    while (asked_to_end == 0 && !quit_) {
+      const auto line = typed_->next();
+      if (!line) break;
+      obey(*line);
+    }
+    if (const std::size_t left_out = typed_->take_left_out(); left_out > 0)
+      console_.complain(
+          fmt::format("{} lines were left out: they came faster than they are obeyed", left_out));
+  }
+
+  void obey(const TypedLines::Line& typed) {
+    const std::string& line = typed.text;
     try {
-      if (line == "stop") {
-        host_->stop();
-        look();
+      if (line == "stop") {  // TypedLines has done it
+        seen_ = look();
+        seen_.stops = typed.stops;
         tell_typed("stopped", "stopped");
       } else if (line == "resume") {
-        const bool resumed = host_->resume(seen_stops_);
-        look();
+        const bool resumed = host_->resume(seen_.stops);
+        seen_ = look();
         if (!resumed)
           throw std::invalid_argument("another stop or fault has come since; look, then resume again");
         tell_typed("resumed", "resumed");
       } else if (line == "reset") {
-        const bool reset = host_->reset(seen_fault_);
-        look();
+        const bool reset = host_->reset(seen_.fault);
+        seen_ = look();
         if (!reset) throw std::invalid_argument("another fault has come since; look, then reset again");
         tell_typed("reset", "asked for a reset");
       } else if (line == "quit") {
@@ -189,15 +199,15 @@ class Run {
             line));
       }
     } catch (const std::exception& error) {  // what is refused ends nothing
-      complain(error.what());
+      console_.complain(reason(error));
     }
   }
 
   void say_typed(const std::string& code, const std::string& text, const std::string& line,
                  const ChangeOutcome& outcome) {
-    if (!outcome.refused.empty()) return say("refused: " + outcome.refused);
-    if (outcome.overtaken) return say("overtaken by a newer value: " + line);
-    say("changed: " + line);
+    if (!outcome.refused.empty()) return console_.say("refused: " + outcome.refused);
+    if (outcome.overtaken) return console_.say("overtaken by a newer value: " + line);
+    console_.say("changed: " + line);
     tell_typed(code, text);
   }
 
@@ -214,46 +224,62 @@ class Run {
     return 1e-3 * value;
   }
 
-  int finish() {
+  /// The torque is zero. @returns false if log or summary is not whole
+  [[nodiscard]] bool save() {
+    while (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
+    recorder_.finish();
+    const bool summarised = write_summary();
     drain();
     page_.reset();
+    return summarised && !recorder_.lost();
+  }
+
+  /// @returns false if it ended in a fault
+  [[nodiscard]] bool say_end() {
+    if (!options_.quiet) say_statistics();
     const StationView last = host_->view();
-    const DeadlineStatistics deadlines = host_->deadlines();
-    const std::string granted = granted_ ? describe(*granted_) : "not asked for";
-    if (!options_.summary.empty())
-      write_text_file(options_.summary, station_summary_json(deadlines, last, granted, seconds_));
-    if (!options_.quiet) {
-      say(histogram_text(deadlines.lateness, "woken late"));
-      say(histogram_text(deadlines.step, "step"));
-      say(
-          fmt::format("{} steps, {} overruns (at most {} in a row), {} deadlines left out; {} samples, {} "
-                      "lost, {} corrupt",
-                      deadlines.steps, deadlines.overruns, deadlines.longest_run, deadlines.skipped,
-                      last.link.received, last.link.lost, last.link.corrupt));
-    }
     const bool faulty = last.state == SafetyState::kFault;
-    say(faulty ? fmt::format("ended at zero torque, in fault {}", fault_name(last.fault.fault))
-               : "ended at zero torque");
+    console_.say(faulty ? fmt::format("ended at zero torque, in fault {}", fault_name(last.fault.fault))
+                        : "ended at zero torque");
+    return !faulty;
+  }
+
+  [[nodiscard]] bool write_summary() {
+    if (options_.summary.empty()) return true;
     try {
-      if (log_) log_->commit();
+      write_text_file(options_.summary,
+                      station_summary_json(host_->session(), host_->view(),
+                                           granted_ ? describe(*granted_) : "not asked for", seconds_));
+      return true;
     } catch (const std::exception& error) {
-      lose_log(error);
+      console_.complain(fmt::format("there is no summary: {}", reason(error)));
+      return false;
     }
-    return faulty || log_lost_ ? kFailed : kDone;
+  }
+
+  void say_statistics() {
+    const SessionStatistics session = host_->session();
+    const DeadlineStatistics& deadlines = session.deadlines;
+    console_.say(histogram_text(deadlines.lateness, "woken late"));
+    console_.say(histogram_text(deadlines.step, "step"));
+    console_.say(
+        fmt::format("{} steps, {} overruns (at most {} in a row), {} deadlines left out; {} samples, {} "
+                    "lost, {} corrupt",
+                    deadlines.steps, deadlines.overruns, deadlines.longest_run, deadlines.skipped,
+                    session.link.received, session.link.lost, session.link.corrupt));
   }
 
   const RunOptions& options_;
   const Clock& clock_;
-  std::unique_ptr<OutputFile> log_;
+  RunConsole console_;
   std::unique_ptr<StationHost> host_;
+  RunRecorder recorder_;
   std::unique_ptr<RunPage> page_;
+  std::optional<TypedLines> typed_;
   std::optional<RealtimeGrant> granted_;
-  TypedLines typed_;
   bool quit_ = false;
-  bool log_lost_ = false;
   std::uint64_t resets_refused_ = 0;
-  std::uint64_t seen_stops_ = 0;  ///< as look() saw them
-  double seen_fault_ = 0.0;       ///< FaultEvent::time; 0: none [s]
+  Seen seen_;
   double seconds_ = 0.0;
 };
 
@@ -272,8 +298,7 @@ void add_run_command(CLI::App& app, Job& job) {
       ->capture_default_str();
   run->add_option("--calibration", options->calibration,
                   "the device's calibration file (phalanx device calibrate)");
-  run->add_option("--seconds", options->seconds, "end after so long; else with Ctrl-C")
-      ->check(CLI::PositiveNumber);
+  run->add_option("--seconds", options->seconds, "end after so long; else with Ctrl-C")->check(positive());
   run->add_option("--rate-hz", options->rate_hz, "the loop's rate, 200 .. 2000 Hz; else the scene's");
   run->add_option("--profile", options->profile, "the patient's hand: a profile's name or file");
   run->add_option("--set", options->set, "a scene's key: KEY=VALUE; may be repeated")
@@ -306,7 +331,7 @@ void add_run_command(CLI::App& app, Job& job) {
       ->capture_default_str();
   run->add_option("--calibrations", options->calibrations, "folder of what the page's calibration writes")
       ->capture_default_str();
-  run->add_flag("--quiet", options->quiet, "no line a second");
+  run->add_flag("--quiet", options->quiet, "no status line");
   run->callback([options, run, port, &job] {
     refuse_empty_values(*run);
     options->port_stated = port->count() > 0;

@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person at the terminal of a running station sees and types.
+// What `phalanx run` says on its terminal.
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include "phalanx/station/station.h"
+#include "line_writer.h"
 
 namespace phalanx {
 
-/// "  12.0 s  running   index 3.2 N  thumb 1.1 N   step 9 us (p99.9 41)   woken 61 us late (p99.9 180)   ..."
-[[nodiscard]] std::string status_line(const StationView& view, const DeadlineStatistics& deadlines,
-                                      double seconds);
-
-/// Lines typed, without waiting for them. Standard input that ends is not asked again.
-class TypedLines {
+/// Standard output and standard error, without ever waiting for them: LineWriter. Where both are the same
+/// terminal, pipe or file, lines keep their order.
+class RunConsole {
  public:
-  /// @returns whether a whole line was there
-  bool next(std::string& line);
+  RunConsole();
+
+  void say(const std::string& line) noexcept { out_.line(line); }
+  /// On standard error, with the command's name.
+  void complain(const std::string& what) noexcept;
+  /// @returns false if it was left out: LineWriter::status()
+  [[nodiscard]] bool status(const std::string& line) noexcept { return out_.status(line); }
+
+  /// Whether standard output is a terminal: what is secret is for one only.
+  [[nodiscard]] bool is_terminal() const noexcept { return out_.is_terminal(); }
+  [[nodiscard]] std::size_t width() const noexcept { return out_.width(); }  ///< LineWriter::width()
 
  private:
-  std::string pending_;
-  bool ended_ = false;
+  LineWriter out_;
+  std::optional<LineWriter> err_;  ///< none where it is the same as out_
 };
 
 }  // namespace phalanx

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -59,8 +58,7 @@ WebServerSettings server_settings(const RunOptions& o) {
   settings.site = site_folder();
   settings.site_missing =
       "The station runs, but its page has not been built here. In the project's folder type ./run once: it "
-      "builds "
-      "the page.\n";
+      "builds the page.\n";
   if (!is_loopback(o.listen)) secure(o, settings);
   return settings;
 }
@@ -77,40 +75,60 @@ CockpitSettings cockpit_settings(const RunOptions& o) {
 
 struct RunPage::Parts {
   Parts(const RunOptions& o, StationHost& host)
-      : settings(server_settings(o)), cockpit(host, cockpit_settings(o)), server(settings, cockpit) {
-    cockpit.attach(server, is_loopback(o.listen) ? std::vector<std::string>()
-                                                 : lan_urls(o.listen, server.port(), settings.viewer_token));
+      : options(o),
+        settings(server_settings(o)),
+        cockpit(host, cockpit_settings(o)),
+        server(settings, cockpit) {
+    cockpit.attach(server, is_loopback(o.listen)
+                               ? std::vector<std::string>()
+                               : lan_urls(options.listen, server.port(), settings.viewer_token));
   }
 
-  void introduce(const RunOptions& o) const {
-    if (is_loopback(o.listen)) {
-      fmt::print("Cockpit: {}\n", server.url());
-      if (const std::string line = ssh_line(server.port()); !line.empty())
-        fmt::print(
-            "  you are here over SSH; on your own computer type\n    {}\n  and open the address above "
-            "there\n",
-            line);
-    } else {
-      introduce_to_the_network(o);
+  /// The addresses come last: they are what a reader looks for.
+  void introduce(RunConsole& console) const {
+    if (!is_loopback(options.listen)) {
+      introduce_to_the_network(console);
+    } else if (const std::string line = ssh_line(server.port()); !line.empty()) {
+      console.say("You are here over SSH; on your own computer type");
+      console.say("  " + line);
+      console.say("and open the address below there.");
     }
-    std::fflush(stdout);
+    say_addresses(console);
   }
 
-  void introduce_to_the_network(const RunOptions& o) const {
-    const std::vector<std::string> to_operate = lan_urls(o.listen, server.port(), settings.operator_token);
-    for (const std::string& url : to_operate) fmt::print("Cockpit, to operate:  {}\n", url);
-    for (const std::string& url : lan_urls(o.listen, server.port(), settings.viewer_token))
-      fmt::print("Cockpit, to look on:  {}\n", url);
-    if (o.certificate.empty())
-      fmt::print(
-          "  the browser asks once whether to trust this machine; its certificate's SHA-256 is\n  {}\n",
-          certificate_fingerprint(settings.certificate));
-    if (to_operate.empty())
-      fmt::print("Cockpit: no other computer reaches this one; connect it to a network and start again\n");
-    else
-      fmt::print("{}", qr_text(to_operate.front()));
+  void introduce_to_the_network(RunConsole& console) const {
+    if (options.certificate.empty()) {
+      console.say("The browser asks once whether to trust this machine; its certificate's SHA-256 is");
+      console.say("  " + certificate_fingerprint(settings.certificate));
+    }
+    if (!console.is_terminal()) return;
+    std::string code;
+    if (const auto to_operate = lan_urls(options.listen, server.port(), settings.operator_token);
+        !to_operate.empty())
+      code = qr_text(to_operate.front());
+    if (!code.empty()) code.pop_back();
+    console.say(code);
   }
 
+  void say_addresses(RunConsole& console) const {
+    if (is_loopback(options.listen)) return console.say("Cockpit: " + server.url());
+    if (lan_urls(options.listen, server.port(), "").empty())
+      return console.say(
+          "Cockpit: no other computer reaches this one; connect it to a network and start again.");
+    if (!console.is_terminal()) {
+      for (const std::string& url : lan_urls(options.listen, server.port(), ""))
+        console.say("Cockpit: " + url);
+      return console.say(
+          "  It asks for a token, which is shown on a terminal only: start `phalanx run` on one, without a "
+          "pipe or a file behind it.");
+    }
+    for (const std::string& url : lan_urls(options.listen, server.port(), settings.viewer_token))
+      console.say("Cockpit, to look on:  " + url);
+    for (const std::string& url : lan_urls(options.listen, server.port(), settings.operator_token))
+      console.say("Cockpit, to operate:  " + url);
+  }
+
+  const RunOptions& options;
   const WebServerSettings settings;
   Cockpit cockpit;
   WebServer server;
@@ -130,13 +148,15 @@ void check_page_options(const RunOptions& o) {
   }
 }
 
-RunPage::RunPage(const RunOptions& options, StationHost& host)
+RunPage::RunPage(const RunOptions& options, StationHost& host, RunConsole& console)
     : parts_(std::make_unique<Parts>(options, host)) {
   parts_->server.start();
-  parts_->introduce(options);
+  parts_->introduce(console);
 }
 
 RunPage::~RunPage() { parts_->server.stop(); }
+
+void RunPage::say_addresses(RunConsole& console) const { parts_->say_addresses(console); }
 
 void RunPage::tell(const std::string& code, const std::string& text, bool fault) {
   parts_->cockpit.tell(code, text, fault);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -107,6 +108,15 @@ void refuse_empty_values(const CLI::App& command) {
           fmt::format("{} \"\": the value is empty; give one or leave the option out", option->get_name()));
     }
   }
+}
+
+CLI::Validator positive() {
+  return {[](const std::string& text) -> std::string {
+            double value = 0.0;
+            if (CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value)) return {};
+            return fmt::format("{}: must be a number above 0", text);
+          },
+          "> 0"};
 }
 
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {

@@ -10,22 +10,15 @@
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
+
+#include "record/partial_file.h"
 
 namespace phalanx {
 namespace {
 
 constexpr std::size_t kBufferBytes = 1U << 20U;
 constexpr std::size_t kLongestNumber = 32;  // "-2.2250738585072014e-308" has 24
-
-std::filesystem::path partial_name(const std::filesystem::path& file) {
-  std::filesystem::path partial = file;
-  partial += ".partial";
-  return partial;
-}
-
-[[noreturn]] void fail(const char* what, const std::filesystem::path& file, int error) {
-  throw std::runtime_error(fmt::format("cannot {} '{}': {}", what, file.string(), std::strerror(error)));
-}
 
 /// A rename would put a file in the place of a device or a pipe.
 bool stands_in_the_way(const std::filesystem::path& file) {
@@ -34,49 +27,52 @@ bool stands_in_the_way(const std::filesystem::path& file) {
 }
 
 void rename_or_fail(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code ignored;
+  if (stands_in_the_way(to)) fail_to("write", to, EEXIST);
   std::error_code error;
-  if (stands_in_the_way(to)) {
-    error = std::make_error_code(std::errc::file_exists);
-  } else {
-    std::filesystem::rename(from, to, error);
+  std::filesystem::rename(from, to, error);
+  if (error) fail_to("write", to, error.value());
+}
+
+/// Takes what was written off `text`. @returns 0, or the system's reason
+int write_off(int descriptor, std::string& text) noexcept {
+  std::size_t written = 0;
+  int error = 0;
+  while (error == 0 && written < text.size()) {
+    const ssize_t count = ::write(descriptor, text.data() + written, text.size() - written);
+    if (count > 0) written += static_cast<std::size_t>(count);
+    if (count < 0 && errno != EINTR) error = errno;
+    if (count == 0) error = EIO;
   }
-  if (!error) return;
-  std::filesystem::remove(from, ignored);
-  fail("write", to, error.value());
+  text.erase(0, written);
+  return error;
 }
 
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)), partial_(partial_name(file_)) {
+OutputFile::OutputFile(std::filesystem::path file, Unfinished unfinished)
+    : file_(std::move(file)), partial_(partial_name(file_)), unfinished_(unfinished) {
   if (stands_in_the_way(file_))
     throw std::runtime_error(
         fmt::format("cannot write '{}': it is no ordinary file; name another", file_.string()));
-  stream_.reset(std::fopen(partial_.c_str(), "wb"));
-  if (!stream_) fail("write", file_, errno);
   buffer_.reserve(kBufferBytes);
+  PartialFile made = open_partial(file_, unfinished_);
+  descriptor_ = made.descriptor;
+  finished_earlier_ = std::move(made.finished_earlier);
 }
 
 OutputFile::~OutputFile() {
-  if (!stream_) return;
-  std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
-}
-
-std::filesystem::path OutputFile::leave_partial() noexcept {
-  stream_.reset();
-  return partial_;
+  if (descriptor_ < 0) return;
+  if (unfinished_ == Unfinished::kLeft) write_off(descriptor_, buffer_);
+  if (unfinished_ == Unfinished::kRemoved || !has_rows(descriptor_)) ::unlink(partial_.c_str());
+  ::close(descriptor_);
 }
 
 void OutputFile::reserve(std::size_t bytes) {
-  if (buffer_.size() + bytes > kBufferBytes) flush();
+  if (buffer_.size() + bytes > kBufferBytes) write_through();
 }
 
-void OutputFile::flush() {
-  if (std::fwrite(buffer_.data(), 1, buffer_.size(), stream_.get()) != buffer_.size()) {
-    fail("write", file_, errno);
-  }
-  buffer_.clear();
+void OutputFile::write_through() {
+  if (const int error = write_off(descriptor_, buffer_); error != 0) fail_to("write", file_, error);
 }
 
 void OutputFile::text(std::string_view text) {
@@ -99,23 +95,22 @@ void OutputFile::integer(std::uint64_t value) {
 }
 
 void OutputFile::commit() {
-  flush();
-  if (std::fflush(stream_.get()) != 0) fail("write", file_, errno);
-  stream_.reset();
+  write_through();
   rename_or_fail(partial_, file_);
+  ::close(std::exchange(descriptor_, -1));  // and with it the lock
 }
 
 void write_then_rename(const std::filesystem::path& file,
                        const std::function<void(const std::filesystem::path&)>& write) {
   const std::filesystem::path partial = partial_name(file);
+  ::close(open_partial(file, Unfinished::kRemoved).descriptor);
   try {
     write(partial);
+    rename_or_fail(partial, file);
   } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
+    ::unlink(partial.c_str());
     throw;
   }
-  rename_or_fail(partial, file);
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view content) {

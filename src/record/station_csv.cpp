@@ -114,8 +114,9 @@ std::filesystem::path write_fault_report(const std::filesystem::path& folder, co
   return path;
 }
 
-std::string station_summary_json(const DeadlineStatistics& deadlines, const StationView& last,
+std::string station_summary_json(const SessionStatistics& session, const StationView& last,
                                  const std::string& granted, double seconds) {
+  const DeadlineStatistics& deadlines = session.deadlines;
   const Json json = {{"seconds", seconds},
                      {"steps", deadlines.steps},
                      {"period_us", 1e6 * deadlines.period},
@@ -125,9 +126,10 @@ std::string station_summary_json(const DeadlineStatistics& deadlines, const Stat
                      {"overruns", deadlines.overruns},
                      {"longest_run_of_overruns", deadlines.longest_run},
                      {"skipped", deadlines.skipped},
+                     {"records_lost", session.records_lost},
                      {"state", safety_state_name(last.state)},
                      {"fault", fault_name(last.fault.fault)},
-                     {"link", link_json(last.link)},
+                     {"link", link_json(session.link)},
                      {"made", {{"commit", built_from_commit()}}}};
   return json.dump(2) + "\n";
 }

@@ -18,7 +18,7 @@
 #include <system_error>
 #include <utility>
 
-#include "serve/web/server_thread.h"
+#include "phalanx/core/nice_thread.h"
 
 namespace phalanx {
 namespace {
@@ -128,7 +128,7 @@ LogFile::LogFile(std::filesystem::path file, std::uintmax_t file_length,
     throw std::runtime_error(
         fmt::format("{}: the log of changes cannot be written ({}); name another with --audit", file.string(),
                     std::generic_category().message(errno)));
-  thread_ = web::start_nice_thread("phalanx-log", [desk = desk_] { write_all(*desk); });
+  thread_ = start_nice_thread("phalanx-log", [desk = desk_] { write_all(*desk); });
 }
 
 LogFile::~LogFile() {

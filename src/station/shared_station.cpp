@@ -132,6 +132,7 @@ void SharedStation::retire() {
     running_ = nullptr;
     last_view_ = last;
     last_deadlines_ = deadlines;
+    ended_.add(deadlines, last);
     // A new station knows nothing of the fault: torque comes back by somebody's word only.
     if (last.state == SafetyState::kFault) hold();
     retired_.push_back(old);
@@ -168,6 +169,15 @@ DeadlineStatistics SharedStation::deadlines() const {
     if (const DeadlineStatistics of_now = now->station->deadlines(); of_now.steps > 0) return of_now;
   const std::lock_guard lock(mutex_);
   return last_deadlines_;
+}
+
+SessionStatistics SharedStation::session() const {
+  std::unique_lock lock(mutex_);
+  SessionStatistics sum = ended_;
+  const std::shared_ptr<RunningStation> now = running_;
+  lock.unlock();
+  if (now) sum.add(now->station->deadlines(), now->station->view());
+  return sum;
 }
 
 std::shared_ptr<RunningStation> SharedStation::oldest_retired() const {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "phalanx/station/session_statistics.h"
 #include "station/station_build.h"
 
 namespace phalanx {
@@ -52,6 +53,8 @@ class SharedStation {
   // ---- what it says
   [[nodiscard]] StationView view() const;
   [[nodiscard]] DeadlineStatistics deadlines() const;
+  /// Of all stations so far, the one that runs included.
+  [[nodiscard]] SessionStatistics session() const;
   /// One thread.
   [[nodiscard]] bool next_record(StepRecord& record);
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
@@ -68,7 +71,8 @@ class SharedStation {
   std::shared_ptr<const HostState> state_ = std::make_shared<HostState>();
   StationView last_view_;
   DeadlineStatistics last_deadlines_;
-  JointArray slider_{};  ///< [rad]
+  SessionStatistics ended_;  ///< of the stations that have ended
+  JointArray slider_{};      ///< [rad]
   std::atomic<bool> held_{false};
   std::uint64_t stops_ = 0;
   bool ending_ = false;

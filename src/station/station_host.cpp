@@ -174,6 +174,8 @@ StationView StationHost::view() const { return parts_->shared.view(); }
 
 DeadlineStatistics StationHost::deadlines() const { return parts_->shared.deadlines(); }
 
+SessionStatistics StationHost::session() const { return parts_->shared.session(); }
+
 std::shared_ptr<const HostState> StationHost::state() const { return parts_->shared.state(); }
 
 double StationHost::now() const noexcept { return parts_->clock.now(); }

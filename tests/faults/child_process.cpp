@@ -2,8 +2,10 @@
 #include "faults/child_process.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -27,11 +29,15 @@ int create_file(const std::filesystem::path& path) {
 }
 
 /// In the child, between fork and exec: only calls that are safe there.
-[[noreturn]] void become(char* const* arguments, int input, int output, int errors) {
+[[noreturn]] void become(char* const* arguments, const Descriptors& descriptors) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  ::dup2(input, STDIN_FILENO);
-  ::dup2(output, STDOUT_FILENO);
-  ::dup2(errors, STDERR_FILENO);
+  if (descriptors.session) {
+    ::setsid();
+    ::ioctl(descriptors.input, TIOCSCTTY, 0);
+  }
+  ::dup2(descriptors.input, STDIN_FILENO);
+  ::dup2(descriptors.output, STDOUT_FILENO);
+  ::dup2(descriptors.errors, STDERR_FILENO);
   ::execv(arguments[0], arguments);
   ::_exit(127);
 }
@@ -40,24 +46,29 @@ int create_file(const std::filesystem::path& path) {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesystem::path output)
     : output_(std::move(output)) {
-  std::vector<std::string> copy = command;
-  std::vector<char*> arguments;
-  for (std::string& text : copy) arguments.push_back(text.data());
-  arguments.push_back(nullptr);
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe for a child process");
   const int out = create_file(output_);
   const int errors = create_file(output_.string() + ".err");
-  pid_ = ::fork();
-  if (pid_ == 0) become(arguments.data(), pipe[0], out, errors);
+  input_ = pipe[1];
+  start(command, {.input = pipe[0], .output = out, .errors = errors, .session = false});
   ::close(pipe[0]);
   ::close(out);
   ::close(errors);
-  input_ = pipe[1];
-  if (pid_ < 0) {
-    ::close(input_);
-    throw std::runtime_error("cannot start a child process");
-  }
+}
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command, const Descriptors& descriptors) {
+  start(command, descriptors);
+}
+
+void ChildProcess::start(const std::vector<std::string>& command, const Descriptors& descriptors) {
+  std::vector<std::string> copy = command;
+  std::vector<char*> arguments;
+  for (std::string& text : copy) arguments.push_back(text.data());
+  arguments.push_back(nullptr);
+  pid_ = ::fork();
+  if (pid_ == 0) become(arguments.data(), descriptors);
+  if (pid_ < 0) throw std::runtime_error("cannot start a child process");
 }
 
 ChildProcess::~ChildProcess() {
@@ -65,7 +76,7 @@ ChildProcess::~ChildProcess() {
     ::kill(pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
   }
-  ::close(input_);
+  if (input_ >= 0) ::close(input_);
 }
 
 void ChildProcess::type(const std::string& line) const {

@@ -2,9 +2,13 @@
 #include "phalanx/record/output_file.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -90,20 +94,40 @@ TEST(OutputFile, SaysWhichFileCannotBeWritten) {
   }
 }
 
-TEST(OutputFile, FailsWhenTheDeviceIsFull) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+/// As long as it lives, no file of this process grows beyond a size.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*signal_)(int);
+};
+
+TEST(OutputFile, FailsWhenTheDiskIsFullAndLeavesNothing) {
   const TemporaryFolder folder;
-  std::filesystem::create_symlink("/dev/full", folder / "a.txt.partial");
-  OutputFile out(folder / "a.txt");
-  out.text("tick");
-  EXPECT_THROW(out.commit(), std::runtime_error);
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+  {
+    OutputFile out(folder / "a.txt");
+    out.text("tick");
+    const FullDisk full(2);
+    EXPECT_THROW(out.commit(), std::runtime_error);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-// 200,000 times 18 characters or more are over 3 MB, more than the buffers in between: they reach the disk
-// before all is taken.
-TEST(OutputFile, FailsAsSoonAsTheDeviceIsFull) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+// 200,000 times 18 characters or more are over 3 MB, more than the buffer: they reach the disk before all is
+// taken.
+TEST(OutputFile, FailsAsSoonAsTheDiskIsFull) {
   const std::vector<std::function<void(OutputFile&)>> writes = {
       [](OutputFile& out) { out.text("eighteen or so chars"); },
       [](OutputFile& out) { out.number(1.0 / 3.0); },
@@ -111,8 +135,8 @@ TEST(OutputFile, FailsAsSoonAsTheDeviceIsFull) {
   for (const auto& write : writes) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder / "a.txt";
-    std::filesystem::create_symlink("/dev/full", folder / "a.txt.partial");
     OutputFile out(file);
+    const FullDisk full(1000);
     const auto write_much = [&] {
       for (int i = 0; i < 200'000; ++i) write(out);
     };
@@ -121,17 +145,115 @@ TEST(OutputFile, FailsAsSoonAsTheDeviceIsFull) {
   }
 }
 
-TEST(OutputFile, LeavesWhatReachedTheDiskWhenItIsGivenUp) {
+TEST(OutputFile, RemovesALinkInThePlaceOfItsPartAndLeavesItsTargetAlone) {
   const TemporaryFolder folder;
-  const std::string written(2U << 20U, 'x');  // more than the buffers
-  {
-    OutputFile out(folder / "a.txt");
-    out.text(written);
-    out.text("y");
-    EXPECT_EQ(out.leave_partial(), folder / "a.txt.partial");
+  write_text_file(folder / "victim", "precious");
+  for (const auto unfinished : {Unfinished::kRemoved, Unfinished::kLeft}) {
+    std::filesystem::create_symlink("victim", folder / "a.txt.partial");
+    OutputFile out(folder / "a.txt", unfinished);
+    out.text("new\nlines\n");
+    out.commit();
+    EXPECT_EQ(read_file(folder / "a.txt"), "new\nlines\n");
+    EXPECT_EQ(read_file(folder / "victim"), "precious");
+    EXPECT_FALSE(std::filesystem::is_symlink(folder / "a.txt"));
   }
-  EXPECT_TRUE(read_file(folder / "a.txt.partial").starts_with(written));
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+}
+
+TEST(OutputFile, APipeInThePlaceOfItsPartHoldsNothingUp) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "a.txt.partial").c_str(), 0600), 0);
+  OutputFile out(folder / "a.txt", Unfinished::kLeft);
+  out.text("new");
+  out.commit();
+  EXPECT_EQ(read_file(folder / "a.txt"), "new");
+}
+
+TEST(OutputFile, AFileThatIsBeingWrittenIsNotTakenForOneThatWasLeft) {
+  const TemporaryFolder folder;
+  OutputFile first(folder / "a.csv", Unfinished::kLeft);
+  first.text("header\nrow\n");
+  first.write_through();
+  EXPECT_THAT([&] { OutputFile second(folder / "a.csv", Unfinished::kLeft); },
+              ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("another program is writing it")));
+  first.commit();
+  EXPECT_EQ(read_file(folder / "a.csv"), "header\nrow\n");
+}
+
+TEST(OutputFile, ALogIsLeftWithWhatWasWritten) {
+  const TemporaryFolder folder;
+  {
+    OutputFile out(folder / "a.csv", Unfinished::kLeft);
+    out.text("header\nrow\n");
+    EXPECT_EQ(out.partial(), folder / "a.csv.partial");
+  }
+  EXPECT_EQ(read_file(folder / "a.csv.partial"), "header\nrow\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.csv"));
+}
+
+TEST(OutputFile, ALogIsLeftWhereItCannotGetItsName) {
+  const TemporaryFolder folder;
+  {
+    OutputFile out(folder / "a.csv", Unfinished::kLeft);
+    out.text("header\nrow\n");
+    std::filesystem::create_directory(folder / "a.csv");
+    EXPECT_THROW(out.commit(), std::runtime_error);
+  }
+  EXPECT_EQ(read_file(folder / "a.csv.partial"), "header\nrow\n");
+}
+
+TEST(OutputFile, ALogWithoutARowIsRemoved) {
+  const TemporaryFolder folder;
+  {
+    OutputFile out(folder / "a.csv", Unfinished::kLeft);
+    out.text("header\nhalf a r");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+// Longer than one block that is read, in lines and in the last line's half.
+TEST(OutputFile, TheNextStartFinishesALogThatWasLeftBehind) {
+  const TemporaryFolder folder;
+  const std::string row = std::string(150'000, 'x') + "\n";
+  write_text_file(folder / "a.csv", "of another day\n");
+  write_text_file(folder / "a-recovered.csv", "of another one\n");
+  for (const char* name : {"a-recovered-2.csv", "a-recovered-3.csv"}) {
+    write_text_file(folder / "a.csv.partial", "header\n" + row + row + std::string(140'000, 'y'));
+    const OutputFile out(folder / "a.csv", Unfinished::kLeft);
+    EXPECT_EQ(out.finished_earlier(), folder / name);
+    EXPECT_EQ(read_file(folder / name), "header\n" + row + row);
+  }
+  EXPECT_EQ(read_file(folder / "a.csv"), "of another day\n");
+  EXPECT_EQ(read_file(folder / "a-recovered.csv"), "of another one\n");
+}
+
+TEST(OutputFile, WhatWasLeftBehindWithoutARowIsRemoved) {
+  const TemporaryFolder folder;
+  for (const char* left : {"", "header\n", "header\nhalf a r"}) {
+    write_text_file(folder / "a.csv.partial", left);
+    OutputFile out(folder / "a.csv", Unfinished::kLeft);
+    EXPECT_EQ(out.finished_earlier(), "");
+    out.commit();
+    EXPECT_EQ(read_file(folder / "a.csv"), "");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "a-recovered.csv"));
+}
+
+TEST(OutputFile, AFileWithASecondNameIsNotCut) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "victim", "header\nrow\nno line's end");
+  std::filesystem::create_hard_link(folder / "victim", folder / "a.csv.partial");
+  OutputFile out(folder / "a.csv", Unfinished::kLeft);
+  out.commit();
+  EXPECT_EQ(read_file(folder / "victim"), "header\nrow\nno line's end");
+}
+
+TEST(OutputFile, WhatIsWrittenThroughIsThereBeforeTheCommit) {
+  const TemporaryFolder folder;
+  OutputFile out(folder / "a.csv", Unfinished::kLeft);
+  out.text("header\nrow\n");
+  EXPECT_EQ(read_file(folder / "a.csv.partial"), "");
+  out.write_through();
+  EXPECT_EQ(read_file(folder / "a.csv.partial"), "header\nrow\n");
 }
 
 TEST(OutputFile, LeavesThePartOfTheNextAloneOnceItIsCommitted) {
@@ -152,6 +274,16 @@ TEST(WriteThenRename, PutsTheWholeUnderItsName) {
                     [](const std::filesystem::path& partial) { write_text_file(partial, "whole"); });
   EXPECT_EQ(read_file(folder / "a.obj"), "whole");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.obj.partial"));
+}
+
+TEST(WriteThenRename, RemovesALinkInThePlaceOfItsPartAndLeavesItsTargetAlone) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "victim", "precious");
+  std::filesystem::create_symlink("victim", folder / "a.obj.partial");
+  write_then_rename(folder / "a.obj",
+                    [](const std::filesystem::path& partial) { std::ofstream(partial) << "whole"; });
+  EXPECT_EQ(read_file(folder / "a.obj"), "whole");
+  EXPECT_EQ(read_file(folder / "victim"), "precious");
 }
 
 TEST(WriteThenRename, RemovesThePartWhenTheWriterThrows) {

@@ -229,8 +229,8 @@ TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   StationView last;
   last.state = SafetyState::kFault;
   last.fault.fault = Fault::kNoSample;
-  last.link = numbered_link();
-  const auto json = nlohmann::json::parse(station_summary_json(deadlines, last, "SCHED_FIFO 80", 50.0));
+  const SessionStatistics session{.deadlines = deadlines, .link = numbered_link(), .records_lost = 43};
+  const auto json = nlohmann::json::parse(station_summary_json(session, last, "SCHED_FIFO 80", 50.0));
   EXPECT_EQ(json["seconds"], 50.0);
   EXPECT_EQ(json["steps"], 10'000);
   EXPECT_NEAR(json["period_us"].get<double>(), 5000.0, 1e-9) << "5e-3 s";
@@ -248,11 +248,12 @@ TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   EXPECT_EQ(json["overruns"], 31);
   EXPECT_EQ(json["longest_run_of_overruns"], 7);
   EXPECT_EQ(json["skipped"], 41);
+  EXPECT_EQ(json["records_lost"], 43);
   EXPECT_EQ(json["state"], "fault");
   EXPECT_EQ(json["fault"], "no_sample");
   expect_numbered_link(json["link"]);
   EXPECT_FALSE(json["made"]["commit"].get<std::string>().empty());
-  EXPECT_EQ(json.size(), 13U) << "a field without a check";
+  EXPECT_EQ(json.size(), 14U) << "a field without a check";
 }
 
 TEST(StationCsv, EveryStepHasAsManyColumnsAsTheHeader) {

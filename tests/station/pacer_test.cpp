@@ -158,6 +158,28 @@ TEST(Pacer, AllocatesNothing) {
 }
 
 // The reader sees each of the writer's states whole: what was added together is there together.
+TEST(DeadlineStatistics, OfTwoLoopsAreThoseOfBothOneAfterTheOther) {
+  DeadlineStatistics both{.period = 0.5};
+  DeadlineStatistics later{.period = 0.25};
+  for (const double end : {11.125, 11.25, 10.25})
+    both.add({.deadline = 10.0, .now = 10.0, .lateness = 0.125, .skipped = 2}, end);
+  for (const double end : {20.5, 20.125})
+    later.add({.deadline = 20.0, .now = 20.0, .lateness = 0.5, .skipped = 1}, end);
+  both.append(later);
+  EXPECT_EQ(both.period, 0.25);
+  EXPECT_EQ(both.steps, 5U);
+  EXPECT_EQ(both.overruns, 3U);
+  EXPECT_EQ(both.longest_run, 2U);
+  EXPECT_EQ(both.overruns_in_row, 0U);
+  EXPECT_EQ(both.skipped, 8U);
+  EXPECT_EQ(both.last_overrun, 20.5);
+  EXPECT_EQ(both.lateness.count(), 5U);
+  EXPECT_EQ(both.lateness.max_us(), 0.5e6);
+  EXPECT_EQ(both.step.count(), 5U);
+  both.append({.period = 0.125});
+  EXPECT_EQ(both.last_overrun, 20.5) << "a loop that was always in time has none";
+}
+
 TEST(DeadlineStatistics, AreCarriedToAReaderWhole) {
   Latest<DeadlineStatistics> latest;
   constexpr std::uint64_t kSteps = 5000;

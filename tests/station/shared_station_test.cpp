@@ -88,5 +88,23 @@ TEST_F(SharedStationTest, AStationThatHasEndedIsShownAtRestWithItsDeadlines) {
   EXPECT_FALSE(shared.held()) << "nobody said stop";
 }
 
+TEST_F(SharedStationTest, ASessionIsTheSumOfItsStations) {
+  std::uint64_t steps = 0;
+  std::uint64_t received = 0;
+  for (int i = 0; i < 3; ++i) {
+    begin(test::resting_device());
+    clock.sleep_until(clock.now() + 0.1);
+    if (i < 2) shared.retire();
+    if (i == 2) shared.current()->station->shut_down();
+    EXPECT_GT(shared.deadlines().steps, 10U);
+    steps += shared.deadlines().steps;
+    received += shared.view().link.received;
+    EXPECT_EQ(shared.session().deadlines.steps, steps);
+    EXPECT_EQ(shared.session().deadlines.lateness.count(), steps);
+    EXPECT_EQ(shared.session().link.received, received);
+  }
+  EXPECT_GT(received, 0U);
+}
+
 }  // namespace
 }  // namespace phalanx

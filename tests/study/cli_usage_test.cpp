@@ -90,6 +90,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"run --set limits.torque_rate_nm_per_s=off", "every limit on"},
         Case{"run --slow-motion 2 --device serial:/dev/ttyACM0", "may be a real device"},
         Case{"run --calibration a.toml", "the simulated device needs none"},
+        Case{"run --seconds 0", "--seconds: 0: must be a number above 0; see"},
+        Case{"device simulate --seconds -1", "--seconds: -1: must be a number above 0; see"},
         Case{"device simulate --fault dropp", "drop"}, Case{"device probe usb:0", "udp:HOST:PORT"},
         Case{"simulate wave --out ''", "--out \"\": the value is empty"},
         Case{"simulate wave --seconds ''", "--seconds"},
@@ -102,6 +104,13 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"simulate --object a.obj --object-size-mm nan", "--object-size-mm nan: objects.0.size_mm = nan"},
         Case{"simulate --object a.obj --object-size-mm 2001", "must be >= 0, <= 2000 mm"},
         Case{"simulate --set 'hand.position_mm=[1,2,nan]'", "hand.position_mm = [1, 2, nan]: must be"}));
+
+TEST(CliUsage, TooFewFileDescriptorsAreSaidInWords) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "run --headless --seconds 0.1", ".out", "ulimit -n 5");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("Too many open files; allow more with `ulimit -n`"));
+}
 
 class CliFullDisk : public ::testing::TestWithParam<const char*> {};
 

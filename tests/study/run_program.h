@@ -18,11 +18,12 @@ struct ProgramResult {
 };
 
 /// Runs the built program in a folder; `arguments` as a shell reads them, standard output into `out_file`.
+/// @param before  a command of the shell that comes first, such as a limit on what the program may use
 inline ProgramResult run_program(const TemporaryFolder& folder, const std::string& arguments,
-                                 const std::string& out_file = ".out") {
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM "' " +
-                              arguments + " >'" + out_file + "' 2>.err </dev/null";
+                                 const std::string& out_file = ".out", const std::string& before = ":") {
+  const std::string command = "cd '" + folder.path().string() + "' && (" + before +
+                              " && PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM "' " + arguments +
+                              ") >'" + out_file + "' 2>.err </dev/null";
   const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, out_file == ".out" ? read_file(folder / ".out") : "",
           read_file(folder / ".err")};

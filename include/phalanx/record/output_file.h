@@ -3,22 +3,32 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 
 namespace phalanx {
 
-/// Writes `<file>.partial` through a buffer and renames it to `file` at commit(): whoever sees `file` sees
-/// all of it. What is not committed is removed. Numbers are written as the shortest decimals that read back
-/// to the same bits, so that equal values give equal files. Not real-time. @throws std::runtime_error naming
-/// the file and the system's reason if it cannot be opened, written or renamed.
+/// What becomes of an output that is not committed.
+enum class Unfinished {
+  kRemoved,  ///< a result is whole or not there
+  kLeft,     ///< a log: each line that was written is worth keeping
+};
+
+/// Writes `<file>.partial` through a buffer and renames it to `file` at commit(): `file`, where it is seen,
+/// is complete. The partial file is always a new one: a symbolic link in its place is removed, not followed.
+/// It is locked while it is written, so that no other program takes it for one that was left behind. Numbers
+/// are written as the shortest decimals that read back to the same bits, so that equal values give equal
+/// files. Not real-time. @throws std::runtime_error naming the file and the system's reason if it cannot be
+/// opened, written or renamed, or if another program is writing it.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path file);
+  /// With Unfinished::kLeft, a partial file that an earlier run left behind is finished first: cut to its
+  /// last whole line and renamed to a free name beside it. One without a second line holds no data and is
+  /// removed.
+  explicit OutputFile(std::filesystem::path file, Unfinished unfinished = Unfinished::kRemoved);
+  /// What is not committed is removed, or written out as far as possible and left.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -27,23 +37,24 @@ class OutputFile {
   void number(double value);
   void integer(std::uint64_t value);
 
-  /// Flushes, closes and renames. Nothing may be written afterwards.
+  /// Hands all of it to the system: from here on it outlives this process, however that ends.
+  void write_through();
+  /// Writes the rest and renames. Nothing may be written afterwards.
   void commit();
 
-  /// Gives up, and leaves what has reached the disk where it is. Nothing may be written afterwards.
-  /// @returns `<file>.partial`
-  std::filesystem::path leave_partial() noexcept;
+  /// `<file>.partial`
+  [[nodiscard]] const std::filesystem::path& partial() const noexcept { return partial_; }
+  /// Where what an earlier run left behind is now; empty if it left nothing.
+  [[nodiscard]] const std::filesystem::path& finished_earlier() const noexcept { return finished_earlier_; }
 
  private:
   void reserve(std::size_t bytes);
-  void flush();
 
-  struct Close {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
   std::filesystem::path file_;
   std::filesystem::path partial_;
-  std::unique_ptr<std::FILE, Close> stream_;
+  std::filesystem::path finished_earlier_;
+  Unfinished unfinished_;
+  int descriptor_ = -1;
   std::string buffer_;
 };
 

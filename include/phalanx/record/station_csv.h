@@ -8,7 +8,7 @@
 #include <string>
 
 #include "phalanx/record/output_file.h"
-#include "phalanx/station/station_view.h"
+#include "phalanx/station/session_statistics.h"
 
 namespace phalanx {
 
@@ -22,8 +22,9 @@ void write_step(OutputFile& file, const StepRecord& record);
 std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report,
                                          std::time_t now = std::time(nullptr));
 
-/// Percentiles, overruns, link and grant of a whole run as JSON.
-[[nodiscard]] std::string station_summary_json(const DeadlineStatistics& deadlines, const StationView& last,
+/// Percentiles, overruns, link and grant of a whole session as JSON.
+/// @param last  how it ended. @param seconds  its length [s]
+[[nodiscard]] std::string station_summary_json(const SessionStatistics& session, const StationView& last,
                                                const std::string& granted, double seconds);
 
 }  // namespace phalanx

@@ -43,6 +43,19 @@ struct DeadlineStatistics {
     last_overrun = step_end;
   }
 
+  /// As if the steps of `later` had been made here, after the others, in a loop of its period.
+  void append(const DeadlineStatistics& later) noexcept {
+    period = later.period;
+    lateness.merge(later.lateness);
+    step.merge(later.step);
+    steps += later.steps;
+    overruns += later.overruns;
+    overruns_in_row = later.overruns_in_row;
+    longest_run = std::max(longest_run, later.longest_run);
+    skipped += later.skipped;
+    if (later.overruns > 0) last_overrun = later.last_overrun;
+  }
+
   /// Whether a step overran in the last second before `now` [s].
   [[nodiscard]] bool degraded(double now) const noexcept {
     return overruns > 0 && now - last_overrun < kDegradedFor;

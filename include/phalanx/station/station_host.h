@@ -15,6 +15,7 @@
 #include "phalanx/hand/hand_skin.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/assemble.h"
+#include "phalanx/station/session_statistics.h"
 #include "phalanx/station/station.h"
 
 namespace phalanx {
@@ -129,15 +130,18 @@ class StationHost {
   [[nodiscard]] double now() const noexcept;         ///< of the process's clock [s]
   [[nodiscard]] JointArray sliders() const;          ///< where they were last set [rad]
   [[nodiscard]] StationView view() const;  ///< of the newest step; the last one's while there is no station
-  [[nodiscard]] DeadlineStatistics deadlines() const;
+  [[nodiscard]] DeadlineStatistics deadlines() const;  ///< of the station that view() shows
+  [[nodiscard]] SessionStatistics session() const;     ///< of all stations since the host's start
   [[nodiscard]] std::shared_ptr<const HostState> state() const;
   [[nodiscard]] const StationHostSettings& settings() const noexcept { return settings_; }
+
+  // ---- one thread, any
+  /// The next step's record, of each station in turn, also after shut_down(). @returns true if there was one
+  [[nodiscard]] bool next_record(StepRecord& record);
 
   // ---- the owner's thread
   /// Answers what is done and begins the next change. Waits for nothing.
   void go_on();
-  /// The next step's record of the station that runs. @returns whether there was one
-  [[nodiscard]] bool next_record(StepRecord& record);
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
   [[nodiscard]] std::optional<RealtimeGrant> grant() const;
   void lengthen_steps(double seconds) noexcept;  ///< Station::lengthen_steps()

@@ -8,9 +8,9 @@
 #include <thread>
 #include <utility>
 
+#include "phalanx/core/nice_thread.h"
 #include "serve/web/house.h"
 #include "serve/web/listener.h"
-#include "serve/web/server_thread.h"
 #include "serve/web/settings.h"
 
 namespace phalanx {

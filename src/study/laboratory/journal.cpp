@@ -3,19 +3,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-#include <thread>
+#include <system_error>
 
 #include "phalanx/record/output_file.h"
+#include "record/partial_file.h"
 
 namespace phalanx {
 namespace {
@@ -85,14 +84,12 @@ void Journal::refuse_other_than_a_file() const {
       fmt::format("{}: is no ordinary file; name another --out folder", file_.string()));
 }
 
-/// A process that was killed may hold its lock for a moment after it is gone.
 void Journal::lock() {
-  constexpr int kTries = 20;
-  constexpr auto kPause = std::chrono::milliseconds(50);
-  for (int i = 0; i < kTries; ++i) {
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-    if (errno != EWOULDBLOCK && errno != EINTR) fail("locked");
-    std::this_thread::sleep_for(kPause);
+  try {
+    if (lock_file(descriptor_)) return;
+  } catch (const std::system_error& error) {
+    errno = error.code().value();
+    fail("locked");
   }
   throw std::invalid_argument(
       fmt::format("{}: another process is writing it; wait until that has ended, or use another --out folder",

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run_recorder.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "error_line.h"
+#include "phalanx/core/nice_thread.h"
+#include "phalanx/record/station_csv.h"
+
+namespace phalanx {
+namespace {
+
+/// Of the steps that wait for it, the station holds those of 4 s at 2 kHz.
+constexpr std::chrono::milliseconds kBetweenWrites{50};
+
+}  // namespace
+
+RunRecorder::RunRecorder(const std::string& log, std::filesystem::path reports)
+    : reports_(std::move(reports)) {
+  if (log.empty()) return;
+  log_.emplace(log, Unfinished::kLeft);
+  write_step_header(*log_);
+}
+
+RunRecorder::~RunRecorder() { finish(); }
+
+std::filesystem::path RunRecorder::finished_earlier() const {
+  return log_ ? log_->finished_earlier() : std::filesystem::path();
+}
+
+void RunRecorder::begin(StationHost& host) {
+  host_ = &host;
+  thread_ = start_nice_thread("phalanx-record", [this] { work(); });
+}
+
+void RunRecorder::write_report(FaultReport report) {
+  const std::lock_guard lock(mutex_);
+  faults_.push_back(std::move(report));
+}
+
+std::optional<RunRecorder::Note> RunRecorder::next_note() {
+  const std::lock_guard lock(mutex_);
+  if (notes_.empty()) return std::nullopt;
+  Note next = std::move(notes_.front());
+  notes_.pop_front();
+  return next;
+}
+
+void RunRecorder::finish() noexcept {
+  if (!thread_.joinable()) return;
+  ending_ = true;
+  thread_.join();
+}
+
+template <class Text>
+void RunRecorder::complain(Text text) noexcept {
+  note([&] { return Note{.complaint = text(), .report = {}, .fault_time = 0.0}; });
+}
+
+template <class Make>
+void RunRecorder::note(Make make) noexcept {
+  try {
+    Note made = make();
+    const std::lock_guard lock(mutex_);
+    notes_.push_back(std::move(made));
+  } catch (const std::exception&) {  // no memory for it
+  }
+}
+
+void RunRecorder::work() noexcept {
+  while (!ending_) {
+    write_steps();
+    write_reports();
+    std::this_thread::sleep_for(kBetweenWrites);
+  }
+  write_steps();
+  write_reports();
+  commit();
+}
+
+/// Without a log, too: the station keeps no record that was fetched.
+void RunRecorder::write_steps() noexcept {
+  StepRecord record;
+  try {
+    while (host_->next_record(record))
+      if (log_) write_step(*log_, record);
+    if (log_) log_->write_through();
+  } catch (const std::exception& error) {
+    if (log_) give_up_log(error);
+  }
+}
+
+void RunRecorder::write_reports() noexcept {
+  for (;;) {
+    std::unique_lock lock(mutex_);
+    if (faults_.empty()) return;
+    const FaultReport report = std::move(faults_.front());
+    faults_.pop_front();
+    lock.unlock();
+    try {
+      const std::string folder = write_fault_report(reports_, report).string();
+      note([&] { return Note{.complaint = {}, .report = folder, .fault_time = report.event.time}; });
+    } catch (const std::exception& error) {
+      complain([&] { return "the fault's report could not be written: " + reason(error); });
+    }
+  }
+}
+
+void RunRecorder::commit() noexcept {
+  try {
+    if (log_) log_->commit();
+  } catch (const std::exception& error) {
+    give_up_log(error);
+  }
+}
+
+void RunRecorder::give_up_log(const std::exception& error) noexcept {
+  lost_ = true;
+  complain([&] {
+    return fmt::format("the log ends here: {}; what was written is in {}", reason(error),
+                       log_->partial().string());
+  });
+  log_.reset();
+}
+
+}  // namespace phalanx

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "typed_lines.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include "end_signals.h"
+#include "phalanx/core/nice_thread.h"
+
+namespace phalanx {
+namespace {
+
+constexpr int kAskAgain = 200;               ///< while the terminal belongs to another job [ms]
+constexpr std::size_t kLongestLine = 65536;  ///< [bytes]
+
+int make_event() {
+  const int event = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (event < 0) throw std::system_error(errno, std::generic_category(), "what is typed cannot be read");
+  return event;
+}
+
+bool terminal_belongs_to_another_job() noexcept {
+  const pid_t owner = ::tcgetpgrp(STDIN_FILENO);
+  return owner >= 0 && owner != ::getpgrp();
+}
+
+}  // namespace
+
+TypedLines::TypedLines(StationHost& host)
+    : host_(host), wake_(make_event()), thread_(start_nice_thread("phalanx-typed", [this] { read_all(); })) {}
+
+TypedLines::~TypedLines() {
+  ::eventfd_write(wake_, 1);
+  thread_.join();
+  ::close(wake_);
+}
+
+std::optional<TypedLines::Line> TypedLines::next() {
+  const std::lock_guard lock(mutex_);
+  if (lines_.empty()) return std::nullopt;
+  Line line = std::move(lines_.front());
+  lines_.pop_front();
+  return line;
+}
+
+std::size_t TypedLines::take_left_out() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(left_out_, 0);
+}
+
+void TypedLines::read_all() noexcept {
+  std::array<pollfd, 3> events{{{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0},
+                                {.fd = wake_, .events = POLLIN, .revents = 0},
+                                {.fd = end_descriptor, .events = POLLIN, .revents = 0}}};
+  auto& [input, wake, end] = events;
+  for (;;) {
+    input.fd = ended_ || in_background_ ? -1 : STDIN_FILENO;
+    const int count = ::poll(events.data(), events.size(), in_background_ ? kAskAgain : -1);
+    if (count < 0) continue;
+    if (wake.revents != 0) return;
+    if (end.revents != 0) {
+      host_.stop();
+      end.fd = -1;
+    }
+    if (count == 0) in_background_ = terminal_belongs_to_another_job();
+    if (count == 0 || input.revents == 0) continue;
+    try {
+      read_some();
+    } catch (const std::exception&) {  // no memory for what was typed
+      pending_.clear();
+    }
+  }
+}
+
+void TypedLines::read_some() {
+  std::array<char, 4096> text;
+  const ssize_t count = ::read(STDIN_FILENO, text.data(), text.size());
+  if (count > 0) {
+    pending_.append(text.data(), static_cast<std::size_t>(count));
+    return take_lines();
+  }
+  if (count < 0 && (errno == EINTR || errno == EAGAIN)) return;
+  in_background_ = count < 0 && errno == EIO && terminal_belongs_to_another_job();
+  ended_ = !in_background_;
+}
+
+void TypedLines::take_lines() {
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = pending_.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    Line line{.text = pending_.substr(begin, end - begin), .stops = 0};
+    line.text.erase(line.text.find_last_not_of(" \t\r") + 1);
+    if (std::exchange(too_long_, false)) continue;  // the end of one that no command is
+    if (line.text == "stop") {
+      host_.stop();
+      line.stops = host_.stops();
+    }
+    const std::lock_guard lock(mutex_);
+    if (lines_.size() < kWaiting)
+      lines_.push_back(std::move(line));
+    else
+      ++left_out_;
+  }
+  pending_.erase(0, begin);
+  if (pending_.size() <= kLongestLine) return;
+  pending_.clear();
+  too_long_ = true;
+}
+
+}  // namespace phalanx
