@@ -36,7 +36,7 @@ class Run {
   Run(const RunOptions& options, const Clock& clock)
       : options_(options), clock_(clock), recorder_(options.log, options.faults) {}
 
-  /// Whatever happens, the station ends at zero torque first, and its log and summary are written.
+  /// Whatever happens, the station ends at zero torque first, and what is worth keeping is written.
   int go() {
     if (const auto earlier = recorder_.finished_earlier(); !earlier.empty())
       console_.say(
@@ -49,7 +49,7 @@ class Run {
       failure = std::current_exception();
     }
     host_->shut_down();
-    const bool saved = save();
+    const bool saved = save(failure == nullptr);
     if (failure) std::rethrow_exception(failure);
     return say_end() && saved ? kDone : kFailed;
   }
@@ -225,10 +225,10 @@ class Run {
   }
 
   /// The torque is zero. @returns false if log or summary is not whole
-  [[nodiscard]] bool save() {
+  [[nodiscard]] bool save(bool in_good_order) {
     while (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
-    recorder_.finish();
-    const bool summarised = write_summary();
+    recorder_.finish(in_good_order);
+    const bool summarised = in_good_order && write_summary();
     drain();
     page_.reset();
     return summarised && !recorder_.lost();

@@ -26,7 +26,7 @@ RunRecorder::RunRecorder(const std::string& log, std::filesystem::path reports)
   write_step_header(*log_);
 }
 
-RunRecorder::~RunRecorder() { finish(); }
+RunRecorder::~RunRecorder() { finish(false); }
 
 std::filesystem::path RunRecorder::finished_earlier() const {
   return log_ ? log_->finished_earlier() : std::filesystem::path();
@@ -50,10 +50,12 @@ std::optional<RunRecorder::Note> RunRecorder::next_note() {
   return next;
 }
 
-void RunRecorder::finish() noexcept {
+void RunRecorder::finish(bool in_good_order) noexcept {
   if (!thread_.joinable()) return;
   ending_ = true;
   thread_.join();
+  if (in_good_order) commit();
+  log_.reset();
 }
 
 template <class Text>
@@ -79,7 +81,6 @@ void RunRecorder::work() noexcept {
   }
   write_steps();
   write_reports();
-  commit();
 }
 
 /// Without a log, too: the station keeps no record that was fetched.

@@ -32,7 +32,7 @@ class RunRecorder {
   RunRecorder(const std::string& log, std::filesystem::path reports);
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
-  ~RunRecorder();  ///< finish()
+  ~RunRecorder();  ///< finish(false)
 
   /// OutputFile::finished_earlier()
   [[nodiscard]] std::filesystem::path finished_earlier() const;
@@ -41,7 +41,8 @@ class RunRecorder {
   void write_report(FaultReport report);
   [[nodiscard]] std::optional<Note> next_note();
   /// Writes what the station has left, and ends. Call it after StationHost::shut_down().
-  void finish() noexcept;
+  /// @param in_good_order  false: the log does not get its name, and so takes that of no finished one
+  void finish(bool in_good_order) noexcept;
   /// Whether there is a log that is not whole.
   [[nodiscard]] bool lost() const noexcept { return lost_; }
 

@@ -96,6 +96,9 @@ void OutputFile::integer(std::uint64_t value) {
 
 void OutputFile::commit() {
   write_through();
+  // A log is made but once. Where a file system cannot do it, there is nothing to be done.
+  if (unfinished_ == Unfinished::kLeft && ::fsync(descriptor_) != 0 && (errno == EIO || errno == ENOSPC))
+    fail_to("write", file_, errno);
   rename_or_fail(partial_, file_);
   ::close(std::exchange(descriptor_, -1));  // and with it the lock
 }

@@ -105,11 +105,12 @@ bool is_name_of(const fs::path& partial, int descriptor) noexcept {
          named.st_ino == open.st_ino && named.st_dev == open.st_dev;
 }
 
-bool lock_or_fail(int descriptor, const fs::path& file) {
+/// On a file system without locks nothing is known of other programs: true.
+bool lock_where_possible(int descriptor) {
   try {
     return lock_file(descriptor);
-  } catch (const std::system_error& error) {
-    fail_to("lock", file, error.code().value());
+  } catch (const std::system_error&) {
+    return true;
   }
 }
 
@@ -139,7 +140,7 @@ fs::path make_way(const fs::path& partial, const fs::path& file, Unfinished unfi
     remove_partial(partial);
     return {};
   }
-  if (!lock_or_fail(there.value, file))
+  if (!lock_where_possible(there.value))
     throw std::runtime_error(fmt::format(
         "cannot write '{}': another program is writing it; wait until that has ended, or name another file",
         file.string()));
@@ -189,7 +190,7 @@ PartialFile open_partial(const fs::path& file, Unfinished unfinished) {
   for (int i = 0; i < kTries; ++i) {
     made.descriptor = ::open(partial.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (made.descriptor >= 0) {
-      if (lock_or_fail(made.descriptor, file) && is_name_of(partial, made.descriptor)) return made;
+      if (lock_where_possible(made.descriptor) && is_name_of(partial, made.descriptor)) return made;
       ::close(made.descriptor);  // another start has taken it for one that was left behind
     } else if (errno != EEXIST) {
       fail_to("write", file, errno);

@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <csignal>
@@ -262,6 +264,27 @@ TEST_F(RunEnds, ALogOnAFullDiskIsKeptAsFarAsItGoes) {
       "the log ends here: cannot write 'x.csv': File too large; what was written is in x.csv.partial\n";
   EXPECT_THAT(read, HasSubstr(complaint));
   EXPECT_EQ(read.find("the log ends here"), read.rfind("the log ends here")) << "once";
+}
+
+// The page's port is another program's.
+TEST_F(RunEnds, AStartThatFailsLeavesTheFinishedLogAlone) {
+  const Descriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  const Descriptor other(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* generic = reinterpret_cast<sockaddr*>(&address);
+  ASSERT_EQ(::bind(other.number(), generic, size), 0);
+  ASSERT_EQ(::listen(other.number(), 1), 0);
+  ASSERT_EQ(::getsockname(other.number(), generic, &size), 0);
+  std::ofstream(folder / "x.csv") << "of another day\n";
+  std::ofstream(folder / "x.json") << "of another day\n";
+  RunningStation station(folder, {nothing.number(), nothing.number(), nothing.number()},
+                         {"--no-realtime", "--port", std::to_string(ntohs(address.sin_port))});
+  EXPECT_EQ(station.wait(), 1);
+  EXPECT_EQ(read_file(folder / "x.csv"), "of another day\n");
+  EXPECT_EQ(read_file(folder / "x.json"), "of another day\n");
 }
 
 TEST_F(RunEnds, ASummaryThatCannotBeWrittenLosesNoLog) {

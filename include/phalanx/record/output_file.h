@@ -39,7 +39,7 @@ class OutputFile {
 
   /// Hands all of it to the system: from here on it outlives this process, however that ends.
   void write_through();
-  /// Writes the rest and renames. Nothing may be written afterwards.
+  /// Writes the rest, a log to the disk itself, and renames. Nothing may be written afterwards.
   void commit();
 
   /// `<file>.partial`
