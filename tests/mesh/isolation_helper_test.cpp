@@ -80,6 +80,15 @@ TEST(IsolationHelper, GoesOnAfterCtrlC) {
   EXPECT_EQ(pid_of_helper(), pid);
 }
 
+TEST(IsolationHelper, EndsWithoutAWord) {
+  ::testing::internal::CaptureStderr();
+  {
+    const IsolationHelper helper;
+    EXPECT_EQ(run_isolated_work(backwards, "abc", "cup.obj", {}), "cba");
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 // An errno of EINTR that an earlier call left does not make it wait for the helper twice.
 TEST(IsolationHelper, EndsOnceWhateverTheErrorOfBefore) {
   {
