@@ -48,8 +48,8 @@ bool write_text(int descriptor, std::string_view text) noexcept {
 }  // namespace
 
 /// What both threads hold.
-struct LineWriter::Desk {
-  explicit Desk(int to) : descriptor(to) {}
+struct LineWriter::Shared {
+  explicit Shared(int to) : descriptor(to) {}
 
   /// With the lock.
   void add(std::string text) {
@@ -73,17 +73,17 @@ LineWriter::LineWriter(int descriptor)
     : descriptor_(descriptor),
       terminal_(::isatty(descriptor) == 1),
       in_place_(terminal_ && can_clear_a_line()),
-      desk_(std::make_shared<Desk>(descriptor)),
-      thread_(start_nice_thread("phalanx-lines", [desk = desk_] { write_all(*desk); })) {}
+      shared_(std::make_shared<Shared>(descriptor)),
+      thread_(start_nice_thread("phalanx-lines", [shared = shared_] { write_all(*shared); })) {}
 
 LineWriter::~LineWriter() {
   bool ended = false;
   {
-    std::unique_lock lock(desk_->mutex);
-    desk_->ending = true;
-    desk_->changed.notify_all();
-    ended = desk_->changed.wait_for(lock, std::chrono::duration<double>(kGoodbye),
-                                    [this] { return desk_->ended; });
+    std::unique_lock lock(shared_->mutex);
+    shared_->ending = true;
+    shared_->changed.notify_all();
+    ended = shared_->changed.wait_for(lock, std::chrono::duration<double>(kDrainTime),
+                                      [this] { return shared_->ended; });
   }
   if (ended) {
     thread_.join();
@@ -94,27 +94,27 @@ LineWriter::~LineWriter() {
 
 void LineWriter::line(const std::string& text) noexcept {
   const char* begin = in_place_ ? "\r\033[K" : "";
-  const std::lock_guard lock(desk_->mutex);
-  if (desk_->ended) return;
-  if (desk_->waiting.size() >= kWaiting || desk_->bytes + text.size() > kWaitingBytes) {
-    ++desk_->left_out;
+  const std::lock_guard lock(shared_->mutex);
+  if (shared_->ended) return;
+  if (shared_->waiting.size() >= kWaiting || shared_->bytes + text.size() > kWaitingBytes) {
+    ++shared_->left_out;
     return;
   }
   try {
-    if (desk_->left_out > 0)
-      desk_->add(fmt::format("{}({} lines are missing here: they were not read in time)\n", begin,
-                             std::exchange(desk_->left_out, 0)));
-    desk_->add(fmt::format("{}{}\n", begin, text));
+    if (shared_->left_out > 0)
+      shared_->add(fmt::format("{}({} lines are missing here: they were not read in time)\n", begin,
+                               std::exchange(shared_->left_out, 0)));
+    shared_->add(fmt::format("{}{}\n", begin, text));
   } catch (const std::exception&) {  // no memory
-    ++desk_->left_out;
+    ++shared_->left_out;
   }
 }
 
 bool LineWriter::status(const std::string& text) noexcept {
-  const std::lock_guard lock(desk_->mutex);
-  if (desk_->ended || desk_->writing || !desk_->waiting.empty()) return false;
+  const std::lock_guard lock(shared_->mutex);
+  if (shared_->ended || shared_->writing || !shared_->waiting.empty()) return false;
   try {
-    desk_->add(in_place_ ? fmt::format("\r\033[K{}", text) : fmt::format("{}\n", text));
+    shared_->add(in_place_ ? fmt::format("\r\033[K{}", text) : fmt::format("{}\n", text));
     return true;
   } catch (const std::exception&) {  // no memory
     return false;
@@ -128,23 +128,23 @@ std::size_t LineWriter::width() const noexcept {
   return size.ws_col - 1U;  // some terminals go on to the next line after the last column
 }
 
-void LineWriter::write_all(Desk& desk) noexcept {
-  std::unique_lock lock(desk.mutex);
+void LineWriter::write_all(Shared& shared) noexcept {
+  std::unique_lock lock(shared.mutex);
   for (bool open = true; open;) {
-    desk.changed.wait(lock, [&] { return desk.ending || !desk.waiting.empty(); });
-    if (desk.waiting.empty()) break;
-    const std::string text = std::move(desk.waiting.front());
-    desk.waiting.pop_front();
-    desk.bytes -= text.size();
-    desk.writing = true;
+    shared.changed.wait(lock, [&] { return shared.ending || !shared.waiting.empty(); });
+    if (shared.waiting.empty()) break;
+    const std::string text = std::move(shared.waiting.front());
+    shared.waiting.pop_front();
+    shared.bytes -= text.size();
+    shared.writing = true;
     lock.unlock();
-    open = write_text(desk.descriptor, text);
+    open = write_text(shared.descriptor, text);
     lock.lock();
-    desk.writing = false;
+    shared.writing = false;
   }
-  desk.ended = true;
-  desk.waiting.clear();
-  desk.changed.notify_all();
+  shared.ended = true;
+  shared.waiting.clear();
+  shared.changed.notify_all();
 }
 
 }  // namespace phalanx

@@ -16,14 +16,14 @@ class LineWriter {
  public:
   static constexpr std::size_t kWaiting = 1000;            ///< lines
   static constexpr std::size_t kWaitingBytes = 1'000'000;  ///< of them
-  static constexpr double kGoodbye = 2.0;                  ///< how long the end waits for the reader [s]
+  static constexpr double kDrainTime = 2.0;                ///< how long the end waits for the reader [s]
   static constexpr std::size_t kWidth = 100;               ///< columns where there is no terminal
 
   /// @param descriptor  open for as long as the process lives. @throws std::system_error: no thread
   explicit LineWriter(int descriptor);
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
-  /// Waits for what still waits; after kGoodbye the thread is left alone with it.
+  /// Waits for what still waits; after kDrainTime the thread is left alone with it.
   ~LineWriter();
 
   /// Lines beyond those that may wait are left out, and a line in their place says how many.
@@ -38,13 +38,13 @@ class LineWriter {
   [[nodiscard]] std::size_t width() const noexcept;
 
  private:
-  struct Desk;
-  static void write_all(Desk& desk) noexcept;
+  struct Shared;
+  static void write_all(Shared& shared) noexcept;
 
   const int descriptor_;
   const bool terminal_;
-  const bool in_place_;         ///< a terminal that can clear a line
-  std::shared_ptr<Desk> desk_;  ///< the thread's, too: it may be there longer
+  const bool in_place_;             ///< a terminal that can clear a line
+  std::shared_ptr<Shared> shared_;  ///< the thread's, too: it may be there longer
   std::thread thread_;
 };
 

@@ -88,7 +88,7 @@ class Run {
       if (options_.seconds && seconds >= *options_.seconds) break;
       host_->go_on();
       drain();
-      obey_typed();
+      handle_typed();
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
       if (options_.quiet) continue;
@@ -149,18 +149,18 @@ class Run {
     if (page_) page_->say_addresses(console_);  // again, where they are looked for: at the end
   }
 
-  void obey_typed() {
+  void handle_typed() {
     while (asked_to_end == 0 && !quit_) {
       const auto line = typed_->next();
       if (!line) break;
-      obey(*line);
+      handle(*line);
     }
     if (const std::size_t left_out = typed_->take_left_out(); left_out > 0)
       console_.complain(
-          fmt::format("{} lines were left out: they came faster than they are obeyed", left_out));
+          fmt::format("{} lines were left out: they came faster than they are handled", left_out));
   }
 
-  void obey(const TypedLines::Line& typed) {
+  void handle(const TypedLines::Line& typed) {
     const std::string& line = typed.text;
     try {
       if (line == "stop") {  // TypedLines has done it
