@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/running_station.h"
+#include "support/sanitized.h"
 
 namespace phalanx::testing {
 namespace {
@@ -146,6 +147,7 @@ TEST_F(RunEnds, StopTakesTheTorqueAwayWhileTheTerminalTakesNothing) {
 
 // A background job may not read its terminal; what is typed meanwhile waits there.
 TEST_F(RunEnds, AJobThatComesBackToTheForegroundReadsItsTerminalAgain) {
+  if (test::kSanitized) GTEST_SKIP() << "the shell is under the clock, too, whose library is sanitized";
   Ends terminal = make_terminal();
   const int theirs = terminal.theirs.number();
   RunningStation station(folder, {theirs, theirs, theirs, true}, {"--headless", "--no-realtime", "--quiet"},
