@@ -13,6 +13,8 @@ namespace {
 constexpr int kMostSteps = 1000;
 /// A stopped segment's clearance lies between the margin and this much below it [m].
 constexpr double kBand = 5e-9;
+/// By how much a d0 that fades shrinks for each length that the contact's point goes on the HCP [-].
+constexpr double kFade = 0.2;
 /// Pairs this near are followed one by one: a pair along which the segment slides must not stop it [m].
 constexpr double kNearWindow = 50e-6;
 
@@ -42,6 +44,8 @@ struct PeerGdp::Tick {
   int fixed = 0;
   int steps = 0;
   bool exhausted = false;
+  bool lagged = false;                             ///< the GDP was not at the HCP
+  std::array<double, kSegmentsPerDigit> pushed{};  ///< depth of each record that pushed when the tick began
 
   [[nodiscard]] int first_moving() const {
     for (int i = 0; i < kJointsPerDigit; ++i) {
@@ -86,6 +90,7 @@ Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
               .hcp_pose = hcp.digit[idx(d)],
               .angle = digit_angles(state.angle, d),
               .pose = state.poses.digit[idx(d)]};
+    tick.lagged = state.started[idx(d)] && tick.angle != tick.hcp_was;
     advance_digit(tick, state);
     state.poses.digit[idx(d)] = tick.pose;
     for (int i = 0; i < kJointsPerDigit; ++i) state.angle[idx(joint_index(d, i))] = tick.angle[idx(i)];
@@ -98,7 +103,7 @@ Status PeerGdp::advance(const JointArray& hcp_angle, const HandPoses& hcp,
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       ContactRecord& record = state.record[idx(segment_index(d, k))];
       if (!record.active) continue;
-      measure(tick, k, tick.hcp, tick.hcp_pose, record);
+      follow(tick, k, record);
       record.silent = state.inside[idx(d)];
     }
   }
@@ -111,7 +116,8 @@ void PeerGdp::measure(const Tick& tick, int k, const DigitAngles& hcp_angle, con
                       ContactRecord& record) const {
   record.p_gdp = tick.pose.segment[idx(k)] * record.p_S;
   record.p_hcp = hcp.segment[idx(k)] * record.p_S;
-  double deep = (record.p_gdp - record.p_hcp).dot(record.n_c);
+  double& deep = record.penetration;
+  deep = (record.p_gdp - record.p_hcp).dot(record.n_c);
   if (record.along) {
     DigitAngles way{};
     for (std::size_t i = 0; i < way.size(); ++i) way[i] = hcp_angle[i] - tick.angle[i];
@@ -119,6 +125,22 @@ void PeerGdp::measure(const Tick& tick, int k, const DigitAngles& hcp_angle, con
     if (v > 0.0 && v > 2.0 * deep) deep = v * v / (4.0 * (v - deep));
   }
   record.depth = deep - record.offset;
+}
+
+// The same at the end of the tick, with what d0 has shrunk by.
+void PeerGdp::follow(const Tick& tick, int k, ContactRecord& record) const {
+  const ContactRecord was = record;
+  measure(tick, k, tick.hcp, tick.hcp_pose, record);
+  if (!record.fades) return;
+  const double gone = (record.p_hcp - was.p_hcp - (record.p_gdp - was.p_gdp)).norm();
+  const double deeper = std::max(0.0, record.penetration - was.penetration);
+  record.offset = std::max(0.0, record.offset - kFade * std::max(0.0, gone - deeper));
+  if (record.penetration <= 0.0) {
+    record.offset = 0.0;
+  } else if (record.penetration < was.penetration) {
+    record.offset *= record.penetration / was.penetration;
+  }
+  record.depth = record.penetration - record.offset;
 }
 
 bool PeerGdp::nearer_pushes(const Tick& tick, int k, const DigitAngles& hcp_angle, const DigitPose& hcp,
@@ -143,13 +165,14 @@ bool PeerGdp::goes_through(const Tick& tick) {
 }
 
 // Rule 1.
-int PeerGdp::held_joints(const Tick& tick, GdpState& state) {
+int PeerGdp::held_joints(Tick& tick, GdpState& state) {
   int held = 0;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     ContactRecord& record = state.record[idx(segment_index(tick.digit, k))];
     if (!record.active) continue;
+    tick.pushed[idx(k)] = record.silent ? 0.0 : std::max(0.0, record.depth);
     record.along = record.along && goes_through(tick);
-    measure(tick, k, tick.hcp, tick.hcp_pose, record);
+    follow(tick, k, record);
     if (record.depth > 0.0) held = joints_that_move(k);
   }
   return held;
@@ -169,8 +192,8 @@ void PeerGdp::advance_digit(Tick& tick, GdpState& state) {
     if (stop.segment < 0) break;
     ContactRecord& record = state.record[idx(segment_index(tick.digit, stop.segment))];
     if (record.active) {
-      measure(tick, stop.segment, tick.hcp, tick.hcp_pose, record);
-      if (record.depth + record.offset <= 0.0 ||
+      follow(tick, stop.segment, record);
+      if (record.penetration <= 0.0 ||
           (!(record.depth > 0.0) && !nearer_pushes(tick, stop.segment, tick.hcp, tick.hcp_pose, state)))
         record.active = false;
     }
@@ -299,24 +322,27 @@ void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, Gd
       }
     }
   }
-  record.offset = tick.exhausted && nearest.distance > margin ? std::numeric_limits<double>::infinity()
-                                                              : offset_of(tick, k, record, state);
+  if (tick.exhausted && nearest.distance > margin) {
+    record.offset = std::numeric_limits<double>::infinity();
+  } else {
+    set_offset(tick, k, state, record);
+  }
   state.record[idx(segment)] = record;
 }
 
 // Rule 3's d0.
-double PeerGdp::offset_of(const Tick& tick, int k, ContactRecord record, const GdpState& state) const {
-  if (model_.contact.depth != DepthOrigin::kContinuous) return 0.0;
+void PeerGdp::set_offset(const Tick& tick, int k, const GdpState& state, ContactRecord& record) const {
+  if (model_.contact.depth != DepthOrigin::kContinuous) return;
   DigitAngles hcp_angle{};
   for (std::size_t i = 0; i < hcp_angle.size(); ++i)
     hcp_angle[i] = tick.hcp_was[i] + tick.s * (tick.hcp[i] - tick.hcp_was[i]);
   DigitPose hcp;
   model_.hand.digit_pose(tick.digit, hcp_angle, hcp);
-  if (!nearer_pushes(tick, k, hcp_angle, hcp, state) ||
-      !nearer_pushes(tick, k, tick.hcp, tick.hcp_pose, state))
-    return 0.0;
+  const bool pushed = nearer_pushes(tick, k, hcp_angle, hcp, state);
+  if (!pushed && !tick.lagged) return;
   measure(tick, k, hcp_angle, hcp, record);
-  return std::max(0.0, record.depth);
+  record.offset = std::max(0.0, record.penetration - tick.pushed[idx(k)]);
+  record.fades = !pushed || !nearer_pushes(tick, k, tick.hcp, tick.hcp_pose, state);
 }
 
 }  // namespace phalanx::bench

@@ -42,13 +42,14 @@ class PeerGdp {
   [[nodiscard]] bool nearer_pushes(const Tick& tick, int k, const DigitAngles& hcp_angle,
                                    const DigitPose& hcp, const GdpState& state) const;
   [[nodiscard]] bool goes_through(const Tick& tick);
-  [[nodiscard]] int held_joints(const Tick& tick, GdpState& state);
+  void follow(const Tick& tick, int k, ContactRecord& record) const;
+  [[nodiscard]] int held_joints(Tick& tick, GdpState& state);
   void advance_digit(Tick& tick, GdpState& state);
   [[nodiscard]] Stop next_stop(Tick& tick, GdpState& state);
   [[nodiscard]] Step step_of(const Tick& tick, int k, double longest);
   void list_pairs(int segment, const Pose& X_WS, double limit);
   void make_record(const Tick& tick, int k, const SegmentField* field, GdpState& state);
-  [[nodiscard]] double offset_of(const Tick& tick, int k, ContactRecord record, const GdpState& state) const;
+  void set_offset(const Tick& tick, int k, const GdpState& state, ContactRecord& record) const;
 
   const HapticModel& model_;
   DistanceEngine& engine_;

@@ -87,14 +87,31 @@ void measure(const ContactModel& model, const DigitTick& tick, int k, const Digi
              const DigitPose& hcp, ContactRecord& record) noexcept {
   record.p_gdp = tick.pose.segment[idx(k)] * record.p_S;
   record.p_hcp = hcp.segment[idx(k)] * record.p_S;
-  double penetration = (record.p_gdp - record.p_hcp).dot(record.n_c);
+  record.penetration = (record.p_gdp - record.p_hcp).dot(record.n_c);
   if (record.along) {
     DigitAngles way{};
     for (std::size_t i = 0; i < way.size(); ++i) way[i] = hcp_angle[i] - tick.angle[i];
     const SegmentMotion motion = segment_motion(model.hand, tick.digit, tick.pose, way, k);
-    penetration = deepest(-record.n_c.dot(motion.velocity(record.p_gdp)), penetration);
+    record.penetration = deepest(-record.n_c.dot(motion.velocity(record.p_gdp)), record.penetration);
   }
-  record.depth = penetration - record.offset;
+  record.depth = record.penetration - record.offset;
+}
+
+void follow(const ContactModel& model, const DigitTick& tick, int k, ContactRecord& record) noexcept {
+  const Vec3 apart = record.p_gdp - record.p_hcp;
+  const double before = record.penetration;
+  measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
+  if (!record.fades || record.offset == 0.0) return;
+  const double deeper = record.penetration - before;
+  const double way = (record.p_gdp - record.p_hcp - apart).norm();
+  double offset = std::max(0.0, record.offset - kFade * std::max(0.0, way - std::max(0.0, deeper)));
+  if (!(record.penetration > 0.0)) {
+    offset = 0.0;
+  } else if (deeper < 0.0) {
+    offset *= record.penetration / before;
+  }
+  record.offset = offset;
+  record.depth = record.penetration - offset;
 }
 
 bool nearer_pushes(const ContactModel& model, const DigitTick& tick, int k, const DigitAngles& hcp_angle,
@@ -124,6 +141,25 @@ bool hcp_goes_through(const ContactModel& model, DigitTick& tick, GdpState& stat
   return tick.hcp_through == Through::kYes;
 }
 
+/// d0 of a new record, made at s of the tick.                                              "The GDP,
+/// exactly", 3
+void set_offset(const ContactModel& model, const DigitTick& tick, int k, double s, const GdpState& state,
+                ContactRecord& record) noexcept {
+  if (k == 0 && !tick.lagged) return;
+  // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes.
+  DigitAngles hcp_angle{};
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    hcp_angle[idx(i)] = tick.hcp_from[idx(i)] + s * (tick.hcp[idx(i)] - tick.hcp_from[idx(i)]);
+  }
+  DigitPose hcp;
+  model.hand.digit_pose(tick.digit, hcp_angle, hcp);
+  const bool pushed = nearer_pushes(model, tick, k, hcp_angle, hcp, state);
+  if (!pushed && !tick.lagged) return;
+  measure(model, tick, k, hcp_angle, hcp, record);
+  record.offset = std::max(0.0, record.penetration - tick.pushed[idx(k)]);
+  record.fades = !(pushed && nearer_pushes(model, tick, k, tick.hcp, tick.hcp_pose, state));
+}
+
 }  // namespace
 
 int joints_held(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
@@ -131,8 +167,9 @@ int joints_held(const ContactModel& model, DigitTick& tick, GdpState& state) noe
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     ContactRecord& record = record_of(state, tick, k);
     if (!record.active) continue;
+    tick.pushed[idx(k)] = record.silent ? 0.0 : std::max(0.0, record.depth);
     record.along = record.along && hcp_goes_through(model, tick, state);
-    measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
+    follow(model, tick, k, record);
     if (record.depth > 0.0) held = joints_that_move(k);
   }
   return held;
@@ -160,25 +197,12 @@ void make_record(const ContactModel& model, DigitTick& tick, int k, double s, do
       record.n_c = record.force_normal = patch.lead_direction;
     }
   }
-  if (model.parameters.depth == DepthOrigin::kContinuous && k > 0) {
-    // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes, and goes
-    // on to.
-    DigitAngles hcp_angle{};
-    for (int i = 0; i < kJointsPerDigit; ++i) {
-      hcp_angle[idx(i)] = tick.hcp_from[idx(i)] + s * (tick.hcp[idx(i)] - tick.hcp_from[idx(i)]);
-    }
-    DigitPose hcp;
-    model.hand.digit_pose(tick.digit, hcp_angle, hcp);
-    if (nearer_pushes(model, tick, k, hcp_angle, hcp, state) &&
-        nearer_pushes(model, tick, k, tick.hcp, tick.hcp_pose, state)) {
-      measure(model, tick, k, hcp_angle, hcp, record);
-      record.offset = std::max(0.0, record.depth);
-    }
-  }
+  if (model.parameters.depth == DepthOrigin::kContinuous) set_offset(model, tick, k, s, state, record);
   // A search that gave up before anything was near: the record only says so, it neither pushes nor holds, and
   // the next tick goes on.
   if (has(tick.status, Status::kSearchExhausted) && patch.distance > model.parameters.margin) {
     record.offset = std::numeric_limits<double>::infinity();
+    record.fades = false;
   }
   record_of(state, tick, k) = record;
 }
@@ -193,6 +217,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
                    .hcp_pose = hcp.digit[idx(d)],
                    .angle = digit_angles(state.angle, d),
                    .pose = state.poses.digit[idx(d)]};
+    tick.lagged = state.started[idx(d)] && tick.angle != tick.hcp_from;
     tick.fixed = joints_held(model, tick, state);
     if (model.parameters.method == GdpMethod::kContinuous) {
       advance_continuous(model, tick, state);
@@ -209,7 +234,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       ContactRecord& record = record_of(state, tick, k);
       if (!record.active) continue;
-      measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
+      follow(model, tick, k, record);
       record.silent = state.inside[idx(d)];
       const Vec3 apart = record.p_hcp - record.p_gdp;
       const double slid = (apart - apart.dot(record.n_c) * record.n_c).norm();

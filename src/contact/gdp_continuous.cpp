@@ -24,8 +24,8 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
     // contact has hopped. Without this a finger in a corner would rest against the second wall without force.
     ContactRecord& record = record_of(state, tick, stop.segment);
     if (record.active) {
-      measure(model, tick, stop.segment, tick.hcp, tick.hcp_pose, record);
-      const bool left = record.depth + record.offset <= 0.0;
+      follow(model, tick, stop.segment, record);
+      const bool left = record.penetration <= 0.0;
       if (left || (!(record.depth > 0.0) &&
                    !nearer_pushes(model, tick, stop.segment, tick.hcp, tick.hcp_pose, state)))
         record.active = false;

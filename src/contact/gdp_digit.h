@@ -17,9 +17,11 @@ struct DigitTick {
   DigitAngles hcp_from;  ///< q_hcp of the last tick [rad]
   DigitAngles hcp;       ///< q_hcp of this tick [rad]
   const DigitPose& hcp_pose;
-  DigitAngles angle;  ///< q_gdp [rad]
-  DigitPose pose;     ///< at `angle`
-  int fixed = 0;      ///< joints counted from the palm that may not move any more in this tick
+  DigitAngles angle;                               ///< q_gdp [rad]
+  DigitPose pose;                                  ///< at `angle`
+  bool lagged = false;                             ///< the GDP was not at the HCP when the tick began
+  std::array<double, kSegmentsPerDigit> pushed{};  ///< d of each segment's record then, 0 without a force [m]
+  int fixed = 0;  ///< joints counted from the palm that may not move any more in this tick
   Status status = Status::kOk;
   Through hcp_through = Through::kUnknown;
 };
@@ -35,6 +37,14 @@ struct DigitTick {
 /// Depth and points of a record of segment k between the GDP and the HCP `hcp_angle`, whose pose is `hcp`.
 void measure(const ContactModel& model, const DigitTick& tick, int k, const DigitAngles& hcp_angle,
              const DigitPose& hcp, ContactRecord& record) noexcept;
+
+/// measure() at the end of the tick, after d0 of a record that fades has shrunk by what the HCP has moved
+/// since it was last measured.                                                          "The GDP, exactly",
+/// hops
+void follow(const ContactModel& model, const DigitTick& tick, int k, ContactRecord& record) noexcept;
+
+/// By how much a d0 that fades shrinks for each length that the contact's point goes on the HCP [-].
+inline constexpr double kFade = 0.2;
 
 /// Whether a segment nearer the palm than k pushes between the GDP and the HCP `hcp_angle`, whose pose is
 /// `hcp`.

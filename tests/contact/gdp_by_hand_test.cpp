@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "contact/gdp_digit.h"
 #include "contact/normal_fan.h"
@@ -335,6 +336,94 @@ TEST(GdpByHand, AFingerThatHasTurnedPastTheContactsPlaneIsFeltWhileItIsInTheObje
     EXPECT_EQ(paper.record(0).along, inside);
     EXPECT_NEAR(paper.record(0).depth, inside ? closing * closing / (4.0 * (closing - end)) : end, kPlace);
   }
+}
+
+// The side corner of the proximal diamond rests against a wall, 0.4 mm behind it, while the HCP flexes to
+// 0.6: the wall's direction is the axis of flexion, so that nothing changes. Then the HCP leaves the wall,
+// and the finger falls onto a plate that it meets at 0.3: over 5 mm behind it.
+struct Hop {
+  Hop() {
+    TriangleMesh object;
+    for (const double side : {-1.0, 1.0}) {
+      const double wall = 20e-3 * std::sin(kTouch) + 1e-3 * std::cos(kTouch) + kPaperMargin;
+      append(object, test::moved(make_box(Vec3(0.002, 0.04, 0.006), 12),
+                                 test::at(side * (wall + 1e-3), -5e-3, -20e-3)));
+    }
+    const double f = 20e-3 * std::cos(0.09) * std::cos(0.3) - 1e-3 * std::sin(0.3);
+    append(object, plate(f, height(0.3, 0.09)));
+    model.emplace(paper_model(object));
+    paper.emplace(*model);
+    for (const JointArray& q :
+         {index_angles(0, 0, 0, 0.05), index_angles(0, 0, 0, kPast), index_angles(0.6, 0, 0, kPast)})
+      paper->tick(q);
+    pushed = paper->record(0).depth;
+    paper->tick(index_angles(0.6, 0, 0, 0.09));
+  }
+  static constexpr double kTouch = 0.1;
+  static constexpr double kPast = 0.12;
+  /// Of the lowest corner.
+  static double height(double p, double a) { return -20e-3 * std::cos(a) * std::sin(p) - 1e-3 * std::cos(p); }
+  [[nodiscard]] const ContactRecord& record() const { return paper->record(0); }
+
+  std::optional<HapticModel> model;
+  std::optional<Paper> paper;
+  double pushed = 0.0;  ///< by the wall, before the hop [m]
+};
+
+TEST(GdpByHand, TheForceGoesOnWhereAContactHops) {
+  const Hop hop;
+  EXPECT_NEAR(hop.pushed, 20e-3 * (std::sin(0.12) - std::sin(0.1)) + 1e-3 * (std::cos(0.12) - std::cos(0.1)),
+              kPlace);
+  ASSERT_TRUE(hop.record().active);
+  EXPECT_NEAR(hop.paper->gdp(0), 0.3, 1e-3);
+  EXPECT_GT(hop.record().penetration, 5e-3);
+  EXPECT_TRUE(hop.record().fades);
+  // In that tick the HCP goes 0.6 mm aside at most, and by y (cos 0.09 - cos 0.12) deeper.
+  const double aside = 20e-3 * 0.03;
+  EXPECT_GE(hop.record().depth, hop.pushed - kPlace);
+  EXPECT_LE(hop.record().depth, hop.pushed + kFade * aside + Hop::height(0.6, 0.12) - Hop::height(0.6, 0.09));
+}
+
+TEST(GdpByHand, AfterAHopAFingerThatPressesDeeperHasTheWholeStiffness) {
+  Hop hop;
+  const ContactRecord before = hop.record();
+  hop.paper->tick(index_angles(0.7, 0, 0, 0.09));
+  const double deeper = Hop::height(0.6, 0.09) - Hop::height(0.7, 0.09);
+  EXPECT_NEAR(hop.record().penetration - before.penetration, deeper, 1e-9);
+  const double way = 2.0 * std::sqrt(400.0 + 1.0) * 1e-3 * std::sin(0.05);  // of the corner, at most
+  EXPECT_GE(hop.record().depth - before.depth, deeper);
+  EXPECT_LE(hop.record().depth - before.depth, deeper + kFade * (way - deeper) + 1e-9);
+}
+
+TEST(GdpByHand, AfterAHopAFingerThatComesOutHasAForceUntilItIsOut) {
+  Hop hop;
+  double share = hop.record().depth / hop.record().penetration;
+  for (const double p : {0.55, 0.5, 0.4, 0.35, 0.31}) {
+    hop.paper->tick(index_angles(p, 0, 0, 0.09));
+    ASSERT_TRUE(hop.record().active);
+    const double now = hop.record().depth / hop.record().penetration;
+    EXPECT_GT(now, share) << p;
+    share = now;
+  }
+  EXPECT_LT(share, 1.0);
+  EXPECT_LT(hop.record().depth, 0.2e-3);
+  hop.paper->tick(index_angles(0.2, 0, 0, 0.09));
+  EXPECT_EQ(hop.paper->gdp(0), 0.2);
+  EXPECT_FALSE(hop.record().active);
+}
+
+// The HCP goes along the plate by abduction: 0.2 mm of d0 for each millimetre.
+TEST(GdpByHand, AfterAHopTheOffsetShrinksWithTheWayOfTheHcp) {
+  Hop hop;
+  const ContactRecord before = hop.record();
+  hop.paper->tick(index_angles(0.6, 0, 0, 0.0));
+  hop.paper->tick(index_angles(0.6, 0, 0, -0.1));
+  EXPECT_LT(hop.record().offset, before.offset - 0.9 * kFade * 20e-3 * 0.19);
+  EXPECT_GT(hop.record().offset, before.offset - 1.1 * kFade * 20e-3 * 0.19);
+  for (int n = 0; n < 40; ++n) hop.paper->tick(index_angles(0.6, 0, 0, n % 2 == 0 ? 0.1 : -0.1));
+  EXPECT_EQ(hop.record().offset, 0.0);
+  const double held = hop.record().depth;
+  EXPECT_NEAR(held, hop.record().penetration, 1e-12);
 }
 
 TEST(GdpByHand, TheDeepestPlaceOfAParabolaIsItsVertexOrItsEnd) {

@@ -52,7 +52,7 @@ ReferenceState values_of(const GdpState& gdp) {
   ReferenceState out{gdp.angle, gdp.hcp_angle, gdp.started, gdp.inside, {}};
   for (std::size_t s = 0; s < kSegments; ++s) {
     const ContactRecord& r = gdp.record[s];
-    out.record[s] = {r.active, r.p_S, r.n_c, r.force_normal, r.offset, r.along};
+    out.record[s] = {r.active, r.p_S, r.n_c, r.force_normal, r.offset, r.along, r.fades};
   }
   return out;
 }
@@ -70,6 +70,7 @@ struct Compared {
   int records = 0;  ///< new ones
   int offsets = 0;  ///< of them with d0 > 0
   int renewed = 0;  ///< of them in place of another in a segment that did not move
+  int fading = 0;   ///< of them with a d0 that fades
   int along = 0;    ///< of them with their depth counted along the way
   int grazing = 0;
   int hovering = 0;
@@ -88,17 +89,19 @@ struct Compared {
     records += other.records;
     offsets += other.offsets;
     renewed += other.renewed;
+    fading += other.fading;
     along += other.along;
   }
 
   void print(const std::string& name) const {
     std::printf(
-        "%s: %d ticks, %d stops, %d new records, %d of them with d0, %d renewed, %d along the way; grazing "
+        "%s: %d ticks, %d stops, %d new records, %d of them with d0, %d renewed, %d fading, %d along the "
+        "way; grazing "
         "%d, hovering %d, "
         "exhausted %d, between places %d; apart "
         "%.1e m; point %.1e m, n_c %.1e rad, n %.1e rad; depth %.1e m, force %.1e N, torque %.1e Nm\n",
-        name.c_str(), ticks, stops, records, offsets, renewed, along, grazing, hovering, exhausted, between,
-        displacement, point, direction, normal, depth, force, torque);
+        name.c_str(), ticks, stops, records, offsets, renewed, fading, along, grazing, hovering, exhausted,
+        between, displacement, point, direction, normal, depth, force, torque);
   }
 };
 
@@ -280,6 +283,7 @@ class Beside {
     double tolerance = apart(d, k, now_, reference_.state) + turn * (ours.p_S - theirs.p_S).norm() +
                        way * (ours.n_c - theirs.n_c).norm() + 1e-12;
     ASSERT_EQ(ours.along, theirs.along) << "segment " << k;
+    ASSERT_EQ(ours.fades, theirs.fades) << "segment " << k;
     if (ours.along) tolerance *= 3.0;  // the parabola's start counts beside its end
     const bool kept = same_contact(theirs, reference_before_.record[s]);
     if (kept) {
@@ -295,7 +299,8 @@ class Beside {
     const double before =
         kept ? std::abs(before_.record[s].offset - reference_before_.record[s].offset) : 0.0;
     ASSERT_NEAR(ours.offset, theirs.offset,
-                before + tolerance + hcp_way(d, k) * (moment_apart(d, k) + (ours.n_c - theirs.n_c).norm()));
+                before + (ours.fades ? 4.0 : 1.0) * tolerance +
+                    hcp_way(d, k) * (moment_apart(d, k) + (ours.n_c - theirs.n_c).norm()));
     tolerance += std::abs(ours.offset - theirs.offset);
     const double depth = reference_.penetration(d, k, ours, gdp, hcp) - ours.offset;
     const double their_depth =
@@ -346,6 +351,7 @@ class Beside {
     ++out.records;
     out.renewed += before_.record[s].active && apart(d, k, before_, now_) == 0.0 ? 1 : 0;
     out.offsets += ours.offset > 0.0 ? 1 : 0;
+    out.fading += ours.fades ? 1 : 0;
     out.along += ours.along ? 1 : 0;
     const ReferenceStop* stop = stop_of(d, k);
     ASSERT_NE(stop, nullptr) << "a new record without a stop";
@@ -382,9 +388,16 @@ class Beside {
     const double s_now = moment(d, *stop);
     for (std::size_t i = 0; i < hcp.size(); ++i)
       hcp[i] += s_now * (digit_angles(now_.hcp_angle, d)[i] - hcp[i]);
-    ASSERT_NEAR(ours.offset, reference_.offset(d, k, ours, gdp, hcp, digit_angles(now_.hcp_angle, d), now_),
-                1e-10)
-        << "segment " << k << " d0";
+    ReferenceRecord expected_record = ours;
+    expected_record.offset = 0.0;
+    const ReferenceRecord& theirs = reference_.state.record[s];
+    if (theirs.fades || theirs.offset > 0.0) {
+      const double deep = reference_.penetration(d, k, ours, gdp, hcp);
+      expected_record.offset = std::max(0.0, deep - reference_.begin(before_, d).depth[idx(k)]);
+      expected_record.offset =
+          reference_.faded(d, k, expected_record, deep, gdp, hcp, digit_angles(now_.hcp_angle, d));
+    }
+    ASSERT_NEAR(ours.offset, expected_record.offset, 1e-10) << "segment " << k << " d0";
   }
 
   void check_command() {
@@ -617,6 +630,7 @@ TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
   expect_touches(sum);
   if (!test::kSanitized) {
     EXPECT_GT(sum.renewed, 0);
+    EXPECT_GT(sum.fading, 0);
   }
 }
 

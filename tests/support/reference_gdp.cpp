@@ -417,12 +417,39 @@ bool ReferenceGdp::nearer_pushes(int digit, int k, const DigitAngles& gdp, const
   return false;
 }
 
-double ReferenceGdp::offset(int digit, int k, const ReferenceRecord& fresh, const DigitAngles& gdp,
-                            const DigitAngles& hcp, const DigitAngles& hcp_end,
-                            const ReferenceState& at) const {
-  if (parameters_.depth == DepthOrigin::kS1) return 0.0;
-  if (!nearer_pushes(digit, k, gdp, hcp, at) || !nearer_pushes(digit, k, gdp, hcp_end, at)) return 0.0;
-  return std::max(0.0, penetration(digit, k, fresh, gdp, hcp));
+ReferenceGdp::Begin ReferenceGdp::begin(const ReferenceState& at, int digit) const {
+  Begin out;
+  const DigitAngles gdp = digit_angles(at.angle, digit);
+  const DigitAngles hcp = digit_angles(at.hcp_angle, digit);
+  out.lagged = at.started[idx(digit)] && gdp != hcp;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    const ReferenceRecord& record = at.record[idx(segment_index(digit, k))];
+    if (!record.active || at.inside[idx(digit)]) continue;
+    out.depth[idx(k)] = std::max(0.0, penetration(digit, k, record, gdp, hcp) - record.offset);
+  }
+  return out;
+}
+
+double ReferenceGdp::faded(int digit, int k, const ReferenceRecord& record, double deep,
+                           const DigitAngles& gdp, const DigitAngles& from, const DigitAngles& to) const {
+  if (!record.fades) return record.offset;
+  const double now = penetration(digit, k, record, gdp, to);
+  if (now <= 0.0) return 0.0;
+  constexpr double kShare = 0.2;  // "for each millimetre ... by 0.2 mm"
+  const double gone = (pose(digit, k, to) * record.p_S - pose(digit, k, from) * record.p_S).norm();
+  const double aside = now > deep ? std::max(0.0, gone - (now - deep)) : gone;
+  const double left = std::max(0.0, record.offset - kShare * aside);
+  return now < deep ? left * now / deep : left;
+}
+
+void ReferenceGdp::set_offset(int digit, int k, const Begin& start, const DigitAngles& gdp,
+                              const DigitAngles& hcp, const DigitAngles& hcp_end,
+                              ReferenceRecord& fresh) const {
+  if (parameters_.depth == DepthOrigin::kS1) return;
+  const bool pushes = nearer_pushes(digit, k, gdp, hcp, state);
+  if (!pushes && !start.lagged) return;
+  fresh.offset = std::max(0.0, penetration(digit, k, fresh, gdp, hcp) - start.depth[idx(k)]);
+  fresh.fades = !pushes || !nearer_pushes(digit, k, gdp, hcp_end, state);
 }
 
 ReferencePatch ReferenceGdp::patch(int digit, int k, const DigitAngles& angle,
@@ -581,9 +608,19 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
   const DigitAngles from = digit_angles(state.angle, digit);
   DigitAngles angle = from;
   int fixed = 0;
+  const Begin start_of_tick = begin(state, digit);
+  std::array<DigitAngles, kSegmentsPerDigit> known{};  // the HCP for which d0 of each record is known
+  known.fill(digit_angles(state.hcp_angle, digit));
+  const auto fade = [&](int k, double deep) {
+    record(k).offset = faded(digit, k, record(k), deep, angle, known[idx(k)], hcp);
+    known[idx(k)] = hcp;
+  };
+  const auto deep_as_known = [&](int k) { return penetration(digit, k, record(k), angle, known[idx(k)]); };
   for (int k = 0; k < kSegmentsPerDigit; ++k) {  // 1. Depth
     if (!record(k).active) continue;
+    const double deep = deep_as_known(k);
     record(k).along = record(k).along && goes_through(digit, hcp);
+    fade(k, deep);
     if (penetration(digit, k, record(k), angle, hcp) - record(k).offset > 0.0) fixed = k + 2;
   }
   double s = 0.0;
@@ -604,6 +641,7 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
     stops_.push_back(stop);
     ReferenceRecord& deciding = record(stop.segment);  // 3. Stop
     if (deciding.active) {
+      fade(stop.segment, deep_as_known(stop.segment));
       const double deep = penetration(digit, stop.segment, deciding, angle, hcp);
       if (deep <= 0.0 || (deep <= deciding.offset && !nearer_pushes(digit, stop.segment, angle, hcp, state)))
         deciding.active = false;
@@ -620,9 +658,9 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
       if (record(k).active) continue;
       const ReferencePatch found = patch(digit, k, angle, k == stop.segment ? &rate : nullptr);
       if (!found.any) continue;
-      ReferenceRecord fresh{true,      pose(digit, k, angle).inverse() * found.on_segment,
-                            found.n_c, found.force_normal,
-                            0.0,       false};
+      ReferenceRecord fresh{
+          true, pose(digit, k, angle).inverse() * found.on_segment, found.n_c, found.force_normal, 0.0, false,
+          false};
       if (k == stop.segment && parameters_.depth == DepthOrigin::kContinuous)
         fresh.along =
             penetration(digit, k, fresh, angle, hcp) <= 0.0 && found.leads && goes_through(digit, hcp);
@@ -630,10 +668,14 @@ void ReferenceGdp::tick_digit(int digit, const DigitAngles& hcp, bool measured) 
         fresh.p_S = pose(digit, k, angle).inverse() * found.lead;
         fresh.n_c = fresh.force_normal = found.lead_direction;
       }
-      fresh.offset = offset(digit, k, fresh, angle, hcp_now, hcp, state);
+      set_offset(digit, k, start_of_tick, angle, hcp_now, hcp, fresh);
       record(k) = fresh;
+      known[idx(k)] = hcp_now;
     }
     fixed = stop.segment + 2;  // 4. Go on
+  }
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    if (record(k).active) fade(k, deep_as_known(k));
   }
   for (int i = 0; i < kJointsPerDigit; ++i) state.angle[idx(joint_index(digit, i))] = angle[idx(i)];
   const bool clear = angle == hcp;

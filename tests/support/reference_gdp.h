@@ -27,6 +27,7 @@ struct ReferenceRecord {
   Vec3 force_normal = Vec3::Zero();  ///< in W
   double offset = 0.0;               ///< d0 [m]
   bool along = false;                ///< its depth is counted along the way
+  bool fades = false;                ///< d0 shrinks as the HCP moves
 };
 
 /// What is remembered from tick to tick.
@@ -102,11 +103,15 @@ class ReferenceGdp {
                                    const ReferenceState& at) const;
   /// Whether a segment of the digit crosses the object at these angles.
   [[nodiscard]] bool goes_through(int digit, const DigitAngles& angle) const;
-  /// d0 of a new record of segment k: rule 3. `hcp` is the HCP at this moment of the tick, `hcp_end` at its
-  /// end.
-  [[nodiscard]] double offset(int digit, int k, const ReferenceRecord& fresh, const DigitAngles& gdp,
-                              const DigitAngles& hcp, const DigitAngles& hcp_end,
-                              const ReferenceState& at) const;
+  /// How a digit was when a tick began.
+  struct Begin {
+    bool lagged = false;                            ///< the GDP was not at the HCP
+    std::array<double, kSegmentsPerDigit> depth{};  ///< with which each segment was pushed [m]
+  };
+  [[nodiscard]] Begin begin(const ReferenceState& at, int digit) const;
+  /// d0 of a record that fades, after the HCP has gone `from` here `to` there. It was `deep` before.
+  [[nodiscard]] double faded(int digit, int k, const ReferenceRecord& record, double deep,
+                             const DigitAngles& gdp, const DigitAngles& from, const DigitAngles& to) const;
   /// Forces of `at`'s records between its GDP and its HCP.
   [[nodiscard]] ReferenceCommand command(const ReferenceState& at, const ForceLawParameters& law,
                                          const LimitParameters& limits) const;
@@ -141,6 +146,10 @@ class ReferenceGdp {
                           bool look_ahead) const;
   [[nodiscard]] ReferenceStop first_stop(int digit, const DigitAngles& from, const DigitAngles& rate,
                                          double s) const;
+  /// d0 of a new record of segment k: rule 3. `hcp` is the HCP at this moment of the tick, `hcp_end` at its
+  /// end.
+  void set_offset(int digit, int k, const Begin& start, const DigitAngles& gdp, const DigitAngles& hcp,
+                  const DigitAngles& hcp_end, ReferenceRecord& fresh) const;
   void tick_digit(int digit, const DigitAngles& hcp, bool measured);
   /// How fast the point x of the segment closes along -n, by a difference of poses [m per unit of s].
   [[nodiscard]] double closing_speed(int digit, int k, const DigitAngles& angle, const DigitAngles& rate,

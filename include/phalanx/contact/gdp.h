@@ -24,10 +24,12 @@ struct ContactRecord {
   Vec3 force_normal =
       Vec3::Zero();     ///< direction of the force on the finger, in W: the object's normal or n_c
   double offset = 0.0;  ///< d0 [m]
+  bool fades = false;   ///< d0 shrinks as the HCP moves: the contact has hopped, and its force went on
   bool along =
       false;  ///< made where the HCP was above the contact's plane, but in the object: depth along the way
   bool silent = false;  ///< its digit started inside the object: no force until it has been clear
   // What this tick's poses make of it:
+  double penetration = 0.0;   ///< d + d0 [m]
   double depth = 0.0;         ///< d = (p_gdp - p_hcp) . n_c - d0, may be negative [m]      S1 eq. (2)
                               ///< `along`: the deepest place on the way from GDP to HCP, less d0
   Vec3 p_gdp = Vec3::Zero();  ///< p on the GDP segment, in W [m]
