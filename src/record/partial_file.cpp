@@ -132,7 +132,7 @@ fs::path make_way(const fs::path& partial, const fs::path& file, Unfinished unfi
     remove_partial(partial);
     return {};
   }
-  const Descriptor there(::open(partial.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const Descriptor there(::open(partial.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
   if (there.value < 0) {
     if (errno == ENOENT || errno == ELOOP) return {};  // it has changed since
     if (unfinished == Unfinished::kLeft)
