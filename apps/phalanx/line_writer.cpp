@@ -53,8 +53,8 @@ struct LineWriter::Shared {
 
   /// With the lock.
   void add(std::string text) {
-    bytes += text.size();
     waiting.push_back(std::move(text));
+    bytes += waiting.back().size();
     changed.notify_all();
   }
 

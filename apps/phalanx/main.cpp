@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // phalanx: the command line. One file a command; this one only parses and maps errors to exit codes.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -80,6 +81,10 @@ int run_and_report(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A standard stream that is closed must not give its number to another file, which would then get its
+  // lines.
+  for (int stream = 0; stream <= 2; ++stream)
+    if (::fcntl(stream, F_GETFD) < 0) static_cast<void>(::open("/dev/null", O_RDWR));
   std::set_terminate(die);
   std::signal(SIGXFSZ, SIG_IGN);  // at a file size limit, writing fails instead
   const int code = run_and_report(argc, argv);

@@ -110,11 +110,24 @@ class Run {
     return {.stops = stops, .fault = fault.fault == Fault::kNone ? 0.0 : fault.time};
   }
 
+  /// After a refusal only the next status line counts as seen: a second `resume` typed with the first must
+  /// not take back a stop that was not shown. Without status lines the refusal itself has to do.
+  void look_after(bool granted) {
+    if (granted || options_.quiet) seen_ = look();
+  }
+
   /// Tells what the loop and the recorder have put aside.
   void drain() {
     say_grant();
     if (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
     while (const auto note = recorder_.next_note()) tell(*note);
+    const bool oscillates = host_->view().oscillates;
+    if (oscillates && !oscillates_) {
+      const std::string what = "the force oscillates: it fades, and returns by itself once it is quiet";
+      console_.say(what);
+      if (page_) page_->tell("oscillation", what, true);
+    }
+    oscillates_ = oscillates;
     const std::uint64_t refused = host_->view().resets_refused;
     if (std::exchange(resets_refused_, refused) < refused) {
       const std::string why =
@@ -169,13 +182,13 @@ class Run {
         tell_typed("stopped", "stopped");
       } else if (line == "resume") {
         const bool resumed = host_->resume(seen_.stops);
-        seen_ = look();
+        look_after(resumed);
         if (!resumed)
           throw std::invalid_argument("another stop or fault has come since; look, then resume again");
         tell_typed("resumed", "resumed");
       } else if (line == "reset") {
         const bool reset = host_->reset(seen_.fault);
-        seen_ = look();
+        look_after(reset);
         if (!reset) throw std::invalid_argument("another fault has come since; look, then reset again");
         tell_typed("reset", "asked for a reset");
       } else if (line == "quit") {
@@ -279,6 +292,7 @@ class Run {
   std::optional<RealtimeGrant> granted_;
   bool quit_ = false;
   std::uint64_t resets_refused_ = 0;
+  bool oscillates_ = false;
   Seen seen_;
   double seconds_ = 0.0;
 };

@@ -5,9 +5,11 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <exception>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -29,6 +31,13 @@ int make_event() {
 bool terminal_belongs_to_another_job() noexcept {
   const pid_t owner = ::tcgetpgrp(STDIN_FILENO);
   return owner >= 0 && owner != ::getpgrp();
+}
+
+/// `stop` in any case of letters: it is typed in a hurry.
+bool is_stop(std::string_view line) noexcept {
+  constexpr std::string_view kStop = "stop";
+  return std::equal(line.begin(), line.end(), kStop.begin(), kStop.end(),
+                    [](char typed, char wanted) { return (typed | 0x20) == wanted; });
 }
 
 }  // namespace
@@ -73,7 +82,8 @@ void TypedLines::read_all() noexcept {
     if (count == 0 || input.revents == 0) continue;
     try {
       read_some();
-    } catch (const std::exception&) {  // no memory for what was typed
+    } catch (const std::exception&) {  // no memory for what was typed: it may have been `stop`
+      host_.stop();
       pending_.clear();
     }
   }
@@ -89,6 +99,9 @@ void TypedLines::read_some() {
   if (count < 0 && (errno == EINTR || errno == EAGAIN)) return;
   in_background_ = count < 0 && errno == EIO && terminal_belongs_to_another_job();
   ended_ = !in_background_;
+  if (!ended_ || pending_.empty()) return;
+  pending_ += '\n';  // the last line may end without one
+  take_lines();
 }
 
 void TypedLines::take_lines() {
@@ -96,8 +109,10 @@ void TypedLines::take_lines() {
   for (std::size_t end = 0; (end = pending_.find('\n', begin)) != std::string::npos; begin = end + 1) {
     Line line{.text = pending_.substr(begin, end - begin), .stops = 0};
     line.text.erase(line.text.find_last_not_of(" \t\r") + 1);
-    if (std::exchange(too_long_, false)) continue;  // the end of one that no command is
-    if (line.text == "stop") {
+    line.text.erase(0, line.text.find_first_not_of(" \t"));
+    if (std::exchange(too_long_, false)) continue;  // the rest of a line that was too long
+    if (is_stop(line.text)) {
+      line.text = "stop";
       host_.stop();
       line.stops = host_.stops();
     }

@@ -136,8 +136,8 @@ void Safety::judge_oscillation(const Snapshot& snapshot, double now) noexcept {
     oscillates_ = oscillates_ || observer_[s].oscillating();
   }
   if (!oscillates_ || (state_ != SafetyState::kStarting && state_ != SafetyState::kRunning)) return;
-  if (faded_ && now - returned_ <= kComesBack) return trip(Fault::kOscillation, -1, now);
-  faded_ = true;
+  after_oscillation_ = true;
+  if (now - returned_ <= kComesBack) return trip(Fault::kOscillation, -1, now);
   state_ = SafetyState::kStopping;
 }
 
@@ -148,7 +148,7 @@ void Safety::go_on(double now) noexcept {
                      last_.state != DeviceState::kLatched && watch_.all_good() && !oscillates_;
   if (state_ == SafetyState::kWaiting && ready) {
     state_ = held_ ? SafetyState::kStopped : SafetyState::kStarting;
-    returned_ = now;
+    if (!held_ && std::exchange(after_oscillation_, false)) returned_ = now;
   }
   if (state_ == SafetyState::kStarting) {
     factor_ = std::min(1.0, factor_ + period_ / settings_.start_ramp);

@@ -201,6 +201,7 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
   view.changing = model_.blending() || incoming_.load(std::memory_order_relaxed) != nullptr;
   view.device = newest_.state;
   view.estop = newest_.estop;
+  view.oscillates = safety_.oscillates();
   view.ending = ending_;
   view.resets_refused = resets_refused_;
   view.link = device_.statistics();

@@ -115,6 +115,7 @@ TEST(Faults, AnOscillationFadesTheForceAndTheNextOneStopsTheHost) {
   EXPECT_LE(static_cast<double>(zero - seen) * kHostPeriod, 0.2 + 1e-9);
   EXPECT_EQ(largest_of(row(zero), row(back)), 0.0) << "torque while the force still oscillates";
   EXPECT_EQ(rows[fault].fault, "oscillation");
+  EXPECT_NE(o.host_output.find("the force oscillates: it fades"), std::string::npos) << o.host_output;
   EXPECT_LE(static_cast<double>(fault - back) * kHostPeriod, 10.0);
   EXPECT_EQ(largest_of(row(fault + 1), rows.end()), 0.0);
   EXPECT_EQ(o.faults, std::vector<std::string>{"oscillation"});

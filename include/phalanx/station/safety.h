@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "phalanx/device/channel_map.h"
@@ -120,8 +121,9 @@ class Safety {
   double fault_left_ = 0.0;     ///< of the fault's ramp, 1 .. 0
   std::array<OscillationObserver, kSegments> observer_{};  ///< of the forces that leave
   bool oscillates_ = false;                                ///< an observer's verdict holds
-  bool faded_ = false;     ///< an oscillation has taken the torque away before
-  double returned_ = 0.0;  ///< when the torque last began to rise from zero [s]
+  bool after_oscillation_ = false;                         ///< one has taken the torque away, also as a fault
+  double returned_ =
+      -std::numeric_limits<double>::infinity();  ///< when the torque began to rise after that [s]
   bool at_rest_ = true;
   DeviceSample last_{};          ///< the newest sample
   double silence_ = 0.0;         ///< steps without a sample, in nominal time [s]

@@ -29,6 +29,7 @@ struct StationView {
   bool changing = false;             ///< a change is on its way
   DeviceState device = DeviceState::kConnecting;
   bool estop = false;
+  bool oscillates = false;  ///< Safety::oscillates(): the force fades, or waits until it is quiet
   LinkStatistics link;
   std::uint64_t records_lost = 0;  ///< StepRecords that nobody fetched in time
 };

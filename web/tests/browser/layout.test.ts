@@ -44,7 +44,10 @@ function faultsOfLayout(): string[] {
   if (root.scrollLeft !== 0 || root.scrollTop !== 0) say(`the document scrolls by ${root.scrollLeft}, ${root.scrollTop}`);
   root.scrollTo(0, 0);
   for (const scroller of document.querySelectorAll(".tab-panels, .content, .dock, .dialog-body")) {
-    if (scroller.scrollWidth > scroller.clientWidth + kSlack && shown(scroller)) say(`.${scroller.className} is ${scroller.scrollWidth - scroller.clientWidth} px too wide`);
+    if (scroller.scrollWidth <= scroller.clientWidth + kSlack || !shown(scroller)) continue;
+    const edge = scroller.getBoundingClientRect().right;
+    const beyond = [...scroller.querySelectorAll("*")].filter((inner) => shown(inner) && inner.getBoundingClientRect().right > edge + kSlack).map(nameOf);
+    say(`.${scroller.className} is ${scroller.scrollWidth - scroller.clientWidth} px too wide: ${beyond.slice(0, 4).join(", ")}`);
   }
   const question = document.querySelector(".dialogs:not([hidden])"); // what it lies over waits for the answer
   for (const control of document.querySelectorAll("button:enabled, input:enabled:not([type=file]), summary, [role=option]")) {
