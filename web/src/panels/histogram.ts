@@ -14,7 +14,8 @@ export function duration(microseconds: number): string {
   const digits = (value: number) => value.toLocaleString(strings.locale, { maximumSignificantDigits: 3, useGrouping: false });
   const units = strings.device.durations;
   if (!Number.isFinite(microseconds)) return strings.dash;
-  if (microseconds < 1000) return units.us(digits(microseconds));
+  // Less than a nanosecond is the rounding of the clock, and its digits are wider than the panel.
+  if (microseconds < 1000) return units.us(digits(Math.round(microseconds * 1000) / 1000));
   if (microseconds < 1e6) return units.ms(digits(microseconds / 1000));
   return units.s(digits(microseconds / 1e6));
 }
