@@ -2,6 +2,8 @@
 // phalanx experiment NAME: the papers' experiments; `all` puts them on one page.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,9 +11,11 @@
 #include <vector>
 
 #include "commands.h"
+#include "duration_text.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/study/experiment_report.h"
+#include "progress_bar.h"
 #include "usage.h"
 
 namespace phalanx {
@@ -23,8 +27,18 @@ void write_files(const std::string& name, const ExperimentReport& report, const 
   write_text_file(out / "summary.json", report.json);
 }
 
+constexpr double kWorthSaying = 2.0;  // [s]
+
+/// How long it takes here [s].
+double expected(const Experiment& experiment) {
+  return experiment.all_cores ? on_all_cores(experiment.processor_seconds)
+                              : std::max(1.0, experiment.processor_seconds);
+}
+
 int run_one(const Experiment& experiment, const std::filesystem::path& out) {
   if (!out.empty()) prepare_output_folder(out);
+  if (expected(experiment) >= kWorthSaying)
+    fmt::print(stderr, "{}: about {}\n", experiment.name, duration_text(expected(experiment)));
   const ExperimentReport report = experiment.run();
   fmt::print("{}", report.text);
   if (!out.empty()) write_files(experiment.name, report, out);
@@ -35,11 +49,18 @@ int run_all(const std::filesystem::path& out) {
   prepare_output_folder(out);
   std::vector<PaperRow> rows;
   std::vector<ReportSection> sections;
+  double all = 0.0;
+  for (const Experiment& experiment : experiments()) all += expected(experiment);
+  fmt::print(stderr, "all experiments: about {}\n", duration_text(all));
+  double done = 0.0;
   for (const Experiment& experiment : experiments()) {
-    fmt::print("{} ...\n", experiment.name);
+    fmt::print("{} ... (about {})\n", experiment.name, duration_text(expected(experiment)));
     std::fflush(stdout);
     prepare_output_folder(out / experiment.name);
+    ProgressBar bar("experiments", true);  // by the time that they take
+    bar.show(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(all));
     const ExperimentReport report = experiment.run();
+    done += expected(experiment);
     write_files(experiment.name, report, out / experiment.name);
     rows.insert(rows.end(), report.rows.begin(), report.rows.end());
     sections.insert(sections.end(), report.sections.begin(), report.sections.end());
@@ -57,7 +78,8 @@ void add_experiment_command(CLI::App& app, Job& job) {
   command->require_subcommand(1);
   for (const Experiment& experiment : experiments()) {
     auto out = std::make_shared<std::string>();
-    CLI::App* sub = command->add_subcommand(experiment.name, experiment.help);
+    CLI::App* sub = command->add_subcommand(
+        experiment.name, fmt::format("{} (about {})", experiment.help, duration_text(expected(experiment))));
     sub->add_option("--out", *out,
                     "write summary.json, " + experiment.name + ".csv and its figure into this folder")
         ->type_name("DIR");
@@ -67,8 +89,7 @@ void add_experiment_command(CLI::App& app, Job& job) {
     });
   }
   auto out = std::make_shared<std::string>("out/experiments");
-  CLI::App* all =
-      command->add_subcommand("all", "All of them, on one page: paper, ours, difference (some minutes)");
+  CLI::App* all = command->add_subcommand("all", "All of them, on one page: paper, ours, difference");
   all->add_option("--out", *out, "the folder of the page and of every experiment's files")
       ->type_name("DIR")
       ->capture_default_str();

@@ -28,8 +28,8 @@ void prepare_folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, SegmentMeshes display)
-    : plan_(std::move(plan)), model_(model), display_(std::move(display)) {
+RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, SegmentMeshes display, std::uint64_t ticks)
+    : plan_(std::move(plan)), model_(model), display_(std::move(display)), moment_(ticks, plan_.picture_at) {
   prepare_folder_of(plan_.plot);
   prepare_folder_of(plan_.picture);
   if (!plan_.folder.empty()) {
@@ -47,16 +47,13 @@ void RunOutputs::add(const Snapshot& snapshot) {
   if (ticks_) ticks_->write(snapshot);
   if (poses_) poses_->write(snapshot);
   if (!plan_.plot.empty()) trace_.push_back(trace_tick(snapshot));
-  if (const double force = total_force(snapshot); force > peak_force_) {
-    peak_force_ = force;
-    peak_ = snapshot;
-  }
+  moment_.see(snapshot);
 }
 
 void RunOutputs::finish(const Summary& summary, const PlotText& text) {
   if (!plan_.plot.empty()) write_text_file(plan_.plot, plot_svg(trace_, text));
   if (!plan_.picture.empty()) {
-    const Image image = render_picture(display_, model_.object.mesh(), peak_);
+    const Image image = render_picture(display_, model_.object.mesh(), moment_.snapshot());
     write_then_rename(plan_.picture, [&](const std::filesystem::path& file) { write_png(image, file); });
   }
   if (plan_.folder.empty()) return;

@@ -91,7 +91,7 @@ void add_scene_command(CLI::App& app, Job& job) {
   auto pictures = std::make_shared<ScenePicturesOptions>();
   CLI::App* draw = scene->add_subcommand(
       "pictures", "Draw scenes at the moment of their largest force, one by one and on one sheet");
-  draw->add_option("SCENE", pictures->scenes, "names in scenes/ or .toml files [all in scenes/]");
+  draw->add_option("SCENE", pictures->scenes, "names in scenes/ or .toml files [all in scenes/ but bench_*]");
   draw->add_option("--out", pictures->folder,
                    "writes NAME.png for each scene and scenes.png into this folder")
       ->required()

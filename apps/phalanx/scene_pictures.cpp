@@ -8,10 +8,10 @@
 
 #include "commands.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/record/summary.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/study/contact_sheet.h"
+#include "phalanx/study/picture_moment.h"
 #include "phalanx/study/simulate.h"
 #include "progress_bar.h"
 
@@ -29,7 +29,6 @@ struct Sitting {
   double largest_force = 0.0;  ///< of a segment [N]
 };
 
-/// The tick of the largest total force; without any force, the one in the middle of the motion.
 Sitting sit(const std::string& name) {
   const SceneDescription scene = load_scene(name);
   const auto model = std::make_unique<HapticModel>(build_model(scene));
@@ -40,19 +39,10 @@ Sitting sit(const std::string& name) {
                   .object = model->object.mesh(),
                   .snapshot = {},
                   .largest_force = 0.0};
-  double peak = 0.0;
-  std::uint64_t tick = 0;
+  PictureMoment moment(ticks);
   simulate(*model, motion, ticks,
-           {.tick =
-                [&](const Snapshot& snapshot) {
-                  const double force = total_force(snapshot);
-                  if (force > peak || (peak == 0.0 && tick == ticks / 2)) {
-                    peak = force;
-                    sitting.snapshot = snapshot;
-                  }
-                  ++tick;
-                },
-            .progress = {}});
+           {.tick = [&](const Snapshot& snapshot) { moment.see(snapshot); }, .progress = {}});
+  sitting.snapshot = moment.snapshot();
   for (const SegmentSnapshot& segment : sitting.snapshot.segment)
     sitting.largest_force = std::max(sitting.largest_force, segment.force);
   return sitting;
@@ -67,7 +57,8 @@ void save(const Image& image, const fs::path& file) {
 int draw_scenes(const ScenePicturesOptions& options) {
   std::vector<std::string> names = options.scenes;
   if (names.empty())
-    for (const SceneInfo& info : list_scenes()) names.push_back(info.name);
+    for (const SceneInfo& info : list_scenes())
+      if (!info.name.starts_with("bench_")) names.push_back(info.name);
   std::vector<Sitting> sittings;
   double full_force = 0.0;
   for (const std::string& name : names) {
@@ -89,6 +80,8 @@ int draw_scenes(const ScenePicturesOptions& options) {
   }
   bar.show(tiles.size(), sittings.size());
   save(contact_sheet(tiles, options.columns), options.folder / "scenes.png");
+  fmt::print("wrote    {}/NAME.png of {} scenes, and all of them on {}/scenes.png\n", options.folder.string(),
+             tiles.size(), options.folder.string());
   return kDone;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "duration_text.h"
 #include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_meshes.h"
@@ -27,12 +28,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kPictureSeconds = 15.0;  // of one core, 1280 x 960
+
 struct SimulateOptions {
   std::string scene = "grasp_teapot";
   std::vector<std::string> set;
   std::string object, motion, mapping, profile;
   std::optional<int> trial;
-  std::optional<double> object_size_mm, seconds, rate_hz, lead_in;
+  std::optional<double> object_size_mm, seconds, rate_hz, lead_in, at;
   std::optional<std::int64_t> seed;
   std::string out, plot, picture;
   CLI::Option* plot_asked = nullptr;
@@ -160,18 +163,30 @@ OutputPlan plan(const SimulateOptions& options) {
   };
   must_end("--plot", result.plot, ".svg");
   must_end("--picture", result.picture, ".png");
+  if (options.at && options.picture.empty())
+    throw std::invalid_argument("--at needs --picture FILE.png, whose moment it names");
   if (options.poses && options.out.empty()) throw std::invalid_argument("--poses needs --out DIR");
   return result;
 }
 
+/// The number of the tick at a time, from 0.
+std::uint64_t tick_at(double seconds, std::uint64_t ticks, double rate_hz) {
+  const double last = static_cast<double>(ticks - 1);
+  const double tick = std::round(seconds * rate_hz);
+  if (tick >= 0.0 && tick <= last) return static_cast<std::uint64_t>(tick);
+  throw std::invalid_argument(fmt::format(
+      "--at {}: the motion is played from 0 to {} s; name a time within it", seconds, last / rate_hz));
+}
+
 int simulate_scene(const SimulateOptions& options) {
-  const OutputPlan output_plan = plan(options);
+  OutputPlan output_plan = plan(options);
   SceneDescription scene = described(options);
   // What the scene's line says of its own motion and objects is not true of others.
   if (!options.motion.empty() || !options.object.empty()) scene.description.clear();
   const auto model = std::make_unique<HapticModel>(build_model(scene));
   const Motion motion = build_motion(scene);
   const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);
+  if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.rate_hz);
 
   Summary summary;
   summary.scene = scene.name;
@@ -184,7 +199,10 @@ int simulate_scene(const SimulateOptions& options) {
   }  // a hand that starts inside is reported before any file is touched
   RunOutputs outputs(
       output_plan, *model,
-      output_plan.picture.empty() ? SegmentMeshes() : load_display_meshes(scene.hand, model->hand.meshes()));
+      output_plan.picture.empty() ? SegmentMeshes() : load_display_meshes(scene.hand, model->hand.meshes()),
+      ticks);
+  if (!output_plan.picture.empty() && !options.quiet)
+    fmt::print(stderr, "the picture takes about {}\n", duration_text(on_all_cores(kPictureSeconds)));
   {
     ProgressBar bar("simulating", !options.quiet);
     summary.step_us =
@@ -210,7 +228,8 @@ int simulate_scene(const SimulateOptions& options) {
                summary.peak_total_force, summary.peak_total_force_time_s);
   }
   if (!output_plan.plot.empty()) fmt::print("wrote    {}\n", output_plan.plot.string());
-  if (!output_plan.picture.empty()) fmt::print("wrote    {}\n", output_plan.picture.string());
+  if (!output_plan.picture.empty())
+    fmt::print("wrote    {} (at {:.3f} s)\n", output_plan.picture.string(), outputs.picture_time());
   return kDone;
 }
 
@@ -234,8 +253,11 @@ void add_simulate_command(CLI::App& app, Job& job) {
       command->add_option("--plot", options->plot, "draw forces, torques and angles [DIR/plot.svg]")
           ->expected(0, 1)
           ->type_name("FILE.svg");
-  command->add_option("--picture", options->picture, "render hand and object at peak force")
+  command
+      ->add_option("--picture", options->picture,
+                   "render hand and object at peak force; without contact, in the middle of the motion")
       ->type_name("FILE.png");
+  command->add_option("--at", options->at, "with --picture: the time that it shows")->type_name("SECONDS");
   command
       ->add_option("--set", options->set,
                    "override a scene key, e.g. force.stiffness_n_per_mm=0.9; repeatable")

@@ -8,24 +8,18 @@
 #include <cstdio>
 #include <string>
 
+#include "duration_text.h"
+
 namespace phalanx {
 namespace {
-
-/// "45 s", "3 min 20 s", "5 h 12 min"
-std::string duration(double seconds) {
-  const auto s = static_cast<long long>(std::llround(seconds));
-  if (s < 60) return fmt::format("{} s", s);
-  if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
-  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
-}
 
 std::string text(const StudyProgress& progress) {
   std::string text = fmt::format("study {}/{} points ({}%)", progress.done, progress.total,
                                  100LL * progress.done / progress.total);
   if (progress.resumed > 0) text += fmt::format(", {} of them from earlier runs", progress.resumed);
-  text += fmt::format(", {} gone", duration(progress.elapsed_s));
+  text += fmt::format(", {} gone", duration_text(progress.elapsed_s));
   if (std::isfinite(progress.remaining_s) && progress.done < progress.total)
-    text += fmt::format(", about {} left", duration(progress.remaining_s));
+    text += fmt::format(", about {} left", duration_text(progress.remaining_s));
   return text;
 }
 

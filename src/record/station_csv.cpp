@@ -82,9 +82,9 @@ void write_step_header(OutputFile& file) {
       "tick,time_s,lateness_us,duration_us,overrun,samples,sample_sequence,sample_time_us,state,fault,factor,"
       "status,"
       "stiffness_n_per_m");
-  for (int digit = 0; digit < kDigits; ++digit) file.text(fmt::format(",force_n.{}", digit_name(digit)));
-  for (int joint = 0; joint < kJoints; ++joint) file.text(fmt::format(",torque_nm.{}", joint_name(joint)));
-  for (int joint = 0; joint < kJoints; ++joint) file.text(fmt::format(",angle_rad.{}", joint_name(joint)));
+  for (int digit = 0; digit < kDigits; ++digit) file.text(fmt::format(",force_n_{}", digit_name(digit)));
+  for (int joint = 0; joint < kJoints; ++joint) file.text(fmt::format(",torque_nm_{}", joint_name(joint)));
+  for (int joint = 0; joint < kJoints; ++joint) file.text(fmt::format(",angle_rad_{}", joint_name(joint)));
   file.text("\n");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/record/ticks_csv.h"
 
+#include <algorithm>
 #include <string_view>
 
 namespace phalanx {
@@ -22,6 +23,12 @@ void write_vector(OutputFile& out, const Vec3& v) {
 
 }  // namespace
 
+std::string segment_column(int segment) {
+  std::string name(segment_name(segment));
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
 std::string ticks_csv_header() {
   std::string header = "tick,time_s";
   for (const std::string_view unit : {"_hcp_rad", "_gdp_rad", "_torque_nm"}) {
@@ -30,7 +37,7 @@ std::string ticks_csv_header() {
   for (int segment = 0; segment < kSegments; ++segment) {
     for (const std::string_view field : {"_contact", "_depth_m", "_force_raw_n", "_force_n", "_px_m", "_py_m",
                                          "_pz_m", "_nx", "_ny", "_nz", "_slid_m"}) {
-      header.append(",").append(segment_name(segment)).append(field);
+      header.append(",").append(segment_column(segment)).append(field);
     }
   }
   return header;

@@ -112,7 +112,7 @@ HostRow host_row(const CsvReader& csv, const std::vector<std::string>& joints) {
   row.fault = csv.text("fault");
   row.factor = csv.number("factor");
   row.stiffness = csv.number("stiffness_n_per_m");
-  row.torque = torques(csv, joints, "torque_nm.", "");
+  row.torque = torques(csv, joints, "torque_nm_", "");
   row.largest = largest_of(row.torque);
   return row;
 }

@@ -58,6 +58,8 @@ std::map<std::string, std::string> first_row(const std::string& text) {
   std::map<std::string, std::string> by_name;
   for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) by_name[names[i]] = values[i];
   EXPECT_EQ(by_name.size(), names.size()) << "a name stands twice";
+  for (const std::string& name : names)
+    EXPECT_THAT(name, ::testing::MatchesRegex("[a-z][a-z0-9_]*")) << "a name in any programming language";
   return by_name;
 }
 
@@ -100,15 +102,15 @@ void expect_numbered_step(const std::map<std::string, std::string>& row) {
   EXPECT_EQ(row.at("stiffness_n_per_m"), "1400") << "1.4 N/mm";
   // By hand: 13 columns that are not numbered, then digit d, joint j, joint j.
   EXPECT_EQ(row.size(), 13U + 5U + 20U + 20U);
-  EXPECT_EQ(row.at("force_n.thumb"), "100.5");
-  EXPECT_EQ(row.at("force_n.index"), "101.5");
-  EXPECT_EQ(row.at("force_n.middle"), "102.5");
-  EXPECT_EQ(row.at("force_n.ring"), "103.5");
-  EXPECT_EQ(row.at("force_n.little"), "104.5");
+  EXPECT_EQ(row.at("force_n_thumb"), "100.5");
+  EXPECT_EQ(row.at("force_n_index"), "101.5");
+  EXPECT_EQ(row.at("force_n_middle"), "102.5");
+  EXPECT_EQ(row.at("force_n_ring"), "103.5");
+  EXPECT_EQ(row.at("force_n_little"), "104.5");
   for (int j = 0; j < kJoints; ++j) {
     const std::string name(joint_name(j));
-    EXPECT_EQ(row.at("torque_nm." + name), std::to_string(j) + ".25");
-    EXPECT_EQ(row.at("angle_rad." + name), "-" + std::to_string(j) + ".125");
+    EXPECT_EQ(row.at("torque_nm_" + name), std::to_string(j) + ".25");
+    EXPECT_EQ(row.at("angle_rad_" + name), "-" + std::to_string(j) + ".125");
   }
 }
 

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <vector>
 
+#include "phalanx/core/status.h"
 #include "record/temporary_folder.h"
 
 namespace phalanx {
@@ -33,11 +37,13 @@ TEST(TicksCsv, HeaderNamesEveryColumnInOrder) {
   EXPECT_EQ(cells[61], "little_dip_flexion_torque_nm");
   const std::vector<std::string> first(cells.begin() + 62, cells.begin() + 73);
   EXPECT_THAT(first, ::testing::ElementsAre(
-                         "thumb-metacarpal_contact", "thumb-metacarpal_depth_m",
-                         "thumb-metacarpal_force_raw_n", "thumb-metacarpal_force_n", "thumb-metacarpal_px_m",
-                         "thumb-metacarpal_py_m", "thumb-metacarpal_pz_m", "thumb-metacarpal_nx",
-                         "thumb-metacarpal_ny", "thumb-metacarpal_nz", "thumb-metacarpal_slid_m"));
+                         "thumb_metacarpal_contact", "thumb_metacarpal_depth_m",
+                         "thumb_metacarpal_force_raw_n", "thumb_metacarpal_force_n", "thumb_metacarpal_px_m",
+                         "thumb_metacarpal_py_m", "thumb_metacarpal_pz_m", "thumb_metacarpal_nx",
+                         "thumb_metacarpal_ny", "thumb_metacarpal_nz", "thumb_metacarpal_slid_m"));
   EXPECT_EQ(cells.back(), "wrist_slid_m");
+  for (const std::string& cell : cells)
+    EXPECT_THAT(cell, ::testing::MatchesRegex("[a-z][a-z0-9_]*")) << "a name in any programming language";
 }
 
 // Every field gets a number of its own, so that a swapped column cannot hide.
@@ -75,6 +81,15 @@ TEST(TicksCsv, ARowHoldsEveryFieldUnderItsColumn) {
     for (int i = 1; i <= 9; ++i) expected += fmt::format(",{}", base + i);
   }
   EXPECT_EQ(read_file(folder / "ticks.csv"), ticks_csv_header() + "\n" + expected + "\n");
+}
+
+// docs/outputs.md lists every status bit by number and name.
+TEST(StatusBits, AreAllDocumented) {
+  std::ifstream file(PHALANX_SOURCE_DIR "/docs/outputs.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  for (int bit = 0; bit < kStatusBits; ++bit)
+    EXPECT_THAT(text, ::testing::HasSubstr("| " + std::to_string(bit) + " | `" +
+                                           std::string(status_name(bit)) + "` |"));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // Every scene that ships: it can be read, starts clear, and each grasp really touches with the digits that it
 // names.
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -13,10 +15,11 @@ namespace phalanx {
 namespace {
 
 struct Outcome {
-  std::set<int> digits;  ///< in contact at the end of the hold
-  double deepest = 0.0;  ///< [m]
-  double slid = 0.0;     ///< [m]
-  double weakest = 1e9;  ///< smallest of the digits' largest forces [N]
+  std::set<int> digits;    ///< in contact at the end of the hold
+  std::set<int> segments;  ///< likewise
+  double deepest = 0.0;    ///< [m]
+  double slid = 0.0;       ///< [m]
+  double weakest = 1e9;    ///< smallest of the digits' largest forces [N]
   Status status = Status::kOk;
 };
 
@@ -40,6 +43,7 @@ Outcome play(const SceneDescription& scene) {
           state.snapshot().segment[static_cast<std::size_t>(segment_index(digit, k))];
       if (!segment.contact) continue;
       outcome.digits.insert(digit);
+      outcome.segments.insert(segment_index(digit, k));
       outcome.deepest = std::max(outcome.deepest, segment.depth);
       outcome.slid = std::max(outcome.slid, segment.slid);
       force = std::max(force, segment.force);
@@ -104,6 +108,21 @@ TEST_P(ShippedScene, TouchesWithTheDigitsOfItsGraspAndGently) {
   EXPECT_EQ(outcome.status, Status::kOk);
   EXPECT_LT(outcome.deepest, 8e-3);
   EXPECT_LT(outcome.slid, scene.contact.slid_distance);
+  EXPECT_GT(outcome.weakest, 0.3) << "N";
+}
+
+// What docs/scenes.md begins with presses a ball as one does: with the fingertip.
+TEST(ExampleOfTheDocuments, TouchesWithTheTipOfTheIndexFinger) {
+  std::ifstream file(PHALANX_SOURCE_DIR "/docs/scenes.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = text.find("```toml\n");
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = text.find("```", begin + 3);
+  const SceneDescription scene =
+      parse_scene(text.substr(begin + 8, end - begin - 8), "docs/scenes.md", PHALANX_SOURCE_DIR "/docs");
+  const Outcome outcome = play(scene);
+  EXPECT_EQ(outcome.segments, std::set<int>{segment_index(1, 2)});
+  EXPECT_EQ(outcome.status, Status::kOk);
   EXPECT_GT(outcome.weakest, 0.3) << "N";
 }
 

@@ -69,6 +69,7 @@ TEST(CliScenePictures, DrawsEachSceneAndTheSheet) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const char* name : {"drawn/pinch_peg.png", "drawn/wave.png", "drawn/scenes.png"})
     EXPECT_THAT(read_file(folder / name), StartsWith("\x89PNG")) << name;
+  EXPECT_EQ(result.out, "wrote    drawn/NAME.png of 2 scenes, and all of them on drawn/scenes.png\n");
 }
 
 TEST(CliScenePictures, RefusesWhatItCannotDrawBeforeItWrites) {

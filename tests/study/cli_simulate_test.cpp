@@ -145,6 +145,18 @@ TEST(CliSimulate, RendersAPicture) {
   EXPECT_THAT(read_file(folder / "a.png"), ::testing::StartsWith("\x89PNG"));
 }
 
+TEST(CliSimulate, RefusesAMomentThatIsNotPlayedBeforeItWrites) {
+  const TemporaryFolder folder;
+  const auto late = run_program(folder, "simulate wave --seconds 1 --picture a.png --at 1");
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_THAT(late.err, HasSubstr("--at 1: the motion is played from 0 to 0.995 s"));
+  for (const char* at : {"-0.1", "nan", "inf"})
+    EXPECT_EQ(run_program(folder, std::string("simulate wave --picture a.png --at ") + at).exit_code, 2)
+        << at;
+  EXPECT_THAT(run_program(folder, "simulate wave --at 1").err, HasSubstr("--at needs --picture"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
 // ticks.csv has more than 1,000 blocks of 512 or 1,024 bytes; the meshes have less.
 TEST(CliSimulate, FailsWithOneWhenAFileCannotBeWritten) {
   const TemporaryFolder folder;
@@ -178,6 +190,8 @@ TEST(CliExperiment, WritesItsTable) {
   const auto result = run_program(folder, "experiment s1-fig8 --out a");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("whole finger"));
+  EXPECT_THAT(run_program(folder, "experiment --help").out,
+              HasSubstr("which joints carry torque (about 1 s)"));
   EXPECT_EQ(lines(read_file(folder / "a/s1-fig8.csv")), 8);
   EXPECT_EQ(nlohmann::json::parse(read_file(folder / "a/summary.json"))["situations"].size(), 7U);
 }

@@ -22,6 +22,9 @@ struct ExperimentReport {
 struct Experiment {
   std::string name;  ///< "s2-fig4"
   std::string help;  ///< one line
+  /// How long it keeps processors busy, all together, on the machine of README's timings [s].
+  double processor_seconds = 0.0;
+  bool all_cores = false;  ///< it is shared by all cores
   std::function<ExperimentReport()> run;
 };
 

@@ -69,21 +69,24 @@ ExperimentReport timing(const TimingResult& result, const std::string& paper) {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kExperiments = {
-      {"s1-fig8", "Seven situations of the index finger and a ball: which joints carry torque", s1_fig8},
-      {"s1-timing", "S1's 1,489 triangles: time of a step beside S1's 4.2 ms",
+      {"s1-fig8", "Seven situations of the index finger and a ball: which joints carry torque", 0.1, false,
+       s1_fig8},
+      {"s1-timing", "S1's 1,489 triangles: time of a step beside S1's 4.2 ms", 0.1, false,
        [] { return timing(run_s1_timing(), "4200"); }},
-      {"s2-timing", "S2's 2,248 + 992 triangles: time of a step", [] { return timing(run_s2_timing(), ""); }},
-      {"s2-fit", "The one free parameter of the simulated patient, fitted on S2's two limits", s2_fit},
+      {"s2-timing", "S2's 2,248 + 992 triangles: time of a step", 8.0, false,
+       [] { return timing(run_s2_timing(), ""); }},
+      {"s2-fit", "The one free parameter of the simulated patient, fitted on S2's two limits", 38.0, true,
+       s2_fit},
       {"s2-fig4",
-       "The index finger presses the teapot at 0.9 N/mm, without and with smoothing, in closed loop",
-       s2_fig4},
-      {"s2-fig5", "A power grasp at 1.4 N/mm with smoothing, in closed loop", s2_fig5},
+       "The index finger presses the teapot at 0.9 N/mm, without and with smoothing, in closed loop", 2.0,
+       true, s2_fig4},
+      {"s2-fig5", "A power grasp at 1.4 N/mm with smoothing, in closed loop", 2.0, true, s2_fig5},
       {"s2-limit", "The largest stable stiffness without and with smoothing, beside S2's 0.7 and 1.6 N/mm",
-       s2_limit},
+       43.0, true, s2_limit},
       {"s2-sensitivity", "What moves these two limits: friction, delay, the patient's stiffness, the bump",
-       s2_sensitivity},
-      {"felt-stiffness", "What each stabiliser costs in feel: the stiffness felt at a speed of approach",
-       felt_stiffness_experiment},
+       174.0, true, s2_sensitivity},
+      {"felt-stiffness", "What each stabiliser costs in feel: the stiffness felt at a speed of approach", 0.1,
+       false, felt_stiffness_experiment},
   };
   return kExperiments;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "phalanx/record/ticks_csv.h"
 #include "phalanx/study/human_names.h"
 #include "study/laboratory/study_json.h"
 #include "study/laboratory/study_values.h"
@@ -96,7 +97,7 @@ std::string curves_csv(const std::vector<LoopRun>& runs) {
       if (std::find(segments.begin(), segments.end(), segment) == segments.end()) segments.push_back(segment);
   std::sort(segments.begin(), segments.end());
   std::string text = "run,time_s";
-  for (const int segment : segments) text += fmt::format(",{0}_force_n,{0}_into_m", segment_name(segment));
+  for (const int segment : segments) text += fmt::format(",{0}_force_n,{0}_into_m", segment_column(segment));
   text += "\n";
   for (const LoopRun& run : runs) {
     for (std::size_t i = 0; i < run.curves.time_s.size(); ++i) {

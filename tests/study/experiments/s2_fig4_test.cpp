@@ -139,8 +139,8 @@ TEST(CurvesCsv, HasTheSegmentsOfAllRunsInTheirOrder) {
   both.curves.force[5] = {3.5};
   both.curves.position[5] = {0.003};
   EXPECT_EQ(curves_csv({tip, both}),
-            "run,time_s,index-finger-phalanx-proximal_force_n,index-finger-phalanx-proximal_into_m,"
-            "index-finger-phalanx-distal_force_n,index-finger-phalanx-distal_into_m\n"
+            "run,time_s,index_finger_phalanx_proximal_force_n,index_finger_phalanx_proximal_into_m,"
+            "index_finger_phalanx_distal_force_n,index_finger_phalanx_distal_into_m\n"
             "tip,0,0,,1.5,\n"
             "tip,0.005,0,,2.5,0.001\n"
             "\"both, 0.1 N\",0.25,0.5,0.002,3.5,0.003\n");
@@ -162,7 +162,7 @@ TEST(S2Fig4, ReportsWhatItFound) {
     EXPECT_EQ(row.difference, "agrees");
   }
   EXPECT_THAT(report.text, ::testing::HasSubstr("stable in 20 of 20 seeds"));
-  EXPECT_THAT(report.csv, ::testing::StartsWith("run,time_s,index-finger-phalanx-distal_force_n,"));
+  EXPECT_THAT(report.csv, ::testing::StartsWith("run,time_s,index_finger_phalanx_distal_force_n,"));
   EXPECT_THAT(report.svg, ::testing::HasSubstr("</svg>"));
   ASSERT_EQ(report.sections.size(), 1U);
   ASSERT_EQ(report.sections[0].text.size(), 3U);

@@ -95,7 +95,7 @@ TEST(S2Fig5, ReportsEveryTouchingPhalanx) {
   EXPECT_THAT(report.text, ::testing::HasSubstr("\ntouching: " + touching + "\n"));
   for (const char* name : {"thumb distal", "index distal", "middle distal", "ring distal", "little distal"})
     EXPECT_THAT(touching, ::testing::HasSubstr(name));
-  EXPECT_THAT(report.csv, ::testing::HasSubstr("pinky-finger-phalanx-distal_force_n"));
+  EXPECT_THAT(report.csv, ::testing::HasSubstr("pinky_finger_phalanx_distal_force_n"));
   EXPECT_THAT(report.svg, ::testing::HasSubstr("</svg>"));
 }
 

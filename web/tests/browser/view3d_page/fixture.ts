@@ -68,7 +68,8 @@ function readTicks(folder: string): Tick[] {
   return result;
 }
 
-function contactOf(get: (name: string) => number, name: string, segment: number): Contact[] {
+function contactOf(get: (name: string) => number, segmentName: string, segment: number): Contact[] {
+  const name = segmentName.replaceAll("-", "_"); // as columns have it
   const touching = get(`${name}_contact`) > 0;
   const force = get(`${name}_force_n`);
   if (!touching && !(force > 0)) return [];
