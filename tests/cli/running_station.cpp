@@ -80,7 +80,7 @@ std::vector<LoggedStep> read_steps(const std::filesystem::path& log) {
       if (header[i] == "state") step.state = cells[i];
       if (header[i] == "fault") step.fault = cells[i];
       if (header[i] == "stiffness_n_per_m") step.stiffness = std::stod(cells[i]);
-      if (header[i].starts_with("torque_nm."))
+      if (header[i].starts_with("torque_nm_"))
         step.largest_torque = std::max(step.largest_torque, std::abs(std::stod(cells[i])));
     }
     steps.push_back(step);
