@@ -113,7 +113,9 @@ void refuse_empty_values(const CLI::App& command) {
 CLI::Validator positive() {
   return {[](const std::string& text) -> std::string {
             double value = 0.0;
-            if (CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value)) return {};
+            if (!CLI::detail::lexical_cast(text, value))
+              return fmt::format("{}: is not a number; write its digits alone, without a unit", text);
+            if (value > 0.0 && std::isfinite(value)) return {};
             return fmt::format("{}: must be a number above 0", text);
           },
           "> 0"};

@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"simulate wave --profile adult", "adult.toml; Known: large-man"},
         Case{"simulate wave --rate-hz 200Hz", "--rate-hz 200Hz: is not a number; write its digits alone"},
         Case{"run --port 1.5x", "--port 1.5x: is not a number"},
-        Case{"run --seconds abc", "--seconds abc: is not a number"},
+        Case{"run --seconds abc", "--seconds: abc: is not a number"},
         Case{"device simulate --slow-motion 1s", "--slow-motion 1s: is not a number"},
         Case{"run --rate-hz 5000", "rate_hz = 5000: a station runs at 200 to 2000 Hz"},
         Case{"run first_touch --set hand.side=left --headless --no-realtime", "set mirror=true in place of"},
