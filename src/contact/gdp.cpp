@@ -141,8 +141,7 @@ bool hcp_goes_through(const ContactModel& model, DigitTick& tick, GdpState& stat
   return tick.hcp_through == Through::kYes;
 }
 
-/// d0 of a new record, made at s of the tick.                                              "The GDP,
-/// exactly", 3
+/// d0 of a new record, made at s of the tick: "The GDP, exactly", 3 and Hops.
 void set_offset(const ContactModel& model, const DigitTick& tick, int k, double s, const GdpState& state,
                 ContactRecord& record) noexcept {
   if (k == 0 && !tick.lagged) return;

@@ -39,8 +39,7 @@ void measure(const ContactModel& model, const DigitTick& tick, int k, const Digi
              const DigitPose& hcp, ContactRecord& record) noexcept;
 
 /// measure() at the end of the tick, after d0 of a record that fades has shrunk by what the HCP has moved
-/// since it was last measured.                                                          "The GDP, exactly",
-/// hops
+/// since it was last measured: "The GDP, exactly", Hops.
 void follow(const ContactModel& model, const DigitTick& tick, int k, ContactRecord& record) noexcept;
 
 /// By how much a d0 that fades shrinks for each length that the contact's point goes on the HCP [-].

@@ -111,8 +111,8 @@ TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
   EXPECT_THAT(application_.requests(), testing::SizeIs(1));
 }
 
-// Whoever reads such a body otherwise than the server takes its end for a request. The answer is the only
-// one.
+// A proxy that reads such a body otherwise than the server takes its end for a request. The answer is the
+// only one.
 TEST_F(WebRequests, ABodyWhoseEndIsInDoubtIsRefusedAndEndsTheConnection) {
   echo();
   application_.limit = 100;
