@@ -12,12 +12,12 @@
 
 #include "expected_hashes.h"
 #include "force_hash.h"
-#include "phalanx/device/plant.h"
 #include "phalanx/record/made.h"
 #include "phalanx/scene/device_file.h"
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/study/closed_loop/trial.h"
+#include "phalanx/simulation/plant.h"
+#include "phalanx/study/trial.h"
 #include "stopwatch.h"
 
 namespace phalanx::bench {
@@ -125,7 +125,7 @@ void run(bool record) {
   const auto setup = make_trial_setup(load_scene(kScene));
   const double set_up = 1e-6 * watch.us();
   const double simulated = setup->schedule.end;
-  const int ticks = static_cast<int>(std::lround(simulated * setup->model.rate_hz));
+  const int ticks = static_cast<int>(std::lround(simulated * setup->parameters.rate_hz));
   double trial_seconds = 0.0;
   for (const int stiffness : {900, 3000}) {
     const std::string name = fmt::format("trial_{}_{}", kScene, stiffness);

@@ -16,11 +16,11 @@
 #include <thread>
 
 #include "load_process.h"
-#include "phalanx/device/press_intent.h"
 #include "phalanx/mesh/import.h"
-#include "phalanx/mesh/isolation_helper.h"
+#include "phalanx/mesh/isolation/isolation_helper.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/serve/cockpit.h"
+#include "phalanx/simulation/press_intent.h"
 #include "phalanx/station/station_host.h"
 #include "rounds.h"
 
@@ -85,7 +85,7 @@ class Bench {
     const auto end = std::chrono::steady_clock::now() + Seconds(seconds);
     while (std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      host_.go_on();
+      host_.poll();
       StepRecord record;
       while (host_.next_record(record)) {
         if (phase == nullptr) continue;

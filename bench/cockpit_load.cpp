@@ -91,8 +91,8 @@ std::string masked_head(unsigned first, std::uint64_t length) {
   return head.append(4, '\0');
 }
 
-/// ToHost{hello {protocol: 1}} of proto/phalanx/cockpit.proto: before it, a page gets nothing.
-constexpr std::string_view kHello = "\x12\x02\x08\x01";
+/// ToHost{hello {protocol: 2}} of proto/phalanx/cockpit.proto: before it, a page gets nothing.
+constexpr std::string_view kHello = "\x12\x02\x08\x02";
 
 /// ToHost{seen {ticks: N}}: without it, ticks stop soon. Other messages are counted, too, which makes no
 /// difference: a page cannot have seen more than was sent.

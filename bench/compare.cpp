@@ -27,8 +27,8 @@ bool stands_at_margin(DistanceEngine& engine, const GdpValues& state, int digit,
 
 /// Whether no segment of the digit is nearer than the band allows anywhere between two answers: then the one
 /// that went on did not go through anything.
-bool keeps_clear_between(const HapticModel& model, DistanceEngine& engine, const GdpValues& from,
-                         const GdpValues& to, int digit) {
+bool keeps_clear_between(const HapticModel& model, const HapticParameters& parameters, DistanceEngine& engine,
+                         const GdpValues& from, const GdpValues& to, int digit) {
   constexpr int kSamples = 64;
   for (int n = 0; n <= kSamples; ++n) {
     DigitAngles angle{};
@@ -40,7 +40,7 @@ bool keeps_clear_between(const HapticModel& model, DistanceEngine& engine, const
     model.hand.digit_pose(digit, angle, pose);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const Nearest nearest = engine.nearest(segment_index(digit, k), pose.segment[idx(k)], 1.0);
-      if (nearest.distance < model.contact.margin - kStopBand) return false;
+      if (nearest.distance < parameters.contact.margin - kStopBand) return false;
     }
   }
   return true;
@@ -109,11 +109,12 @@ Difference difference_of(const HapticModel& model, const GdpValues& before, cons
 }
 
 /// Both answers keep the rules to within the band that is stated for them.
-bool grazes(const HapticModel& model, const GdpValues& before, const GdpValues& ours, const GdpValues& peer,
-            DistanceEngine& engine, int digit, const Difference& difference) {
-  const double margin = model.contact.margin;
+bool grazes(const HapticModel& model, const HapticParameters& parameters, const GdpValues& before,
+            const GdpValues& ours, const GdpValues& peer, DistanceEngine& engine, int digit,
+            const Difference& difference) {
+  const double margin = parameters.contact.margin;
   if (gave_up(ours, digit) || gave_up(peer, digit)) {
-    return keeps_clear_between(model, engine, ours, peer, digit);
+    return keeps_clear_between(model, parameters, engine, ours, peer, digit);
   }
   if (!difference.contact.empty()) return false;
   if (difference.angle > kSameAngle) {
@@ -133,7 +134,7 @@ bool grazes(const HapticModel& model, const GdpValues& before, const GdpValues& 
     const GdpValues& second = ours_first ? peer : ours;
     return stands_at_margin(engine, first, digit, margin) &&
            (!stopped(second) || stands_at_margin(engine, second, digit, margin)) &&
-           keeps_clear_between(model, engine, first, second, digit);
+           keeps_clear_between(model, parameters, engine, first, second, digit);
   }
   return std::all_of(difference.flags.begin(), difference.flags.end(), [&](int segment) {
     const ContactRecord& made =
@@ -144,8 +145,8 @@ bool grazes(const HapticModel& model, const GdpValues& before, const GdpValues& 
   });
 }
 
-std::string describe(const HapticModel& model, const GdpValues& ours, const GdpValues& peer,
-                     DistanceEngine& engine, int digit, const Difference& difference) {
+std::string describe(double margin, const GdpValues& ours, const GdpValues& peer, DistanceEngine& engine,
+                     int digit, const Difference& difference) {
   std::string text = fmt::format("{}: angles {:.2e} rad apart;", digit_name(digit), difference.angle);
   if (gave_up(ours, digit)) text += " our search gave up;";
   if (gave_up(peer, digit)) text += " the peer's search gave up;";
@@ -157,7 +158,7 @@ std::string describe(const HapticModel& model, const GdpValues& ours, const GdpV
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     const int segment = segment_index(digit, k);
     const auto nanometres = [&](const GdpValues& state) {
-      return (segment_distance(engine, state, segment) - model.contact.margin) * 1e9;
+      return (segment_distance(engine, state, segment) - margin) * 1e9;
     };
     text += fmt::format(" {:.2f} / {:.2f}", nanometres(ours), nanometres(peer));
   }
@@ -177,16 +178,17 @@ void Agreement::add(const Agreement& other) {
   different.insert(different.end(), other.different.begin(), other.different.end());
 }
 
-Verdict compare(const HapticModel& model, const GdpValues& before, const GdpValues& ours,
-                const GdpValues& peer, const PeerGdp& gdp, DistanceEngine& engine, const std::string& where,
-                Agreement& agreement) {
+Verdict compare(const HapticModel& model, const HapticParameters& parameters, const GdpValues& before,
+                const GdpValues& ours, const GdpValues& peer, const PeerGdp& gdp, DistanceEngine& engine,
+                const std::string& where, Agreement& agreement) {
   ++agreement.ticks;
   Verdict verdict = Verdict::kSame;
   for (int d = 0; d < kDigits; ++d) {
     const Difference difference = difference_of(model, before, ours, peer, gdp, d, agreement);
     if (difference.none()) continue;
-    const bool grazing = grazes(model, before, ours, peer, engine, d, difference);
-    const std::string line = where + ", " + describe(model, ours, peer, engine, d, difference);
+    const bool grazing = grazes(model, parameters, before, ours, peer, engine, d, difference);
+    const std::string line =
+        where + ", " + describe(parameters.contact.margin, ours, peer, engine, d, difference);
     (grazing ? agreement.grazing : agreement.different).push_back(line);
     if (!grazing) verdict = Verdict::kDifferent;
     if (grazing && verdict == Verdict::kSame) verdict = Verdict::kGrazing;

@@ -45,8 +45,8 @@ struct Agreement {
 /// - else different.
 /// @param engine  exact distances, to judge with
 /// @param where   names the tick in the lists
-Verdict compare(const HapticModel& model, const GdpValues& before, const GdpValues& ours,
-                const GdpValues& peer, const PeerGdp& gdp, DistanceEngine& engine, const std::string& where,
-                Agreement& agreement);
+Verdict compare(const HapticModel& model, const HapticParameters& parameters, const GdpValues& before,
+                const GdpValues& ours, const GdpValues& peer, const PeerGdp& gdp, DistanceEngine& engine,
+                const std::string& where, Agreement& agreement);
 
 }  // namespace phalanx::bench

@@ -99,8 +99,8 @@ double deepest(const Snapshot& snapshot, int digit) {
 }
 
 /// Closes the hand step by step and notes, by linear interpolation, where each digit has gone deep enough.
-Depths find_depths(const HapticModel& model, const Posture& posture) {
-  HapticState state(model);
+Depths find_depths(const HapticModel& model, const HapticParameters& parameters, const Posture& posture) {
+  HapticState state(model, parameters);
   Depths found;
   found.light.fill(1.0);
   found.pressed.fill(1.0);
@@ -110,7 +110,7 @@ Depths find_depths(const HapticModel& model, const Posture& posture) {
     for (int d = 0; d < kDigits; ++d)
       closure[idx(d)] = std::min(found.pressed[idx(d)], static_cast<double>(n) / kSearchSteps);
     // A step a second: no speed is too high, and nothing that smooths the force matters to the depth.
-    static_cast<void>(step(model, {static_cast<double>(n), posture.at_closure(closure)}, state));
+    static_cast<void>(step(model, parameters, {static_cast<double>(n), posture.at_closure(closure)}, state));
     for (int d = 0; d < kDigits; ++d) {
       const double depth = deepest(state.snapshot(), d);
       const auto crossing = [&](double wanted) {
@@ -141,18 +141,18 @@ std::vector<JointArray> grasp_angles(const Posture& posture, const Closure& pres
 
 }  // namespace
 
-BenchMotion make_grasp(const HapticModel& model, std::uint64_t seed) {
+BenchMotion make_grasp(const HapticModel& model, const HapticParameters& parameters, std::uint64_t seed) {
   const Posture posture = draw_posture(model.hand.parameters(), seed);
-  const Depths depths = find_depths(model, posture);
+  const Depths depths = find_depths(model, parameters, posture);
   return {"grasp " + std::to_string(seed), grasp_angles(posture, depths.pressed)};
 }
 
-BenchMotion make_restless(const HapticModel& model, std::uint64_t seed) {
+BenchMotion make_restless(const HapticModel& model, const HapticParameters& parameters, std::uint64_t seed) {
   constexpr int kTicks = 1500;
   constexpr double kAmplitude = 0.05;  // of each of three waves a joint [rad]
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const HandParameters& hand = model.hand.parameters();
-  const BenchMotion grasp = make_grasp(model, seed);
+  const BenchMotion grasp = make_grasp(model, parameters, seed);
   struct Wave {
     double frequency_hz;
     double phase;
@@ -180,9 +180,9 @@ BenchMotion make_restless(const HapticModel& model, std::uint64_t seed) {
   return motion;
 }
 
-BenchMotion make_squeeze(const HapticModel& model, std::uint64_t seed) {
+BenchMotion make_squeeze(const HapticModel& model, const HapticParameters& parameters, std::uint64_t seed) {
   const Posture posture = draw_posture(model.hand.parameters(), seed);
-  const Depths depths = find_depths(model, posture);
+  const Depths depths = find_depths(model, parameters, posture);
   BenchMotion motion{"squeeze " + std::to_string(seed), grasp_angles(posture, depths.pressed)};
   constexpr int kPeriod = kSqueezeTicks / kSqueezePeriods;
   for (int tick = 0; tick < kSqueezeTicks; ++tick) {

@@ -25,15 +25,18 @@ inline constexpr double kPressDepth = 5e-3;  ///< of the deepest segment of ever
 /// end of its range if the object is out of its reach). Posture and timing come from the seed alone;
 /// how far each digit closes is found by playing it slowly. Set-up only.
 /// @throws std::invalid_argument if the open hand touches the object.
-[[nodiscard]] BenchMotion make_grasp(const HapticModel& model, std::uint64_t seed);
+[[nodiscard]] BenchMotion make_grasp(const HapticModel& model, const HapticParameters& parameters,
+                                     std::uint64_t seed);
 
 /// 1.5 s of closing like the grasp of that seed and opening again while every joint trembles by itself, up to
 /// 9 degrees at 2 to 12 Hz: contacts come and go at all angles. Timed by themselves, and compared with the
 /// peers. Set-up only.
-[[nodiscard]] BenchMotion make_restless(const HapticModel& model, std::uint64_t seed);
+[[nodiscard]] BenchMotion make_restless(const HapticModel& model, const HapticParameters& parameters,
+                                        std::uint64_t seed);
 
 /// The grasp of that seed, then 4 s in which every digit twice lets go until it is up to 2 mm off the object
 /// and presses again, one after another, so that the hand stays in contact all the time. Set-up only.
-[[nodiscard]] BenchMotion make_squeeze(const HapticModel& model, std::uint64_t seed);
+[[nodiscard]] BenchMotion make_squeeze(const HapticModel& model, const HapticParameters& parameters,
+                                       std::uint64_t seed);
 
 }  // namespace phalanx::bench

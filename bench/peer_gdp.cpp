@@ -71,8 +71,10 @@ struct PeerGdp::Step {
   bool near = false;  ///< may be within the margin after the step
 };
 
-PeerGdp::PeerGdp(const HapticModel& model, DistanceEngine& engine, Pruning pruning)
+PeerGdp::PeerGdp(const HapticModel& model, const ContactParameters& parameters, DistanceEngine& engine,
+                 Pruning pruning)
     : model_(model),
+      parameters_(parameters),
       engine_(engine),
       pruning_(pruning),
       clearance_(model.hand, model.object.mesh(), engine, pruning) {}
@@ -180,7 +182,7 @@ int PeerGdp::held_joints(Tick& tick, GdpState& state) {
 
 // Rules 2 to 4.
 void PeerGdp::advance_digit(Tick& tick, GdpState& state) {
-  const double margin = model_.contact.margin;
+  const double margin = parameters_.margin;
   tick.fixed = held_joints(tick, state);
   for (int i = 0; i < kJointsPerDigit; ++i) tick.rate[idx(i)] = tick.hcp[idx(i)] - tick.angle[idx(i)];
   bool asked = false;
@@ -247,7 +249,7 @@ PeerGdp::Stop PeerGdp::next_stop(Tick& tick, GdpState& state) {
 }
 
 PeerGdp::Step PeerGdp::step_of(const Tick& tick, int k, double longest) {
-  const Floors floors{model_.contact.margin};
+  const Floors floors{parameters_.margin};
   const SegmentField field = field_of(model_.hand, tick.digit, k, tick.pose, tick.rate);
   const Pose& X_WS = tick.pose.segment[idx(k)];
   const double needed = floors.margin + field.speed * longest;
@@ -288,7 +290,7 @@ void PeerGdp::list_pairs(int segment, const Pose& X_WS, double limit) {
 void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, GdpState& state) {
   const int segment = segment_index(tick.digit, k);
   const Pose& X_WS = tick.pose.segment[idx(k)];
-  const double margin = model_.contact.margin;
+  const double margin = parameters_.margin;
   // A search that gave up stops wherever it is; what is nearest there may be far away.
   const double cap =
       field != nullptr && tick.exhausted
@@ -304,7 +306,7 @@ void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, Gd
   record.n_c = nearest.direction();
   record.force_normal = record.n_c;
   record.silent = state.inside[idx(tick.digit)];
-  if (field != nullptr && !tick.exhausted && model_.contact.depth == DepthOrigin::kContinuous) {
+  if (field != nullptr && !tick.exhausted && parameters_.depth == DepthOrigin::kContinuous) {
     measure(tick, k, tick.hcp, tick.hcp_pose, record);
     const auto closes = [&](const ClosePair& p) {
       return p.distance <= cap ? field->closing(p.direction(), p.on_segment) : 0.0;
@@ -332,7 +334,7 @@ void PeerGdp::make_record(const Tick& tick, int k, const SegmentField* field, Gd
 
 // Rule 3's d0.
 void PeerGdp::set_offset(const Tick& tick, int k, const GdpState& state, ContactRecord& record) const {
-  if (model_.contact.depth != DepthOrigin::kContinuous) return;
+  if (parameters_.depth != DepthOrigin::kContinuous) return;
   DigitAngles hcp_angle{};
   for (std::size_t i = 0; i < hcp_angle.size(); ++i)
     hcp_angle[i] = tick.hcp_was[i] + tick.s * (tick.hcp[i] - tick.hcp_was[i]);

@@ -15,7 +15,8 @@ namespace phalanx::bench {
 
 class PeerGdp {
  public:
-  PeerGdp(const HapticModel& model, DistanceEngine& engine, Pruning pruning);
+  PeerGdp(const HapticModel& model, const ContactParameters& parameters, DistanceEngine& engine,
+          Pruning pruning);
 
   /// What advance_gdp() does, for GdpMethod::kContinuous. The force's direction is n_c: the peers leave the
   /// interpolated normals out, which are not compared.
@@ -52,6 +53,7 @@ class PeerGdp {
   void set_offset(const Tick& tick, int k, const GdpState& state, ContactRecord& record) const;
 
   const HapticModel& model_;
+  const ContactParameters& parameters_;
   DistanceEngine& engine_;
   Pruning pruning_;
   Clearance clearance_;

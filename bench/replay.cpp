@@ -6,8 +6,8 @@
 
 namespace phalanx::bench {
 
-ContactModel contact_model(const HapticModel& model) {
-  return {model.hand, model.trees, model.object, model.contact};
+ContactModel contact_model(const HapticModel& model, const HapticParameters& parameters) {
+  return {model.hand, model.trees, model.object, parameters.contact};
 }
 
 GdpValues values_of(const GdpState& state) {
@@ -23,25 +23,27 @@ void set_values(const GdpValues& values, GdpState& state) {
   state.record = values.record;
 }
 
-std::vector<GdpValues> replay(const HapticModel& model, const std::vector<JointArray>& angle) {
-  GdpState state(contact_model(model));
+std::vector<GdpValues> replay(const HapticModel& model, const HapticParameters& parameters,
+                              const std::vector<JointArray>& angle) {
+  GdpState state(contact_model(model, parameters));
   HandPoses hcp;
   std::vector<GdpValues> out;
   out.reserve(angle.size() + 1);
   out.push_back(values_of(state));
   for (const JointArray& hcp_angle : angle) {
     model.hand.poses(hcp_angle, hcp);
-    static_cast<void>(advance_gdp(contact_model(model), hcp_angle, hcp, kMeasured, state));
+    static_cast<void>(advance_gdp(contact_model(model, parameters), hcp_angle, hcp, kMeasured, state));
     out.push_back(values_of(state));
   }
   return out;
 }
 
-void check_replay(const HapticModel& model, const std::vector<JointArray>& angle,
-                  const std::vector<GdpValues>& states) {
-  HapticState state(model);
+void check_replay(const HapticModel& model, const HapticParameters& parameters,
+                  const std::vector<JointArray>& angle, const std::vector<GdpValues>& states) {
+  HapticState state(model, parameters);
   for (std::size_t tick = 0; tick < angle.size(); ++tick) {
-    static_cast<void>(step(model, {static_cast<double>(tick) / model.rate_hz, angle[tick]}, state));
+    static_cast<void>(
+        step(model, parameters, {static_cast<double>(tick) / parameters.rate_hz, angle[tick]}, state));
     if (state.snapshot().gdp_angle != states[tick + 1].angle) {
       throw std::runtime_error("step() and advance_gdp() part at tick " + std::to_string(tick) +
                                " of the same motion");

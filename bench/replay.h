@@ -10,7 +10,7 @@
 namespace phalanx::bench {
 
 /// The constant side of our contact search.
-[[nodiscard]] ContactModel contact_model(const HapticModel& model);
+[[nodiscard]] ContactModel contact_model(const HapticModel& model, const HapticParameters& parameters);
 
 /// What the rules of the GDP speak of, without the scratch memory of a search.
 struct GdpValues {
@@ -29,12 +29,13 @@ inline constexpr std::array<bool, kDigits> kMeasured = {true, true, true, true, 
 
 /// A motion played through the GDP alone, at angles that step()'s sample guard lets pass as they are: entry t
 /// is the state that tick t began from, the last entry the state at the end.
-[[nodiscard]] std::vector<GdpValues> replay(const HapticModel& model, const std::vector<JointArray>& angle);
+[[nodiscard]] std::vector<GdpValues> replay(const HapticModel& model, const HapticParameters& parameters,
+                                            const std::vector<JointArray>& angle);
 
 /// Plays the motion through step() and holds its GDP against the replay's, bit by bit.
 /// @throws std::runtime_error naming the tick at which they part: then the peers would not begin where step()
 /// does.
-void check_replay(const HapticModel& model, const std::vector<JointArray>& angle,
-                  const std::vector<GdpValues>& states);
+void check_replay(const HapticModel& model, const HapticParameters& parameters,
+                  const std::vector<JointArray>& angle, const std::vector<GdpValues>& states);
 
 }  // namespace phalanx::bench

@@ -13,13 +13,13 @@ constexpr double kPeriod = 1e-3;  // [s]
 
 /// Plays one motion; before(tick) is called before each step, after(tick, us) after it.
 template <class Before, class After>
-void play(const HapticModel& model, const BenchMotion& motion, HapticState& state, Before&& before,
-          After&& after) {
+void play(const HapticModel& model, const HapticParameters& parameters, const BenchMotion& motion,
+          HapticState& state, Before&& before, After&& after) {
   for (std::size_t tick = 0; tick < motion.angle.size(); ++tick) {
     const Sample sample{static_cast<double>(tick) * kPeriod, motion.angle[tick]};
     before(tick);
     const Stopwatch watch;
-    static_cast<void>(step(model, sample, state));
+    static_cast<void>(step(model, parameters, sample, state));
     after(tick, watch.us());
   }
 }
@@ -54,19 +54,20 @@ std::vector<double> OurTimes::greatest() const {
   return out;
 }
 
-OurTimes time_ours(const HapticModel& model, const std::vector<BenchMotion>& motions) {
+OurTimes time_ours(const HapticModel& model, const HapticParameters& parameters,
+                   const std::vector<BenchMotion>& motions) {
   const auto nothing = [](std::size_t) {};
-  HapticState warm_up(model);
-  play(model, motions.front(), warm_up, nothing, [](std::size_t, double) {});
+  HapticState warm_up(model, parameters);
+  play(model, parameters, motions.front(), warm_up, nothing, [](std::size_t, double) {});
 
   OurTimes times;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     Hash hash;
     std::vector<double> us;
     for (const BenchMotion& motion : motions) {
-      HapticState state(model);
+      HapticState state(model, parameters);
       us.reserve(us.size() + motion.angle.size());
-      play(model, motion, state, nothing, [&](std::size_t, double step_us) {
+      play(model, parameters, motion, state, nothing, [&](std::size_t, double step_us) {
         us.push_back(step_us);
         hash.add(state.snapshot());
       });
@@ -78,20 +79,20 @@ OurTimes time_ours(const HapticModel& model, const std::vector<BenchMotion>& mot
   return times;
 }
 
-std::vector<ColdTime> time_cold(const HapticModel& model, const std::vector<BenchMotion>& motions,
-                                int every) {
+std::vector<ColdTime> time_cold(const HapticModel& model, const HapticParameters& parameters,
+                                const std::vector<BenchMotion>& motions, int every) {
   CacheFlush flush;
   std::vector<ColdTime> out;
   for (int repeat = 0; repeat < kColdRepeats; ++repeat) {
     std::size_t first = 0;
     std::size_t entry = 0;
     for (const BenchMotion& motion : motions) {
-      HapticState state(model);
+      HapticState state(model, parameters);
       const auto is_cold = [&](std::size_t tick) {
         return (first + tick) % static_cast<std::size_t>(every) == 0;
       };
       play(
-          model, motion, state,
+          model, parameters, motion, state,
           [&](std::size_t tick) {
             if (is_cold(tick)) flush();
           },

@@ -26,7 +26,8 @@ struct OurTimes {
 };
 
 /// step() over all motions, kRepeats times; warm: one motion runs before the first is timed.
-[[nodiscard]] OurTimes time_ours(const HapticModel& model, const std::vector<BenchMotion>& motions);
+[[nodiscard]] OurTimes time_ours(const HapticModel& model, const HapticParameters& parameters,
+                                 const std::vector<BenchMotion>& motions);
 
 /// A step whose caches were flushed before it.
 struct ColdTime {
@@ -35,7 +36,7 @@ struct ColdTime {
 };
 /// step() over all motions; before every `every`-th tick 64 MB are walked through, so that neither the
 /// model nor the state is left in a cache. A tick's time is the least of kColdRepeats.
-[[nodiscard]] std::vector<ColdTime> time_cold(const HapticModel& model,
+[[nodiscard]] std::vector<ColdTime> time_cold(const HapticModel& model, const HapticParameters& parameters,
                                               const std::vector<BenchMotion>& motions, int every);
 
 }  // namespace phalanx::bench

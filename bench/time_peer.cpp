@@ -23,11 +23,13 @@ std::unique_ptr<DistanceEngine> engine_of(PeerKind kind, const HapticModel& mode
 /// A peer's whole step and what it keeps between ticks.
 class PeerStep {
  public:
-  PeerStep(const HapticModel& model, PeerKind kind)
+  PeerStep(const HapticModel& model, const HapticParameters& parameters, PeerKind kind)
       : model_(model),
+        parameters_(parameters),
         engine_(engine_of(kind, model)),
-        gdp_(model, *engine_, kind == PeerKind::kFclNaive ? Pruning::kNone : Pruning::kLikeOurs),
-        state_(contact_model(model)) {}
+        gdp_(model, parameters.contact, *engine_,
+             kind == PeerKind::kFclNaive ? Pruning::kNone : Pruning::kLikeOurs),
+        state_(contact_model(model, parameters)) {}
 
   /// Begins a motion with the open hand.
   void begin() {
@@ -42,9 +44,7 @@ class PeerStep {
     const Stopwatch watch;
     model_.hand.poses(hcp_angle, hcp_);
     static_cast<void>(gdp_.advance(hcp_angle, hcp_, kMeasured, state_));
-    static_cast<void>(
-        compute_command({model_.hand, model_.force, model_.smoothing, model_.limits, 1.0 / model_.rate_hz},
-                        state_, hcp_, false, force_));
+    static_cast<void>(compute_command(parameters_, state_, hcp_, false, force_));
     return {tick, watch.us(), gdp_.questions() - before};
   }
 
@@ -53,6 +53,7 @@ class PeerStep {
 
  private:
   const HapticModel& model_;
+  const HapticParameters& parameters_;
   std::unique_ptr<DistanceEngine> engine_;
   PeerGdp gdp_;
   GdpState state_;
@@ -70,15 +71,16 @@ bool makes_contact(const GdpValues& before, const GdpValues& after) {
 /// One motion's part of PeerTimes: `first` is the motion's first tick among all motions' ticks.
 class MotionRun {
  public:
-  MotionRun(const HapticModel& model, const BenchMotion& motion, std::size_t first, DistanceEngine& judge,
-            PeerTimes& out)
+  MotionRun(const HapticModel& model, const HapticParameters& parameters, const BenchMotion& motion,
+            std::size_t first, DistanceEngine& judge, PeerTimes& out)
       : model_(model),
+        parameters_(parameters),
         motion_(motion),
         first_(first),
         judge_(judge),
         out_(out),
         begin_(out.ticks.size()),
-        states_(replay(model, motion.angle)) {}
+        states_(replay(model, parameters, motion.angle)) {}
 
   /// All ticks that are timed, and in the first repeat those that are compared.
   void play(PeerStep& peer, int repeat) {
@@ -96,7 +98,7 @@ class MotionRun {
 
  private:
   void hold_against_ours(const PeerStep& peer, std::size_t tick) {
-    compare(model_, states_[tick], states_[tick + 1], peer.result(), peer.gdp(), judge_,
+    compare(model_, parameters_, states_[tick], states_[tick + 1], peer.result(), peer.gdp(), judge_,
             fmt::format("{}, {} tick {}", out_.plan.name, motion_.name, tick), out_.agreement);
   }
   void note(const PeerTick& run, int repeat, std::size_t entry) {
@@ -108,6 +110,7 @@ class MotionRun {
   }
 
   const HapticModel& model_;
+  const HapticParameters& parameters_;
   const BenchMotion& motion_;
   std::size_t first_;
   DistanceEngine& judge_;
@@ -118,13 +121,14 @@ class MotionRun {
 
 }  // namespace
 
-PeerTimes time_peer(const HapticModel& model, const std::vector<BenchMotion>& motions, const PeerPlan& plan) {
-  PeerStep peer(model, plan.kind);
+PeerTimes time_peer(const HapticModel& model, const HapticParameters& parameters,
+                    const std::vector<BenchMotion>& motions, const PeerPlan& plan) {
+  PeerStep peer(model, parameters, plan.kind);
   FclEngine judge(model.hand, model.object.mesh());
   PeerTimes out{.plan = plan, .ticks = {}, .agreement = {}};
   std::size_t first = 0;
   for (const BenchMotion& motion : motions) {
-    MotionRun run(model, motion, first, judge, out);
+    MotionRun run(model, parameters, motion, first, judge, out);
     for (int repeat = 0; repeat < plan.repeats; ++repeat) run.play(peer, repeat);
     first += motion.angle.size();
   }

@@ -36,7 +36,7 @@ struct PeerTimes {
 
 /// Runs and compares one peer. Taking over our state is not timed; the sample guard and the snapshot, which
 /// ours has on top, are left out.
-[[nodiscard]] PeerTimes time_peer(const HapticModel& model, const std::vector<BenchMotion>& motions,
-                                  const PeerPlan& plan);
+[[nodiscard]] PeerTimes time_peer(const HapticModel& model, const HapticParameters& parameters,
+                                  const std::vector<BenchMotion>& motions, const PeerPlan& plan);
 
 }  // namespace phalanx::bench

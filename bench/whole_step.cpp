@@ -21,19 +21,22 @@ namespace {
 constexpr std::uint64_t kSqueezeSeed = 1001;
 constexpr int kBruteMost = 2000;  ///< object triangles up to which brute force is run
 
-std::vector<BenchMotion> make_motions(const HapticModel& model, int grasps) {
+std::vector<BenchMotion> make_motions(const HapticModel& model, const HapticParameters& parameters,
+                                      int grasps) {
   std::vector<BenchMotion> motions;
-  for (int i = 1; i <= grasps; ++i) motions.push_back(make_grasp(model, static_cast<std::uint64_t>(i)));
-  motions.push_back(make_squeeze(model, kSqueezeSeed));
+  for (int i = 1; i <= grasps; ++i)
+    motions.push_back(make_grasp(model, parameters, static_cast<std::uint64_t>(i)));
+  motions.push_back(make_squeeze(model, parameters, kSqueezeSeed));
   return motions;
 }
 
 /// Of all motions' ticks; also makes sure that the replays are what step() does.
-std::vector<Phase> all_phases(const HapticModel& model, const std::vector<BenchMotion>& motions) {
+std::vector<Phase> all_phases(const HapticModel& model, const HapticParameters& parameters,
+                              const std::vector<BenchMotion>& motions) {
   std::vector<Phase> phases;
   for (const BenchMotion& motion : motions) {
-    const std::vector<GdpValues> states = replay(model, motion.angle);
-    check_replay(model, motion.angle, states);
+    const std::vector<GdpValues> states = replay(model, parameters, motion.angle);
+    check_replay(model, parameters, motion.angle, states);
     const std::vector<Phase> of_motion = phases_of(model, states);
     phases.insert(phases.end(), of_motion.begin(), of_motion.end());
   }
@@ -61,23 +64,26 @@ HashCheck check_hash(const std::string& scene, const OurTimes& times, const Opti
 }
 
 /// What the peers are compared on beside the grasps and the squeeze, and a row of its own.
-std::vector<BenchMotion> make_restless_motions(const HapticModel& model, int grasps) {
+std::vector<BenchMotion> make_restless_motions(const HapticModel& model, const HapticParameters& parameters,
+                                               int grasps) {
   std::vector<BenchMotion> motions;
-  for (int i = 1; i <= grasps; ++i) motions.push_back(make_restless(model, static_cast<std::uint64_t>(i)));
+  for (int i = 1; i <= grasps; ++i)
+    motions.push_back(make_restless(model, parameters, static_cast<std::uint64_t>(i)));
   return motions;
 }
 
-std::vector<PeerRow> run_peers(const HapticModel& model, const std::vector<BenchMotion>& motions,
-                               const OurTimes& ours, const Options& options) {
-  const std::vector<BenchMotion> restless = make_restless_motions(model, options.grasps);
+std::vector<PeerRow> run_peers(const HapticModel& model, const HapticParameters& parameters,
+                               const std::vector<BenchMotion>& motions, const OurTimes& ours,
+                               const Options& options) {
+  const std::vector<BenchMotion> restless = make_restless_motions(model, parameters, options.grasps);
   std::vector<PeerTick> pruned;
   std::vector<PeerRow> rows;
   const auto run = [&](const PeerPlan& plan, int restless_every) {
-    const PeerTimes times = time_peer(model, motions, plan);
+    const PeerTimes times = time_peer(model, parameters, motions, plan);
     if (plan.kind == PeerKind::kFclPruned) pruned = times.ticks;
     rows.push_back(peer_row(times, ours, pruned));
     const PeerPlan untimed{plan.kind, plan.name, 1, restless_every};
-    rows.back().agreement.add(time_peer(model, restless, untimed).agreement);
+    rows.back().agreement.add(time_peer(model, parameters, restless, untimed).agreement);
   };
   run({PeerKind::kFclPruned, "FCL pruned", kRepeats, 1}, 1);
   run({PeerKind::kFclNaive, "FCL naive", 2, options.naive_every}, 50 * options.naive_every);
@@ -86,8 +92,9 @@ std::vector<PeerRow> run_peers(const HapticModel& model, const std::vector<Bench
 }
 
 /// Of the restless motions: fingers that slip off and catch up with the HCP, which takes the longest search.
-TimesRow restless_row(const HapticModel& model, const Options& options) {
-  const OurTimes times = time_ours(model, make_restless_motions(model, options.grasps));
+TimesRow restless_row(const HapticModel& model, const HapticParameters& parameters, const Options& options) {
+  const OurTimes times =
+      time_ours(model, parameters, make_restless_motions(model, parameters, options.grasps));
   const std::vector<Phase> any(times.repeat_us.front().size(), Phase::kNear);
   TimesRow row = warm_rows(any, times).back();
   row.phase = "restless";
@@ -97,6 +104,7 @@ TimesRow restless_row(const HapticModel& model, const Options& options) {
 /// Of all ticks, in those instruction sets that this processor has beside its best one: the same forces, to
 /// the last bit, or no time is reported.
 std::vector<TimesRow> other_instruction_sets(const std::string& scene, const HapticModel& model,
+                                             const HapticParameters& parameters,
                                              const std::vector<BenchMotion>& motions,
                                              const std::vector<Phase>& phases, std::uint64_t hash) {
   const InstructionSet best = instruction_set();
@@ -104,7 +112,7 @@ std::vector<TimesRow> other_instruction_sets(const std::string& scene, const Hap
   for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kPortable}) {
     if (set == best || !has_instruction_set(set)) continue;
     use_instruction_set(set);
-    const OurTimes times = time_ours(model, motions);
+    const OurTimes times = time_ours(model, parameters, motions);
     use_instruction_set(best);
     if (!times.same_hash || times.hash != hash) {
       throw std::runtime_error(
@@ -118,10 +126,12 @@ std::vector<TimesRow> other_instruction_sets(const std::string& scene, const Hap
 }
 
 SceneReport run_scene(const std::string& scene, const Options& options, ExpectedHashes& expected) {
-  const HapticModel model = build_model(load_scene(scene));
-  const std::vector<BenchMotion> motions = make_motions(model, options.grasps);
-  const std::vector<Phase> phases = all_phases(model, motions);
-  const OurTimes times = time_ours(model, motions);
+  const SceneDescription description = load_scene(scene);
+  const HapticModel model = build_model(description);
+  const HapticParameters& parameters = description.parameters;
+  const std::vector<BenchMotion> motions = make_motions(model, parameters, options.grasps);
+  const std::vector<Phase> phases = all_phases(model, parameters, motions);
+  const OurTimes times = time_ours(model, parameters, motions);
   SceneReport report{.scene = scene,
                      .object_triangles = model.object.triangle_count(),
                      .hand_triangles = model.hand.triangle_count(),
@@ -133,11 +143,12 @@ SceneReport run_scene(const std::string& scene, const Options& options, Expected
                      .cold = {},
                      .peers = {},
                      .cost = object_cost(model.object.mesh())};
-  report.warm.push_back(restless_row(model, options));
-  for (const TimesRow& row : other_instruction_sets(scene, model, motions, phases, times.hash))
+  report.warm.push_back(restless_row(model, parameters, options));
+  for (const TimesRow& row : other_instruction_sets(scene, model, parameters, motions, phases, times.hash))
     report.warm.push_back(row);
-  if (options.cold) report.cold = cold_rows(phases, time_cold(model, motions, options.cold_every));
-  if (options.peers) report.peers = run_peers(model, motions, times, options);
+  if (options.cold)
+    report.cold = cold_rows(phases, time_cold(model, parameters, motions, options.cold_every));
+  if (options.peers) report.peers = run_peers(model, parameters, motions, times, options);
   return report;
 }
 

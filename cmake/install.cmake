@@ -1,12 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where: program, page, headers, libraries, assets, scenes, studies, documents, the link's reference in C for
-# firmware, and the package that find_package(phalanx) reads.
+# What `cmake --install` puts where: program, its completion in shells, page, public headers, libraries, assets, scenes, studies, documents, the
+# link's reference in C for firmware, and the package that find_package(phalanx) reads.
 # The two libraries install themselves into the export set, see phalanx_library() in modules.cmake.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/phalanx)
 install(TARGETS phalanx RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY include/phalanx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+# The program prints the scripts, so that they fit it.
+set(completion ${CMAKE_BINARY_DIR}/completion)
+file(MAKE_DIRECTORY ${completion})
+foreach(shell bash zsh)
+  install(CODE "execute_process(COMMAND \"$<TARGET_FILE:phalanx>\" completion ${shell} OUTPUT_FILE \"${completion}/${shell}\" COMMAND_ERROR_IS_FATAL ANY)")
+endforeach()
+install(FILES ${completion}/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME phalanx)
+install(FILES ${completion}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _phalanx)
+include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
+foreach(header ${PHALANX_PUBLIC_HEADERS} ${PHALANX_STATION_PUBLIC_HEADERS})
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES include/phalanx/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/phalanx/${folder})
+endforeach()
 install(DIRECTORY assets scenes studies DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx)
 # The page is built by `./run` and `./test`, not by CMake.
 install(CODE "if(NOT EXISTS \"${PROJECT_SOURCE_DIR}/web/dist/index.html\")

@@ -3,7 +3,7 @@
 #   release, asan                     ./test: the tree without a sanitizer, the tree with AddressSanitizer
 #   full, asan_full, tsan             ./test --full, beside those above
 #   soak                              ./test --soak
-#   tsan_full                         nobody: tests that the tree with ThreadSanitizer could build
+#   tsan_full                         no level: tests that the tree with ThreadSanitizer could build
 # The target default_tests builds the programs of release, asan and tsan, and all_tests every program of this tree.
 add_custom_target(default_tests)
 add_custom_target(all_tests)

@@ -15,23 +15,25 @@ from pathlib import Path
 # Name: (target in percent, folders of tests in the order in which they are run, sources). What no draw asks for is for --folder alone.
 IMPORT = "import weld repair assimp_reader obj_reduce isolated isolation_helper index_check shells pipe_io t_junctions open_edges edge_table"
 FOLDERS: dict[str, tuple[int, str, list[str]]] = {
-    "contact": (95, "contact step scene device study station", ["*/contact/*"]),
-    "force": (95, "force step device scene study station", ["*/force/*"]),
-    "hand": (90, "hand contact step scene device study cli", ["*/hand/*"]),
-    "step": (95, "step device scene station study", ["*/step/*"]),
+    "contact": (95, "contact step scene device simulation study papers figures station", ["*/contact/*"]),
+    "force": (95, "force step device simulation scene study papers figures station", ["*/force/*"]),
+    "hand": (90, "hand contact step scene device simulation study papers figures apps", ["*/hand/*"]),
+    "step": (95, "step device simulation scene station study papers figures", ["*/step/*"]),
     "safety": (95, "station faults serve", ["*/station/safety*", "*/station/sensor_watch*"]),
-    "link": (95, "device/link device station faults", ["*/device/link/*"]),
-    "import": (90, "mesh scene step serve study cli", [f"*/mesh/{name}.*" for name in IMPORT.split()]),
-    "scene": (90, "scene study device station serve cli", ["*/scene/*"]),
-    "serve": (90, "serve faults cli", ["*/serve/*"]),
-    "study": (90, "study cli", ["*/study/*"]),
-    "record": (90, "record study station cli", ["*/record/*"]),
+    "link": (95, "device/link device simulation station faults", ["*/device/link/*"]),
+    "import": (90, "mesh scene step serve study papers figures apps", [f"*/mesh/{folder}{name}.*" for folder in ("", "import/", "isolation/") for name in IMPORT.split()]),
+    "scene": (90, "scene study papers figures device simulation station serve apps", ["*/scene/*"]),
+    "serve": (90, "serve faults apps", ["*/serve/*"]),
+    "study": (90, "study papers figures simulation apps",
+              ["*/study/*", "*/papers/*", "*/figures/*", "*/simulation/closed_loop/*"]),
+    "record": (90, "record study papers figures station apps", ["*/record/*"]),
 }
 FURTHER: dict[str, tuple[int, str, list[str]]] = {
     "core": (90, "core hand contact force step scene", ["*/core/*"]),
-    "device": (90, "device scene study station faults", ["src/device/*.*", "include/phalanx/device/*.h"]),
-    "gloves": (90, "device/opengloves device faults cli", ["*/device/opengloves/*"]),
-    "mesh": (90, "mesh scene step study", ["*/mesh/*"]),
+    "device": (90, "device simulation scene study papers figures station faults apps", ["src/device/*.*", "include/phalanx/device/*.h"]),
+    "gloves": (90, "device/opengloves device simulation faults apps", ["*/device/opengloves/*"]),
+    "simulation": (90, "simulation device scene study papers figures station faults apps", ["*/simulation/*"]),
+    "mesh": (90, "mesh scene step study papers figures", ["*/mesh/*"]),
     "station": (90, "station serve faults", ["*/station/*"]),
 }
 ALL_FOLDERS = FOLDERS | FURTHER
@@ -66,7 +68,13 @@ class Mutant:
 
     @property
     def diff(self) -> str:
-        return f"{self.file} {self.operator}\n- {self.before.strip()}\n+ {self.after.strip()}".rstrip()
+        return f"{self.file} {self.operator}\n- {code_of(self.before)}\n+ {code_of(self.after)}".rstrip()
+
+
+def code_of(line: str) -> str:
+    """The line without its indentation and without a comment that ends it."""
+    token = r'"(?:\\.|[^"\\])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\])+\'|//.*'
+    return re.sub(token, lambda match: "" if match[0].startswith("//") else match[0], line).strip()
 
 
 def blank(text: str) -> str:
@@ -202,7 +210,7 @@ def argued(path: Path) -> dict[str, str]:
     known = {}
     for block in re.split(r"\n\s*\n", path.read_text() if path.exists() else ""):
         lines = [line for line in block.strip().splitlines() if not line.startswith("#")]
-        diff = [line.rstrip() for line in lines[:1]] + [line.rstrip() for line in lines[1:] if line[:1] in "-+"]
+        diff = [line.rstrip() for line in lines[:1]] + [f"{line[0]} {code_of(line[1:])}".rstrip() for line in lines[1:] if line[:1] in "-+"]
         argument = " ".join(line.strip() for line in lines[1:] if line[:1] not in "-+")
         if len(diff) == 3 and argument:
             known["\n".join(diff)] = argument

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# safety_table.sh BUILD : runs the fault suite of a build folder and writes the table of docs/safety.md anew from what it prints.
+# safety_table.sh BUILD : runs the fault suite of a build folder and writes the table of docs/safety.md again from its output.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 printed=$(mktemp)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# update_mesh_table.sh BUILD : writes the corpus table of docs/meshes.md anew with the test program of a build folder.
+# update_mesh_table.sh BUILD : writes the corpus table of docs/meshes.md again with the test program of a build folder.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 table=$(mktemp)

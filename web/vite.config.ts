@@ -6,7 +6,7 @@ export default defineConfig({
   base: "./",
   build: { target: "es2022", outDir: "dist", emptyOutDir: true, sourcemap: false, assetsInlineLimit: 0, reportCompressedSize: true, chunkSizeWarningLimit: 700 },
   server: {
-    // `npx vite` for whoever works on the page; the station runs beside it.
+    // `npx vite` serves the page during development; the station runs beside it.
     proxy: {
       "/stream": { target: "ws://127.0.0.1:8480", ws: true },
       "/geometry": "http://127.0.0.1:8480",

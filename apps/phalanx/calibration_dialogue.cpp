@@ -37,7 +37,7 @@ class Dialogue {
     console_.say("Go into the pose, then press Enter and hold still. s: skip, b: back by one, q: end.");
   }
 
-  // One answer to the pose that is asked for now.
+  // Handles one answer to the current pose.
   void ask() {
     const CalibrationSession::View view = session_.view();
     console_.say(fmt::format("[{}/{}] {}: {}", view.pose + 1, view.names.size(), view.names[view.pose],
@@ -54,9 +54,9 @@ class Dialogue {
     }
   }
 
-  // The channels that this pose is about.
+  // Shows the channels that this pose concerns.
   std::string live() {
-    session_.go_on(clock_.now());
+    session_.update(clock_.now());
     std::string text = "raw";
     for (const std::int32_t raw : session_.view().raw) text += fmt::format(" {:5d}", raw);
     return text;
@@ -66,7 +66,7 @@ class Dialogue {
     session_.measure(clock_.now());
     while (session_.measuring()) {
       clock_.sleep_until(clock_.now() + 0.005);
-      session_.go_on(clock_.now());
+      session_.update(clock_.now());
     }
     console_.say(fmt::format("measured, {} samples", session_.samples()));
   }
@@ -81,7 +81,7 @@ class Dialogue {
     }
   }
 
-  // Says what is wrong and measures the poses that are asked for.
+  // Lists the problems and measures the poses that are asked for.
   void again(const std::vector<std::string>& problems) {
     for (const std::string& problem : problems) console_.say("refused: " + problem);
     console_.say("Type the numbers of poses to measure again (\"2 5\"), or Enter to give up.");

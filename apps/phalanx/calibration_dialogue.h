@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leads a wearer through the poses of a calibration. Reads the device's samples and never commands it.
+// The dialogue of a calibration by poses. It reads the device's samples and never commands it.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace phalanx {
 
-/// The wearer's side: a terminal, or a script.
+/// Input and output for the wearer: a terminal, or a script.
 class CalibrationConsole {
  public:
   CalibrationConsole() = default;
@@ -22,22 +22,24 @@ class CalibrationConsole {
   virtual ~CalibrationConsole() = default;
 
   virtual void say(const std::string& line) = 0;
-  /// The next line that is typed; none: there will be no more. Until it comes, `live` is called again and
-  /// again for a line that shows what the device reads now.
+  /// Waits for the next typed line; none: no more lines will come. While it waits, it calls `live` repeatedly
+  /// for a line with the device's present readings.
   virtual std::optional<std::string> answer(const std::function<std::string()>& live) = 0;
 };
 
+/// Settings of the dialogue.
 struct CalibrationDialogue {
-  double measure_for = 1.0;  ///< of each pose [s]
+  double measure_for = 1.0;  ///< duration of each pose's measurement [s]
   CalibrationLimits limits;
 };
 
-/// Poses one after the other: Enter measures, `s` skips, `b` goes back by one, `q` ends. Then fits all
-/// channels and says a table; where a channel is refused, poses may be measured again by their numbers.
+/// Leads the wearer through the poses: Enter measures, `s` skips, `b` goes back by one, `q` ends. It then
+/// fits all channels and shows a table. If a channel is refused, poses can be measured again
+/// by their numbers.
 /// @param device  open, with at least one channel that poses can calibrate
-/// @returns device, serial and channels; date and version are the caller's
-/// @throws CalibrationError: nothing to calibrate, ended early, or a fit that remains refused; DeviceError:
-/// no samples, or the device was lost.
+/// @returns device, serial and channels; the caller adds date and version
+/// @throws CalibrationError: no channel to calibrate, ended early, or a fit that remains refused;
+/// DeviceError: no samples, or the device was lost.
 [[nodiscard]] Calibration calibrate_by_poses(Device& device, const Clock& clock, const HandParameters& hand,
                                              CalibrationConsole& console,
                                              const CalibrationDialogue& settings = {});

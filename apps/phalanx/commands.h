@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's commands. Each adds itself, its options and its help to the command line, and puts what it
-// will do into `job`, which main() runs once the whole line has been understood.
+// The program's commands. Each function adds a command with its options and its help to the command line. The
+// command stores its work in `job`, which main() runs once the whole line has been parsed.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,12 +10,13 @@ namespace phalanx {
 
 /// Exit codes of every command (docs/cli.md).
 enum ExitCode : int {
-  kDone = 0,        ///< done
-  kFailed = 1,      ///< understood, but it failed: disk full, out of memory
+  kDone = 0,        ///< the command did its work
+  kFailed = 1,      ///< the input was valid, but the work failed: disk full, out of memory
   kWrongInput = 2,  ///< wrong usage or input: nothing was done
 };
 
-/// Returns an exit code. std::invalid_argument becomes kWrongInput, any other exception kFailed.
+/// Work of a command; returns an exit code. main() turns std::invalid_argument into kWrongInput, and any
+/// other exception into kFailed.
 using Job = std::function<int()>;
 
 void add_run_command(CLI::App& app, Job& job);
@@ -26,5 +27,6 @@ void add_scene_command(CLI::App& app, Job& job);
 void add_hand_command(CLI::App& app, Job& job);
 void add_mesh_command(CLI::App& app, Job& job);
 void add_device_command(CLI::App& app, Job& job);
+void add_completion_command(CLI::App& app, Job& job);
 
 }  // namespace phalanx

@@ -86,7 +86,7 @@ const Entry& entry_named(const std::string& text, std::string_view name) {
   refuse(text, fmt::format("no such fault; there are {}; `--fault list` explains them", names));
 }
 
-/// A whole text as a finite number.
+/// Parses a whole text as a finite number.
 std::optional<double> number(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -121,7 +121,7 @@ double value_of(const std::string& text, const Entry& entry, std::optional<std::
   return is(v >= 0.0 && v <= 255.0 && v == std::floor(v), "a whole number from 0");
 }
 
-/// "START[+LENGTH]"
+/// Parses "START[+LENGTH]".
 void read_times(const std::string& text, std::string_view times, ControllerFault& fault) {
   const std::size_t plus = times.find('+');
   const std::optional<double> start = number(times.substr(0, plus));
@@ -175,7 +175,7 @@ void apply(const ControllerFault& fault, SimulatedBreakage& breakage) noexcept {
     case Kind::kClockBackwards:
       breakage.clock_backwards = true;
       break;
-    default:  // of packets
+    default:  // faults of packets
       break;
   }
 }
@@ -206,7 +206,7 @@ void apply(const ControllerFault& fault, PacketFaults& packets) noexcept {
     case Kind::kSilence:
       packets.silence = true;
       break;
-    default:  // of the controller
+    default:  // faults of the controller
       break;
   }
 }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `phalanx device simulate --fault` can break, and when.
+// Faults that `phalanx device simulate --fault` can inject, and their times.
 #pragma once
 
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "phalanx/device/simulated_controller.h"
+#include "phalanx/simulation/simulated_controller.h"
 
 namespace phalanx {
 
+/// Kind of an injected fault; controller_fault_list() explains each.
 enum class ControllerFaultKind {
   kDrop,
   kDuplicate,
@@ -31,47 +32,49 @@ enum class ControllerFaultKind {
   kClockBackwards,
 };
 
-/// One --fault. Times are the process's own (slowed) clock, which a restart does not set back.
+/// One --fault. Its times are those of the process's (slowed) clock, which a restart does not reset.
 struct ControllerFault {
   ControllerFaultKind kind = ControllerFaultKind::kDrop;
-  double value = 0.0;  ///< a probability, seconds, or the number of a channel or motor
+  double value = 0.0;  ///< a probability, a time [s], or the number of a channel or motor
   double start = 0.0;  ///< [s]
   double end = std::numeric_limits<double>::infinity();  ///< [s]
   std::string text;                                      ///< as typed
 };
 
-/// What happens to packets, in both directions.
+/// Faults of packets, in both directions.
 struct PacketFaults {
   double drop = 0.0;       ///< probability
   double duplicate = 0.0;  ///< probability
-  double reorder = 0.0;    ///< probability: held back behind the next
-  double delay = 0.0;      ///< of each [s]
-  double jitter = 0.0;     ///< of each, uniform from 0 to this [s]
+  double reorder = 0.0;    ///< probability: sent after the next packet
+  double delay = 0.0;      ///< delay of each packet [s]
+  double jitter = 0.0;     ///< additional delay of each packet, uniform from 0 to this [s]
   double corrupt = 0.0;    ///< probability: one bit flips
   bool noise_bytes = false;
   bool silence = false;
 };
 
-/// NAME[=VALUE][@START[+LENGTH]]. @throws std::invalid_argument that names what is possible.
+/// Parses NAME[=VALUE][@START[+LENGTH]].
+/// @throws std::invalid_argument that names the possible forms.
 [[nodiscard]] ControllerFault parse_controller_fault(const std::string& text);
 
-/// All names, a line each.
+/// @returns all names, a line each.
 [[nodiscard]] std::string controller_fault_list();
 
-/// The faults of one run. Where two of a kind are in force, the later one on the command line counts.
+/// The faults of one run. If two of a kind are in force, the later one on the command line counts.
 class ControllerFaultPlan {
  public:
+  /// Checks the faults.
   /// @throws std::invalid_argument naming the fault whose channel or motor the device does not have
   ControllerFaultPlan(std::vector<ControllerFault> faults, std::size_t channels, std::size_t motors);
 
   [[nodiscard]] PacketFaults packets(double t) const noexcept;
   [[nodiscard]] SimulatedBreakage breakage(double t) const noexcept;
-  /// Whether a restart's time has come since the last call.
+  /// @returns true if the time of a restart has come since the last call.
   [[nodiscard]] bool restarts(double t) noexcept;
 
  private:
   std::vector<ControllerFault> faults_;
-  double asked_ = -1.0;  ///< when restarts() was called last [s]
+  double asked_ = -1.0;  ///< time of the last call of restarts() [s]
 };
 
 }  // namespace phalanx

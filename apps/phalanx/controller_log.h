@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated controller's own log: a row of CSV a tick.
+// The simulated controller's own log: one row of CSV (comma-separated values) a tick.
 #pragma once
 
 #include <atomic>
@@ -10,22 +10,23 @@
 #include <thread>
 #include <vector>
 
-#include "phalanx/device/simulated_controller.h"
+#include "phalanx/simulation/simulated_controller.h"
 
 namespace phalanx {
 
-/// add() puts a row into a ring of fixed size; a thread of its own writes the rows every 100 ms and flushes.
-/// The tick never waits for the disk; should the ring be full, rows are lost and counted.
+/// Log with a ring of fixed size. add() puts a row into the ring; a thread of its own writes the rows every
+/// 100 ms and flushes. The tick never waits for the disk. If the ring is full, rows are lost and counted.
 class ControllerLog {
  public:
+  /// Opens the log.
   /// @throws std::invalid_argument if the file cannot be written
   ControllerLog(const std::string& path, const SimulatedController& controller);
   ~ControllerLog();
   ControllerLog(const ControllerLog&) = delete;
   ControllerLog& operator=(const ControllerLog&) = delete;
 
-  /// After a tick. Real-time.
-  /// @param newest_command  tick of the newest command that has come in, used or not
+  /// Adds the row of a tick. Real-time.
+  /// @param newest_command  tick of the newest command that was received, used or not
   void add(const SimulatedController& controller, std::uint64_t newest_command) noexcept;
   /// Writes the rest. @throws std::runtime_error if rows were lost or could not be written
   void finish();
@@ -53,7 +54,7 @@ class ControllerLog {
 
   std::string path_;
   std::FILE* file_ = nullptr;
-  std::vector<int> joints_;  ///< the device's
+  std::vector<int> joints_;  ///< the joints of the device
   boost::lockfree::spsc_queue<Row, boost::lockfree::capacity<kRows>> rows_;
   std::atomic<std::uint64_t> lost_ = 0;
   std::atomic<bool> ending_ = false;

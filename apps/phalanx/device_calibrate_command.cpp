@@ -33,7 +33,7 @@ struct CalibrateOptions {
   bool force = false;
 };
 
-/// Standard input and output. On a terminal, the line of live values is written over and over.
+/// Standard input and output. On a terminal, the line of live values is overwritten repeatedly.
 class Terminal final : public CalibrationConsole {
  public:
   void say(const std::string& line) override {
@@ -129,7 +129,7 @@ int calibrate(const CalibrateOptions& options) {
   calibration.date = made_here().date;
   calibration.phalanx = PHALANX_VERSION;
   const std::string text = calibration_text(calibration);
-  // A device's name may hold bytes that no TOML file can: better said here than when the file is read.
+  // A device's name may contain bytes that a TOML file cannot: refuse it now, not when the file is read.
   static_cast<void>(parse_calibration(text, options.out));
   write_text_file(options.out, text);
   fmt::print("{} ({} channels of {} {})\n", options.out, calibration.channels.size(), calibration.device,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx device: the first-aid kit for a device, and what stands in for one.
+// phalanx device: commands that test a device, and one that simulates it.
 #include "device_commands.h"
 
 namespace phalanx {

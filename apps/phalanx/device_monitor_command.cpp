@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx device monitor DEVICE: its samples as they come. Sends no command.
+// phalanx device monitor DEVICE: shows its samples as they come. It sends no command.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 
 #include "device_commands.h"
 #include "device_text.h"
+#include "error_line.h"
 #include "phalanx/device/clock.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/station/open_device.h"
@@ -30,7 +31,7 @@ struct MonitorOptions {
   std::string csv;
 };
 
-/// One row a sample: docs/cli.md.
+/// File with one row a sample: docs/cli.md.
 class SampleCsv {
  public:
   SampleCsv(const std::string& file, const DeviceInfo& info) : out_(file), info_(info) {
@@ -94,7 +95,7 @@ std::string line(double t, double rate, const LinkStatistics& link, const Device
   return fmt::to_string(text);
 }
 
-/// Until the time is over, Ctrl-C, or the connection fails. @returns the connection's fault.
+/// Watches until the time is over, Ctrl-C, or the connection fails. @returns the connection's fault.
 Fault watch(Device& device, const Clock& clock, const MonitorOptions& options, SampleCsv* csv) {
   std::array<DeviceSample, 512> samples{};
   std::optional<DeviceSample> newest;
@@ -136,7 +137,7 @@ int monitor(const MonitorOptions& options) {
   fmt::print("{} samples, {} lost, {} late or twice, {} corrupt, {} not fetched in time\n", link.received,
              link.lost, link.outdated, link.corrupt, link.overflowed);
   if (fault == Fault::kNone) return kDone;
-  fmt::print(stderr, "phalanx: {}\n", fault_text(fault));
+  print_error_line(fmt::format("phalanx: {}", fault_text(fault)));
   return kFailed;
 }
 

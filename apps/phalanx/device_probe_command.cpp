@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx device probe DEVICE: who is there, and what do its sensors say.
+// phalanx device probe DEVICE: the identity of a device, and the readings of its sensors.
 #include <fmt/format.h>
 
 #include <array>
@@ -16,9 +16,9 @@
 namespace phalanx {
 namespace {
 
-constexpr double kPatience = 1.0;  // for the first sample [s]
+constexpr double kPatience = 1.0;  // longest wait for the first sample [s]
 
-/// The newest sample once the device says that it is ready; whatever came if it does not.
+/// @returns the newest sample once the device is ready; the newest one at all if it does not become ready.
 std::optional<DeviceSample> first_sample(Device& device, const Clock& clock) {
   std::optional<DeviceSample> newest;
   std::array<DeviceSample, 64> samples{};
@@ -53,6 +53,10 @@ void print_device(const std::string& spec, const DeviceInfo& info,
   fmt::print("  serial    {}\n  rate      {:g} Hz\n", info.serial.empty() ? "(none)" : info.serial,
              info.rate_hz);
   fmt::print("  renders   {}\n", info.renders_torque ? "joint torques" : "stops of digits only");
+  fmt::print("  watchdog  {}\n",
+             info.watchdog
+                 ? fmt::format("lets go {:g} ms after the host's last message", 1e3 * *info.watchdog)
+                 : "not known: with force it is for trying out, not for a patient's session");
   if (!sample) {
     fmt::print("  state     it answers, but no sample came within {:g} s\n", kPatience);
   } else {

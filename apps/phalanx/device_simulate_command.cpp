@@ -43,10 +43,10 @@ struct DeviceSimulateOptions {
 SimulatedDeviceSettings settings_of(const DeviceSimulateOptions& options) {
   Overrides overrides;
   for (const std::string& text : options.set) overrides.push_back(parse_override(text));
-  const SceneDescription scene = load_scene(options.scene, overrides);
+  const ResolvedScene scene = resolve(load_scene(options.scene, overrides), {.device = true, .motion = true});
   const auto model = std::make_unique<HapticModel>(build_model(scene));
   SimulatedDeviceSettings settings = simulated_settings(scene, *model);
-  settings.seed = options.seed.value_or(scene.seed);
+  settings.seed = options.seed.value_or(scene.description.seed);
   return settings;
 }
 

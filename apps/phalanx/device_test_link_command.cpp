@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx device test-link DEVICE: how long a frame takes there and back, and what gets lost. Asks for no
-// session: it may run beside a station (not on a serial port, which has one user).
+// phalanx device test-link DEVICE: the round-trip time of a frame, and losses. It asks for no session: it may
+// run beside a station (but not on a serial port, which only one program can open).
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 
 #include "device_commands.h"
 #include "device_text.h"
+#include "emphasis.h"
 #include "phalanx/device/clock.h"
 #include "phalanx/device/link/phalanx_link.h"
 #include "phalanx/station/open_device.h"
@@ -21,11 +23,11 @@
 namespace phalanx {
 namespace {
 
-/// What a station needs of its link: the controller fades at a step 14 ms old and latches at 20 ms, of which
-/// a step period at 200 Hz and the step itself take up to 10 ms.
+/// Requirements of a station on its link. The controller fades at a step 14 ms old and latches at 20 ms. A
+/// step period at 200 Hz and the step itself take up to 10 ms of this.
 constexpr double kMostLoss = 0.01;
 constexpr double kLongestRoundTrip = 5e-3;  // p99.9 [s]
-constexpr double kLastAnswers = 1.0;        // waited for at the end [s]
+constexpr double kLastAnswers = 1.0;        // wait for the last answers [s]
 
 struct TestLinkOptions {
   std::string spec;
@@ -45,7 +47,7 @@ class LinkTest {
       wait_until(next);
       ping();
       next += 1.0 / rate_hz;
-      // What was missed is left out: a burst would measure itself.
+      // Missed PINGs are left out: a burst would measure itself.
       if (const double late = clock_.now() - next; late > 0.0) next += std::ceil(late * rate_hz) / rate_hz;
     }
     const double end = clock_.now() + kLastAnswers;
@@ -87,13 +89,13 @@ class LinkTest {
     }
   }
 
-  static constexpr std::uint64_t kFirstStamp = std::uint64_t{0x7e57} << 48;  // no other program's
+  static constexpr std::uint64_t kFirstStamp = std::uint64_t{0x7e57} << 48;  // unlike any other program's
   Transport& transport_;
   const Clock& clock_;
   std::uint32_t sequence_ = 0;
 };
 
-/// Empty: good enough for a station.
+/// @returns why the link is not good enough for a station; empty if it is.
 std::string complaint(const RoundTrips& trips, const RoundTripTimes& times) {
   if (trips.received() == 0)
     return "nobody answers: is the controller switched on and connected, and is the address right?";
@@ -144,7 +146,9 @@ void print_text(const TestLinkOptions& options, const LinkTest& test, const std:
                1e3 * t.p50, 1e3 * t.p90, 1e3 * t.p99, 1e3 * t.p999, 1e3 * t.max);
     fmt::print("{}", trips.histogram());
   }
-  fmt::print("{}\n", problem.empty() ? "Good enough for a station." : problem);
+  const bool colour = takes_colour(STDOUT_FILENO);
+  fmt::print("{}\n", problem.empty() ? emphasised(Emphasis::kStrong, "Good enough for a station.", colour)
+                                     : emphasised(Emphasis::kError, problem, colour));
 }
 
 int test_link(const TestLinkOptions& options) {

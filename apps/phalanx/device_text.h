@@ -9,22 +9,24 @@
 
 namespace phalanx {
 
+/// @returns the state in words.
 [[nodiscard]] std::string_view state_name(DeviceState state) noexcept;
-/// "angle", "torque", "force", "motor", "curl", "splay".
+/// @returns "angle", "torque", "force", "motor", "curl" or "splay".
 [[nodiscard]] std::string_view kind_name(ChannelKind kind) noexcept;
-/// What it measures: "index_pip_flexion", "thumb", "motor 3".
+/// @returns the measured place: "index_pip_flexion", "thumb", "motor 3".
 [[nodiscard]] std::string place_name(const DeviceChannel& channel);
-/// The unit of shown(): "deg", "Nm", "N", "mm"; empty for curl and splay.
+/// @returns the unit of shown(): "deg", "Nm", "N", "mm"; empty for curl and splay.
 [[nodiscard]] std::string_view shown_unit(ChannelKind kind) noexcept;
-/// Raw counts as people read them: degrees and millimetres in place of rad and m.
+/// Converts raw counts to a unit for display: degrees and millimetres in place of rad and m.
 [[nodiscard]] double shown(const DeviceChannel& channel, std::int32_t raw) noexcept;
-/// false: an open or shorted sensor.
+/// @returns false for an open or shorted sensor.
 [[nodiscard]] bool in_range(const DeviceChannel& channel, std::int32_t raw) noexcept;
-/// "fault_name: what it means; what to do".
+/// @returns "fault_name: its meaning; its remedy".
 [[nodiscard]] std::string fault_text(Fault fault);
 
-/// From here on, Ctrl-C and SIGTERM only make interrupted() true.
+/// Makes Ctrl-C and SIGTERM only set interrupted(), from here on.
 void watch_for_interrupt();
+/// @returns true after Ctrl-C or SIGTERM.
 [[nodiscard]] bool interrupted() noexcept;
 
 }  // namespace phalanx

@@ -8,12 +8,14 @@
 
 namespace phalanx {
 
-/// Ctrl-C, a kill or a closed terminal: asked_to_end becomes 1, end_descriptor readable, and the command ends
-/// in good order. A reader of our output that has gone, or a terminal that belongs to another job, must
-/// neither end nor stop what holds a hand.
+/// Flag of a request to end: Ctrl-C, a kill or a closed terminal. asked_to_end becomes 1, end_descriptor
+/// becomes readable, and the command ends in good order. The signals of a closed output pipe, and of a
+/// terminal that belongs to another job, are ignored: they must neither end nor stop a process that
+/// holds a hand.
 inline volatile std::sig_atomic_t asked_to_end = 0;
-inline int end_descriptor = -1;  ///< an eventfd; -1: none could be had
+inline int end_descriptor = -1;  ///< an eventfd; -1: none was available
 
+/// Installs the handlers of these signals.
 inline void end_on_signal() {
   end_descriptor = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   struct sigaction action = {};

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command says on standard error when something went wrong.
+// Messages of a command on standard error.
 #pragma once
 
 #include <exception>
 #include <string>
+#include <string_view>
 
 namespace phalanx {
 
-/// Writes one line to standard error: control characters of what was typed or read become blanks. A standard
-/// error that takes nothing changes nothing.
+/// Writes one line to standard error, red on a terminal. Control characters in it become blanks. If standard
+/// error takes nothing, that is ignored.
 void print_error_line(std::string message);
 
-/// What went wrong, for people: error.what(), and words where the C++ library or the system has only a name
-/// for it: no memory, no further file descriptor or thread.
+/// Writes progress or other text unchanged to standard error. If it takes nothing, that is ignored.
+void print_aside(std::string_view text) noexcept;
+
+/// Describes an exception for people. It is error.what(), and a sentence if the C++ library or the system has
+/// only a name: no memory, no further file descriptor or thread.
 [[nodiscard]] std::string reason(const std::exception& error);
 
 }  // namespace phalanx

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "commands.h"
-#include "duration_text.h"
+#include "error_line.h"
+#include "phalanx/papers/experiment_report.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/study/experiment_report.h"
-#include "progress_bar.h"
+#include "progress.h"
 #include "usage.h"
 
 namespace phalanx {
@@ -29,7 +29,7 @@ void write_files(const std::string& name, const ExperimentReport& report, const 
 
 constexpr double kWorthSaying = 2.0;  // [s]
 
-/// How long it takes here [s].
+/// @returns the expected duration on this machine [s].
 double expected(const Experiment& experiment) {
   return experiment.all_cores ? on_all_cores(experiment.processor_seconds)
                               : std::max(1.0, experiment.processor_seconds);
@@ -38,7 +38,7 @@ double expected(const Experiment& experiment) {
 int run_one(const Experiment& experiment, const std::filesystem::path& out) {
   if (!out.empty()) prepare_output_folder(out);
   if (expected(experiment) >= kWorthSaying)
-    fmt::print(stderr, "{}: about {}\n", experiment.name, duration_text(expected(experiment)));
+    print_aside(fmt::format("{}: about {}\n", experiment.name, duration_text(expected(experiment))));
   const ExperimentReport report = experiment.run();
   fmt::print("{}", report.text);
   if (!out.empty()) write_files(experiment.name, report, out);
@@ -51,13 +51,13 @@ int run_all(const std::filesystem::path& out) {
   std::vector<ReportSection> sections;
   double all = 0.0;
   for (const Experiment& experiment : experiments()) all += expected(experiment);
-  fmt::print(stderr, "all experiments: about {}\n", duration_text(all));
+  print_aside(fmt::format("all experiments: about {}\n", duration_text(all)));
   double done = 0.0;
   for (const Experiment& experiment : experiments()) {
     fmt::print("{} ... (about {})\n", experiment.name, duration_text(expected(experiment)));
     std::fflush(stdout);
     prepare_output_folder(out / experiment.name);
-    ProgressBar bar("experiments", true);  // by the time that they take
+    ProgressBar bar("experiments", true);  // weighted by expected duration
     bar.show(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(all));
     const ExperimentReport report = experiment.run();
     done += expected(experiment);

@@ -7,7 +7,7 @@ namespace phalanx {
 namespace {
 
 constexpr double kLargestNoise = 64.0;  ///< [bytes]
-constexpr int kPacketsPerCall = 64;     ///< a flood must not keep the controller from its tick
+constexpr int kPacketsPerCall = 64;     ///< limit, so that a flood does not delay the controller's tick
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void FaultyLine::put_one(double t, const PacketFaults& faults, std::span<const s
   free->held = held;
 }
 
-/// They go right behind the packet that has just been put.
+/// Releases held packets right after the packet that has just been put.
 void FaultyLine::release_held(double due) noexcept {
   for (Packet& packet : place_) {
     if (!packet.used || !packet.held) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wire that loses, doubles, delays, reorders and damages packets if it is told to.
+// A transport that loses, duplicates, delays, reorders and damages packets, for tests of a host.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@
 
 namespace phalanx {
 
-/// One direction: packets go in, and come out when their time has come. Room for kRoom packets on their way;
-/// one more is lost.
+/// One direction of a faulty transport: packets go in, and come out when they are due. There is room for
+/// kRoom packets on their way; further ones are lost.
 class FaultyLine {
  public:
   static constexpr std::size_t kRoom = 512;
@@ -24,16 +24,16 @@ class FaultyLine {
   explicit FaultyLine(std::uint64_t seed) : random_(seed), place_(kRoom) {}
 
   void put(double t, const PacketFaults& faults, std::span<const std::uint8_t> frame, Peer peer) noexcept;
-  /// The packet that is due first. @returns its size, 0: none is due
+  /// Fetches the packet that is due first. @returns its size, 0: none is due
   [[nodiscard]] std::size_t take(double t, std::span<std::uint8_t> out, Peer& peer) noexcept;
   void clear() noexcept;
-  /// Bytes that nobody meant. @returns how many
+  /// Makes random bytes. @returns how many
   [[nodiscard]] std::size_t noise(std::span<std::uint8_t> out) noexcept;
 
  private:
   struct Packet {
     bool used = false;
-    bool held = false;  ///< until the next has been put
+    bool held = false;  ///< until the next packet has been put
     double due = 0.0;   ///< [s]
     std::uint64_t order = 0;
     Peer peer = 0;
@@ -55,14 +55,14 @@ class FaultyWire {
  public:
   FaultyWire(Transport& transport, std::uint64_t seed);
 
-  /// The next frame for the controller at its tick at `t` [s]. @returns its size, 0: none for now
+  /// Fetches the next frame for the controller at its tick at `t` [s]. @returns its size, 0: none for now
   [[nodiscard]] std::size_t receive(double t, const PacketFaults& faults, std::span<std::uint8_t> out,
                                     Peer& from) noexcept;
   void send(double t, const PacketFaults& faults, std::span<const std::uint8_t> frame, Peer to) noexcept;
-  /// Once at each tick: sends what has become due, and noise.
-  /// @param host  who has the session; without one nobody gets noise
+  /// Sends the packets that have become due, and noise. Call it once at each tick.
+  /// @param host  the host that has the session; none: no noise is sent
   void flush(double t, const PacketFaults& faults, std::optional<Peer> host) noexcept;
-  /// Forgets what is on its way.
+  /// Drops all packets on their way.
   void clear() noexcept;
 
  private:

@@ -26,7 +26,7 @@ struct HandOptions {
   std::string format, out;
 };
 
-/// A path is relative to where it is typed; a name is looked for in assets/.
+/// Loads the hand. A path is relative to the working folder; a name is searched in assets/.
 HandDescription described(const HandOptions& options) {
   if (!options.profile.empty() && !(options.file.empty() && options.side.empty())) {
     throw std::invalid_argument(fmt::format(
@@ -46,8 +46,8 @@ int show_hand(const HandOptions& options) {
 }
 
 struct ExportPlan {
-  fs::path file;    ///< of the URDF or MJCF
-  fs::path folder;  ///< that it and its meshes lie in
+  fs::path file;    ///< of the URDF (Unified Robot Description Format) or MJCF (MuJoCo)
+  fs::path folder;  ///< folder of the file and its meshes
 };
 
 ExportPlan plan_export(const HandOptions& options) {
@@ -96,7 +96,7 @@ int export_hand(const HandOptions& options) {
   prepare_output_folder(plan.folder);
   prepare_output_folder(plan.folder / folders.collision);
   prepare_output_folder(plan.folder / folders.display);
-  fs::remove(plan.file);  // of an earlier run: it is written last, when its meshes are there
+  fs::remove(plan.file);  // of an earlier run: the file is written last, when its meshes exist
   write_meshes(hand.meshes.collision, plan.folder / folders.collision);
   if (folders.display != folders.collision) write_meshes(hand.meshes.display, plan.folder / folders.display);
   write_text_file(plan.file, text);

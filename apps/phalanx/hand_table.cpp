@@ -10,7 +10,7 @@
 namespace phalanx {
 namespace {
 
-/// "+0.8 SD" from one mean, or "-0.8 SD of men, +0.5 SD of women".
+/// Formats the distance from the means: "+0.8 SD" from one, or "-0.8 SD of men, +0.5 SD of women".
 std::string deviations(double value, std::span<const Norm> norms) {
   std::string text;
   for (const Norm& norm : norms) {

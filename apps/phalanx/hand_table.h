@@ -7,8 +7,8 @@
 
 namespace phalanx {
 
-/// The hand in text: its sizes with their distance from the published means in standard deviations, its
-/// ranges of motion, its triangles.
+/// Describes a hand in text: its sizes with their distance from the published means in standard deviations,
+/// its ranges of motion, its triangles.
 [[nodiscard]] std::string hand_table(const LoadedHand& hand);
 
 }  // namespace phalanx

@@ -7,31 +7,25 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
-#include <chrono>
 #include <climits>
-#include <condition_variable>
-#include <cstdlib>
 #include <deque>
 #include <exception>
 #include <mutex>
 #include <string_view>
 #include <utility>
 
+#include "emphasis.h"
 #include "phalanx/core/nice_thread.h"
 
 namespace phalanx {
 namespace {
 
-constexpr std::size_t kNarrowest = 20;  ///< columns; what says less is no terminal's width
+constexpr std::size_t kNarrowest = 20;  ///< columns; a smaller reported width is ignored
 
-bool can_clear_a_line() {
-  const char* kind = std::getenv("TERM");
-  return kind != nullptr && *kind != '\0' && std::string_view(kind) != "dumb";
-}
-
-/// Waits as long as it takes. A pipe that poll() calls writable takes PIPE_BUF bytes at once.
-/// @returns false: the descriptor takes nothing any more
+/// Writes a text, however long it takes. A pipe that poll() reports as writable takes PIPE_BUF bytes at once.
+/// @returns false if the descriptor takes nothing any more
 bool write_text(int descriptor, std::string_view text) noexcept {
   while (!text.empty()) {
     pollfd output{.fd = descriptor, .events = POLLOUT, .revents = 0};
@@ -47,66 +41,65 @@ bool write_text(int descriptor, std::string_view text) noexcept {
 
 }  // namespace
 
-/// What both threads hold.
-struct LineWriter::Shared {
-  explicit Shared(int to) : descriptor(to) {}
+/// State that both threads share.
+struct LineWriter::Shared : ThreadEnd {
+  struct Line {
+    std::size_t left_out = 0;  ///< lines before it
+    std::string text;
+  };
 
-  /// With the lock.
+  Shared(int to, const char* before) : descriptor(to), begin(before) {}
+
+  /// Appends a text. Call it with the lock. @throws std::bad_alloc, and then nothing has changed
   void add(std::string text) {
-    waiting.push_back(std::move(text));
-    bytes += waiting.back().size();
+    waiting.push_back({.left_out = left_out, .text = std::move(text)});
+    left_out = 0;
+    bytes += waiting.back().text.size();
     changed.notify_all();
+  }
+  /// Counts a line that is left out. Call it with the lock.
+  void leave_out() noexcept {
+    ++left_out;
+    changed.notify_all();
+  }
+  /// Writes how many lines were left out, without memory. @returns false: the descriptor takes
+  /// nothing any more
+  [[nodiscard]] bool say_left_out(std::size_t count) const noexcept {
+    std::array<char, 100> text;
+    const auto made =
+        fmt::format_to_n(text.data(), text.size(),
+                         "{}({} lines are missing here: they were not read in time)\n", begin, count);
+    return write_text(descriptor, {text.data(), made.size});
   }
 
   const int descriptor;
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::deque<std::string> waiting;
-  std::size_t bytes = 0;     ///< of what waits
-  std::size_t left_out = 0;  ///< lines behind what waits
+  const char* const begin;  ///< start of each line
+  std::deque<Line> waiting;
+  std::size_t bytes = 0;     ///< bytes of the waiting lines
+  std::size_t left_out = 0;  ///< lines left out after the waiting ones
   bool writing = false;
-  bool ending = false;
-  bool ended = false;  ///< nothing is written any more
 };
 
 LineWriter::LineWriter(int descriptor)
     : descriptor_(descriptor),
       terminal_(::isatty(descriptor) == 1),
-      in_place_(terminal_ && can_clear_a_line()),
-      shared_(std::make_shared<Shared>(descriptor)),
+      in_place_(takes_sequences(descriptor)),
+      shared_(std::make_shared<Shared>(descriptor, in_place_ ? "\r\033[K" : "")),
       thread_(start_nice_thread("phalanx-lines", [shared = shared_] { write_all(*shared); })) {}
 
-LineWriter::~LineWriter() {
-  bool ended = false;
-  {
-    std::unique_lock lock(shared_->mutex);
-    shared_->ending = true;
-    shared_->changed.notify_all();
-    ended = shared_->changed.wait_for(lock, std::chrono::duration<double>(kDrainTime),
-                                      [this] { return shared_->ended; });
-  }
-  if (ended) {
-    thread_.join();
-  } else {
-    thread_.detach();
-  }
-}
+LineWriter::~LineWriter() { end_or_leave(*shared_, thread_, kDrainTime); }
 
 void LineWriter::line(const std::string& text) noexcept {
-  const char* begin = in_place_ ? "\r\033[K" : "";
   const std::lock_guard lock(shared_->mutex);
   if (shared_->ended) return;
   if (shared_->waiting.size() >= kWaiting || shared_->bytes + text.size() > kWaitingBytes) {
-    ++shared_->left_out;
+    shared_->leave_out();
     return;
   }
   try {
-    if (shared_->left_out > 0)
-      shared_->add(fmt::format("{}({} lines are missing here: they were not read in time)\n", begin,
-                               std::exchange(shared_->left_out, 0)));
-    shared_->add(fmt::format("{}{}\n", begin, text));
+    shared_->add(fmt::format("{}{}\n", shared_->begin, text));
   } catch (const std::exception&) {  // no memory
-    ++shared_->left_out;
+    shared_->leave_out();
   }
 }
 
@@ -125,20 +118,28 @@ std::size_t LineWriter::width() const noexcept {
   winsize size{};
   if (!terminal_) return kWidth;
   if (::ioctl(descriptor_, TIOCGWINSZ, &size) != 0 || size.ws_col < kNarrowest) return 79;
-  return size.ws_col - 1U;  // some terminals go on to the next line after the last column
+  return size.ws_col - 1U;  // some terminals continue on the next line after the last column
 }
 
 void LineWriter::write_all(Shared& shared) noexcept {
   std::unique_lock lock(shared.mutex);
   for (bool open = true; open;) {
-    shared.changed.wait(lock, [&] { return shared.ending || !shared.waiting.empty(); });
-    if (shared.waiting.empty()) break;
-    const std::string text = std::move(shared.waiting.front());
-    shared.waiting.pop_front();
-    shared.bytes -= text.size();
+    shared.changed.wait(lock,
+                        [&] { return shared.ending || shared.left_out > 0 || !shared.waiting.empty(); });
+    Shared::Line line;
+    if (!shared.waiting.empty()) {
+      line = std::move(shared.waiting.front());
+      shared.waiting.pop_front();
+    } else if (shared.left_out > 0) {
+      line.left_out = std::exchange(shared.left_out, 0);
+    } else {
+      break;
+    }
+    shared.bytes -= line.text.size();
     shared.writing = true;
     lock.unlock();
-    open = write_text(shared.descriptor, text);
+    open = (line.left_out == 0 || shared.say_left_out(line.left_out)) &&
+           write_text(shared.descriptor, line.text);
     lock.lock();
     shared.writing = false;
   }

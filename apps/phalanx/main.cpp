@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx: the command line. One file a command; this one only parses and maps errors to exit codes.
+// phalanx: the command line. Each command is in a file of its own; this one only parses, and maps errors
+// to exit codes.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -18,21 +19,10 @@
 #include "commands.h"
 #include "error_line.h"
 #include "phalanx/record/made.h"
+#include "terminate.h"
 #include "usage.h"
 
 namespace {
-
-/// For an exception that a destructor or a thread lets out. A library's destructors may need memory.
-[[noreturn]] void die() {
-  try {
-    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
-  } catch (const std::bad_alloc&) {
-    std::fputs("phalanx: out of memory\n", stderr);
-    ::_exit(phalanx::kFailed);
-  } catch (...) {
-  }
-  std::abort();
-}
 
 int run(int argc, char** argv) {
   using namespace phalanx;
@@ -50,6 +40,7 @@ int run(int argc, char** argv) {
   add_hand_command(app, job);
   add_mesh_command(app, job);
   add_device_command(app, job);
+  add_completion_command(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -66,13 +57,13 @@ int run_and_report(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::invalid_argument& error) {
-    print_error_line(fmt::format("phalanx: {}", error.what()));
+    print_error_line(fmt::format("phalanx: {}", reason(error)));
     return kWrongInput;
   } catch (const std::bad_alloc&) {
     print_error_line("phalanx: out of memory; ask for fewer ticks (--seconds, --rate-hz) or triangles");
     return kFailed;
   } catch (const std::exception& error) {
-    // A failed write to standard output is main's to report.
+    // main() reports a failed write to standard output.
     if (std::ferror(stdout) == 0) print_error_line(fmt::format("phalanx: {}", reason(error)));
     return kFailed;
   }
@@ -81,15 +72,14 @@ int run_and_report(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A standard stream that is closed must not give its number to another file, which would then get its
-  // lines.
+  // If a standard stream is closed, another file must not get its number, and then its lines.
   for (int stream = 0; stream <= 2; ++stream)
     if (::fcntl(stream, F_GETFD) < 0) static_cast<void>(::open("/dev/null", O_RDWR));
-  std::set_terminate(die);
+  std::set_terminate(phalanx::end_at_once);
   std::signal(SIGXFSZ, SIG_IGN);  // at a file size limit, writing fails instead
   const int code = run_and_report(argc, argv);
   if (code == phalanx::kWrongInput) return code;
-  // What is still buffered can fail only here: a full disk must not look like success.
+  // Only here can a write of buffered output fail: a full disk must not look like success.
   int reason = std::ferror(stdout) != 0 ? errno : 0;
   if (std::fflush(stdout) != 0) {
     reason = errno;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // phalanx mesh check
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "emphasis.h"
 #include "error_line.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/length_units.h"
@@ -38,7 +40,7 @@ std::string length(double metres) {
   return metres < 10.0 ? millimetres(metres) : fmt::format("{:.4g} m", metres);
 }
 
-/// "200 mm, 25 cm^2"
+/// Formats a size: "200 mm, 25 cm^2".
 std::string size_text(const MeshFinding& f) {
   return length(f.size) + (f.area > 0.0 ? fmt::format(", {:.3g} cm^2", f.area * 1e4) : "");
 }
@@ -87,12 +89,12 @@ void print_report(const std::string& file, const MeshReport& r) {
     fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<22} {:<30} {}\n", finding_name(f.kind), f.found, f.repaired,
                f.found - f.repaired, size_text(f), place_text(f), finding_meaning(f));
   }
-  fmt::print("  {}\n", mesh_verdict(r));
+  fmt::print("  {}\n", emphasised(Emphasis::kStrong, mesh_verdict(r), takes_colour(STDOUT_FILENO)));
 }
 
 void check_out(const std::string& out, const std::string& file) {
   const std::filesystem::path path(out);
-  std::error_code error;  // a file that does not exist is no other's equal
+  std::error_code error;  // a file that does not exist is not equivalent to another
   if (std::filesystem::equivalent(path, file, error))
     throw std::invalid_argument(fmt::format("--out: {} is the file that is read; name another", out));
   if (path.extension() != ".obj")

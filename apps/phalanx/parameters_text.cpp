@@ -14,7 +14,7 @@ std::string law_text(const ForceLawParameters& law) {
   return fmt::format("{}, k = {:.6g} N/mm", kNames[static_cast<std::size_t>(law.law)], 1e-3 * law.stiffness);
 }
 
-std::string stabiliser_text(const SceneDescription& scene) {
+std::string stabiliser_text(const StabiliserParameters& stabiliser) {
   static constexpr std::array<const char*, 10> kNames = {"no smoothing",
                                                          "",
                                                          "",
@@ -25,26 +25,25 @@ std::string stabiliser_text(const SceneDescription& scene) {
                                                          "time-domain passivity",
                                                          "energy bounding",
                                                          "local wall"};
-  const SmoothingParameters& s = scene.smoothing;
-  switch (scene.stabiliser.method) {
+  switch (stabiliser.method) {
     case Stabiliser::kSmoothing:
-      return s.enabled ? fmt::format("smoothing \u2212{:.6g} to +{:.6g} N/s", -s.min_rate, s.max_rate)
-                       : kNames[0];
+      return fmt::format("smoothing \u2212{:.6g} to +{:.6g} N/s", -stabiliser.min_rate, stabiliser.max_rate);
     case Stabiliser::kRiseOnly:
-      return fmt::format("rise-only smoothing +{:.6g} N/s", s.max_rate);
+      return fmt::format("rise-only smoothing +{:.6g} N/s", stabiliser.max_rate);
     default:
-      return kNames[static_cast<std::size_t>(scene.stabiliser.method)];
+      return kNames[static_cast<std::size_t>(stabiliser.method)];
   }
 }
 
 }  // namespace
 
 std::string parameters_text(const SceneDescription& scene, std::uint64_t ticks) {
-  const std::string cap = scene.limits.fingertip_force_enabled
-                              ? fmt::format("fingertip limit {:.6g} N", scene.limits.fingertip_force)
+  const HapticParameters& parameters = scene.parameters;
+  const std::string cap = parameters.limits.fingertip_force_enabled
+                              ? fmt::format("fingertip limit {:.6g} N", parameters.limits.fingertip_force)
                               : "no fingertip limit";
-  return fmt::format("{}; {}; {}; {:.6g} Hz, {} ticks", law_text(scene.force), stabiliser_text(scene), cap,
-                     scene.rate_hz, ticks);
+  return fmt::format("{}; {}; {}; {:.6g} Hz, {} ticks", law_text(parameters.force),
+                     stabiliser_text(parameters.stabiliser), cap, parameters.rate_hz, ticks);
 }
 
 }  // namespace phalanx

@@ -8,7 +8,7 @@
 
 namespace phalanx {
 
-/// Law, stabiliser, cap, rate and length of a run on one line, for plots.
+/// Writes law, stabiliser, cap, rate and length of a run on one line, for plots.
 [[nodiscard]] std::string parameters_text(const SceneDescription& scene, std::uint64_t ticks);
 
 }  // namespace phalanx

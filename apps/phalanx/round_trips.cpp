@@ -43,7 +43,7 @@ RoundTripTimes RoundTrips::times() const {
 
 std::string RoundTrips::histogram() const {
   constexpr std::size_t kBins = 16;
-  constexpr double kFirst = 31.25e-6;  // upper end of the first bin [s]; 1 ms is an end
+  constexpr double kFirst = 31.25e-6;  // upper end of the first bin [s]; 1 ms is the end of a bin
   constexpr std::size_t kWidth = 50;
   std::array<std::uint64_t, kBins> count{};
   for (const double t : seconds_) {

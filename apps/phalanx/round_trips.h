@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PING and PONG: what was sent, what came back, when.
+// Round trips of PING and PONG frames: sent, received, and their times.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@ struct RoundTripTimes {
   double p50 = 0.0, p90 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
 };
 
+/// Record of the round trips.
 class RoundTrips {
  public:
-  /// Room for this many, so that nothing is allocated while times are taken.
+  /// Reserves memory for `capacity` round trips, so that nothing is allocated while times are measured.
   explicit RoundTrips(std::size_t capacity) { sent_.reserve(capacity), seconds_.reserve(capacity); }
 
-  /// @returns the number of the PING that leaves now, from 0
+  /// Records a PING. @returns its number, from 0
   std::uint64_t send(double now);
   void receive(std::uint64_t number, double now);
 
@@ -29,11 +30,11 @@ class RoundTrips {
     return sent() > 0 ? static_cast<double>(lost()) / static_cast<double>(sent()) : 0.0;
   }
   [[nodiscard]] std::uint64_t duplicates() const noexcept { return duplicates_; }
-  [[nodiscard]] std::uint64_t reordered() const noexcept { return reordered_; }  ///< after a later one
-  [[nodiscard]] std::uint64_t strange() const noexcept { return strange_; }      ///< answers to nothing
-  /// The smallest time that at least this part of the answers kept to.
+  [[nodiscard]] std::uint64_t reordered() const noexcept { return reordered_; }  ///< came after a later one
+  [[nodiscard]] std::uint64_t strange() const noexcept { return strange_; }  ///< answers to an unknown PING
+  /// @returns the percentiles: the smallest time that at least this part of the answers did not exceed.
   [[nodiscard]] RoundTripTimes times() const;
-  /// Bars over doubling times, one line each.
+  /// Draws bars over doubling times, one line each.
   [[nodiscard]] std::string histogram() const;
 
  private:

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx run [SCENE]: the station.
+// phalanx run [SCENE]: runs the station.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -14,7 +13,7 @@
 #include "commands.h"
 #include "end_signals.h"
 #include "error_line.h"
-#include "phalanx/mesh/isolation_helper.h"
+#include "phalanx/mesh/isolation/isolation_helper.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/station_host.h"
@@ -24,31 +23,35 @@
 #include "run_page.h"
 #include "run_recorder.h"
 #include "status_line.h"
+#include "terminate.h"
 #include "typed_lines.h"
 #include "usage.h"
 
 namespace phalanx {
 namespace {
 
-/// One run of the station, from the terminal's side. This thread waits for neither the terminal nor the disk.
+/// One run of the station, with its terminal. This thread waits for neither the terminal nor the disk.
 class Run {
  public:
   Run(const RunOptions& options, const Clock& clock)
       : options_(options), clock_(clock), recorder_(options.log, options.faults) {}
 
-  /// Whatever happens, the station ends at zero torque first, and what is worth keeping is written.
+  /// Runs the station. In every case the station first ends at zero torque, and the files are then written.
   int go() {
     if (const auto earlier = recorder_.finished_earlier(); !earlier.empty())
       console_.say(
           fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
     host_ = std::make_unique<StationHost>(host_settings(options_), clock_);
     std::exception_ptr failure;
-    try {
-      serve();
-    } catch (...) {
-      failure = std::current_exception();
+    {
+      const LetsGoAtTerminate lets_go(*host_, clock_);
+      try {
+        serve();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      host_->shut_down();
     }
-    host_->shut_down();
     const bool saved = save(failure == nullptr);
     if (failure) std::rethrow_exception(failure);
     return say_end() && saved ? kDone : kFailed;
@@ -72,7 +75,9 @@ class Run {
         options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
     if (state->source == HandSource::kDevice && options_.calibration.empty())
       console_.complain(
-          "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`");
+          "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`",
+          Emphasis::kWarning);
+    if (holds_without_host(state->device)) console_.complain(kHoldsWithoutHost, Emphasis::kWarning);
     console_.say(
         "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
         "quit.");
@@ -86,7 +91,7 @@ class Run {
       const double seconds = clock_.now() - begin;
       seconds_ = seconds;
       if (options_.seconds && seconds >= *options_.seconds) break;
-      host_->go_on();
+      host_->poll();
       drain();
       handle_typed();
       if (clock_.now() < next_line) continue;
@@ -98,8 +103,8 @@ class Run {
     }
   }
 
-  /// What the person at the terminal is about to be shown. Lines may be read late, and what was typed before
-  /// another stop or fault is not about that one.
+  /// State of which the user at the terminal is informed. Lines may be read late: a line typed before another
+  /// stop or fault does not refer to that one.
   struct Seen {
     std::uint64_t stops = 0;
     double fault = 0.0;  ///< FaultEvent::time; 0: none [s]
@@ -110,13 +115,14 @@ class Run {
     return {.stops = stops, .fault = fault.fault == Fault::kNone ? 0.0 : fault.time};
   }
 
-  /// After a refusal only the next status line counts as seen: a second `resume` typed with the first must
-  /// not take back a stop that was not shown. Without status lines the refusal itself has to do.
+  /// Updates `seen_` after a command. After a refusal, only the next status line counts as seen: a second
+  /// `resume` typed with the first must not end a stop that was not shown. Without status lines, the
+  /// refusal itself counts.
   void look_after(bool granted) {
     if (granted || options_.quiet) seen_ = look();
   }
 
-  /// Tells what the loop and the recorder have put aside.
+  /// Reports what the loop and the recorder have stored.
   void drain() {
     say_grant();
     if (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
@@ -124,7 +130,7 @@ class Run {
     const bool oscillates = host_->view().oscillates;
     if (oscillates && !oscillates_) {
       const std::string what = "the force oscillates: it fades, and returns by itself once it is quiet";
-      console_.say(what);
+      console_.say(what, Emphasis::kWarning);
       if (page_) page_->tell("oscillation", what, true);
     }
     oscillates_ = oscillates;
@@ -132,7 +138,7 @@ class Run {
     if (std::exchange(resets_refused_, refused) < refused) {
       const std::string why =
           "reset refused: the cause is still there, no sample comes, or the torque is not at rest yet";
-      console_.say(why);
+      console_.say(why, Emphasis::kError);
       if (page_) page_->tell("reset_refused", why, false);
     }
   }
@@ -142,7 +148,7 @@ class Run {
     const std::string text = fmt::format("{}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
                                          fault_remedy(event.fault));
     seen_.fault = event.time;
-    console_.say("FAULT " + text);
+    console_.say("FAULT " + text, Emphasis::kError);
     if (page_) page_->tell("fault", text, true);
     recorder_.write_report(std::move(report));
   }
@@ -158,8 +164,8 @@ class Run {
     granted_ = host_->grant();
     if (!granted_) return;
     console_.say("real time: " + describe(*granted_));
-    for (const std::string& missing : granted_->missing) console_.complain(missing);
-    if (page_) page_->say_addresses(console_);  // again, where they are looked for: at the end
+    for (const std::string& missing : granted_->missing) console_.complain(missing, Emphasis::kWarning);
+    if (page_) page_->say_addresses(console_);  // again at the end, where users look for them
   }
 
   void handle_typed() {
@@ -170,13 +176,14 @@ class Run {
     }
     if (const std::size_t left_out = typed_->take_left_out(); left_out > 0)
       console_.complain(
-          fmt::format("{} lines were left out: they came faster than they are handled", left_out));
+          fmt::format("{} lines were left out: they came faster than they are handled", left_out),
+          Emphasis::kWarning);
   }
 
   void handle(const TypedLines::Line& typed) {
     const std::string& line = typed.text;
     try {
-      if (line == "stop") {  // TypedLines has done it
+      if (line == "stop") {  // TypedLines has stopped already
         seen_ = look();
         seen_.stops = typed.stops;
         tell_typed("stopped", "stopped");
@@ -203,41 +210,29 @@ class Run {
         host_->load_scene(line.substr(6), [this, line](const ChangeOutcome& outcome) {
           say_typed("scene", line.substr(6), line, outcome);
         });
-      } else if (line.starts_with("slow ")) {
-        host_->lengthen_steps(milliseconds(line.substr(5)));
-        tell_typed("slow", fmt::format("makes every step {} ms longer", line.substr(5)));
       } else if (!line.empty()) {
         throw std::invalid_argument(fmt::format(
-            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, scene NAME, slow MS or quit",
-            line));
+            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, scene NAME or quit", line));
       }
-    } catch (const std::exception& error) {  // what is refused ends nothing
+    } catch (const std::exception& error) {  // a refusal ends nothing
       console_.complain(reason(error));
     }
   }
 
   void say_typed(const std::string& code, const std::string& text, const std::string& line,
                  const ChangeOutcome& outcome) {
-    if (!outcome.refused.empty()) return console_.say("refused: " + outcome.refused);
+    if (!outcome.refused.empty()) return console_.say("refused: " + outcome.refused, Emphasis::kError);
     if (outcome.overtaken) return console_.say("overtaken by a newer value: " + line);
     console_.say("changed: " + line);
     tell_typed(code, text);
   }
 
-  /// Pages and the log of changes hear of it as of a page's change.
+  /// Reports a typed command to the pages and the log of changes, as a page's change.
   void tell_typed(const std::string& code, const std::string& text) {
     if (page_) page_->typed(code, text);
   }
 
-  static double milliseconds(const std::string& text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !(value >= 0.0 && value <= 1000.0))
-      throw std::invalid_argument(fmt::format("slow {}: say how many ms, 0 to 1000", text));
-    return 1e-3 * value;
-  }
-
-  /// The torque is zero. @returns false if log or summary is not whole
+  /// Writes log, summary and reports; the torque is zero. @returns false if log or summary is not complete
   [[nodiscard]] bool save(bool in_good_order) {
     while (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
     recorder_.finish(in_good_order);
@@ -247,13 +242,14 @@ class Run {
     return summarised && !recorder_.lost();
   }
 
-  /// @returns false if it ended in a fault
+  /// Reports the end. @returns false if it was a fault
   [[nodiscard]] bool say_end() {
     if (!options_.quiet) say_statistics();
     const StationView last = host_->view();
     const bool faulty = last.state == SafetyState::kFault;
     console_.say(faulty ? fmt::format("ended at zero torque, in fault {}", fault_name(last.fault.fault))
-                        : "ended at zero torque");
+                        : "ended at zero torque",
+                 faulty ? Emphasis::kError : Emphasis::kStrong);
     return !faulty;
   }
 
@@ -319,6 +315,12 @@ void add_run_command(CLI::App& app, Job& job) {
       ->allow_extra_args(false);
   run->add_option("--clinician", options->clinician,
                   "who answers for a fingertip force above 5 N (up to 10 N)");
+  CLI::Option* watchdog = run->add_option(
+      "--watchdog-ms", options->watchdog_ms,
+      "a glove's firmware lets go by itself so long after this program's last message [1 .. 1000]");
+  run->add_flag("--no-force-feedback", options->no_force_feedback,
+                "the glove only senses: it is never told to hold a finger")
+      ->excludes(watchdog);
   run->add_option("--log", options->log, "write every step to this CSV file");
   run->add_option("--summary", options->summary, "write percentiles and counts to this JSON file at the end");
   run->add_option("--fault-reports", options->faults, "folder of the fault reports")->capture_default_str();
@@ -352,7 +354,7 @@ void add_run_command(CLI::App& app, Job& job) {
     check_page_options(*options);
     job = [options] {
       end_on_signal();
-      const mesh::IsolationHelper helper;  // while there are no threads yet, and little memory
+      const mesh::IsolationHelper helper;  // before there are threads, while memory is small
       const Clock clock(options->slow_motion);
       return Run(*options, clock).go();
     };

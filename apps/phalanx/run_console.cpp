@@ -23,9 +23,17 @@ RunConsole::RunConsole() : out_(STDOUT_FILENO) {
   if (!are_the_same(STDOUT_FILENO, STDERR_FILENO)) err_.emplace(STDERR_FILENO);
 }
 
-void RunConsole::complain(const std::string& what) noexcept {
+void RunConsole::say(const std::string& line, Emphasis emphasis) noexcept {
   try {
-    (err_ ? *err_ : out_).line(fmt::format("phalanx run: {}", what));
+    out_.line(emphasised(emphasis, line, takes_colour(STDOUT_FILENO)));
+  } catch (const std::exception&) {  // no memory
+  }
+}
+
+void RunConsole::complain(const std::string& what, Emphasis emphasis) noexcept {
+  try {
+    (err_ ? *err_ : out_)
+        .line(emphasised(emphasis, fmt::format("phalanx run: {}", what), takes_colour(STDERR_FILENO)));
   } catch (const std::exception&) {  // no memory
   }
 }

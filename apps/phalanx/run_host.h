@@ -6,8 +6,8 @@
 
 namespace phalanx {
 
-/// What `phalanx run` was told, for its station.
-/// @throws SceneError or std::invalid_argument: options that do not go together
+/// Makes the station's settings from the command line of `phalanx run`.
+/// @throws SceneError or std::invalid_argument if options contradict each other
 [[nodiscard]] StationHostSettings host_settings(const RunOptions& options);
 
 }  // namespace phalanx

@@ -7,7 +7,7 @@
 
 namespace phalanx {
 
-/// What `phalanx run` was told on its command line.
+/// Options of `phalanx run` on its command line.
 struct RunOptions {
   static constexpr const char* kDemonstration = "first_touch";
   static constexpr const char* kGrasp = "grasp_teapot";
@@ -16,6 +16,8 @@ struct RunOptions {
   std::string device = "simulated";
   std::string calibration;
   std::string clinician;
+  std::optional<double> watchdog_ms;  ///< watchdog of a glove's firmware [ms]
+  bool no_force_feedback = false;     ///< a glove that only senses
   std::string profile;
   std::string log;
   std::string summary;
@@ -30,7 +32,7 @@ struct RunOptions {
   bool headless = false;
   std::string listen = "127.0.0.1";
   int port = 8480;
-  bool port_stated = false;  ///< then that one or none
+  bool port_stated = false;  ///< --port was given: use that port or none
   std::string certificate;
   std::string key;
   std::string audit = "out/cockpit/changes.jsonl";

@@ -7,7 +7,6 @@
 
 #include "phalanx/mesh/import.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/study/picture.h"
 
 namespace phalanx {
 namespace {
@@ -19,7 +18,7 @@ void prepare_folder_of(const std::filesystem::path& file) {
   }
   prepare_output_folder(file.has_parent_path() ? file.parent_path() : ".");
   try {
-    const OutputFile probe(file);  // removed again: it is not committed
+    const OutputFile probe(file);  // not committed, so it is removed again
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(
         fmt::format("{}; name a file in a folder that you may write to", error.what()));
@@ -28,14 +27,14 @@ void prepare_folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, SegmentMeshes display, std::uint64_t ticks)
-    : plan_(std::move(plan)), model_(model), display_(std::move(display)), moment_(ticks, plan_.picture_at) {
+RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, DrawnHand drawn, std::uint64_t ticks)
+    : plan_(std::move(plan)), model_(model), drawn_(std::move(drawn)), moment_(ticks, plan_.picture_at) {
   prepare_folder_of(plan_.plot);
   prepare_folder_of(plan_.picture);
   if (!plan_.folder.empty()) {
     prepare_output_folder(plan_.folder);
     prepare_output_folder(plan_.folder / "hand");
-    // Of an earlier run: what this one does not write anew must not stay beside it.
+    // Remove files of an earlier run: one that this run does not write must not stay beside the others.
     for (const char* name : {"summary.json", "ticks.csv", "poses.csv"})
       std::filesystem::remove(plan_.folder / name);
     ticks_.emplace(plan_.folder / "ticks.csv");
@@ -53,7 +52,7 @@ void RunOutputs::add(const Snapshot& snapshot) {
 void RunOutputs::finish(const Summary& summary, const PlotText& text) {
   if (!plan_.plot.empty()) write_text_file(plan_.plot, plot_svg(trace_, text));
   if (!plan_.picture.empty()) {
-    const Image image = render_picture(display_, model_.object.mesh(), moment_.snapshot());
+    const Image image = render_picture(drawn_, model_.object.mesh(), moment_.snapshot());
     write_then_rename(plan_.picture, [&](const std::filesystem::path& file) { write_png(image, file); });
   }
   if (plan_.folder.empty()) return;

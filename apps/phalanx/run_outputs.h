@@ -6,36 +6,38 @@
 #include <filesystem>
 #include <optional>
 
+#include "phalanx/figures/picture.h"
+#include "phalanx/figures/picture_moment.h"
+#include "phalanx/figures/plot.h"
+#include "phalanx/figures/trace.h"
 #include "phalanx/record/poses_csv.h"
 #include "phalanx/record/summary.h"
 #include "phalanx/record/ticks_csv.h"
 #include "phalanx/step/haptic_step.h"
-#include "phalanx/study/picture_moment.h"
-#include "phalanx/study/plot.h"
-#include "phalanx/study/trace.h"
 
 namespace phalanx {
 
-/// Where what goes; empty: not wanted.
+/// Paths of the outputs; empty: not wanted.
 struct OutputPlan {
   std::filesystem::path folder;
   bool poses = false;
   std::filesystem::path plot;
   std::filesystem::path picture;
-  std::optional<std::uint64_t> picture_at = {};  ///< the tick that it shows; else as PictureMoment chooses
+  std::optional<std::uint64_t> picture_at = {};  ///< tick of the picture; none: PictureMoment chooses
 };
 
-/// Takes every tick and writes what the plan asks for. summary.json is removed at the start and written last:
-/// a folder that has one is complete.
+/// Writer of all planned files, tick by tick. summary.json is removed at the start and written last: a folder
+/// with a summary.json is complete.
 class RunOutputs {
  public:
-  /// @throws std::invalid_argument if a folder cannot be used; std::runtime_error if a file cannot be
-  /// written.
-  /// @param display  what the picture shows of the hand; not used without a picture
-  /// @param ticks    how many will be added
-  RunOutputs(OutputPlan plan, const HapticModel& model, SegmentMeshes display, std::uint64_t ticks);
+  /// Opens the files.
+  /// @param drawn  the hand in the picture; unused without a picture
+  /// @param ticks  number of ticks that will be added
+  /// @throws std::invalid_argument if a folder cannot be used; std::runtime_error if a file
+  /// cannot be written.
+  RunOutputs(OutputPlan plan, const HapticModel& model, DrawnHand drawn, std::uint64_t ticks);
   void add(const Snapshot& snapshot);
-  /// @param text  the plot's heading
+  /// Writes the remaining files. @param text  the plot's heading
   void finish(const Summary& summary, const PlotText& text);
   [[nodiscard]] double picture_time() const noexcept { return moment_.snapshot().time_s; }  ///< [s]
 
@@ -44,7 +46,7 @@ class RunOutputs {
 
   OutputPlan plan_;
   const HapticModel& model_;
-  SegmentMeshes display_;
+  DrawnHand drawn_;
   std::optional<TicksCsv> ticks_;
   std::optional<PosesCsv> poses_;
   Trace trace_;

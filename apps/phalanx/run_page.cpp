@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An installed program's page, or that of the source tree.
+/// @returns the folder of an installed program's page, or that of the source tree.
 fs::path site_folder() {
   const fs::path data = data_folder();
   std::error_code ignored;
@@ -84,7 +84,7 @@ struct RunPage::Parts {
                                : lan_urls(options.listen, server.port(), settings.viewer_token));
   }
 
-  /// The addresses come last: they are what a reader looks for.
+  /// Writes how to reach the page. The addresses come last, where a reader looks for them.
   void introduce(RunConsole& console) const {
     if (!is_loopback(options.listen)) {
       introduce_to_the_network(console);
@@ -111,21 +111,21 @@ struct RunPage::Parts {
   }
 
   void say_addresses(RunConsole& console) const {
-    if (is_loopback(options.listen)) return console.say("Cockpit: " + server.url());
+    if (is_loopback(options.listen)) return console.say("Cockpit: " + server.url(), Emphasis::kStrong);
     if (lan_urls(options.listen, server.port(), "").empty())
       return console.say(
           "Cockpit: no other computer reaches this one; connect it to a network and start again.");
     if (!console.is_terminal()) {
       for (const std::string& url : lan_urls(options.listen, server.port(), ""))
-        console.say("Cockpit: " + url);
+        console.say("Cockpit: " + url, Emphasis::kStrong);
       return console.say(
           "  It asks for a token, which is shown on a terminal only: start `phalanx run` on one, without a "
           "pipe or a file behind it.");
     }
     for (const std::string& url : lan_urls(options.listen, server.port(), settings.viewer_token))
-      console.say("Cockpit, to look on:  " + url);
+      console.say("Cockpit, to look on:  " + url, Emphasis::kStrong);
     for (const std::string& url : lan_urls(options.listen, server.port(), settings.operator_token))
-      console.say("Cockpit, to operate:  " + url);
+      console.say("Cockpit, to operate:  " + url, Emphasis::kStrong);
   }
 
   const RunOptions& options;
@@ -159,7 +159,7 @@ RunPage::~RunPage() { parts_->server.stop(); }
 void RunPage::say_addresses(RunConsole& console) const { parts_->say_addresses(console); }
 
 void RunPage::tell(const std::string& code, const std::string& text, bool fault) {
-  parts_->cockpit.tell(code, text, fault);
+  parts_->cockpit.notify(code, text, fault);
 }
 
 void RunPage::typed(const std::string& code, const std::string& text) { parts_->cockpit.typed(code, text); }

@@ -10,21 +10,23 @@
 
 namespace phalanx {
 
-/// @throws std::invalid_argument  options of the page that contradict each other, and what to type instead
+/// Checks the options of the page.
+/// @throws std::invalid_argument if they contradict each other; the message names what to type instead
 void check_page_options(const RunOptions& options);
 
-/// The cockpit of `phalanx run`, from the making of its server to its end.
+/// The cockpit of `phalanx run`: its server, from start to end.
 class RunPage {
  public:
-  /// Binds, says on the console how the page is reached, and serves. @param host, console  outlive the page
-  /// @throws WebServerError or std::runtime_error, saying what to do
+  /// Binds the server, shows the page's addresses on the console, and serves.
+  /// @param host, console  outlive the page
+  /// @throws WebServerError or std::runtime_error, naming the remedy
   RunPage(const RunOptions& options, StationHost& host, RunConsole& console);
   ~RunPage();
 
-  /// A line for each address. Those with a token are for a terminal only.
+  /// Writes a line for each address. Addresses with a token are written to a terminal only.
   void say_addresses(RunConsole& console) const;
 
-  void tell(const std::string& code, const std::string& text, bool fault);  ///< Cockpit::tell()
+  void tell(const std::string& code, const std::string& text, bool fault);  ///< Cockpit::notify()
   void typed(const std::string& code, const std::string& text);             ///< Cockpit::typed()
   void fault_reported(const std::string& file, double fault_time);          ///< Cockpit::fault_reported()
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <exception>
+#include <system_error>
 #include <utility>
 
 #include "error_line.h"
@@ -14,7 +15,7 @@
 namespace phalanx {
 namespace {
 
-/// Of the steps that wait for it, the station holds those of 4 s at 2 kHz.
+/// Interval of fetching steps. The station holds 4 s of unfetched steps at 2 kHz.
 constexpr std::chrono::milliseconds kBetweenWrites{50};
 
 }  // namespace
@@ -83,7 +84,7 @@ void RunRecorder::work() noexcept {
   write_reports();
 }
 
-/// Without a log, too: the station keeps no record that was fetched.
+/// Fetches and writes all steps. Without a log, too: the station must not keep a fetched record.
 void RunRecorder::write_steps() noexcept {
   StepRecord record;
   try {
@@ -122,8 +123,13 @@ void RunRecorder::commit() noexcept {
 void RunRecorder::give_up_log(const std::exception& error) noexcept {
   lost_ = true;
   complain([&] {
-    return fmt::format("the log ends here: {}; what was written is in {}", reason(error),
-                       log_->partial().string());
+    const std::filesystem::path partial = log_->partial();
+    log_.reset();  // first: its memory may be needed for the text; an empty file is removed
+    std::error_code ignored;
+    return fmt::format("the log ends here: {}; {}", reason(error),
+                       std::filesystem::exists(partial, ignored)
+                           ? "what was written is in " + partial.string()
+                           : "nothing was written");
   });
   log_.reset();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `phalanx run` writes while it runs: its log, and the reports of its faults.
+// The files that `phalanx run` writes while it runs: its log, and the reports of its faults.
 #pragma once
 
 #include <atomic>
@@ -15,35 +15,42 @@
 
 namespace phalanx {
 
-/// Fetches the station's steps and writes them on a thread of its own, which alone waits for the disk. What
-/// was fetched is handed to the system at once: it is there however the process ends. A log that cannot be
-/// written is given up, with what is in it; the station goes on.
+/// Recorder that fetches the station's steps and writes them on a thread of its own; only this thread waits
+/// for the disk. Fetched steps are handed to the operating system at once, so that they remain if the process
+/// is killed. If the log cannot be written, it is closed with the steps that it holds, and
+/// the station continues.
 class RunRecorder {
  public:
-  /// What became of something, for people.
+  /// A message for the user about a log or report.
   struct Note {
     std::string complaint;    ///< empty: a fault's report was written
-    std::string report;       ///< its folder
-    double fault_time = 0.0;  ///< FaultEvent::time of it [s]
+    std::string report;       ///< folder of the report
+    double fault_time = 0.0;  ///< FaultEvent::time of the fault [s]
   };
 
-  /// @param log      empty: none. @param reports  folder
+  /// Opens the log.
+  /// @param log      empty: none
+  /// @param reports  folder of fault reports
   /// @throws as OutputFile
   RunRecorder(const std::string& log, std::filesystem::path reports);
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
   ~RunRecorder();  ///< finish(false)
 
-  /// OutputFile::finished_earlier()
+  /// @returns OutputFile::finished_earlier() of the log.
   [[nodiscard]] std::filesystem::path finished_earlier() const;
-  /// @param host  outlives it. @throws std::system_error: no thread
+  /// Starts the thread.
+  /// @param host  outlives the recorder
+  /// @throws std::system_error if no thread can be made
   void begin(StationHost& host);
   void write_report(FaultReport report);
   [[nodiscard]] std::optional<Note> next_note();
-  /// Writes what the station has left, and ends. Call it after StationHost::shut_down().
-  /// @param in_good_order  false: the log does not get its name, and so takes that of no finished one
+  /// Writes the steps that the station still holds, and ends the thread. Call
+  /// it after StationHost::shut_down().
+  /// @param in_good_order  false: the log keeps the name FILE.partial, so that it does not replace
+  /// a finished log
   void finish(bool in_good_order) noexcept;
-  /// Whether there is a log that is not whole.
+  /// @returns true if a log could not be written to its end
   [[nodiscard]] bool lost() const noexcept { return lost_; }
 
  private:
@@ -52,7 +59,7 @@ class RunRecorder {
   void write_reports() noexcept;
   void commit() noexcept;
   void give_up_log(const std::exception& error) noexcept;
-  // Where there is no memory for a note, there is none. @param text, make  called for it
+  // Both leave the note out if there is no memory for it. `text` returns the text, and `make` the note.
   template <class Text>
   void complain(Text text) noexcept;
   template <class Make>
@@ -60,7 +67,7 @@ class RunRecorder {
 
   const std::filesystem::path reports_;
   StationHost* host_ = nullptr;
-  std::optional<OutputFile> log_;  ///< the thread's while there is one
+  std::optional<OutputFile> log_;  ///< the thread uses it while there is one
   std::atomic<bool> lost_{false};
   std::atomic<bool> ending_{false};
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -29,15 +30,16 @@ int print_scenes() {
 
 void build_and_print(const std::string& name) {
   const SceneDescription scene = load_scene(name);
-  const auto model = std::make_unique<HapticModel>(build_model(scene));
-  const Motion motion = build_motion(scene);
-  const HapticState state(*model);
+  ResolvedScene resolved = resolve(scene, {.motion = true});
+  const Motion motion = resolved.motion.value();
+  const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
+  const HapticState state(*model, scene.parameters);
   fmt::print("{}: good; triangles: hand {}, object {}; {:.6g} s at {:.6g} Hz\n", name,
              model->hand.triangle_count(), model->object.triangle_count(), simulation_seconds(scene, motion),
-             scene.rate_hz);
+             scene.parameters.rate_hz);
 }
 
-/// Everything that `simulate` would refuse before its first step, a line each.
+/// Checks scenes: reports everything that `simulate` would refuse before its first step, a line each.
 int check_scenes(const std::vector<std::string>& names) {
   int code = kDone;
   for (const std::string& name : names) {
@@ -60,11 +62,12 @@ int print_keys(bool markdown) {
     return kDone;
   }
   for (const SceneKey& key : scene_keys()) {
-    std::string value = key.type;
+    const SceneKeyText row = text_of(key);
+    std::string value = row.type;
     if (!key.unit.empty()) value += fmt::format(" [{}]", key.unit);
-    if (!key.range.empty()) value += ", " + key.range;
-    if (!key.default_value.empty()) value += ", default " + key.default_value;
-    fmt::print("{:<40} {}\n{:<40} {}\n", key.path, key.meaning, "", value);
+    if (!row.range.empty()) value += ", " + row.range;
+    if (!row.default_value.empty()) value += ", default " + row.default_value;
+    fmt::print("{:<40} {}\n{:<40} {}\n", key.path, row.meaning, "", value);
   }
   return kDone;
 }

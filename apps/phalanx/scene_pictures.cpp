@@ -5,42 +5,44 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "commands.h"
+#include "phalanx/figures/contact_sheet.h"
+#include "phalanx/figures/picture_moment.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/build_model.h"
-#include "phalanx/scene/hand_meshes.h"
-#include "phalanx/study/contact_sheet.h"
-#include "phalanx/study/picture_moment.h"
 #include "phalanx/study/simulate.h"
-#include "progress_bar.h"
+#include "progress.h"
 
 namespace phalanx {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// What one picture shows.
+/// Content of one picture.
 struct Sitting {
   std::string name;
-  SegmentMeshes hand;
+  DrawnHand hand;
   TriangleMesh object;
   Snapshot snapshot;
-  double largest_force = 0.0;  ///< of a segment [N]
+  double largest_force = 0.0;  ///< largest force of a segment [N]
 };
 
 Sitting sit(const std::string& name) {
   const SceneDescription scene = load_scene(name);
-  const auto model = std::make_unique<HapticModel>(build_model(scene));
-  const Motion motion = build_motion(scene);
-  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);
+  ResolvedScene resolved = resolve(scene, {.hand = HandDetail::kDrawn, .motion = true});
+  const Motion motion = resolved.motion.value();
+  DrawnHand hand = drawn_hand(resolved.hand);
+  const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
+  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.parameters.rate_hz);
   Sitting sitting{.name = scene.name,
-                  .hand = load_display_meshes(scene.hand, model->hand.meshes()),
+                  .hand = std::move(hand),
                   .object = model->object.mesh(),
                   .snapshot = {},
                   .largest_force = 0.0};
   PictureMoment moment(ticks);
-  simulate(*model, motion, ticks,
+  simulate(*model, scene.parameters, motion, ticks,
            {.tick = [&](const Snapshot& snapshot) { moment.see(snapshot); }, .progress = {}});
   sitting.snapshot = moment.snapshot();
   for (const SegmentSnapshot& segment : sitting.snapshot.segment)

@@ -7,7 +7,7 @@
 namespace phalanx {
 namespace {
 
-constexpr int kFramesPerTick = 256;  ///< a flood must not keep the controller from its tick
+constexpr int kFramesPerTick = 256;  ///< limit, so that a flood does not delay the controller's tick
 
 }  // namespace
 
@@ -25,7 +25,7 @@ ServedStatistics ServedController::serve(const Clock& clock, const Transport& tr
                                          const volatile std::sig_atomic_t& stop) {
   const double period = controller_.period();
   const double begin = clock.now();
-  std::uint64_t next = 1;  // number of the tick, on the process's clock
+  std::uint64_t next = 1;  // number of the tick on the process's clock
   while (stop == 0 && !transport.lost()) {
     const double t = static_cast<double>(next) * period;
     if (seconds && t > *seconds) break;
@@ -78,7 +78,7 @@ void ServedController::take_frames(double t, const PacketFaults& faults) noexcep
   }
 }
 
-/// Of the session's own commands, whether the controller uses them or not.
+/// Notes the newest command of the session, whether the controller uses it or not.
 void ServedController::note_command(std::span<const std::uint8_t> frame) noexcept {
   phx_message message;
   if (phx_decode(frame.data(), frame.size(), &message) != PHX_OK) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated controller on a wire, in real time: what `phalanx device simulate` runs.
+// A simulated controller on a wire, in real time, for `phalanx device simulate`.
 #pragma once
 
 #include <array>
@@ -12,32 +12,34 @@
 #include "controller_log.h"
 #include "faulty_wire.h"
 #include "phalanx/device/clock.h"
-#include "phalanx/device/simulated_controller.h"
+#include "phalanx/simulation/simulated_controller.h"
 
 namespace phalanx {
 
-/// What has been seen by the end.
+/// Counts of a run, at its end.
 struct ServedStatistics {
   std::uint64_t ticks = 0;
-  std::uint64_t late = 0;  ///< ticks that were left out because the process was not given its time
+  std::uint64_t late = 0;  ///< ticks that were left out because the process did not run in time
   std::uint64_t restarts = 0;
-  double seconds = 0.0;  ///< of the (slowed) clock
+  double seconds = 0.0;  ///< time of the (slowed) clock
 };
 
-/// At each tick: what has come in, the tick itself, what goes out. A tick that is missed is not made up: the
-/// controller's clock stays the process's (slowed) clock, while the plant stands still for that long.
+/// Real-time loop of a simulated controller. Each tick takes the received frames, makes the tick, and sends
+/// the replies. A missed tick is not repeated: the controller's clock stays the process's (slowed) clock,
+/// while the plant stands still for that time.
 class ServedController {
  public:
-  /// All must outlive it. @param log  may be null
+  /// Makes the loop. All arguments must outlive it.
+  /// @param log  may be null
   ServedController(SimulatedController& controller, FaultyWire& wire, ControllerFaultPlan& plan,
                    ControllerLog* log);
 
-  /// Until `stop` is not 0, `seconds` have gone, or the transport is lost.
+  /// Runs until `stop` is not 0, `seconds` have passed, or the transport is lost.
   /// @param stop  set by a signal handler
   ServedStatistics serve(const Clock& clock, const Transport& transport, std::optional<double> seconds,
                          const volatile std::sig_atomic_t& stop);
 
-  /// Differs from start to start, so that commands of the session before are refused.
+  /// @returns an epoch that differs from start to start, so that commands of an earlier session are refused.
   [[nodiscard]] static std::uint32_t new_epoch();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx simulate [SCENE]: a motion through the step, as fast as it goes.
+// phalanx simulate [SCENE]: a motion through the step, as fast as the machine allows.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,16 +9,16 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
-#include "duration_text.h"
+#include "error_line.h"
 #include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
-#include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/study/simulate.h"
-#include "progress_bar.h"
+#include "progress.h"
 #include "run_outputs.h"
 #include "summary_table.h"
 #include "usage.h"
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPictureSeconds = 15.0;  // of one core, 1280 x 960
+constexpr double kPictureSeconds = 15.0;  // time of one core for 1280 x 960
 
 struct SimulateOptions {
   std::string scene = "grasp_teapot";
@@ -43,14 +43,14 @@ struct SimulateOptions {
   bool quiet = false;
 };
 
-/// An option by its own name that stands for a scene key.
+/// A command-line option that sets a scene key.
 struct KeyOption {
   std::string option;  ///< as typed: "--seconds -1"
   std::string key;
   std::string value;  ///< TOML
 };
 
-/// A TOML basic string; JSON's escapes are a subset of TOML's.
+/// Makes a TOML basic string; JSON's escapes are a subset of TOML's.
 KeyOption text_option(const std::string& option, const std::string& key, const std::string& text) {
   try {
     return {fmt::format("{} {}", option, text), key, nlohmann::json(text).dump()};
@@ -61,10 +61,10 @@ KeyOption text_option(const std::string& option, const std::string& key, const s
   }
 }
 
-/// A TOML float: one with neither point nor exponent would be an integer.
+/// Makes a TOML float: without a point or exponent, the number would be an integer.
 KeyOption number_option(const std::string& option, const std::string& key, double number) {
   const std::string text = fmt::format("{}", number);
-  const bool is_float = text.find_first_of(".en") != std::string::npos;  // also of inf and nan
+  const bool is_float = text.find_first_of(".en") != std::string::npos;  // true for inf and nan, too
   return {fmt::format("{} {}", option, text), key, is_float ? text : text + ".0"};
 }
 
@@ -85,7 +85,7 @@ std::vector<KeyOption> key_options(const SimulateOptions& o) {
   return result;
 }
 
-/// Calls `read` with the overrides; a refusal names the option that was typed, not the --set it stands for.
+/// Calls `read` with the overrides. A refusal names the typed option, not the --set that it stands for.
 template <typename Read>
 SceneDescription read_with(Overrides overrides, const std::vector<KeyOption>& options, const Read& read) {
   for (const KeyOption& option : options) overrides.emplace_back(option.key, option.value);
@@ -102,8 +102,8 @@ SceneDescription read_with(Overrides overrides, const std::vector<KeyOption>& op
   }
 }
 
-/// The scene with the file in the place of its objects, at the pose of the first: what --set says of
-/// objects.0 then concerns the file, and its pose.
+/// Replaces the scene's objects by the file, at the pose of the first object. --set of a key of objects.0
+/// then concerns the file and its pose.
 SceneDescription with_object(const SimulateOptions& options, const Overrides& set) {
   Overrides of_scene;
   for (const auto& [key, value] : set) {
@@ -169,7 +169,7 @@ OutputPlan plan(const SimulateOptions& options) {
   return result;
 }
 
-/// The number of the tick at a time, from 0.
+/// @returns the number of the tick at a time, from 0.
 std::uint64_t tick_at(double seconds, std::uint64_t ticks, double rate_hz) {
   const double last = static_cast<double>(ticks - 1);
   const double tick = std::round(seconds * rate_hz);
@@ -181,32 +181,33 @@ std::uint64_t tick_at(double seconds, std::uint64_t ticks, double rate_hz) {
 int simulate_scene(const SimulateOptions& options) {
   OutputPlan output_plan = plan(options);
   SceneDescription scene = described(options);
-  // What the scene's line says of its own motion and objects is not true of others.
+  // The scene's description of its own motion and objects does not hold for others.
   if (!options.motion.empty() || !options.object.empty()) scene.description.clear();
-  const auto model = std::make_unique<HapticModel>(build_model(scene));
-  const Motion motion = build_motion(scene);
-  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.rate_hz);
-  if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.rate_hz);
+  const bool draws = !output_plan.picture.empty();
+  ResolvedScene resolved =
+      resolve(scene, {.hand = draws ? HandDetail::kDrawn : HandDetail::kCollision, .motion = true});
+  const Motion motion = resolved.motion.value();
+  DrawnHand drawn = draws ? drawn_hand(resolved.hand) : DrawnHand();
+  const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
+  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.parameters.rate_hz);
+  if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.parameters.rate_hz);
 
   Summary summary;
   summary.scene = scene.name;
-  summary.rate_hz = scene.rate_hz;
-  summary.seconds = static_cast<double>(ticks) / scene.rate_hz;
+  summary.rate_hz = scene.parameters.rate_hz;
+  summary.seconds = static_cast<double>(ticks) / scene.parameters.rate_hz;
   summary.hand_triangles = model->hand.triangle_count();
   summary.object_triangles = model->object.triangle_count();
   {
-    const HapticState checked(*model);
-  }  // a hand that starts inside is reported before any file is touched
-  RunOutputs outputs(
-      output_plan, *model,
-      output_plan.picture.empty() ? SegmentMeshes() : load_display_meshes(scene.hand, model->hand.meshes()),
-      ticks);
-  if (!output_plan.picture.empty() && !options.quiet)
-    fmt::print(stderr, "the picture takes about {}\n", duration_text(on_all_cores(kPictureSeconds)));
+    const HapticState checked(*model, scene.parameters);
+  }  // a hand that starts inside is reported before any file is written
+  RunOutputs outputs(output_plan, *model, std::move(drawn), ticks);
+  if (draws && !options.quiet)
+    print_aside(fmt::format("the picture takes about {}\n", duration_text(on_all_cores(kPictureSeconds))));
   {
     ProgressBar bar("simulating", !options.quiet);
     summary.step_us =
-        simulate(*model, motion, ticks,
+        simulate(*model, scene.parameters, motion, ticks,
                  {.tick =
                       [&](const Snapshot& snapshot) {
                         add_tick(summary, snapshot);
@@ -223,7 +224,7 @@ int simulate_scene(const SimulateOptions& options) {
   if (options.out.empty()) {
     fmt::print("{}", summary_table(summary));
   } else {
-    for (const std::string& warning : warnings(summary)) fmt::print("warning  {}\n", warning);
+    fmt::print("{}", warning_lines(summary));
     fmt::print("wrote    {} ({} ticks, peak {:.2f} N in all at {:.3f} s)\n", options.out, ticks,
                summary.peak_total_force, summary.peak_total_force_time_s);
   }

@@ -11,10 +11,10 @@ namespace {
 
 struct Part {
   std::string text;
-  std::string brief = {};  ///< where that does not fit
+  std::string brief = {};  ///< shorter form, if that does not fit
 };
 
-/// "thumb 1.1 index 3.2 N": what is sent, not what the step would send.
+/// Formats "thumb 1.1 index 3.2 N": the forces sent, not those that the step would send.
 Part forces(const StationView& view) {
   std::string text;
   double largest = 0.0;

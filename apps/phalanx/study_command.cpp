@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx study: sweeps over anything that a scene, a device or a patient can say.
+// phalanx study: sweeps over any parameter of a scene, a device or a patient.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,15 +12,16 @@
 #include <vector>
 
 #include "commands.h"
-#include "duration_text.h"
+#include "error_line.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/study/closed_loop/trial.h"
 #include "phalanx/study/laboratory/outputs.h"
 #include "phalanx/study/laboratory/report.h"
 #include "phalanx/study/laboratory/run_study.h"
 #include "phalanx/study/laboratory/scene_inputs.h"
 #include "phalanx/study/laboratory/study_file.h"
+#include "phalanx/study/trial.h"
+#include "progress.h"
 #include "study_progress.h"
 #include "usage.h"
 
@@ -45,7 +46,7 @@ void write_all(const std::filesystem::path& out, const Study& study,
                const std::vector<PointResult>& results) {
   const Made made = made_here();
   write_text_file(out / "report.html", study_report_html(study, results, made));
-  write_study_outputs(out, study, results, made);  // summary.json is last: a folder that has it is complete
+  write_study_outputs(out, study, results, made);  // summary.json is last: a folder with it is complete
 }
 
 std::string limit_text(const PointResult& result) {
@@ -67,14 +68,14 @@ void print_results(const std::string& out, const Study& study, const std::vector
   fmt::print("wrote    {}/study.csv, summary.json, report.html ({} points)\n", out, results.size());
 }
 
-/// How much it is, before it starts; what a journal holds already is not taken off.
+/// Reports the expected amount of work, before it starts, without subtracting finished points of a journal.
 void announce(const Study& study, const StudyOptions& options) {
-  constexpr double kTrialSeconds = 0.05;  // of one core: 5.3 s at 100 times real time
+  constexpr double kTrialSeconds = 0.05;  // time of one core: 5.3 s at 100 times real time
   const double trials = static_cast<double>(most_trials(study).all) / options.shard.count;
   const double busy = trials * kTrialSeconds;
   const double seconds = options.jobs > 0 ? std::max(1.0, busy / options.jobs) : on_all_cores(busy);
-  fmt::print(stderr, "study: {} points, at most {:.0f} trials, at most about {}\n", point_count(study),
-             trials, duration_text(seconds));
+  print_aside(fmt::format("study: {} points, at most {:.0f} trials, at most about {}\n", point_count(study),
+                          trials, duration_text(seconds)));
 }
 
 int run(const RunChoices& choices) {
@@ -92,7 +93,7 @@ int run(const RunChoices& choices) {
       if (!std::exchange(announced, true)) announce(study, options);
       line.show(progress);
     };
-    // Here, and only here, the laboratory meets the closed loop.
+    // The only place where the laboratory uses the closed loop.
     const TrialFunction trial = make_trial_function(scene_of(study));
     results = run_study(study, scene_check(study), trial, choices.out, options);
   }

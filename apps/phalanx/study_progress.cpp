@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <string>
 
-#include "duration_text.h"
+#include "error_line.h"
+#include "progress.h"
 
 namespace phalanx {
 namespace {
@@ -29,20 +30,19 @@ StudyProgressLine::StudyProgressLine(bool wanted)
     : wanted_(wanted), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 StudyProgressLine::~StudyProgressLine() {
-  if (wanted_ && terminal_) fmt::print(stderr, "\r\033[K");
+  if (wanted_ && terminal_) print_aside("\r\033[K");
 }
 
 void StudyProgressLine::show(const StudyProgress& progress) {
   if (!wanted_ || progress.total == 0) return;
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", text(progress));
-    std::fflush(stderr);
+    print_aside(fmt::format("\r\033[K{}", text(progress)));
     return;
   }
   const int tenths = static_cast<int>(10LL * progress.done / progress.total);
   if (tenths == tenths_shown_) return;
   tenths_shown_ = tenths;
-  fmt::print(stderr, "{}\n", text(progress));
+  print_aside(fmt::format("{}\n", text(progress)));
 }
 
 }  // namespace phalanx

@@ -5,8 +5,8 @@
 
 namespace phalanx {
 
-/// "study 12/40 (30%), 3 min 20 s gone, about 8 min left" on standard error: on a terminal in place, else a
-/// line each tenth of the points, so that a log stays short.
+/// Progress on standard error: "study 12/40 (30%), 3 min 20 s gone, about 8 min left". A terminal shows it in
+/// place. Otherwise each tenth of the points has a line, so that a log stays short.
 class StudyProgressLine {
  public:
   explicit StudyProgressLine(bool wanted);

@@ -2,8 +2,10 @@
 #include "summary_table.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include "phalanx/study/human_names.h"
+#include "emphasis.h"
+#include "phalanx/figures/human_names.h"
 
 namespace phalanx {
 namespace {
@@ -37,6 +39,14 @@ std::string joints(const Summary& summary) {
 
 }  // namespace
 
+std::string warning_lines(const Summary& summary) {
+  const bool colour = takes_colour(STDOUT_FILENO);
+  std::string text;
+  for (const std::string& warning : warnings(summary))
+    text += emphasised(Emphasis::kWarning, "warning  " + warning, colour) + "\n";
+  return text;
+}
+
 std::string summary_table(const Summary& summary) {
   std::string text = fmt::format("{}: {} ticks, {:.6g} s at {:.6g} Hz; triangles: hand {}, object {}\n\n",
                                  summary.scene, summary.ticks, summary.seconds, summary.rate_hz,
@@ -45,7 +55,7 @@ std::string summary_table(const Summary& summary) {
   for (const LimiterActivity& limiter : limiters(summary)) {
     if (limiter.ticks > 0) text += fmt::format("limit    {} acted in {} ticks\n", limiter.key, limiter.ticks);
   }
-  for (const std::string& warning : warnings(summary)) text += fmt::format("warning  {}\n", warning);
+  text += warning_lines(summary);
   const StepTimes& t = summary.step_us;
   text +=
       fmt::format("step     p50 {:.1f} us, p90 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us\n",

@@ -7,7 +7,10 @@
 
 namespace phalanx {
 
-/// The run in a few lines of text: what touched, the peaks, the limits that acted, warnings, step times.
+/// Formats a line for each warning; yellow if standard output is a terminal.
+[[nodiscard]] std::string warning_lines(const Summary& summary);
+
+/// Formats a run in a few lines of text: contacts, peaks, limits that acted, warnings, step times.
 [[nodiscard]] std::string summary_table(const Summary& summary);
 
 }  // namespace phalanx

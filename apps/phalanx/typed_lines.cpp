@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "typed_lines.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <exception>
 #include <string_view>
 #include <system_error>
@@ -19,7 +23,7 @@
 namespace phalanx {
 namespace {
 
-constexpr int kAskAgain = 200;               ///< while the terminal belongs to another job [ms]
+constexpr int kAskAgain = 200;               ///< interval while the terminal belongs to another job [ms]
 constexpr std::size_t kLongestLine = 65536;  ///< [bytes]
 
 int make_event() {
@@ -28,12 +32,33 @@ int make_event() {
   return event;
 }
 
+/// Opens standard input once more, without blocking: another reader may take a line between poll() and
+/// read(), and a reader that waits inside read() could be neither woken nor joined. The flag of standard
+/// input itself is shared with the shell and stays as it is.
+/// @returns standard input itself if its reads do not block (files), or if it cannot be opened again
+int open_input() noexcept {
+  struct stat status = {};
+  std::array<char, 64> name;
+  const bool pipe = ::fstat(STDIN_FILENO, &status) == 0 && S_ISFIFO(status.st_mode);
+  const bool terminal =
+      ::isatty(STDIN_FILENO) == 1 && ::ptsname_r(STDIN_FILENO, name.data(), name.size()) != 0;
+  if (!pipe && !terminal) return STDIN_FILENO;
+  const int own = ::open("/proc/self/fd/0", O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  return own < 0 ? STDIN_FILENO : own;
+}
+
+/// @returns the number of bytes read; 0 at the end; -1 with errno, EAGAIN if nothing waits
+ssize_t read_waiting(int input, char* text, std::size_t size) noexcept {
+  const ssize_t count = ::recv(input, text, size, MSG_DONTWAIT);
+  return count < 0 && errno == ENOTSOCK ? ::read(input, text, size) : count;
+}
+
 bool terminal_belongs_to_another_job() noexcept {
   const pid_t owner = ::tcgetpgrp(STDIN_FILENO);
   return owner >= 0 && owner != ::getpgrp();
 }
 
-/// `stop` in any case of letters: it is typed in a hurry.
+/// @returns true for `stop` in any letter case: it is typed in a hurry.
 bool is_stop(std::string_view line) noexcept {
   constexpr std::string_view kStop = "stop";
   return std::equal(line.begin(), line.end(), kStop.begin(), kStop.end(),
@@ -43,12 +68,16 @@ bool is_stop(std::string_view line) noexcept {
 }  // namespace
 
 TypedLines::TypedLines(StationHost& host)
-    : host_(host), wake_(make_event()), thread_(start_nice_thread("phalanx-typed", [this] { read_all(); })) {}
+    : host_(host),
+      wake_(make_event()),
+      input_(open_input()),
+      thread_(start_nice_thread("phalanx-typed", [this] { read_all(); })) {}
 
 TypedLines::~TypedLines() {
   ::eventfd_write(wake_, 1);
   thread_.join();
   ::close(wake_);
+  if (input_ != STDIN_FILENO) ::close(input_);
 }
 
 std::optional<TypedLines::Line> TypedLines::next() {
@@ -65,12 +94,12 @@ std::size_t TypedLines::take_left_out() {
 }
 
 void TypedLines::read_all() noexcept {
-  std::array<pollfd, 3> events{{{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0},
+  std::array<pollfd, 3> events{{{.fd = input_, .events = POLLIN, .revents = 0},
                                 {.fd = wake_, .events = POLLIN, .revents = 0},
                                 {.fd = end_descriptor, .events = POLLIN, .revents = 0}}};
   auto& [input, wake, end] = events;
   for (;;) {
-    input.fd = ended_ || in_background_ ? -1 : STDIN_FILENO;
+    input.fd = ended_ || in_background_ ? -1 : input_;
     const int count = ::poll(events.data(), events.size(), in_background_ ? kAskAgain : -1);
     if (count < 0) continue;
     if (wake.revents != 0) return;
@@ -82,7 +111,7 @@ void TypedLines::read_all() noexcept {
     if (count == 0 || input.revents == 0) continue;
     try {
       read_some();
-    } catch (const std::exception&) {  // no memory for what was typed: it may have been `stop`
+    } catch (const std::exception&) {  // no memory for the typed text: it may have been `stop`
       host_.stop();
       pending_.clear();
     }
@@ -91,7 +120,7 @@ void TypedLines::read_all() noexcept {
 
 void TypedLines::read_some() {
   std::array<char, 4096> text;
-  const ssize_t count = ::read(STDIN_FILENO, text.data(), text.size());
+  const ssize_t count = read_waiting(input_, text.data(), text.size());
   if (count > 0) {
     pending_.append(text.data(), static_cast<std::size_t>(count));
     return take_lines();
@@ -100,7 +129,7 @@ void TypedLines::read_some() {
   in_background_ = count < 0 && errno == EIO && terminal_belongs_to_another_job();
   ended_ = !in_background_;
   if (!ended_ || pending_.empty()) return;
-  pending_ += '\n';  // the last line may end without one
+  pending_ += '\n';  // the last line may lack its line end
   take_lines();
 }
 

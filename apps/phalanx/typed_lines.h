@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is typed at the terminal of a running station.
+// The lines that are typed at the terminal of a running station.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +14,29 @@
 
 namespace phalanx {
 
-/// Reads standard input on a thread of its own. The line `stop`, and a signal that asks the program to end,
-/// take the torque away at once, from that thread, whatever the others do. All lines then wait for the owner,
-/// in their order. Standard input that ends is not asked again; a terminal that belongs to another job is
-/// asked again once it does not.
+/// Reader of standard input on a thread of its own. The line `stop`, and a signal that asks the program to
+/// end, remove the torque at once from that thread. All lines then wait for the owner, in their order. After
+/// its end, standard input is not read again. A terminal that belongs to another job is read again
+/// when that changes.
 class TypedLines {
  public:
-  static constexpr std::size_t kWaiting = 1000;  ///< lines; those that come when so many wait are left out
+  static constexpr std::size_t kWaiting = 1000;  ///< largest number of waiting lines; further ones
+                                                 ///< are left out
 
   struct Line {
     std::string text;
-    std::uint64_t stops = 0;  ///< of `stop`: StationHost::stops() right after it
+    std::uint64_t stops = 0;  ///< for `stop`: StationHost::stops() right after it
   };
 
-  /// @param host  outlives it. @throws std::system_error: no thread, or no descriptor
+  /// @param host  outlives the reader
+  /// @throws std::system_error if there is no thread or no descriptor
   explicit TypedLines(StationHost& host);
   TypedLines(const TypedLines&) = delete;
   TypedLines& operator=(const TypedLines&) = delete;
   ~TypedLines();
 
   [[nodiscard]] std::optional<Line> next();
-  /// How many lines were left out since this was last asked.
+  /// @returns the number of lines left out since the last call.
   [[nodiscard]] std::size_t take_left_out();
 
  private:
@@ -43,10 +45,11 @@ class TypedLines {
   void take_lines();
 
   StationHost& host_;
-  const int wake_;  ///< eventfd: the end
+  const int wake_;   ///< eventfd that signals the end
+  const int input_;  ///< standard input, opened without blocking where that is possible
 
-  // The thread's.
-  std::string pending_;  ///< the beginning of a line
+  // The reading thread only.
+  std::string pending_;  ///< the beginning of an incomplete line
   bool too_long_ = false;
   bool ended_ = false;
   bool in_background_ = false;

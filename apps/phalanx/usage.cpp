@@ -14,7 +14,7 @@
 namespace phalanx {
 namespace {
 
-/// The innermost command that the line got to.
+/// @returns the innermost command that was parsed.
 const CLI::App& innermost(const CLI::App& app) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
@@ -28,7 +28,7 @@ std::string full_name(const CLI::App& command) {
 
 std::vector<std::string> command_names(const CLI::App& command) {
   std::vector<std::string> names;
-  for (const CLI::App* sub : command.get_subcommands({})) names.push_back(sub->get_name());
+  for (const CLI::App* sub : visible_commands(command)) names.push_back(sub->get_name());
   return names;
 }
 
@@ -40,7 +40,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// A name that was not typed to its end beats one that is merely spelt alike; empty: none is near.
+/// Suggests a name. A typed prefix of a name is preferred to a similar spelling; empty: no name is near.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (name.starts_with(word)) return name;
@@ -48,17 +48,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return near_name(word, names);
 }
 
-std::vector<std::string> settable_keys() {
-  std::vector<std::string> keys;
-  for (const SceneKey& key : scene_keys()) {
-    keys.push_back(key.path);
-    if (const std::size_t at = keys.back().find("[]"); at != std::string::npos)
-      keys.back().replace(at, 2, ".0");
-  }
-  return keys;
-}
-
-/// An option, or a scene's key where the command takes --set; empty: none is near.
+/// Suggests an option, or a scene's key if the command takes --set; empty: none is near.
 std::string meant_option(const CLI::App& command, const std::string& word) {
   const std::vector<std::string> options = option_names(command);
   std::string option = suggestion(word, options);
@@ -79,7 +69,7 @@ bool is_number(const std::string& text) {
   return CLI::detail::lexical_cast(text, value);
 }
 
-/// "200Hz" for a number, in words; empty: the mistake is another one.
+/// Describes a wrong number, such as "200Hz", in words; empty: it is another mistake.
 std::string number_mistake(const CLI::App& command, const CLI::ParseError& error) {
   const std::string what = error.what();
   const bool conversion = what.starts_with("Could not convert: ");
@@ -98,6 +88,20 @@ std::string number_mistake(const CLI::App& command, const CLI::ParseError& error
 }
 
 }  // namespace
+
+std::vector<const CLI::App*> visible_commands(const CLI::App& command) {
+  return command.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); });
+}
+
+std::vector<std::string> settable_keys() {
+  std::vector<std::string> keys;
+  for (const SceneKey& key : scene_keys()) {
+    keys.push_back(key.path);
+    if (const std::size_t at = keys.back().find("[]"); at != std::string::npos)
+      keys.back().replace(at, 2, ".0");
+  }
+  return keys;
+}
 
 void refuse_empty_values(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// own_device [SECONDS [SLOWDOWN]]: a session of the station with a driver of one's own, without real-time
-// rights. SLOWDOWN makes everything that many times slower.
+// own_device [SECONDS [SLOWDOWN]]: a session of the station with a driver of your own, without real-time
+// scheduling. Everything runs SLOWDOWN times slower.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -15,7 +15,7 @@ namespace {
 
 int run(double seconds, double slowdown) {
   const phalanx::Clock clock(slowdown);
-  phalanx::StationModel made = phalanx::make_station_model(phalanx::load_scene("press_teapot"), "");
+  const phalanx::StationModel made = phalanx::make_station_model(phalanx::load_scene("press_teapot"), "");
 
   const auto device = make_my_device();
   device->open();
@@ -26,7 +26,7 @@ int run(double seconds, double slowdown) {
   phalanx::StationOptions options;
   options.ask_for_realtime = false;
   options.safety = made.safety;
-  phalanx::Station station(std::move(made.model), *device, std::move(map), options, clock);
+  phalanx::Station station(made.model, made.parameters, *device, std::move(map), options, clock);
   const double begin = clock.now();
   station.start();
 

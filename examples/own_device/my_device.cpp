@@ -20,7 +20,8 @@ class MyDevice final : public Device {
     info_.serial = "prototype-1";
     info_.rate_hz = kRate;
     info_.renders_torque = false;
-    // What is measured, where, which counts are valid, and value = gain raw + offset.
+    info_.watchdog = 0.020;  // its controller releases by itself 20 ms after the host's last message
+    // Each channel states the joint, the valid counts, and value = gain raw + offset.
     for (const int joint : {joint_index(1, 0), joint_index(1, 2)}) {
       info_.channels.push_back({.kind = ChannelKind::kAngle,
                                 .index = joint,
@@ -31,19 +32,20 @@ class MyDevice final : public Device {
     }
   }
 
-  // Set-up: connect here, wait until you know who is there, throw DeviceError with a remedy if nobody is.
+  // Set-up: connect here, and wait until info() is known. If no device answers, throw DeviceError with a
+  // remedy.
   void open() override {
     begun_ = false;
     next_ = 0;
   }
 
-  // Zero torque, then let go. May come at any time, also twice.
+  // Command zero torque, then release the device. It may be called at any time, also twice.
   void close() noexcept override {}
 
   [[nodiscard]] const DeviceInfo& info() const override { return info_; }
 
-  // The loop calls this once a step: hand out what has come in since the last call, oldest first, without
-  // waiting. A device on a wire has a thread that fills a SampleQueue; this one makes up what was due.
+  // The loop calls this once a step. Return the samples since the last call, oldest first, without waiting.
+  // A device on a wire has a thread that fills a SampleQueue; this one computes the samples that are due.
   [[nodiscard]] std::size_t receive(double now, std::span<DeviceSample> out) noexcept override {
     if (!begun_) start_ = now;
     begun_ = true;
@@ -54,11 +56,11 @@ class MyDevice final : public Device {
     return count;
   }
 
-  // The newest command takes the place of all before it. A thread of yours gets it through a Latest<>, and
-  // lets go of the motors when none has come for 20 ms.
+  // The newest command replaces all before it. A thread of your own gets it through a Latest<>, and releases
+  // the motors when no command has come for 20 ms.
   void send(const DeviceCommand& command) noexcept override { enabled_ = command.enable && !command.fault; }
 
-  // Somebody has looked and says that a fault may be cleared.
+  // A person has examined the device and clears a fault.
   void reset() noexcept override {}
 
  private:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver in one file: replace what stands in my_device.cpp by your device's own.
+// A driver in one file. Replace the content of my_device.cpp by that of your device.
 #pragma once
 
 #include <memory>
 
 #include "phalanx/device/device.h"
 
-/// A device that is not there: two potentiometers on an index finger that closes and opens, 500 samples a
-/// second, and no motors. Its counts are those of a 12-bit converter.
+/// Makes an invented device: two potentiometers on an index finger that closes and opens, 500 samples a
+/// second, no motors. Its counts are those of a 12-bit converter.
 [[nodiscard]] std::unique_ptr<phalanx::Device> make_my_device();

@@ -9,14 +9,14 @@ namespace {
 
 using Bits = std::array<std::uint64_t, 3>;
 
-/// What tells two normals apart: their bits, so that 0 and -0 stay two.
+/// Returns the bits of a normal, its identity: 0 and -0 differ.
 Bits bits_of(const Vec3& n) {
   return {std::bit_cast<std::uint64_t>(n.x()), std::bit_cast<std::uint64_t>(n.y()),
           std::bit_cast<std::uint64_t>(n.z())};
 }
 
-/// Numbers the different vectors that it is shown, 0, 1, 2, ... An open-addressed table over the vectors
-/// themselves: what it needs besides them are 8 to 16 bytes for each.
+/// Numbering of distinct vectors 0, 1, 2, ... in order of arrival. It is an open-addressed hash table over
+/// the vectors themselves, and needs 8 to 16 bytes for each.
 class Numbering {
  public:
   explicit Numbering(std::vector<Vec3>& seen) : seen_(seen), slot_(kSmallest, kEmpty) {}
@@ -36,7 +36,7 @@ class Numbering {
   static constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
   static constexpr std::size_t kSmallest = 16;
 
-  /// The slot that holds n, or the empty one where it belongs.
+  /// Returns the slot that holds n, or the empty one where it belongs.
   [[nodiscard]] std::size_t place_of(const Vec3& n) const {
     const Bits wanted = bits_of(n);
     std::uint64_t hash = 0;
@@ -56,7 +56,7 @@ class Numbering {
   }
 
   std::vector<Vec3>& seen_;
-  std::vector<std::uint32_t> slot_;  // a power of two of them, at most half full
+  std::vector<std::uint32_t> slot_;  // a power of two in number, at most half full
 };
 
 }  // namespace

@@ -14,8 +14,8 @@
 namespace phalanx {
 namespace {
 
-/// The mesh's closed parts: connected by shared vertices, a triangle that stands in it twice counted once. An
-/// open sheet contains nothing.
+/// Returns the mesh's closed parts, connected by shared vertices. A triangle that occurs twice counts once.
+/// An open sheet contains nothing.
 std::vector<TriangleMesh> closed_parts(const TriangleMesh& mesh) {
   std::vector<std::int32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -80,8 +80,8 @@ Containment::Containment(const TriangleMesh& object) : closed_(closed_parts(obje
 
 bool Containment::with(const TriangleMesh& segment, const Pose& X_WS) const {
   if (points_.empty()) return false;
-  // The surfaces do not cross, so that one vertex of the connected segment speaks for it. An inside-out solid
-  // counts like any other.
+  // The surfaces do not cross, and a segment is connected: one of its vertices decides. The absolute value
+  // admits an inside-out solid.
   for (const TriangleMesh& part : closed_) {
     if (std::abs(winding_number(part, X_WS * segment.vertices.front())) > 0.5) return true;
   }

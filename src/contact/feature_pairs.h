@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pairs of features (edges, corners and faces) of two triangles, among which their closest points are.
+// Pairs of features (edges, corners and faces) of two triangles; the closest points are those of
+// one such pair.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@ namespace phalanx {
 
 inline double clamp01(double x) noexcept { return x < 0.0 ? 0.0 : (x > 1.0 ? 1.0 : x); }
 
-/// Closest points of the segments p + s u and q + t v, s and t in [0, 1]. Either may be a point.
+/// Hands the closest points of the segments p + s u and q + t v, s and t in [0, 1], to keep(on_a, on_b).
+/// Either segment may be a point.
 template <class Keep>
 void edge_edge(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v, Keep&& keep) noexcept {
   const Vec3 r = p - q;
@@ -19,7 +21,7 @@ void edge_edge(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v, Keep&
   const double uv = u.dot(v);
   const double ur = u.dot(r);
   const double vr = v.dot(r);
-  // |u x v|^2. Nearly parallel: any s does, the projections below make it the best.
+  // This is |u x v|^2. For nearly parallel segments any s serves: the projections below optimise it.
   const double denominator = uu * vv - uv * uv;
   double s = denominator > 1e-14 * uu * vv ? clamp01((uv * vr - vv * ur) / denominator) : 0.0;
   double t = vv > 0.0 ? clamp01((uv * s + vr) / vv) : 0.0;
@@ -27,12 +29,12 @@ void edge_edge(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v, Keep&
   keep(p + s * u, q + t * v);
 }
 
-/// The plane of a triangle, unnormalised.
+/// Plane of a triangle, unnormalised.
 struct Face {
   Vec3 corner;
   Vec3 normal;
   double normal_squared;
-  std::array<Vec3, 3> inward;  ///< in the plane, from each edge towards the inside
+  std::array<Vec3, 3> inward;  ///< in the plane, normal to each edge, towards the inside
 };
 
 inline Face face_of(const Corners& t) noexcept {
@@ -40,7 +42,7 @@ inline Face face_of(const Corners& t) noexcept {
   face.corner = t[0];
   face.normal = (t[1] - t[0]).cross(t[2] - t[0]);
   face.normal_squared = face.normal.squaredNorm();
-  // A sliver's normal is rounding noise: its edges, which are as near to within its width, say it all.
+  // A sliver's normal is rounding noise. Its edges, which are as near to within its width, suffice.
   const double edges_squared = (t[1] - t[0]).squaredNorm() * (t[2] - t[0]).squaredNorm();
   if (!(face.normal_squared > 1e-18 * edges_squared)) face.normal_squared = 0.0;
   for (std::size_t i = 0; i < 3; ++i) face.inward[i] = face.normal.cross(t[(i + 1) % 3] - t[i]);
@@ -54,18 +56,18 @@ inline bool projects_inside(const Corners& t, const Face& face, const Vec3& p) n
   return true;
 }
 
-/// Corner-face pairs of `points` against `t`.
+/// Hands the corner-face pairs of `points` against `t` to keep(corner, foot).
 template <class Keep>
 void corners_against_face(const Corners& points, const Corners& t, const Face& face, Keep&& keep) noexcept {
-  if (!(face.normal_squared > 0.0)) return;  // a segment or a point: its edges say it all
+  if (!(face.normal_squared > 0.0)) return;  // a segment or a point: its edges suffice
   for (const Vec3& point : points) {
     const double height = face.normal.dot(point - face.corner);  // times |normal|
     if (projects_inside(t, face, point)) keep(point, point - (height / face.normal_squared) * face.normal);
   }
 }
 
-/// Hands every pair of features' closest points to keep(on_a, on_b), in a fixed order. The triangles do not
-/// cross.
+/// Hands the closest points of every pair of features to keep(on_a, on_b), in a fixed order.
+/// @pre the triangles do not cross
 template <class Keep>
 void for_each_feature_pair(const Corners& a, const Corners& b, Keep&& keep) noexcept {
   const std::array<Vec3, 3> ea = {a[1] - a[0], a[2] - a[1], a[0] - a[2]};
@@ -77,7 +79,7 @@ void for_each_feature_pair(const Corners& a, const Corners& b, Keep&& keep) noex
   corners_against_face(b, a, face_of(a), [&](const Vec3& corner, const Vec3& foot) { keep(foot, corner); });
 }
 
-/// The point of the segment p + s u, s in [0, 1], that is nearest to x.
+/// Returns the point of the segment p + s u, s in [0, 1], that is nearest to x.
 inline Vec3 nearest_on_edge(const Vec3& p, const Vec3& u, const Vec3& x) noexcept {
   const double uu = u.squaredNorm();
   return uu > 0.0 ? Vec3(p + clamp01(u.dot(x - p) / uu) * u) : p;

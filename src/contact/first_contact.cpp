@@ -23,10 +23,11 @@ int Path::first_moving() const noexcept {
 
 namespace {
 
-/// How far a segment may go before the pairs that it may meet are listed anew [m]: what is listed at once
-/// stays few, however far the hand has jumped.
+/// Distance that a segment may move before its pairs are listed again [m]. It keeps the list short, however
+/// far the hand has jumped.
 constexpr double kLongestReach = 2.5e-3;
 
+/// Search for the first stop of one digit along its path.
 class Search {
  public:
   Search(const ContactModel& model, const Path& path, double s, DigitTick& tick, GdpState& state) noexcept
@@ -38,7 +39,7 @@ class Search {
   Stop run(int& evaluations) noexcept {
     while (evaluations < kMaxEvaluations) {
       const double horizon = gather();
-      const bool crowded = s_ < 1.0 && !(horizon > s_);  // more pairs than can be listed, all about to be met
+      const bool crowded = s_ < 1.0 && !(horizon > s_);  // too many pairs to list at s
       for (bool reached = false; !reached && evaluations < kMaxEvaluations; ++evaluations) {
         const int blocked = evaluate(horizon);
         if (blocked >= 0) return {s_, blocked};
@@ -70,7 +71,7 @@ class Search {
   }
 
   /// Lists the pairs that may be met before s reaches the horizon.
-  /// @returns the horizon: 1, or less where the way is long or there are too many to list
+  /// @returns the horizon: 1, or less if the way is long or too many pairs are near
   double gather() noexcept {
     PairList& list = state_.pairs;
     list.count = 0;
@@ -87,7 +88,8 @@ class Search {
     return horizon;
   }
 
-  /// For how long every segment stays clear by what is known of its distance.
+  /// Returns how much s may grow while the known clearances guarantee that no segment comes
+  /// within the margin.
   [[nodiscard]] double known_to_be_clear() noexcept {
     double least = 1.0;
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
@@ -97,11 +99,12 @@ class Search {
     return least;
   }
 
-  /// Whether what is known of the segment's distance, or can be known soon, spares the search.
+  /// @returns true if the known clearance of a segment, or a new bound that is computed quickly, makes
+  /// the search unnecessary
   bool is_clear(int k, double horizon) noexcept {
-    constexpr double kTicks = 16.0;         // at this speed, that a new bound is worth
-    constexpr double kLeastAhead = 0.3e-3;  // however slow it is [m]
-    constexpr double kMostAhead = 4e-3;     // however fast, but for twice what is needed [m]
+    constexpr double kTicks = 16.0;         // ticks at this speed that a new bound should last
+    constexpr double kLeastAhead = 0.3e-3;  // least distance that it should cover [m]
+    constexpr double kMostAhead = 4e-3;     // greatest, but at least twice the required one [m]
     const double margin = model_.parameters.margin;
     const double reach = speed_[idx(k)] * (horizon - s_);
     Clearance& known = clearance(k);
@@ -113,12 +116,13 @@ class Search {
     return bound > margin + reach;
   }
 
-  /// Looks at the pairs that are due at s.
-  /// @returns the most distal segment that is blocked, or -1
+  /// Evaluates the pairs that are due at s.
+  /// @returns the most distal blocked segment, or -1
   int evaluate(double horizon) noexcept {
     int blocked = -1;
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
-      // A pair that is not due may be within the margin too: above a blocked segment all are looked at.
+      // A pair that is not due may be within the margin too. So beyond a blocked segment all
+      // pairs are evaluated.
       const bool all = blocked >= 0 || s_ >= horizon;
       if (state_.pairs.begin[idx(k)] == state_.pairs.begin[idx(k + 1)]) continue;
       const PairSearch search{placed(k), model_.object.tree(), motion(k),
@@ -132,7 +136,7 @@ class Search {
     if (!(s > s_)) return;
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
       clearance(k).spend(speed_[idx(k)] * (s - s_));
-      record_of(state_, tick_, k).active = false;  // it has moved
+      record_of(state_, tick_, k).active = false;  // the segment has moved
     }
     s_ = s;
     tick_.angle = path_.at(s, tick_.hcp, tick_.angle, tick_.fixed);

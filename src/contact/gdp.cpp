@@ -9,21 +9,21 @@
 
 #include "contact/containment.h"
 #include "contact/gdp_digit.h"
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {
 
-/// n, turned towards n_c until it is within 30 degrees of it.                              "The GDP,
-/// exactly": normal of the force
+/// Returns n, turned towards n_c until it is within 30 degrees of it. See docs/architecture.md "The GDP,
+/// exactly", Direction of the force.
 Vec3 within_cone(const Vec3& n, const Vec3& n_c) noexcept {
-  constexpr double kCos = 0.86602540378443865;  // 30 degrees
-  constexpr double kSin = 0.5;
+  constexpr double kSin30Deg = 0.5;
   const double along = n.dot(n_c);
-  if (along >= kCos) return n;
+  if (along >= kCos30Deg) return n;
   const Vec3 across = n - along * n_c;
   const double length = across.norm();
   if (!(length > 1e-12)) return n_c;
-  return kCos * n_c + (kSin / length) * across;
+  return kCos30Deg * n_c + (kSin30Deg / length) * across;
 }
 
 std::string millimetres(double metres) { return std::to_string(metres * 1e3) + " mm"; }
@@ -127,8 +127,8 @@ bool nearer_pushes(const ContactModel& model, const DigitTick& tick, int k, cons
 
 namespace {
 
-/// Whether a segment of the digit at its measured angles crosses the object's surface: the palm is outside,
-/// so that some segment does wherever the digit is inside.
+/// @returns true if a segment of the digit at its measured angles crosses the object's surface. The palm is
+/// outside the object, so that some segment crosses wherever the digit is inside.
 bool hcp_goes_through(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
   if (tick.hcp_through == Through::kUnknown) {
     tick.hcp_through = Through::kNo;
@@ -141,11 +141,11 @@ bool hcp_goes_through(const ContactModel& model, DigitTick& tick, GdpState& stat
   return tick.hcp_through == Through::kYes;
 }
 
-/// d0 of a new record, made at s of the tick: "The GDP, exactly", 3 and Hops.
+/// Sets d0 of a new record, made at s of the tick. See docs/architecture.md "The GDP, exactly", 3 and Hops.
 void set_offset(const ContactModel& model, const DigitTick& tick, int k, double s, const GdpState& state,
                 ContactRecord& record) noexcept {
   if (k == 0 && !tick.lagged) return;
-  // The HCP at this moment of the tick, to see whether a segment nearer the palm already pushes.
+  // The HCP at s decides whether a segment nearer the palm already pushes.
   DigitAngles hcp_angle{};
   for (int i = 0; i < kJointsPerDigit; ++i) {
     hcp_angle[idx(i)] = tick.hcp_from[idx(i)] + s * (tick.hcp[idx(i)] - tick.hcp_from[idx(i)]);
@@ -191,14 +191,14 @@ void make_record(const ContactModel& model, DigitTick& tick, int k, double s, do
     measure(model, tick, k, tick.hcp, tick.hcp_pose, record);
     record.along =
         !(record.depth > 0.0) && !patch.lead_direction.isZero(0.0) && hcp_goes_through(model, tick, state);
-    if (record.along) {  // the mean of several places may not close at all
+    if (record.along) {  // the mean of several places may not close
       record.p_S = gdp.R.transpose() * (patch.lead - gdp.p);
       record.n_c = record.force_normal = patch.lead_direction;
     }
   }
   if (model.parameters.depth == DepthOrigin::kContinuous) set_offset(model, tick, k, s, state, record);
-  // A search that gave up before anything was near: the record only says so, it neither pushes nor holds, and
-  // the next tick goes on.
+  // An exhausted search stopped before anything was near. With an infinite d0 the record neither pushes nor
+  // holds; the next tick continues the search.
   if (has(tick.status, Status::kSearchExhausted) && patch.distance > model.parameters.margin) {
     record.offset = std::numeric_limits<double>::infinity();
     record.fades = false;
@@ -236,8 +236,8 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
       follow(model, tick, k, record);
       record.silent = state.inside[idx(d)];
       const Vec3 apart = record.p_hcp - record.p_gdp;
-      const double slid = (apart - apart.dot(record.n_c) * record.n_c).norm();
-      if (slid > model.parameters.slid_distance) tick.status |= Status::kSlid;
+      record.slid = (apart - apart.dot(record.n_c) * record.n_c).norm();
+      if (record.slid > model.parameters.slid_distance) tick.status |= Status::kSlid;
     }
     status |= tick.status;
   }

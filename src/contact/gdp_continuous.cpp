@@ -20,8 +20,9 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
     const Stop stop = first_contact(model, path, s, evaluations, tick, state);
     if (stop.segment < 0) break;
     s = stop.s;
-    // Blocked although the HCP has left its record, or although nothing is left that d0 makes up for: the
-    // contact has hopped. Without this a finger in a corner would rest against the second wall without force.
+    // The segment is blocked, but the HCP has left its record, or d0 leaves no depth and no nearer segment
+    // pushes: the contact has hopped. Without a new record a finger in a corner would rest against the second
+    // wall without force.
     ContactRecord& record = record_of(state, tick, stop.segment);
     if (record.active) {
       follow(model, tick, stop.segment, record);
@@ -34,8 +35,9 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
     const SegmentMotion motion = segment_motion(model.hand, tick.digit, tick.pose, path.rate, stop.segment);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       if (record_of(state, tick, k).active) continue;
-      // Within the margin; the stopping segment itself in any case, wherever a search that gave up has left
-      // it: then by its nearest pair alone, for what it runs into would have to be sought among all pairs.
+      // Segments within the margin get a record. The stopping segment gets one in any case. After an
+      // exhausted search it uses its nearest pair alone, because finding what it runs into would
+      // need all pairs.
       const bool stopped = k == stop.segment;
       if (!stopped && state.clearance[idx(segment_index(tick.digit, k))].bound() > margin) continue;
       const double cap = stopped && exhausted ? 1.0 : std::nextafter(margin, 1.0);

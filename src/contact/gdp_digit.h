@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What both ways of finding the GDP share: one digit's view of the state.
+// View of one digit's state, shared by both methods of finding the GDP.
 #pragma once
 
 #include "phalanx/contact/gdp.h"
@@ -8,20 +8,22 @@
 
 namespace phalanx {
 
-/// Whether a digit goes through the object: asked at most once a tick, and in few ticks.
+/// Result of a test whether a digit goes through the object. It is computed at most once a tick, and
+/// in few ticks.
 enum class Through { kUnknown, kNo, kYes };
 
-/// One digit while its tick is being worked out.
+/// State of one digit while its tick is computed.
 struct DigitTick {
   int digit;
   DigitAngles hcp_from;  ///< q_hcp of the last tick [rad]
   DigitAngles hcp;       ///< q_hcp of this tick [rad]
   const DigitPose& hcp_pose;
-  DigitAngles angle;                               ///< q_gdp [rad]
-  DigitPose pose;                                  ///< at `angle`
-  bool lagged = false;                             ///< the GDP was not at the HCP when the tick began
-  std::array<double, kSegmentsPerDigit> pushed{};  ///< d of each segment's record then, 0 without a force [m]
-  int fixed = 0;  ///< joints counted from the palm that may not move any more in this tick
+  DigitAngles angle;    ///< q_gdp [rad]
+  DigitPose pose;       ///< at `angle`
+  bool lagged = false;  ///< the GDP was not at the HCP when the tick began
+  /// d of each segment's record at the tick's start, 0 without a force [m].
+  std::array<double, kSegmentsPerDigit> pushed{};
+  int fixed = 0;  ///< number of joints, counted from the palm, that stay for the rest of the tick
   Status status = Status::kOk;
   Through hcp_through = Through::kUnknown;
 };
@@ -34,41 +36,42 @@ struct DigitTick {
   return state.record[idx(segment_index(tick.digit, k))];
 }
 
-/// Depth and points of a record of segment k between the GDP and the HCP `hcp_angle`, whose pose is `hcp`.
+/// Computes depth and points of a record of segment k between the GDP and the HCP `hcp_angle`
+/// with poses `hcp`.
 void measure(const ContactModel& model, const DigitTick& tick, int k, const DigitAngles& hcp_angle,
              const DigitPose& hcp, ContactRecord& record) noexcept;
 
-/// measure() at the end of the tick, after d0 of a record that fades has shrunk by what the HCP has moved
-/// since it was last measured: "The GDP, exactly", Hops.
+/// Calls measure() at the end of the tick. Before that, the d0 of a fading record shrinks according to the
+/// HCP's motion since the last measurement: docs/architecture.md "The GDP, exactly", Hops.
 void follow(const ContactModel& model, const DigitTick& tick, int k, ContactRecord& record) noexcept;
 
-/// By how much a d0 that fades shrinks for each length that the contact's point goes on the HCP [-].
+/// Shrinkage of a fading d0 per distance that the contact's point moves on the HCP [-].
 inline constexpr double kFade = 0.2;
 
-/// Whether a segment nearer the palm than k pushes between the GDP and the HCP `hcp_angle`, whose pose is
-/// `hcp`.
+/// @returns true if a segment nearer the palm than k pushes between the GDP and the HCP `hcp_angle`
+/// with poses `hcp`
 [[nodiscard]] bool nearer_pushes(const ContactModel& model, const DigitTick& tick, int k,
                                  const DigitAngles& hcp_angle, const DigitPose& hcp,
                                  const GdpState& state) noexcept;
 
-/// The deepest place of the parabola that starts at 0, downwards at the rate `closing`, and is `end` deep
-/// at 1.
+/// Returns the greatest depth on [0, 1] of the parabola that starts at 0 with downward rate `closing` and has
+/// depth `end` at 1.
 [[nodiscard]] double deepest(double closing, double end) noexcept;
 
-/// The joints that a pushing record (d > 0) holds: up to the most distal such segment.       "The GDP,
-/// exactly", 1
+/// Returns the number of joints that pushing records (d > 0) hold: those up to the most distal such segment.
+/// See docs/architecture.md "The GDP, exactly", 1
 [[nodiscard]] int joints_held(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
 
-/// Gives the segment k a record of its contact at `tick.pose`, if anything is closer than `cap`.
-/// @param s  when in the tick this happens: 0 at its start, 1 at its end; decides the offset d0
-/// @param motion  how the segment was moving, for the one that stopped: what it moves into decides; else null
+/// Gives segment k a record of its contact at `tick.pose`, if a pair of triangles is nearer than `cap` [m].
+/// @param s       time within the tick, 0 at its start, 1 at its end; determines the offset d0
+/// @param motion  motion of the stopped segment, of which only surfaces that it runs into count; else null
 void make_record(const ContactModel& model, DigitTick& tick, int k, double s, double cap,
                  const SegmentMotion* motion, GdpState& state) noexcept;
 
-/// Moves one digit. "The GDP, exactly", 2-4.
+/// Moves one digit. See docs/architecture.md "The GDP, exactly", 2-4.
 void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
 
-/// Moves one digit as S1 fig. 4 says.
+/// Moves one digit. S1 fig. 4.
 void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
 
 }  // namespace phalanx

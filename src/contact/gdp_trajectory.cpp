@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// S1's literal method, as the papers' row and as a comparator: samples the pose of each tick and can step
-// over what is thin.
+// The method of the paper S1 (docs/architecture.md) to the letter, kept as the papers' row and as a
+// comparator. It samples the pose of each tick, so that it can step over thin objects.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace phalanx {
 namespace {
 
-/// Whether the segment k, at tick.pose, touches the object.
+/// @returns true if segment k at tick.pose touches the object
 bool touches(const ContactModel& model, const DigitTick& tick, int k, GdpState& state) noexcept {
   const double cap = std::nextafter(model.parameters.margin, 1.0);
   const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], tick.pose.segment[idx(k)],
@@ -17,7 +17,7 @@ bool touches(const ContactModel& model, const DigitTick& tick, int k, GdpState& 
   return distance(placed, model.object.tree(), cap) < cap;
 }
 
-/// The pose of the digit with the joints from tick.fixed on at `angle`.
+/// Sets the digit's pose with the joints from tick.fixed on at `angle`.
 void pose_at(const ContactModel& model, const DigitAngles& angle, DigitTick& tick) noexcept {
   std::copy(angle.begin() + tick.fixed, angle.end(), tick.angle.begin() + tick.fixed);
   model.hand.digit_pose(tick.digit, tick.angle, tick.pose);
@@ -29,7 +29,7 @@ void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& st
   AngleRing& recorded = state.recorded[idx(tick.digit)];
   const DigitAngles before = tick.angle;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
-    // What no pushing record holds follows the HCP, and its record is gone.
+    // Joints that no pushing record holds follow the HCP, and their records are removed.
     if (joints_that_move(k) > tick.fixed) record_of(state, tick, k).active = false;
   }
   while (tick.fixed < kJointsPerDigit) {
@@ -49,7 +49,7 @@ void advance_trajectory(const ContactModel& model, DigitTick& tick, GdpState& st
       pose_at(model, before, tick);
       tick.status |= Status::kTrajectoryExhausted;
     }
-    // The point of contact is where the two are closest at that pose, however far apart a tick has left them.
+    // The contact point is where the two are closest at that pose, even if the tick has left them far apart.
     make_record(model, tick, hit, 1.0, 1.0, nullptr, state);
     tick.fixed = joints_that_move(hit);
   }

@@ -9,7 +9,7 @@
 namespace phalanx {
 namespace {
 
-/// A contact is on an edge to the extent that it is nearer than this [m]. Where n_c leans out over an edge
+/// Distance from an edge below which a contact counts as partly on it [m]. Where n_c leans out over an edge,
 /// the contact is on it to rounding.
 constexpr double kEdgeBand = 10e-6;
 
@@ -75,7 +75,7 @@ Vec3 NormalFan::nearest(const Vec3& n) const noexcept {
   for (std::size_t i = 1; i < count_; ++i) offer(unit_[i]);
   for (std::size_t i = 0; i < count_; ++i) {
     for (std::size_t j = i + 1; j < count_; ++j) {
-      // n's projection a u + b v on the plane of two of them, if it lies between them.
+      // n's projection a u + b v on the plane of two of them, if it lies between them
       const Vec3& u = unit_[i];
       const Vec3& v = unit_[j];
       const double uv = u.dot(v);
@@ -103,7 +103,7 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
   struct Place {
     Vec3 weight;
     Vec3 foot;
-    double apart;  // of the foot from the contact [m]
+    double apart;  // distance of the foot from the contact [m]
   };
   const auto place_on = [&](int position) {
     const Corners& t = object.tree().corners(position);
@@ -133,7 +133,7 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
     if (share > 0.0) fan.add(unit_or(main + share * (v - main), main));
   };
   for (const int position : tied) {
-    // The mean of places apart may hover between them: then all of them are about as near.
+    // The mean of distant places may lie between them. Then all of them are about equally near.
     const Place place = place_on(position);
     const double share = clamp01(1.0 - (place.apart - main_place.apart) / (kEdgeBand + main_place.apart));
     add(normal_on(position, place), share);
@@ -148,7 +148,7 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
       if (!(squared > 0.0)) continue;
       const Vec3 inward = to_opposite - edge * (to_opposite.dot(edge) / squared);
       const double height = inward.norm();
-      if (!(height * height > 1e-12 * squared)) continue;  // a sliver: its neighbours say it
+      if (!(height * height > 1e-12 * squared)) continue;  // a sliver: its neighbours suffice
       const double depth = inward.dot(place.foot - corners[k]) / height;
       add(-inward / height, share * clamp01(1.0 - depth / kEdgeBand));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normals that an object offers at one contact, and the one among them that the force takes.
+// Normals of the object at one contact, and the choice of the force's normal among them.
 #pragma once
 
 #include <array>
@@ -10,11 +10,12 @@
 
 namespace phalanx {
 
-/// The triangles of the object that tie for a contact, in the order in which they came. What runs over is
-/// left out: so many tie only where a flat face is cut finely, and they all say the same.
+/// Triangles of the object that tie for a contact, in order of arrival. Triangles beyond the capacity are
+/// dropped: so many tie only on a finely cut flat face, where all have the same normal.
 class TiedTriangles {
  public:
-  /// @param position  in the object's tree. Real-time: O(kMost).
+  /// Adds a triangle once. Real-time: O(kMost).
+  /// @param position  slot in the object's tree
   void add(int position) noexcept;
   [[nodiscard]] const int* begin() const noexcept { return position_.data(); }
   [[nodiscard]] const int* end() const noexcept { return position_.data() + count_; }
@@ -25,16 +26,17 @@ class TiedTriangles {
   std::size_t count_ = 0;
 };
 
-/// The mean direction of tied pairs. Neighbouring triangles see one place several times: near an edge the far
-/// side's nearest point is the edge, and its direction leans back. So pairs whose points lie together count
-/// by their weights, but in the direction of the nearest of them.
+/// Mean direction of tied pairs. Neighbouring triangles show one place several times. Near an edge the far
+/// side's nearest point is the edge, and its direction leans back. So pairs whose points lie together add
+/// their weights, but take the direction of the nearest of them.
 class MeanDirection {
  public:
-  /// @param radius  points nearer to each other than this, on both bodies, are one place [m]
+  /// @param radius  pairs whose points on both bodies are within this distance are one place [m]
   explicit MeanDirection(double radius) noexcept : radius_squared_(radius * radius) {}
-  /// Real-time: O(kMost).
+  /// Adds a pair of triangles. Real-time: O(kMost).
   void add(const TriangleDistance& closest, const Vec3& direction, double weight) noexcept;
-  /// Unit; where opposite directions cancel out, that of the nearest pair among the first kMost places.
+  /// Returns the mean as a unit vector. Where opposite directions cancel out, returns the direction of the
+  /// nearest pair among the first kMost places.
   [[nodiscard]] Vec3 unit() const noexcept;
 
  private:
@@ -47,16 +49,17 @@ class MeanDirection {
   double radius_squared_;
   std::array<Place, kMost> place_;
   std::size_t count_ = 0;
-  Vec3 others_ = Vec3::Zero();  ///< of the places that run over: a flat touch, whose directions agree
+  Vec3 others_ = Vec3::Zero();  ///< sum over places beyond kMost: a flat touch, whose directions agree
   double others_weight_ = 0.0;
 };
 
-/// The convex cone of a few unit vectors.
+/// Convex cone of a few unit vectors.
 class NormalFan {
  public:
+  /// Adds a vector, unless it is there already or the fan is full.
   void add(const Vec3& unit) noexcept;
-  /// The unit vector of the cone that is nearest to `n`; `n` itself if it lies in the cone or the fan is
-  /// empty. Continuous in `n` and in the vectors. Real-time: O(count^3), count <= kMost.
+  /// Returns the unit vector of the cone that is nearest to `n`. This is `n` itself if it lies in the cone or
+  /// the fan is empty. Continuous in `n` and in the vectors. Real-time: O(count^3), count <= kMost.
   [[nodiscard]] Vec3 nearest(const Vec3& n) const noexcept;
 
  private:
@@ -65,15 +68,14 @@ class NormalFan {
   std::size_t count_ = 0;
 };
 
-/// The object's normal at a contact, on n_c's side: the direction nearest to n_c in the fan of
-/// - the interpolated normals of the tied triangles, each at its point nearest to the contact, as far as that
-/// is where the contact is (to
-///   10 um). Inside a smooth surface they are one; at a crease they span what lies between its faces, and
-///   n_c, turning from one face to the other as a finger goes over the edge, takes the normal with it;
-/// - where the contact is on an open edge (SurfaceNormals::open_edges), the direction that points out of the
-/// triangle across
-///   that edge: a sheet's rim pushes a finger sideways.
-/// @param contact  on the object, in W [m]
+/// Returns the object's normal at a contact, on n_c's side: the direction nearest to n_c in the fan of
+/// - the interpolated normals of the tied triangles, each at its point nearest to the contact. A triangle
+///   counts to the extent that this point is at the contact (to 10 um). Inside a smooth surface these normals
+///   agree. At a crease they span the directions between its faces. As a finger goes over the edge, n_c turns
+///   from one face to the other, and the normal turns with it;
+/// - where the contact is on an open edge (SurfaceNormals::open_edges), the direction in the triangle's plane
+///   out across that edge. A sheet's rim thus pushes a finger sideways.
+/// @param contact  point on the object, in W [m]
 /// Real-time: no allocation, lock, throw or I/O.
 [[nodiscard]] Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied,
                                      const Vec3& contact, const Vec3& n_c) noexcept;

@@ -9,8 +9,8 @@ namespace phalanx {
 
 ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) : mesh_(std::move(mesh)) {
   check_mesh(mesh_, "object");
-  constexpr double kFarthest =
-      1e4;  // squares and products of larger numbers lose the micrometres that contacts are made of
+  // Farther out, squares and products lose the micrometres that a contact needs.
+  constexpr double kFarthest = 1e4;
   for (const Vec3& v : mesh_.vertices) {
     if (v.cwiseAbs().maxCoeff() > kFarthest) {
       throw std::invalid_argument(

@@ -11,13 +11,14 @@
 namespace phalanx {
 namespace {
 
+/// Converts to single precision, rounded down or up.
 float below(double x) noexcept {
   const auto f = static_cast<float>(x);
   return static_cast<double>(f) > x ? std::nextafterf(f, -std::numeric_limits<float>::infinity()) : f;
 }
 float above(double x) noexcept { return -below(-x); }
 
-/// Fills the blocks and, leaf by leaf, the boxes of those lanes that are leaves.
+/// Returns the block of a leaf's triangles.
 TriangleBlock block_of(const TriangleMesh& mesh, const WideRanges& ranges, const WideRanges::Lane& lane) {
   TriangleBlock block;
   for (int i = 0; i < kWide; ++i) {
@@ -41,11 +42,12 @@ void set_empty(BoxNode& node, int lane) noexcept {
   node.child[lane] = 0;
 }
 
-/// Fills the nodes' lanes with the bounds of what is below them.
+/// Computes the bounds of the nodes' lanes.
 class Bounder {
  public:
   Bounder(const std::vector<TriangleBlock>& blocks, const Vec3& centre) : blocks_(blocks), centre_(centre) {}
 
+  /// Sets the bounds of one lane.
   /// @param first, last  the lane's blocks, [first, last)
   void set(BoxNode& node, int lane, std::size_t first, std::size_t last) const {
     Vec3 low = Vec3::Constant(1e300);
@@ -62,7 +64,7 @@ class Bounder {
       }
     }
     for (int k = 0; k < 3; ++k) {
-      // The difference is rounded once more: away from the box by a step more than that.
+      // The difference is rounded once more. The slack covers this error.
       const double slack = rounding(low[k], high[k]);
       node.min[k][lane] = below(low[k] - centre_[k] - slack);
       node.max[k][lane] = above(high[k] - centre_[k] + slack);
@@ -84,8 +86,8 @@ class Bounder {
     return 1e-15 * (std::abs(low) + std::abs(high) + centre_.cwiseAbs().maxCoeff());
   }
 
-  /// Between which heights along the node's axis the blocks lie. The axis is as it stands there, in single
-  /// precision: a function of its own, as set_extent() of segment_tree.cpp is.
+  /// Sets the heights between which the blocks lie along the node's axis, which is the axis as stored in
+  /// single precision. This is a function of its own for the reason at set_extent() in segment_tree.cpp.
   [[gnu::noinline]] void set_heights(BoxNode& node, int lane, std::size_t first, std::size_t last) const {
     Vec3 axis;
     for (int k = 0; k < 3; ++k) axis[k] = static_cast<double>(node.axis[k][lane]);

@@ -10,15 +10,15 @@ namespace {
 
 constexpr int kBatch = 64;
 
-/// Pairs on their way through the search's inner loop.
+/// Pairs handed to the search's inner loop at once.
 struct Batch {
   std::array<search::PairIndex, kBatch> pair;
   std::array<search::PairStep, kBatch> step;
-  std::array<int, kBatch> at;  ///< in the list
+  std::array<int, kBatch> at;  ///< indices in the list
   int count = 0;
 };
 
-/// Everything that the inner loop needs, for one segment at one pose.
+/// Input of the inner loop for one segment at one pose.
 struct Views {
   Views(const PairSearch& search, double s_now, double s_end) noexcept
       : segment(search::view_of(search.segment, search.object)),
@@ -35,7 +35,8 @@ struct Views {
   double horizon;
 };
 
-/// @returns whether a pair of the batch is blocked
+/// Advances the batch and empties it.
+/// @returns true if a pair of the batch is blocked
 bool advance_batch(const Views& v, Batch& batch, PairList& list) noexcept {
   search::functions().advance(v.segment, v.object, v.motion, v.horizon - v.s, v.band.margin, v.band.floor,
                               batch.pair.data(), batch.count, batch.step.data());
@@ -69,7 +70,7 @@ bool evaluate_range(const Views& v, int begin, int end, double due, PairList& li
 
 double gather_pairs(const PairSearch& search, double s, double horizon, int k, PairList& list) noexcept {
   if (search.segment.tree.empty() || search.object.empty()) return horizon;
-  // The list is filled through a buffer, so that the inner loop knows nothing of it.
+  // A buffer decouples the list from the inner loop.
   struct Context {
     const PairSearch& search;
     Views views;
@@ -86,8 +87,8 @@ double gather_pairs(const PairSearch& search, double s, double horizon, int k, P
       store.count = 0;
     }
 
-    /// Drops pairs of this segment that cannot be met before the horizon; if that leaves too many, those that
-    /// are safe for longest, and the horizon comes nearer.
+    /// Drops pairs of this segment that cannot be met before the horizon. If too many remain, drops those
+    /// that are safe for longest and brings the horizon nearer.
     void thin_out() noexcept {
       const auto begin = list.pair.begin() + list.begin[idx(k)];
       (void)evaluate_range(views, list.begin[idx(k)], list.count, views.s, list);
@@ -101,7 +102,7 @@ double gather_pairs(const PairSearch& search, double s, double horizon, int k, P
           return a.triangle != b.triangle ? a.triangle < b.triangle : a.slot < b.slot;
         });
         views.horizon = std::min(views.horizon, half->until);
-        // What is dropped may be within the margin at the old horizon: the list must end before that.
+        // A dropped pair may be within the margin at the old horizon. So the list's horizon must be below it.
         if (!(views.horizon < end)) views.horizon = views.s + 0.5 * (end - views.s);
         store.horizon = views.horizon - views.s;
         kept = half;
@@ -124,7 +125,7 @@ double gather_pairs(const PairSearch& search, double s, double horizon, int k, P
 
 bool evaluate_pairs(const PairSearch& search, double s, double horizon, int k, bool all,
                     PairList& list) noexcept {
-  // What is due soon is looked at now: a pose costs more than a pair.
+  // Pairs that are due soon are evaluated now, because a pose costs more than a pair.
   const double due = all ? 1e300 : s + (horizon - s) / 16.0;
   return evaluate_range(Views(search, s, horizon), list.begin[idx(k)], list.begin[idx(k + 1)], due, list);
 }

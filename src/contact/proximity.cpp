@@ -8,17 +8,18 @@
 #include "contact/normal_fan.h"
 #include "contact/search/views.h"
 #include "phalanx/contact/triangle_distance.h"
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {
 
 enum class Order {
-  kFixed,    ///< the trees' own order, whatever is pruned
-  kNearest,  ///< the nearer boxes first: what lowers the cap is found early
+  kFixed,    ///< the trees' own order, independent of pruning
+  kNearest,  ///< nearer boxes first, which lowers the cap early
 };
 
 /// Calls found(triangle, slot, closest points, cap^2) for every pair whose squared distance is at most the
-/// cap, which found() may lower.
+/// cap. found() may lower the cap.
 template <Order order, class Found>
 void for_each_pair(const PlacedSegment& segment, const ObjectTree& object, double cap_squared,
                    Found&& found) noexcept {
@@ -32,19 +33,18 @@ void for_each_pair(const PlacedSegment& segment, const ObjectTree& object, doubl
                             order == Order::kNearest, sink, &found);
 }
 
-/// The pair within the cap that closes fastest, and which others count beside it.
+/// Pair within the cap that closes fastest; decides which other pairs count.
 struct Lead {
   const SegmentMotion* motion = nullptr;
   Vec3 direction = Vec3::Zero();
   Vec3 at = Vec3::Zero();  ///< on the segment
-  double speed = 0.0;      ///< 0: nothing closes, every pair counts
+  double speed = 0.0;      ///< 0: no pair closes, every pair counts
 
   [[nodiscard]] double closing_speed(const Vec3& n, const Vec3& x) const noexcept {
     return -n.dot(motion->velocity(x));
   }
   [[nodiscard]] bool admits(const Vec3& n, const Vec3& on_segment) const noexcept {
-    constexpr double kCos = 0.86602540378443865;  // 30 degrees
-    return !(speed > 0.0) || n.dot(direction) >= kCos || closing_speed(n, on_segment) >= 0.5 * speed;
+    return !(speed > 0.0) || n.dot(direction) >= kCos30Deg || closing_speed(n, on_segment) >= 0.5 * speed;
   }
 };
 
@@ -53,8 +53,8 @@ Vec3 direction_of(const TriangleDistance& closest) noexcept {
   return d > 0.0 ? Vec3((closest.on_a - closest.on_b) / d) : Vec3(Vec3::Zero());
 }
 
-/// The pairs within a cap, found once and looked at several times, in the trees' fixed order. Where they are
-/// more than the scratch holds they are sought anew each time.
+/// Pairs within a cap, found once and visited several times, in the trees' fixed order. If they exceed the
+/// scratch memory, each visit searches again.
 class NearPairs {
  public:
   NearPairs(const PlacedSegment& segment, const ObjectTree& object, double cap_squared) noexcept
@@ -99,7 +99,7 @@ class NearPairs {
 
 double squared(double x) noexcept { return x * x; }
 
-/// The pair nearer than the cap that closes fastest.
+/// Returns the pair nearer than the cap that closes fastest.
 Lead find_lead(const NearPairs& pairs, double cap, const SegmentMotion& motion) noexcept {
   Lead lead{.motion = &motion};
   pairs.for_each([&](int, int, const TriangleDistance& closest) {
@@ -114,7 +114,7 @@ Lead find_lead(const NearPairs& pairs, double cap, const SegmentMotion& motion) 
   return lead;
 }
 
-/// The smallest distance below `cap` of the pairs that count.
+/// Returns the smallest distance below `cap` of the pairs that count [m].
 double distance_of_admitted(const NearPairs& pairs, double cap, const Lead& lead) noexcept {
   double best = squared(cap);
   pairs.for_each([&](int, int, const TriangleDistance& closest) {
@@ -123,7 +123,7 @@ double distance_of_admitted(const NearPairs& pairs, double cap, const Lead& lead
   return std::sqrt(best);
 }
 
-/// The contact of the pairs that count and are within kPatchBand of `least`.
+/// Returns the contact of the pairs that count and are within kPatchBand of `least`.
 ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, const NearPairs& pairs,
                       const Lead& lead, double least) noexcept {
   ContactPatch patch{.distance = least, .lead = lead.at, .lead_direction = lead.direction};
@@ -165,13 +165,8 @@ double distance(const PlacedSegment& segment, const ObjectTree& object, double c
 }
 
 bool crosses(const PlacedSegment& segment, const ObjectTree& object) noexcept {
-  bool found = false;
-  for_each_pair<Order::kNearest>(segment, object, 0.0,
-                                 [&](int, int, const TriangleDistance&, double& cap_squared) {
-                                   found = true;
-                                   cap_squared = -1.0;  // one is enough
-                                 });
-  return found;
+  if (segment.tree.empty() || object.empty()) return false;
+  return search::functions().crosses(search::view_of(segment, object), search::view_of(object));
 }
 
 double distance_bound(const PlacedSegment& segment, const ObjectTree& object, double cap) noexcept {
@@ -181,7 +176,7 @@ double distance_bound(const PlacedSegment& segment, const ObjectTree& object, do
 
 ContactPatch contact_patch(const PlacedSegment& segment, const ObjectModel& object, double cap,
                            const SegmentMotion* motion) noexcept {
-  // Without a motion every pair counts, and nothing beyond the nearest one's band need be listed.
+  // Without a motion every pair counts, and only the band above the nearest one need be listed.
   const double nearest = motion == nullptr ? distance(segment, object.tree(), cap) : cap;
   if (motion == nullptr && !(nearest < cap)) return {.distance = cap};
   const NearPairs pairs(segment, object.tree(), squared(nearest + kPatchBand));

@@ -22,7 +22,7 @@ SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& 
     if (w == 0.0) continue;
     const JointAxis& joint = pose.joint[idx(j)];
     const Vec3 moment = joint.centre.cross(joint.axis);
-    // The axis is carried by the links before it, whose motion has been summed up so far.
+    // The links before this axis carry it; their motion has been summed so far.
     motion.angular_rate += w * motion.angular.cross(joint.axis);
     motion.linear_rate += w * (motion.angular.cross(moment) + motion.linear.cross(joint.axis));
     motion.angular += w * joint.axis;

@@ -15,8 +15,8 @@ struct Lens {
   Vec3 axis;
 };
 
-/// The middle of the triangle's smallest circle: of its circumscribed one or, if a corner is right or obtuse,
-/// of the opposite edge.
+/// Returns the centre of the triangle's smallest enclosing circle. This is its circumcentre or, if a corner
+/// is right or obtuse, the midpoint of the opposite edge.
 Vec3 middle_of(const Corners& t) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 u = t[(i + 1) % 3] - t[i];
@@ -33,7 +33,8 @@ Vec3 middle_of(const Corners& t) noexcept {
 
 Vec3 normal_of(const Corners& t) noexcept { return (t[1] - t[0]).cross(t[2] - t[0]); }
 
-/// Across the triangles' mean normal the middle of their box, along it halfway between the outermost.
+/// Returns a lens with the triangles' mean normal as its axis. Across it the centre is the middle of their
+/// box, along it halfway between the outermost.
 Lens lens_around(const SegmentTree& tree, const std::vector<std::int32_t>& order,
                  const WideRanges::Lane& lane) {
   Vec3 axis = Vec3::Zero();
@@ -57,7 +58,7 @@ Lens lens_around(const SegmentTree& tree, const std::vector<std::int32_t>& order
   return {middle.x() * u + middle.y() * v + middle.z() * axis, axis};
 }
 
-/// One vector of a node, whose lanes lie side by side for each axis.
+/// Returns one vector of a node, whose lanes lie side by side for each axis.
 Vec3 lane_of(const float (&node)[3][kWide], int at) noexcept {
   return Eigen::Vector3f(node[0][at], node[1][at], node[2][at]).cast<double>();
 }
@@ -67,9 +68,9 @@ void set_lane(float (&node)[3][kWide], int at, const Vec3& v) noexcept {
   node[2][at] = static_cast<float>(v.z());
 }
 
-/// The largest distance of the lane's corners from the lens's centre and from its plane, as both stand in the
-/// node in single precision. A function of its own: where GCC 12 sees a number rounded to single precision
-/// and used in double again, it leaves the rounding out (two numbers at a time, from -O2 on).
+/// Sets the largest distances of the lane's corners from the lens's centre and from its plane, both as stored
+/// in single precision. It must not be inlined: from -O2 on GCC 12 omits the rounding to single precision
+/// where a number is used in double again (two numbers at a time).
 [[gnu::noinline]] void set_extent(const SegmentTree& tree, const std::vector<std::int32_t>& order,
                                   const WideRanges::Lane& lane, LensNode& node, int at) {
   const Vec3 centre = lane_of(node.centre, at);
@@ -87,7 +88,7 @@ void set_lane(float (&node)[3][kWide], int at, const Vec3& v) noexcept {
   node.half[at] = static_cast<float>(half * (1.0 + 1e-6));
 }
 
-/// Writes the lens in single precision, and as large as single precision needs.
+/// Writes a lens in single precision, large enough to cover the rounding.
 void set_lens(const SegmentTree& tree, const std::vector<std::int32_t>& order, const WideRanges::Lane& lane,
               LensNode& node, int at) {
   const Lens lens = lens_around(tree, order, lane);

@@ -16,7 +16,7 @@ struct TiedCorner {
   double angle = 0.0;
 };
 
-/// At most 9 edge pairs, 6 corner-face pairs, 18 corner-edge pairs.
+/// Corners of the tied region: at most 9 edge pairs, 6 corner-face pairs, 18 corner-edge pairs.
 struct TiedCorners {
   std::array<TiedCorner, 33> corner;
   std::size_t count = 0;
@@ -51,7 +51,7 @@ TiedRegion tied_region(const Corners& a, const Corners& b, const TriangleDistanc
   add_corner_edge_pairs(b, a, false, tied, limit_squared);
   if (tied.count == 0) return {point_weight, closest.on_a, closest.on_b};
 
-  // The corners of a convex, nearly plane polygon: in order of their angle around the mean, seen along the
+  // The corners of a convex, nearly plane polygon are sorted by their angle around the mean, seen along the
   // direction of closest approach.
   Vec3 mean_a = Vec3::Zero();
   Vec3 mean_b = Vec3::Zero();
@@ -72,8 +72,8 @@ TiedRegion tied_region(const Corners& a, const Corners& b, const TriangleDistanc
   std::sort(tied.corner.begin(), end,
             [](const TiedCorner& x, const TiedCorner& y) { return x.angle < y.angle; });
 
-  // Steiner: the polygon widened by e is the polygon, a band of width e along its edges and a disc of radius
-  // e shared by its corners.
+  // Steiner's formula: the widened polygon consists of the polygon, a band of width e along its edges, and a
+  // disc of radius e shared by its corners.
   TiedRegion region{point_weight, point_weight * mean_a, point_weight * mean_b};
   for (std::size_t i = 0; i < tied.count; ++i) {
     const TiedCorner& p = tied.corner[i];

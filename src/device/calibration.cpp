@@ -12,7 +12,7 @@
 namespace phalanx {
 namespace {
 
-// ---- one channel's fit and its checks, in the order in which they are made ----
+// ---- one channel's fit and its checks, in their order ----
 
 class Fitter {
  public:
@@ -122,7 +122,7 @@ class Fitter {
     }
   }
 
-  // Any two poses that are well apart must agree with the fit on which way the counts go.
+  // Checks that any two poses that are well apart agree with the fit on the direction of the counts.
   void check_direction(const ChannelFit& fit) const {
     for (const PoseReading& a : readings_) {
       for (const PoseReading& b : readings_) {

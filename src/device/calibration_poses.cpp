@@ -14,7 +14,7 @@ namespace {
 bool is_abduction(int joint) { return joint % kJointsPerDigit == kAbductionJoint; }
 bool is_thumb(int digit) { return digit == static_cast<int>(Digit::kThumb); }
 
-// Where a value lies between the hand's smallest (0) and largest angle (1) of a joint.
+// @returns the position of an angle between the hand's smallest (0) and largest angle (1) of a joint.
 double fraction(const HandParameters& hand, int joint, double angle) {
   const auto j = static_cast<std::size_t>(joint);
   return (angle - hand.min_angle[j]) / (hand.max_angle[j] - hand.min_angle[j]);
@@ -63,7 +63,7 @@ std::string digit_words(int digit) {
   return is_thumb(digit) ? "thumb" : fmt::format("{} finger", digit_name(digit));
 }
 
-// "the middle joint of the index finger"
+// Names a joint in words: "the middle joint of the index finger".
 std::string joint_words(int joint) {
   constexpr std::array<std::string_view, kJointsPerDigit> kFinger = {"knuckle", "", "middle joint",
                                                                      "end joint"};

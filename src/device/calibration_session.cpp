@@ -38,7 +38,7 @@ CalibrationSession::CalibrationSession(Device& device, const HandParameters& han
         fmt::format("calibration: a pose measured for {} s; it must be a number above 0", measure_for));
 }
 
-// ---- what the device says ----
+// ---- samples of the device ----
 
 void CalibrationSession::fetch(double now) {
   now_ = now;
@@ -54,7 +54,7 @@ void CalibrationSession::fetch(double now) {
     for (std::size_t c = 0; c < channels_.size(); ++c) measuring_[c].add(inbox[i].raw[c]);
 }
 
-void CalibrationSession::go_on(double now) {
+void CalibrationSession::update(double now) {
   fetch(now);
   if (measuring() && now - *measuring_since_ >= measure_for_) end_measurement();
 }
@@ -68,11 +68,11 @@ void CalibrationSession::end_measurement() {
   leave_pose();
 }
 
-// ---- from pose to pose ----
+// ---- poses ----
 
 void CalibrationSession::measure(double now) {
   if (at_end() || measuring()) return;
-  fetch(now);  // what came in before is not the pose
+  fetch(now);  // drops earlier samples, which do not show the pose
   measuring_.assign(channels_.size(), RawAverage{});
   measuring_since_ = now;
 }
@@ -92,7 +92,7 @@ void CalibrationSession::go_to(std::size_t pose) {
   ask_for(pose);
 }
 
-/// What the last fit refused stays to be read; what it granted is no longer the whole of the poses.
+/// Goes to a pose. The problems of the last fit stay readable; its calibration no longer covers all poses.
 void CalibrationSession::ask_for(std::size_t pose) {
   measuring_since_.reset();
   calibration_.reset();
@@ -104,7 +104,7 @@ void CalibrationSession::leave_pose() {
   if (at_end()) fit();
 }
 
-// ---- what the poses say ----
+// ---- fit ----
 
 std::vector<PoseReading> CalibrationSession::readings(std::size_t channel) const {
   std::vector<PoseReading> readings;

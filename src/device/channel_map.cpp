@@ -22,7 +22,7 @@ std::string_view kind_name(ChannelKind kind) {
   return k < kNames.size() ? kNames[k] : "unknown kind";
 }
 
-/// How many of what it counts there are.
+/// @returns the number of joints, digits or motors that an index may select.
 int indices(ChannelKind kind) {
   switch (kind) {
     case ChannelKind::kAngle:
@@ -58,7 +58,7 @@ void check(std::size_t c, const DeviceChannel& channel) {
                        channel.raw_max));
 }
 
-/// Which of its digit's joints a channel sets.
+/// @returns true if the channel sets this joint of its digit.
 bool sets(const DeviceChannel& channel, int joint) noexcept {
   switch (channel.kind) {
     case ChannelKind::kAngle:
@@ -94,6 +94,23 @@ void check_followers(const JointFollowers& followers) {
   }
 }
 
+/// Sets the joints that are not measured from those that they follow: coupled joints, then copied digits.
+void follow(std::span<const CoupledJoint> coupled, const std::array<DigitCopy, kDigits>& copies,
+            const std::array<bool, kJoints>& measured, const JointArray& open, JointArray& angle) noexcept {
+  for (const CoupledJoint& joint : coupled)
+    if (!measured[idx(joint.joint)])
+      angle[idx(joint.joint)] = joint.ratio * angle[idx(joint.of)] + joint.offset;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const DigitCopy& copy = copies[idx(digit)];
+    if (copy.of < 0) continue;
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const auto from = idx(joint_index(copy.of, i));
+      const auto to = idx(joint_index(digit, i));
+      if (!measured[to]) angle[to] = open[to] + copy.gain * (angle[from] - open[from]);
+    }
+  }
+}
+
 }  // namespace
 
 ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers followers,
@@ -123,8 +140,6 @@ ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers follo
     }
   }
   for (std::size_t j = 0; j < setter.size(); ++j) measured_[j] = setter[j] >= 0;
-  std::erase_if(followers_.coupled,
-                [this](const CoupledJoint& joint) { return measured_[idx(joint.joint)]; });
 }
 
 void ChannelMap::measure(std::size_t channel, double value, Sample& out) const noexcept {
@@ -150,22 +165,8 @@ void ChannelMap::measure(std::size_t channel, double value, Sample& out) const n
       out.angle[j] = 0.5 * (min_[j] + max_[j]) + value * 0.5 * (max_[j] - min_[j]);
       break;
     }
-    case ChannelKind::kMotor:  // says nothing about the hand that an angle channel does not
+    case ChannelKind::kMotor:  // does not affect the hand beyond its angle channels
       break;
-  }
-}
-
-void ChannelMap::follow(JointArray& angle) const noexcept {
-  for (const CoupledJoint& joint : followers_.coupled)
-    angle[idx(joint.joint)] = joint.ratio * angle[idx(joint.of)] + joint.offset;
-  for (int digit = 0; digit < kDigits; ++digit) {
-    const DigitCopy& copy = followers_.copy[idx(digit)];
-    if (copy.of < 0) continue;
-    for (int i = 0; i < kJointsPerDigit; ++i) {
-      const auto from = idx(joint_index(copy.of, i));
-      const auto to = idx(joint_index(digit, i));
-      if (!measured_[to]) angle[to] = open_[to] + copy.gain * (angle[from] - open_[from]);
-    }
   }
 }
 
@@ -174,7 +175,19 @@ void ChannelMap::convert(const DeviceSample& raw, Sample& out) const noexcept {
   out.time_s = 1e-6 * static_cast<double>(raw.time_us);
   out.angle = open_;
   for (std::size_t c = 0; c < channels_.size(); ++c) measure(c, value(c, raw.raw[c]), out);
-  follow(out.angle);
+  follow(followers_.coupled, followers_.copy, measured_, open_, out.angle);
+}
+
+JointArray sensed_angles(const Exoskeleton& exoskeleton, const JointArray& open,
+                         const JointArray& angle) noexcept {
+  JointArray sensed = open;
+  std::array<bool, kJoints> measured{};
+  for (const ExoJoint& joint : exoskeleton.joints) {
+    sensed[idx(joint.joint)] = angle[idx(joint.joint)];
+    measured[idx(joint.joint)] = true;
+  }
+  follow(exoskeleton.coupled, exoskeleton.controller.copy, measured, open, sensed);
+  return sensed;
 }
 
 JointFollowers followers_of(const Exoskeleton& exoskeleton) {

@@ -9,7 +9,6 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/device/exoskeleton.h"
-#include "phalanx/device/transmission.h"
 
 namespace phalanx {
 namespace {
@@ -18,7 +17,7 @@ namespace {
   throw std::invalid_argument(fmt::format("{}: {}", place, problem));
 }
 
-/// Numbers of one joint or motor, each with what it must be.
+/// Checker for the numbers of one joint or motor.
 class Checker {
  public:
   explicit Checker(std::string place) : place_(std::move(place)) {}
@@ -59,7 +58,8 @@ void check_joint(const ExoJoint& joint) {
   check.at_least("sensor noise [rad]", joint.sensor_noise, 0.0);
 }
 
-/// The name is part of a key: "motors.NAME.lag_ms", and a number in a key counts elements of an array.
+/// Checks a name. It is part of a key, "motors.NAME.lag_ms", and a number in a key counts elements
+/// of an array.
 void check_name(const std::string& name) {
   bool good = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0;
   for (const char c : name)
@@ -107,7 +107,7 @@ void check_motor(const ExoMotor& motor, const std::array<bool, kJoints>& has_joi
   check.friction(motor.sheath);
 }
 
-/// @returns which of the hand's joints the device has.
+/// Checks the joints. @returns true for each joint of the hand that the device has
 std::array<bool, kJoints> check_joints(const Exoskeleton& exo) {
   if (exo.joints.empty()) refuse("the device", "has no joint; add one");
   std::array<bool, kJoints> has_joint{};
@@ -159,7 +159,9 @@ void check_controller(const Exoskeleton& exo, const std::array<bool, kJoints>& h
                                 kDigits - 1));
     Checker(place).at_least("gain", copy.gain, 0.0);
     if (sensed(digit))
-      refuse(place, "the device has joints of this digit, it needs no copy; remove the copy");
+      refuse(place,
+             "the device has joints of this digit, it needs no copy; remove the copy, or set its `of` to "
+             "\"none\"");
     if (!sensed(copy.of))
       refuse(place, fmt::format("the device has no joint of the {}; copy a digit that it senses",
                                 digit_name(copy.of)));

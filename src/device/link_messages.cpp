@@ -22,7 +22,7 @@ static_assert(static_cast<int>(Fault::kStepTooOld) == PHX_FAULT_STEP_TOO_OLD &&
 
 float single(double x) noexcept { return static_cast<float>(x); }
 
-/// A wall's time is far below this; larger and infinite ones stand for it.
+/// Bound of a wall's validity, far above ordinary ones; larger and infinite values are replaced by it [s].
 constexpr double kLongestValidity = 1.0;
 
 std::uint32_t validity_us(double seconds) noexcept {
@@ -30,7 +30,7 @@ std::uint32_t validity_us(double seconds) noexcept {
   return static_cast<std::uint32_t>(std::lround(std::min(seconds, kLongestValidity) * 1e6));
 }
 
-/// A controller that knows neither session nor calibration yet is still connecting.
+/// Converts the state. A controller without a session or calibration is still connecting.
 DeviceState state_of(const phx_sample& sample) noexcept {
   switch (sample.state) {
     case PHX_STATE_READY:
@@ -86,7 +86,7 @@ DeviceSample read_sample(const phx_message& message, double received) noexcept {
   out.received = received;
   std::copy(std::begin(in.raw), std::end(in.raw), out.raw.begin());
   out.state = state_of(in);
-  // From kNoSample on the numbers are the host's own: a device that sends one means something of its own.
+  // From kNoSample on, the numbers are the host's own: from a device, such a number is an unknown fault.
   out.fault =
       in.fault < static_cast<std::uint16_t>(Fault::kNoSample) ? static_cast<Fault>(in.fault) : Fault::kDrive;
   out.fault_channel = in.fault == PHX_FAULT_SENSOR_RANGE ? in.fault_channel : -1;
@@ -114,6 +114,7 @@ DeviceInfo device_info(const phx_welcome& welcome) {
   info.serial = read_serial(welcome.serial);
   info.name = info.serial;
   info.rate_hz = welcome.rate_hz;
+  info.watchdog = 1e-6 * PHX_LATCH_AGE_US;  // as the link prescribes
   for (std::size_t c = 0; c < std::min<std::size_t>(welcome.channel_count, kMaxChannels); ++c) {
     const phx_channel& channel = welcome.channel[c];
     info.channels.push_back({.kind = static_cast<ChannelKind>(channel.kind),

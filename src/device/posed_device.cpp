@@ -12,8 +12,8 @@
 namespace phalanx {
 namespace {
 
-constexpr double kCount = 10e-6;    ///< of an angle channel [rad]
-constexpr double kStartRamp = 1.0;  ///< of the factor, as a controller on the link has it [s]
+constexpr double kCount = 10e-6;    ///< resolution of an angle channel [rad]
+constexpr double kStartRamp = 1.0;  ///< rise time of the factor, as on a controller of the link [s]
 
 void check_above_zero(double value, const char* what) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -21,7 +21,7 @@ void check_above_zero(double value, const char* what) {
         fmt::format("posed device: {} is {}; it must be a number above 0", what, value));
 }
 
-/// What is not finite in `angle` stays as it is in `last`; the rest is clamped to the range of motion.
+/// @returns `angle` clamped to the range of motion; an angle that is not finite is taken from `last`.
 JointArray within_range(const JointArray& angle, const JointArray& last,
                         const HandParameters& hand) noexcept {
   JointArray inside = last;
@@ -81,9 +81,9 @@ void PosedDevice::open() {
 
 void PosedDevice::close() noexcept { open_ = false; }
 
-/// One period of  a = w^2 (target - x) - 2 w v,  w = 1 / time_constant, solved exactly. A target further away
-/// than 2 speed / w is taken to be there: from such a distance the solution tends to `speed` and never
-/// exceeds it, and from rest it reaches no target's other side.
+/// Moves a joint by one period of  a = w^2 (target - x) - 2 w v,  w = 1 / time_constant,  solved exactly. A
+/// target further away than 2 speed / w is moved to that distance. From there, the speed tends to `speed` and
+/// never exceeds it. From rest, the joint does not overshoot the target.
 void PosedDevice::move(std::size_t joint, double target) noexcept {
   const double w = 1.0 / settings_.time_constant;
   const double reach = 2.0 * settings_.speed * settings_.time_constant;
@@ -92,13 +92,13 @@ void PosedDevice::move(std::size_t joint, double target) noexcept {
   const double after = (before + mixed * period_) * decay_;
   speed_[joint] = (speed_[joint] - w * mixed * period_) * decay_;
 
-  // A target that comes back towards a moving joint is passed: not so the end of the range.
+  // A joint may pass a target that comes back towards it, but never the end of its range.
   const double next = angle_[joint] + (after - before);
   angle_[joint] = std::clamp(next, settings_.hand.min_angle[joint], settings_.hand.max_angle[joint]);
   if (angle_[joint] != next) speed_[joint] = 0.0;
 }
 
-/// State and factor that a controller would show for the newest command.
+/// Sets the state and factor that a controller would report for the newest command.
 void PosedDevice::follow_command() noexcept {
   const bool enabled = command_.enable && !command_.fault;
   sample_.factor = enabled ? std::min(1.0, sample_.factor + period_ / kStartRamp) : 0.0;

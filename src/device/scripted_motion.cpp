@@ -13,8 +13,7 @@
 namespace phalanx {
 namespace {
 
-/// How far each joint of a digit (flexion, abduction, hinge, hinge) goes towards the end of its range at
-/// closure 1.
+/// Part of the range that each joint of a digit (flexion, abduction, hinge, hinge) moves at closure 1.
 using DigitWeights = std::array<double, kJointsPerDigit>;
 constexpr DigitWeights kStill = {0.0, 0.0, 0.0, 0.0};
 constexpr DigitWeights kFingerCloses = {1.0, 0.0, 1.0, 0.7};
@@ -22,7 +21,7 @@ constexpr DigitWeights kThumbOpposes = {1.0, 1.0, 0.6, 0.6};
 
 struct Grip {
   std::array<DigitWeights, kDigits> weight;
-  bool ripple;  ///< the digits move one after another, the little finger first
+  bool ripple;  ///< the digits move one after another, from the little finger on
 };
 
 constexpr Grip kPress = {{kStill, kFingerCloses, kStill, kStill, kStill}, false};
@@ -42,13 +41,14 @@ const Grip& grip_of(const std::string& name) {
   return *kGrips[static_cast<std::size_t>(it - names.begin())];
 }
 
-/// The part of a ripple's closing (or opening) in which `digit` moves: half of it, the little finger first.
+/// @returns the part of a ripple's closing (or opening) in which `digit` moves: half of it, the
+/// little finger first.
 double ripple_fraction(double u, int digit) {
   const double begin = 0.5 * (kDigits - 1 - digit) / (kDigits - 1);
   return (u - begin) / 0.5;
 }
 
-/// How closed a digit is (0..1) at time `t` of one cycle.
+/// @returns the closure of a digit (0..1) at time `t` of one cycle.
 double closed_at(const ScriptedMotion& script, bool ripple, int digit, double t) {
   const auto progress = [&](double u) { return minimum_jerk(ripple ? ripple_fraction(u, digit) : u); };
   const double closing = progress((t - script.start_s) / script.close_s);
@@ -56,8 +56,8 @@ double closed_at(const ScriptedMotion& script, bool ripple, int digit, double t)
   return closing - opening;
 }
 
-/// Physiological and pathological tremors lie between 5 and 12 Hz: three sines of seeded frequency and phase
-/// a joint.
+/// Tremor of three sines a joint, with seeded frequency and phase. Physiological and pathological tremors lie
+/// between 5 and 12 Hz.
 class Tremor {
  public:
   explicit Tremor(const ScriptedMotion& script) : amplitude_(script.tremor_rad) {
@@ -93,7 +93,7 @@ void require(bool ok, const char* key, double value, const char* rule) {
 }
 
 constexpr double kMaxKeys = 2e6;
-/// A tremor swells and fades within this time, so that a motion starts and ends at the open hand [s].
+/// Time within which a tremor rises and fades, so that a motion starts and ends at the open hand [s].
 constexpr double kTremorFade = 0.1;
 
 void check(const ScriptedMotion& script, double total) {

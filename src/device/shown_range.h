@@ -5,8 +5,7 @@
 
 namespace phalanx {
 
-/// So far beyond the hand's range of motion, on either side, a simulated angle sensor still shows the angle
-/// [rad].
+/// Angle beyond the hand's range of motion, on either side, that a simulated sensor still measures [rad].
 inline constexpr double kShownBeyondRange = 20.0 * kPi / 180.0;
 
 }  // namespace phalanx

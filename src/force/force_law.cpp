@@ -8,7 +8,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kReferenceDepth = 1e-3;  // of Hunt-Crossley's stiffness [m]
+constexpr double kReferenceDepth = 1e-3;  // depth at which Hunt-Crossley's stiffness is defined [m]
 
 }  // namespace
 

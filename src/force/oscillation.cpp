@@ -13,8 +13,8 @@ constexpr double kThreeQuick = 0.24;   // three half-swings [s]
 constexpr double kClearsAfter = 0.5;   // [s]
 constexpr double kRamp = 0.2;          // [s]
 constexpr double kHalvesEvery = 0.5;   // [s]
-constexpr double kSmallest = 0x1p-10;  // of the factor
-constexpr double kGoesOn = 0.5;        // the last half-swing over the first of the row: less is dying out
+constexpr double kSmallest = 0x1p-10;  // least value of StiffnessFactor
+constexpr double kGoesOn = 0.5;        // least size of the last half-swing over the first of the row
 constexpr int kQuickLegs = 4;
 constexpr int kLegs = 6;
 
@@ -28,7 +28,7 @@ void OscillationObserver::forget_row(double force) noexcept {
 }
 
 bool OscillationObserver::count(Leg leg, double force) noexcept {
-  last_swing_ = high_ - low_;  // of the leg that ends here
+  last_swing_ = high_ - low_;  // size of the leg that ends here
   (leg == Leg::kRising ? high_ : low_) = force;
   leg_ = leg;
   if (legs_ > 0 && since_ >= kShortest) {
@@ -63,7 +63,7 @@ bool OscillationObserver::watch(double force, double swing, double period) noexc
   const bool falls = leg_ != Leg::kFalling && high_ - now > swing;
   const bool rises = leg_ != Leg::kRising && now - low_ > swing;
   if (!falls && !rises) {
-    if (leg_ == Leg::kEither && now == 0.0) high_ = 0.0;  // no fall can count from there any more
+    if (leg_ == Leg::kEither && now == 0.0) high_ = 0.0;  // no later fall can count from there
     return false;
   }
   return count(falls ? Leg::kFalling : Leg::kRising, now);

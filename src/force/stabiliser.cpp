@@ -3,24 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "phalanx/force/smoothing.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/force/stabiliser_methods.h"
 
 namespace phalanx {
 namespace {
 
-double method_force(const StabiliserParameters& p, const SmoothingParameters& smoothing,
-                    const StabiliserInput& in, double moved, StabiliserMemory& memory) noexcept {
+double method_force(const StabiliserParameters& p, const StabiliserInput& in, double moved,
+                    StabiliserMemory& memory) noexcept {
   switch (p.method) {
     case Stabiliser::kSmoothing:
-      return smoothed_force(smoothing, in.force, in.sent, in.period);
-    case Stabiliser::kRiseOnly: {
-      const SmoothingParameters rise{.min_rate = -std::numeric_limits<double>::infinity(),
-                                     .max_rate = smoothing.max_rate};
-      return smoothed_force(rise, in.force, in.sent, in.period);
-    }
+      return smoothed_force(in.force, in.sent, p.min_rate, p.max_rate, in.period);
+    case Stabiliser::kRiseOnly:
+      return smoothed_force(in.force, in.sent, -kInfinity, p.max_rate, in.period);
     case Stabiliser::kLowPass:
       return low_passed_force(in.force, in.sent, p.lowpass_hz, in.period);
     case Stabiliser::kKelvinVoigt:
@@ -53,8 +49,8 @@ double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0
 
 }  // namespace
 
-double stabilised_force(const StabiliserParameters& parameters, const SmoothingParameters& smoothing,
-                        const StabiliserInput& input, StabiliserMemory& memory) noexcept {
+double stabilised_force(const StabiliserParameters& parameters, const StabiliserInput& input,
+                        StabiliserMemory& memory) noexcept {
   if (!input.pressing) memory = {};
   if (!input.pressing && !decays_without_contact(parameters.method)) return 0.0;
   StabiliserInput in = input;
@@ -63,10 +59,10 @@ double stabilised_force(const StabiliserParameters& parameters, const SmoothingP
   in.depth = finite(input.depth);
   in.speed = finite(input.speed);
   in.speed_now = finite(input.speed_now);
-  // The step in which the finger arrives: it was outside for a part of it.
+  // In the step of arrival the finger was outside for a part of it.
   const double moved = memory.touching ? in.speed_now * in.period : std::max(0.0, in.depth);
   memory.touching = in.pressing && in.depth > 0.0;
-  const double force = method_force(parameters, smoothing, in, moved, memory);
+  const double force = method_force(parameters, in, moved, memory);
   if (std::isfinite(force)) return force;
   memory = {};
   return 0.0;

@@ -28,7 +28,8 @@ double coupled_force(double law_force, double depth, double moved, double coupli
   const double damper = coupling_damping / period;
   const double sum = wall + coupling_stiffness + damper;
   const double solved = (coupling_stiffness * depth + damper * (moved + proxy)) / sum;
-  // xp' <= d' gives xp <= d; where a contact hops, `moved` is not the difference of two depths.
+  // xp' <= d' gives xp <= d. The clamp covers a contact that hops, where `moved` is not the difference
+  // of two depths.
   proxy = std::clamp(solved, 0.0, depth);
   return wall * proxy;
 }
@@ -53,7 +54,7 @@ Vec3 turned_direction(const Vec3& from, const Vec3& to, double angle) noexcept {
   if (from.isZero(0.0)) return to;
   const double apart = std::atan2(from.cross(to).norm(), from.dot(to));
   if (!(apart > angle)) return to;
-  Vec3 sideways = to - from.dot(to) * from;  // in the plane of both, across `from`
+  Vec3 sideways = to - from.dot(to) * from;  // in the plane of both, normal to `from`
   if (sideways.norm() < 1e-9) {
     const Vec3 other = std::abs(from.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
     sideways = other - from.dot(other) * from;

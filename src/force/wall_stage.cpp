@@ -13,27 +13,27 @@ namespace {
 using DigitWalls = std::array<LocalWall*, kSegmentsPerDigit>;
 using DigitNormals = std::array<Vec3, kSegmentsPerDigit>;
 
-// How long, how far off and how far aside a wall that was left is still sent.
+// Bounds within which the wall of a contact that has let go is still sent: time, height and lateral offset.
 constexpr double kKeptFor = 0.25;        // [s]
 constexpr double kHighest = 10e-3;       // [m]
 constexpr double kFarthestAside = 3e-3;  // [m]
-constexpr double kUncapped = 1e6;        // f_max without a cap: what no device renders [N]
-constexpr double kRounding = 1e-12;      // of the square of a force that is as large as the cap
+constexpr double kUncapped = 1e6;        // f_max without a cap: beyond any device [N]
+constexpr double kRounding = 1e-12;      // relative, of the square of a force as large as the cap
 
-/// Largest s in 0 .. 1 with |a + s b| <= cap, up to rounding; 0 if a itself is longer.
+/// Returns the largest s in 0 .. 1 with |a + s b| <= cap, up to rounding; 0 if a alone exceeds the cap.
 double largest_share(const Vec3& a, const Vec3& b, double cap) noexcept {
   const double most = (1.0 + kRounding) * cap * cap;
   const double room = most - a.squaredNorm();
-  if (!(room >= 0.0)) return 0.0;  // also for what is not a number
+  if (!(room >= 0.0)) return 0.0;  // also for NaN
   if ((a + b).squaredNorm() <= most) return 1.0;
   const double ab = a.dot(b);
   const double bb = b.squaredNorm();
   return std::clamp((std::sqrt(ab * ab + bb * room) - ab) / bb, 0.0, 1.0);
 }
 
-/// f_max of each wall: what the host sends, and of the room up to the cap as large a share for all as keeps
-/// the vector sum within the cap for any forces 0 .. f_max. That sum is largest where each force is one of
-/// its two ends, so seven sums say it.
+/// Sets f_max of each wall: the host's force, and a common share of the room up to the cap. The share is the
+/// largest that keeps the vector sum within the cap for any forces 0 .. f_max. That sum is largest where each
+/// force is 0 or f_max, so that seven sums suffice.
 void share_the_cap(const DigitWalls& wall, const DigitNormals& normal, double cap) noexcept {
   double scale = 1.0;
   double share = 1.0;
@@ -56,7 +56,7 @@ void share_the_cap(const DigitWalls& wall, const DigitNormals& normal, double ca
   }
 }
 
-/// Makes the f_max so small that the walls together load no joint by more than the limit, whatever they do.
+/// Reduces the f_max so that the walls together load no joint beyond the limit, whatever their forces.
 void keep_torque_limit(const DigitWalls& walls, double limit) noexcept {
   double factor = 1.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kJointsPerDigit); ++i) {
@@ -67,24 +67,24 @@ void keep_torque_limit(const DigitWalls& walls, double limit) noexcept {
   for (LocalWall* wall : walls) wall->force_max *= factor;
 }
 
-/// A wall at this contact, as the host sees it.
-LocalWall wall_of(const ForceModel& model, const ContactRecord& record, const SegmentForce& force,
+/// Returns the wall at this contact, as the host computes it.
+LocalWall wall_of(const HapticParameters& parameters, const ContactRecord& record, const SegmentForce& force,
                   const ForceState& state) noexcept {
   LocalWall wall;
-  wall.stiffness = state.stiffness_factor.value() * law_slope(model.law, record.depth);
+  wall.stiffness = state.stiffness_factor.value() * law_slope(parameters.force, record.depth);
   wall.d_ref = record.depth > 0.0 ? force.raw / wall.stiffness : record.depth;
   wall.host_force = force.sent;
   return wall;
 }
 
-/// The wall that the segment has just left, as long as the finger is still near its place.
-LocalWall wall_left(const ForceModel& model, const Pose& hcp, RememberedWall& left) noexcept {
+/// Returns the wall of a contact that has just let go, while the finger is still near its place.
+LocalWall wall_left(const HapticParameters& parameters, const Pose& hcp, RememberedWall& left) noexcept {
   LocalWall wall;
-  left.age += model.period;
+  left.age += parameters.period();
   const Vec3 apart = hcp * left.p_S - left.p_W;
   const double height = left.normal.dot(apart);
   const double aside = (apart - height * left.normal).norm();
-  // Below the plane without a contact: the object is not there any more.
+  // Below the plane without a contact the object is absent.
   left.kept = left.age <= kKeptFor && height >= 0.0 && height <= kHighest && aside <= kFarthestAside;
   if (!left.kept) return wall;
   wall.stiffness = left.stiffness;
@@ -110,7 +110,7 @@ void withhold_walls(int digit, ForceState& state) noexcept {
   for (int k = 0; k < kSegmentsPerDigit; ++k) state.wall[idx(segment_index(digit, k))] = {};
 }
 
-void make_walls(const ForceModel& model, const GdpState& contacts, const HandPoses& hcp, int digit,
+void make_walls(const HapticParameters& parameters, const GdpState& contacts, const HandPoses& hcp, int digit,
                 bool stale, ForceState& state) noexcept {
   const DigitPose& gdp = contacts.poses.digit[idx(digit)];
   DigitWalls walls{};
@@ -125,7 +125,7 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
     wall = {};
     if (record.silent || stale) remembered.kept = false;
     if (record.active && !record.silent && !stale) {
-      wall = wall_of(model, record, force, state);
+      wall = wall_of(parameters, record, force, state);
       remembered = {.kept = true,
                     .age = 0.0,
                     .stiffness = wall.stiffness,
@@ -133,7 +133,7 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
                     .normal = force.normal,
                     .p_W = record.p_gdp};
     } else if (remembered.kept && !record.active) {
-      wall = wall_left(model, hcp.digit[idx(digit)].segment[idx(k)], remembered);
+      wall = wall_left(parameters, hcp.digit[idx(digit)].segment[idx(k)], remembered);
     }
     JointArray unit_torque{};
     add_torques(gdp, digit, k, gdp.segment[idx(k)] * remembered.p_S, remembered.normal, unit_torque);
@@ -146,12 +146,12 @@ void make_walls(const ForceModel& model, const GdpState& contacts, const HandPos
     }
     normal[idx(k)] = remembered.normal;
   }
-  if (model.limits.fingertip_force_enabled) {
-    share_the_cap(walls, normal, model.limits.fingertip_force);
+  if (parameters.limits.fingertip_force_enabled) {
+    share_the_cap(walls, normal, parameters.limits.fingertip_force);
   } else {
     for (LocalWall* wall : walls) wall->force_max = wall->active ? kUncapped : 0.0;
   }
-  if (model.limits.joint_torque_enabled) keep_torque_limit(walls, model.limits.joint_torque);
+  if (parameters.limits.joint_torque_enabled) keep_torque_limit(walls, parameters.limits.joint_torque);
 }
 
 bool remembers_walls(int digit, const ForceState& state) noexcept {

@@ -9,15 +9,15 @@
 namespace phalanx {
 namespace {
 
-// SOURCES
+// SOURCES (SD: standard deviation)
 // [ANSUR] Gordon C. C. et al., "1988 Anthropometric Survey of U.S. Army Personnel: Methods and Summary
-//         Statistics", Technical Report NATICK/TR-89/044, 1989. The report itself was not at hand: means and
-//         SDs are as commonly cited. Pheasant, "Bodyspace", 1996 (rounded to 5 mm in the table that was at
-//         hand) gives British hand breadths of 85, SD 5 (men) and 75, SD 4 (women), which the range holds.
+//         Statistics", Technical Report NATICK/TR-89/044, 1989. We did not have the report: means and SDs are
+//         as commonly cited. Check: Pheasant, "Bodyspace", 1996 (its table rounds to 5 mm) gives British hand
+//         breadths of 85, SD 5 (men) and 75, SD 4 (women), which are within the range.
 // [BK]    Buryanov A., Kotiuk V., "Proportions of hand segments", Int. J. Morphol. 28(3), 2010, pp. 755-758:
-//         bones on radiographs of 66 adults from 19 to 78 years. Compared, all 19 means and SDs, with a
+//         bones on radiographs of 66 adults from 19 to 78 years. All 19 means and SDs were compared with a
 //         second text that cites them to a tenth of a millimetre.
-// [OWN]   Our own bounds, no published number: see each.
+// [OWN]   Our own bounds without a published number; each states its reason.
 
 constexpr std::array<Norm, 2> kHandLength = {
     {{"men", 193.8 * kMm, 9.8 * kMm}, {"women", 180.5 * kMm, 9.7 * kMm}}};
@@ -31,8 +31,7 @@ struct Millimetres {
   double mean;
   double sd;
 };
-// [BK] In the order of the segments: the thumb's metacarpal, proximal, distal; a finger's proximal, middle,
-// distal.
+// [BK] In the order of the segments. Thumb: metacarpal, proximal, distal. Fingers: proximal, middle, distal.
 constexpr std::array<Millimetres, kSegments - 1> kSegmentLength = {{
     {46.22, 3.94},
     {31.57, 3.13},
@@ -57,9 +56,9 @@ struct Degrees {
   double min;
   double max;
 };
-// [OWN] Wide enough for hypermobile, contracted and deformed joints (swan neck, boutonniere, Z thumb); beyond
-// them the sign or the unit is wrong. Typical ranges, from AAOS 1965 and Eaton, are in
-// assets/hands/adult.toml.
+// [OWN] Wide enough for hypermobile, contracted and deformed joints (swan neck, boutonniere, Z thumb). An
+// angle beyond them has a wrong sign or unit. assets/hands/adult.toml holds typical ranges, from AAOS
+// 1965 and Eaton.
 constexpr std::array<Degrees, kJointsPerDigit> kThumbAngles = {
     {{-60, 80}, {-60, 80}, {-60, 100}, {-90, 110}}};
 constexpr std::array<Degrees, kJointsPerDigit> kFingerAngles = {
@@ -103,7 +102,7 @@ PlausibleRange plausible_palm_ratio() noexcept {
   return {range.min / norm.mean, range.max / norm.mean, kBuryanov};
 }
 
-// [OWN] A child's finger to a swollen one.
+// [OWN] From a child's finger to a swollen one.
 PlausibleRange plausible_breadth_ratio() noexcept { return {0.6, 1.6, kOwn}; }
 
 PlausibleRange plausible_angle(int joint) noexcept {

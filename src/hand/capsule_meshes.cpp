@@ -11,7 +11,7 @@
 namespace phalanx {
 namespace {
 
-/// The grid of a capsule: 2 around (2 cap_rings + side_rings - 1) triangles.
+/// Grid of a capsule, of 2 around (2 cap_rings + side_rings - 1) triangles.
 struct Grid {
   int around;
   int cap_rings;
@@ -19,15 +19,15 @@ struct Grid {
   [[nodiscard]] int triangles() const noexcept { return 2 * around * (2 * cap_rings + side_rings - 1); }
 };
 
-/// The grid whose count is nearest to `triangles` among those of a pleasing shape (about 10 sides to 7
-/// rings).
+/// Returns the grid whose count is nearest to `triangles` among those of good proportions (about 10 sides
+/// to 7 rings).
 Grid grid_for(int triangles) {
   Grid best{6, 2, 1};
   double best_cost = std::numeric_limits<double>::infinity();
   const int widest = 8 + static_cast<int>(2.0 * std::sqrt(static_cast<double>(triangles)));
   for (int around = 6; around <= widest; ++around) {
     for (int cap = 2; cap <= widest; ++cap) {
-      // The side of a phalanx is about as long as a cap's arc: bands of nearly equal height.
+      // A phalanx's side is about as long as a cap's arc: this gives bands of nearly equal height.
       const int side = std::max(1, cap - 1);
       const Grid grid{around, cap, side};
       const double rings = grid.triangles() / (2.0 * around);
@@ -56,7 +56,7 @@ SegmentMeshes make_capsule_meshes(const HandParameters& parameters, Handedness h
     meshes[s] = make_tapered_capsule(shape.length, shape.radius_base, shape.radius_tip, grid.around,
                                      grid.cap_rings, grid.side_rings);
   }
-  // The palm takes what the fifteen others leave.
+  // The palm gets the triangles that the fifteen other segments leave.
   const Grid palm_grid = grid_for(triangles - (kSegments - 1) * grid.triangles());
   const PalmShape& palm = parameters.palm;
   append(meshes[kPalm],

@@ -14,12 +14,12 @@ namespace {
 
 constexpr auto kMiddleDigit = static_cast<std::size_t>(Digit::kMiddle);
 
-/// The row of the segment's own bone.
+/// Returns the D-H row of the segment's own bone.
 const DhRow& row_of(const HandParameters& parameters, int segment) noexcept {
   return parameters.digits[idx(digit_of_segment(segment))].dh[idx(segment % kSegmentsPerDigit + 1)];
 }
 
-/// From a distal segment's joint to its soft tip [m].
+/// Returns the length from a distal segment's joint to its soft tip [m].
 double length_with_tip(const SegmentShape& shape) noexcept { return shape.length + shape.radius_tip; }
 
 void check(const std::optional<double>& value, std::string_view what) {
@@ -38,8 +38,8 @@ void check(const HandSize& size) {
   }
 }
 
-/// Ratio of the whole's stated size to the base's; else of the parts' stated sizes, summed, if all are
-/// stated; else nothing.
+/// Returns the ratio of the whole's stated size to the base's. Without it returns the ratio of the sums of
+/// the parts' sizes, if all are stated; else nothing.
 template <typename Stated, typename OfBase>
 std::optional<double> common_ratio(const std::optional<double>& whole, double base_whole,
                                    const Stated& stated, const OfBase& of_base) {
@@ -55,7 +55,7 @@ std::optional<double> common_ratio(const std::optional<double>& whole, double ba
   return sum / base_sum;
 }
 
-/// What a hand of this length leaves for the palm, relative to the base's palm.
+/// Returns the ratio of the palm's length to the base's that a hand of this length needs.
 double palm_ratio(const HandParameters& base, const HandSize& size, const HandFit& fit, double ratio) {
   bool stated = false;
   for (int k = 0; k < kSegmentsPerDigit; ++k)
@@ -156,7 +156,7 @@ HandParameters fitted_parameters(const HandParameters& base, const HandFit& fit)
     const double breadth = own.breadth_middle * (shape.radius_base + shape.radius_tip);
     shape.radius_base *= own.breadth_base;
     shape.radius_tip *= own.breadth_end;
-    // The middle's breadth is what a profile states; a capsule has no middle of its own.
+    // A profile states the breadth at the middle; a capsule has only radii at its ends.
     const double middle = breadth / (shape.radius_base + shape.radius_tip);
     shape.radius_base *= middle;
     shape.radius_tip *= middle;

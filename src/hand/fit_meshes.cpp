@@ -8,14 +8,14 @@
 namespace phalanx {
 namespace {
 
-/// Within this distance of a digit's first joint the palm is scaled alike in all directions; beyond the other
-/// one it is scaled as a whole [m].
+/// Distances from a digit's first joint [m]. Within kJointZone the palm is scaled by one ratio in all
+/// directions. Beyond kPalmZone it is scaled as a whole.
 constexpr double kJointZone = 0.010;
 constexpr double kPalmZone = 0.035;
-/// A cubic whose end slopes are at most three times its mean slope does not turn back; some way below that.
+/// Largest end slope of the cubic in mean slopes. Up to three, the cubic is monotonic.
 constexpr double kSteepest = 2.5;
 
-/// 0 below 0, 1 above 1, smooth between.
+/// Returns 0 below 0, 1 above 1, and a smooth rise between.
 double smooth_step(double x) noexcept {
   const double t = std::clamp(x, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
@@ -26,7 +26,7 @@ double breadth_at(const SegmentFit& fit, double t) noexcept {
   return fit.breadth_middle + (fit.breadth_end - fit.breadth_middle) * smooth_step(2.0 * t - 1.0);
 }
 
-/// Where the share t of a bone goes, in lengths of the base hand's bone: 0 to 0, 1 to `length`.
+/// Maps the share t of a bone, in lengths of the base hand's bone: 0 to 0, 1 to `length`.
 double along(double t, double length, double slope_base, double slope_end) noexcept {
   if (t <= 0.0) return slope_base * t;
   if (t >= 1.0) return length + slope_end * (t - 1.0);
@@ -37,15 +37,16 @@ double along(double t, double length, double slope_base, double slope_end) noexc
 Vec3 point_of_segment(const Vec3& p, double bone, const SegmentFit& fit, bool distal) noexcept {
   const double steepest = kSteepest * fit.length;
   const double slope_base = std::min(fit.breadth_base, steepest);
-  // Beyond a distal bone the soft tip grows with the bone.
+  // Beyond a distal bone the soft tip scales with the bone's length.
   const double slope_end = distal ? fit.length : std::min(fit.breadth_end, steepest);
   const double t = -p.z() / bone;
   const double breadth = breadth_at(fit, t);
   return {breadth * p.x(), breadth * p.y(), -bone * along(t, fit.length, slope_base, slope_end)};
 }
 
-/// The mean height of the digits' first joints as seen from a point: each weighs by the inverse fourth power
-/// of its distance, so that at a joint it is that joint's. `nearest` becomes the distance of the nearest one.
+/// Returns the weighted mean height of the digits' first joints for a point. Each weight is the inverse
+/// fourth power of the distance, so that at a joint the result is that joint's height.
+/// @param nearest  set to the distance of the nearest joint [m]
 double joint_height(const HandParameters& base, const Vec3& p, double& nearest) noexcept {
   double sum = 0.0;
   double weights = 0.0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map of fitted_meshes() for one point, for whatever else has to follow the meshes.
+// The map of fitted_meshes() for one point, for other geometry that follows the meshes.
 #pragma once
 
 #include "phalanx/hand/fit.h"
 
 namespace phalanx {
 
-/// Where fitted_meshes() moves the point p_S of a segment, in the segment's frame S [m].
+/// Returns where fitted_meshes() moves the point p_S of a segment, in the segment's frame S [m].
 [[nodiscard]] Vec3 fitted_point(const HandParameters& base, const HandFit& fit, int segment,
                                 const Vec3& p_S) noexcept;
 

@@ -12,7 +12,7 @@
 namespace phalanx {
 namespace {
 
-/// x distal, z the flexion axis: right-hand frame of a digit's first joint at q = 0, in H.
+/// Returns the right-handed frame of a digit's first joint at q = 0, in H: x distal, z the flexion axis.
 Pose base_frame(const DigitParameters& digit) {
   const Vec3 x = digit.distal.normalized();
   const Vec3 z = digit.dorsal.cross(x).normalized();
@@ -57,7 +57,7 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
   }
 }
 
-/// Reflects vectors of H in its x = 0 plane.
+/// Returns the reflection of vectors of H in its plane x = 0.
 Mat3 reflection() { return Vec3(-1.0, 1.0, 1.0).asDiagonal(); }
 
 }  // namespace
@@ -81,12 +81,12 @@ HandModel::HandModel(HandParameters parameters, Handedness handedness, const Pos
       joint_[idx(d)][idx(i)] = {row.a, row.d, row.theta, std::cos(row.alpha), std::sin(row.alpha)};
     }
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      double radius = 0.0;  // of the segment's mesh around its own joint
+      double radius = 0.0;  // of the segment's vertices around its origin [m]
       for (const Vec3& v : mesh(segment_index(d, k)).vertices) radius = std::max(radius, v.norm());
-      radius += std::abs(
-          digit.dh[idx(k + 1)].d);  // the segment's origin is this far along the axis from the joint's centre
-      // Distances between successive D-H origins do not depend on the angles; the segment's own joint is k
-      // + 1.
+      // The segment's origin is at this distance along the axis from the joint's centre.
+      radius += std::abs(digit.dh[idx(k + 1)].d);
+      // Distances between successive D-H origins do not depend on the angles. Joint k + 1 is
+      // the segment's own.
       for (int i = k + 1; i >= 0; --i) {
         reach_[idx(d)][idx(i)][idx(k)] = radius;
         if (i > 0) radius += std::hypot(digit.dh[idx(i - 1)].a, digit.dh[idx(i - 1)].d);
@@ -102,8 +102,9 @@ int HandModel::triangle_count() const noexcept {
 }
 
 void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose) const noexcept {
-  // The right hand's chain, from a base that is reflected for a left hand: it then carries the reflected
-  // frames, in which the third axis is the negative of the axis that flexes, for an axis is a pseudovector.
+  // This is the right hand's chain. For a left hand the base is reflected, so that the chain carries
+  // reflected frames. In these the third axis is the negative of the flexion axis, because an axis
+  // is a pseudovector.
   const double flexion = handedness_ == Handedness::kLeft ? -1.0 : 1.0;
   const Pose& base = X_WB_[idx(digit)];
   Vec3 x = base.R.col(0);
@@ -116,7 +117,7 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
     const double s = std::sin(joint.theta + angle[idx(i)]);
     const Vec3 axis = flexion * z;
     pose.joint[idx(i)] = {axis, p};
-    // Rz(theta + q) Tz(d): `across` is at right angles to the link and to z.
+    // Rz(theta + q) Tz(d): `across` is normal to the link and to z.
     const Vec3 link = c * x + s * y;
     const Vec3 across = c * y - s * x;
     const Vec3 start = p + joint.d * z;
@@ -126,8 +127,8 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
     y = joint.cos_alpha * across + joint.sin_alpha * z;
     z = joint.cos_alpha * z - joint.sin_alpha * across;
     if (i == 0) continue;
-    // WebXR's frame, from the one at the link's far end: origin back at the joint, -Z along the link, -X the
-    // axis that flexes.
+    // The frame at the link's far end is turned into WebXR's: origin at the joint, -Z along the link, -X
+    // along the flexion axis.
     Pose& segment = pose.segment[idx(i - 1)];
     segment.R.col(0) = -flexion * z;
     segment.R.col(1) = -y;
@@ -138,12 +139,6 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
 
 void HandModel::poses(const JointArray& angle, HandPoses& poses) const noexcept {
   for (int d = 0; d < kDigits; ++d) digit_pose(d, digit_angles(angle, d), poses.digit[idx(d)]);
-}
-
-DigitAngles digit_angles(const JointArray& angle, int digit) noexcept {
-  DigitAngles out{};
-  for (int i = 0; i < kJointsPerDigit; ++i) out[idx(i)] = angle[idx(joint_index(digit, i))];
-  return out;
 }
 
 PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept {

@@ -7,14 +7,15 @@
 namespace phalanx {
 namespace {
 
-/// What a HandModel asks for and no pose depends on.
+/// Returns the meshes that the constructor of HandModel requires; no pose depends on them.
 SegmentMeshes any_meshes() {
   SegmentMeshes meshes;
   meshes.fill({.vertices = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}, .triangles = {{0, 1, 2}}});
   return meshes;
 }
 
-/// Where a vertex goes if segment s alone moves it by `map` (s, the point in s's bind pose frame) into W.
+/// Returns the skin's vertices in W, blended by weight. Here map(s, p) moves the point p in s's bind pose
+/// frame as segment s alone moves it.
 template <typename Map>
 std::vector<Vec3> blended(const HandSkin& skin, Map&& map) {
   std::array<Pose, kSegments> X_SB;
@@ -48,7 +49,7 @@ std::array<Pose, kSegments> bind_poses(const HandParameters& parameters, Handedn
 
 void mirror(HandSkin& skin) noexcept {
   mirror(skin.mesh);
-  // X' = M X M with M = diag(-1, 1, 1): of R the entries that couple x to y and z turn their signs.
+  // X' = M X M with M = diag(-1, 1, 1): in R the entries that couple x to y and z change their signs.
   for (Pose& X : skin.X_BS) {
     X.R.row(0) = -X.R.row(0);
     X.R.col(0) = -X.R.col(0);

@@ -11,13 +11,13 @@
 namespace phalanx {
 namespace {
 
-/// A triangle's corner: 3 * triangle + k.
+/// Corner of a triangle: 3 * triangle + k.
 using Corner = std::size_t;
 
-/// A half edge, filed under the lower of its two vertices.
+/// Half edge, stored at the lower of its two vertices.
 struct HalfEdge {
-  std::int32_t high;  // the other vertex
-  Corner start;       // runs from this corner to the next one of its triangle
+  std::int32_t high;  // the higher vertex
+  Corner start;       // the edge runs from this corner to the next one of its triangle
   friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
     return a.high != b.high ? a.high < b.high : a.start < b.start;
   }
@@ -34,7 +34,7 @@ class Groups {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// Never joined with any.
+  /// @returns true if the member was never joined with another
   [[nodiscard]] bool alone(std::size_t i) const { return alone_[i]; }
   void join(std::size_t a, std::size_t b) {
     alone_[a] = alone_[b] = false;
@@ -50,7 +50,7 @@ class Groups {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Unit normals of the faces; zero where a face is so low that rounding would turn it.
+/// Returns the unit normals of the faces, or zero for a face so low that rounding would turn its normal.
 std::vector<Vec3> face_normals(const TriangleMesh& mesh) {
   std::vector<Vec3> face(mesh.triangles.size(), Vec3::Zero());
   const Bounds box = bounds(mesh);
@@ -63,7 +63,7 @@ std::vector<Vec3> face_normals(const TriangleMesh& mesh) {
     Vec3 e2 = point(2) - point(0);
     const double longest = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
     if (!(longest > 0.0)) continue;
-    e1 /= longest;  // scaled, so that the product of a small triangle's edges does not vanish
+    e1 /= longest;  // scaling keeps the product of a small triangle's edges above 0
     e2 /= longest;
     const Vec3 normal = e1.cross(e2);
     const double twice_area = normal.norm();
@@ -74,20 +74,20 @@ std::vector<Vec3> face_normals(const TriangleMesh& mesh) {
 
 /// Pairs of half edges in a fixed order.
 struct SharedEdges {
-  std::vector<std::pair<Corner, Corner>>
-      two;  ///< of edges that two triangles share, leaving out those without area
-  std::vector<std::pair<Corner, Corner>>
-      hanging;  ///< a triangle without area that lies in such an edge, and one of the two
+  /// Edges that two triangles with an area share.
+  std::vector<std::pair<Corner, Corner>> two;
+  /// A triangle without area in such an edge, and one of the two triangles.
+  std::vector<std::pair<Corner, Corner>> hanging;
 };
 
-/// Half edges in the order of their lower vertex, higher vertex and corner; those of lower vertex v are
+/// Half edges in the order of their lower vertex, higher vertex and corner. Those of the lower vertex v are
 /// [first[v], first[v + 1]).
 struct SortedHalfEdges {
   std::vector<std::size_t> first;
   std::vector<HalfEdge> edge;
 };
 
-/// Filed by counting, then sorted vertex by vertex, which is faster than one large sort.
+/// Sorts the half edges by counting, then vertex by vertex, which is faster than one large sort.
 SortedHalfEdges sorted_half_edges(const TriangleMesh& mesh) {
   const auto for_each = [&](const auto& visit) {
     for (Corner c = 0; c < 3 * mesh.triangles.size(); ++c) {
@@ -97,7 +97,7 @@ SortedHalfEdges sorted_half_edges(const TriangleMesh& mesh) {
     }
   };
   SortedHalfEdges out;
-  // Counts stand two places up, so that filling moves first[v + 1] from the start to the end of v.
+  // Counts are stored two places higher, so that filling moves first[v + 1] from the start to the end of v.
   out.first.assign(mesh.vertices.size() + 2, 0);
   for_each([&](std::size_t low, const HalfEdge&) { ++out.first[low + 2]; });
   for (std::size_t v = 2; v < out.first.size(); ++v) out.first[v] += out.first[v - 1];
@@ -134,13 +134,13 @@ SharedEdges shared_edges(const TriangleMesh& mesh, const std::vector<Vec3>& face
   return out;
 }
 
-/// A triangle without a normal of its own takes a neighbour's: spread front by front, each front in the
+/// Gives triangles without a normal that of a neighbour. Normals spread front by front, each front in the
 /// edges' order. O(n log n).
 void spread_normals(const SharedEdges& edges, std::vector<Vec3>& face) {
   for (const auto& [hanging, solid] : edges.hanging) face[hanging / 3] = face[solid / 3];
   const auto has_normal = [&](Corner c) { return !face[c / 3].isZero(0.0); };
   std::vector<std::size_t> front;                            // edges with a normal on one side only
-  std::vector<std::pair<std::size_t, std::size_t>> waiting;  // triangles without one, and their edges
+  std::vector<std::pair<std::size_t, std::size_t>> waiting;  // triangles without a normal, and their edges
   for (std::size_t e = 0; e < edges.two.size(); ++e) {
     const auto& [a, b] = edges.two[e];
     if (!has_normal(a)) waiting.emplace_back(a / 3, e);
@@ -175,8 +175,8 @@ SurfaceNormals surface_normals(const TriangleMesh& mesh, double crease_angle) {
   if (!(crease_angle >= 0.0 && crease_angle <= std::numbers::pi))
     throw std::invalid_argument("surface_normals: crease_angle is " + std::to_string(crease_angle) +
                                 " rad; give 0 to pi");
-  // A tube of twelve sides is folded by 30 degrees to rounding: without some room, noise would pick its
-  // creases.
+  // A tube of twelve sides is folded by 30 degrees to rounding. The tolerance keeps noise from
+  // choosing its creases.
   const double smooth_below = crease_angle > 0.0 ? crease_angle + 1e-6 : 0.0;
   constexpr double kFoldedBack = 91.0 * std::numbers::pi / 180.0;
   const std::size_t count = mesh.triangles.size();
@@ -189,7 +189,7 @@ SurfaceNormals surface_normals(const TriangleMesh& mesh, double crease_angle) {
   std::vector<Vec3> face = own;
   spread_normals(edges, face);
 
-  // Corners of one vertex that a smooth edge connects belong together.
+  // Corners of one vertex that a smooth edge connects form a group.
   SurfaceNormals out{.corner = std::vector<std::array<Vec3, 3>>(count),
                      .open_edges = std::vector<std::uint8_t>(count, 7)};
   Groups groups(3 * count);
@@ -209,7 +209,7 @@ SurfaceNormals surface_normals(const TriangleMesh& mesh, double crease_angle) {
     groups.join(next(a), alike ? next(b) : b);
   }
   for (std::size_t t = 0; t < count; ++t) {
-    if (own[t].isZero(0.0)) out.open_edges[t] = 0;  // nothing ends where nothing is
+    if (own[t].isZero(0.0)) out.open_edges[t] = 0;  // a triangle without area has no rim
   }
   std::vector<Vec3> sum(3 * count, Vec3::Zero());
   for (Corner c = 0; c < 3 * count; ++c) {
@@ -221,7 +221,7 @@ SurfaceNormals surface_normals(const TriangleMesh& mesh, double crease_angle) {
     const Vec3& s = sum[groups.root(c)];
     const double length = s.norm();
     const Vec3& fallback = face[c / 3];
-    if (length > 1e-12 && !groups.alone(c)) {  // alone: the face's own normal, to the last bit
+    if (length > 1e-12 && !groups.alone(c)) {  // alone: exactly the face's own normal
       out.corner[c / 3][c % 3] = s / length;
     } else {
       out.corner[c / 3][c % 3] = fallback.isZero(0.0) ? Vec3(Vec3::UnitZ()) : fallback;

@@ -21,7 +21,7 @@ void append(TriangleMesh& mesh, const TriangleMesh& part, const Pose& X) {
   if (first + part.vertices.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     throw std::invalid_argument(
         "append: the joined mesh would have more vertices than 32-bit indices reach; decimate it");
-  // Sizes first: `part` may be `mesh` itself.
+  // The sizes come first, because `part` may be `mesh` itself.
   const std::size_t vertices = part.vertices.size();
   const std::size_t triangles = part.triangles.size();
   mesh.vertices.reserve(first + vertices);
@@ -45,7 +45,7 @@ bool is_closed(const TriangleMesh& mesh) {
     }
   }
   std::sort(edges.begin(), edges.end());
-  // A directed edge that occurs twice belongs to two triangles that run through it the same way.
+  // A directed edge that occurs twice belongs to two triangles that run through it in the same direction.
   if (edges.empty() || std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
   return std::all_of(edges.begin(), edges.end(), [&](const Edge& e) {
     return std::binary_search(edges.begin(), edges.end(), Edge{e.second, e.first});
@@ -54,7 +54,8 @@ bool is_closed(const TriangleMesh& mesh) {
 
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.vertices.empty()) return 0.0;
-  // About a point of the mesh: a small mesh far from the origin keeps its digits.
+  // Volumes are relative to a point of the mesh, so that a small mesh far from the origin
+  // keeps its precision.
   const Vec3 o = mesh.vertices.front();
   double six_volumes = 0.0;
   for (const Triangle& t : mesh.triangles) {
@@ -84,7 +85,7 @@ void check_mesh(const TriangleMesh& mesh, const char* name) {
     (message << ... << parts);
     throw std::invalid_argument(message.str());
   };
-  const auto number = [](double x) { return std::isnan(x) ? std::abs(x) : x; };  // no "-nan"
+  const auto number = [](double x) { return std::isnan(x) ? std::abs(x) : x; };  // avoids "-nan"
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vec3& v = mesh.vertices[i];
     if (!v.allFinite())

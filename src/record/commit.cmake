@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 cmake_minimum_required(VERSION 3.25)
-# Writes HEADER with the commit that SOURCE_DIR is at, "-dirty" appended if tracked files differ from it; "unknown" outside git.
-# Leaves the file alone if nothing changed, so that nothing is compiled again.
+# Writes HEADER with the commit of SOURCE_DIR, and "-dirty" if tracked files differ from it; "unknown" outside git.
+# If nothing changed, it leaves the file unchanged, so that nothing is compiled again.
 set(commit "")
 find_program(GIT git)
 if(GIT)

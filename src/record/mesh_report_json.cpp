@@ -21,7 +21,7 @@ std::string mesh_verdict(const MeshReport& report) {
 
 std::string mesh_report_json(const std::string& file, const MeshReport& r) {
   using Json = nlohmann::ordered_json;
-  Json j;
+  Json j = Json::object();
   j["file"] = file;
   j["usable"] = r.finding(FindingKind::kUnits).found == 0;
   j["verdict"] = mesh_verdict(r);

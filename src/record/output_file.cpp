@@ -20,20 +20,7 @@ namespace {
 constexpr std::size_t kBufferBytes = 1U << 20U;
 constexpr std::size_t kLongestNumber = 32;  // "-2.2250738585072014e-308" has 24
 
-/// A rename would put a file in the place of a device or a pipe.
-bool stands_in_the_way(const std::filesystem::path& file) {
-  std::error_code ignored;
-  return std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
-}
-
-void rename_or_fail(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (stands_in_the_way(to)) fail_to("write", to, EEXIST);
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (error) fail_to("write", to, error.value());
-}
-
-/// Takes what was written off `text`. @returns 0, or the system's reason
+/// Writes text, and removes the written part from `text`. @returns 0, or the system's reason
 int write_off(int descriptor, std::string& text) noexcept {
   std::size_t written = 0;
   int error = 0;
@@ -55,16 +42,15 @@ OutputFile::OutputFile(std::filesystem::path file, Unfinished unfinished)
     throw std::runtime_error(
         fmt::format("cannot write '{}': it is no ordinary file; name another", file_.string()));
   buffer_.reserve(kBufferBytes);
-  PartialFile made = open_partial(file_, unfinished_);
-  descriptor_ = made.descriptor;
-  finished_earlier_ = std::move(made.finished_earlier);
+  part_ = std::make_unique<PartialFile>(file_, unfinished_);
+  finished_earlier_ = part_->take_finished_earlier();  // nothing may throw from here on, or the
+                                                       // file would stay
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ < 0) return;
-  if (unfinished_ == Unfinished::kLeft) write_off(descriptor_, buffer_);
-  if (unfinished_ == Unfinished::kRemoved || !has_rows(descriptor_)) ::unlink(partial_.c_str());
-  ::close(descriptor_);
+  if (!part_) return;
+  if (unfinished_ == Unfinished::kLeft) write_off(part_->descriptor(), buffer_);
+  if (unfinished_ == Unfinished::kRemoved || !has_rows(part_->descriptor())) part_->remove();
 }
 
 void OutputFile::reserve(std::size_t bytes) {
@@ -72,7 +58,7 @@ void OutputFile::reserve(std::size_t bytes) {
 }
 
 void OutputFile::write_through() {
-  if (const int error = write_off(descriptor_, buffer_); error != 0) fail_to("write", file_, error);
+  if (const int error = write_off(part_->descriptor(), buffer_); error != 0) fail_to("write", file_, error);
 }
 
 void OutputFile::text(std::string_view text) {
@@ -94,24 +80,27 @@ void OutputFile::integer(std::uint64_t value) {
   buffer_.append(digits.data(), end);
 }
 
+void OutputFile::synchronise() {
+  write_through();
+  // A file system that cannot do it is accepted.
+  if (::fsync(part_->descriptor()) != 0 && (errno == EIO || errno == ENOSPC)) fail_to("write", file_, errno);
+}
+
 void OutputFile::commit() {
   write_through();
-  // A log is made but once. Where a file system cannot do it, there is nothing to be done.
-  if (unfinished_ == Unfinished::kLeft && ::fsync(descriptor_) != 0 && (errno == EIO || errno == ENOSPC))
-    fail_to("write", file_, errno);
-  rename_or_fail(partial_, file_);
-  ::close(std::exchange(descriptor_, -1));  // and with it the lock
+  if (unfinished_ == Unfinished::kLeft) synchronise();  // a log exists only once
+  part_->rename_to_output();
+  part_.reset();  // releases the lock
 }
 
 void write_then_rename(const std::filesystem::path& file,
                        const std::function<void(const std::filesystem::path&)>& write) {
-  const std::filesystem::path partial = partial_name(file);
-  ::close(open_partial(file, Unfinished::kRemoved).descriptor);
+  PartialFile part(file, Unfinished::kRemoved);
   try {
-    write(partial);
-    rename_or_fail(partial, file);
+    write(part.path());
+    part.rename_to_output();
   } catch (...) {
-    ::unlink(partial.c_str());
+    part.remove();
     throw;
   }
 }

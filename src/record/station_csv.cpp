@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "phalanx/record/made.h"
 
@@ -65,7 +67,7 @@ void write_samples(OutputFile& file, const FaultReport& report) {
   }
 }
 
-/// A folder that did not exist: two faults within a second do not share one.
+/// Makes a folder that did not exist: two faults within a second get separate ones.
 std::filesystem::path new_folder(const std::filesystem::path& folder, Fault fault, std::time_t now) {
   prepare_output_folder(folder);
   const std::string name = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(now), fault_name(fault));
@@ -88,16 +90,19 @@ void write_step_header(OutputFile& file) {
   file.text("\n");
 }
 
+/// Writes the whole row or, if memory runs out, none of it.
 void write_step(OutputFile& file, const StepRecord& record) {
-  file.text(fmt::format("{},{},{:.1f},{:.1f},{},{},{},{},{},{},{},{},{}", record.tick, record.time,
-                        1e6 * record.lateness, 1e6 * record.duration, record.overrun ? 1 : 0, record.samples,
-                        record.sample_sequence, record.sample_time_us, safety_state_name(record.state),
-                        fault_name(record.fault), record.factor, static_cast<std::uint32_t>(record.status),
-                        record.stiffness));
-  for (const double force : record.force) file.text(fmt::format(",{}", force));
-  for (const double torque : record.torque) file.text(fmt::format(",{}", torque));
-  for (const double angle : record.angle) file.text(fmt::format(",{}", angle));
-  file.text("\n");
+  std::string row = fmt::format("{},{},{:.1f},{:.1f},{},{},{},{},{},{},{},{},{}", record.tick, record.time,
+                                1e6 * record.lateness, 1e6 * record.duration, record.overrun ? 1 : 0,
+                                record.samples, record.sample_sequence, record.sample_time_us,
+                                safety_state_name(record.state), fault_name(record.fault), record.factor,
+                                static_cast<std::uint32_t>(record.status), record.stiffness);
+  const auto add = [&](double value) { fmt::format_to(std::back_inserter(row), ",{}", value); };
+  for (const double force : record.force) add(force);
+  for (const double torque : record.torque) add(torque);
+  for (const double angle : record.angle) add(angle);
+  row += '\n';
+  file.text(row);
 }
 
 std::filesystem::path write_fault_report(const std::filesystem::path& folder, const FaultReport& report,

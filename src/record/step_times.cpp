@@ -10,7 +10,7 @@ namespace phalanx {
 
 double nearest_rank(const std::vector<double>& sorted, double percent) {
   assert(!sorted.empty() && percent > 0.0 && percent <= 100.0);
-  // percent * n is exact for the percentiles in use, so that a whole rank is not pushed up by rounding.
+  // percent * n is exact for the percentiles in use, so that rounding does not raise a whole rank.
   const double rank = std::ceil(percent * static_cast<double>(sorted.size()) / 100.0);
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }

@@ -16,7 +16,7 @@ std::uint64_t ticks_with(const Summary& summary, Status bit) {
 
 std::string ticks_text(std::uint64_t ticks) { return fmt::format("{} tick{}", ticks, ticks == 1 ? "" : "s"); }
 
-/// "index (812 ticks), ring (3 ticks)"
+/// Lists the digits: "index (812 ticks), ring (3 ticks)".
 std::string silent_digits(const Summary& summary) {
   std::string text;
   for (int digit = 0; digit < kDigits; ++digit) {

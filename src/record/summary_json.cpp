@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// {"<name>": value, ...} in index order.
+/// Makes {"<name>": value, ...} in index order.
 template <class Values, class Name>
 Json by_name(const Values& values, Name name) {
   Json json = Json::object();
@@ -20,7 +20,7 @@ Json by_name(const Values& values, Name name) {
 }  // namespace
 
 std::string summary_json(const Summary& summary) {
-  Json json;
+  Json json = Json::object();
   json["scene"] = summary.scene;
   json["ticks"] = summary.ticks;
   json["rate_hz"] = summary.rate_hz;

@@ -32,7 +32,7 @@ std::string_view kind_name(ChannelKind kind) {
 
 // ---- writing ----
 
-// A TOML string with everything escaped that needs to be.
+// Writes a TOML string with all necessary escapes.
 std::string quoted(const std::string& text) {
   std::ostringstream out;
   out << toml::toml_formatter{toml::value<std::string>(text), toml::format_flags::none};
@@ -100,7 +100,7 @@ CalibratedChannel read_channel(TomlTable table) {
   return read;
 }
 
-// "2026-05-04T09:30:00Z"
+// @returns true for a date such as "2026-05-04T09:30:00Z".
 bool is_date(std::string_view text) {
   constexpr std::string_view kShape = "0000-00-00T00:00:00Z";
   if (text.size() != kShape.size()) return false;

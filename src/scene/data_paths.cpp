@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/data_paths.h"
+#include "phalanx/scene/names_in_folder.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +10,7 @@
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
-#include "scene/folder_names.h"
+#include "scene/why_no_file.h"
 
 namespace phalanx {
 namespace fs = std::filesystem;

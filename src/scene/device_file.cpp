@@ -13,20 +13,20 @@
 namespace phalanx {
 namespace {
 
-/// Far beyond any hand exoskeleton: a value outside is a slip of the decimal point or of the unit.
+/// Far beyond any hand exoskeleton: a value outside has a wrong decimal point or unit.
 constexpr NumberRange kArmMm = {.min = -100.0, .max = 100.0};
 constexpr NumberRange kRate = {.min = 1.0, .max = 100e3};
 constexpr NumberRange kScale = {.min = 0.0, .max = 1e3};
 constexpr NumberRange kScaleAbove0 = {.min = 0.0, .max = 1e3, .min_open = true};
 
-/// A table whose missing keys are looked for in a table of defaults.
+/// A table whose missing keys are read from a table of defaults.
 class Defaulted {
  public:
   Defaulted(TomlTable own, TomlTable* defaults) : own_(std::move(own)), defaults_(defaults) {}
 
   double number(std::string_view key, const NumberRange& range, std::optional<double> fallback = {}) {
     if (defaults_ != nullptr && defaults_->has(key)) fallback = defaults_->number(key, range);
-    if (own_.has(key) || !fallback) return own_.number(key, range);  // which says so if it is missing
+    if (own_.has(key) || !fallback) return own_.number(key, range);  // reports a missing key
     return *fallback;
   }
   bool flag(std::string_view key, bool fallback) {
@@ -53,13 +53,13 @@ ExoJoint read_joint(TomlTable own, TomlTable* defaults, int joint) {
   Defaulted table(std::move(own), defaults);
   ExoJoint exo;
   exo.joint = joint;
-  exo.inertia = table.number("inertia_kg_m2", above_0(1.0));
-  exo.damping = table.number("damping_nms_per_rad", at_most(100.0), 0.0);
-  exo.friction.coulomb = table.number("friction_nm", at_most(10.0), 0.0);
+  exo.inertia = table.number("inertia_kg_m2", above(0.0, 1.0));
+  exo.damping = table.number("damping_nms_per_rad", between(0.0, 100.0), 0.0);
+  exo.friction.coulomb = table.number("friction_nm", between(0.0, 10.0), 0.0);
   exo.friction.static_ratio = table.number("static_ratio", {.min = 1.0, .max = 10.0}, 1.0);
-  exo.friction.stribeck_speed = table.number("stribeck_rad_per_s", above_0(1e3), 1.0);
-  exo.sensor_lsb = table.number("sensor_lsb_rad", at_most(1.0), 0.0);
-  exo.sensor_noise = table.number("sensor_noise_rad", at_most(1.0), 0.0);
+  exo.friction.stribeck_speed = table.number("stribeck_rad_per_s", above(0.0, 1e3), 1.0);
+  exo.sensor_lsb = table.number("sensor_lsb_rad", between(0.0, 1.0), 0.0);
+  exo.sensor_noise = table.number("sensor_noise_rad", between(0.0, 1.0), 0.0);
   exo.torque_sensor = table.flag("torque_sensor", false);
   table.own().finish();
   return exo;
@@ -88,20 +88,20 @@ ExoMotor read_motor(TomlTable own, TomlTable* defaults, const std::string& name)
   ExoMotor motor;
   motor.name = name;
   motor.arm = read_arms(table.own().table("arms_mm"));
-  motor.lag = table.number("lag_ms", at_most(1e3), 0.0) * kMilli;
-  motor.force_limit = table.number("force_limit_n", above_0(10e3));
+  motor.lag = table.number("lag_ms", between(0.0, 1e3), 0.0) * kMilli;
+  motor.force_limit = table.number("force_limit_n", above(0.0, 10e3));
   motor.pull_only = table.flag("pull_only", false);
-  motor.bias = table.number("bias_n", at_most(10e3), 0.0);
-  motor.force_constant = table.number("force_constant_n_per_a", above_0(1e6), 1.0);
-  motor.mass = table.number("mass_kg", above_0(1e3));
-  motor.damping = table.number("damping_ns_per_m", at_most(1e5), 0.0);
-  motor.tendon_stiffness = table.number("tendon_stiffness_n_per_mm", above_0(1e5)) / kMilli;
-  motor.tendon_damping = table.number("tendon_damping_ns_per_m", at_most(1e6), 0.0);
-  motor.backlash = table.number("backlash_mm", at_most(100.0), 0.0) * kMilli;
-  motor.sheath.coulomb = table.number("friction_n", at_most(10e3), 0.0);
+  motor.bias = table.number("bias_n", between(0.0, 10e3), 0.0);
+  motor.force_constant = table.number("force_constant_n_per_a", above(0.0, 1e6), 1.0);
+  motor.mass = table.number("mass_kg", above(0.0, 1e3));
+  motor.damping = table.number("damping_ns_per_m", between(0.0, 1e5), 0.0);
+  motor.tendon_stiffness = table.number("tendon_stiffness_n_per_mm", above(0.0, 1e5)) / kMilli;
+  motor.tendon_damping = table.number("tendon_damping_ns_per_m", between(0.0, 1e6), 0.0);
+  motor.backlash = table.number("backlash_mm", between(0.0, 100.0), 0.0) * kMilli;
+  motor.sheath.coulomb = table.number("friction_n", between(0.0, 10e3), 0.0);
   motor.sheath.static_ratio = table.number("static_ratio", {.min = 1.0, .max = 10.0}, 1.0);
-  motor.sheath.stribeck_speed = table.number("stribeck_mm_per_s", above_0(1e6), 1.0) * kMilli;
-  motor.sheath.capstan = table.number("capstan", at_most(10.0), 0.0);
+  motor.sheath.stribeck_speed = table.number("stribeck_mm_per_s", above(0.0, 1e6), 1.0) * kMilli;
+  motor.sheath.capstan = table.number("capstan", between(0.0, 10.0), 0.0);
   table.own().finish();
   return motor;
 }
@@ -109,10 +109,21 @@ ExoMotor read_motor(TomlTable own, TomlTable* defaults, const std::string& name)
 ExoController read_controller(TomlTable table) {
   ExoController controller;
   controller.rate_hz = table.number_or("rate_hz", kRate, controller.rate_hz);
-  controller.compute_delay = table.number_or("compute_delay_ms", at_most(1e3), 0.0) * kMilli;
-  controller.return_delay = table.number_or("return_delay_ms", at_most(1e3), 0.0) * kMilli;
+  controller.compute_delay = table.number_or("compute_delay_ms", between(0.0, 1e3), 0.0) * kMilli;
+  controller.return_delay = table.number_or("return_delay_ms", between(0.0, 1e3), 0.0) * kMilli;
   table.finish();
   return controller;
+}
+
+/// Reads the digit that is copied; -1: "none", which cancels the base's.
+int read_copied(TomlTable& entry, const std::vector<std::string_view>& names) {
+  const std::string of = entry.text("of");
+  if (of == "none") return -1;
+  const auto found = std::find(names.begin(), names.end(), of);
+  if (found == names.end())
+    entry.fail("of", fmt::format("is neither a digit nor \"none\"; the nearest digit is \"{}\"",
+                                 nearest_name(of, names)));
+  return static_cast<int>(found - names.begin());
 }
 
 std::array<DigitCopy, kDigits> read_copies(TomlTable table) {
@@ -122,12 +133,8 @@ std::array<DigitCopy, kDigits> read_copies(TomlTable table) {
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
     if (!table.has(names[digit])) continue;
     TomlTable entry = table.table(names[digit]);
-    const std::string of = entry.text("of");
-    const auto found = std::find(names.begin(), names.end(), of);
-    if (found == names.end())
-      entry.fail("of", fmt::format("is no digit; the nearest one is \"{}\"", nearest_name(of, names)));
-    copies[digit].of = static_cast<int>(found - names.begin());
-    copies[digit].gain = entry.number_or("gain", at_most(10.0), 1.0);
+    copies[digit].of = read_copied(entry, names);
+    copies[digit].gain = entry.number_or("gain", between(0.0, 10.0), 1.0);
     entry.finish();
   }
   table.finish();
@@ -171,7 +178,7 @@ void apply_scale(TomlTable table, Exoskeleton& exo) {
   }
 }
 
-/// Joints, coupled joints and motors, with the tables of defaults.
+/// Reads joints, coupled joints and motors, with the tables of defaults.
 void read_mechanics(TomlTable& root, Exoskeleton& exo) {
   std::optional<TomlTable> defaults, of_joint, of_motor;
   if (root.has("defaults")) {
@@ -210,7 +217,7 @@ Exoskeleton read_device(const LayeredFile& file) {
   read_mechanics(root, exo);
   if (root.has("controller")) exo.controller = read_controller(root.table("controller"));
   if (root.has("copy")) exo.controller.copy = read_copies(root.table("copy"));
-  static_cast<void>(root.has("base"));  // known, though gone by now, like the scales
+  static_cast<void>(root.has("base"));  // known, although already handled, like the scales
   static_cast<void>(root.has("scale"));
   root.finish();
   for (const TomlTable& scale : file.scales()) apply_scale(scale, exo);

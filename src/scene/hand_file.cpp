@@ -12,14 +12,14 @@
 namespace phalanx {
 namespace {
 
-/// Far beyond any hand: a value outside is a slip of the decimal point or of the unit.
+/// Far beyond any hand: a value outside has a wrong decimal point or unit.
 constexpr NumberRange kPlaceMm = {.min = -300.0, .max = 300.0};
 constexpr NumberRange kLengthMm = {.min = 0.0, .max = 200.0};
 constexpr NumberRange kSizeMm = {.min = 0.0, .max = 200.0, .min_open = true};
 constexpr NumberRange kAngleDeg = {.min = -180.0, .max = 180.0};
 constexpr NumberRange kDirection = {.min = -1e3, .max = 1e3};
 
-/// The element must bear the name that its place implies, so that a file with two lines swapped is refused.
+/// Checks that the element has the name that its place implies: a file with two swapped lines is refused.
 void require_name(TomlTable& table, std::string_view expected) {
   if (table.text("name") != expected) {
     table.fail("name", fmt::format("this place belongs to \"{}\"; put the lines in that order", expected));
@@ -94,10 +94,10 @@ PalmShape read_palm(TomlTable table) {
 }
 
 constexpr std::string_view kSegmentWord = "{segment}";
-/// From a hundredth of a millimetre to a kilometre: nobody exports in another unit.
+/// From a hundredth of a millimetre to a kilometre: no program exports in another unit.
 constexpr NumberRange kUnitMm = {.min = 1e-2, .max = 1e6};
 
-/// A path, relative to `folder`.
+/// Reads a path, relative to `folder`.
 std::filesystem::path read_path(TomlTable& table, std::string_view key, const std::filesystem::path& folder) {
   const std::string text = table.text(key);
   if (text.empty()) table.fail(key, "names no file; name one, or remove the key");
@@ -105,7 +105,7 @@ std::filesystem::path read_path(TomlTable& table, std::string_view key, const st
   return folder / text;
 }
 
-/// A path with one `{segment}`, relative to `folder`.
+/// Reads a path with one `{segment}`, relative to `folder`.
 std::filesystem::path read_pattern(TomlTable& table, std::string_view key,
                                    const std::filesystem::path& folder) {
   const std::string text = table.text(key);

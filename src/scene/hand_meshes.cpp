@@ -13,16 +13,16 @@
 namespace phalanx {
 namespace {
 
-/// No part of a segment lies further from the segment's joint [m]: the longest hand is shorter.
+/// Largest distance of a vertex from its segment's joint [m]: the longest hand is shorter.
 constexpr double kFarthestOfSegment = 0.3;
-/// No segment is smaller [m].
+/// Smallest plausible extent of a segment [m].
 constexpr double kSmallest = 3e-3;
 
 class MeshReader {
  public:
   explicit MeshReader(const HandMeshFiles& files) : files_(files) {}
 
-  /// One mesh a segment, of a right hand.
+  /// Reads one mesh a segment, of a right hand.
   [[nodiscard]] SegmentMeshes read(const std::filesystem::path& pattern, bool collision) const {
     SegmentMeshes meshes;
     for (int segment = 0; segment < kSegments; ++segment) {
@@ -87,9 +87,9 @@ class MeshReader {
 
 /// A described hand before its meshes are read.
 struct Source {
-  HandParameters base;         ///< the hand file's
-  HandParameters parameters;   ///< the fitted ones, or the base's
-  std::optional<HandFit> fit;  ///< if a profile says so
+  HandParameters base;         ///< from the hand file
+  HandParameters parameters;   ///< fitted ones, or the base's
+  std::optional<HandFit> fit;  ///< set if a profile is given
   Handedness handedness = Handedness::kRight;
   std::optional<HandMeshFiles> files;  ///< none: capsules
 };
@@ -120,7 +120,7 @@ Source open(const HandDescription& hand) {
   return source;
 }
 
-/// The base hand's right-handed meshes as the described hand's.
+/// Converts the base hand's right-handed meshes to those of the described hand.
 SegmentMeshes of_the_hand(const Source& source, SegmentMeshes meshes) {
   if (source.fit) meshes = fitted_meshes(source.base, *source.fit, std::move(meshes));
   if (source.handedness == Handedness::kLeft) mirror(meshes);
@@ -140,7 +140,7 @@ SegmentMeshes display_meshes(const Source& source, const SegmentMeshes& collisio
   return of_the_hand(source, MeshReader(*source.files).read(source.files->display, false));
 }
 
-/// Of a right hand, its bind poses not known yet.
+/// Reads the skin of a right hand; its bind poses are not known yet.
 HandSkin read_skin(const HandMeshFiles& files) {
   HandSkin skin;
   try {
@@ -152,33 +152,7 @@ HandSkin read_skin(const HandMeshFiles& files) {
   return skin;
 }
 
-}  // namespace
-
-HandNumbers load_hand_numbers(const HandDescription& hand) {
-  Source source = open(hand);
-  return {std::move(source.parameters), source.handedness};
-}
-
-LoadedHand load_hand(const HandDescription& hand) {
-  Source source = open(hand);
-  LoadedHand loaded;
-  loaded.handedness = source.handedness;
-  loaded.meshes.collision = collision_meshes(source, hand);
-  loaded.meshes.display = display_meshes(source, loaded.meshes.collision);
-  loaded.parameters = std::move(source.parameters);
-  return loaded;
-}
-
-SegmentMeshes load_collision_meshes(const HandDescription& hand) {
-  return collision_meshes(open(hand), hand);
-}
-
-SegmentMeshes load_display_meshes(const HandDescription& hand, const SegmentMeshes& collision) {
-  return display_meshes(open(hand), collision);
-}
-
-std::optional<HandSkin> load_hand_skin(const HandDescription& hand) {
-  const Source source = open(hand);
+std::optional<HandSkin> skin_of(const Source& source) {
   if (!source.files || source.files->skin.empty()) return std::nullopt;
   HandSkin skin = read_skin(*source.files);
   skin.X_BS = bind_poses(source.base, Handedness::kRight);
@@ -186,5 +160,26 @@ std::optional<HandSkin> load_hand_skin(const HandDescription& hand) {
   if (source.handedness == Handedness::kLeft) mirror(skin);
   return skin;
 }
+
+}  // namespace
+
+HandNumbers load_hand_numbers(const HandDescription& hand) {
+  Source source = open(hand);
+  return {std::move(source.parameters), source.handedness};
+}
+
+LoadedHand load_hand(const HandDescription& hand, HandDetail detail) {
+  Source source = open(hand);
+  LoadedHand loaded;
+  loaded.handedness = source.handedness;
+  loaded.meshes.collision = collision_meshes(source, hand);
+  if (detail == HandDetail::kDrawn || detail == HandDetail::kAll) loaded.skin = skin_of(source);
+  const bool display = detail == HandDetail::kDrawn ? !loaded.skin : detail != HandDetail::kCollision;
+  if (display) loaded.meshes.display = display_meshes(source, loaded.meshes.collision);
+  loaded.parameters = std::move(source.parameters);
+  return loaded;
+}
+
+std::optional<HandSkin> load_hand_skin(const HandDescription& hand) { return skin_of(open(hand)); }
 
 }  // namespace phalanx

@@ -16,7 +16,7 @@ HandTree hand_tree(const LoadedHand& hand) {
     for (int i = 0; i < kJointsPerDigit; ++i) {
       const auto j = static_cast<std::size_t>(joint_index(digit, i));
       const JointAxis& joint = pose.joint[static_cast<std::size_t>(i)];
-      // A segment's origin lies on its joint's axis: the D-H offset d runs along it.
+      // A segment's origin is on its joint's axis: the Denavit-Hartenberg (D-H) offset d runs along it.
       Pose child = pose.segment[static_cast<std::size_t>(segment_in_digit_of_joint(i))];
       if (i == 0) child.p = joint.centre;
       tree.hinge[j] = {.X_parent_child = parent.inverse() * child,

@@ -13,14 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A chain of bases longer than this bites its own tail.
+/// Longest chain of bases; a longer one is circular.
 constexpr int kMaxBases = 8;
 
 std::string joined(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Puts a value at a dotted path, with the tables that lead to it.
+/// Inserts a value at a dotted path, with the tables that lead to it.
 void insert_at(toml::table& root, const OverlaidValue& value) {
   toml::table parsed = parse_toml("v = " + value.value, value.place);
   toml::node* leaf = parsed.get("v");
@@ -40,7 +40,7 @@ void insert_at(toml::table& root, const OverlaidValue& value) {
   leaf->visit([&](auto& node) { at->insert_or_assign(value.path.substr(begin), std::move(node)); });
 }
 
-/// `top` over `below`: tables join, anything else replaces.
+/// Merges `top` over `below`: tables are merged, other values replaced.
 void merge(toml::table& below, toml::table& top) {
   for (auto&& [key, value] : top) {
     toml::node* there = below.get(key.str());
@@ -54,7 +54,7 @@ void merge(toml::table& below, toml::table& top) {
 
 }  // namespace
 
-/// Where the parser met every value of a file.
+/// Notes the parser's place of every value of a file.
 void LayeredFile::note_places(const toml::table& table, const std::string& path, const std::string& origin,
                               Places& places) {
   for (const auto& [key, value] : table) {
@@ -120,7 +120,7 @@ void LayeredFile::add(Layer layer) {
     layer.tree.erase("scale");
   }
   merge(merged_.tree, layer.tree);
-  // A table stays at home where it began; a value is where it was stated last.
+  // A table's place is where it began; a value's place is where it was stated last.
   for (auto& [path, stated] : layer.places) {
     if (stated.table)
       merged_.places.emplace(path, std::move(stated));

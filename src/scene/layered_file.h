@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that may stand on another (its `base`), with values of a scene laid over it: one tree in which every
-// value still knows where it was stated.
+// A file that may extend another one (its `base`), with a scene's overrides: one tree, in which the origin of
+// every value is known.
 #pragma once
 
 #include <filesystem>
@@ -14,32 +14,33 @@
 
 namespace phalanx {
 
+/// Tree merged from several files and overrides.
 class LayeredFile {
  public:
-  /// @param what  "device", "patient": names the file in messages, its folder in assets/ and its table in a
-  /// scene
+  /// @param what  "device" or "patient": names the file in messages, its folder in assets/ and its table
+  /// in a scene
   explicit LayeredFile(std::string what) : what_(std::move(what)) {}
 
-  /// Lays a file, and below it the one that it names as `base`, over what is there. A relative `base` path is
-  /// relative to the file that names it.
-  /// @param stated_at  "FILE:LINE: KEY = VALUE" that names the file; empty: nobody does
+  /// Merges a file over the present tree, and below it the file that it names as `base`. A relative `base`
+  /// path is relative to the file that names it.
+  /// @param stated_at  "FILE:LINE: KEY = VALUE" that names the file; empty: none
   /// @throws SceneError.
   void add_file(const std::string& name_or_path, const std::filesystem::path& folder,
                 const std::string& stated_at = "");
-  /// The same from text.
+  /// Merges a file from text.
   void add_text(const std::string& text, const std::string& origin, const std::filesystem::path& folder);
-  /// Lays a scene's values over what is there. @throws SceneError.
+  /// Merges a scene's overrides over the present tree. @throws SceneError.
   void add_overlay(const std::vector<OverlaidValue>& values);
 
-  /// Everything but `base` and `scale`: of each value the one that was laid last.
-  /// The tables that these two give live as long as this does.
+  /// @returns the merged tree without `base` and `scale`; each value is the one that was merged last. The
+  /// tables from root() and scales() live as long as this object.
   [[nodiscard]] TomlTable root() const;
-  /// The layers' [scale] tables. They multiply: a scene's scale counts from the file's device, not from its
-  /// base's.
+  /// @returns the layers' [scale] tables. They multiply: a scene's scale applies to the file's device, not
+  /// to its base's.
   [[nodiscard]] std::vector<TomlTable> scales() const;
-  /// The file that was laid last.
+  /// @returns the file that was merged last.
   [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
-  /// The file and every value that a scene laid over it, for messages about the whole.
+  /// Names the file and every override of the scene, for messages about the whole.
   [[nodiscard]] std::string in_words() const;
 
  private:
@@ -58,7 +59,7 @@ class LayeredFile {
   void add(Layer layer);
   static void note_places(const toml::table& table, const std::string& path, const std::string& origin,
                           Places& places);
-  /// For as long as `places` lives.
+  /// Makes the look-up of places. It is valid as long as `places` lives.
   [[nodiscard]] PlaceOf lookup(const Places& places) const;
 
   std::string what_;

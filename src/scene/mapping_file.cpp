@@ -13,7 +13,7 @@ namespace {
 
 constexpr NumberRange kAny = {.min = -1e9, .max = 1e9};
 
-/// A number stated either in rad or in deg, [rad].
+/// Reads a number that is stated either in rad or in deg [rad].
 double angle_or(TomlTable& table, const std::string& key, double fallback) {
   const bool rad = table.has(key + "_rad");
   const bool deg = table.has(key + "_deg");

@@ -4,7 +4,7 @@
 namespace phalanx {
 
 MassProperties mass_properties(const TriangleMesh& mesh, double density) noexcept {
-  const Vec3 o = mesh.vertices.front();  // about a point of the mesh: nothing large cancels
+  const Vec3 o = mesh.vertices.front();  // about a point of the mesh, against cancellation of large terms
   double volume = 0.0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();

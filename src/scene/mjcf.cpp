@@ -55,7 +55,7 @@ class Writer {
     line(1, "</asset>");
   }
 
-  /// Inertia and geoms. The inertial is stated, so that no mesh's own centre moves anything.
+  /// Writes inertia and geoms. The inertial is explicit, so that a mesh's own centre has no influence.
   void contents(int segment, int depth) {
     const MassProperties m =
         mass_properties(hand_.meshes.collision[static_cast<std::size_t>(segment)], kHandDensity);
@@ -78,7 +78,7 @@ class Writer {
       line(depth, "<body name=\"{}\" pos=\"{}\" quat=\"{} {} {} {}\">", segment_name(segment), exact(X.p),
            exact(q.w()), exact(q.x()), exact(q.y()), exact(q.z()));
       if (k == 0) {
-        // MuJoCo applies a body's joints in their order, each in the frame that those before it have turned.
+        // MuJoCo applies a body's joints in their order, each in the frame that the earlier ones have turned.
         const Hinge& first = hinge(digit, 0);
         const Pose X_child_first = own.X_parent_child.inverse();
         joint(joint_index(digit, 0), depth + 1, X_child_first.p, X_child_first.R * first.axis_child, first);

@@ -6,19 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <numbers>
-#include <stdexcept>
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/csv_lines.h"
-#include "scene/folder_names.h"
+#include "scene/why_no_file.h"
 
 namespace phalanx {
 namespace {
 
-/// A column of the file that a joint is read from.
+/// A column of the file from which a joint is read.
 struct Column {
   std::size_t place = 0;
   JointMapping mapping;
@@ -186,24 +184,6 @@ Motion load_motion(const std::filesystem::path& file, const std::optional<Sensor
   if (!stream)
     throw SceneError(fmt::format("motion file {}: cannot be read; check its permissions", file.string()));
   return parse_motion(text, file.string(), mapping, trial, open_angle);
-}
-
-void write_motion_csv(const Motion& motion, const std::filesystem::path& file) {
-  check_motion(motion);
-  std::string text = "time_s";
-  for (int joint = 0; joint < kJoints; ++joint) text += fmt::format(",{}", joint_name(joint));
-  text += '\n';
-  for (std::size_t i = 0; i < motion.time_s.size(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{}", motion.time_s[i]);
-    for (const double angle : motion.angle[i]) fmt::format_to(std::back_inserter(text), ",{}", angle);
-    text += '\n';
-  }
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw std::runtime_error(
-        fmt::format("motion file {}: cannot be written; check the folder and the disk", file.string()));
 }
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices and patients as canonical text: what a fingerprint is taken from.
+// Devices and patients as canonical text, for fingerprints.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ void lines(std::string& text, const ExoController& controller) {
   }
 }
 
-/// In the order of a key, whatever order the device has them in.
+/// Sorts by a key, independent of the device's order.
 template <typename Item, typename Key>
 std::vector<const Item*> sorted_by(const std::vector<Item>& items, Key key) {
   std::vector<const Item*> sorted;

@@ -14,28 +14,28 @@ constexpr NumberRange kFactor = {.min = 0.0, .max = 1e3};
 
 void read_joint(TomlTable table, int joint, PatientParameters& patient) {
   const auto j = static_cast<std::size_t>(joint);
-  patient.stiffness[j] = table.number("stiffness_nm_per_rad", at_most(1e4));
-  patient.damping[j] = table.number_or("damping_nms_per_rad", at_most(1e3), 0.0);
+  patient.stiffness[j] = table.number("stiffness_nm_per_rad", between(0.0, 1e4));
+  patient.damping[j] = table.number_or("damping_nms_per_rad", between(0.0, 1e3), 0.0);
   table.finish();
 }
 
 void read_intent(TomlTable& root, PatientParameters& patient) {
-  patient.press = root.number_or("press_n", at_most(100.0), patient.press);
-  patient.press_spread = root.number_or("press_spread", at_most(1.0), patient.press_spread);
+  patient.press = root.number_or("press_n", between(0.0, 100.0), patient.press);
+  patient.press_spread = root.number_or("press_spread", between(0.0, 1.0), patient.press_spread);
   patient.approach_min =
-      root.number_or("approach_min_mm_per_s", above_0(10e3), patient.approach_min / kMilli) * kMilli;
+      root.number_or("approach_min_mm_per_s", above(0.0, 10e3), patient.approach_min / kMilli) * kMilli;
   patient.approach_max =
-      root.number_or("approach_max_mm_per_s", above_0(10e3), patient.approach_max / kMilli) * kMilli;
+      root.number_or("approach_max_mm_per_s", above(0.0, 10e3), patient.approach_max / kMilli) * kMilli;
 }
 
 void read_disturbances(TomlTable& root, PatientParameters& patient) {
-  patient.tremor = root.number_or("tremor_um", at_most(1e5), patient.tremor / kMicro) * kMicro;
-  patient.tremor_min_hz = root.number_or("tremor_min_hz", above_0(100.0), patient.tremor_min_hz);
-  patient.tremor_max_hz = root.number_or("tremor_max_hz", above_0(100.0), patient.tremor_max_hz);
-  patient.bump = root.number_or("bump_n", at_most(100.0), patient.bump);
-  patient.bump_start = root.number_or("bump_start_s", at_most(86400.0), patient.bump_start);
+  patient.tremor = root.number_or("tremor_um", between(0.0, 1e5), patient.tremor / kMicro) * kMicro;
+  patient.tremor_min_hz = root.number_or("tremor_min_hz", above(0.0, 100.0), patient.tremor_min_hz);
+  patient.tremor_max_hz = root.number_or("tremor_max_hz", above(0.0, 100.0), patient.tremor_max_hz);
+  patient.bump = root.number_or("bump_n", between(0.0, 100.0), patient.bump);
+  patient.bump_start = root.number_or("bump_start_s", between(0.0, 86400.0), patient.bump_start);
   patient.bump_duration =
-      root.number_or("bump_duration_ms", at_most(1e6), patient.bump_duration / kMilli) * kMilli;
+      root.number_or("bump_duration_ms", between(0.0, 1e6), patient.bump_duration / kMilli) * kMilli;
 }
 
 void apply_scale(TomlTable table, PatientParameters& patient) {
@@ -59,7 +59,7 @@ PatientParameters read_patient(const LayeredFile& file) {
   joints.finish();
   read_intent(root, patient);
   read_disturbances(root, patient);
-  static_cast<void>(root.has("base"));  // known, though gone by now, like the scales
+  static_cast<void>(root.has("base"));  // known, although already handled, like the scales
   static_cast<void>(root.has("scale"));
   root.finish();
   for (const TomlTable& scale : file.scales()) apply_scale(scale, patient);

@@ -17,12 +17,12 @@ namespace {
 
 constexpr NumberRange kAnyNumber = {};
 
-/// "141.7 to 233 mm"
+/// Writes a range: "141.7 to 233 mm".
 std::string in_words(const PlausibleRange& range, double unit, std::string_view unit_name) {
   return fmt::format("{:.4g} to {:.4g} {}", range.min / unit, range.max / unit, unit_name);
 }
 
-/// With a tolerance: a size that is stated as the range's very end must pass after it has been fitted, too.
+/// Checks a range with a tolerance: a size at the very end of the range must pass after fitting, too.
 bool within(const PlausibleRange& range, double value) noexcept {
   constexpr double kRounding = 1e-9;
   return value >= range.min - kRounding && value <= range.max + kRounding;
@@ -62,7 +62,7 @@ void read_segment(TomlTable table, Profile& profile, std::array<bool, kSegments 
   seen[s] = true;
   if (table.has("length_mm"))
     size.segment[s].length = plausible_mm(table, "length_mm", plausible_segment_length(*segment));
-  // Whether a breadth is plausible depends on the base hand's: fit_profile() says so.
+  // Whether a breadth is plausible depends on the base hand's: fit_profile() checks it.
   if (table.has("breadth_mm")) {
     size.segment[s].breadth = table.number("breadth_mm", {.min = 0.0, .max = 200.0, .min_open = true}) * kMm;
     profile.breadth_stated_at[s] = table.place() + ".breadth_mm";
@@ -94,7 +94,7 @@ void read_ranges(TomlTable table, Profile& profile) {
   table.finish();
 }
 
-/// Sizes that only follow from what is stated, and breadths, which are judged against the base hand's.
+/// Checks sizes that follow from the stated ones, and breadths, which are compared with the base hand's.
 void check_fit(const Profile& profile, const HandParameters& base, const HandFit& fit) {
   std::string stated_at;
   const auto fail = [&](std::string_view what, double value, double unit, std::string_view unit_name,

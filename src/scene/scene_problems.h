@@ -8,14 +8,14 @@
 
 namespace phalanx {
 
-/// What becomes of the problems of a scene: the first is thrown, or all are gathered.
+/// Handling of a scene's problems: the first is thrown, or all are collected.
 class SceneProblems {
  public:
-  /// @param all  where they are gathered; null: the first is thrown
+  /// @param all  list that collects them; null: the first is thrown
   explicit SceneProblems(std::vector<std::string>* all) : all_(all) {}
 
   /// Runs a check whose problem hides none of another check. @returns true if it found none
-  /// @throws SceneError  its problem, if none are gathered
+  /// @throws SceneError with its problem, if problems are not collected
   template <class Check>
   bool run(const Check& check) {
     if (all_ == nullptr) {

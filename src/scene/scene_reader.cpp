@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one checker: every key of the tree against the table of keys, then what concerns several keys at once.
+#include "scene/scene_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,10 +9,10 @@
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/device_file.h"
+#include "phalanx/scene/names_in_folder.h"
 #include "phalanx/scene/patient_file.h"
-#include "scene/folder_names.h"
-#include "scene/key_table.h"
-#include "scene/scene_tree.h"
+#include "phalanx/scene/scene_file.h"
+#include "phalanx/scene/scene_keys.h"
 #include "scene/unknown_keys.h"
 
 namespace phalanx {
@@ -19,15 +20,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Reads and checks single values.
 class Reader {
  public:
   Reader(const SceneTree& tree, fs::path folder) : tree_(tree), folder_(std::move(folder)) {}
 
-  /// The value of one key, checked.
-  [[nodiscard]] KeyValue read(const KeySpec& key, const std::string& path, const toml::node& node) const {
+  /// Stores the value of a key: the tree's if it states one, else the default.
+  /// @param kind  of the object, for a key of objects[]
+  void apply(const SceneKey& key, const std::string& path, const KeyTarget& target,
+             const std::string& kind = "") const {
+    const std::optional<KeyValue>& fallback = key.default_for(kind);
+    if (const toml::node* node = tree_.find(path))
+      key.store(target, read(key, path, *node, fallback));
+    else if (fallback)
+      key.store(target, *fallback);
+  }
+
+ private:
+  /// Reads and checks the value of one key.
+  [[nodiscard]] KeyValue read(const SceneKey& key, const std::string& path, const toml::node& node,
+                              const std::optional<KeyValue>& fallback) const {
     KeyValue value;
     const auto wants = [&](std::string_view form) {
-      tree_.fail(path, fmt::format("is {}; write {}{}", type_name(node), form, help(key)));
+      tree_.fail(path, fmt::format("is {}; write {}{}{}", type_name(node), form, range_in_brackets(key),
+                                   remedy(key, fallback)));
     };
     switch (key.type) {
       case KeyType::kNumberOrOff:
@@ -38,11 +54,11 @@ class Reader {
         [[fallthrough]];
       case KeyType::kNumber:
         if (!node.is_number()) wants("a number");
-        value.number = checked(key, path, node);
+        value.number = checked(key, path, node, fallback);
         return value;
       case KeyType::kInteger:
         if (!node.is_integer()) wants("a whole number");
-        static_cast<void>(checked(key, path, node));
+        static_cast<void>(checked(key, path, node, fallback));
         value.integer = *node.value<std::int64_t>();
         return value;
       case KeyType::kFlag:
@@ -54,7 +70,7 @@ class Reader {
         if (array == nullptr || array->size() != 3) wants("three numbers: [x, y, z]");
         for (std::size_t i = 0; i < 3; ++i) {
           if (!(*array)[i].is_number()) wants("three numbers: [x, y, z]");
-          value.vector[static_cast<Eigen::Index>(i)] = checked(key, path, (*array)[i]);
+          value.vector[static_cast<Eigen::Index>(i)] = checked(key, path, (*array)[i], fallback);
         }
         return value;
       }
@@ -75,75 +91,52 @@ class Reader {
         if (!node.is_string()) wants("a string in quotes");
         value.text = *node.value<std::string>();
         if (value.text.find('\0') != std::string::npos) tree_.fail(path, "holds a zero byte; remove it");
-        if (key.type != KeyType::kText) value.text = resolved(key, value.text);
+        value.text = resolved(key, value.text);
         return value;
     }
     return value;
   }
 
- private:
-  [[nodiscard]] double checked(const KeySpec& key, const std::string& path, const toml::node& node) const {
+  [[nodiscard]] double checked(const SceneKey& key, const std::string& path, const toml::node& node,
+                               const std::optional<KeyValue>& fallback) const {
     const double number = *node.value<double>();
     if (!key.range.contains(number)) {
       tree_.fail(path, fmt::format("must be {}{}{}{}", range_text(key), key.unit.empty() ? "" : " ", key.unit,
-                                   fallback(key)));
+                                   remedy(key, fallback)));
     }
     return number;
   }
 
-  static std::string fallback(const KeySpec& key) {
-    return key.default_toml.empty() ? "; or leave it out"
-                                    : fmt::format("; the default is {}", key.default_toml);
+  static std::string remedy(const SceneKey& key, const std::optional<KeyValue>& fallback) {
+    return fallback ? fmt::format("; the default is {}", value_text(key, *fallback)) : "; or leave it out";
   }
 
-  static std::string help(const KeySpec& key) {
+  static std::string range_in_brackets(const SceneKey& key) {
     const std::string range = range_text(key);
-    return (range.empty() ? "" : fmt::format(" ({})", range)) + fallback(key);
+    return range.empty() ? "" : fmt::format(" ({})", range);
   }
 
-  /// A relative path in a scene file is relative to that file.
-  [[nodiscard]] std::string resolved(const KeySpec& key, const std::string& text) const {
-    const bool is_path = key.type == KeyType::kFile || text.find('/') != std::string::npos ||
-                         fs::path(text).extension() == ".toml";
-    return text.empty() || !is_path ? text : (folder_ / text).lexically_normal().string();
+  /// Resolves a relative path in a scene file, which is relative to that file.
+  [[nodiscard]] std::string resolved(const SceneKey& key, const std::string& text) const {
+    return key.is_path(text) ? (folder_ / text).lexically_normal().string() : text;
   }
 
   const SceneTree& tree_;
   fs::path folder_;
 };
 
-bool has_word(const std::string& words, const std::string& word) {
-  return fmt::format(" {} ", words).find(fmt::format(" {} ", word)) != std::string::npos;
-}
-
-constexpr std::string_view kObjectPrefix = "objects[].";
-bool is_object_key(const KeySpec& key) {
-  return std::string_view(key.path).substr(0, kObjectPrefix.size()) == kObjectPrefix;
-}
-
-/// The value of a key: from the tree if it is there, else the table's default.
-void apply_key(const SceneTree& tree, const Reader& reader, const KeySpec& key, const std::string& path,
-               const KeyTarget& target) {
-  if (const toml::node* node = tree.find(path)) {
-    key.store(target, reader.read(key, path, *node));
-  } else if (!key.default_toml.empty()) {
-    const toml::table fallback = toml::parse("v = " + key.default_toml);
-    key.store(target, reader.read(key, path, *fallback.get("v")));
-  }
-}
-
-/// The value of an object's key, if it belongs to the object's kind.
-void apply_object_key(const SceneTree& tree, const Reader& reader, const KeySpec& key,
+/// Sets the value of an object's key, if it belongs to the object's kind.
+void apply_object_key(const SceneTree& tree, const Reader& reader, const SceneKey& key,
                       const std::string& prefix, const KeyTarget& target) {
-  const std::string path = fmt::format("{}.{}", prefix, key.path.substr(kObjectPrefix.size()));
+  const std::string path = prefix + key.path.substr(key.path.find("[].") + 2);
   const std::string& kind = target.object.kind;
-  if (key.kinds.empty() || has_word(key.kinds, kind)) {
-    KeySpec of_kind = key;
-    of_kind.default_toml = key.default_for(kind);
-    apply_key(tree, reader, of_kind, path, target);
+  if (key.belongs_to(kind)) {
+    reader.apply(key, path, target, kind);
   } else if (tree.find(path) != nullptr) {
+    std::string kinds;
+    for (const KindWithKey& having : key.kinds) kinds += (kinds.empty() ? "" : " ") + having.kind;
     tree.fail(path, fmt::format("means nothing for a {}; it belongs to: {}. Remove it or change {}.kind",
-                                kind, key.kinds, prefix));
+                                kind, kinds, prefix));
   }
 }
 
@@ -165,8 +158,8 @@ ObjectDescription read_object(const SceneTree& tree, const Reader& reader, std::
   ObjectDescription object;
   const std::string prefix = fmt::format("objects.{}", index);
   bool good = true;
-  for (const KeySpec& key : key_table()) {
-    if (!is_object_key(key)) continue;
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.is_of_objects()) continue;
     const bool read = problems.run([&] { apply_object_key(tree, reader, key, prefix, {scene, object}); });
     if (!read && key.path == "objects[].kind") return object;  // the first key; the others depend on it
     good = good && read;
@@ -187,22 +180,6 @@ void refuse_both_smoothing_forms(const SceneTree& tree) {
   }
 }
 
-/// smoothing.enabled is the older short form of the stabilisers "smoothing" and "none".
-void refuse_two_stabilisers(const SceneTree& tree) {
-  const toml::node* enabled = tree.find("smoothing.enabled");
-  const toml::node* method = tree.find("stabiliser.method");
-  if (enabled == nullptr || method == nullptr) return;
-  const auto on = enabled->value_exact<bool>();
-  const auto name = method->value_exact<std::string>();
-  if (!on || !name) return;  // refused where they are read
-  const bool agree = *on ? *name != "none" : *name == "none" || *name == "smoothing";
-  if (agree) return;
-  tree.fail("smoothing.enabled",
-            fmt::format("the stabiliser is stated too ({}), and they say different things; remove "
-                        "smoothing.enabled, which is the older form of stabiliser.method = \"{}\"",
-                        tree.statement("stabiliser.method"), *on ? "smoothing" : "none"));
-}
-
 void refuse_what_the_profile_says(const SceneTree& tree) {
   if (tree.find("hand.profile") == nullptr) return;
   for (const char* key : {"hand.file", "hand.side", "mirror"}) {
@@ -212,34 +189,42 @@ void refuse_what_the_profile_says(const SceneTree& tree) {
   }
 }
 
-/// What the scene says about device and patient is checked here already, by reading their files.
-void read_files_with_overlay(const SceneTree& tree, SceneDescription& scene, SceneProblems& problems) {
+void check_tree(const SceneTree& tree, SceneProblems& problems) {
+  refuse_unknown_keys(tree, problems);
+  for (const auto& check : {refuse_both_smoothing_forms, refuse_what_the_profile_says})
+    problems.run([&] { check(tree); });
+}
+
+/// Stores the scene's overrides of a file that it names, and the place that names the file.
+void read_overlay(const SceneTree& tree, const std::string& table, FileWithOverlay& file,
+                  SceneProblems& problems) {
   problems.run([&] {
-    scene.device.overlay = tree.values_over_file("device");
-    if (tree.find("device.file") != nullptr) scene.device.stated_at = tree.statement("device.file");
-    if (tree.find("device") != nullptr) static_cast<void>(load_device(scene));
-  });
-  problems.run([&] {
-    scene.patient.overlay = tree.values_over_file("patient");
-    if (tree.find("patient.file") != nullptr) scene.patient.stated_at = tree.statement("patient.file");
-    if (tree.find("patient") != nullptr) static_cast<void>(load_patient(scene));
+    file.overlay = tree.values_over_file(table);
+    const std::string key = table + ".file";
+    if (tree.find(key) != nullptr) file.stated_at = tree.statement(key);
   });
 }
 
-SceneDescription read_scene(const std::string& text, const std::string& origin, const fs::path& folder,
-                            const Overrides& overrides, SceneProblems& problems) {
-  const SceneTree tree(text, origin, overrides);
-  refuse_unknown_keys(tree, problems);
-  for (const auto& check :
-       {refuse_both_smoothing_forms, refuse_two_stabilisers, refuse_what_the_profile_says})
-    problems.run([&] { check(tree); });
+/// Reads the files of device and patient where the scene states something about them, which checks it.
+void check_files_with_overlay(const SceneDescription& scene, SceneProblems& problems) {
+  const auto stated = [](const FileWithOverlay& file) {
+    return !file.stated_at.empty() || !file.overlay.empty();
+  };
+  if (stated(scene.device)) problems.run([&] { static_cast<void>(load_device(scene)); });
+  if (stated(scene.patient)) problems.run([&] { static_cast<void>(load_patient(scene)); });
+}
 
+}  // namespace
+
+SceneDescription read_scene(const SceneTree& tree, const std::string& origin, const fs::path& folder,
+                            SceneProblems& problems) {
+  check_tree(tree, problems);
   SceneDescription scene;
   scene.name = fs::path(origin).stem().string();
   const Reader reader(tree, folder);
   ObjectDescription unused;
-  for (const KeySpec& key : key_table()) {
-    if (!is_object_key(key)) problems.run([&] { apply_key(tree, reader, key, key.path, {scene, unused}); });
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.is_of_objects()) problems.run([&] { reader.apply(key, key.path, {scene, unused}); });
   }
   if (tree.find("hand.triangles") != nullptr)
     scene.hand.triangles_stated_at = tree.statement("hand.triangles");
@@ -251,16 +236,17 @@ SceneDescription read_scene(const std::string& text, const std::string& origin, 
   const toml::array* array = objects != nullptr ? objects->as_array() : nullptr;
   for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
     scene.objects.push_back(read_object(tree, reader, i, scene, problems));
-  read_files_with_overlay(tree, scene, problems);
+  read_overlay(tree, "device", scene.device, problems);
+  read_overlay(tree, "patient", scene.patient, problems);
   return scene;
 }
 
-}  // namespace
-
 SceneDescription parse_scene(const std::string& text, const std::string& origin, const fs::path& folder,
                              const Overrides& overrides) {
+  SceneDescription scene = SceneFile(text, origin, folder).scene(overrides);
   SceneProblems first(nullptr);
-  return read_scene(text, origin, folder, overrides, first);
+  check_files_with_overlay(scene, first);
+  return scene;
 }
 
 std::vector<std::string> problems_of_scene(const std::string& scene) {
@@ -268,15 +254,18 @@ std::vector<std::string> problems_of_scene(const std::string& scene) {
   SceneProblems problems(&all);
   problems.run([&] {
     const fs::path file = find_data_file("scene", scene, "scenes", ".toml", fs::current_path());
-    static_cast<void>(
-        read_scene(read_text_file(file.string(), "scene"), file.string(), file.parent_path(), {}, problems));
+    const SceneTree tree(read_text_file(file.string(), "scene"), file.string(), {});
+    const SceneDescription read = read_scene(tree, file.string(), file.parent_path(), problems);
+    check_files_with_overlay(read, problems);
   });
   return all;
 }
 
 SceneDescription load_scene(const std::string& scene, const Overrides& overrides) {
-  const fs::path file = find_data_file("scene", scene, "scenes", ".toml", fs::current_path());
-  return parse_scene(read_text_file(file.string(), "scene"), file.string(), file.parent_path(), overrides);
+  SceneDescription read = SceneFile(scene).scene(overrides);
+  SceneProblems first(nullptr);
+  check_files_with_overlay(read, first);
+  return read;
 }
 
 std::pair<std::string, std::string> parse_override(const std::string& key_and_value) {

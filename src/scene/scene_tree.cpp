@@ -10,7 +10,7 @@
 #include <sstream>
 #include <vector>
 
-#include "scene/key_table.h"
+#include "phalanx/scene/scene_keys.h"
 #include "scene/toml_bounds.h"
 
 namespace phalanx {
@@ -33,7 +33,7 @@ std::optional<std::size_t> as_index(std::string_view part) {
   return index;
 }
 
-/// The value as TOML; as a string if it is none.
+/// Parses the value as TOML; if it is not TOML, takes it as a string.
 toml::table parse_value(const std::string& value, const std::string& origin) {
   try {
     toml::table table = parse_bounded_toml("v = " + value, origin);
@@ -48,45 +48,27 @@ bool is_bare_key(std::string_view key) {
   return !key.empty() && std::all_of(key.begin(), key.end(), bare);
 }
 
-/// A value as text that reads back the same.
+/// Writes a value as text that reads back the same.
 std::string as_toml(const toml::node& value) {
   std::ostringstream out;
   value.visit([&](const auto& node) { out << node; });
   return out.str();
 }
 
-/// What a person types is relative to where they are, not to the scene file.
+/// Makes paths absolute: a typed path is relative to the working directory, not to the scene file.
 void make_paths_absolute(toml::node& node, const std::string& pattern) {
   if (toml::table* table = node.as_table()) {
     for (auto&& [key, child] : *table) make_paths_absolute(child, fmt::format("{}.{}", pattern, key.str()));
   } else if (toml::array* array = node.as_array()) {
     for (toml::node& child : *array) make_paths_absolute(child, pattern + "[]");
   } else if (toml::value<std::string>* text = node.as_string()) {
-    const auto& keys = key_table();
-    const auto key =
-        std::find_if(keys.begin(), keys.end(), [&](const KeySpec& spec) { return spec.path == pattern; });
-    if (key == keys.end() || text->get().empty() || text->get().find('\0') != std::string::npos) return;
-    const std::filesystem::path path = text->get();
-    const bool is_path = key->type == KeyType::kFile ||
-                         (key->type == KeyType::kName &&
-                          (text->get().find('/') != std::string::npos || path.extension() == ".toml"));
-    if (is_path) *text = std::filesystem::absolute(path).lexically_normal().string();
+    const SceneKey* key = find_scene_key(pattern);
+    if (key == nullptr || !key->is_path(text->get()) || text->get().find('\0') != std::string::npos) return;
+    *text = std::filesystem::absolute(text->get()).lexically_normal().string();
   }
 }
 
 }  // namespace
-
-std::string pattern_of(std::string_view path) {
-  std::string pattern;
-  for (const std::string& part : split(path)) {
-    if (as_index(part) && !pattern.empty()) {
-      pattern += "[]";
-    } else {
-      pattern += (pattern.empty() ? "" : ".") + part;
-    }
-  }
-  return pattern;
-}
 
 SceneTree::SceneTree(const std::string& text, std::string origin, const Overrides& overrides)
     : origin_(std::move(origin)), root_(parse_toml(text, origin_)), overrides_(overrides) {

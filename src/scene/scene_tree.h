@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene file's tree with the command line's overrides applied: where each value stands, and where it came
-// from.
+// A scene file's tree with the command line's overrides applied. It knows the place of every value.
 #pragma once
 
 #include <filesystem>
@@ -13,23 +12,24 @@
 
 namespace phalanx {
 
+/// Tree of a scene's values.
 class SceneTree {
  public:
   /// Parses `text` and applies the overrides in order. @throws SceneError.
   SceneTree(const std::string& text, std::string origin, const Overrides& overrides);
 
   [[nodiscard]] const toml::table& root() const noexcept { return root_; }
-  /// The values below the table `name`, but not its `file`: what the scene lays over that file.
-  /// @throws SceneError for a key that no TOML file could hold without quotes.
+  /// @returns the values below the table `name`, except its `file`: the scene's overrides of that file.
+  /// @throws SceneError for a key that a TOML file could not hold without quotes.
   [[nodiscard]] std::vector<OverlaidValue> values_over_file(const std::string& name) const;
-  /// The value at a path such as "objects.0.size_mm"; null if there is none.
+  /// @returns the value at a path such as "objects.0.size_mm"; null if there is none.
   [[nodiscard]] const toml::node* find(std::string_view path) const;
-  /// "grasp.toml:12" or "--set objects.0.size_mm=80"; for a missing value, of the innermost table that is
-  /// there.
+  /// @returns "grasp.toml:12" or "--set objects.0.size_mm=80"; for a missing value, the place of the
+  /// innermost table that exists.
   [[nodiscard]] std::string place(std::string_view path) const;
-  /// "PLACE: PATH = VALUE", for messages about it later; without the value if there is none.
+  /// @returns "PLACE: PATH = VALUE", for later messages; without the value if there is none.
   [[nodiscard]] std::string statement(std::string_view path) const;
-  /// @throws SceneError "PLACE: PATH = VALUE: PROBLEM".
+  /// Throws SceneError "PLACE: PATH = VALUE: PROBLEM".
   [[noreturn]] void fail(std::string_view path, const std::string& problem) const;
 
  private:
@@ -41,8 +41,5 @@ class SceneTree {
   toml::table root_;
   Overrides overrides_;
 };
-
-/// "objects.0.size_mm" -> "objects[].size_mm".
-[[nodiscard]] std::string pattern_of(std::string_view path);
 
 }  // namespace phalanx

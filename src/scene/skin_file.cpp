@@ -21,15 +21,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// No part of a hand lies further from the wrist [m]: the longest hand is shorter.
+/// Largest distance of a vertex from the wrist [m]: the longest hand is shorter.
 constexpr double kFarthest = 0.3;
-/// A vertex's weights may miss 1 by this much, for they are written with few digits.
+/// Tolerance of the sum of a vertex's weights, which are written with few digits.
 constexpr double kSlack = 1e-3;
-/// Nothing of a skin is nested deeper, and what shows it in a message calls itself for each level.
+/// Deepest nesting of a skin file. Showing a deeper element in a message would need a stack frame
+/// for each level.
 constexpr int kDeepest = 16;
 constexpr std::uintmax_t kMaxBytes = 16U << 20U;
 
-/// An element as it stands in the file, cut short.
+/// Writes an element as in the file, shortened.
 std::string show(const Json& value) {
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   constexpr std::size_t kLongest = 60;
@@ -75,7 +76,7 @@ class SkinReader {
     }
   }
 
-  /// A list that must not be empty.
+  /// Reads a list that must not be empty.
   [[nodiscard]] const Json& list(const std::string& key) const {
     const auto found = root_.find(key);
     if (found == root_.end()) throw SceneError(fmt::format("{}: {}: is missing; add it", file_, key));
@@ -125,7 +126,7 @@ class SkinReader {
     }
   }
 
-  /// A whole number from 0 up to `count`, without it.
+  /// Reads a whole number in 0 .. `count` - 1.
   static std::optional<std::size_t> index(const Json& value, std::size_t count) {
     if (!value.is_number_unsigned()) return std::nullopt;
     const auto i = value.get<std::uint64_t>();
@@ -197,7 +198,7 @@ class SkinReader {
 
   std::string file_;
   Json root_;
-  std::vector<std::uint8_t> segments_;  ///< ours for each of the file's
+  std::vector<std::uint8_t> segments_;  ///< segment of the program for each of the file's
 };
 
 }  // namespace

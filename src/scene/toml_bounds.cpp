@@ -11,9 +11,9 @@ namespace phalanx {
 namespace {
 
 constexpr std::size_t kLongestKey = 1000;  ///< with its dots and quotes [bytes]
-constexpr int kMostBrackets = 16;          ///< within one another
+constexpr int kMostBrackets = 16;          ///< nested brackets
 
-/// Goes through the text and leaves comments and strings out.
+/// Scanner of the text, without comments and strings.
 class BoundsCheck {
  public:
   BoundsCheck(std::string_view text, const std::string& origin) : text_(text), origin_(origin) {}
@@ -38,10 +38,11 @@ class BoundsCheck {
       case '\n':
         ++line_;
         header_ = false;
+        value_ = false;
         return begin();
       case '[':
       case '{':
-        header_ = header_ || (c == '[' && brackets_ == 0 && is_blank_since_begin());
+        header_ = header_ || (c == '[' && brackets_ == 0 && !value_ && is_blank_since_begin());
         if (++brackets_ > kMostBrackets)
           fail(fmt::format("more than {} brackets within one another; write it flatter", kMostBrackets));
         return begin();
@@ -52,6 +53,7 @@ class BoundsCheck {
         return begin();
       case '=':
         check_length();
+        value_ = true;
         return begin();
       case ',':
         return begin();
@@ -65,7 +67,7 @@ class BoundsCheck {
     }
   }
 
-  /// What may be a key begins.
+  /// Begins a possible key.
   void begin() {
     begin_ = at_;
     dots_ = 0;
@@ -86,13 +88,13 @@ class BoundsCheck {
     at_ += is_long ? three.size() : 1;
     while (at_ < text_.size()) {
       const char c = text_[at_];
-      if (c == '\n' && !is_long) return;  // not TOML: the parser ends here
+      if (c == '\n' && !is_long) return;  // not TOML: the parser stops here
       if (c == '\n') ++line_;
       const bool ends = c == quote && (!is_long || text_.substr(at_).starts_with(three));
       const bool escapes = c == '\\' && quote == '"' && !text_.substr(at_ + 1).starts_with('\n');
       at_ += ends && is_long ? three.size() : escapes ? 2 : 1;
       if (!ends) continue;
-      // Up to two quotes before the last three belong to the string.
+      // Up to two quotes before the last three are part of the string.
       for (int i = 0; is_long && i < 2 && at_ < text_.size() && text_[at_] == quote; ++i) ++at_;
       return;
     }
@@ -105,11 +107,12 @@ class BoundsCheck {
   std::string_view text_;
   const std::string& origin_;
   std::size_t at_ = 0;
-  std::size_t begin_ = 0;  ///< of what may be a key
-  std::size_t dots_ = 0;   ///< in it
+  std::size_t begin_ = 0;  ///< begin of a possible key
+  std::size_t dots_ = 0;   ///< dots in that key
   std::size_t line_ = 1;
-  int brackets_ = 0;     ///< that are open
+  int brackets_ = 0;     ///< open brackets
   bool header_ = false;  ///< the line is a table's header
+  bool value_ = false;   ///< a key of this line has ended
 };
 
 }  // namespace

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -16,28 +18,12 @@
 
 namespace phalanx {
 
-bool NumberRange::contains(double value) const noexcept {
-  if (allows_minus_infinity && value == -std::numeric_limits<double>::infinity()) return true;
-  if (!std::isfinite(value)) return false;
-  return (min_open ? value > min : value >= min) && (max_open ? value < max : value <= max);
-}
-
-std::string NumberRange::text() const {
-  std::string text;
-  if (std::isfinite(min)) text = fmt::format("{} {}", min_open ? ">" : ">=", min);
-  if (std::isfinite(max))
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", max_open ? "<" : "<=", max);
-  if (text.empty()) text = "any finite number";
-  if (allows_minus_infinity) text += ", or -inf";
-  return text;
-}
-
 std::string read_text_file(const std::string& path, const std::string& what) {
   constexpr std::size_t kMostTextBytes = 16U << 20U;
   std::ifstream file(path, std::ios::binary);
   if (!file)
-    throw SceneError(
-        fmt::format("{}: cannot be opened as a {}; check the path and its permissions", path, what));
+    throw SceneError(fmt::format("{}: cannot be opened as a {} ({}); check the path and its permissions",
+                                 path, what, std::strerror(errno)));
   std::string text;
   std::array<char, 16384> block;
   while (file && text.size() <= kMostTextBytes) {
@@ -54,7 +40,7 @@ std::string read_text_file(const std::string& path, const std::string& what) {
 
 toml::table parse_bounded_toml(const std::string& text, const std::string& origin) {
   check_toml_bounds(text, origin);
-  return toml::parse(text, origin);
+  return toml::parse(text);  // without the origin, which toml++ 3.3 would copy in a noexcept function
 }
 
 toml::table parse_toml(const std::string& text, const std::string& origin) {
@@ -68,7 +54,7 @@ toml::table parse_toml(const std::string& text, const std::string& origin) {
 
 namespace {
 
-/// On one line, where the library breaks long arrays and every table.
+/// Writes a node on one line; the library breaks long arrays and every table.
 std::string one_line(const toml::node& node) {
   std::string text;
   if (const toml::array* array = node.as_array()) {
@@ -80,7 +66,7 @@ std::string one_line(const toml::node& node) {
       text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key.str(), one_line(value));
     return "{" + text + "}";
   }
-  // The shortest digits that read back the same, where the library prints all seventeen.
+  // The shortest digits that read back the same; the library prints all seventeen.
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   std::ostringstream out;
   node.visit([&](const auto& value) { out << value; });

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "phalanx/core/nearest_name.h"
-#include "scene/key_table.h"
+#include "phalanx/scene/scene_keys.h"
 
 namespace phalanx {
 namespace {
@@ -16,7 +16,7 @@ bool starts_with_part(std::string_view path, std::string_view prefix) {
          (path[prefix.size()] == '.' || path[prefix.size()] == '[');
 }
 
-/// Keys of another file, which the scene lays over it: that file's reader knows them.
+/// @returns true for the scene's override of another file's key: that file's reader checks it.
 bool is_over_file(std::string_view path) {
   const std::string_view table = path.substr(0, path.find('.'));
   return (table == "device" || table == "patient") && path != table && path.substr(table.size()) != ".file";
@@ -24,17 +24,21 @@ bool is_over_file(std::string_view path) {
 
 void refuse_below(const SceneTree& tree, const toml::node& node, const std::string& path,
                   SceneProblems& problems) {
-  const auto& keys = key_table();
+  const auto& keys = scene_keys();
   if (!path.empty()) {
     if (is_over_file(path)) return;
     const std::string pattern = pattern_of(path);
-    if (std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.path == pattern; }))
-      return;
+    if (find_scene_key(pattern) != nullptr) return;
     const bool holds_keys = std::any_of(
-        keys.begin(), keys.end(), [&](const KeySpec& key) { return starts_with_part(key.path, pattern); });
+        keys.begin(), keys.end(), [&](const SceneKey& key) { return starts_with_part(key.path, pattern); });
+    if (pattern == "smoothing.enabled")
+      tree.fail(
+          path,
+          "there is no such key any more, stabiliser.method replaces it; remove it, and for no bound on "
+          "the force write stabiliser.method = \"none\"");
     if (!holds_keys) {
       std::vector<std::string> known;
-      for (const KeySpec& key : keys) known.push_back(key.path);
+      for (const SceneKey& key : keys) known.push_back(key.path);
       tree.fail(
           path,
           fmt::format("nobody knows this key; the nearest known one is {} (`phalanx scene keys` lists all)",

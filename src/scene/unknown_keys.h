@@ -6,8 +6,8 @@
 
 namespace phalanx {
 
-/// Keys below `device.` and `patient.` but `file` are left to those files' readers.
-/// A problem is each key that is in no row of key_table(), with the nearest one that is.
+/// Refuses each key that has no row in scene_keys(), naming the nearest known one. Keys below `device.` and
+/// `patient.`, except `file`, are left to those files' readers.
 /// @throws SceneError  as `problems` does
 void refuse_unknown_keys(const SceneTree& tree, SceneProblems& problems);
 

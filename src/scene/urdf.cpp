@@ -11,9 +11,8 @@
 namespace phalanx {
 namespace {
 
-/// Roll, pitch, yaw with  R = Rz(yaw) Ry(pitch) Rx(roll);  their product is R to rounding also where pitch is
-/// near
-/// +-90 degrees, because roll is taken from what yaw leaves.
+/// Computes roll, pitch and yaw with  R = Rz(yaw) Ry(pitch) Rx(roll).  Their product equals R to rounding
+/// even if pitch is near +-90 degrees, because roll is computed from the rest after yaw.
 Vec3 roll_pitch_yaw(const Mat3& R) {
   const double yaw = std::atan2(R(1, 0), R(0, 0));
   const double c = std::cos(yaw);

@@ -8,15 +8,16 @@
 #include <utility>
 
 #include "phalanx/serve/reach.h"
-#include "serve/cockpit_parts.h"
+#include "serve/cockpit_impl.h"
 #include "serve/plain_text.h"
 #include "serve/state_message.h"
+#include "serve/uploads.h"
 
 namespace phalanx {
 namespace {
 
 constexpr std::string_view kGeometry = "/geometry/";
-constexpr auto kWaitForUpload = std::chrono::seconds(1);
+constexpr auto kAbandonTimeout = std::chrono::seconds(1);
 
 double steady_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -27,116 +28,182 @@ CockpitSettings with_clock(CockpitSettings settings) {
   return settings;
 }
 
+/// @returns a response of plain text
+WebResponse text_response(int status, std::string text) {
+  return {.status = status,
+          .type = "text/plain; charset=utf-8",
+          .body = std::make_shared<const std::string>(std::move(text)),
+          .immutable = false};
+}
+
+/// Takes an upload. Does not throw, because the browser waits for the response.
+WebResponse take_mesh(const UploadedMesh& mesh, const std::filesystem::path& folder,
+                      const ValuesInForce& in_force) noexcept {
+  try {
+    return {.status = 200,
+            .type = "application/json",
+            .body = std::make_shared<const std::string>(take_upload(mesh, folder, in_force)),
+            .immutable = false};
+  } catch (const std::exception&) {  // no memory
+    return {.status = 500, .type = "text/plain", .body = nullptr, .immutable = false};
+  }
+}
+
 }  // namespace
 
-Cockpit::Parts::Parts(StationHost& station, CockpitSettings given)
+Cockpit::Impl::Impl(StationHost& station, CockpitSettings given)
     : host(station), settings(with_clock(std::move(given))), log(settings.log) {
   write_choices(choices);
   choices.set_protocol(kProtocol);
   choices.set_version(settings.version);
 }
 
-Cockpit::Parts::~Parts() {
-  if (drag) log.add(notice_of(wire::Notice::CHANGE, drag->who, drag->newest.code, drag->newest.text));
-  if (upload_work) upload_work->abandon(kWaitForUpload);
+Cockpit::Impl::~Impl() {
+  if (drag) log.add(make_notice(wire::Notice::CHANGE, drag->who, drag->newest.code, drag->newest.text));
+  if (upload) upload->abandon(kAbandonTimeout);
 }
 
 Cockpit::Cockpit(StationHost& host, CockpitSettings settings)
-    : parts_(std::make_shared<Parts>(host, std::move(settings))) {}
+    : impl_(std::make_shared<Impl>(host, std::move(settings))) {}
 
 Cockpit::~Cockpit() = default;
 
 void Cockpit::attach(WebServer& server, const std::vector<std::string>& viewer_urls) {
-  parts_->server = &server;
-  parts_->viewer_urls = viewer_urls;
+  impl_->server = &server;
+  impl_->viewer_urls = viewer_urls;
 }
 
-void Cockpit::tell(const std::string& code, const std::string& text, bool fault) {
-  parts_->server->post([parts = parts_.get(), code, text, fault] {
-    parts->tell(fault ? wire::Notice::FAULT : wire::Notice::WARNING, "", code, text);
+void Cockpit::notify(const std::string& code, const std::string& text, bool fault) {
+  impl_->server->post([impl = impl_.get(), code, text, fault] {
+    impl->notify(fault ? wire::Notice::FAULT : wire::Notice::WARNING, "", code, text);
   });
 }
 
 void Cockpit::typed(const std::string& code, const std::string& text) {
-  parts_->server->post(
-      [parts = parts_.get(), code, text] { parts->tell(wire::Notice::CHANGE, "the terminal", code, text); });
+  impl_->server->post(
+      [impl = impl_.get(), code, text] { impl->notify(wire::Notice::CHANGE, "the terminal", code, text); });
 }
 
 void Cockpit::fault_reported(const std::string& file, double fault_time) {
-  parts_->server->post([parts = parts_.get(), file, fault_time] { parts->fault_reported(file, fault_time); });
+  impl_->server->post([impl = impl_.get(), file, fault_time] { impl->fault_reported(file, fault_time); });
 }
 
-void Cockpit::joined(PageId page, const Visitor& visitor) {
+void Cockpit::joined(PageId page, const ClientInfo& client) {
   try {
-    parts_->seats.join(page, visitor, random_token(), parts_->now());
-    parts_->waiting[page] = parts_->now();
-  } catch (const std::exception&) {  // without a secret of its own it could be taken for another
-    parts_->server->show_out(page, "the station cannot tell this page from others; try again");
+    impl_->participants.join(page, client, random_token(), impl_->now());
+    impl_->awaiting_hello[page] = impl_->now();
+  } catch (const std::exception&) {  // without a secret the page could not be told apart
+    impl_->server->disconnect(page, "the station could not make a secret for this page; try again");
   }
 }
 
 void Cockpit::left(PageId page) {
-  if (const Seat* seat = parts_->seats.find(page)) parts_->sliders_told.erase(seat->number);
-  if (parts_->drag && parts_->drag->page == page) parts_->tell_drag();
-  parts_->greeted.erase(page);
-  parts_->waiting.erase(page);
-  parts_->seats.leave(page, parts_->now());
-  parts_->want_state();
+  if (const Participant* participant = impl_->participants.find(page))
+    impl_->sliders_notified.erase(participant->number);
+  if (impl_->drag && impl_->drag->page == page) impl_->notify_drag();
+  impl_->greeted.erase(page);
+  impl_->awaiting_hello.erase(page);
+  impl_->participants.leave(page, impl_->now());
+  impl_->request_state();
 }
 
 void Cockpit::received(PageId page, std::string_view bytes) {
-  if (parts_->seats.find(page) == nullptr) return;
+  if (impl_->participants.find(page) == nullptr) return;
   wire::ToHost message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())))
-    return parts_->server->show_out(page, "this is no message of the cockpit's");
-  if (!parts_->greeted.contains(page) && !message.has_hello() && !message.has_stop())
-    return parts_->server->show_out(page, "a page says hello first");
+    return impl_->server->disconnect(page, "this is not a message of the cockpit's protocol");
+  if (!impl_->greeted.contains(page) && !message.has_hello() && !message.has_stop())
+    return impl_->server->disconnect(page, "a page must send hello first");
   try {
-    parts_->obey(page, message);
-  } catch (const std::exception& refused) {  // what is refused ends nothing
-    parts_->reply(page, message.request(), parts_->for_pages(refused.what()));
+    impl_->handle(page, message);
+  } catch (const std::exception& refused) {
+    impl_->reply(page, message.request(), impl_->for_pages(refused.what()));
   }
 }
 
-void Cockpit::received_too_much(PageId page, std::string_view last) {
-  const Seat* seat = parts_->seats.find(page);
+void Cockpit::received_over_limit(PageId page, std::string_view bytes) {
+  const Participant* participant = impl_->participants.find(page);
   wire::ToHost message;
-  if (seat == nullptr || !message.ParseFromArray(last.data(), static_cast<int>(last.size()))) return;
-  if (message.has_stop()) parts_->stop(*seat);
+  if (participant == nullptr || !message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return;
+  if (message.has_stop()) impl_->stop(*participant);
 }
 
 void Cockpit::frame() {
-  parts_->show_out_the_silent();
-  parts_->tell_if_log_breaks();
-  parts_->tell_drag_if_due();
-  parts_->give_control_to_only_page();
-  if (parts_->greeted.empty()) return;
-  parts_->send_state_if_due();
-  parts_->send_tick();
+  impl_->disconnect_pages_without_hello();
+  impl_->notify_if_log_breaks();
+  impl_->notify_drag_if_due();
+  impl_->give_control_to_only_page();
+  if (impl_->greeted.empty()) return;
+  impl_->send_state_if_due();
+  impl_->send_tick();
 }
 
-void Cockpit::requested(const WebRequest& request, std::function<void(WebAnswer)> answer) {
+void Cockpit::requested(const WebRequest& request, std::function<void(WebResponse)> respond) {
   if (request.method == "POST" && request.path == "/stop") {
-    const std::string& address = request.visitor.address;
-    if (const Seat* seat = parts_->seats.with_secret(request.page_secret)) {
-      parts_->stop(*seat);
+    const std::string& address = request.client.address;
+    if (const Participant* participant = impl_->participants.with_secret(request.page_secret)) {
+      impl_->stop(*participant);
     } else {
-      parts_->stop(address, fmt::format("a page ({})", address));
+      impl_->stop(address, fmt::format("a page ({})", address));
     }
-    return answer(plain_answer(200, "stopped\n"));
+    return respond(text_response(200, "stopped\n"));
   }
-  if (request.method == "POST" && request.path == "/mesh") return parts_->upload(request, std::move(answer));
+  if (request.method == "POST" && request.path == "/mesh")
+    return impl_->begin_upload(request, std::move(respond));
   if (request.method != "POST" && request.path.starts_with(kGeometry))
-    return parts_->geometry(request.path.substr(kGeometry.size()), std::move(answer));
+    return impl_->respond_with_geometry(request.path.substr(kGeometry.size()), std::move(respond));
   const bool known =
       request.path == "/stop" || request.path == "/mesh" || request.path.starts_with(kGeometry);
-  answer(known ? plain_answer(405, "not with this method\n")
-               : plain_answer(404, "there is nothing here; the cockpit is at /\n"));
+  respond(known ? text_response(405, "this address does not allow this method\n")
+                : text_response(404, "there is nothing at this address; the cockpit is at /\n"));
 }
 
 std::size_t Cockpit::body_limit(const WebRequest& head) {
-  const bool upload = head.method == "POST" && head.path == "/mesh" && parts_->operator_of(head) != nullptr;
+  const bool upload = head.method == "POST" && head.path == "/mesh" && impl_->operator_of(head) != nullptr;
   return upload ? kUploadLimit : 0;
+}
+
+// ---- HTTP requests ----
+
+void Cockpit::Impl::respond_with_geometry(const std::string& revision,
+                                          std::function<void(WebResponse)> respond) {
+  auto geometry = host.state()->geometry;
+  if (!geometry || revision != std::to_string(geometry->revision))
+    return respond(text_response(404, "this geometry is no longer shown; pages are told the new revision\n"));
+  geometry_cache->request(std::move(geometry), std::move(respond));
+}
+
+const Participant* Cockpit::Impl::operator_of(const WebRequest& request) const {
+  const Participant* participant = participants.with_secret(request.page_secret);
+  return participant != nullptr && participants.operates(*participant) && request.client.may_operate
+             ? participant
+             : nullptr;
+}
+
+void Cockpit::Impl::begin_upload(const WebRequest& request, std::function<void(WebResponse)> respond) {
+  const Participant* participant = operator_of(request);
+  if (participant == nullptr)
+    return respond(text_response(403, "only the page that operates may send meshes; take control first\n"));
+  if (upload && !upload->done())
+    return respond(text_response(429, "another mesh is being read; try again when it is done\n"));
+  UploadedMesh mesh;
+  try {
+    mesh = upload_of(request.query, request.body);
+  } catch (const std::invalid_argument& refused) {
+    return respond(text_response(400, as_utf8(refused.what()) + "\n"));
+  }
+  // Logged now: the response tells the sender the result. Logs the name only, because the query may
+  // hold a token.
+  notify(wire::Notice::CHANGE, participant->label(), "upload",
+         fmt::format("sends a mesh: {}, {} bytes", shortened(one_line(mesh.name), 100), mesh.bytes.size()));
+  const auto job = std::make_shared<UploadJob>(host);
+  start_upload(
+      job,
+      [mesh = std::move(mesh), folder = settings.uploads](const ValuesInForce& in_force) {
+        return take_mesh(mesh, folder, in_force);
+      },
+      std::move(respond));
+  upload = job;
 }
 
 }  // namespace phalanx

@@ -6,11 +6,73 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string_view>
 
-#include "serve/foreign_files.h"
+#include "phalanx/scene/scene_keys.h"
+#include "scene/toml_reader.h"
+#include "serve/plain_text.h"
 #include "serve/settings_text.h"
 
 namespace phalanx {
+
+// ---- names of files ----
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// @returns true if the key takes paths only, not names of shipped files
+bool is_for_paths(const std::string& pattern) {
+  const SceneKey* key = find_scene_key(pattern);
+  return key != nullptr ? key->type == KeyType::kFile : pattern.ends_with(".file");
+}
+
+/// @returns true if the text is a path that take_upload() could have made: a file in the folder of uploads,
+/// with a name of letters, digits, - and _, and one ending
+bool is_own_upload(const std::string& text, const fs::path& uploads) {
+  const std::string own = (fs::absolute(uploads).lexically_normal() / "").string();
+  if (!text.starts_with(own)) return false;
+  const std::string_view name = std::string_view(text).substr(own.size());
+  const std::size_t dot = name.find('.');
+  return dot != std::string_view::npos && dot > 0 &&
+         std::all_of(name.begin(), name.begin() + dot, is_plain) &&
+         std::all_of(name.begin() + dot + 1, name.end(), is_plain);
+}
+
+bool is_foreign(const std::string& text, const std::string& pattern, const fs::path& uploads) {
+  if (text.empty() || is_own_upload(text, uploads)) return false;
+  const bool path = text.find('/') != std::string::npos || text.find('\0') != std::string::npos ||
+                    text.find(".toml") != std::string::npos;
+  return path || is_for_paths(pattern);
+}
+
+bool holds_foreign(const toml::node& node, const std::string& pattern, const fs::path& uploads) {
+  if (const toml::table* table = node.as_table())
+    return std::any_of(table->begin(), table->end(), [&](const auto& entry) {
+      return holds_foreign(entry.second, pattern + "." + std::string(entry.first.str()), uploads);
+    });
+  if (const toml::array* array = node.as_array())
+    return std::any_of(array->begin(), array->end(), [&](const toml::node& child) {
+      return holds_foreign(child, pattern + "[]", uploads);
+    });
+  const toml::value<std::string>* text = node.as_string();
+  return text != nullptr && is_foreign(text->get(), pattern, uploads);
+}
+
+}  // namespace
+
+bool names_foreign_file(const std::string& key, const std::string& value, const fs::path& uploads) {
+  const std::string pattern = pattern_of(key);
+  try {
+    const toml::table parsed = parse_bounded_toml("v = " + value, key);
+    if (parsed.size() == 1) return holds_foreign(*parsed.get("v"), pattern, uploads);
+  } catch (const toml::parse_error&) {  // the value is plain text
+  }
+  return is_foreign(value, pattern, uploads);
+}
+
+// ---- requests ----
+
 namespace {
 
 constexpr int kMostSettings = 64;
@@ -26,16 +88,16 @@ PageRequest set(const wire::Set& message, StationHost& host, const std::filesyst
   PageRequest request{.code = "set", .text = {}, .keys = {}, .dragging = message.dragging()};
   for (const wire::Setting& setting : message.setting()) {
     if (setting.key().empty() || setting.key().size() > kLongestKey)
-      throw std::invalid_argument(fmt::format("a setting's key of {} bytes; a scene's key has 1 to {}",
+      throw std::invalid_argument(fmt::format("a setting's key has {} bytes; a scene's key has 1 to {}",
                                               setting.key().size(), kLongestKey));
     if (setting.value().size() > kLongestValue)
-      throw std::invalid_argument(fmt::format("{}: a value of {} bytes; send at most {}", setting.key(),
+      throw std::invalid_argument(fmt::format("{}: the value has {} bytes; send at most {}", setting.key(),
                                               setting.value().size(), kLongestValue));
     if (names_foreign_file(setting.key(), setting.value(), uploads))
-      throw std::invalid_argument(
-          fmt::format("{} = {}: a page may name what is shipped, or a mesh that it has sent; other files are "
-                      "named where the station is started",
-                      setting.key(), setting.value()));
+      throw std::invalid_argument(fmt::format(
+          "{} = {}: a page may name shipped files and meshes that pages have sent; name other files "
+          "when you start the station",
+          setting.key(), setting.value()));
     changes.emplace_back(setting.key(), setting.value());
     request.keys += setting.key() + "\n";
   }
@@ -49,7 +111,7 @@ PageRequest load(const std::string& name, StationHost& host, const wire::Welcome
   const auto& shipped = choices.scene();
   if (std::none_of(shipped.begin(), shipped.end(), [&](const auto& scene) { return scene.name() == name; }))
     throw std::invalid_argument(
-        fmt::format("scene {}: is not among those shipped; choose one of the list", name));
+        fmt::format("scene {}: this is no shipped scene; choose one of the list", name));
   host.load_scene(name, std::move(done));
   return {.code = "scene", .text = name};
 }
@@ -57,7 +119,7 @@ PageRequest load(const std::string& name, StationHost& host, const wire::Welcome
 PageRequest source(wire::HandSource wanted, StationHost& host, StationHost::Done done) {
   const bool sliders = wanted == wire::HAND_SLIDERS;
   if (!sliders && wanted != wire::HAND_PATIENT)
-    throw std::invalid_argument("a page switches between the simulated patient and the sliders only");
+    throw std::invalid_argument("a page can switch between the simulated patient and the sliders only");
   host.set_source(sliders ? HandSource::kSliders : HandSource::kPatient, std::move(done));
   return {.code = "source",
           .text = sliders ? "the sliders move the hand" : "the simulated patient moves the hand"};
@@ -67,11 +129,11 @@ void pose(const wire::Sliders& sliders, StationHost& host) {
   JointArray angle{};
   if (sliders.angle_size() != kJoints)
     throw std::invalid_argument(
-        fmt::format("{} angles; send one a joint, {}", sliders.angle_size(), kJoints));
+        fmt::format("{} angles; send one for each joint, {}", sliders.angle_size(), kJoints));
   for (int j = 0; j < kJoints; ++j)
     angle[static_cast<std::size_t>(j)] = static_cast<double>(sliders.angle(j));
   if (!host.set_sliders(angle))
-    throw std::invalid_argument("the sliders do not move the hand now; let them move it first");
+    throw std::invalid_argument("the sliders do not move the hand now; choose them as its source first");
 }
 
 PageRequest calibrate(const wire::Calibrate& message, StationHost& host, StationHost::Done done) {
@@ -100,17 +162,17 @@ PageRequest calibrate(const wire::Calibrate& message, StationHost& host, Station
 
 }  // namespace
 
-PageRequest hand_over(const wire::ToHost& message, StationHost& host, const wire::Welcome& choices,
-                      const std::filesystem::path& uploads, StationHost::Done done) {
+PageRequest apply_request(const wire::ToHost& message, StationHost& host, const wire::Welcome& choices,
+                          const std::filesystem::path& uploads, StationHost::Done done) {
   switch (message.what_case()) {
     case wire::ToHost::kResume:
       if (!host.resume(message.resume().stops()))
         throw std::invalid_argument("another stop or fault has come since; look, then resume again");
-      return {.code = "resumed", .text = "resumed", .at_once = true};
+      return {.code = "resumed", .text = "resumed", .done_at_once = true};
     case wire::ToHost::kReset:
       if (!host.reset(message.reset().fault_time()))
         throw std::invalid_argument("another fault has come since; look, then reset again");
-      return {.code = "reset", .text = "asked for a reset", .at_once = true};
+      return {.code = "reset", .text = "asked for a reset", .done_at_once = true};
     case wire::ToHost::kSet:
       return set(message.set(), host, uploads, std::move(done));
     case wire::ToHost::kScene:
@@ -119,11 +181,11 @@ PageRequest hand_over(const wire::ToHost& message, StationHost& host, const wire
       return source(message.source().source(), host, std::move(done));
     case wire::ToHost::kSliders:
       pose(message.sliders(), host);
-      return {.code = "sliders", .text = "moves the hand with the sliders", .at_once = true};
+      return {.code = "sliders", .text = "moves the hand with the sliders", .done_at_once = true};
     case wire::ToHost::kCalibrate:
       return calibrate(message.calibrate(), host, std::move(done));
     default:
-      throw std::invalid_argument("this message asks for nothing that is known; reload the page");
+      throw std::invalid_argument("the station does not know this message; reload the page");
   }
 }
 

@@ -8,9 +8,9 @@ constexpr std::string_view kInvalid = "\xEF\xBF\xBD";
 
 unsigned at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
-/// A character of UTF-8 (RFC 3629): how long, and which one.
+/// Character of UTF-8 (RFC 3629).
 struct Character {
-  std::size_t length = 0;  ///< 0: none begins here
+  std::size_t length = 0;  ///< [bytes]; 0: no character begins here
   unsigned code = 0;
 };
 

@@ -9,7 +9,8 @@
 #include <sstream>
 #include <vector>
 
-#include "scene/scene_tree.h"
+#include "phalanx/scene/scene_error.h"
+#include "scene/toml_reader.h"
 
 namespace phalanx {
 namespace {
@@ -36,13 +37,14 @@ std::string text_of(const toml::table& table) {
 std::string text_of(const std::string& value) {
   if (value.empty()) return "as in the scene";
   try {
-    const toml::table parsed = toml::parse("v = " + value);
+    const toml::table parsed = parse_bounded_toml("v = " + value, "setting");
     const toml::node* node = parsed.size() == 1 ? parsed.get("v") : nullptr;
     if (node == nullptr) return value;
     if (const toml::table* table = node->as_table()) return text_of(*table);
     if (const auto* text = node->as_string(); text != nullptr && text->get().find('/') != std::string::npos)
       return text_of(*node);
   } catch (const toml::parse_error&) {  // then it is text as it stands
+  } catch (const SceneError&) {         // too deep to be looked into
   }
   return value;
 }

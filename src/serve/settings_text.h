@@ -7,9 +7,9 @@
 
 namespace phalanx {
 
-/// Changes of settings as people read them: "force.stiffness_n_per_mm = 0.8". A file is named without its
-/// folder, a table without TOML's brackets ("objects.0 = sphere, diameter_mm 60"), an empty value as "as in
-/// the scene". A key below one that a later change replaces is left out.
+/// @returns changes of settings in words for people: "force.stiffness_n_per_mm = 0.8". A file has no folder,
+/// a table no brackets ("objects.0 = sphere, diameter_mm 60"), and an empty value is "as in the scene". Keys
+/// below a key that a later change replaces are left out.
 [[nodiscard]] std::string settings_text(const Overrides& changes);
 
 }  // namespace phalanx

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "serve/state_message.h"
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "phalanx/scene/data_paths.h"
+#include "phalanx/scene/names_in_folder.h"
 #include "phalanx/scene/scene_keys.h"
 #include "serve/plain_text.h"
 #include "serve/tick_message.h"
@@ -93,6 +94,7 @@ void put_host(const HostState& state, wire::State& out) {
   out.set_device_serial(as_utf8(state.device.serial));
   out.set_device_simulated(state.device.simulated);
   out.set_renders_torque(state.device.renders_torque);
+  out.set_holds_without_host(holds_without_host(state.device));
   out.set_calibration(as_utf8(state.calibration));
   for (const int joint : state.sensed_joints) out.add_sensed_joint(static_cast<std::uint32_t>(joint));
   if (state.wizard) put(*state.wizard, *out.mutable_wizard());
@@ -100,25 +102,76 @@ void put_host(const HostState& state, wire::State& out) {
 
 /// File names without their ending, sorted.
 void put_names(const std::filesystem::path& folder, google::protobuf::RepeatedPtrField<wire::Choice>& to) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  for (const std::string& name : names) to.Add()->set_name(name);
+  for (const std::string& name : names_in_folder(folder, ".toml")) to.Add()->set_name(name);
 }
 
-/// A key of an array's element stands for all of them.
-wire::ChangeKind wire_change(const std::string& path) {
-  switch (change_kind(path.substr(0, path.find('[')) == "objects" ? "objects" : path)) {
+wire::ChangeKind wire_change(ChangeKind change) noexcept {
+  switch (change) {
     case ChangeKind::kInContact:
       return wire::CHANGE_IN_CONTACT;
     case ChangeKind::kAtZeroTorque:
+    case ChangeKind::kOtherObject:
       return wire::CHANGE_AT_ZERO_TORQUE;
     case ChangeKind::kNewStation:
       return wire::CHANGE_NEW_STATION;
   }
   return wire::CHANGE_NEW_STATION;
+}
+
+wire::KeyType wire_type(KeyType type) noexcept {
+  switch (type) {
+    case KeyType::kNumber:
+      return wire::KEY_NUMBER;
+    case KeyType::kNumberOrOff:
+      return wire::KEY_NUMBER_OR_OFF;
+    case KeyType::kInteger:
+      return wire::KEY_INTEGER;
+    case KeyType::kFlag:
+      return wire::KEY_FLAG;
+    case KeyType::kText:
+      return wire::KEY_TEXT;
+    case KeyType::kChoice:
+      return wire::KEY_CHOICE;
+    case KeyType::kVector:
+      return wire::KEY_VECTOR;
+    case KeyType::kFile:
+      return wire::KEY_FILE;
+    case KeyType::kName:
+      return wire::KEY_NAME;
+  }
+  return wire::KEY_TEXT;
+}
+
+bool is_numeric(KeyType type) noexcept {
+  return type == KeyType::kNumber || type == KeyType::kNumberOrOff || type == KeyType::kInteger ||
+         type == KeyType::kVector;
+}
+
+void put(const NumberRange& range, wire::NumberRange& out) {
+  out.set_min(range.min);
+  out.set_max(range.max);
+  out.set_min_open(range.min_open);
+  out.set_max_open(range.max_open);
+  out.set_minus_infinity(range.allows_minus_infinity);
+}
+
+void put(const SceneKey& key, wire::KeyInfo& out) {
+  const auto text = [&](const std::optional<KeyValue>& value) {
+    return value ? value_text(key, *value) : std::string();
+  };
+  out.set_path(key.path);
+  out.set_unit(key.unit);
+  out.set_default_value(text(key.default_value));
+  out.set_meaning(key.meaning);
+  out.set_change(wire_change(key.change));
+  out.set_type(wire_type(key.type));
+  if (is_numeric(key.type)) put(key.range, *out.mutable_range());
+  for (const std::string& choice : key.choices) out.add_choice(choice);
+  for (const KindWithKey& having : key.kinds) {
+    wire::KindWithKey& kind = *out.add_kind();
+    kind.set_kind(having.kind);
+    kind.set_default_value(text(key.default_for(having.kind)));
+  }
 }
 
 }  // namespace
@@ -140,7 +193,7 @@ void write_state(const StationHost& host, wire::State& out) {
   out.set_safety(wire_state(view.state));
   out.set_stops(host.stops());
   out.set_held_stopped(host.held_stopped());
-  // While a calibration is on there is no station: the fault is that of the one before.
+  // There is no station during a calibration: the fault is that of the station before it.
   if (view.fault.fault != Fault::kNone && !state->wizard) put(view.fault, *out.mutable_fault());
   out.set_degraded(view.degraded);
   out.set_device_state(device_state_name(view.device));
@@ -151,25 +204,16 @@ void write_state(const StationHost& host, wire::State& out) {
     for (const double angle : host.sliders()) out.add_slider(static_cast<float>(angle));
 }
 
-void write_seats(const Seats& seats, double now, wire::State& out) {
-  if (const Seat* seat = seats.operating(now)) {
-    out.set_operator_page(seat->number);
-    out.set_operator_name(seat->name);
+void write_participants(const Participants& participants, double now, wire::State& out) {
+  if (const Participant* participant = participants.current_operator(now)) {
+    out.set_operator_page(participant->number);
+    out.set_operator_name(participant->name);
   }
-  out.set_pages(static_cast<std::uint32_t>(seats.here()));
+  out.set_pages(static_cast<std::uint32_t>(participants.count()));
 }
 
 void write_choices(wire::Welcome& out) {
-  for (const SceneKey& key : scene_keys()) {
-    wire::KeyInfo& info = *out.add_key();
-    info.set_path(key.path);
-    info.set_type(key.type);
-    info.set_unit(key.unit);
-    info.set_range(key.range);
-    info.set_default_value(key.default_value);
-    info.set_meaning(key.meaning);
-    info.set_change(wire_change(key.path));
-  }
+  for (const SceneKey& key : scene_keys()) put(key, *out.add_key());
   for (const SceneInfo& scene : list_scenes()) {
     if (!scene.readable || !scene.touches) continue;
     wire::Choice& choice = *out.add_scene();

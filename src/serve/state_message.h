@@ -3,21 +3,21 @@
 
 #include "phalanx/cockpit.pb.h"
 #include "phalanx/station/station_host.h"
-#include "serve/seats.h"
+#include "serve/participants.h"
 
 namespace phalanx {
 
-/// Everything about the station that a page shows beside the hand: proto/phalanx/cockpit.proto;
-/// but for the place of a fault's report.
+/// Writes all that a page shows of the station beside the hand, in the form of proto/phalanx/cockpit.proto.
+/// Does not write the file of a fault report.
 void write_state(const StationHost& host, wire::State& out);
 
-/// The device's counters.
+/// Writes the counters of the device's link.
 void write_link(const LinkStatistics& link, wire::Link& out);
 
-/// Who is here.
-void write_seats(const Seats& seats, double now, wire::State& out);
+/// Writes the operator and the number of pages.
+void write_participants(const Participants& participants, double now, wire::State& out);
 
-/// Keys, scenes and profiles: what does not change while the program runs. Set-up only.
+/// Writes keys, scenes and profiles, which do not change while the program runs. Set-up only.
 void write_choices(wire::Welcome& out);
 
 }  // namespace phalanx

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "phalanx/core/index.h"
+
 namespace phalanx {
 namespace {
 
@@ -28,7 +30,7 @@ void put_poses(const std::array<Pose, kSegments>& poses, Field& field) {
   }
 }
 
-/// Sensors that the device does not have are not sent at all.
+/// Writes measured values. Leaves the field empty if the device has none of these sensors.
 template <class Array, class Field>
 void put_measured(const Array& values, Field& field) {
   const bool any = std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
@@ -84,6 +86,9 @@ void write_tick(const StationView& view, wire::Tick& out) {
     const SegmentSnapshot& segment = snapshot.segment[static_cast<std::size_t>(s)];
     if (segment.contact || segment.force > 0.0 || segment.oscillating)
       put_contact(s, segment, *out.add_contact());
+  }
+  for (int d = 0; d < kDigits; ++d) {
+    if (snapshot.started_inside[idx(d)]) out.add_started_inside(static_cast<std::uint32_t>(d));
   }
   put_measured(snapshot.measured_torque, *out.mutable_measured_torque());
   put_measured(snapshot.measured_force, *out.mutable_measured_force());

@@ -6,10 +6,10 @@
 
 namespace phalanx {
 
-/// One step as it is streamed and recorded: proto/phalanx/tick.proto.
+/// Writes one step in the form of proto/phalanx/tick.proto. `out` is cleared first.
 void write_tick(const StationView& view, wire::Tick& out);
 
-/// A state as the wire names it.
+/// @returns the state in the numbers of tick.proto
 [[nodiscard]] wire::SafetyState wire_state(SafetyState state) noexcept;
 
 }  // namespace phalanx

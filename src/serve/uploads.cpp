@@ -11,10 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "phalanx/mesh/import.h"
-#include "phalanx/mesh/isolation_helper.h"
+#include "phalanx/mesh/isolation/isolation_helper.h"
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "phalanx/record/output_file.h"
@@ -27,8 +28,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kKept = 50;
-/// Of the whole import, in a process of its own: what a mesh does there, it does not do to the station, and
-/// one that has passed there passes again when the station takes it.
+/// Limits of the import in a process of its own. A faulty mesh can harm that process only. A mesh that
+/// passes there also passes when the station imports it.
 constexpr mesh::IsolationLimits kImportLimits{
     .cpu_seconds = 60, .memory_bytes = std::uint64_t{4} << 30, .wall_seconds = 180.0};
 constexpr std::array<const char*, 5> kFormats = {".obj", ".3ds", ".stl", ".ply", ".glb"};
@@ -65,7 +66,7 @@ double metres_per_unit_of(const UploadedMesh& mesh) {
   throw std::invalid_argument(fmt::format("unit = {}: must be m, mm, cm or in", mesh.unit));
 }
 
-/// FNV-1a: two different files of one name get two names.
+/// @returns the FNV-1a hash, with which different files of one name get different names
 std::uint64_t hash_of(const std::string& bytes) {
   std::uint64_t hash = 14695981039346656037U;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
@@ -79,8 +80,8 @@ std::string file_name(const UploadedMesh& mesh, const std::string& extension) {
   return fmt::format("{}-{:016x}{}", stem.substr(0, 40), hash_of(mesh.bytes), extension);
 }
 
-/// Whether file_name() could have made it: "mug-0123456789abcdef.stl".
-bool is_our_name(const std::string& name) {
+/// @returns true if file_name() could have made the name: "mug-0123456789abcdef.stl"
+bool is_upload_name(const std::string& name) {
   constexpr std::size_t kDigits = 16;
   const std::size_t dot = name.rfind('.');
   if (dot == std::string::npos || dot < kDigits + 2 || name[dot - kDigits - 1] != '-') return false;
@@ -91,7 +92,8 @@ bool is_our_name(const std::string& name) {
          std::find(kFormats.begin(), kFormats.end(), name.substr(dot)) != kFormats.end();
 }
 
-/// Ours are in letters that no way of writing a value changes.
+/// @returns true if a value names the file. The names of uploads need no escapes in TOML, so that a plain
+/// search finds them.
 bool is_named(const std::string& name, const Overrides& values) {
   return std::any_of(values.begin(), values.end(),
                      [&](const auto& entry) { return entry.second.find(name) != std::string::npos; });
@@ -102,7 +104,7 @@ void keep_newest(const fs::path& folder, const Overrides& in_force) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
     if (!entry.is_symlink(ignored) && entry.is_regular_file(ignored) &&
-        is_our_name(entry.path().filename().string()))
+        is_upload_name(entry.path().filename().string()))
       files.push_back(entry);
   std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) {
     return a.last_write_time(ignored) > b.last_write_time(ignored);
@@ -119,13 +121,13 @@ std::string extension_of(const std::string& name) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
     throw std::invalid_argument(
-        fmt::format("{}: not a mesh that can be read; send an .obj, .3ds, .stl, .ply or .glb",
+        fmt::format("{}: this is not a mesh that can be read; send an .obj, .3ds, .stl, .ply or .glb",
                     name.empty() ? "a file without a name" : name));
   return extension;
 }
 
-/// The import knows a mesh in memory; the person knows a file.
-std::string in_the_files_words(std::string refusal, const std::string& name) {
+/// @returns the import's message with the file's name in place of "mesh in memory"
+std::string with_file_name(std::string refusal, const std::string& name) {
   constexpr std::string_view kInMemory = "mesh in memory";
   if (refusal.starts_with(kInMemory)) refusal.replace(0, kInMemory.size(), name);
   return refusal;
@@ -141,12 +143,12 @@ Overrides values_now(const ValuesInForce& in_force) {
 /// @throws std::runtime_error  the station has ended
 void require_station(const ValuesInForce& in_force) { static_cast<void>(values_now(in_force)); }
 
-/// A file's name may hold any bytes.
+/// @returns the JSON text; replaces invalid UTF-8, which a file's name may hold
 std::string as_text(const Json& answer) {
   return answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// What the import says of it.
+/// Imports and checks the mesh. @returns the answer for the page, without the file
 Json checked(const UploadedMesh& mesh, const std::string& format, const ImportOptions& options) {
   const ImportedMesh imported =
       import_and_check_from_memory(mesh.bytes.data(), mesh.bytes.size(), format, options);
@@ -156,7 +158,7 @@ Json checked(const UploadedMesh& mesh, const std::string& format, const ImportOp
   return answer;
 }
 
-/// checked() of "format NUL size NUL metres NUL length of the name NUL name bytes".
+/// Calls checked() with "format NUL size NUL metres NUL length of the name NUL name bytes", see packed().
 std::string check_packed(const std::string& packed) {
   std::size_t at = 0;
   const auto next = [&] {
@@ -177,6 +179,7 @@ std::string check_packed(const std::string& packed) {
   return as_text(checked(mesh, format, options));
 }
 
+/// @returns the argument of check_packed()
 std::string packed(const UploadedMesh& mesh, const std::string& format) {
   std::string fields;
   for (const std::string& field :
@@ -231,9 +234,45 @@ std::string take_upload(const UploadedMesh& mesh, const fs::path& folder, const 
   try {
     answer = accepted(mesh, folder, in_force);
   } catch (const std::exception& refused) {
-    answer = {{"ok", false}, {"error", in_the_files_words(refused.what(), mesh.name)}};
+    answer = {{"ok", false}, {"error", with_file_name(refused.what(), mesh.name)}};
   }
   return as_text(answer);
+}
+
+// ---- UploadJob ----
+
+std::optional<Overrides> UploadJob::values() const {
+  const std::lock_guard lock(mutex_);
+  if (host_ == nullptr) return std::nullopt;
+  return host_->state()->values;
+}
+
+bool UploadJob::done() const {
+  const std::lock_guard lock(mutex_);
+  return done_;
+}
+
+void UploadJob::finish() {
+  const std::lock_guard lock(mutex_);
+  done_ = true;
+  done_changed_.notify_all();
+}
+
+void UploadJob::abandon(std::chrono::milliseconds wait) {
+  std::unique_lock lock(mutex_);
+  host_ = nullptr;
+  done_changed_.wait_for(lock, wait, [this] { return done_; });
+}
+
+void start_upload(const std::shared_ptr<UploadJob>& job,
+                  std::function<WebResponse(const ValuesInForce&)> work,
+                  std::function<void(WebResponse)> respond) {
+  std::thread([job, work = std::move(work), respond = std::move(respond)]() mutable {
+    WebResponse response = work([job] { return job->values(); });
+    work = nullptr;  // frees what the work holds before the response is sent
+    job->finish();
+    respond(std::move(response));
+  }).detach();
 }
 
 }  // namespace phalanx

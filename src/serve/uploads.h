@@ -1,40 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
+// Meshes that pages send: reading the request, checking the mesh in a process of its own, keeping the file,
+// and the thread on which that is done.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
 #include "phalanx/scene/scene.h"
+#include "phalanx/serve/web_server.h"
+#include "phalanx/station/station_host.h"
 
 namespace phalanx {
 
-/// A mesh that a page has sent, and how it is to be read.
+/// Mesh that a page has sent, and how to read it.
 struct UploadedMesh {
-  std::string name;  ///< as the person's computer calls it; only its letters, digits, - and _ are used
+  std::string name;  ///< of the file on the sender's computer; only letters, digits, - and _ of it are used
   std::string bytes;
-  double size_mm = 0.0;    ///< largest extent; 0: keeps the file's numbers
-  std::string unit = "m";  ///< of these
+  double size_mm = 0.0;    ///< largest extent [mm]; 0: as in the file
+  std::string unit = "m";  ///< of the file's numbers
 };
 
-/// From "name=mug.stl&size_mm=90": percent-coded, as browsers write it.
-/// @throws std::invalid_argument naming what is wrong
+/// Reads the query of an upload: "name=mug.stl&size_mm=90", percent-coded.
+/// @throws std::invalid_argument that names the wrong value
 [[nodiscard]] UploadedMesh upload_of(const std::string& query, std::string bytes);
 
-/// What the scene in force states, as HostState::values; none: nobody waits for this mesh any more.
+/// Function that returns HostState::values of the station, or none if the upload has been abandoned.
 using ValuesInForce = std::function<std::optional<Overrides>()>;
 
-constexpr std::size_t kMostUploadedTriangles = 500'000;  ///< checking more would take minutes
+constexpr std::size_t kMostUploadedTriangles = 500'000;  ///< more would take minutes to check
 
-/// Reads and checks the mesh and, if a scene could take it, puts it into the folder, of whose uploads it
-/// keeps the newest 50 and those that the scene in force names. Files whose names are not of take_upload()'s
-/// own form are somebody else's and stay.
-/// @param in_force  asked before each step, so that work that nobody waits for ends with the step
-/// @returns a JSON object: ok; error (if not); file: what objects.N.file is to be; report: docs/meshes.md
-/// Does not throw for a bad mesh. Forks, takes long.
+/// Checks a mesh in a process of its own and, if a scene could use it, writes it into the folder. Keeps the
+/// newest 50 uploads there and those that the scene in force names. Does not touch files with names of
+/// another form. Does not throw for a mesh that is refused. Forks; takes long.
+/// @param in_force  called before each step, so that an abandoned upload ends with its step
+/// @returns a JSON object: "ok"; "error" (if not ok); "file", the value for objects.N.file;
+/// "report", see docs/meshes.md
 [[nodiscard]] std::string take_upload(const UploadedMesh& mesh, const std::filesystem::path& folder,
                                       const ValuesInForce& in_force);
+
+/// State of one upload, which the cockpit and the upload's thread share: either may outlive the
+/// other. Any thread.
+class UploadJob {
+ public:
+  explicit UploadJob(const StationHost& host) : host_(&host) {}
+
+  /// @returns HostState::values; none if the job has been abandoned
+  [[nodiscard]] std::optional<Overrides> values() const;
+  [[nodiscard]] bool done() const;
+  void finish();
+  /// Abandons the job: it does not use the host any more and ends with its current step. Waits for that end,
+  /// but no longer than `wait`.
+  void abandon(std::chrono::milliseconds wait);
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable done_changed_;
+  const StationHost* host_;  ///< null: abandoned
+  bool done_ = false;
+};
+
+/// Starts the work of a job on a detached thread.
+/// @param work     owns all that it uses
+/// @param respond  called with the result after the job is done, so that the next upload may begin
+void start_upload(const std::shared_ptr<UploadJob>& job,
+                  std::function<WebResponse(const ValuesInForce&)> work,
+                  std::function<void(WebResponse)> respond);
 
 }  // namespace phalanx

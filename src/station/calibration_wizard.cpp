@@ -25,10 +25,10 @@ void CalibrationWizard::end() noexcept {
   trouble_.clear();
 }
 
-void CalibrationWizard::go_on(double now) noexcept {
+void CalibrationWizard::update(double now) noexcept {
   if (!on()) return;
   try {
-    session_->go_on(now);
+    session_->update(now);
   } catch (const std::exception& error) {
     trouble_ = error.what();
   }

@@ -10,27 +10,29 @@
 
 namespace phalanx {
 
-/// A device while poses are measured: open, never commanded. One thread at a time.
+/// A device whose calibration poses are measured: open, never commanded. For one thread at a time.
 class CalibrationWizard {
  public:
-  /// Opens the device. @throws as open_device(), Device::open() and CalibrationSession
+  /// Opens the device.
+  /// @throws as open_device(), Device::open() and CalibrationSession
   void begin(const std::string& device, const HandParameters& hand, const Clock& clock);
-  /// Closes the device. Nothing if no calibration is on.
+  /// Closes the device. It does nothing if no calibration runs.
   void end() noexcept;
   [[nodiscard]] bool on() const noexcept { return session_ != nullptr; }
 
-  /// Takes in what the device has sampled. What goes wrong is trouble(), and the pose stays asked for:
-  /// whoever calibrates mends it, measures again, or abandons.
-  void go_on(double now) noexcept;
-  /// kMeasure, kSkip, kBack or kGoTo. @throws std::invalid_argument if no calibration is on; as
-  /// CalibrationSession
+  /// Takes in the device's new samples. A failure is reported by trouble(), and the pose stays the current
+  /// one: the user can mend the cause, measure again, or abandon.
+  void update(double now) noexcept;
+  /// Takes the step kMeasure, kSkip, kBack or kGoTo.
+  /// @throws std::invalid_argument if no calibration runs; as CalibrationSession
   void step(CalibrationSession::Step step, std::size_t pose, double now);
-  /// @throws std::invalid_argument if it is not finished
+  /// @returns the result.
+  /// @throws std::invalid_argument if the calibration is not finished
   [[nodiscard]] const Calibration& found() const;
 
   [[nodiscard]] const std::string& trouble() const noexcept { return trouble_; }
   [[nodiscard]] CalibrationSession::View view() const { return session_->view(); }
-  /// @throws std::invalid_argument
+  /// @throws std::invalid_argument if no calibration runs
   void refuse_unless_on() const;
 
  private:

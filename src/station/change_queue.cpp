@@ -11,7 +11,7 @@
 namespace phalanx {
 namespace {
 
-/// From here on no further change is told: the text is read often, and people read no more [bytes].
+/// Length after which further changes are left out: the text is read often, and people read no more [bytes].
 constexpr std::size_t kLongText = 300;
 
 bool sets(const Overrides& changes, const std::string& key) {
@@ -23,7 +23,7 @@ bool overtakes(const SetPart& later, const SetPart& earlier) {
                      [&](const auto& change) { return sets(later.changes, change.first); });
 }
 
-/// Whoever waits for what is overtaken is answered together with the newer one; oldest first.
+/// Moves the callbacks of an overtaken part to the newer one, which answers them. Oldest first.
 void overtake(SetPart& later, SetPart& earlier) {
   if (earlier.done) earlier.overtaken.push_back(std::move(earlier.done));
   later.overtaken.insert(later.overtaken.begin(), std::make_move_iterator(earlier.overtaken.begin()),
@@ -108,11 +108,11 @@ std::optional<ChangeRequest> ChangeQueue::take() {
   return next;
 }
 
+/// Removes requests one by one: this needs no memory, and each is freed after the lock, since its owner
+/// may ask again.
 void ChangeQueue::clear() {
-  std::deque<ChangeRequest> gone;  // freed after the lock: whoever they belong to may ask again
-  const std::lock_guard lock(mutex_);
-  std::swap(gone, waiting_);
-  answers_ = 0;
+  while (take()) {
+  }
 }
 
 }  // namespace phalanx

@@ -45,7 +45,7 @@ namespace {
 std::string row(const std::string& range, std::uint64_t count, std::uint64_t total) {
   constexpr double kBar = 50.0;
   const double share = static_cast<double>(count) / static_cast<double>(total);
-  // Anything at all shows: the rare long ones are what a reader looks for.
+  // Every count above 0 shows: the rare long durations are what a reader looks for.
   const auto length = static_cast<std::size_t>(std::ceil(kBar * share));
   const std::string bar(length, '#');
   return fmt::format("  {:>24} us {:>10} {:>8.3f} % {}\n", range, count, 100.0 * share, bar);

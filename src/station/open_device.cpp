@@ -17,7 +17,7 @@ constexpr unsigned kGloveBaud = 115200;
 
 struct Spec {
   std::string kind;
-  std::string place;  ///< what follows the first colon
+  std::string place;  ///< text after the first colon
 };
 
 constexpr const char* kLinkAddresses = "udp:HOST:PORT and serial:PORT[:BAUD]";
@@ -39,7 +39,8 @@ struct SerialPlace {
   unsigned baud = 0;
 };
 
-/// Names in /dev/serial/by-path have colons of their own: what exists as it stands has no rate behind it.
+/// Splits a port and its baud rate. Names in /dev/serial/by-path contain colons: a path that exists has no
+/// rate behind it.
 SerialPlace serial_place(const std::string& spec, const std::string& place, unsigned usual_baud) {
   const std::size_t colon = place.rfind(':');
   std::error_code ignored;

@@ -12,7 +12,7 @@ namespace phalanx {
 std::uint64_t DeadlineGrid::next(std::uint64_t last, double now) const noexcept {
   if (now <= at(last + 1)) return last + 1;
   auto k = static_cast<std::uint64_t>((now - begin) / period);
-  // The division rounds; at() decides, so that a deadline that is met exactly counts as met.
+  // The division rounds. at() decides, so that a deadline that is met exactly counts as met.
   while (at(k) < now) ++k;
   while (k > last + 1 && at(k - 1) >= now) --k;
   return k;
@@ -30,7 +30,7 @@ Wake Pacer::wait() noexcept {
   const double deadline = grid_.at(k);
   while (!clock_.sleep_until(deadline) && clock_.now() < deadline) {
   }
-  // The kernel counts whole nanoseconds, so that it may come back a fraction of one before the deadline.
+  // The kernel counts whole nanoseconds: it may return a fraction of one before the deadline.
   const double now = std::max(clock_.now(), deadline);
   const Wake wake{.deadline = deadline, .now = now, .lateness = now - deadline, .skipped = k - last_ - 1};
   last_ = k;

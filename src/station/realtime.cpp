@@ -21,13 +21,13 @@
 namespace phalanx {
 namespace {
 
-constexpr std::size_t kStack = 64U << 10U;  ///< touched beforehand [bytes]
+constexpr std::size_t kStack = 64U << 10U;  ///< stack that is touched beforehand [bytes]
 /// Room that must stay under the limit if only present memory is locked: a locked stack cannot grow past it.
 constexpr std::uint64_t kHeadroom = 16U << 20U;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-/// The limit after it was raised as far as the system lets an ordinary process raise it.
+/// Raises the limit as far as an ordinary process may. @returns the new limit
 rlim_t raised_limit(__rlimit_resource_t which) {
   rlimit limit{};
   if (getrlimit(which, &limit) != 0) return 0;
@@ -35,7 +35,7 @@ rlim_t raised_limit(__rlimit_resource_t which) {
   return setrlimit(which, &raised) == 0 ? limit.rlim_max : limit.rlim_cur;
 }
 
-/// @returns 0 or errno. For the calling thread.
+/// Sets SCHED_FIFO for the calling thread. @returns 0 or errno
 int set_fifo(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
@@ -69,7 +69,7 @@ void ask_for_fifo(int wanted, RealtimeGrant& grant) {
         granted, wanted));
 }
 
-/// Other threads' timers may be put off by 50 us so that the CPU wakes less often.
+/// Sets the timer slack to 1 ns. By default, timers may be 50 us late, so that the CPU wakes less often.
 void ask_for_exact_timers(RealtimeGrant& grant) {
   if (prctl(PR_SET_TIMERSLACK, 1UL) == 0) return;
   grant.missing.push_back(
@@ -108,8 +108,8 @@ void ask_for_cpu(int cpu, RealtimeGrant& grant) {
                   cpu, reason(error), allowed_cpus()));
 }
 
-/// Whether locking is bound by no limit. A user namespace may show the capability and yet not have it, so the
-/// kernel itself is asked: with a limit of zero only who is privileged may lock a page.
+/// @returns true if locking has no limit. A user namespace may show the capability without having it. The
+/// kernel itself is therefore asked: with a limit of zero, only a privileged process may lock a page.
 bool may_lock_beyond_limits() {
   rlimit before{};
   if (getrlimit(RLIMIT_MEMLOCK, &before) != 0) return false;
@@ -122,20 +122,21 @@ bool may_lock_beyond_limits() {
   return may;
 }
 
-/// The kernel compares the limit with all of a process's address space, not with what is resident. [bytes]
+/// @returns the size of the process's address space, which the kernel compares with the limit [bytes]. The
+/// kernel does not compare the resident memory.
 std::uint64_t address_space() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Kept at the bottom of a frame of its own, so that the steps' frames lie on pages that are already there.
+/// Touches the stack in a frame of its own, so that the steps' frames lie on pages that are already present.
 [[gnu::noinline]] void touch_stack() {
   std::array<volatile std::byte, kStack> room;
   for (std::size_t i = 0; i < room.size(); i += 1024) room[i] = std::byte{0};
 }
 
-/// What was fetched once is not given back.
+/// Keeps freed memory in the process.
 void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
@@ -191,12 +192,12 @@ RealtimeGrant make_realtime(const RealtimeRequest& request) noexcept {
   RealtimeGrant grant;
   try {
     grant.kernel = kernel_name();
-    // Memory first: fetching it all takes a while, and not at a priority that starves others.
+    // Memory first: fetching it takes a while, and must not happen at a priority that starves other threads.
     if (request.lock_memory) ask_for_memory(grant);
     ask_for_cpu(request.cpu, grant);
     ask_for_fifo(request.priority, grant);
     if (!grant.fifo) ask_for_exact_timers(grant);
-    // NOLINTNEXTLINE(bugprone-empty-catch): no memory for a sentence; what was granted until here holds
+    // NOLINTNEXTLINE(bugprone-empty-catch): no memory for a message; what was granted until here holds
   } catch (...) {
   }
   return grant;

@@ -11,25 +11,28 @@
 namespace phalanx {
 namespace {
 
-/// How long a device may take to become ready after a start or a reset before its latch counts as a fault
-/// [s].
+/// Longest time that a device may take to become ready after a start or a reset; later, its latch is
+/// a fault [s].
 constexpr double kDeviceAnswers = 0.5;
-/// How long a device may be ready and not act on enabled commands [s]: more than 100 repetitions of each.
+/// Longest time that a device may be ready and not act on enabled commands [s]: more than 100
+/// repetitions of each.
 constexpr double kObeys = 0.2;
-/// A step keeps the fingertip limit itself; this much more and it is wrong.
+/// The step keeps the fingertip limit. A force beyond this multiple of it is an error of the step [-].
 constexpr double kForceTolerance = 1.1;
-/// An oscillation so soon after the torque has begun to return from an earlier one is a fault [s].
+/// An oscillation within this time after the torque began to return from an earlier one is a fault [s].
 constexpr double kComesBack = 10.0;
-/// Sums of periods are not exact: far below any period [s].
+/// Tolerance for sums of periods, which are not exact: far below any period [s].
 constexpr double kClock = 1e-9;
+/// Change of the force that counts as a swing of an oscillation [N].
+constexpr double kSwing = OscillationParameters{}.swing;
 
-/// A glove without motors may be slower than the sample timeout: then five of its periods.
+/// @returns the sample timeout [s]. A glove without motors may be slower: five of its periods are allowed.
 double timeout_of(const SafetySettings& settings, const DeviceInfo& device) {
   return device.renders_torque ? settings.sample_timeout
                                : std::max(settings.sample_timeout, 5.0 / device.rate_hz);
 }
 
-/// A device that is latched and does not say what for has a reason of its own.
+/// @returns the cause of a device's latch: kDrive if the device does not name one.
 Fault latch_of(const DeviceSample& sample) noexcept {
   return sample.fault == Fault::kNone ? Fault::kDrive : sample.fault;
 }
@@ -54,7 +57,7 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
       simulated_(device.simulated),
       may_oscillate_(device.simulated || !device.renders_torque) {}
 
-// ---- what is judged ----
+// ---- judging ----
 
 void Safety::trip(Fault fault, int channel, double now, bool from_device) noexcept {
   if (fault == Fault::kNone || state_ == SafetyState::kFault) return;
@@ -71,7 +74,7 @@ void Safety::judge_sample(const DeviceSample& sample, double now) noexcept {
   last_ = sample;
   if (sample.estop) trip(Fault::kEmergencyStop, -1, now, true);
   trip(finding.fault, finding.channel, now);
-  // Right after a reset the device's samples still speak of the latch that is being cleared.
+  // Right after a reset, the device's samples still show the latch that is being cleared.
   if (sample.state == DeviceState::kLatched && now >= answers_until_)
     trip(latch_of(sample), sample.fault_channel, now, true);
 }
@@ -93,13 +96,13 @@ void Safety::observe(std::span<const DeviceSample> samples, Fault connection, bo
   if (late_in_a_row_ >= settings_.overruns) trip(Fault::kOverload, -1, now);
 }
 
-/// Since the newest sample, or since we began to wait for the first [s].
+/// @returns the time since the newest sample, or since waiting for the first one began [s].
 double Safety::silent_for(double now) const noexcept {
   if (simulated_) return silence_;
   return now - (heard_ ? last_.received : waiting_since_);
 }
 
-/// A step that is wrong in itself. The negated comparison also catches what is not a number.
+/// Checks the step's result for errors. The negated comparison also catches NaN.
 void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
   const double most = std::min(kForceNever, kForceTolerance * settings_.fingertip_force);
   if (has(snapshot.status, Status::kCommandNotFinite)) trip(Fault::kCommandNotFinite, -1, now);
@@ -117,7 +120,8 @@ void Safety::judge_step(const Snapshot& snapshot, double now) noexcept {
     if (!std::isfinite(torque)) trip(Fault::kCommandNotFinite, -1, now);
 }
 
-/// Enabled commands go out, and the device stays at rest: it takes them for old, or for somebody else's.
+/// Checks that the device acts on enabled commands. If it stays at rest, it rejects them as old or
+/// as another host's.
 void Safety::judge_obedience(double now) noexcept {
   const bool asked = state_ == SafetyState::kStarting || state_ == SafetyState::kRunning;
   const bool acts = last_.state == DeviceState::kStarting || last_.state == DeviceState::kActive ||
@@ -126,13 +130,14 @@ void Safety::judge_obedience(double now) noexcept {
   if (ignored_for_ >= obeys_within_) trip(Fault::kNotActing, -1, now);
 }
 
-/// An oscillation feeds energy into the hand. The first one fades the torque as stop() does; the torque
-/// returns over the start ramp once the observers are quiet. The next one soon after that is a fault.
+/// Reacts to an oscillation, which feeds energy into the hand. The first one fades the torque as stop() does.
+/// The torque returns over the start ramp once the observers are quiet. Another one soon after that
+/// is a fault.
 void Safety::judge_oscillation(const Snapshot& snapshot, double now) noexcept {
   if (may_oscillate_) return;
   oscillates_ = false;
   for (std::size_t s = 0; s < kSegments; ++s) {
-    observer_[s].watch(factor_ * snapshot.segment[s].force, kDefaultOscillation.swing, period_);
+    observer_[s].watch(factor_ * snapshot.segment[s].force, kSwing, period_);
     oscillates_ = oscillates_ || observer_[s].oscillating();
   }
   if (!oscillates_ || (state_ != SafetyState::kStarting && state_ != SafetyState::kRunning)) return;
@@ -141,9 +146,9 @@ void Safety::judge_oscillation(const Snapshot& snapshot, double now) noexcept {
   state_ = SafetyState::kStopping;
 }
 
-// ---- how torque comes and goes ----
+// ---- ramps ----
 
-void Safety::go_on(double now) noexcept {
+void Safety::advance(double now) noexcept {
   const bool ready = heard_ && last_.state != DeviceState::kConnecting &&
                      last_.state != DeviceState::kLatched && watch_.all_good() && !oscillates_;
   if (state_ == SafetyState::kWaiting && ready) {
@@ -161,7 +166,8 @@ void Safety::go_on(double now) noexcept {
   if (state_ == SafetyState::kFault) ramp_to_zero_after_fault(now);
 }
 
-/// By the clock where steps come late: a slow loop does not make the ramp longer.
+/// Lowers the torque after a fault. If steps come late, the clock counts: a slow loop does not
+/// lengthen the ramp.
 void Safety::ramp_to_zero_after_fault(double now) noexcept {
   const double nominal = fault_left_ - period_ / settings_.fault_ramp;
   const double by_clock = 1.0 - (now - fault_.time) / settings_.fault_ramp;
@@ -169,19 +175,20 @@ void Safety::ramp_to_zero_after_fault(double now) noexcept {
   fault_left_ = left > kClock ? left : 0.0;
 }
 
-/// 1 inside the patient's range of motion, 0 at its end and beyond, for torque that would push the joint out.
+/// @returns the factor on a torque that pushes the joint outward: 1 inside the patient's range of motion,
+/// falling to 0 at its end and beyond.
 double Safety::outward_factor(std::size_t joint, double angle, double torque) const noexcept {
   const double left = torque > 0.0 ? max_[joint] - angle : angle - min_[joint];
   return std::clamp(left / settings_.range_taper, 0.0, 1.0);
 }
 
-/// The smaller of both directions' factors.
+/// @returns the smaller of both directions' factors.
 double Safety::outward_room(const Snapshot& snapshot, std::size_t joint) const noexcept {
   const double angle = snapshot.hcp_angle[joint];
   return std::min(outward_factor(joint, angle, 1.0), outward_factor(joint, angle, -1.0));
 }
 
-/// The step's torque, tapered at the end of the range, limited, times the ramp's factor.
+/// @returns the step's torque, tapered at the end of the range, limited, times the ramp's factor [Nm].
 double Safety::wanted(const Snapshot& snapshot, std::size_t joint) const noexcept {
   const double torque = snapshot.torque[joint];
   const double inside = torque * outward_factor(joint, snapshot.hcp_angle[joint], torque);
@@ -193,7 +200,7 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
   judge_step(snapshot, now);
   judge_obedience(now);
   judge_oscillation(snapshot, now);
-  go_on(now);
+  advance(now);
   at_rest_ = true;
   const double change = settings_.torque_rate * period_;
   for (std::size_t j = 0; j < sent_.size(); ++j) {
@@ -224,8 +231,8 @@ void Safety::command(const Snapshot& snapshot, const DeviceSample& used, double 
   choose_walls(snapshot, out);
 }
 
-/// Walls are forces that the gate does not see: only in full operation, and only where it has changed
-/// nothing.
+/// Passes the local walls on. A wall is a force that the gate does not see. It is sent only in kRunning, and
+/// only if the gate has not changed a torque.
 void Safety::choose_walls(const Snapshot& snapshot, DeviceCommand& out) const noexcept {
   out.wall_valid_for = state_ == SafetyState::kRunning ? snapshot.wall_valid_for : 0.0;
   if (out.wall_valid_for <= 0.0) return;
@@ -237,11 +244,11 @@ void Safety::choose_walls(const Snapshot& snapshot, DeviceCommand& out) const no
   }
 }
 
-// ---- what people ask ----
+// ---- requests ----
 
 void Safety::start() noexcept {
   held_ = false;
-  if (state_ == SafetyState::kStopping && oscillates_) return;  // the fade goes to its end first
+  if (state_ == SafetyState::kStopping && oscillates_) return;  // the fade ends first
   if (state_ == SafetyState::kStopping && factor_ > 0.0) {
     state_ = SafetyState::kStarting;
   } else if (state_ == SafetyState::kStopping || state_ == SafetyState::kStopped) {
@@ -260,7 +267,7 @@ bool Safety::cause_gone(double now) const noexcept {
 
 bool Safety::reset(Fault connection, double now) noexcept {
   if (state_ != SafetyState::kFault || !at_rest_) return false;
-  // With the connection gone there are no samples to judge: ask for it again, and wait.
+  // Without a connection there are no samples to judge: connect again, and wait.
   const bool no_samples = connection != Fault::kNone || fault_.fault == Fault::kNoSample;
   if (!no_samples && !cause_gone(now)) return false;
   state_ = SafetyState::kWaiting;

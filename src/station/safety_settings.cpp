@@ -44,7 +44,22 @@ SafetySettings make_safety_settings(const LimitParameters& limits, const std::st
   settings.joint_torque = limits.joint_torque;
   settings.torque_rate = limits.torque_rate;
   settings.joint_speed = limits.joint_speed;
+  if (!clinician.empty()) settings.patient = "--clinician " + clinician;
   return settings;
+}
+
+bool holds_without_host(const DeviceInfo& device) noexcept {
+  return device.actuated && !device.simulated && !device.watchdog;
+}
+
+void check_watchdog(const SafetySettings& settings, const DeviceInfo& device) {
+  if (settings.patient.empty() || !holds_without_host(device)) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: a patient's session, and the device {} (serial {}) has no watchdog: it holds a finger while this "
+      "program is frozen, or after it was killed; leave it out to try the device out. If the firmware of a "
+      "glove lets go by itself, start with --watchdog-ms MS; if a glove has no force feedback, with "
+      "--no-force-feedback (docs/device.md)",
+      settings.patient, device.name, device.serial.empty() ? "unknown" : device.serial));
 }
 
 }  // namespace phalanx

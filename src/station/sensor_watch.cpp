@@ -48,7 +48,7 @@ void SensorWatch::forget() noexcept {
   started_ = false;
 }
 
-/// What one angle channel's newest raw value is: kNone, or what is wrong with it.
+/// Judges the newest raw value of one angle channel. @returns kNone or the fault
 Fault SensorWatch::judge_angle(std::size_t c, double t) noexcept {
   Channel& channel = channel_[c];
   const DeviceChannel& sensor = map_->channels()[c];
@@ -67,8 +67,8 @@ Fault SensorWatch::judge_angle(std::size_t c, double t) noexcept {
   return Fault::kNone;
 }
 
-/// How far the motor and the other joints that it moves say that this channel's joint has gone [rad]:
-/// the tendon's length is  y = sum arm q, so  q = (y - sum of the others) / arm.
+/// @returns the joint angle that the motor and the other joints it moves imply [rad]. The tendon's length
+/// is  y = sum arm q,  so  q = (y - sum of the others) / arm.
 double SensorWatch::moved_by(const MotorWitness& witness, std::size_t c) const noexcept {
   const auto joint = idx(map_->channels()[c].index);
   double wound = map_->value(idx(witness.channel), channel_[idx(witness.channel)].raw);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "phalanx/device/posed_device.h"
@@ -10,11 +11,12 @@
 namespace phalanx {
 namespace {
 
-/// Should nobody fetch what they have left, older ones go.
+/// Largest numbers of ended stations and of their reports that wait to be fetched; beyond it, the
+/// oldest are dropped.
 constexpr std::size_t kRetired = 4;
 constexpr std::size_t kReports = 16;
 
-/// Joints that the device's channels set; those that follow others are not among them.
+/// Finds the joints that the device's channels set, without those that follow other joints.
 std::vector<int> sensed_joints(const DeviceInfo& device) {
   std::vector<int> joints;
   for (const DeviceChannel& channel : device.channels) {
@@ -29,6 +31,11 @@ std::vector<int> sensed_joints(const DeviceInfo& device) {
 
 }  // namespace
 
+SharedStation::SharedStation() {
+  retired_.reserve(kRetired + 1);
+  reports_.reserve(kReports + 1);
+}
+
 std::shared_ptr<const HostState> SharedStation::state() const {
   const std::lock_guard lock(mutex_);
   return state_;
@@ -39,7 +46,7 @@ std::shared_ptr<RunningStation> SharedStation::current() const {
   return running_;
 }
 
-// ---- what people say ----
+// ---- requests of users ----
 
 void SharedStation::hold() noexcept {
   ++stops_;
@@ -75,12 +82,11 @@ void SharedStation::end() noexcept {
 
 bool SharedStation::set_sliders(const JointArray& angle) noexcept {
   const std::lock_guard lock(mutex_);
-  auto* posed = running_ ? dynamic_cast<PosedDevice*>(running_->device.get()) : nullptr;
-  if (posed == nullptr) return false;
+  if (!running_ || running_->sliders == nullptr) return false;
   const HandParameters& hand = state_->geometry->hand;
   for (std::size_t j = 0; j < angle.size(); ++j)
     if (std::isfinite(angle[j])) slider_[j] = std::clamp(angle[j], hand.min_angle[j], hand.max_angle[j]);
-  posed->pose(slider_);
+  running_->sliders->pose(slider_);
   return true;
 }
 
@@ -102,7 +108,7 @@ void SharedStation::begin(std::shared_ptr<RunningStation> next) {
     s.realtime.clear();
     slider_ = s.geometry->hand.open_angle;
     running_ = next;
-    // Before its first step, and under the lock: no stop() falls between two stations, no resume() either.
+    // Under the lock and before the first step, so that no stop() or resume() is lost between two stations.
     if (held_.load()) next->station->stop_torque();
   });
   try {
@@ -119,49 +125,60 @@ void SharedStation::begin(std::shared_ptr<RunningStation> next) {
 void SharedStation::retire() {
   const std::shared_ptr<RunningStation> old = current();
   if (!old) return;
-  old->station->shut_down();  // still in sight: its last steps are shown, too
+  // What needs memory comes first. Until the end below, others change nothing in the state but the grant.
+  const auto next = std::make_shared<HostState>(*state());
+  next->running = false;
+  old->station->shut_down();  // still published, so that its last steps are shown
   StationView last = old->station->view();
   last.factor = 0.0;
   last.at_rest = true;
   last.sent = {};
   const DeadlineStatistics deadlines = old->station->deadlines();
   keep_report(*old->station);
-  std::shared_ptr<RunningStation> gone;  // freed after the lock
-  change_state([&](HostState& s) {
-    s.running = false;
-    running_ = nullptr;
-    last_view_ = last;
-    last_deadlines_ = deadlines;
-    ended_.add(deadlines, last);
-    // A new station knows nothing of the fault: torque comes back by somebody's word only.
-    if (last.state == SafetyState::kFault) hold();
-    retired_.push_back(old);
-    if (retired_.size() <= kRetired) return;
-    gone = std::move(retired_.front());
-    retired_.pop_front();
-  });
+  std::shared_ptr<const HostState> before;  // both are freed after the lock is released
+  std::shared_ptr<RunningStation> gone;
+  std::unique_lock lock(mutex_);
+  next->revision = state_->revision + 1;
+  before = std::exchange(state_, next);
+  running_ = nullptr;
+  last_view_ = last;
+  last_deadlines_ = deadlines;
+  ended_.add(deadlines, last);
+  // The new station does not know of the fault: torque comes back only after a resume().
+  if (last.state == SafetyState::kFault) hold();
+  retired_.push_back(old);
+  if (retired_.size() <= kRetired) return;
+  gone = std::move(retired_.front());
+  retired_.erase(retired_.begin());
+  ended_.records_lost += gone->station->records_waiting();
+  lock.unlock();
+  keep_report(*gone->station);
 }
 
-void SharedStation::lose(const std::string& why) {
+void SharedStation::set_unavailable(const std::string& why) {
   change_state([&](HostState& s) {
     s.trouble = why;
     hold();
   });
 }
 
-void SharedStation::keep_report(Station& station) {
+void SharedStation::keep_report(Station& station) noexcept {
   const std::lock_guard lock(reports_mutex_);
-  if (auto report = station.take_fault_report()) reports_.push_back(std::move(*report));
-  if (reports_.size() > kReports) reports_.pop_front();
+  try {
+    if (auto report = station.take_fault_report()) reports_.push_back(std::move(*report));
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+  if (reports_.size() > kReports) reports_.erase(reports_.begin());
 }
 
-// ---- what it says ----
+// ---- what readers see ----
 
 StationView SharedStation::view() const {
   if (const auto now = current())
     if (const StationView view = now->station->view(); view.time > 0.0) return view;
   const std::lock_guard lock(mutex_);
-  return last_view_;  // also until a new one has made its first step
+  return last_view_;  // also until a new station has made its first step
 }
 
 DeadlineStatistics SharedStation::deadlines() const {
@@ -180,20 +197,16 @@ SessionStatistics SharedStation::session() const {
   return sum;
 }
 
-std::shared_ptr<RunningStation> SharedStation::oldest_retired() const {
-  const std::lock_guard lock(mutex_);
-  return retired_.empty() ? nullptr : retired_.front();
-}
-
-void SharedStation::forget(const std::shared_ptr<RunningStation>& retired) {
-  const std::lock_guard lock(mutex_);
-  if (!retired_.empty() && retired_.front() == retired) retired_.pop_front();
-}
-
 bool SharedStation::next_record(StepRecord& record) {
-  while (const auto old = oldest_retired()) {  // ours to free, after the lock
-    if (old->station->next_record(record)) return true;
-    forget(old);
+  for (bool any = true; any;) {
+    std::unique_lock lock(mutex_);
+    if (!retired_.empty() && retired_.front()->station->next_record(record)) return true;
+    any = !retired_.empty();
+    if (!any) continue;
+    const std::shared_ptr<RunningStation> read = std::move(retired_.front());
+    retired_.erase(retired_.begin());
+    lock.unlock();
+    keep_report(*read->station);
   }
   const auto now = current();
   return now && now->station->next_record(record);
@@ -203,9 +216,17 @@ std::optional<FaultReport> SharedStation::take_fault_report() {
   const std::lock_guard lock(reports_mutex_);
   if (!reports_.empty()) {
     FaultReport oldest = std::move(reports_.front());
-    reports_.pop_front();
+    reports_.erase(reports_.begin());
     return oldest;
   }
+  // A station that ended for want of memory may still hold its report. It is copied without the state's lock.
+  std::vector<std::shared_ptr<RunningStation>> ended;
+  {
+    const std::lock_guard state(mutex_);
+    ended = retired_;
+  }
+  for (const auto& station : ended)
+    if (auto report = station->station->take_fault_report()) return report;
   const auto now = current();
   return now ? now->station->take_fault_report() : std::nullopt;
 }

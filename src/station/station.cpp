@@ -2,6 +2,7 @@
 #include "phalanx/station/station.h"
 
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <boost/lockfree/spsc_queue.hpp>
@@ -10,25 +11,27 @@
 #include <utility>
 
 #include "phalanx/station/pacer.h"
+#include "station/parameter_ramp.h"
+#include "step/check_parameters.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kReportSeconds = 2.0;  ///< of samples and steps in a fault report
-constexpr std::size_t kRecords = 8192;  ///< steps that may wait for whoever writes them down: 4 s at 2 kHz
-constexpr std::size_t kInbox = 512;     ///< samples between two steps
-constexpr double kLook = 0.005;         ///< whether the ramp at the end is over, as often as this [s]
+constexpr double kReportSeconds = 2.0;  ///< length of samples and steps in a fault report
+constexpr std::size_t kRecords = 8192;  ///< steps that may wait to be fetched: 4 s at 2 kHz
+constexpr std::size_t kInbox = 512;     ///< capacity for the samples between two steps
+constexpr double kLook = 0.005;         ///< interval of checking whether the ramp at the end is over [s]
 
-double checked_period(const HapticModel& model) {
-  check_station_rate(model.rate_hz);
-  return 1.0 / model.rate_hz;
+double checked_period(const HapticParameters& parameters) {
+  check_station_rate(parameters.rate_hz);
+  return parameters.period();
 }
 
 std::size_t count_of(double seconds, double rate_hz) {
   return static_cast<std::size_t>(std::ceil(seconds * std::clamp(rate_hz, 1.0, 10000.0)));
 }
 
-/// Time that the ramp at the end may take [s]: as long as the rate limit needs, and some more.
+/// @returns the longest time for the ramp at the end [s]: the time that the rate limit needs, and a reserve.
 double shut_down_within(const SafetySettings& safety) {
   return 2.0 + safety.stop_ramp + 1.5 * safety.joint_torque / safety.torque_rate;
 }
@@ -45,6 +48,23 @@ DigitArray digit_forces(const Snapshot& snapshot) noexcept {
 
 }  // namespace
 
+/// A model, its parameters and its state, which are exchanged together.
+struct Station::Rendering {
+  Rendering(std::shared_ptr<const HapticModel> of_model, const HapticParameters& parameters)
+      : model(std::move(of_model)), ramp(parameters), state(*model, parameters) {}
+
+  /// Makes one step. Real-time.
+  Status advance(const Sample& sample) noexcept {
+    ramp.advance();
+    return step(*model, ramp.parameters(), sample, state);
+  }
+
+  const std::shared_ptr<const HapticModel> model;
+  ParameterRamp ramp;
+  HapticState state;
+  std::uint64_t replacement = 0;  ///< 0 for the first, then counted by replace()
+};
+
 struct Station::Records {
   explicit Records(std::size_t size) : queue(size) {}
   boost::lockfree::spsc_queue<StepRecord> queue;
@@ -52,26 +72,29 @@ struct Station::Records {
 
 bool Station::next_record(StepRecord& record) { return records_->queue.pop(record); }
 
+std::size_t Station::records_waiting() const { return records_->queue.read_available(); }
+
 void check_station_rate(double rate_hz) {
   if (rate_hz >= 200.0 && rate_hz <= 2000.0) return;
   throw std::invalid_argument(
       fmt::format("rate_hz = {}: a station runs at 200 to 2000 Hz; change rate_hz", rate_hz));
 }
 
-Station::Station(std::unique_ptr<HapticModel> model, Device& device, ChannelMap channels,
-                 StationOptions options, const Clock& clock)
+Station::Station(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters, Device& device,
+                 ChannelMap channels, StationOptions options, const Clock& clock)
     : device_(device),
       channels_(std::move(channels)),
       options_(std::move(options)),
       clock_(clock),
-      period_(checked_period(*model)),
-      model_(std::move(model)),
-      safety_(options_.safety, channels_, device.info(), model_.model().hand.parameters(), options_.witnesses,
-              period_),
+      period_(checked_period(parameters)),
+      rendering_(std::make_unique<Rendering>(std::move(model), parameters)),
+      safety_(options_.safety, channels_, device.info(), rendering_->model->hand.parameters(),
+              options_.witnesses, period_),
       inbox_(kInbox),
       samples_(count_of(kReportSeconds, device.info().rate_hz)),
-      steps_(count_of(kReportSeconds, model_.model().rate_hz)),
+      steps_(count_of(kReportSeconds, parameters.rate_hz)),
       records_(std::make_unique<Records>(kRecords)) {
+  check_watchdog(options_.safety, device.info());
   statistics_.period = period_;
 }
 
@@ -84,6 +107,7 @@ void Station::start() {
 // ---- the loop ----
 
 void Station::loop() noexcept {
+  ::pthread_setname_np(::pthread_self(), "phalanx-loop");
   if (options_.ask_for_realtime) {
     RealtimeGrant granted = make_realtime(options_.realtime);
     const std::lock_guard lock(readers_);
@@ -110,12 +134,9 @@ void Station::one_step(const Wake& wake) noexcept {
   }
   if (heard_) {
     channels_.convert(newest_, sample_);
-    status_ = model_.advance(sample_);
+    status_ = rendering_->advance(sample_);
   }
-  const double extra = extra_.load(std::memory_order_relaxed);
-  while (extra > 0.0 && clock_.now() < wake.now + extra) {
-  }
-  safety_.command(model_.snapshot(), newest_, wake.now, command_);
+  safety_.command(rendering_->state.snapshot(), newest_, wake.now, command_);
   if (heard_) device_.send(command_);
   write_down(wake, count, clock_.now());
 }
@@ -130,10 +151,11 @@ void Station::serve_requests(double now) noexcept {
   if (ending_) return;
   if ((asked & kResume) != 0) safety_.start();
   if ((asked & kReset) != 0) reset_now(now);
-  if (incoming_.load(std::memory_order_acquire) != nullptr) {
-    exchange_model();
-  } else if (blend_.update()) {
-    model_.blend_to(blend_.value());
+  if (incoming_.load(std::memory_order_acquire) != nullptr) exchange_rendering();
+  wants_parameters_ = wanted_.update() || wants_parameters_;
+  if (wants_parameters_ && wanted_.value().replacement == rendering_->replacement) {
+    rendering_->ramp.go_to(wanted_.value().parameters);
+    wants_parameters_ = false;
   }
 }
 
@@ -148,23 +170,23 @@ void Station::reset_now(double now) noexcept {
   reported_ = false;
 }
 
-/// Another model only where no force is: the ramp down first, then the exchange, then the start ramp.
-void Station::exchange_model() noexcept {
+/// Exchanges the model where there is no force: the ramp down first, then the exchange, then the start ramp.
+void Station::exchange_rendering() noexcept {
   const SafetyState state = safety_.state();
   if (state == SafetyState::kStarting || state == SafetyState::kRunning) {
     safety_.stop();
     resume_after_exchange_ = true;
   }
   if (!safety_.at_rest() || safety_.state() == SafetyState::kStopping || outgoing_.load() != nullptr) return;
-  LiveModel* incoming = incoming_.exchange(nullptr, std::memory_order_acq_rel);
+  Rendering* incoming = incoming_.exchange(nullptr, std::memory_order_acq_rel);
   if (incoming == nullptr) return;
-  model_.swap(*incoming);
-  outgoing_.store(incoming, std::memory_order_release);
+  outgoing_.store(rendering_.release(), std::memory_order_release);
+  rendering_.reset(incoming);  // frees nothing, since it is empty
   if (std::exchange(resume_after_exchange_, false)) safety_.start();
 }
 
 void Station::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
-  const Snapshot& snapshot = model_.snapshot();
+  const Snapshot& snapshot = rendering_->state.snapshot();
   const StepRecord record{.tick = command_.tick,
                           .time = wake.now,
                           .lateness = wake.lateness,
@@ -177,7 +199,7 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
                           .fault = safety_.fault().fault,
                           .factor = safety_.factor(),
                           .status = status_,
-                          .stiffness = model_.model().force.stiffness,
+                          .stiffness = rendering_->ramp.parameters().force.stiffness,
                           .angle = snapshot.hcp_angle,
                           .torque = command_.torque,
                           .force = digit_forces(snapshot)};
@@ -198,7 +220,7 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
   view.factor = safety_.factor();
   view.at_rest = safety_.at_rest();
   view.degraded = statistics_.degraded(wake.now);
-  view.changing = model_.blending() || incoming_.load(std::memory_order_relaxed) != nullptr;
+  view.changing = rendering_->ramp.moving() || incoming_.load(std::memory_order_relaxed) != nullptr;
   view.device = newest_.state;
   view.estop = newest_.estop;
   view.oscillates = safety_.oscillates();
@@ -209,18 +231,19 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
   view_.write(view);
 }
 
-/// Once the torque of a fault has come to rest, its history stands still until somebody has taken it.
+/// Freezes the history once the torque of a fault has come to rest, until take_fault_report().
 void Station::freeze_history() noexcept {
   if (safety_.state() != SafetyState::kFault || reported_ || !safety_.at_rest()) return;
   reported_ = true;
   frozen_event_ = safety_.fault();
-  frozen_link_ = device_.statistics();  // only this thread may ask the device
+  frozen_link_ = device_.statistics();  // only this thread may call the device
   frozen_.store(true, std::memory_order_release);
 }
 
 // ---- other threads ----
 
-/// Of what is asked between two steps the last word counts; an end is never taken back.
+/// Adds requests for the next step. If several are made between two steps, the last one counts. An end is
+/// never taken back.
 void Station::ask(unsigned set, unsigned clear) noexcept {
   unsigned before = requests_.load(std::memory_order_relaxed);
   while (!requests_.compare_exchange_weak(before, (before & ~clear) | set, std::memory_order_acq_rel)) {
@@ -231,19 +254,26 @@ void Station::stop_torque() noexcept { ask(kStop, kResume); }
 void Station::resume_torque() noexcept { ask(kResume, kStop); }
 void Station::reset() noexcept { ask(kReset, 0); }
 
-void Station::blend_to(const BlendedParameters& parameters) {
-  const std::lock_guard lock(readers_);
-  blend_.write(parameters);
+void Station::check_rate(const HapticParameters& parameters) const {
+  if (parameters.period() == period_) return;
+  throw std::invalid_argument(
+      fmt::format("rate_hz = {}: the running station has {}; end it and start one with the new rate",
+                  parameters.rate_hz, 1.0 / period_));
 }
 
-void Station::replace(std::unique_ptr<LiveModel> replacement) {
-  const double rate = replacement->model().rate_hz;
-  if (1.0 / rate != period_) {
-    throw std::invalid_argument(
-        fmt::format("rate_hz = {}: the running station has {}; end it and start one with the new rate", rate,
-                    1.0 / period_));
-  }
+/// Hands over parameters for the model of the last replace(); for an earlier model, the loop drops them.
+void Station::change_to(const HapticParameters& parameters) {
+  check_rate(parameters);
+  check_parameters(parameters);
   const std::lock_guard lock(readers_);
+  wanted_.write({.parameters = parameters, .replacement = replacements_});
+}
+
+void Station::replace(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters) {
+  check_rate(parameters);
+  auto replacement = std::make_unique<Rendering>(std::move(model), parameters);
+  const std::lock_guard lock(readers_);
+  replacement->replacement = ++replacements_;
   delete outgoing_.exchange(nullptr, std::memory_order_acq_rel);
   delete incoming_.exchange(replacement.release(), std::memory_order_acq_rel);
 }
@@ -283,7 +313,7 @@ std::optional<FaultReport> Station::take_fault_report() {
 void Station::shut_down() noexcept {
   if (thread_.joinable()) {
     ask(kEnd, kResume | kReset);
-    // Counted, not timed: while the machine stands still, the ramp does not go on either.
+    // Counted, not timed: while the machine stands still, the ramp does not advance either.
     for (double waited = 0.0; waited < shut_down_within(options_.safety); waited += kLook) {
       const StationView now = view();
       const bool stopped = now.state == SafetyState::kStopped || now.state == SafetyState::kFault;

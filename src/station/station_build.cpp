@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "phalanx/device/posed_device.h"
 #include "phalanx/scene/build_model.h"
-#include "phalanx/scene/hand_meshes.h"
-#include "phalanx/scene/scene_values.h"
 #include "phalanx/station/station_device.h"
+#include "station/parameter_ramp.h"
 
 namespace phalanx {
 namespace {
@@ -20,48 +20,56 @@ bool is_below(const std::string& key, const std::string& parent) {
   return key.size() > parent.size() && key.starts_with(parent) && key[parent.size()] == '.';
 }
 
-std::shared_ptr<HostGeometry> geometry_of(const SceneDescription& scene, const HapticModel& model) {
+std::shared_ptr<HostGeometry> geometry_of(ResolvedScene scene) {
   auto geometry = std::make_shared<HostGeometry>();
-  geometry->handedness = model.hand.handedness();
-  geometry->hand = model.hand.parameters();
-  geometry->X_WH = model.hand.palm_pose();
-  geometry->segment = model.hand.meshes();
-  geometry->display = load_display_meshes(scene.hand, geometry->segment);
-  geometry->skin = load_hand_skin(scene.hand);
-  geometry->object = model.object.mesh();
-  geometry->rate_hz = model.rate_hz;
+  geometry->handedness = scene.hand.handedness;
+  geometry->hand = std::move(scene.hand.parameters);
+  geometry->X_WH = scene.X_WH;
+  geometry->segment = std::move(scene.hand.meshes.collision);
+  geometry->display = std::move(scene.hand.meshes.display);
+  geometry->skin = std::move(scene.hand.skin);
+  geometry->object = std::move(scene.world);
+  geometry->rate_hz = scene.description.parameters.rate_hz;
   return geometry;
 }
 
-OpenDevice open_for(const StationBuild& build, const StationHostSettings& settings, const Clock& clock) {
-  OpenDevice out;
+/// Opens the device of the plan as `running.device`. @returns its channels
+std::vector<DeviceChannel> open_for(const StationBuild& build, const StationHostSettings& settings,
+                                    const Clock& clock, RunningStation& running) {
+  const HandParameters& hand = build.made.model->hand.parameters();
   switch (build.plan.source) {
     case HandSource::kPatient:
-      out.device = make_simulated_device(*build.patient);
+      running.device = make_simulated_device(*build.patient);
       break;
-    case HandSource::kSliders:
-      out.device = std::make_unique<PosedDevice>(
-          PosedDeviceSettings{.hand = build.made.model->hand.parameters(),
-                              .start = build.made.model->hand.parameters().open_angle,
-                              .host_rate_hz = build.made.model->rate_hz});
+    case HandSource::kSliders: {
+      auto posed = std::make_unique<PosedDevice>(PosedDeviceSettings{
+          .hand = hand, .start = hand.open_angle, .host_rate_hz = build.made.parameters.rate_hz});
+      running.sliders = posed.get();
+      running.device = std::move(posed);
       break;
-    case HandSource::kDevice:
-      return open_wired_device({.spec = settings.device,
-                                .calibration = build.plan.calibration,
-                                .ask_for_realtime = settings.ask_for_realtime},
-                               build.made.safety, build.made.model->hand.parameters(), clock);
+    }
+    case HandSource::kDevice: {
+      OpenDevice wired = open_wired_device({.spec = settings.device,
+                                            .calibration = build.plan.calibration,
+                                            .ask_for_realtime = settings.ask_for_realtime,
+                                            .watchdog = settings.watchdog,
+                                            .force_feedback = settings.force_feedback},
+                                           build.made.safety, hand, clock);
+      running.device = std::move(wired.device);
+      return std::move(wired.channels);
+    }
   }
-  out.device->open();
-  out.channels = out.device->info().channels;
-  return out;
+  running.device->open();
+  return running.device->info().channels;
 }
 
-/// A patient who does not meet the object is no fault of the object's.
-SimulatedDeviceSettings patient_of(const StationBuild& build) {
+/// Makes the patient's settings. The message names the patient, because the object is not at fault.
+SimulatedDeviceSettings patient_of(const ResolvedScene& scene, const HapticModel& model) {
   try {
-    return simulated_settings(build.scene, *build.made.model);
+    return simulated_settings(scene, model);
   } catch (const std::invalid_argument& refused) {
-    const bool left_alone = build.scene.hand.handedness == Handedness::kLeft && !build.scene.mirror;
+    const bool left_alone =
+        scene.description.hand.handedness == Handedness::kLeft && !scene.description.mirror;
     throw std::invalid_argument(fmt::format(
         "the simulated patient cannot press here: {}. {}Or take the sliders instead of the patient, "
         "or another size or place of the object",
@@ -83,37 +91,48 @@ Overrides laid_over(Overrides before, const Overrides& changes) {
   return before;
 }
 
-ChangeKind change_kind(const std::string& key, HandSource source) {
-  const bool moves_object = key == "objects" || key.starts_with("objects.");
-  return moves_object && source == HandSource::kPatient ? ChangeKind::kNewStation : change_kind(key);
+ChangeKind change_kind(const Overrides& changes, HandSource source, const HapticParameters& in_force,
+                       const HapticParameters& wanted) {
+  ChangeKind needs = ChangeKind::kInContact;
+  for (const auto& [key, value] : changes) {
+    ChangeKind kind = change_kind(key);
+    if (key == "stabiliser.method" &&
+        goes_over_in_contact(in_force.stabiliser.method, wanted.stabiliser.method))
+      kind = ChangeKind::kInContact;
+    if (kind == ChangeKind::kOtherObject && source == HandSource::kPatient) kind = ChangeKind::kNewStation;
+    needs = std::max(needs, kind);
+  }
+  return needs;
 }
 
-StationBuild build_station(const StationPlan& plan, const std::string& clinician) {
-  StationBuild build;
-  build.plan = plan;
-  build.scene = load_scene(plan.scene, plan.overrides);
-  build.values = scene_values(plan.scene, plan.overrides);
-  build.made = make_station_model(build.scene, clinician);
-  // What a station would refuse is better refused now, while the last one still runs.
-  static_cast<void>(HapticState(*build.made.model));
-  build.geometry = geometry_of(build.scene, *build.made.model);
-  if (plan.source == HandSource::kPatient) build.patient = patient_of(build);
+StationBuild build_station(const StationPlan& plan, SceneFile file, const std::string& clinician) {
+  StationBuild build{.plan = plan, .file = std::move(file)};
+  build.scene = build.file.scene(plan.overrides);
+  build.values = build.file.values(plan.overrides);
+  const bool presses = plan.source == HandSource::kPatient;
+  ResolvedScene scene = resolve(build.scene, {.hand = HandDetail::kAll, .device = true, .motion = presses});
+  build.exoskeleton = scene.exoskeleton.value();
+  build.made = make_station_model(scene, clinician);
+  // Finds what a station would refuse now, while the last one still runs.
+  static_cast<void>(HapticState(*build.made.model, build.made.parameters));
+  if (presses) build.patient = patient_of(scene, *build.made.model);
+  build.geometry = geometry_of(std::move(scene));
   return build;
 }
 
-RunningStation make_station(StationBuild& build, const StationHostSettings& settings, const Clock& clock) {
-  OpenDevice opened = open_for(build, settings, clock);
+RunningStation make_station(const StationBuild& build, const StationHostSettings& settings,
+                            const Clock& clock) {
+  RunningStation running;
+  const std::vector<DeviceChannel> channels = open_for(build, settings, clock, running);
   StationOptions options;
   options.realtime = settings.realtime;
   options.ask_for_realtime = settings.ask_for_realtime;
   options.safety = build.made.safety;
   if (build.plan.source != HandSource::kSliders)
-    options.witnesses = make_witnesses(build.scene, opened.channels, build.made.safety);
-  ChannelMap map = make_channel_map(build.scene, opened.channels, build.made.model->hand.parameters());
-  RunningStation running;
-  running.device = std::move(opened.device);
-  running.station = std::make_unique<Station>(std::move(build.made.model), *running.device, std::move(map),
-                                              std::move(options), clock);
+    options.witnesses = motor_witnesses(build.exoskeleton, channels, build.made.safety.joint_torque);
+  ChannelMap map(channels, followers_of(build.exoskeleton), build.made.model->hand.parameters());
+  running.station = std::make_unique<Station>(build.made.model, build.made.parameters, *running.device,
+                                              std::move(map), std::move(options), clock);
   return running;
 }
 

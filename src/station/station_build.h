@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that a station is made of, made beside the one that runs.
+// Making everything that a station consists of, beside the station that runs.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "phalanx/scene/scene_file.h"
+#include "phalanx/scene/scene_keys.h"
 #include "phalanx/station/station_host.h"
 
 namespace phalanx {
 
-/// What a station is made from.
+class PosedDevice;
+
+/// Inputs of a station.
 struct StationPlan {
   std::string scene;
   Overrides overrides;
@@ -20,36 +24,46 @@ struct StationPlan {
   [[nodiscard]] bool operator==(const StationPlan&) const = default;
 };
 
-/// What is made of it without touching a device.
+/// Parts of a station that are made without touching a device.
 struct StationBuild {
   StationPlan plan;
-  SceneDescription scene;
-  Overrides values;
-  StationModel made;
-  std::shared_ptr<HostGeometry> geometry;
-  std::optional<SimulatedDeviceSettings> patient;  ///< for HandSource::kPatient
+  SceneFile file;  ///< the scene's file, as it was read for this build
+  SceneDescription scene = {};
+  Overrides values = {};
+  Exoskeleton exoskeleton = {};
+  StationModel made = {};
+  std::shared_ptr<HostGeometry> geometry = nullptr;
+  std::optional<SimulatedDeviceSettings> patient = {};  ///< for HandSource::kPatient
 };
 
-/// The last word of each key; a key that is set takes what was set below it away, an empty value the key too.
+/// Merges overrides; the newest value of each key counts. A new value of a key removes the older values of
+/// the keys below it; an empty value removes the key itself too.
 [[nodiscard]] Overrides laid_over(Overrides before, const Overrides& changes);
 
-/// What changing this key needs while the hand is moved by `source`: as change_kind(), but that a simulated
-/// patient has to be told where another object is.
-[[nodiscard]] ChangeKind change_kind(const std::string& key, HandSource source);
+/// @returns the common requirement of the changes: the largest of those in the table (scene_keys()), with two
+/// exceptions. The stabiliser's method may change in contact among `none`, `smoothing` and `rise_only`. If a
+/// simulated patient moves the hand, another object needs a new station: the press is planned for the object.
+/// @param in_force, wanted  parameters before and after the changes
+[[nodiscard]] ChangeKind change_kind(const Overrides& changes, HandSource source,
+                                     const HapticParameters& in_force, const HapticParameters& wanted);
 
+/// Reads the files that the scene names, each once, and makes the parts.
+/// @param file  of the plan's scene
 /// @throws SceneError or std::invalid_argument: the scene, a limit that a station does not allow, an open
 /// hand that touches the object, a patient who meets nothing. Set-up only.
-[[nodiscard]] StationBuild build_station(const StationPlan& plan, const std::string& clinician);
+[[nodiscard]] StationBuild build_station(const StationPlan& plan, SceneFile file,
+                                         const std::string& clinician);
 
-/// A station and its device, open.
+/// A station and its open device.
 struct RunningStation {
   std::unique_ptr<Device> device;
+  PosedDevice* sliders = nullptr;    ///< the same device if sliders move the hand, else nullptr
   std::unique_ptr<Station> station;  ///< declared after the device, so that it ends before it
 };
 
-/// Opens the device and makes the station; whoever gets it starts it. Takes the build's model.
-/// @throws as open_wired_device(). Set-up only.
-[[nodiscard]] RunningStation make_station(StationBuild& build, const StationHostSettings& settings,
+/// Opens the device and makes the station, which shares the build's model; the caller starts it.
+/// @throws as open_wired_device() or check_watchdog(). Set-up only.
+[[nodiscard]] RunningStation make_station(const StationBuild& build, const StationHostSettings& settings,
                                           const Clock& clock);
 
 }  // namespace phalanx

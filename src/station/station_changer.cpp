@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "station/station_changer.h"
 
-#include <algorithm>
 #include <future>
 #include <stdexcept>
 #include <utility>
 
+#include "phalanx/core/error_text.h"
 #include "phalanx/core/give_way.h"
-#include "phalanx/scene/scene_values.h"
 
 namespace phalanx {
 namespace {
@@ -15,11 +14,6 @@ namespace {
 HandSource source_of(const std::string& device) {
   if (device == "simulated") return HandSource::kPatient;
   return device == "sliders" ? HandSource::kSliders : HandSource::kDevice;
-}
-
-bool moves_object(const Overrides& changes) {
-  return std::any_of(changes.begin(), changes.end(),
-                     [](const auto& change) { return change.first.starts_with("objects"); });
 }
 
 Overrides all_of(const std::vector<SetPart>& parts) {
@@ -34,10 +28,10 @@ std::vector<ChangeAnswer> answer_to_all(std::vector<SetPart> parts, const std::s
   return answers;
 }
 
-/// What computes for seconds gives way to the loop that runs meanwhile. On a thread of its own: a loop or a
-/// link that the worker starts inherits its priority, and could not raise it again.
+/// Runs a computation of seconds on a thread of its own with low priority, so that it does not slow the loop.
+/// The worker keeps its priority: threads that it starts inherit it and cannot raise their own.
 template <class Work>
-auto giving_way(const Work& work) {
+auto run_at_low_priority(const Work& work) {
   return std::async(std::launch::async,
                     [&work] {
                       give_way("phalanx-build");
@@ -60,13 +54,21 @@ StationChanger::StationChanger(const StationHostSettings& settings, const Clock&
 }
 
 void StationChanger::first_station() {
-  StationBuild build = built(plan_);
+  StationBuild build = built(plan_, SceneFile(plan_.scene));
   take_over(build);
 }
 
-StationBuild StationChanger::built(const StationPlan& plan) const {
-  return giving_way([&] { return build_station(plan, settings_.clinician); });
+StationBuild StationChanger::built(const StationPlan& plan, SceneFile file) const {
+  StationBuild build =
+      run_at_low_priority([&] { return build_station(plan, std::move(file), settings_.clinician); });
+  if (build.made.safety.patient.empty()) build.made.safety.patient = patient_;
+  // The device stays the same: refuse what it cannot do while the last station still runs.
+  const auto state = shared_.state();
+  if (state->running) check_watchdog(build.made.safety, state->device);
+  return build;
 }
+
+SceneFile StationChanger::file_of_plan() const { return file_ ? *file_ : SceneFile(plan_.scene); }
 
 // ---- changes ----
 
@@ -77,7 +79,7 @@ std::vector<ChangeAnswer> StationChanger::set(std::vector<SetPart> parts) {
       return answer_to_all(std::move(parts), "");
     } catch (const DeviceError& error) {  // not worth another try of each
       return answer_to_all(std::move(parts), error.what());
-    } catch (const std::exception&) {  // who is to blame shows below
+    } catch (const std::exception&) {  // the tries of each below show which part is refused
     }
   }
   std::vector<ChangeAnswer> answers;
@@ -86,7 +88,7 @@ std::vector<ChangeAnswer> StationChanger::set(std::vector<SetPart> parts) {
     try {
       lay_over(part.changes);
     } catch (const std::exception& error) {
-      refused = error.what();
+      refused = error_text(error);
     }
     answers.push_back(answer_to(std::move(part), std::move(refused)));
   }
@@ -97,48 +99,54 @@ void StationChanger::lay_over(const Overrides& changes) {
   refuse_while_calibrating();
   StationPlan next = plan_;
   next.overrides = laid_over(std::move(next.overrides), changes);
-  const ChangeKind needs = needed(changes);
   const auto now = shared_.current();
-  if (needs == ChangeKind::kNewStation || now == nullptr) {
-    switch_to(next);
-  } else if (needs == ChangeKind::kAtZeroTorque) {
-    exchange(*now->station, std::move(next), moves_object(changes));
-  } else {
-    blend(*now->station, std::move(next));
+  if (now == nullptr) return switch_to(next, SceneFile(next.scene));
+  SceneDescription scene = file_->scene(next.overrides);
+  const ChangeKind kind = change_kind(changes, plan_.source, scene_.parameters, scene.parameters);
+  switch (kind) {
+    case ChangeKind::kInContact:
+    case ChangeKind::kAtZeroTorque:
+      return set_parameters(*now->station, kind, std::move(next), std::move(scene));
+    case ChangeKind::kOtherObject:
+      return exchange_object(*now->station, next);
+    case ChangeKind::kNewStation:
+      return switch_to(next, *file_);
   }
 }
 
-ChangeKind StationChanger::needed(const Overrides& changes) const {
-  ChangeKind needs = ChangeKind::kInContact;
-  for (const auto& [key, value] : changes) needs = std::max(needs, change_kind(key, plan_.source));
-  return needs;
-}
-
-void StationChanger::blend(Station& station, StationPlan next) {
-  const SceneDescription scene = phalanx::load_scene(next.scene, next.overrides);
-  Overrides values = scene_values(next.scene, next.overrides);
-  station.blend_to(blended_of(scene));
+/// Sets other parameters of the running station. It opens no file.
+void StationChanger::set_parameters(Station& station, ChangeKind kind, StationPlan next,
+                                    SceneDescription scene) {
+  Overrides values = file_->values(next.overrides);
+  if (kind == ChangeKind::kInContact)
+    station.change_to(scene.parameters);
+  else
+    run_at_low_priority([&] { station.replace(model_, scene.parameters); });
   plan_ = std::move(next);
+  scene_ = std::move(scene);
   shared_.change_state([&](HostState& s) {
     s.overrides = plan_.overrides;
     s.values = std::move(values);
+    s.description = scene_.description;
   });
 }
 
-void StationChanger::exchange(Station& station, StationPlan next, bool moves_object) {
-  StationBuild build = built(next);
-  const std::shared_ptr<HostGeometry> geometry = build.geometry;
-  station.replace(giving_way([&] { return std::make_unique<LiveModel>(std::move(build.made.model)); }));
-  // An earlier blend that still waits for its turn must not have the last word on the new model.
-  station.blend_to(blended_of(build.scene));
-  plan_ = std::move(next);
+void StationChanger::exchange_object(Station& station, const StationPlan& next) {
+  StationBuild build = built(next, *file_);
+  // The gate and the channels know the hand of the start. A hand file that has changed since needs a new station.
+  const bool same_hand = build.made.model->hand.parameters() == model_->hand.parameters() &&
+                         build.geometry->handedness == shared_.state()->geometry->handedness;
+  if (!same_hand) return switch_to(next, *file_);
+  run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters); });
+  plan_ = next;
+  scene_ = std::move(build.scene);
+  model_ = build.made.model;
   shared_.change_state([&](HostState& s) {
     s.overrides = plan_.overrides;
     s.values = std::move(build.values);
-    s.description = build.scene.description;
-    if (!moves_object) return;
-    geometry->revision = s.geometry->revision + 1;
-    s.geometry = geometry;
+    s.description = scene_.description;
+    build.geometry->revision = s.geometry->revision + 1;
+    s.geometry = build.geometry;
   });
 }
 
@@ -147,7 +155,7 @@ void StationChanger::load_scene(const std::string& scene) {
   StationPlan next = plan_;
   next.scene = scene;
   next.overrides.clear();
-  switch_to(next);
+  switch_to(next, SceneFile(scene));
 }
 
 void StationChanger::set_source(HandSource source) {
@@ -158,43 +166,43 @@ void StationChanger::set_source(HandSource source) {
         "a device on a wire moves the hand; start the station without --device for this");
   StationPlan next = plan_;
   next.source = source;
-  switch_to(next);
+  switch_to(next, file_of_plan());
 }
 
 void StationChanger::try_again() {
   refuse_while_calibrating();
   if (shared_.current() != nullptr) return;
   try {
-    switch_to(plan_);
+    switch_to(plan_, SceneFile(plan_.scene));
   } catch (const std::exception& error) {
-    shared_.lose(error.what());
+    shared_.set_unavailable(error_text(error));
   }
 }
 
 // ---- from one station to the next ----
 
-void StationChanger::switch_to(const StationPlan& next) {
-  StationBuild build = built(next);
+void StationChanger::switch_to(const StationPlan& next, SceneFile file) {
+  StationBuild build = built(next, std::move(file));
   shared_.retire();
   try {
     take_over(build);
     plan_ = next;
   } catch (const std::exception& error) {
     if (next == plan_)
-      shared_.lose(error.what());
+      shared_.set_unavailable(error_text(error));
     else
       go_back();
     throw;
   }
 }
 
-/// What the device refuses with the new plan, it may still grant with the old one.
+/// Makes the station of the old plan again: the device may refuse only the new plan.
 void StationChanger::go_back() {
   try {
-    StationBuild build = built(plan_);
+    StationBuild build = built(plan_, file_of_plan());
     take_over(build);
   } catch (const std::exception& error) {
-    shared_.lose(error.what());
+    shared_.set_unavailable(error_text(error));
   }
 }
 
@@ -207,10 +215,15 @@ void StationChanger::take_over(StationBuild& build) {
     s.source = build.plan.source;
     s.calibration = build.plan.calibration;
     s.fingertip_force = build.made.safety.fingertip_force;
+    s.patient = build.made.safety.patient;
     build.geometry->revision = s.geometry ? s.geometry->revision + 1 : 1;
     s.geometry = build.geometry;
   });
   shared_.begin(std::make_shared<RunningStation>(make_station(build, settings_, clock_)));
+  file_ = std::move(build.file);
+  scene_ = std::move(build.scene);
+  model_ = build.made.model;
+  patient_ = build.made.safety.patient;
 }
 
 // ---- calibration ----
@@ -223,7 +236,7 @@ void StationChanger::begin_wizard() {
   refuse_while_calibrating();
   if (plan_.source != HandSource::kDevice)
     throw std::invalid_argument("the simulated device needs no calibration; start with --device to have one");
-  StationBuild build = built(plan_);
+  const StationBuild build = built(plan_, file_of_plan());
   const HandParameters hand = build.made.model->hand.parameters();
   shared_.retire();
   try {
@@ -245,7 +258,7 @@ void StationChanger::abandon_wizard() {
   leave_wizard(plan_);
 }
 
-/// Written first: if that fails, what was measured is still there.
+/// Writes the calibration before it ends the wizard: if writing fails, the measured poses are still there.
 void StationChanger::write_wizard() {
   const Calibration& found = wizard_.found();
   if (!settings_.write_calibration)
@@ -255,21 +268,22 @@ void StationChanger::write_wizard() {
   leave_wizard(next);
 }
 
-/// No station runs meanwhile, so that whatever is refused, its scene for one, leaves none.
+/// Ends the wizard and starts a station. No station runs meanwhile: if anything is refused, its scene for
+/// example, there is none.
 void StationChanger::leave_wizard(const StationPlan& next) {
   wizard_.end();
   hide_wizard();
   try {
-    switch_to(next);
+    switch_to(next, SceneFile(next.scene));
   } catch (const std::exception& error) {
-    if (shared_.current() == nullptr) shared_.lose(error.what());
+    if (shared_.current() == nullptr) shared_.set_unavailable(error_text(error));
     throw;
   }
 }
 
 void StationChanger::serve_wizard() {
   if (!wizard_.on()) return;
-  wizard_.go_on(clock_.now());
+  wizard_.update(clock_.now());
   show_wizard();
 }
 

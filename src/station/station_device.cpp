@@ -27,12 +27,16 @@ OpenDevice open_wired_device(const WiredDeviceSettings& wired, const SafetySetti
   auto* glove = dynamic_cast<OpenGlovesDevice*>(out.device.get());
   std::optional<Calibration> calibration;
   if (!wired.calibration.empty()) calibration = load_calibration(wired.calibration);
-  if (glove != nullptr) glove->set_hand(hand);
+  if (glove != nullptr) {
+    glove->set_hand(hand);
+    glove->set_watchdog(wired.watchdog);
+    glove->set_force_feedback(wired.force_feedback);
+  }
   out.device->open();
   out.channels =
       calibration ? apply_calibration(*calibration, out.device->info()) : out.device->info().channels;
   if (glove != nullptr && calibration) glove->set_calibration(out.channels);
-  if (link != nullptr && calibration) {  // a controller is told the gains when its session begins
+  if (link != nullptr && calibration) {  // a controller gets the gains when its session begins
     link->close();
     link->set_calibration(out.channels);
     link->open();

@@ -3,9 +3,9 @@
 
 #include <chrono>
 #include <future>
-#include <system_error>
 #include <utility>
 
+#include "phalanx/core/error_text.h"
 #include "station/change_queue.h"
 #include "station/shared_station.h"
 #include "station/station_changer.h"
@@ -16,20 +16,20 @@ namespace {
 using Step = CalibrationSession::Step;
 using Answers = std::vector<ChangeAnswer>;
 
-/// On the worker's thread. What is refused ends nothing.
-Answers work_off(StationChanger& changer, ChangeRequest request) {
+/// Applies a request on the worker's thread. A refusal becomes an answer, not an exception.
+Answers apply(StationChanger& changer, ChangeRequest request) {
   if (!request.work) return changer.set(std::move(request.sets));
   std::string refused;
   try {
     request.work();
   } catch (const std::exception& error) {
-    refused = error.what();
+    refused = error_text(error);
     if (refused.empty()) refused = "refused without a reason";
   }
   return {{.done = std::move(request.done), .overtaken = {}, .refused = std::move(refused)}};
 }
 
-/// All of it, untried.
+/// Refuses all parts of a request without trying them.
 Answers refuse(ChangeRequest request, const std::string& why) {
   Answers answers;
   for (SetPart& part : request.sets) answers.push_back(answer_to(std::move(part), why));
@@ -71,16 +71,15 @@ struct StationHost::Parts {
     if (!next) return;
     shared.change_state([&](HostState& s) { s.busy = next->text; });
     try {
-      working = std::async(std::launch::async, [this, request = *next]() mutable {
-        return work_off(changer, std::move(request));
-      });
-    } catch (const std::system_error& error) {  // no thread to be had
+      working = std::async(std::launch::async,
+                           [this, request = *next]() mutable { return apply(changer, std::move(request)); });
+    } catch (const std::exception& error) {  // no thread or no memory
       shared.change_state([](HostState& s) { s.busy.clear(); });
-      tell(refuse(std::move(*next), error.what()));
+      tell(refuse(std::move(*next), error_text(error)));
     }
   }
 
-  /// The grant is known once the loop has begun.
+  /// Publishes the granted scheduling, which is known once the loop has begun.
   void learn_grant() {
     const auto now = shared.current();
     if (!now || !shared.state()->realtime.empty()) return;
@@ -91,7 +90,7 @@ struct StationHost::Parts {
   const Clock& clock;
   SharedStation shared;
   ChangeQueue queue;
-  StationChanger changer;  ///< the worker's while there is one
+  StationChanger changer;  ///< the worker's thread uses it while there is one
   std::future<Answers> working;
   bool ended = false;
 };
@@ -127,7 +126,7 @@ void StationHost::reset() noexcept {
                        .done = {},
                        .sets = {},
                        .retry = true});
-  } catch (const std::exception&) {  // so many wait that a station will be tried anyway
+  } catch (const std::exception&) {  // with so many changes waiting, a station will be tried anyway
   }
 }
 
@@ -180,7 +179,7 @@ std::shared_ptr<const HostState> StationHost::state() const { return parts_->sha
 
 double StationHost::now() const noexcept { return parts_->clock.now(); }
 
-void StationHost::go_on() {
+void StationHost::poll() {
   if (parts_->ended) return;
   parts_->end_work();
   parts_->learn_grant();
@@ -197,13 +196,9 @@ std::optional<RealtimeGrant> StationHost::grant() const {
   return now ? now->station->grant() : std::nullopt;
 }
 
-void StationHost::lengthen_steps(double seconds) noexcept {
-  if (const auto now = parts_->shared.current()) now->station->lengthen_steps(seconds);
-}
-
 void StationHost::shut_down() noexcept {
   parts_->ended = true;
-  parts_->shared.end();  // a change on its way may take its time, but not with torque on
+  parts_->shared.end();  // a change being made may take long, but not with torque on
   if (parts_->working.valid()) parts_->working.wait();
   if (const auto now = parts_->shared.current()) now->station->shut_down();
   parts_->changer.close_wizard();

@@ -23,11 +23,11 @@ void within(const char* name, double value, double low, double high) {
 
 }  // namespace
 
-void check_parameters(const HapticModel& model) {
-  within("rate_hz", model.rate_hz, 1.0, 4000.0);
-  within("contact.margin [m]", model.contact.margin, 1e-6, 1e-3);
-  within("contact.slid_distance [m]", model.contact.slid_distance, 0.0, kAny);
-  const ForceLawParameters& law = model.force;
+void check_parameters(const HapticParameters& parameters) {
+  within("rate_hz", parameters.rate_hz, 1.0, 4000.0);
+  within("contact.margin [m]", parameters.contact.margin, 1e-6, 1e-3);
+  within("contact.slid_distance [m]", parameters.contact.slid_distance, 0.0, kAny);
+  const ForceLawParameters& law = parameters.force;
   within("force.law", static_cast<double>(law.law), 0.0, static_cast<double>(ForceLaw::kLinearThenCubic));
   within("force.stiffness [N/m]", law.stiffness, 0.0, 1e6);
   within("force.damping [N s/m]", law.damping, 0.0, 1e6);
@@ -36,9 +36,11 @@ void check_parameters(const HapticModel& model) {
   within("force.hunt_crossley_damping [s/m]", law.hunt_crossley_damping, 0.0, 1e3);
   within("force.cubic [N/m^3]", law.cubic, 0.0, 1e15);
   within("force.linear_depth [m]", law.linear_depth, 0.0, 1.0);
-  const StabiliserParameters& stabiliser = model.stabiliser;
+  const StabiliserParameters& stabiliser = parameters.stabiliser;
   const double method = static_cast<double>(stabiliser.method);
   within("stabiliser.method", method, 0.0, static_cast<double>(Stabiliser::kLocalWall));
+  within("-stabiliser.min_rate [N/s]", -stabiliser.min_rate, kTiny, kInfinity);
+  within("stabiliser.max_rate [N/s]", stabiliser.max_rate, kTiny, kInfinity);
   within("stabiliser.lowpass_hz", stabiliser.lowpass_hz, 1e-3, 1e6);
   within("stabiliser.damping [N s/m]", stabiliser.damping, 0.0, 1e6);
   within("stabiliser.turn_rate [rad/s]", stabiliser.turn_rate, kTiny, 1e6);
@@ -47,14 +49,10 @@ void check_parameters(const HapticModel& model) {
   within("stabiliser.passivity_damping_max [N s/m]", stabiliser.passivity_damping_max, 0.0, 1e6);
   within("stabiliser.device_damping [N s/m]", stabiliser.device_damping, 0.0, 1e6);
   within("stabiliser.wall_valid [s]", stabiliser.wall_valid, kTiny, 1.0);
-  const double reaction = static_cast<double>(model.oscillation.reaction);
+  const double reaction = static_cast<double>(parameters.oscillation.reaction);
   within("oscillation.reaction", reaction, 0.0, static_cast<double>(OscillationReaction::kHalve));
-  within("oscillation.swing [N]", model.oscillation.swing, 1e-3, 1e3);
-  if (model.smoothing.enabled || stabiliser.method == Stabiliser::kRiseOnly) {
-    within("-smoothing.min_rate [N/s]", -model.smoothing.min_rate, kTiny, kInfinity);
-    within("smoothing.max_rate [N/s]", model.smoothing.max_rate, kTiny, kInfinity);
-  }
-  const LimitParameters& limits = model.limits;
+  within("oscillation.swing [N]", parameters.oscillation.swing, 1e-3, 1e3);
+  const LimitParameters& limits = parameters.limits;
   if (limits.fingertip_force_enabled)
     within("limits.fingertip_force [N]", limits.fingertip_force, kTiny, 15.0);
   if (limits.joint_torque_enabled) within("limits.joint_torque [Nm]", limits.joint_torque, kTiny, 5.0);

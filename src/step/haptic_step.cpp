@@ -6,13 +6,20 @@
 namespace phalanx {
 namespace {
 
-ContactModel contact_model(const HapticModel& model) noexcept {
-  return {model.hand, model.trees, model.object, model.contact};
+ContactModel contact_model(const HapticModel& model, const HapticParameters& parameters) noexcept {
+  return {model.hand, model.trees, model.object, parameters.contact};
+}
+
+/// @throws as check_parameters(). @returns its argument
+const HapticParameters& checked(const HapticParameters& parameters) {
+  check_parameters(parameters);
+  return parameters;
 }
 
 /// Writes down what the stages have left behind.
-void record(const HapticModel& model, double time_s, const HandPoses& hcp, const GdpState& gdp,
-            const ForceState& force, Status status, Snapshot& out) noexcept {
+void record(const HapticModel& model, const StabiliserParameters& stabiliser, double time_s,
+            const HandPoses& hcp, const GdpState& gdp, const ForceState& force, Status status,
+            Snapshot& out) noexcept {
   ++out.tick;
   out.time_s = time_s;
   out.status = status;
@@ -21,9 +28,9 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
   out.started_inside = gdp.inside;
   out.torque = force.torque;
   out.stiffness_factor = force.stiffness_factor.value();
-  if (model.stabiliser.method == Stabiliser::kLocalWall) {
+  if (stabiliser.method == Stabiliser::kLocalWall) {
     out.wall = force.wall;
-    out.wall_valid_for = model.stabiliser.wall_valid;
+    out.wall_valid_for = stabiliser.wall_valid;
   }
   for (std::size_t s = 0; s < kSegments; ++s) {
     const bool palm = s == kPalm;
@@ -48,8 +55,7 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
       segment.depth = contact.depth > 0.0 ? contact.depth : 0.0;
       segment.point = contact.p_gdp;
       segment.normal = sent.normal;
-      const Vec3 apart = contact.p_hcp - contact.p_gdp;
-      segment.slid = (apart - apart.dot(contact.n_c) * contact.n_c).norm();
+      segment.slid = contact.slid;
     } else if (sent.sent > 0.0) {
       segment.point = out.gdp_pose[s] * sent.p_S;
       segment.normal = sent.normal;
@@ -59,24 +65,24 @@ void record(const HapticModel& model, double time_s, const HandPoses& hcp, const
 
 }  // namespace
 
-HapticState::HapticState(const HapticModel& model)
-    : guard_((check_parameters(model), model.hand.parameters().open_angle)), gdp_(contact_model(model)) {
+HapticState::HapticState(const HapticModel& model, const HapticParameters& parameters)
+    : guard_(model.hand.parameters().open_angle), gdp_(contact_model(model, checked(parameters))) {
   model.hand.poses(model.hand.parameters().open_angle, hcp_);
-  record(model, 0.0, hcp_, gdp_, force_, Status::kOk, snapshot_);
+  record(model, parameters.stabiliser, 0.0, hcp_, gdp_, force_, Status::kOk, snapshot_);
   snapshot_.tick = 0;
 }
 
-Status step(const HapticModel& model, const Sample& sample, HapticState& state) noexcept {
-  const double period = 1.0 / model.rate_hz;
-  Status status = state.guard_.accept(sample, model.hand.parameters(), model.limits, period);
+Status step(const HapticModel& model, const HapticParameters& parameters, const Sample& sample,
+            HapticState& state) noexcept {
+  Status status =
+      state.guard_.accept(sample, model.hand.parameters(), parameters.limits, parameters.period());
   pass_measured(sample, status, state.snapshot_);
   model.hand.poses(state.guard_.angle(), state.hcp_);
-  status |= advance_gdp(contact_model(model), state.guard_.angle(), state.hcp_, state.guard_.measured(),
-                        state.gdp_);
-  status |= compute_command(
-      {model.hand, model.force, model.smoothing, model.limits, period, model.stabiliser, model.oscillation},
-      state.gdp_, state.hcp_, state.guard_.stale(), state.force_);
-  record(model, state.guard_.time_s(), state.hcp_, state.gdp_, state.force_, status, state.snapshot_);
+  status |= advance_gdp(contact_model(model, parameters), state.guard_.angle(), state.hcp_,
+                        state.guard_.measured(), state.gdp_);
+  status |= compute_command(parameters, state.gdp_, state.hcp_, state.guard_.stale(), state.force_);
+  record(model, parameters.stabiliser, state.guard_.time_s(), state.hcp_, state.gdp_, state.force_, status,
+         state.snapshot_);
   return status;
 }
 

@@ -8,12 +8,13 @@
 namespace phalanx {
 namespace {
 
-/// A channel with everything that is not finite turned to NaN; `keep` false: all of it.
+/// Copies a channel with everything that is not finite turned to NaN; `keep` false: all of it.
 template <class Array>
 void finite_or_nan(const Array& from, bool keep, Array& to) noexcept {
-  const double nothing = keep ? 0.0 : std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < from.size(); ++i)
-    to[i] = from[i] + (from[i] - from[i]) + nothing;  // infinity - infinity is NaN
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const bool good = keep && std::isfinite(from[i]);
+    to[i] = good ? from[i] + 0.0 : std::numeric_limits<double>::quiet_NaN();  // -0 becomes 0
+  }
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace phalanx {
 
-/// Where and from what a result was made: commit, cpu, compiler, build_type, date.
+/// Writes the origin of a result: commit, cpu, compiler, build_type, date.
 [[nodiscard]] nlohmann::ordered_json made_json(const Made& made);
 
 }  // namespace phalanx

@@ -27,17 +27,17 @@ std::uint64_t tick_count(double seconds, double rate_hz) {
   return static_cast<std::uint64_t>(ticks);
 }
 
-StepTimes simulate(const HapticModel& model, const Motion& motion, std::uint64_t ticks,
-                   const SimulationObservers& observers) {
+StepTimes simulate(const HapticModel& model, const HapticParameters& parameters, const Motion& motion,
+                   std::uint64_t ticks, const SimulationObservers& observers) {
   using Clock = std::chrono::steady_clock;
-  const auto state = std::make_unique<HapticState>(model);
+  const auto state = std::make_unique<HapticState>(model, parameters);
   std::vector<double> step_us(ticks);
   const std::uint64_t progress_every = std::max<std::uint64_t>(1, ticks / 100);
   for (std::uint64_t i = 0; i < ticks; ++i) {
-    const double t = static_cast<double>(i) / model.rate_hz;
+    const double t = static_cast<double>(i) / parameters.rate_hz;
     const Sample sample{.time_s = t, .angle = motion.at(t)};
     const auto start = Clock::now();
-    step(model, sample, *state);
+    step(model, parameters, sample, *state);
     const auto end = Clock::now();
     step_us[i] = std::chrono::duration<double, std::micro>(end - start).count();
     if (observers.tick) observers.tick(state->snapshot());

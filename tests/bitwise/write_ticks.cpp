@@ -18,13 +18,13 @@ int write(const std::string& name, const std::filesystem::path& folder) {
   const phalanx::SceneDescription scene = phalanx::load_scene(name);
   const phalanx::HapticModel model = phalanx::build_model(scene);
   const phalanx::Motion motion = phalanx::build_motion(scene);
-  phalanx::HapticState state(model);
+  phalanx::HapticState state(model, scene.parameters);
   phalanx::TicksCsv csv(folder / (name + ".csv"));
   int contacts = 0;
-  const int ticks = static_cast<int>(motion.duration() * model.rate_hz);
+  const int ticks = static_cast<int>(motion.duration() * scene.parameters.rate_hz);
   for (int n = 0; n <= ticks; ++n) {
-    const double t = n / model.rate_hz;
-    phalanx::step(model, {t, motion.at(t)}, state);
+    const double t = n / scene.parameters.rate_hz;
+    phalanx::step(model, scene.parameters, {t, motion.at(t)}, state);
     csv.write(state.snapshot());
     for (const phalanx::SegmentSnapshot& segment : state.snapshot().segment)
       contacts += segment.contact ? 1 : 0;

@@ -66,8 +66,8 @@ TriangleMesh plate(double f, double y) {
   return test::moved(make_box(Vec3(0.01, 0.002, 0.006), 12), test::at(0.0, y - kPaperMargin - 0.001, -f));
 }
 
-HapticModel paper_model(const TriangleMesh& object) {
-  HapticModel model(diamond_hand(), ObjectModel(object));
+test::Setup paper_model(const TriangleMesh& object) {
+  test::Setup model(diamond_hand(), ObjectModel(object));
   test::turn_limits_off(model);
   return model;
 }
@@ -75,8 +75,10 @@ HapticModel paper_model(const TriangleMesh& object) {
 /// The stages of a step, with the records in sight.
 class Paper {
  public:
-  explicit Paper(const HapticModel& model)
-      : model_(model), contact_{model.hand, model.trees, model.object, model.contact}, state_(contact_) {}
+  explicit Paper(const test::Setup& model)
+      : model_(model),
+        contact_{model.hand, model.trees, model.object, model.parameters.contact},
+        state_(contact_) {}
 
   const GdpState& tick(const JointArray& hcp) {
     HandPoses poses;
@@ -94,7 +96,7 @@ class Paper {
   Status status = Status::kOk;  ///< of the last tick
 
  private:
-  const HapticModel& model_;
+  const test::Setup& model_;
   ContactModel contact_;
   GdpState state_;
 };
@@ -113,7 +115,7 @@ TriangleMesh two_steps() {
 double offset_by_hand() { return y2(0.5, 0.7) - y2(0.57, 0.77); }
 
 TEST(GdpByHand, TheOffsetIsThatOfTheMomentOfContact) {
-  const HapticModel model = paper_model(two_steps());
+  const test::Setup model = paper_model(two_steps());
   Paper paper(model);
   paper.tick(index_angles(0.4));
   paper.tick(index_angles(0.55));
@@ -132,8 +134,8 @@ TEST(GdpByHand, TheOffsetIsThatOfTheMomentOfContact) {
 
 TEST(GdpByHand, WithoutTheOffsetForcesAndTorquesWouldBeOthers) {
   const auto run = [](DepthOrigin depth) {
-    HapticModel model = paper_model(two_steps());
-    model.contact.depth = depth;
+    test::Setup model = paper_model(two_steps());
+    model.parameters.contact.depth = depth;
     test::Runner hand(model);
     hand.tick(index_angles(0.4));
     hand.tick(index_angles(0.55));
@@ -156,7 +158,7 @@ TEST(GdpByHand, WithoutTheOffsetForcesAndTorquesWouldBeOthers) {
 // The HCP backs off to where the second contact no longer pushes (d < 0), though it is still beyond the
 // plate: the segment is blocked, and its record stands with its d0.
 TEST(GdpByHand, ABlockedContactKeepsItsOffsetWhileTheHcpIsBeyondIt) {
-  const HapticModel model = paper_model(two_steps());
+  const test::Setup model = paper_model(two_steps());
   Paper paper(model);
   paper.tick(index_angles(0.4));
   paper.tick(index_angles(0.55));
@@ -187,7 +189,7 @@ double f3(double p, double q, double r) {
 TEST(GdpByHand, TheOffsetNeedsOneNearerSegmentThatPushesNotAll) {
   TriangleMesh object = two_steps();
   append(object, plate(f3(0.5, 0.7, 0.75), y3(0.5, 0.7, 0.75)));
-  const HapticModel model = paper_model(object);
+  const test::Setup model = paper_model(object);
   Paper paper(model);
   for (const JointArray& q :
        {index_angles(0.4), index_angles(0.55), index_angles(0.60, 0.5), index_angles(0.54, 0.25)})
@@ -208,7 +210,7 @@ TEST(GdpByHand, TheOffsetNeedsOneNearerSegmentThatPushesNotAll) {
 TEST(GdpByHand, TheOffsetInTheFirstTickIsTakenWithTheHcpAsItIs) {
   TriangleMesh object = plate(f1(0.3), y1(0.3));
   append(object, plate(f2(0.3, 0.57), y2(0.3, 0.57)));
-  const HapticModel model = paper_model(object);
+  const test::Setup model = paper_model(object);
   Paper paper(model);
   paper.tick(index_angles(0.4, 0.3));
   ASSERT_TRUE(paper.record(0).active);
@@ -227,8 +229,8 @@ TEST(GdpByHand, TheOffsetInTheFirstTickIsTakenWithTheHcpAsItIs) {
 TEST(TrajectoryByHand, AContactIsAtTheLastFreePoseAndItsOffsetAtTheTicksEnd) {
   TriangleMesh object = plate(f1(0.3), y1(0.3));
   append(object, plate(f2(0.2, 0.45), y2(0.2, 0.45)));
-  HapticModel model = paper_model(object);
-  model.contact.method = GdpMethod::kTrajectory;
+  test::Setup model = paper_model(object);
+  model.parameters.contact.method = GdpMethod::kTrajectory;
   Paper paper(model);
   paper.tick(index_angles(0.2));
   ASSERT_FALSE(paper.record(0).active);
@@ -250,7 +252,7 @@ TEST(TrajectoryByHand, AContactIsAtTheLastFreePoseAndItsOffsetAtTheTicksEnd) {
 // ---- where the search gives up ----
 
 /// Nothing is within reach.
-HapticModel far_model() {
+test::Setup far_model() {
   return paper_model(test::moved(make_box(Vec3(0.02, 0.02, 0.02), 12), test::at(0.0, -0.3, 0.0)));
 }
 /// The tip's farthest point from the MCP: two bones and the distal diamond's 21 mm.
@@ -260,7 +262,7 @@ constexpr double kTipReach = 86e-3;
 // poses, 2.5 mm of the tip's way apart. The record says that the limit was reached, no force acts, and the
 // following ticks go on until the finger arrives.
 TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
-  const HapticModel model = far_model();
+  const test::Setup model = far_model();
   Paper paper(model);
   paper.tick(index_angles(0.0));
   int gave_up = 0;
@@ -288,8 +290,8 @@ TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
 // contact like any other, and so it is where the search came to its end. (1 rad of the corner's way is 17 mm
 // of height there.)
 TEST(GdpByHand, ARecordOfASearchThatGaveUpIsAContactWithinTheMargin) {
-  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
-  const ContactModel contact{model.hand, model.trees, model.object, model.contact};
+  const test::Setup model = paper_model(plate(f1(0.5), y1(0.5)));
+  const ContactModel contact{model.hand, model.trees, model.object, model.parameters.contact};
   for (const double beyond : {10e-6, -10e-6}) {
     for (const bool gave_up : {true, false}) {
       SCOPED_TRACE(::testing::Message() << beyond << (gave_up ? " given up" : ""));
@@ -327,7 +329,7 @@ TEST(GdpByHand, AFingerThatHasTurnedPastTheContactsPlaneIsFeltWhileItIsInTheObje
   const double end = 21e-3 * (std::sin(kTo) - std::sin(kStop));
   ASSERT_LT(end, -1e-3);
   for (const bool inside : {true, false}) {
-    const HapticModel model = paper_model(inside ? both : first);
+    const test::Setup model = paper_model(inside ? both : first);
     Paper paper(model);
     paper.tick(index_angles(1.0));
     paper.tick(index_angles(kTo));
@@ -365,7 +367,7 @@ struct Hop {
   static double height(double p, double a) { return -20e-3 * std::cos(a) * std::sin(p) - 1e-3 * std::cos(p); }
   [[nodiscard]] const ContactRecord& record() const { return paper->record(0); }
 
-  std::optional<HapticModel> model;
+  std::optional<test::Setup> model;
   std::optional<Paper> paper;
   double pushed = 0.0;  ///< by the wall, before the hop [m]
 };
@@ -437,7 +439,7 @@ TEST(GdpByHand, TheDeepestPlaceOfAParabolaIsItsVertexOrItsEnd) {
 // The HCP comes back to where the proximal phalanx has stopped, and from there only the PIP moves: the
 // proximal record stands until its own phalanx moves away.
 TEST(GdpByHand, ARecordStandsWhileOnlyFartherJointsMove) {
-  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  const test::Setup model = paper_model(plate(f1(0.5), y1(0.5)));
   Paper paper(model);
   paper.tick(index_angles(0.4));
   paper.tick(index_angles(0.55));
@@ -457,7 +459,7 @@ TEST(GdpByHand, ARecordStandsWhileOnlyFartherJointsMove) {
 // the corner goes 4.94 mm forward (and 5.47 mm down, 7.4 mm in all), to 0.88 it goes 5.10 mm. `slid` begins
 // at 5.
 TEST(GdpByHand, SlidIsTheWayAlongTheSurface) {
-  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  const test::Setup model = paper_model(plate(f1(0.5), y1(0.5)));
   ASSERT_LT(f1(0.5) - f1(0.87), 5e-3);
   ASSERT_GT(f1(0.5) - f1(0.88), 5e-3);
   Paper paper(model);
@@ -472,7 +474,7 @@ TEST(GdpByHand, SlidIsTheWayAlongTheSurface) {
 // The corner comes within the margin by 0.1 nm just at the tick's end, while the PIP still moves: that is a
 // stop like any other, and no search that gave up. 5.86e-9 rad are 0.1 nm of its way of 17 mm.
 TEST(GdpByHand, AStopAtTheVeryEndOfATickIsAStop) {
-  const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+  const test::Setup model = paper_model(plate(f1(0.5), y1(0.5)));
   Paper paper(model);
   paper.tick(index_angles(0.4));
   paper.tick(index_angles(0.5 + 5.86e-9, 0.05));
@@ -487,7 +489,7 @@ TEST(GdpByHand, AStopAtTheVeryEndOfATickIsAStop) {
 
 // The lowest corner is 30 um above a plate, within the margin.
 TEST(GdpByHand, AnOpenFingerWithinTheMarginIsASetUpErrorThatSaysHowNear) {
-  const HapticModel model = paper_model(plate(f1(0.0), y1(0.0) + 20e-6));
+  const test::Setup model = paper_model(plate(f1(0.0), y1(0.0) + 20e-6));
   EXPECT_THAT([&] { Paper paper(model); },
               ::testing::ThrowsMessage<std::invalid_argument>(
                   ::testing::AllOf(::testing::HasSubstr("the open hand (index-finger-phalanx-proximal)"),
@@ -514,7 +516,7 @@ TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDeg
   }
   const double f = f1(0.5) - kPaperMargin * std::sin(lean);
   const double y = y1(0.5) - kPaperMargin * std::cos(lean);
-  const HapticModel model = paper_model(test::moved(cone, test::at(0.0, y, -f)));
+  const test::Setup model = paper_model(test::moved(cone, test::at(0.0, y, -f)));
   Paper paper(model);
   paper.tick(index_angles(0.4));
   paper.tick(index_angles(0.6));
@@ -533,7 +535,7 @@ TEST(GdpByHand, TheForceTurnsFromTheContactsDirectionTowardsTheNormalByThirtyDeg
 TEST(GdpByHand, OfTwoAtTheSameMomentTheDistalOneDecides) {
   TriangleMesh object = plate(f1(0.5), y1(0.5));
   append(object, plate(f2(0.5, 0.45), y2(0.5, 0.45) + 0.2e-9));
-  const HapticModel model = paper_model(object);
+  const test::Setup model = paper_model(object);
   Paper paper(model);
   test::Runner hand(model);
   for (const JointArray& q : {index_angles(0.4), index_angles(0.6, -0.1)}) {
@@ -559,7 +561,7 @@ TEST(GdpByHand, OfTwoAtTheSameMomentTheDistalOneDecides) {
 TEST(GdpByHand, ADistalSegmentThatIsWithinTheMarginDecidesHoweverSlowlyItCloses) {
   TriangleMesh object = plate(f1(0.5), y1(0.5));
   append(object, plate(f2(0.5, 0.23), y2(0.5, 0.23)));
-  const HapticModel model = paper_model(object);
+  const test::Setup model = paper_model(object);
   Paper paper(model);
   paper.tick(index_angles(0.4));
   paper.tick(index_angles(0.4 + 0.1 / 0.9999, -0.27 / 0.9999));
@@ -576,7 +578,7 @@ TEST(GdpByHand, AFloorThatTheSegmentSlidesOverIsNoPartOfTheWallsContact) {
   TriangleMesh object =
       test::moved(make_box(Vec3(0.03, 0.002, 0.01), 12), test::at(0.0, -2e-3 - 52e-6, -0.02));
   append(object, make_box(Vec3(0.002, 0.01, 0.01), 12), test::at(wall - 1e-3, 0.0, -0.02));
-  const HapticModel model = paper_model(object);
+  const test::Setup model = paper_model(object);
   Paper paper(model);
   paper.tick(index_angles(0.0, 0.0, 0.0, 0.1));
   paper.tick(index_angles(0.0, 0.0, 0.0, 0.3));
@@ -909,7 +911,7 @@ TEST(BarycentricByHand, WithinTheTriangleTheyAreTheShares) {
 TEST(GdpByHand, ASlowApproachStopsAtTheMargin) {
   for (const double step : {1e-4, 3e-4, 7e-4, 2e-3}) {  // 2 to 40 um of the corner's way
     SCOPED_TRACE(step);
-    const HapticModel model = paper_model(plate(f1(0.5), y1(0.5)));
+    const test::Setup model = paper_model(plate(f1(0.5), y1(0.5)));
     Paper paper(model);
     double p = 0.3;
     for (int n = 0; p < 0.51; ++n) {
@@ -933,7 +935,7 @@ TEST(GdpByHand, WhatIsKnownOfADistanceIsWhatWasAskedForLessTheWay) {
     double way;
     double asked;
   };
-  const HapticModel model = far_model();
+  const test::Setup model = far_model();
   const std::size_t tip = idx(segment_index(test::kIndex, 2));
   for (const Tick& tick : {Tick{10e-6, 0.3e-3}, {100e-6, 1.6e-3}, {400e-6, 4e-3}, {2.4e-3, 4.8e-3}}) {
     Paper paper(model);
@@ -945,7 +947,7 @@ TEST(GdpByHand, WhatIsKnownOfADistanceIsWhatWasAskedForLessTheWay) {
 // 4.05 mm are known, and each tick spends 0.39 mm. The tenth needs 0.44 with the margin, and 0.54 are left;
 // the eleventh, for which 0.15 are left, asks again at once.
 TEST(GdpByHand, ADistanceThatSufficedIsAskedForAgainWhenItIsSpent) {
-  const HapticModel model = far_model();
+  const test::Setup model = far_model();
   const std::size_t tip = idx(segment_index(test::kIndex, 2));
   Paper paper(model);
   for (int n = 1; n <= 11; ++n) {

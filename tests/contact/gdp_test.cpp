@@ -26,17 +26,17 @@ using test::Runner;
 
 constexpr double kGdpMargin = 50e-6;
 
-HapticModel model_of(const TriangleMesh& object) {
-  HapticModel model(test::simple_hand(), ObjectModel(object));
+test::Setup model_of(const TriangleMesh& object) {
+  test::Setup model(test::simple_hand(), ObjectModel(object));
   test::turn_limits_off(model);
-  model.contact.normal = ForceNormal::kContact;
+  model.parameters.contact.normal = ForceNormal::kContact;
   return model;
 }
 
 /// A slab 20 mm below the straight finger; flexion closes on it.
 TriangleMesh floor_below() { return moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0)); }
 
-double clearance(const HapticModel& model, const Snapshot& s, int segment) {
+double clearance(const test::Setup& model, const Snapshot& s, int segment) {
   const SegmentTree& tree = model.trees[static_cast<std::size_t>(segment)];
   SearchScratch scratch(tree);
   return distance({tree, s.gdp_pose[static_cast<std::size_t>(segment)], scratch}, model.object.tree(), 1e-3);
@@ -50,7 +50,7 @@ double behind(const Snapshot& s, int segment) {
 }
 
 /// Whether a segment of the measured digit crosses the object.
-bool goes_through(const HapticModel& model, const Snapshot& s, int digit) {
+bool goes_through(const test::Setup& model, const Snapshot& s, int digit) {
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     const std::size_t segment = static_cast<std::size_t>(segment_index(digit, k));
     SearchScratch scratch(model.trees[segment]);
@@ -62,7 +62,7 @@ bool goes_through(const HapticModel& model, const Snapshot& s, int digit) {
 
 /// After every tick: nothing is closer than the margin less 10 nm; the GDP equals the HCP or the digit has a
 /// record.
-void expect_invariants(const HapticModel& model, const Snapshot& s) {
+void expect_invariants(const test::Setup& model, const Snapshot& s) {
   for (int d = 0; d < kDigits; ++d) {
     bool record = false;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
@@ -82,7 +82,7 @@ void expect_invariants(const HapticModel& model, const Snapshot& s) {
 }
 
 TEST(Gdp, FollowsTheHcpExactlyInFreeSpace) {
-  const HapticModel model = model_of(moved(make_sphere(0.02, 200), at(1.0, 1.0, 1.0)));
+  const test::Setup model = model_of(moved(make_sphere(0.02, 200), at(1.0, 1.0, 1.0)));
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(1.2, 0.7, 0.4, 0.2), 20);
   EXPECT_EQ(s.gdp_angle, s.hcp_angle);
@@ -90,7 +90,7 @@ TEST(Gdp, FollowsTheHcpExactlyInFreeSpace) {
 }
 
 TEST(Gdp, StopsAtTheMarginAndTheDepthIsTheHcpsBeyondIt) {
-  const HapticModel model = model_of(floor_below());
+  const test::Setup model = model_of(floor_below());
   Runner hand(model);
   hand.move(index_angles(0.5), 50);
   const Snapshot& s = hand.now();
@@ -107,7 +107,7 @@ TEST(Gdp, StopsAtTheMarginAndTheDepthIsTheHcpsBeyondIt) {
 }
 
 TEST(Gdp, HoverAtTheContactDoesNotChatter) {
-  const HapticModel model = model_of(floor_below());
+  const test::Setup model = model_of(floor_below());
   Runner hand(model);
   hand.move(index_angles(0.5), 50);
   // Back to where the GDP stands, and stay there: the record lives, without force.
@@ -122,7 +122,7 @@ TEST(Gdp, HoverAtTheContactDoesNotChatter) {
 }
 
 TEST(Gdp, OpeningLeavesAtOnce) {
-  const HapticModel model = model_of(floor_below());
+  const test::Setup model = model_of(floor_below());
   Runner hand(model);
   hand.move(index_angles(0.5), 50);
   const double stopped = index_gdp(hand.now(), 0);
@@ -143,7 +143,7 @@ TEST(Gdp, ATieGoesToTheDistalSegment) {
   };
   const double nearer = -0.020;
   const auto stops_at = [&](double farther) {
-    const HapticModel model = model_of(object(nearer, farther));
+    const test::Setup model = model_of(object(nearer, farther));
     Runner hand(model);
     return std::pair{index_segment(hand.move(index_angles(0.45), 30), 2).contact, index_gdp(hand.now(), 0)};
   };
@@ -151,7 +151,7 @@ TEST(Gdp, ATieGoesToTheDistalSegment) {
   double high = -0.020;
   for (int n = 0; n < 60; ++n) {
     const double mid = 0.5 * (low + high);
-    const HapticModel model = model_of(object(nearer, mid));
+    const test::Setup model = model_of(object(nearer, mid));
     Runner hand(model);
     const Snapshot& s = hand.move(index_angles(0.45), 30);
     const bool distal_decides = index_gdp(s, 3) == 0.0 && index_segment(s, 2).contact;
@@ -174,7 +174,7 @@ TEST(Gdp, ATieGoesToTheDistalSegment) {
 
 TEST(Gdp, TheProximalPhalanxStopsAndTheOthersGoOnUntilTheyMeetTheObject) {
   // S1's order: proximal first, then middle, then distal. A ball under the proximal phalanx.
-  const HapticModel model = model_of(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028)));
+  const test::Setup model = model_of(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028)));
   Runner hand(model);
   hand.move(index_angles(0.6), 60);
   ASSERT_TRUE(index_segment(hand.now(), 0).contact);
@@ -192,14 +192,14 @@ TEST(Gdp, TheProximalPhalanxStopsAndTheOthersGoOnUntilTheyMeetTheObject) {
   expect_invariants(model, hand.now());
 }
 
-HapticModel proximal_then_distal(DepthOrigin depth) {
-  HapticModel model = model_of(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028)));
-  model.contact.depth = depth;
+test::Setup proximal_then_distal(DepthOrigin depth) {
+  test::Setup model = model_of(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028)));
+  model.parameters.contact.depth = depth;
   return model;
 }
 
 TEST(Gdp, ALaterContactStartsFromZeroForce) {
-  const HapticModel model = proximal_then_distal(DepthOrigin::kContinuous);
+  const test::Setup model = proximal_then_distal(DepthOrigin::kContinuous);
   Runner hand(model);
   hand.move(index_angles(0.8), 80);  // the proximal phalanx presses deep
   ASSERT_GT(index_segment(hand.now(), 0).depth, 3e-3);
@@ -217,7 +217,7 @@ TEST(Gdp, ALaterContactStartsFromZeroForce) {
 }
 
 TEST(Gdp, S1DepthDoesNotStartFromZero) {
-  const HapticModel model = proximal_then_distal(DepthOrigin::kS1);
+  const test::Setup model = proximal_then_distal(DepthOrigin::kS1);
   Runner hand(model);
   hand.move(index_angles(0.8), 80);
   double first = 0.0;
@@ -227,7 +227,7 @@ TEST(Gdp, S1DepthDoesNotStartFromZero) {
 }
 
 TEST(Gdp, ADigitThatStartsInsideGivesNoForceUntilItHasBeenClear) {
-  const HapticModel model = model_of(floor_below());
+  const test::Setup model = model_of(floor_below());
   Runner hand(model);
   const Snapshot& first = hand.tick(index_angles(0.5));
   EXPECT_TRUE(has(first.status, Status::kStartInside));
@@ -244,16 +244,16 @@ TEST(Gdp, ADigitThatStartsInsideGivesNoForceUntilItHasBeenClear) {
 }
 
 TEST(Gdp, ThePalmThroughTheObjectIsASetUpError) {
-  const HapticModel model = model_of(moved(make_sphere(0.03, 500), at(0.0, 0.0, 0.10)));
-  EXPECT_THAT([&] { HapticState state(model); },
+  const test::Setup model = model_of(moved(make_sphere(0.03, 500), at(0.0, 0.0, 0.10)));
+  EXPECT_THAT([&] { HapticState state(model, model.parameters); },
               ::testing::ThrowsMessage<std::invalid_argument>(
                   ::testing::AllOf(::testing::HasSubstr("palm"), ::testing::HasSubstr("through the object"),
                                    ::testing::HasSubstr("position_mm"))));
 }
 
 TEST(Gdp, AnObjectAroundThePalmIsASetUpErrorToo) {
-  const HapticModel model = model_of(make_sphere(2.0, 500));
-  EXPECT_THROW(HapticState state(model), std::invalid_argument);
+  const test::Setup model = model_of(make_sphere(2.0, 500));
+  EXPECT_THROW(HapticState state(model, model.parameters), std::invalid_argument);
 }
 
 TEST(Gdp, ThePalmWithinTheMarginIsContactWithoutForce) {
@@ -263,7 +263,7 @@ TEST(Gdp, ThePalmWithinTheMarginIsContactWithoutForce) {
   for (const Vec3& v : hand_only.mesh(kPalm).vertices) {
     if (v.y() < lowest.y()) lowest = v;
   }
-  const HapticModel model = model_of(
+  const test::Setup model = model_of(
       moved(make_box(Vec3(0.02, 0.02, 0.02), 12), at(lowest.x(), lowest.y() - 0.01 - 30e-6, lowest.z())));
   Runner hand(model);
   const SegmentSnapshot& palm = hand.tick(JointArray{}).segment[kPalm];
@@ -288,8 +288,8 @@ TEST(Gdp, ThePalmsContactFacesThePalmAndStandsInItsFrame) {
   }
   const TriangleMesh box =
       moved(make_box(Vec3(0.02, 0.02, 0.02), 12), X * at(lowest.x(), lowest.y() - 0.01 - 30e-6, lowest.z()));
-  const HapticModel model(test::simple_hand(Handedness::kRight, X_WH), ObjectModel(box));
-  const GdpState state({model.hand, model.trees, model.object, model.contact});
+  const test::Setup model(test::simple_hand(Handedness::kRight, X_WH), ObjectModel(box));
+  const GdpState state({model.hand, model.trees, model.object, model.parameters.contact});
   const ContactRecord& palm = state.record[kPalm];
   ASSERT_TRUE(palm.active);
   EXPECT_GT(palm.n_c.dot(X.R * Vec3::UnitY()), 0.99);
@@ -300,13 +300,14 @@ TEST(Gdp, ThePalmsContactFacesThePalmAndStandsInItsFrame) {
 }
 
 TEST(Gdp, TheOpenHandOnTheObjectIsASetUpError) {
-  const HapticModel model = model_of(moved(make_sphere(0.02, 500), at(0.0, 0.0, -0.05)));
-  EXPECT_THAT([&] { HapticState state(model); }, ::testing::ThrowsMessage<std::invalid_argument>(
-                                                     ::testing::HasSubstr("open hand (index-finger")));
+  const test::Setup model = model_of(moved(make_sphere(0.02, 500), at(0.0, 0.0, -0.05)));
+  EXPECT_THAT(
+      [&] { HapticState state(model, model.parameters); },
+      ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("open hand (index-finger")));
 }
 
 /// Least distance of the index finger's middle and distal segments from the object at these angles.
-double index_clearance(const HapticModel& model, const JointArray& angle) {
+double index_clearance(const test::Setup& model, const JointArray& angle) {
   HandPoses poses;
   model.hand.poses(angle, poses);
   double least = 1e-3;
@@ -332,8 +333,8 @@ WireCount sweep_over_wire(GdpMethod method, double speed) {
   for (int n = 0; n < kWireCases; ++n) {
     const Pose across{rotation_about(Vec3::UnitY(), std::numbers::pi / 2.0),
                       Vec3(0.0, -0.025 - 0.01 * n / kWireCases, -0.075)};
-    HapticModel model = model_of(moved(make_cylinder(0.002, 0.06, 200), across));
-    model.contact.method = method;
+    test::Setup model = model_of(moved(make_cylinder(0.002, 0.06, 200), across));
+    model.parameters.contact.method = method;
     Runner hand(model);
     double angle = speed / 200.0 * n / kWireCases;
     hand.tick(index_angles(angle));
@@ -371,7 +372,7 @@ TEST(Gdp, AThinSheetIsNeverSteppedOverAtFullSpeed) {
   sheet.vertices = {Vec3(-0.05, -0.03, -0.2), Vec3(0.05, -0.03, -0.2), Vec3(0.05, -0.03, 0.1),
                     Vec3(-0.05, -0.03, 0.1)};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
-  const HapticModel model = model_of(sheet);
+  const test::Setup model = model_of(sheet);
   for (int n = 0; n < 50; ++n) {
     Runner hand(model);
     hand.tick(index_angles(0.003 * n));
@@ -385,7 +386,7 @@ TEST(Gdp, AFingerInACornerFeelsTheSecondWallWhenItLeavesTheFirst) {
   // Floor below and wall beside the index: press into both, then back off the floor alone.
   TriangleMesh corner = floor_below();
   append(corner, make_box(Vec3(0.02, 0.1, 0.14), 12), at(-0.020, 0.0, -0.08));
-  HapticModel model = model_of(corner);
+  test::Setup model = model_of(corner);
   Runner hand(model);
   hand.move(index_angles(0.5, 0.0, 0.0, 0.3), 60);
   ASSERT_TRUE(index_segment(hand.now(), 2).contact);
@@ -415,7 +416,7 @@ TEST(Gdp, ALaterContactThatTheHcpHasLeftDoesNotPushEvenIfItsOffsetWouldBeNegativ
   const Pose across{rotation_about(Vec3::UnitY(), std::numbers::pi / 2.0), Vec3::Zero()};
   TriangleMesh bars = moved(make_cylinder(0.012, 0.06, 400), at(0.0, -0.028, -0.028) * across);
   append(bars, make_cylinder(0.004, 0.06, 400), at(0.0, -0.0339, -0.0836) * across);
-  const HapticModel model = model_of(bars);
+  const test::Setup model = model_of(bars);
   Runner hand(model);
   const std::array<JointArray, 4> way = {index_angles(0.633), index_angles(0.633, 1.569),
                                          index_angles(0.633, 1.569, 0.960), index_angles(-0.2, 1.569, 0.960)};
@@ -440,7 +441,7 @@ TEST(Gdp, AFingerInAGrooveFeelsTheWallItPressesAfterItHasLeftTheOther) {
   for (const double side : {1.0, -1.0}) {
     TriangleMesh groove = wall(1.0);
     append(groove, wall(-1.0));
-    const HapticModel model = model_of(groove);
+    const test::Setup model = model_of(groove);
     Runner hand(model);
     hand.move(index_angles(0.4), 60);
     ASSERT_TRUE(index_segment(hand.now(), 2).contact);
@@ -461,7 +462,7 @@ TEST(Gdp, AWallBesideAFloorThatTheFingerHoversOverIsFeltWhateverTheHover) {
       lowest = std::min(lowest, bounds(probe.mesh(segment_index(1, k))).min.y());
     TriangleMesh corner = moved(make_box(Vec3(0.06, 0.02, 0.12), 12), at(0.0, lowest - 0.01 - hover, -0.065));
     append(corner, make_box(Vec3(0.02, 0.06, 0.12), 12), at(-0.035, 0.0, -0.065));
-    const HapticModel model = model_of(corner);
+    const test::Setup model = model_of(corner);
     Runner hand(model);
     hand.move(index_angles(0.0, 0.0, 0.0, 0.5), 60);
     double force = 0.0;
@@ -476,7 +477,7 @@ class SeededMotions : public ::testing::TestWithParam<int> {
  protected:
   std::mt19937_64 random_{static_cast<std::uint64_t>(GetParam())};
   std::uniform_real_distribution<double> u_{0.0, 1.0};
-  const HapticModel model_ = model_of(awkward_object(GetParam()));
+  const test::Setup model_ = model_of(awkward_object(GetParam()));
   Runner hand_{model_};
   int contacts_ = 0;
 
@@ -518,8 +519,8 @@ TEST_P(SeededPlanarMotions, ComeFreeAtTheEnd) {
 INSTANTIATE_TEST_SUITE_P(Seeds, SeededPlanarMotions, ::testing::Values(1, 2, 4, 5, 7, 8, 10, 11, 13, 14));
 
 TEST(GdpTrajectory, StopsAtARecordedPoseThatWasFree) {
-  HapticModel model = model_of(floor_below());
-  model.contact.method = GdpMethod::kTrajectory;
+  test::Setup model = model_of(floor_below());
+  model.parameters.contact.method = GdpMethod::kTrajectory;
   Runner hand(model);
   hand.move(index_angles(0.5), 50);
   ASSERT_TRUE(index_segment(hand.now(), 2).contact);
@@ -548,8 +549,8 @@ TEST(AngleRing, HoldsTheLast64AnglesNewestFirst) {
 TEST(GdpTrajectory, HoldsStillAndSaysSoOnceNoRecordedPoseIsFree) {
   TriangleMesh slabs = floor_below();
   append(slabs, floor_below(), at(0.0, 0.060, 0.0));
-  HapticModel model = model_of(slabs);
-  model.contact.method = GdpMethod::kTrajectory;
+  test::Setup model = model_of(slabs);
+  model.parameters.contact.method = GdpMethod::kTrajectory;
   for (const int pressed : {1, 62, 63, 64, 65, 100}) {
     SCOPED_TRACE(pressed);
     Runner hand(model);

@@ -76,6 +76,7 @@ ResultBits searched(std::uint64_t seed, int poses) {
       out.add(found);
       out.add(distance_bound(placed, object.tree(), 1.0));
       out.add(distance_bound(placed, object.tree(), 0.3 * found));
+      out.add(static_cast<std::uint64_t>(crosses(placed, object.tree())));
       const ContactPatch patch = contact_patch(placed, object, found + 1e-4);
       out.add(patch.distance);
       out.add(patch.on_segment);
@@ -116,8 +117,8 @@ JointArray any_hand(test::Random& random, const HandParameters& hand, double rea
 /// A hand that grasps and lets go at random.
 ResultBits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks) {
   test::Random random(seed);
-  HapticModel model(test::simple_hand(), ObjectModel(object));
-  model.limits.joint_speed = 1e4;
+  test::Setup model(test::simple_hand(), ObjectModel(object));
+  model.parameters.limits.joint_speed = 1e4;
   test::Runner runner(model);
   ResultBits out;
   for (int n = 0; n < grasps; ++n) {
@@ -192,18 +193,18 @@ TEST_P(EverySet, WholeStepsAreTheSameBits) {
 }
 
 TEST_P(EverySet, AllocatesNothingWhereTheListRunsOver) {
-  HapticModel model(test::simple_hand(),
+  test::Setup model(test::simple_hand(),
                     ObjectModel(test::moved(make_sphere(0.03, 4000), test::at(0.0, -0.03, -0.05))));
-  model.limits.joint_speed = 1e4;
+  model.parameters.limits.joint_speed = 1e4;
   test::Random random(33);
   const UsedSet used(GetParam());
-  HapticState state(model);
+  HapticState state(model, model.parameters);
   double time = 0.0;
   int contacts = 0;
   const std::size_t before = test::allocations();
   for (int n = 0; n < 8; ++n) {  // the whole way in one tick, there and back
     const JointArray q = any_hand(random, model.hand.parameters(), n % 2 == 0 ? 1.0 : 0.0);
-    step(model, Sample{time += 1.0 / model.rate_hz, q}, state);
+    step(model, model.parameters, Sample{time += 1.0 / model.parameters.rate_hz, q}, state);
     for (const SegmentSnapshot& segment : state.snapshot().segment) contacts += segment.contact ? 1 : 0;
   }
   EXPECT_EQ(test::allocations() - before, 0U);

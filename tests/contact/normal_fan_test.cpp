@@ -335,8 +335,8 @@ TEST(ForceNormal, IsWithin30DegreesOfTheSeparationDirectionOnAnySoupOfTriangles)
                                      .along = -Vec3::UnitZ(),
                                      .heading = Vec3::UnitY(),
                                      .reach = 0.03});
-    const HapticModel& model = finger.model();
-    const ContactModel contact{model.hand, model.trees, model.object, model.contact};
+    const test::Setup& model = finger.model();
+    const ContactModel contact{model.hand, model.trees, model.object, model.parameters.contact};
     GdpState state(contact);
     for (int i = 0; i <= 60; ++i) {
       const JointArray angle = test::LoneFinger::pose(start + 0.01 * i);

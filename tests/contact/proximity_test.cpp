@@ -3,15 +3,21 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "contact/containment.h"
 #include "contact/search/views.h"
 #include "phalanx/contact/triangle_distance.h"
 #include "phalanx/mesh/primitives.h"
+#include "support/search_cases.h"
 
 namespace phalanx {
 namespace {
@@ -53,6 +59,7 @@ TEST(Proximity, DistanceEqualsBruteForceAtSeededPoses) {
     const Pose X = random_pose(random, 0.08);
     const double expected = brute_force(c.segment, X, c.object.tree());
     EXPECT_NEAR(c.distance_at(X, 1.0), expected, 1e-15) << "seed 7 case " << i;
+    EXPECT_EQ(crosses({c.segment, X, c.scratch}, c.object.tree()), expected == 0.0) << "seed 7 case " << i;
     EXPECT_EQ(c.distance_at(X, 0.5 * expected), 0.5 * expected) << "a cap below it comes back";
     const double bound = distance_bound({c.segment, X, c.scratch}, c.object.tree(), 1.0);
     EXPECT_LE(bound, expected) << "seed 7 case " << i;
@@ -113,6 +120,84 @@ TEST(Proximity, ABoundAllowsForTheRoundingOfSinglePrecision) {
   SearchScratch scratch(segment);
   const Pose X{Mat3::Identity(), Vec3(0.0, 0.0, 1e-3)};
   EXPECT_NEAR(distance({segment, X, scratch}, floor.tree(), 1e-3 + 1e-8), 1e-3, 1e-12);
+}
+
+// Of 20,000 triangles, deep in the ball: what was found ends the search. A search that goes on places every
+// triangle of the segment.
+TEST(Proximity, CrossingIsSettledByTheFirstPairThatDoes) {
+  const ObjectModel ball(make_sphere(0.05, 20000));
+  const SegmentTree segment(make_tapered_capsule(0.03, 0.008, 0.006, 24, 12, 12));
+  SearchScratch scratch(segment);
+  std::mt19937_64 random(12);
+  int crossing = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Pose X = random_pose(random, 0.05);
+    if (!crosses({segment, X, scratch}, ball.tree())) continue;
+    ++crossing;
+    const std::uint64_t query = scratch.next_query() - 1;
+    int placed = 0;
+    for (int t = 0; t < segment.size(); ++t) placed += scratch.triangles()[t].query == query ? 1 : 0;
+    EXPECT_LT(10 * placed, segment.size()) << "seed 12 case " << i;
+  }
+  EXPECT_GT(crossing, 10);
+}
+
+// Two triangles half a metre apart that no plane of theirs separates, and whose boxes overlap: each pair is
+// measured. 512 are, and none touches; the last block of 520, which is not looked at, counts as touching.
+TEST(Proximity, CrossingIsAssumedWhere512PairsDoNotSettleIt) {
+  const SegmentTree hanging(TriangleMesh{{Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)}, {{0, 1, 2}}});
+  SearchScratch scratch(hanging);
+  const auto crossing = [&](std::size_t times) {
+    TriangleMesh across{{Vec3(0, -1, 0.5), Vec3(0, 1, 0.5), Vec3(0, 0, 1.5)}, {}};
+    across.triangles.assign(times, Triangle{0, 1, 2});
+    return crosses({hanging, Pose{}, scratch}, ObjectTree(across));
+  };
+  EXPECT_FALSE(crossing(1));
+  EXPECT_FALSE(crossing(512));
+  EXPECT_TRUE(crossing(520));
+  EXPECT_TRUE(crossing(20000));
+}
+
+// The lens of a standing triangle is a disc around the origin, which the floor's boxes reach; its plane
+// separates the triangles. So pairs of lens and box are visited, and none of triangles is measured.
+TEST(Proximity, CrossingIsAssumedWhere1024PairsOfLensAndBoxDoNotSettleIt) {
+  const SegmentTree standing(TriangleMesh{{Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}, {{0, 1, 2}}});
+  SearchScratch scratch(standing);
+  const auto crossing = [&](std::size_t times) {
+    TriangleMesh floor{{Vec3(-5, -5, -0.5), Vec3(5, -5, -0.5), Vec3(0, 5, -0.5)}, {}};
+    floor.triangles.assign(times, Triangle{0, 1, 2});
+    return crosses({standing, Pose{}, scratch}, ObjectTree(floor));
+  };
+  EXPECT_FALSE(crossing(1));
+  EXPECT_FALSE(crossing(2000));
+  EXPECT_TRUE(crossing(40000));
+}
+
+// Near a dense ball and near slivers that meet in its poles: whatever crosses is found, whether it was
+// settled or not. The times are printed and not judged.
+TEST(Proximity, NoCrossingIsMissedHoweverDenseTheMesh) {
+  const SegmentTree segment(make_tapered_capsule(0.03, 0.008, 0.006, 24, 12, 12));
+  SearchScratch scratch(segment);
+  for (const auto& [name, mesh] : {std::pair{"ball of 20,000 triangles", make_sphere(0.1, 20000)},
+                                   std::pair{"8,000 slivers", test::meridians(4000)}}) {
+    const ObjectModel object(mesh);
+    std::mt19937_64 random(13);
+    std::vector<double> us;
+    int crossing = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Pose X = random_pose(random, 0.06);
+      const auto begin = std::chrono::steady_clock::now();
+      const bool found = crosses({segment, X, scratch}, object.tree());
+      us.push_back(1e6 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      if (distance({segment, X, scratch}, object.tree(), 1e-9) > 0.0) continue;
+      ++crossing;
+      EXPECT_TRUE(found) << name << ", seed 13 case " << i;
+    }
+    EXPECT_GT(crossing, 20);
+    std::sort(us.begin(), us.end());
+    std::printf("crosses(), %s: p50 %.1f us, p90 %.1f us, longest %.1f us\n", name, us[100], us[180],
+                us.back());
+  }
 }
 
 // The segment is a right-angled triangle whose longest edge reaches from (-1, 0, 0) to (1, 0, 0), so that its

@@ -111,13 +111,13 @@ enum class From { kOwnState, kProgramsState };
 
 class Beside {
  public:
-  Beside(const HapticModel& model, From from)
+  Beside(const test::Setup& model, From from)
       : model_(model),
-        contact_{model.hand, model.trees, model.object, model.contact},
+        contact_{model.hand, model.trees, model.object, model.parameters.contact},
         from_(from),
-        reference_(model.hand, model.object.mesh(), model.contact),
+        reference_(model.hand, model.object.mesh(), model.parameters.contact),
         gdp_(contact_),
-        step_(model) {
+        step_(model, model.parameters) {
     model.hand.poses(model.hand.parameters().open_angle, force_.hcp_before);
   }
 
@@ -131,9 +131,7 @@ class Beside {
     HandPoses poses;
     model_.hand.poses(hcp, poses);
     const Status status = advance_gdp(contact_, hcp, poses, measured, gdp_);
-    compute_command({model_.hand, model_.force, model_.smoothing, model_.limits, 1.0 / model_.rate_hz,
-                     model_.stabiliser, model_.oscillation},
-                    gdp_, poses, false, force_);
+    compute_command(model_.parameters, gdp_, poses, false, force_);
     now_ = values_of(gdp_);
     if (has(status, Status::kSearchExhausted)) {  // it stops early, and says so: nothing to compare but that
                                                   // it is clear
@@ -142,9 +140,9 @@ class Beside {
       for (int s = 0; s < kPalm; ++s) {
         const int d = digit_of_segment(s);
         ASSERT_GE(reference_.gap(d, s % kSegmentsPerDigit, angles(now_, d), 1e-3),
-                  model_.contact.margin - kStopBand);
+                  model_.parameters.contact.margin - kStopBand);
       }
-      step(model_, Sample{time_ += 1.0 / model_.rate_hz, hcp}, step_);
+      step(model_, model_.parameters, Sample{time_ += 1.0 / model_.parameters.rate_hz, hcp}, step_);
       return;
     }
     reference_.tick(hcp, measured);
@@ -174,7 +172,7 @@ class Beside {
   }
 
   void check_digit(int d) {
-    const double margin = model_.contact.margin;
+    const double margin = model_.parameters.contact.margin;
     const DigitAngles ours = angles(now_, d);
     bool record = false;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
@@ -207,7 +205,7 @@ class Beside {
 
   /// Whether both stopped in the same place with the same records. Where they need not: counts it, false.
   bool agree_on_stops(int d) {
-    const double margin = model_.contact.margin;
+    const double margin = model_.parameters.contact.margin;
     double was = 0.0;
     double is = 0.0;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
@@ -402,8 +400,9 @@ class Beside {
 
   void check_command() {
     // The same records: what rounding leaves, and the differences' own error (h^2 / 6 = 2e-11 of a force).
-    const ReferenceCommand same = reference_.command(now_, model_.force, model_.limits);
-    const ReferenceCommand own = reference_.command(reference_.state, model_.force, model_.limits);
+    const ReferenceCommand same = reference_.command(now_, model_.parameters.force, model_.parameters.limits);
+    const ReferenceCommand own =
+        reference_.command(reference_.state, model_.parameters.force, model_.parameters.limits);
     for (int s = 0; s < kPalm; ++s) {
       ASSERT_NEAR(force_.segment[idx(s)].sent, same.force[idx(s)], 1e-9) << segment_name(s);
       out.force = std::max(out.force, std::abs(own.force[idx(s)] - same.force[idx(s)]));
@@ -416,8 +415,8 @@ class Beside {
 
   /// The whole step says the same as its stages.
   void check_step(const JointArray& hcp, Status status) {
-    time_ += 1.0 / model_.rate_hz;
-    const Status whole = step(model_, Sample{time_, hcp}, step_);
+    time_ += 1.0 / model_.parameters.rate_hz;
+    const Status whole = step(model_, model_.parameters, Sample{time_, hcp}, step_);
     const Snapshot& s = step_.snapshot();
     ASSERT_EQ(s.gdp_angle, now_.angle);
     ASSERT_EQ(s.hcp_angle, hcp);
@@ -440,12 +439,12 @@ class Beside {
       ASSERT_NEAR(segment.depth, std::max(0.0, depth - record.offset), record.along ? 1e-12 : 1e-13);
       const double tangential = record.n_c.cross(p_gdp - p_hcp).norm();
       ASSERT_NEAR(segment.slid, tangential, 1e-12);
-      slid = slid || tangential > model_.contact.slid_distance;
+      slid = slid || tangential > model_.parameters.contact.slid_distance;
     }
     ASSERT_EQ(has(whole, Status::kSlid), slid);
   }
 
-  const HapticModel& model_;
+  const test::Setup& model_;
   ContactModel contact_;
   From from_;
   ReferenceGdp reference_;
@@ -498,8 +497,8 @@ std::vector<Place> places() {
           {"sheet", sheet}};
 }
 
-HapticModel model_before(const TriangleMesh& object, Handedness side = Handedness::kRight) {
-  HapticModel model(close_hand(side), ObjectModel(object));
+test::Setup model_before(const TriangleMesh& object, Handedness side = Handedness::kRight) {
+  test::Setup model(close_hand(side), ObjectModel(object));
   test::turn_limits_off(model);
   return model;
 }
@@ -556,13 +555,14 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverRecordingsGivenByHand) {
   if (files == nullptr) GTEST_SKIP() << "PHALANX_REFERENCE_MOTION names no recording";
   std::vector<Place> objects = places();
   if (const char* mesh = std::getenv("PHALANX_REFERENCE_MESH")) {
-    objects = {{mesh, test::moved(import_mesh(mesh, 0.06), test::at(0.0, -0.05, -0.045))}};
+    objects = {
+        {mesh, test::moved(import_and_check(mesh, {.size = 0.06}).mesh, test::at(0.0, -0.05, -0.045))}};
   }
   std::stringstream list(files);
   for (std::string file; std::getline(list, file, ':');) {
     for (const Place& place : objects) {
       SCOPED_TRACE(file + " before " + place.name);
-      const HapticModel model = model_before(place.object);
+      const test::Setup model = model_before(place.object);
       Beside beside(model, From::kOwnState);
       for (const JointArray& q : recorded(file, model.hand.parameters()))
         ASSERT_NO_FATAL_FAILURE(beside.tick(q));
@@ -577,7 +577,7 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) {
   Compared all;
   for (const Place& place : places()) {
     SCOPED_TRACE(place.name);
-    const HapticModel model = model_before(place.object);
+    const test::Setup model = model_before(place.object);
     for (int seed = 1; seed <= seeds; ++seed) {
       SCOPED_TRACE(::testing::Message() << "seed " << seed);
       Beside beside(model, From::kOwnState);
@@ -599,9 +599,9 @@ TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
   for (std::size_t p = 0; p < all.size(); ++p) {
     for (int seed = 1; seed <= seeds; ++seed) {
       SCOPED_TRACE(::testing::Message() << all[p].name << " seed " << seed);
-      HapticModel model = model_before(all[p].object, p % 2 == 0 ? Handedness::kRight : Handedness::kLeft);
-      if (p % 2 == 1) model.limits.fingertip_force_enabled = true;
-      if (p == 3) model.contact.normal = ForceNormal::kContact;
+      test::Setup model = model_before(all[p].object, p % 2 == 0 ? Handedness::kRight : Handedness::kLeft);
+      if (p % 2 == 1) model.parameters.limits.fingertip_force_enabled = true;
+      if (p == 3) model.parameters.contact.normal = ForceNormal::kContact;
       Beside beside(model, From::kProgramsState);
       test::Random random(static_cast<std::uint64_t>(seed));
       const HandParameters& hand = model.hand.parameters();

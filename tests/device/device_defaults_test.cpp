@@ -5,7 +5,7 @@
 #include "phalanx/device/calibration.h"
 #include "phalanx/device/device.h"
 #include "phalanx/device/exoskeleton.h"
-#include "phalanx/device/press_plan.h"
+#include "phalanx/simulation/press_plan.h"
 
 namespace phalanx {
 namespace {

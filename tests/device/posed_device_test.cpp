@@ -333,19 +333,22 @@ class PosedInStation : public testing::Test {
  protected:
   void SetUp() override {
     scene_ = load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", {});
-    motion_ = build_motion(scene_);
-    StationModel made = make_station_model(scene_, "");
+    const ResolvedScene scene = resolve(scene_, {.device = true, .motion = true});
+    motion_ = scene.motion.value();
+    const StationModel made = make_station_model(scene, "");
     auto posed = std::make_unique<PosedDevice>(PosedDeviceSettings{
-        .hand = made.model->hand.parameters(), .start = open(), .host_rate_hz = scene_.rate_hz});
+        .hand = made.model->hand.parameters(), .start = open(), .host_rate_hz = scene_.parameters.rate_hz});
     posed_ = posed.get();
     watched_ = std::make_unique<WatchedDevice>(std::move(posed));
     watched_->open();
     StationOptions options;
     options.ask_for_realtime = false;
     options.safety = made.safety;
-    options.witnesses = make_witnesses(scene_, watched_->info().channels, made.safety);
-    ChannelMap map = make_channel_map(scene_, watched_->info().channels, made.model->hand.parameters());
-    station_ = std::make_unique<Station>(std::move(made.model), *watched_, std::move(map), options, clock_);
+    const Exoskeleton& exoskeleton = scene.exoskeleton.value();
+    options.witnesses = motor_witnesses(exoskeleton, watched_->info().channels, made.safety.joint_torque);
+    ChannelMap map(watched_->info().channels, followers_of(exoskeleton), made.model->hand.parameters());
+    station_ =
+        std::make_unique<Station>(made.model, made.parameters, *watched_, std::move(map), options, clock_);
     station_->start();
   }
 

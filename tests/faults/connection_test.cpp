@@ -140,11 +140,11 @@ TEST(Faults, AStalledHostLeavesZeroTorque) {
                         1e3 * torque_before(rows, latch), ms(fade.zero_age), o.faults.front()));
 }
 
-const Registered kKilled("AKilledHostLeavesZeroTorque", "",
-                         {.events = {{2.4, [](TwoProcesses& both) { both.host().signal(SIGKILL); }}},
-                          .seconds = 3.4});
-TEST(Faults, AKilledHostLeavesZeroTorque) {
-  const Outcome& o = outcome("AKilledHostLeavesZeroTorque");
+void freeze_host(TwoProcesses& both) { both.host().signal(SIGSTOP); }
+void kill_host(TwoProcesses& both) { both.host().signal(SIGKILL); }
+
+/// The host spoke no more from some moment of contact on.
+void expect_zero_torque_for_good(const Outcome& o, const std::string& fault) {
   expect_sane(o);
   const ControllerRows& rows = o.logs.controller;
   const std::size_t latch = first_row(rows, 0, is_latched);
@@ -156,10 +156,85 @@ TEST(Faults, AKilledHostLeavesZeroTorque) {
   for (std::size_t i = latch; i < rows.size(); ++i)
     ASSERT_EQ(rows[i].largest, 0.0) << "tick " << rows[i].tick;
   EXPECT_EQ(o.host_exit, 128 + SIGKILL);
-  print_row("host killed mid-contact (SIGKILL)", "controller at zero by 20 ms from its last fresh step",
+  print_row(fault, "controller at zero by 20 ms from its last fresh step",
             fmt::format(
                 "from {:.0f} mNm to zero at {:.0f} ms of age; `{}`; zero for the {} ticks until the end",
                 1e3 * torque_before(rows, latch), ms(fade.zero_age), rows[latch].fault, rows.size() - latch));
+}
+
+const Registered kFrozen("AFrozenHostLeavesZeroTorque", "",
+                         {.events = {{2.4, freeze_host}, {3.3, kill_host}}, .seconds = 3.4});
+TEST(Faults, AFrozenHostLeavesZeroTorque) {
+  expect_zero_torque_for_good(outcome("AFrozenHostLeavesZeroTorque"), "host frozen mid-contact (SIGSTOP)");
+}
+
+const Registered kKilled("AKilledHostLeavesZeroTorque", "", {.events = {{2.4, kill_host}}, .seconds = 3.4});
+TEST(Faults, AKilledHostLeavesZeroTorque) {
+  expect_zero_torque_for_good(outcome("AKilledHostLeavesZeroTorque"), "host killed mid-contact (SIGKILL)");
+}
+
+constexpr const char* kGloveTest = "AGloveHoldsTheFingerOfAHostThatIsGoneUntilItsFirmwareLetsGo";
+constexpr double kGone = 2.8;      ///< when the host is frozen or killed [s]
+constexpr double kWatchdog = 0.2;  ///< of the firmware that has one [s]
+const std::vector<std::string> kStated = {"--watchdog-ms", "200"};
+Scenario with_glove(bool watchdog, void (*end)(TwoProcesses&)) {
+  return {.host = watchdog ? kStated : std::vector<std::string>{},
+          .glove_watchdog_ms = watchdog ? "200" : "0",
+          .events = {{kGone, end}, {3.8, kill_host}},
+          .seconds = 3.9};
+}
+const Registered kFrozenHolds(kGloveTest, "frozen", with_glove(false, freeze_host));
+const Registered kKilledHolds(kGloveTest, "killed", with_glove(false, kill_host));
+const Registered kFrozenLetsGo(kGloveTest, "frozen, watchdog", with_glove(true, freeze_host));
+const Registered kKilledLetsGo(kGloveTest, "killed, watchdog", with_glove(true, kill_host));
+TEST(Faults, AGloveHoldsTheFingerOfAHostThatIsGoneUntilItsFirmwareLetsGo) {
+  constexpr double kLoops = 0.025;  // two of the firmware's, and what the test reads late [s]
+  for (const std::string how : {"frozen", "killed"}) {
+    SCOPED_TRACE(how);
+    const std::vector<GloveRow>& holds = outcome(kGloveTest, how).logs.glove;
+    const std::vector<GloveRow>& lets_go = outcome(kGloveTest, how + ", watchdog").logs.glove;
+    constexpr const char* kTold = "this device has no watchdog";
+    EXPECT_NE(outcome(kGloveTest, how).host_errors.find(kTold), std::string::npos);
+    EXPECT_EQ(outcome(kGloveTest, how + ", watchdog").host_errors.find(kTold), std::string::npos);
+    ASSERT_FALSE(holds.empty());
+    ASSERT_FALSE(lets_go.empty());
+    ASSERT_GT(holds.back().time, kGone + 0.9);
+    ASSERT_GT(lets_go.back().time, kGone + 0.9);
+    ASSERT_NE(holds.back().held, "A0B0C0D0E0") << "it held nothing";
+    for (const GloveRow& row : holds)
+      EXPECT_TRUE(row.time <= kGone + kLoops || row.held == holds.back().held) << row.time;
+    for (const GloveRow& row : lets_go) {
+      const bool before = row.time > kGone + kLoops && row.time < kGone + kWatchdog - kLoops;
+      const bool after = row.time > kGone + kWatchdog + kLoops;
+      EXPECT_TRUE(!before || row.held == holds.back().held) << row.time << ": " << row.held;
+      EXPECT_TRUE(!after || row.held == "A0B0C0D0E0") << row.time << ": " << row.held;
+    }
+    print_row(
+        fmt::format("glove's host {} mid-contact", how),
+        "without a watchdog in its firmware it is refused for a patient's session",
+        fmt::format("the stops {} held for the {:.1f} s until the end; with a watchdog of {:.0f} ms let go "
+                    "in that time",
+                    holds.back().held, holds.back().time - kGone, 1e3 * kWatchdog));
+  }
+}
+
+constexpr const char* kPatientTest = "AGloveServesAPatientOnlyIfItsFirmwareIsSaidToLetGo";
+const Registered kRefusedPatient(kPatientTest, "no watchdog",
+                                 {.host = {"--profile", "small-woman"},
+                                  .glove_watchdog_ms = "0",
+                                  .seconds = 1.5});
+const Registered kServedPatient(kPatientTest, "watchdog",
+                                {.host = {"--profile", "small-woman", kStated[0], kStated[1]},
+                                 .glove_watchdog_ms = "200",
+                                 .seconds = 1.5});
+TEST(Faults, AGloveServesAPatientOnlyIfItsFirmwareIsSaidToLetGo) {
+  const Outcome& refused = outcome(kPatientTest, "no watchdog");
+  EXPECT_EQ(refused.host_exit, 2);
+  EXPECT_NE(refused.host_errors.find("hand.profile = small-woman: a patient's session"), std::string::npos)
+      << refused.host_errors;
+  EXPECT_EQ(std::count(refused.host_errors.begin(), refused.host_errors.end(), '\n'), 1);
+  const Outcome& served = outcome(kPatientTest, "watchdog");
+  EXPECT_EQ(served.host_exit, 0) << served.host_output << served.host_errors;
 }
 
 void second_host(TwoProcesses& both) {

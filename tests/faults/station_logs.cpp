@@ -119,13 +119,15 @@ HostRow host_row(const CsvReader& csv, const std::vector<std::string>& joints) {
 
 }  // namespace
 
-StationLogs read_logs(const std::filesystem::path& controller, const std::filesystem::path& host) {
+StationLogs read_logs(const std::filesystem::path& folder) {
   StationLogs logs;
-  CsvReader device(controller);
+  CsvReader device(folder / "controller.csv");
   const std::vector<std::string> joints = joints_of(device);
   while (device.next()) logs.controller.push_back(controller_row(device, joints));
-  CsvReader station(host);
+  CsvReader station(folder / "host.csv");
   while (station.next()) logs.host.push_back(host_row(station, joints));
+  CsvReader glove(folder / "glove.csv");
+  while (glove.next()) logs.glove.push_back({.time = glove.number("time_s"), .held = glove.text("held")});
   return logs;
 }
 

@@ -38,14 +38,21 @@ struct HostRow {
   std::vector<double> torque;  ///< of the device's joints, in the order of the controller's log [Nm]
 };
 
+/// `glove_program`
+struct GloveRow {
+  double time = 0.0;  ///< [s]
+  std::string held;   ///< "A0B812C0D0E0": what the servos hold
+};
+
 struct StationLogs {
   std::vector<ControllerRow> controller;
   std::vector<HostRow> host;
+  std::vector<GloveRow> glove;
 };
 
-/// A log that is not there is empty. @throws std::runtime_error where a column is missing
-[[nodiscard]] StationLogs read_logs(const std::filesystem::path& controller,
-                                    const std::filesystem::path& host);
+/// "controller.csv", "host.csv" and "glove.csv". One that is not there is empty. @throws std::runtime_error
+/// where a column is missing
+[[nodiscard]] StationLogs read_logs(const std::filesystem::path& folder);
 
 /// Index of the first row from `from` on that `is`; the number of rows if there is none.
 template <class Row, class Is>

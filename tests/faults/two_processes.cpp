@@ -65,14 +65,20 @@ std::optional<int> TwoProcesses::wait_for(ChildProcess& process) {
   return process.wait(kHang);
 }
 
-void TwoProcesses::start_controller() {
+std::vector<std::string> TwoProcesses::device_command() const {
+  if (!scenario_.glove_watchdog_ms.empty())
+    return {PHALANX_GLOVE_PROGRAM, path("glove.csv").string(), scenario_.glove_watchdog_ms};
   std::vector<std::string> command{program(),      "device", "simulate",
                                    "grasp_teapot", "--log",  path("controller.csv").string()};
   append(command, scenario_.pty ? std::vector<std::string>{"--pty"}
                                 : std::vector<std::string>{"--udp", "127.0.0.1:0"});
   append(command, scenario_.controller);
   append(command, scenario_.both);
-  controller_ = start(command, "controller.txt");
+  return command;
+}
+
+void TwoProcesses::start_controller() {
+  controller_ = start(device_command(), "controller.txt");
   const std::string listening = "listening on ";
   const double give_up = clock_.now() + kEndWithin;
   std::string said;
@@ -85,7 +91,7 @@ void TwoProcesses::start_controller() {
   begin_ = clock_.now();
   if (!said.starts_with(listening)) throw std::runtime_error("the controller says: " + said);
   address_ = said.substr(listening.size(), said.find('\n') - listening.size());
-  if (scenario_.pty) return;
+  if (scenario_.pty || !scenario_.glove_watchdog_ms.empty()) return;
   controller_port_ = static_cast<std::uint16_t>(std::stoul(address_.substr(address_.rfind(':') + 1)));
   if (!scenario_.middle) return;
   middle_ = std::make_unique<UdpMiddle>(controller_port_);
@@ -129,7 +135,7 @@ Outcome TwoProcesses::go() {
 }
 
 void TwoProcesses::gather() {
-  outcome_.logs = read_logs(path("controller.csv"), path("host.csv"));
+  outcome_.logs = read_logs(folder_.path());
   outcome_.controller_output = controller_->output();
   outcome_.controller_errors = controller_->errors();
   outcome_.host_output = host_->output();

@@ -32,6 +32,7 @@ struct Scenario {
   std::vector<std::string> host = {};        ///< further arguments
   std::vector<std::string> both = {};        ///< further arguments
   bool pty = false;                          ///< a pseudo-terminal is the wire; else UDP
+  std::string glove_watchdog_ms = {};        ///< glove_program stands in the controller's place; empty: no
   bool middle = false;                       ///< UDP with the test in the middle
   std::vector<Event> events = {};            ///< in order
   double seconds = 4.2;                      ///< then the host is asked to end, then the controller
@@ -68,6 +69,8 @@ class TwoProcesses {
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   /// Lets so much time pass [s].
   void pass(double seconds) { clock_.advance(seconds); }
+  /// The host's loop wakes up so much too late from here on [s].
+  void delay_loop(double seconds) { clock_.delay_loop(seconds); }
   /// Starts a further program under the same clock. @throws std::runtime_error
   [[nodiscard]] std::unique_ptr<ChildProcess> start(const std::vector<std::string>& command,
                                                     const std::string& output);
@@ -76,6 +79,7 @@ class TwoProcesses {
   std::optional<int> wait_for(ChildProcess& process);
 
  private:
+  [[nodiscard]] std::vector<std::string> device_command() const;
   void start_controller();
   void start_host();
   void gather();

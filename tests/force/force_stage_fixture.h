@@ -18,9 +18,10 @@ inline constexpr int kThumb = 0;
 class ForceStageFixture {
  public:
   ForceStageFixture() {
-    limits.fingertip_force_enabled = false;
-    limits.joint_torque_enabled = false;
-    limits.torque_rate_enabled = false;
+    parameters.stabiliser.method = Stabiliser::kNone;
+    parameters.limits.fingertip_force_enabled = false;
+    parameters.limits.joint_torque_enabled = false;
+    parameters.limits.torque_rate_enabled = false;
     hand_.poses(hand_.parameters().open_angle, hcp);
     state.hcp_before = hcp;
   }
@@ -41,10 +42,7 @@ class ForceStageFixture {
   void move_hcp(const Vec3& by) {
     for (Pose& segment : hcp.digit[idx(kIndex)].segment) segment.p += by;
   }
-  Status tick() {
-    return compute_command({hand_, law, smoothing, limits, period, stabiliser, oscillation}, contacts_, hcp,
-                           stale, state);
-  }
+  Status tick() { return compute_command(parameters, contacts_, hcp, stale, state); }
   Status ticks(int count) {
     Status status = Status::kOk;
     for (int i = 0; i < count; ++i) status = tick();
@@ -60,22 +58,16 @@ class ForceStageFixture {
     return state.torque[idx(joint_index(digit, i))];
   }
 
-  ForceLawParameters law{.law = ForceLaw::kHooke, .stiffness = 500.0};
-  SmoothingParameters smoothing;
-  LimitParameters limits;
-  StabiliserParameters stabiliser{.method = Stabiliser::kNone};
-  OscillationParameters oscillation;
+  HapticParameters parameters;  ///< Hooke's law of 500 N/m at 200 Hz
   ForceState state;
   HandPoses hcp;
   bool stale = false;
-  double period = kTick;
 
  private:
   HandModel hand_ = simple_hand();
   SegmentTrees trees_ = make_segment_trees(hand_);
   ObjectModel object_{moved(make_box(Vec3(0.01, 0.01, 0.01), 12), at(10.0, 0.0, 0.0))};
-  ContactParameters parameters_;
-  GdpState contacts_{ContactModel{hand_, trees_, object_, parameters_}};
+  GdpState contacts_{ContactModel{hand_, trees_, object_, parameters.contact}};
 };
 
 }  // namespace phalanx::test

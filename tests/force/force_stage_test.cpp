@@ -73,7 +73,8 @@ TEST(LawSlope, IsTheDifferenceQuotientOfTheForceAtRest) {
 // 500 N/m with 2 N s/m are 1 N + 0.4 N. At rest again, 1 N; opening at 0.1 m/s, 0.8 N.
 TEST(ForceStage, AFingerThatMovesIntoTheObjectClosesWithAPositiveSpeed) {
   Stage stage;
-  stage.law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
+  stage.parameters.force = {
+      .law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
   stage.press(kDistal, 2e-3);
   stage.tick();
   EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12) << "nothing is known of the tick before the first";
@@ -93,7 +94,7 @@ TEST(ForceStage, AFingerThatMovesIntoTheObjectClosesWithAPositiveSpeed) {
 // the rest as much in the second. Without contact it forgets.
 TEST(ForceStage, TheClosingSpeedIsLowPassedAndForgottenWithTheContact) {
   Stage stage;
-  stage.law.velocity_lowpass_hz = 30.0;
+  stage.parameters.force.velocity_lowpass_hz = 30.0;
   stage.press(kDistal, 2e-3);
   stage.tick();
   const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
@@ -111,7 +112,7 @@ TEST(ForceStage, TheClosingSpeedIsLowPassedAndForgottenWithTheContact) {
 // The law's own damper takes the low-passed speed: 1 N + 2 N s/m x 0.2 m/s x 0.61034.
 TEST(ForceStage, TheLawTakesTheLowPassedSpeed) {
   Stage stage;
-  stage.law = {
+  stage.parameters.force = {
       .law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 30.0};
   stage.press(kDistal, 2e-3);
   stage.tick();
@@ -125,7 +126,8 @@ TEST(ForceStage, TheLawTakesTheLowPassedSpeed) {
 // force. Along that one it would be 0.16 m/s.
 TEST(ForceStage, TheClosingSpeedIsAlongTheTrianglesNormal) {
   Stage stage;
-  stage.law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
+  stage.parameters.force = {
+      .law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
   stage.press(kDistal, 2e-3).force_normal = Vec3(0.6, 0.8, 0.0);
   stage.tick();
   stage.move_hcp({0.0, -1e-3, 0.0});
@@ -138,7 +140,8 @@ TEST(ForceStage, TheClosingSpeedIsAlongTheTrianglesNormal) {
 TEST(ForceStage, TheFirstTickOfAllKnowsNoSpeed) {
   Stage stage;
   stage.state = {};
-  stage.law = {.law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
+  stage.parameters.force = {
+      .law = ForceLaw::kKelvinVoigt, .stiffness = 500.0, .damping = 2.0, .velocity_lowpass_hz = 1e6};
   stage.press(kDistal, 2e-3, Vec3::UnitZ());
   stage.tick();
   EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
@@ -148,7 +151,7 @@ TEST(ForceStage, TheFirstTickOfAllKnowsNoSpeed) {
 TEST(ForceStage, AContactThatWasNeverFeltLeavesNothingBehind) {
   for (const int k : {kProximal, 1, kDistal}) {
     Stage stage;
-    stage.law.velocity_lowpass_hz = 30.0;
+    stage.parameters.force.velocity_lowpass_hz = 30.0;
     const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, k))];
     stage.press(k, 0.0);
     stage.tick();
@@ -167,8 +170,8 @@ TEST(ForceStage, AContactThatWasNeverFeltLeavesNothingBehind) {
 TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
   for (const Stabiliser method : {Stabiliser::kKelvinVoigt, Stabiliser::kPassivity}) {
     Stage stage;
-    stage.law.velocity_lowpass_hz = 30.0;
-    stage.stabiliser = {.method = method, .damping = 4.0, .passivity_damping_max = 50.0};
+    stage.parameters.force.velocity_lowpass_hz = 30.0;
+    stage.parameters.stabiliser = {.method = method, .damping = 4.0, .passivity_damping_max = 50.0};
     stage.press(kDistal, 2e-3);
     stage.tick();
     EXPECT_NEAR(stage.sent(kDistal), 1.0, 1e-12);
@@ -183,8 +186,8 @@ TEST(ForceStage, KelvinVoigtTakesTheLowPassedSpeedAndPassivityTheSteps) {
 // At 1 kHz smoothing's 20 N/s are 0.02 N a step.
 TEST(ForceStage, TheStabiliserTakesTheModelsPeriod) {
   Stage stage;
-  stage.period = 1e-3;
-  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.parameters.rate_hz = 1000.0;
+  stage.parameters.stabiliser.method = Stabiliser::kSmoothing;
   stage.press(kDistal, 2e-3);
   for (int n = 1; n <= 3; ++n) {
     stage.tick();
@@ -215,7 +218,7 @@ TEST(ForceStage, NoMethodPushesForASilentContactOrAStaleHand) {
     if (method == Stabiliser::kSmoothing || method == Stabiliser::kLowPass) continue;
     for (const bool silent : {false, true}) {
       Stage stage;
-      stage.stabiliser.method = method;
+      stage.parameters.stabiliser.method = method;
       stage.press(kDistal, 2e-3);
       stage.tick();
       EXPECT_GT(stage.sent(kDistal), 0.0) << static_cast<int>(method);
@@ -232,8 +235,8 @@ TEST(ForceStage, NoMethodPushesForASilentContactOrAStaleHand) {
 // the status says so.
 TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
   Stage overflow;
-  overflow.limits.fingertip_force_enabled = true;
-  overflow.law = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
+  overflow.parameters.limits.fingertip_force_enabled = true;
+  overflow.parameters.force = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
   overflow.press(kDistal, 1e110);
   EXPECT_TRUE(has(overflow.tick(), Status::kCommandNotFinite));
   EXPECT_EQ(overflow.sent(kDistal), 0.0);
@@ -241,7 +244,7 @@ TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
 
   for (const bool limited : {false, true}) {
     Stage nowhere;
-    nowhere.limits.joint_torque_enabled = nowhere.limits.torque_rate_enabled = limited;
+    nowhere.parameters.limits.joint_torque_enabled = nowhere.parameters.limits.torque_rate_enabled = limited;
     nowhere.press(kDistal, 2e-3).p_S.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(has(nowhere.tick(), Status::kCommandNotFinite));
     for (int i = 0; i < kJointsPerDigit; ++i) EXPECT_EQ(nowhere.torque(i), 0.0) << i;
@@ -258,7 +261,7 @@ TEST(ForceStage, WhatIsNotFiniteIsNotSentAndSaid) {
 // What is not felt turns at once: after a contact without depth along +Y the first force goes along +X.
 TEST(ForceStage, ADirectionThatIsNotFeltIsNotKept) {
   Stage stage;
-  stage.stabiliser.method = Stabiliser::kDirection;
+  stage.parameters.stabiliser.method = Stabiliser::kDirection;
   stage.press(kDistal, 0.0, Vec3::UnitY());
   stage.tick();
   stage.press(kDistal, 2e-3, Vec3::UnitX());
@@ -270,7 +273,7 @@ TEST(ForceStage, ADirectionThatIsNotFeltIsNotKept) {
 // forgotten.
 TEST(ForceStage, TheNormalOutlivesTheContactAsLongAsAForceIsSent) {
   Stage stage;
-  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.parameters.stabiliser.method = Stabiliser::kSmoothing;
   stage.press(kDistal, 2e-3);
   stage.ticks(3);  // 0.3 N
   const SegmentForce& force = stage.state.segment[idx(segment_index(test::kIndex, kDistal))];
@@ -308,7 +311,7 @@ TEST(ForceStage, ASegmentThatLetsGoBesideOneThatPressesHasNoNormal) {
 // smoothing sends 0.1 N more each tick, 10 mm from the knuckle. The thumb's 0.05 N are 75 mm from its own.
 TEST(ForceStage, ADigitLeavesTheNextOneAlone) {
   Stage stage;
-  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.parameters.stabiliser.method = Stabiliser::kSmoothing;
   stage.press(kDistal, 0.1e-3, Vec3::UnitY(), kThumb);
   stage.press(kProximal, 2e-3);
   stage.ticks(2);
@@ -326,7 +329,7 @@ TEST(ForceStage, ADigitLeavesTheNextOneAlone) {
 // said.
 TEST(ForceStage, TheDigitsSumIsCappedAndSaid) {
   Stage stage;
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   stage.press(kDistal, 8e-3);
   stage.press(kProximal, 8e-3);
   const Status status = stage.tick();
@@ -343,8 +346,8 @@ TEST(ForceStage, TheDigitsSumIsCappedAndSaid) {
 // become 5/7 of 5 and 2 N. After it alone the two would come to other shares.
 TEST(ForceStage, TheDigitsSumIsCappedBeforeTheStabiliserToo) {
   Stage stage;
-  stage.limits.fingertip_force_enabled = true;
-  stage.stabiliser.method = Stabiliser::kSmoothing;
+  stage.parameters.limits.fingertip_force_enabled = true;
+  stage.parameters.stabiliser.method = Stabiliser::kSmoothing;
   stage.press(kDistal, 16e-3);
   stage.press(kProximal, 4e-3);
   stage.ticks(100);
@@ -357,16 +360,16 @@ TEST(ForceStage, TheDigitsSumIsCappedBeforeTheStabiliserToo) {
 TEST(ForceStage, ACapThatTakesLessThanAMicronewtonHasNotActed) {
   for (const double beyond : {0.5e-6, 1.5e-6}) {
     Stage stage;
-    stage.limits.fingertip_force_enabled = true;
+    stage.parameters.limits.fingertip_force_enabled = true;
     stage.press(kDistal, 10e-3 + beyond / 500.0);
     EXPECT_EQ(has(stage.tick(), Status::kForceLimited), beyond > 1e-6) << beyond;
     EXPECT_NEAR(stage.sent(kDistal), 5.0, 1e-12) << beyond;
   }
   // 1 um into 2 N/m are 2 uN, of which a cap of 1 uN takes one.
   Stage stage;
-  stage.limits.fingertip_force_enabled = true;
-  stage.limits.fingertip_force = 1e-6;
-  stage.law.stiffness = 2.0;
+  stage.parameters.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force = 1e-6;
+  stage.parameters.force.stiffness = 2.0;
   stage.press(kDistal, 1e-6);
   EXPECT_FALSE(has(stage.tick(), Status::kForceLimited)) << "a micronewton itself";
   EXPECT_EQ(stage.sent(kDistal), 1e-6);
@@ -376,11 +379,11 @@ TEST(ForceStage, ACapThatTakesLessThanAMicronewtonHasNotActed) {
 // the cap leaves alone.
 TEST(ForceStage, ACapThatIsOffOrJustReachedLeavesADampedContactAlone) {
   Stage stage;
-  stage.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
+  stage.parameters.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
   stage.press(kDistal, 12e-3);
   EXPECT_EQ(stage.tick(), Status::kOk);
   EXPECT_NEAR(stage.sent(kDistal), 6.0, 1e-12);
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   stage.press(kDistal, 10e-3);
   EXPECT_EQ(stage.tick(), Status::kOk);
   EXPECT_EQ(stage.sent(kDistal), 5.0);
@@ -389,10 +392,10 @@ TEST(ForceStage, ACapThatIsOffOrJustReachedLeavesADampedContactAlone) {
 // A damper may bring a contact above the cap; smoothing keeps below the law by itself.
 TEST(ForceStage, AMethodThatAddsToTheLawIsCappedOnEachContactAgain) {
   Stage stage;
-  stage.limits.fingertip_force_enabled = true;
-  stage.limits.fingertip_force = 1.2;
-  stage.law.velocity_lowpass_hz = 1e6;
-  stage.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
+  stage.parameters.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force = 1.2;
+  stage.parameters.force.velocity_lowpass_hz = 1e6;
+  stage.parameters.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
   stage.press(kDistal, 2e-3);
   stage.tick();
   stage.move_hcp({0.0, -1e-3, 0.0});
@@ -411,9 +414,9 @@ TEST(ForceStage, AMethodThatAddsToTheLawIsCappedOnEachContactAgain) {
 // Two times 2 N, and two times 2.8 N with a damper of 4 N s/m at 0.2 m/s: each within 5 N, together 5.6 N.
 TEST(ForceStage, ASumThatTheStabiliserBringsAboveTheCapIsCappedAndSaid) {
   Stage stage;
-  stage.limits.fingertip_force_enabled = true;
-  stage.law.velocity_lowpass_hz = 1e6;
-  stage.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
+  stage.parameters.limits.fingertip_force_enabled = true;
+  stage.parameters.force.velocity_lowpass_hz = 1e6;
+  stage.parameters.stabiliser = {.method = Stabiliser::kKelvinVoigt, .damping = 4.0};
   stage.press(kDistal, 4e-3);
   stage.press(kProximal, 4e-3);
   EXPECT_FALSE(has(stage.tick(), Status::kForceLimited));
@@ -430,9 +433,9 @@ TEST(ForceStage, ASumThatTheStabiliserBringsAboveTheCapIsCappedAndSaid) {
 // at rest. What would be sent without the cap is looked at, but does not move the proxy.
 TEST(ForceStage, TheCouplingSettlesUnderTheCapAsByHand) {
   Stage stage;
-  stage.limits.fingertip_force_enabled = true;
-  stage.limits.fingertip_force = 1.0;
-  stage.stabiliser = {
+  stage.parameters.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force = 1.0;
+  stage.parameters.stabiliser = {
       .method = Stabiliser::kVirtualCoupling, .coupling_stiffness = 1000.0, .coupling_damping = 4.0};
   stage.press(kDistal, 4e-3);
   stage.ticks(200);
@@ -442,14 +445,14 @@ TEST(ForceStage, TheCouplingSettlesUnderTheCapAsByHand) {
 // 75 mm x 4 N = 0.3 Nm wanted. A limit of 0.2 Nm, and a rate of 10 Nm/s: 0.05 Nm a tick, down and up alike.
 TEST(ForceStage, TorqueIsLimitedAndRateLimitedBothWaysAndEachIsSaid) {
   Stage stage;
-  stage.limits.joint_torque_enabled = true;
-  stage.limits.joint_torque = 0.2;
+  stage.parameters.limits.joint_torque_enabled = true;
+  stage.parameters.limits.joint_torque = 0.2;
   stage.press(kDistal, 8e-3);
   EXPECT_TRUE(has(stage.tick(), Status::kTorqueLimited));
   EXPECT_NEAR(stage.torque(0), -0.2, 1e-15);
   stage.press(kDistal, 1e-3);
   EXPECT_EQ(stage.tick(), Status::kOk);
-  stage.limits.torque_rate_enabled = true;
+  stage.parameters.limits.torque_rate_enabled = true;
   for (const double sign : {1.0, -1.0}) {
     stage.press(kDistal, 1e-12, sign * Vec3::UnitY());
     stage.ticks(20);
@@ -475,7 +478,7 @@ TEST(ForceStage, TorqueIsLimitedAndRateLimitedBothWaysAndEachIsSaid) {
 TEST(ForceStage, ASwingIsWhatTheParametersSay) {
   for (const double swing : {0.5, 3.0}) {
     Stage stage;
-    stage.oscillation.swing = swing;
+    stage.parameters.oscillation.swing = swing;
     Status any = Status::kOk;
     for (int n = 0; n < 200; ++n) {
       stage.press(kDistal, n % 20 < 10 ? 2e-3 : 6e-3);
@@ -523,7 +526,7 @@ TEST(ForceStage, AFreeDigitIsWatchedUntilTheVerdictOfEachSegmentHasEnded) {
 // although the segment that is looked at last does not swing any more.
 TEST(ForceStage, AnOscillationOfAnySegmentHalvesTheStiffness) {
   Stage stage;
-  stage.oscillation.reaction = OscillationReaction::kHalve;
+  stage.parameters.oscillation.reaction = OscillationReaction::kHalve;
   double first = -1.0;
   double second = -1.0;
   for (int n = 0; n < 200; ++n) {

@@ -6,7 +6,7 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/force/force_law.h"
-#include "phalanx/force/smoothing.h"
+#include "phalanx/force/stabiliser_methods.h"
 
 namespace phalanx {
 namespace {
@@ -78,16 +78,19 @@ TEST(ForceLaw, LowPassReachesSixtyThreePercentAfterItsTimeConstant) {
   EXPECT_NEAR(lowpass_gain(corner, time_constant), 1.0 - std::exp(-1.0), 1e-12);
 }
 
-// S2's +-0.1 N a step at 200 Hz.
-const SmoothingParameters kTenth{.enabled = true, .min_rate = -20.0, .max_rate = 20.0};
 constexpr double kPeriod = 0.005;
+
+/// S2's +-0.1 N a step at 200 Hz.
+double by_a_tenth(double target, double previous) {
+  return smoothed_force(target, previous, -20.0, 20.0, kPeriod);
+}
 
 TEST(Smoothing, NeverExceedsItsBounds) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> force(0.0, 5.0);
   double sent = 0.0;
   for (int n = 0; n < 10000; ++n) {
-    const double next = smoothed_force(kTenth, force(random), sent, kPeriod);
+    const double next = by_a_tenth(force(random), sent);
     ASSERT_LE(std::abs(next - sent), 0.1 + 1e-15) << "seed 5 step " << n;
     ASSERT_GE(next, 0.0);
     sent = next;
@@ -100,7 +103,7 @@ TEST(Smoothing, ReachesHookesValueInThePredictedNumberOfSteps) {
   double sent = 0.0;
   int steps = 0;
   while (sent != target) {
-    sent = smoothed_force(kTenth, target, sent, kPeriod);
+    sent = by_a_tenth(target, sent);
     ++steps;
     ASSERT_LE(steps, 100);
   }
@@ -108,13 +111,8 @@ TEST(Smoothing, ReachesHookesValueInThePredictedNumberOfSteps) {
 }
 
 TEST(Smoothing, RiseOnlyFallsAtOnce) {
-  const SmoothingParameters rise_only{.enabled = true, .min_rate = -kInfinity, .max_rate = 20.0};
-  EXPECT_DOUBLE_EQ(smoothed_force(rise_only, 3.0, 1.0, kPeriod), 1.1);
-  EXPECT_EQ(smoothed_force(rise_only, 0.0, 4.0, kPeriod), 0.0);
-}
-
-TEST(Smoothing, OffIsTheLawItself) {
-  EXPECT_EQ(smoothed_force(SmoothingParameters{.enabled = false}, 3.0, 0.0, kPeriod), 3.0);
+  EXPECT_DOUBLE_EQ(smoothed_force(3.0, 1.0, -kInfinity, 20.0, kPeriod), 1.1);
+  EXPECT_EQ(smoothed_force(0.0, 4.0, -kInfinity, 20.0, kPeriod), 0.0);
 }
 
 // What nobody has set protects the patient: every limit is on.

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "phalanx/force/smoothing.h"
+#include "phalanx/force/stabiliser_methods.h"
 
 namespace phalanx {
 namespace {
@@ -38,7 +38,7 @@ double sine(double hz, double t) { return std::sin(2.0 * std::numbers::pi * hz *
 /// The same through S2's smoothing of +-20 N/s.
 Signal smoothed(const Signal& signal) {
   return [signal, force = 0.0](double t) mutable {
-    return force = smoothed_force(SmoothingParameters{}, signal(t), force, 0.005);
+    return force = smoothed_force(signal(t), force, -20.0, 20.0, 0.005);
   };
 }
 

@@ -173,10 +173,10 @@ TEST(StabiliserReference, EveryMethodIsItsEquationOverRandomMotion) {
     int other_than_the_law = 0;
     for (int sequence = 0; sequence < 60; ++sequence) {
       const double T = sequence % 2 == 0 ? 0.005 : 0.001;
-      const StabiliserParameters p = random_parameters(method, random);
-      const SmoothingParameters smoothing{.min_rate = -random.between(2.0, 60.0),
-                                          .max_rate = random.between(2.0, 60.0)};
-      PlainStabiliser reference(p, smoothing.min_rate * T, smoothing.max_rate * T, T);
+      StabiliserParameters p = random_parameters(method, random);
+      p.min_rate = -random.between(2.0, 60.0);
+      p.max_rate = random.between(2.0, 60.0);
+      PlainStabiliser reference(p, p.min_rate * T, p.max_rate * T, T);
       RandomPress press(random, T);
       StabiliserMemory memory;
       double sent = 0.0;
@@ -190,7 +190,7 @@ TEST(StabiliserReference, EveryMethodIsItsEquationOverRandomMotion) {
                                     .sent = sent,
                                     .pressing = m.contact,
                                     .period = T};
-        sent = stabilised_force(p, smoothing, input, memory);
+        sent = stabilised_force(p, input, memory);
         expected = reference.step(m, expected);
         ASSERT_NEAR(sent, expected, 1e-12 * std::max(1.0, expected))
             << "seed " << kReferenceSeed << ", method " << static_cast<int>(method) << ", sequence "
@@ -213,14 +213,13 @@ TEST(StabiliserReference, EveryMethodIsItsEquationOverRandomMotion) {
 // From 2 N the law falls to 0.5 N within the contact, and then the finger leaves: rise-only follows in the
 // same step both times. Smoothing, with 0.1 N a step both ways, is 1.9 N and 1.8 N there.
 TEST(StabiliserReference, RiseOnlyFallsWithTheLawInTheSameStepWithinAContactAndAtItsEnd) {
-  const SmoothingParameters smoothing{.min_rate = -20.0, .max_rate = 20.0};
   StabiliserMemory memory;
   StabiliserInput input{.force = 0.5, .depth = 1e-3, .sent = 2.0, .pressing = true, .period = 0.005};
-  EXPECT_EQ(stabilised_force({.method = Stabiliser::kRiseOnly}, smoothing, input, memory), 0.5);
-  EXPECT_NEAR(stabilised_force({.method = Stabiliser::kSmoothing}, smoothing, input, memory), 1.9, 1e-15);
+  EXPECT_EQ(stabilised_force({.method = Stabiliser::kRiseOnly}, input, memory), 0.5);
+  EXPECT_NEAR(stabilised_force({.method = Stabiliser::kSmoothing}, input, memory), 1.9, 1e-15);
   input = {.force = 0.0, .depth = 0.0, .sent = 2.0, .pressing = false, .period = 0.005};
-  EXPECT_EQ(stabilised_force({.method = Stabiliser::kRiseOnly}, smoothing, input, memory), 0.0);
-  EXPECT_NEAR(stabilised_force({.method = Stabiliser::kSmoothing}, smoothing, input, memory), 1.9, 1e-15);
+  EXPECT_EQ(stabilised_force({.method = Stabiliser::kRiseOnly}, input, memory), 0.0);
+  EXPECT_NEAR(stabilised_force({.method = Stabiliser::kSmoothing}, input, memory), 1.9, 1e-15);
 }
 
 // Rodrigues' rotation about the common normal, by the smaller of the bound and the angle between.
@@ -260,8 +259,8 @@ TEST(StabiliserReference, ALocalWallIsItsFormulaOverRandomAngles) {
                    .stiffness = random.between(100.0, 3000.0),
                    .force_max = random.between(0.5, 5.0),
                    .host_force = 1.0};
-    DigitJoints q{};
-    DigitJoints q_ref{};
+    DigitAngles q{};
+    DigitAngles q_ref{};
     double moved = 0.0;
     for (std::size_t i = 0; i < wall.g.size(); ++i) {
       wall.g[i] = random.between(-0.08, 0.08);
@@ -286,7 +285,7 @@ TEST(StabiliserReference, ALocalWallIsItsFormulaOverRandomAngles) {
 TEST(StabiliserReference, ALocalWallPushesNothingAtAnAngleThatIsNotANumber) {
   LocalWall wall{.active = true, .d_ref = 2e-3, .stiffness = 500.0, .force_max = 5.0};
   wall.g[0] = 0.075;
-  DigitJoints q{};
+  DigitAngles q{};
   EXPECT_NEAR(local_wall_force(wall, q, {}), 1.0, 1e-12);
   q[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(local_wall_force(wall, q, {}), 0.0);

@@ -38,14 +38,13 @@ class Contact {
                                 .sent = sent_,
                                 .pressing = pressed_,
                                 .period = kStabiliserPeriod};
-    sent_ = stabilised_force(parameters_, smoothing_, input, memory_);
+    sent_ = stabilised_force(parameters_, input, memory_);
     return sent_;
   }
   [[nodiscard]] const StabiliserMemory& memory() const { return memory_; }
 
  private:
   StabiliserParameters parameters_;
-  SmoothingParameters smoothing_;
   double stiffness_;
   StabiliserMemory memory_;
   double depth_ = 0.0;
@@ -247,7 +246,7 @@ TEST(Stabiliser, AContactWithoutDepthPushesNothingAndHasNotArrived) {
                                 .sent = 1.0,
                                 .pressing = true,
                                 .period = kStabiliserPeriod};
-    EXPECT_EQ(stabilised_force({.method = method}, {}, input, memory), 0.0) << static_cast<int>(method);
+    EXPECT_EQ(stabilised_force({.method = method}, input, memory), 0.0) << static_cast<int>(method);
     EXPECT_FALSE(memory.touching) << static_cast<int>(method);
   }
   double proxy = 1e-3;
@@ -262,7 +261,7 @@ TEST(Stabiliser, CountsWhatIsNotFiniteAsNothing) {
     input.pressing = true;
     input.period = kStabiliserPeriod;
     StabiliserMemory memory;
-    return stabilised_force({.method = method}, {}, input, memory);
+    return stabilised_force({.method = method}, input, memory);
   };
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     EXPECT_EQ(sent(Stabiliser::kNone, {.force = bad, .depth = 1e-3}), 0.0) << bad;
@@ -279,7 +278,7 @@ TEST(Stabiliser, ForgetsAContactWhoseForceIsNotFinite) {
   StabiliserMemory memory;
   const StabiliserInput input{
       .force = 1.0, .depth = 1e-3, .speed = 1e308, .pressing = true, .period = kStabiliserPeriod};
-  EXPECT_EQ(stabilised_force({.method = Stabiliser::kKelvinVoigt, .damping = 4.0}, {}, input, memory), 0.0);
+  EXPECT_EQ(stabilised_force({.method = Stabiliser::kKelvinVoigt, .damping = 4.0}, input, memory), 0.0);
   EXPECT_FALSE(memory.touching);
 }
 
@@ -315,7 +314,7 @@ TEST(Stabiliser, IsFiniteAndNeverPullsWhateverArrives) {
                                   .sent = random() % 8 == 0 ? any() : sent,
                                   .pressing = random() % 8 != 0,
                                   .period = kStabiliserPeriod};
-      sent = stabilised_force({.method = method}, {}, input, memory);
+      sent = stabilised_force({.method = method}, input, memory);
       ASSERT_TRUE(std::isfinite(sent)) << "method " << static_cast<int>(method) << " seed 31 step " << n;
       ASSERT_GE(sent, 0.0);
       ASSERT_TRUE(std::isfinite(memory.energy) && std::isfinite(memory.proxy));

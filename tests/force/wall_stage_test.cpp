@@ -23,7 +23,7 @@ using test::kTick;
 
 Stage walled() {
   Stage stage;
-  stage.stabiliser.method = Stabiliser::kLocalWall;
+  stage.parameters.stabiliser.method = Stabiliser::kLocalWall;
   return stage;
 }
 
@@ -32,9 +32,9 @@ Stage walled() {
 TEST(WallStage, WallsOfADigitWhoseTorqueWasLimitedAreWithheld) {
   for (const bool rate : {false, true}) {
     Stage stage = walled();
-    stage.limits.joint_torque_enabled = !rate;
-    stage.limits.joint_torque = 0.2;
-    stage.limits.torque_rate_enabled = rate;
+    stage.parameters.limits.joint_torque_enabled = !rate;
+    stage.parameters.limits.joint_torque = 0.2;
+    stage.parameters.limits.torque_rate_enabled = rate;
     stage.press(kDistal, 8e-3);                        // 4 N: 0.3 Nm
     stage.press(kProximal, 0.2e-3);                    // of the same digit
     stage.press(kDistal, 0.2e-3, Vec3::UnitY(), 3);    // 0.1 N: 7.5 mNm on the ring finger
@@ -60,7 +60,7 @@ TEST(WallStage, ADigitThatTouchesNothingHasNoWall) {
     stage.tick();
     ASSERT_TRUE(stage.wall(k).active) << k;
     stage.leave(k);
-    if (i % 2 == 1) stage.stabiliser.method = Stabiliser::kSmoothing;
+    if (i % 2 == 1) stage.parameters.stabiliser.method = Stabiliser::kSmoothing;
     stage.ticks(500);
     EXPECT_FALSE(stage.wall(k).active) << k;
     EXPECT_EQ(stage.wall(k).stiffness, 0.0) << k;
@@ -100,14 +100,14 @@ TEST(WallStage, AWallThatIsNotReachedYetBeginsWhereItsDepthDoes) {
 // Half a newton a metre is a stiffness. With none there is no wall, deep or not, and no number of it is left.
 TEST(WallStage, AWallNeedsAStiffnessHoweverSmall) {
   Stage stage = walled();
-  stage.law.stiffness = 0.5;
+  stage.parameters.force.stiffness = 0.5;
   stage.press(kDistal, 2e-3);
   stage.tick();
   EXPECT_TRUE(stage.wall(kDistal).active);
   EXPECT_EQ(stage.wall(kDistal).stiffness, 0.5);
-  stage.law.stiffness = 0.0;
+  stage.parameters.force.stiffness = 0.0;
   for (const bool capped : {false, true}) {
-    stage.limits.fingertip_force_enabled = capped;
+    stage.parameters.limits.fingertip_force_enabled = capped;
     for (const double depth : {2e-3, -0.3e-3}) {
       stage.press(kDistal, depth);
       stage.tick();
@@ -136,7 +136,7 @@ TEST(WallStage, ASilentContactAndAStaleHandHaveNoWall) {
 // A law with a slope of its own: Duffing at 2 mm is 1.4 N with 1100 N/m, so that d_ref = 1.4 / 1100 m.
 TEST(WallStage, AWallsReferenceDepthIsTheLawsForceOverItsSlope) {
   Stage stage = walled();
-  stage.law = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
+  stage.parameters.force = {.law = ForceLaw::kDuffing, .stiffness = 500.0, .cubic = 5e7};
   stage.press(kDistal, 2e-3);
   stage.tick();
   EXPECT_NEAR(stage.wall(kDistal).stiffness, 1100.0, 1e-9);
@@ -147,15 +147,15 @@ TEST(WallStage, AWallsReferenceDepthIsTheLawsForceOverItsSlope) {
 TEST(WallStage, AWallsLargestForceKeepsTheTorqueLimit) {
   for (const double sign : {1.0, -1.0}) {
     Stage stage = walled();
-    stage.limits.joint_torque_enabled = true;
-    stage.limits.joint_torque = 0.2;
+    stage.parameters.limits.joint_torque_enabled = true;
+    stage.parameters.limits.joint_torque = 0.2;
     stage.press(kDistal, 1e-3, sign * Vec3::UnitY());
     stage.tick();
     ASSERT_TRUE(stage.wall(kDistal).active);
     EXPECT_NEAR(stage.wall(kDistal).force_max, 0.2 / 0.075, 1e-9);
-    stage.limits.joint_torque = 0.5;
-    stage.limits.fingertip_force_enabled = true;
-    stage.limits.fingertip_force = 4.0;
+    stage.parameters.limits.joint_torque = 0.5;
+    stage.parameters.limits.fingertip_force_enabled = true;
+    stage.parameters.limits.fingertip_force = 4.0;
     stage.tick();
     EXPECT_NEAR(stage.wall(kDistal).force_max, 4.0, 1e-12)
         << "4 N are 0.3 Nm: the fingertip cap is the smaller";
@@ -166,10 +166,10 @@ TEST(WallStage, AWallsLargestForceKeepsTheTorqueLimit) {
 // mm and 10 mm, so that 0.085 m f_max is at most 0.2 Nm where both are equal.
 TEST(WallStage, TheWallsOfADigitTogetherKeepTheTorqueLimit) {
   Stage stage = walled();
-  stage.limits.fingertip_force_enabled = true;
-  stage.limits.fingertip_force = 5.0;
-  stage.limits.joint_torque_enabled = true;
-  stage.limits.joint_torque = 0.2;
+  stage.parameters.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force = 5.0;
+  stage.parameters.limits.joint_torque_enabled = true;
+  stage.parameters.limits.joint_torque = 0.2;
   stage.press(kDistal, 0.2e-3);
   stage.press(kProximal, 0.2e-3, -Vec3::UnitY());
   stage.tick();
@@ -189,7 +189,7 @@ TEST(WallStage, TheWallsOfADigitTogetherKeepTheTorqueLimit) {
 TEST(WallStage, TheWallsOfADigitTogetherKeepTheFingertipCap) {
   for (const double turn : {0.0, 0.4, 1.2, 2.0, 3.1}) {
     Stage stage = walled();
-    stage.limits.fingertip_force_enabled = true;
+    stage.parameters.limits.fingertip_force_enabled = true;
     stage.press(kDistal, 2e-3);
     stage.press(kProximal, 1e-3, Vec3(std::sin(turn), std::cos(turn), 0.0));
     stage.press(1, 4e-3, Vec3(-std::sin(0.5 * turn), std::cos(0.5 * turn), 0.0));
@@ -214,7 +214,7 @@ TEST(WallStage, TheWallsOfADigitTogetherKeepTheFingertipCap) {
     }
   }
   Stage stage = walled();
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   stage.press(kDistal, 2e-3);
   stage.press(kProximal, 1e-3);
   stage.tick();
@@ -225,7 +225,7 @@ TEST(WallStage, TheWallsOfADigitTogetherKeepTheFingertipCap) {
 // 6 N, capped to 5 N, and against it a wall that is not reached yet: whatever both do, the sum is within 5 N.
 TEST(WallStage, AWallAgainstOneThatIsAtTheCapHasAllOfIt) {
   Stage stage = walled();
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   stage.press(kDistal, 12e-3);
   stage.press(kProximal, -0.3e-3, -Vec3::UnitY());
   stage.tick();
@@ -243,7 +243,7 @@ TEST(WallStage, AWallBesideOneThatIsAtTheCapHasWhatLeansBack) {
   const double angle = 100.0 * kPi / 180.0;
   for (int n = 0; n < 200; ++n) {
     Stage stage = walled();
-    stage.limits.fingertip_force_enabled = true;
+    stage.parameters.limits.fingertip_force_enabled = true;
     const Vec3 held = direction();
     const Vec3 across = held.cross(direction()).normalized();
     stage.press(kDistal, 12e-3, held);
@@ -259,7 +259,7 @@ TEST(WallStage, AWallBesideOneThatIsAtTheCapHasWhatLeansBack) {
 // 4.88 N of each, which leaves 0.022 N of room.
 TEST(WallStage, TheRoomUpToTheCapIsUsedHoweverSmallItIs) {
   Stage stage = walled();
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   const double aside = std::sqrt(1.0 - 0.51 * 0.51);
   stage.press(kDistal, 9.76e-3, Vec3(aside, 0.51, 0.0));
   stage.press(kProximal, 9.76e-3, Vec3(-aside, 0.51, 0.0));
@@ -272,7 +272,7 @@ TEST(WallStage, TheRoomUpToTheCapIsUsedHoweverSmallItIs) {
 // may reach what the host sends: 5/8 of 4 N each.
 TEST(WallStage, WallsMayNotReachTheHostsForceWhereSomeOfThemAloneWouldBreakTheCap) {
   Stage stage = walled();
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   stage.press(kProximal, 8e-3);
   stage.press(1, 8e-3, -Vec3::UnitY());
   stage.press(kDistal, 8e-3);
@@ -306,7 +306,7 @@ TEST(WallStage, AnyThreeWallsKeepTheFingertipCap) {
   std::uniform_real_distribution<double> deep(5e-3, 20e-3);
   for (int n = 0; n < 400; ++n) {
     Stage stage = walled();
-    stage.limits.fingertip_force_enabled = true;
+    stage.parameters.limits.fingertip_force_enabled = true;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const auto kind = random() % 3;
       const double depth = kind == 0 ? -0.3e-3 : kind == 1 ? 10e-3 : deep(random);
@@ -323,7 +323,7 @@ TEST(WallStage, AnyThreeWallsKeepTheFingertipCap) {
 TEST(WallStage, ADirectionThatIsNotANumberIsNoWall) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Stage stage = walled();
-  stage.limits.fingertip_force_enabled = true;
+  stage.parameters.limits.fingertip_force_enabled = true;
   stage.press(kProximal, 2e-3);
   stage.press(1, -0.3e-3, Vec3(kNaN, kNaN, kNaN));
   stage.press(kDistal, 2e-3, -Vec3::UnitY());
@@ -414,7 +414,7 @@ TEST(WallStage, AWallThatWasLeftIsKeptForAQuarterOfASecond) {
 TEST(WallStage, AWallThatWasLeftIsKeptAtItsBoundsThemselves) {
   for (const Vec3& place : {Vec3(0.0, 10e-3, 0.0), Vec3(3e-3, 0.0, 0.0), Vec3(0.0, 0.0, -3e-3)}) {
     Stage stage = walled();
-    stage.period = 0.125;
+    stage.parameters.rate_hz = 8.0;
     ContactRecord& record = stage.press(kDistal, 2e-3);
     record.p_S = Vec3::Zero();
     record.p_gdp = Vec3::Zero();
@@ -454,11 +454,11 @@ TEST(WallStage, AWallIsForgottenWhereTheFingerLeavesUnderAnotherMethod) {
   stage.press(kDistal, 2e-3);
   stage.tick();
   ASSERT_TRUE(stage.wall(kDistal).active);
-  stage.stabiliser.method = Stabiliser::kNone;
+  stage.parameters.stabiliser.method = Stabiliser::kNone;
   stage.tick();
   stage.leave(kDistal);
   stage.ticks(2);
-  stage.stabiliser.method = Stabiliser::kLocalWall;
+  stage.parameters.stabiliser.method = Stabiliser::kLocalWall;
   stage.tick();
   EXPECT_FALSE(stage.wall(kDistal).active);
 }

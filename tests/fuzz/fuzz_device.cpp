@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "phalanx/device/simulated_exoskeleton.h"
 #include "phalanx/scene/device_file.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/patient_file.h"
+#include "phalanx/simulation/simulated_exoskeleton.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "mesh/repair.h"
+#include "mesh/import/repair.h"
 #include "phalanx/mesh/import.h"
 
 namespace {

@@ -30,10 +30,10 @@ void read_scene(std::string text) {
     text = end == std::string::npos ? std::string() : text.substr(end + 1);
   }
   const phalanx::SceneDescription scene = phalanx::parse_scene(text, "fuzz.toml", "/", overrides);
-  require(scene.rate_hz >= 1.0 && scene.rate_hz <= 4000.0);
-  require(std::isfinite(scene.force.stiffness) && scene.force.stiffness >= 0.0);
-  require(scene.smoothing.min_rate < 0.0 && scene.smoothing.max_rate > 0.0);
-  require(scene.limits.fingertip_force > 0.0 && scene.limits.fingertip_force <= 15.0);
+  require(scene.parameters.rate_hz >= 1.0 && scene.parameters.rate_hz <= 4000.0);
+  require(std::isfinite(scene.parameters.force.stiffness) && scene.parameters.force.stiffness >= 0.0);
+  require(scene.parameters.stabiliser.min_rate < 0.0 && scene.parameters.stabiliser.max_rate > 0.0);
+  require(scene.parameters.limits.fingertip_force > 0.0 && scene.parameters.limits.fingertip_force <= 15.0);
   for (const phalanx::ObjectDescription& object : scene.objects)
     require(object.pose.p.allFinite() && object.pose.R.allFinite());
 }

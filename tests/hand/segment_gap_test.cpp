@@ -15,11 +15,14 @@
 #include "phalanx/core/index.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/scene/hand_file.h"
+#include "support/sanitized.h"
 #include "support/segment_rims.h"
 
 namespace phalanx {
 namespace {
 
+constexpr int kSteps = test::kSanitized ? 10 : 30;   ///< of the range of a joint
+constexpr int kCmcSteps = test::kSanitized ? 4 : 9;  ///< of the range of each of two joints
 constexpr double kGap = 1e-3;
 constexpr double kCmcReach = 14e-3;  // [m]
 constexpr double kWebGap = 17e-3;    // [m] how far the fold of the web opens
@@ -153,8 +156,8 @@ TEST(SegmentMeshes, LeaveNoGapWiderThanAMillimetreAtAnyAngle) {
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const int s = segment_index(d, k);
       const bool cmc = d == 0 && k == 0;
-      const Worst worst =
-          widest_over_the_range(hand, d, k, hand.mesh(s), k == 0 ? 9 : 30, cmc ? kCmcReach : test::kFar);
+      const Worst worst = widest_over_the_range(hand, d, k, hand.mesh(s), k == 0 ? kCmcSteps : kSteps,
+                                                cmc ? kCmcReach : test::kFar);
       RecordProperty(std::string(segment_name(s)), worst.where);
       EXPECT_LE(worst.width, kGap) << worst.where;
     }
@@ -176,7 +179,7 @@ TEST(SegmentMeshes, WouldLeaveAGapIfTheirCapsWereFlat) {
   for (int d = 1; d < kDigits; ++d) {
     TriangleMesh flat = hand.mesh(segment_index(d, 1));
     for (Vec3& v : flat.vertices) v.z() = std::min(v.z(), 0.0);
-    const Worst worst = widest_over_the_range(hand, d, 1, flat, 30);
+    const Worst worst = widest_over_the_range(hand, d, 1, flat, kSteps);
     EXPECT_GT(worst.width, 2.0 * kGap) << digit_name(d);
   }
 }

@@ -16,11 +16,24 @@ file(RENAME ${WORK_DIR}/first ${WORK_DIR}/prefix)
 
 foreach(expected bin/phalanx include/phalanx/step/haptic_step.h share/phalanx/assets share/phalanx/scenes share/phalanx/web/index.html
                  share/phalanx/link/phalanx_link.c share/doc/phalanx/README.md share/doc/phalanx/docs/device.md
-                 share/doc/phalanx/docs/pictures/cockpit.png)
+                 share/doc/phalanx/docs/pictures/cockpit.png share/bash-completion/completions/phalanx
+                 share/zsh/site-functions/_phalanx)
   if(NOT EXISTS ${WORK_DIR}/prefix/${expected})
     message(FATAL_ERROR "not installed: ${expected}")
   endif()
 endforeach()
+
+# The page's server belongs to the program: no installed library has it.
+if(EXISTS ${WORK_DIR}/prefix/include/phalanx/serve)
+  message(FATAL_ERROR "installed without a library: include/phalanx/serve")
+endif()
+
+# Bash can read the script, and it asks the program that was installed with it.
+must(bash -c "PATH=${WORK_DIR}/prefix/bin
+  . ${WORK_DIR}/prefix/share/bash-completion/completions/phalanx
+  COMP_WORDS=(phalanx sim) COMP_CWORD=1
+  _phalanx
+  test \"\$COMPREPLY\" = simulate")
 
 # Firmware takes the reference in C from the installed files alone.
 must(${CC} -c -I${WORK_DIR}/prefix/include ${WORK_DIR}/prefix/share/phalanx/link/phalanx_link.c -o ${WORK_DIR}/phalanx_link.o)

@@ -2,10 +2,13 @@
 // Which folder may include which: the table of docs/architecture.md, held against every #include.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <regex>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "project/source_tree.h"
 
@@ -13,26 +16,38 @@ namespace phalanx::project {
 namespace {
 
 using Modules = std::set<std::string>;
+using Table = std::map<std::string, Modules>;  // what each module may include beside itself
 
-// A module may always include itself.
-const std::map<std::string, Modules>& allowed_includes() {
-  static const std::map<std::string, Modules> table = {
-      {"core", {}},
-      {"mesh", {"core"}},
-      {"hand", {"core", "mesh"}},
-      {"contact", {"core", "mesh", "hand"}},
-      {"force", {"core", "hand", "contact"}},
-      {"step", {"core", "mesh", "hand", "contact", "force"}},
-      {"device", {"core", "hand", "force", "step"}},
-      {"scene", {"core", "mesh", "hand", "contact", "force", "step", "device"}},
-      {"station", {"core", "hand", "force", "step", "device", "scene"}},
-      {"exercise", {"core", "step"}},
-      {"record", {"core", "mesh", "hand", "step", "device", "station", "scene"}},
-      {"serve", {"core", "mesh", "hand", "step", "device", "station", "scene", "record", "exercise"}},
-      {"study",
-       {"core", "mesh", "hand", "contact", "force", "step", "device", "scene", "station", "exercise",
-        "record"}},
-  };
+constexpr const char* kHeader = "| folder | holds | may include |";
+
+// The table below kHeader. Throws std::runtime_error that quotes the row if there is none, or a row is not
+// "| `module` | words | - or other modules of the table |".
+Table table_of(const std::vector<std::string>& lines) {
+  static const std::regex row(R"(\| `([a-z_]+)` \| .+ \| (-|[a-z_]+(?:, [a-z_]+)*) \|)");
+  static const std::regex name("[a-z_]+");
+  const auto header = std::find(lines.begin(), lines.end(), kHeader);
+  if (lines.end() - header < 3 || *(header + 1) != "|---|---|---|")
+    throw std::runtime_error(std::string("no table below ") + kHeader);
+  Table table;
+  for (auto line = header + 2; line != lines.end() && line->starts_with("|"); ++line) {
+    std::smatch match;
+    const bool fits = std::regex_match(*line, match, row);
+    if (!fits || table.contains(match[1])) throw std::runtime_error("not a row of the table: " + *line);
+    const std::string may = match[2];
+    table[match[1]] = Modules(std::sregex_token_iterator(may.begin(), may.end(), name), {});
+  }
+  for (const auto& [module, may] : table) {
+    for (const std::string& other : may)
+      if (other == module || !table.contains(other))
+        throw std::runtime_error(module + " may include " + other +
+                                 ", which is no other module of the table");
+  }
+  if (table.empty()) throw std::runtime_error(std::string("no rows below ") + kHeader);
+  return table;
+}
+
+const Table& allowed_includes() {
+  static const Table table = table_of(lines_of("docs/architecture.md"));
   return table;
 }
 
@@ -87,20 +102,43 @@ std::string where(const Include& include) {
   return include.file.string() + ":" + std::to_string(include.line) + " includes \"" + include.path + "\"";
 }
 
-TEST(IncludeRules, EveryFolderOfSourcesIsInTheTable) {
+TEST(IncludeRules, ATableThatIsMissingOrMalformedIsRefused) {
+  const auto with = [](const std::vector<std::string>& rows) {
+    std::vector<std::string> lines{"# Architecture", kHeader, "|---|---|---|"};
+    lines.insert(lines.end(), rows.begin(), rows.end());
+    lines.emplace_back("");
+    return lines;
+  };
+  const std::string core = "| `core` | linear algebra | - |";
+  EXPECT_EQ(table_of(with({core, "| `mesh` | triangles; a | in words | core |"})),
+            (Table{{"core", {}}, {"mesh", {"core"}}}));
+  EXPECT_THROW(table_of({}), std::runtime_error);
+  EXPECT_THROW(table_of({"# Architecture", core}), std::runtime_error);
+  EXPECT_THROW(table_of(with({})), std::runtime_error);
+  for (const char* row :
+       {"| core | no code mark | - |", "| `mesh` | no modules | |", "| `mesh` | two cells |",
+        "| `mesh` | words in place of modules | all above |", "| `mesh` | core, twice | core;core |",
+        "| `mesh` | itself | mesh |", "| `mesh` | unknown | serve |", "| `core` | again | - |"})
+    EXPECT_THROW(table_of(with({core, row})), std::runtime_error) << row;
+}
+
+TEST(IncludeRules, TheTableAndTheFoldersOfSourcesAreTheSame) {
   for (const auto* base : {"include/phalanx", "src"}) {
     for (const auto& entry : std::filesystem::directory_iterator(root() / base)) {
       if (!entry.is_directory()) continue;
       EXPECT_TRUE(allowed_includes().contains(entry.path().filename().string()))
-          << entry.path() << " is a module that this test's table and docs/architecture.md do not know";
+          << entry.path() << " is not in the table of docs/architecture.md";
     }
   }
+  for (const auto& [module, unused] : allowed_includes())
+    EXPECT_TRUE(std::filesystem::exists(root() / "include/phalanx" / module) ||
+                std::filesystem::exists(root() / "src" / module))
+        << module << " has no folder";
 }
 
 TEST(IncludeRules, TheTableHasNoCycle) {
   for (const auto& [module, may] : allowed_includes()) {
     for (const auto& used : may) {
-      ASSERT_TRUE(allowed_includes().contains(used)) << used;
       EXPECT_FALSE(allowed_includes().at(used).contains(module))
           << module << " and " << used << " include each other";
       for (const auto& further : allowed_includes().at(used)) {
@@ -135,7 +173,45 @@ TEST(IncludeRules, PublicHeadersIncludeOnlyPublicHeaders) {
   for (const auto& include : includes_of_modules()) {
     if (!include.file.string().starts_with("include/")) continue;
     EXPECT_TRUE(std::filesystem::exists(root() / "include" / include.path))
-        << where(include) << ", which is not installed";
+        << where(include) << ", which is not below include/";
+  }
+}
+
+// The headers in the list `name` of cmake/public_headers.cmake.
+std::set<std::string> installed(const std::string& name) {
+  static const std::regex header(R"(\s+([a-z0-9_/]+\.h)\)?)");
+  std::set<std::string> headers;
+  bool inside = false;
+  for (const std::string& line : lines_of("cmake/public_headers.cmake")) {
+    std::smatch match;
+    if (line.starts_with("set("))
+      inside = line.starts_with("set(" + name + " ");
+    else if (inside && std::regex_match(line, match, header))
+      headers.insert(match[1]);
+  }
+  return headers;
+}
+
+TEST(InstalledHeaders, IncludeOnlyInstalledHeaders) {
+  const auto haptics = installed("PHALANX_PUBLIC_HEADERS");
+  const auto station = installed("PHALANX_STATION_PUBLIC_HEADERS");
+  const std::string base = "include/phalanx/";
+  for (const auto* list : {&haptics, &station}) {
+    ASSERT_GT(list->size(), 20U);
+    for (const std::string& header : *list)
+      EXPECT_TRUE(std::filesystem::exists(root() / (base + header))) << header;
+  }
+  for (const auto& include : includes_of_modules()) {
+    const std::string file = include.file.string();
+    if (!file.starts_with(base) || !include.path.starts_with("phalanx/")) continue;
+    const std::string header = file.substr(base.size());
+    const std::string used = include.path.substr(std::string("phalanx/").size());
+    if (haptics.contains(header)) {
+      EXPECT_TRUE(haptics.contains(used)) << where(include);
+    }
+    if (station.contains(header)) {
+      EXPECT_TRUE(haptics.contains(used) || station.contains(used)) << where(include);
+    }
   }
 }
 

@@ -190,6 +190,32 @@ class MadeTree(unittest.TestCase):
         with self.assertRaises(SystemExit):
             mutant_draw.argued(listed)
 
+    def test_an_equivalent_mutant_is_known_whatever_the_comment_of_its_line(self) -> None:
+        one, other = (mutant_draw.mutants_of("made.cpp", f'  say("// no", 1\'000);{comment}')[1][0] for comment in ("  // \"why\"", ""))
+        self.assertEqual(one.diff, other.diff)
+        self.assertIn('- say("// no", 1\'000);\n', one.diff)
+
+
+def stale(entry: str, root: Path) -> bool:
+    """@returns true if no mutant of the file has the entry's operator and its lines before and after"""
+    file = entry.split()[0]
+    path = root / file
+    return not path.exists() or all(entry != mutant.diff for found in mutant_draw.mutants_of(file, path.read_text()).values() for mutant in found)
+
+
+class Equivalent(unittest.TestCase):
+    def test_each_listed_mutant_occurs_in_its_file(self) -> None:
+        listed = mutant_draw.argued(SCRIPTS / "mutants.equivalent")
+        self.assertTrue(listed)
+        self.assertEqual([entry for entry in listed if stale(entry, SCRIPTS.parent)], [])
+
+    def test_a_mutant_of_a_line_that_has_changed_is_stale(self) -> None:
+        with tempfile.TemporaryDirectory() as place:
+            (Path(place) / "made.cpp").write_text("done = true;  // now\n")
+            self.assertFalse(stale("made.cpp boolean\n- done = true;\n+ done = false;", Path(place)))
+            self.assertTrue(stale("made.cpp boolean\n- ended = true;\n+ ended = false;", Path(place)))
+            self.assertTrue(stale("gone.cpp boolean\n- done = true;\n+ done = false;", Path(place)))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/record/output_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -17,6 +22,19 @@
 #include <vector>
 
 #include "record/temporary_folder.h"
+
+namespace {
+
+int flock_error = 0;  ///< what flock() of this program fails with; 0: it does not
+
+}  // namespace
+
+/// In the place of the C library's.
+extern "C" int flock(int descriptor, int operation) noexcept {
+  if (flock_error == 0) return static_cast<int>(::syscall(SYS_flock, descriptor, operation));
+  errno = flock_error;
+  return -1;
+}
 
 namespace phalanx {
 namespace {
@@ -179,6 +197,63 @@ TEST(OutputFile, AFileThatIsBeingWrittenIsNotTakenForOneThatWasLeft) {
   EXPECT_EQ(read_file(folder / "a.csv"), "header\nrow\n");
 }
 
+/// flock() fails as long as it lives.
+class FailingLocks {
+ public:
+  explicit FailingLocks(int error) { flock_error = error; }
+  ~FailingLocks() { flock_error = 0; }
+  FailingLocks(const FailingLocks&) = delete;
+  FailingLocks& operator=(const FailingLocks&) = delete;
+};
+
+// Nothing tells there whether another program is writing it: it is neither cut nor taken away.
+TEST(OutputFile, WithoutLocksAPartThatIsThereIsLeftAlone) {
+  for (const int error : {EOPNOTSUPP, ENOSYS, EINVAL, ENOLCK}) {
+    SCOPED_TRACE(error);
+    const FailingLocks none(error);
+    const TemporaryFolder folder;
+    OutputFile first(folder / "a.csv", Unfinished::kLeft);
+    first.text("header\nrow\nhalf a r");
+    first.write_through();
+    for (const auto unfinished : {Unfinished::kLeft, Unfinished::kRemoved})
+      EXPECT_THAT([&] { OutputFile second(folder / "a.csv", unfinished); },
+                  ::testing::ThrowsMessage<std::runtime_error>(
+                      ::testing::AllOf(HasSubstr("has no locks"), HasSubstr("rename or remove it"))));
+    first.text("ow\n");
+    first.commit();
+    EXPECT_EQ(read_file(folder / "a.csv"), "header\nrow\nhalf a row\n");
+  }
+}
+
+TEST(OutputFile, ALockThatFailsOtherwiseIsAnError) {
+  const TemporaryFolder folder;
+  const FailingLocks broken(EIO);
+  EXPECT_THAT([&] { OutputFile out(folder / "a.csv"); },
+              ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("cannot lock")));
+}
+
+// As by a program on another computer, whose locks are not seen.
+TEST(OutputFile, APartThatAnotherProgramHasPutInItsPlaceIsNeitherRenamedNorRemoved) {
+  const TemporaryFolder folder;
+  const auto replace = [&] {
+    std::filesystem::rename(folder / "a.txt.partial", folder / "aside");
+    std::ofstream(folder / "a.txt.partial") << "theirs";
+  };
+  {
+    OutputFile out(folder / "a.txt");
+    out.text("ours");
+    replace();
+    EXPECT_THAT([&] { out.commit(); },
+                ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("another program has put a file")));
+  }
+  EXPECT_EQ(read_file(folder / "a.txt.partial"), "theirs");
+  std::filesystem::remove(folder / "a.txt.partial");
+  EXPECT_THROW(write_then_rename(folder / "a.txt", [&](const std::filesystem::path&) { replace(); }),
+               std::runtime_error);
+  EXPECT_EQ(read_file(folder / "a.txt.partial"), "theirs");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+}
+
 TEST(OutputFile, ALogIsLeftWithWhatWasWritten) {
   const TemporaryFolder folder;
   {
@@ -271,7 +346,7 @@ TEST(OutputFile, LeavesThePartOfTheNextAloneOnceItIsCommitted) {
 TEST(WriteThenRename, PutsTheWholeUnderItsName) {
   const TemporaryFolder folder;
   write_then_rename(folder / "a.obj",
-                    [](const std::filesystem::path& partial) { write_text_file(partial, "whole"); });
+                    [](const std::filesystem::path& partial) { std::ofstream(partial) << "whole"; });
   EXPECT_EQ(read_file(folder / "a.obj"), "whole");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.obj.partial"));
 }
@@ -290,11 +365,21 @@ TEST(WriteThenRename, RemovesThePartWhenTheWriterThrows) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_then_rename(folder / "a.obj",
                                  [](const std::filesystem::path& partial) {
-                                   write_text_file(partial, "half");
+                                   std::ofstream(partial) << "half";
                                    throw std::runtime_error("stop");
                                  }),
                std::runtime_error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(WriteThenRename, HoldsItsLockUntilTheRename) {
+  const TemporaryFolder folder;
+  write_then_rename(folder / "a.obj", [&](const std::filesystem::path& partial) {
+    std::ofstream(partial) << "whole";
+    EXPECT_THAT([&] { OutputFile second(folder / "a.obj"); },
+                ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("another program is writing it")));
+  });
+  EXPECT_EQ(read_file(folder / "a.obj"), "whole");
 }
 
 TEST(WriteThenRename, LeavesAPipeWhereItIsAndRemovesThePart) {
@@ -302,7 +387,7 @@ TEST(WriteThenRename, LeavesAPipeWhereItIsAndRemovesThePart) {
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   EXPECT_THROW(
       write_then_rename(folder / "pipe",
-                        [](const std::filesystem::path& partial) { write_text_file(partial, "whole"); }),
+                        [](const std::filesystem::path& partial) { std::ofstream(partial) << "whole"; }),
       std::runtime_error);
   EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
   EXPECT_FALSE(std::filesystem::exists(folder / "pipe.partial"));

@@ -3,14 +3,19 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
+#include <stdexcept>
 
 #include "expect_error.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/hand/hand_meshes.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
+#include "phalanx/scene/device_file.h"
+#include "phalanx/scene/scene_file.h"
 #include "record/temporary_folder.h"
+#include "support/opened_files.h"
 
 namespace phalanx {
 namespace {
@@ -120,26 +125,26 @@ TEST(BuildModel, PutsObjectsWhereTheSceneSays) {
   EXPECT_NEAR(box.max.z(), 0.501, 1e-12);
 }
 
-TEST(BuildModel, PassesTheScenesParametersOn) {
+TEST(BuildModel, HasTheScenesHandAndObjectsBesideItsParameters) {
   const SceneDescription scene = parse_objects(R"(
     rate_hz = 500
     hand.side = "left"
     hand.position_mm = [0, 0, 7]
     force.stiffness_n_per_mm = 0.9
     limits.joint_torque_nm = 0.25
-    smoothing.enabled = false
+    stabiliser.method = "none"
     contact.margin_mm = 0.1
     [[objects]]
     kind = "sphere"
     position_mm = [0, 0, 900])");
   const HapticModel model = build_model(scene);
-  EXPECT_EQ(model.rate_hz, 500.0);
+  EXPECT_EQ(scene.parameters.rate_hz, 500.0);
   EXPECT_EQ(model.hand.handedness(), Handedness::kLeft);
   EXPECT_EQ(model.hand.palm_pose().p, Vec3(0, 0, 0.007));
-  EXPECT_DOUBLE_EQ(model.force.stiffness, 900.0);
-  EXPECT_EQ(model.limits.joint_torque, 0.25);
-  EXPECT_FALSE(model.smoothing.enabled);
-  EXPECT_DOUBLE_EQ(model.contact.margin, 1e-4);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.stiffness, 900.0);
+  EXPECT_EQ(scene.parameters.limits.joint_torque, 0.25);
+  EXPECT_EQ(scene.parameters.stabiliser.method, Stabiliser::kNone);
+  EXPECT_DOUBLE_EQ(scene.parameters.contact.margin, 1e-4);
   EXPECT_GT(model.object.triangle_count(), 500);
 }
 
@@ -170,11 +175,11 @@ TEST(BuildMotion, NamesAMotionFileThatIsMissing) {
 Snapshot half_way(const SceneDescription& scene) {
   const auto model = std::make_unique<HapticModel>(build_model(scene));
   const Motion motion = build_motion(scene);
-  HapticState state(*model);
-  const int ticks = static_cast<int>(0.5 * motion.duration() * model->rate_hz);
+  HapticState state(*model, scene.parameters);
+  const int ticks = static_cast<int>(0.5 * motion.duration() * scene.parameters.rate_hz);
   for (int n = 0; n <= ticks; ++n) {
-    const double t = n / model->rate_hz;
-    step(*model, Sample{t, motion.at(t)}, state);
+    const double t = n / scene.parameters.rate_hz;
+    step(*model, scene.parameters, Sample{t, motion.at(t)}, state);
   }
   return state.snapshot();
 }
@@ -225,6 +230,33 @@ TEST(BuildModel, MirrorsTheSceneForTheProfileOfALeftHand) {
   mirror(expected);
   EXPECT_EQ(model.object.mesh().vertices, expected.vertices);
   EXPECT_EQ(model.object.mesh().triangles, expected.triangles);
+}
+
+TEST(Resolve, OpensEachFileOnceAndWhatIsMadeOfItNone) {
+  const testing::TemporaryFolder folder;
+  const SceneFile file(test::write_first_touch(folder.path()));
+  std::ofstream(folder / "profile.toml") << "name = \"own\"\nhand = \"hand.toml\"\nhandedness = \"left\"\n";
+  const test::OpenedFiles opened(folder.path());
+  SceneDescription scene = file.scene({});
+  EXPECT_THAT(opened.take(), ::testing::IsEmpty());
+  scene.hand.profile = folder / "profile.toml";
+  const ResolvedScene resolved = resolve(scene, {.hand = HandDetail::kAll, .device = true, .motion = true});
+  const std::map<std::string, int> once = {
+      {"device.toml", 1}, {"hand.toml", 1}, {"patient.toml", 1}, {"profile.toml", 1}};
+  EXPECT_EQ(opened.take(), once);
+  EXPECT_EQ(build_model(resolved).hand.handedness(), Handedness::kLeft);
+  EXPECT_THAT(opened.take(), ::testing::IsEmpty());
+  EXPECT_EQ(resolved.exoskeleton->motors.size(), load_device(scene).motors.size());
+  EXPECT_EQ(resolved.motion->duration(), build_motion(scene).duration());
+}
+
+TEST(Resolve, ReadsOnlyWhatIsAskedFor) {
+  SceneDescription scene = parse_objects("hand.meshes = \"capsules\"");
+  scene.device.file = "none";
+  scene.motion.file = "none.csv";
+  EXPECT_FALSE(resolve(scene, {}).motion.has_value());
+  EXPECT_THROW(static_cast<void>(resolve(scene, {.device = true})), SceneError);
+  EXPECT_THROW(static_cast<void>(resolve(scene, {.motion = true})), std::invalid_argument);
 }
 
 }  // namespace

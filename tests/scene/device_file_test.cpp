@@ -12,6 +12,7 @@
 #include "expect_error.h"
 #include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
+#include "phalanx/scene/patient_file.h"
 #include "record/temporary_folder.h"
 
 namespace phalanx {
@@ -187,6 +188,8 @@ TEST(DeviceFile, RefusesWhatItCannotUseWithLineKeyValueAndRemedy) {
   expect_refused(kJoint + "[defaults.motor]\nmass = 2\n" + kMotor,
                  {"d.toml:4: defaults.motor.mass", "mass_kg"});
   expect_refused(kJoint + "[copy]\nmiddle = { of = \"indx\" }\n", {"d.toml:4: copy.middle.of", "\"index\""});
+  expect_refused(kJoint + "[copy]\nmiddle = { of = \"nine\" }\n",
+                 {"d.toml:4: copy.middle.of = 'nine'", "neither a digit nor \"none\""});
   expect_refused(kJoint + "[copy]\nmiddel = { of = \"index\" }\n", {"d.toml:4: copy.middel", "copy.middle"});
   expect_refused(kJoint + "[coupled.index_dip_flexion]\nof = \"index_pip\"\nratio = 1\n",
                  {"d.toml:4: coupled.index_dip_flexion.of", "nearest one is \"index_pip_flexion\""});
@@ -276,6 +279,13 @@ TEST(DeviceFile, StandsOnAnother) {
   expect_refused("base = 3\n", {"d.toml:1: base = 3", "a string"});
 }
 
+TEST(DeviceFile, TakesBackACopyOfItsBase) {
+  const Exoskeleton exo = parse_text("base = \"beihang\"\n[copy]\nring.of = \"none\"\n");
+  EXPECT_EQ(exo.controller.copy[2].of, 1);
+  EXPECT_EQ(exo.controller.copy[3].of, -1);
+  EXPECT_EQ(exo.controller.copy[4].of, 1);
+}
+
 // Scales multiply from file to file, so that a scene's scale counts from the device it names.
 TEST(DeviceFile, MultipliesTheScalesOfItsBase) {
   const Exoskeleton heavy = load_device_file("heavy_viscous");
@@ -313,6 +323,54 @@ TEST(DeviceFile, ThatShipsIsReadWhole) {
     EXPECT_EQ(exo.joints.size(), 8U);
     EXPECT_EQ(exo.motors.size(), 8U);
     for (const int digit : {2, 3, 4}) EXPECT_EQ(exo.controller.copy[static_cast<std::size_t>(digit)].of, 1);
+  }
+}
+
+bool same_friction(const DryFriction& a, const DryFriction& b) {
+  return a.coulomb == b.coulomb && a.static_ratio == b.static_ratio && a.stribeck_speed == b.stribeck_speed &&
+         a.capstan == b.capstan;
+}
+
+// Joint by joint and motor by motor: what differs between the fingers is only which joint it is.
+TEST(DeviceFile, FiveDigitsGivesEachFingerTheJointsAndMotorsOfTheIndexFinger) {
+  const Exoskeleton exo = load_device_file("five_digits");
+  const PatientParameters adult = load_patient_file("adult");
+  const Exoskeleton beihang = load_device_file("beihang");
+  ASSERT_EQ(exo.joints.size(), idx(kJoints));
+  ASSERT_EQ(exo.motors.size(), idx(kJoints));
+  for (const DigitCopy& copy : exo.controller.copy) EXPECT_EQ(copy.of, -1);
+  const auto motor_of = [](const Exoskeleton& device, int joint) {
+    return std::find_if(device.motors.begin(), device.motors.end(),
+                        [joint](const ExoMotor& motor) { return motor.arm[idx(joint)] != 0.0; });
+  };
+  for (int j = 0; j < kJoints; ++j) {
+    SCOPED_TRACE(joint_name(j));
+    const int model = j < 2 * kJointsPerDigit ? j : joint_index(1, j % kJointsPerDigit);
+    const ExoJoint& mine = exo.joints[idx(j)];
+    const auto theirs = std::find_if(beihang.joints.begin(), beihang.joints.end(),
+                                     [model](const ExoJoint& joint) { return joint.joint == model; });
+    ASSERT_NE(theirs, beihang.joints.end());
+    EXPECT_EQ(mine.joint, j);
+    EXPECT_EQ(mine.inertia, theirs->inertia);
+    EXPECT_EQ(mine.damping, theirs->damping);
+    EXPECT_TRUE(same_friction(mine.friction, theirs->friction));
+    EXPECT_EQ(mine.sensor_lsb, theirs->sensor_lsb);
+    EXPECT_EQ(mine.sensor_noise, theirs->sensor_noise);
+    const auto motor = motor_of(exo, j);
+    const auto index = motor_of(beihang, model);
+    ASSERT_NE(motor, exo.motors.end());
+    ASSERT_NE(index, beihang.motors.end());
+    EXPECT_EQ(motor->arm[idx(j)], index->arm[idx(model)]);
+    EXPECT_EQ(motor->mass, index->mass);
+    EXPECT_EQ(motor->damping, index->damping);
+    EXPECT_EQ(motor->lag, index->lag);
+    EXPECT_EQ(motor->force_limit, index->force_limit);
+    EXPECT_TRUE(same_friction(motor->sheath, index->sheath));
+    EXPECT_EQ(motor->tendon_stiffness, index->tendon_stiffness);
+    EXPECT_EQ(motor->tendon_damping, index->tendon_damping);
+    EXPECT_EQ(motor->backlash, index->backlash);
+    EXPECT_EQ(adult.stiffness[idx(j)], adult.stiffness[idx(model)]);
+    EXPECT_EQ(adult.damping[idx(j)], adult.damping[idx(model)]);
   }
 }
 

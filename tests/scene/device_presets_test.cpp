@@ -25,12 +25,12 @@ std::optional<std::array<double, kJointCount>> lever_arms(const char* name, int 
   const SceneDescription scene = load_scene(name);
   const HapticModel model = build_model(scene);
   const Motion motion = build_motion(scene);
-  HapticState state(model);
+  HapticState state(model, scene.parameters);
   for (int tick = 0; tick < 1000; ++tick) {
     Sample sample;
-    sample.time_s = tick / model.rate_hz;
+    sample.time_s = tick / scene.parameters.rate_hz;
     sample.angle = motion.at(sample.time_s);
-    static_cast<void>(step(model, sample, state));
+    static_cast<void>(step(model, scene.parameters, sample, state));
     const Snapshot& snapshot = state.snapshot();
     const SegmentSnapshot& tip = snapshot.segment[static_cast<std::size_t>(segment_index(digit, 2))];
     if (!tip.contact) continue;

@@ -12,6 +12,7 @@
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/profile_file.h"
+#include "support/sanitized.h"
 #include "support/segment_rims.h"
 
 namespace phalanx {
@@ -22,8 +23,7 @@ constexpr double kCmcReach = 14e-3;  // [m]
 /// At the joint in front of each segment of a digit, the largest distance over seeded angles [m].
 std::array<double, kPalm> rim_distances(const Profile& profile) {
   const HandFile file = read_hand_file("adult");
-  HandDescription description;
-  const SegmentMeshes base_meshes = load_collision_meshes(description);
+  const SegmentMeshes base_meshes = load_hand({}, HandDetail::kCollision).meshes.collision;
   const FittedHand fitted = fit_profile(profile, file.parameters);
   const HandModel hand(fitted.parameters, Handedness::kRight, {},
                        fitted_meshes(file.parameters, fitted.fit, base_meshes));
@@ -48,7 +48,7 @@ std::array<double, kPalm> rim_distances(const Profile& profile) {
   rims[0] = near_cmc;
   std::mt19937_64 random(31);
   std::array<double, kPalm> largest{};
-  for (int n = 0; n < 30; ++n) {
+  for (int n = 0; n < (test::kSanitized ? 8 : 30); ++n) {
     JointArray q{};
     for (std::size_t j = 0; j < kJoints; ++j) {
       std::uniform_real_distribution<double> u(fitted.parameters.min_angle[j],

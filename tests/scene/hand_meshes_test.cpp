@@ -3,7 +3,7 @@
 
 #include "expect_error.h"
 #include "hand_files.h"
-#include "mesh/mesh_files.h"
+#include "mesh/import/mesh_files.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/scene/build_model.h"
 
@@ -94,13 +94,14 @@ TEST(HandMeshes, ToShowMayDifferFromThoseThatCollideAndMayBeOpen) {
   const HandDescription hand =
       described(folder.write_hand(kCollision + "display = \"meshes/shown {segment}.obj\"\n"));
   const LoadedHand loaded = load_hand(hand);
-  const SegmentMeshes colliding = load_collision_meshes(hand);
-  const SegmentMeshes shown = load_display_meshes(hand, colliding);
+  const LoadedHand colliding = load_hand(hand, HandDetail::kCollision);
+  const LoadedHand drawn = load_hand(hand, HandDetail::kDrawn);  // it has no skin
   for (std::size_t s = 0; s < kSegments; ++s) {
     EXPECT_EQ(loaded.meshes.display[s].triangles.size(), open[s].triangles.size());
-    EXPECT_EQ(difference(shown[s], loaded.meshes.display[s]), 0.0);
-    EXPECT_EQ(difference(colliding[s], loaded.meshes.collision[s]), 0.0);
-    EXPECT_TRUE(is_closed(colliding[s]));
+    EXPECT_EQ(difference(drawn.meshes.display[s], loaded.meshes.display[s]), 0.0);
+    EXPECT_EQ(difference(colliding.meshes.collision[s], loaded.meshes.collision[s]), 0.0);
+    EXPECT_TRUE(is_closed(loaded.meshes.collision[s]));
+    EXPECT_TRUE(colliding.meshes.display[s].vertices.empty());
   }
 }
 

@@ -59,7 +59,7 @@ TEST(SceneBounds, ASceneMayHaveSoManyTrianglesAndNotOneMore) {
   };
   static_assert(kMostSceneTriangles == 4'000'000);
   expect_scene_error([&] { static_cast<void>(make_world_mesh(scene_of(3'000'000))); },
-                     {"nobody knows this kind"});
+                     {"is no kind of object"});
   expect_scene_error([&] { static_cast<void>(make_world_mesh(scene_of(3'000'001))); },
                      {"objects[1]", "4000001"});
 }

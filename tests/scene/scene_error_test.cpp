@@ -59,7 +59,7 @@ TEST(SceneErrors, NumberThatIsNotFinite) {
 
 TEST(SceneErrors, WrongType) {
   expect_scene_refused("rate_hz = \"fast\"", {"rate_hz", "is a string; write a number"});
-  expect_scene_refused("smoothing.enabled = 1", {"smoothing.enabled", "write true or false"});
+  expect_scene_refused("mirror = 1", {"mirror", "write true or false"});
   expect_scene_refused("seed = 1.5", {"seed", "write a whole number"});
   expect_scene_refused("hand.position_mm = [1, 2]", {"hand.position_mm", "three numbers"});
   expect_scene_refused("hand.position_mm = [1, 2, \"x\"]", {"hand.position_mm", "three numbers"});

@@ -19,17 +19,19 @@ SceneDescription parse_with(const Overrides& overrides) {
   return parse_scene(kText, "test.toml", "/somewhere", overrides);
 }
 
-TEST(Overrides, ReplaceWhatTheFileStates) { EXPECT_EQ(parse_with({{"rate_hz", "1000"}}).rate_hz, 1000.0); }
+TEST(Overrides, ReplaceWhatTheFileStates) {
+  EXPECT_EQ(parse_with({{"rate_hz", "1000"}}).parameters.rate_hz, 1000.0);
+}
 
 TEST(Overrides, AddWhatItDoesNotState) {
-  EXPECT_EQ(parse_with({{"limits.fingertip_force_n", "10"}}).limits.fingertip_force, 10.0);
-  EXPECT_FALSE(parse_with({{"smoothing.enabled", "false"}}).smoothing.enabled);
+  EXPECT_EQ(parse_with({{"limits.fingertip_force_n", "10"}}).parameters.limits.fingertip_force, 10.0);
+  EXPECT_TRUE(parse_with({{"mirror", "true"}}).mirror);
 }
 
 TEST(Overrides, NeedNoQuotesForWords) {
-  EXPECT_EQ(parse_with({{"force.law", "duffing"}}).force.law, ForceLaw::kDuffing);
-  EXPECT_EQ(parse_with({{"force.law", "\"duffing\""}}).force.law, ForceLaw::kDuffing);
-  EXPECT_FALSE(parse_with({{"limits.torque_rate_nm_per_s", "off"}}).limits.torque_rate_enabled);
+  EXPECT_EQ(parse_with({{"force.law", "duffing"}}).parameters.force.law, ForceLaw::kDuffing);
+  EXPECT_EQ(parse_with({{"force.law", "\"duffing\""}}).parameters.force.law, ForceLaw::kDuffing);
+  EXPECT_FALSE(parse_with({{"limits.torque_rate_nm_per_s", "off"}}).parameters.limits.torque_rate_enabled);
 }
 
 TEST(Overrides, ReachElementsOfAnArray) {
@@ -60,7 +62,7 @@ TEST(Overrides, ReplaceAWholeArray) {
 }
 
 TEST(Overrides, TakeTheLastOfSeveral) {
-  EXPECT_EQ(parse_with({{"rate_hz", "1000"}, {"rate_hz", "500"}}).rate_hz, 500.0);
+  EXPECT_EQ(parse_with({{"rate_hz", "1000"}, {"rate_hz", "500"}}).parameters.rate_hz, 500.0);
 }
 
 TEST(Overrides, ResolvePathsAgainstTheWorkingDirectory) {

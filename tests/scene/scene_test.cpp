@@ -20,7 +20,7 @@ TEST(Scene, OfAnEmptyFileIsTheDefaultScene) {
   const SceneDescription scene = parse("");
   const SceneDescription expected;
   EXPECT_EQ(scene.name, "test");
-  EXPECT_EQ(scene.rate_hz, expected.rate_hz);
+  EXPECT_EQ(scene.parameters.rate_hz, expected.parameters.rate_hz);
   EXPECT_EQ(scene.seconds, expected.seconds);
   EXPECT_EQ(scene.seed, expected.seed);
   EXPECT_EQ(scene.hand.file, expected.hand.file);
@@ -29,28 +29,29 @@ TEST(Scene, OfAnEmptyFileIsTheDefaultScene) {
   EXPECT_EQ(scene.hand.pose.R, expected.hand.pose.R);
   EXPECT_EQ(scene.hand.pose.p, expected.hand.pose.p);
   EXPECT_TRUE(scene.objects.empty());
-  EXPECT_DOUBLE_EQ(scene.contact.margin, expected.contact.margin);
-  EXPECT_DOUBLE_EQ(scene.contact.slid_distance, expected.contact.slid_distance);
-  EXPECT_EQ(scene.contact.method, expected.contact.method);
-  EXPECT_EQ(scene.contact.depth, expected.contact.depth);
-  EXPECT_EQ(scene.contact.normal, expected.contact.normal);
-  EXPECT_EQ(scene.force.law, expected.force.law);
-  EXPECT_DOUBLE_EQ(scene.force.stiffness, expected.force.stiffness);
-  EXPECT_DOUBLE_EQ(scene.force.damping, expected.force.damping);
-  EXPECT_DOUBLE_EQ(scene.force.velocity_lowpass_hz, expected.force.velocity_lowpass_hz);
-  EXPECT_DOUBLE_EQ(scene.force.hunt_crossley_exponent, expected.force.hunt_crossley_exponent);
-  EXPECT_DOUBLE_EQ(scene.force.hunt_crossley_damping, expected.force.hunt_crossley_damping);
-  EXPECT_DOUBLE_EQ(scene.force.cubic, expected.force.cubic);
-  EXPECT_DOUBLE_EQ(scene.force.linear_depth, expected.force.linear_depth);
-  EXPECT_EQ(scene.smoothing.enabled, expected.smoothing.enabled);
-  EXPECT_EQ(scene.smoothing.min_rate, expected.smoothing.min_rate);
-  EXPECT_EQ(scene.smoothing.max_rate, expected.smoothing.max_rate);
-  EXPECT_TRUE(scene.limits.fingertip_force_enabled && scene.limits.joint_torque_enabled &&
-              scene.limits.torque_rate_enabled);
-  EXPECT_EQ(scene.limits.fingertip_force, expected.limits.fingertip_force);
-  EXPECT_EQ(scene.limits.joint_torque, expected.limits.joint_torque);
-  EXPECT_EQ(scene.limits.torque_rate, expected.limits.torque_rate);
-  EXPECT_EQ(scene.limits.joint_speed, expected.limits.joint_speed);
+  EXPECT_DOUBLE_EQ(scene.parameters.contact.margin, expected.parameters.contact.margin);
+  EXPECT_DOUBLE_EQ(scene.parameters.contact.slid_distance, expected.parameters.contact.slid_distance);
+  EXPECT_EQ(scene.parameters.contact.method, expected.parameters.contact.method);
+  EXPECT_EQ(scene.parameters.contact.depth, expected.parameters.contact.depth);
+  EXPECT_EQ(scene.parameters.contact.normal, expected.parameters.contact.normal);
+  EXPECT_EQ(scene.parameters.force.law, expected.parameters.force.law);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.stiffness, expected.parameters.force.stiffness);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.damping, expected.parameters.force.damping);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.velocity_lowpass_hz, expected.parameters.force.velocity_lowpass_hz);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.hunt_crossley_exponent,
+                   expected.parameters.force.hunt_crossley_exponent);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.hunt_crossley_damping,
+                   expected.parameters.force.hunt_crossley_damping);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.cubic, expected.parameters.force.cubic);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.linear_depth, expected.parameters.force.linear_depth);
+  EXPECT_EQ(scene.parameters.stabiliser.min_rate, expected.parameters.stabiliser.min_rate);
+  EXPECT_EQ(scene.parameters.stabiliser.max_rate, expected.parameters.stabiliser.max_rate);
+  EXPECT_TRUE(scene.parameters.limits.fingertip_force_enabled &&
+              scene.parameters.limits.joint_torque_enabled && scene.parameters.limits.torque_rate_enabled);
+  EXPECT_EQ(scene.parameters.limits.fingertip_force, expected.parameters.limits.fingertip_force);
+  EXPECT_EQ(scene.parameters.limits.joint_torque, expected.parameters.limits.joint_torque);
+  EXPECT_EQ(scene.parameters.limits.torque_rate, expected.parameters.limits.torque_rate);
+  EXPECT_EQ(scene.parameters.limits.joint_speed, expected.parameters.limits.joint_speed);
   EXPECT_EQ(scene.motion.script.name, expected.motion.script.name);
   EXPECT_EQ(scene.motion.script.start_s, expected.motion.script.start_s);
   EXPECT_EQ(scene.motion.script.close_s, expected.motion.script.close_s);
@@ -111,9 +112,9 @@ TEST(Scene, ConvertsItsUnitsToSi) {
     kind = "sphere"
     diameter_mm = 40
     position_mm = [1, -2.5, 3])");
-  EXPECT_DOUBLE_EQ(scene.contact.margin, 1e-4);
-  EXPECT_DOUBLE_EQ(scene.force.stiffness, 900.0);
-  EXPECT_DOUBLE_EQ(scene.force.cubic, 2e9);
+  EXPECT_DOUBLE_EQ(scene.parameters.contact.margin, 1e-4);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.stiffness, 900.0);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.cubic, 2e9);
   EXPECT_DOUBLE_EQ(scene.motion.script.tremor_rad, std::numbers::pi / 20.0);
   EXPECT_DOUBLE_EQ(scene.objects[0].diameter, 0.04);
   EXPECT_TRUE(scene.objects[0].pose.p.isApprox(Vec3(0.001, -0.0025, 0.003), 1e-15));
@@ -152,7 +153,7 @@ TEST(Scene, KeepsEachNumberInItsOwnPlace) {
     torque_rate_nm_per_s = 8.5
     joint_speed_rad_per_s = 35)");
   EXPECT_EQ(scene.seconds, 6.5);
-  EXPECT_DOUBLE_EQ(scene.contact.slid_distance, 7e-3);
+  EXPECT_DOUBLE_EQ(scene.parameters.contact.slid_distance, 7e-3);
   EXPECT_EQ(scene.motion.script.start_s, 0.125);
   EXPECT_EQ(scene.motion.script.close_s, 2.0);
   EXPECT_EQ(scene.motion.script.hold_s, 3.0);
@@ -161,17 +162,17 @@ TEST(Scene, KeepsEachNumberInItsOwnPlace) {
   EXPECT_EQ(scene.motion.script.closure, 0.75);
   EXPECT_EQ(scene.motion.script.digit_closure, (std::array<double, kDigits>{0.5, 1.5, 2.5, 3.5, 4.5}));
   EXPECT_EQ(scene.motion.trial, 9);
-  EXPECT_EQ(scene.force.damping, 3.25);
-  EXPECT_EQ(scene.force.velocity_lowpass_hz, 40.0);
-  EXPECT_EQ(scene.force.hunt_crossley_exponent, 1.25);
-  EXPECT_EQ(scene.force.hunt_crossley_damping, 2.25);
-  EXPECT_DOUBLE_EQ(scene.force.linear_depth, 8e-3);
-  EXPECT_EQ(scene.smoothing.min_rate, -30.0);
-  EXPECT_EQ(scene.smoothing.max_rate, 50.0);
-  EXPECT_EQ(scene.limits.fingertip_force, 4.5);
-  EXPECT_EQ(scene.limits.joint_torque, 0.25);
-  EXPECT_EQ(scene.limits.torque_rate, 8.5);
-  EXPECT_EQ(scene.limits.joint_speed, 35.0);
+  EXPECT_EQ(scene.parameters.force.damping, 3.25);
+  EXPECT_EQ(scene.parameters.force.velocity_lowpass_hz, 40.0);
+  EXPECT_EQ(scene.parameters.force.hunt_crossley_exponent, 1.25);
+  EXPECT_EQ(scene.parameters.force.hunt_crossley_damping, 2.25);
+  EXPECT_DOUBLE_EQ(scene.parameters.force.linear_depth, 8e-3);
+  EXPECT_EQ(scene.parameters.stabiliser.min_rate, -30.0);
+  EXPECT_EQ(scene.parameters.stabiliser.max_rate, 50.0);
+  EXPECT_EQ(scene.parameters.limits.fingertip_force, 4.5);
+  EXPECT_EQ(scene.parameters.limits.joint_torque, 0.25);
+  EXPECT_EQ(scene.parameters.limits.torque_rate, 8.5);
+  EXPECT_EQ(scene.parameters.limits.joint_speed, 35.0);
 }
 
 TEST(Scene, KeepsEachSizeOfAnObjectInItsOwnPlace) {
@@ -238,36 +239,36 @@ TEST(Scene, ReadsEveryChoice) {
     force.depth = "s1"
     force.normal = "contact")");
   EXPECT_EQ(scene.hand.handedness, Handedness::kLeft);
-  EXPECT_EQ(scene.contact.method, GdpMethod::kTrajectory);
-  EXPECT_EQ(scene.force.law, ForceLaw::kLinearThenCubic);
-  EXPECT_EQ(scene.contact.depth, DepthOrigin::kS1);
-  EXPECT_EQ(scene.contact.normal, ForceNormal::kContact);
-  EXPECT_EQ(parse("force.law = \"kelvin_voigt\"").force.law, ForceLaw::kKelvinVoigt);
-  EXPECT_EQ(parse("force.law = \"hunt_crossley\"").force.law, ForceLaw::kHuntCrossley);
-  EXPECT_EQ(parse("force.law = \"duffing\"").force.law, ForceLaw::kDuffing);
+  EXPECT_EQ(scene.parameters.contact.method, GdpMethod::kTrajectory);
+  EXPECT_EQ(scene.parameters.force.law, ForceLaw::kLinearThenCubic);
+  EXPECT_EQ(scene.parameters.contact.depth, DepthOrigin::kS1);
+  EXPECT_EQ(scene.parameters.contact.normal, ForceNormal::kContact);
+  EXPECT_EQ(parse("force.law = \"kelvin_voigt\"").parameters.force.law, ForceLaw::kKelvinVoigt);
+  EXPECT_EQ(parse("force.law = \"hunt_crossley\"").parameters.force.law, ForceLaw::kHuntCrossley);
+  EXPECT_EQ(parse("force.law = \"duffing\"").parameters.force.law, ForceLaw::kDuffing);
 }
 
 // S2: [-0.05, 0.05] N a step; at 400 Hz that is 20 N/s.
 TEST(Scene, TurnsSmoothingBoundsPerStepIntoBoundsPerSecond) {
   const SceneDescription scene = parse("smoothing.max_n = 0.05\nsmoothing.min_n = -0.1\nrate_hz = 400");
-  EXPECT_DOUBLE_EQ(scene.smoothing.max_rate, 20.0);
-  EXPECT_DOUBLE_EQ(scene.smoothing.min_rate, -40.0);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.max_rate, 20.0);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.min_rate, -40.0);
 }
 
 TEST(Scene, AllowsRiseOnlySmoothing) {
   const double minus_infinity = -std::numeric_limits<double>::infinity();
-  EXPECT_EQ(parse("smoothing.min_n = -inf").smoothing.min_rate, minus_infinity);
-  EXPECT_EQ(parse("smoothing.min_n_per_s = -inf").smoothing.min_rate, minus_infinity);
+  EXPECT_EQ(parse("smoothing.min_n = -inf").parameters.stabiliser.min_rate, minus_infinity);
+  EXPECT_EQ(parse("smoothing.min_n_per_s = -inf").parameters.stabiliser.min_rate, minus_infinity);
 }
 
 TEST(Scene, TurnsALimitOffOnlyByName) {
   const SceneDescription scene = parse("limits.torque_rate_nm_per_s = \"off\"");
-  EXPECT_FALSE(scene.limits.torque_rate_enabled);
-  EXPECT_TRUE(scene.limits.fingertip_force_enabled);
-  EXPECT_TRUE(scene.limits.joint_torque_enabled);
-  EXPECT_FALSE(parse("limits.fingertip_force_n = \"off\"").limits.fingertip_force_enabled);
-  EXPECT_FALSE(parse("limits.joint_torque_nm = \"off\"").limits.joint_torque_enabled);
-  EXPECT_TRUE(std::isinf(parse("limits.joint_speed_rad_per_s = \"off\"").limits.joint_speed));
+  EXPECT_FALSE(scene.parameters.limits.torque_rate_enabled);
+  EXPECT_TRUE(scene.parameters.limits.fingertip_force_enabled);
+  EXPECT_TRUE(scene.parameters.limits.joint_torque_enabled);
+  EXPECT_FALSE(parse("limits.fingertip_force_n = \"off\"").parameters.limits.fingertip_force_enabled);
+  EXPECT_FALSE(parse("limits.joint_torque_nm = \"off\"").parameters.limits.joint_torque_enabled);
+  EXPECT_TRUE(std::isinf(parse("limits.joint_speed_rad_per_s = \"off\"").parameters.limits.joint_speed));
 }
 
 TEST(Scene, ResolvesFilesAgainstItsOwnFolder) {

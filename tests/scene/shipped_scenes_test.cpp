@@ -27,14 +27,14 @@ struct Outcome {
 Outcome play(const SceneDescription& scene) {
   const HapticModel model = build_model(scene);
   const Motion motion = build_motion(scene);
-  HapticState state(model);
+  HapticState state(model, scene.parameters);
   Outcome outcome;
   const ScriptedMotion& script = scene.motion.script;
   const auto ticks =
-      static_cast<int>((script.start_s + script.close_s + 0.9 * script.hold_s) * scene.rate_hz);
+      static_cast<int>((script.start_s + script.close_s + 0.9 * script.hold_s) * scene.parameters.rate_hz);
   for (int tick = 0; tick < ticks; ++tick) {
-    const double time = tick / scene.rate_hz;
-    outcome.status |= step(model, {time, motion.at(time)}, state);
+    const double time = tick / scene.parameters.rate_hz;
+    outcome.status |= step(model, scene.parameters, {time, motion.at(time)}, state);
   }
   for (int digit = 0; digit < kDigits; ++digit) {
     double force = 0.0;
@@ -107,7 +107,7 @@ TEST_P(ShippedScene, TouchesWithTheDigitsOfItsGraspAndGently) {
   EXPECT_EQ(outcome.digits, expected_digits().at(GetParam()));
   EXPECT_EQ(outcome.status, Status::kOk);
   EXPECT_LT(outcome.deepest, 8e-3);
-  EXPECT_LT(outcome.slid, scene.contact.slid_distance);
+  EXPECT_LT(outcome.slid, scene.parameters.contact.slid_distance);
   EXPECT_GT(outcome.weakest, 0.3) << "N";
 }
 

@@ -183,12 +183,13 @@ TEST_P(ShippedSkin, TouchesTheObjectAndDoesNotReachIntoIt) {
   const SceneDescription scene = load_scene(GetParam());
   const HapticModel model = build_model(scene);
   const Motion motion = build_motion(scene);
-  HapticState state(model);
+  HapticState state(model, scene.parameters);
   const ScriptedMotion& script = scene.motion.script;
-  const int ticks = static_cast<int>((script.start_s + script.close_s + 0.9 * script.hold_s) * scene.rate_hz);
+  const int ticks =
+      static_cast<int>((script.start_s + script.close_s + 0.9 * script.hold_s) * scene.parameters.rate_hz);
   for (int tick = 0; tick < ticks; ++tick) {
-    const double time = tick / scene.rate_hz;
-    (void)step(model, {time, motion.at(time)}, state);
+    const double time = tick / scene.parameters.rate_hz;
+    (void)step(model, scene.parameters, {time, motion.at(time)}, state);
   }
   const Snapshot& now = state.snapshot();
   const HandSkin skin = load_hand_skin(scene.hand).value();

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "expect_error.h"
-#include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 
 namespace phalanx {
@@ -29,29 +28,31 @@ TEST(StabiliserKeys, KnowEveryMethodByName) {
       {"energy_bounding", Stabiliser::kEnergyBounding},
       {"local_wall", Stabiliser::kLocalWall}};
   for (const auto& [name, method] : methods)
-    EXPECT_EQ(parse_keys("stabiliser.method = \"" + name + "\"").stabiliser.method, method) << name;
-  EXPECT_EQ(parse_keys("").stabiliser.method, Stabiliser::kSmoothing);
+    EXPECT_EQ(parse_keys("stabiliser.method = \"" + name + "\"").parameters.stabiliser.method, method)
+        << name;
+  EXPECT_EQ(parse_keys("").parameters.stabiliser.method, Stabiliser::kRiseOnly);
   expect_stabiliser_refused("stabiliser.method = \"smooth\"",
                             {"test.toml:1", "stabiliser.method", "did you mean \"smoothing\""});
 }
 
-// What a scene does not state is what a model has by itself.
+// A key that a scene leaves out has the default of its parameter.
 TEST(StabiliserKeys, HaveTheDefaultsOfTheStructs) {
   const SceneDescription scene = parse_keys("");
   const StabiliserParameters s;
-  EXPECT_DOUBLE_EQ(scene.stabiliser.lowpass_hz, s.lowpass_hz);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.damping, s.damping);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.turn_rate, s.turn_rate);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.coupling_stiffness, s.coupling_stiffness);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.coupling_damping, s.coupling_damping);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.passivity_damping_max, s.passivity_damping_max);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.device_damping, s.device_damping);
-  EXPECT_DOUBLE_EQ(scene.stabiliser.wall_valid, s.wall_valid);
-  EXPECT_DOUBLE_EQ(scene.oscillation.swing, OscillationParameters{}.swing);
-  EXPECT_EQ(scene.oscillation.reaction, OscillationParameters{}.reaction);
+  EXPECT_EQ(scene.parameters.stabiliser.method, s.method);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.lowpass_hz, s.lowpass_hz);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.damping, s.damping);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.turn_rate, s.turn_rate);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.coupling_stiffness, s.coupling_stiffness);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.coupling_damping, s.coupling_damping);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.passivity_damping_max, s.passivity_damping_max);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.device_damping, s.device_damping);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.wall_valid, s.wall_valid);
+  EXPECT_DOUBLE_EQ(scene.parameters.oscillation.swing, OscillationParameters{}.swing);
+  EXPECT_EQ(scene.parameters.oscillation.reaction, OscillationParameters{}.reaction);
 }
 
-TEST(StabiliserKeys, AreInSIUnitsInsideAndReachTheModel) {
+TEST(StabiliserKeys, AreInSIUnitsInside) {
   const SceneDescription scene = parse_keys(R"(
 hand.meshes = "capsules"
 [stabiliser]
@@ -68,34 +69,30 @@ wall_valid_ms = 20
 reaction = "halve"
 swing_n = 0.3
 )");
-  const HapticModel model = build_model(scene);
-  EXPECT_EQ(model.stabiliser.method, Stabiliser::kVirtualCoupling);
-  EXPECT_DOUBLE_EQ(model.stabiliser.turn_rate, std::numbers::pi);
-  EXPECT_EQ(model.stabiliser.lowpass_hz, 10.0);
-  EXPECT_EQ(model.stabiliser.damping, 8.0);
-  EXPECT_DOUBLE_EQ(model.stabiliser.coupling_stiffness, 2000.0);
-  EXPECT_EQ(model.stabiliser.coupling_damping, 5.0);
-  EXPECT_EQ(model.stabiliser.passivity_damping_max, 7.0);
-  EXPECT_EQ(model.stabiliser.device_damping, 0.8);
-  EXPECT_DOUBLE_EQ(model.stabiliser.wall_valid, 0.02);
-  EXPECT_EQ(model.oscillation.reaction, OscillationReaction::kHalve);
-  EXPECT_EQ(model.oscillation.swing, 0.3);
+  EXPECT_EQ(scene.parameters.stabiliser.method, Stabiliser::kVirtualCoupling);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.turn_rate, std::numbers::pi);
+  EXPECT_EQ(scene.parameters.stabiliser.lowpass_hz, 10.0);
+  EXPECT_EQ(scene.parameters.stabiliser.damping, 8.0);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.coupling_stiffness, 2000.0);
+  EXPECT_EQ(scene.parameters.stabiliser.coupling_damping, 5.0);
+  EXPECT_EQ(scene.parameters.stabiliser.passivity_damping_max, 7.0);
+  EXPECT_EQ(scene.parameters.stabiliser.device_damping, 0.8);
+  EXPECT_DOUBLE_EQ(scene.parameters.stabiliser.wall_valid, 0.02);
+  EXPECT_EQ(scene.parameters.oscillation.reaction, OscillationReaction::kHalve);
+  EXPECT_EQ(scene.parameters.oscillation.swing, 0.3);
 }
 
-TEST(StabiliserKeys, TakeTheOlderFormWhereItSaysTheSame) {
-  for (const char* text :
-       {"smoothing.enabled = false", "smoothing.enabled = false\nstabiliser.method = \"none\"",
-        "smoothing.enabled = false\nstabiliser.method = \"smoothing\""}) {
-    const SceneDescription scene = parse_keys(text);
-    EXPECT_TRUE(!scene.smoothing.enabled || scene.stabiliser.method == Stabiliser::kNone) << text;
+// The older form of the method "none" is gone, whatever it says and whatever else is stated.
+TEST(StabiliserKeys, RefuseTheSwitchOfTheSmoothingAndNameWhatReplacesIt) {
+  for (const char* text : {"smoothing.enabled = false", "smoothing.enabled = true", "smoothing.enabled = 3",
+                           "smoothing.enabled = false\nstabiliser.method = \"none\""}) {
+    const std::string stated(std::string_view(text).substr(0, std::string_view(text).find('\n')));
+    expect_stabiliser_refused(text, {"test.toml:1: " + stated + ": ", "stabiliser.method replaces it",
+                                     "remove it", "stabiliser.method = \"none\""});
   }
-  EXPECT_EQ(parse_keys("smoothing.enabled = true\nstabiliser.method = \"low_pass\"").stabiliser.method,
-            Stabiliser::kLowPass);
-  expect_stabiliser_refused("smoothing.enabled = false\nstabiliser.method = \"low_pass\"",
-                            {"test.toml:1", "smoothing.enabled", "stabiliser.method", "low_pass", "remove"});
-  expect_stabiliser_refused("smoothing.enabled = true\nstabiliser.method = \"none\"",
-                            {"test.toml:1", "smoothing.enabled", "stabiliser.method", "none", "remove"});
-  expect_stabiliser_refused("smoothing.enabled = 3\nstabiliser.method = \"none\"", {"true or false"});
+  EXPECT_THAT([] { (void)parse_scene("", "test.toml", "/", {{"smoothing.enabled", "false"}}); },
+              ::testing::ThrowsMessage<SceneError>(
+                  ::testing::HasSubstr("--set smoothing.enabled=false: smoothing.enabled = false: ")));
 }
 
 }  // namespace

@@ -77,7 +77,9 @@ TEST(TomlBounds, WhatFilesHoldIsLetThrough) {
         "s = \"" + dotted(100) + std::string(2000, '[') + "\"\n", "s = '''\n" + dotted(100) + "\n[[[\n'''\n",
         "# " + dotted(100) + "\n", "n = [" + repeated(500, "1.5, ") + "]\n",
         "n = [\n" + repeated(500, "[1.5, 2.5], # a.b\n") + "]\n",
-        "s = [\"" + std::string(2000, 's') + "\", \"=\"]\n", repeated(500, "[[a]]\n") + "b.c = 1.5\n"}) {
+        "s = [\"" + std::string(2000, 's') + "\", \"=\"]\n", "s = [\"" + std::string(2000, 's') + "\"]\n",
+        "s = [[\"" + std::string(2000, 's') + "\"]]\n", "s = {a = [\"" + std::string(2000, 's') + "\"]}\n",
+        repeated(500, "[[a]]\n") + "b.c = 1.5\n"}) {
     SCOPED_TRACE(text.substr(0, 60));
     EXPECT_NO_THROW(static_cast<void>(parse_toml(text, "f.toml")));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A station with its cockpit and server, and pages that say and hear what a browser's would.
+// A station with its cockpit and server, and pages that send and receive the messages of a browser's page.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace test {
 
 using testing::read_file;
 
-/// A browser's page as the cockpit knows it.
+/// Client of the cockpit's protocol.
 class Page {
  public:
   explicit Page(std::uint16_t port, const std::string& secret = "", const std::string& name = "",
@@ -35,25 +35,25 @@ class Page {
     hello.mutable_hello()->set_protocol(Cockpit::kProtocol);
     hello.mutable_hello()->set_secret(secret);
     hello.mutable_hello()->set_name(name);
-    say(hello);
-    welcome = hear(wire::ToPage::kWelcome).welcome();
-    state = hear(wire::ToPage::kState).state();
+    send(hello);
+    welcome = receive(wire::ToPage::kWelcome).welcome();
+    state = receive(wire::ToPage::kState).state();
   }
 
-  void say(const wire::ToHost& message) { client_.say(message.SerializeAsString()); }
-  /// The next of a kind; the others are taken in. What: kGone: the line was closed.
-  wire::ToPage hear(wire::ToPage::WhatCase what) {
-    return hear([what](const wire::ToPage& message) { return message.what_case() == what; });
+  void send(const wire::ToHost& message) { client_.send(message.SerializeAsString()); }
+  /// Receives messages until one of a kind comes. @returns it; an empty message if the connection was closed
+  wire::ToPage receive(wire::ToPage::WhatCase what) {
+    return receive([what](const wire::ToPage& message) { return message.what_case() == what; });
   }
-  wire::ToPage hear(const std::function<bool(const wire::ToPage&)>& so) {
+  wire::ToPage receive(const std::function<bool(const wire::ToPage&)>& so) {
     for (;;) {
-      const PageClient::Frame frame = client_.hear();
+      const PageClient::Frame frame = client_.receive();
       if (frame.opcode == PageClient::kPing) {
-        client_.say(frame.payload, PageClient::kPong);
+        client_.send(frame.payload, PageClient::kPong);
         continue;
       }
       if (frame.opcode != PageClient::kBinary) {
-        ADD_FAILURE() << "the line was closed: " << frame.reason();
+        ADD_FAILURE() << "the connection was closed: " << frame.reason();
         return {};
       }
       wire::ToPage message;
@@ -65,18 +65,19 @@ class Page {
     }
   }
   wire::Notice notice(const std::string& code) {
-    return hear([&](const wire::ToPage& m) { return m.has_notice() && m.notice().code() == code; }).notice();
+    return receive([&](const wire::ToPage& m) { return m.has_notice() && m.notice().code() == code; })
+        .notice();
   }
-  /// Until the state is so.
+  /// Waits until a state meets a condition.
   void until(const std::function<bool(const wire::State&)>& so) {
     if (so(state)) return;
-    hear([&](const wire::ToPage& m) { return m.has_state() && so(m.state()); });
+    receive([&](const wire::ToPage& m) { return m.has_state() && so(m.state()); });
   }
   /// @returns the reply to it
   wire::Reply ask(wire::ToHost message) {
     message.set_request(++request_);
-    say(message);
-    return hear([&](const wire::ToPage& m) { return m.has_reply() && m.reply().request() == request_; })
+    send(message);
+    return receive([&](const wire::ToPage& m) { return m.has_reply() && m.reply().request() == request_; })
         .reply();
   }
   wire::Reply set(const std::string& key, const std::string& value) {
@@ -90,8 +91,8 @@ class Page {
 
   wire::Welcome welcome;
   wire::State state;
-  int ticks = 0;    ///< that have come
-  int replies = 0;  ///< likewise
+  int ticks = 0;    ///< received
+  int replies = 0;  ///< received
 
  private:
   PageClient client_;
@@ -125,16 +126,16 @@ inline wire::ToHost to_take() {
   return message;
 }
 
-inline const std::string kLookOn = "https://192.0.2.1:8480/?token=look";
+inline const std::string kViewerUrl = "https://192.0.2.1:8480/?token=look";
 
 class CockpitTest : public ::testing::Test {
  protected:
-  /// @param still  for the cockpit time passes by skip() only; then states are sent to pages that come, and
-  /// no more
-  explicit CockpitTest(bool still = false) : still_(still) {
+  /// @param still  the cockpit's clock advances by skip() only; then a page receives the states after its
+  /// Welcome and no further ones
+  explicit CockpitTest(bool still = false, const std::string& device = "sliders") : still_(still) {
     StationHostSettings station;
     station.scene = "first_touch";
-    station.device = "sliders";
+    station.device = device;
     station.overrides = {{"hand.meshes", "\"capsules\""}};  // no files to read for each test
     station.ask_for_realtime = false;
     host_ = std::make_unique<StationHost>(station, clock_);
@@ -150,7 +151,7 @@ class CockpitTest : public ::testing::Test {
     server_.reset();
     cockpit_.reset();
   }
-  /// A server in place of the one that is there.
+  /// Replaces the server.
   void serve(const std::string& operator_token = "", const std::string& viewer_token = "") {
     owner_.reset();
     server_.reset();
@@ -159,15 +160,16 @@ class CockpitTest : public ::testing::Test {
     settings.site_missing = "none";
     settings.operator_token = operator_token;
     settings.viewer_token = viewer_token;
-    // Whoever waits with one page does not answer another's pings, and a slow machine makes that long.
-    settings.idle_timeout = settings.request_timeout = settings.proof_timeout = 600.0;
+    // A test that waits with one page does not answer the pings of another. On a slow machine
+    // that takes long.
+    settings.idle_timeout = settings.request_timeout = settings.pending_timeout = 600.0;
     server_ = std::make_unique<WebServer>(settings, *cockpit_);
-    cockpit_->attach(*server_, {kLookOn});
+    cockpit_->attach(*server_, {kViewerUrl});
     server_->start();
     owner_ = std::make_unique<Owner>(*host_);
   }
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
-  /// So long passes for the cockpit at once.
+  /// Advances the cockpit's clock.
   void skip(double seconds) { skipped_ = skipped_ + seconds; }
   std::string post(const std::string& path, const std::string& body, const std::string& fields = "") const {
     return ask(port(), "POST " + path +
@@ -175,7 +177,7 @@ class CockpitTest : public ::testing::Test {
                            "Content-Length: " +
                            std::to_string(body.size()) + "\r\n" + fields + "\r\n" + body);
   }
-  /// The log's file, with all that was told before this.
+  /// @returns the log's file with all notices so far
   std::string log_text() const {
     const std::string mark = "mark " + std::to_string(++marks_);
     cockpit_->typed("mark", mark);
@@ -206,14 +208,14 @@ class CockpitTest : public ::testing::Test {
   const Clock real_;
   const bool still_;
   std::atomic<double> skipped_{0.0};
-  mutable int marks_ = 0;  ///< in the log
+  mutable int marks_ = 0;  ///< written to the log
   std::unique_ptr<StationHost> host_;
   std::unique_ptr<Cockpit> cockpit_;
   std::unique_ptr<WebServer> server_;
   std::unique_ptr<Owner> owner_;
 };
 
-/// For what depends on a second more or less.
+/// Fixture for tests that depend on exact times.
 class StillCockpitTest : public CockpitTest {
  protected:
   StillCockpitTest() : CockpitTest(true) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pages ask for over plain HTTP: a stop, the shapes, a mesh of their own. docs/cockpit.md
+// HTTP requests of pages: a stop, the geometry, an upload. See docs/cockpit.md.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <poll.h>
@@ -30,19 +30,19 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using CockpitHttp = CockpitTest;
 
-TEST_F(CockpitHttp, AStopComesInOverPlainHttpToo) {
+TEST_F(CockpitHttp, AStopMayAlsoBeAPost) {
   Page page(port(), "", "Anna");
   EXPECT_EQ(status_of(post("/stop", "")), 200);
   EXPECT_TRUE(host_->held_stopped());
   EXPECT_EQ(page.notice("stopped").who(), "a page (127.0.0.1)");
   EXPECT_EQ(status_of(post("/stop", "", "X-Phalanx-Page: " + page.welcome.secret() + "\r\n")), 200);
   EXPECT_EQ(page.notice("stopped").who(), "page 1 (127.0.0.1), Anna");
-  EXPECT_EQ(status_of(ask(port(), get("/stop"))), 405) << "no link stops a hand";
+  EXPECT_EQ(status_of(ask(port(), get("/stop"))), 405) << "a link cannot stop";
   EXPECT_EQ(status_of(post("/resume", "")), 404);
   EXPECT_TRUE(host_->held_stopped());
 }
 
-TEST_F(CockpitHttp, TheShapesAreFetchedByTheirRevision) {
+TEST_F(CockpitHttp, TheGeometryIsFetchedByItsRevision) {
   Page page(port());
   const std::string answer = ask(port(), get("/geometry/1"));
   ASSERT_EQ(status_of(answer), 200);
@@ -57,38 +57,38 @@ TEST_F(CockpitHttp, TheShapesAreFetchedByTheirRevision) {
   EXPECT_TRUE(page.ask(scene).ok());
   page.until([](const wire::State& s) { return s.geometry() == 2; });
   ASSERT_TRUE(geometry.ParseFromString(body_of(ask(port(), get("/geometry/2")))));
-  EXPECT_EQ(geometry.revision(), 2U) << "not the one that was fetched before";
+  EXPECT_EQ(geometry.revision(), 2U) << "not the cached one";
 }
 
-TEST_F(CockpitHttp, WhoLooksOnSendsNoMeshAlsoWithTheOperatorsSecret) {
+TEST_F(CockpitHttp, AViewerMayNotUploadEvenWithTheOperatorsSecret) {
   const Page page(port());
   WebRequest request;
   request.method = "POST";
   request.path = "/mesh";
   request.page_secret = page.welcome.secret();
-  request.visitor.may_operate = false;
+  request.client.may_operate = false;
   std::promise<int> status;
   std::size_t limit_of_viewer = 1;
   std::size_t limit_of_operator = 0;
   server_->post([&] {
     limit_of_viewer = cockpit_->body_limit(request);
     WebRequest operators = request;
-    operators.visitor.may_operate = true;
+    operators.client.may_operate = true;
     limit_of_operator = cockpit_->body_limit(operators);
-    cockpit_->requested(request, [&](const WebAnswer& answer) { status.set_value(answer.status); });
+    cockpit_->requested(request, [&](const WebResponse& answer) { status.set_value(answer.status); });
   });
   EXPECT_EQ(status.get_future().get(), 403);
   EXPECT_EQ(limit_of_viewer, 0U);
   EXPECT_EQ(limit_of_operator, Cockpit::kUploadLimit);
 }
 
-TEST_F(CockpitHttp, TheOperatorSendsAMeshAndGraspsIt) {
+TEST_F(CockpitHttp, TheOperatorUploadsAMeshAndUsesIt) {
   Page page(port());
   Page other(port());
   const std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
   const std::string mine = "X-Phalanx-Page: " + page.welcome.secret() + "\r\n";
   const std::string theirs = "X-Phalanx-Page: " + other.welcome.secret() + "\r\n";
-  // Refused by its head: nothing is read of a body whose sender may not send it.
+  // Refused by the head: the body of a client that may not upload is not read.
   EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mm", mesh)), 413);
   EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mm", mesh, theirs)), 413);
   EXPECT_EQ(status_of(post("/mesh?name=a.obj&unit=mile", mesh, mine)), 400);
@@ -113,36 +113,37 @@ TEST_F(CockpitHttp, TheOperatorSendsAMeshAndGraspsIt) {
   EXPECT_FALSE(page.set("objects.0.file", "/etc/passwd").ok());
 }
 
-TEST_F(CockpitHttp, EndsWhileChangesWaitThatAreAnsweredWhenItIsNoMore) {
+TEST_F(CockpitHttp, MayEndWhileChangesWaitWhichAreAnsweredAfterItsEnd) {
   Page page(port());
-  owner_.reset();  // nobody answers
+  owner_.reset();  // nothing is answered
   for (std::uint32_t request : {101U, 102U}) {
     wire::ToHost scene;
     scene.mutable_scene()->set_name("pinch_ball");
     scene.set_request(request);
-    page.say(scene);
+    page.send(scene);
   }
-  EXPECT_TRUE(page.ask(to_take()).ok()) << "those before have been handed over";
+  EXPECT_TRUE(page.ask(to_take()).ok()) << "the requests before it have been passed on";
   server_.reset();
-  EXPECT_EQ(page.client().hear_end().code(), 1001);
+  EXPECT_EQ(page.client().receive_until_closed().code(), 1001);
   cockpit_.reset();
   EXPECT_EQ(host_->state()->scene, "first_touch");
   while (host_->state()->scene != "pinch_ball" || !host_->state()->busy.empty()) {
-    host_->go_on();  // answers to a cockpit that is no more
+    host_->poll();  // answers to a cockpit that has been destroyed
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 }
 
-TEST_F(CockpitHttp, AStopIsHeardWhenAllPlacesAreTaken) {
+TEST_F(CockpitHttp, AStopIsAppliedWhenAllConnectionsAreInUse) {
   std::vector<std::unique_ptr<Page>> pages;
   for (std::size_t i = 0; i < WebServerSettings{}.connections; ++i)
     pages.push_back(std::make_unique<Page>(port()));
-  EXPECT_EQ(status_of(PageClient(port()).welcome()), 503);
+  EXPECT_EQ(status_of(PageClient(port()).handshake()), 503);
   EXPECT_EQ(status_of(post("/stop", "")), 200);
   EXPECT_TRUE(host_->held_stopped());
 }
 
-/// A file that keeps a program waiting that opens it to write, until this is gone (a lease: at most 45 s).
+/// File with a lease: a program that opens it for writing waits until this object is destroyed (45
+/// s at most).
 class HeldFile {
  public:
   explicit HeldFile(const std::filesystem::path& file) {
@@ -161,7 +162,7 @@ class HeldFile {
   HeldFile& operator=(const HeldFile&) = delete;
 
   [[nodiscard]] bool is_held() const { return held_; }
-  /// @returns true once something waits
+  /// @returns true once a program waits
   [[nodiscard]] static bool is_waited_for() {
     pollfd begun{.fd = opened, .events = POLLIN, .revents = 0};
     int count = 0;
@@ -176,7 +177,7 @@ class HeldFile {
   bool held_ = false;
 };
 
-TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
+TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotDelayTheEnd) {
   Page page(port());
   std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
   const std::string mine = "X-Phalanx-Page: " + page.welcome.secret() + "\r\n";
@@ -184,29 +185,29 @@ TEST_F(CockpitHttp, AnUploadThatIsStuckDoesNotKeepItFromEnding) {
   ASSERT_TRUE(good["ok"].get<bool>()) << good.dump();
   page.notice("upload");
   const std::filesystem::path folder = std::filesystem::path(good["file"].get<std::string>()).parent_path();
-  constexpr int kOlder = 60;  // more than it keeps
+  constexpr int kOlder = 60;  // more than are kept
   for (int i = 0; i < kOlder; ++i)
     std::ofstream(folder / ("old-" + std::string(14, '0') + std::to_string(10 + i) + ".obj")) << "older";
-  // What stands where the next one is to be written cannot be opened until the end.
+  // The next upload cannot open its temporary file until the lease ends.
   const std::filesystem::path file = good["file"].get<std::string>();
   std::filesystem::remove(file);
-  auto in_the_way = std::make_unique<HeldFile>(file.string() + ".partial");
-  if (!in_the_way->is_held()) GTEST_SKIP() << "no leases on this file system";
+  auto lease = std::make_unique<HeldFile>(file.string() + ".partial");
+  if (!lease->is_held()) GTEST_SKIP() << "no leases on this file system";
   RawClient line(port());
-  line.say("POST /mesh?name=a.obj&unit=mm HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\n" +
-           mine + "Content-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh);
+  line.send("POST /mesh?name=a.obj&unit=mm HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\n" +
+            mine + "Content-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh);
   page.notice("upload");
-  ASSERT_TRUE(HeldFile::is_waited_for()) << "nothing is written";
+  ASSERT_TRUE(HeldFile::is_waited_for()) << "no file is opened";
   EXPECT_EQ(status_of(post("/mesh?name=c.obj&unit=mm", mesh, mine)), 429) << "one at a time";
   owner_.reset();
   server_.reset();
   cockpit_.reset();  // hangs if it waits
   EXPECT_FALSE(std::filesystem::exists(file));
-  in_the_way.reset();
+  lease.reset();
   for (int i = 0; i < 10'000 && !std::filesystem::exists(file); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(std::filesystem::file_size(file), mesh.size()) << "it was still being written";
-  std::this_thread::sleep_for(std::chrono::milliseconds(1));  // of the held clock: what it does then is done
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));  // of the held clock: the upload has ended then
   int older = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     older += entry.path().filename().string().starts_with("old-") ? 1 : 0;

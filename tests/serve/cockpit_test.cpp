@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages, the server and a station: who may do what, and what everybody is told. docs/cockpit.md
+// Pages, the server and a station: roles, notices, ticks and states. See docs/cockpit.md.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -9,9 +9,11 @@
 #include <tuple>
 #include <vector>
 
+#include "device/opengloves/glove_firmware.h"
 #include "phalanx/scene/data_paths.h"
 #include "serve/cockpit_fixture.h"
 #include "serve/full_disk.h"
+#include "support/held_clock/hold_this_process.h"
 
 namespace phalanx {
 namespace {
@@ -28,12 +30,12 @@ double since_1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
+TEST_F(CockpitTest, APageGetsAWelcomeAndSeesTheHandMove) {
   clock_.sleep_until(1.0);
   const double before = since_1970();
   Page page(port(), "", "Anna");
   const double after = since_1970();
-  ASSERT_EQ(page.welcome.past_size(), 1) << "that it operates";
+  ASSERT_EQ(page.welcome.past_size(), 1) << "the notice that it operates";
   for (const double told : {page.welcome.unix_time(), page.welcome.past(0).unix_time()}) {
     EXPECT_GE(told, before);
     EXPECT_LE(told, after);
@@ -50,26 +52,26 @@ TEST_F(CockpitTest, APageIsWelcomedAndSeesTheHandMove) {
   EXPECT_EQ(page.state.operator_name(), "Anna");
   EXPECT_EQ(page.state.scene(), "first_touch");
   ASSERT_EQ(page.welcome.viewer_url_size(), 1);
-  EXPECT_EQ(page.welcome.viewer_url(0), kLookOn);
-  const wire::Tick first = page.hear(wire::ToPage::kTick).tick();
+  EXPECT_EQ(page.welcome.viewer_url(0), kViewerUrl);
+  const wire::Tick first = page.receive(wire::ToPage::kTick).tick();
   EXPECT_EQ(first.hcp_angle_size(), kJoints);
   EXPECT_EQ(first.gdp_pose_size(), 7 * kSegments);
-  const wire::Tick second = page.hear(wire::ToPage::kTick).tick();
+  const wire::Tick second = page.receive(wire::ToPage::kTick).tick();
   EXPECT_GT(second.time(), first.time());
 }
 
-// Frames come more often than steps where a station is slow.
-TEST_F(CockpitTest, AStepIsSentOnceHoweverManyFramesItIsShownIn) {
+// In slow motion frames come more often than steps.
+TEST_F(CockpitTest, AStepIsSentOnceHoweverManyFramesComeInBetween) {
   Page page(port());
   double last = -1.0;
   for (int i = 0; i < 10; ++i) {
     server_->post([this] {
       for (int k = 0; k < 3; ++k) cockpit_->frame();
     });
-    const wire::Tick tick = page.hear(wire::ToPage::kTick).tick();
+    const wire::Tick tick = page.receive(wire::ToPage::kTick).tick();
     EXPECT_GT(tick.time(), last);
     last = tick.time();
-    page.say(to_see(static_cast<std::uint64_t>(page.ticks)));
+    page.send(to_see(static_cast<std::uint64_t>(page.ticks)));
   }
 }
 
@@ -81,7 +83,21 @@ TEST_F(CockpitTest, ThePagesFirstStateFollowsItsWelcomeBeforeAnyTick) {
   EXPECT_EQ(watching.state.operator_page(), 1U);
 }
 
-TEST_F(CockpitTest, AViewerIsRefusedChangesButStopsAndItIsLoggedWhoDid) {
+struct OpenGlove {
+  GloveFirmware firmware{"A0B0C0D0E0F2047G2047"};
+};
+class GloveCockpitTest : private OpenGlove, public CockpitTest {
+ protected:
+  GloveCockpitTest() : CockpitTest(false, "opengloves:" + firmware.port()) {}
+};
+
+TEST_F(GloveCockpitTest, APageIsToldThatTheDeviceHoldsAFingerWithoutItsHost) {
+  Page page(port());
+  EXPECT_TRUE(page.state.holds_without_host());
+  EXPECT_THAT(page.notice("no_watchdog").text(), HasSubstr("has no watchdog"));
+}
+
+TEST_F(CockpitTest, AViewerMayNotChangeButMayStopAndIsLogged) {
   Page operating(port());
   Page watching(port(), "", "Ben");
   const wire::Reply refused = watching.set("rate_hz", "250");
@@ -93,7 +109,7 @@ TEST_F(CockpitTest, AViewerIsRefusedChangesButStopsAndItIsLoggedWhoDid) {
   EXPECT_EQ(operating.notice("stopped").who(), "page 2 (127.0.0.1), Ben");
   operating.until(
       [](const wire::State& s) { return s.held_stopped() && s.safety() == wire::SAFETY_STOPPED; });
-  EXPECT_FALSE(watching.ask(to_resume(*host_)).ok()) << "who stopped is a viewer still";
+  EXPECT_FALSE(watching.ask(to_resume(*host_)).ok()) << "a viewer remains one after a stop";
   EXPECT_TRUE(host_->held_stopped());
   EXPECT_TRUE(operating.ask(to_resume(*host_)).ok());
   operating.until([](const wire::State& s) { return s.safety() == wire::SAFETY_RUNNING; });
@@ -102,9 +118,9 @@ TEST_F(CockpitTest, AViewerIsRefusedChangesButStopsAndItIsLoggedWhoDid) {
   EXPECT_EQ(logged("resumed"), 1U);
 }
 
-TEST_F(StillCockpitTest, AKeyHeldDownIsObeyedEachTimeAndToldOnceASecondAndAfterEachResume) {
+TEST_F(StillCockpitTest, ARepeatedStopIsAppliedEachTimeAndLoggedOnceASecondAndAfterEachResume) {
   Page page(port());
-  for (int i = 0; i < 50; ++i) page.say(to_stop());
+  for (int i = 0; i < 50; ++i) page.send(to_stop());
   EXPECT_TRUE(page.ask(to_stop()).ok());
   EXPECT_EQ(logged("stopped"), 1U);
   EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
@@ -114,29 +130,29 @@ TEST_F(StillCockpitTest, AKeyHeldDownIsObeyedEachTimeAndToldOnceASecondAndAfterE
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_EQ(lines[1]["code"], "stopped");
   EXPECT_EQ(lines[2]["code"], "resumed");
-  EXPECT_EQ(lines[3]["code"], "stopped") << "in the order in which it was";
+  EXPECT_EQ(lines[3]["code"], "stopped") << "in order";
   skip(1.5);
   EXPECT_TRUE(page.ask(to_stop()).ok());
   EXPECT_EQ(logged("stopped"), 3U);
 }
 
-TEST_F(StillCockpitTest, AStopThatStopsSomethingIsToldWhoeverHasResumedAndHoweverSoon) {
+TEST_F(StillCockpitTest, AStopWithAnEffectIsLoggedHoweverSoonItComes) {
   Page page(port());
   EXPECT_TRUE(page.ask(to_stop()).ok());
   host_->resume();  // at the terminal
   EXPECT_TRUE(page.ask(to_stop()).ok());
   EXPECT_EQ(logged("stopped"), 2U);
   EXPECT_TRUE(page.ask(to_stop()).ok());
-  EXPECT_EQ(logged("stopped"), 2U) << "it was stopped";
+  EXPECT_EQ(logged("stopped"), 2U) << "it had no effect";
 }
 
-TEST_F(StillCockpitTest, TwoPeopleWithoutAPageAreTwoInTheLog) {
+TEST_F(StillCockpitTest, TwoAddressesWithoutAPageAreLoggedApart) {
   const auto stop_from = [this](const std::string& address) {
     WebRequest request;
     request.method = "POST";
     request.path = "/stop";
-    request.visitor.address = address;
-    server_->post([this, request] { cockpit_->requested(request, [](const WebAnswer&) {}); });
+    request.client.address = address;
+    server_->post([this, request] { cockpit_->requested(request, [](const WebResponse&) {}); });
   };
   for (const char* address : {"192.0.2.1", "192.0.2.2", "192.0.2.1"}) stop_from(address);
   const auto lines = log();
@@ -145,12 +161,12 @@ TEST_F(StillCockpitTest, TwoPeopleWithoutAPageAreTwoInTheLog) {
   EXPECT_EQ(lines[1]["who"], "a page (192.0.2.2)");
 }
 
-TEST_F(CockpitTest, WhoSitsDownBecauseNobodyOperatesIsToldAndLogged) {
+TEST_F(CockpitTest, BecomingTheFirstOperatorIsNotifiedAndLogged) {
   Page first(port(), "", "Anna");
   ASSERT_EQ(first.welcome.past_size(), 1);
   EXPECT_EQ(first.welcome.past(0).code(), "operator_taken");
   EXPECT_EQ(first.welcome.past(0).who(), "page 1 (127.0.0.1), Anna");
-  EXPECT_EQ(first.welcome.past(0).text(), "operates: nobody else did");
+  EXPECT_EQ(first.welcome.past(0).text(), "operates: there was no operator");
   wire::ToHost release;
   release.mutable_release();
   EXPECT_TRUE(first.ask(release).ok());
@@ -159,7 +175,7 @@ TEST_F(CockpitTest, WhoSitsDownBecauseNobodyOperatesIsToldAndLogged) {
   EXPECT_EQ(logged("operator_taken"), 2U);
 }
 
-TEST_F(CockpitTest, AResumeThatANewerStopHasOvertakenIsRefused) {
+TEST_F(CockpitTest, AResumeAfterANewerStopIsRefused) {
   Page page(port());
   EXPECT_TRUE(page.ask(to_stop()).ok());
   const wire::ToHost late = to_resume(*host_);
@@ -171,31 +187,31 @@ TEST_F(CockpitTest, AResumeThatANewerStopHasOvertakenIsRefused) {
   EXPECT_FALSE(host_->held_stopped());
 }
 
-TEST_F(CockpitTest, APageIsSentOnlyTwelveTicksThatItHasNotSeen) {
+TEST_F(CockpitTest, APageIsSentAtMostTwelveUnacknowledgedTicks) {
   Page silent(port());
-  Page diligent(port());
+  Page prompt(port());
   std::uint64_t seen = 0;
-  // That come to the silent one, having said so much, while the other one is sent 20.
-  const auto ticks = [&](std::uint64_t says) {
+  // Ticks that the silent page receives after this acknowledgement, while the other one receives 20.
+  const auto ticks = [&](std::uint64_t ticks_seen) {
     const int before = silent.ticks;
-    silent.say(to_see(says));
-    silent.ask(to_be_named("silent"));  // it has been heard
+    silent.send(to_see(ticks_seen));
+    silent.ask(to_be_named("silent"));  // it has been handled
     for (int i = 0; i < 20; ++i) {
-      diligent.hear(wire::ToPage::kTick);
-      diligent.say(to_see(++seen));
+      prompt.receive(wire::ToPage::kTick);
+      prompt.send(to_see(++seen));
     }
     for (int i = 0; i < 2; ++i) silent.ask(to_be_named("silent"));  // a tick may come behind the first reply
     return silent.ticks - before;
   };
   EXPECT_EQ(ticks(0), 12);
   EXPECT_EQ(ticks(5), 5);
-  EXPECT_EQ(ticks(3), 0) << "what was seen stays so";
-  EXPECT_EQ(ticks(1'000'000), 12) << "of those that were sent, no more can be seen";
-  EXPECT_EQ(silent.replies, 4 * 3) << "nobody answers to what was seen";
+  EXPECT_EQ(ticks(3), 0) << "an acknowledgement is not taken back";
+  EXPECT_EQ(ticks(1'000'000), 12) << "no more than were sent can be acknowledged";
+  EXPECT_EQ(silent.replies, 4 * 3) << "acknowledgements have no reply";
 }
 
-// A state at least every 0.5 s; where something has changed, at most every 0.05 s. Of 20 ticks at most 12
-// were on their way before the time was skipped: the others come behind the state that is due then.
+// A state comes at least every 0.5 s and, after a change, at most every 0.05 s. Of 20 ticks at most 12 were
+// sent before the clock was advanced; the others follow the state that is due then.
 TEST_F(StillCockpitTest, AStateComesWhenItIsDueOrSomethingHasChangedAndOnlyOnce) {
   const auto rests = [this](SafetyState state) {
     for (int i = 0; i < 60'000 && host_->view().state != state; ++i)
@@ -204,18 +220,18 @@ TEST_F(StillCockpitTest, AStateComesWhenItIsDueOrSomethingHasChangedAndOnlyOnce)
   };
   ASSERT_TRUE(rests(SafetyState::kRunning));
   Page page(port());
-  page.hear(wire::ToPage::kState);  // the first that all pages are sent
-  // That come with 20 ticks.
+  page.receive(wire::ToPage::kState);  // the first that all pages are sent
+  // States that come with 20 ticks.
   const auto states = [&page] {
     int count = 0;
     for (int ticks = 0; ticks < 20;) {
       const wire::ToPage message =
-          page.hear([](const wire::ToPage& m) { return m.has_tick() || m.has_state(); });
+          page.receive([](const wire::ToPage& m) { return m.has_tick() || m.has_state(); });
       if (!message.has_tick() && !message.has_state()) return -1;
       count += message.has_state() ? 1 : 0;
       if (!message.has_tick()) continue;
       ++ticks;
-      page.say(to_see(static_cast<std::uint64_t>(page.ticks)));
+      page.send(to_see(static_cast<std::uint64_t>(page.ticks)));
     }
     return count;
   };
@@ -236,20 +252,20 @@ TEST_F(StillCockpitTest, AStateComesWhenItIsDueOrSomethingHasChangedAndOnlyOnce)
   EXPECT_EQ(states(), 1) << "the station has changed";
 }
 
-TEST_F(CockpitTest, AStopAtTheEndOfABurstIsObeyedAndNothingElse) {
+TEST_F(CockpitTest, AStopAtTheEndOfABurstIsAppliedAndNothingElse) {
   Page operating(port());
-  Page hasty(port(), "", "Ben");
+  Page fast(port(), "", "Ben");
   std::vector<std::string> burst(400, to_see(0).SerializeAsString());
   burst.push_back(to_take().SerializeAsString());
   burst.push_back(to_stop().SerializeAsString());
-  hasty.client().say_at_once(burst);
+  fast.client().send_at_once(burst);
   EXPECT_EQ(operating.notice("stopped").who(), "page 2 (127.0.0.1), Ben");
   EXPECT_TRUE(host_->held_stopped());
-  EXPECT_EQ(logged("operator_taken"), 1U) << "the first, when it came";
-  EXPECT_THAT(hasty.client().hear_end().reason(), HasSubstr("too many"));
+  EXPECT_EQ(logged("operator_taken"), 1U) << "the first page";
+  EXPECT_THAT(fast.client().receive_until_closed().reason(), HasSubstr("too many"));
 }
 
-TEST_F(CockpitTest, AViewersTokenLetsItLookOnAndNoMore) {
+TEST_F(CockpitTest, AViewersTokenAllowsViewingOnly) {
   serve("operator-token-16", "viewers-token--16");
   Page viewer(port(), "", "Ben", "/?token=viewers-token--16");
   EXPECT_FALSE(viewer.welcome.may_operate());
@@ -259,27 +275,27 @@ TEST_F(CockpitTest, AViewersTokenLetsItLookOnAndNoMore) {
   Page operating(port(), "", "Anna", "/?token=operator-token-16");
   EXPECT_TRUE(operating.welcome.may_operate());
   ASSERT_EQ(operating.welcome.viewer_url_size(), 1);
-  EXPECT_EQ(operating.welcome.viewer_url(0), kLookOn);
+  EXPECT_EQ(operating.welcome.viewer_url(0), kViewerUrl);
   EXPECT_EQ(operating.state.operator_name(), "Anna");
 }
 
-TEST_F(CockpitTest, ASecondHelloOfAPageIsNothing) {
+TEST_F(CockpitTest, ASecondHelloIsIgnored) {
   Page page(port());
   wire::ToHost again;
   again.mutable_hello()->set_protocol(Cockpit::kProtocol);
-  page.say(again);
+  page.send(again);
   wire::ToHost take = to_take();
   take.set_request(9);
-  page.say(take);
+  page.send(take);
   int welcomes = 0;
-  page.hear([&](const wire::ToPage& m) {
+  page.receive([&](const wire::ToPage& m) {
     welcomes += m.has_welcome() ? 1 : 0;
     return m.has_reply();
   });
   EXPECT_EQ(welcomes, 0);
 }
 
-TEST_F(CockpitTest, APageThatIsOpenedAgainTakesItsOwnPlace) {
+TEST_F(CockpitTest, APageThatIsOpenedAgainReplacesTheOlder) {
   Page first(port(), "", "Anna");
   Page again(port(), first.welcome.secret());
   EXPECT_EQ(again.welcome.page(), 1U);
@@ -289,12 +305,13 @@ TEST_F(CockpitTest, APageThatIsOpenedAgainTakesItsOwnPlace) {
   EXPECT_EQ(why.text(), "this page was opened again elsewhere");
   EXPECT_EQ(why.level(), wire::Notice::WARNING);
   EXPECT_GT(why.unix_time(), 0.0);
-  EXPECT_THAT(first.client().hear_end().reason(), HasSubstr("opened again elsewhere"));
+  EXPECT_THAT(first.client().receive_until_closed().reason(), HasSubstr("opened again elsewhere"));
   again.until([](const wire::State& s) { return s.pages() == 1; });
   EXPECT_TRUE(again.set("force.stiffness_n_per_mm", "0.8").ok());
   skip(11.0);
-  EXPECT_TRUE(again.set("force.stiffness_n_per_mm", "0.9").ok()) << "that the old line ended changes nothing";
-  EXPECT_EQ(logged("replaced"), 0U) << "it is for that page alone";
+  EXPECT_TRUE(again.set("force.stiffness_n_per_mm", "0.9").ok())
+      << "the end of the old connection changes nothing";
+  EXPECT_EQ(logged("replaced"), 0U) << "the notice is for that page only";
 }
 
 wire::ToHost to_drag(const std::string& key, const std::string& value, bool dragging = true) {
@@ -306,7 +323,7 @@ wire::ToHost to_drag(const std::string& key, const std::string& value, bool drag
   return message;
 }
 
-TEST_F(StillCockpitTest, ADragIsOneLineWithTheValueAtItsEnd) {
+TEST_F(StillCockpitTest, ADragIsOneLineWithItsLastValue) {
   Page page(port());
   for (int i = 1; i <= 26; ++i) EXPECT_TRUE(page.ask(to_drag(kStiffness, fmt::format("0.{:02}", i))).ok());
   EXPECT_TRUE(page.ask(to_drag(kStiffness, "0.26", false)).ok());
@@ -314,8 +331,8 @@ TEST_F(StillCockpitTest, ADragIsOneLineWithTheValueAtItsEnd) {
   ASSERT_EQ(logged("set"), 1U);
 }
 
-// It is told with the value that it has then, before whatever comes in between.
-TEST_F(StillCockpitTest, ADragThatDoesNotEndIsToldAllTheSame) {
+// It is logged with its value at that time, before the notice that comes in between.
+TEST_F(StillCockpitTest, ADragThatDoesNotEndIsLoggedAllTheSame) {
   auto here = std::make_unique<Page>(port());
   Page& page = *here;
   page.ask(to_drag(kStiffness, "0.1"));
@@ -323,9 +340,9 @@ TEST_F(StillCockpitTest, ADragThatDoesNotEndIsToldAllTheSame) {
   page.ask(to_stop());
   page.ask(to_drag(kStiffness, "0.3"));
   page.ask(to_drag("smoothing.max_n_per_s", "2"));
-  page.ask(to_be_named("Anna"));  // what came before has been taken in
+  page.ask(to_be_named("Anna"));  // the messages before it have been handled
   skip(10.0);
-  EXPECT_EQ(page.hear([](const wire::ToPage& m) {
+  EXPECT_EQ(page.receive([](const wire::ToPage& m) {
                   return m.has_notice() && m.notice().text().find("smoothing") != std::string::npos;
                 })
                 .notice()
@@ -360,9 +377,9 @@ TEST_F(StillCockpitTest, SlidersAreLoggedOnceInTenSeconds) {
   EXPECT_EQ(logged("sliders"), 2U);
 }
 
-TEST_F(CockpitTest, StopsAndPagesGetThroughACrowdThatOnlyConnects) {
-  std::vector<std::unique_ptr<RawClient>> crowd;
-  for (int i = 0; i < 200; ++i) crowd.push_back(std::make_unique<RawClient>(port()));
+TEST_F(CockpitTest, IdleConnectionsDoNotLockOutStopsAndPages) {
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 200; ++i) idle.push_back(std::make_unique<RawClient>(port()));
   EXPECT_EQ(status_of(post("/stop", "")), 200);
   EXPECT_TRUE(host_->held_stopped());
   Page page(port());
@@ -379,12 +396,12 @@ TEST_F(CockpitTest, ControlIsTakenOpenlyAndGivenBack) {
   first.until([](const wire::State& s) { return s.operator_page() == 2; });
   EXPECT_FALSE(first.set("force.stiffness_n_per_mm", "0.7").ok());
   EXPECT_TRUE(second.ask(to_take()).ok());
-  EXPECT_EQ(logged("operator_taken"), 2U) << "from oneself is nothing";
+  EXPECT_EQ(logged("operator_taken"), 2U) << "the operator cannot take control from itself";
   wire::ToHost release;
   release.mutable_release();
   EXPECT_TRUE(second.ask(release).ok());
   first.until([](const wire::State& s) { return s.operator_page() == 0; });
-  EXPECT_THAT(second.set("rate_hz", "250").error(), HasSubstr("nobody operates"));
+  EXPECT_THAT(second.set("rate_hz", "250").error(), HasSubstr("there is no operator"));
 }
 
 TEST_F(CockpitTest, AReloadKeepsTheRoleForTenSecondsAndNoLonger) {
@@ -394,7 +411,7 @@ TEST_F(CockpitTest, AReloadKeepsTheRoleForTenSecondsAndNoLonger) {
   page.reset();
   other.until([](const wire::State& s) { return s.pages() == 1; });
   EXPECT_FALSE(other.set("rate_hz", "250").ok());
-  skip(5.0);  // seats_test.cpp has the rest, to the second
+  skip(5.0);  // participants_test.cpp tests the exact time
   page = std::make_unique<Page>(port(), secret);
   EXPECT_EQ(page->welcome.page(), 1U);
   EXPECT_EQ(page->welcome.secret(), secret);
@@ -403,14 +420,14 @@ TEST_F(CockpitTest, AReloadKeepsTheRoleForTenSecondsAndNoLonger) {
   page.reset();
   other.until([](const wire::State& s) { return s.pages() == 1; });
   skip(11.0);
-  other.until([](const wire::State& s) { return s.operator_page() == 2; });  // it is alone
+  other.until([](const wire::State& s) { return s.operator_page() == 2; });  // it is the only page
   EXPECT_TRUE(other.set("rate_hz", "250").ok());
   EXPECT_EQ(logged("operator_taken"), 2U);
   page = std::make_unique<Page>(port(), secret);
   EXPECT_EQ(page->state.operator_page(), 2U);
 }
 
-TEST_F(CockpitTest, ChangesAreMadeToldAndLoggedAndWhatIsRefusedSaysWhy) {
+TEST_F(CockpitTest, ChangesAreAppliedNotifiedAndLoggedAndRefusalsHaveAReason) {
   Page page(port());
   Page other(port());
   EXPECT_TRUE(page.set("force.stiffness_n_per_mm", "0.8").ok());
@@ -442,98 +459,98 @@ TEST_F(CockpitTest, ARefusalDoesNotShowWhereTheProgramIsInstalled) {
   }
 }
 
-TEST_F(CockpitTest, AValueThatWasOvertakenIsNoChange) {
+TEST_F(CockpitTest, AnOvertakenValueIsNoChange) {
   Page page(port());
-  owner_.reset();  // so that all of them wait
+  owner_.reset();  // all of them wait
   for (const std::string value : {"99", "0.7", "0.8"}) {
     wire::ToHost message;
     auto& setting = *message.mutable_set()->add_setting();
     setting.set_key("force.stiffness_n_per_mm");
     setting.set_value(value);
     message.set_request(100);
-    page.say(message);
+    page.send(message);
   }
-  EXPECT_TRUE(page.ask(to_stop()).ok());  // by now they have come
+  EXPECT_TRUE(page.ask(to_stop()).ok());  // the values before it have been handled
   owner_ = std::make_unique<Owner>(*host_);
   for (int i = 0; i < 3; ++i) {
-    const wire::Reply reply = page.hear(wire::ToPage::kReply).reply();
+    const wire::Reply reply = page.receive(wire::ToPage::kReply).reply();
     EXPECT_EQ(reply.request(), 100U);
     EXPECT_TRUE(reply.ok()) << reply.error();
   }
-  EXPECT_TRUE(page.ask(to_take()).ok());  // by now they have been logged
+  EXPECT_TRUE(page.ask(to_take()).ok());  // the values have been logged
   EXPECT_EQ(logged("refused"), 0U);
   ASSERT_EQ(logged("set"), 1U);
   EXPECT_EQ(log().back()["text"], "force.stiffness_n_per_mm = 0.8");
 }
 
-TEST_F(CockpitTest, NoPageLearnsAnothersSecretAndNoFrameHoldsWhatBrowsersRefuse) {
+TEST_F(CockpitTest, NoPageLearnsAnothersSecretAndAllTextIsValidUtf8) {
   Page first(port(), "", std::string("An\u202Ena"));
   Page second(port());
   first.set("description", "'''two\nlines'''");
   first.ask(to_stop());
   second.ask(to_take());
-  std::string heard;
-  for (int i = 0; i < 20; ++i) heard += second.client().hear().payload;
-  EXPECT_THAT(heard, Not(HasSubstr(first.welcome.secret())));
+  std::string received;
+  for (int i = 0; i < 20; ++i) received += second.client().receive().payload;
+  EXPECT_THAT(received, Not(HasSubstr(first.welcome.secret())));
   EXPECT_THAT(log_text(), Not(HasSubstr(first.welcome.secret())));
   EXPECT_THAT(log_text(), Not(HasSubstr(second.welcome.secret())));
-  cockpit_->tell("fault", "a device named \xFF\xFE", true);
+  cockpit_->notify("fault", "a device named \xFF\xFE", true);
   EXPECT_EQ(first.notice("fault").text(), "a device named \xEF\xBF\xBD\xEF\xBF\xBD");
 }
 
-TEST_F(CockpitTest, TheNewestNoticesWaitForWhoeverComesHoweverLongTheyWere) {
+TEST_F(CockpitTest, TheNewestNoticesAreKeptShortForPagesThatConnect) {
   Page page(port());
   for (int i = 0; i < 10; ++i)
     page.set("description", "'" + std::string(4000, 'x') + std::to_string(i) + "'");
-  cockpit_->tell("fault", std::string(3'000'000, 'y'), true);
+  cockpit_->notify("fault", std::string(3'000'000, 'y'), true);
   page.notice("fault");
   Page later(port());
   EXPECT_EQ(later.welcome.past_size(), 12);
   EXPECT_LT(later.welcome.ByteSizeLong(), 200000U);
 }
 
-TEST_F(CockpitTest, GarbageIsShownOutAndTheOthersGoOn) {
+TEST_F(CockpitTest, APageThatSendsGarbageIsDisconnectedAndOthersAreNot) {
   Page page(port());
   PageClient garbage(port());
-  garbage.say("\xFF\xFF\xFF no message");
-  EXPECT_EQ(garbage.hear_end().opcode, PageClient::kClose);
-  PageClient rude(port());
+  garbage.send("\xFF\xFF\xFF no message");
+  EXPECT_EQ(garbage.receive_until_closed().opcode, PageClient::kClose);
+  PageClient early_page(port());
   wire::ToHost early;
   early.mutable_take();
-  rude.say(early.SerializeAsString());
-  EXPECT_THAT(rude.hear_end().reason(), HasSubstr("hello"));
+  early_page.send(early.SerializeAsString());
+  EXPECT_THAT(early_page.receive_until_closed().reason(), HasSubstr("hello"));
   PageClient bad_text(port());
-  bad_text.say(std::string("\x12\x03\x12\x01\xFF", 5));  // a hello whose secret is no UTF-8
-  EXPECT_EQ(bad_text.hear_end().opcode, PageClient::kClose);
+  bad_text.send(std::string("\x12\x03\x12\x01\xFF", 5));  // a hello whose secret is no UTF-8
+  EXPECT_EQ(bad_text.receive_until_closed().opcode, PageClient::kClose);
   EXPECT_TRUE(page.ask(to_take()).ok());
   wire::ToHost nothing;
   EXPECT_FALSE(page.ask(nothing).ok());
 }
 
-TEST_F(CockpitTest, WhoHasNotSaidHelloMayStopAndIsShownOutInTheEnd) {
+TEST_F(CockpitTest, APageWithoutHelloMayStopAndIsDisconnectedAfterItsTime) {
   Page page(port());
   PageClient silent(port());
-  silent.say(to_stop().SerializeAsString());
+  silent.send(to_stop().SerializeAsString());
   EXPECT_EQ(page.notice("stopped").who(), "page 2 (127.0.0.1)");
   EXPECT_TRUE(host_->held_stopped());
   skip(11.0);
-  EXPECT_THAT(silent.hear_end().reason(), HasSubstr("hello"));
+  EXPECT_THAT(silent.receive_until_closed().reason(), HasSubstr("hello"));
   page.until([](const wire::State& s) { return s.pages() == 1; });
 }
 
-TEST_F(CockpitTest, APageOfAnotherProtocolIsTurnedAwayInWordsAndMayStop) {
+TEST_F(CockpitTest, APageOfAnotherProtocolIsRefusedWithAReasonAndMayStop) {
   for (const std::uint32_t protocol : {0U, Cockpit::kProtocol + 1}) {
     PageClient other(port());
-    other.say(to_stop().SerializeAsString());
+    other.send(to_stop().SerializeAsString());
     wire::ToHost hello;
     hello.mutable_hello()->set_protocol(protocol);
-    other.say(hello.SerializeAsString());
+    other.send(hello.SerializeAsString());
     wire::ToPage only;
-    ASSERT_TRUE(only.ParseFromString(other.hear_message().payload));
+    ASSERT_TRUE(only.ParseFromString(other.receive_message().payload));
     EXPECT_EQ(only.welcome().protocol(), Cockpit::kProtocol);
     EXPECT_EQ(only.welcome().version(), "1.2.3");
     EXPECT_EQ(only.welcome().secret(), "");
-    EXPECT_THAT(other.hear_end().reason(), HasSubstr("reload"));
+    EXPECT_THAT(other.receive_until_closed().reason(), HasSubstr("reload"));
   }
   EXPECT_TRUE(host_->held_stopped());
   EXPECT_EQ(logged("operator_taken"), 0U);
@@ -542,20 +559,18 @@ TEST_F(CockpitTest, APageOfAnotherProtocolIsTurnedAwayInWordsAndMayStop) {
 TEST_F(CockpitTest, AReportIsShownBesideItsOwnFaultOnly) {
   Page page(port());
   page.until([](const wire::State& s) { return s.safety() == wire::SAFETY_RUNNING; });
-  owner_.reset();
-  host_->lengthen_steps(0.0075);  // of 5 ms
-  owner_ = std::make_unique<Owner>(*host_);
+  const test::LoopWakesLate overload(0.0075);  // the period is 5 ms
   page.until([](const wire::State& s) { return s.has_fault(); });
   const double fault_time = page.state.fault().time();
   cockpit_->fault_reported("of_an_earlier_one.json", fault_time - 1.0);
   cockpit_->typed("mark", "");
   page.notice("mark");
-  EXPECT_EQ(page.hear(wire::ToPage::kState).state().fault().report(), "");
+  EXPECT_EQ(page.receive(wire::ToPage::kState).state().fault().report(), "");
   cockpit_->fault_reported("its_own.json", fault_time);
   page.until([](const wire::State& s) { return s.fault().report() == "its_own.json"; });
 }
 
-TEST_F(CockpitTest, AFullDiskIsToldEverythingGoesOnAndTheLogNamesWhatIsMissing) {
+TEST_F(CockpitTest, AFullDiskIsNotifiedAndTheLogNamesTheMissingLines) {
   Page page(port());
   EXPECT_EQ(log().size(), 1U);
   {
@@ -571,7 +586,7 @@ TEST_F(CockpitTest, AFullDiskIsToldEverythingGoesOnAndTheLogNamesWhatIsMissing) 
   EXPECT_EQ(logged("stopped"), 0U);
 }
 
-TEST_F(CockpitTest, WhatIsTypedAtTheTerminalIsToldAndLogged) {
+TEST_F(CockpitTest, AChangeAtTheTerminalIsNotifiedAndLogged) {
   Page page(port());
   cockpit_->typed("set", "force.stiffness_n_per_mm=0.7");
   const wire::Notice told = page.notice("set");

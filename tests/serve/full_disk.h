@@ -8,7 +8,7 @@
 
 namespace phalanx {
 
-/// While it lives, no file of this process grows beyond so many bytes: as on a disk that is full.
+/// Limits the length of all files of this process during its lifetime, as a full disk does.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes = 0) {

@@ -2,8 +2,14 @@
 #include "serve/geometry_message.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <utility>
 
 #include "phalanx/core/index.h"
 #include "phalanx/geometry.pb.h"
@@ -71,7 +77,7 @@ TEST(GeometryMessage, HoldsTheMeshesOfSegmentsAndObject) {
   EXPECT_FALSE(message.has_skin());
 }
 
-TEST(GeometryMessage, HoldsWhatIsShownOnlyWhereItDiffers) {
+TEST(GeometryMessage, HoldsTheDisplayMeshesOnlyWhereTheyDiffer) {
   HostGeometry geometry = simple_geometry();
   geometry.display[5].vertices[1].x() += 1e-3;
   const wire::Geometry message = sent(geometry);
@@ -109,7 +115,7 @@ TEST(GeometryMessage, HoldsTheSkin) {
   }
 }
 
-// What a page computes from the message is the rotation that it was made of.
+// A page computes the same rotation from the message.
 TEST(GeometryMessage, HoldsTheBindPosesAsPositionAndQuaternion) {
   HostGeometry geometry = simple_geometry();
   geometry.skin = simple_skin();
@@ -143,6 +149,74 @@ TEST(GeometryMessage, NamesSegmentsAndJointsWithTheirRanges) {
   EXPECT_EQ(message.joint_min(4), -0.5F);
   EXPECT_EQ(message.joint_max(5), 0.6F);
   EXPECT_EQ(message.joint_open(6), 0.375F);
+}
+
+// ---- GeometryCache ----
+
+std::shared_ptr<const HostGeometry> geometry_of(std::uint32_t revision) {
+  auto geometry = std::make_shared<HostGeometry>();
+  geometry->revision = revision;
+  return geometry;
+}
+
+/// Requests a revision and waits for the response, which may come from another thread.
+WebResponse response_of(GeometryCache& cache, std::uint32_t revision) {
+  const auto responded = std::make_shared<std::promise<WebResponse>>();
+  cache.request(geometry_of(revision),
+                [responded](WebResponse response) { responded->set_value(std::move(response)); });
+  return responded->get_future().get();
+}
+
+/// Prevents the start of threads during its lifetime: their stacks would exceed the address space.
+class NoThreads {
+ public:
+  NoThreads() {
+    EXPECT_EQ(::pthread_getattr_default_np(&before_), 0);
+    pthread_attr_t huge;
+    EXPECT_EQ(::pthread_attr_init(&huge), 0);
+    EXPECT_EQ(::pthread_attr_setstacksize(&huge, std::size_t{1} << 60U), 0);
+    EXPECT_EQ(::pthread_setattr_default_np(&huge), 0);
+    ::pthread_attr_destroy(&huge);
+  }
+  NoThreads(const NoThreads&) = delete;
+  NoThreads& operator=(const NoThreads&) = delete;
+  ~NoThreads() {
+    EXPECT_EQ(::pthread_setattr_default_np(&before_), 0);
+    ::pthread_attr_destroy(&before_);
+  }
+
+ private:
+  pthread_attr_t before_{};
+};
+
+TEST(GeometryCache, ARevisionIsEncodedOnce) {
+  const auto cache = std::make_shared<GeometryCache>();
+  const WebResponse first = response_of(*cache, 3);
+  ASSERT_EQ(first.status, 200);
+  ASSERT_NE(first.body, nullptr);
+  EXPECT_EQ(first.type, "application/x-protobuf");
+  EXPECT_EQ(response_of(*cache, 3).body, first.body) << "the same object";
+  const WebResponse next = response_of(*cache, 4);
+  ASSERT_NE(next.body, nullptr);
+  wire::Geometry message;
+  ASSERT_TRUE(message.ParseFromString(*next.body));
+  EXPECT_EQ(message.revision(), 4U);
+}
+
+TEST(GeometryCache, WithoutAThreadTheRequestIsRefusedAtOnceAndMayBeRepeated) {
+  const auto cache = std::make_shared<GeometryCache>();
+  int refused = 0;
+  {
+    const NoThreads none;
+    cache->request(geometry_of(3), [&refused](const WebResponse& response) {
+      ++refused;
+      EXPECT_EQ(response.status, 500);
+      EXPECT_EQ(response.body, nullptr);
+    });
+    EXPECT_EQ(refused, 1);
+  }
+  EXPECT_EQ(response_of(*cache, 3).status, 200);
+  EXPECT_EQ(refused, 1) << "there is one response only";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A StationHost with an owner of its own, moved by sliders.
+// A thread that owns a StationHost.
 #pragma once
 
 #include <atomic>
@@ -12,14 +12,14 @@
 
 namespace phalanx::test {
 
-/// Somebody who does what an owner does, on a thread of its own.
+/// Owner of a StationHost on a thread of its own: polls it, and fetches records and fault reports.
 class Owner {
  public:
   explicit Owner(StationHost& host)
       : thread_([this, &host] {
           StepRecord record;
           while (!ended_) {
-            host.go_on();
+            host.poll();
             while (host.next_record(record)) {
             }
             static_cast<void>(host.take_fault_report());

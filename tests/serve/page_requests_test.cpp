@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page's message asks of the station, and the state that pages are shown of it.
+// Requests of pages to the station, and the state that pages are sent.
 #include "serve/page_requests.h"
 
 #include <gmock/gmock.h>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "device/link/controller_thread.h"
+#include "device/opengloves/glove_firmware.h"
 #include "phalanx/core/index.h"
 #include "phalanx/device/calibration_poses.h"
 #include "phalanx/device/fault.h"
@@ -31,6 +32,7 @@ namespace {
 using test::ControllerThread;
 using test::HostTest;
 using ::testing::AllOf;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
 class PageRequestsTest : public HostTest {
@@ -40,11 +42,11 @@ class PageRequestsTest : public HostTest {
     write_choices(choices);
   }
 
-  /// Hands it over and waits. @returns what was asked
-  PageRequest handed(const wire::ToHost& message) {
+  /// Applies a message and waits for the outcome. @returns the request
+  PageRequest applied(const wire::ToHost& message) {
     auto [answer, done] = awaited();
-    const PageRequest asked = hand_over(message, *host, choices, "/tmp/up", done);
-    if (asked.at_once) {
+    const PageRequest asked = apply_request(message, *host, choices, "/tmp/up", done);
+    if (asked.done_at_once) {
       EXPECT_TRUE(until_idle());
       EXPECT_EQ(answer->times, 0);
       return asked;
@@ -54,16 +56,16 @@ class PageRequestsTest : public HostTest {
     refused = got->refused.value_or("no answer");
     return asked;
   }
-  /// Nothing waits to be done or answered.
+  /// Waits until no change is under way.
   bool until_idle() {
     return until([&] { return host->state()->busy.empty(); });
   }
-  /// @returns why it is refused at once; nothing of it may be done later
+  /// @returns the reason for which the message is refused at once; expects that nothing of it is done later
   std::string why_not(const wire::ToHost& message) {
     auto [answer, done] = awaited();
     std::string why;
     try {
-      static_cast<void>(hand_over(message, *host, choices, "/tmp/up", done));
+      static_cast<void>(apply_request(message, *host, choices, "/tmp/up", done));
     } catch (const std::invalid_argument& error) {
       why = error.what();
     }
@@ -88,8 +90,8 @@ class PageRequestsTest : public HostTest {
   std::string refused;
 };
 
-TEST_F(PageRequestsTest, ASetIsLaidOverTheSceneAndShown) {
-  const PageRequest asked = handed(set("force.stiffness_n_per_mm", "0.8"));
+TEST_F(PageRequestsTest, ASetOverridesTheSceneAndIsShown) {
+  const PageRequest asked = applied(set("force.stiffness_n_per_mm", "0.8"));
   EXPECT_EQ(asked.code, "set");
   EXPECT_EQ(asked.text, "force.stiffness_n_per_mm = 0.8");
   EXPECT_EQ(refused, "");
@@ -103,17 +105,17 @@ TEST_F(PageRequestsTest, ASetIsLaidOverTheSceneAndShown) {
   EXPECT_FALSE(shown.has_fault());
   EXPECT_GT(shown.time(), 0.0);
   EXPECT_EQ(shown.loop().lateness().octave_size(), 27);
-  EXPECT_EQ(handed(set("force.stiffness_n_per_mm", "")).text, "force.stiffness_n_per_mm = as in the scene");
+  EXPECT_EQ(applied(set("force.stiffness_n_per_mm", "")).text, "force.stiffness_n_per_mm = as in the scene");
   EXPECT_EQ(state().changed_size(), 0);
-  EXPECT_EQ(handed(set("description", "v", 2)).text, "description = v, description = v");
+  EXPECT_EQ(applied(set("description", "v", 2)).text, "description = v, description = v");
   EXPECT_FALSE(asked.dragging);
   wire::ToHost dragged = set("force.stiffness_n_per_mm", "0.9");
   dragged.mutable_set()->set_dragging(true);
-  EXPECT_TRUE(handed(dragged).dragging);
-  EXPECT_EQ(handed(dragged).keys, asked.keys);
+  EXPECT_TRUE(applied(dragged).dragging);
+  EXPECT_EQ(applied(dragged).keys, asked.keys);
 }
 
-TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
+TEST_F(PageRequestsTest, TooMuchAndForeignFilesAreRefusedAtOnce) {
   EXPECT_FALSE(why_not(set("rate_hz", "250", 0)).empty());
   EXPECT_THAT(why_not(set("rate_hz", "250", 65)), HasSubstr("65"));
   EXPECT_FALSE(why_not(set("", "1")).empty());
@@ -140,52 +142,52 @@ TEST_F(PageRequestsTest, WhatIsTooMuchOrForeignIsRefusedAtOnce) {
   EXPECT_EQ(host->state()->overrides.size(), 0U);
 }
 
-TEST_F(PageRequestsTest, ExactlyAsMuchAsMayBeSetIsTaken) {
-  const PageRequest asked = handed(set("description", std::string(4096, 'v'), 64));
+TEST_F(PageRequestsTest, TheLimitsOfASetAreExact) {
+  const PageRequest asked = applied(set("description", std::string(4096, 'v'), 64));
   EXPECT_EQ(asked.code, "set");
   EXPECT_EQ(refused, "");
   ASSERT_EQ(state().changed_size(), 1);
   EXPECT_EQ(state().changed(0).value().size(), 4096U);
   EXPECT_THAT(why_not(set("description", std::string(4097, 'v'), 64)), HasSubstr("4097"));
   EXPECT_THAT(why_not(set("description", "v", 65)), HasSubstr("65"));
-  // A key of 200 bytes is read, and then known to nobody.
-  handed(set(std::string(200, 'k'), "1"));
+  // A key of 200 bytes is read. The scene does not know it.
+  applied(set(std::string(200, 'k'), "1"));
   EXPECT_THAT(refused, HasSubstr("nobody knows this key"));
 }
 
-TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsAreHandedOver) {
+TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsArePassedOn) {
   wire::ToHost message;
   message.mutable_scene()->set_name("pinch_ball");
-  EXPECT_EQ(handed(message).code, "scene");
+  EXPECT_EQ(applied(message).code, "scene");
   EXPECT_EQ(refused, "");
   EXPECT_EQ(state().scene(), "pinch_ball");
   EXPECT_EQ(state().geometry(), 2U);
   message.mutable_source()->set_source(wire::HAND_SLIDERS);
-  EXPECT_EQ(handed(message).code, "source");
+  EXPECT_EQ(applied(message).code, "source");
   message.mutable_calibrate()->set_step(wire::Calibrate::BEGIN);
-  EXPECT_EQ(handed(message).code, "calibrate");
+  EXPECT_EQ(applied(message).code, "calibrate");
   EXPECT_FALSE(refused.empty()) << "the simulated device needs none";
   message.mutable_calibrate()->set_step(wire::Calibrate::MEASURE);
-  EXPECT_EQ(handed(message).text, "calibration: measures the pose");
+  EXPECT_EQ(applied(message).text, "calibration: measures the pose");
   message.mutable_calibrate()->set_step(wire::Calibrate::GO_TO);
   message.mutable_calibrate()->set_pose(2);
-  const PageRequest step = handed(message);
+  const PageRequest step = applied(message);
   EXPECT_EQ(step.code, "calibrate");
-  EXPECT_EQ(step.text, "calibration: goes to pose 3") << "as people count";
+  EXPECT_EQ(step.text, "calibration: goes to pose 3") << "counted from 1";
 }
 
-TEST_F(PageRequestsTest, SlidersOfWhateverNumberStayInsideTheHand) {
+TEST_F(PageRequestsTest, SlidersOfAnyNumberStayInTheRangeOfMotion) {
   wire::ToHost message;
   auto& sliders = *message.mutable_sliders();
   EXPECT_FALSE(why_not(message).empty());
   for (int j = 0; j < kJoints; ++j) sliders.add_angle(std::numeric_limits<float>::quiet_NaN());
-  const PageRequest asked = handed(message);
-  EXPECT_TRUE(asked.at_once);
+  const PageRequest asked = applied(message);
+  EXPECT_TRUE(asked.done_at_once);
   EXPECT_EQ(asked.text, "moves the hand with the sliders");
   for (int j = 0; j < kJoints; ++j) sliders.set_angle(j, std::numeric_limits<float>::infinity());
-  handed(message);
+  applied(message);
   for (int j = 0; j < kJoints; ++j) sliders.set_angle(j, -3e38F);
-  handed(message);
+  applied(message);
   for (const double angle : host->sliders()) EXPECT_LT(std::abs(angle), 4.0);
   sliders.add_angle(0.0F);
   EXPECT_THAT(why_not(message), HasSubstr("21"));
@@ -201,7 +203,7 @@ TEST_F(PageRequestsTest, EachSliderMovesItsOwnJoint) {
     message.mutable_sliders()->add_angle(
         static_cast<float>(hand.min_angle[j] + share * (hand.max_angle[j] - hand.min_angle[j])));
   }
-  handed(message);
+  applied(message);
   const wire::State shown = state();
   ASSERT_EQ(shown.slider_size(), kJoints);
   for (int j = 0; j < kJoints; ++j) {
@@ -214,7 +216,7 @@ TEST_F(PageRequestsTest, SlidersThatMoveNothingAreRefused) {
   EXPECT_EQ(move_by(HandSource::kPatient), "");
   wire::ToHost message;
   for (int j = 0; j < kJoints; ++j) message.mutable_sliders()->add_angle(0.1F);
-  EXPECT_EQ(why_not(message), "the sliders do not move the hand now; let them move it first");
+  EXPECT_EQ(why_not(message), "the sliders do not move the hand now; choose them as its source first");
 }
 
 TEST_F(PageRequestsTest, ResumeAndResetAreDoneAtOnce) {
@@ -222,13 +224,13 @@ TEST_F(PageRequestsTest, ResumeAndResetAreDoneAtOnce) {
   EXPECT_TRUE(state().held_stopped());
   wire::ToHost message;
   message.mutable_resume()->set_stops(state().stops());
-  EXPECT_TRUE(handed(message).at_once);
+  EXPECT_TRUE(applied(message).done_at_once);
   EXPECT_FALSE(state().held_stopped());
   message.mutable_reset();
-  EXPECT_EQ(handed(message).code, "reset");
+  EXPECT_EQ(applied(message).code, "reset");
 }
 
-TEST_F(PageRequestsTest, AResumeOrAResetThatANewerStopOrFaultHasOvertakenIsRefused) {
+TEST_F(PageRequestsTest, AResumeOrAResetAfterANewerStopOrFaultIsRefused) {
   host->stop();
   wire::ToHost message;
   message.mutable_resume()->set_stops(state().stops());
@@ -236,7 +238,7 @@ TEST_F(PageRequestsTest, AResumeOrAResetThatANewerStopOrFaultHasOvertakenIsRefus
   EXPECT_EQ(why_not(message), "another stop or fault has come since; look, then resume again");
   EXPECT_TRUE(host->held_stopped());
   message.mutable_resume()->set_stops(state().stops());
-  EXPECT_EQ(handed(message).code, "resumed");
+  EXPECT_EQ(applied(message).code, "resumed");
   EXPECT_FALSE(host->held_stopped());
   ASSERT_TRUE(until_running());
   overload();
@@ -244,12 +246,12 @@ TEST_F(PageRequestsTest, AResumeOrAResetThatANewerStopOrFaultHasOvertakenIsRefus
   EXPECT_EQ(why_not(message), "another fault has come since; look, then reset again");
   EXPECT_EQ(host->view().state, SafetyState::kFault);
   message.mutable_reset()->set_fault_time(state().fault().time());
-  EXPECT_EQ(handed(message).code, "reset");
+  EXPECT_EQ(applied(message).code, "reset");
   EXPECT_TRUE(until_running());
 }
 
-// The loop goes on meanwhile: what is shown lies between what it had counted before and after.
-TEST_F(PageRequestsTest, AFaultIsShownInWordsBesideTheLoopsLateSteps) {
+// The loop runs meanwhile: the counts that are shown lie between those before and after.
+TEST_F(PageRequestsTest, AFaultIsShownWithTheLoopsOverruns) {
   ASSERT_TRUE(until_running());
   overload();
   const DeadlineStatistics before = host->deadlines();
@@ -266,19 +268,19 @@ TEST_F(PageRequestsTest, AFaultIsShownInWordsBesideTheLoopsLateSteps) {
   EXPECT_LE(shown.loop().skipped(), after.skipped);
 }
 
-TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandWhereTheyAreAskedTo) {
+TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandAsRequested) {
   wire::ToHost message;
   message.mutable_source()->set_source(wire::HAND_PATIENT);
-  EXPECT_EQ(handed(message).text, "the simulated patient moves the hand");
+  EXPECT_EQ(applied(message).text, "the simulated patient moves the hand");
   EXPECT_EQ(refused, "");
   EXPECT_EQ(state().source(), wire::HAND_PATIENT);
   message.mutable_source()->set_source(wire::HAND_SLIDERS);
-  EXPECT_EQ(handed(message).text, "the sliders move the hand");
+  EXPECT_EQ(applied(message).text, "the sliders move the hand");
   EXPECT_EQ(refused, "");
   EXPECT_EQ(state().source(), wire::HAND_SLIDERS);
 }
 
-/// A station with a wired device of two angle sensors.
+/// Fixture with a station whose wired device has two angle sensors.
 class WiredPagesTest : public HostTest {
  protected:
   using Step = CalibrationSession::Step;
@@ -290,7 +292,7 @@ class WiredPagesTest : public HostTest {
   }
   ~WiredPagesTest() override { host.reset(); }
 
-  /// The pages show the station's calibration state.
+  /// Expects that the state shows the station's calibration.
   void expect_shown() {
     const auto view = host->state()->wizard;
     ASSERT_NE(view, nullptr);
@@ -312,8 +314,23 @@ class WiredPagesTest : public HostTest {
   ControllerThread controller{listen_udp("127.0.0.1:0"), clock};
 };
 
-// All poses are skipped, then the first two are measured. They concern both sensors, so that is enough.
-TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShownAsTheyStand) {
+class GlovePagesTest : public HostTest {
+ protected:
+  ~GlovePagesTest() override { host.reset(); }
+  test::GloveFirmware firmware{"A0B0C0D0E0F2047G2047"};
+};
+
+TEST_F(GlovePagesTest, AGloveWithoutAWatchdogIsShownAsSuchAlsoWithoutAStation) {
+  start(with("opengloves:" + firmware.port()));
+  ASSERT_EQ(calibrate(CalibrationSession::Step::kBegin), "");
+  wire::State state;
+  write_state(*host, state);
+  EXPECT_TRUE(state.station_gone());
+  EXPECT_TRUE(state.holds_without_host());
+}
+
+// All poses are skipped. Then the first two are measured, which are enough for both sensors.
+TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShown) {
   ASSERT_TRUE(until_running());
   overload();
   wire::State state;
@@ -358,13 +375,14 @@ TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShownAsTheyStand) {
   expect_shown();
 }
 
-// What a page can choose, the simulated patient can press.
+// The simulated patient can press everything that a page can choose.
 TEST(Choices, HoldOnlyScenesThatTheSimulatedPatientMeets) {
   wire::Welcome welcome;
   write_choices(welcome);
   std::vector<std::string> refused;
   for (const SceneInfo& info : list_scenes()) {
-    const SceneDescription scene = load_scene(info.name, {{"hand.meshes", "\"capsules\""}});
+    const ResolvedScene scene =
+        resolve(load_scene(info.name, {{"hand.meshes", "\"capsules\""}}), {.device = true, .motion = true});
     const auto model = std::make_unique<HapticModel>(build_model(scene));
     try {
       static_cast<void>(simulated_settings(scene, *model));
@@ -381,26 +399,39 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
   wire::Welcome welcome;
   write_choices(welcome);
   EXPECT_GT(welcome.key_size(), 30);
-  const auto change_of = [&](const std::string& path) {
+  const auto key_of = [&](const std::string& path) -> const wire::KeyInfo& {
     for (const wire::KeyInfo& key : welcome.key())
-      if (key.path() == path) return key.change();
+      if (key.path() == path) return key;
     ADD_FAILURE() << path;
-    return wire::CHANGE_NEW_STATION;
+    return wire::KeyInfo::default_instance();
   };
+  const auto change_of = [&](const std::string& path) { return key_of(path).change(); };
   EXPECT_EQ(change_of("force.stiffness_n_per_mm"), wire::CHANGE_IN_CONTACT);
   EXPECT_EQ(change_of("force.law"), wire::CHANGE_AT_ZERO_TORQUE);
   EXPECT_EQ(change_of("objects[].kind"), wire::CHANGE_AT_ZERO_TORQUE);
   EXPECT_EQ(change_of("rate_hz"), wire::CHANGE_NEW_STATION);
-  const std::vector<SceneKey> keys = scene_keys();
+  EXPECT_EQ(key_of("rate_hz").type(), wire::KEY_NUMBER);
+  EXPECT_EQ(key_of("rate_hz").range().min(), 1.0);
+  EXPECT_EQ(key_of("rate_hz").range().max(), 4000.0);
+  EXPECT_FALSE(key_of("rate_hz").range().min_open());
+  EXPECT_TRUE(key_of("limits.joint_torque_nm").range().min_open());
+  EXPECT_EQ(key_of("limits.joint_torque_nm").type(), wire::KEY_NUMBER_OR_OFF);
+  EXPECT_TRUE(key_of("smoothing.min_n_per_s").range().max_open());
+  EXPECT_TRUE(key_of("smoothing.min_n_per_s").range().minus_infinity());
+  EXPECT_EQ(key_of("mirror").type(), wire::KEY_FLAG);
+  EXPECT_FALSE(key_of("mirror").has_range());
+  EXPECT_EQ(key_of("objects[].breadth_mm").kind(0).kind(), "key");
+  EXPECT_EQ(key_of("objects[].breadth_mm").kind(0).default_value(), "25");
+  const std::vector<SceneKey>& keys = scene_keys();
   ASSERT_EQ(idx(welcome.key_size()), keys.size());
   for (int i = 0; i < welcome.key_size(); ++i) {
     const SceneKey& key = keys[idx(i)];
     EXPECT_EQ(welcome.key(i).path(), key.path);
-    EXPECT_EQ(welcome.key(i).type(), key.type) << key.path;
     EXPECT_EQ(welcome.key(i).unit(), key.unit) << key.path;
-    EXPECT_EQ(welcome.key(i).range(), key.range) << key.path;
-    EXPECT_EQ(welcome.key(i).default_value(), key.default_value) << key.path;
+    EXPECT_EQ(welcome.key(i).default_value(), text_of(key).default_value) << key.path;
     EXPECT_EQ(welcome.key(i).meaning(), key.meaning) << key.path;
+    EXPECT_THAT(welcome.key(i).choice(), ElementsAreArray(key.choices)) << key.path;
+    EXPECT_EQ(idx(welcome.key(i).kind_size()), key.kinds.size()) << key.path;
   }
   std::vector<SceneInfo> scenes = list_scenes();
   for (const SceneInfo& scene : scenes) EXPECT_TRUE(scene.readable) << scene.name;

@@ -10,7 +10,7 @@ namespace {
 
 const std::string kMark = "\xEF\xBF\xBD";
 
-TEST(PlainText, WhatIsNoUtf8BecomesAMarkForEachByte) {
+TEST(PlainText, EachByteOfInvalidUtf8BecomesAMark) {
   EXPECT_EQ(as_utf8("Grüße, 手, 🖐"), "Grüße, 手, 🖐");
   EXPECT_EQ(as_utf8("a\xFFz"), "a" + kMark + "z");
   EXPECT_EQ(as_utf8("\xC0\xAF"), kMark + kMark) << "an overlong '/'";
@@ -21,8 +21,8 @@ TEST(PlainText, WhatIsNoUtf8BecomesAMarkForEachByte) {
   EXPECT_EQ(as_utf8(std::string("\0x", 2)), std::string("\0x", 2));
 }
 
-// The first and the last character of each length, those beside the surrogates, and what is one beyond.
-TEST(PlainText, EachLengthOfCharacterIsTakenFromItsFirstToItsLast) {
+// The first and the last character of each length, those beside the surrogates, and their neighbours outside.
+TEST(PlainText, CharactersOfEachLengthAreAcceptedFromTheFirstToTheLast) {
   for (const char* whole : {"\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
                             "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
     EXPECT_EQ(as_utf8(whole), whole);
@@ -35,7 +35,7 @@ TEST(PlainText, EachLengthOfCharacterIsTakenFromItsFirstToItsLast) {
 }
 
 // Each range of characters that are left out, with its neighbours, which stay.
-TEST(PlainText, ANameKeepsWhatIsBesideTheCharactersThatItLeavesOut) {
+TEST(PlainText, ANameKeepsTheNeighboursOfTheCharactersThatItLeavesOut) {
   for (const char* kept :
        {" ", "~", "\u00A0", "\u061B", "\u061D", "\u200D", "\u2010", "\u2027", "\u202F", "\u2065", "\u206A"})
     EXPECT_EQ(one_line(kept), kept);
@@ -44,7 +44,7 @@ TEST(PlainText, ANameKeepsWhatIsBesideTheCharactersThatItLeavesOut) {
     EXPECT_EQ(one_line(gone), "");
 }
 
-TEST(PlainText, ANameIsOneLineAndDoesNotTurnTheWriting) {
+TEST(PlainText, ANameIsOneLineAndDoesNotChangeTheDirectionOfWriting) {
   EXPECT_EQ(one_line("An\nna\r\t\x7F\x1b[31m"), "Anna[31m");
   EXPECT_EQ(one_line("\u202Eanna\u202C \u2066x\u2069\u200F"), "anna x");
   EXPECT_EQ(one_line("a\u2028b\u0085c"), "abc");
@@ -65,7 +65,7 @@ TEST(PlainText, NamesFilesBelowAFolderFromThereOn) {
   EXPECT_EQ(without_folder("/opt/x/", "/opt/x"), "");
 }
 
-/// A decoder of its own: what is left is the same after another pass, whatever the bytes were.
+// Whatever the bytes are, a second pass changes nothing.
 TEST(PlainText, OfAnyBytesAnotherPassChangesNothing) {
   constexpr unsigned kSeed = 20260504;
   SCOPED_TRACE(kSeed);

@@ -7,12 +7,20 @@ namespace phalanx {
 namespace {
 
 TEST(SettingsText, NamesKeysAndValuesAsTheyStand) {
-  EXPECT_EQ(settings_text({{"force.stiffness_n_per_mm", "0.8"}, {"smoothing.enabled", "true"}}),
-            "force.stiffness_n_per_mm = 0.8, smoothing.enabled = true");
+  EXPECT_EQ(settings_text({{"force.stiffness_n_per_mm", "0.8"}, {"mirror", "true"}}),
+            "force.stiffness_n_per_mm = 0.8, mirror = true");
   EXPECT_EQ(settings_text({{"rate_hz", ""}}), "rate_hz = as in the scene");
   EXPECT_EQ(settings_text({{"description", "no = toml ["}, {"force.law", "\"hooke\""}}),
             "description = no = toml [, force.law = \"hooke\"");
   EXPECT_EQ(settings_text({}), "");
+}
+
+// Parsing 40,000 parts uses up the stack.
+TEST(SettingsText, LeavesATableAsItStandsThatIsTooDeep) {
+  std::string key = "a";
+  for (int i = 1; i < 40'000; ++i) key += ".a";
+  const std::string table = "{" + key + " = 1}";
+  EXPECT_EQ(settings_text({{"objects.0", table}}), "objects.0 = " + table);
 }
 
 TEST(SettingsText, ShowsNoFolderOfThisComputer) {

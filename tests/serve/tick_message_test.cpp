@@ -71,6 +71,18 @@ TEST(TickMessage, SensorsThatAreNotThereAreLeftOutAndOneOfManyIsAllOfThem) {
   EXPECT_EQ(tick.measured_torque(4), 0.5F);
 }
 
+TEST(TickMessage, NamesTheDigitsThatStartedInsideTheObject) {
+  StationView view = a_view();
+  wire::Tick tick;
+  write_tick(view, tick);
+  EXPECT_EQ(tick.started_inside_size(), 0);
+  view.snapshot.started_inside = {false, true, false, true, false};
+  write_tick(view, tick);
+  ASSERT_EQ(tick.started_inside_size(), 2);
+  EXPECT_EQ(tick.started_inside(0), 1U);
+  EXPECT_EQ(tick.started_inside(1), 3U);
+}
+
 TEST(TickMessage, OnlySegmentsThatTouchOrStillPushOrSwingAreContacts) {
   StationView view = a_view();
   view.snapshot.segment[5].contact = true;

@@ -13,7 +13,7 @@
 
 #include "phalanx/mesh/import.h"
 #include "record/temporary_folder.h"
-#include "serve/foreign_files.h"
+#include "serve/page_requests.h"
 
 namespace phalanx {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
-/// A tetrahedron, so many millimetres from corner to corner.
+/// @returns a tetrahedron with three edges of this length [mm]
 std::string solid(int mm) {
   const std::string e = std::to_string(mm);
   return "v 0 0 0\nv " + e + " 0 0\nv 0 " + e + " 0\nv 0 0 " + e + "\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
@@ -59,7 +59,7 @@ TEST(Uploads, TheQuerySaysNameSizeAndUnit) {
   EXPECT_THROW(static_cast<void>(upload_of("size_mm=2000.001", "x")), std::invalid_argument);
 }
 
-TEST(Uploads, AGoodMeshIsKeptUnderANameOfOurOwn) {
+TEST(Uploads, AGoodMeshIsKeptUnderAGeneratedName) {
   const TemporaryFolder folder;
   const auto answer = taken("name=..%2F..%2Fetc%2Fpass%20wd.OBJ&unit=mm", solid(60), folder / "up");
   ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
@@ -78,7 +78,7 @@ TEST(Uploads, AGoodMeshIsKeptUnderANameOfOurOwn) {
               ::testing::MatchesRegex("n{40}-[0-9a-f]{16}\\.obj"));
 }
 
-TEST(Uploads, WhatIsNoMeshIsRefusedInWordsAndLeavesNothing) {
+TEST(Uploads, AFileThatIsNoMeshIsRefusedAndLeavesNothing) {
   const TemporaryFolder folder;
   for (const char* name : {"mug.exe", "mug", "", ".obj", "mug.obj.toml", "%ff%fe.sh"}) {
     const auto answer = taken("name=" + std::string(name), "MZ...", folder / "up");
@@ -102,21 +102,21 @@ TEST(Uploads, ASizeThatNoHandCanGraspIsNotKept) {
 }
 
 // Its numbers would be 60 m.
-TEST(Uploads, TheSizeThatIsSaidIsInMillimetresWhateverTheFilesNumbersAre) {
+TEST(Uploads, AStatedSizeIsInMillimetresIndependentOfTheFilesNumbers) {
   const TemporaryFolder folder;
   const auto answer = taken("name=a.obj&unit=m&size_mm=60", solid(60), folder / "up");
   ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
   for (const auto& extent : answer["report"]["extent_m"]) EXPECT_NEAR(extent.get<double>(), 0.06, 1e-6);
 }
 
-TEST(Uploads, AFolderThatCannotBeWrittenIsSaid) {
+TEST(Uploads, AFolderThatCannotBeWrittenIsReported) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";
   const auto answer = taken("name=a.obj&unit=mm", solid(60), folder / "file");
   EXPECT_FALSE(answer["ok"].get<bool>());
 }
 
-/// The older the lower its number.
+/// Writes a file that is the older the lower its number is.
 std::filesystem::path put_old(const std::filesystem::path& folder, const std::string& name, int number) {
   std::filesystem::create_directories(folder);
   const auto file = folder / name;
@@ -141,7 +141,7 @@ TEST(Uploads, KeepsTheNewestFifty) {
   EXPECT_TRUE(std::filesystem::exists(folder / "up" / upload_name(59)));
 }
 
-TEST(Uploads, FilesOfPeopleStayHoweverOldTheyAre) {
+TEST(Uploads, FilesWithOtherNamesStayHoweverOldTheyAre) {
   const TemporaryFolder folder;
   std::vector<std::filesystem::path> theirs;
   for (const char* name :
@@ -156,7 +156,7 @@ TEST(Uploads, FilesOfPeopleStayHoweverOldTheyAre) {
   EXPECT_EQ(files_in(folder / "up"), 50U + theirs.size());
 }
 
-TEST(Uploads, WhatTheSceneInForceNamesStays) {
+TEST(Uploads, AFileThatTheSceneInForceNamesStays) {
   const TemporaryFolder folder;
   const auto named = put_old(folder / "up", upload_name(0), 0);
   const auto other = put_old(folder / "up", upload_name(1), 1);
@@ -168,7 +168,7 @@ TEST(Uploads, WhatTheSceneInForceNamesStays) {
   EXPECT_FALSE(std::filesystem::exists(other));
 }
 
-TEST(Uploads, WhatNobodyWaitsForAnyMoreLeavesNothing) {
+TEST(Uploads, AnAbandonedUploadLeavesNothing) {
   const TemporaryFolder folder;
   for (const int asked_before : {0, 1}) {
     int asked = 0;
@@ -182,7 +182,7 @@ TEST(Uploads, WhatNobodyWaitsForAnyMoreLeavesNothing) {
   }
 }
 
-TEST(Uploads, AMeshThatWouldTakeMinutesToCheckIsRefusedInWords) {
+TEST(Uploads, AMeshThatWouldTakeMinutesToCheckIsRefused) {
   const TemporaryFolder folder;
   std::string mesh = "v 0 0 0\nv 60 0 0\nv 0 60 0\n";
   for (std::size_t i = 0; i <= kMostUploadedTriangles; ++i) mesh += "f 1 2 3\n";
@@ -193,7 +193,7 @@ TEST(Uploads, AMeshThatWouldTakeMinutesToCheckIsRefusedInWords) {
   EXPECT_EQ(files_in(folder / "up"), 0U);
 }
 
-TEST(Uploads, TheImportsLimitIsOffWhereNobodySetsIt) {
+TEST(Uploads, TheImportHasNoLimitUnlessOneIsSet) {
   const std::string mesh = solid(60);
   const auto import_it = [&](std::size_t most) {
     static_cast<void>(import_and_check_from_memory(mesh.data(), mesh.size(), "obj",
@@ -206,7 +206,7 @@ TEST(Uploads, TheImportsLimitIsOffWhereNobodySetsIt) {
 
 class ForeignFiles : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(ForeignFiles, AreSeenHoweverTheyAreWritten) {
+TEST_P(ForeignFiles, AreFoundHoweverTheyAreWritten) {
   const auto& [key, value] = GetParam();
   EXPECT_TRUE(names_foreign_file(key, value, "/tmp/up")) << key << " = " << value;
 }
@@ -232,13 +232,13 @@ INSTANTIATE_TEST_SUITE_P(
         std::pair{"device", "{file = './x'}"}, std::pair{"patient", "'/x'"},
         std::pair{"objects.0.kind", "'''\n/etc/passwd'''"}, std::pair{"odd.file", "x"}));
 
-TEST(OwnFiles, ShippedNamesNumbersAndWhatWasSentMayBeNamed) {
+TEST(OwnFiles, ShippedNamesNumbersAndUploadsMayBeNamed) {
   for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
            {"hand.profile", "large-man"},
            {"hand.profile", "\"large-man\""},
            {"rate_hz", "250"},
            {"rate_hz", ""},
-           {"smoothing.enabled", "true"},
+           {"mirror", "true"},
            {"objects.0.rotation_deg", "[0, 0, -42]"},
            {"force.law", "hooke"},
            {"objects.0.file", "/tmp/up/mug-0123456789abcdef.obj"},

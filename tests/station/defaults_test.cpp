@@ -118,12 +118,6 @@ TEST(StationDefaults, AHostThatIsToldNothingRunsTheFirstSceneWithoutADevice) {
   EXPECT_EQ(geometry.handedness, Handedness::kRight);
   EXPECT_EQ(geometry.rate_hz, 0.0);
   EXPECT_FALSE(ChangeOutcome{}.overtaken);
-  const BlendedParameters blended;
-  EXPECT_TRUE(blended.smoothing);
-  EXPECT_EQ(blended.stiffness, 0.0);
-  EXPECT_EQ(blended.damping, 0.0);
-  EXPECT_EQ(blended.min_rate, 0.0);
-  EXPECT_EQ(blended.max_rate, 0.0);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "phalanx/station/station_host.h"
+#include "support/held_clock/hold_this_process.h"
 
 namespace phalanx::test {
 
@@ -39,7 +40,7 @@ class HostTest : public ::testing::Test {
     return false;
   }
   void own() {
-    host->go_on();
+    host->poll();
     StepRecord record;
     while (host->next_record(record)) records.push_back(record);
     if (auto report = host->take_fault_report()) reports.push_back(std::move(*report));
@@ -54,14 +55,13 @@ class HostTest : public ::testing::Test {
     return until([&] { return host->state()->running && host->view().state == SafetyState::kRunning; });
   }
 
-  /// Until steps that are too long have ended in a fault, at rest.
+  /// Until steps that end too late have led to a fault, at rest.
   void overload() {
-    host->lengthen_steps(0.0075);  // of 5 ms
+    const LoopWakesLate late(0.0075);  // the period is 5 ms
     ASSERT_TRUE(until([&] {
       const StationView view = host->view();
       return view.state == SafetyState::kFault && view.at_rest;
     }));
-    host->lengthen_steps(0.0);
   }
 
   /// What a request is answered with.

@@ -62,8 +62,7 @@ TEST(SafetyOscillation, TheFirstOneFadesTheTorqueWithinTheStopRampAndItReturnsBy
   EXPECT_EQ(bench.command.torque[kMcp], 0.0);
   EXPECT_TRUE(bench.safety.at_rest());
   EXPECT_EQ(bench.safety.fault().fault, Fault::kNone);
-  // The verdict holds for 0.5 s after the last leg, which the fade itself counted; then the start ramp of 1
-  // s.
+  // The verdict holds for 0.5 s after the last leg, which the fade itself counted. The start ramp takes 1 s.
   const double waited = bench.steady_until(SafetyState::kStarting);
   EXPECT_GT(waited, 0.2);
   EXPECT_LT(waited, 0.51);
@@ -93,7 +92,7 @@ TEST(SafetyOscillation, ASecondOneWithinTenSecondsIsAFaultAndZeroWithinFiveMilli
   }
 }
 
-// The bound from both sides: the swing is seen within 0.32 s, as above.
+// 10 s from both sides: the oscillation is seen within 0.32 s after it begins, as above.
 TEST(SafetyOscillation, LaterThanTenSecondsAfterTheReturnItFadesOnceMore) {
   for (const auto& [after, expected] :
        {std::pair{9.65, SafetyState::kFault}, std::pair{10.01, SafetyState::kStopping}}) {
@@ -105,6 +104,35 @@ TEST(SafetyOscillation, LaterThanTenSecondsAfterTheReturnItFadesOnceMore) {
     bench.swing_until_it_acts();
     EXPECT_EQ(bench.safety.state(), expected) << after;
   }
+}
+
+TEST(SafetyOscillation, TheTenSecondsAreNotPutOffByAnotherStart) {
+  Oscillator bench;
+  bench.steady(1.3);
+  bench.swing_until_it_acts();
+  bench.steady_until(SafetyState::kStarting);
+  const double returned = bench.now;
+  bench.steady(6.0);
+  bench.safety.stop();
+  bench.steady_until(SafetyState::kStopped);
+  bench.safety.start();
+  bench.steady_until(SafetyState::kRunning);
+  bench.steady(returned + 10.01 - bench.now);
+  bench.swing_until_it_acts();
+  EXPECT_EQ(bench.safety.state(), SafetyState::kStopping);
+}
+
+TEST(SafetyOscillation, TheyBeginWithTheResumeAfterAStopThatKeptTheTorqueAway) {
+  Oscillator bench;
+  bench.steady(1.3);
+  bench.swing_until_it_acts();
+  bench.safety.stop();
+  bench.steady(11.0);
+  ASSERT_EQ(bench.safety.state(), SafetyState::kStopped);
+  bench.safety.start();
+  bench.steady_until(SafetyState::kRunning);
+  bench.swing_until_it_acts();
+  EXPECT_EQ(bench.safety.fault().fault, Fault::kOscillation);
 }
 
 TEST(SafetyOscillation, AfterTheFaultsResetAnotherOneIsAFaultAtOnce) {

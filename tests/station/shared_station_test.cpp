@@ -6,10 +6,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
 #include "station/small_station.h"
+#include "support/count_allocations.h"
 
 namespace phalanx {
 namespace {
@@ -58,16 +60,19 @@ TEST_F(SharedStationTest, TheJointsThatADeviceSensesAreInTheirOrder) {
 }
 
 // A new station counts its steps from 1. The record of steps holds four: of six that were not fetched the
-// last four are there.
+// last four are there, and the others are counted as lost.
 TEST_F(SharedStationTest, TheRecordsOfTheLastFourStationsThatEndedAreKept) {
   for (int i = 0; i < 6; ++i) {
     begin(test::resting_device());
     shared.retire();
   }
   int stations = 0;
+  std::uint64_t fetched = 0;
   StepRecord record;
-  while (shared.next_record(record)) stations += record.tick == 1 ? 1 : 0;
+  for (; shared.next_record(record); ++fetched) stations += record.tick == 1 ? 1 : 0;
   EXPECT_EQ(stations, 4);
+  EXPECT_GE(shared.session().records_lost, 2U) << "of the first two stations";
+  EXPECT_EQ(fetched + shared.session().records_lost, shared.session().deadlines.steps);
 }
 
 TEST_F(SharedStationTest, AStationThatHasEndedIsShownAtRestWithItsDeadlines) {
@@ -86,6 +91,31 @@ TEST_F(SharedStationTest, AStationThatHasEndedIsShownAtRestWithItsDeadlines) {
   EXPECT_GT(shared.deadlines().steps, 0U);
   EXPECT_EQ(shared.deadlines().period, 1.0 / 200.0);
   EXPECT_FALSE(shared.held()) << "nobody said stop";
+}
+
+// Each allocation of a retirement fails once.
+TEST_F(SharedStationTest, AStationThatCannotBeRetiredForWantOfMemoryRunsOn) {
+  if (!test::kCountsNew) GTEST_SKIP() << "ThreadSanitizer has an operator new of its own";
+  begin(test::resting_device());
+  std::size_t number = 1;
+  for (;; ++number) {
+    const auto station = shared.current();
+    const test::FailingAllocation failing(number);
+    try {
+      shared.retire();
+      break;
+    } catch (const std::bad_alloc&) {
+    }
+    ASSERT_TRUE(shared.state()->running);
+    ASSERT_EQ(shared.current(), station);
+    const double time = station->station->view().time;
+    for (int i = 0; i < 1000 && station->station->view().time <= time; ++i)
+      clock.sleep_until(clock.now() + 0.005);
+    ASSERT_GT(station->station->view().time, time) << "allocation " << number;
+  }
+  EXPECT_GT(number, 1U) << "a retirement needs no memory";
+  EXPECT_FALSE(shared.state()->running);
+  EXPECT_EQ(shared.current(), nullptr);
 }
 
 TEST_F(SharedStationTest, ASessionIsTheSumOfItsStations) {

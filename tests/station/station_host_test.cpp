@@ -10,9 +10,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -20,9 +23,12 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/scene/scene_error.h"
+#include "record/temporary_folder.h"
 #include "station/host_fixture.h"
 #include "station/station_build.h"
 #include "support/held_clock/hold_this_process.h"
+#include "support/opened_files.h"
 
 namespace phalanx {
 namespace {
@@ -97,6 +103,22 @@ TEST_F(StationHostTest, AnotherObjectIsExchangedAtZeroTorqueOrGetsANewStationWit
   EXPECT_TRUE(until_running());
 }
 
+// An exchange would begin a new state, and its ticks with it.
+TEST_F(StationHostTest, AnotherMethodThatBoundsTheForcesChangeGoesOverInContact) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  for (const char* method : {"none", "smoothing", "rise_only"}) {
+    const StationView before = host->view();
+    EXPECT_EQ(set({{"stabiliser.method", method}, {"force.stiffness_n_per_mm", "0.75"}}), "");
+    EXPECT_EQ(value("stabiliser.method"), '"' + std::string(method) + '"');
+    EXPECT_TRUE(until([&] { return host->view().time > before.time + 1.0; }));
+    EXPECT_EQ(host->view().state, SafetyState::kRunning) << method;
+    EXPECT_GT(host->view().snapshot.tick, before.snapshot.tick) << method;
+  }
+  EXPECT_THAT(set({{"smoothing.enabled", "false"}}), HasSubstr("stabiliser.method = \"none\""));
+  EXPECT_EQ(host->state()->geometry->revision, 1U);
+}
+
 TEST_F(StationHostTest, AnotherLawIsExchangedAndTheShapesStay) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
@@ -145,6 +167,112 @@ TEST_F(StationHostTest, WhatIsRefusedLeavesEverythingAsItWas) {
   EXPECT_EQ(after->busy, "");
   EXPECT_EQ(host->view().state, SafetyState::kRunning) << "the torque was never away";
   EXPECT_EQ(host->view().stiffness, 500.0);
+}
+
+TEST_F(StationHostTest, AStationReadsEachFileOnceAndAnotherParameterReadsNone) {
+  const testing::TemporaryFolder folder;
+  const std::string scene = test::write_first_touch(folder.path());
+  const std::map<std::string, int> once = {
+      {"device.toml", 1}, {"hand.toml", 1}, {"patient.toml", 1}, {"scene.toml", 1}};
+  const test::OpenedFiles opened(folder.path());
+  start(with("simulated", scene));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(opened.take(), once);
+  for (const char* stiffness : {"0.75", "0.8", ""})
+    EXPECT_EQ(set({{"force.stiffness_n_per_mm", stiffness}}), "");
+  EXPECT_EQ(set({{"smoothing.max_n_per_s", "30"}}), "");
+  EXPECT_EQ(set({{"force.law", "kelvin_voigt"}, {"contact.margin_mm", "0.06"}}), "") << "at zero torque";
+  EXPECT_FALSE(set({{"force.stiffness_n_per_mm", "-1"}}).empty());
+  EXPECT_THAT(opened.take(), IsEmpty());
+  EXPECT_EQ(value("force.law"), R"("kelvin_voigt")");
+  EXPECT_EQ(set({{"objects.0.size_mm", "131"}}), "") << "another station";
+  const std::map<std::string, int> without_scene = {
+      {"device.toml", 1}, {"hand.toml", 1}, {"patient.toml", 1}};
+  EXPECT_EQ(opened.take(), without_scene);
+}
+
+// A scene's file that is edited, or broken, while a station runs changes nothing until it is loaded again.
+TEST_F(StationHostTest, AnEditedSceneCountsOnceItIsLoaded) {
+  const testing::TemporaryFolder folder;
+  const std::string scene = test::write_first_touch(folder.path());
+  start(with("simulated", scene));
+  ASSERT_TRUE(until_running());
+  std::ofstream(scene) << "this is no scene";
+  EXPECT_EQ(set({{"objects.0.size_mm", "131"}}), "");
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(value("objects.0.size_mm"), "131");
+  auto [answer, done] = awaited();
+  host->load_scene(scene, done);
+  ASSERT_TRUE(until([&] { return answer->refused.has_value(); }));
+  EXPECT_THAT(*answer->refused, HasSubstr("scene.toml"));
+  EXPECT_TRUE(until_running()) << "the old one goes on";
+}
+
+// The gate and the channels have the hand of the start: another object alone must not bring another hand.
+TEST_F(StationHostTest, AHandFileThatHasChangedSinceTheStartComesWithANewStation) {
+  const testing::TemporaryFolder folder;
+  const std::string scene = test::write_first_touch(folder.path());
+  start(with("sliders", scene));
+  ASSERT_TRUE(until_running());
+  const auto ticks_until_running = [&] {
+    EXPECT_TRUE(until_running());
+    return host->deadlines().steps;
+  };
+  const std::uint64_t first = ticks_until_running();
+  EXPECT_EQ(set({{"objects.0.size_mm", "131"}}), "");
+  const std::uint64_t second = ticks_until_running();
+  EXPECT_GT(second, first) << "the same station";
+  const std::string name = host->state()->geometry->hand.name;
+  std::string text;
+  {
+    std::ifstream in(folder / "hand.toml");
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const std::size_t at = text.find("name = \"" + name + "\"");
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(folder / "hand.toml") << text.replace(at, name.size() + 9, "name = \"another\"");
+  EXPECT_EQ(set({{"objects.0.size_mm", "132"}}), "");
+  EXPECT_EQ(host->state()->geometry->hand.name, "another");
+  EXPECT_LT(ticks_until_running(), second) << "another station";
+}
+
+TEST_F(StationHostTest, AParameterIsRefusedInTheWordsOfTheScenesReader) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  for (const auto& [key, wrong] : Overrides{{"force.stiffness_n_per_mm", "-1"},
+                                            {"force.stiffness_n_per_mm", "100.1"},
+                                            {"force.stiffness_n_per_mm", "many"},
+                                            {"smoothing.max_n_per_s", "0"},
+                                            {"smoothing.max_n", "0.1"},
+                                            {"smoothing.min_n_per_s", "nan"},
+                                            {"force.law", "hook"},
+                                            {"stabiliser.method", "3"},
+                                            {"force.stifness", "1"}}) {
+    std::string words;
+    try {
+      static_cast<void>(load_scene("first_touch", {{key, wrong}}));
+    } catch (const SceneError& refused) {
+      words = refused.what();
+    }
+    EXPECT_THAT(words, HasSubstr(key + " = "));
+    EXPECT_EQ(set({{key, wrong}}), words);
+  }
+}
+
+TEST_F(StationHostTest, AValueThatIsTakenAwayIsTheFilesAgain) {
+  const testing::TemporaryFolder folder;
+  const std::string scene = folder / "scene.toml";
+  std::ofstream(scene) << "[force]\nlaw = \"duffing\"\nstiffness_n_per_mm = 0.7\n";
+  start(with("sliders", scene));
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(set({{"force.law", "hooke"}}), "");
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.9"}}), "");
+  EXPECT_TRUE(until([&] { return std::abs(host->view().stiffness - 900.0) < 1e-9; }));
+  EXPECT_EQ(set({{"force.law", ""}}), "");
+  EXPECT_EQ(value("force.law"), R"("duffing")");
+  EXPECT_EQ(value("force.stiffness_n_per_mm"), "0.9");
+  EXPECT_EQ(set({{"force.stiffness_n_per_mm", ""}}), "");
+  EXPECT_TRUE(until([&] { return std::abs(host->view().stiffness - 700.0) < 1e-9; }));
 }
 
 TEST_F(StationHostTest, ASliderThatIsDraggedIsOneChangeAndEachIsAnswered) {
@@ -209,7 +337,7 @@ TEST_F(StationHostTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) 
   const auto busy_with = [&](HandSource source) {
     auto [answer, done] = awaited();
     host->set_source(source, std::move(done));
-    host->go_on();
+    host->poll();
     const std::string busy = host->state()->busy;
     const auto got = answer;
     EXPECT_TRUE(until([&] { return got->refused.has_value(); }));
@@ -255,7 +383,7 @@ TEST_F(StationHostTest, AStopIsObeyedByTheNextStepWhileASceneIsBuilt) {
   ASSERT_TRUE(until_running());
   auto [answer, done] = awaited();
   host->load_scene("grasp_teapot", done);
-  host->go_on();
+  host->poll();
   ASSERT_EQ(host->state()->busy, "scene grasp_teapot");
   host->stop();
   const double stopped = clock.now();
@@ -307,7 +435,7 @@ TEST_F(StationHostTest, AResumeBetweenTwoStationsIsNotLost) {
   host->stop();
   auto [answer, done] = awaited();
   host->load_scene("pinch_ball", done);
-  host->go_on();
+  host->poll();
   ASSERT_FALSE(host->state()->busy.empty());
   host->resume();
   const auto got = answer;
@@ -319,17 +447,19 @@ TEST_F(StationHostTest, AResumeBetweenTwoStationsIsNotLost) {
 TEST_F(StationHostTest, AFaultIsReportedOverASwitchAndTorqueComesBackOnlyByWord) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
-  host->lengthen_steps(0.0075);  // of 5 ms
-  while (host->view().state != SafetyState::kFault || !host->view().at_rest) {
-    host->go_on();
-    sleep(0.005);
+  {
+    const test::LoopWakesLate overload(0.0075);  // the period is 5 ms
+    while (host->view().state != SafetyState::kFault || !host->view().at_rest) {
+      host->poll();
+      sleep(0.005);
+    }
   }
   auto [answer, done] = awaited();
   host->load_scene("pinch_ball", done);
   const auto got = answer;
   StepRecord record;
   while (!got->refused.has_value()) {  // an owner who fetches records first, and reports late
-    host->go_on();
+    host->poll();
     while (host->next_record(record)) {
     }
     sleep(0.005);
@@ -353,7 +483,7 @@ TEST_F(StationHostTest, TheViewNeverGoesBackOverASwitch) {
   std::uint32_t revision = host->state()->geometry->revision;
   while (!got->refused.has_value()) {
     sleep(0.0002);
-    host->go_on();
+    host->poll();
     const bool gone = !host->state()->running;
     const StationView view = host->view();
     EXPECT_GE(view.time, last);
@@ -372,7 +502,7 @@ TEST_F(StationHostTest, AResetDuringASwitchDoesNotStartTheStationTwice) {
   host->load_scene("pinch_ball", done);
   const auto got = answer;
   while (!got->refused.has_value()) {
-    host->go_on();
+    host->poll();
     host->reset();
     sleep(0.0002);
   }
@@ -386,14 +516,14 @@ TEST_F(StationHostTest, NothingIsAnsweredOrBegunOnceItIsShutDown) {
   const auto done = [&](const ChangeOutcome&) { ++answers; };
   host->load_scene("pinch_ball", done);
   host->load_scene("grasp_teapot", done);
-  host->go_on();
+  host->poll();
   host->shut_down();
   host->load_scene("pinch_ball", done);
   host->stop();
   EXPECT_FALSE(host->resume());
   host->reset();
   host->set_sliders({});
-  for (int i = 0; i < 5; ++i) host->go_on();
+  for (int i = 0; i < 5; ++i) host->poll();
   EXPECT_EQ(answers, 0);
   EXPECT_FALSE(any_torque(host->view()));
   host->shut_down();
@@ -563,11 +693,34 @@ TEST(LaidOver, KeepsTheLastWordOfEachKeyAndForgetsWhatItReplaces) {
 }
 
 TEST(ChangeKindOf, APatientHasToBeToldOfAnotherObject) {
-  EXPECT_EQ(change_kind("objects.0.size_mm", HandSource::kPatient), ChangeKind::kNewStation);
-  EXPECT_EQ(change_kind("objects.0.size_mm", HandSource::kSliders), ChangeKind::kAtZeroTorque);
-  EXPECT_EQ(change_kind("objectsize", HandSource::kPatient), ChangeKind::kAtZeroTorque);
-  EXPECT_EQ(change_kind("force.stiffness_n_per_mm", HandSource::kPatient), ChangeKind::kInContact);
-  EXPECT_EQ(change_kind("rate_hz", HandSource::kSliders), ChangeKind::kNewStation);
+  const auto kind = [](const char* key, HandSource source) {
+    return change_kind({{key, "1"}}, source, {}, {});
+  };
+  EXPECT_EQ(kind("objects.0.size_mm", HandSource::kPatient), ChangeKind::kNewStation);
+  EXPECT_EQ(kind("objects.0.size_mm", HandSource::kSliders), ChangeKind::kOtherObject);
+  EXPECT_EQ(kind("objectsize", HandSource::kPatient), ChangeKind::kAtZeroTorque);
+  EXPECT_EQ(kind("force.stiffness_n_per_mm", HandSource::kPatient), ChangeKind::kInContact);
+  EXPECT_EQ(kind("rate_hz", HandSource::kSliders), ChangeKind::kNewStation);
+}
+
+TEST(ChangeKindOf, AMethodGoesOverInContactWhereBothBoundTheForcesChange) {
+  const auto kind = [](const Overrides& changes, Stabiliser from, Stabiliser to) {
+    HapticParameters in_force;
+    HapticParameters wanted;
+    in_force.stabiliser.method = from;
+    wanted.stabiliser.method = to;
+    return change_kind(changes, HandSource::kSliders, in_force, wanted);
+  };
+  const Overrides method = {{"stabiliser.method", "as wanted"}};
+  EXPECT_EQ(kind(method, Stabiliser::kRiseOnly, Stabiliser::kNone), ChangeKind::kInContact);
+  EXPECT_EQ(kind(method, Stabiliser::kNone, Stabiliser::kSmoothing), ChangeKind::kInContact);
+  EXPECT_EQ(kind(method, Stabiliser::kLowPass, Stabiliser::kLowPass), ChangeKind::kInContact);
+  EXPECT_EQ(kind(method, Stabiliser::kRiseOnly, Stabiliser::kLowPass), ChangeKind::kAtZeroTorque);
+  EXPECT_EQ(kind(method, Stabiliser::kLocalWall, Stabiliser::kNone), ChangeKind::kAtZeroTorque);
+  EXPECT_EQ(kind({{"stabiliser.method", "as wanted"}, {"force.law", "duffing"}}, Stabiliser::kRiseOnly,
+                 Stabiliser::kNone),
+            ChangeKind::kAtZeroTorque)
+      << "of several the largest counts";
 }
 
 }  // namespace

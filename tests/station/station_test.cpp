@@ -3,6 +3,7 @@
 // machine changes nothing but how long these tests take.
 #include "phalanx/station/station.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,8 +11,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "phalanx/scene/build_model.h"
@@ -28,18 +31,22 @@ class StationTest : public testing::Test {
   /// Four times as fast as real time; overruns are judged only where a test asks for it.
   void start(const Overrides& overrides = {}, double slowdown = 0.25, int overruns = 1000000) {
     scene_ = load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", overrides);
-    StationModel made = make_station_model(scene_, "");
+    const ResolvedScene scene = resolve(scene_, {.device = true, .motion = true});
+    StationModel made = make_station_model(scene, "");
     made.safety.overruns = overruns;
+    model_ = made.model;
     clock_ = std::make_unique<Clock>(slowdown);
     device_ =
-        std::make_unique<test::WatchedDevice>(make_simulated_device(simulated_settings(scene_, *made.model)));
+        std::make_unique<test::WatchedDevice>(make_simulated_device(simulated_settings(scene, *made.model)));
     device_->open();
     StationOptions options;
     options.ask_for_realtime = false;
     options.safety = made.safety;
-    options.witnesses = make_witnesses(scene_, device_->info().channels, made.safety);
-    ChannelMap map = make_channel_map(scene_, device_->info().channels, made.model->hand.parameters());
-    station_ = std::make_unique<Station>(std::move(made.model), *device_, std::move(map), options, *clock_);
+    const Exoskeleton& exoskeleton = scene.exoskeleton.value();
+    options.witnesses = motor_witnesses(exoskeleton, device_->info().channels, made.safety.joint_torque);
+    ChannelMap map(device_->info().channels, followers_of(exoskeleton), made.model->hand.parameters());
+    station_ =
+        std::make_unique<Station>(made.model, made.parameters, *device_, std::move(map), options, *clock_);
     station_->start();
   }
 
@@ -61,8 +68,16 @@ class StationTest : public testing::Test {
   void exchange_teapot() {
     const SceneDescription other =
         load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", {{"objects.0.size_mm", "125"}});
-    StationModel made = make_station_model(other, "");
-    station_->replace(std::make_unique<LiveModel>(std::move(made.model)));
+    const StationModel made = make_station_model(other, "");
+    station_->replace(made.model, made.parameters);
+  }
+  /// Waits for the end of a change that was asked for before. @returns whether it came
+  bool until_changed() {
+    const double asked = station_->view().time;
+    const bool changed =
+        until([&](const StationView& view) { return view.time > asked + 0.02 && !view.changing; });
+    static_cast<void>(station_->view());  // frees what was exchanged
+    return changed;
   }
   static double index_force(const StationView& view) {
     double force = 0.0;
@@ -70,9 +85,12 @@ class StationTest : public testing::Test {
       force += view.snapshot.segment[static_cast<std::size_t>(segment_index(1, k))].force;
     return force;
   }
-  [[nodiscard]] double allowed_step() const { return scene_.limits.torque_rate / scene_.rate_hz + 1e-9; }
+  [[nodiscard]] double allowed_step() const {
+    return scene_.parameters.limits.torque_rate / scene_.parameters.rate_hz + 1e-9;
+  }
 
   SceneDescription scene_;
+  std::shared_ptr<const HapticModel> model_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<test::WatchedDevice> device_;
   std::unique_ptr<Station> station_;
@@ -89,7 +107,7 @@ TEST_F(StationTest, SqueezesTheTeapotFor30SecondsAt1KHzWithoutAFaultOrAnAllocati
   EXPECT_EQ(station_->view().state, SafetyState::kRunning);
   EXPECT_EQ(device_->allocations, 0U);
   EXPECT_LE(device_->largest_step, allowed_step());
-  EXPECT_LE(device_->largest_torque, scene_.limits.joint_torque);
+  EXPECT_LE(device_->largest_torque, scene_.parameters.limits.joint_torque);
   station_->shut_down();
   EXPECT_TRUE(device_->at_zero);
   // The record of steps holds 8,192, and none has been fetched.
@@ -156,14 +174,72 @@ TEST_F(StationTest, AStopWhileAnObjectIsExchangedHoldsAfterTheExchange) {
 TEST_F(StationTest, SmoothingOffAndAStifferWallInContactStayWithinTheRateLimit) {
   start();
   ASSERT_TRUE(until_pressing(1.0));
-  BlendedParameters parameters{
-      .stiffness = 900.0, .damping = 2.0, .smoothing = false, .min_rate = -20.0, .max_rate = 20.0};
-  station_->blend_to(parameters);
+  HapticParameters parameters = scene_.parameters;
+  parameters.force.stiffness = 900.0;
+  parameters.stabiliser.method = Stabiliser::kNone;
+  station_->change_to(parameters);
   ASSERT_TRUE(until(
       [](const StationView& view) { return !view.changing && std::abs(view.stiffness - 900.0) < 1e-9; }));
   ASSERT_TRUE(until_pressing(0.5));
   EXPECT_LE(device_->largest_step, allowed_step());
   EXPECT_NE(station_->view().state, SafetyState::kFault);
+}
+
+// The parameters of a change that an exchange overtakes never reach the other model, and those of a change
+// after it do.
+TEST_F(StationTest, AChangeGoesToTheModelThatItWasAskedFor) {
+  start();
+  ASSERT_TRUE(until_pressing(1.0));
+  HapticParameters parameters = scene_.parameters;
+  parameters.force.stiffness = 1000.0;
+  station_->change_to(parameters);
+  exchange_teapot();
+  ASSERT_TRUE(until_changed());
+  EXPECT_EQ(station_->view().stiffness, scene_.parameters.force.stiffness);
+  exchange_teapot();
+  parameters.force.stiffness = 800.0;
+  station_->change_to(parameters);
+  ASSERT_TRUE(until(
+      [](const StationView& view) { return !view.changing && std::abs(view.stiffness - 800.0) < 1e-9; }));
+}
+
+TEST_F(StationTest, AChangeInContactIsRefusedOutsideTheRangesAndTheRate) {
+  start();
+  const auto refused = [&](const std::string& named, auto change) {
+    HapticParameters parameters = scene_.parameters;
+    change(parameters);
+    EXPECT_THAT([&] { station_->change_to(parameters); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr(named)));
+  };
+  refused("rate_hz", [](HapticParameters& p) { p.rate_hz *= 2.0; });
+  refused("force.stiffness", [](HapticParameters& p) { p.force.stiffness = -1.0; });
+  refused("force.damping",
+          [](HapticParameters& p) { p.force.damping = std::numeric_limits<double>::quiet_NaN(); });
+  refused("max_rate", [](HapticParameters& p) { p.stabiliser.max_rate = 0.0; });
+}
+
+// A change in contact and an exchange of parameters share the model; the exchange gives back what it
+// replaced.
+TEST_F(StationTest, OtherParametersCopyNoModel) {
+  start();
+  ASSERT_EQ(model_.use_count(), 2) << "the station's and this test's";
+  HapticParameters parameters = scene_.parameters;
+  parameters.force.stiffness = 700.0;
+  station_->change_to(parameters);
+  ASSERT_TRUE(until(
+      [](const StationView& view) { return !view.changing && std::abs(view.stiffness - 700.0) < 1e-9; }));
+  EXPECT_EQ(model_.use_count(), 2);
+  parameters.force.law = ForceLaw::kDuffing;
+  station_->replace(model_, parameters);
+  ASSERT_TRUE(until_changed());
+  EXPECT_EQ(station_->view().stiffness, 700.0);
+  EXPECT_EQ(model_.use_count(), 2);
+  parameters.force.stiffness = -1.0;
+  EXPECT_THROW(station_->replace(model_, parameters), std::invalid_argument);
+  EXPECT_EQ(model_.use_count(), 2) << "a refused exchange keeps nothing";
+  exchange_teapot();
+  ASSERT_TRUE(until_changed());
+  EXPECT_EQ(model_.use_count(), 1) << "the station has another";
 }
 
 TEST_F(StationTest, ASilentDeviceIsAFaultWithTheLastTwoSecondsInItsReport) {
@@ -238,9 +314,10 @@ TEST_F(StationTest, ARecordSaysWhatTheViewOfItsStepShows) {
   EXPECT_LE(record.duration, 1e-6 * station_->deadlines().step.max_us() + 1e-9);
 }
 
+// The same with torque: tests/faults/load_and_change_test.cpp.
 TEST_F(StationTest, StepsThatAreTooLongAreCountedShownAndStoppedAfterTenInARow) {
   start({}, 2.0, 10);
-  station_->lengthen_steps(0.0055);  // of 5 ms; with torque: the fault suite
+  device_->delay = 2.0 * 0.0055;  // 5.5 ms of the station's clock; its period is 5 ms
   ASSERT_TRUE(until([](const StationView& view) { return view.degraded; }));
   ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kFault; }));
   EXPECT_EQ(station_->view().fault.fault, Fault::kOverload);
@@ -255,39 +332,18 @@ TEST_F(StationTest, ARateOutsideItsRangeIsRefused) {
   ASSERT_TRUE(until([](const StationView& view) { return view.state == SafetyState::kRunning; }));
 }
 
-/// A hand that rests, whose device keeps each step waiting for 40 ms once it is drowsy.
-class DrowsyDevice final : public Device {
- public:
-  explicit DrowsyDevice(const Clock& clock) : clock_(clock), device_(test::resting_device()) {}
-  void open() override {}
-  void close() noexcept override { device_->close(); }
-  [[nodiscard]] const DeviceInfo& info() const override { return device_->info(); }
-  [[nodiscard]] std::size_t receive(double now, std::span<DeviceSample> out) noexcept override {
-    if (drowsy) clock_.sleep_until(clock_.now() + 0.04);
-    return device_->receive(now, out);
-  }
-  void send(const DeviceCommand& command) noexcept override { device_->send(command); }
-  void reset() noexcept override { device_->reset(); }
-
-  std::atomic<bool> drowsy{false};
-
- private:
-  const Clock& clock_;
-  std::unique_ptr<Device> device_;
-};
-
 // The ramp's 40 steps of 5 ms take 40 or 45 ms each, 1.8 s at most: who shuts down waits for 2 s beyond 0.2
 // s.
 TEST(StationEnd, WaitsForARampWhoseStepsAreSlow) {
   const Clock clock;
-  auto device = std::make_unique<DrowsyDevice>(clock);
-  DrowsyDevice& drowsy = *device;
+  auto device = std::make_unique<test::WatchedDevice>(test::resting_device());
+  test::WatchedDevice& watched = *device;
   const RunningStation running = test::small_station(std::move(device), clock);
   running.station->start();
   const auto state = [&] { return running.station->view().state; };
   for (int i = 0; i < 1000 && state() != SafetyState::kRunning; ++i) clock.sleep_until(clock.now() + 0.01);
   ASSERT_EQ(state(), SafetyState::kRunning);
-  drowsy.drowsy = true;
+  watched.delay = 0.04;
   running.station->shut_down();
   EXPECT_EQ(state(), SafetyState::kStopped);
   EXPECT_EQ(running.station->view().factor, 0.0);

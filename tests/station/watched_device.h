@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <thread>
@@ -26,6 +27,7 @@ class WatchedDevice : public Device {
     // The first steps of a thread may set up what the system keeps for each thread.
     if (++calls_ == 20) allocations_before_ = allocations_of_this_thread();
     if (calls_ > 20) allocations = allocations_of_this_thread() - allocations_before_;
+    if (delay > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(delay.load()));
     if (silent) return 0;
     const std::size_t count = device_->receive(now, out);
     for (std::size_t i = 0; i < count; ++i) out[i].estop = out[i].estop || estop;
@@ -52,6 +54,7 @@ class WatchedDevice : public Device {
     return device_->statistics();
   }
 
+  std::atomic<double> delay{0.0};  ///< each receive() takes so long [s]
   std::atomic<bool> silent{false};
   std::atomic<bool> estop{false};
   std::atomic<bool> ticks_increase{true};

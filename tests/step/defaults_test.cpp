@@ -60,7 +60,7 @@ TEST(Defaults, OfContact) {
   EXPECT_EQ(contact.normal, ForceNormal::kInterpolated);
 }
 
-TEST(Defaults, OfForceSmoothingAndLimits) {
+TEST(Defaults, OfForceAndLimits) {
   const ForceLawParameters law;
   EXPECT_EQ(law.law, ForceLaw::kHooke);
   EXPECT_EQ(law.stiffness, 500.0);
@@ -70,10 +70,6 @@ TEST(Defaults, OfForceSmoothingAndLimits) {
   EXPECT_EQ(law.hunt_crossley_damping, 2.0);
   EXPECT_EQ(law.cubic, 5e7);
   EXPECT_EQ(law.linear_depth, 2e-3);
-  const SmoothingParameters smoothing;
-  EXPECT_TRUE(smoothing.enabled);
-  EXPECT_EQ(smoothing.min_rate, -20.0);
-  EXPECT_EQ(smoothing.max_rate, 20.0);
   const LimitParameters limits;
   EXPECT_TRUE(limits.fingertip_force_enabled && limits.joint_torque_enabled && limits.torque_rate_enabled);
   EXPECT_EQ(limits.fingertip_force, 5.0);
@@ -84,7 +80,9 @@ TEST(Defaults, OfForceSmoothingAndLimits) {
 
 TEST(Defaults, OfStabilisersAndTheObserver) {
   const StabiliserParameters stabiliser;
-  EXPECT_EQ(stabiliser.method, Stabiliser::kSmoothing);
+  EXPECT_EQ(stabiliser.method, Stabiliser::kRiseOnly);
+  EXPECT_EQ(stabiliser.min_rate, -20.0);
+  EXPECT_EQ(stabiliser.max_rate, 20.0);
   EXPECT_EQ(stabiliser.lowpass_hz, 3.0);
   EXPECT_EQ(stabiliser.damping, 4.0);
   EXPECT_DOUBLE_EQ(stabiliser.turn_rate, std::numbers::pi / 2);

@@ -10,6 +10,7 @@
 
 #include "phalanx/mesh/primitives.h"
 #include "support/lone_finger.h"
+#include "support/sanitized.h"
 #include "support/sheets.h"
 
 namespace phalanx {
@@ -111,22 +112,26 @@ struct DragOver {
   TriangleMesh mesh;
   Approach approach;
 };
+/// Under a sanitizer two of them.
 std::vector<DragOver> drags() {
-  return {{"sphere",
-           make_sphere(0.06, 1000),
-           {.from = Vec3(0, 0.0007, 0.045), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
-          {"teapot, side",
-           make_teapot(0.15, 1000),
-           {.from = Vec3(0, -0.06, 0), .along = kDragY, .heading = -kDragZ, .reach = 0.04}},
-          {"torus",
-           make_torus(0.08, 0.03, 2000),
-           {.from = Vec3(0.04, 0, 0.03), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
-          {"box",
-           make_box(Vec3(0.06, 0.06, 0.06), 300),
-           {.from = Vec3(0.01, 0, 0.04), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
-          {"arched sheet, from inside",
-           test::grid_sheet(16, 0.05),
-           {.from = Vec3(0, 0.003, -0.02), .along = kDragZ, .heading = kDragY, .reach = 0.03}}};
+  std::vector<DragOver> all{
+      {"sphere",
+       make_sphere(0.06, 1000),
+       {.from = Vec3(0, 0.0007, 0.045), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
+      {"teapot, side",
+       make_teapot(0.15, 1000),
+       {.from = Vec3(0, -0.06, 0), .along = kDragY, .heading = -kDragZ, .reach = 0.04}},
+      {"torus",
+       make_torus(0.08, 0.03, 2000),
+       {.from = Vec3(0.04, 0, 0.03), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
+      {"box",
+       make_box(Vec3(0.06, 0.06, 0.06), 300),
+       {.from = Vec3(0.01, 0, 0.04), .along = -kDragZ, .heading = kDragY, .reach = 0.03}},
+      {"arched sheet, from inside",
+       test::grid_sheet(16, 0.05),
+       {.from = Vec3(0, 0.003, -0.02), .along = kDragZ, .heading = kDragY, .reach = 0.03}}};
+  if (test::kSanitized) return {all[1], all[4]};
+  return all;
 }
 
 // Between two touches nothing but the HCP's own motion changes the force.

@@ -63,9 +63,10 @@ struct Felt {
 /// Plays angles through the contacts and the force law of a scene, tick by tick.
 class Player {
  public:
-  explicit Player(const HapticModel& model)
+  Player(const HapticModel& model, const HapticParameters& parameters)
       : model_(model),
-        contact_{model.hand, model.trees, model.object, model.contact},
+        law_(parameters.force),
+        contact_{model.hand, model.trees, model.object, parameters.contact},
         gdp_(contact_),
         object_(model.object.mesh()),
         containment_(model.object.mesh()) {
@@ -86,14 +87,13 @@ class Player {
       for (int k = 0; k < kSegmentsPerDigit; ++k) {
         const int s = segment_index(d, k);
         const ContactRecord& record = gdp_.record[idx(s)];
-        const double force =
-            record.active && !record.silent ? law_force(model_.force, record.depth, 0.0) : 0.0;
+        const double force = record.active && !record.silent ? law_force(law_, record.depth, 0.0) : 0.0;
         const double rise = force - force_[idx(s)];
         force_[idx(s)] = force;
         pushed = std::max(pushed, force);
         felt.step = std::max(felt.step, std::abs(rise));
         if (rise > std::max(felt.excess, 1e-3)) {
-          const double explained = kMostSlope * model_.force.stiffness * way(d, k, before, hcp);
+          const double explained = kMostSlope * law_.stiffness * way(d, k, before, hcp);
           felt.excess = std::max(felt.excess, rise - explained);
         }
       }
@@ -143,6 +143,7 @@ class Player {
   }
 
   const HapticModel& model_;
+  const ForceLawParameters& law_;
   ContactModel contact_;
   GdpState gdp_;
   test::FclMesh object_;
@@ -172,7 +173,7 @@ std::optional<HapticModel> clear_of_the_open_hand(SceneDescription scene) {
     scene.objects.front().pose.p = at + Vec3(0.0, 2e-3 * n, 0.0);
     HapticModel model = build_model(scene);
     try {
-      const GdpState state({model.hand, model.trees, model.object, model.contact});
+      const GdpState state({model.hand, model.trees, model.object, scene.parameters.contact});
     } catch (const std::invalid_argument&) {
       continue;
     }
@@ -185,10 +186,10 @@ std::optional<HapticModel> clear_of_the_open_hand(SceneDescription scene) {
 Felt play(const HapticModel& model, const SceneDescription& scene, const std::string& name) {
   SCOPED_TRACE(name);
   const Motion motion = build_motion(scene);
-  Player player(model);
-  const int ticks = static_cast<int>(motion.duration() * model.rate_hz);
+  Player player(model, scene.parameters);
+  const int ticks = static_cast<int>(motion.duration() * scene.parameters.rate_hz);
   for (int n = 0; n <= ticks; ++n)
-    player.tick(clamped(motion.at(n / model.rate_hz), model.hand.parameters()));
+    player.tick(clamped(motion.at(n / scene.parameters.rate_hz), model.hand.parameters()));
   player.felt.print(name);
   return player.felt;
 }
@@ -266,13 +267,14 @@ TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverTheScenesMotionsAndAGlove) 
 TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverHumanMotions) {
   Felt all;
   for (const char* name : kScenes) {
-    const HapticModel model = build_model(load_scene(name, {{"objects.0.triangles", "1000"}}));
+    const SceneDescription scene = load_scene(name, {{"objects.0.triangles", "1000"}});
+    const HapticModel model = build_model(scene);
     for (int seed = 1; seed <= 4; ++seed) {
       SCOPED_TRACE(::testing::Message() << name << " seed " << seed);
-      Player player(model);
+      Player player(model, scene.parameters);
       test::HumanMotion motion(model.hand.parameters(), static_cast<std::uint64_t>(seed));
       const int ticks = test::kSanitized ? 200 : 2000;
-      for (int n = 0; n < ticks; ++n) player.tick(motion.next(1.0 / model.rate_hz));
+      for (int n = 0; n < ticks; ++n) player.tick(motion.next(scene.parameters.period()));
       player.felt.print(std::string(name) + " human, seed " + std::to_string(seed));
       all.add(player.felt);
     }

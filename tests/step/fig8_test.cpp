@@ -70,12 +70,12 @@ void add_contact(const Snapshot& s, int k, double stiffness, std::array<double, 
 
 constexpr double kStiffness = 500.0;
 
-HapticModel with_ball(double diameter, double y, double z) {
-  HapticModel model(test::simple_hand(), ObjectModel(moved(make_sphere(diameter, 4000), at(0.0, y, z))));
+test::Setup with_ball(double diameter, double y, double z) {
+  test::Setup model(test::simple_hand(), ObjectModel(moved(make_sphere(diameter, 4000), at(0.0, y, z))));
   test::turn_limits_off(model);
-  model.force.stiffness = kStiffness;
-  model.contact.normal = ForceNormal::kContact;
-  model.contact.depth = DepthOrigin::kS1;  // the paper's formula
+  model.parameters.force.stiffness = kStiffness;
+  model.parameters.contact.normal = ForceNormal::kContact;
+  model.parameters.contact.depth = DepthOrigin::kS1;  // the paper's formula
   return model;
 }
 
@@ -124,7 +124,7 @@ void expect_contacts(const Snapshot& s, bool proximal, bool middle, bool distal)
 constexpr double kNone = 1e-12;
 
 TEST(S1Fig8, AFreeFingerFeelsNoTorque) {
-  const HapticModel model = with_ball(0.03, -0.028, -0.028);
+  const test::Setup model = with_ball(0.03, -0.028, -0.028);
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(-0.3, 0.2, 0.1), 20);
   expect_contacts(s, false, false, false);
@@ -132,7 +132,7 @@ TEST(S1Fig8, AFreeFingerFeelsNoTorque) {
 }
 
 TEST(S1Fig8, BProximalPhalanxLoadsTheMcpAlone) {
-  const HapticModel model = with_ball(0.03, -0.028, -0.028);
+  const test::Setup model = with_ball(0.03, -0.028, -0.028);
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(0.55), 60);
   expect_contacts(s, true, false, false);
@@ -143,7 +143,7 @@ TEST(S1Fig8, BProximalPhalanxLoadsTheMcpAlone) {
 }
 
 TEST(S1Fig8, CMiddlePhalanxAsWellLoadsThePipToo) {
-  const HapticModel model = with_ball(0.03, -0.028, -0.028);
+  const test::Setup model = with_ball(0.03, -0.028, -0.028);
   Runner hand(model);
   hand.move(index_angles(0.55), 60);
   const Snapshot& s = hand.move(index_angles(0.55, 1.3), 60);
@@ -155,7 +155,7 @@ TEST(S1Fig8, CMiddlePhalanxAsWellLoadsThePipToo) {
 }
 
 TEST(S1Fig8, DTheWholeFingerLoadsAllThreeJoints) {
-  const HapticModel model = with_ball(0.03, -0.028, -0.028);
+  const test::Setup model = with_ball(0.03, -0.028, -0.028);
   Runner hand(model);
   hand.move(index_angles(0.55), 60);
   hand.move(index_angles(0.55, 1.3), 60);
@@ -167,7 +167,7 @@ TEST(S1Fig8, DTheWholeFingerLoadsAllThreeJoints) {
 
 TEST(S1Fig8, EAndFTheDistalPhalanxAloneLoadsAllThreeInTwoPostures) {
   {
-    const HapticModel model = with_ball(0.03, -0.035, -0.080);
+    const test::Setup model = with_ball(0.03, -0.035, -0.080);
     Runner hand(model);
     const Snapshot& s = hand.move(index_angles(0.4), 60);
     expect_contacts(s, false, false, true);
@@ -175,7 +175,7 @@ TEST(S1Fig8, EAndFTheDistalPhalanxAloneLoadsAllThreeInTwoPostures) {
     for (const int i : {0, 2, 3}) EXPECT_LT(index_torque(s, i), -1e-3) << i;
   }
   {
-    const HapticModel model = with_ball(0.03, -0.060, -0.055);
+    const test::Setup model = with_ball(0.03, -0.060, -0.055);
     Runner hand(model);
     hand.move(index_angles(0.2, 0.7), 60);
     const Snapshot& s = hand.move(index_angles(0.6, 0.9, 0.3), 60);
@@ -186,7 +186,7 @@ TEST(S1Fig8, EAndFTheDistalPhalanxAloneLoadsAllThreeInTwoPostures) {
 }
 
 TEST(S1Fig8, GTheMiddlePhalanxAloneLoadsMcpAndPip) {
-  const HapticModel model = with_ball(0.02, -0.025, -0.052);
+  const test::Setup model = with_ball(0.02, -0.025, -0.052);
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(0.5), 60);
   expect_contacts(s, false, true, false);
@@ -210,10 +210,10 @@ TEST(S1Fig8, ABarOnAFloorStopsAndPushesAsTrigonometrySays) {
     meshes[3 * test::kIndex + k] =
         moved(make_box(Vec3(0.01, 2.0 * kHalf, length[k]), 12), at(0.0, 0.0, -0.5 * length[k]));
   }
-  HapticModel model(HandModel(parameters, Handedness::kRight, Pose{}, meshes),
+  test::Setup model(HandModel(parameters, Handedness::kRight, Pose{}, meshes),
                     ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, kFloor - 0.01, 0.0))));
   test::turn_limits_off(model);
-  model.force.stiffness = kStiffness;
+  model.parameters.force.stiffness = kStiffness;
   Runner hand(model);
   const double hcp = 0.35;
   const Snapshot& s = hand.move(index_angles(hcp), 60);

@@ -2,6 +2,9 @@
 // A contact for the device's own controller.
 #include <gmock/gmock.h>
 
+#include <array>
+
+#include "phalanx/force/local_wall.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
@@ -16,7 +19,6 @@ using test::floor_model;
 using test::grasp;
 using test::index_angles;
 using test::index_segment;
-using test::joints_of;
 using test::kIndex;
 using test::moved;
 using test::Runner;
@@ -24,15 +26,16 @@ using test::Runner;
 // At the angles that made them the walls are the host's forces and torques.
 TEST(LocalWall, IsTheHostsCommandAtItsReference) {
   for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kHuntCrossley, ForceLaw::kDuffing}) {
-    HapticModel model = ball_model(Stabiliser::kLocalWall);
+    test::Setup model = ball_model(Stabiliser::kLocalWall);
     test::turn_limits_off(model);
-    model.force.law = law;
+    model.parameters.stabiliser.method = Stabiliser::kLocalWall;
+    model.parameters.force.law = law;
     Runner hand(model);
     int walls = 0;
     for (int n = 0; n <= 150; ++n) {
       const Snapshot& now = hand.tick(grasp(n));
-      const DigitJoints q_ref = joints_of(now.hcp_angle, kIndex);
-      DigitJoints torque{};
+      const DigitAngles q_ref = digit_angles(now.hcp_angle, kIndex);
+      std::array<double, kJointsPerDigit> torque{};
       for (int k = 0; k < kSegmentsPerDigit; ++k) {
         const LocalWall& wall = now.wall[static_cast<std::size_t>(segment_index(kIndex, k))];
         const SegmentSnapshot& segment = index_segment(now, k);
@@ -54,8 +57,9 @@ TEST(LocalWall, IsTheHostsCommandAtItsReference) {
 // rests on it, and the walls of a step give the law's force of the next, one hundredth of that deeper, to 2 %
 // of the change. Leaving by more than the depth gives nothing.
 TEST(LocalWall, FollowsTheLawBetweenTwoSteps) {
-  HapticModel model = floor_model(Stabiliser::kLocalWall);
+  test::Setup model = floor_model(Stabiliser::kLocalWall);
   test::turn_limits_off(model);
+  model.parameters.stabiliser.method = Stabiliser::kLocalWall;
   Runner hand(model);
   double first = 0.0;
   for (int n = 0; n <= 2000 && !index_segment(hand.now(), 2).contact; ++n)
@@ -65,19 +69,19 @@ TEST(LocalWall, FollowsTheLawBetweenTwoSteps) {
   const LocalWall wall = before.wall[static_cast<std::size_t>(segment_index(kIndex, 2))];
   ASSERT_TRUE(wall.active);
   const Snapshot after = hand.tick(index_angles(first + 0.0101));
-  const DigitJoints q_ref = joints_of(before.hcp_angle, kIndex);
+  const DigitAngles q_ref = digit_angles(before.hcp_angle, kIndex);
   const double change = index_segment(after, 2).force - index_segment(before, 2).force;
   ASSERT_GT(change, 1e-3);
-  const double predicted = local_wall_force(wall, joints_of(after.hcp_angle, kIndex), q_ref);
+  const double predicted = local_wall_force(wall, digit_angles(after.hcp_angle, kIndex), q_ref);
   EXPECT_NEAR(predicted - index_segment(before, 2).force, change, 0.02 * change);
-  DigitJoints away = q_ref;
+  DigitAngles away = q_ref;
   away[0] -= 0.1;
   EXPECT_EQ(local_wall_force(wall, away, q_ref), 0.0);
 }
 
 TEST(LocalWall, IsNotThereUnderAnotherMethodOrWithoutContact) {
   for (const Stabiliser method : {Stabiliser::kSmoothing, Stabiliser::kLocalWall}) {
-    const HapticModel model = ball_model(method);
+    const test::Setup model = ball_model(method);
     Runner hand(model);
     hand.tick(grasp(0));
     for (const LocalWall& wall : hand.now().wall) EXPECT_FALSE(wall.active);
@@ -94,7 +98,7 @@ TEST(LocalWall, IsNotThereUnderAnotherMethodOrWithoutContact) {
 // A finger that has just left meets the same plane when it comes back: as high above it as it is, with no
 // force.
 TEST(LocalWall, IsKeptForAWhileAfterTheContactLetsGo) {
-  const HapticModel model = floor_model(Stabiliser::kLocalWall);
+  const test::Setup model = floor_model(Stabiliser::kLocalWall);
   Runner hand(model);
   const std::size_t tip = static_cast<std::size_t>(segment_index(kIndex, 2));
   hand.move(index_angles(0.28), 60);
@@ -107,8 +111,8 @@ TEST(LocalWall, IsKeptForAWhileAfterTheContactLetsGo) {
   EXPECT_LE(left.d_ref, 0.0);
   EXPECT_EQ(left.stiffness, stiffness);
   EXPECT_EQ(left.host_force, 0.0);
-  const DigitJoints here = joints_of(hand.now().hcp_angle, kIndex);
-  DigitJoints back = here;
+  const DigitAngles here = digit_angles(hand.now().hcp_angle, kIndex);
+  DigitAngles back = here;
   back[0] += 0.05;  // flexes into the plane again
   EXPECT_EQ(local_wall_force(left, here, here), 0.0);
   EXPECT_GT(local_wall_force(left, back, here), 0.1);

@@ -176,10 +176,9 @@ struct Held {
 };
 
 /// Of the shown segment from the file's own triangles, all pairs, by a second distance.
-void hold_against(const std::vector<test::RawTriangle>& raw, const HapticModel& model, const Snapshot& now,
-                  int s, Held& held) {
+void hold_against(const std::vector<test::RawTriangle>& raw, const HapticModel& model, double margin,
+                  const Snapshot& now, int s, Held& held) {
   const auto i = static_cast<std::size_t>(s);
-  const double margin = model.contact.margin;
   const double gap =
       test::brute_force_gap(test::raw_of(model.hand.mesh(s), now.gdp_pose[i]), raw, 3.0 * margin);
   ++held.segments;
@@ -204,12 +203,13 @@ void expect_sane_steps(const fs::path& file, TriangleMesh mesh, Held& held) {
   for (Vec3& v : mesh.vertices) v += way;
   model.object = ObjectModel(std::move(mesh));
   const std::vector<test::RawTriangle> raw = own_triangles(file, way);
+  const double margin = scene.parameters.contact.margin;
   const int stopped_before = held.stopped;
-  const auto state = std::make_unique<HapticState>(model);
+  const auto state = std::make_unique<HapticState>(model, scene.parameters);
   double largest_force = 0.0;
   int tick = 0;
-  for (double t = 0.0; t < motion.duration(); t += 1.0 / model.rate_hz, ++tick) {
-    (void)step(model, Sample{t, motion.at(t)}, *state);
+  for (double t = 0.0; t < motion.duration(); t += scene.parameters.period(), ++tick) {
+    (void)step(model, scene.parameters, Sample{t, motion.at(t)}, *state);
     const Snapshot& now = state->snapshot();
     ASSERT_TRUE(is_finite(now)) << "tick " << tick;
     for (const SegmentSnapshot& s : now.segment) largest_force = std::max(largest_force, s.force);
@@ -217,11 +217,11 @@ void expect_sane_steps(const fs::path& file, TriangleMesh mesh, Held& held) {
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const int s = segment_index(static_cast<int>(Digit::kIndex), k);
       ASSERT_GE(clearance(model.hand.mesh(s), now.gdp_pose[static_cast<std::size_t>(s)], model.object.mesh(),
-                          2.0 * model.contact.margin),
-                model.contact.margin - kTolerance)
+                          2.0 * margin),
+                margin - kTolerance)
           << segment_name(s) << " at tick " << tick;
       SCOPED_TRACE(tick);
-      if (!raw.empty()) hold_against(raw, model, now, s, held);
+      if (!raw.empty()) hold_against(raw, model, margin, now, s, held);
     }
   }
   EXPECT_GT(largest_force, 0.05) << "the finger is there to press";

@@ -27,7 +27,8 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
       ASSERT_FALSE(segment_[s].collides(snapshot.gdp_pose[s], object_))
           << segment_name(static_cast<int>(s)) << " at tick " << snapshot.tick;
       if (!distances) continue;
-      ASSERT_GE(segment_[s].distance(snapshot.gdp_pose[s], object_), model_.contact.margin - kOracleTolerance)
+      ASSERT_GE(segment_[s].distance(snapshot.gdp_pose[s], object_),
+                scene_.parameters.contact.margin - kOracleTolerance)
           << segment_name(static_cast<int>(s)) << " at tick " << snapshot.tick;
     }
     for (int d = 0; d < kDigits; ++d) {
@@ -46,24 +47,24 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> u(0.0, 1.0);
-    model_.limits.joint_speed = 1e4;
-    HapticState state(model_);
+    scene_.parameters.limits.joint_speed = 1e4;
+    HapticState state(model_, scene_.parameters);
     const HandParameters& hand = model_.hand.parameters();
     double time = 0.0;
     for (int n = 0; n < poses; ++n) {
-      Sample sample{time += 1.0 / model_.rate_hz, {}};
+      Sample sample{time += scene_.parameters.period(), {}};
       const double reach = n % 5 == 4 ? 0.0 : u(random);
       for (std::size_t j = 0; j < kJoints; ++j) {
         const double target = hand.min_angle[j] + u(random) * (hand.max_angle[j] - hand.min_angle[j]);
         sample.angle[j] = hand.open_angle[j] + reach * (target - hand.open_angle[j]);
       }
-      step(model_, sample, state);
+      step(model_, scene_.parameters, sample, state);
       ASSERT_NO_FATAL_FAILURE(expect_clear(state.snapshot(), n % 10 == 0));
     }
   }
 
   SceneDescription scene_ = load_scene(GetParam(), {{"objects.0.triangles", "1000"}});
-  HapticModel model_ = build_model(scene_);
+  const HapticModel model_ = build_model(scene_);
   test::FclMesh object_{model_.object.mesh()};
   std::vector<test::FclMesh> segment_;
   int contacts_ = 0;
@@ -71,11 +72,11 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
 
 TEST_P(OracleOnScene, NothingPenetratesOverTheWholeMotion) {
   const Motion motion = build_motion(scene_);
-  HapticState state(model_);
-  const int ticks = static_cast<int>(motion.duration() * model_.rate_hz);
+  HapticState state(model_, scene_.parameters);
+  const int ticks = static_cast<int>(motion.duration() * scene_.parameters.rate_hz);
   for (int n = 0; n <= ticks; ++n) {
-    const double t = n / model_.rate_hz;
-    step(model_, Sample{t, motion.at(t)}, state);
+    const double t = n / scene_.parameters.rate_hz;
+    step(model_, scene_.parameters, Sample{t, motion.at(t)}, state);
     ASSERT_NO_FATAL_FAILURE(expect_clear(state.snapshot(), n % 10 == 0));
   }
   EXPECT_GT(contacts_, 100) << "the scene is there to touch something";

@@ -28,7 +28,7 @@ JointArray shaking(double rest, int n) {
 }
 
 TEST(OscillationStep, IsReportedWithItsFrequencyAndSwing) {
-  const HapticModel model = floor_model(Stabiliser::kNone);
+  const test::Setup model = floor_model(Stabiliser::kNone);
   Runner hand(model);
   hand.move(index_angles(0.28), 60);
   hand.move(index_angles(0.28), 100);
@@ -53,9 +53,9 @@ TEST(OscillationStep, IsReportedWithItsFrequencyAndSwing) {
 }
 
 TEST(OscillationStep, HalvesTheLawsForceAndStaysThere) {
-  HapticModel model = floor_model(Stabiliser::kNone);
-  const HapticModel plain = model;
-  model.oscillation.reaction = OscillationReaction::kHalve;
+  test::Setup model = floor_model(Stabiliser::kNone);
+  const test::Setup plain = floor_model(Stabiliser::kNone);
+  model.parameters.oscillation.reaction = OscillationReaction::kHalve;
   Runner hand(model);
   Runner beside(plain);
   hand.move(index_angles(0.28), 60);
@@ -81,17 +81,17 @@ TEST(OscillationStep, HalvesTheLawsForceAndStaysThere) {
 }
 
 TEST(Measured, ChannelsReachTheSnapshotAndChangeNoCommand) {
-  const HapticModel model = floor_model(Stabiliser::kSmoothing);
-  HapticState with(model);
-  HapticState without(model);
+  const test::Setup model = floor_model(Stabiliser::kSmoothing);
+  HapticState with(model, model.parameters);
+  HapticState without(model, model.parameters);
   for (int n = 1; n <= 100; ++n) {
     Sample sample{.time_s = 0.005 * n, .angle = index_angles(0.005 * n)};
-    step(model, sample, without);
+    step(model, model.parameters, sample, without);
     sample.measured_torque[3] = 0.25 * n;
     sample.measured_torque[4] = kInfinity;
     sample.measured_force[kIndex] = 1.5;
     sample.measured_force[0] = -kInfinity;
-    step(model, sample, with);
+    step(model, model.parameters, sample, with);
     EXPECT_EQ(with.snapshot().torque, without.snapshot().torque);
     EXPECT_EQ(with.snapshot().status, without.snapshot().status);
   }
@@ -103,7 +103,7 @@ TEST(Measured, ChannelsReachTheSnapshotAndChangeNoCommand) {
   for (const double torque : without.snapshot().measured_torque) EXPECT_TRUE(std::isnan(torque));
   Sample late{.time_s = 0.0};
   late.measured_force[kIndex] = 1.5;
-  step(model, late, with);
+  step(model, model.parameters, late, with);
   EXPECT_TRUE(std::isnan(with.snapshot().measured_force[kIndex])) << "its time was refused";
 }
 

@@ -21,11 +21,11 @@ JointArray press_and_leave(int n) {
 }
 
 TEST(StepSnapshot, CountsItsTicksFromOne) {
-  const HapticModel model = test::floor_model(Stabiliser::kNone);
-  HapticState state(model);
+  const test::Setup model = test::floor_model(Stabiliser::kNone);
+  HapticState state(model, model.parameters);
   EXPECT_EQ(state.snapshot().tick, 0U);
   for (std::uint64_t n = 1; n <= 3; ++n) {
-    step(model, Sample{0.005 * static_cast<double>(n), JointArray{}}, state);
+    step(model, model.parameters, Sample{0.005 * static_cast<double>(n), JointArray{}}, state);
     EXPECT_EQ(state.snapshot().tick, n);
     EXPECT_EQ(state.snapshot().time_s, 0.005 * static_cast<double>(n));
   }
@@ -37,10 +37,10 @@ TEST(StepSnapshot, IsTheOpenHandBeforeTheFirstStep) {
   HandParameters parameters = test::simple_parameters();
   parameters.open_angle = test::index_angles(-0.2);
   const Pose X_WH = test::at(0.0, 0.0, 0.020);
-  const HapticModel model(
+  const test::Setup model(
       make_hand_model(parameters, Handedness::kRight, X_WH, 2250),
       ObjectModel(test::moved(make_box(Vec3(0.06, 0.02, 0.3), 12), test::at(0.0, -0.030, 0.0))));
-  const HapticState state(model);
+  const HapticState state(model, model.parameters);
   const Snapshot& now = state.snapshot();
   EXPECT_EQ(now.time_s, 0.0);
   EXPECT_EQ(now.status, Status::kOk);
@@ -61,7 +61,7 @@ TEST(StepSnapshot, IsTheOpenHandBeforeTheFirstStep) {
 }
 
 TEST(StepSnapshot, ASegmentThatTouchesNothingHasNeitherPointNorNormal) {
-  const HapticModel model = test::floor_model(Stabiliser::kNone);
+  const test::Setup model = test::floor_model(Stabiliser::kNone);
   test::Runner hand(model);
   for (const SegmentSnapshot& segment : hand.tick(JointArray{}).segment) {
     EXPECT_EQ(segment.point, Vec3::Zero());
@@ -72,9 +72,9 @@ TEST(StepSnapshot, ASegmentThatTouchesNothingHasNeitherPointNorNormal) {
 // Hooke's law and nothing behind it: the force is 500 N/m times the depth that is written down, which is
 // never negative, also in the ticks in which a contact is there and not deep.
 TEST(StepSnapshot, TheDepthIsTheForceOverTheStiffnessAndNeverNegative) {
-  HapticModel model = test::floor_model(Stabiliser::kNone);
+  test::Setup model = test::floor_model(Stabiliser::kNone);
   test::turn_limits_off(model);
-  model.force.stiffness = 500.0;
+  model.parameters.force.stiffness = 500.0;
   test::Runner hand(model);
   int deep = 0;
   int not_deep = 0;
@@ -92,7 +92,7 @@ TEST(StepSnapshot, TheDepthIsTheForceOverTheStiffnessAndNeverNegative) {
 // The floor's normal is +Y. The contact's point lies on the shown finger; the same material point of the
 // measured one is elsewhere, and how far in the floor's plane is what has slid.
 TEST(StepSnapshot, WhatHasSlidIsTheWayInThePlaneOfTheContact) {
-  const HapticModel model = test::floor_model(Stabiliser::kNone);
+  const test::Setup model = test::floor_model(Stabiliser::kNone);
   test::Runner hand(model);
   double largest = 0.0;
   int seen = 0;
@@ -113,8 +113,8 @@ TEST(StepSnapshot, WhatHasSlidIsTheWayInThePlaneOfTheContact) {
 // Under smoothing a force is still sent after the finger has left: at the same material point, which goes
 // with the shown finger.
 TEST(StepSnapshot, AForceThatDecaysActsAtItsMaterialPoint) {
-  HapticModel model = test::floor_model(Stabiliser::kSmoothing);
-  model.limits.joint_speed = 1e4;
+  test::Setup model = test::floor_model(Stabiliser::kSmoothing);
+  model.parameters.limits.joint_speed = 1e4;
   test::Runner hand(model);
   for (int n = 0; n <= 150; ++n) hand.tick(press_and_leave(n));
   const SegmentSnapshot before = hand.now().segment[kTip];

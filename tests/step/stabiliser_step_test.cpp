@@ -8,6 +8,7 @@
 #include <random>
 
 #include "phalanx/core/constants.h"
+#include "phalanx/force/local_wall.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/all_stabilisers.h"
@@ -23,7 +24,6 @@ using test::ball_model;
 using test::floor_model;
 using test::grasp;
 using test::index_angles;
-using test::joints_of;
 using test::kIndex;
 using test::moved;
 using test::Runner;
@@ -32,7 +32,7 @@ constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 TEST(StabiliserStep, EveryMethodSendsNothingBeforeAndAfterAGrasp) {
   for (const Stabiliser method : test::kAllStabilisers) {
-    const HapticModel model = ball_model(method);
+    const test::Setup model = ball_model(method);
     Runner hand(model);
     double largest = 0.0;
     for (int n = 0; n <= 300; ++n) {
@@ -45,14 +45,21 @@ TEST(StabiliserStep, EveryMethodSendsNothingBeforeAndAfterAGrasp) {
   }
 }
 
-// "none", and smoothing that is not enabled, are the same command to the bit.
-TEST(StabiliserStep, SmoothingThatIsNotEnabledIsNone) {
-  const HapticModel none = ball_model(Stabiliser::kNone);
-  HapticModel off = ball_model(Stabiliser::kSmoothing);
-  off.smoothing.enabled = false;
-  Runner a(none);
-  Runner b(off);
-  for (int n = 0; n <= 300; ++n) EXPECT_EQ(a.tick(grasp(n)).torque, b.tick(grasp(n)).torque);
+// At 10 kN/s, 50 N a step, no force is bounded: the commands are those of "none", up to rounding.
+TEST(StabiliserStep, ABoundThatIsNeverReachedSendsWhatNoneSends) {
+  const test::Setup none = ball_model(Stabiliser::kNone);
+  for (const Stabiliser method : {Stabiliser::kSmoothing, Stabiliser::kRiseOnly}) {
+    test::Setup wide = ball_model(method);
+    wide.parameters.stabiliser.min_rate = -1e4;
+    wide.parameters.stabiliser.max_rate = 1e4;
+    Runner a(none);
+    Runner b(wide);
+    for (int n = 0; n <= 300; ++n) {
+      const JointArray expected = a.tick(grasp(n)).torque;
+      const JointArray& torque = b.tick(grasp(n)).torque;
+      for (std::size_t j = 0; j < torque.size(); ++j) ASSERT_NEAR(torque[j], expected[j], 1e-12) << n;
+    }
+  }
 }
 
 // Whatever is measured, every method stays within the caps, and the walls do whatever the controller asks of
@@ -63,12 +70,12 @@ TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
     for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kHuntCrossley}) {
       std::mt19937_64 random(13);
       std::uniform_real_distribution<double> u(-2.0, 3.0);
-      HapticModel model = ball_model(method);
-      model.force.law = law;
-      model.force.stiffness = 1e4;
-      model.stabiliser.turn_rate = 20.0;
-      model.oscillation.reaction = OscillationReaction::kHalve;
-      HapticState state(model);
+      test::Setup model = ball_model(method);
+      model.parameters.force.law = law;
+      model.parameters.force.stiffness = 1e4;
+      model.parameters.stabiliser.turn_rate = 20.0;
+      model.parameters.oscillation.reaction = OscillationReaction::kHalve;
+      HapticState state(model, model.parameters);
       JointArray last{};
       int pushed = 0;
       int walls = 0;
@@ -78,20 +85,20 @@ TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
           angle = random() % 64 == 0 ? wild[random() % wild.size()] : u(random);
         if (random() % 10 == 0) sample.time_s = wild[random() % wild.size()];
         for (double& torque : sample.measured_torque) torque = wild[random() % wild.size()];
-        step(model, sample, state);
+        step(model, model.parameters, sample, state);
         const Snapshot& now = state.snapshot();
         for (int d = 0; d < kDigits; ++d) {
           Vec3 sum = Vec3::Zero();
           Vec3 wall_sum = Vec3::Zero();
-          const DigitJoints q_ref = joints_of(now.hcp_angle, d);
-          DigitJoints q{};
+          const DigitAngles q_ref = digit_angles(now.hcp_angle, d);
+          DigitAngles q{};
           for (double& angle : q) angle = random() % 8 == 0 ? wild[random() % wild.size()] : u(random);
           for (int k = 0; k < kSegmentsPerDigit; ++k) {
             const std::size_t s = static_cast<std::size_t>(segment_index(d, k));
             const SegmentSnapshot& segment = now.segment[s];
             ASSERT_TRUE(std::isfinite(segment.force)) << "method " << static_cast<int>(method) << " seed 13";
             ASSERT_GE(segment.force, 0.0);
-            ASSERT_LE(segment.force, model.limits.fingertip_force);
+            ASSERT_LE(segment.force, model.parameters.limits.fingertip_force);
             ASSERT_TRUE(segment.normal.allFinite());
             sum += segment.force * segment.normal;
             pushed += segment.force > 0.0 ? 1 : 0;
@@ -100,13 +107,14 @@ TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
             wall_sum += force * segment.normal;
             walls += now.wall[s].active ? 1 : 0;
           }
-          ASSERT_LE(sum.norm(), model.limits.fingertip_force + 1e-12);
-          ASSERT_LE(wall_sum.norm(), model.limits.fingertip_force + 1e-9) << "seed 13 tick " << n;
+          ASSERT_LE(sum.norm(), model.parameters.limits.fingertip_force + 1e-12);
+          ASSERT_LE(wall_sum.norm(), model.parameters.limits.fingertip_force + 1e-9) << "seed 13 tick " << n;
         }
         for (std::size_t j = 0; j < kJoints; ++j) {
           ASSERT_TRUE(std::isfinite(now.torque[j]));
-          ASSERT_LE(std::abs(now.torque[j]), model.limits.joint_torque);
-          ASSERT_LE(std::abs(now.torque[j] - last[j]), model.limits.torque_rate / model.rate_hz + 1e-15);
+          ASSERT_LE(std::abs(now.torque[j]), model.parameters.limits.joint_torque);
+          ASSERT_LE(std::abs(now.torque[j] - last[j]),
+                    model.parameters.limits.torque_rate / model.parameters.rate_hz + 1e-15);
           ASSERT_FALSE(std::isinf(now.measured_torque[j]));
         }
         ASSERT_GE(now.stiffness_factor, 1.0 / 1024.0);
@@ -121,11 +129,12 @@ TEST(StabiliserStep, WhateverArrivesEveryMethodStaysWithinItsLimits) {
 
 TEST(StabiliserStep, AllocatesNothing) {
   for (const Stabiliser method : test::kAllStabilisers) {
-    HapticModel model = ball_model(method);
-    model.oscillation.reaction = OscillationReaction::kHalve;
-    HapticState state(model);
+    test::Setup model = ball_model(method);
+    model.parameters.oscillation.reaction = OscillationReaction::kHalve;
+    HapticState state(model, model.parameters);
     const std::size_t before = test::allocations();
-    for (int n = 0; n <= 300; ++n) step(model, Sample{.time_s = 0.005 * (n + 1), .angle = grasp(n)}, state);
+    for (int n = 0; n <= 300; ++n)
+      step(model, model.parameters, Sample{.time_s = 0.005 * (n + 1), .angle = grasp(n)}, state);
     EXPECT_EQ(test::allocations() - before, 0U) << static_cast<int>(method);
   }
 }
@@ -133,8 +142,8 @@ TEST(StabiliserStep, AllocatesNothing) {
 /// A step of the force stage alone, for one contact of the index fingertip at 2 mm whose normal is `normal`.
 class LoneContact {
  public:
-  explicit LoneContact(const HapticModel& model)
-      : model_(model), contacts_({model.hand, model.trees, model.object, model.contact}) {
+  explicit LoneContact(const test::Setup& model)
+      : model_(model), contacts_({model.hand, model.trees, model.object, model.parameters.contact}) {
     model.hand.poses(JointArray{}, hcp_);
     contacts_.poses = hcp_;
   }
@@ -147,14 +156,12 @@ class LoneContact {
     record.force_normal = normal;
     record.p_S = Vec3::Zero();
     record.p_hcp = hcp_.digit[kIndex].segment[2].p;
-    compute_command({model_.hand, model_.force, model_.smoothing, model_.limits, 0.005, model_.stabiliser,
-                     model_.oscillation},
-                    contacts_, hcp_, false, state_);
+    compute_command(model_.parameters, contacts_, hcp_, false, state_);
     return state_.segment[tip];
   }
 
  private:
-  const HapticModel& model_;
+  const test::Setup& model_;
   GdpState contacts_;
   HandPoses hcp_;
   ForceState state_;
@@ -163,7 +170,7 @@ class LoneContact {
 // A normal that hops from +y to +x: 90 deg/s are 0.45 degrees a step, so that it is there after 200 steps; 2
 // mm into 500 N/m is 1 N all the while. The first normal is taken at once, and without the method every one.
 TEST(StabiliserStep, TheDirectionOfAForceTurnsNoFasterThanItsBound) {
-  const HapticModel model = floor_model(Stabiliser::kDirection);
+  const test::Setup model = floor_model(Stabiliser::kDirection);
   LoneContact contact(model);
   EXPECT_EQ(contact.press(Vec3::UnitY()).normal, Vec3::UnitY());
   for (int n = 1; n <= 199; ++n) {
@@ -172,7 +179,7 @@ TEST(StabiliserStep, TheDirectionOfAForceTurnsNoFasterThanItsBound) {
     ASSERT_DOUBLE_EQ(force.sent, 1.0);
   }
   EXPECT_NEAR((contact.press(Vec3::UnitX()).normal - Vec3::UnitX()).norm(), 0.0, 1e-9);
-  const HapticModel plain = floor_model(Stabiliser::kNone);
+  const test::Setup plain = floor_model(Stabiliser::kNone);
   LoneContact free(plain);
   free.press(Vec3::UnitY());
   EXPECT_EQ(free.press(Vec3::UnitX()).normal, Vec3::UnitX());
@@ -180,8 +187,8 @@ TEST(StabiliserStep, TheDirectionOfAForceTurnsNoFasterThanItsBound) {
 
 // A scene may turn it off.
 TEST(HapticState, TakesAnInfiniteJointSpeed) {
-  HapticModel model = floor_model(Stabiliser::kSmoothing);
-  model.limits.joint_speed = kInfinity;
+  test::Setup model = floor_model(Stabiliser::kSmoothing);
+  model.parameters.limits.joint_speed = kInfinity;
   Runner hand(model);
   hand.tick(index_angles(-0.4));
   EXPECT_EQ(hand.tick(index_angles(0.1)).hcp_angle, index_angles(0.1));

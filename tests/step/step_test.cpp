@@ -26,18 +26,18 @@ using test::Runner;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A slab 20 mm below the straight index finger.
-HapticModel floor_model() {
-  return HapticModel(test::simple_hand(),
+test::Setup floor_model() {
+  return test::Setup(test::simple_hand(),
                      ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
 }
 /// A ball under the proximal phalanx, which the whole finger can close around.
-HapticModel ball_model() {
-  return HapticModel(test::simple_hand(),
+test::Setup ball_model() {
+  return test::Setup(test::simple_hand(),
                      ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
 }
 
 TEST(Step, FreeMotionGivesNoTorqueAnywhere) {
-  const HapticModel model = ball_model();
+  const test::Setup model = ball_model();
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(-0.4, 0.3, 0.2), 20);
   for (const double torque : s.torque) EXPECT_EQ(torque, 0.0);
@@ -45,7 +45,7 @@ TEST(Step, FreeMotionGivesNoTorqueAnywhere) {
 }
 
 TEST(Step, TorquesAreTheVirtualWorkOfTheForces) {
-  HapticModel model = ball_model();
+  test::Setup model = ball_model();
   test::turn_limits_off(model);
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(0.8, 1.3, 1.5, 0.05), 100);
@@ -64,11 +64,11 @@ TEST(Step, TorquesAreTheVirtualWorkOfTheForces) {
 }
 
 TEST(Step, ALeftHandFeelsTheMirrorImageOfARightHand) {
-  HapticModel right = ball_model();
+  test::Setup right = ball_model();
   TriangleMesh mirrored = right.object.mesh();
   for (Vec3& v : mirrored.vertices) v.x() = -v.x();
   for (Triangle& t : mirrored.triangles) std::swap(t[1], t[2]);
-  HapticModel left(test::simple_hand(Handedness::kLeft), ObjectModel(mirrored));
+  test::Setup left(test::simple_hand(Handedness::kLeft), ObjectModel(mirrored));
   Runner r(right);
   Runner l(left);
   for (int n = 0; n <= 60; ++n) {
@@ -82,8 +82,8 @@ TEST(Step, ALeftHandFeelsTheMirrorImageOfARightHand) {
 }
 
 TEST(Step, LimitsAreOnByDefault) {
-  HapticModel model = floor_model();
-  model.force.stiffness = 5000.0;
+  test::Setup model = floor_model();
+  model.parameters.force.stiffness = 5000.0;
   Runner hand(model);
   double last = 0.0;
   bool limited = false;
@@ -101,8 +101,8 @@ TEST(Step, LimitsAreOnByDefault) {
 }
 
 TEST(Step, TheCapHoldsForTheVectorSumOfADigit) {
-  HapticModel model = ball_model();
-  model.force.stiffness = 3000.0;
+  test::Setup model = ball_model();
+  model.parameters.force.stiffness = 3000.0;
   Runner hand(model);
   double largest = 0.0;
   int contacts = 0;
@@ -122,11 +122,11 @@ TEST(Step, TheCapHoldsForTheVectorSumOfADigit) {
 }
 
 TEST(Step, TheTorqueLimitAndItsRateActAlone) {
-  HapticModel model = floor_model();
-  model.force.stiffness = 5000.0;
-  model.smoothing.enabled = false;
-  model.limits.fingertip_force_enabled = false;
-  model.limits.joint_torque = 0.3;
+  test::Setup model = floor_model();
+  model.parameters.force.stiffness = 5000.0;
+  model.parameters.stabiliser.method = Stabiliser::kNone;
+  model.parameters.limits.fingertip_force_enabled = false;
+  model.parameters.limits.joint_torque = 0.3;
   Runner hand(model);
   double last = 0.0;
   int rate_limited = 0;
@@ -145,8 +145,9 @@ TEST(Step, TheTorqueLimitAndItsRateActAlone) {
 TEST(Step, SmoothingSurvivesAContactThatHops) {
   // Press with the fingertip, then curl so that another point of the same segment touches: the force sent
   // never jumps.
-  HapticModel model = floor_model();
-  model.limits.joint_speed = 1e4;
+  test::Setup model = floor_model();
+  model.parameters.stabiliser.method = Stabiliser::kSmoothing;
+  model.parameters.limits.joint_speed = 1e4;
   Runner hand(model);
   hand.move(index_angles(0.5), 60);
   hand.move(index_angles(0.5), 60);
@@ -165,9 +166,10 @@ TEST(Step, SmoothingSurvivesAContactThatHops) {
 }
 
 TEST(Step, WithoutContactTheForceDecaysByTheLowerBoundAtItsLastPoint) {
-  HapticModel model = floor_model();
-  model.smoothing = {.enabled = true, .min_rate = -10.0, .max_rate = 40.0};  // 0.05 N down, 0.2 N up a step
-  model.limits.joint_speed = 1e4;
+  test::Setup model = floor_model();
+  // 0.05 N down, 0.2 N up a step
+  model.parameters.stabiliser = {.method = Stabiliser::kSmoothing, .min_rate = -10.0, .max_rate = 40.0};
+  model.parameters.limits.joint_speed = 1e4;
   Runner hand(model);
   hand.move(index_angles(0.6), 60);
   const double force = index_segment(hand.move(index_angles(0.6), 60), 2).force;
@@ -192,7 +194,7 @@ TEST(Step, WithoutContactTheForceDecaysByTheLowerBoundAtItsLastPoint) {
 }
 
 TEST(Step, ANanOrInfiniteAngleHoldsItsLastGoodValue) {
-  const HapticModel model = floor_model();
+  const test::Setup model = floor_model();
   Runner hand(model);
   hand.move(index_angles(0.2), 20);
   JointArray bad = index_angles(0.2);
@@ -204,7 +206,7 @@ TEST(Step, ANanOrInfiniteAngleHoldsItsLastGoodValue) {
 }
 
 TEST(Step, AJumpIsSlewedAtTheFastestThatAJointMoves) {
-  const HapticModel model = floor_model();  // 40 rad/s at 200 Hz: 0.2 rad a tick
+  const test::Setup model = floor_model();  // 40 rad/s at 200 Hz: 0.2 rad a tick
   Runner hand(model);
   hand.tick(index_angles(0.0, 0.1));
   const Snapshot& s = hand.tick(index_angles(0.0, 1.4));
@@ -215,21 +217,21 @@ TEST(Step, AJumpIsSlewedAtTheFastestThatAJointMoves) {
 // 10 rad/s: 0.05 rad in a period of 5 ms, 0.2 in 20 ms, and 0.5 after any gap, for the slew counts 50 ms at
 // most.
 TEST(Step, AJumpAfterAGapIsSlewedByTheGapsLengthUpToFiftyMilliseconds) {
-  HapticModel model = floor_model();
-  model.limits.joint_speed = 10.0;
+  test::Setup model = floor_model();
+  model.parameters.limits.joint_speed = 10.0;
   const std::pair<double, double> cases[] = {
       {0.001, 0.05}, {0.005, 0.05}, {0.02, 0.2}, {0.05, 0.5}, {3.0, 0.5}};
   for (const auto& [gap, allowed] : cases) {
-    HapticState state(model);
-    step(model, Sample{1.0, index_angles(0.0)}, state);
-    const Status status = step(model, Sample{1.0 + gap, index_angles(0.0, 1.4)}, state);
+    HapticState state(model, model.parameters);
+    step(model, model.parameters, Sample{1.0, index_angles(0.0)}, state);
+    const Status status = step(model, model.parameters, Sample{1.0 + gap, index_angles(0.0, 1.4)}, state);
     EXPECT_TRUE(has(status, Status::kSampleJump)) << gap;
     EXPECT_NEAR(state.snapshot().hcp_angle[joint_index(1, 2)], allowed, 1e-12) << gap;
   }
 }
 
 TEST(Step, AnAngleOutsideTheAnatomyIsClamped) {
-  const HapticModel model = floor_model();
+  const test::Setup model = floor_model();
   Runner hand(model);
   const Snapshot& s = hand.move(index_angles(-3.0), 50);
   EXPECT_TRUE(has(s.status, Status::kSampleOutOfRange));
@@ -237,11 +239,11 @@ TEST(Step, AnAngleOutsideTheAnatomyIsClamped) {
 }
 
 TEST(Step, TimeThatDoesNotIncreaseIsReportedAndTheSampleNotUsed) {
-  const HapticModel model = floor_model();
-  HapticState state(model);
-  step(model, Sample{1.0, index_angles(0.1)}, state);
+  const test::Setup model = floor_model();
+  HapticState state(model, model.parameters);
+  step(model, model.parameters, Sample{1.0, index_angles(0.1)}, state);
   for (const double time : {1.0, 0.5, kNan, -kInfinity}) {
-    const Status status = step(model, Sample{time, index_angles(0.15)}, state);
+    const Status status = step(model, model.parameters, Sample{time, index_angles(0.15)}, state);
     EXPECT_TRUE(has(status, Status::kTimeNotIncreasing));
     EXPECT_EQ(state.snapshot().hcp_angle, index_angles(0.1));
     EXPECT_EQ(state.snapshot().time_s, 1.0) << "of the last sample that was used";
@@ -249,29 +251,32 @@ TEST(Step, TimeThatDoesNotIncreaseIsReportedAndTheSampleNotUsed) {
 }
 
 TEST(Step, AClockThatRestartsIsFollowedAgainAfterFiveSamples) {
-  const HapticModel model = floor_model();
-  HapticState state(model);
-  step(model, Sample{1e9, index_angles(0.0)}, state);  // one stamp far in the future
+  const test::Setup model = floor_model();
+  HapticState state(model, model.parameters);
+  step(model, model.parameters, Sample{1e9, index_angles(0.0)}, state);  // one stamp far in the future
   for (int n = 1; n <= 4; ++n)
-    EXPECT_TRUE(has(step(model, Sample{0.005 * n, index_angles(0.1)}, state), Status::kTimeNotIncreasing));
+    EXPECT_TRUE(has(step(model, model.parameters, Sample{0.005 * n, index_angles(0.1)}, state),
+                    Status::kTimeNotIncreasing));
   for (int n = 5; n <= 10; ++n)
-    EXPECT_FALSE(has(step(model, Sample{0.005 * n, index_angles(0.1)}, state), Status::kTimeNotIncreasing));
+    EXPECT_FALSE(has(step(model, model.parameters, Sample{0.005 * n, index_angles(0.1)}, state),
+                     Status::kTimeNotIncreasing));
   EXPECT_EQ(state.snapshot().hcp_angle, index_angles(0.1));
 }
 
 TEST(Step, WithoutAGoodSampleForFiftyMillisecondsForcesDecayToZero) {
-  const HapticModel model = floor_model();
+  const test::Setup model = floor_model();
   for (const bool bad_clock : {true, false}) {
-    HapticState state(model);
+    HapticState state(model, model.parameters);
     double time = 0.0;
     for (int n = 0; n <= 120; ++n)
-      step(model, Sample{time += 0.005, index_angles(std::min(0.5, 0.01 * n))}, state);
+      step(model, model.parameters, Sample{time += 0.005, index_angles(std::min(0.5, 0.01 * n))}, state);
     ASSERT_GT(index_segment(state.snapshot(), 2).force, 2.0);
     const double before = index_segment(state.snapshot(), 2).force;
     for (int n = 1; n <= 200; ++n) {
       JointArray angle = index_angles(0.5);
       if (!bad_clock) angle[joint_index(1, 3)] = kNan;
-      const Status status = step(model, Sample{bad_clock ? 0.0 : time += 0.005, angle}, state);
+      const Status status =
+          step(model, model.parameters, Sample{bad_clock ? 0.0 : time += 0.005, angle}, state);
       EXPECT_EQ(has(status, Status::kSampleStale), n > 10) << "tick " << n;
       if (n > 10) continue;
       EXPECT_EQ(index_segment(state.snapshot(), 2).force, before);
@@ -282,17 +287,17 @@ TEST(Step, WithoutAGoodSampleForFiftyMillisecondsForcesDecayToZero) {
 }
 
 TEST(Step, ABadFirstSampleDoesNotHideThatADigitStartsInside) {
-  const HapticModel model = floor_model();
+  const test::Setup model = floor_model();
   JointArray one_nan = index_angles(0.5);
   one_nan[joint_index(1, 3)] = kNan;
   JointArray all_nan;
   all_nan.fill(kNan);
   for (const Sample& first :
        {Sample{0.005, all_nan}, Sample{kNan, index_angles(0.5)}, Sample{0.005, one_nan}}) {
-    HapticState state(model);
-    step(model, first, state);
+    HapticState state(model, model.parameters);
+    step(model, model.parameters, first, state);
     for (int n = 2; n < 50; ++n) {
-      const Status status = step(model, Sample{0.005 * n, index_angles(0.5)}, state);
+      const Status status = step(model, model.parameters, Sample{0.005 * n, index_angles(0.5)}, state);
       EXPECT_TRUE(has(status, Status::kStartInside)) << n;
       EXPECT_EQ(index_segment(state.snapshot(), 2).force, 0.0) << n;
     }
@@ -302,14 +307,14 @@ TEST(Step, ABadFirstSampleDoesNotHideThatADigitStartsInside) {
 TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> u(-2.0, 3.0);
-  HapticModel model = ball_model();
-  model.force.stiffness = 1e5;
+  test::Setup model = ball_model();
+  model.parameters.force.stiffness = 1e5;
   const std::array<double, 6> wild = {kNan, kInfinity, -kInfinity, 1e300, -1e300, 1e-310};
   const std::array<double, 5> wild_times = {kNan, kInfinity, -kInfinity, -1.0, 0.0};
   for (const ForceLaw law : {ForceLaw::kHooke, ForceLaw::kKelvinVoigt, ForceLaw::kHuntCrossley,
                              ForceLaw::kDuffing, ForceLaw::kLinearThenCubic}) {
-    model.force.law = law;
-    HapticState state(model);
+    model.parameters.force.law = law;
+    HapticState state(model, model.parameters);
     JointArray last{};
     int used = 0;
     int pushed = 0;
@@ -318,7 +323,7 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
       for (double& angle : sample.angle)
         angle = random() % 64 == 0 ? wild[random() % wild.size()] : u(random);
       if (random() % 10 == 0) sample.time_s = wild_times[random() % wild_times.size()];
-      const Status status = step(model, sample, state);
+      const Status status = step(model, model.parameters, sample, state);
       used += has(status, Status::kTimeNotIncreasing) ? 0 : 1;
       for (int d = 0; d < kDigits; ++d) {
         Vec3 sum = Vec3::Zero();
@@ -327,17 +332,18 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
               state.snapshot().segment[static_cast<std::size_t>(segment_index(d, k))];
           ASSERT_TRUE(std::isfinite(segment.force)) << "seed 13 tick " << n;
           ASSERT_GE(segment.force, 0.0);
-          ASSERT_LE(segment.force, model.limits.fingertip_force);
+          ASSERT_LE(segment.force, model.parameters.limits.fingertip_force);
           sum += segment.force * segment.normal;
           pushed += segment.force > 0.0 ? 1 : 0;
         }
-        ASSERT_LE(sum.norm(), model.limits.fingertip_force + 1e-12) << "seed 13 tick " << n;
+        ASSERT_LE(sum.norm(), model.parameters.limits.fingertip_force + 1e-12) << "seed 13 tick " << n;
       }
       for (std::size_t j = 0; j < kJoints; ++j) {
         const double torque = state.snapshot().torque[j];
         ASSERT_TRUE(std::isfinite(torque)) << "seed 13 tick " << n;
-        ASSERT_LE(std::abs(torque), model.limits.joint_torque);
-        ASSERT_LE(std::abs(torque - last[j]), model.limits.torque_rate / model.rate_hz + 1e-15);
+        ASSERT_LE(std::abs(torque), model.parameters.limits.joint_torque);
+        ASSERT_LE(std::abs(torque - last[j]),
+                  model.parameters.limits.torque_rate / model.parameters.rate_hz + 1e-15);
         ASSERT_TRUE(std::isfinite(state.snapshot().gdp_angle[j]));
       }
       last = state.snapshot().torque;
@@ -349,16 +355,16 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
 
 TEST(Step, AllocatesNothing) {
   for (const GdpMethod method : {GdpMethod::kContinuous, GdpMethod::kTrajectory}) {
-    HapticModel model = ball_model();
-    model.contact.method = method;
-    HapticState state(model);
+    test::Setup model = ball_model();
+    model.parameters.contact.method = method;
+    HapticState state(model, model.parameters);
     double time = 0.0;
     std::size_t contacts = 0;
     const std::size_t before = test::allocations();
     for (int n = 0; n <= 400; ++n) {
       const double close = n <= 200 ? n / 200.0 : (400 - n) / 200.0;
-      step(model, Sample{time += 0.005, index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close)},
-           state);
+      step(model, model.parameters,
+           Sample{time += 0.005, index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close)}, state);
       contacts += index_segment(state.snapshot(), 0).contact ? 1U : 0U;
     }
     EXPECT_EQ(test::allocations() - before, 0U);
@@ -370,7 +376,7 @@ TEST(Step, AllocatesNothing) {
 }
 
 TEST(Step, SameSamplesSameBits) {
-  const HapticModel model = ball_model();
+  const test::Setup model = ball_model();
   Runner a(model);
   Runner b(model);
   for (int n = 0; n < 100; ++n) {

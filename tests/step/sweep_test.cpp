@@ -102,7 +102,7 @@ std::optional<Ideal> ideal_of(const Press& press, const Rolling& rolling, const 
 Felt sweep(const Sweep& s, const ObjectModel& object, int hand_triangles = 2250) {
   LoneFinger finger(object, hand_triangles);
   LoneFinger contact_normal(object, hand_triangles);
-  contact_normal.model().contact.normal = ForceNormal::kContact;
+  contact_normal.model().parameters.contact.normal = ForceNormal::kContact;
   const std::array<Rolling, 3> rolling{Rolling(finger.model().hand, 0), Rolling(finger.model().hand, 1),
                                        Rolling(finger.model().hand, 2)};
   const SurfaceBound surface(s.mesh, kCrease);
@@ -313,7 +313,7 @@ TEST(Sweep, OverAnImportedDirtyTeapotJumpsNoMoreThanTheCleanOnesFacetsTurn) {
        {unsigned{kSoup | kFlipped | kUnreferenced}, unsigned{kInsideOut | kDuplicated | kDegenerate},
         unsigned{kTJunctions | kFlipped}, 255U - kHoles - kInsideOut}) {
     test::write_dirty(clean, kinds, 7, folder / "teapot.obj");
-    const ObjectModel object(import_mesh(folder / "teapot.obj", 0.0));
+    const ObjectModel object(import_and_check(folder / "teapot.obj").mesh);
     const Felt felt =
         sweep(over("dirty teapot, side", clean, Vec3(-0.02, -0.07, 0.0), kX, kY, -kZ, 300, 0.055), object);
     EXPECT_EQ(felt.compared, share(300) - 1) << "kinds " << kinds;
@@ -387,7 +387,7 @@ class SweepOverFile : public ::testing::TestWithParam<FileSweep> {};
 TEST_P(SweepOverFile, JumpsNoMoreThanItsFacetsTurn) {
   const std::filesystem::path file = std::filesystem::path("/usr/share/assimp/models") / GetParam().file;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: install assimp-testmodels";
-  const TriangleMesh mesh = import_mesh(file, 0.09);
+  const TriangleMesh mesh = import_and_check(file, {.size = 0.09}).mesh;
   Vec3 low = mesh.vertices.front();
   Vec3 high = low;
   for (const Vec3& v : mesh.vertices) {

@@ -33,7 +33,7 @@ TEST(Simulate, GivesEveryTickInOrderAndCountsThem) {
   const Motion motion = build_motion(scene);
   std::vector<double> times;
   std::uint64_t done = 0;
-  const StepTimes step_us = simulate(*model, motion, 50,
+  const StepTimes step_us = simulate(*model, scene.parameters, motion, 50,
                                      {.tick =
                                           [&](const Snapshot& snapshot) {
                                             EXPECT_EQ(snapshot.hcp_angle, motion.at(snapshot.time_s));

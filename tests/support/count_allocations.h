@@ -29,4 +29,16 @@ inline constexpr bool kCountsNew = true;
 /// Those of the calling thread alone.
 [[nodiscard]] std::size_t allocations_of_this_thread() noexcept;
 
+/// While it lives, one allocation of its thread fails once: malloc() and its like give nullptr, operator new
+/// throws std::bad_alloc. One at a time in a thread. In a program where kCountsNew is false, operator new
+/// does not fail.
+class FailingAllocation {
+ public:
+  /// @param number  which one fails, from 1
+  explicit FailingAllocation(std::size_t number) noexcept;
+  FailingAllocation(const FailingAllocation&) = delete;
+  FailingAllocation& operator=(const FailingAllocation&) = delete;
+  ~FailingAllocation();
+};
+
 }  // namespace phalanx::test

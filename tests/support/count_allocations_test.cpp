@@ -68,5 +68,31 @@ TEST(CountAllocations, TellsThreadsApart) {
   EXPECT_GE(allocations() - all_before, 1U);
 }
 
+TEST(FailingAllocation, FailsOnce) {
+  const FailingAllocation failing(2);
+  void* const first = std::malloc(8);
+  void* const second = std::malloc(8);
+  void* const third = std::malloc(8);
+  EXPECT_NE(first, nullptr);
+  EXPECT_EQ(second, nullptr);
+  EXPECT_NE(third, nullptr);
+  std::free(first);
+  std::free(third);
+}
+
+TEST(FailingAllocation, MakesNewThrow) {
+  if (!kCountsNew) GTEST_SKIP() << "ThreadSanitizer's operator new does not fail";
+  bool thrown = false;
+  {
+    const FailingAllocation failing(1);
+    try {
+      seen = ::operator new(8);
+    } catch (const std::bad_alloc&) {
+      thrown = true;
+    }
+  }
+  EXPECT_TRUE(thrown);
+}
+
 }  // namespace
 }  // namespace phalanx::test

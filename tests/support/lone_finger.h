@@ -39,11 +39,11 @@ class LoneFinger {
       : meshes_(make_capsule_meshes(simple_parameters(), Handedness::kRight, hand_triangles)),
         model_(hand_at(Pose{}, 0.0), std::move(object)) {
     turn_limits_off(model_);
-    model_.force.stiffness = 1000.0;
-    model_.rate_hz = 1000.0;
+    model_.parameters.force.stiffness = 1000.0;
+    model_.parameters.rate_hz = 1000.0;
   }
 
-  [[nodiscard]] HapticModel& model() { return model_; }
+  [[nodiscard]] Setup& model() { return model_; }
 
   /// Distance of the fingertip's centre from the first joint [m].
   [[nodiscard]] static double lever() { return std::hypot(along_bone(), below_bone()); }
@@ -134,7 +134,7 @@ class LoneFinger {
   }
 
   SegmentMeshes meshes_;
-  HapticModel model_;
+  Setup model_;
 };
 
 }  // namespace phalanx::test

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <numbers>
+#include <utility>
 
 #include "phalanx/hand/hand_model.h"
 #include "phalanx/step/haptic_step.h"
@@ -49,13 +50,22 @@ inline HandModel simple_hand(Handedness side = Handedness::kRight, const Pose& X
   return make_hand_model(simple_parameters(), side, X_WH, triangles);
 }
 
-/// Every limiter and the smoothing off, so that what is seen is the law itself.
-inline void turn_limits_off(HapticModel& model) {
-  model.smoothing.enabled = false;
-  model.limits.fingertip_force_enabled = false;
-  model.limits.joint_torque_enabled = false;
-  model.limits.torque_rate_enabled = false;
-  model.limits.joint_speed = 1e4;
+/// A model with the parameters of its steps: most tests set up both together.
+struct Setup : HapticModel {
+  using HapticModel::HapticModel;
+  Setup(HapticModel model, const HapticParameters& of_steps)
+      : HapticModel(std::move(model)), parameters(of_steps) {}
+
+  HapticParameters parameters;
+};
+
+/// Turns every limiter and the stabiliser off, so that the law itself is seen.
+inline void turn_limits_off(Setup& model) {
+  model.parameters.stabiliser.method = Stabiliser::kNone;
+  model.parameters.limits.fingertip_force_enabled = false;
+  model.parameters.limits.joint_torque_enabled = false;
+  model.parameters.limits.torque_rate_enabled = false;
+  model.parameters.limits.joint_speed = 1e4;
 }
 
 inline Pose at(double x, double y, double z) { return Pose{Mat3::Identity(), Vec3(x, y, z)}; }
@@ -79,11 +89,11 @@ inline JointArray index_angles(double mcp, double pip = 0.0, double dip = 0.0, d
 /// Feeds samples one tick apart.
 class Runner {
  public:
-  explicit Runner(const HapticModel& model) : model_(model), state_(model) {}
+  explicit Runner(const Setup& model) : model_(model), state_(model, model.parameters) {}
 
   const Snapshot& tick(const JointArray& angle) {
-    time_ += 1.0 / model_.rate_hz;
-    step(model_, Sample{time_, angle}, state_);
+    time_ += 1.0 / model_.parameters.rate_hz;
+    step(model_, model_.parameters, Sample{time_, angle}, state_);
     return state_.snapshot();
   }
   /// `ticks` equal steps from the last angles to `angle`.
@@ -100,7 +110,7 @@ class Runner {
   [[nodiscard]] const Snapshot& now() const { return state_.snapshot(); }
 
  private:
-  const HapticModel& model_;
+  const Setup& model_;
   HapticState state_;
   double time_ = 0.0;
 };

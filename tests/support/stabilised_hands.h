@@ -2,7 +2,6 @@
 // Simple hands at a floor and at a ball, under a stabiliser.
 #pragma once
 
-#include "phalanx/force/local_wall.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
@@ -10,17 +9,16 @@
 namespace phalanx::test {
 
 /// A slab 20 mm below the straight index finger.
-inline HapticModel floor_model(Stabiliser method) {
-  HapticModel model(simple_hand(),
-                    ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
-  model.stabiliser.method = method;
+inline Setup floor_model(Stabiliser method) {
+  Setup model(simple_hand(), ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
+  model.parameters.stabiliser.method = method;
   return model;
 }
 
 /// A ball under the proximal phalanx, which the whole finger can close around.
-inline HapticModel ball_model(Stabiliser method) {
-  HapticModel model(simple_hand(), ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
-  model.stabiliser.method = method;
+inline Setup ball_model(Stabiliser method) {
+  Setup model(simple_hand(), ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
+  model.parameters.stabiliser.method = method;
   return model;
 }
 
@@ -28,13 +26,6 @@ inline HapticModel ball_model(Stabiliser method) {
 inline JointArray grasp(int n) {
   const double close = n <= 150 ? n / 150.0 : (300 - n) / 150.0;
   return index_angles(1.0 * close, 1.6 * close, 1.6 * close, 0.1 * close);
-}
-
-inline DigitJoints joints_of(const JointArray& angle, int digit) {
-  DigitJoints out{};
-  for (int i = 0; i < kJointsPerDigit; ++i)
-    out[static_cast<std::size_t>(i)] = angle[static_cast<std::size_t>(joint_index(digit, i))];
-  return out;
 }
 
 }  // namespace phalanx::test

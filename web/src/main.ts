@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the page together and keeps it going.
+// The start of the page: it makes the panels and connects them.
 import type { State } from "./gen/phalanx/cockpit_pb";
 import type { Tick } from "./gen/phalanx/tick_pb";
 import type { App } from "./panels/app";
@@ -34,7 +34,7 @@ import { lasting, session } from "./wire/memory";
 
 declare global {
   interface Window {
-    /// What the page knows, for tests and the curious; changes nothing.
+    /// The page's state, for tests and inspection; changes nothing.
     phalanx: {
       view: () => ViewProbe | undefined;
       tick: () => Tick | undefined;
@@ -49,7 +49,7 @@ declare global {
 
 const kSecret = "phalanx.secret";
 const kReloaded = "phalanx.reloaded";
-const kReadoutMs = 80; // as often as a person can read
+const kReadoutMs = 80; // the rate at which figures can be read
 const kPaintPatienceMs = 800;
 const kPlotMs = 33;
 const kPlotRest = 4; // times as long as drawing took
@@ -62,7 +62,7 @@ const connection = new Connection({
   name: () => lasting.get(kNameKey),
   onPhase: (phase) => {
     store.setPhase(phase);
-    // A page of another version than the station: once anew, so that it fits; never in a circle, so only where that it was done is kept.
+    // The page has another version than the station. Reload it once; the session's memory of this prevents a loop.
     if (phase === "mismatch" && session.get(kReloaded) !== "yes") {
       if (session.set(kReloaded, "yes")) location.reload();
     } else if (phase === "open") {
@@ -130,7 +130,7 @@ listenToKeys(window, {
 const geometry = new GeometryLoader(async (revision) => makeShapes(await fetchGeometry(revision)), (loaded, revision) => store.setGeometry(loaded, revision));
 store.on(["state"], () => store.state && geometry.want(store.state.geometry));
 store.on(["connection"], () => {
-  if (!store.connected) geometry.forget(); // another station counts its revisions anew
+  if (!store.connected) geometry.forget(); // another station counts its revisions from the beginning
 });
 
 let readAt = 0;
@@ -138,7 +138,7 @@ let plotAt = 0;
 let wasLost: boolean | undefined;
 let wasDead: boolean | undefined; // the view
 
-/// What follows the clock: told apart from what follows messages, since silence has to be seen too.
+/// Updates the parts that depend on the clock, not on messages: silence must be displayed, too.
 function heartbeat(now: number): void {
   store.freshness.beat(now);
   const lost = store.lost;
@@ -167,7 +167,7 @@ function onFrame(now: number): void {
   if (!store.paused && plots && now >= plotAt) {
     const began = performance.now();
     plots.draw();
-    // Where drawing is slow, the plots wait: the view and the controls come first.
+    // If drawing is slow, the plots wait: view and controls have precedence.
     plotAt = now + Math.max(kPlotMs, kPlotRest * (performance.now() - began));
   }
 }

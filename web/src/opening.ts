@@ -5,6 +5,6 @@ import { strings } from "./strings";
 const kUnseenMs = 250; // a hidden page is not painted
 
 document.documentElement.lang = strings.locale;
-const bringIn = () => void import("./main"); // once, however often it is asked for
+const bringIn = () => void import("./main"); // once, for any number of calls
 requestAnimationFrame(() => setTimeout(bringIn)); // what is asked for in a frame's callback comes after its paint
 setTimeout(bringIn, kUnseenMs);

@@ -10,24 +10,26 @@
 
 namespace phalanx {
 
-/// A mesh's normals, each different one kept once: the same bits as SurfaceNormals in a third of its memory.
-/// On a smooth closed surface, which has half as many vertices as triangles, 24 bytes a triangle; 36 where
-/// every triangle has one normal of its own. Constant.
+/// Normals of a mesh, each distinct one stored once: the same bits as SurfaceNormals in a third of its
+/// memory. A smooth closed surface has half as many vertices as triangles and takes 24 bytes a triangle. It
+/// takes 36 where every triangle has a normal of its own. Constant.
 class CompactNormals {
  public:
-  /// Of no triangle.
+  /// Makes the normals of a mesh without triangles.
   CompactNormals() = default;
 
-  /// @throws std::length_error for 2^31 different normals or more. O(n) expected, deterministic; set-up only.
+  /// Takes over the normals of a mesh. O(n) expected, deterministic; set-up only.
+  /// @throws std::length_error if there are 2^31 distinct normals or more
   explicit CompactNormals(const SurfaceNormals& normals);
 
-  /// SurfaceNormals::corner[triangle][corner], unit [-]. Real-time.
+  /// Returns SurfaceNormals::corner[triangle][corner], a unit vector [-]. Real-time.
   /// @pre 0 <= triangle < number of triangles, 0 <= corner < 3
   [[nodiscard]] Vec3 normal(int triangle, int corner) const noexcept {
     return normal_[entry(triangle, corner) & ~kOpen];
   }
 
-  /// SurfaceNormals::open_edges[triangle]: bit k for the edge from corner k to the next one. Real-time.
+  /// Returns SurfaceNormals::open_edges[triangle]: bit k is set if the edge from corner k to the next one
+  /// is open. Real-time.
   /// @pre 0 <= triangle < number of triangles
   [[nodiscard]] int open_edges(int triangle) const noexcept {
     int bits = 0;
@@ -35,10 +37,10 @@ class CompactNormals {
     return bits;
   }
 
-  /// Number of different normals.
+  /// Returns the number of distinct normals.
   [[nodiscard]] std::size_t distinct() const noexcept { return normal_.size(); }
 
-  /// Memory that it holds [bytes].
+  /// Returns the memory in use [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept {
     return normal_.capacity() * sizeof(Vec3) + corner_.capacity() * sizeof(corner_[0]);
   }
@@ -50,9 +52,9 @@ class CompactNormals {
     return corner_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(corner)];
   }
 
-  std::vector<Vec3> normal_;  ///< in the order in which the corners first show them
-  std::vector<std::array<std::uint32_t, 3>>
-      corner_;  ///< place in normal_; with kOpen where the edge from this corner to the next one is open
+  std::vector<Vec3> normal_;  ///< in the order of their first use by a corner
+  /// Index into normal_ for each corner, with the bit kOpen if the edge from it to the next corner is open.
+  std::vector<std::array<std::uint32_t, 3>> corner_;
 };
 
 }  // namespace phalanx

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parameters of the contact search. S1 is a paper, listed in docs/architecture.md.
 #pragma once
 
 namespace phalanx {
 
-/// How the GDP is found.
+/// Method by which the GDP, the hand that is shown (gdp.h), is found.
 enum class GdpMethod {
   kContinuous,  ///< first time of contact along the path, docs/architecture.md "The GDP, exactly"
   kTrajectory,  ///< S1 fig. 4 to the letter: sampled test, back through the recorded angles
 };
 
-/// Where a contact's depth is counted from.
+/// Origin from which a contact's depth is counted.
 enum class DepthOrigin {
   kContinuous,  ///< a contact that begins while a nearer segment pushes starts from zero depth
   kS1,          ///< S1's formula as printed: always from the GDP
 };
 
-/// The direction of the force.
+/// Direction of the force.
 enum class ForceNormal {
   kInterpolated,  ///< the object's normal, interpolated over smooth edges, within 30 degrees of n_c
   kContact,       ///< n_c, from the object to the segment at closest approach
 };
 
+/// Parameters of the contact search.
 struct ContactParameters {
   double margin = 50e-6;        ///< clearance of a stopped segment [m], > 0
   double slid_distance = 5e-3;  ///< tangential offset beyond which a contact reports `slid` [m]

@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GDP: the hand that is shown, which never penetrates.                       docs/architecture.md "The
-// GDP, exactly"
+// The GDP and its contacts. The papers S1 and S2 name two hands: the HCP is the hand at the measured angles,
+// and may penetrate the object. The GDP is the hand that is shown, and never does. See docs/architecture.md
+// "The GDP, exactly" and docs/contact.md.
+//
+// The folder `contact` moves the GDP towards the HCP for one tick, and records where its segments touch:
+// 1. advance_gdp() (below) goes digit by digit: joints up to the most distal pushing contact stay,
+//    the others move.
+// 2. first_contact.h finds the first time of contact along the digit's path in joint space.
+// 3. clearance.h, pair_search.h and proximity.h answer its questions about distance.
+// 4. segment_tree.h and object_tree.h hold the meshes; src/contact/search holds the vectorised inner loops.
+// 5. proximity.h and normal_fan.h compute the contact's point, direction and normal, which
+//    form its ContactRecord.
 #pragma once
 
 #include <array>
@@ -16,33 +26,37 @@
 
 namespace phalanx {
 
-/// A contact of one segment with the object. At most one a segment.
+/// Contact of one segment with the object; at most one a segment.
 struct ContactRecord {
   bool active = false;
   Vec3 p_S = Vec3::Zero();  ///< the material point, in the segment's frame [m]
   Vec3 n_c = Vec3::Zero();  ///< unit vector from the object to the segment at closest approach, in W
-  Vec3 force_normal =
-      Vec3::Zero();     ///< direction of the force on the finger, in W: the object's normal or n_c
+  /// Direction of the force on the finger, in W: the object's normal or n_c.
+  Vec3 force_normal = Vec3::Zero();
   double offset = 0.0;  ///< d0 [m]
-  bool fades = false;   ///< d0 shrinks as the HCP moves: the contact has hopped, and its force went on
-  bool along =
-      false;  ///< made where the HCP was above the contact's plane, but in the object: depth along the way
-  bool silent = false;  ///< its digit started inside the object: no force until it has been clear
-  // What this tick's poses make of it:
-  double penetration = 0.0;   ///< d + d0 [m]
-  double depth = 0.0;         ///< d = (p_gdp - p_hcp) . n_c - d0, may be negative [m]      S1 eq. (2)
-                              ///< `along`: the deepest place on the way from GDP to HCP, less d0
+  bool fades = false;   ///< d0 shrinks as the HCP moves, because the contact has hopped
+  /// The HCP was above the contact's plane, but inside the object: the depth is counted along the way.
+  bool along = false;
+  bool silent = false;  ///< the digit started inside the object: no force until it has been clear
+  // Values at this tick's poses:
+  double penetration = 0.0;  ///< d + d0 [m]
+  /// Depth d = (p_gdp - p_hcp) . n_c - d0, may be negative [m].   S1 eq. (2)
+  /// If `along` is set: the greatest depth on the way from GDP to HCP, less d0.
+  double depth = 0.0;
   Vec3 p_gdp = Vec3::Zero();  ///< p on the GDP segment, in W [m]
   Vec3 p_hcp = Vec3::Zero();  ///< p on the HCP segment, in W [m]
+  double slid = 0.0;          ///< tangential offset between p_hcp and p_gdp [m]
 };
 
-/// Angles of one digit at recent ticks, newest last: S1's "recorded motion trajectory".
+/// Angles of one digit at the last ticks: S1's "recorded motion trajectory". Real-time: O(1), no allocation.
 class AngleRing {
  public:
   static constexpr int kCapacity = 64;
+  /// Adds the angles of this tick. If the ring is full, the oldest are dropped.
   void push(const DigitAngles& angle) noexcept;
   [[nodiscard]] int size() const noexcept { return size_; }
-  /// 0: newest.
+  /// Returns the angles of `age` ticks ago [rad]; 0 is the newest.
+  /// @pre 0 <= age < size()
   [[nodiscard]] const DigitAngles& back(int age) const noexcept;
 
  private:
@@ -51,10 +65,10 @@ class AngleRing {
   int size_ = 0;
 };
 
-/// Each segment's search tree.
+/// Makes the search tree of each segment. Set-up only.
 [[nodiscard]] SegmentTrees make_segment_trees(const HandModel& hand);
 
-/// The constant side of the search, by reference.
+/// Constant inputs of the search, by reference: they must outlive every use.
 struct ContactModel {
   const HandModel& hand;
   const SegmentTrees& trees;
@@ -62,30 +76,31 @@ struct ContactModel {
   const ContactParameters& parameters;
 };
 
-/// What the GDP remembers from tick to tick, and its scratch memory.
+/// State of the GDP between ticks, and the search's scratch memory.
 struct GdpState {
-  /// The open hand, clear of the object.
-  /// @throws std::invalid_argument if the open hand is within the margin of the object, or the palm goes
-  /// through it.
+  /// Starts at the open hand, which must be clear of the object. Set-up only.
+  /// @throws std::invalid_argument if a digit of the open hand is within the margin of the object, or a
+  /// segment goes through it
   explicit GdpState(const ContactModel& model);
 
   JointArray angle{};                   ///< q_gdp [rad]
   HandPoses poses;                      ///< at q_gdp
   JointArray hcp_angle{};               ///< q_hcp of the last tick [rad]
-  std::array<bool, kDigits> started{};  ///< the digit has had a tick with measured angles
-  std::array<bool, kDigits> inside{};   ///< start_inside: no force until the digit has once been clear
+  std::array<bool, kDigits> started{};  ///< true once all angles of the digit came from the device
+  std::array<bool, kDigits> inside{};   ///< Status::kStartInside: no force until the digit has been clear
   std::array<ContactRecord, kSegments> record;
-  std::array<Clearance, kSegments> clearance;  ///< of the GDP's segments
-  SearchScratch scratch;                       ///< what one search writes on
-  PairList pairs;                              ///< scratch: what a digit may meet in this tick
-  std::array<AngleRing, kDigits> recorded;     ///< for GdpMethod::kTrajectory
+  std::array<Clearance, kSegments> clearance;  ///< bounds for the GDP's segments
+  SearchScratch scratch;                       ///< memory of one search
+  PairList pairs;  ///< scratch: pairs of triangles that a digit may meet in this tick
+  std::array<AngleRing, kDigits> recorded;  ///< for GdpMethod::kTrajectory
 };
 
 /// Moves the GDP towards the HCP for one tick and updates the contact records.
 /// @param hcp_angle  this tick's measured angles, finite [rad]
-/// @param hcp        the hand at `hcp_angle`
-/// @param measured   whether all angles of a digit come from the device yet, rather than from the open hand
-/// @returns kStartInside, kSlid, kSearchExhausted or kTrajectoryExhausted where they hold
+/// @param hcp        poses of the hand at `hcp_angle`
+/// @param measured   per digit: true if all its angles come from the device, false if some are
+/// the open hand's
+/// @returns those of kStartInside, kSlid, kSearchExhausted and kTrajectoryExhausted that hold
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const HandPoses& hcp,
                    const std::array<bool, kDigits>& measured, GdpState& state) noexcept;

@@ -5,27 +5,27 @@
 
 namespace phalanx {
 
-/// The instructions that the contact search is carried out in. All give the same bits; they differ in how
-/// many numbers they take at once.
+/// Instruction set of the contact search. All sets give the same bits; they differ in how many numbers
+/// one instruction processes.
 enum class InstructionSet {
-  kPortable,  ///< what every processor of the architecture has: 2 doubles
+  kPortable,  ///< available on every processor of the architecture: 2 doubles
   kAvx2,      ///< 4 doubles
   kAvx512,    ///< 8 doubles (F, DQ, BW, VL)
 };
 
-/// "portable", "avx2", "avx512".
+/// Returns "portable", "avx2" or "avx512".
 [[nodiscard]] std::string_view instruction_set_name(InstructionSet set) noexcept;
 
-/// Whether this processor has them and this program was built with them.
+/// @returns true if this processor has the set and this program was built with it
 [[nodiscard]] bool has_instruction_set(InstructionSet set) noexcept;
 
-/// The widest that this processor has; what searches use unless told otherwise.
+/// Returns the widest set that this processor has. Searches use it by default.
 [[nodiscard]] InstructionSet best_instruction_set() noexcept;
 
-/// What searches use now.
+/// Returns the set that searches use now. Real-time.
 [[nodiscard]] InstructionSet instruction_set() noexcept;
 
-/// Lets every later search use `set`. For tests and benchmarks; not while another thread is in step().
+/// Selects the set of all later searches. For tests and benchmarks; not while another thread is in step().
 /// @throws std::invalid_argument if the processor does not have it.
 void use_instruction_set(InstructionSet set);
 

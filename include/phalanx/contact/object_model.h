@@ -10,17 +10,19 @@
 
 namespace phalanx {
 
-/// What the hand meets: one triangle mesh in the world (several objects merged), its search tree, and its
-/// normals. Constant.
+/// All objects that the hand may touch, merged into one triangle mesh in the world, with its search tree and
+/// its normals. Constant.
 class ObjectModel {
  public:
-  /// No object: nothing is ever met.
+  /// Makes a world without objects.
   ObjectModel() = default;
 
+  /// Builds search tree and normals. Set-up only.
   /// @param mesh          in world frame W [m]
-  /// @param crease_angle  normals are interpolated over edges whose dihedral is below it [rad]
-  /// @throws std::invalid_argument if the mesh is empty, has a vertex that is not finite, or an invalid
-  /// index.
+  /// @param crease_angle  edges with a dihedral angle below it are smooth: normals are interpolated
+  /// over them [rad]
+  /// @throws std::invalid_argument if the mesh is empty or has an invalid index. Also if a vertex is not
+  /// finite, or is farther than 10 km from the origin.
   explicit ObjectModel(TriangleMesh mesh, double crease_angle = kDefaultCreaseAngle);
 
   static constexpr double kDefaultCreaseAngle = 0.523598775598299;  // 30 degrees
@@ -29,12 +31,12 @@ class ObjectModel {
   [[nodiscard]] const ObjectTree& tree() const noexcept { return tree_; }
   [[nodiscard]] int triangle_count() const noexcept { return static_cast<int>(mesh_.triangles.size()); }
 
-  /// The surface normal at the point with barycentric coordinates `weight` on a triangle, unit length (or the
-  /// triangle's own where the corner normals cancel). Real-time.
+  /// Returns the unit surface normal at the point with barycentric coordinates `weight` on a triangle. Where
+  /// the corners' normals cancel out it is the first corner's. Real-time.
   [[nodiscard]] Vec3 normal_at(int triangle, const Vec3& weight) const noexcept;
 
-  /// Which edges of the triangle no second face continues: bit k for the edge from corner k to the next one
-  /// (SurfaceNormals::open_edges). Real-time.
+  /// Returns the triangle's open edges, which no second face continues: bit k for the edge from corner k to
+  /// the next one (SurfaceNormals::open_edges). Real-time.
   [[nodiscard]] int open_edges(int triangle) const noexcept { return normals_.open_edges(triangle); }
 
  private:

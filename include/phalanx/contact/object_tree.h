@@ -12,29 +12,30 @@
 
 namespace phalanx {
 
-/// The object's search tree: eight boxes a node, eight triangles a leaf, about 80 bytes a triangle. Constant.
-/// A triangle's place in it is its slot.                                                    docs/contact.md
+/// Search tree of the object: eight boxes a node, eight triangles a leaf, about 80 bytes a triangle. A
+/// triangle's place in the tree is its slot. Constant. See docs/contact.md.
 class ObjectTree {
  public:
   ObjectTree() = default;
-  /// @param mesh  valid indices, finite vertices, in W [m]; may be empty. O(n log n), deterministic; set-up.
+  /// Builds the tree. O(n log n), deterministic; set-up only.
+  /// @param mesh  valid indices, finite vertices, in W [m]; may be empty
   explicit ObjectTree(const TriangleMesh& mesh);
 
   [[nodiscard]] bool empty() const noexcept { return blocks_.empty(); }
-  /// Triangles; slots are 0 to size() - 1.
+  /// Returns the number of triangles; slots are 0 to size() - 1.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(source_.size()); }
-  /// The slot's triangle in the mesh. Real-time.
+  /// Returns the index in the mesh of the slot's triangle. Real-time.
   [[nodiscard]] int source(int slot) const noexcept { return source_[static_cast<std::size_t>(slot)]; }
-  /// The slot's corners in W [m]. Real-time.
+  /// Returns the corners of the slot's triangle in W [m]. Real-time.
   [[nodiscard]] Corners corners(int slot) const noexcept;
-  /// Memory of the tree.
+  /// Returns the memory of the tree [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
 
   [[nodiscard]] const BoxNode* nodes() const noexcept { return nodes_.data(); }
   [[nodiscard]] const TriangleBlock* blocks() const noexcept { return blocks_.data(); }
-  /// Origin of the boxes, in W [m].
+  /// Returns the origin of the boxes, in W [m].
   [[nodiscard]] const Vec3& centre() const noexcept { return centre_; }
-  /// Half the longest edge of the root's box [m].
+  /// Returns half the longest edge of the root's box [m].
   [[nodiscard]] double extent() const noexcept { return extent_; }
 
  private:

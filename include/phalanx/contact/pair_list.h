@@ -9,13 +9,13 @@
 
 namespace phalanx {
 
-/// The pairs of triangles that a digit's first contact is sought among, segment by segment, and until which
-/// path parameter each is known to keep its distance. Sized once.
+/// Pairs of triangles among which a digit's first contact is sought, segment by segment. Each holds the path
+/// parameter s up to which it is known to keep its distance. Allocated once.
 struct PairList {
   struct Pair {
-    std::int32_t triangle;  ///< of the segment
-    std::int32_t slot;      ///< of the object
-    double until;           ///< above the floor up to this s; evaluated anew there
+    std::int32_t triangle;  ///< index in the segment's mesh
+    std::int32_t slot;      ///< slot in the object's tree
+    double until;           ///< farther apart than the floor up to this s; evaluated again there
     bool near;              ///< may be within the margin when the horizon is reached
   };
 

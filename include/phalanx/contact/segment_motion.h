@@ -5,9 +5,9 @@
 
 namespace phalanx {
 
-/// How the points of a segment move as its digit's joints follow a straight line q(s) in joint space: exact
-/// first and second derivatives at one s, and bounds that hold all along the line. All per unit of s, in W.
-/// With the joints' axes z_j through c_j and rates w_j = dq_j/ds, z_1 nearest to the palm:
+/// Motion of a segment's points as its digit's joints follow a straight line q(s) in joint space. It holds
+/// exact first and second derivatives at one s, and bounds for the whole line, per unit of s, in W. With the
+/// joints' axes z_j through c_j and rates w_j = dq_j/ds, z_1 nearest to the palm:
 ///   velocity      v(x) = W x x + U,               W = sum w_j z_j,  U = -sum w_j z_j x c_j
 ///   acceleration  a(x) = W' x x + U' + W x v(x)   (W', U': each axis moves with the link that carries it)
 struct SegmentMotion {
@@ -19,20 +19,21 @@ struct SegmentMotion {
   double bend = 0.0;                 ///< |d2x/ds2| <= bend for every point of the segment [m]
   double jerk = 0.0;                 ///< |d3x/ds3| <= jerk for every point of the segment [m]
 
+  /// Returns the velocity v(x) of the point x [m per unit of s], in W. Real-time.
   [[nodiscard]] Vec3 velocity(const Vec3& x) const noexcept { return angular.cross(x) + linear; }
 };
 
-/// Of the digit's segment k. With R_j the farthest that the segment reaches from joint j and
-/// V_j = |w_1| + .. + |w_j|, which bound the products of exponentials term by term:
+/// Returns the motion of the digit's segment k. Let R_j be the farthest that the segment reaches from joint
+/// j, and V_j = |w_1| + .. + |w_j|. They bound the products of exponentials term by term:
 ///   |dx/ds| <= sum |w_j| R_j,   |d2x/ds2| <= sum (V_j^2 - V_(j-1)^2) R_j,
 ///   |d3x/ds3| <= sum (V_j^3 - V_(j-1)^3) R_j
-/// @param pose  the digit at this s
+/// @param pose  poses of the digit at this s
 /// @param rate  w [rad per unit of s]
 /// Real-time: O(1), no allocation, lock, throw or I/O.
 [[nodiscard]] SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& pose,
                                            const DigitAngles& rate, int k) noexcept;
 
-/// SegmentMotion::speed alone. Real-time.
+/// Returns SegmentMotion::speed alone. Real-time.
 [[nodiscard]] double segment_speed(const HandModel& hand, int digit, const DigitAngles& rate, int k) noexcept;
 
 }  // namespace phalanx

@@ -11,22 +11,24 @@
 
 namespace phalanx {
 
-/// A segment's search tree, in the segment's frame: eight lenses a node, one triangle a leaf. A lens looks
-/// the same from everywhere, so that a new pose costs no refit. Constant. docs/contact.md
+/// Search tree of a segment, in the segment's frame: eight lenses a node, one triangle a leaf. A
+/// lens is symmetric about its axis, so that a new pose only moves it and refits nothing.
+/// Constant. See docs/contact.md.
 class SegmentTree {
  public:
   SegmentTree() = default;
-  /// @param mesh  valid indices, finite vertices, in the segment's frame [m]; may be empty. Set-up.
+  /// Builds the tree. O(n log n); set-up only.
+  /// @param mesh  valid indices, finite vertices, in the segment's frame [m]; may be empty
   explicit SegmentTree(const TriangleMesh& mesh);
 
   [[nodiscard]] bool empty() const noexcept { return triangles_.empty(); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(triangles_.size()); }
   [[nodiscard]] int node_count() const noexcept { return static_cast<int>(nodes_.size()); }
-  /// Corners of triangle i (the mesh's order) in the segment's frame [m]. Real-time.
+  /// Returns the corners of triangle i (in the mesh's order) in the segment's frame [m]. Real-time.
   [[nodiscard]] Corners corners(int i) const noexcept;
   [[nodiscard]] const LensNode* nodes() const noexcept { return nodes_.data(); }
   [[nodiscard]] const SegmentTriangle* triangles() const noexcept { return triangles_.data(); }
-  /// The farthest vertex from the segment's origin [m].
+  /// Returns the distance of the farthest vertex from the segment's origin [m].
   [[nodiscard]] double extent() const noexcept { return extent_; }
 
  private:
@@ -35,33 +37,34 @@ class SegmentTree {
   double extent_ = 0.0;
 };
 
-/// One for every segment.
+/// Search trees of all segments.
 using SegmentTrees = std::array<SegmentTree, kSegments>;
 
-/// What a search writes on: a segment's placed lenses and triangles, filled where a query looks, and the
-/// pairs that it found near. Sized once.
+/// Memory of a search: lenses and triangles of a segment at the query's pose, placed on first use, and the
+/// pairs found near. Allocated once; one search at a time.
 class SearchScratch {
  public:
   SearchScratch() = default;
-  /// Large enough for any of `trees`.
+  /// Allocates enough memory for any of `trees`. Set-up only.
   explicit SearchScratch(const SegmentTrees& trees);
   explicit SearchScratch(const SegmentTree& tree) { grow(tree); }
 
-  /// Whether it is large enough for the tree.
+  /// @returns true if the memory is large enough for the tree
   [[nodiscard]] bool fits(const SegmentTree& tree) const noexcept {
     return lenses_.size() >= static_cast<std::size_t>(tree.node_count()) &&
            triangles_.size() >= static_cast<std::size_t>(tree.size());
   }
+  /// Returns the memory of the placed lenses, or of the placed triangles.
   [[nodiscard]] PlacedLenses* lenses() noexcept { return lenses_.data(); }
   [[nodiscard]] PlacedTriangle* triangles() noexcept { return triangles_.data(); }
   struct NearPair {
-    std::int32_t triangle;  ///< of the segment
-    std::int32_t slot;      ///< of the object
+    std::int32_t triangle;  ///< index in the segment's mesh
+    std::int32_t slot;      ///< slot in the object's tree
     TriangleDistance closest;
   };
   static constexpr std::size_t kNearPairs = 512;
   [[nodiscard]] NearPair* near() noexcept { return near_.data(); }
-  /// A number that no query had before: what older ones have placed is out of date.
+  /// Returns a number that no earlier query had, which invalidates what earlier queries have placed.
   [[nodiscard]] std::uint64_t next_query() noexcept { return ++query_; }
 
  private:

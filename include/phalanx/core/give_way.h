@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that compute, serve or write beside a loop with deadlines.
+// Scheduling of threads that compute, serve or write beside a loop with deadlines.
 #pragma once
 
 #include <pthread.h>
@@ -12,10 +12,11 @@
 
 namespace phalanx {
 
-/// The CALLING thread gives way to others from here on: SCHED_OTHER, whatever it inherited, and nice 5, or
-/// what it has if that is nicer. Threads that it makes inherit that, and cannot take it back without a right
-/// to. What the system refuses is left as it is: slower, never wrong.
-/// @param name  of the thread, as `top -H` shows it: at most 15 bytes, or it keeps its own
+/// Lowers the scheduling priority of the CALLING thread: SCHED_OTHER, whatever it inherited, and at least
+/// nice 5. A thread that already has a higher nice value keeps it.
+/// Threads that it creates inherit both settings, and cannot undo them without privileges. A setting that the
+/// system refuses stays unchanged, which affects speed only.
+/// @param name  name of the thread as `top -H` shows it, at most 15 bytes; with a longer one it keeps its own
 /// Set-up only: system calls.
 inline void give_way(const char* name) noexcept {
   constexpr int kNice = 5;

@@ -5,7 +5,8 @@
 
 namespace phalanx {
 
-/// A number of something, as containers take it. `i` is not negative. Real-time safe.
+/// Converts an index to the type that containers take. Real-time safe.
+/// @pre i >= 0
 constexpr std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace phalanx

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linear algebra of the whole program: SI units, radians, double precision.
+// Linear algebra of the whole program: SI units, radians, double precision. The folder `core` holds what
+// every other folder uses: vectors and poses (math.h), unit factors (constants.h), the status bits of a step
+// (status.h), seeded random numbers, suggestions for misspelt names, and threads of lowered priority
+// (give_way.h, nice_thread.h). It includes no other folder.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// "Did you mean ...?": for messages about names that nobody knows.
+// Suggestions ("did you mean ...?") for messages about unknown names.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace phalanx {
 
-/// Levenshtein distance: the least number of inserted, deleted and replaced characters that turns `a` into
-/// `b`. Set-up only.
+/// Returns the Levenshtein distance: the least number of inserted, deleted and replaced characters that turns
+/// `a` into `b`. Set-up only.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -28,9 +28,11 @@ namespace phalanx {
   return row[b.size()];
 }
 
-/// How far a known name is from what somebody wrote: the edit distance, or, where that is less, 1 + the
-/// distance to as much of the known name's beginning ("torque_rate" for "torque_rate_nm_per_s"), or 1 or 2 +
-/// the same for what follows its last dot. Set-up only.
+/// Returns how far a known name is from the written one. Set-up only. It is the smallest of
+/// - the edit distance;
+/// - 1 + the distance to the known name's beginning of the same length as `written`, which finds
+///   "torque_rate_nm_per_s" for "torque_rate";
+/// - 1 + the smaller of these two for the part of the known name after its last dot.
 [[nodiscard]] inline std::size_t name_distance(std::string_view written, std::string_view known) {
   const auto with_beginning = [&](std::string_view name) {
     return std::min(edit_distance(written, name), 1 + edit_distance(written, name.substr(0, written.size())));
@@ -40,9 +42,9 @@ namespace phalanx {
   return dot == std::string_view::npos ? whole : std::min(whole, 1 + with_beginning(known.substr(dot + 1)));
 }
 
-/// The member of `known` with the smallest name_distance() to `name`, the first of several; empty if `known`
-/// is. Only the first 200 characters of `name` are compared, so that a hostile input costs nothing. Set-up
-/// only.
+/// Returns the member of `known` with the smallest name_distance() to `name`: the first of several, or an
+/// empty string if `known` is empty. Only the first 200 characters of `name` are compared, which bounds the
+/// time for hostile input. Set-up only.
 template <typename Names>
 [[nodiscard]] std::string nearest_name(std::string_view name, const Names& known) {
   std::string best;
@@ -57,8 +59,8 @@ template <typename Names>
   return best;
 }
 
-/// nearest_name(), but empty if even that is farther than half the length of `name`: a guess that shares
-/// little with what was written misleads. Set-up only.
+/// Returns nearest_name(), or an empty string if its distance exceeds half the length of `name`: such a
+/// suggestion would mislead. Set-up only.
 template <typename Names>
 [[nodiscard]] std::string near_name(std::string_view name, const Names& known) {
   std::string best = nearest_name(name, known);
@@ -66,8 +68,8 @@ template <typename Names>
   return best;
 }
 
-/// "did you mean "wave"? " with a blank behind it, for a message that goes on; empty if no name is near.
-/// Set-up only.
+/// Returns a suggestion such as `did you mean "wave"? ` with a trailing blank, to be followed by more text.
+/// Returns an empty string if no name is near. Set-up only.
 template <typename Names>
 [[nodiscard]] std::string did_you_mean(std::string_view name, const Names& known) {
   const std::string near = near_name(name, known);

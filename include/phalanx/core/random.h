@@ -7,13 +7,13 @@
 
 namespace phalanx {
 
-/// SplitMix64 (Steele, Lea & Flood 2014): a seed means the same numbers with every standard library.
-/// Real-time: O(1), no allocation.
+/// Pseudorandom numbers by SplitMix64 (Steele, Lea & Flood 2014). A seed gives the same numbers with every
+/// standard library. Real-time: O(1), no allocation.
 class Random {
  public:
   explicit constexpr Random(std::uint64_t seed) noexcept : state_(seed) {}
 
-  /// Uniform in 0 .. 1, 1 excluded.
+  /// Returns a uniform number in [0, 1).
   [[nodiscard]] constexpr double uniform() noexcept {
     state_ += 0x9e3779b97f4a7c15ULL;
     std::uint64_t z = state_;
@@ -22,11 +22,12 @@ class Random {
     z ^= z >> 31U;
     return static_cast<double>(z >> 11U) * 0x1.0p-53;
   }
-  /// Uniform in low .. high.
+  /// Returns a uniform number in [low, high).
   [[nodiscard]] constexpr double between(double low, double high) noexcept {
     return low + (high - low) * uniform();
   }
-  /// Normal with mean 0 and standard deviation 1 (Box & Muller 1958); two uniform numbers each.
+  /// Returns a normal number with mean 0 and standard deviation 1 (Box & Muller 1958). Uses
+  /// two uniform numbers.
   [[nodiscard]] double normal() noexcept {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From raw counts at poses whose angles are known to the gain and offset of each channel.
+// Calibration: the gain and offset of each channel, fitted to raw counts at poses with known angles.
 #pragma once
 
 #include <cstddef>
@@ -14,28 +14,31 @@
 
 namespace phalanx {
 
-/// What is believed of a calibration. Angles also bound curls and splays, through radians_per_unit().
+/// Limits for a plausible calibration. Angles also bound curls and splays, through radians_per_unit().
 struct CalibrationLimits {
-  double least_span = 50.0;        ///< of the raw counts between the poses [counts]
-  double most_residual = 0.08727;  ///< of any pose: 5 deg [rad]
-  double most_noise = 0.03491;     ///< rms while a pose is held: 2 deg [rad]
-  double most_drift = 0.05236;     ///< while a pose is held: 3 deg; more, and the hand has moved [rad]
-  double apart = 0.01745;          ///< poses that differ by less are one: 1 deg [rad]
+  double least_span = 50.0;        ///< least span of the raw counts between the poses [counts]
+  double most_residual = 0.08727;  ///< largest error of any pose: 5 deg [rad]
+  double most_noise = 0.03491;  ///< largest noise (root mean square, rms) while a pose is held: 2 deg [rad]
+  double most_drift = 0.05236;  ///< largest drift while a pose is held: 3 deg; beyond it, the hand
+                                ///< has moved [rad]
+  double apart = 0.01745;       ///< poses that differ by less count as one: 1 deg [rad]
 };
 
-/// A calibration that cannot be right. what() names the channel, the value and the remedy.
+/// Error of a calibration that is not plausible. what() names the channel, the value and the remedy.
 class CalibrationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Mean, noise and drift of a channel while a pose is held: a straight line through the counts over time.
+/// Mean, noise and drift of a channel while a pose is held, from a straight line fitted to the
+/// counts over time.
 class RawAverage {
  public:
   void add(std::int32_t raw) noexcept;
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] double mean() const noexcept;   ///< [counts]
-  [[nodiscard]] double drift() const noexcept;  ///< of the line, from the first count to the last [counts]
+  [[nodiscard]] double drift() const noexcept;  ///< change of the line from the first count to
+                                                ///< the last [counts]
   [[nodiscard]] double noise() const noexcept;  ///< rms about the line [counts]
 
  private:
@@ -45,62 +48,66 @@ class RawAverage {
   double first_ = 0.0;  ///< subtracted, so that large counts lose no digits
   double sum_ = 0.0;
   double squares_ = 0.0;
-  double with_time_ = 0.0;  ///< sum of (i raw_i)
+  double with_time_ = 0.0;  ///< sum of i raw_i
 };
 
-/// One channel at one pose.
+/// Reading of one channel at one pose.
 struct PoseReading {
-  std::string pose;    ///< its name, for messages
-  double value = 0.0;  ///< known, in the channel's unit
+  std::string pose;    ///< name of the pose, for messages
+  double value = 0.0;  ///< known value, in the channel's unit
   double raw = 0.0;    ///< mean [counts]
   double noise = 0.0;  ///< [counts]
   double drift = 0.0;  ///< [counts]
 };
 
-/// value = gain raw + offset.
+/// Result of a fit: value = gain raw + offset.
 struct ChannelFit {
   double gain = 1.0;
   double offset = 0.0;
-  std::vector<double> residual;  ///< of each reading: what the fit says less what is known [rad]
-  double worst = 0.0;            ///< largest magnitude of these [rad]
+  std::vector<double> residual;  ///< fitted less known value of each reading [rad]
+  double worst = 0.0;            ///< largest magnitude of the residuals [rad]
 };
 
-/// Angles, curls and splays can be calibrated by poses; torques, forces and motors keep the maker's numbers.
+/// @returns true if poses can calibrate the channel: angles, curls and splays. Torques, forces and motors
+/// keep the maker's values.
 [[nodiscard]] bool is_posable(ChannelKind kind) noexcept;
-/// "angle of index_pip_flexion", "curl of thumb", "motor 3", for messages and tables.
+/// Names a channel for messages and tables: "angle of index_pip_flexion", "curl of thumb", "motor 3".
 [[nodiscard]] std::string channel_label(ChannelKind kind, int index);
-/// How far the hand moves for one unit of a channel: 1 for an angle; the mean range of the flexion joints for
-/// a curl, half the range of abduction for a splay [rad].
+/// @returns the hand's motion for one unit of a channel [rad]: 1 for an angle, the mean range of the flexion
+/// joints for a curl, half the range of abduction for a splay.
 [[nodiscard]] double radians_per_unit(ChannelKind kind, int index, const HandParameters& hand);
 
-/// Least squares of value over raw counts: minimises sum (gain raw + offset - value)^2.
+/// Fits value over raw counts by least squares: minimises sum (gain raw + offset - value)^2.
 /// @param channel   kind, index and valid raw range
-/// @throws CalibrationError naming the channel, the value and the remedy: a number that is not finite, fewer
-/// than two poses that differ, raw counts outside the channel's range, a raw span below the least, a hand
-/// that moved, too much noise, poses that disagree on the direction, a pose further from the fit than the
-/// most, an angle that is not anatomically possible. Set-up only.
+/// @throws CalibrationError naming the channel, the value and the remedy:
+/// - a number is not finite, or fewer than two poses differ
+/// - raw counts are outside the channel's range, or their span is below the least
+/// - the hand moved, or the noise is too large
+/// - poses disagree on the direction, or a pose is further from the fit than allowed
+/// - an angle is not anatomically possible
+/// Set-up only.
 [[nodiscard]] ChannelFit fit_channel(const DeviceChannel& channel, std::span<const PoseReading> readings,
                                      const HandParameters& hand, const CalibrationLimits& limits = {});
 
 /// One channel of a calibration.
 struct CalibratedChannel {
-  DeviceChannel channel;                ///< a file does not state its raw range
-  double residual = 0.0;                ///< the worst pose's [rad]
-  std::vector<PoseReading> poses = {};  ///< that it was fitted to
+  DeviceChannel channel;                ///< without the raw range, which a file does not state
+  double residual = 0.0;                ///< residual of the worst pose [rad]
+  std::vector<PoseReading> poses = {};  ///< readings that it was fitted to
 };
 
-/// What a calibration file holds. It belongs to one device.
+/// Content of a calibration file. It belongs to one device.
 struct Calibration {
   std::string device;   ///< DeviceInfo::name
   std::string serial;   ///< DeviceInfo::serial
   std::string date;     ///< UTC, ISO 8601: "2026-05-04T09:30:00Z"
-  std::string phalanx;  ///< version that made it
+  std::string phalanx;  ///< version of the program that made it
   std::vector<CalibratedChannel> channels;
 };
 
-/// The device's channels with the calibration's gains and offsets, in the device's order.
-/// @throws CalibrationError if it was made for another device or serial number, or one of its channels is not
-/// the device's, or one of the device's angles, curls and splays is not in it. Set-up only.
+/// Applies a calibration's gains and offsets to the device's channels, in the device's order.
+/// @throws CalibrationError if it was made for another device or serial number. It also throws if one of its
+/// channels is not the device's, or if it lacks one of the device's angles, curls or splays. Set-up only.
 [[nodiscard]] std::vector<DeviceChannel> apply_calibration(const Calibration& calibration,
                                                            const DeviceInfo& device);
 

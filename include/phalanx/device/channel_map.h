@@ -13,40 +13,40 @@
 
 namespace phalanx {
 
-/// What a device's joints say of those that it does not sense: Exoskeleton's `coupled` and `copy`.
+/// Rules for joints that a device does not sense: Exoskeleton's `coupled` and `copy`.
 struct JointFollowers {
   std::vector<CoupledJoint> coupled;
   std::array<DigitCopy, kDigits> copy{};
 };
 
-/// Every joint's angle and the optional channels, from raw counts through gain and offset:
-///   angle channels set their joint;  a curl c sets its digit's flexion joints to  min + c (max - min);  a
-///   splay s sets its abduction to the middle of its range + s half of it;  coupled joints and copied digits
-///   follow; all others stay at the open hand.
-/// A joint that a channel sets does not follow. Motor channels say nothing about the hand.
+/// Map from raw counts, through gain and offset, to all joint angles and the optional channels:
+///   angle channel   sets its joint
+///   curl c          sets its digit's flexion joints to  min + c (max - min)
+///   splay s         sets its digit's abduction to  middle of its range + s half of its range
+/// Coupled joints, then copied digits, follow; all other joints stay at the open hand. A joint that a channel
+/// sets does not follow. Motor channels do not affect the hand.
 class ChannelMap {
  public:
   /// @throws std::invalid_argument naming the channel if an index or a number is out of range, or two
   /// channels set one joint. Set-up only.
   ChannelMap(std::vector<DeviceChannel> channels, JointFollowers followers, const HandParameters& hand);
 
-  /// As given.
+  /// @returns the channels as given.
   [[nodiscard]] const std::vector<DeviceChannel>& channels() const noexcept { return channels_; }
-  /// Value of a channel in its own unit. Real-time.
+  /// @returns the value of a channel in its own unit. Real-time.
   [[nodiscard]] double value(std::size_t channel, std::int32_t raw) const noexcept {
     return channels_[channel].gain * static_cast<double>(raw) + channels_[channel].offset;
   }
-  /// All of `out`; its time is the device's clock [s]. Raw values outside a channel's range are converted
-  /// like any other. Real-time: no allocation, lock, throw or I/O.
+  /// Sets all of `out`; its time is the device's clock [s]. Raw values outside a channel's range are
+  /// converted like any other. Real-time: no allocation, lock, throw or I/O.
   void convert(const DeviceSample& raw, Sample& out) const noexcept;
-  /// The angle channel of this joint; -1: none.
+  /// @returns the angle channel of this joint; -1: none.
   [[nodiscard]] int angle_channel(int joint) const noexcept {
     return angle_channel_[static_cast<std::size_t>(joint)];
   }
 
  private:
   void measure(std::size_t channel, double value, Sample& out) const noexcept;
-  void follow(JointArray& angle) const noexcept;
 
   std::vector<DeviceChannel> channels_;
   JointFollowers followers_;
@@ -57,7 +57,13 @@ class ChannelMap {
   std::array<bool, kJoints> measured_{};  ///< a channel sets the joint
 };
 
-/// Followers of a device file.
+/// @returns the angles that the host receives for a hand at `angle` [rad]: the device's own joints unchanged,
+/// coupled joints and copied digits from those that they follow, all others at the open hand. Real-time:
+/// O(joints), no allocation.
+[[nodiscard]] JointArray sensed_angles(const Exoskeleton& exoskeleton, const JointArray& open,
+                                       const JointArray& angle) noexcept;
+
+/// @returns the followers of a device file.
 [[nodiscard]] JointFollowers followers_of(const Exoskeleton& exoskeleton);
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one clock of a process: monotonic, in seconds from its making, and slower than real time if asked.
+// The clock of a process: monotonic, in seconds since its construction, optionally slower than real time.
 #pragma once
 
 #include <time.h>
@@ -8,8 +8,8 @@
 
 namespace phalanx {
 
-/// CLOCK_MONOTONIC from the moment of construction, divided by `slowdown`: with 10, everything that is paced
-/// by this clock runs ten times slower, time limits included. For looking closely, and for tests on busy
+/// CLOCK_MONOTONIC since construction, divided by `slowdown`. With a slowdown of 10, everything that this
+/// clock paces runs ten times slower, time limits included. It serves close observation, and tests on busy
 /// machines. Real-time: now() does not enter the kernel; sleep_until() waits.
 class Clock {
  public:
@@ -17,7 +17,7 @@ class Clock {
     clock_gettime(CLOCK_MONOTONIC, &begin_);
   }
 
-  /// [s]
+  /// @returns the time since construction [s].
   [[nodiscard]] double now() const noexcept {
     timespec t{};
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -27,8 +27,8 @@ class Clock {
   }
   [[nodiscard]] std::uint64_t now_us() const noexcept { return static_cast<std::uint64_t>(now() * 1e6); }
 
-  /// Sleeps until the clock says `t` [s]; absolute, so that errors do not add up. Comes back early only if a
-  /// signal arrives. @returns whether it slept to the end
+  /// Sleeps until the clock reads `t` [s]. The time is absolute, so that errors do not add up. It returns
+  /// early only if a signal arrives. @returns true if it slept to the end
   bool sleep_until(double t) const noexcept {
     const double real = t * slowdown_;
     timespec until = begin_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest value from one thread to another; neither ever waits.
+// The newest value, passed from one thread to another; neither ever waits.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace phalanx {
 
-/// Three places: one that the writer fills, one that the reader looks at, one between them that they swap.
-/// One writing thread, one reading thread. Real-time on both sides if T's assignment is.
+/// Triple buffer: one slot that the writer fills, one that the reader uses, and one between them that they
+/// exchange. For one writing and one reading thread. Real-time on both sides if T's assignment is.
 template <class T>
 class Latest {
  public:
@@ -21,22 +21,22 @@ class Latest {
     mine_ = between_.exchange(static_cast<std::uint8_t>(mine_ | kNew), std::memory_order_acq_rel) & kIndex;
   }
 
-  /// Takes the newest value, if one has come since the last call. @returns whether
+  /// Takes the newest value, if one has come since the last call. @returns true if so
   bool update() noexcept {
     if ((between_.load(std::memory_order_acquire) & kNew) == 0) return false;
     theirs_ = between_.exchange(theirs_, std::memory_order_acq_rel) & kIndex;
     return true;
   }
-  /// What the last update() found; T's first value before that.
+  /// @returns the value that the last update() took; T's first value before that.
   [[nodiscard]] const T& value() const noexcept { return place_[theirs_]; }
 
  private:
   static constexpr std::uint8_t kIndex = 3;
   static constexpr std::uint8_t kNew = 4;
   std::array<T, 3> place_{};
-  std::uint8_t mine_ = 0;                  ///< the writer's
-  std::atomic<std::uint8_t> between_ = 1;  ///< with kNew if it holds what the reader has not seen
-  std::uint8_t theirs_ = 2;                ///< the reader's
+  std::uint8_t mine_ = 0;                  ///< the writer's slot
+  std::atomic<std::uint8_t> between_ = 1;  ///< the slot between; kNew is set if the reader has not taken it
+  std::uint8_t theirs_ = 2;                ///< the reader's slot
 };
 
 }  // namespace phalanx

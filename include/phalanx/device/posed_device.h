@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device without dynamics: all joints have a perfect sensor and go where they are told. For whoever plays
-// without an exoskeleton, with the cockpit's sliders.
+// A device without dynamics: all joints have a perfect sensor and move to a given pose. The cockpit's sliders
+// use it, for trying the program without an exoskeleton.
 #pragma once
 
 #include <memory>
@@ -11,25 +11,26 @@
 
 namespace phalanx {
 
+/// Settings of a PosedDevice.
 struct PosedDeviceSettings {
   HandParameters hand;
-  JointArray start{};           ///< [rad]; clamped to the range of motion
-  double host_rate_hz = 200.0;  ///< every receive() is one period later
-  double speed = 6.0;           ///< no joint moves faster [rad/s]
-  double time_constant = 0.05;  ///< of the critically damped way to the target [s]
+  JointArray start{};           ///< clamped to the range of motion [rad]
+  double host_rate_hz = 200.0;  ///< each receive() advances by one period [Hz]
+  double speed = 6.0;           ///< largest speed of a joint [rad/s]
+  double time_constant = 0.05;  ///< of the critically damped approach to the target [s]
 };
 
-/// Serial "sliders", one angle channel a joint, no motor. Samples come at the host's rate; torques are
-/// accepted, obeyed in name (state, factor, acted_tick) and felt by nobody. Its time is the number of steps
-/// that the host has made.
+/// Device with the serial "sliders", one angle channel a joint, and no motor. Samples come at the host's
+/// rate. It accepts torques and reports them (state, factor, acted_tick) without an effect. Its time is the
+/// number of steps that the host has made.
 class PosedDevice final : public Device {
  public:
   /// @throws std::invalid_argument if a rate, speed or time constant is not above 0, or a start angle is not
-  /// finite
+  /// a finite number
   explicit PosedDevice(const PosedDeviceSettings& settings);
 
-  /// Where the hand is wanted [rad]: clamped to the range of motion; what is not finite stays where it was.
-  /// One thread beside the loop's.
+  /// Sets the target of the hand [rad], clamped to the range of motion; an angle that is not finite keeps its
+  /// last target. For one thread beside the loop's.
   void pose(const JointArray& angle) noexcept;
 
   void open() override;
@@ -46,9 +47,9 @@ class PosedDevice final : public Device {
 
   PosedDeviceSettings settings_;
   DeviceInfo info_;
-  double period_ = 0.0;  ///< of the host [s]
+  double period_ = 0.0;  ///< period of the host [s]
   double decay_ = 0.0;   ///< exp(-period / time_constant)
-  JointArray wanted_{};  ///< the posing thread's own: the last that was finite [rad]
+  JointArray wanted_{};  ///< last finite target, for the posing thread only [rad]
   Latest<JointArray> target_;
   JointArray angle_{};  ///< [rad]
   JointArray speed_{};  ///< [rad/s]

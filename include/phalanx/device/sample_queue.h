@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples from the thread that waits for a device's wire to the loop's thread; neither ever waits.
+// Samples, passed from the thread that waits for a device to the loop's thread; neither ever waits.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace phalanx {
 
-/// A ring of fixed size. One thread writes, one reads. Real-time: no allocation, lock, throw or I/O.
+/// Ring of fixed size for one writing and one reading thread. Real-time: no allocation, lock, throw or I/O.
 class SampleQueue {
  public:
-  static constexpr std::size_t kCapacity = 512;  ///< half a second at 1 kHz
+  static constexpr std::size_t kCapacity = 512;  ///< 0.5 s at 1 kHz
 
-  /// The writer's. @returns whether there was room
+  /// Appends a sample; for the writer. @returns true if there was room
   bool push(const DeviceSample& sample) noexcept {
     const std::size_t written = written_.load(std::memory_order_relaxed);
     if (written - read_.load(std::memory_order_acquire) == kCapacity) return false;
@@ -27,10 +27,10 @@ class SampleQueue {
   }
 
   struct Taken {
-    std::size_t count = 0;    ///< given
-    std::size_t dropped = 0;  ///< older ones, for which `out` had no room
+    std::size_t count = 0;    ///< samples in `out`
+    std::size_t dropped = 0;  ///< older samples for which `out` had no room
   };
-  /// The reader's: all that is there, oldest first; where `out` is too small, the newest of it.
+  /// Takes all samples, oldest first; for the reader. If `out` is too small, it takes the newest ones.
   Taken take(std::span<DeviceSample> out) noexcept {
     std::size_t read = read_.load(std::memory_order_relaxed);
     const std::size_t there = written_.load(std::memory_order_acquire) - read;

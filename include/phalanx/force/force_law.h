@@ -1,30 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
+// Force laws of a contact. S1 and S2 are the papers listed in docs/architecture.md.
 #pragma once
 
 #include "phalanx/force/force_parameters.h"
 
 namespace phalanx {
 
-/// Magnitude of one contact's force [N], >= 0: how hard the object pushes the finger out. 0 for d <= 0.
+/// Returns the magnitude of one contact's force [N], >= 0, with which the object pushes the finger out. 0 for
+/// d <= 0.
 ///   Hooke              k d                                        S1 eq. (1), S2 eq. (1)
 ///   Kelvin-Voigt       max(0, k d + b v)
 ///   Hunt-Crossley      max(0, K d^n (1 + a v)),  K = k (1 mm)^(1-n), so that F = k d at d = 1 mm, v = 0
-///   Duffing            k d + k3 d^3                               Cui's spring, as S2 cites it
-///   linear-then-cubic  k d for d <= d1, else k d + k3 (d - d1)^3  Stepp's two pieces; continuous with its
-///   slope
+///   Duffing            k d + k3 d^3                               Cui's spring, cited by S2
+///   linear-then-cubic  k d for d <= d1, else k d + k3 (d - d1)^3  Stepp's two pieces, cited by S2
+/// The linear-then-cubic law and its slope are continuous.
 /// @param law    parameters, SI
 /// @param depth  d [m]
-/// @param speed  v = closing speed of the contact's material point on the HCP, low-passed [m/s]
+/// @param speed  v, the low-passed closing speed of the contact's material point on the
+/// HCP (contact/gdp.h) [m/s]
 /// @returns finite for finite arguments
 /// Real-time: O(1), no allocation, lock, throw or I/O.
 [[nodiscard]] double law_force(const ForceLawParameters& law, double depth, double speed) noexcept;
 
-/// Slope dF/dd of the law at this depth, at rest (v = 0) [N/m], >= 0; below the surface's d = 0 its slope
-/// there. Finite for finite arguments. Real-time.
+/// Returns the slope dF/dd of the law at this depth and at rest (v = 0) [N/m], >= 0. For d < 0 it is the
+/// slope at d = 0. Finite for finite arguments. Real-time.
 [[nodiscard]] double law_slope(const ForceLawParameters& law, double depth) noexcept;
 
-/// Gain of one step of a first-order low-pass of corner `corner_hz` at period T [s], discretised exactly: 1 -
-/// exp(-2 pi f T). Set-up or real-time.
+/// Returns the gain of one step of a first-order low-pass with corner `corner_hz` [Hz] at period T [s],
+/// discretised exactly: 1 - exp(-2 pi f T). Set-up or real-time.
 [[nodiscard]] double lowpass_gain(double corner_hz, double period) noexcept;
 
 }  // namespace phalanx

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every number that decides how large a force or torque may become, and how fast it may change.
+// Parameters that determine how large a force or torque may become, and how fast it may change. S1 and S2 are
+// the papers listed in docs/architecture.md.
 #pragma once
 
 #include <limits>
@@ -8,16 +9,17 @@
 
 namespace phalanx {
 
-/// Force of one contact as a function of its depth d [m] and closing speed v = dd/dt [m/s]. All are zero for
-/// d <= 0 and never pull.
+/// Force law of one contact as a function of its depth d [m] and closing speed v = dd/dt [m/s]. Every law is
+/// zero for d <= 0 and never pulls.
 enum class ForceLaw {
   kHooke,            ///< F = k d                                             S1 eq. (1), S2 eq. (1)
   kKelvinVoigt,      ///< F = max(0, k d + b v)
-  kHuntCrossley,     ///< F = max(0, k d^n (1 + a v)), k d in N at d = 1 mm:   see ForceLawParameters
+  kHuntCrossley,     ///< F = max(0, K d^n (1 + a v)), with K such that F = k d at d = 1 mm and v = 0
   kDuffing,          ///< F = k d + k3 d^3                                    Cui (cited by S2)
   kLinearThenCubic,  ///< F = k d up to d1, then k d + k3 (d - d1)^3          Stepp (cited by S2)
 };
 
+/// Parameters of the force law.
 struct ForceLawParameters {
   ForceLaw law = ForceLaw::kHooke;
   double stiffness = 500.0;             ///< k [N/m] >= 0; Hunt-Crossley: the chord stiffness F/d at d = 1 mm
@@ -29,21 +31,15 @@ struct ForceLawParameters {
   double linear_depth = 2e-3;           ///< d1 [m] >= 0, linear-then-cubic
 };
 
-/// S2 eq. (3)-(4): the force sent changes by at most these bounds per second.
-struct SmoothingParameters {
-  bool enabled = true;
-  double min_rate = -20.0;  ///< [N/s] < 0; -infinity: rise-only
-  double max_rate = 20.0;   ///< [N/s] > 0
-};
-
+/// Limits of force, torque and joint speed. Each is on by default.
 struct LimitParameters {
   bool fingertip_force_enabled = true;
-  double fingertip_force = 5.0;  ///< [N] per contact, and on the vector sum of a digit's contacts
+  double fingertip_force = 5.0;  ///< [N], of each contact and of the vector sum of a digit's contacts
   bool joint_torque_enabled = true;
-  double joint_torque = 0.5;  ///< [Nm] per joint, absolute
+  double joint_torque = 0.5;  ///< [Nm] for each joint, absolute
   bool torque_rate_enabled = true;
-  double torque_rate = 10.0;  ///< [Nm/s] per joint, absolute, against the last torque commanded
-  double joint_speed = 40.0;  ///< [rad/s] a sample's angle that moves faster is slewed at this speed
+  double torque_rate = 10.0;  ///< [Nm/s] for each joint, absolute, from the last commanded torque
+  double joint_speed = 40.0;  ///< [rad/s]; a measured angle that moves faster is slewed at this speed
 };
 
 }  // namespace phalanx

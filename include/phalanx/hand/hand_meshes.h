@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand's meshes: what collides, and what is shown.
+// A hand's collision meshes and display meshes.
 #pragma once
 
 #include "phalanx/hand/hand_model.h"
 
 namespace phalanx {
 
-/// One hand's two sets of meshes, each in its segment's frame S and of one handedness [m]. The collision
-/// meshes are closed and wind outwards; the display meshes may be open. Often both are the same.
+/// Both sets of meshes of one hand, of one handedness, each mesh in its segment's frame S [m]. The collision
+/// meshes are closed and wind outwards. The display meshes may be open. Often both sets are the same.
 struct HandMeshes {
   SegmentMeshes collision;
   SegmentMeshes display;
 };
 
-/// The mirror image in the plane x = 0, exactly: the signs of x change, and each triangle runs the other way
-/// round, so that an outward winding stays outward. A right hand's segment becomes a left hand's. Twice is
-/// the identity, to the last bit. Set-up only.
+/// Mirrors exactly in the plane x = 0: negates each x, and reverses each triangle so that an outward
+/// winding stays outward. A right hand's segment becomes a left hand's. Applied twice, it gives the same
+/// bits again. Set-up only.
 void mirror(TriangleMesh& mesh) noexcept;
 void mirror(SegmentMeshes& meshes) noexcept;
 

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constant hand: chains of Denavit-Hartenberg joints, and one closed triangle mesh per segment.
+// The constant hand: chains of Denavit-Hartenberg (D-H) joints, and one closed triangle mesh per segment.
+//
+// The folder `hand` turns joint angles into poses of segments:
+// 1. joints.h numbers and names the 20 joints and 16 segments.
+// 2. sensor_mapping.h turns raw sensor values into joint angles.
+// 3. hand_parameters.h holds the numbers of one hand, always of a right one; fit.h scales them to a patient.
+// 4. HandModel (below) computes forward kinematics and Jacobians in the loop.
+// 5. hand_meshes.h and hand_skin.h hold what is shown; anthropometry.h says which sizes are plausible.
+// S1 and S2 are the papers listed in docs/architecture.md.
 #pragma once
 
 #include <array>
@@ -11,31 +19,29 @@
 
 namespace phalanx {
 
-/// One mesh per segment, each in its segment's frame S: WebXR's, origin at the segment's joint, -Z along the
-/// bone towards the tip, +Y out of the back [m].
+/// Meshes of all segments, each in its segment's frame S [m]. S is WebXR's: origin at the segment's joint, -Z
+/// along the bone towards the tip, +Y out of the back of the hand.
 using SegmentMeshes = std::array<TriangleMesh, kSegments>;
 
-/// A joint of a digit at one pose, in world W: its axis (unit, the direction about which a positive angle
-/// turns) and a point on it [m].
+/// A joint of a digit at one pose, in world W: a point on its axis [m], and the unit vector along it. A
+/// positive angle turns about this vector (right-handed).
 struct JointAxis {
   Vec3 axis = Vec3::UnitX();
   Vec3 centre = Vec3::Zero();
 };
 
-/// A digit at one pose, in world W: where its three segments are and where its four joints turn.
+/// Poses of a digit's three segments and axes of its four joints at one set of angles, in world W.
 struct DigitPose {
   std::array<Pose, kSegmentsPerDigit> segment;  ///< X_WS
   std::array<JointAxis, kJointsPerDigit> joint;
 };
 
-/// Angles of one digit's joints [rad].
-using DigitAngles = std::array<double, kJointsPerDigit>;
-
-/// The hand at one set of angles.
+/// Poses of all digits at one set of angles, in world W. The palm is fixed: HandModel::palm_pose().
 struct HandPoses {
   std::array<DigitPose, kDigits> digit;
 };
 
+/// Kinematics and meshes of one hand, right or left, at a fixed place in the world. Constant.
 class HandModel {
  public:
   /// @param parameters  a right hand's numbers; `handedness` mirrors them in H's x = 0 plane
@@ -46,25 +52,28 @@ class HandModel {
 
   [[nodiscard]] const HandParameters& parameters() const noexcept { return parameters_; }
   [[nodiscard]] Handedness handedness() const noexcept { return handedness_; }
+  /// Returns the mesh of a segment, in its frame S [m].
   [[nodiscard]] const TriangleMesh& mesh(int segment) const noexcept {
     return meshes_[static_cast<std::size_t>(segment)];
   }
-  /// All of them, in the segments' frames.
+  /// Returns the meshes of all segments, in the segments' frames.
   [[nodiscard]] const SegmentMeshes& meshes() const noexcept { return meshes_; }
   [[nodiscard]] int triangle_count() const noexcept;
 
-  /// Pose of the palm, X_WS; it does not move.
+  /// Returns the pose X_WS of the palm, which does not move.
   [[nodiscard]] const Pose& palm_pose() const noexcept { return X_WH_; }
 
-  /// Forward kinematics of one digit: the product of its D-H transforms. Real-time: no allocation, lock,
-  /// throw or I/O.   S1 sec. II
+  /// Computes the forward kinematics of one digit as the product of its D-H transforms.           S1 sec. II
+  /// @param angle  the digit's joint angles, finite [rad]
+  /// Real-time: O(1), no allocation, lock, throw or I/O.
   void digit_pose(int digit, const DigitAngles& angle, DigitPose& pose) const noexcept;
 
-  /// All five digits. Real-time.
+  /// Computes the poses of all five digits. Real-time.
   void poses(const JointArray& angle, HandPoses& poses) const noexcept;
 
-  /// Largest distance of any point of the digit's segment k from the centre of the digit's joint i, at any
-  /// angles [m]; i must move k.
+  /// Returns an upper bound [m] on the distance of the digit's segment k from the centre of its joint i. It
+  /// holds for each point of the segment and at all angles. Real-time.
+  /// @pre joint i moves segment k
   [[nodiscard]] double reach(int digit, int joint, int k) const noexcept {
     return reach_[static_cast<std::size_t>(digit)][static_cast<std::size_t>(joint)]
                  [static_cast<std::size_t>(k)];
@@ -75,7 +84,7 @@ class HandModel {
   Handedness handedness_;
   Pose X_WH_;
   SegmentMeshes meshes_;
-  /// A D-H row, with what does not depend on the angle worked out.
+  /// D-H row of a joint, with the cosine and sine of its twist precomputed.
   struct ChainJoint {
     double a = 0.0;
     double d = 0.0;
@@ -84,31 +93,30 @@ class HandModel {
     double sin_alpha = 0.0;
   };
 
-  /// In W, each digit's first joint before it turns: x distal, z flexion axis. A right hand's frame; of a
-  /// left hand, that frame's reflection in H's x = 0 plane, which is left-handed.
+  /// Frame of each digit's first joint at angle 0, in W: x distal, z the flexion axis. For a left hand it is
+  /// the right hand's frame reflected in H's plane x = 0, and thus left-handed.
   std::array<Pose, kDigits> X_WB_;
   std::array<std::array<ChainJoint, kJointsPerDigit>, kDigits> joint_{};
   std::array<std::array<std::array<double, kSegmentsPerDigit>, kJointsPerDigit>, kDigits> reach_{};
 };
 
-/// The angles of one digit out of the whole hand's. Real-time.
-[[nodiscard]] DigitAngles digit_angles(const JointArray& angle, int digit) noexcept;
-
-/// Columns of the geometric Jacobian of the point p_W fixed to the digit's segment k:  v = sum_i column_i
-/// dq_i/dt. Columns of joints that do not move the segment are zero. Real-time.
+/// Columns of the geometric Jacobian of a point fixed to a digit's segment:  v = sum_i column_i dq_i/dt.
+/// Columns of joints that do not move the segment are zero.
 struct PointJacobian {
   std::array<Vec3, kJointsPerDigit> linear;   ///< axis x (p - centre) [m]
   std::array<Vec3, kJointsPerDigit> angular;  ///< axis [-]
 };
+/// Returns the Jacobian at the point p_W [m] of the digit's segment k. Real-time: O(1), no allocation.
 [[nodiscard]] PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept;
 
-/// Tapered capsules and a rounded slab from the lengths and breadths in `parameters`, about `triangles` over
-/// the whole hand.
-/// @throws std::invalid_argument if `triangles` is below 800 or above 2,000,000.
+/// Returns tapered capsules for the digits and a rounded slab for the palm, from the lengths and breadths in
+/// `parameters`. The whole hand has about `triangles` triangles. Set-up only.
+/// @throws std::invalid_argument if `triangles` is below 800 or above 2,000,000
 [[nodiscard]] SegmentMeshes make_capsule_meshes(const HandParameters& parameters, Handedness handedness,
                                                 int triangles);
 
-/// The hand with capsule meshes.
+/// Returns the hand with capsule meshes, for a program without mesh files. Set-up only.
+/// @throws as make_capsule_meshes() and HandModel
 [[nodiscard]] HandModel make_hand_model(const HandParameters& parameters, Handedness handedness,
                                         const Pose& X_WH, int triangles);
 

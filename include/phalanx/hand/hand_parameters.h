@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of one hand, as a hand file states them. Always those of a RIGHT hand; a left hand is its
-// mirror image.
+// The numbers of one hand as a hand file states them, always of a RIGHT hand. A left hand is its mirror
+// image. S1 is a paper, listed in docs/architecture.md.
 #pragma once
 
 #include <array>
@@ -17,29 +17,34 @@ struct DhRow {
   double alpha = 0.0;  ///< link twist [rad]
   double d = 0.0;      ///< link offset [m]
   double theta = 0.0;  ///< joint angle at q = 0 [rad]
+
+  [[nodiscard]] bool operator==(const DhRow&) const = default;
 };
 
-/// A digit's chain. Hand frame H, WebXR's `wrist`: origin at the wrist's centre, -Z towards the middle
-/// finger's knuckle, +Y out of the back of the hand, +X to the right of a right hand held palm down (the
-/// little finger's side).
+/// Parameters of a digit's kinematic chain in the hand frame H, which is WebXR's `wrist`. Its origin is the
+/// wrist's centre. Axis -Z points towards the middle finger's knuckle, +Y out of the back of the hand. Axis
+/// +X points to the right of a right hand held palm down, which is the little finger's side.
 struct DigitParameters {
   Vec3 base = Vec3::Zero();      ///< centre of the first joint, in H [m]
   Vec3 distal = -Vec3::UnitZ();  ///< direction of the straight digit at q = 0, in H [-]
   Vec3 dorsal = Vec3::UnitY();   ///< out of the digit's back at q = 0, in H [-]; made orthogonal to `distal`
-  std::array<DhRow, kJointsPerDigit>
-      dh;  ///< flexion, abduction, hinge, hinge; the last row's a is the bone's length
+  /// Joints in the order flexion, abduction, hinge, hinge. The last row's a is the distal bone's length.
+  std::array<DhRow, kJointsPerDigit> dh;
+
+  [[nodiscard]] bool operator==(const DigitParameters&) const = default;
 };
 
-/// A tapered capsule along a segment's bone: spheres of these radii at the segment's joint and at the bone's
-/// end.
+/// Tapered capsule along a segment's bone: spheres around the segment's joint and around the bone's far end.
 struct SegmentShape {
   double length = 0.0;       ///< from the joint to the centre of the far sphere [m]
   double radius_base = 0.0;  ///< [m]
   double radius_tip = 0.0;   ///< [m]
+
+  [[nodiscard]] bool operator==(const SegmentShape&) const = default;
 };
 
-/// The palm: a rounded slab between an elliptic section at the wrist and one at the knuckles (full breadths
-/// and thicknesses) [m].
+/// Rounded slab of the palm, between an elliptic section at the wrist and one at the knuckles [m]. Breadths
+/// and thicknesses are full, not half.
 struct PalmShape {
   double length = 0.0;
   double wrist_breadth = 0.0;
@@ -47,8 +52,11 @@ struct PalmShape {
   double knuckle_breadth = 0.0;
   double knuckle_thickness = 0.0;
   Vec3 offset = Vec3::Zero();  ///< centre of the wrist section in H [m]
+
+  [[nodiscard]] bool operator==(const PalmShape&) const = default;
 };
 
+/// Numbers of one right hand.
 struct HandParameters {
   std::string name;
   std::array<DigitParameters, kDigits> digits;
@@ -56,7 +64,9 @@ struct HandParameters {
   PalmShape palm;
   JointArray min_angle{};   ///< range of motion [rad]
   JointArray max_angle{};   ///< range of motion [rad]
-  JointArray open_angle{};  ///< the open hand, from which the GDP starts [rad]
+  JointArray open_angle{};  ///< the open hand, where the GDP (contact/gdp.h) starts [rad]
+
+  [[nodiscard]] bool operator==(const HandParameters&) const = default;
 };
 
 }  // namespace phalanx

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Indexed triangle mesh. The folder `mesh` makes and imports meshes; all of it is set-up and may throw:
+// 1. primitives.h and objects.h generate meshes of exact dimensions.
+// 2. import.h reads mesh files through Assimp, in the isolated process of isolated.h or isolation_helper.h.
+// 3. repair.h repairs the triangles: it welds vertices (weld.h), closes cracks (near_vertices.h,
+//    t_junctions.h) and turns shells outward (shells.h).
+// 4. mesh_report.h reports defects that were found and repaired.
+// 5. decimate.h reduces triangles, and corner_normals.h computes the normals of smooth surfaces.
 #pragma once
 
 #include <array>
@@ -12,34 +19,36 @@ namespace phalanx {
 /// Indices of a triangle's corners, counter-clockwise seen from outside.
 using Triangle = std::array<std::int32_t, 3>;
 
-/// An indexed triangle mesh; positions in metres in the frame that its owner states. A closed mesh's
-/// triangles wind counter-clockwise seen from outside.
+/// Indexed triangle mesh with positions in metres, in the frame that its owner states. Triangles of a closed
+/// mesh wind counter-clockwise seen from outside.
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
 };
 
-/// Appends `part` to `mesh`, its vertices mapped by `X` (X_mesh_part). `part` may be `mesh` itself.
-/// @throws std::invalid_argument if there would be more vertices than 32-bit indices reach.
+/// Appends `part` to `mesh`, its vertices mapped by `X` (X_mesh_part). `part` may be `mesh`
+/// itself. Set-up only.
+/// @throws std::invalid_argument if there would be more vertices than 32-bit indices reach
 void append(TriangleMesh& mesh, const TriangleMesh& part, const Pose& X = {});
 
-/// Every edge is shared by exactly two triangles that run through it in opposite directions; false for an
-/// empty mesh. O(n log n).
+/// @returns true if every edge is shared by exactly two triangles that run through it in opposite directions;
+/// false for an empty mesh. O(n log n); set-up only.
 [[nodiscard]] bool is_closed(const TriangleMesh& mesh);
 
-/// Volume enclosed by a closed mesh [m^3], positive if the triangles wind counter-clockwise seen from
-/// outside: sum of (a x b) . c / 6 over the triangles. @pre valid indices.
+/// Returns the volume enclosed by a closed mesh [m^3]: the sum of (a x b) . c / 6 over the triangles. It is
+/// positive if they wind counter-clockwise seen from outside.
+/// @pre valid indices
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
 
-/// Smallest and largest coordinate over the vertices [m]; of no vertices: +infinity and -infinity.
+/// Smallest and largest coordinates of a mesh's vertices [m]; +infinity and -infinity without vertices.
 struct Bounds {
   Vec3 min;
   Vec3 max;
 };
 [[nodiscard]] Bounds bounds(const TriangleMesh& mesh);
 
-/// Throws std::invalid_argument with a clear message that starts with `name` unless the mesh has at least one
-/// triangle, finite vertices and valid indices.
+/// Checks that a mesh has at least one triangle, finite vertices and valid indices. Set-up only.
+/// @throws std::invalid_argument with a message that starts with `name`, if it does not
 void check_mesh(const TriangleMesh& mesh, const char* name);
 
 }  // namespace phalanx

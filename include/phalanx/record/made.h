@@ -5,20 +5,21 @@
 
 namespace phalanx {
 
-/// Where and from what a result was made: libm may round differently on another CPU, so every result says it.
+/// Origin of a result. libm may round differently on another CPU, so every result states where it was made.
 struct Made {
   std::string commit;      ///< `git describe` at build time, "-dirty" appended if tracked files differed;
                            ///< "unknown" outside git
   std::string cpu;         ///< model name
   std::string compiler;    ///< name and version
-  std::string build_type;  ///< CMake's, with the sanitizers if any
+  std::string build_type;  ///< CMake's build type, with the sanitizers if any
   std::string date;        ///< UTC, ISO 8601, to the second
 };
 
-/// Of this program on this machine, now. Reads the clock and /proc/cpuinfo; not real-time.
+/// @returns the origin of this program on this machine, now. It reads the clock and
+/// /proc/cpuinfo; not real-time.
 [[nodiscard]] Made made_here();
 
-/// The commit alone, as in Made.
+/// @returns the commit alone, as in Made.
 [[nodiscard]] const char* built_from_commit() noexcept;
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an import found, for programs: `phalanx mesh check --json` and the answer to an upload.
+// The findings of a mesh import, for programs: `phalanx mesh check --json` and the answer to an upload.
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace phalanx {
 
-/// Usable in a scene or not, in a sentence. Set-up only.
+/// States in a sentence whether the mesh can be used in a scene. Set-up only.
 [[nodiscard]] std::string mesh_verdict(const MeshReport& report);
 
-/// The report as a JSON object (docs/meshes.md). @param file  how it is named in it. Set-up only.
+/// Writes the report as a JSON object (docs/meshes.md). Set-up only.
+/// @param file  name of the mesh file in the object
 [[nodiscard]] std::string mesh_report_json(const std::string& file, const MeshReport& report);
 
 }  // namespace phalanx

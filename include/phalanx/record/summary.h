@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a whole run came to, gathered tick by tick.
+// The result of a whole run, collected tick by tick.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 namespace phalanx {
 
+/// Result of a run: counts and peaks.
 struct Summary {
   std::string scene;
   std::uint64_t ticks = 0;
@@ -26,35 +27,39 @@ struct Summary {
   std::array<double, kSegments> peak_depth{};            ///< [m]
   JointArray peak_torque{};                              ///< largest absolute value commanded [Nm]
   double peak_total_force = 0.0;         ///< largest sum over all segments of the forces sent [N]
-  double peak_total_force_time_s = 0.0;  ///< its first tick's time
+  double peak_total_force_time_s = 0.0;  ///< time of its first tick
   double largest_slid = 0.0;             ///< over all contacts [m]
-  std::array<std::uint64_t, kDigits> inside_ticks{};      ///< in which each digit gave no force: start_inside
+  std::array<std::uint64_t, kDigits> inside_ticks{};      ///< ticks in which a digit gave no force, because
+                                                          ///< it started inside the object
   std::array<std::uint64_t, kStatusBits> status_ticks{};  ///< ticks in which each status bit was set
   std::vector<std::string>
-      notes;  ///< sentences that the caller adds to the warnings, e.g. on the motion file
+      notes;  ///< sentences that the caller adds to the warnings, for example on the motion file
   Made made;
 };
 
-/// Adds one tick: counts and peaks. `summary.ticks` grows by one.
+/// Adds one tick to counts and peaks. `summary.ticks` grows by one.
 void add_tick(Summary& summary, const Snapshot& snapshot);
 
-/// Sum over all segments of the force magnitudes sent [N].
+/// @returns the sum over all segments of the force magnitudes sent [N].
 [[nodiscard]] double total_force(const Snapshot& snapshot);
 
-/// One sentence for each thing that makes the result less than it looks: clamped, lost or jumping samples, a
-/// digit that started inside, contacts that slid, a search that gave up, a torque that was not finite; then
-/// `summary.notes`. Limits that acted are reported by `limiters`, not here: acting is what they are for.
+/// @returns one sentence for each reason to distrust the result, then `summary.notes`. Reasons are clamped,
+/// lost or jumping samples, a digit that started inside, an oscillating force, and contacts that slid. A
+/// search that gave up and a torque that was not finite are reasons, too. limiters() reports the limits that
+/// acted, which is their purpose.
 [[nodiscard]] std::vector<std::string> warnings(const Summary& summary);
 
-/// A limiter's name in files, and the ticks in which it acted.
+/// Name of a limiter in files, and the ticks in which it acted.
 struct LimiterActivity {
   const char* name;
   const char* key;  ///< the scene key that sets it
   std::uint64_t ticks;
 };
+/// @returns the four limiters with the ticks in which each acted.
 [[nodiscard]] std::array<LimiterActivity, 4> limiters(const Summary& summary);
 
-/// summary.json: two-space indented, keys in a fixed order (docs/outputs.md), ends with a line feed.
+/// Writes summary.json: indented by two spaces, keys in a fixed order (docs/outputs.md), with a
+/// final line feed.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A calibration file (TOML): what `phalanx device calibrate` writes and a station reads.
+// A calibration file (TOML), which `phalanx device calibrate` writes and a station reads.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace phalanx {
 
-/// Version of the format below; a file with another one is refused.
+/// Version of the format below; a file of another version is refused.
 inline constexpr int kCalibrationFormat = 1;
 
-/// The file's text:
+/// Writes a calibration as the text of its file:
 ///   format = 1
 ///   device = "opengloves"            # DeviceInfo::name
 ///   serial = "0001"                  # of the one device that it is for
@@ -25,17 +25,18 @@ inline constexpr int kCalibrationFormat = 1;
 ///   offset = -0.21
 ///   residual_rad = 0.011             # of the worst pose
 ///   poses = [ { name = "fist", raw = 3021.5, value = 1.05 }, ... ]
-/// Numbers read back to the same bits. @throws std::invalid_argument if a channel cannot stand in such a
-/// file.
+/// Numbers are read back to the same bits.
+/// @throws std::invalid_argument if the format cannot express a channel.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration);
 
 /// Reads a calibration file.
-/// @throws SceneError naming file, line, key, value and remedy: no such file, broken TOML, unknown or missing
-/// key, another format, a date that is none, no channel or more than kMaxChannels, a channel twice, a number
-/// that is not finite or out of range, a gain of 0. Set-up only.
+/// @throws SceneError naming file, line, key, value and remedy. It refuses a missing file, broken TOML, an
+/// unknown or a missing key, another format, and an invalid date. It refuses no channel, more than
+/// kMaxChannels, and a channel twice. It also refuses a number that is not finite or out of range, and a gain
+/// of 0. Set-up only.
 [[nodiscard]] Calibration load_calibration(const std::filesystem::path& file);
 
-/// The same from text; `origin` names it in messages.
+/// Reads a calibration from text; `origin` names it in messages.
 [[nodiscard]] Calibration parse_calibration(const std::string& text, const std::string& origin);
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the program's own scenes/ and assets/ are.
+// The folders of the program's own scenes and assets.
 #pragma once
 
 #include <filesystem>
@@ -7,19 +7,19 @@
 
 namespace phalanx {
 
-/// The folder that holds scenes/ and assets/: the environment's PHALANX_DATA if set; else ../share/phalanx
-/// beside the running program's folder if it is there (an installed program); else the source tree that the
-/// program was built from.
-/// @throws SceneError if none of them has a scenes/ and an assets/ folder, naming the places that were tried.
-/// Set-up only.
+/// Finds the folder that holds scenes/ and assets/. It is the environment's PHALANX_DATA if set. Otherwise it
+/// is ../share/phalanx beside the running program's folder, if that exists (an installed program). Otherwise
+/// it is the source tree from which the program was built.
+/// @throws SceneError naming the places that were tried if none has a scenes/ and an assets/
+/// folder. Set-up only.
 [[nodiscard]] std::filesystem::path data_folder();
 
-/// A data file by bare name (`folder`/`name``extension` in data_folder()) or by path. `name` is a path if it
-/// contains a `/` or ends with `extension`; a relative path is looked for in `base`.
-/// @param what    what the file is, for messages: "hand", "scene"
+/// Finds a data file by bare name (`folder`/`name``extension` in data_folder()) or by path. `name` is a path
+/// if it contains a `/` or ends with `extension`; a relative path is searched in `base`.
+/// @param what    kind of file, for messages: "hand", "scene"
 /// @param folder  "assets/hands", "scenes", ...
-/// @throws SceneError if there is no such file; a bare name is answered with the nearest one that exists.
-/// Set-up only.
+/// @throws SceneError if there is no such file; for a bare name it names the nearest existing
+/// one. Set-up only.
 [[nodiscard]] std::filesystem::path find_data_file(const std::string& what, const std::string& name,
                                                    const std::string& folder, const std::string& extension,
                                                    const std::filesystem::path& base);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motions as CSV: a header `time_s` and joint names (any of them, in any order), times in s, angles in rad,
-// any rate.
+// Motions as CSV (comma-separated values): a header with `time_s` and names of joints (any, in any order),
+// times in s, angles in rad, any rate.
 #pragma once
 
 #include <filesystem>
@@ -13,28 +13,23 @@
 
 namespace phalanx {
 
-/// Reads a motion. Without a mapping every column but `time_s` must be a joint's name; with one, the columns
-/// that it names must be there and the others are ignored. Joints without a column stay at `open_angle`.
-/// @param trial  a file whose time runs backwards holds several trials: which one to read, counted from 1.
-/// Without it
-///               such a file is refused with a message that says how many there are. Rows outside the trial
-///               are only searched for time.
-/// @throws SceneError naming file, line, column, value and remedy: missing or empty file, missing, unknown or
-/// duplicate column, ragged
-///         row, text or NaN or infinity in a number, time that stands still or runs backwards, no such trial,
-///         a line of more than 64 KiB, an angle of more than a full turn (degrees taken for radians). Linear
-///         in the file's size. Set-up only.
+/// Reads a motion. Without a mapping, every column but `time_s` must be a joint's name. With a mapping, the
+/// columns that it names must exist, and others are ignored. Joints without a column stay at `open_angle`.
+/// Linear in the file's size. Set-up only.
+/// @param trial  number of the trial, counted from 1, in a file whose time runs backwards: it holds several
+/// trials. Without it, such a file is refused, and the message states how many there are. Of the rows outside
+/// the trial, only the time is read.
+/// @throws SceneError naming file, line, column, value and remedy. It refuses a missing or empty file, a
+/// missing, unknown or duplicate column, a ragged row, and text, NaN or infinity in place of a number. It
+/// refuses time that does not increase, an unknown trial, and a line of more than 64 KiB. It also refuses an
+/// angle of more than a full turn (degrees instead of radians).
 [[nodiscard]] Motion load_motion(const std::filesystem::path& file,
                                  const std::optional<SensorMapping>& mapping = {},
                                  std::optional<int> trial = {}, const JointArray& open_angle = {});
 
-/// The same from memory; `origin` names it in messages. For fuzzing and uploads.
+/// Reads a motion from memory; `origin` names it in messages. For fuzzing and uploads.
 [[nodiscard]] Motion parse_motion(std::string_view text, const std::string& origin,
                                   const std::optional<SensorMapping>& mapping = {},
                                   std::optional<int> trial = {}, const JointArray& open_angle = {});
-
-/// Writes `time_s` and all 20 joints with the digits that read back to the same bits. @throws
-/// std::runtime_error if it cannot be written.
-void write_motion_csv(const Motion& motion, const std::filesystem::path& file);
 
 }  // namespace phalanx

@@ -5,7 +5,7 @@
 
 namespace phalanx {
 
-/// A scene, hand, mapping or motion file cannot be used as it stands. what() names the file and line (or the
+/// Error of a scene, hand, mapping or motion file that cannot be used. what() names the file and line (or the
 /// override), the key or column, the value and the remedy.
 class SceneError : public std::invalid_argument {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cockpit: what the pages see of the station, and what they may do with it.             docs/cockpit.md
+// The cockpit: what pages see of the station and what they may do with it. See docs/cockpit.md.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,29 @@
 
 namespace phalanx {
 
-/// What stays as it is from the start on.
+/// Settings that stay constant from the start on.
 struct CockpitSettings {
-  std::filesystem::path log;      ///< file: every change, a JSON line each; empty: none
-  std::filesystem::path uploads;  ///< folder for meshes that pages send; made when the first comes
+  std::filesystem::path log;      ///< file for the log of changes, one JSON line each; empty: none
+  std::filesystem::path uploads;  ///< folder for meshes that pages send; created with the first
   std::string version;            ///< of the program, for people
-  std::function<double()> clock;  ///< that only goes forward [s]; empty: the system's. For tests
+  std::function<double()> clock;  ///< monotonic [s]; empty: the system's. For tests
 };
 
-/// Roles: everybody who sees the page may stop; one page at a time is the operator and may do the rest. The
-/// first page that may operate becomes it by itself; others take over openly: all pages are told who took it
-/// from whom. A page that reloads keeps its role if it is back within 10 s; one that comes back while its old
-/// line still counts as open takes its own place. A page is sent ticks only as fast as it says that it has
-/// seen them; one that speaks another protocol is turned away, in words. The log is written by a thread of
-/// its own; where it cannot be written, changes are made nevertheless, and both the pages and the log say so.
-/// Nothing here is for a real-time thread: all functions allocate, lock, or both.
+/// Application behind the web server: connects the pages with a StationHost.
+///
+/// Roles. Every page may stop. One page at a time is the operator and may also do the rest. The first page
+/// that may operate becomes the operator; others take control openly, and all pages are told who took it
+/// from whom. A page that reconnects within 10 s keeps its role. If its old connection still counts as open,
+/// it replaces the old one.
+///
+/// Messages. A page is sent ticks only as fast as it acknowledges them. A page with another protocol is
+/// refused with a reason. If the log of changes cannot be written, changes are made all the same, and both
+/// the pages and the log say so.
+///
+/// Not real-time: all functions allocate, lock, or both.
 class Cockpit final : public WebApplication {
  public:
-  static constexpr std::uint32_t kProtocol = 1;                     ///< of proto/phalanx/cockpit.proto
+  static constexpr std::uint32_t kProtocol = 2;                     ///< of proto/phalanx/cockpit.proto
   static constexpr std::size_t kUploadLimit = 64U * 1024U * 1024U;  ///< [bytes]
 
   /// @param host  outlives the cockpit
@@ -39,31 +44,31 @@ class Cockpit final : public WebApplication {
   Cockpit(StationHost& host, CockpitSettings settings);
   ~Cockpit() override;
 
-  /// Where its answers go. Before WebServer::start(). @param server  ends before the cockpit, and the
-  /// station's owner calls StationHost::go_on() no more while it does
-  /// @param viewer_urls  links to look on, told to pages that may operate
+  /// Connects the cockpit with its server. Call it before WebServer::start().
+  /// @param server       is destroyed before the cockpit; nothing may call StationHost::poll() meanwhile
+  /// @param viewer_urls  links for viewers, which pages that may operate are sent
   void attach(WebServer& server, const std::vector<std::string>& viewer_urls = {});
 
-  /// A notice of the station's to all pages, and to the log. From any thread.
-  /// @param code  what a page may translate by: "fault", "reset_refused", ...
-  void tell(const std::string& code, const std::string& text, bool fault);
-  /// What somebody has changed at the station's own terminal, likewise. From any thread.
+  /// Sends a notice of the station to all pages and to the log. Any thread.
+  /// @param code  by which pages may translate it: "fault", "reset_refused", ...
+  void notify(const std::string& code, const std::string& text, bool fault);
+  /// Sends a notice of a change that was typed at the station's terminal. Any thread.
   void typed(const std::string& code, const std::string& text);
-  /// Where a fault's report was written: shown beside that fault only. From any thread.
-  /// @param fault_time  FaultEvent::time of the report [s], the host's clock
+  /// Reports the file of a fault report. Pages show it beside that fault only. Any thread.
+  /// @param fault_time  FaultEvent::time of the report, on the host's clock [s]
   void fault_reported(const std::string& file, double fault_time);
 
-  void joined(PageId page, const Visitor& visitor) override;
+  void joined(PageId page, const ClientInfo& client) override;
   void left(PageId page) override;
   void received(PageId page, std::string_view message) override;
-  void received_too_much(PageId page, std::string_view last) override;
+  void received_over_limit(PageId page, std::string_view message) override;
   void frame() override;
-  void requested(const WebRequest& request, std::function<void(WebAnswer)> answer) override;
+  void requested(const WebRequest& request, std::function<void(WebResponse)> respond) override;
   [[nodiscard]] std::size_t body_limit(const WebRequest& head) override;
 
  private:
-  struct Parts;
-  std::shared_ptr<Parts> parts_;  ///< answers that come late look whether it is still there
+  struct Impl;
+  std::shared_ptr<Impl> impl_;  ///< late answers of the station check whether it still exists
 };
 
 }  // namespace phalanx

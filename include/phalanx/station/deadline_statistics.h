@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well the loop keeps its deadlines.
+// Statistics of the loop's deadlines: lateness, duration of a step, overruns.
 #pragma once
 
 #include <algorithm>
@@ -10,24 +10,26 @@
 
 namespace phalanx {
 
-/// What became of every step since the start. About 7 KiB, without pointers: copied to readers by value.
-/// A step overran if it ended after the next deadline; ending right on it is in time.
+/// Counts and histograms of all steps since the start, about 7 KiB. It holds no pointers, so that it can be
+/// copied to readers by value.
+/// A step overran if it ended after the next deadline. A step that ends exactly on the deadline is in time.
 /// Real-time: add() and degraded(); no allocation, lock, throw or I/O.
 struct DeadlineStatistics {
-  static constexpr double kDegradedFor = 1.0;  ///< after an overrun [s]
+  static constexpr double kDegradedFor = 1.0;  ///< how long degraded() holds after an overrun [s]
 
-  double period = 1e-3;  ///< of the loop [s]
-  Histogram lateness{};  ///< waking-up after the deadline: the jitter
+  double period = 1e-3;  ///< period of the loop [s]
+  Histogram lateness{};  ///< from the deadline to the waking-up: the jitter
   Histogram step{};      ///< from waking up to the end of the step
   std::uint64_t steps = 0;
   std::uint64_t overruns = 0;         ///< steps that ended after the next deadline
-  std::uint64_t overruns_in_row = 0;  ///< up to and with the newest step; 0 if that was in time
-  std::uint64_t longest_run = 0;      ///< the largest that overruns_in_row ever was
+  std::uint64_t overruns_in_row = 0;  ///< overruns up to and with the newest step; 0 if that one was in time
+  std::uint64_t longest_run = 0;      ///< the largest value that overruns_in_row ever had
   std::uint64_t skipped = 0;          ///< deadlines left out because the loop was still busy
-  double last_overrun = 0.0;          ///< when it ended [s]; of no meaning while overruns is 0
+  double last_overrun = 0.0;          ///< end of the last overrun [s]; without meaning while overruns is 0
 
-  /// @param wake      what the pacer gave for this step
-  /// @param step_end  the same clock when the step's command had been handed over [s]
+  /// Adds one step.
+  /// @param wake      what the pacer returned for this step
+  /// @param step_end  time at which the step's command had been handed over, of the same clock [s]
   void add(const Wake& wake, double step_end) noexcept {
     ++steps;
     skipped += wake.skipped;
@@ -43,7 +45,7 @@ struct DeadlineStatistics {
     last_overrun = step_end;
   }
 
-  /// As if the steps of `later` had been made here, after the others, in a loop of its period.
+  /// Adds the steps of `later`, as if this loop had made them after its own, at the period of `later`.
   void append(const DeadlineStatistics& later) noexcept {
     period = later.period;
     lateness.merge(later.lateness);
@@ -56,7 +58,7 @@ struct DeadlineStatistics {
     if (later.overruns > 0) last_overrun = later.last_overrun;
   }
 
-  /// Whether a step overran in the last second before `now` [s].
+  /// @returns true if a step overran in the last second before `now` [s].
   [[nodiscard]] bool degraded(double now) const noexcept {
     return overruns > 0 && now - last_overrun < kDegradedFor;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long things took: counts in bins that grow with the duration, so that 1 us and 1 s are told alike.
+// A histogram of durations. Its bins grow with the duration, so that 1 us and 1 s have the
+// same relative error.
 #pragma once
 
 #include <array>
@@ -10,10 +11,10 @@
 
 namespace phalanx {
 
-/// Histogram of durations: 16 equal bins for every doubling, from 0.1 us to 13.4 s, in a fixed 3.5 KiB.
-/// A percentile is the middle of its bin and so at most 1/32 of the true value away from it; the largest is
-/// exact. What is shorter than 0.1 us shares one bin, and what is longer than 13.4 s another.
-/// Written by one thread and copied by value to readers (device/latest.h).
+/// Histogram of durations: 16 equal bins in each octave (doubling), from 0.1 us to 13.4 s, in 3.5 KiB.
+/// A percentile is the middle of its bin, at most 1/32 of the true value away from it; the largest duration
+/// is exact. All durations below 0.1 us share one bin, and all above 13.4 s another.
+/// One thread writes it; readers get a copy by value (device/latest.h).
 /// Real-time: add() and merge(); no allocation, lock, throw or I/O.
 class Histogram {
  public:
@@ -21,23 +22,24 @@ class Histogram {
   static constexpr std::size_t kOctaves = 27;
   static constexpr double kFloor = 1e-7;  ///< lower edge of the first ordinary bin [s]
 
-  /// @param duration  [s]; negative counts as nothing at all, and what is not a number is left out
+  /// Adds one duration.
+  /// @param duration  [s]; a negative one counts as 0, and NaN (not a number) is left out
   void add(double duration) noexcept {
     if (duration != duration) return;
     ++count_[bin(duration)];
     ++total_;
     if (duration > max_) max_ = duration;
   }
-  /// As if everything that was added to `other` had been added here.
+  /// Adds everything that was added to `other`.
   void merge(const Histogram& other) noexcept;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return total_; }
-  /// Exact [us]; 0 if empty.
+  /// @returns the largest duration, exact [us]; 0 if empty.
   [[nodiscard]] double max_us() const noexcept { return max_ * 1e6; }
-  /// Nearest rank: at least `percent` of all durations are not longer [us]. 0 if empty.
+  /// @returns the percentile by nearest rank: `percent` of all durations are not longer [us]. 0 if empty.
   /// @param percent  0 (the shortest) .. 100 (the longest, which is exact)
   [[nodiscard]] double percentile_us(double percent) const noexcept;
-  /// How many lie in octave k, which is [0.1 us 2^k, 0.1 us 2^(k+1)).  @pre k < kOctaves
+  /// @returns the count of durations in octave k, which is [0.1 us 2^k, 0.1 us 2^(k+1)).  @pre k < kOctaves
   [[nodiscard]] std::uint64_t in_octave(std::size_t k) const noexcept;
   [[nodiscard]] std::uint64_t below_range() const noexcept { return count_.front(); }
   [[nodiscard]] std::uint64_t above_range() const noexcept { return count_.back(); }
@@ -45,8 +47,8 @@ class Histogram {
  private:
   static constexpr std::size_t kBins = 1 + kOctaves * kPerOctave + 1;
 
-  /// A double's exponent and the four highest bits of its fraction, read as one number, count exactly these
-  /// bins: 16 for every doubling, equally wide within one.
+  /// Finds the bin of a duration. The exponent of a double and the four highest bits of its fraction, read as
+  /// one number, count exactly these bins: 16 equally wide ones in each octave.
   [[nodiscard]] static std::size_t bin(double duration) noexcept {
     const double ratio = duration / kFloor;
     if (!(ratio >= 1.0)) return 0;
@@ -61,8 +63,8 @@ class Histogram {
   double max_ = 0.0;
 };
 
-/// For people: a line of percentiles, then one for every octave from the first to the last that is not empty.
-/// Set-up and reports only.
+/// Writes a line of percentiles, then one line for each octave from the first to the last that is not empty.
+/// For reports only: it allocates.
 [[nodiscard]] std::string histogram_text(const Histogram& histogram, const std::string& title);
 
 }  // namespace phalanx

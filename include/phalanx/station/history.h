@@ -6,7 +6,7 @@
 
 namespace phalanx {
 
-/// The newest `capacity` values. push() is real-time; one thread at a time.
+/// Ring buffer of the newest `capacity` values, for one thread at a time. Real-time: push() and clear().
 template <class T>
 class History {
  public:
@@ -20,7 +20,7 @@ class History {
   void clear() noexcept { next_ = size_ = 0; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-  /// Oldest first. Allocates.
+  /// @returns all values, the oldest first. Not real-time: it allocates.
   [[nodiscard]] std::vector<T> all() const {
     std::vector<T> out;
     out.reserve(size_);

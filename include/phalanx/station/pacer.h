@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the loop's steps are due, and sleeping until then.
+// Deadlines of the loop's steps, and sleeping until the next one.
 #pragma once
 
 #include <cstdint>
@@ -8,36 +8,36 @@
 
 namespace phalanx {
 
-/// The deadlines t_k = begin + k period, k = 1, 2, ...  Computed from k and never added up, so that they do
-/// not drift. Pure arithmetic. Real-time.
+/// The deadlines t_k = begin + k period, k = 1, 2, ...  Each is computed from k, not from the one before, so
+/// that rounding errors do not add up. Real-time.
 struct DeadlineGrid {
-  double begin = 0.0;   ///< [s]
-  double period = 1.0;  ///< > 0 [s]
+  double begin = 0.0;   ///< t_0 [s]
+  double period = 1.0;  ///< time between two deadlines, > 0 [s]
 
   [[nodiscard]] double at(std::uint64_t k) const noexcept { return begin + static_cast<double>(k) * period; }
-  /// The first k > last with t_k >= now: what was missed is left out, and the grid stays where it was.
+  /// @returns the first k > last with t_k >= now. Missed deadlines are left out; the grid does not move.
   [[nodiscard]] std::uint64_t next(std::uint64_t last, double now) const noexcept;
 };
 
-/// One waking-up.
+/// One waking-up of the loop.
 struct Wake {
-  double deadline = 0.0;      ///< when it was due, on the grid [s]
-  double now = 0.0;           ///< when it happened [s]
+  double deadline = 0.0;      ///< the deadline that was waited for [s]
+  double now = 0.0;           ///< time of the waking-up [s]
   double lateness = 0.0;      ///< now - deadline, >= 0 [s]
-  std::uint64_t skipped = 0;  ///< deadlines between this one and the last that were missed, and left out
+  std::uint64_t skipped = 0;  ///< missed deadlines between the one before and this one
 };
 
-/// Paces a loop with absolute deadlines. A loop that overran is not given several steps at once to catch up:
-/// to a hand that would be an old motion played back in a burst.
+/// Pacer of a loop with absolute deadlines. A loop that overran does not catch up with several steps at once:
+/// the hand would feel an old motion, replayed in a burst.
 class Pacer {
  public:
-  /// The first deadline is one period from now.
+  /// Begins the grid now; the first deadline is one period later.
   /// @param clock   outlives the pacer
   /// @param period  [s]  @throws std::invalid_argument unless positive and finite
   Pacer(const Clock& clock, double period);
 
   /// Sleeps until the next deadline that has not passed; a signal does not shorten it.
-  /// Real-time: no allocation, lock or throw; it waits, which is its purpose.
+  /// Real-time: no allocation, lock or throw. Waiting is its purpose.
   Wake wait() noexcept;
 
   [[nodiscard]] double period() const noexcept { return grid_.period; }

@@ -1,58 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every number that the station's safety rests on. docs/safety.md has them in a table, with what happens.
+// Parameters of the station's safety gate. docs/safety.md lists each with its consequence.
 #pragma once
 
 #include <numbers>
 #include <string>
 
+#include "phalanx/device/device.h"
 #include "phalanx/force/force_parameters.h"
 
 namespace phalanx {
 
-/// Largest fingertip force of a contact, and of the vector sum of a digit's contacts [N].
+/// Largest fingertip force of a contact, and of the vector sum of a digit's contacts, if no clinician
+/// is named [N].
 inline constexpr double kForceWithoutClinician = 5.0;
+/// The same if a clinician is named [N].
 inline constexpr double kForceWithClinician = 10.0;
-inline constexpr double kForceNever = 15.0;  ///< a step that asks for more is a fault, whatever the settings
-inline constexpr double kTorqueNever = 2.0;  ///< no setting goes beyond it [Nm]
-inline constexpr double kTorqueRateNever = 100.0;  ///< [Nm/s]
+inline constexpr double kForceNever = 15.0;        ///< a step that asks for more is a fault, for all settings
+inline constexpr double kTorqueNever = 2.0;        ///< upper bound of the settings [Nm]
+inline constexpr double kTorqueRateNever = 100.0;  ///< upper bound of the settings [Nm/s]
 
+/// Limits, ramps and tolerances of the safety gate.
 struct SafetySettings {
-  // What leaves.
-  double fingertip_force = 5.0;  ///< [N] held by the step; checked here against kForceNever
-  double joint_torque = 0.5;     ///< [Nm] each joint, absolute
-  double torque_rate = 10.0;     ///< [Nm/s] each joint, absolute
-  double range_taper = 3.0 * std::numbers::pi / 180.0;  ///< outward torque fades over this, up to the end of
-                                                        ///< the patient's range of motion [rad]
-  // How it comes and goes.
-  double start_ramp = 1.0;    ///< from zero to the full torque after every start [s]
-  double stop_ramp = 0.2;     ///< to zero when asked to stop [s]
+  // Limits of the command.
+  double fingertip_force = 5.0;  ///< held by the step; compared here with kForceNever [N]
+  double joint_torque = 0.5;     ///< each joint, absolute [Nm]
+  double torque_rate = 10.0;     ///< each joint, absolute [Nm/s]
+  double range_taper = 3.0 * std::numbers::pi / 180.0;  ///< outward torque fades over this angle, to zero at
+                                                        ///< the end of the patient's range of motion [rad]
+  // Ramps.
+  double start_ramp = 1.0;    ///< from zero to full torque after every start [s]
+  double stop_ramp = 0.2;     ///< to zero after a stop [s]
   double fault_ramp = 0.005;  ///< to zero at a fault [s]
 
-  // When samples are believed.
-  double sample_timeout = 0.010;                           ///< [s] without a sample: fault
-  int bad_samples = 3;                                     ///< in a row: fault
-  double joint_speed = 40.0;                               ///< faster is a jump [rad/s] ...
-  double jump_allowance = 2.0 * std::numbers::pi / 180.0;  ///< ... beyond this [rad]
-  double range_margin = 20.0 * std::numbers::pi / 180.0;   ///< beyond the patient's range: out of range [rad]
-  double stuck_after = 0.5;                                ///< a sensor unchanged for so long [s] ...
-  double stuck_counts = 10.0;  ///< ... while its joint is known to have moved by more than this [counts]
+  // Plausibility of samples.
+  double sample_timeout = 0.010;  ///< longest time without a sample; beyond it: fault [s]
+  int bad_samples = 3;            ///< number of bad samples in a row that is a fault
+  double joint_speed = 40.0;      ///< a faster motion is a jump [rad/s] ...
+  double jump_allowance = 2.0 * std::numbers::pi / 180.0;  ///< ... if it is also larger than this [rad]
+  double range_margin = 20.0 * std::numbers::pi / 180.0;   ///< an angle this far beyond the patient's range
+                                                           ///< is out of range [rad]
+  double stuck_after = 0.5;    ///< a sensor that does not change for this long is stuck [s] ...
+  double stuck_counts = 10.0;  ///< ... if its joint is known to have moved by more than this [counts]
   /// Measured and commanded torque may differ by  torque_error + torque_error_part |commanded|  [Nm] for at
   /// most torque_error_time [s].
   double torque_error = 0.15;
   double torque_error_part = 0.5;
   double torque_error_time = 0.2;
-  /// The same for a fingertip's measured force and the magnitude of the sum of the forces commanded on its
-  /// digit [N]; torque_error_part and torque_error_time hold here too.
+  /// The same bound for a fingertip's measured force and the magnitude of the sum of the forces commanded on
+  /// its digit [N]. torque_error_part and torque_error_time hold here too.
   double force_error = 2.0;
 
-  // When the loop is too slow.
-  int overruns = 10;  ///< steps in a row that ended after the next was due: fault
+  /// The setting that makes this a patient's session, as stated ("hand.profile = small-woman"); empty: none.
+  std::string patient;
+
+  // Punctuality of the loop.
+  int overruns = 10;  ///< number of steps in a row that end after the next was due; it is a fault
 };
 
-/// The settings for a scene's limits. A station has no limit turned off and none beyond the constants above.
-/// @param clinician  who answers for a fingertip force above kForceWithoutClinician; empty: nobody
+/// Makes the settings for a scene's limits. A station accepts no limit that is turned off, and none beyond
+/// the constants above.
+/// @param clinician  who answers for a fingertip force above kForceWithoutClinician; empty: no one
 /// @throws std::invalid_argument naming the limit, the value and the remedy.
 [[nodiscard]] SafetySettings make_safety_settings(const LimitParameters& limits,
                                                   const std::string& clinician);
+
+/// Warning about a device without a watchdog, for people who try it out.
+inline constexpr const char* kHoldsWithoutHost =
+    "this device has no watchdog: it holds a finger while this program is frozen, or after it was killed. It "
+    "can be tried out; a patient's session is refused (docs/device.md)";
+/// @returns true if a wired device keeps its force while its host is frozen, or after its host was killed.
+[[nodiscard]] bool holds_without_host(const DeviceInfo& device) noexcept;
+
+/// Checks that the device has a watchdog if this is a patient's session.
+/// @throws std::invalid_argument naming the setting that makes it one, the device and the remedy.
+void check_watchdog(const SafetySettings& settings, const DeviceInfo& device);
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the sensors can be believed: every sample of the device is judged, also those between two steps.
+// Plausibility of the sensors. Every sample of the device is judged, also those between two steps.
 #pragma once
 
 #include <array>
@@ -14,49 +14,50 @@
 
 namespace phalanx {
 
-/// A motor that says how far it has wound, and the joints that it moves: what a sensor that stands still is
-/// held against.
+/// A motor that measures its wound length, and the joints that it moves. A sensor that stands still is
+/// compared with it.
 struct MotorWitness {
-  int channel = -1;                   ///< of kMotor
-  std::array<double, kJoints> arm{};  ///< [m]
-  double slack = 0.0;  ///< tendon stretch at the largest torque, and play: motion of the motor that moves
-                       ///< no joint [m]
+  int channel = -1;                   ///< channel of kind kMotor
+  std::array<double, kJoints> arm{};  ///< moment arm of the tendon at each joint [m]
+  double slack = 0.0;  ///< motion of the motor that moves no joint: tendon stretch at the largest torque,
+                       ///< and play [m]
 };
 
-/// What a watch found.
+/// Result of judging a sample.
 struct SensorFinding {
   Fault fault = Fault::kNone;
-  int channel = -1;  ///< -1: not one channel's
+  int channel = -1;  ///< -1: no single channel
 };
 
-/// One channel's recent past; in one place, so that a fault can show it.
+/// Judge of each channel's newest samples. It keeps the recent past of all channels.
 class SensorWatch {
  public:
-  /// Set-up only.
+  /// Copies the settings and the hand's range of motion. Set-up only.
+  /// @param map  must outlive the watch
   SensorWatch(const SafetySettings& settings, const ChannelMap& map, const HandParameters& hand,
               std::vector<MotorWitness> witnesses);
 
   /// Judges one sample.
-  /// @param torque  that the device was last sent [Nm]
-  /// @param force   magnitude of the forces on each digit that went with it [N]
+  /// @param torque  last torques sent to the device [Nm]
+  /// @param force   magnitude of the force on each digit, of the same command [N]
   /// Real-time: no allocation, lock, throw or I/O.
   [[nodiscard]] SensorFinding judge(const DeviceSample& sample, const JointArray& torque,
                                     const DigitArray& force) noexcept;
 
-  /// No channel is bad at the moment: what a reset asks.
+  /// @returns true if no channel is bad now, which a reset requires.
   [[nodiscard]] bool all_good() const noexcept;
-  /// Forgets the past, not the settings: after a reset the next sample is the first.
+  /// Forgets all samples and keeps the settings: after a reset, the next sample is the first.
   void forget() noexcept;
 
  private:
   struct Channel {
-    int bad = 0;         ///< samples in a row
-    double value = 0.0;  ///< of the last good sample
-    double time = 0.0;   ///< of it [s]
+    int bad = 0;         ///< number of bad samples in a row
+    double value = 0.0;  ///< value of the last good sample, in the channel's unit
+    double time = 0.0;   ///< time of the last good sample [s]
     bool seen = false;
-    std::int32_t raw = 0;       ///< of the last sample
-    double still_since = 0.0;   ///< when raw last changed [s]
-    double error_since = -1.0;  ///< when the torque began to disagree [s]; -1: it agrees
+    std::int32_t raw = 0;       ///< raw value of the last sample
+    double still_since = 0.0;   ///< time at which raw last changed [s]
+    double error_since = -1.0;  ///< time at which the torque began to disagree [s]; -1: it agrees
   };
   [[nodiscard]] Fault judge_angle(std::size_t c, double t) noexcept;
   [[nodiscard]] bool disagrees(std::size_t c, double commanded, double allowance, double t) noexcept;
@@ -67,15 +68,16 @@ class SensorWatch {
   const ChannelMap* map_;
   std::vector<MotorWitness> witness_;
   std::vector<Channel> channel_;
-  std::vector<double> least_;  ///< plausible values of a channel, in its unit
-  std::vector<double> largest_;
+  std::vector<double> least_;      ///< smallest plausible value of a channel, in its unit
+  std::vector<double> largest_;    ///< largest plausible value of a channel, in its unit
   std::vector<double> witnessed_;  ///< moved_by() when channel c last changed: [c * witnesses + w] [rad]
   std::uint64_t last_time_us_ = 0;
   int clock_bad_ = 0;
   bool started_ = false;
 };
 
-/// The witnesses that a device's channels and its file offer. Set-up only.
+/// Finds the motors of a device file that can testify to a joint's motion. Set-up only.
+/// @param largest_torque  of a joint; sets the tendon stretch in MotorWitness::slack [Nm]
 [[nodiscard]] std::vector<MotorWitness> motor_witnesses(const Exoskeleton& exoskeleton,
                                                         const std::vector<DeviceChannel>& channels,
                                                         double largest_torque);

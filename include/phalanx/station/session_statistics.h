@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all stations of a host have done, from the first one's start on.
+// Statistics over all stations of a host, from the start of the first one.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,15 @@
 
 namespace phalanx {
 
-/// A session's sums, over each station that a change of rate, scene or device has ended. Not real-time.
+/// Sums over all stations of a session; a change of rate, scene or device ends one station. Not real-time.
 struct SessionStatistics {
-  DeadlineStatistics deadlines;    ///< its period is the last station's
-  LinkStatistics link;             ///< what the controller counts, it counts from its own start: not summed
-  std::uint64_t records_lost = 0;  ///< StationView::records_lost
+  DeadlineStatistics deadlines;  ///< the period is that of the last station
+  LinkStatistics link;           ///< counters of the controller are not summed: they count from its own start
+  std::uint64_t records_lost = 0;  ///< sum of StationView::records_lost, and records of stations that
+                                   ///< were freed unread
 
-  /// Adds one station. @param last  its newest view
+  /// Adds one station.
+  /// @param last  its newest view
   void add(const DeadlineStatistics& station, const StationView& last) noexcept {
     deadlines.append(station);
     link.received += last.link.received;

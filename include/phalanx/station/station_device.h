@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device of a station, connected and calibrated.
+// Opening the device of a station, with its calibration.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,23 +14,26 @@
 
 namespace phalanx {
 
-/// A device, open, with the channels that its calibration says.
+/// An open device with its calibrated channels.
 struct OpenDevice {
   std::unique_ptr<Device> device;
   std::vector<DeviceChannel> channels;
 };
 
+/// Settings of a device on a wire.
 struct WiredDeviceSettings {
-  std::string spec;         ///< its address: open_device.h
-  std::string calibration;  ///< its file; empty: the device's own numbers
+  std::string spec;         ///< address, see open_device.h
+  std::string calibration;  ///< calibration file; empty: the device's own values
   bool ask_for_realtime = true;
+  std::optional<double> watchdog = {};  ///< DeviceInfo::watchdog of a glove's firmware [s]
+  bool force_feedback = true;           ///< false: a glove that only senses (DeviceInfo::actuated)
 };
 
-/// Opens a device on a wire and tells it limits and calibration.
-/// @param hand   the wearer's (a right hand's numbers)
-/// @param clock  of the process; outlives the device
-/// @throws DeviceError, CalibrationError, SceneError or std::invalid_argument, each saying what to do. Set-up
-/// only.
+/// Opens a device on a wire, and gives it the limits and the calibration.
+/// @param hand   the wearer's hand, as a right hand
+/// @param clock  the process's clock; outlives the device
+/// @throws DeviceError, CalibrationError, SceneError or std::invalid_argument; each names the
+/// remedy. Set-up only.
 [[nodiscard]] OpenDevice open_wired_device(const WiredDeviceSettings& settings, const SafetySettings& safety,
                                            const HandParameters& hand, const Clock& clock);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whoever owns the station: keeps it running while scene, object, hand, rate and device change.
+// The owner of a station: it keeps one running while scene, object, hand, rate and device change.
 #pragma once
 
 #include <cstdint>
@@ -20,133 +20,144 @@
 
 namespace phalanx {
 
-/// What moves the hand.
+/// Source of the hand's motion.
 enum class HandSource { kDevice, kPatient, kSliders };
 
+/// Settings of a StationHost.
 struct StationHostSettings {
-  std::string scene = "first_touch";  ///< a shipped one's name, or a file
-  Overrides overrides;                ///< laid over the scene's keys, until another scene is loaded
-  std::string device = "simulated";   ///< "simulated", "sliders", or an address: open_device.h
-  std::string calibration;            ///< its file; empty: the device's own numbers
-  std::string clinician;              ///< who answers for a fingertip force above 5 N: safety_settings.h
-  RealtimeRequest realtime;           ///< of the loop's thread
-  bool ask_for_realtime = true;       ///< false: the loop and the link are ordinary threads
-  /// Writes what the calibration wizard found. @returns the file. @throws if it cannot
+  std::string scene = "first_touch";    ///< name of a shipped scene, or a file
+  Overrides overrides;                  ///< replace values of the scene, until another scene is loaded
+  std::string device = "simulated";     ///< "simulated", "sliders", or an address: open_device.h
+  std::string calibration;              ///< calibration file; empty: the device's own values
+  std::string clinician;                ///< who answers for a fingertip force above 5 N: safety_settings.h
+  std::optional<double> watchdog = {};  ///< WiredDeviceSettings::watchdog of a glove [s]
+  bool force_feedback = true;           ///< WiredDeviceSettings::force_feedback of a glove
+  RealtimeRequest realtime;             ///< for the loop's thread
+  bool ask_for_realtime = true;         ///< false: the loop and the link are ordinary threads
+  /// Writes the calibration wizard's result. @returns the file's path. @throws if it cannot
   std::function<std::string(const Calibration&)> write_calibration;
 };
 
-/// What does not change from step to step.
+/// Geometry that stays the same from step to step.
 struct HostGeometry {
   std::uint32_t revision = 0;
   Handedness handedness = Handedness::kRight;
-  HandParameters hand;    ///< of a right hand
-  Pose X_WH;              ///< the palm
-  SegmentMeshes segment;  ///< what the search sees
-  SegmentMeshes display;  ///< what is shown without a skin
+  HandParameters hand;    ///< as a right hand
+  Pose X_WH;              ///< pose of the palm
+  SegmentMeshes segment;  ///< meshes of the contact search
+  SegmentMeshes display;  ///< meshes that are shown without a skin
   std::optional<HandSkin> skin;
   TriangleMesh object;  ///< in W
   double rate_hz = 0.0;
 };
 
-/// What changes seldom. A new one takes the place of the last, so that whoever holds one can read on.
+/// State that seldom changes. Each change publishes a new HostState; a reader keeps the one that it holds.
 struct HostState {
   std::uint64_t revision = 0;
   std::string scene;
   std::string description;
-  Overrides overrides;  ///< laid over the scene, the last word of each key
-  Overrides values;     ///< all that the scene's file and the overrides state, as TOML
+  Overrides overrides;  ///< override the scene; the newest value of each key
+  Overrides values;     ///< all values of the scene's file and the overrides, as TOML
   HandSource source = HandSource::kPatient;
   std::string device_spec;
-  std::string calibration;  ///< its file; empty: the device's own numbers
+  std::string calibration;  ///< calibration file; empty: the device's own values
   DeviceInfo device;
-  double fingertip_force = 0.0;  ///< largest of a digit [N]
+  double fingertip_force = 0.0;  ///< limit of a digit's force [N]
+  std::string patient;           ///< SafetySettings::patient of the station
   std::vector<int> sensed_joints;
-  std::string realtime;  ///< what the system granted; empty: not asked, or not known yet
-  std::string busy;      ///< the change on its way; empty: none
-  bool running = false;  ///< there is a station
-  std::string trouble;   ///< why there is none, or what the calibration's device has
+  std::string realtime;  ///< granted scheduling; empty: not asked for, or not known yet
+  std::string busy;      ///< the change being made; empty: none
+  bool running = false;  ///< a station exists
+  std::string trouble;   ///< why no station exists, or a problem of the device in calibration
   std::shared_ptr<const HostGeometry> geometry;
-  std::shared_ptr<const CalibrationSession::View> wizard;  ///< null: no calibration is on
+  std::shared_ptr<const CalibrationSession::View> wizard;  ///< null: no calibration runs
 };
 
-/// What became of a request.
+/// Result of a change.
 struct ChangeOutcome {
-  std::string refused;     ///< why, for people; empty: it is done, or overtaken
-  bool overtaken = false;  ///< newer values of all its keys came before it was tried: never checked nor made
+  std::string refused;     ///< reason, for people; empty: done or overtaken
+  bool overtaken = false;  ///< newer values of all its keys came before it was tried; it was not made
 };
 
-/// Changes are asked for from any thread, made on a worker's one after the other, and answered by whoever
-/// calls go_on(). Where a change is refused, everything stays as it was; should that not be made again either
-/// (the device does not open), there is no station until reset() or a change brings one. A station that has
-/// to end comes to zero torque first, and the next one begins at zero torque, with its ramp; after a stop()
-/// that nobody took back, after a fault, and after one that could not be made, it begins stopped, until
-/// resume(). While a calibration is on, all other changes are refused.
+/// Host of a station. Any thread asks for changes; a worker makes them one after the other. The owner's
+/// thread calls poll(), which answers them.
 ///
-/// Real-time: none of it; all take locks. stop(), view(), state() and whatever else is for any thread hold
-/// them for copies only and never wait for a change. The station's own loop shares no lock with them.
+/// If a change is refused, everything stays as it was. If the old station cannot be made again either (the
+/// device does not open, for example), there is none until reset() or another change. A station that has to
+/// end first comes to zero torque. The next one begins at zero torque, with its start ramp. It begins
+/// stopped, until resume(), in three cases: after a stop() without a later resume(), after a fault, and after
+/// a station that could not be made. While a calibration runs, all other changes are refused.
+///
+/// Once a station was for a patient's session (SafetySettings::patient), all later ones are.
+///
+/// Not real-time: all functions take locks. stop(), view(), state() and the other functions for any thread
+/// hold a lock only to copy, and never wait for a change. The station's loop shares no lock with them.
 class StationHost {
  public:
-  /// Called in go_on(), once; never once shut_down() has begun.
+  /// Callback with the result of a change. poll() calls it once, but not after shut_down() has begun.
   using Done = std::function<void(const ChangeOutcome&)>;
 
   /// Loads the scene, opens the device and starts the station.
-  /// @param clock  of the process; outlives the host
-  /// @throws SceneError, DeviceError, CalibrationError or std::invalid_argument, saying what to do
+  /// @param clock  the process's clock; outlives the host
+  /// @throws SceneError, DeviceError, CalibrationError or std::invalid_argument; each names the remedy
   StationHost(StationHostSettings settings, const Clock& clock);
   StationHost(const StationHost&) = delete;
   StationHost& operator=(const StationHost&) = delete;
   ~StationHost();  ///< shut_down()
 
-  // ---- any thread
-  // Whatever has a Done throws std::runtime_error if too many changes wait already; then Done is not called.
-  // Sets that wait become one: a value that newer ones of the same keys overtake is never tried.
-  /// At once: zero torque, and it stays until resume(), also over changes.
+  // ---- for any thread
+  // A function with a Done throws std::runtime_error if too many changes wait already; it then does not call
+  // Done. Waiting sets become one: if newer values of the same keys overtake a value, it is never tried.
+  /// Ramps to zero torque now. The torque stays zero until resume(), also over changes.
   void stop() noexcept;
-  /// @returns whether: not once shut_down() has begun, nor if somebody says stop in the same moment
+  /// Ends a stop().
+  /// @returns false, with no effect, after shut_down() has begun or if stop() is called at the same moment
   bool resume() noexcept;
-  /// The same from afar: nothing if it is another stop by now than the one that the speaker saw.
-  /// @param stops  stops(), as it was seen. @returns whether
+  /// Ends the stop that a remote user saw. It has no effect if another stop has come since.
+  /// @param stops  stops() at the time that the user saw it. @returns true if the stop was ended
   bool resume(std::uint64_t stops) noexcept;
-  /// How often the torque was held until resume(): somebody said stop, a fault ended with its station, or no
-  /// station could be made.
+  /// @returns how often the torque was held until resume(): by stop(), by a fault that ended with its
+  /// station, or because no station could be made.
   [[nodiscard]] std::uint64_t stops() const noexcept;
-  void reset() noexcept;  ///< after a fault; where there is no station, tries again to make one
-  /// The same from afar: nothing if there is another fault by now than the one of that time [s].
-  /// @param fault_time  FaultEvent::time; 0: there was none. @returns whether
+  void reset() noexcept;  ///< after a fault; without a station, tries again to make one
+  /// Resets the fault that a remote user saw. It has no effect if there is another fault by now.
+  /// @param fault_time  FaultEvent::time of the fault seen [s]; 0: there was none
+  /// @returns true if a reset was asked for
   bool reset(double fault_time) noexcept;
-  /// Lays values over the scene's keys. In contact, at zero torque, or with a new station: whatever the keys
-  /// need. An empty value takes an override away.
+  /// Replaces values of the scene's keys: in contact, at zero torque or with a new station, as the keys need.
+  /// An empty value removes an override.
   void set(Overrides changes, Done done);
+  /// Loads another scene, without the overrides of the last one.
   void load_scene(std::string scene, Done done);
-  /// kPatient and kSliders, of the simulated device; refused for a device on a wire.
+  /// Selects kPatient or kSliders of the simulated device; refused for a device on a wire.
   void set_source(HandSource source, Done done);
-  /// Where the sliders' hand is wanted [rad]; clamped to the range of motion, and what is not finite is left
-  /// as it was. @returns whether sliders move the hand of the station that runs; nothing is done otherwise
+  /// Sets the joint angles of the hand that the sliders move [rad]. They are clamped to the range of motion;
+  /// an angle that is not finite is left as it was.
+  /// @returns false, with no effect, if sliders do not move the hand of the running station
   bool set_sliders(const JointArray& angle) noexcept;
-  /// Ends the station at zero torque and leads through the poses; kAbandon and kWrite go back to a station.
+  /// Takes one step of the calibration. kBegin ends the station at zero torque; kAbandon and kWrite start it.
   void calibrate(CalibrationSession::Step step, std::size_t pose, Done done);
 
-  [[nodiscard]] bool held_stopped() const noexcept;  ///< since stops() rose last, nobody has said resume()
-  [[nodiscard]] double now() const noexcept;         ///< of the process's clock [s]
-  [[nodiscard]] JointArray sliders() const;          ///< where they were last set [rad]
-  [[nodiscard]] StationView view() const;  ///< of the newest step; the last one's while there is no station
+  [[nodiscard]] bool held_stopped() const noexcept;  ///< no resume() since stops() last rose
+  [[nodiscard]] double now() const noexcept;         ///< the process's clock [s]
+  [[nodiscard]] JointArray sliders() const;          ///< the angles last set [rad]
+  [[nodiscard]] StationView view() const;  ///< after the newest step; without a station, the last one's
   [[nodiscard]] DeadlineStatistics deadlines() const;  ///< of the station that view() shows
-  [[nodiscard]] SessionStatistics session() const;     ///< of all stations since the host's start
+  [[nodiscard]] SessionStatistics session() const;     ///< over all stations since the host's start
   [[nodiscard]] std::shared_ptr<const HostState> state() const;
   [[nodiscard]] const StationHostSettings& settings() const noexcept { return settings_; }
 
-  // ---- one thread, any
-  /// The next step's record, of each station in turn, also after shut_down(). @returns true if there was one
+  // ---- for one thread at a time
+  /// Fetches the next step's record, station by station, also after shut_down().
+  /// @returns true if there was one
   [[nodiscard]] bool next_record(StepRecord& record);
 
   // ---- the owner's thread
-  /// Answers what is done and begins the next change. Waits for nothing.
-  void go_on();
+  /// Answers the change that is done and begins the next one. Returns at once; call it every 20 ms or so.
+  void poll();
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
   [[nodiscard]] std::optional<RealtimeGrant> grant() const;
-  void lengthen_steps(double seconds) noexcept;  ///< Station::lengthen_steps()
-  /// Torque falls to zero at once, and nobody brings it back; then waits for a change on its way, and for the
-  /// station's end.
+  /// Ramps to zero torque for good, then waits for the change being made and for the station's end.
   void shut_down() noexcept;
 
  private:

@@ -1,51 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
-// One constant model, one preallocated state, one step().
+// One constant model, its parameters, one preallocated state, one step().
 #pragma once
 
 #include <utility>
 
-#include "phalanx/contact/contact_parameters.h"
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/object_model.h"
-#include "phalanx/force/force_parameters.h"
 #include "phalanx/force/force_stage.h"
+#include "phalanx/force/haptic_parameters.h"
 #include "phalanx/hand/hand_model.h"
 #include "phalanx/step/sample_guard.h"
 #include "phalanx/step/snapshot.h"
 
 namespace phalanx {
 
-/// Everything that does not change from tick to tick.
+/// The geometry that a step works on: the hand, what it meets, and the search trees of the hand. Constant,
+/// and shared by all who step it: it can be moved, but not copied.
 struct HapticModel {
-  /// Default parameters; set what differs.
+  /// Makes the trees. Set-up only.
   HapticModel(HandModel hand_model, ObjectModel object_model)
       : hand(std::move(hand_model)), object(std::move(object_model)), trees(make_segment_trees(hand)) {}
+
+  HapticModel(HapticModel&&) noexcept = default;
+  HapticModel& operator=(HapticModel&&) noexcept = default;
+  HapticModel(const HapticModel&) = delete;
+  HapticModel& operator=(const HapticModel&) = delete;
+  ~HapticModel() = default;
 
   HandModel hand;
   ObjectModel object;
   SegmentTrees trees;
-  ContactParameters contact;
-  ForceLawParameters force;
-  SmoothingParameters smoothing;
-  StabiliserParameters stabiliser;  ///< the default is S2's smoothing, with the bounds of `smoothing`
-  OscillationParameters oscillation;
-  LimitParameters limits;
-  double rate_hz = 200.0;  ///< nominal rate of step() [Hz]
 };
 
-/// Everything that does. Sized at construction; step() allocates nothing.
+/// What a step remembers for the next one. Sized at construction; step() allocates nothing.
 class HapticState {
  public:
   /// The open hand, no contact, zero torque.
   /// @throws std::invalid_argument if the open hand or the palm touches the object, or a parameter is out of
   /// range.
-  explicit HapticState(const HapticModel& model);
+  HapticState(const HapticModel& model, const HapticParameters& parameters);
 
   /// The result of the last step.
   [[nodiscard]] const Snapshot& snapshot() const noexcept { return snapshot_; }
 
  private:
-  friend Status step(const HapticModel&, const Sample&, HapticState&) noexcept;
+  friend Status step(const HapticModel&, const HapticParameters&, const Sample&, HapticState&) noexcept;
 
   SampleGuard guard_;
   HandPoses hcp_;
@@ -56,7 +55,11 @@ class HapticState {
 
 /// device sample -> hand -> contact -> force -> device command: one tick of the whole hand.      S1 fig. 2
 /// Whatever `sample` holds, the torques in `state.snapshot()` are finite and within the limits; the status
-/// says what happened. Same model and samples, same bits. Real-time: no allocation, lock, throw or I/O.
-Status step(const HapticModel& model, const Sample& sample, HapticState& state) noexcept;
+/// says what happened. Same model, parameters and samples, same bits.
+/// @param parameters  in the ranges that HapticState's constructor checks. They may differ from the last
+/// step's, but for rate_hz; what that does to the force in contact is for the caller to judge
+/// Real-time: no allocation, lock, throw or I/O.
+Status step(const HapticModel& model, const HapticParameters& parameters, const Sample& sample,
+            HapticState& state) noexcept;
 
 }  // namespace phalanx

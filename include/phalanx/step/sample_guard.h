@@ -10,35 +10,38 @@
 
 namespace phalanx {
 
-/// Turns whatever the device says into angles that a hand can have: finite, inside the range of motion, and
-/// not faster than a hand moves.
+/// Filter of measured samples that gives feasible joint angles: finite, inside the range of motion, and not
+/// faster than a hand moves. The device may send any values.
 class SampleGuard {
  public:
-  /// @param open  angles held until a first good sample [rad]
+  /// @param open  angles until the first good sample [rad]
   explicit SampleGuard(const JointArray& open) noexcept : angle_(open) {}
 
-  /// A NaN or infinite angle keeps its last good value; an angle out of range is clamped; one that moved
-  /// faster than limits.joint_speed since the last sample that was used is slewed at that speed; a sample
-  /// whose time is not later than the last one's keeps all angles. The first sample is not slewed.
+  /// Takes the angles of one sample. The following rules hold for each angle:
+  /// - A NaN or infinite angle keeps its last good value.
+  /// - An angle out of range is clamped.
+  /// - If an angle moved faster than limits.joint_speed since the last used sample, it is slewed at that
+  ///   speed. The first sample is not slewed.
+  /// If the sample's time is not later than the last one's, all angles stay. After 5 such samples in a row,
+  /// whose times increase among themselves, the device's clock has restarted. From then on its samples are
+  /// used again, slewed.
   /// @param period  nominal period of a step [s]
-  /// After 5 refused samples in a row whose times increase among themselves the device's clock has restarted:
-  /// its samples are used again, slewed.
-  /// @returns what had to be done
+  /// @returns the status bits of the rules that applied
   /// Real-time: O(1), no allocation, lock, throw or I/O.
   Status accept(const Sample& sample, const HandParameters& hand, const LimitParameters& limits,
                 double period) noexcept;
 
-  /// No sample in which everything was good has come for 50 ms: what is held is no longer what the hand does,
-  /// and forces must go.
+  /// @returns true if no wholly good sample has come for 50 ms. The angles then no longer describe the hand,
+  /// and forces must decay.
   [[nodiscard]] bool stale() const noexcept { return bad_for_ > kStaleAfter; }
 
-  /// For each digit, whether all its joints have had a good sample.
+  /// Returns for each digit whether all its joints have had a good sample.
   [[nodiscard]] std::array<bool, kDigits> measured() const noexcept;
 
-  /// Time of the last sample that was used [s].
+  /// Returns the time of the last used sample [s].
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
 
-  /// The accepted angles [rad].
+  /// Returns the accepted angles [rad].
   [[nodiscard]] const JointArray& angle() const noexcept { return angle_; }
 
  private:
@@ -51,14 +54,14 @@ class SampleGuard {
 
   double time_s_ = 0.0;
   double refused_time_s_ = 0.0;
-  int refused_ = 0;       ///< samples refused in a row whose times increased among themselves
-  double bad_for_ = 0.0;  ///< nominal time since the last sample in which everything was good [s]
+  int refused_ = 0;       ///< refused samples in a row whose times increased among themselves
+  double bad_for_ = 0.0;  ///< nominal time since the last wholly good sample [s]
   bool started_ = false;
 };
 
-/// The optional channels of a sample, into the snapshot: finite, or NaN where the sample has none, or none
-/// that is finite, or its time was refused (kTimeNotIncreasing). Real-time: O(1), no allocation, lock, throw
-/// or I/O.
+/// Copies the optional channels of a sample to the snapshot. A channel becomes NaN if the sample has none, if
+/// its value is not finite, or if the sample's time was refused (kTimeNotIncreasing). Real-time: O(1), no
+/// allocation, lock, throw or I/O.
 void pass_measured(const Sample& sample, Status accepted, Snapshot& snapshot) noexcept;
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lenses of the segment against boxes of the object, eight at a time, and the walk over pairs of them.
+// Lower bounds on the distance of lenses and boxes, eight at a time, and the traversal of both trees.
 #pragma once
 
 #include "contact/search/pack.h"
@@ -7,16 +7,16 @@
 
 namespace phalanx::search::PHALANX_SEARCH_SET {
 
-/// How lenses go within a horizon h, in single precision.
+/// Motion of lenses within a horizon h, in single precision.
 struct LensMotion {
   float angular[3];  ///< h times the angular velocity [rad]
   float linear[3];   ///< h times the velocity at the object tree's centre [m]
-  float spin;        ///< the length of `angular`, or more
-  float bend;        ///< what higher orders add for any point [m]
-  float reach;       ///< how far any point goes at most [m]
+  float spin;        ///< upper bound on the length of `angular`
+  float bend;        ///< upper bound on the higher-order displacement of any point [m]
+  float reach;       ///< upper bound on the displacement of any point [m]
 };
 
-/// Moves a node's lenses to the pose of the query, once.
+/// Moves a node's lenses to the pose of the query, on first use.
 template <bool kMoving>
 PHALANX_INLINE const PlacedLenses& placed_lenses(const SegmentView& segment, const LensMotion& motion,
                                                  std::int32_t node) noexcept {
@@ -44,11 +44,11 @@ PHALANX_INLINE const PlacedLenses& placed_lenses(const SegmentView& segment, con
   return placed;
 }
 
-/// A pair of a lens and a box, each named by node * kWide + lane, that are no farther apart than the cap.
+/// Pair of a lens and a box whose distance may be within the cap. Each is numbered node * kWide + lane.
 struct LensBox {
   std::int32_t lens;
   std::int32_t box;
-  float bound;  ///< they are at least so far apart [m]
+  float bound;  ///< lower bound on their distance [m]
 };
 
 PHALANX_INLINE Floats square_root(const Floats& a) noexcept {
@@ -78,7 +78,8 @@ struct Boxes {
   Floats high;
 };
 
-/// A node's, each number by get(its eight lanes): one lane for all, or several side by side.
+/// Returns a node's lenses or boxes. get() turns eight lanes into one lane broadcast to all, or into several
+/// side by side.
 template <class Get>
 PHALANX_INLINE Lenses lenses_of(const PlacedLenses& placed, const LensNode& rest, Get&& get) noexcept {
   return {{get(placed.centre[0]), get(placed.centre[1]), get(placed.centre[2])},
@@ -96,9 +97,9 @@ PHALANX_INLINE Boxes boxes_of(const BoxNode& node, Get&& get) noexcept {
           get(node.high)};
 }
 
-/// Lower bounds on the distance of lenses and boxes: the largest of what separates the sphere from the box,
-/// the box from the lens's slab, and the lens from the box's slab. While they move: on the least distance
-/// within the horizon; along a slab's axis only the way along it counts.
+/// Returns lower bounds on the distance of lenses and boxes. It is the largest of three separations: sphere
+/// from box, box from the lens's slab, lens from the box's slab. For moving lenses it bounds the least
+/// distance within the horizon. Along a slab's axis only the displacement along it counts.
 template <bool kMoving>
 PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box,
                                      const LensMotion& motion) noexcept {
@@ -121,7 +122,7 @@ PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box,
       way_up += box.axis[k] * lens.way[k];
     }
   }
-  // How far the lens reaches along the box's axis: as a disc with a rim, or as the sphere around it.
+  // Extent of the lens along the box's axis: that of a disc with a rim, or that of the sphere around it.
   const Floats sine = square_root(most(1.000001F - cosine * cosine, all(0.0F)));
   const Floats reach = least(lens.radius, lens.half * magnitude(cosine) + lens.radius * sine);
   const Floats sphere = square_root(squared) * 0.9999990F - lens.radius;
@@ -139,22 +140,22 @@ PHALANX_INLINE Floats lens_box_bound(const Lenses& lens, const Boxes& box,
   }
 }
 
-/// Rounded towards the safe side for a comparison in single precision.
+/// Returns the cap in single precision, rounded towards the safe side.
 PHALANX_INLINE float single_cap(double cap) noexcept {
   return cap < 1e15 ? static_cast<float>(cap) * 1.000001F + 1e-12F : 1e15F;
 }
 
-/// The pairs still to be looked at. Both trees have at most 8 levels below 2^24 triangles and 11 at all; each
-/// step takes one pair off and puts at most 8 on.
+/// Depth-first traversal of pairs of lens and box, with the pending pairs on a stack. Both trees have at most
+/// 8 levels below 2^24 triangles, and 11 at most. Each step pops one pair and pushes at most 8.
 template <bool kMoving>
 class Walk {
  public:
-  /// @param motion  if kMoving: bounds are then those within the horizon; it may become shorter meanwhile
+  /// @param motion  used if kMoving. Bounds then hold within its horizon, which may become shorter meanwhile.
   Walk(const SegmentView& segment, const ObjectView& object, const LensMotion& motion) noexcept
       : segment_(segment), object_(object), motion_(motion) {}
 
   /// Hands pairs (triangle, block, bound) whose bound is at most cap to leaf(). leaf() may lower `cap`.
-  /// @param wanted  whether a pair with this bound is still of interest
+  /// @param wanted  returns true if a pair with this bound is still of interest
   template <bool kNearestFirst, class Wanted, class Leaf>
   PHALANX_INLINE void run(const float& cap, Wanted&& wanted, Leaf&& leaf) noexcept {
     push_boxes<false>(0, 0, 1U, cap);
@@ -187,7 +188,7 @@ class Walk {
     return longest > 2.0F * segment_.nodes[pair.lens / kWide].radius[pair.lens % kWide];
   }
 
-  /// One lens against the boxes of a node; `lanes`: which of them.
+  /// Pushes the pairs of one lens with those boxes of a node that `lanes` selects.
   template <bool kSort>
   PHALANX_INLINE void push_boxes(std::int32_t lens, std::int32_t node, unsigned lanes, float cap) noexcept {
     const PlacedLenses& placed = placed_lenses<kMoving>(segment_, motion_, lens / kWide);
@@ -202,7 +203,7 @@ class Walk {
     push<kSort>(hits & lanes, bound, [&](int i) { return LensBox{lens, node * kWide + i, bound[i]}; });
   }
 
-  /// The lenses of a node against one box.
+  /// Pushes the pairs of a node's lenses with one box.
   template <bool kSort>
   PHALANX_INLINE void push_lenses(std::int32_t node, std::int32_t box, float cap) noexcept {
     const PlacedLenses& placed = placed_lenses<kMoving>(segment_, motion_, node);
@@ -218,7 +219,8 @@ class Walk {
     push<kSort>(hits, bound, [&](int i) { return LensBox{node * kWide + i, box, bound[i]}; });
   }
 
-  /// Writes the pairs' bounds. @returns bit i: pair i is within the cap
+  /// Writes the pairs' bounds.
+  /// @returns bit i set if pair i is within the cap
   PHALANX_INLINE unsigned bound_pairs(const Lenses& lenses, const Boxes& boxes, float cap,
                                       float* bound) const noexcept {
     const Floats apart = lens_box_bound<kMoving>(lenses, boxes, motion_) - segment_.slack;
@@ -226,7 +228,7 @@ class Walk {
     return float_bits(apart <= cap);
   }
 
-  /// Puts the hits on the stack so that lane 0, or the nearest, comes off first.
+  /// Pushes the hits so that lane 0, or the nearest, is popped first.
   template <bool kSort, class Make>
   PHALANX_INLINE void push(unsigned hits, const float* bound, Make&& make) noexcept {
     if constexpr (kSort) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles by how long they keep their distance: those that may meet, and how far each may go on.
+// Pairs of triangles of a moving segment: those that may meet, and how far each may advance.
 #pragma once
 
 #include "contact/search/lens_box.h"
@@ -10,8 +10,8 @@
 
 namespace phalanx::search::PHALANX_SEARCH_SET {
 
-/// The lenses' part of a motion within the horizon. Everything in it grows with the horizon, so that what was
-/// placed for a longer one stays safe.
+/// Returns the lenses' motion within the horizon. All its bounds grow with the horizon, so that lenses placed
+/// for a longer one stay safe.
 PHALANX_INLINE LensMotion lens_motion(const SegmentView& segment, const MotionView& motion,
                                       double horizon) noexcept {
   double at_centre[3];
@@ -22,13 +22,14 @@ PHALANX_INLINE LensMotion lens_motion(const SegmentView& segment, const MotionVi
     lens.linear[k] = static_cast<float>(at_centre[k] * horizon);
   }
   const double turning = square_root(all(dot3(motion.angular, motion.angular)))[0];
-  // Single precision rounds the way of a point by less than a millionth of it.
+  // Single precision rounds the displacement of a point by less than a millionth of it.
   lens.spin = static_cast<float>(turning * horizon * 1.000001);
   lens.bend = static_cast<float>((0.5 * motion.bend * horizon + 2e-6 * motion.speed) * horizon * 1.000001);
   lens.reach = static_cast<float>(motion.speed * horizon * 1.000001);
   return lens;
 }
 
+/// Implements SearchFunctions::gather.
 inline void gather(const SegmentView& segment, const ObjectView& object, const MotionView& motion,
                    double margin, PairStore& store) noexcept {
   const double keep = margin * 1.000000001 + 1e-15;
@@ -47,7 +48,7 @@ inline void gather(const SegmentView& segment, const ObjectView& object, const M
   walk.run<true>(
       box_cap, [](float) { return true; },
       [&](std::int32_t triangle, std::int32_t block, float) {
-        // Room for the whole block, so that the horizon does not change between its lanes.
+        // There is room for the whole block, so that the horizon does not change between its lanes.
         if (store.capacity - store.count < kWide) {
           store.make_room(store.context);
           if (store.horizon < horizon) look_ahead();
@@ -65,11 +66,11 @@ inline void gather(const SegmentView& segment, const ObjectView& object, const M
       });
 }
 
-/// The largest h up to which  gap - v h + a h^2 / 2 - jerk h^3 / 6  stays positive, or somewhat less: with
-/// h <= limit the cubic term is at most jerk limit h^2 / 6.
+/// Returns the largest h, or somewhat less, up to which  gap - v h + a h^2 / 2 - jerk h^3 / 6  stays
+/// positive. For h <= limit the cubic term is at most jerk limit h^2 / 6.
 PHALANX_INLINE Doubles quadratic_step(const Doubles& gap, const Doubles& v, const Doubles& a, double jerk,
                                       const Doubles& limit) noexcept {
-  const Doubles A = jerk / 3.0 * limit - a;  // deceleration counts against the gap
+  const Doubles A = jerk / 3.0 * limit - a;  // deceleration reduces the gap
   const Doubles inside = v * v + 2.0 * A * gap;
   const Doubles root = square_root(positive(inside));
   const Doubles closing = 2.0 * gap / (v + root);  // v > 0
@@ -79,6 +80,7 @@ PHALANX_INLINE Doubles quadratic_step(const Doubles& gap, const Doubles& v, cons
   return least(h, limit);
 }
 
+/// Implements SearchFunctions::advance.
 inline void advance(const SegmentView& segment, const ObjectView& object, const MotionView& motion,
                     double horizon, double margin, double floor, const PairIndex* pairs, int n,
                     PairStep* out) noexcept {
@@ -107,8 +109,8 @@ inline void advance(const SegmentView& segment, const ObjectView& object, const 
     const Vectors normal = pick(apart, 1.0 / distance, all(0.0)) * (closest.on_a - closest.on_b);
     const auto velocity = [&](const Vectors& x) { return cross(angular, x) + linear; };
     const DoubleMask within = distance <= margin;
-    // Already within the margin: only motion that closes it is stopped. Less than a nanometre a tick is no
-    // motion, as long as there is room for it above the floor.
+    // Within the margin only closing motion is stopped. Closing by less than a nanometre a tick counts as
+    // rest, as long as the pair is above the floor.
     const Doubles creep = pick(distance > floor, all(1e-9), all(0.0));
     const Doubles closing = -dot(normal, velocity(closest.on_a));
     const DoubleMask blocked = (within & (closing > creep)) | ~apart;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles by their distance: all within a cap, and a bound on the least.
+// Pairs of triangles by distance: all pairs within a cap, a crossing test, and a lower bound.
 #pragma once
 
 #include "contact/search/lens_box.h"
@@ -9,7 +9,7 @@
 
 namespace phalanx::search::PHALANX_SEARCH_SET {
 
-/// One number of each of several pairs, side by side.
+/// Returns one number of each of several pairs, side by side.
 template <class At>
 PHALANX_INLINE Doubles each(At&& at) noexcept {
 #if PHALANX_DOUBLES == 8
@@ -21,7 +21,7 @@ PHALANX_INLINE Doubles each(At&& at) noexcept {
 #endif
 }
 
-/// The object's triangles of several pairs.
+/// Returns the object's triangles of several pairs.
 PHALANX_INLINE Triangles object_triangles(const ObjectView& object, const PairIndex* pairs) noexcept {
   const TriangleBlock* block[kDoubles];
   int lane[kDoubles];
@@ -37,21 +37,21 @@ PHALANX_INLINE Triangles object_triangles(const ObjectView& object, const PairIn
   return t;
 }
 
-/// Pairs on their way to the exact distance, which is found for several at once. However many lanes there
-/// are, eight wait: what is known after them decides what is looked at next, and must not depend on the
-/// lanes.
+/// Queue of pairs whose exact distance is computed several at a time. It takes eight pairs whatever the
+/// number of lanes. Their results decide which pairs follow, and this must not depend on the number of lanes.
 class Waiting {
  public:
   Waiting(const SegmentView& segment, const ObjectView& object) noexcept
       : segment_(segment), object_(object) {}
 
-  /// The pair's segment triangle is placed. @returns whether it is time to take them
+  /// Adds a pair whose segment triangle is placed.
+  /// @returns true if the queue is full and must be taken
   PHALANX_INLINE bool add(const PairIndex& pair) noexcept {
     pair_[count_++] = pair;
     return count_ == kWide;
   }
-  /// Hands each pair's lane of the closest points to use(pair, closest, lane), in the order in which they
-  /// came; then none waits.
+  /// Hands each pair's lane of the closest points to use(pair, closest, lane), in order of arrival, and
+  /// empties the queue.
   template <class Use>
   PHALANX_INLINE void take(Use&& use) noexcept {
     for (int first = 0; first < count_; first += kDoubles) {
@@ -77,6 +77,7 @@ class Waiting {
   int count_ = 0;
 };
 
+/// Implements SearchFunctions::visit.
 inline void visit(const SegmentView& segment, const ObjectView& object, double cap_squared,
                   bool nearest_first, PairSink sink, void* context) noexcept {
   const Sweep still{nullptr, 0.0, 0.0};
@@ -121,8 +122,51 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
   flush();
 }
 
-/// Nearest first, and what is not nearer than kEnough of the best so far is believed and not looked into;
-/// after kMostExact pairs nothing is: a bound need not be tight, but it must come soon.
+/// Implements SearchFunctions::crosses: visits the deepest pairs first, until a pair touches. If kMostPairs
+/// pairs of lens and box or kMostExact pairs of triangles do not decide, the result is true. The shipped
+/// objects with fingers in them take less than half of that.
+inline bool crosses(const SegmentView& segment, const ObjectView& object) noexcept {
+  constexpr int kMostPairs = 1024;
+  constexpr int kMostExact = 512;
+  const Sweep still{nullptr, 0.0, 0.0};
+  const float box_cap = single_cap(0.0);
+  bool touches = false;
+  bool unsettled = false;
+  int pairs = 0;
+  int exact = 0;
+  const auto wanted = [&](float) {
+    if (touches || unsettled) return false;
+    unsettled = pairs >= kMostPairs || exact >= kMostExact;
+    ++pairs;
+    return !unsettled;
+  };
+  Waiting waiting(segment, object);
+  const auto flush = [&] {
+    waiting.take([&](const PairIndex&, const Closest& closest, int l) {
+      touches = touches || closest.squared[l] <= 0.0;
+    });
+  };
+  const LensMotion no_motion{};
+  Walk<false> walk(segment, object, no_motion);
+  walk.run<true>(box_cap, wanted, [&](std::int32_t triangle, std::int32_t block, float) {
+    const PlacedTriangle& s = placed_triangle(segment, triangle, still);
+    for (int i = 0; i < kWide; i += kDoubles) {
+      const Doubles apart = separation(s, block_triangles(object.blocks[block], i), still);
+      for (unsigned left = double_bits(apart <= 0.0); left != 0; left &= left - 1) {
+        const std::int32_t slot = block * kWide + i + __builtin_ctz(left);
+        if (slot >= object.size) break;
+        ++exact;
+        if (waiting.add({triangle, slot})) flush();
+      }
+    }
+  });
+  flush();
+  return touches || unsettled;
+}
+
+/// Implements SearchFunctions::lower_bound: visits the nearest pairs first. A bound of at least kEnough times
+/// the best distance is taken instead of the exact distance. So is every bound after kMostExact pairs. The
+/// result must be fast, not tight.
 inline double lower_bound(const SegmentView& segment, const ObjectView& object, double cap) noexcept {
   constexpr double kEnough = 0.8;
   constexpr int kMostExact = 256;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several numbers side by side. Included once in each translation unit of the search with PHALANX_SEARCH_SET
-// (the namespace), PHALANX_DOUBLES and PHALANX_FLOATS (lanes) defined. Only IEEE operations lane by lane, so
-// that every width gives the same bits. No standard header but this: an inline function that was compiled
-// here must not be picked by the linker for a processor without these instructions.
+// Vectors of numbers. Each translation unit of the search includes this file once, and defines
+// PHALANX_SEARCH_SET (the namespace), PHALANX_DOUBLES and PHALANX_FLOATS (lanes). Only lane-wise IEEE
+// operations are used, so that every width gives the same bits. No other standard header may be included. The
+// linker could pick an inline function compiled here for a processor without these instructions.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ PHALANX_INLINE Doubles positive(const Doubles& a) noexcept { return most(a, all(
 PHALANX_INLINE Doubles clamp01(const Doubles& a) noexcept { return least(most(a, all(0.0)), all(1.0)); }
 PHALANX_INLINE Floats magnitude(const Floats& a) noexcept { return most(a, -a); }
 
-/// Lane by lane, correctly rounded.
+/// Returns the lane-wise square root, correctly rounded.
 PHALANX_INLINE Doubles square_root(const Doubles& a) noexcept {
 #if PHALANX_DOUBLES == 8
   return static_cast<Doubles>(_mm512_maskz_sqrt_pd(0xFF, static_cast<__m512d>(a)));
@@ -64,7 +64,7 @@ PHALANX_INLINE Doubles square_root(const Doubles& a) noexcept {
 #endif
 }
 
-/// Bit i: lane i of the mask.
+/// Returns bit i set if lane i of the mask is set.
 PHALANX_INLINE unsigned double_bits(const DoubleMask& m) noexcept {
 #if PHALANX_DOUBLES == 8
   return static_cast<unsigned>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(m)));
@@ -90,7 +90,7 @@ PHALANX_INLINE unsigned float_bits(const FloatMask& m) noexcept {
 #endif
 }
 
-/// Points or vectors, one a lane.
+/// Points or vectors in three dimensions, one a lane.
 struct Vectors {
   Doubles x, y, z;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A segment's triangles at the pose of a query, how far they go, and what separates them from the object's.
+// A segment's triangles at the pose of a query, their displacement, and their separation from the object's.
 #pragma once
 
 #include "contact/search/pack.h"
@@ -18,8 +18,8 @@ PHALANX_INLINE void cross3(const double* a, const double* b, double* out) noexce
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/// How far the corners of a segment's triangle go within the horizon, to second order, and what the third
-/// order may add [m]. Null: it does not move.
+/// Displacement of the corners of a segment's triangle within the horizon to second order, and a bound on the
+/// third [m]. A null motion means at rest.
 struct Sweep {
   const MotionView* motion;
   double horizon;
@@ -86,7 +86,7 @@ PHALANX_INLINE const PlacedTriangle& placed_triangle(const SegmentView& segment,
   return t;
 }
 
-/// The triangles of a block from lane i on.
+/// Returns the triangles of a block from lane i on.
 PHALANX_INLINE Triangles block_triangles(const TriangleBlock& block, int i) noexcept {
   Triangles t;
   for (int c = 0; c < 3; ++c)
@@ -94,8 +94,8 @@ PHALANX_INLINE Triangles block_triangles(const TriangleBlock& block, int i) noex
   return t;
 }
 
-/// Lower bounds on the distance that a triangle of the segment keeps, all along its sweep, from triangles of
-/// the object: what the plane of the one and the planes of the others separate.
+/// Returns lower bounds on the distance of a triangle of the segment from triangles of the object, all along
+/// its sweep. It uses the separation by either triangle's plane.
 PHALANX_INLINE Doubles separation(const PlacedTriangle& s, const Triangles& t, const Sweep& sweep) noexcept {
   const Vectors normal = all(s.normal);
   const Vectors origin = all(s.corner[0]);

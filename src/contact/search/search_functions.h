@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contact search's inner loops as they are called: plain data and function pointers, one set of functions
-// for each instruction set. What they look into is laid out in tree_layout.h.
+// Interface of the contact search's inner loops: plain data and function pointers, one set of functions for
+// each instruction set. tree_layout.h describes the trees.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace phalanx::search {
 
-/// A segment at one pose, and where its lenses and triangles are placed when a query first looks at them.
+/// Segment at one pose, with memory for its lenses and triangles, which a query places on first use.
 struct SegmentView {
   const LensNode* nodes;
   const SegmentTriangle* triangles;
@@ -24,15 +24,16 @@ struct SegmentView {
   float slack;              ///< greatest rounding error of a lens against a box [m]
 };
 
+/// Object's search tree.
 struct ObjectView {
   const BoxNode* nodes;
   const TriangleBlock* blocks;
-  std::int32_t size;  ///< slots; the last block's lanes beyond it repeat one
+  std::int32_t size;  ///< number of slots; the last block's lanes beyond it repeat a triangle
 };
 
-/// How the points of a segment move with the path parameter, from the pose on: at x the velocity is
-/// angular x x + linear, its rate of change angular_rate x x + linear_rate + angular x velocity. No point's
-/// first, second or third derivative is ever above `speed`, `bend` or `jerk`. Per unit of the parameter [m].
+/// Motion of a segment's points with the path parameter, from the pose on, per unit of the parameter [m]. A
+/// point x has the velocity v = angular x x + linear, and the acceleration angular_rate x x + linear_rate +
+/// angular x v. No point's first, second or third derivative ever exceeds `speed`, `bend` or `jerk`.
 struct MotionView {
   double angular[3];
   double linear[3];
@@ -43,12 +44,13 @@ struct MotionView {
   double jerk;
 };
 
-/// A pair of triangles: the segment's and the object's slot.
+/// Pair of triangles: index of the segment's, and slot of the object's.
 struct PairIndex {
   std::int32_t triangle;
   std::int32_t slot;
 };
 
+/// Closest points of a pair of triangles.
 struct PairDistance {
   PairIndex pair;
   double squared;  ///< [m^2]
@@ -56,49 +58,53 @@ struct PairDistance {
   double on_object[3];
 };
 
-/// Receives pairs in a fixed order; may lower the cap [m^2].
+/// Callback that receives pairs in a fixed order. It may lower the cap, but not below 0 [m^2].
 using PairSink = void (*)(void* context, const PairDistance& pair, double& cap_squared);
 
-/// Room for pairs. A gather that has not enough for a block calls make_room, which must leave room for one.
+/// Buffer for pairs. If a gather has too little room for a block, it calls make_room, which must make enough.
 struct PairStore {
   PairIndex* pair;
   int count;
   int capacity;
-  double horizon;  ///< how far the parameter is to grow; make_room may lower it
+  double horizon;  ///< increase of the parameter to cover; make_room may lower it
   void (*make_room)(void* context);
   void* context;
 };
 
-/// How far a pair may go on.
+/// Possible advance of a pair.
 struct PairStep {
-  double step;   ///< the parameter may grow by this much before the pair is nearer than the floor
+  double step;   ///< increase of the parameter during which the pair stays above the floor
   bool blocked;  ///< within the margin and closing
   bool near;     ///< may be within the margin at the end of the horizon
 };
 
+/// Inner loops of one instruction set. Real-time: no allocation, lock, throw or I/O.
 struct SearchFunctions {
-  /// Every pair whose squared distance is at most the cap.
+  /// Hands every pair whose squared distance is at most the cap to the sink.
   void (*visit)(const SegmentView& segment, const ObjectView& object, double cap_squared, bool nearest_first,
                 PairSink sink, void* context);
-  /// A lower bound on the distance, at most `cap` [m]; as a rule 0.8 of it or more; less, down to 0,
-  /// where 256 pairs do not settle it.
+  /// @returns true if the surfaces cross or touch, or if 1,024 pairs of lens and box or 512 pairs of
+  /// triangles do not decide it
+  bool (*crosses)(const SegmentView& segment, const ObjectView& object);
+  /// Returns a lower bound on the distance, at most `cap` [m]. As a rule it is 0.8 of the distance or more.
+  /// It is less, down to 0, if 256 pairs do not suffice.
   double (*lower_bound)(const SegmentView& segment, const ObjectView& object, double cap);
-  /// All pairs that might come within `margin` before the parameter has grown by store.horizon, and some
-  /// more.
+  /// Collects all pairs that may come within `margin` before the parameter has grown by store.horizon,
+  /// and some more.
   void (*gather)(const SegmentView& segment, const ObjectView& object, const MotionView& motion,
                  double margin, PairStore& store);
-  /// What each of n pairs allows.
+  /// Computes how far each of n pairs may advance.
   void (*advance)(const SegmentView& segment, const ObjectView& object, const MotionView& motion,
                   double horizon, double margin, double floor, const PairIndex* pairs, int n, PairStep* out);
-  /// The closest points of two triangles, [corner][axis].
+  /// Computes the closest points of two triangles, [corner][axis].
   void (*closest)(const double (*a)[3], const double (*b)[3], PairDistance& out);
 };
 
-/// What the processor was asked to use. Null where the program has none for this set.
+/// Return the functions of one instruction set, or null if the program was built without it.
 const SearchFunctions* portable_functions() noexcept;
 const SearchFunctions* avx2_functions() noexcept;
 const SearchFunctions* avx512_functions() noexcept;
-/// Those in use.
+/// Returns the functions in use.
 const SearchFunctions& functions() noexcept;
 
 }  // namespace phalanx::search

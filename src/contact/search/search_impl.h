@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The searches, compiled once for each instruction set.                                      docs/contact.md
+// Table of the search functions of one instruction set. See docs/contact.md.
 #pragma once
 
 #include "contact/search/moving_pairs.h"
@@ -9,6 +9,7 @@
 
 namespace phalanx::search::PHALANX_SEARCH_SET {
 
+/// Implements SearchFunctions::closest.
 inline void closest(const double (*a)[3], const double (*b)[3], PairDistance& out) noexcept {
   Triangles ta;
   Triangles tb;
@@ -23,6 +24,6 @@ inline void closest(const double (*a)[3], const double (*b)[3], PairDistance& ou
          {found.on_b.x[0], found.on_b.y[0], found.on_b.z[0]}};
 }
 
-inline constexpr SearchFunctions kFunctions{&visit, &lower_bound, &gather, &advance, &closest};
+inline constexpr SearchFunctions kFunctions{&visit, &crosses, &lower_bound, &gather, &advance, &closest};
 
 }  // namespace phalanx::search::PHALANX_SEARCH_SET

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact distance of triangles, one pair a lane: triangle_distance.h says what it gives.
+// Exact distance of triangles, one pair a lane, as triangle_distance.h defines it.
 #pragma once
 
 #include "contact/search/pack.h"
@@ -11,7 +11,7 @@ struct Triangles {
   Vectors corner[3];
 };
 
-/// The nearest features found so far.
+/// Nearest features found so far.
 struct Closest {
   Doubles squared;
   Vectors on_a;
@@ -43,8 +43,8 @@ PHALANX_INLINE void edges_of(const Triangles& t, Edge (&edge)[3]) noexcept {
   }
 }
 
-/// Closest points of two edges, either of which may be a point. Nearly parallel: any s does, the projections
-/// make it the best.
+/// Offers the closest points of two edges, either of which may be a point. For nearly parallel edges any s
+/// serves: the projections optimise it.
 PHALANX_INLINE void edge_edge(const Edge& a, const Edge& b, Closest& closest) noexcept {
   const Vectors r = a.from - b.from;
   const Doubles ab = dot(a.along, b.along);
@@ -61,14 +61,14 @@ PHALANX_INLINE void edge_edge(const Edge& a, const Edge& b, Closest& closest) no
   closest.offer(on_a.x == on_a.x, on_a, on_b);
 }
 
-/// Corners of `points` above the face of `t`, and whether an edge of `points` pierces it.
-/// @returns the lanes where one does, with the place in `pierced`
+/// Offers the corners of `points` against the face of `t`, and tests whether an edge of `points` pierces it.
+/// @returns the lanes where one does, with the point in `pierced`
 PHALANX_INLINE DoubleMask corners_against_face(const Triangles& points, const Edge (&points_edge)[3],
                                                const Triangles& t, const Edge (&edge)[3], bool points_are_a,
                                                Closest& closest, Vectors& pierced) noexcept {
   const Vectors normal = cross(edge[0].along, t.corner[2] - t.corner[0]);
   const Doubles squared = dot(normal, normal);
-  // A sliver's normal is rounding noise: its edges, which are as near to within its width, say it all.
+  // A sliver's normal is rounding noise. Its edges, which are as near to within its width, suffice.
   const DoubleMask plane = squared > 1e-18 * (edge[0].squared * edge[2].squared);
   const Doubles inverse = 1.0 / pick(plane, squared, all(1.0));
   const Vectors inward[3] = {cross(normal, edge[0].along), cross(normal, edge[1].along),
@@ -103,8 +103,8 @@ PHALANX_INLINE DoubleMask corners_against_face(const Triangles& points, const Ed
   return hit;
 }
 
-/// The closest points of a and b: the least over 9 pairs of edges and 6 of corner and face, or a common
-/// point.
+/// Returns the closest points of a and b: the least over 9 pairs of edges and 6 of corner and face, or
+/// a common point.
 PHALANX_INLINE Closest closest_points(const Triangles& a, const Triangles& b) noexcept {
   Edge ea[3];
   Edge eb[3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's types as the search's inner loops want them.
+// Conversion of the program's types to the views of the search's inner loops.
 #pragma once
 
 #include <cassert>
@@ -13,7 +13,7 @@ namespace phalanx::search {
   return {object.nodes(), object.blocks(), object.size()};
 }
 
-/// A new query of the segment at its pose. Real-time.
+/// Begins a new query of the segment at its pose. Real-time.
 [[nodiscard]] inline SegmentView view_of(const PlacedSegment& segment, const ObjectTree& object) noexcept {
   assert(segment.scratch.fits(segment.tree));
   SegmentView view;
@@ -32,7 +32,7 @@ namespace phalanx::search {
     view.object_centre[i] = object.centre()[i];
     view.lens_p[i] = static_cast<float>(relative[i]);
   }
-  // Single precision rounds by 6e-8 of what it holds, a dozen times.
+  // Single precision rounds by 6e-8 of the value, about a dozen times.
   const double held = relative.cwiseAbs().maxCoeff() + segment.tree.extent() + object.extent();
   view.slack = static_cast<float>(2e-6 * held);
   return view;

@@ -43,7 +43,7 @@ class Builder {
     if (count <= leaf_size_) return ~(first / leaf_size_);
     const auto node = static_cast<std::int32_t>(nodes_.size());
     nodes_.emplace_back();
-    // Children are full trees, all but the last: nothing is wasted on half empty nodes.
+    // Children are full trees, all but the last, so that few nodes have empty lanes.
     std::int32_t full = leaf_size_;
     while (full < (count + kWide - 1) / kWide) full *= kWide;
     std::array<WideRanges::Lane, kWide> lanes{};

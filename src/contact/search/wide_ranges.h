@@ -10,7 +10,7 @@
 
 namespace phalanx {
 
-/// The shape of a tree with up to eight children a node, before it has any bounds.
+/// Shape of a tree with up to eight children a node, without bounds.
 struct WideRanges {
   struct Lane {
     std::int32_t first = 0;
@@ -19,13 +19,13 @@ struct WideRanges {
   };
   using Node = std::array<Lane, kWide>;
 
-  std::vector<Node> nodes;          ///< children stand behind their parent; lane 0 of node 0 is the root
+  std::vector<Node> nodes;          ///< children after their parent; lane 0 of node 0 is the root
   std::vector<std::int32_t> order;  ///< the mesh's triangles, leaf by leaf
 };
 
-/// Splits the triangles at medians of their boxes' middles along the widest axis, so that every leaf but the
-/// last holds `leaf_size` and every node but a few has eight children. Ties keep the mesh's order, so that
-/// the tree is reproducible. No triangles: no nodes. O(n log n); set-up only.
+/// Splits the triangles at medians of their boxes' centres along the widest axis. Every leaf but the last
+/// holds `leaf_size` triangles, and all but a few nodes have eight children. Ties keep the mesh's order, so
+/// that the tree is reproducible. Without triangles there are no nodes. O(n log n); set-up only.
 [[nodiscard]] WideRanges wide_ranges(const TriangleMesh& mesh, int leaf_size);
 
 }  // namespace phalanx

@@ -13,12 +13,12 @@
 namespace phalanx {
 namespace {
 
-constexpr double kAskingStep = 0.005;  // [s], as all here
-/// A host that was killed holds its session for PHX_SESSION_US; the next one waits a little longer.
+constexpr double kAskingStep = 0.005;  // [s], as all constants here
+/// Time of asking a busy controller: a host that was killed holds its session for PHX_SESSION_US.
 constexpr double kPatienceWhenBusy = 1.25e-6 * PHX_SESSION_US;
 constexpr int kFarewells = 50;  // commands without ENABLE before GOODBYE
 constexpr double kFarewellPeriod = 0.001;
-constexpr int kGoodbyes = 5;  // a lost one is repeated; samples that go on say that it was
+constexpr int kGoodbyes = 5;  // repeated, since one may be lost; continuing samples show that
 constexpr double kGoodbyePeriod = 0.005;
 
 std::uint64_t random_host_id() {
@@ -77,7 +77,7 @@ class WiredDevice final : public LinkDevice {
   std::optional<std::vector<DeviceChannel>> calibration_;
   DeviceInfo info_;
   LinkShared shared_;
-  LinkSession session_;  ///< open()'s until thread_ runs, then thread_'s
+  LinkSession session_;  ///< open() uses it until thread_ runs, then thread_ does
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -86,7 +86,7 @@ class WiredDevice final : public LinkDevice {
 
 void WiredDevice::open() {
   close();
-  shared_.samples.take({});  // of an earlier session
+  shared_.samples.take({});  // samples of an earlier session
   shake_hands();
   try {
     info_ = device_info(session_.welcome());
@@ -181,12 +181,12 @@ void WiredDevice::take_leave() noexcept {
     session_.send_disabled();
     while (clock_.now() < next) {
       wait_until(next);
-      session_.receive(clock_.now());  // a sample that stays unread would end every further wait at once
+      session_.receive(clock_.now());  // an unread sample would end every further wait at once
     }
   }
   for (int i = 0; i < kGoodbyes && session_.phase() == LinkSession::Phase::kRunning; ++i) {
     session_.send_goodbye();
-    // Samples that were on their way have arrived after half the time.
+    // Samples that were on their way arrive within half the period.
     const double sent = clock_.now();
     while (clock_.now() < sent + kGoodbyePeriod) {
       session_.receive(clock_.now());

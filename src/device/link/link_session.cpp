@@ -9,20 +9,20 @@
 namespace phalanx {
 namespace {
 
-constexpr double kHelloPeriod = 0.1;       // [s], as all here
-constexpr double kConfigurePeriod = 0.01;  // until a sample says that it has arrived
+constexpr double kHelloPeriod = 0.1;       // [s], as all constants here
+constexpr double kConfigurePeriod = 0.01;  // until a sample has the flag CONFIGURED
 constexpr double kKeepAlivePeriod = 0.25;  // CONFIGURE again: a session ends after PHX_SESSION_US of silence
 constexpr double kResetPeriod = 0.005;
-/// A latch whose cause is not gone by then needs another reset(): letting go of an emergency stop later must
-/// not start the motors.
+/// Longest repetition of RESET. If the cause is gone later, another reset() is needed: releasing an emergency
+/// stop must not start the motors.
 constexpr double kResetFor = 0.2;
 constexpr double kCommandPeriod = 0.001;
-/// A command is not repeated beyond this: the controller would not use it, and a host that was stopped must
-/// not send what it meant before.
+/// Longest repetition of a command. The controller would not use an older one, and a host that was suspended
+/// must not send an old command.
 constexpr double kRepeatFor = 0.02;
-constexpr double kSilent = 0.01;  // without a sample: ask whether the controller is there
+constexpr double kSilent = 0.01;  // without a sample for this long, a PING is sent
 constexpr double kPingPeriod = 0.01;
-constexpr double kSessionGone = 0.1;  // it answers PING for so long, but sends no sample
+constexpr double kSessionGone = 0.1;  // PING is answered for this long, but no sample comes
 constexpr int kFramesPerCall = 2 * static_cast<int>(SampleQueue::kCapacity);
 
 bool same_device(const phx_welcome& a, const phx_welcome& b) noexcept {
@@ -44,7 +44,7 @@ LinkSession::LinkSession(Transport& transport, const LinkSettings& settings, std
 void LinkSession::ask(double now) noexcept {
   phase_ = Phase::kAsking;
   refusal_.reset();
-  // What was commanded or asked for before does not concern the session to come.
+  // Earlier commands and requests do not apply to the next session.
   shared_.command.update();
   has_command_ = false;
   resets_seen_ = shared_.resets.load(std::memory_order_acquire);
@@ -78,7 +78,7 @@ void LinkSession::receive(double now) noexcept {
     if (decoded == PHX_OTHER_VERSION && phase_ == Phase::kAsking)
       refusal_ = Refusal{.reason = PHX_REFUSED_VERSION, .version = message.header.version};
   }
-  // What the wire itself has dropped: too long, or no frame.
+  // Pieces that the wire itself dropped: too long, or not a frame.
   const std::uint64_t dropped = transport_.dropped();
   LinkCounters::count(shared_.counters.corrupt, dropped - dropped_seen_);
   dropped_seen_ = dropped;
@@ -100,8 +100,8 @@ void LinkSession::take(const phx_message& message, double now) noexcept {
   }
 }
 
-// Two HELLOs may have been on their way: the session is the one that the later of them opened. Once it is
-// settled it is too late for that, and another epoch means that the controller has forgotten us.
+// Handles WELCOME. Two HELLOs may have been on their way: the session is the one that the later HELLO opened.
+// Once the session is settled, another epoch means that the controller has forgotten it.
 void LinkSession::take_welcome(const phx_message& message, double now) noexcept {
   const phx_welcome& welcome = message.as.welcome;
   const std::uint32_t epoch = message.header.epoch;
@@ -141,10 +141,10 @@ void LinkSession::take_refusal(const phx_message& message, double now) noexcept 
   if (refused.host_id != host_id_) return LinkCounters::count(shared_.counters.refused);
   if (phase_ == Phase::kAsking) {
     refusal_ = Refusal{.reason = refused.reason, .version = refused.version};
-    // The first time, open() decides; later nobody else could.
+    // At the first session, open() decides; later, only the fault can report it.
     if (known_) fail(Fault::kRefused);
   } else if (phase_ == Phase::kRunning && silent(now)) {
-    fail(Fault::kRefused);  // with samples coming it would be a late answer to an earlier HELLO
+    fail(Fault::kRefused);  // while samples come, it is a late answer to an earlier HELLO
   }
 }
 
@@ -170,14 +170,14 @@ void LinkSession::take_sample(const phx_message& message, double now) noexcept {
   configured_ = (sample.flags & PHX_SAMPLE_CONFIGURED) != 0;
   settled_ = settled_ || configured_;
   sample_time_us_ = sample.time_us;
-  // The first RESET leaves when reset_until_ is set: a sample that is not latched after that has seen it, or
-  // had nothing to clear.
+  // The first RESET is sent when reset_until_ is set. A later sample that is not latched has seen it, or
+  // there was nothing to clear.
   if (sample.state != PHX_STATE_LATCHED) reset_until_ = -1.0;
   if (!shared_.samples.push(read_sample(message, now))) LinkCounters::count(counters.overflowed);
 }
 
-// A controller that answers PING but sends no sample has forgotten the session: its clock has begun again,
-// or it goes on for longer than samples could be lost by chance.
+// Handles PONG. A controller that answers PING but sends no sample has forgotten the session, in two cases:
+// its clock has begun again, or no sample comes for longer than chance losses explain.
 void LinkSession::take_pong(const phx_ping& pong, double now) noexcept {
   const std::uint64_t number = pong.stamp - host_id_;
   const bool answers = number > pings_before_sample_ && number <= pings_;
@@ -185,7 +185,7 @@ void LinkSession::take_pong(const phx_ping& pong, double now) noexcept {
   if (first_pong_ < 0.0) first_pong_ = now;
   if (pong.time_us >= sample_time_us_ && now - first_pong_ <= kSessionGone) return;
   if (settled_) return fail(Fault::kControllerRestarted);
-  ask(now);  // WELCOME of a later session was lost; nothing has been commanded in any
+  ask(now);  // WELCOME of a later session was lost; nothing was commanded in any
 }
 
 void LinkSession::fail(Fault fault) noexcept {
@@ -209,7 +209,7 @@ void LinkSession::send_due(double now) noexcept {
 void LinkSession::send_hello(double now) noexcept {
   if (known_ && now > ask_until_) {
     reset_until_ = -1.0;
-    // A controller that comes up much later waits for another reset().
+    // For a controller that comes up much later, another reset() is needed.
     return fail(Fault::kControllerRestarted);
   }
   if (now < next_hello_) return;
@@ -224,7 +224,7 @@ void LinkSession::watch_for_reset(double now) noexcept {
   const std::uint32_t resets = shared_.resets.load(std::memory_order_acquire);
   if (resets == resets_seen_) return;
   resets_seen_ = resets;
-  // What was commanded before a reset is not meant any more.
+  // A command from before a reset is no longer valid.
   shared_.command.update();
   has_command_ = false;
   if (phase_ == Phase::kDown) {
@@ -284,13 +284,13 @@ void LinkSession::send_disabled() noexcept {
   message.header.type = PHX_COMMAND;
   message.as.command.tick = ++last_tick_;
   message.as.command.sample_time_us = sample_time_us_;
-  message.as.command.flags = PHX_COMMAND_FAULT;  // whoever goes without a ramp means zero at once
+  message.as.command.flags = PHX_COMMAND_FAULT;  // a host that ends without a ramp needs zero torque at once
   send(message, epoch_);
   LinkCounters::count(shared_.counters.sent);
 }
 
 double LinkSession::next_due(double now) const noexcept {
-  // Within a period: the loop may have a command or a reset for us at any time.
+  // At most one period: the loop may send a command or a reset at any time.
   const double soonest = now + kCommandPeriod;
   return phase_ == Phase::kRunning && repeats_command(now) ? std::min(next_command_, soonest) : soonest;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's side of a session as a machine without a thread or a clock: one thread calls it with the time.
+// The host's side of a session: a state machine without a thread or a clock. One thread calls it
+// with the time.
 #pragma once
 
 #include <array>
@@ -13,39 +14,39 @@
 
 namespace phalanx {
 
-/// All of it is real-time but for the constructor.
+/// Host's side of a link session. Real-time except for the constructor.
 class LinkSession {
  public:
   enum class Phase {
-    kIdle,     ///< nothing is asked for
-    kAsking,   ///< HELLO until WELCOME
+    kIdle,     ///< no session is wanted
+    kAsking,   ///< HELLO is repeated until WELCOME
     kRunning,  ///< a session is open
     kDown,     ///< a connection fault is latched: nothing is sent until reset
   };
 
-  /// Why a controller did not open a session.
+  /// Reason for which a controller did not open a session.
   struct Refusal {
     std::uint8_t reason = 0;   ///< enum phx_refusal
-    std::uint8_t version = 0;  ///< that the controller speaks
+    std::uint8_t version = 0;  ///< version that the controller speaks
   };
 
   LinkSession(Transport& transport, const LinkSettings& settings, std::uint64_t host_id, LinkShared& shared);
 
-  /// PHX_CONFIGURE as it is to be sent in every session.
+  /// Sets the PHX_CONFIGURE that is sent in every session.
   void set_configuration(const phx_message& configure) noexcept { configure_ = configure; }
-  /// Asks for a session from now on; the one before, if any, is forgotten.
+  /// Asks for a session from now on; an earlier one is forgotten.
   void ask(double now) noexcept;
-  /// Takes what the transport has.
+  /// Handles all frames that the transport has.
   void receive(double now) noexcept;
-  /// Sends what is due. What was missed is not made up for.
+  /// Sends the frames that are due. Missed ones are not sent later.
   void send_due(double now) noexcept;
-  /// When send_due() has something to do again [s].
+  /// @returns the time at which send_due() has to act again [s].
   [[nodiscard]] double next_due(double now) const noexcept;
 
-  /// A command without ENABLE, newer than all before it.
+  /// Sends a command without ENABLE, newer than all before it.
   void send_disabled() noexcept;
   void send_goodbye() noexcept { send(PHX_GOODBYE, epoch_); }
-  /// As before the first ask().
+  /// Returns to the state before the first ask().
   void forget() noexcept;
 
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
@@ -78,29 +79,29 @@ class LinkSession {
   double hello_timeout_;
 
   Phase phase_ = Phase::kIdle;
-  bool known_ = false;  ///< the first session of this run has been granted: welcome_ is who we talk to
+  bool known_ = false;  ///< the first session of this run was granted: welcome_ is valid
   phx_welcome welcome_{};
   phx_message configure_{};
   std::optional<Refusal> refusal_;
   std::uint32_t epoch_ = 0;
-  std::array<std::uint32_t, PHX_PONG + 1> sequence_{};  ///< of our frames, by type
+  std::array<std::uint32_t, PHX_PONG + 1> sequence_{};  ///< of the host's frames, by type
 
   SequenceWindow window_;
-  std::uint64_t lost_before_ = 0;  ///< in earlier sessions
-  bool configured_ = false;        ///< says the newest sample
-  bool settled_ = false;           ///< said a sample of this session
+  std::uint64_t lost_before_ = 0;  ///< lost frames of earlier sessions
+  bool configured_ = false;        ///< the newest sample has the flag CONFIGURED
+  bool settled_ = false;           ///< a sample of this session had the flag CONFIGURED
   double heard_ = 0.0;
-  double silence_ = 0.0;              ///< without a sample that is worth a PING
+  double silence_ = 0.0;              ///< time without a sample after which a PING is sent [s]
   std::uint64_t sample_time_us_ = 0;  ///< of the newest sample
-  std::uint64_t pings_ = 0;           ///< sent; the stamp of one is host_id_ + its number
+  std::uint64_t pings_ = 0;           ///< number sent; the stamp of a PING is host_id_ + its number
   std::uint64_t pings_before_sample_ = 0;
-  double first_pong_ = -1.0;  ///< of a PING sent since the last sample [s]; < 0: none
+  double first_pong_ = -1.0;  ///< time of the first PONG to a PING sent since the last sample [s]; < 0: none
 
   bool has_command_ = false;
-  std::uint64_t last_tick_ = 0;  ///< sent
+  std::uint64_t last_tick_ = 0;  ///< tick of the last command sent
   std::uint32_t resets_seen_ = 0;
-  std::uint64_t dropped_seen_ = 0;  ///< of transport_.dropped(), counted already
-  double reset_until_ = -1.0;       ///< RESET is repeated until then; < 0: not asked for
+  std::uint64_t dropped_seen_ = 0;  ///< part of transport_.dropped() that is counted already
+  double reset_until_ = -1.0;       ///< RESET is repeated until then [s]; < 0: not requested
 
   double next_hello_ = 0.0;
   double ask_until_ = 0.0;  ///< after a reset; open() has its own limit

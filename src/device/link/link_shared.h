@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the loop's thread and the link's thread have in common; nothing else passes between them.
+// The data that the loop's thread and the link's thread share; nothing else passes between them.
 #pragma once
 
 #include <atomic>
@@ -11,13 +11,13 @@
 
 namespace phalanx {
 
-/// A command, and when the loop sent it [s].
+/// A command, and the time at which the loop sent it [s].
 struct SentCommand {
   DeviceCommand command;
   double at = 0.0;
 };
 
-/// LinkStatistics that two threads may touch.
+/// Counters of LinkStatistics that two threads may change.
 struct LinkCounters {
   std::atomic<std::uint64_t> received{0}, lost{0}, outdated{0}, corrupt{0}, refused{0}, overflowed{0},
       sent{0}, device_corrupt{0}, device_refused{0}, device_outdated{0};
@@ -27,10 +27,11 @@ struct LinkCounters {
   }
 };
 
+/// Queues and flags between the two threads.
 struct LinkShared {
   SampleQueue samples;                     ///< link -> loop
   Latest<SentCommand> command;             ///< loop -> link
-  std::atomic<std::uint32_t> resets{0};    ///< loop -> link: how often reset() was called
+  std::atomic<std::uint32_t> resets{0};    ///< loop -> link: number of reset() calls
   std::atomic<Fault> fault{Fault::kNone};  ///< link -> loop: connection_fault()
   LinkCounters counters;
 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Reference of the Phalanx link; see phalanx_link.h and docs/link.md. C99, freestanding: the compiler may ask
- * for memcpy and memset, nothing else is used.
+ * Reference of the Phalanx link; see phalanx_link.h and docs/link.md. C99, freestanding: the compiler may
+ * need memcpy and memset, nothing else is used.
  */
 #include "phalanx/device/link/phalanx_link.h"
 
@@ -90,7 +90,7 @@ static void pass_channel(phx_stream* stream, phx_channel* channel) {
   pass_float(stream, &channel->offset);
 }
 
-/* Channels from channel_count on are zeros on the wire and, whatever came, zeros in the message. */
+/* Channels from channel_count on are zeros on the wire; other values received there become zeros. */
 static void pass_welcome(phx_stream* stream, phx_welcome* welcome) {
   static const phx_channel none = {0, 0, 0, 0, 0.0f, 0.0f};
   pass_u64(stream, &welcome->host_id);
@@ -198,8 +198,8 @@ static void pass_payload(phx_stream* stream, phx_message* message) {
 
 /* ---- frames ---- */
 
-/* CRC-32 of IEEE 802.3, reflected: polynomial 0xEDB88320, begins and ends inverted. Four bits at a time: 64
- * bytes of table, two look-ups a byte. */
+/* CRC-32 of IEEE 802.3, reflected: polynomial 0xEDB88320, begins and ends inverted. It takes four bits
+ * at a time: a table of 64 bytes, two look-ups a byte. */
 static uint32_t crc32(const uint8_t* bytes, size_t size) {
   static const uint32_t table[16] = {
       0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u, 0x4DB26158u, 0x5005713Cu,
@@ -309,7 +309,7 @@ static bool numbers_are_right(const phx_message* message) {
   }
 }
 
-/* What no later version may change: the first four bytes, the CRC at the end and HELLO's host_id. */
+/* Reads the parts that no later version may change: the first four bytes, the final CRC, HELLO's host_id. */
 static enum phx_decoded decode_other_version(const uint8_t* frame, size_t size, phx_message* message) {
   if (!crc_is_right(frame, size)) return PHX_BAD_CRC;
   message->header.version = frame[2];
@@ -345,8 +345,7 @@ enum phx_decoded phx_decode(const uint8_t* frame, size_t size, phx_message* mess
   return stream.finite && numbers_are_right(message) ? PHX_OK : PHX_BAD_NUMBER;
 }
 
-/* ---- COBS: Cheshire and Baker, "Consistent overhead byte stuffing", IEEE/ACM Trans. Networking 7(2), 1999
- */
+/* ---- COBS: Cheshire, Baker, "Consistent overhead byte stuffing", IEEE/ACM Trans. Networking 7(2), 1999 */
 
 size_t phx_cobs_encode(const uint8_t* frame, size_t size, uint8_t* out, size_t capacity) {
   size_t code_at = 0; /* where the count of the block being written belongs */
@@ -389,7 +388,7 @@ static void receiver_append(phx_receiver* receiver, uint8_t byte) {
   }
 }
 
-/* At the zero byte. Zeros alone are no frame and no mistake: a sender may begin with one. */
+/* Ends a frame at its zero byte. Zeros alone are neither frame nor error: a sender may begin with one. */
 static size_t receiver_close(phx_receiver* receiver) {
   const bool whole = receiver->begun && !receiver->broken && receiver->left == 0 && receiver->size > 0;
   const size_t size = whole ? receiver->size : 0;
@@ -423,8 +422,8 @@ static uint64_t elapsed_us(uint64_t now_us, uint64_t since_us) {
   return now_us > since_us ? now_us - since_us : 0;
 }
 
-/* Of the newest step. A time before the sample's own is a clock that ran backwards: nothing can be said of
- * the step's age, so that it counts as too old. */
+/* Returns the age of the newest step. If the time is before the sample's own, the clock ran backwards: the
+ * age is unknown, and the step counts as too old. */
 static uint32_t step_age_us(const phx_controller* controller, uint64_t now_us) {
   const uint64_t sample_time_us = controller->step.command.sample_time_us;
   if (now_us < sample_time_us) return UINT32_MAX;
@@ -520,7 +519,7 @@ static void take_configure(phx_controller* controller, const phx_configure* conf
   controller->configured = true;
 }
 
-/* Whether nothing of what latches is there at the last tick. */
+/* Returns true if no cause of a latch was present at the last tick. */
 static bool causes_gone(const phx_controller* controller) {
   if (controller->estop || controller->drive_fault) return false;
   for (size_t i = 0; i < controller->device.channel_count; ++i) {
@@ -546,7 +545,7 @@ static void close_session(phx_controller* controller) {
   forget_step(controller);
 }
 
-/* Makes the command the newest step, or says why not. */
+/* Makes the command the newest step, or returns why not. */
 static enum phx_received take_command(phx_controller* controller, const phx_message* message,
                                       uint64_t now_us) {
   const bool walls = message->header.type == PHX_COMMAND_WALLS;
@@ -596,7 +595,7 @@ static enum phx_received take_from_host(phx_controller* controller, const phx_me
   }
 }
 
-/* An answer stands in `message` afterwards where header.type is one of the controller's own. */
+/* Handles a message. If header.type is one of the controller's own afterwards, `message` is the answer. */
 static enum phx_received take_message(phx_controller* controller, phx_message* message, uint64_t now_us) {
   switch (message->header.type) {
     case PHX_HELLO:
@@ -659,7 +658,7 @@ static void latch(phx_controller* controller, uint16_t fault, size_t channel) {
   controller->fault_channel = (uint8_t)channel;
 }
 
-/* Only while a session is open: without one there is no torque, and nobody to reset it. */
+/* Latches faults while a session is open. Without a session there is no torque, and no host to reset it. */
 static void judge_faults(phx_controller* controller, uint64_t now_us) {
   if (!controller->session) return;
   if (controller->estop) latch(controller, PHX_FAULT_EMERGENCY_STOP, 0);
@@ -672,7 +671,7 @@ static void judge_faults(phx_controller* controller, uint64_t now_us) {
   }
 }
 
-/* 1 while the step is young, 0 from PHX_LATCH_AGE_US on, a straight line between. */
+/* Returns 1 up to PHX_HOLD_AGE_US, 0 from PHX_LATCH_AGE_US on, and a linear factor between. */
 static float fade_of_age(uint32_t age_us) {
   if (age_us <= PHX_HOLD_AGE_US) return 1.0f;
   if (age_us >= PHX_LATCH_AGE_US) return 0.0f;
@@ -684,7 +683,7 @@ static float start_ramp(const phx_controller* controller, uint64_t now_us) {
   return since_us >= PHX_START_RAMP_US ? 1.0f : (float)(uint32_t)since_us / (float)PHX_START_RAMP_US;
 }
 
-/* Nominal period, and the real time since the last tick: at most two periods, one if it cannot be told. */
+/* Returns the real time since the last tick, at most two periods; the nominal period if it is unknown. */
 static float tick_seconds(const phx_controller* controller, uint64_t now_us) {
   const uint32_t period_us = controller->device.rate_hz > 0 ? 1000000u / controller->device.rate_hz : 1000u;
   uint64_t dt_us = period_us;
@@ -693,8 +692,8 @@ static float tick_seconds(const phx_controller* controller, uint64_t now_us) {
   return (float)(uint32_t)dt_us * 1e-6f;
 }
 
-/* q - q_ref of every joint that a channel measures; 0 for the others, for a channel that is configured with
- * gain 0, and while its raw value is out of range. */
+/* Computes q - q_ref of every joint that a channel measures. It is 0 for the others, for a channel that is
+ * configured with gain 0, and while its raw value is out of range. */
 static void wall_angles(const phx_controller* controller, const int32_t* raw, float moved[PHX_JOINTS]) {
   for (size_t i = 0; i < PHX_JOINTS; ++i) moved[i] = 0.0f;
   for (size_t i = 0; i < controller->device.channel_count; ++i) {
@@ -707,7 +706,7 @@ static void wall_angles(const phx_controller* controller, const int32_t* raw, fl
   }
 }
 
-/* The same as phalanx::local_wall_force() of force/local_wall.h. */
+/* Equals phalanx::local_wall_force() of force/local_wall.h. */
 static float wall_force(const phx_wall* wall, const float* moved) {
   float depth = wall->d_ref;
   for (size_t i = 0; i < PHX_WALL_JOINTS; ++i) depth -= wall->g[i] * moved[i];
@@ -716,7 +715,7 @@ static float wall_force(const phx_wall* wall, const float* moved) {
   return force > 0.0f ? force : 0.0f; /* not a number: 0 */
 }
 
-/* Adds  sum g (f - host_force)  of the walls that still hold. */
+/* Adds  sum g (f - host_force)  of the walls that are still valid. */
 static void add_walls(const phx_controller* controller, uint64_t now_us, const int32_t* raw,
                       float torque[PHX_JOINTS]) {
   if (controller->step.valid_us == 0) return;
@@ -739,8 +738,8 @@ static float clamp(float value, float limit) {
 
 static float smaller(float a, float b) { return a < b ? a : b; }
 
-/* How far a torque may move in this tick: by the rate limit, or, where the host is in fault, from the largest
- * torque to zero within PHX_STOP_RAMP_US. */
+/* Returns the largest change of a torque in this tick. It is the rate limit; if the host is in fault, it is
+ * at least the change that reaches zero from the largest torque within PHX_STOP_RAMP_US. */
 static float largest_change(const phx_controller* controller, float limit, float seconds) {
   const float ordinary = smaller(controller->device.torque_rate, controller->configure.torque_rate) * seconds;
   const float stopping = limit * seconds / (1e-6f * (float)PHX_STOP_RAMP_US);
@@ -748,8 +747,8 @@ static float largest_change(const phx_controller* controller, float limit, float
   return fault && stopping > ordinary ? stopping : ordinary;
 }
 
-/* Torque limit, start ramp, torque-rate limit. The ramp stands before the rate limit, so that the sum of
- * both never changes the torque faster than the rate; the limit has the last word. */
+/* Applies torque limit, start ramp and torque-rate limit. The ramp comes before the rate limit, so that both
+ * together never change the torque faster than the rate. The torque limit is applied last. */
 static void limit_torques(phx_controller* controller, float ramp, float seconds, float torque[PHX_JOINTS]) {
   const float limit = smaller(controller->device.torque_limit, controller->configure.torque_limit);
   const float step = largest_change(controller, limit, seconds);
@@ -760,15 +759,14 @@ static void limit_torques(phx_controller* controller, float ramp, float seconds,
   }
 }
 
-/* Where a fresher step ends a fade, the torque rises from what was sent, by the rate limit, and not at once.
- */
+/* If a newer step ends a fade, makes the torque rise from the last output at the rate limit, not at once. */
 static void continue_from_sent(phx_controller* controller, float fade) {
   if (!(fade > controller->fade)) return;
   const float ratio = controller->fade / fade;
   for (size_t i = 0; i < PHX_JOINTS; ++i) controller->torque[i] *= ratio;
 }
 
-/* Acting, not latched: the torques of the step through walls, limits and age. */
+/* Computes the torques while acting and not latched: the step's torques through walls, limits and age. */
 static void act(phx_controller* controller, uint64_t now_us, const int32_t* raw, phx_output* output) {
   const bool on = enabled(controller);
   const float fade = fade_of_age(step_age_us(controller, now_us));

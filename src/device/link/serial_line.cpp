@@ -10,25 +10,17 @@
 #include "device/link/wait_for.h"
 
 namespace phalanx {
-namespace {
-
-/// Reads that one receive() makes before it answers "none for now", so that a flood cannot keep it.
-constexpr int kReadsPerCall = 16;
-
-bool passing(int error) noexcept { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
-
-}  // namespace
 
 SerialLine::SerialLine() {
   phx_receiver_init(&receiver_);
-  // A zero byte first: whatever the other side has half received before us ends there.
+  // A zero byte first: it ends a frame that the other side has half received from an earlier program.
   out_[0] = 0;
   out_size_ = 1;
 }
 
 std::size_t SerialLine::take_buffered(std::span<std::uint8_t> out) noexcept {
-  while (in_begin_ < in_end_) {
-    const std::size_t size = phx_receiver_take(&receiver_, in_[in_begin_++]);
+  while (!in_.empty()) {
+    const std::size_t size = phx_receiver_take(&receiver_, in_.take());
     if (size == 0) continue;
     if (size <= out.size()) {
       std::copy_n(&receiver_.frame[0], size, out.data());
@@ -39,24 +31,12 @@ std::size_t SerialLine::take_buffered(std::span<std::uint8_t> out) noexcept {
   return 0;
 }
 
-bool SerialLine::read_more() noexcept {
-  const ssize_t count = ::read(descriptor_, in_.data(), in_.size());
-  if (count > 0) {
-    in_begin_ = 0;
-    in_end_ = static_cast<std::size_t>(count);
-    return true;
-  }
-  // A terminal that was hung up (unplugged) reads as its end or as an error.
-  if (count == 0 || !passing(errno)) lost_ = true;
-  return false;
-}
-
 std::size_t SerialLine::receive(std::span<std::uint8_t> out, Peer& from) noexcept {
   from = 0;
   flush();
   for (int reads = 0;; ++reads) {
     if (const std::size_t size = take_buffered(out); size > 0) return size;
-    if (lost_ || reads == kReadsPerCall || !read_more()) return 0;
+    if (lost_ || reads == kReadsPerCall || !in_.fill(descriptor_, lost_)) return 0;
   }
 }
 
@@ -64,7 +44,7 @@ void SerialLine::flush() noexcept {
   if (lost_ || out_size_ == 0) return;
   const ssize_t count = ::write(descriptor_, out_.data(), out_size_);
   if (count < 0) {
-    if (!passing(errno)) lost_ = true;
+    if (!is_transient(errno)) lost_ = true;
     return;
   }
   const auto written = static_cast<std::size_t>(count);
@@ -84,7 +64,7 @@ bool SerialLine::send(std::span<const std::uint8_t> frame, Peer) noexcept {
 }
 
 bool SerialLine::wait(double seconds) noexcept {
-  if (in_begin_ < in_end_) return true;
+  if (!in_.empty()) return true;
   if (lost_) {
     wait_for(-1, 0, seconds);
     return false;

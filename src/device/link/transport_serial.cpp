@@ -51,8 +51,8 @@ const char* remedy_of_open(int error) noexcept {
   }
 }
 
-/// A pseudo-terminal's controller holds it open, so that a mark of exclusive use would outlive a host that
-/// was killed; the lock alone does not.
+/// @returns true for a pseudo-terminal. Its controller keeps it open: the exclusive mode would outlive a host
+/// that was killed, but the lock does not.
 bool is_pseudo_terminal(int descriptor) noexcept {
   struct stat status{};
   if (::fstat(descriptor, &status) != 0) return false;
@@ -60,7 +60,8 @@ bool is_pseudo_terminal(int descriptor) noexcept {
   return number >= 136 && number <= 143;  // UNIX98 slaves, Documentation/admin-guide/devices.txt
 }
 
-/// USB adapters collect bytes for up to 16 ms unless told not to. Not every driver can: no error.
+/// Requests low latency: USB adapters otherwise collect bytes for up to 16 ms. Not every driver
+/// can: no error.
 void ask_for_low_latency(int descriptor) noexcept {
   serial_struct settings{};
   if (::ioctl(descriptor, TIOCGSERIAL, &settings) != 0) return;
@@ -80,7 +81,7 @@ class SerialPort final : public SerialLine {
       fail(port, fmt::format("cannot be had alone: {}", std::strerror(errno)), kInUse);
     configure();
     ask_for_low_latency(descriptor);
-    ::tcflush(descriptor, TCIOFLUSH);  // what was there before us is nobody's
+    ::tcflush(descriptor, TCIOFLUSH);  // bytes from before this session
     use(descriptor);
   }
 
@@ -121,7 +122,7 @@ std::string name_of_slave(int master) {
   return name.data();
 }
 
-/// Holds the host's end open too: without it the controller's end would fail whenever no host is there.
+/// Pseudo-terminal. It keeps the host's end open too: without a host, the controller's end would fail.
 class PseudoTerminal final : public SerialLine {
  public:
   PseudoTerminal()

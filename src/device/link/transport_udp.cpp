@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame a datagram: the link over UDP (IPv4). Boost.Asio opens and configures the socket.
+// The link over UDP (IPv4), one frame a datagram. Boost.Asio opens and configures the socket.
 #include <fmt/format.h>
 #include <poll.h>
 
@@ -22,7 +22,7 @@ namespace asio = boost::asio;
 using asio::ip::udp;
 using boost::system::error_code;
 
-/// Pieces that one receive() looks at before it answers "none for now", so that a flood cannot keep it.
+/// Datagrams of one receive() before it returns 0, so that a continuous stream cannot hold it.
 constexpr int kPiecesPerCall = 64;
 
 Peer pack(const udp::endpoint& endpoint) noexcept {
@@ -34,8 +34,8 @@ udp::endpoint unpack(Peer peer) noexcept {
           static_cast<std::uint16_t>(peer & 0xffffu)};
 }
 
-/// A socket has no cable that could be pulled for good: every error of the network passes, so that it is
-/// never lost. A controller that is not up (yet, or again) answers with "connection refused".
+/// UDP socket. It is never lost: every error of the network is temporary. A controller that is not up (yet,
+/// or again) answers with "connection refused".
 class UdpTransport final : public Transport {
  public:
   UdpTransport() : socket_(io_) {}
@@ -49,7 +49,7 @@ class UdpTransport final : public Transport {
   void listening_on(std::string address) { address_ = std::move(address); }
 
   [[nodiscard]] std::size_t receive(std::span<std::uint8_t> out, Peer& from) noexcept override {
-    std::uint8_t beyond = 0;  // filled only by a datagram that `out` cannot hold
+    std::uint8_t beyond = 0;  // filled only by a datagram larger than `out`
     for (int piece = 0; piece < kPiecesPerCall; ++piece) {
       const std::array<asio::mutable_buffer, 2> room = {asio::buffer(out.data(), out.size()),
                                                         asio::buffer(&beyond, 1)};
@@ -69,7 +69,7 @@ class UdpTransport final : public Transport {
 
   bool send(std::span<const std::uint8_t> frame, Peer to) noexcept override {
     const auto bytes = asio::buffer(frame.data(), frame.size());
-    // The system reports the refusal of an earlier datagram in place of sending this one: once more.
+    // The system may report the refusal of an earlier datagram instead of sending this one: try twice.
     for (int attempt = 0; attempt < 2; ++attempt) {
       error_code error;
       if (connected_) {

@@ -77,7 +77,7 @@ int open_glove_port(const std::string& port, unsigned baud) {
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   if (::cfsetspeed(&settings, speed) != 0 || ::tcsetattr(descriptor.value(), TCSANOW, &settings) != 0)
     fail(port, "cannot be set up", errno);
-  ::tcflush(descriptor.value(), TCIOFLUSH);  // what was there before us is nobody's
+  ::tcflush(descriptor.value(), TCIOFLUSH);  // bytes from before this session
   return descriptor.give_away();
 }
 
@@ -88,7 +88,7 @@ std::string usb_serial_number(const std::string& port) {
   if (error) return {};
   fs::path folder = fs::canonical(fs::path("/sys/class/tty") / tty.filename() / "device", error);
   if (error) return {};
-  // The USB device stands a few folders above its port.
+  // The USB device is a few folders above its port.
   for (int up = 0; up < 4 && folder.has_relative_path(); ++up, folder = folder.parent_path()) {
     std::string serial;
     if (std::getline(std::ifstream(folder / "serial"), serial)) return serial;

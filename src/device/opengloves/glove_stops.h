@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a glove is to stop each finger, from the hand that is shown.
+// The stop positions of a glove's fingers, from the displayed hand.
 #pragma once
 
 #include <optional>
@@ -11,25 +11,25 @@
 
 namespace phalanx {
 
-/// The shown curl of a digit is the mean over its flexion joints of (q_gdp - min) / (max - min). The stop
-/// stands where the glove itself would read that curl c:
+/// Converter from the displayed hand to stops. The displayed curl c of a digit is the mean over its flexion
+/// joints of (q_gdp - min) / (max - min). The stop is placed where the glove itself would read that curl:
 ///   stop = round(1000 (1 - raw(c) / full scale)),   raw(c) = (c - offset) / gain,
-/// with the nominal gain 1000 (1 - c). A digit whose joints are sensed one by one takes the mean of
-/// raw(q_gdp) over these joints. Bounded to 0 .. 1000; a number that is not finite lets go.
+/// with the nominal gain 1000 (1 - c). A digit whose joints are sensed separately uses the mean of raw(q_gdp)
+/// over these joints. A stop is bounded to 0 .. 1000; a number that is not finite releases the finger.
 class GloveStopper {
  public:
   GloveStopper() = default;
-  /// @param hand  without one, nothing is ever stopped
+  /// @param hand  without one, no finger is ever stopped
   GloveStopper(std::span<const DeviceChannel> channels, int full_scale,
                const std::optional<HandParameters>& hand);
 
-  /// Real-time: no allocation, lock, throw or I/O. 0 (free) for all digits unless `command` is enabled, and
-  /// for each digit that is not stopped or not sensed.
+  /// @returns the stops: 0 (free) for all digits unless `command` is enabled, and for each digit that is not
+  /// stopped or not sensed. Real-time: no allocation, lock, throw or I/O.
   [[nodiscard]] GloveStops stops(const DeviceCommand& command) const noexcept;
 
  private:
-  /// Fraction of the full scale that the glove reads = sum over the digit's flexion joints of weight q, +
-  /// offset.
+  /// Linear model of the glove's reading, as a fraction of the full scale: the sum over the digit's flexion
+  /// joints of weight q, plus offset.
   struct Reading {
     bool sensed = false;
     std::array<double, kJointsPerDigit> weight{};

@@ -9,15 +9,6 @@
 #include <cerrno>
 
 namespace phalanx {
-namespace {
-
-// Reads that one next() makes before it answers "none for now", so that a flood without a line end cannot
-// keep it.
-constexpr int kReadsPerCall = 16;
-
-bool passing(int error) noexcept { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
-
-}  // namespace
 
 GloveWire::GloveWire(int descriptor) noexcept : descriptor_(descriptor) {
   const int flags = ::fcntl(descriptor_, F_GETFL);
@@ -26,18 +17,6 @@ GloveWire::GloveWire(int descriptor) noexcept : descriptor_(descriptor) {
 
 GloveWire::~GloveWire() { ::close(descriptor_); }
 
-bool GloveWire::read_more() noexcept {
-  const ssize_t count = ::read(descriptor_, in_.data(), in_.size());
-  if (count > 0) {
-    in_begin_ = 0;
-    in_end_ = static_cast<std::size_t>(count);
-    return true;
-  }
-  // A port that was pulled out reads as its end or as an error.
-  if (count == 0 || !passing(errno)) lost_ = true;
-  return false;
-}
-
 GloveWire::Piece GloveWire::next() noexcept {
   if (line_ended_) {
     line_size_ = 0;
@@ -45,8 +24,8 @@ GloveWire::Piece GloveWire::next() noexcept {
     line_ended_ = false;
   }
   int reads = 0;
-  while (in_begin_ < in_end_ || (!lost_ && reads++ < kReadsPerCall && read_more())) {
-    const char c = in_[in_begin_++];
+  while (!in_.empty() || (!lost_ && reads++ < kReadsPerCall && in_.fill(descriptor_, lost_))) {
+    const char c = static_cast<char>(in_.take());
     if (c == '\n') {
       line_ended_ = true;
       return too_long_ ? Piece::kTooLong : Piece::kLine;
@@ -65,7 +44,7 @@ void GloveWire::flush() noexcept {
   const ssize_t count = ::write(descriptor_, out_.data() + out_begin_, out_end_ - out_begin_);
   if (count >= 0) {
     out_begin_ += static_cast<std::size_t>(count);
-  } else if (!passing(errno)) {
+  } else if (!is_transient(errno)) {
     lost_ = true;
   }
 }
@@ -81,7 +60,7 @@ bool GloveWire::send(std::string_view answer) noexcept {
 }
 
 void GloveWire::wait(double seconds) noexcept {
-  // A lost port would be ready at once, for ever.
+  // poll() would return at once on a lost port, without end.
   pollfd poll_for{.fd = lost_ ? -1 : descriptor_, .events = POLLIN, .revents = 0};
   if (out_begin_ < out_end_) poll_for.events |= POLLOUT;
   const int milliseconds = static_cast<int>(1e3 * std::clamp(seconds, 0.0, 60.0)) + 1;

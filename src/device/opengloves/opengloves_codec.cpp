@@ -8,12 +8,12 @@
 namespace phalanx {
 namespace {
 
-constexpr std::int32_t kTooLarge = 1000000;  // a number is not followed beyond this
+constexpr std::int32_t kTooLarge = 1000000;  // larger numbers are clamped here
 
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 constexpr bool is_letter(char c) noexcept { return c >= 'A' && c <= 'Z'; }
 
-// The number's place in GloveLine, for a key without its parentheses; none: a key that is skipped.
+// Finds the index in GloveLine for a key without its parentheses; none: a key that is skipped.
 std::optional<std::size_t> find_key(std::string_view key) noexcept {
   if (key.empty() || key[0] < 'A' || key[0] >= 'A' + kDigits) return std::nullopt;
   const int digit = key[0] - 'A';
@@ -24,7 +24,7 @@ std::optional<std::size_t> find_key(std::string_view key) noexcept {
   return std::nullopt;
 }
 
-// Walks over a line; take_...() leave the position behind what they took.
+// Scanner over a line; each take_...() moves the position behind what it returns.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) noexcept : text_(text) {}
@@ -33,7 +33,7 @@ class Scanner {
   [[nodiscard]] char peek() const noexcept { return text_[at_]; }
   void skip() noexcept { ++at_; }
 
-  // A letter by itself, or letters in parentheses. Empty: a parenthesis that does not close.
+  // Takes a letter, or letters in parentheses. Empty: a parenthesis does not close.
   std::string_view take_key() noexcept {
     if (peek() != '(') return text_.substr(at_++, 1);
     const std::size_t begin = ++at_;
@@ -44,7 +44,7 @@ class Scanner {
     return key;
   }
 
-  // Digits, perhaps after a minus.
+  // Takes digits, with an optional minus.
   std::optional<std::int32_t> take_number() noexcept {
     const std::size_t begin = at_;
     const bool negative = !done() && peek() == '-';

@@ -20,9 +20,9 @@
 namespace phalanx {
 namespace {
 
-constexpr double kKeepAlive = 0.1;     // without a line for so long, a newline is sent [s]
-constexpr double kCommandHold = 0.02;  // stops are let go this long after the last command [s]
-constexpr double kNap = 0.01;          // longest wait on the port, so that close() is not kept [s]
+constexpr double kKeepAlive = 0.1;     // a newline is sent after this time without a line [s]
+constexpr double kCommandHold = 0.02;  // stops are released this long after the last command [s]
+constexpr double kNap = 0.01;          // longest wait on the port, so that close() is not delayed [s]
 
 /// Counters that two threads share.
 struct Counters {
@@ -33,12 +33,12 @@ void count(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) noexcept {
   counter.fetch_add(by, std::memory_order_relaxed);
 }
 
-/// What the loop has asked for.
+/// State that the loop has requested.
 struct Wanted {
   GloveStops stops{};
   bool enable = false;
   std::uint64_t tick = 0;
-  double at = -1e9;  ///< host's clock [s]
+  double at = -1e9;  ///< the host's clock at that time [s]
 };
 
 class Glove final : public OpenGlovesDevice {
@@ -57,6 +57,8 @@ class Glove final : public OpenGlovesDevice {
   ~Glove() override { close(); }
 
   void set_hand(const HandParameters& hand) override { hand_ = hand; }
+  void set_watchdog(std::optional<double> seconds) override { info_.watchdog = seconds; }
+  void set_force_feedback(bool has_it) override { info_.actuated = has_it; }
   void set_calibration(std::vector<DeviceChannel> channels) override;
   void open() override;
   void close() noexcept override;
@@ -82,16 +84,16 @@ class Glove final : public OpenGlovesDevice {
   const Clock& clock_;
   const OpenGlovesSettings settings_;
   std::optional<HandParameters> hand_;
-  LearntGlove learnt_;  ///< empty until it is known what the glove sends
+  LearntGlove learnt_;  ///< empty until learning is over
   DeviceInfo info_;
   std::vector<GloveChannel> channels_;
   int full_scale_ = kGloveWide;
   GloveStopper stopper_;  ///< the loop's thread
 
-  // The glove's thread; open()'s before that is started.
+  // The glove's thread; before that is started, open().
   std::optional<GloveWire> wire_;
-  bool begun_ = false;  ///< a line end has been seen: the next line is a whole one
-  double heard_ = 0.0;  ///< when a line came last, or a newline was sent [s]
+  bool begun_ = false;  ///< a line end was read: the next line is whole
+  double heard_ = 0.0;  ///< when the last line came or a newline was sent [s]
   DeviceSample sample_;
 
   std::thread thread_;
@@ -196,8 +198,10 @@ std::size_t Glove::receive(double, std::span<DeviceSample> out) noexcept {
 }
 
 void Glove::send(const DeviceCommand& command) noexcept {
-  wanted_.write(
-      {.stops = stopper_.stops(command), .enable = command.enable, .tick = command.tick, .at = clock_.now()});
+  wanted_.write({.stops = info_.actuated ? stopper_.stops(command) : GloveStops{},
+                 .enable = command.enable,
+                 .tick = command.tick,
+                 .at = clock_.now()});
 }
 
 LinkStatistics Glove::statistics() const noexcept {
@@ -211,13 +215,14 @@ LinkStatistics Glove::statistics() const noexcept {
 }
 
 // ---- the glove's thread ----
-// Every line is answered, whatever it holds: the firmware waits. @returns whether there was one
+// Answers every line, also an unreadable one: the firmware waits for an answer. @returns true if
+// there was one
 bool Glove::take_line(GloveLine& line) noexcept {
   const GloveWire::Piece piece = wire_->next();
   if (piece == GloveWire::Piece::kNone) return false;
   heard_ = clock_.now();
   answer();
-  // What stands before the first line end may be the second half of a line.
+  // Bytes before the first line end may be the second half of a line.
   line = piece == GloveWire::Piece::kLine && begun_ ? parse_glove_line(wire_->line()) : GloveLine{};
   if (!learnt_.is_whole(line)) line.damaged = true;
   if (begun_ && !line.usable()) count(counters_.corrupt);
@@ -251,13 +256,13 @@ void Glove::give_sample(const GloveLine& line) noexcept {
     if (line.has[channels_[c].key]) sample_.raw[c] = line.value[channels_[c].key];
   ++sample_.sequence;
   sample_.received = clock_.now();
-  // Two lines that were read at once are still one after the other.
+  // Two lines that were read at once still get increasing times.
   sample_.time_us = std::max(clock_.now_us(), sample_.time_us + 1);
   count(counters_.received);
   if (!samples_.push(sample_)) count(counters_.overflowed);
 }
 
-// reset() after the glove was unplugged: opens its port again.
+// Opens the port again if reset() was called after the glove was unplugged.
 void Glove::mend() noexcept {
   if (!mend_.exchange(false) || fault_.load() == Fault::kNone || port_.empty()) return;
   try {
@@ -266,7 +271,7 @@ void Glove::mend() noexcept {
     begun_ = false;
     fault_ = Fault::kNone;
   } catch (const DeviceError&) {
-    // Not there yet: the fault stands, and the next reset() tries again.
+    // Not there yet: the fault stays, and the next reset() tries again.
   }
 }
 
@@ -280,7 +285,7 @@ void Glove::run() noexcept {
     if (wire_->lost()) fault_ = Fault::kDeviceLost;
     mend();
   }
-  wire_->send("A0B0C0D0E0\n");  // lets go of every finger
+  wire_->send("A0B0C0D0E0\n");  // releases every finger
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All of Boost that the web server uses. Nothing outside this folder and its tests sees it.
+// All headers of Boost that the web server uses. Only files of this folder and its tests include it.
 #pragma once
 
 #include <utility>  // before Asio, which uses std::exchange without it
@@ -28,6 +28,7 @@ using boost::system::error_code;
 using net::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
+/// @returns a number of seconds as a duration of the clock
 [[nodiscard]] inline Clock::duration seconds(double value) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
 }

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <openssl/bio.h>
 #include <openssl/bn.h>
+#include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rand.h>
+#include <openssl/x509.h>
+#include <openssl/x509v3.h>
 
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <memory>
 #include <stdexcept>
 
 #include "phalanx/serve/reach.h"
-#include "serve/web/openssl_owners.h"
 #include "serve/web/secret_file.h"
 
 namespace phalanx {
@@ -19,10 +23,23 @@ namespace {
 
 using namespace web;  // NOLINT(google-build-using-namespace)
 
-constexpr long kDay = 24L * 60 * 60;  // [s]
-constexpr long kLasts = 397 * kDay;   // browsers mistrust what lasts longer
-constexpr long kGoodFor = 7 * kDay;   // at least, to be used again
-constexpr long kClocksDiffer = kDay;  // a tablet's may be behind
+constexpr long kDay = 24L * 60 * 60;     // [s]
+constexpr long kLifetime = 397 * kDay;   // browsers reject longer lifetimes
+constexpr long kMinimumLeft = 7 * kDay;  // of the lifetime, for a certificate to be used again
+constexpr long kClockSkew = kDay;        // by which a browser's clock may be behind
+
+/// Deleter for objects of OpenSSL.
+template <auto kFree>
+struct OpenSslDeleter {
+  template <class T>
+  void operator()(T* object) const noexcept {
+    kFree(object);
+  }
+};
+using CertificateOwner = std::unique_ptr<X509, OpenSslDeleter<&X509_free>>;
+using KeyOwner = std::unique_ptr<EVP_PKEY, OpenSslDeleter<&EVP_PKEY_free>>;
+using BioOwner = std::unique_ptr<BIO, OpenSslDeleter<&BIO_free_all>>;
+using ExtensionOwner = std::unique_ptr<X509_EXTENSION, OpenSslDeleter<&X509_EXTENSION_free>>;
 
 [[noreturn]] void fail(const std::string& what) { throw std::runtime_error("the certificate: " + what); }
 
@@ -41,7 +58,7 @@ bool is_host_name(const std::string& name) {
   return !name.empty() && name.find_first_not_of(kAllowed) == std::string::npos;
 }
 
-/// "DNS:localhost,IP:127.0.0.1"
+/// @returns the names as OpenSSL reads them: "DNS:localhost,IP:127.0.0.1"
 std::string alternative_names(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) {
@@ -55,7 +72,8 @@ void add_extension(X509* certificate, int kind, const std::string& value) {
   X509V3_set_ctx_nodb(&context);
   X509V3_set_ctx(&context, certificate, certificate, nullptr, nullptr, 0);
   const ExtensionOwner extension(X509V3_EXT_conf_nid(nullptr, &context, kind, value.c_str()));
-  require(extension && X509_add_ext(certificate, extension.get(), -1) == 1, "a field of it cannot be made");
+  require(extension && X509_add_ext(certificate, extension.get(), -1) == 1,
+          "one of its fields cannot be made");
 }
 
 void set_random_serial(X509* certificate) {
@@ -67,7 +85,7 @@ void set_random_serial(X509* certificate) {
   const bool set =
       number != nullptr && BN_to_ASN1_INTEGER(number, X509_get_serialNumber(certificate)) != nullptr;
   BN_free(number);
-  require(set, "it cannot be numbered");
+  require(set, "its serial number cannot be made");
 }
 
 CertificateOwner sign(EVP_PKEY* key, const std::vector<std::string>& names) {
@@ -75,8 +93,8 @@ CertificateOwner sign(EVP_PKEY* key, const std::vector<std::string>& names) {
   X509* certificate = made.get();
   require(certificate != nullptr && X509_set_version(certificate, X509_VERSION_3) == 1, "out of memory");
   set_random_serial(certificate);
-  X509_gmtime_adj(X509_getm_notBefore(certificate), -kClocksDiffer);
-  X509_gmtime_adj(X509_getm_notAfter(certificate), kLasts - kClocksDiffer);
+  X509_gmtime_adj(X509_getm_notBefore(certificate), -kClockSkew);
+  X509_gmtime_adj(X509_getm_notAfter(certificate), kLifetime - kClockSkew);
   X509_NAME* subject = X509_get_subject_name(certificate);
   const auto* common = reinterpret_cast<const unsigned char*>("Phalanx station");
   X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC, common, -1, -1, 0);
@@ -98,14 +116,14 @@ std::string text_of(BIO* bio) {
 
 std::string pem_of(X509* certificate) {
   const BioOwner bio(BIO_new(BIO_s_mem()));
-  require(bio && PEM_write_bio_X509(bio.get(), certificate) == 1, "it cannot be written down");
+  require(bio && PEM_write_bio_X509(bio.get(), certificate) == 1, "it cannot be written");
   return text_of(bio.get());
 }
 
 std::string pem_of(EVP_PKEY* key) {
   const BioOwner bio(BIO_new(BIO_s_mem()));
   require(bio && PEM_write_bio_PrivateKey(bio.get(), key, nullptr, nullptr, 0, nullptr, nullptr) == 1,
-          "its key cannot be written down");
+          "its key cannot be written");
   return text_of(bio.get());
 }
 
@@ -116,7 +134,7 @@ CertificateOwner read_certificate(const std::filesystem::path& path) {
 
 KeyOwner read_key(const std::filesystem::path& path) {
   const BioOwner file(BIO_new_file(path.c_str(), "r"));
-  // Asked for a password, it has none: never the terminal.
+  // Answers the question for a password with none, so that OpenSSL never asks on the terminal.
   const auto none = [](char*, int, int, void*) { return 0; };
   return KeyOwner(file ? PEM_read_bio_PrivateKey(file.get(), nullptr, none, nullptr) : nullptr);
 }
@@ -130,14 +148,15 @@ bool is_good(const CertificateFiles& files, const std::vector<std::string>& name
   const CertificateOwner certificate = read_certificate(files.certificate);
   const KeyOwner key = read_key(files.key);
   if (!certificate || !key || X509_check_private_key(certificate.get(), key.get()) != 1) return false;
-  time_t week = std::time(nullptr) + kGoodFor;
-  if (X509_cmp_time(X509_get0_notAfter(certificate.get()), &week) <= 0) return false;
+  time_t earliest = std::time(nullptr) + kMinimumLeft;
+  if (X509_cmp_time(X509_get0_notAfter(certificate.get()), &earliest) <= 0) return false;
   if (X509_cmp_current_time(X509_get0_notBefore(certificate.get())) >= 0) return false;
   return std::all_of(names.begin(), names.end(),
                      [&](const std::string& name) { return is_for(certificate.get(), name); });
 }
 
-/// What is neither a name nor an address would be taken for syntax, and no browser asks for it.
+/// @returns localhost, the loopback addresses and the usable ones of `names`. Others are left out: no browser
+/// asks for them, and OpenSSL would read them as syntax.
 std::vector<std::string> usable(const std::vector<std::string>& names) {
   std::vector<std::string> all{"localhost", "127.0.0.1", "::1"};
   for (const std::string& name : names) {
@@ -154,7 +173,7 @@ CertificateFiles make_self_signed_certificate(const std::filesystem::path& folde
   const std::vector<std::string> all = usable(names);
   CertificateFiles files{folder / "certificate.pem", folder / "key.pem"};
   if (is_good(files, all)) {
-    keep_secret(files.key);
+    restrict_to_owner(files.key);
     return files;
   }
   const KeyOwner key(EVP_EC_gen("P-256"));
@@ -168,7 +187,7 @@ CertificateFiles make_self_signed_certificate(const std::filesystem::path& folde
 
 std::string certificate_fingerprint(const std::filesystem::path& path) {
   const CertificateOwner certificate = read_certificate(path);
-  if (!certificate) fail(path.string() + " is none in PEM");
+  if (!certificate) fail(path.string() + " has none in PEM");
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;
   require(X509_digest(certificate.get(), EVP_sha256(), digest.data(), &size) == 1, "it has no fingerprint");

@@ -5,73 +5,74 @@
 #include <optional>
 
 #include "phalanx/serve/web_server.h"
-#include "serve/web/line.h"
-#include "serve/web/message_rate.h"
-#include "serve/web/page_queue.h"
-#include "serve/web/place.h"
-#include "serve/web/reply.h"
+#include "serve/web/limits.h"
+#include "serve/web/response.h"
+#include "serve/web/stream.h"
 
 namespace phalanx::web {
 
 class Pages;
 
-/// A page's WebSocket: one message is being written at most, the others wait in its queue. Lives as long as
-/// something of it is under way.
+/// WebSocket session of a page. At most one message is being written; the others wait in its queue. The
+/// handlers of its asynchronous operations keep it alive. Accept, read and close of the WebSocket have files
+/// of their own: each takes the compiler about 20 s and 0.3 GB.
 class PageSession : public std::enable_shared_from_this<PageSession> {
  public:
   /// @param settings, pages  outlive it
-  PageSession(PageId id, Visitor visitor, Line&& line, Place place, const WebServerSettings& settings,
-              Pages& pages);
+  PageSession(PageId id, ClientInfo client, Stream&& stream, CountedSlot slot,
+              const WebServerSettings& settings, Pages& pages);
   ~PageSession();
   PageSession(const PageSession&) = delete;
   PageSession& operator=(const PageSession&) = delete;
 
   [[nodiscard]] PageId id() const noexcept { return id_; }
-  [[nodiscard]] const Visitor& visitor() const noexcept { return visitor_; }
+  [[nodiscard]] const ClientInfo& client() const noexcept { return client_; }
 
-  /// Shakes hands; joins the pages if that goes well.
-  void accept(const http::request<http::buffer_body>& request, const Exchange& exchange);
+  /// Answers the WebSocket handshake. Adds the session to the pages if it succeeds.
+  void accept(const http::request<http::buffer_body>& request, const ResponseContext& context);
 
-  /// @returns false if the queue is full
+  /// Queues an ordered message. @returns false if the queue is full
   [[nodiscard]] bool send(Bytes message);
-  /// @returns whether it has replaced one
+  /// Queues the newest message. @returns true if it replaced one
   bool send_newest(Bytes message);
-  /// Says goodbye behind what waits, which has a moment to get through; nothing is taken from it any more.
-  /// @param at_once  drop what waits
-  void leave(websocket::close_code code, const std::string& reason, bool at_once);
-  /// Cuts the line if a write or the goodbye takes too long; shows out who said too much.
-  void check(Clock::time_point now);
+  /// Begins to close: sends the queued messages, then the close frame. Ignores all that is received
+  /// from now on.
+  /// @param drop_queue  sends the close frame without the queued messages
+  void begin_close(websocket::close_code code, const std::string& reason, bool drop_queue);
+  /// Aborts the connection if a write or the close takes too long. Disconnects a page whose time over the
+  /// rate limit has ended.
+  void check_timeouts(Clock::time_point now);
 
  private:
   void on_accepted(error_code error);
   void read();
   void on_read(error_code error, std::size_t bytes);
-  void hear_last_words(std::string_view message);
-  void show_out_for_too_much();
+  void receive_over_limit(std::string_view message);
+  void close_over_limit();
   void count_control_frame(websocket::frame_type kind);
-  void pump();
-  void close();
+  void write_next();
   void on_written(error_code error, std::size_t bytes);
-  void cut();
+  void close();
+  void abort();
 
   PageId id_;
-  Visitor visitor_;
-  websocket::stream<Line, false> socket_;
-  Place place_;
+  ClientInfo client_;
+  websocket::stream<Stream, false> socket_;
+  CountedSlot slot_;
   const WebServerSettings& settings_;
   Pages& pages_;
   beast::flat_buffer message_;
-  MessageRate rate_;
-  PageQueue queue_;
-  Bytes in_flight_;  ///< null: none is being written
+  MessageRateLimit rate_;
+  OutgoingQueue queue_;
+  Bytes in_flight_;  ///< null: no message is being written
   Clock::time_point written_since_;
-  /// Set: it has said too much, and what it said in one go is still heard until then.
-  std::optional<Clock::time_point> heard_until_;
-  std::size_t last_words_ = 0;  ///< heard since [bytes]
-  bool leaving_ = false;
-  bool closing_ = false;
-  Clock::time_point out_by_;
-  websocket::close_reason goodbye_;
+  /// Set once the page has exceeded its rate limit: until then its messages are received as over the limit.
+  std::optional<Clock::time_point> over_limit_until_;
+  std::size_t over_limit_bytes_ = 0;  ///< received over the limit [bytes]
+  bool closing_ = false;              ///< nothing is received any more
+  bool close_sent_ = false;           ///< nothing is written any more
+  Clock::time_point close_deadline_;
+  websocket::close_reason close_reason_;
 };
 
 }  // namespace phalanx::web

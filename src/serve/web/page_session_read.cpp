@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a WebSocket. By itself: each operation of the stream takes the compiler some 20 s and 0.3 GB.
+// The read of a WebSocket, compiled by itself: see page_session.h.
 #include "serve/web/page_session.h"
 
 namespace phalanx::web {

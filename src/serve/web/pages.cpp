@@ -8,18 +8,18 @@
 
 namespace phalanx::web {
 
-Pages::Pages(net::io_context& thread, double frame_rate_hz, WebApplication& application)
-    : thread_(thread), application_(application), timer_(thread), period_(seconds(1.0 / frame_rate_hz)) {}
+Pages::Pages(net::io_context& io, double frame_rate_hz, WebApplication& application)
+    : io_(io), application_(application), timer_(io), period_(seconds(1.0 / frame_rate_hz)) {}
 
 PageId Pages::next_id() noexcept {
   static std::atomic<PageId> last{0};
   return ++last;
 }
 
-void Pages::admit(const std::shared_ptr<PageSession>& page) {
+void Pages::add(const std::shared_ptr<PageSession>& page) {
   pages_.emplace(page->id(), page);
-  application_.joined(page->id(), page->visitor());
-  if (std::exchange(frames_, true)) return;
+  application_.joined(page->id(), page->client());
+  if (std::exchange(timer_runs_, true)) return;
   timer_.expires_after(period_);
   await_frame();
 }
@@ -28,24 +28,24 @@ void Pages::received(PageId page, std::string_view message) {
   if (pages_.contains(page)) application_.received(page, message);
 }
 
-void Pages::received_too_much(PageId page, std::string_view last) {
-  if (pages_.contains(page)) application_.received_too_much(page, last);
+void Pages::received_over_limit(PageId page, std::string_view message) {
+  if (pages_.contains(page)) application_.received_over_limit(page, message);
 }
 
-void Pages::ended(PageId page) {
-  leaving_.erase(page);
-  if (pages_.erase(page) > 0) tell_left(page);
+void Pages::remove(PageId page) {
+  closing_.erase(page);
+  if (pages_.erase(page) > 0) notify_left(page);
 }
 
-void Pages::tell_left(PageId page) {
-  // In a turn of its own: the application may be in the middle of talking to all pages.
-  net::post(thread_, [this, page] { application_.left(page); });
+void Pages::notify_left(PageId page) {
+  // Posted, because the application may iterate over its pages now.
+  net::post(io_, [this, page] { application_.left(page); });
 }
 
 void Pages::send(PageId page, Bytes message) {
   const auto found = pages_.find(page);
   if (found == pages_.end() || !message || found->second->send(std::move(message))) return;
-  show_out(page, websocket::close_code::policy_error, "this page does not read fast enough", true);
+  disconnect(page, websocket::close_code::policy_error, "this page does not read fast enough", true);
 }
 
 bool Pages::send_newest(PageId page, Bytes message) {
@@ -53,22 +53,17 @@ bool Pages::send_newest(PageId page, Bytes message) {
   return found != pages_.end() && message && found->second->send_newest(std::move(message));
 }
 
-void Pages::show_out(PageId page, websocket::close_code code, const std::string& reason, bool at_once) {
+void Pages::disconnect(PageId page, websocket::close_code code, const std::string& reason, bool drop_queue) {
   auto node = pages_.extract(page);
   if (node.empty()) return;
   const std::shared_ptr<PageSession> session = node.mapped();
-  leaving_.insert(std::move(node));
-  tell_left(page);
-  session->leave(code, reason, at_once);
+  closing_.insert(std::move(node));
+  notify_left(page);
+  session->begin_close(code, reason, drop_queue);
 }
 
-void Pages::show_out_all(websocket::close_code code, const std::string& reason) {
-  while (!pages_.empty()) show_out(pages_.begin()->first, code, reason, false);
-}
-
-void Pages::clear() noexcept {
-  pages_.clear();
-  leaving_.clear();
+void Pages::disconnect_all(websocket::close_code code, const std::string& reason) {
+  while (!pages_.empty()) disconnect(pages_.begin()->first, code, reason, false);
 }
 
 void Pages::await_frame() {
@@ -76,17 +71,17 @@ void Pages::await_frame() {
 }
 
 void Pages::on_frame(error_code error) {
-  frames_ = !error && !empty();
-  if (!frames_) return;
-  // The next one first, so that nothing that happens in this one can be the end of them; those that are
-  // missed are not made up for.
+  timer_runs_ = !error && !empty();
+  if (!timer_runs_) return;
+  // Starts the wait for the next frame first, so that an exception in this one cannot end the frames. Missed
+  // frames are skipped.
   const Clock::time_point now = Clock::now();
   const Clock::time_point due = timer_.expiry() + period_;
   timer_.expires_at(due > now ? due : now + period_);
   await_frame();
   if (!pages_.empty()) application_.frame();
-  for (const auto& [id, page] : pages_) page->check(now);
-  for (const auto& [id, page] : leaving_) page->check(now);
+  for (const auto& [id, page] : pages_) page->check_timeouts(now);
+  for (const auto& [id, page] : closing_) page->check_timeouts(now);
 }
 
 }  // namespace phalanx::web

@@ -12,45 +12,46 @@ namespace phalanx::web {
 
 class PageSession;
 
-/// All pages that are connected, and the frames that are due while there are any. On the server's thread
-/// only.
+/// The sessions of all connected pages, and the timer of the frames. The timer runs while there is a page.
+/// Server's thread only.
 class Pages {
  public:
-  /// @param thread, application  outlive it
-  Pages(net::io_context& thread, double frame_rate_hz, WebApplication& application);
+  /// @param io, application  outlive it
+  Pages(net::io_context& io, double frame_rate_hz, WebApplication& application);
 
-  /// Never the same twice in a process.
+  /// @returns a new number, unique in this process
   [[nodiscard]] static PageId next_id() noexcept;
-  void admit(const std::shared_ptr<PageSession>& page);
+  /// Adds a page and tells the application that it joined.
+  void add(const std::shared_ptr<PageSession>& page);
   void received(PageId page, std::string_view message);
-  void received_too_much(PageId page, std::string_view last);
-  /// Its line is no more.
-  void ended(PageId page);
+  void received_over_limit(PageId page, std::string_view message);
+  /// Removes a page whose connection is closed.
+  void remove(PageId page);
 
   void send(PageId page, Bytes message);
   bool send_newest(PageId page, Bytes message);
-  /// It is no page any more; its line ends when it has taken that in, or soon.
-  void show_out(PageId page, websocket::close_code code, const std::string& reason, bool at_once);
-  void show_out_all(websocket::close_code code, const std::string& reason);
+  /// Removes a page from those that are connected, and closes its connection.
+  /// @param drop_queue  as PageSession::begin_close()
+  void disconnect(PageId page, websocket::close_code code, const std::string& reason, bool drop_queue);
+  void disconnect_all(websocket::close_code code, const std::string& reason);
 
-  [[nodiscard]] bool empty() const noexcept { return pages_.empty() && leaving_.empty(); }
-  /// Drops all; nobody is told.
-  void clear() noexcept;
+  /// @returns true if no connection is left, not even one that is closing
+  [[nodiscard]] bool empty() const noexcept { return pages_.empty() && closing_.empty(); }
 
  private:
   using Sessions = std::map<PageId, std::shared_ptr<PageSession>>;
 
-  void tell_left(PageId page);
+  void notify_left(PageId page);
   void await_frame();
   void on_frame(error_code error);
 
-  net::io_context& thread_;
+  net::io_context& io_;
   WebApplication& application_;
   Sessions pages_;
-  Sessions leaving_;
+  Sessions closing_;
   net::steady_timer timer_;
   Clock::duration period_;
-  bool frames_ = false;  ///< are being waited for
+  bool timer_runs_ = false;
 };
 
 }  // namespace phalanx::web

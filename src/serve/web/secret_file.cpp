@@ -46,7 +46,7 @@ std::string read_whole(const std::filesystem::path& path, int descriptor) {
     text.append(piece.data(), static_cast<std::size_t>(got));
     if (text.size() > kLongest) {
       throw WebServerError(
-          fmt::format("{}: is longer than {} bytes; give a key in PEM", path.string(), kLongest));
+          fmt::format("{}: this is longer than {} bytes; give a key in PEM", path.string(), kLongest));
     }
   }
 }
@@ -58,7 +58,7 @@ void make_secret_folder(const std::filesystem::path& folder) {
   if (std::filesystem::is_directory(folder, error)) return;
   std::filesystem::create_directories(folder, error);
   if (error) throw WebServerError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
-  if (::chmod(folder.c_str(), S_IRWXU) != 0) fail(folder, "cannot be closed to others");
+  if (::chmod(folder.c_str(), S_IRWXU) != 0) fail(folder, "others cannot be kept from reading it");
 }
 
 void write_secret_file(const std::filesystem::path& path, std::string_view text) {
@@ -77,8 +77,9 @@ std::string read_secret_file(const std::filesystem::path& path) {
   struct stat status{};
   if (file.value() < 0 || ::fstat(file.value(), &status) != 0) fail(path, "cannot be read");
   if (status.st_uid != ::geteuid() && status.st_uid != 0) {
-    throw WebServerError(fmt::format(
-        "{}: belongs to another user; give a key file of your own that only you may read", path.string()));
+    throw WebServerError(
+        fmt::format("{}: this belongs to another user; give a key file of your own that only you may read",
+                    path.string()));
   }
   if ((status.st_mode & kOthers) != 0) {
     throw WebServerError(
@@ -89,8 +90,8 @@ std::string read_secret_file(const std::filesystem::path& path) {
   return read_whole(path, file.value());
 }
 
-void keep_secret(const std::filesystem::path& path) {
-  if (::chmod(path.c_str(), kOwnerOnly) != 0) fail(path, "cannot be closed to others");
+void restrict_to_owner(const std::filesystem::path& path) {
+  if (::chmod(path.c_str(), kOwnerOnly) != 0) fail(path, "others cannot be kept from reading it");
 }
 
 }  // namespace phalanx::web

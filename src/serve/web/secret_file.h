@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that their owner alone may read.
+// Files that only their owner may read, such as keys.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,19 @@
 
 namespace phalanx::web {
 
-/// With what leads to it; one that is there already stays as it is. @throws WebServerError
+/// Creates a folder that only its owner may read, with its parents. Leaves a folder that exists as it is.
+/// @throws WebServerError if it cannot be made
 void make_secret_folder(const std::filesystem::path& folder);
-/// Mode 0600 from the first byte on; whole or not at all, in place of one that is there.
-/// @throws WebServerError
+/// Writes a file with mode 0600 from its first byte on. Replaces a file that exists, completely or
+/// not at all.
+/// @throws WebServerError if it cannot be written
 void write_secret_file(const std::filesystem::path& path, std::string_view text);
-/// What is in one, read through the one descriptor whose owner and mode were checked.
-/// @throws WebServerError  cannot be read, longer than 64 KiB, another user's (unless the system
-/// administrator's), or others than its owner may read or write it
+/// Reads a file through one descriptor, whose owner and mode it has checked.
+/// @returns the content
+/// @throws WebServerError if the file cannot be read, is longer than 64 KiB, or is no secret: it belongs to
+/// another user (but root), or others than its owner may read or write it
 [[nodiscard]] std::string read_secret_file(const std::filesystem::path& path);
-/// Mode 0600 for one that is there. @throws WebServerError
-void keep_secret(const std::filesystem::path& path);
+/// Sets mode 0600. @throws WebServerError if it cannot be set
+void restrict_to_owner(const std::filesystem::path& path);
 
 }  // namespace phalanx::web

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "serve/web/site.h"
 
+#define ZLIB_CONST  // zlib reads through pointers to const
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <utility>
 
 namespace phalanx::web {
@@ -14,7 +16,7 @@ namespace {
 
 constexpr std::size_t kLargestSite = std::size_t{64} * 1024 * 1024;  // [bytes]
 constexpr std::size_t kMostEntries = 1024;
-constexpr std::size_t kWorthPacking = 1024;  // [bytes]
+constexpr std::size_t kSmallestCompressed = 1024;  // [bytes]
 
 std::string read_whole(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -22,7 +24,7 @@ std::string read_whole(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-bool packs_well(std::string_view type) noexcept {
+bool is_compressible(std::string_view type) noexcept {
   return type.starts_with("text/") || type.starts_with("application/") || type == "image/svg+xml";
 }
 
@@ -32,9 +34,10 @@ SiteFile site_file(const std::filesystem::path& path, std::string bytes, const s
   file.immutable = name.starts_with("/assets/");
   const auto sum = crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
   file.tag = fmt::format("W/\"{:08x}-{:x}\"", sum, bytes.size());
-  if (bytes.size() >= kWorthPacking && packs_well(file.type)) {
-    std::string packed = gzip(bytes);
-    if (packed.size() < bytes.size()) file.gzipped = std::make_shared<const std::string>(std::move(packed));
+  if (bytes.size() >= kSmallestCompressed && is_compressible(file.type)) {
+    std::string compressed = gzip(bytes);
+    if (compressed.size() < bytes.size())
+      file.gzipped = std::make_shared<const std::string>(std::move(compressed));
   }
   file.bytes = std::make_shared<const std::string>(std::move(bytes));
   return file;
@@ -100,6 +103,24 @@ void Site::read(const std::filesystem::path& folder) {
     const std::string name = fmt::format("/{}", at->path().lexically_relative(folder).generic_string());
     files_.emplace(name, site_file(at->path(), read_whole(at->path()), name));
   }
+}
+
+std::string gzip(std::string_view bytes) {
+  constexpr int kGzipHeader = 16;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS + kGzipHeader, 8, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    throw std::bad_alloc();
+  }
+  std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
+  stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
 }
 
 const SiteFile* Site::find(const std::string& path) const noexcept {

@@ -10,22 +10,24 @@
 
 namespace phalanx::web {
 
+/// One file of the front-end.
 struct SiteFile {
-  std::string type;
+  std::string type;  ///< media type
   Bytes bytes;
-  Bytes gzipped;  ///< null: not worth it
-  std::string tag;
-  bool immutable = false;  ///< its name has a hash of what is in it
+  Bytes gzipped;           ///< null: not compressed
+  std::string tag;         ///< value of the ETag field
+  bool immutable = false;  ///< its name contains a hash of its content
 };
 
-/// The built front-end, read once: what is not in the list is not there, whatever a path says.
+/// Static files of the built front-end, read once at the start. A request names a file of this list exactly
+/// or gets none: no path is looked up on the disk.
 class Site {
  public:
-  /// Hidden files and symbolic links are left out. A folder that is not there has no files.
-  /// @throws WebServerError  cannot be read, or is too large to be a front-end
+  /// Reads the folder. Leaves hidden files and symbolic links out. A folder that does not exist has no files.
+  /// @throws WebServerError if it cannot be read, or is too large to be a front-end
   explicit Site(const std::filesystem::path& folder);
 
-  /// @param path  "/" is "/index.html". Null: none of that name
+  /// @param path  of the request; "/" means "/index.html". @returns null if there is no such file
   [[nodiscard]] const SiteFile* find(const std::string& path) const noexcept;
 
  private:
@@ -34,9 +36,9 @@ class Site {
   std::map<std::string, SiteFile, std::less<>> files_;
 };
 
-/// "text/html; charset=utf-8" of ".html"
+/// @returns the media type of a file extension: "text/html; charset=utf-8" for ".html"
 [[nodiscard]] std::string_view media_type(std::string_view extension) noexcept;
-/// As gzip makes it. @throws std::bad_alloc
+/// @returns the bytes in gzip format. @throws std::bad_alloc
 [[nodiscard]] std::string gzip(std::string_view bytes);
 
 }  // namespace phalanx::web

@@ -9,20 +9,21 @@
 
 namespace phalanx {
 
-/// 64-bit FNV-1a (http://www.isthe.com/chongo/tech/comp/fnv/): tells that something has changed, not that
-/// somebody means ill.
+/// 64-bit FNV-1a hash (http://www.isthe.com/chongo/tech/comp/fnv/). It detects changes, but is not a
+/// protection against an attack.
 class Fingerprint {
  public:
   void add(std::string_view bytes) noexcept;
-  /// 16 hexadecimal digits
+  /// @returns the hash as 16 hexadecimal digits.
   [[nodiscard]] std::string text() const;
 
  private:
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// Of the names and contents of files, in an order that depends neither on theirs nor on their folders. Each
-/// file is read once. @throws std::runtime_error naming the file if one cannot be read.
+/// Computes the fingerprint of the names and contents of files. It depends neither on their order nor on
+/// their folders. Each file is read once.
+/// @throws std::runtime_error naming the file if one cannot be read.
 [[nodiscard]] std::string fingerprint_of_files(std::vector<std::filesystem::path> files);
 
 }  // namespace phalanx

@@ -6,12 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
-#include <system_error>
+#include <utility>
 
 #include "phalanx/record/output_file.h"
 #include "record/partial_file.h"
@@ -19,13 +18,7 @@
 namespace phalanx {
 namespace {
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// A new file's name, too, must be on the disk. Where a folder cannot be synchronised there is nothing to be
-/// done.
+/// Writes a new file's name to the disk, too. If a folder cannot be synchronised, this is ignored.
 void synchronise_folder_of(const std::filesystem::path& file) {
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -34,24 +27,13 @@ void synchronise_folder_of(const std::filesystem::path& file) {
   ::close(descriptor);
 }
 
-/// @throws std::runtime_error
-void synchronise(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool done = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int reason = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (done) return;
-  throw std::runtime_error(
-      fmt::format("{}: cannot be written to the disk: {}", file.string(), std::strerror(reason)));
-}
-
 }  // namespace
 
 void replace_journal(const std::filesystem::path& file, const JournalContent& content) {
-  write_then_rename(file, [&](const std::filesystem::path& partial) {
-    write_text_file(partial, journal_text(content));
-    synchronise(partial);
-  });
+  OutputFile out(file);
+  out.text(journal_text(content));
+  out.synchronise();
+  out.commit();
   synchronise_folder_of(file);
 }
 
@@ -85,35 +67,48 @@ void Journal::refuse_other_than_a_file() const {
 }
 
 void Journal::lock() {
-  try {
-    if (lock_file(descriptor_)) return;
-  } catch (const std::system_error& error) {
-    errno = error.code().value();
-    fail("locked");
-  }
+  const FileLock taken = lock_file(descriptor_, file_);
+  if (taken == FileLock::kTaken) return;
+  if (taken == FileLock::kNotPossible)
+    throw std::runtime_error(fmt::format(
+        "{}: this file system has no locks that keep two processes from writing it; use another --out folder",
+        file_.string()));
   throw std::invalid_argument(
       fmt::format("{}: another process is writing it; wait until that has ended, or use another --out folder",
                   file_.string()));
 }
 
+/// Reads through the open descriptor: a journal that cannot be opened again must not look empty.
+std::string Journal::content() const {
+  std::string text;
+  std::array<char, 65536> block;
+  for (;;) {
+    const ssize_t count = ::pread(descriptor_, block.data(), block.size(), static_cast<off_t>(text.size()));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail("read");
+    if (count == 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(count));
+  }
+}
+
 void Journal::take_up(const JournalHeader& header) {
   const std::string header_text = journal_text({.header = header, .points = {}});
-  const std::string content = content_of(file_);
-  const std::size_t complete = content.rfind('\n') + 1;  // 0 if there is no complete line
-  if (complete == 0 && header_text.starts_with(content)) {
+  std::string text = content();
+  const std::size_t size = text.size();
+  const std::size_t complete = text.rfind('\n') + 1;  // 0 if there is no complete line
+  if (complete == 0 && header_text.starts_with(text)) {
     if (::ftruncate(descriptor_, 0) != 0) fail("emptied");
     write_line(header_text);
     synchronise_folder_of(file_);
     return;
   }
-  const JournalContent there = read_journal(file_);
+  const JournalContent there = parse_journal(std::move(text), file_);
   if (const std::string problem = difference(there.header, header); !problem.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: {}; use another --out folder, or --restart to throw its {} finished points away",
                     file_.string(), problem, there.points.size()));
   }
-  if (complete < content.size() && ::ftruncate(descriptor_, static_cast<off_t>(complete)) != 0)
-    fail("shortened");
+  if (complete < size && ::ftruncate(descriptor_, static_cast<off_t>(complete)) != 0) fail("shortened");
   finished_ = there.points;
 }
 
@@ -134,7 +129,7 @@ void Journal::write_line(const std::string& line) {
     if (::fsync(descriptor_) != 0) fail("written to the disk");
     return;
   }
-  const int reason = written < 0 ? errno : ENOSPC;  // a part of it: the disk is full
+  const int reason = written < 0 ? errno : ENOSPC;  // written in part: the disk is full
   if (written > 0) static_cast<void>(::ftruncate(descriptor_, before.st_size));
   errno = reason;
   fail("written");

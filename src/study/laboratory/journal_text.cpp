@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a journal says, and whose it is.
+// The text of a journal, and the comparison of its header.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "study/laboratory/journal.h"
 #include "study/laboratory/study_json.h"
@@ -39,7 +41,7 @@ class Lines {
  public:
   Lines(std::string text, const std::filesystem::path& file) : text_(std::move(text)), file_(file) {}
 
-  /// The next complete line, without its end.
+  /// Reads the next complete line, without its end.
   bool next(std::string& line) {
     const std::size_t end = text_.find('\n', at_);
     if (end == std::string::npos) return false;
@@ -105,13 +107,19 @@ JournalContent read_journal(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw std::invalid_argument(fmt::format("{}: cannot be opened; check the path", file.string()));
-  Lines lines(std::string(std::istreambuf_iterator<char>(stream), {}), file);
+  return parse_journal(std::string(std::istreambuf_iterator<char>(stream), {}), file);
+}
+
+JournalContent parse_journal(std::string text, const std::filesystem::path& file) {
+  Lines lines(std::move(text), file);
   JournalContent content;
   std::string line;
   if (!lines.next(line))
     lines.fail("is no journal of a study; name another folder, or measure it again (--restart)");
   try {
     content.header = header_from(line);
+  } catch (const std::bad_alloc&) {  // no error of the journal
+    throw;
   } catch (const std::exception& error) {
     lines.fail(fmt::format(
         "is no journal of a study ({}); name another folder, or measure it again (--restart)", error.what()));
@@ -121,6 +129,8 @@ JournalContent read_journal(const std::filesystem::path& file) {
     PointResult result;
     try {
       result = result_from_json(parse_json(line));
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& error) {
       lines.fail(
           fmt::format("is damaged ({}); remove this line, its point is then measured again", error.what()));

@@ -8,9 +8,9 @@
 namespace phalanx {
 namespace {
 
-constexpr int kFurther = 2;  // points that are checked on each side beyond what the bisection has tried
+constexpr int kFurther = 2;  // points on each side that are checked beyond those of the bisection
 
-/// Remembers every answer.
+/// Verdicts that were asked for, each once.
 class Answers {
  public:
   Answers(int size, const std::function<bool(int)>& stable) : size_(size), stable_(stable) {}
@@ -23,13 +23,13 @@ class Answers {
   void try_if_on_grid(int index) {
     if (index >= 0 && index < size_) (*this)(index);
   }
-  /// The first unstable point that was tried; size if there is none.
+  /// @returns the first unstable point that was tried; size if there is none.
   [[nodiscard]] int first_unstable() const {
     const auto it =
         std::find_if(answers_.begin(), answers_.end(), [](const auto& answer) { return !answer.second; });
     return it == answers_.end() ? size_ : it->first;
   }
-  /// Of those that were tried below `index`; -1 if there is none.
+  /// @returns the last point that was tried below `index`; -1 if there is none.
   [[nodiscard]] int last_tried_below(int index) const {
     const auto it = answers_.lower_bound(index);
     return it == answers_.begin() ? -1 : std::prev(it)->first;
@@ -42,7 +42,7 @@ class Answers {
   std::map<int, bool> answers_;
 };
 
-/// Until the point just below the first unstable one has been tried.
+/// Bisects until the point just below the first unstable one has been tried.
 void bisect(Answers& answers) {
   for (;;) {
     const int unstable = answers.first_unstable();
@@ -52,7 +52,7 @@ void bisect(Answers& answers) {
   }
 }
 
-/// The points below the boundary, which moves down whenever one of them is unstable.
+/// Checks the points below the boundary, which moves down if one of them is unstable.
 void check_below(Answers& answers) {
   for (int unstable = -1; unstable != answers.first_unstable();) {
     unstable = answers.first_unstable();
@@ -90,7 +90,7 @@ LimitSearch search_limit(int size, const std::function<bool(int)>& stable, int c
 int most_checked_if_monotone(int size, int coarse) {
   int most = 0;
   for (int limit = -1; limit < size; ++limit) {
-    // In the middle of a long grid one limit costs what another costs that is a multiple of `coarse` away.
+    // In the middle of a long grid, limits that are a multiple of `coarse` apart need equally many points.
     if (limit > 4 * coarse && limit < size - 4 * coarse) continue;
     const auto search = search_limit(size, [&](int index) { return index <= limit; }, coarse);
     most = std::max(most, static_cast<int>(search.checked.size()));

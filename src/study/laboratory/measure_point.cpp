@@ -16,10 +16,10 @@ namespace phalanx {
 namespace {
 
 constexpr double kNotSet = PointResult::kNone;  // the scene's stiffness, the patient's press
-constexpr double kLightPress = 2.0;             // [N] the two presses that k_eff is read between
+constexpr double kLightPress = 2.0;             // [N]; k_eff is computed between these two presses
 constexpr double kFirmPress = 4.0;
 
-using Trials = std::vector<TrialResult>;  // one a seed, in order; those that were run
+using Trials = std::vector<TrialResult>;  // the trials that ran, one a seed, in order
 
 bool good(const TrialResult& trial) { return trial.valid && trial.stable; }
 
@@ -47,14 +47,14 @@ class Runs {
   Runs(const Study& study, int index, const TrialFunction& trial)
       : study_(study), overrides_(point_overrides(study, study_point(study, index))), trial_(trial) {}
 
-  /// All seeds.
+  /// Runs all seeds.
   Trials all(double stiffness, double press) {
     Trials trials;
     extend(trials, study_.seeds, stiffness, press);
     return trials;
   }
 
-  /// The seeds in their order, until it is known whether all are stable.
+  /// Runs the seeds in their order, until it is known whether all are stable.
   Trials until_known(double stiffness) {
     Trials trials;
     while (static_cast<int>(trials.size()) < study_.seeds && verdict_of(trials) == Verdict::kStable)
@@ -69,7 +69,7 @@ class Runs {
   }
 
  private:
-  /// Runs up to `more` further seeds side by side.
+  /// Runs up to `more` further seeds in parallel.
   void extend(Trials& trials, int more, double stiffness, double press) {
     const int done = static_cast<int>(trials.size());
     const int end = std::min(study_.seeds, done + more);
@@ -83,8 +83,8 @@ class Runs {
         failed[static_cast<std::size_t>(i - done)] = std::current_exception();
       }
     };
-    // Isolated: a thread that waits for its seeds must not begin another point, which this one would then
-    // wait for.
+    // Isolated: a thread that waits for its seeds must not begin another point. This point would then have to
+    // wait for that one.
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(done, end, run); });
     for (const std::exception_ptr& error : failed) {
       if (error) std::rethrow_exception(error);
@@ -127,6 +127,7 @@ void measure_k_eff(Runs& runs, double stiffness, PointResult& result) {
   if (result.k_eff_seeds > 0) result.k_eff = sum / result.k_eff_seeds;
 }
 
+/// Measures the point's results at one stiffness.
 /// @param trials  all seeds at `stiffness`
 void measure_at(Runs& runs, double stiffness, const Trials& trials, PointResult& result) {
   result.measured_at = stiffness;

@@ -38,7 +38,7 @@ std::vector<fs::path> journals_of(const std::vector<fs::path>& folders, const fs
   return files;
 }
 
-/// "3, 7-9, 12"
+/// Writes numbers as ranges: "3, 7-9, 12".
 std::string ranges(const std::vector<int>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size();) {
@@ -113,7 +113,8 @@ MergedStudy merge_studies(const std::vector<fs::path>& folders, const fs::path& 
   const JournalContent content = all.content();
   prepare_output_folder(out);
   const fs::path file = out / journal_name(1, 1);
-  const Journal held(file, content.header, false);  // nobody else may be writing what is replaced here
+  const Journal held(file, content.header, false);  // no other process may write the file that
+                                                    // is replaced here
   replace_journal(file, content);
   return {.study = content.header.study, .results = content.points};
 }

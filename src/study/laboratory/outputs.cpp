@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "phalanx/record/output_file.h"
 #include "study/laboratory/study_json.h"
@@ -12,7 +13,7 @@
 namespace phalanx {
 namespace {
 
-/// In the unit of a column, without digits that only the change of unit made.
+/// Converts to the unit of a column, without digits that only the conversion produced.
 OrderedJson in_unit(double value, double units) {
   return std::isfinite(value) ? OrderedJson(short_number(value * units)) : OrderedJson(nullptr);
 }
@@ -23,7 +24,7 @@ struct Column {
 };
 
 constexpr double kToMilli = 1e3;  // m to mm, s to ms, J to mJ
-constexpr double kNPerMm = 1e-3;  // of 1 N/m
+constexpr double kNPerMm = 1e-3;  // factor from N/m
 constexpr Column kColumns[] = {
     {"k_lim_n_per_mm", [](const PointResult& r) { return in_unit(r.k_lim, kNPerMm); }},
     {"at_least", [](const PointResult& r) { return OrderedJson(r.at_least); }},
@@ -74,16 +75,20 @@ OrderedJson checked_json(const StiffnessVerdict& checked) {
 
 OrderedJson point_json(const Study& study, const PointResult& result) {
   const StudyPoint point = study_point(study, result.index);
-  OrderedJson json;
+  OrderedJson json = OrderedJson::object();
   json["point"] = result.index;
   if (study.has_variants()) json["variant"] = variant_of(study, point).name;
+  OrderedJson values = OrderedJson::object();
   for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
     const StudyValue& value = value_of(study, point, axis);
-    json["values"][study.axes[axis].key] =
+    values[study.axes[axis].key] =
         std::isnan(value.number) ? OrderedJson(value.shown) : OrderedJson(value.number);
   }
+  if (!values.empty()) json["values"] = std::move(values);
   for (const Column& column : kColumns) json[column.name] = column.value(result);
-  for (const StiffnessVerdict& checked : result.checked) json["checked"].push_back(checked_json(checked));
+  OrderedJson checked = OrderedJson::array();
+  for (const StiffnessVerdict& verdict : result.checked) checked.push_back(checked_json(verdict));
+  if (!checked.empty()) json["checked"] = std::move(checked);
   return json;
 }
 
@@ -116,7 +121,7 @@ std::string study_csv(const Study& study, const std::vector<PointResult>& result
 
 std::string study_summary_json(const Study& study, const std::vector<PointResult>& results,
                                const Made& made) {
-  OrderedJson json;
+  OrderedJson json = OrderedJson::object();
   json["study"] = study_to_json(study);
   json["points"] = OrderedJson::array();
   for (const PointResult& result : results) json["points"].push_back(point_json(study, result));

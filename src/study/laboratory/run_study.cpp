@@ -16,6 +16,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "phalanx/core/error_text.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/scene_error.h"
@@ -28,7 +29,7 @@
 namespace phalanx {
 namespace {
 
-/// What is finished, and who is told. Everything here is done by one thread at a time.
+/// The finished points, and the progress callback. For one thread at a time.
 class Progress {
  public:
   Progress(const StudyOptions& options, int total, const std::vector<PointResult>& resumed)
@@ -40,7 +41,7 @@ class Progress {
   void finish(Journal& journal, const PointResult& result) {
     const std::lock_guard<std::mutex> guard(mutex_);
     journal.append(result);
-    // As a later run would read it: what comes out must not depend on who measured it.
+    // As a later run would read it: the result must not depend on the run that measured it.
     results_.emplace(result.index, result_from_json(result_to_json(result)));
     tell();
   }
@@ -104,17 +105,17 @@ std::vector<int> without(std::vector<int> points, const std::vector<PointResult>
   return points;
 }
 
-/// A journal that cannot be written ends the run: measuring on would be for nothing.
+/// Measures points. If the journal cannot be written, the run ends: further results would be lost.
 void measure_points(const std::vector<int>& points, const Study& study, const TrialFunction& trial,
                     Journal& journal, Progress& progress, Failures& failures) {
   std::atomic<std::size_t> next{0};
   tbb::parallel_for_each(points, [&](int) {
-    const int index = points[next++];  // in order, whatever oneTBB hands out first
+    const int index = points[next++];  // in order, independent of oneTBB's order
     PointResult result;
     try {
       result = measure_point(study, index, trial);
     } catch (const std::exception& error) {
-      failures.add(index, error.what());
+      failures.add(index, error_text(error));
       return;
     } catch (...) {
       failures.add(index, "an exception of unknown type");
@@ -185,9 +186,10 @@ std::vector<PointResult> run_study(const Study& study, const StudyCheck& check, 
   Progress progress(options, static_cast<int>(all.size()), journal.finished());
   Failures failures;
   const int jobs = options.jobs > 0 ? options.jobs : tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(jobs);
+  arena.initialize();  // without memory for this, the end of an earlier global_control would wait without end
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(jobs));
-  tbb::task_arena arena(jobs);
   arena.execute([&] { measure_points(left, study, trial, journal, progress, failures); });
   failures.throw_if_any(study);
   return progress.results();

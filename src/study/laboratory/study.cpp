@@ -13,34 +13,12 @@
 namespace phalanx {
 namespace {
 
-/// Scene key "objects.0.file" -> "objects[].file", as scene_keys() has it.
-std::string pattern(const std::string& key) {
-  std::string result;
-  for (std::size_t begin = 0; begin <= key.size();) {
-    const std::size_t end = std::min(key.find('.', begin), key.size());
-    const std::string part = key.substr(begin, end - begin);
-    const bool index = !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
-    result += index ? "[]" : (result.empty() ? "" : ".") + part;
-    begin = end + 1;
-  }
-  return result;
-}
-
-/// Whether the value names a file: by a path, since a bare name is looked for in the program's own data.
-bool names_a_file(const std::string& key, const std::string& text) {
-  static const std::vector<SceneKey> keys = scene_keys();
-  const auto found = std::find_if(keys.begin(), keys.end(),
-                                  [&](const SceneKey& known) { return known.path == pattern(key); });
-  if (found == keys.end()) return false;
-  if (found->type == "file") return true;
-  return found->type == "name" && (text.find('/') != std::string::npos || text.ends_with(".toml"));
-}
-
-/// A relative path in a study file is relative to that file, as one in a scene file is.
+/// Makes a relative path absolute. It is relative to the study file, as one in a scene file is to that file.
 std::string resolved(const Study& study, const std::string& key, const std::string& toml) {
   if (toml.size() < 3 || toml.front() != '"' || toml[1] == '/') return toml;
-  const std::string text = toml.substr(1, toml.size() - 2);  // escapes in it stay escapes
-  if (!names_a_file(key, text)) return toml;
+  const std::string text = toml.substr(1, toml.size() - 2);  // escapes in it stay unchanged
+  const SceneKey* known = find_scene_key(pattern_of(key));
+  if (known == nullptr || !known->is_path(text)) return toml;
   std::string path = toml_quoted(std::filesystem::absolute(study.folder).lexically_normal().string());
   path.back() = '/';
   return path + text + '"';

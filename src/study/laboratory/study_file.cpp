@@ -24,7 +24,7 @@ double whole_number(TomlTable& table, std::string_view key, const NumberRange& r
   return value;
 }
 
-/// As SceneTree reads it back from an override. Arrays keep their form.
+/// Writes a node as SceneTree reads it from an override. Arrays keep their form.
 std::string as_toml(const toml::node& node) {
   if (const auto* text = node.as_string()) return toml_quoted(text->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
@@ -50,7 +50,7 @@ StudyValue study_value(const toml::node& node) {
   return value;
 }
 
-/// Keys may be dotted in quotes ("device.scale.x" = 1) or be tables within tables: both mean the same.
+/// Flattens nested tables. A dotted key in quotes ("device.scale.x" = 1) and tables within tables are equal.
 void flatten(const toml::table& table, const std::string& prefix, const TomlTable& place,
              std::string_view key, Overrides& out) {
   for (const auto& [name, node] : table) {
@@ -67,7 +67,7 @@ void flatten(const toml::table& table, const std::string& prefix, const TomlTabl
   }
 }
 
-/// TOML refuses a key that stands there twice, but not the same path once dotted and once in quotes.
+/// Refuses a path that occurs twice. TOML refuses a repeated key, but not one path both dotted and in quotes.
 void refuse_twice(const Overrides& overrides, const TomlTable& place, std::string_view key) {
   std::set<std::string_view> seen;
   for (const auto& [path, value] : overrides) {
@@ -76,11 +76,11 @@ void refuse_twice(const Overrides& overrides, const TomlTable& place, std::strin
   }
 }
 
-/// `raw` is the table that `table` reads.
+/// Reads the overrides of a key. `raw` is the table that `table` reads.
 Overrides overrides_in(TomlTable& table, const toml::table& raw, std::string_view key) {
   Overrides overrides;
   if (!table.has(key)) return overrides;
-  static_cast<void>(table.table(key));  // refuses what is no table
+  static_cast<void>(table.table(key));  // refuses a value that is not a table
   flatten(*raw.get(key)->as_table(), "", table, key, overrides);
   refuse_twice(overrides, table, key);
   return overrides;
@@ -99,7 +99,7 @@ std::vector<StudyValue> listed_values(TomlTable& table, const toml::table& raw) 
   return values;
 }
 
-/// Number of steps from one end to the other. @throws if it is no whole number.
+/// @returns the number of steps from one end to the other. @throws if it is not a whole number.
 int whole_steps(const TomlTable& table, double from, double to, double step, std::string_view step_key) {
   const double steps = (to - from) / step;
   const double nearest = std::round(steps);
@@ -166,7 +166,7 @@ StiffnessGrid stiffness_grid(TomlTable table) {
   return grid;
 }
 
-/// What concerns several parts of the file at once.
+/// Checks that concern several parts of the file at once.
 class Conflicts {
  public:
   Conflicts(const Study& study, const std::string& origin) : study_(study), origin_(origin) {}

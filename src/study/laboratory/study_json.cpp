@@ -12,10 +12,11 @@
 namespace phalanx {
 namespace {
 
-/// Deeper than anything that is written here: the parser would take all memory for a line of brackets.
+/// Deepest nesting that is read. The journal's own is less deep, and a line of brackets must not
+/// take all memory.
 constexpr int kDeepest = 16;
 
-/// A whole number of the file, which may hold anything.
+/// Reads a whole number from the file, which may contain anything.
 template <class Integer>
 Integer whole_from(const OrderedJson& json, const char* key, double least, double most) {
   const OrderedJson& number = json.at(key);
@@ -106,7 +107,7 @@ StiffnessGrid grid_from_json(const OrderedJson& json) {
   return grid;
 }
 
-/// What everything that reads a study relies on, and a study file is held to.
+/// Checks the sizes on which all readers of a study rely; a study file is checked in the same way.
 void refuse_sizes(const Study& study) {
   auto points = static_cast<double>(study.variants.size());
   for (const StudyAxis& axis : study.axes) points *= static_cast<double>(axis.values.size());
@@ -127,7 +128,7 @@ OrderedJson number_or_null(double value) {
 }
 
 OrderedJson study_to_json(const Study& study) {
-  OrderedJson json;
+  OrderedJson json = OrderedJson::object();
   json["name"] = study.name;
   json["title"] = study.title;
   json["scene"] = study.scene;
@@ -164,7 +165,7 @@ Study study_from_json(const OrderedJson& json) {
 }
 
 OrderedJson result_to_json(const PointResult& result) {
-  OrderedJson json;
+  OrderedJson json = OrderedJson::object();
   json["point"] = result.index;
   json["k_lim_n_per_m"] = number_or_null(result.k_lim);
   json["at_least"] = result.at_least;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Study and results as JSON, for the journal: what is written reads back to the same bits.
+// Study and results as JSON, for the journal: written values are read back with the same bits.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,22 +9,27 @@
 
 namespace phalanx {
 
+/// Ordered JSON. Begin every value as object() or array(): if there is no memory to turn a null into one, the
+/// library cannot destroy it.
 using OrderedJson = nlohmann::ordered_json;
 
-/// A line of a journal. @throws nlohmann::json::exception or std::out_of_range if it is none.
+/// Reads a line of a journal.
+/// @throws nlohmann::json::exception or std::out_of_range if it is not one.
 [[nodiscard]] OrderedJson parse_json(const std::string& text);
 
-/// Everything but the study's folder, which is not the same on every machine.
+/// Writes everything except the study's folder, which differs between machines.
 [[nodiscard]] OrderedJson study_to_json(const Study& study);
-/// @throws nlohmann::json::exception or std::out_of_range if it is no study.
+/// Reads a study.
+/// @throws nlohmann::json::exception or std::out_of_range if it is not one.
 [[nodiscard]] Study study_from_json(const OrderedJson& json);
 
-/// SI units, keys say them; NaN is null.
+/// Writes a result in SI units, named in the keys; NaN becomes null.
 [[nodiscard]] OrderedJson result_to_json(const PointResult& result);
+/// Reads a result.
 /// @throws as study_from_json.
 [[nodiscard]] PointResult result_from_json(const OrderedJson& json);
 
-/// null if it is not finite.
+/// @returns the number; null if it is not finite.
 [[nodiscard]] OrderedJson number_or_null(double value);
 
 }  // namespace phalanx

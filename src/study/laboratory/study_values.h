@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a study writes numbers and strings.
+// Numbers and strings, as a study writes them.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace phalanx {
 
-/// The number nearest to `value` among those with 12 decimal digits: 0.3 for 0.1 + 2 x 0.1.
+/// @returns the number nearest to `value` among those with 12 decimal digits: 0.3 for 0.1 + 2 x 0.1.
 [[nodiscard]] double short_number(double value);
 
-/// As a TOML basic string, with its quotes.
+/// @returns the text as a TOML basic string, with its quotes.
 [[nodiscard]] std::string toml_quoted(const std::string& text);
 
-/// As a field of a CSV file: in quotes if it has to be (RFC 4180).
+/// @returns the text as a field of a CSV file, in quotes if necessary (RFC 4180).
 [[nodiscard]] std::string csv_text(std::string_view text);
 
 }  // namespace phalanx

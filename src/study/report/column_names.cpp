@@ -26,7 +26,7 @@ double draw_column_names(Svg& svg, const std::vector<std::string>& names, double
   double widest = 0.0;
   for (const std::string& name : names) widest = std::max(widest, text_width(name));
   const auto middle = [&](std::size_t i) { return left + cell * (static_cast<double>(i) + 0.5); };
-  // Numbers may be thinned: who reads every other one knows the rest. Words may not.
+  // Numbers may be thinned, since a reader can complete them; words may not.
   if (widest + kGap <= cell || std::all_of(names.begin(), names.end(), reads_as_number)) {
     for (std::size_t i = 0; i < names.size(); i += step(widest + kGap, cell))
       svg.text(middle(i), bottom + 11, names[i], Anchor::kMiddle);

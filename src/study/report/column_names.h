@@ -8,8 +8,8 @@
 
 namespace phalanx {
 
-/// Names under columns that are `cell` wide: level if they fit (every second one will do), else upright and
-/// cut; as many as have room. @returns where they end [pt]
+/// Draws names under columns that are `cell` wide. They are level if they fit, perhaps only every second one.
+/// Otherwise they are upright and cut, as many as have room. @returns their lower end [pt]
 double draw_column_names(Svg& svg, const std::vector<std::string>& names, double left, double cell,
                          double bottom);
 

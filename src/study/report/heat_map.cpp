@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "figures/plot/ticks.h"
 #include "phalanx/study/report/chart.h"
-#include "study/plot/ticks.h"
 #include "study/report/column_names.h"
 #include "study/report/palette.h"
 #include "study/report/svg.h"
@@ -12,7 +12,7 @@
 namespace phalanx {
 namespace {
 
-constexpr double kScaleWidth = 10.0;  // of the colour scale [pt]
+constexpr double kScaleWidth = 10.0;  // width of the colour scale [pt]
 constexpr double kScaleRoom = 58.0;   // with its numbers and words
 constexpr double kLeastScaleHeight = 70.0;
 constexpr double kLetter = 8.5;  // height of a line of text [pt]
@@ -43,7 +43,7 @@ class HeatMapDrawing {
     const double rows = std::max(1.0, static_cast<double>(map.rows.size()));
     const double most = std::clamp(widest(map.columns) + 2.0, 46.0, 80.0);
     cell_w_ = std::min(most, (width_ - left_ - kScaleRoom - 16.0) / columns);
-    // Room for the number where that needs no more than a page.
+    // The cells have room for the number if the map then still fits on a page.
     cell_h_ = std::clamp(400.0 / rows, 1.5, 17.0);
   }
 
@@ -77,7 +77,7 @@ class HeatMapDrawing {
   }
 
   void cells() {
-    svg_.add(R"svg(<g shape-rendering="crispEdges">)svg");  // no pale seams between cells
+    svg_.add(R"svg(<g shape-rendering="crispEdges">)svg");  // no pale gaps between cells
     for (std::size_t row = 0; row < map_.rows.size(); ++row) {
       for (std::size_t column = 0; column < map_.columns.size(); ++column) {
         const double number = value(row, column);
@@ -98,7 +98,7 @@ class HeatMapDrawing {
       for (std::size_t column = 0; column < map_.columns.size(); ++column)
         widest_number = std::max(widest_number, text_width(cell_text(row, column)));
     }
-    // All cells or none: a map with some of its numbers looks as if the others were missing.
+    // Numbers in all cells or in none: with some numbers only, the others would seem to be missing.
     if (cell_h_ < kLetter + 1.0 || cell_w_ < widest_number) return;
     for (std::size_t row = 0; row < map_.rows.size(); ++row) {
       for (std::size_t column = 0; column < map_.columns.size(); ++column) {
@@ -118,7 +118,7 @@ class HeatMapDrawing {
       svg_.text_upwards(10, (top_ + bottom()) / 2, cut_to(map_.y_label, std::max(60.0, bottom() - top_)));
   }
 
-  /// @returns where it ends
+  /// @returns the lower end of the names
   double column_names() {
     const double middle = (left_ + px(map_.columns.size())) / 2;
     const double y = draw_column_names(svg_, map_.columns, left_, cell_w_, bottom());
@@ -133,7 +133,7 @@ class HeatMapDrawing {
     const double height = scale_height();
     constexpr int kSteps = 24;
     for (int i = 0; i < kSteps; ++i) {
-      // A little overlap, so that no gap shows between two steps.
+      // A little overlap, so that no gap is visible between two steps.
       svg_.add(
           R"svg(<rect class="scale" x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="{}"/>)svg", x,
           top_ + height * (kSteps - 1 - i) / kSteps, kScaleWidth, height / kSteps + (i > 0 ? 0.4 : 0.0),

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "study/plot/panel.h"
+#include "figures/plot/panel.h"
 
 namespace phalanx {
 namespace {
@@ -41,7 +41,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
     text.replace(at, from.size(), to);
 }
 
-/// Whether a cell looks like a number, a missing one, or a number with words in brackets.
+/// @returns true if a cell is a number, a missing one, or a number with words in brackets.
 bool is_number(const std::string& text) {
   for (const char* sign : {"\u2212", "\u2265 ", "\u2265", "\u2013", "< ", "+", "-"}) {
     if (text.starts_with(sign)) return true;
@@ -60,8 +60,8 @@ bool all_numbers(const std::vector<std::vector<std::string>>& rows, std::size_t 
   return any;
 }
 
-/// Without the XML declaration, which has no place within a page. What is quoted in text is escaped,
-/// therefore the patterns meet attributes only.
+/// @returns the SVG without its XML declaration, which is not allowed within a page. Quotes in text are
+/// escaped, so that the patterns match attributes only.
 std::string embedded(const std::string& svg, int number) {
   const std::size_t begin = svg.find("<svg");
   std::string result = begin == std::string::npos ? "" : svg.substr(begin);

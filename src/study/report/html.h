@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces of a HTML page that is also well-formed XML, so that one check serves both.
+// Parts of an HTML page that is also well-formed XML, so that one check covers both.
 #pragma once
 
 #include <string>
@@ -9,22 +9,23 @@
 
 namespace phalanx {
 
+/// An HTML page that is built from top to bottom.
 class HtmlPage {
  public:
   explicit HtmlPage(const std::string& title);
 
-  void heading(const std::string& text);     ///< of a chapter
-  void subheading(const std::string& text);  ///< within a chapter
+  void heading(const std::string& text);     ///< heading of a chapter
+  void subheading(const std::string& text);  ///< heading within a chapter
   void paragraph(const std::string& text);
   void list(const std::vector<std::string>& items);
-  /// A coloured box; nothing without items.
+  /// Adds a coloured box; without items, nothing.
   void warnings(const std::vector<std::string>& items);
-  /// Columns that hold nothing but numbers are aligned to the right and not broken. Short rows are filled up.
+  /// Adds a table. Columns of numbers only are aligned to the right and not broken. Short rows are filled up.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-  /// Figures beside each other as far as the page is wide, below them the caption. Whole SVG documents: their
-  /// ids are made unique in the page. Nothing without figures.
+  /// Adds figures beside each other as far as the page is wide, and the caption below them. They are whole
+  /// SVG documents, whose ids are made unique in the page. Without figures, it adds nothing.
   void figures(const std::vector<std::string>& svgs, const std::string& caption);
-  /// Commit, CPU, compiler, build type, date and, unless empty, the seeds.
+  /// Adds commit, CPU, compiler, build type, date and, unless empty, the seeds.
   void made(const Made& made, const std::string& seeds);
 
   [[nodiscard]] std::string document() const;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "figures/plot/ticks.h"
 #include "phalanx/study/report/chart.h"
-#include "study/plot/ticks.h"
 #include "study/report/line_panel.h"
 #include "study/report/svg.h"
 
@@ -56,7 +56,7 @@ SharedAxis shared_axis(const LineChart& chart) {
     low -= room;
     high += room;
   }
-  // Markers on the first and the last value stand clear of the frame.
+  // Markers on the first and the last value need room inside the frame.
   const double margin = marked ? 0.025 * (high - low) : 0.0;
   SharedAxis axis{
       .left = kChartLeft,
@@ -86,7 +86,7 @@ std::string line_chart_svg(const LineChart& chart) {
     const double legend_end = y + legend_height(panel);
     y += panel.height;
     bottom = std::max({bottom, y, legend_end});
-    // A long legend may reach past its panel only where the next one has none.
+    // A long legend may extend below its panel only if the next panel has none.
     if (i + 1 < chart.panels.size() && chart.panels[i + 1].legend) y = std::max(y, legend_end);
   }
   svg.text(axis.left + axis.width / 2, y + 25, cut_to(chart.x_label, axis.width + 40), Anchor::kMiddle);

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/plot/polyline.h"
-#include "study/plot/ticks.h"
+#include "figures/plot/polyline.h"
+#include "figures/plot/ticks.h"
 #include "study/report/palette.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kLine = 10.5;          // of the legend [pt]
-constexpr double kLegendIndent = 23.0;  // room for a piece of the curve [pt]
+constexpr double kLine = 10.5;          // height of a legend line [pt]
+constexpr double kLegendIndent = 23.0;  // room for a sample of the curve [pt]
 constexpr double kLegendText = kLegendWidth - kLegendIndent - 2.0;
 constexpr std::size_t kLongCurveMarkers = 6;
 
@@ -28,7 +28,7 @@ bool has_at_least(const ChartPanel& panel) {
   });
 }
 
-/// Stretches [begin, end) without a gap.
+/// Finds ranges [begin, end) without a gap.
 std::vector<std::pair<std::size_t, std::size_t>> stretches(const ChartSeries& series) {
   std::vector<std::pair<std::size_t, std::size_t>> result;
   for (std::size_t i = 0; i < series.x.size(); ++i) {
@@ -100,7 +100,7 @@ class LinePanelDrawing {
       if (!(to > from)) continue;
       svg_.add(R"svg(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="#EFEDE4"/>)svg", from,
                top_, to - from, height_);
-      // Above the frame, where no curve runs; a narrow window's words reach past its edges.
+      // Above the frame, where no curve runs; the label of a narrow window extends past its edges.
       if (first())
         svg_.text((from + to) / 2, top_ - 3, cut_to(window.label, std::max(to - from, 70.0)), Anchor::kMiddle,
                   R"( font-size="7" fill="#6B6650")");
@@ -138,7 +138,7 @@ class LinePanelDrawing {
       svg_.add(
           R"svg(<path class="mark" d="M{:.2f},{:.2f}h{:.2f}" stroke="#333" stroke-width="0.8" stroke-dasharray="5 2 1 2"/>)svg",
           axis_.left, py(mark.y), axis_.width);
-      // A white rim keeps the words readable where a curve passes behind them.
+      // A white rim keeps the label readable if a curve passes behind it.
       const double y = py(mark.y) < top_ + 10 ? py(mark.y) + 8 : py(mark.y) - 2.5;
       svg_.text(
           axis_.left + axis_.width - 3, y, cut_to(mark.label, axis_.width / 2), Anchor::kEnd,
@@ -177,7 +177,7 @@ class LinePanelDrawing {
     }
     arrows(series, index);
     if (all) return;
-    // Spread along the curve, each curve at other places.
+    // Spread along the curve, at other places for each curve.
     const double stagger = (static_cast<double>(index) + 0.5) / static_cast<double>(shown(panel_));
     for (std::size_t m = 0; m < kLongCurveMarkers; ++m) {
       const double share = (static_cast<double>(m) + stagger) / static_cast<double>(kLongCurveMarkers);
@@ -186,7 +186,7 @@ class LinePanelDrawing {
     }
   }
 
-  /// Where the next one would touch the last it is left out.
+  /// Draws arrows; an arrow that would touch the last one is left out.
   void arrows(const ChartSeries& series, std::size_t index) {
     constexpr double kApart = 8.0;
     double last = -kApart;

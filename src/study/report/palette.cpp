@@ -11,7 +11,7 @@
 namespace phalanx {
 namespace {
 
-/// Okabe and Ito's palette; its yellow is too pale for lines and a grey stands in for it.
+/// Okabe and Ito's palette. Its yellow is too pale for lines; a grey replaces it.
 constexpr std::array<const char*, 8> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                  "#000000", "#E69F00", "#56B4E9", "#7F7F7F"};
 constexpr std::array<const char*, 8> kMarkers = {"M-1.9,0a1.9,1.9 0 1,0 3.8,0a1.9,1.9 0 1,0 -3.8,0",
@@ -26,10 +26,10 @@ constexpr std::array<const char*, 3> kDashes = {"none", "4 2", "1.2 1.8"};
 
 using Rgb = std::array<double, 3>;
 
-/// L*a*b* -> XYZ, one coordinate relative to white. CIE 15.
+/// Converts L*a*b* to XYZ, one coordinate relative to white. CIE 15.
 double lab_inverse(double f) { return f > 6.0 / 29.0 ? f * f * f : 3.0 * 36.0 / 841.0 * (f - 4.0 / 29.0); }
 
-/// sRGB (IEC 61966-2-1) of a colour in polar L*a*b*, white D65. May lie outside [0, 1].
+/// Converts polar L*a*b*, white D65, to sRGB (IEC 61966-2-1). The result may lie outside [0, 1].
 Rgb srgb(double lightness, double chroma, double hue) {
   const double f = (lightness + 16.0) / 116.0;
   const double x = 0.95047 * lab_inverse(f + chroma * std::cos(hue) / 500.0);
@@ -60,10 +60,10 @@ ScaleColour scale_colour(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
   const double lightness = 20.0 + 70.0 * t;
   const double hue = kRadian * (300.0 - 200.0 * t);  // violet blue, teal, green, yellow
-  // Teal, in the middle, cannot be vivid on a screen; its neighbours keep to it, so that no colour stands
-  // out.
+  // Teal, in the middle, cannot be vivid on a screen. The colours beside it are muted too, so that
+  // none is conspicuous.
   double chroma = 38.0 + 38.0 * (2.0 * t - 1.0) * (2.0 * t - 1.0);
-  while (!can_be_shown(srgb(lightness, chroma, hue))) chroma -= 0.5;  // grey always can
+  while (!can_be_shown(srgb(lightness, chroma, hue))) chroma -= 0.5;  // always possible for grey
   const Rgb colour = srgb(lightness, chroma, hue);
   const auto byte = [](double c) { return static_cast<int>(std::lround(255.0 * c)); };
   return {fmt::format("#{:02X}{:02X}{:02X}", byte(colour[0]), byte(colour[1]), byte(colour[2])),

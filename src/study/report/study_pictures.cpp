@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostSlices = 12;  // heat maps of a quantity
 constexpr std::size_t kMostBars = 60;
-constexpr std::size_t kMostBands = 3;         // more of them hide each other
+constexpr std::size_t kMostBands = 3;         // more bands hide each other
 constexpr std::size_t kColumnsOfHalfMap = 7;  // up to here two maps fit beside each other
 constexpr double kHalfWidth = 88.0;           // [mm]
 constexpr double kFullWidth = 180.0;
@@ -45,7 +45,7 @@ ChartSeries curve(const StudyView& view, const Dimension& axis, const Slice& sli
   return series;
 }
 
-/// Three or so panels at a time, so that a figure fits on a page.
+/// Makes charts of about three panels each, so that a figure fits on a page.
 std::vector<std::string> curve_charts(const StudyView& view, const Dimension& axis,
                                       const std::vector<Slice>& slices) {
   const std::vector<Quantity> quantities = view.quantities();
@@ -99,7 +99,7 @@ HeatMap heat_map(const StudyView& view, const Plane& plane, const Slice& slice, 
   map.y_label = rows.label;
   map.width_mm = columns.names.size() <= kColumnsOfHalfMap ? kHalfWidth : kFullWidth;
   std::vector<std::size_t> downwards = rows.order;
-  if (!rows.numbers.empty()) std::reverse(downwards.begin(), downwards.end());  // numbers rise upwards
+  if (!rows.numbers.empty()) std::reverse(downwards.begin(), downwards.end());  // numbers increase upwards
   for (const std::size_t column : columns.order) map.columns.push_back(columns.names[column]);
   for (const std::size_t row : downwards) {
     map.rows.push_back(rows.names[row]);
@@ -113,7 +113,7 @@ HeatMap heat_map(const StudyView& view, const Plane& plane, const Slice& slice, 
   return map;
 }
 
-/// One colour scale for all, so that they can be compared.
+/// Draws maps on one colour scale, so that they can be compared.
 std::vector<std::string> on_one_scale(std::vector<HeatMap> maps) {
   double low = HUGE_VAL;
   double high = -HUGE_VAL;
@@ -190,7 +190,8 @@ void add_bars(HtmlPage& page, const StudyView& view) {
   page.figures(charts, "Ghost time and energy: mean over the seeds.");
 }
 
-/// The first two axes; with one axis of words, that and the variants. Numbers go along the bottom.
+/// Chooses the first two axes; if there is one axis, without numbers, that one and the variants. Numbers go
+/// along the bottom.
 Plane plane_of(const StudyView& view) {
   std::vector<int> axes;
   for (std::size_t d = 0; d < view.dimensions().size(); ++d) {
@@ -205,7 +206,7 @@ Plane plane_of(const StudyView& view) {
 
 void add_result_pictures(HtmlPage& page, const StudyView& view) {
   const std::vector<Dimension>& dimensions = view.dimensions();
-  if (dimensions.empty()) return;  // one point: the table says all
+  if (dimensions.empty()) return;  // one point: the table shows everything
   const int axis = view.main_axis();
   if (axis >= 0) add_curves(page, view, axis);
   const std::size_t axes = dimensions.size() - (dimensions.front().variants ? 1 : 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pictures a study gets: curves, heat maps, bars and stability maps, as its dimensions ask for.
+// Charts of a study: curves, heat maps, bars and stability maps, as its dimensions require.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace phalanx {
 
-/// Adds the chapters with pictures of the results, and says in words what was left out.
+/// Adds the chapters with charts of the results, and states in words what was left out.
 void add_result_pictures(HtmlPage& page, const StudyView& view);
 
-/// Adds a map for each slice along the main axis (or, without one, the last dimension): which stiffness was
-/// tried and what came of it. Nothing if the study has no stiffness grid.
+/// Adds a map for each slice along the main axis (or, without one, the last dimension). It shows the
+/// stiffnesses that were tried, with their verdicts. Without a stiffness grid, it adds nothing.
 void add_verdict_maps(HtmlPage& page, const StudyView& view);
 
 }  // namespace phalanx

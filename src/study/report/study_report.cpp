@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "phalanx/study/closed_loop/stability_criterion.h"
+#include "phalanx/simulation/closed_loop/stability_criterion.h"
 #include "phalanx/study/laboratory/report.h"
 #include "study/report/html.h"
 #include "study/report/study_pictures.h"
@@ -161,7 +161,7 @@ std::string study_report_html(const Study& study, const std::vector<PointResult>
   add_what_was_swept(page, study);
   add_what_stable_means(page, study);
   add_what_is_measured(page);
-  // A short table comes before its pictures, a long one after them.
+  // A short table comes before the charts, a long one after them.
   constexpr int kShort = 40;
   if (point_count(study) <= kShort) add_all_points(page, view);
   add_result_pictures(page, view);

@@ -10,7 +10,7 @@
 namespace phalanx {
 namespace {
 
-constexpr std::size_t kMostColumns = 60;  // of one map
+constexpr std::size_t kMostColumns = 60;  // in one map
 constexpr std::size_t kMostMaps = 40;
 constexpr std::size_t kColumnsOfHalfVerdictMap = 8;  // up to here two maps fit beside each other
 
@@ -39,7 +39,7 @@ VerdictMap::Column column_of(const PointResult* result, const std::string& name,
   return column;
 }
 
-/// Maps of one slice: more than one if a single one would have too many columns.
+/// Makes the maps of one slice: several if a single one would have too many columns.
 std::vector<VerdictMap> maps_of(const StudyView& view, const Dimension* along, const Slice& slice) {
   const StiffnessGrid& grid = *view.study().stiffness;
   VerdictMap empty;
@@ -62,7 +62,8 @@ std::vector<VerdictMap> maps_of(const StudyView& view, const Dimension* along, c
   return maps;
 }
 
-/// "stable again at 2.1, 2.2 N/mm above the first unstable one, 1.3 N/mm"
+/// Describes a limit that is not monotone: "stable again at 2.1, 2.2 N/mm above the first unstable
+/// one, 1.3 N/mm".
 std::string where_not_monotone(const PointResult& result) {
   const auto first =
       std::find_if(result.checked.begin(), result.checked.end(),

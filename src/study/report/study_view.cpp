@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "phalanx/study/closed_loop/stability_criterion.h"
+#include "phalanx/simulation/closed_loop/stability_criterion.h"
 
 namespace phalanx {
 namespace {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostNamed = 8;
 
-/// Points that have something in common.
+/// Points that have a warning in common.
 class Named {
  public:
   explicit Named(const StudyView& view) : view_(view) {}
@@ -19,7 +19,7 @@ class Named {
     if (++count_ <= kMostNamed) text_ += (text_.empty() ? "" : "; ") + view_.name(index);
   }
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// "3 points (light; heavy; frictionless)"
+  /// @returns the points in words: "3 points (light; heavy; frictionless)".
   [[nodiscard]] std::string text() const {
     return fmt::format("{} {} ({}{})", count_, count_ == 1 ? "point" : "points", text_,
                        count_ > kMostNamed ? fmt::format("; and {} more", count_ - kMostNamed) : "");
@@ -39,7 +39,7 @@ struct Invalid {
 };
 
 void add_invalid(const StudyView& view, std::vector<std::string>& warnings) {
-  std::map<std::string, Invalid> by_reason;  // of a point's first invalid run
+  std::map<std::string, Invalid> by_reason;  // by the reason of a point's first invalid run
   for (int i = 0; i < point_count(view.study()); ++i) {
     const PointResult* result = view.result(i);
     if (result == nullptr || result->invalid_trials == 0) continue;

@@ -8,8 +8,8 @@
 
 namespace phalanx {
 
-/// What a reader must know before believing the numbers: missing points, invalid runs and why, limits at the
-/// edge of the grid. Empty if there is nothing.
+/// @returns what a reader must know before trusting the numbers: missing points, invalid runs with their
+/// reasons, limits at the edge of the grid. Empty if there is nothing.
 [[nodiscard]] std::vector<std::string> study_warnings(const StudyView& view);
 
 }  // namespace phalanx

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/plot/panel.h"
+#include "figures/plot/panel.h"
 
 namespace phalanx {
 namespace {
 
-/// Mean width of a character of Helvetica or DejaVu Sans in words like ours, as a share of the height.
+/// Mean width of a character of Helvetica or DejaVu Sans in texts of this program, as a multiple
+/// of the height.
 constexpr double kCharacter = 0.54 * 8.0;
 
 bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
@@ -18,7 +19,7 @@ std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts_character));
 }
 
-/// The first `count` characters.
+/// @returns the first `count` characters.
 std::string first_characters(const std::string& text, std::size_t count) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {

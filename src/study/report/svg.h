@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An SVG document in the making. Lengths in points (1/72 inch), text 8 points high.
+// Builder of an SVG document. Lengths are in points (1/72 inch); text is 8 points high.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,19 +12,21 @@ namespace phalanx {
 
 inline constexpr double kPointsPerMm = 72.0 / 25.4;
 
-/// The width of `text` at 8 points, a little generously, since the font is not known here [pt].
+/// @returns the width of `text` at 8 points, estimated a little too large, since the font is
+/// unknown here [pt].
 [[nodiscard]] double text_width(const std::string& text);
-/// `text`, cut with an ellipsis to what fits into `width`.
+/// @returns `text`, cut with an ellipsis to fit into `width`.
 [[nodiscard]] std::string cut_to(const std::string& text, double width);
-/// `text` in lines no wider than `width`, broken at spaces if possible; the last of at most `most` lines is
-/// cut.
+/// @returns `text` in lines no wider than `width`, broken at spaces if possible. The last of at most `most`
+/// lines is cut.
 [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, double width, std::size_t most);
-/// Three significant digits for people to read, without an exponent where that is short: "1.6", "0.0125",
-/// "1250"; a real minus sign; an en dash for what is not finite.
+/// @returns three significant digits for readers, without an exponent if that is short: "1.6", "0.0125",
+/// "1250". It has a real minus sign, and an en dash for a number that is not finite.
 [[nodiscard]] std::string number_text(double value);
 
 enum class Anchor { kStart, kMiddle, kEnd };
 
+/// An SVG document.
 class Svg {
  public:
   explicit Svg(double width) : width_(width) {}
@@ -35,17 +37,17 @@ class Svg {
     body_ += '\n';
   }
 
-  /// Escapes `text`. @param more  further attributes, with a space before each: ` fill="#444"`
+  /// Adds text, escaped. @param more  further attributes, with a space before each: ` fill="#444"`
   void text(double x, double y, const std::string& text, Anchor anchor = Anchor::kStart,
             const std::string& more = "");
-  /// The same, turned a quarter to the left.
+  /// Adds text, turned a quarter to the left.
   void text_upwards(double x, double y, const std::string& text, Anchor anchor = Anchor::kMiddle);
-  /// Bold, on top of the page. @returns its height, 0 if both are empty
+  /// Adds a bold heading at the top of the page. @returns its height, 0 if both are empty
   double heading(const std::string& title, const std::string& subtitle);
-  /// Definition of the hatching that stands for "no value"; used as `fill="url(#hatch)"`.
+  /// Defines the hatching for "no value"; used as `fill="url(#hatch)"`.
   void define_hatch();
 
-  /// @param title  for readers who cannot see it
+  /// @returns the document. @param title  for readers who cannot see it
   [[nodiscard]] std::string document(double height, const std::string& title) const;
 
  private:

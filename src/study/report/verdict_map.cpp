@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "figures/plot/ticks.h"
 #include "phalanx/study/report/chart.h"
-#include "study/plot/ticks.h"
 #include "study/report/column_names.h"
 #include "study/report/svg.h"
 
@@ -17,7 +17,8 @@ struct Look {
   const char* fill;
   const char* name;
 };
-/// Dark, pale and hatched: told apart without colour, too. What was not checked is the background.
+/// Dark, pale and hatched, so that they differ without colour, too. Cells that were not checked
+/// show the background.
 constexpr std::array<Look, 3> kLooks = {Look{CellVerdict::kStable, "#0072B2", "stable"},
                                         Look{CellVerdict::kUnstable, "#F0B95B", "unstable"},
                                         Look{CellVerdict::kInvalid, "url(#hatch)", "invalid"}};
@@ -57,7 +58,7 @@ class VerdictMapDrawing {
   [[nodiscard]] double px(std::size_t column) const {
     return kMapLeft + cell_w_ * static_cast<double>(column);
   }
-  /// The upper edge of the cell of grid point `row`, counted from the bottom.
+  /// @returns the upper edge of the cell of grid point `row`, counted from the bottom.
   [[nodiscard]] double py(std::size_t row) const {
     return top_ + height_ - cell_h_ * static_cast<double>(row + 1);
   }
@@ -77,7 +78,7 @@ class VerdictMapDrawing {
     svg_.text(x + 12, y, "k_lim");
   }
 
-  /// One path for all cells of a verdict.
+  /// Draws all cells of a verdict as one path.
   void cells(const Look& look) {
     std::string path;
     const double gap = cell_h_ > 3.0 ? 0.5 : 0.0;
@@ -92,7 +93,7 @@ class VerdictMapDrawing {
     if (!path.empty()) svg_.add(R"svg(<path class="{}" d="{}" fill="{}"/>)svg", look.name, path, look.fill);
   }
 
-  /// Above the cell of k_lim; on the lower edge if the limit is below the grid.
+  /// Marks k_lim above its cell; if the limit is below the grid, on the lower edge.
   void limit(std::size_t column) {
     const double k_lim = map_.columns[column].k_lim;
     if (!std::isfinite(k_lim) || map_.stiffness.empty()) return;
@@ -105,7 +106,7 @@ class VerdictMapDrawing {
     const std::string number =
         (map_.columns[column].at_least ? "\u2265" : "") + (k_lim > 0.0 ? number_text(k_lim) : "<");
     if (text_width(number) > cell_w_ + 2) return;
-    // Words on the grey above the limit would be hidden by unstable cells: a rim sets them off.
+    // Unstable cells would hide text on the grey above the limit: a rim separates it.
     svg_.text(px(column) + cell_w_ / 2, y - (above == map_.stiffness.size() ? -9 : 3), number,
               Anchor::kMiddle,
               R"( stroke="#FFF" stroke-width="2.2" paint-order="stroke" font-weight="bold")");
@@ -140,7 +141,7 @@ class VerdictMapDrawing {
     const double y = draw_column_names(svg_, names, kMapLeft, cell_w_, top_ + height_);
     const double middle = (kMapLeft + px(map_.columns.size())) / 2;
     if (map_.x_label.empty()) return y;
-    // Under few columns the label may be wider than they are: then it begins at their left.
+    // Under few columns the label may be wider than the columns: it then begins at their left edge.
     const bool wide = text_width(map_.x_label) > 2 * (middle - 4);
     svg_.text(wide ? 4 : middle, y + 12, cut_to(map_.x_label, width_ - 8),
               wide ? Anchor::kStart : Anchor::kMiddle);

@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr double kMeasureFor = 0.1;
-constexpr double kWizardPeriod = 0.02;  // six calls of go_on() measure a pose
+constexpr double kWizardPeriod = 0.02;  // six calls of update() measure a pose
 
 class CalibrationSessionTest : public testing::Test {
  protected:
@@ -36,7 +36,7 @@ class CalibrationSessionTest : public testing::Test {
     session.measure(now);
     while (session.measuring()) wait();
   }
-  void wait() { session.go_on(now += kWizardPeriod); }
+  void wait() { session.update(now += kWizardPeriod); }
   void measure_all() {
     while (!session.at_end()) measure();
   }
@@ -270,11 +270,11 @@ TEST(CalibrationSession, MeasuresAPoseForASecondUnlessItIsToldOtherwise) {
   CalibrationSession session{device, test::simple_parameters()};
   device.hold(session.poses()[0]);
   session.measure(10.0);
-  session.go_on(10.25);
+  session.update(10.25);
   EXPECT_EQ(session.view().measured, 0.25);
-  session.go_on(10.75);
+  session.update(10.75);
   EXPECT_TRUE(session.measuring());
-  session.go_on(11.0);
+  session.update(11.0);
   EXPECT_FALSE(session.measuring());
   EXPECT_TRUE(session.view().done[0]);
 }

@@ -190,8 +190,8 @@ double expected_torque(const phx_command_walls& walls, const std::array<std::int
                        std::size_t joint) {
   const std::size_t digit = joint / 4;
   double torque = static_cast<double>(walls.command.torque[joint]);
-  DigitJoints q{};
-  DigitJoints q_ref{};
+  DigitAngles q{};
+  DigitAngles q_ref{};
   for (std::size_t i = 0; i < 4; ++i) {
     q[i] = 1e-3 * raw[4 * digit + i];
     q_ref[i] = static_cast<double>(walls.q_ref[4 * digit + i]);

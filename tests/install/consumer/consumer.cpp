@@ -46,14 +46,15 @@ int main() {
   const phalanx::HapticModel model(
       phalanx::make_hand_model(straight_hand(), phalanx::Handedness::kRight, {}, 2000),
       phalanx::ObjectModel(std::move(box)));
-  phalanx::HapticState state(model);
+  const phalanx::HapticParameters parameters;
+  phalanx::HapticState state(model, parameters);
 
   const auto flexion = static_cast<std::size_t>(*phalanx::find_joint("index_mcp_flexion"));
   phalanx::Sample sample;
   for (int tick = 1; tick <= 100; ++tick) {
-    sample.time_s = tick / model.rate_hz;
+    sample.time_s = tick / parameters.rate_hz;
     sample.angle[flexion] = 0.006 * tick;
-    phalanx::step(model, sample, state);
+    phalanx::step(model, parameters, sample, state);
   }
   const double hcp = state.snapshot().hcp_angle[flexion];
   const double gdp = state.snapshot().gdp_angle[flexion];

@@ -12,11 +12,11 @@ int main() try {
   const auto scene = phalanx::load_scene("grasp_teapot");
   const auto motion = phalanx::build_motion(scene);
   const auto model = phalanx::build_model(scene);
-  phalanx::HapticState state(model);
+  phalanx::HapticState state(model, scene.parameters);
   phalanx::Sample sample;
-  sample.time_s = 1.0 / model.rate_hz;
+  sample.time_s = 1.0 / scene.parameters.rate_hz;
   sample.angle = model.hand.parameters().open_angle;
-  phalanx::step(model, sample, state);
+  phalanx::step(model, scene.parameters, sample, state);
   std::printf("%d hand and %d object triangles, motion of %.2f s\n", model.hand.triangle_count(),
               model.object.triangle_count(), phalanx::simulation_seconds(scene, motion));
   for (const double torque : state.snapshot().torque) {

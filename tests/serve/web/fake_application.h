@@ -13,7 +13,7 @@
 
 namespace phalanx {
 
-/// Writes down what it is told, on the server's thread; the test reads it on its own.
+/// Application that records its calls on the server's thread. A test reads them on its own thread.
 class FakeApplication final : public WebApplication {
  public:
   struct Message {
@@ -21,17 +21,17 @@ class FakeApplication final : public WebApplication {
     std::string text;
   };
 
-  // What a test may set before the server starts; called on the server's thread.
+  // Functions that a test may set before the server starts; called on the server's thread.
   std::function<void(PageId)> on_joined;
   std::function<void(PageId, std::string_view)> on_received;
   std::function<void()> on_frame;
-  std::function<void(const WebRequest&, std::function<void(WebAnswer)>)> on_requested;
+  std::function<void(const WebRequest&, std::function<void(WebResponse)>)> on_requested;
   std::size_t limit = 0;  ///< of any body
 
-  void joined(PageId page, const Visitor& visitor) override {
+  void joined(PageId page, const ClientInfo& client) override {
     {
       const std::lock_guard lock(mutex_);
-      joined_.emplace_back(page, visitor);
+      joined_.emplace_back(page, client);
     }
     changed_.notify_all();
     if (on_joined) on_joined(page);
@@ -51,10 +51,10 @@ class FakeApplication final : public WebApplication {
     changed_.notify_all();
     if (on_received) on_received(page, message);
   }
-  void received_too_much(PageId page, std::string_view last) override {
+  void received_over_limit(PageId page, std::string_view last) override {
     {
       const std::lock_guard lock(mutex_);
-      too_much_.push_back({page, std::string(last)});
+      over_limit_.push_back({page, std::string(last)});
     }
     changed_.notify_all();
   }
@@ -66,28 +66,28 @@ class FakeApplication final : public WebApplication {
     changed_.notify_all();
     if (on_frame) on_frame();
   }
-  void requested(const WebRequest& request, std::function<void(WebAnswer)> answer) override {
+  void requested(const WebRequest& request, std::function<void(WebResponse)> answer) override {
     {
       const std::lock_guard lock(mutex_);
       requests_.push_back(request);
     }
     changed_.notify_all();
     if (on_requested) return on_requested(request, std::move(answer));
-    WebAnswer none;
+    WebResponse none;
     none.status = 404;
     none.body = std::make_shared<const std::string>("nothing here\n");
     answer(std::move(none));
   }
   std::size_t body_limit(const WebRequest& /*head*/) override { return limit; }
 
-  std::vector<std::pair<PageId, Visitor>> joined_pages() const { return copy(joined_); }
+  std::vector<std::pair<PageId, ClientInfo>> joined_pages() const { return copy(joined_); }
   std::vector<PageId> left_pages() const { return copy(left_); }
   std::vector<Message> messages() const { return copy(received_); }
-  std::vector<Message> last_words() const { return copy(too_much_); }
+  std::vector<Message> over_limit_messages() const { return copy(over_limit_); }
   std::vector<WebRequest> requests() const { return copy(requests_); }
   std::size_t frames() const { return copy(frames_); }
 
-  /// Until so many have joined, ...; @returns false if that does not come in a generous time.
+  /// Waits until so many pages have joined. The others alike. @returns false after 5 minutes
   bool await_joined(std::size_t n) const {
     return await([&] { return joined_.size() >= n; });
   }
@@ -118,10 +118,10 @@ class FakeApplication final : public WebApplication {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  std::vector<std::pair<PageId, Visitor>> joined_;
+  std::vector<std::pair<PageId, ClientInfo>> joined_;
   std::vector<PageId> left_;
   std::vector<Message> received_;
-  std::vector<Message> too_much_;
+  std::vector<Message> over_limit_;
   std::vector<WebRequest> requests_;
   std::size_t frames_ = 0;
 };

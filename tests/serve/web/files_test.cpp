@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the server says to those who ask for files.
+// Responses to requests for files.
 #include <gmock/gmock.h>
 #include <zlib.h>
 
@@ -28,7 +28,7 @@ std::string unpacked(const std::string& bytes) {
   return out;
 }
 
-TEST_F(WebFiles, TheIndexIsServedAtTheRootAndNeverKeptUnasked) {
+TEST_F(WebFiles, TheIndexIsServedAtTheRootAndAlwaysRevalidated) {
   start();
   const std::string answer = ask(get("/"));
   EXPECT_EQ(status_of(answer), 200);
@@ -37,7 +37,7 @@ TEST_F(WebFiles, TheIndexIsServedAtTheRootAndNeverKeptUnasked) {
   EXPECT_EQ(body_of(answer), "<!doctype html><title>hand</title>\n");
 }
 
-TEST_F(WebFiles, HashedAssetsMayBeKept) {
+TEST_F(WebFiles, HashedAssetsMayBeCached) {
   start();
   const std::string answer = ask(get("/assets/app-1a2b.js"));
   EXPECT_EQ(status_of(answer), 200);
@@ -47,7 +47,7 @@ TEST_F(WebFiles, HashedAssetsMayBeKept) {
   EXPECT_EQ(body_of(answer), script());
 }
 
-TEST_F(WebFiles, TheyComePackedForThoseWhoTakeThat) {
+TEST_F(WebFiles, FilesAreCompressedForClientsThatAcceptGzip) {
   start();
   const std::string packed = ask(get("/assets/app-1a2b.js", "Accept-Encoding: br, gzip;q=0.5\r\n"));
   EXPECT_EQ(field_of(packed, "Content-Encoding"), "gzip");
@@ -58,7 +58,7 @@ TEST_F(WebFiles, TheyComePackedForThoseWhoTakeThat) {
   EXPECT_EQ(body_of(plain), script());
 }
 
-TEST_F(WebFiles, WhatABrowserHasIsNotSentAgain) {
+TEST_F(WebFiles, AFileThatTheBrowserHasIsNotSentAgain) {
   start();
   const std::string tag = field_of(ask(get("/mark.svg")), "ETag");
   ASSERT_FALSE(tag.empty());
@@ -67,18 +67,18 @@ TEST_F(WebFiles, WhatABrowserHasIsNotSentAgain) {
   EXPECT_EQ(body_of(again), "");
 }
 
-TEST_F(WebFiles, HeadSaysTheLengthAndNothingMore) {
+TEST_F(WebFiles, HeadGetsTheLengthAndNoBody) {
   start();
   RawClient client(port());
-  client.say(
+  client.send(
       "HEAD /mark.svg HTTP/1.1\r\nHost: localhost\r\n\r\nGET /mark.svg HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  const std::string head = client.hear_answer(false);
+  const std::string head = client.receive_response(false);
   EXPECT_EQ(status_of(head), 200);
   EXPECT_EQ(field_of(head, "Content-Length"), "6");
-  EXPECT_EQ(body_of(client.hear_answer()), "<svg/>") << "the next answer comes right behind";
+  EXPECT_EQ(body_of(client.receive_response()), "<svg/>") << "the next response follows at once";
 }
 
-TEST_F(WebFiles, EveryAnswerIsProtected) {
+TEST_F(WebFiles, EveryResponseHasTheSecurityFields) {
   start();
   for (const std::string& request :
        {get("/"), get("/none"), get("/%00"), std::string("nonsense\r\n\r\n"),
@@ -89,7 +89,7 @@ TEST_F(WebFiles, EveryAnswerIsProtected) {
     EXPECT_EQ(field_of(answer, "Referrer-Policy"), "no-referrer") << request;
     EXPECT_THAT(field_of(answer, "Content-Security-Policy"), HasSubstr("default-src 'self'")) << request;
     EXPECT_THAT(field_of(answer, "Content-Security-Policy"), HasSubstr("frame-ancestors 'none'")) << request;
-    // Scripts, styles and workers fall back on default-src: files of the site, nothing inline.
+    // Scripts, styles and workers use default-src: files of the site only, nothing inline.
     for (const char* looser : {"unsafe-", "script-src", "style-src", "worker-src", "child-src"})
       EXPECT_THAT(field_of(answer, "Content-Security-Policy"), Not(HasSubstr(looser))) << request;
   }
@@ -138,7 +138,7 @@ TEST_F(WebFiles, NoPathLeadsOutOfTheFolder) {
   expect_alive();
 }
 
-TEST_F(WebFiles, ASiteThatIsNotBuiltIsSaidPlainly) {
+TEST_F(WebFiles, ASiteThatIsNotBuiltIsReported) {
   settings_.site = folder_ / "nowhere";
   start();
   const std::string answer = ask(get("/"));
@@ -147,7 +147,7 @@ TEST_F(WebFiles, ASiteThatIsNotBuiltIsSaidPlainly) {
   EXPECT_EQ(status_of(ask(get("/index.html"))), 404);
 }
 
-TEST_F(WebFiles, CanOnlyBeRead) {
+TEST_F(WebFiles, FilesCanOnlyBeRead) {
   start();
   const std::string fields = "Host: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nConnection: close\r\n";
   const std::string answer = ask("POST / HTTP/1.1\r\n" + fields + "Content-Length: 2\r\n\r\nhi");

@@ -46,47 +46,48 @@ std::string PageClient::head(const std::string& fields, const std::string& path)
 PageClient::PageClient(std::uint16_t port, int receive_buffer)
     : PageClient(std::make_unique<RawClient>(port, receive_buffer), head(good_fields())) {}
 
-PageClient::PageClient(std::unique_ptr<RawClient> line, const std::string& head) : line_(std::move(line)) {
-  line_->say(head);
-  welcome_ = line_->hear_until("\r\n\r\n");
+PageClient::PageClient(std::unique_ptr<RawClient> connection, const std::string& head)
+    : connection_(std::move(connection)) {
+  connection_->send(head);
+  handshake_ = connection_->receive_until("\r\n\r\n");
 }
 
-void PageClient::say(std::string_view message, int opcode) { line_->say(frame_of(opcode, message)); }
+void PageClient::send(std::string_view message, int opcode) { connection_->send(frame_of(opcode, message)); }
 
-void PageClient::say_at_once(const std::vector<std::string>& messages) {
+void PageClient::send_at_once(const std::vector<std::string>& messages) {
   std::string frames;
   for (const std::string& message : messages) frames += frame_of(kBinary, message);
-  line_->say(frames);
+  connection_->send(frames);
 }
 
-void PageClient::begin(std::uint64_t length) { line_->say(frame_head(kBinary, length)); }
+void PageClient::begin(std::uint64_t length) { connection_->send(frame_head(kBinary, length)); }
 
-PageClient::Frame PageClient::hear() {
-  const std::string head = line_->hear(2);
+PageClient::Frame PageClient::receive() {
+  const std::string head = connection_->receive(2);
   if (head.size() < 2) return {};
   std::uint64_t length = byte_at(head, 1) & 0x7FU;
   if (length >= 126) {
-    const std::string longer = line_->hear(length == 126 ? 2 : 8);
+    const std::string longer = connection_->receive(length == 126 ? 2 : 8);
     length = 0;
     for (std::size_t i = 0; i < longer.size(); ++i) length = length * 256 + byte_at(longer, i);
   }
-  Frame frame{static_cast<int>(byte_at(head, 0) & 0x0FU), line_->hear(length)};
+  Frame frame{static_cast<int>(byte_at(head, 0) & 0x0FU), connection_->receive(length)};
   if (frame.payload.size() < length) return {};
   return frame;
 }
 
-PageClient::Frame PageClient::hear_message() {
-  Frame frame = hear();
-  while (frame.opcode == kPing) frame = hear();
+PageClient::Frame PageClient::receive_message() {
+  Frame frame = receive();
+  while (frame.opcode == kPing) frame = receive();
   return frame;
 }
 
-PageClient::Frame PageClient::hear_end() {
+PageClient::Frame PageClient::receive_until_closed() {
   Frame last;
-  for (Frame frame = hear(); frame.opcode != kGone; frame = hear()) {
-    if (frame.opcode == kPing) say(frame.payload, kPong);
+  for (Frame frame = receive(); frame.opcode != kGone; frame = receive()) {
+    if (frame.opcode == kPing) send(frame.payload, kPong);
     last = frame;
-    if (frame.opcode == kClose) say(frame.payload.substr(0, 2), kClose);
+    if (frame.opcode == kClose) send(frame.payload.substr(0, 2), kClose);
   }
   return last;
 }

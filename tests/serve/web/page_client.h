@@ -10,43 +10,43 @@
 
 namespace phalanx {
 
-/// A page's end of a WebSocket, frame by frame; answers nothing by itself.
+/// Client of a WebSocket that sends and receives single frames. It answers nothing by itself.
 class PageClient {
  public:
   enum Opcode : int { kMore = 0, kText = 1, kBinary = 2, kClose = 8, kPing = 9, kPong = 10, kGone = -1 };
   struct Frame {
-    int opcode = kGone;  ///< kGone: the line is closed
+    int opcode = kGone;  ///< kGone: the connection is closed
     std::string payload;
-    /// Of a kClose.
+    /// @returns the status code of a kClose
     [[nodiscard]] int code() const;
     [[nodiscard]] std::string reason() const { return payload.size() > 2 ? payload.substr(2) : ""; }
   };
 
-  /// Asks to be a page, as the site's own page does.
+  /// Connects and sends the handshake of the site's own page.
   explicit PageClient(std::uint16_t port, int receive_buffer = 0);
-  /// Over a line that is there. @param head  the whole request
-  PageClient(std::unique_ptr<RawClient> line, const std::string& head);
+  /// Uses a connection that is open. @param head  of the handshake, complete
+  PageClient(std::unique_ptr<RawClient> connection, const std::string& head);
 
-  [[nodiscard]] const std::string& welcome() const noexcept { return welcome_; }
-  void say(std::string_view message, int opcode = kBinary);
-  /// Many in one go.
-  void say_at_once(const std::vector<std::string>& messages);
-  /// Only the beginning of a frame that says it is so long.
+  [[nodiscard]] const std::string& handshake() const noexcept { return handshake_; }
+  void send(std::string_view message, int opcode = kBinary);
+  /// Sends many messages with one write.
+  void send_at_once(const std::vector<std::string>& messages);
+  /// Sends only the head of a frame with this length.
   void begin(std::uint64_t length);
-  Frame hear();
-  /// The next one that is no ping.
-  Frame hear_message();
-  /// Answers pings and takes all else in until the line is closed. @returns the last frame
-  Frame hear_end();
-  RawClient& line() { return *line_; }
+  Frame receive();
+  /// @returns the next frame that is no ping
+  Frame receive_message();
+  /// Answers pings and reads all other frames until the connection is closed. @returns the last frame
+  Frame receive_until_closed();
+  RawClient& connection() { return *connection_; }
 
-  /// The head of a request to become a page.
+  /// @returns the head of a WebSocket handshake
   static std::string head(const std::string& fields, const std::string& path = "/");
   static std::string good_fields();
 
  private:
-  std::unique_ptr<RawClient> line_;
-  std::string welcome_;
+  std::unique_ptr<RawClient> connection_;
+  std::string handshake_;
 };
 
 }  // namespace phalanx

@@ -16,11 +16,11 @@
 namespace phalanx {
 namespace {
 
-constexpr int kPatience = 300'000;  // [ms]
+constexpr int kTimeout = 300'000;  // [ms]
 
 bool await(int descriptor, short what) {
   pollfd one{descriptor, what, 0};
-  return ::poll(&one, 1, kPatience) == 1;
+  return ::poll(&one, 1, kTimeout) == 1;
 }
 
 std::string small(std::string text) {
@@ -63,7 +63,7 @@ std::unique_ptr<RawClient> RawClient::secure(std::uint16_t port, const char* add
   return client;
 }
 
-bool RawClient::say(std::string_view text) {
+bool RawClient::send(std::string_view text) {
   if (tls_) return SSL_write(tls_.get(), text.data(), static_cast<int>(text.size())) > 0;
   while (!text.empty()) {
     if (!await(descriptor_, POLLOUT)) return false;
@@ -77,7 +77,7 @@ bool RawClient::say(std::string_view text) {
 bool RawClient::more() {
   std::array<char, 65536> piece{};
   const bool held = tls_ && SSL_pending(tls_.get()) > 0;
-  if (!held && !await(descriptor_, POLLIN)) throw std::runtime_error("nothing comes");
+  if (!held && !await(descriptor_, POLLIN)) throw std::runtime_error("no data within 5 minutes");
   const ssize_t got = tls_ ? SSL_read(tls_.get(), piece.data(), static_cast<int>(piece.size()))
                            : ::recv(descriptor_, piece.data(), piece.size(), 0);
   if (got <= 0) return false;
@@ -85,27 +85,27 @@ bool RawClient::more() {
   return true;
 }
 
-std::string RawClient::hear_all() {
+std::string RawClient::receive_all() {
   while (more()) {
   }
   return std::exchange(read_, {});
 }
 
-std::string RawClient::hear_until(std::string_view text) {
+std::string RawClient::receive_until(std::string_view text) {
   while (read_.find(text) == std::string::npos && more()) {
   }
   const std::size_t at = read_.find(text);
-  return hear(at == std::string::npos ? read_.size() : at + text.size());
+  return receive(at == std::string::npos ? read_.size() : at + text.size());
 }
 
-std::string RawClient::hear_answer(bool with_body) {
-  std::string answer = hear_until("\r\n\r\n");
+std::string RawClient::receive_response(bool with_body) {
+  std::string answer = receive_until("\r\n\r\n");
   const std::string length = field_of(answer, "Content-Length");
-  if (with_body && !length.empty()) answer += hear(std::stoul(length));
+  if (with_body && !length.empty()) answer += receive(std::stoul(length));
   return answer;
 }
 
-std::string RawClient::hear(std::size_t bytes) {
+std::string RawClient::receive(std::size_t bytes) {
   while (read_.size() < bytes && more()) {
   }
   const std::string heard = read_.substr(0, bytes);
@@ -113,7 +113,7 @@ std::string RawClient::hear(std::size_t bytes) {
   return heard;
 }
 
-void RawClient::vanish() {
+void RawClient::abort() {
   const linger now{1, 0};
   ::setsockopt(descriptor_, SOL_SOCKET, SO_LINGER, &now, sizeof now);
   ::close(std::exchange(descriptor_, -1));
@@ -142,14 +142,14 @@ std::string get(const std::string& path, const std::string& fields) {
 
 std::string ask(std::uint16_t port, const std::string& request) {
   RawClient client(port);
-  client.say(request);
-  return client.hear_all();
+  client.send(request);
+  return client.receive_all();
 }
 
 std::string ask_securely(std::uint16_t port, const std::string& request) {
   const auto client = RawClient::secure(port);
-  client->say(request);
-  return client->hear_all();
+  client->send(request);
+  return client->receive_all();
 }
 
 }  // namespace phalanx

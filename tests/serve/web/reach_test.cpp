@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linker leads the calls of getifaddrs() and freeifaddrs() in this program to the functions below
-// (--wrap).
+// The linker redirects the calls of getifaddrs() and freeifaddrs() in this program to the
+// functions below (--wrap).
 #include "phalanx/serve/reach.h"
 
 #include <arpa/inet.h>
@@ -31,7 +31,7 @@
 namespace phalanx {
 namespace {
 
-/// What getifaddrs() says; null: what the system says.
+/// Result of getifaddrs(); null: the result of the system.
 ifaddrs* the_interfaces = nullptr;
 
 }  // namespace
@@ -83,7 +83,7 @@ struct Interface {
   std::string address;  ///< empty: none; "hardware": none of IP
 };
 
-/// While it lives the machine has these interfaces.
+/// Gives the machine these interfaces during its lifetime.
 class TheseInterfaces {
  public:
   explicit TheseInterfaces(const std::vector<Interface>& interfaces) : all_(interfaces.size()) {
@@ -116,7 +116,7 @@ class TheseInterfaces {
 };
 
 // 169.254/16 and fe80::/10 are link-local.
-TEST(MachineAddresses, AreThoseThatOthersReachIPv4First) {
+TEST(MachineAddresses, AreReachableFromOthersIPv4First) {
   const TheseInterfaces these({{IFF_UP | IFF_LOOPBACK, "127.0.0.1"},
                                {IFF_UP | IFF_LOOPBACK, "::1"},
                                {IFF_UP, "hardware"},
@@ -138,14 +138,14 @@ TEST(MachineAddresses, AreThoseThatOthersReachIPv4First) {
   EXPECT_THAT(lan_urls("2001:db8::7", 8480, ""), ElementsAre("https://[2001:db8::7]:8480/"));
 }
 
-TEST(IsLoopback, IsWhatOnlyThisMachineReaches) {
+TEST(IsLoopback, IsTrueForAddressesThatOnlyThisMachineReaches) {
   for (const char* address : {"127.0.0.1", "127.255.0.9", "::1", "0:0:0:0:0:0:0:1", "localhost"})
     EXPECT_TRUE(is_loopback(address)) << address;
   for (const char* address : {"", "0.0.0.0", "::", "128.0.0.1", "126.0.0.1", "127.0.0.1.evil.example", "::2"})
     EXPECT_FALSE(is_loopback(address)) << address;
 }
 
-TEST(SshLine, IsForThoseWhoCameBySsh) {
+TEST(SshLine, IsGivenInAnSshSession) {
   ASSERT_EQ(::setenv("SSH_CONNECTION", "198.51.100.7 50000 192.0.2.2 22", 1), 0);
   EXPECT_THAT(ssh_line(8480), MatchesRegex("ssh -L 8480:127\\.0\\.0\\.1:8480 [^ ]+@192\\.0\\.2\\.2"));
   ASSERT_EQ(::setenv("SSH_CONNECTION", "198.51.100.7 50000 192.0.2.2 2222", 1), 0);
@@ -156,7 +156,7 @@ TEST(SshLine, IsForThoseWhoCameBySsh) {
   EXPECT_EQ(ssh_line(8480), "");
 }
 
-/// The modules of a printed code, true: dark; the colours are looked at by the caller.
+/// @returns the modules of a printed code, true for dark; the caller checks the colours
 std::vector<std::vector<bool>> modules(const std::string& text) {
   std::vector<std::vector<bool>> rows;
   std::istringstream lines(text);
@@ -198,7 +198,7 @@ TEST(QrText, IsTheCodeWithAQuietZoneDarkOnLight) {
   EXPECT_THAT(text, EndsWith("\x1b[0m\n"));
 }
 
-TEST(QrText, RefusesWhatDoesNotFit) {
+TEST(QrText, RefusesTextThatDoesNotFit) {
   EXPECT_THROW((void)qr_text(""), std::runtime_error);
   EXPECT_THROW((void)qr_text(std::string(5000, 'x')), std::runtime_error);
 }
@@ -236,7 +236,7 @@ TEST_F(Certificate, IsForTheNamesAndItsKeyIsSecret) {
   for (const char* address : {"192.0.2.2", "fd00::2", "127.0.0.1", "::1"}) {
     EXPECT_EQ(X509_check_ip_asc(made.get(), address, 0), 1) << address;
   }
-  EXPECT_EQ(X509_check_ip_asc(made.get(), "192.0.2.66", 0), 0) << "a name with a comma is none";
+  EXPECT_EQ(X509_check_ip_asc(made.get(), "192.0.2.66", 0), 0) << "a text with a comma is no name";
   std::array<char, 64> common{};
   X509_NAME_get_text_by_NID(X509_get_subject_name(made.get()), NID_commonName, common.data(),
                             static_cast<int>(common.size()));
@@ -250,7 +250,7 @@ TEST_F(Certificate, IsForTheNamesAndItsKeyIsSecret) {
   ASSERT_EQ(ASN1_TIME_diff(&days, &rest, X509_get0_notBefore(made.get()), X509_get0_notAfter(made.get())), 1);
   EXPECT_EQ(days, 397);
   ASSERT_EQ(ASN1_TIME_diff(&days, &rest, X509_get0_notBefore(made.get()), nullptr), 1);
-  EXPECT_EQ(days, 1) << "until now: another computer's clock may be behind";
+  EXPECT_EQ(days, 1) << "valid from yesterday on: another computer's clock may be behind";
   EXPECT_EQ(X509_verify(made.get(), X509_get0_pubkey(made.get())), 1) << "signed by itself";
   EXPECT_THAT(certificate_fingerprint(files.certificate), MatchesRegex("([0-9A-F]{2}:){31}[0-9A-F]{2}"));
 }
@@ -263,12 +263,12 @@ TEST_F(Certificate, IsUsedAgainWhileItFits) {
   EXPECT_EQ(again.certificate, files.certificate);
   EXPECT_EQ(again.key, files.key);
   EXPECT_EQ(text_of(files.certificate), first);
-  EXPECT_EQ(mode_of(files.key), 0600U) << "closed again";
+  EXPECT_EQ(mode_of(files.key), 0600U) << "restricted again";
   (void)make_self_signed_certificate(folder_, {"station", "192.0.2.9"});
   EXPECT_NE(text_of(files.certificate), first) << "it was not for this address";
 }
 
-// It is to last another week.
+// It must be valid for another week.
 TEST_F(Certificate, IsReplacedBeforeItEnds) {
   const CertificateFiles files = make_self_signed_certificate(folder_, {});
   const std::unique_ptr<BIO, decltype(&BIO_free_all)> file(BIO_new_file(files.certificate.c_str(), "r"),
@@ -294,7 +294,7 @@ TEST_F(Certificate, IsReplacedBeforeItEnds) {
   }
 }
 
-TEST_F(Certificate, IsMadeAnewIfWhatIsThereIsBroken) {
+TEST_F(Certificate, IsReplacedIfItIsBroken) {
   const CertificateFiles files = make_self_signed_certificate(folder_, {});
   const std::string first = text_of(files.certificate);
   std::ofstream(files.key) << "nonsense";
@@ -332,7 +332,7 @@ TEST_F(Certificate, AKeyThatOthersMayReadOrWriteIsRefused) {
   EXPECT_THROW(static_cast<void>(web::read_secret_file(key)), std::runtime_error);
 }
 
-TEST_F(Certificate, SaysWhereItCannotBeWritten) {
+TEST_F(Certificate, ThrowsIfItCannotBeWritten) {
   std::filesystem::create_directories(folder_);
   std::ofstream(folder_ / "file") << "in the way";
   EXPECT_THROW((void)make_self_signed_certificate(folder_ / "file" / "keys", {}), std::runtime_error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which requests get in, how far, and how they are answered.
+// Requests: the checks in their order, bodies, responses, and the limits on connections.
 #include <gmock/gmock.h>
 
 #include <future>
@@ -25,10 +25,11 @@ class WebRequests : public WebTest {
            " HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nConnection: close\r\n" + fields +
            "\r\n";
   }
-  /// Sends back what came.
+  /// Responds with the body of the request.
   void echo() {
-    application_.on_requested = [](const WebRequest& request, const std::function<void(WebAnswer)>& answer) {
-      WebAnswer same;
+    application_.on_requested = [](const WebRequest& request,
+                                   const std::function<void(WebResponse)>& answer) {
+      WebResponse same;
       same.body = std::make_shared<const std::string>(request.body);
       answer(same);
     };
@@ -39,7 +40,7 @@ std::string with_host(const std::string& host) {
   return "GET / HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n";
 }
 
-TEST_F(WebRequests, LoopbackNamesAndAddressesAreLetIn) {
+TEST_F(WebRequests, LoopbackNamesAndAddressesAreAccepted) {
   start();
   for (const char* host :
        {"127.0.0.1", "127.0.0.1:8480", "localhost", "LOCALHOST:1", "localhost.", "[::1]:8480"}) {
@@ -47,8 +48,9 @@ TEST_F(WebRequests, LoopbackNamesAndAddressesAreLetIn) {
   }
 }
 
-// Another machine may answer to the name "this-one.local" in the local network, and lead its page here.
-TEST_F(WebRequests, OnLoopbackTheMachinesNetworkNamesAreNotLetIn) {
+// Another machine could answer to the name "this-one.local" in the local network, and its page
+// could reach us.
+TEST_F(WebRequests, OnLoopbackTheMachinesNetworkNamesAreRefused) {
   start();
   std::vector<std::string> names = machine_names();
   std::erase(names, "localhost");
@@ -57,7 +59,7 @@ TEST_F(WebRequests, OnLoopbackTheMachinesNetworkNamesAreNotLetIn) {
   for (const std::string& name : names) EXPECT_EQ(status_of(ask(with_host(name + ":8480"))), 421) << name;
 }
 
-TEST_F(WebRequests, OtherNamesAreNot) {
+TEST_F(WebRequests, OtherNamesAreRefused) {
   start();
   for (const char* host :
        {"evil.example", "localhost.evil.example", "192.0.2.1", "localhost:80x", "127.0.0.1 x", "[::2]",
@@ -83,8 +85,7 @@ TEST_F(WebRequests, OnlyThreeMethodsAreUnderstood) {
   }
 }
 
-// A request that is refused is not passed on to the application.
-TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
+TEST_F(WebRequests, ARefusedRequestIsNotPassedOnToTheApplication) {
   start();
   const std::string closes = "Connection: close\r\n\r\n";
   std::string another_version = PageClient::good_fields();
@@ -101,8 +102,8 @@ TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
       {PageClient::head(PageClient::good_fields(), "/none") + "too early", 400}};
   for (const auto& [request, status] : refused) {
     RawClient client(port());
-    client.say(request);
-    EXPECT_EQ(status_of(client.hear_answer()), status) << request;
+    client.send(request);
+    EXPECT_EQ(status_of(client.receive_response()), status) << request;
   }
   expect_alive();
   EXPECT_THAT(application_.requests(), IsEmpty());
@@ -111,9 +112,8 @@ TEST_F(WebRequests, WhatADoorRefusesGoesNoFurther) {
   EXPECT_THAT(application_.requests(), testing::SizeIs(1));
 }
 
-// A proxy that reads such a body otherwise than the server takes its end for a request. The answer is the
-// only one.
-TEST_F(WebRequests, ABodyWhoseEndIsInDoubtIsRefusedAndEndsTheConnection) {
+// A proxy that reads such a body differently would take its end for a request. There is one response only.
+TEST_F(WebRequests, ABodyWithAnAmbiguousEndIsRefusedAndClosesTheConnection) {
   echo();
   application_.limit = 100;
   start();
@@ -147,7 +147,7 @@ TEST_F(WebRequests, AHeadHasALimit) {
   expect_alive();
 }
 
-TEST_F(WebRequests, WhatIsNoHttpIsToldSo) {
+TEST_F(WebRequests, TextThatIsNotHttpIsRefused) {
   start();
   for (const std::string& text :
        {std::string("hello\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"), std::string("GET /\r\n\r\n"),
@@ -159,7 +159,7 @@ TEST_F(WebRequests, WhatIsNoHttpIsToldSo) {
   expect_alive();
 }
 
-TEST_F(WebRequests, TheApplicationGetsWhatIsNoFile) {
+TEST_F(WebRequests, TheApplicationGetsRequestsThatNameNoFile) {
   echo();
   start();
   EXPECT_EQ(status_of(ask(get("/what/is%20this?a=b&c", "X-Phalanx-Page: abc\r\n"))), 200);
@@ -169,11 +169,11 @@ TEST_F(WebRequests, TheApplicationGetsWhatIsNoFile) {
   EXPECT_EQ(requests[0].path, "/what/is this");
   EXPECT_EQ(requests[0].query, "a=b&c");
   EXPECT_EQ(requests[0].page_secret, "abc");
-  EXPECT_EQ(requests[0].visitor.address, "127.0.0.1");
-  EXPECT_TRUE(requests[0].visitor.may_operate);
+  EXPECT_EQ(requests[0].client.address, "127.0.0.1");
+  EXPECT_TRUE(requests[0].client.may_operate);
 }
 
-TEST_F(WebRequests, ABodyComesWholeOrInChunksOrWhenTold) {
+TEST_F(WebRequests, ABodyIsReadWholeOrInChunksOrAfter100Continue) {
   echo();
   application_.limit = 10;
   start();
@@ -182,10 +182,10 @@ TEST_F(WebRequests, ABodyComesWholeOrInChunksOrWhenTold) {
       body_of(ask(post("/mesh", "Transfer-Encoding: chunked\r\n") + "3\r\nabc\r\n4\r\ndefg\r\n0\r\n\r\n")),
       "abcdefg");
   RawClient patient(port());
-  patient.say(post("/mesh", "Content-Length: 3\r\nExpect: 100-continue\r\n"));
-  EXPECT_EQ(patient.hear_until("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
-  patient.say("xyz");
-  EXPECT_EQ(body_of(patient.hear_answer()), "xyz");
+  patient.send(post("/mesh", "Content-Length: 3\r\nExpect: 100-continue\r\n"));
+  EXPECT_EQ(patient.receive_until("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  patient.send("xyz");
+  EXPECT_EQ(body_of(patient.receive_response()), "xyz");
 }
 
 TEST_F(WebRequests, ABodyIsNoLongerThanAllowed) {
@@ -204,7 +204,7 @@ TEST_F(WebRequests, ABodyIsNoLongerThanAllowed) {
   expect_alive();
 }
 
-TEST_F(WebRequests, NothingIsSentWhereNothingIsTaken) {
+TEST_F(WebRequests, ABodyIsRefusedWhereTheApplicationAllowsNone) {
   echo();
   start();
   EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\n") + "x")), 413);
@@ -227,11 +227,11 @@ TEST_F(WebRequests, APostComesFromThePageItself) {
   EXPECT_EQ(from("Origin: http://localhost:8480\r\nOrigin: http://evil.example\r\n"), 400);
 }
 
-TEST_F(WebRequests, AnAnswerMayComeLaterFromAnyThreadAndOnce) {
+TEST_F(WebRequests, AResponseMayComeLaterFromAnyThreadAndOnce) {
   std::vector<std::thread> threads;
-  application_.on_requested = [&threads](const WebRequest&, std::function<void(WebAnswer)> answer) {
+  application_.on_requested = [&threads](const WebRequest&, std::function<void(WebResponse)> answer) {
     threads.emplace_back([answer = std::move(answer)] {
-      WebAnswer one;
+      WebResponse one;
       one.body = std::make_shared<const std::string>("first");
       answer(one);
       one.body = std::make_shared<const std::string>("second");
@@ -244,116 +244,118 @@ TEST_F(WebRequests, AnAnswerMayComeLaterFromAnyThreadAndOnce) {
   for (std::thread& thread : threads) thread.join();
 }
 
-TEST_F(WebRequests, AnAnswerThatIsForgottenIsSaidToBe) {
-  application_.on_requested = [](const WebRequest&, const std::function<void(WebAnswer)>&) {};
+TEST_F(WebRequests, AForgottenResponseBecomes500) {
+  application_.on_requested = [](const WebRequest&, const std::function<void(WebResponse)>&) {};
   start();
   const std::string answer = ask(get("/forgotten"));
   EXPECT_EQ(status_of(answer), 500);
   EXPECT_EQ(body_of(answer), "The station has no answer to this.\n");
 }
 
-// The second request has come with the first one, and its sender has gone before that is answered.
-TEST_F(WebRequests, BehindAnAnswerThatNobodyTakesNothingIsAsked) {
-  std::promise<std::function<void(WebAnswer)>> first;
+// The second request comes with the first one, and the client resets the connection before
+// the first response.
+TEST_F(WebRequests, AfterAResponseThatCannotBeSentNoFurtherRequestIsHandled) {
+  std::promise<std::function<void(WebResponse)>> first;
   int asked = 0;
-  application_.on_requested = [&](const WebRequest&, std::function<void(WebAnswer)> answer) {
+  application_.on_requested = [&](const WebRequest&, std::function<void(WebResponse)> answer) {
     if (++asked == 1) first.set_value(std::move(answer));
   };
   start();
   RawClient client(port());
   const std::string request = "GET /none HTTP/1.1\r\nHost: localhost\r\n\r\n";
-  client.say(request + request);
-  const std::function<void(WebAnswer)> answer = first.get_future().get();
-  client.vanish();
-  answer(WebAnswer{});
+  client.send(request + request);
+  const std::function<void(WebResponse)> answer = first.get_future().get();
+  client.abort();
+  answer(WebResponse{});
   for (int i = 0; i < 3; ++i) expect_alive();
   EXPECT_THAT(application_.requests(), testing::SizeIs(1));
 }
 
-TEST_F(WebRequests, AnAnswerMayComeWhenTheServerIsNoMore) {
-  std::function<void(WebAnswer)> kept;
-  application_.on_requested = [&](const WebRequest&, std::function<void(WebAnswer)> answer) {
+TEST_F(WebRequests, AResponseMayComeAfterTheServersEnd) {
+  std::function<void(WebResponse)> kept;
+  application_.on_requested = [&](const WebRequest&, std::function<void(WebResponse)> answer) {
     kept = std::move(answer);
   };
   start();
   RawClient client(port());
-  client.say(get("/never"));
+  client.send(get("/never"));
   ASSERT_TRUE(application_.await_requests(1));
   server_.reset();
-  EXPECT_EQ(client.hear_all(), "");
-  kept(WebAnswer{});
+  EXPECT_EQ(client.receive_all(), "");
+  kept(WebResponse{});
 }
 
-TEST_F(WebRequests, WhoIsSlowToSayOneIsLetGo) {
-  settings_.request_timeout = 3.0;  // also of the one that shows it alive
+TEST_F(WebRequests, AClientThatIsSlowToSendARequestIsDisconnected) {
+  settings_.request_timeout = 3.0;  // also of the request of expect_alive()
   start();
   RawClient slow(port());
-  slow.say("GET / HTTP/1.1\r\nHost: local");
-  EXPECT_EQ(slow.hear_all(), "");
+  slow.send("GET / HTTP/1.1\r\nHost: local");
+  EXPECT_EQ(slow.receive_all(), "");
   expect_alive();
 }
 
-TEST_F(WebRequests, ABodyThatDoesNotComeIsLetGo) {
+TEST_F(WebRequests, AClientWhoseBodyDoesNotComeIsDisconnected) {
   application_.limit = 100;
   settings_.idle_timeout = 1.0;
   start();
   RawClient slow(port());
-  slow.say(post("/mesh", "Content-Length: 100\r\n") + "a");
-  EXPECT_EQ(slow.hear_all(), "");
+  slow.send(post("/mesh", "Content-Length: 100\r\n") + "a");
+  EXPECT_EQ(slow.receive_all(), "");
   EXPECT_THAT(application_.requests(), IsEmpty());
   expect_alive();
 }
 
-TEST_F(WebRequests, MoreThatAskThanAllowedAreRefused) {
+TEST_F(WebRequests, MoreConnectionsThanAllowedAreRefused) {
   settings_.connections = 3;
   start();
-  std::vector<std::unique_ptr<RawClient>> inside;
+  std::vector<std::unique_ptr<RawClient>> open;
   for (int i = 0; i < 3; ++i) {
-    inside.push_back(std::make_unique<RawClient>(port()));
-    inside.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    ASSERT_EQ(status_of(inside.back()->hear_answer()), 200);
+    open.push_back(std::make_unique<RawClient>(port()));
+    open.back()->send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_EQ(status_of(open.back()->receive_response()), 200);
   }
   for (int i = 0; i < 20; ++i) EXPECT_EQ(status_of(ask(get("/"))), 503);
-  inside[0]->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  EXPECT_EQ(status_of(inside[0]->hear_answer()), 200) << "those inside do not notice";
-  inside.clear();
+  open[0]->send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(status_of(open[0]->receive_response()), 200) << "accepted connections are not affected";
+  open.clear();
   while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
 }
 
 constexpr const char* kEmpty = "Content-Length: 0\r\n";
 
-TEST_F(WebRequests, FilesLeaveASixteenthOfThePlacesToPagesAndAPostNeedsNone) {
+TEST_F(WebRequests, FilesLeaveASixteenthOfTheConnectionsToPagesAndAPostNeedsNone) {
   settings_.connections = 16;
   start();
-  std::vector<std::unique_ptr<RawClient>> inside;
+  std::vector<std::unique_ptr<RawClient>> open;
   for (int i = 0; i < 15; ++i) {
-    inside.push_back(std::make_unique<RawClient>(port()));
-    inside.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    ASSERT_EQ(status_of(inside.back()->hear_answer()), 200);
+    open.push_back(std::make_unique<RawClient>(port()));
+    open.back()->send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_EQ(status_of(open.back()->receive_response()), 200);
   }
   EXPECT_EQ(status_of(ask(get("/"))), 503);
   PageClient page(port());
-  EXPECT_EQ(status_of(page.welcome()), 101);
-  EXPECT_EQ(status_of(PageClient(port()).welcome()), 503);
+  EXPECT_EQ(status_of(page.handshake()), 101);
+  EXPECT_EQ(status_of(PageClient(port()).handshake()), 503);
   for (int i = 0; i < 50; ++i)
     EXPECT_EQ(status_of(ask(post("/stop", kEmpty))), 404) << "the application's answer";
   EXPECT_THAT(application_.requests(), testing::SizeIs(50));
   application_.limit = 10;
-  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\n") + "x")), 503) << "a body needs one";
+  EXPECT_EQ(status_of(ask(post("/mesh", "Content-Length: 1\r\n") + "x")), 503) << "a body needs a connection";
   EXPECT_THAT(application_.requests(), testing::SizeIs(50));
 }
 
-TEST_F(WebRequests, APostThatHasNoPlaceIsTheLastOfItsConnection) {
+TEST_F(WebRequests, APostWithoutASlotIsTheLastOfItsConnection) {
   settings_.connections = 1;
   start();
   PageClient page(port());
   RawClient line(port());
-  line.say("POST /stop HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nContent-Length: 0\r\n\r\n");
-  EXPECT_EQ(status_of(line.hear_answer()), 404);
-  EXPECT_EQ(line.hear_all(), "") << "closed, though it asked to be kept";
+  line.send(
+      "POST /stop HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nContent-Length: 0\r\n\r\n");
+  EXPECT_EQ(status_of(line.receive_response()), 404);
+  EXPECT_EQ(line.receive_all(), "") << "closed although it asked for keep-alive";
 }
 
-TEST_F(WebRequests, ViewersLeaveAnEighthOfThePlacesToWhoMayOperate) {
+TEST_F(WebRequests, ViewersLeaveAnEighthOfTheConnectionsToOperators) {
   settings_.connections = 16;
   settings_.operator_token = "operator-token-16";
   settings_.viewer_token = "viewers-token--16";
@@ -365,50 +367,51 @@ TEST_F(WebRequests, ViewersLeaveAnEighthOfThePlacesToWhoMayOperate) {
   std::vector<std::unique_ptr<PageClient>> pages;
   for (int i = 0; i < 14; ++i) {
     pages.push_back(page_by(settings_.viewer_token));
-    ASSERT_EQ(status_of(pages.back()->welcome()), 101);
+    ASSERT_EQ(status_of(pages.back()->handshake()), 101);
   }
-  EXPECT_EQ(status_of(page_by(settings_.viewer_token)->welcome()), 503);
+  EXPECT_EQ(status_of(page_by(settings_.viewer_token)->handshake()), 503);
   EXPECT_EQ(status_of(ask(get("/?token=" + settings_.viewer_token))), 503);
   // The operator reloads: first the page, then its WebSocket.
   RawClient line(port());
   const std::string cookie = "phalanx-" + std::to_string(port()) + "=" + settings_.operator_token;
-  line.say("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: " + cookie + "\r\n\r\n");
-  EXPECT_EQ(status_of(line.hear_answer()), 200);
-  line.say(PageClient::head(PageClient::good_fields(), "/?token=" + settings_.viewer_token));
-  EXPECT_EQ(status_of(line.hear_answer()), 503) << "its place is not a viewer's";
+  line.send("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: " + cookie + "\r\n\r\n");
+  EXPECT_EQ(status_of(line.receive_response()), 200);
+  line.send(PageClient::head(PageClient::good_fields(), "/?token=" + settings_.viewer_token));
+  EXPECT_EQ(status_of(line.receive_response()), 503) << "its slot is not one for viewers";
   pages.push_back(page_by(settings_.operator_token));
-  EXPECT_EQ(status_of(pages.back()->welcome()), 101);
-  EXPECT_EQ(status_of(ask(post("/stop?token=" + settings_.viewer_token, kEmpty))), 404) << "heard";
+  EXPECT_EQ(status_of(pages.back()->handshake()), 101);
+  EXPECT_EQ(status_of(ask(post("/stop?token=" + settings_.viewer_token, kEmpty))), 404)
+      << "it reaches the application";
 }
 
-TEST_F(WebRequests, WhoOnlyConnectsOrHasNoRightHostIsLetGoSoon) {
-  settings_.proof_timeout = 3.0;
+TEST_F(WebRequests, AConnectionWithoutAnAcceptedRequestIsClosedSoon) {
+  settings_.pending_timeout = 3.0;
   settings_.request_timeout = 3600.0;
   start();
   RawClient silent(port());
   RawClient wrong(port());
-  wrong.say("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n");
-  EXPECT_EQ(status_of(wrong.hear_answer()), 421);
-  EXPECT_EQ(silent.hear_all(), "");
-  EXPECT_EQ(wrong.hear_all(), "");
+  wrong.send("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  EXPECT_EQ(status_of(wrong.receive_response()), 421);
+  EXPECT_EQ(silent.receive_all(), "");
+  EXPECT_EQ(wrong.receive_all(), "");
 }
 
-TEST_F(WebRequests, WhoOnlyConnectsKeepsNobodyOut) {
-  settings_.proof_timeout = 3600.0;
+TEST_F(WebRequests, IdleConnectionsDoNotLockOthersOut) {
+  settings_.pending_timeout = 3600.0;
   settings_.request_timeout = 3600.0;
   start();
   std::vector<std::unique_ptr<RawClient>> silent;
   for (int i = 0; i < 200; ++i) silent.push_back(std::make_unique<RawClient>(port()));
   expect_alive();
-  EXPECT_EQ(silent[100]->hear_all(), "") << "the oldest went";
-  silent.back()->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  EXPECT_EQ(status_of(silent.back()->hear_answer()), 200) << "the newest stay";
+  EXPECT_EQ(silent[100]->receive_all(), "") << "the oldest was evicted";
+  silent.back()->send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(status_of(silent.back()->receive_response()), 200) << "the newest stay";
 }
 
-// They connect while the server's thread is busy, so that it takes them in without a moment between them.
-TEST_F(WebRequests, OfManyWhoConnectAtOnceOnlyTheNewestStay) {
-  settings_.unproven_connections = 2;
-  settings_.proof_timeout = 3600.0;
+// They connect while the server's thread is busy, so that it accepts all of them at once.
+TEST_F(WebRequests, OfManyConnectionsAtOnceOnlyTheNewestStay) {
+  settings_.pending_connections = 2;
+  settings_.pending_timeout = 3600.0;
   settings_.request_timeout = 3600.0;
   start();
   std::promise<void> busy;
@@ -421,25 +424,25 @@ TEST_F(WebRequests, OfManyWhoConnectAtOnceOnlyTheNewestStay) {
   std::vector<std::unique_ptr<RawClient>> silent;
   for (int i = 0; i < 12; ++i) silent.push_back(std::make_unique<RawClient>(port()));
   connected.set_value();
-  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(silent[i]->hear_all(), "") << i;
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(silent[i]->receive_all(), "") << i;
   for (std::size_t i = 10; i < 12; ++i) {
-    silent[i]->say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    EXPECT_EQ(status_of(silent[i]->hear_answer()), 200) << i;
+    silent[i]->send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(status_of(silent[i]->receive_response()), 200) << i;
   }
 }
 
-TEST_F(WebRequests, AThousandConnectsLeaveItWorking) {
+TEST_F(WebRequests, AThousandConnectionsLeaveItWorking) {
   start();
-  RawClient inside(port());
-  inside.say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  ASSERT_EQ(status_of(inside.hear_answer()), 200);
+  RawClient open(port());
+  open.send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  ASSERT_EQ(status_of(open.receive_response()), 200);
   {
-    std::vector<std::unique_ptr<RawClient>> crowd;
-    for (int i = 0; i < 900; ++i) crowd.push_back(std::make_unique<RawClient>(port()));
-    inside.say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    EXPECT_EQ(status_of(inside.hear_answer()), 200);
+    std::vector<std::unique_ptr<RawClient>> many;
+    for (int i = 0; i < 900; ++i) many.push_back(std::make_unique<RawClient>(port()));
+    open.send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(status_of(open.receive_response()), 200);
   }
-  for (int i = 0; i < 100; ++i) RawClient(port()).vanish();
+  for (int i = 0; i < 100; ++i) RawClient(port()).abort();
   while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
 }
 
@@ -458,18 +461,18 @@ TEST_F(WebRequests, GarbageLeavesItWorking) {
       "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
       "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"};
   application_.limit = 1000;
-  settings_.connections = 500;  // those that linger should not keep the next ones out
+  settings_.connections = 500;  // connections that are closing must not use up all of them
   start();
   for (int i = 0; i < 2000; ++i) {
     RawClient client(port());
     std::string text = beginnings[random() % beginnings.size()];
     const bool upgrades = text.find("websocket") != std::string::npos;
-    client.say(text);
-    if (upgrades) client.hear_until("\r\n\r\n");
+    client.send(text);
+    if (upgrades) client.receive_until("\r\n\r\n");
     std::string garbage(random() % 3000, '\0');
     for (char& c : garbage) c = static_cast<char>(random());
-    client.say(garbage);
-    if (random() % 2 == 0) client.vanish();
+    client.send(garbage);
+    if (random() % 2 == 0) client.abort();
   }
   while (status_of(ask(get("/"))) != 200) std::this_thread::yield();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a server is started with, and the thread that it has.
+// The settings of a server, and its thread.
 #include <gmock/gmock.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 class WebServing : public WebTest {
  protected:
-  /// What the constructor says to these settings; empty: nothing.
+  /// @returns the message with which the constructor refuses the settings; empty if it accepts them
   std::string refusal() {
     try {
       const WebServer server(settings_, application_);
@@ -64,7 +64,7 @@ TEST_F(WebServing, AnAddressIsOneOfThisMachine) {
   EXPECT_THAT(refusal(), HasSubstr("is it an address of this machine?"));
 }
 
-/// The server's end of this client's connection, which is a descriptor of this process as well; -1: none.
+/// @returns the server's descriptor of this client's connection, which is in this process as well; -1: none
 int other_end(const RawClient& client) {
   sockaddr_in mine{};
   socklen_t size = sizeof mine;
@@ -86,7 +86,7 @@ int tcp_option(int descriptor, int name) {
   return value;
 }
 
-// The kernel holds at most 16 KiB that are not sent yet, so that the newest message of a slow page is new.
+// The kernel holds at most 16 KiB of unsent data, so that a slow page receives recent messages.
 TEST_F(WebServing, SendsAtOnceAndKeepsAtMost16KiBUnsent) {
   const Descriptor probe(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const int any = 4096;
@@ -94,15 +94,15 @@ TEST_F(WebServing, SendsAtOnceAndKeepsAtMost16KiBUnsent) {
     GTEST_SKIP() << "this kernel has no TCP_NOTSENT_LOWAT";
   start();
   RawClient client(port());
-  ASSERT_TRUE(client.say("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"));
-  ASSERT_FALSE(client.hear_answer().empty());
+  ASSERT_TRUE(client.send("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"));
+  ASSERT_FALSE(client.receive_response().empty());
   const int descriptor = other_end(client);
   ASSERT_GE(descriptor, 0);
   EXPECT_EQ(tcp_option(descriptor, TCP_NODELAY), 1);
   EXPECT_EQ(tcp_option(descriptor, TCP_NOTSENT_LOWAT), 16 * 1024);
 }
 
-TEST_F(WebServing, APortThatIsTakenIsSaidOrTheNextIsTried) {
+TEST_F(WebServing, APortThatIsTakenIsReportedOrTheNextIsTried) {
   start();
   settings_.port = port();
   settings_.next_free_port = false;
@@ -114,7 +114,7 @@ TEST_F(WebServing, APortThatIsTakenIsSaidOrTheNextIsTried) {
   EXPECT_EQ(next.url(), "http://127.0.0.1:" + std::to_string(next.port()) + "/");
 }
 
-TEST_F(WebServing, TokensAreLongAndTwo) {
+TEST_F(WebServing, TokensAreLongAndDiffer) {
   settings_.viewer_token = random_token();
   EXPECT_THAT(refusal(), HasSubstr("without the operator's"));
   settings_.operator_token = settings_.viewer_token;
@@ -139,7 +139,7 @@ TEST_F(WebServing, ACertificateIsOneAndItsKeyIsItsOwn) {
   EXPECT_THAT(refusal(), HasSubstr("others than its owner may read or write it (mode 0640)"));
 }
 
-TEST_F(WebServing, LimitsAreSensible) {
+TEST_F(WebServing, LimitsAreChecked) {
   settings_.frame_rate_hz = 0.0;
   EXPECT_THAT(refusal(), HasSubstr("frame rate"));
   settings_.frame_rate_hz = 60.0;
@@ -161,14 +161,15 @@ TEST_F(WebServing, EveryLimitHasItsBounds) {
   for (const double rate : {1.0, 1000.0}) EXPECT_EQ(says([&](Settings& s) { s.frame_rate_hz = rate; }), "");
   for (const double rate : {0.99, 1000.1})
     EXPECT_THAT(says([&](Settings& s) { s.frame_rate_hz = rate; }), HasSubstr("frame rate")) << rate;
-  for (const auto timeout : {&Settings::request_timeout, &Settings::idle_timeout, &Settings::proof_timeout}) {
+  for (const auto timeout :
+       {&Settings::request_timeout, &Settings::idle_timeout, &Settings::pending_timeout}) {
     EXPECT_EQ(says([&](Settings& s) { s.*timeout = 3600.0; }), "");
     for (const double wrong : {0.0, 3600.1})
       EXPECT_THAT(says([&](Settings& s) { s.*timeout = wrong; }), HasSubstr("timeout")) << wrong;
   }
   for (const auto limit : {&Settings::message_limit, &Settings::messages_per_second, &Settings::queue_limit,
-                           &Settings::queue_bytes, &Settings::connections, &Settings::unproven_connections,
-                           &Settings::unproven_per_address}) {
+                           &Settings::queue_bytes, &Settings::connections, &Settings::pending_connections,
+                           &Settings::pending_per_address}) {
     EXPECT_EQ(says([&](Settings& s) { s.*limit = 1; }), "");
     EXPECT_THAT(says([&](Settings& s) { s.*limit = 0; }), HasSubstr("at least 1"));
   }
@@ -180,7 +181,7 @@ TEST_F(WebServing, EveryLimitHasItsBounds) {
     EXPECT_THAT(says([&](Settings& s) { s.header_limit = bytes; }), HasSubstr("256 to 1048576")) << bytes;
 }
 
-// 1024 files and folders may be in it, and 64 MiB.
+// The folder may hold 1024 files and folders, and 64 MiB.
 TEST_F(WebServing, AFolderThatIsNoFrontEndIsNotReadWhole) {
   for (int i = 0; i < 1024; ++i) write("many/" + std::to_string(i), "");
   settings_.site = folder_ / "many";
@@ -194,7 +195,7 @@ TEST_F(WebServing, AFolderThatIsNoFrontEndIsNotReadWhole) {
   EXPECT_THAT(refusal(), HasSubstr("more than 64 MiB, which is no built front-end"));
 }
 
-/// A line of a file in /proc, behind its name.
+/// @returns the line of a file in /proc that begins with the name, without it
 std::string line_of(const std::string& path, const std::string& name) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
@@ -203,14 +204,14 @@ std::string line_of(const std::string& path, const std::string& name) {
   return "";
 }
 
-TEST_F(WebServing, ItsThreadGivesWayAndTakesNoSignals) {
+TEST_F(WebServing, ItsThreadHasLowPriorityAndBlocksAllSignals) {
   start();
   std::promise<std::string> task;
   server_->post([&task] { task.set_value("/proc/self/task/" + std::to_string(::gettid())); });
   const std::string path = task.get_future().get();
   const std::string blocked = line_of(path + "/status", "SigBlk:\t");
-  // All 64 but SIGKILL (9), SIGSTOP (19) and the two that the C library keeps (32, 33); the held clock's may
-  // come while it waits.
+  // All 64 but SIGKILL (9), SIGSTOP (19) and the two of the C library (32, 33). The held clock's signal may
+  // be unblocked while the thread waits.
   const std::uint64_t held_clock = 1ULL << static_cast<unsigned>(test::wake_signal() - 1);
   EXPECT_EQ(std::stoull(blocked, nullptr, 16) | held_clock,
             ~((1ULL << 8) | (1ULL << 18) | (1ULL << 31) | (1ULL << 32)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages that do not read: they wait for nobody but themselves.
+// Pages that do not read: they delay no other page.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -17,8 +17,8 @@ constexpr int kSmallBuffer = 4096;  // [bytes]
 
 class WebSlowPages : public WebTest {
  protected:
-  /// A message that says its number and is long enough to fill any socket soon; remembered, to count those
-  /// alive.
+  /// @returns a message with its number, long enough to fill any socket soon; alive() counts it
+  /// while it exists
   Bytes numbered(int number) {
     std::string text = std::to_string(number) + " ";
     text.resize(100'000, '.');
@@ -39,9 +39,9 @@ class WebSlowPages : public WebTest {
   std::vector<std::weak_ptr<const std::string>> made_;
 };
 
-// A page that never reads is sent 1,000 messages of 100 kB: it is shown out when 20 wait, while the other one
-// gets all of its own.
-TEST_F(WebSlowPages, AStuckPageDelaysNobodyElse) {
+// A page that never reads is sent 1,000 messages of 100 kB. It is disconnected when 20 wait, while the other
+// page gets all of its own messages.
+TEST_F(WebSlowPages, AStuckPageDelaysNoOtherPage) {
   settings_.queue_limit = 20;
   settings_.frame_rate_hz = 1000.0;
   std::atomic<PageId> stuck_id{0};
@@ -60,11 +60,11 @@ TEST_F(WebSlowPages, AStuckPageDelaysNobodyElse) {
   PageClient stuck(port(), kSmallBuffer);
   ASSERT_TRUE(application_.await_joined(1));
   PageClient good(port());
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ(good.hear_message().payload, std::to_string(i));
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(good.receive_message().payload, std::to_string(i));
   ASSERT_TRUE(application_.await_left(1));
   EXPECT_EQ(application_.left_pages().front(), stuck_id);
-  // Those that wait, the one in flight, the one just made.
-  server_->stop();  // before what its frames refer to goes
+  // The queued messages, the one in flight, the newest one.
+  server_->stop();  // before the variables that its frames use are destroyed
   EXPECT_LE(most, settings_.queue_limit + 2);
 }
 
@@ -97,16 +97,16 @@ TEST_F(WebSlowPages, ASlowPageSkipsToTheNewest) {
   int last = 0;
   int heard = 0;
   while (last < 500) {
-    const int number = number_of(page.hear_message());
+    const int number = number_of(page.receive_message());
     ASSERT_GT(number, last);
     last = number;
     ++heard;
   }
   EXPECT_TRUE(application_.left_pages().empty());
-  server_->stop();  // before what its frames refer to goes
-  EXPECT_EQ(heard + replaced, 500) << "the sender knows which never went";
-  EXPECT_LT(heard, 100) << "most were out of date before they could go";
-  EXPECT_LE(most, 3U) << "one in flight, one that waits, one just made";
+  server_->stop();  // before the variables that its frames use are destroyed
+  EXPECT_EQ(heard + replaced, 500) << "the sender knows which were never sent";
+  EXPECT_LT(heard, 100) << "most were replaced before they could be sent";
+  EXPECT_LE(most, 3U) << "one in flight, one that waits, the newest one";
 }
 
 TEST_F(WebSlowPages, MessagesInOrderGoBeforeTheNewest) {
@@ -119,11 +119,11 @@ TEST_F(WebSlowPages, MessagesInOrderGoBeforeTheNewest) {
   };
   start();
   PageClient page(port());
-  for (const int expected : {1, 3, 5, 4}) EXPECT_EQ(number_of(page.hear_message()), expected);
+  for (const int expected : {1, 3, 5, 4}) EXPECT_EQ(number_of(page.receive_message()), expected);
 }
 
-// It says something all the time, so that it is never idle.
-TEST_F(WebSlowPages, AWriteThatDoesNotFinishEndsThePage) {
+// It sends all the time, so that it is never idle.
+TEST_F(WebSlowPages, AWriteThatDoesNotFinishDisconnectsThePage) {
   settings_.idle_timeout = 0.3;
   settings_.messages_per_second = 100'000;
   application_.on_received = [this](PageId page, std::string_view) {
@@ -132,15 +132,15 @@ TEST_F(WebSlowPages, AWriteThatDoesNotFinishEndsThePage) {
   start();
   PageClient page(port(), kSmallBuffer);
   std::atomic<bool> over{false};
-  auto talking = std::async(std::launch::async, [&] {
+  auto sending = std::async(std::launch::async, [&] {
     while (!over) {
-      page.say("I talk and do not listen");
+      page.send("a page that does not read");
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   });
   EXPECT_TRUE(application_.await_left(1));
   over = true;
-  talking.get();
+  sending.get();
 }
 
 TEST_F(WebSlowPages, StoppingDoesNotWaitForThem) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Over TLS, by token.
+// TLS and tokens.
 #include <gmock/gmock.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -41,7 +41,7 @@ class WebTls : public WebTest {
   }
 };
 
-TEST_F(WebTls, TheAddressWithTheTokenGivesACookieAndGoesOnWithoutIt) {
+TEST_F(WebTls, AnAddressWithATokenSetsACookieAndRedirectsWithoutIt) {
   start();
   EXPECT_TRUE(server_->tls());
   EXPECT_THAT(server_->url(), StartsWith("https://127.0.0.1:"));
@@ -56,7 +56,7 @@ TEST_F(WebTls, TheAddressWithTheTokenGivesACookieAndGoesOnWithoutIt) {
   EXPECT_EQ(status_of(ask("/", cookie_by(settings_.operator_token))), 200);
 }
 
-TEST_F(WebTls, WithoutTheTokenNobodyGetsAnything) {
+TEST_F(WebTls, WithoutATokenAllRequestsAreRefused) {
   start();
   const std::string wrong = random_token();
   for (const std::string& path :
@@ -69,30 +69,30 @@ TEST_F(WebTls, WithoutTheTokenNobodyGetsAnything) {
     EXPECT_THAT(body_of(answer), HasSubstr("token")) << path;
   }
   EXPECT_EQ(status_of(ask("/", "Cookie: phalanx-" + std::to_string(port()) + "=" + wrong + "\r\n")), 403);
-  EXPECT_EQ(status_of(page("")->welcome()), 403);
+  EXPECT_EQ(status_of(page("")->handshake()), 403);
   EXPECT_THAT(application_.requests(), IsEmpty());
   EXPECT_THAT(application_.joined_pages(), IsEmpty());
 }
 
-TEST_F(WebTls, TheCookieSaysWhoMayOperate) {
+TEST_F(WebTls, TheCookieDecidesWhoMayOperate) {
   start();
   const auto operates = page(cookie_by(settings_.operator_token));
-  ASSERT_EQ(status_of(operates->welcome()), 101);
+  ASSERT_EQ(status_of(operates->handshake()), 101);
   ASSERT_TRUE(application_.await_joined(1));
   const auto looks = page(cookie_by(settings_.viewer_token));
-  ASSERT_EQ(status_of(looks->welcome()), 101);
+  ASSERT_EQ(status_of(looks->handshake()), 101);
   ASSERT_TRUE(application_.await_joined(2));
   EXPECT_TRUE(application_.joined_pages()[0].second.may_operate);
   EXPECT_FALSE(application_.joined_pages()[1].second.may_operate);
   ask("/request", cookie_by(settings_.viewer_token));
   ASSERT_TRUE(application_.await_requests(1));
-  EXPECT_FALSE(application_.requests()[0].visitor.may_operate);
+  EXPECT_FALSE(application_.requests()[0].client.may_operate);
 }
 
-TEST_F(WebTls, AProgramMayBringTheTokenWithItsSocket) {
+TEST_F(WebTls, AWebSocketMayHaveTheTokenInItsQuery) {
   start();
   const auto looks = page("", "/?token=" + settings_.viewer_token);
-  ASSERT_EQ(status_of(looks->welcome()), 101);
+  ASSERT_EQ(status_of(looks->handshake()), 101);
   ASSERT_TRUE(application_.await_joined(1));
   EXPECT_FALSE(application_.joined_pages()[0].second.may_operate);
 }
@@ -105,8 +105,8 @@ TEST_F(WebTls, MessagesOfAnyLengthGetThroughBothWays) {
   const auto echoing = page(cookie_by(settings_.operator_token));
   for (const std::size_t length : {0U, 1U, 125U, 126U, 16'384U, 65'535U, 65'536U}) {
     const std::string text(length, 'x');
-    echoing->say(text);
-    EXPECT_EQ(echoing->hear_message().payload, text);
+    echoing->send(text);
+    EXPECT_EQ(echoing->receive_message().payload, text);
   }
 }
 
@@ -114,37 +114,37 @@ TEST_F(WebTls, AnotherSchemesOriginIsNotThePages) {
   start();
   const std::string cookie = cookie_by(settings_.operator_token);
   PageClient plain(RawClient::secure(port()), PageClient::head(PageClient::good_fields() + cookie));
-  EXPECT_EQ(status_of(plain.welcome()), 403);
+  EXPECT_EQ(status_of(plain.handshake()), 403);
 }
 
-TEST_F(WebTls, AHandshakeThatDoesNotComeIsLetGo) {
+TEST_F(WebTls, AClientThatDoesNotFinishTheHandshakeIsDisconnected) {
   settings_.request_timeout = 2.0;
   start();
   RawClient half(port());
-  half.say(std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11));
-  EXPECT_EQ(half.hear_all(), "");
+  half.send(std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11));
+  EXPECT_EQ(half.receive_all(), "");
   RawClient silent(port());
-  EXPECT_EQ(silent.hear_all(), "");
+  EXPECT_EQ(silent.receive_all(), "");
   EXPECT_EQ(status_of(ask("/", cookie_by(settings_.operator_token))), 200);
 }
 
-// 127.0.0.2 belongs to this machine, as all of 127/8 do, but is none of the names that are accepted. A
-// request by an accepted name is asked for its token (403).
-TEST_F(WebTls, WhoCameByAnAddressOfOursMaySaySo) {
+// 127.0.0.2 is an address of this machine, like all of 127/8, but none of the accepted names. A request
+// whose Host is accepted is refused for want of a token (403).
+TEST_F(WebTls, TheHostMayBeTheConnectionsOwnAddress) {
   settings_.address = "0.0.0.0";
   start();
   const auto status = [this](const char* reached) {
     const auto client = RawClient::secure(port(), reached);
-    client->say("GET / HTTP/1.1\r\nHost: 127.0.0.2\r\nConnection: close\r\n\r\n");
-    return status_of(client->hear_all());
+    client->send("GET / HTTP/1.1\r\nHost: 127.0.0.2\r\nConnection: close\r\n\r\n");
+    return status_of(client->receive_all());
   };
   EXPECT_EQ(status("127.0.0.2"), 403);
   EXPECT_EQ(status("127.0.0.1"), 421);
 }
 
-// More bytes than one read takes. If the rest stayed unread, the connection would end with a reset, which may
-// discard the answer before the client has read it.
-TEST_F(WebTls, ALineThatTurnsIntoNoiseEndsWithoutAReset) {
+// More bytes than one read takes. If the rest stayed unread, the connection would end with a reset. A reset
+// could discard the response before the client has read it.
+TEST_F(WebTls, AConnectionWithInvalidTlsRecordsClosesWithoutAReset) {
   start();
   const auto client = RawClient::secure(port());
   const std::string noise(100'000, 'x');
@@ -160,7 +160,7 @@ TEST_F(WebTls, ALineThatTurnsIntoNoiseEndsWithoutAReset) {
   EXPECT_EQ(got, 0);
 }
 
-TEST_F(WebTls, OfTls12OnlySuitesWithoutCbcAreTaken) {
+TEST_F(WebTls, OfTls12OnlySuitesWithoutCbcAreAccepted) {
   start();
   for (const char* suites : {"ECDHE-ECDSA-AES128-GCM-SHA256", "ECDHE-ECDSA-CHACHA20-POLY1305"})
     EXPECT_NO_THROW((void)RawClient::secure(port(), "127.0.0.1", suites)) << suites;
@@ -174,12 +174,12 @@ TEST_F(WebTls, PlainHttpGetsNothing) {
   EXPECT_EQ(status_of(phalanx::ask(port(), get("/?token=" + settings_.operator_token))), 0);
 }
 
-TEST_F(WebTls, StoppingSaysGoodbyeHereToo) {
+TEST_F(WebTls, StoppingClosesPagesOverTls) {
   start();
   const auto one = page(cookie_by(settings_.operator_token));
   ASSERT_TRUE(application_.await_joined(1));
   server_->stop();
-  EXPECT_EQ(one->hear_message().code(), 1001);
+  EXPECT_EQ(one->receive_message().code(), 1001);
   EXPECT_EQ(application_.left_pages().size(), 1U);
 }
 

@@ -15,8 +15,8 @@
 
 namespace phalanx {
 
-/// A server on a free port of 127.0.0.1, with a small site and an application that writes down what it is
-/// told.
+/// Fixture with a server on a free port of 127.0.0.1, a small site, and an application that
+/// records its calls.
 class WebTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -43,7 +43,7 @@ class WebTest : public testing::Test {
   }
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   std::string ask(const std::string& request) const { return phalanx::ask(port(), request); }
-  /// The server is as good as new: what every refusal must leave behind.
+  /// Expects that the server still serves the site.
   void expect_alive() const { EXPECT_EQ(status_of(ask(get("/"))), 200); }
 
   void write(const std::string& name, const std::string& text) const {

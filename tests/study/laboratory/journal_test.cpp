@@ -81,6 +81,36 @@ TEST(Journal, CutsOffATornLastLineAtEveryLength) {
   }
 }
 
+/// While it lives, this process may open so many files more.
+class FilesLeft {
+ public:
+  explicit FilesLeft(unsigned files) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const int next = ::open("/dev/null", O_RDONLY | O_CLOEXEC);  // the lowest number that is free
+    ::close(next);
+    const rlimit few{.rlim_cur = static_cast<rlim_t>(next) + files, .rlim_max = before_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  }
+  FilesLeft(const FilesLeft&) = delete;
+  FilesLeft& operator=(const FilesLeft&) = delete;
+  ~FilesLeft() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Journal, IsNotTakenForEmptyWhereNoFurtherFileCanBeOpened) {
+  const TemporaryFolder folder;
+  const auto file = three_points(folder);
+  const std::string before = read_file(file);
+  {
+    const FilesLeft one(1);
+    const Journal journal(file, header(), false);
+    EXPECT_EQ(journal.finished().size(), 3U);
+  }
+  EXPECT_EQ(read_file(file), before);
+}
+
 TEST(Journal, RefusesAnotherStudyInWordsAndKeepsItsPoints) {
   const TemporaryFolder folder;
   const auto file = three_points(folder);

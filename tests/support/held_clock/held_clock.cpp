@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kShortestNap = 10e-6;  ///< real time between two looks at the threads [s]
 constexpr double kLongestNap = 500e-6;
+constexpr double kLongestPacedNap = 5e-3;  ///< real time for which a paced clock that is ahead sleeps [s]
 constexpr std::int64_t kLongStep = 1'000'000'000;  ///< [ns]; before it the threads are looked at once more
 constexpr double kLookAgain = 2e-3;                ///< real time until then [s]
 constexpr double kHang = 120.0;                    ///< real seconds for which a thread may run without a wait
@@ -225,6 +226,10 @@ void HeldClock::ignore_threads_named(const char* name) {
   page_->changes.fetch_add(1);
 }
 
+void HeldClock::delay_loop(double seconds) noexcept {
+  page_->loop_delay.store(static_cast<std::int64_t>(1e9 * seconds));
+}
+
 /// Looks twice. A thread that is off the processors after its turns are counted, and at the second look is
 /// not ready and has had no other turn, was asleep when the first look ended; so all were at that moment.
 bool HeldClock::all_sleep() {
@@ -378,7 +383,9 @@ void HeldClock::run(const std::function<bool()>& ended, double pace) {
       moved = real_seconds();  // what a busy computer has made late is not made up for
       nap = kShortestNap;
     } else {
-      real_sleep(nap);
+      // All threads sleep until the pace reaches the next wait: there is nothing to look at before.
+      const double early = next && *next > until ? 1e-9 * static_cast<double>(*next - until) / pace : 0.0;
+      real_sleep(std::clamp(early, nap, kLongestPacedNap));
       nap = std::min(2.0 * nap, kLongestNap);
     }
   }

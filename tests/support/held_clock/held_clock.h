@@ -50,6 +50,9 @@ class HeldClock {
   /// Threads of a name that are not waited for, from whatever thread it is called. @param name  nullptr: none
   void ignore_threads_named(const char* name);
 
+  /// From here on the loops of stations wake up so much later than they ask, as on an overloaded computer.
+  void delay_loop(double seconds) noexcept;
+
   /// Lets time pass until `t`, and what is due then be done. @throws std::runtime_error if a thread runs for
   /// two minutes
   void advance_to(double t);

@@ -39,4 +39,7 @@ const struct Release {
 TimePassesBeside::TimePassesBeside(const char* threads) { kProcessClock->ignore_threads_named(threads); }
 TimePassesBeside::~TimePassesBeside() { kProcessClock->ignore_threads_named(nullptr); }
 
+LoopWakesLate::LoopWakesLate(double seconds) { kProcessClock->delay_loop(seconds); }
+LoopWakesLate::~LoopWakesLate() { kProcessClock->delay_loop(0.0); }
+
 }  // namespace phalanx::test

@@ -14,4 +14,14 @@ class TimePassesBeside {
   ~TimePassesBeside();
 };
 
+/// While it lives, the loops of this process's stations wake up too late, as on an overloaded computer. For
+/// programs under HELD_CLOCK. One at a time.
+class LoopWakesLate {
+ public:
+  explicit LoopWakesLate(double seconds);
+  LoopWakesLate(const LoopWakesLate&) = delete;
+  LoopWakesLate& operator=(const LoopWakesLate&) = delete;
+  ~LoopWakesLate();
+};
+
 }  // namespace phalanx::test

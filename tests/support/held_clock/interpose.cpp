@@ -8,14 +8,17 @@
 #include <sched.h>
 #include <sys/epoll.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/timerfd.h>
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "support/held_clock/interpose.h"
 
@@ -26,7 +29,8 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr int kFreeLooks = 1000;         ///< of the clock by a thread that never waits; each more takes kSpin
 constexpr std::int64_t kSpin = 1000;     ///< [ns]: a loop that waits for a time by reading the clock must end
 constexpr std::int64_t kYield = 20'000;  ///< [ns]: the same for a loop that yields
-constexpr long kNap = 500'000;           ///< real time between two looks from a condition variable [ns]
+constexpr const char* kLoop = "phalanx-loop";  ///< name of the thread of a station's loop
+constexpr long kNap = 500'000;                 ///< real time between two looks from a condition variable [ns]
 
 std::atomic<ClockPage*> held{nullptr};
 
@@ -89,6 +93,15 @@ void wait_until(ClockPage& page, WaitKind kind, std::int64_t deadline, Look look
   while (look(wait)) wait.woken.store(0);  // the clock may have meant an earlier wait
   wait.woken.store(2);
   wait.kind.store(WaitKind::kNone);
+}
+
+/// How much later than it asks this thread wakes up from an absolute time [ns].
+std::int64_t delay_of_this_thread(const ClockPage& page) noexcept {
+  const std::int64_t delay = page.loop_delay.load();
+  if (delay == 0) return 0;
+  std::array<char, 16> name{};
+  ::prctl(PR_GET_NAME, name.data());
+  return std::strcmp(name.data(), kLoop) == 0 ? delay : 0;
 }
 
 /// @returns 0, or EINTR where a signal's handler ran
@@ -228,7 +241,9 @@ int clock_nanosleep(clockid_t id, int flags, const timespec* t, timespec* left) 
     if (::syscall(SYS_clock_nanosleep, id, flags, t, left) == 0) return 0;
     return errno;
   }
-  const std::int64_t deadline = phalanx::test::of(*t) + ((flags & TIMER_ABSTIME) != 0 ? 0 : page->now.load());
+  const std::int64_t deadline =
+      phalanx::test::of(*t) +
+      ((flags & TIMER_ABSTIME) != 0 ? phalanx::test::delay_of_this_thread(*page) : page->now.load());
   const int result = phalanx::test::sleep_until(*page, deadline);
   if (result != 0 && left != nullptr && (flags & TIMER_ABSTIME) == 0)
     *left = phalanx::test::to_timespec(std::max<std::int64_t>(0, deadline - page->now.load()));

@@ -46,10 +46,11 @@ inline constexpr std::int64_t kNever = INT64_MAX;  ///< the deadline of a wait t
 struct ClockPage {
   static constexpr std::int64_t kBegin = 1'000'000'000'000;  ///< [ns]; times before the start stay positive
 
-  std::atomic<std::int64_t> now{kBegin};  ///< CLOCK_MONOTONIC of all programs under this clock [ns]
-  std::atomic<std::uint32_t> changes{1};  ///< of threads and processes: another list is to be read
-  std::atomic<std::uint32_t> waits{0};    ///< that have begun so far
-  std::atomic<std::int32_t> forking{0};   ///< children that have not entered themselves yet
+  std::atomic<std::int64_t> now{kBegin};    ///< CLOCK_MONOTONIC of all programs under this clock [ns]
+  std::atomic<std::uint32_t> changes{1};    ///< of threads and processes: another list is to be read
+  std::atomic<std::uint32_t> waits{0};      ///< that have begun so far
+  std::atomic<std::int64_t> loop_delay{0};  ///< a station's loop wakes up so much later than it asks [ns]
+  std::atomic<std::int32_t> forking{0};     ///< children that have not entered themselves yet
   std::array<std::atomic<std::int32_t>, 64> process{};  ///< ids; 0: free
   std::array<ClockWait, 512> wait{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every panel gets: what is known, what may be asked for, and how a refusal comes back.
+// The objects that every panel gets: the store, the requests to the station, and the text of a refusal.
 import type { Store } from "../state/store";
 import { strings } from "../strings";
 import type { Answer } from "../wire/connection";
@@ -14,12 +14,12 @@ export interface App {
   readonly takeControl: () => void; // asks first
 }
 
-/// What to say beside the control; empty: it was done.
+/// @returns the text beside the control; empty: done
 export function refusal(answer: Answer): string {
   return answer.ok ? "" : answer.error || strings.notSent;
 }
 
-/// Asks for a change as one. @param dragging  as Host's. @returns the refusal in the host's words; empty: done
+/// Requests several changes as one. @param dragging  as Host's. @returns the refusal in the host's words; empty: done
 export async function change(app: App, changes: readonly Change[], dragging = false): Promise<string> {
   for (const [key, value] of changes) app.store.asked(key, value);
   const answer = await app.host.set(changes, dragging);

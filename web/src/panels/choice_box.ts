@@ -16,7 +16,7 @@ export class ChoiceBox {
   private chosen = "";
   private active = -1; // in the open list
 
-  /// @param picked  a person chose another value than the one shown
+  /// @param picked  called when the user has chosen another value than the displayed one
   constructor(private readonly picked: () => void) {
     const id = newId("choices");
     this.list = el("div", { class: "choice-list", role: "listbox", id, hidden: true });

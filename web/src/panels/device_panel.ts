@@ -30,6 +30,7 @@ function deviceFacts(state: State): readonly Fact[] {
     [words.state, words.states[state.deviceState] ?? state.deviceState, state.deviceState === "latched"],
     [words.estop, state.estop ? words.pressed : words.released, state.estop],
     [words.torque, state.rendersTorque ? words.renders : words.noTorque],
+    [words.watchdog, state.holdsWithoutHost ? words.noWatchdog : words.letsGo, state.holdsWithoutHost],
     [words.calibration, state.calibration || words.ownNumbers],
     [words.realtime, state.realtime || words.realtimeUnknown],
   ];
@@ -65,6 +66,7 @@ export function devicePanel(app: App): HTMLElement {
   const device = el("dl", { class: "facts" });
   const link = el("dl", { class: "facts facts-narrow" });
   const loop = el("dl", { class: "facts facts-narrow" });
+  const holds = el("p", { class: "warning", role: "status" }, words.holdsWithoutHost);
   const degraded = el("p", { class: "warning", role: "status" }, words.degraded);
   const lateness = histogram(words.lateness);
   const step = histogram(words.step);
@@ -77,6 +79,7 @@ export function devicePanel(app: App): HTMLElement {
     showFacts(device, said(deviceFacts(state)));
     showFacts(link, state.link ? said(linkFacts(state.link)) : []);
     showFacts(loop, numbers ? said(loopFacts(numbers)) : []);
+    setShown(holds, state.holdsWithoutHost);
     setShown(degraded, state.degraded && live);
     lateness.show(live ? numbers?.lateness : undefined);
     step.show(live ? numbers?.step : undefined);
@@ -86,7 +89,7 @@ export function devicePanel(app: App): HTMLElement {
   return el(
     "div",
     {},
-    section(words.title, device),
+    section(words.title, holds, device),
     faultSection(app),
     wizardSection(app),
     section(words.loop, degraded, loop, lateness.element, step.element),

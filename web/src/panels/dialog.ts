@@ -34,7 +34,7 @@ export function openDialog(app: App, title: string, content: readonly Node[], ki
   return { element, close };
 }
 
-/// Asks; `yes` runs when it is confirmed.
+/// Opens a dialog; `yes` runs when it is confirmed.
 export function confirmDialog(app: App, title: string, text: string, confirm: string, yes: () => void): void {
   const sure = button(confirm, () => {
     dialog.close();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a person has let go of a slider: a change may be missing where a finger leaves the screen or the slider is taken away.
+// The end of a drag. The browser's event `change` may be missing if a finger leaves the screen or the slider is removed.
 
-/// Calls `end` whenever no person can be dragging the slider any more; also several times for one drag. A key that is held down drags too:
-/// the browser says "change" for each of its repetitions.
+/// Calls `end` when the slider can no longer be dragged; also several times for one drag. A key that is held down is a drag, too: the browser
+/// sends `change` for each repetition.
 export function onLetGo(slider: HTMLInputElement, end: () => void): void {
   let key = false; // held down
   slider.addEventListener("keydown", () => (key = true));

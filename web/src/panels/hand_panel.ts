@@ -60,7 +60,7 @@ function handSection(app: App): HTMLElement {
   function choose(): void {
     made.refuse("");
     if (box.value === unquote(app.store.value(profile))) return;
-    // A profile says itself which hand it is of.
+    // A profile states the side of its hand.
     const changes: readonly Change[] = box.value === "" ? [[profile, ""]] : [...takenBack(app.store, ["hand.side", "hand.file", "mirror"]), [profile, quote(box.value)]];
     void change(app, changes).then((refused) => {
       made.refuse(refused);

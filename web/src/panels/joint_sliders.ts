@@ -10,7 +10,7 @@ import { onLetGo } from "./drag";
 
 const words = strings.hand;
 const kPerSecond = 30;
-const kOwnWordMs = 1000; // what the station says of a joint may be older than what was sent for it
+const kOwnWordMs = 1000; // the station's value of a joint may be older than the value sent for it
 const kDegrees = 180 / Math.PI;
 const kFist = 0.8; // share of the way from the open hand to the end of a flexing joint's range
 const kSpread = 1; // a digit's abduction: its second joint
@@ -22,7 +22,7 @@ export function fist(open: readonly number[], max: readonly number[]): number[] 
   );
 }
 
-/// Where the hand is wanted: what the station says, and over it what a person has just said here.
+/// The requested angles: the station's, overlaid by the newest ones of this page.
 export class WantedAngles {
   private readonly own = new Map<number, { angle: number; until: number }>(); // [ms]; Infinity: held, or not sent yet
 
@@ -32,7 +32,7 @@ export class WantedAngles {
     this.own.set(joint, { angle, until: Infinity });
   }
 
-  /// It is sent. Joints that nobody holds are the station's again after a while.
+  /// It is sent. Joints whose slider is not held follow the station again after a while.
   sent(held: ReadonlySet<number>): void {
     for (const [joint, word] of this.own) {
       if (word.until === Infinity && !held.has(joint)) word.until = this.now() + kOwnWordMs;

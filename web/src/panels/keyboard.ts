@@ -11,7 +11,7 @@ export interface KeyActions {
 }
 
 const kZoomStep = 1.15;
-/// A key that is held down says Stop again, so often at most [ms].
+/// Least interval at which a key that is held down repeats Stop [ms].
 const kStopAgainMs = 200;
 const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
 const typed = new Set(["text", "search", "number", "email", "url", "tel", "password"]);
@@ -35,7 +35,7 @@ export function listenToKeys(source: Window, actions: KeyActions): void {
     event.preventDefault();
     event.stopImmediatePropagation();
   };
-  let stopped = -Infinity; // when a key last said it [ms]
+  let stopped = -Infinity; // time of the last stop by a key [ms]
   // While a text is being composed the key has no name, only its place.
   const isStop = (event: KeyboardEvent) =>
     event.key === "Escape" || event.code === "Escape" || (event.key === " " && !takesBlanks(event.target));

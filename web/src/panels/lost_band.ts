@@ -13,7 +13,7 @@ export interface LostBand {
 
 function whySilent(state: State | undefined): string {
   if (state?.wizard) return strings.lost.calibrating;
-  if (isStuck(state)) return ""; // the card says it
+  if (isStuck(state)) return ""; // the card states it
   return state?.trouble || (state?.busy ? strings.busy(state.busy) : "");
 }
 

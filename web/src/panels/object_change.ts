@@ -7,7 +7,7 @@ import type { Change } from "../wire/host";
 
 const kPlace = ["position_mm", "rotation_deg"];
 
-/// The whole object anew, since sizes of another shape would be refused. It keeps its place, and earlier changes of it are taken away.
+/// Replaces the whole object, because sizes of another shape would be refused. Its place stays; earlier changes of it are removed.
 /// @param entries  key without "objects.0.", value as in a file
 export function replaceObject(state: State | undefined, entries: readonly (readonly [string, string])[]): readonly Change[] {
   const earlier = (state?.changed ?? []).filter((one) => one.key.startsWith("objects.0."));

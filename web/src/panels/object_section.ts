@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The object in the hand: a shape with its sizes, or a mesh of one's own.
-import type { KeyInfo } from "../gen/phalanx/cockpit_pb";
-import { choicesOf, defaultOf, keyOf, kindsOf, objectKind } from "../state/keys";
+import { KeyType, type KeyInfo } from "../gen/phalanx/cockpit_pb";
+import { belongsTo, defaultOf, keyOf, objectKind } from "../state/keys";
 import { fromTyped, quote, unquote } from "../state/toml";
 import { strings } from "../strings";
 import { change, type App } from "./app";
@@ -22,9 +22,7 @@ function objectKeys(app: App): KeyInfo[] {
 
 /// The sizes that a shape has.
 export function sizesOf(app: App, kind: string): KeyInfo[] {
-  const kindKey = keyOf(app.store.welcome, "objects.0.kind");
-  const kinds = kindKey ? choicesOf(kindKey) : [];
-  return objectKeys(app).filter((key) => !kNotHere.has(nameOf(key)) && (kindsOf(key, kinds)?.includes(kind) ?? true));
+  return objectKeys(app).filter((key) => !kNotHere.has(nameOf(key)) && belongsTo(key, kind));
 }
 
 export function objectSection(app: App): HTMLElement {
@@ -48,7 +46,7 @@ export function objectSection(app: App): HTMLElement {
     fields.clear();
     sizes.replaceChildren(
       ...keys.map((key) => {
-        const field = el("input", { type: "text", inputmode: "decimal", class: key.type === "vector" ? "vector" : "number", autocomplete: "off" });
+        const field = el("input", { type: "text", inputmode: "decimal", class: key.type === KeyType.KEY_VECTOR ? "vector" : "number", autocomplete: "off" });
         fields.set(nameOf(key), field);
         field.addEventListener("input", () => {
           field.dataset["touched"] = "yes";
@@ -68,8 +66,8 @@ export function objectSection(app: App): HTMLElement {
   }
 
   function update(): void {
-    const key = keyOf(app.store.welcome, "objects.0.kind");
-    kind.setChoices((key ? choicesOf(key) : []).map((value) => ({ value, text: words.kinds[value] ?? value })));
+    const kinds = keyOf(app.store.welcome, "objects.0.kind")?.choice ?? [];
+    kind.setChoices(kinds.map((value) => ({ value, text: words.kinds[value] ?? value })));
     const shown = chosen || current();
     kind.value = shown;
     build();

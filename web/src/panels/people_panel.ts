@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is here, who has control, and what happened.
+// The open pages, the operator, and the list of changes.
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
 import { strings } from "../strings";
 import { lasting } from "../wire/memory";

@@ -5,7 +5,7 @@
 const kClickMs = 400;
 const kPrimary = 0;
 
-/// Acts once a press: as the finger or the primary mouse button goes down; and on clicks that nobody's finger made: Enter, assistive technology.
+/// Acts once a press, when the finger or the primary mouse button goes down. Acts also on clicks without a pointer: Enter, assistive technology.
 export function onPress(button: HTMLElement, act: () => void): void {
   let pressed = false; // its click is still to come
   let over: ReturnType<typeof setTimeout> | undefined;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Above the view: the stability verdict as a light, and the force of each digit.
+// Above the view: the stability verdict as a light, the force of each digit, and which digits cannot have one.
 import type { State } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
 import { digitForces, followers, kDigits } from "../state/channels";
@@ -18,14 +18,24 @@ export function verdictText(verdict: Verdict | null): string {
   return words.shakesFull(verdict.frequency.toFixed(0), verdict.swing.toFixed(1));
 }
 
-/// A device that renders no torque, such as a glove that only stops a digit, lets nobody feel the force.
+/// On a device that renders no torque, such as a glove that only stops a digit, the force cannot be felt.
 function asFelt(verdict: Verdict, state: State | undefined): Verdict {
   return verdict.kind === "steady" && state?.rendersTorque === false ? { kind: "off" } : verdict;
 }
 
+const joined = new Intl.ListFormat(strings.locale);
+
+/// Which digits began inside the object, and what to do; empty: all digits feel.
+export function silentText(digits: readonly number[]): string {
+  const words = strings.silent;
+  const names = digits.flatMap((digit) => words.digits[digit] ?? []);
+  if (names.length === 0) return "";
+  return (names.length === 1 ? words.one : words.several)(joined.format(names));
+}
+
 export interface Readouts {
   readonly element: HTMLElement;
-  update(): void; // as often as a person can read
+  update(): void; // called at a rate at which figures can be read
 }
 
 export function readouts(store: Store): Readouts {
@@ -46,11 +56,13 @@ export function readouts(store: Store): Readouts {
     );
     return { box, value, bar, follows };
   });
+  const silent = el("p", { class: "silent-digits", role: "status" });
   const element = el(
     "div",
     { class: "readouts" },
     light,
     el("div", { class: "digit-forces", role: "group", "aria-label": strings.forcePerDigit }, ...digits.map((digit) => digit.box)),
+    silent,
   );
   store.on(["state"], () => {
     const all = followers(store.state?.sensedJoint ?? []);
@@ -64,6 +76,7 @@ export function readouts(store: Store): Readouts {
     const shakes = verdict?.kind === "shakes";
     setText(spoken, shakes ? "" : verdictText(verdict));
     setText(alarm, shakes ? strings.verdict.shakes : "");
+    setText(silent, silentText(store.lost ? [] : (store.tick?.startedInside ?? [])));
     const forces = digitForces(store.lost ? undefined : store.tick);
     digits.forEach((digit, i) => {
       const force = forces[i] ?? 0;

@@ -5,7 +5,7 @@ import { strings } from "../strings";
 import type { App } from "./app";
 import { button, el, setAttribute, setShown, setText } from "./dom";
 
-/// Name of who operates, for people.
+/// Name of the operator, as text.
 export function operatorName(app: App): string {
   const state = app.store.state;
   if (!state || state.operatorPage === 0) return strings.nobody;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Controls for single keys. Each shows the truth, asks for a change, and says beside itself why it was refused.
-import { choicesOf, keyOf, parseRange, within } from "../state/keys";
+// Controls for single keys. Each shows the station's value, requests a change, and shows the reason of a refusal beside it.
+import { KeyType } from "../gen/phalanx/cockpit_pb";
+import { keyOf, within } from "../state/keys";
 import { Throttle } from "../state/throttle";
 import { fromNumber, fromTyped, number, quote, unquote } from "../state/toml";
 import type { Change } from "../wire/host";
@@ -12,7 +13,7 @@ import { onLetGo } from "./drag";
 const kSliderPerSecond = 10;
 const kSliderSteps = 1000;
 
-/// A label, a control, its unit, and what was refused.
+/// A label, a control, its unit, and the reason of a refusal.
 export interface Row {
   readonly element: HTMLElement;
   readonly refuse: (text: string) => void; // empty: nothing is wrong
@@ -39,13 +40,13 @@ export function row(label: string, of: HTMLElement | ChoiceBox, unit = "", hint 
   return { element, refuse };
 }
 
-/// Puts a value into a field unless a person is typing there.
+/// Puts a value into a field unless the user is typing there.
 function put(field: HTMLInputElement, text: string): void {
   if (document.activeElement === field && field.dataset["touched"] === "yes") return;
   if (field.value !== text) field.value = text;
 }
 
-/// Calls `commit` when a person is done with a field; `put` leaves it alone until then.
+/// Calls `commit` when the user has finished a field; until then `put` does not change it.
 function typing(field: HTMLInputElement, commit: () => void): void {
   field.addEventListener("input", () => (field.dataset["touched"] = "yes"));
   field.addEventListener("change", () => {
@@ -55,20 +56,20 @@ function typing(field: HTMLInputElement, commit: () => void): void {
   field.addEventListener("blur", () => delete field.dataset["touched"]);
 }
 
-/// What a person reads of a number.
+/// Formats a number for display.
 export function shownNumber(value: string): string {
   const parsed = number(value);
   return Number.isFinite(parsed) ? fromNumber(parsed) : unquote(value);
 }
 
-/// A number of one key.
+/// Makes a number field for one key.
 export function numberRow(app: App, setting: string, label: string, unit: string): HTMLElement {
   const field = el("input", { type: "text", inputmode: "decimal", class: "number", autocomplete: "off" });
   const made = row(label, field, unit);
   const show = () => put(field, shownNumber(app.store.value(setting)));
   typing(field, () => {
     made.refuse("");
-    void change(app, [[setting, fromTyped(field.value, 'number or "off"')]]).then((refused) => {
+    void change(app, [[setting, fromTyped(field.value, KeyType.KEY_NUMBER_OR_OFF)]]).then((refused) => {
       made.refuse(refused);
       show();
     });
@@ -78,7 +79,7 @@ export function numberRow(app: App, setting: string, label: string, unit: string
   return made.element;
 }
 
-/// A choice of one key.
+/// Makes a choice for one key.
 export function choiceRow(
   app: App,
   setting: string,
@@ -97,8 +98,7 @@ export function choiceRow(
   });
   const made = row(label, box);
   const show = () => {
-    const key = keyOf(app.store.welcome, setting);
-    const choices = key ? choicesOf(key) : [];
+    const choices = keyOf(app.store.welcome, setting)?.choice ?? [];
     box.setChoices(choices.map((value) => ({ value, text: texts[value] ?? value })));
     box.value = current();
   };
@@ -107,8 +107,8 @@ export function choiceRow(
   return made.element;
 }
 
-/// A switch that stands for several keys at once.
-/// @param blocked  why it cannot be used now; empty: it can
+/// Makes a switch that sets several keys at once.
+/// @param blocked  the reason why it cannot be used now; empty: it can
 export function switchRow(
   app: App,
   label: string,
@@ -140,12 +140,12 @@ export function switchRow(
   return made.element;
 }
 
-/// A place on a logarithmic scale, 0 .. 1, and back.
+/// Convert a value to its place on a logarithmic scale, 0 .. 1, and back.
 export const toScale = (value: number, min: number, max: number) =>
   Math.min(1, Math.max(0, Math.log(value / min) / Math.log(max / min)));
 export const fromScale = (place: number, min: number, max: number) => min * (max / min) ** place;
 
-/// A logarithmic slider with a number field. Sends while it is dragged, and the last value for sure.
+/// Makes a logarithmic slider with a number field. It sends while it is dragged, and always sends the last value.
 export function logSliderRow(
   app: App,
   setting: string,
@@ -165,7 +165,7 @@ export function logSliderRow(
 
   const tell = () => slider.setAttribute("aria-valuetext", `${field.value} ${texts.unit}`);
   const show = () => {
-    if (dragged || throttle.waits) return; // what a person has just said is newer than all that is known
+    if (dragged || throttle.waits) return; // the user's newest value is newer than the station's
     const value = number(app.store.value(setting));
     if (Number.isFinite(value)) slider.value = String(Math.round(kSliderSteps * toScale(Math.max(value, min / 10), min, max)));
     put(field, Number.isFinite(value) ? fromNumber(value) : "");
@@ -189,19 +189,19 @@ export function logSliderRow(
   onLetGo(slider, () => {
     if (!dragged) return;
     dragged = false;
-    throttle.push(field.value); // also where it was sent already: now it is the last one
+    throttle.push(field.value); // also if it has been sent already: now it is the last one
     throttle.flush();
     show();
   });
   typing(field, () => {
-    const key = keyOf(app.store.welcome, setting);
-    const typed = fromTyped(field.value, "number");
-    if (key && within(number(typed), parseRange(key.range))) throttle.push(fromNumber(number(typed)));
+    const range = keyOf(app.store.welcome, setting)?.range;
+    const typed = fromTyped(field.value, KeyType.KEY_NUMBER);
+    if (range && within(number(typed), range)) throttle.push(fromNumber(number(typed)));
     else throttle.push(typed);
   });
   app.store.on(["state", "connection"], () => {
     if (app.store.role === "mine") return;
-    throttle.clear(); // it is no longer this page's to say
+    throttle.clear(); // this page may not change it any more
     dragged = false;
   });
   app.store.on(["state", "own", "connection"], show);
@@ -209,7 +209,7 @@ export function logSliderRow(
   return made.element;
 }
 
-/// A fieldset that is only usable while this page has control.
+/// Makes a fieldset that can be used only while this page has control.
 export function guarded(app: App, ...children: readonly (Node | null)[]): HTMLFieldSetElement {
   const fieldset = el("fieldset", { class: "guarded" }, ...children);
   const update = () => {

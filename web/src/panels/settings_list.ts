@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every key that a scene may hold, as the station lists them.
-import type { KeyInfo } from "../gen/phalanx/cockpit_pb";
-import { choicesOf, defaultOf, keyOf, kindsOf, objectKind, settingOf } from "../state/keys";
+import { KeyType, type KeyInfo } from "../gen/phalanx/cockpit_pb";
+import { belongsTo, defaultOf, objectKind, settingOf } from "../state/keys";
 import { fromTyped, unquote } from "../state/toml";
 import { strings } from "../strings";
 import { change, type App } from "./app";
@@ -17,11 +17,27 @@ interface Entry {
   readonly update: () => void;
 }
 
-/// Whether the object in force has the key.
-function applies(app: App, key: KeyInfo): boolean {
-  const kindKey = keyOf(app.store.welcome, "objects.0.kind");
-  const kinds = kindsOf(key, kindKey ? choicesOf(kindKey) : []);
-  return kinds === null || kinds.includes(objectKind(app.store.state, app.store.welcome));
+/// @returns the allowed values as text; the type if any value is allowed
+export function allowedText(key: KeyInfo): string {
+  if (key.type === KeyType.KEY_FLAG) return `${words.range} true, false`;
+  if (key.type === KeyType.KEY_CHOICE) return `${words.range} ${key.choice.join(", ")}`;
+  const range = key.range;
+  if (!range) return words.types[key.type] ?? "";
+  const parts = [
+    range.min > -Infinity ? `${range.minOpen ? ">" : ">="} ${String(range.min)}` : "",
+    range.max < Infinity ? `${range.maxOpen ? "<" : "<="} ${String(range.max)}` : "",
+    range.minusInfinity ? words.orMinusInfinity : "",
+    key.type === KeyType.KEY_NUMBER_OR_OFF ? words.orOff : "",
+  ].filter((part) => part !== "");
+  return parts.length > 0 ? `${words.range} ${parts.join(", ")}` : (words.types[key.type] ?? "");
+}
+
+/// @returns allowed values, default and requirement of a change as text
+/// @param kind  of the object, on which the default may depend
+export function factsText(key: KeyInfo, kind: string): string {
+  const fallback = unquote(defaultOf(key, kind));
+  const facts = [allowedText(key), fallback && `${words.default} ${fallback}`, words.change[key.change] ?? ""];
+  return facts.filter((text) => text !== "").join(" · ");
 }
 
 /// Where the value stands, and what a person does there.
@@ -32,8 +48,8 @@ interface ValueField {
 }
 
 function valueField(key: KeyInfo, id: string, touched: () => void, done: () => void): ValueField {
-  if (key.type === "flag" || key.type === "choice") {
-    const options = key.type === "flag" ? ["true", "false"] : choicesOf(key);
+  if (key.type === KeyType.KEY_FLAG || key.type === KeyType.KEY_CHOICE) {
+    const options = key.type === KeyType.KEY_FLAG ? ["true", "false"] : key.choice;
     const text = (value: string) => (value === "true" ? words.on : value === "false" ? words.off : value);
     const empty = key.defaultValue === "" ? [{ value: "", text: words.notStated }] : [];
     const box = new ChoiceBox(touched);
@@ -80,11 +96,7 @@ function entry(app: App, key: KeyInfo): Entry {
   const error = el("p", { class: "refused", role: "alert", hidden: true });
   const set = button(words.apply, () => void send(field.value.trim() === "" ? "" : fromTyped(field.value, key.type)));
   const reset = button(words.reset, () => void send(""), { class: "quiet" });
-  const facts = [
-    key.range ? `${words.range} ${key.range}` : key.type,
-    key.defaultValue ? `${words.default} ${unquote(defaultOf(key, objectKind(app.store.state, app.store.welcome)))}` : "",
-    words.change[key.change] ?? "",
-  ].filter((text) => text !== "");
+  const facts = el("p", { class: "hint" });
 
   async function send(value: string): Promise<void> {
     touched = false;
@@ -96,6 +108,7 @@ function entry(app: App, key: KeyInfo): Entry {
     update();
   }
   function update(): void {
+    setText(facts, factsText(key, objectKind(app.store.state, app.store.welcome)));
     if (!touched) field.value = unquote(app.store.value(setting));
     set.disabled = !touched;
     const differs = app.store.changed(setting);
@@ -108,7 +121,7 @@ function entry(app: App, key: KeyInfo): Entry {
     el("label", { for: id }, el("code", {}, setting), el("span", { class: "meaning" }, key.meaning)),
     el("div", { class: "setting-control" }, field.control, el("span", { class: "unit" }, key.unit), set, reset),
     field.below,
-    el("p", { class: "hint" }, facts.join(" · ")),
+    facts,
     error,
   );
   update();
@@ -132,13 +145,14 @@ export function openSettings(app: App): void {
 
   function filter(): void {
     const wanted = search.value.toLowerCase().split(/\s+/).filter((word) => word !== "");
+    const kind = objectKind(app.store.state, app.store.welcome); // in force
     const onlyChanged = only.getAttribute("aria-checked") === "true";
     let shown = 0;
     for (const one of entries) {
       const text = `${one.key.path} ${one.key.meaning}`.toLowerCase();
       const fits =
         wanted.every((word) => text.includes(word)) &&
-        applies(app, one.key) &&
+        belongsTo(one.key, kind) &&
         (!onlyChanged || app.store.changed(settingOf(one.key.path)));
       setShown(one.element, fits);
       if (fits) ++shown;

@@ -21,7 +21,7 @@ const names: Readonly<Record<SafetyState, SafetyName>> = {
   [SafetyState.SAFETY_FAULT]: "fault",
 };
 
-/// What the station does, as far as the page knows it.
+/// The station's state, as far as the page knows it.
 export function safetyName(store: Store): SafetyName {
   const state = store.known;
   if (!state) return "unknown";
@@ -73,7 +73,7 @@ export function stopBox(app: App): StopBox {
     update();
   }
 
-  /// What became of the stop, where the line above does not say it already.
+  /// The progress of the stop, unless the line above states it.
   function words(progress: StopProgress, known: boolean): string {
     switch (progress) {
       case "none":

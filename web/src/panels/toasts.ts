@@ -31,7 +31,7 @@ export function toasts(store: Store): HTMLElement {
   }
   store.on(["notice"], () => {
     const last = store.notices.at(-1);
-    // What happened before this page came is in the list; only what happens now pops up.
+    // Events from before this page was opened are in the list; only new ones are shown as toasts.
     const now = last && last !== seen && !kShownElsewhere.has(last.code) && !store.welcome?.past.includes(last);
     if (now) show(last);
     seen = last;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the hand touches and how that feels: scene, object, force, what keeps it calm, limits.
+// The panel of the contact: scene, object, force, stabiliser, limits.
+import { keyOf } from "../state/keys";
 import { number, quote, unquote } from "../state/toml";
 import { strings } from "../strings";
 import type { Change } from "../wire/host";
@@ -72,47 +73,44 @@ function forceSection(app: App): HTMLElement {
   );
 }
 
-/// Whether anything keeps the loop calm: smoothing.enabled = false is stabiliser.method = "none".
+const kMethod = "stabiliser.method";
+
 export function stabiliserInForce(app: App): string {
-  const method = unquote(app.store.value("stabiliser.method"));
-  const enabled = app.store.value("smoothing.enabled").trim() !== "false";
-  return enabled ? method : "none";
+  return unquote(app.store.value(kMethod));
 }
 
-/// Of these the switch speaks; the others keep the loop calm in ways of their own.
+/// The methods that the switch turns on and off. Both go over in contact, as "none" does.
 const kSmoothing: readonly string[] = ["smoothing", "rise_only"];
+/// @returns the method of a scene that states none, as written in a file
+const defaultMethod = (app: App) => keyOf(app.store.welcome, kMethod)?.defaultValue ?? "";
+
+/// @returns the method that the switch turns on, as written in a file: the papers' where the scene states a bound on the fall, else the default
+function methodTurnedOn(app: App): string {
+  const boundsFall = app.store.state?.value.some((one) => one.key.startsWith("smoothing.min_n")) ?? false;
+  return boundsFall ? quote("smoothing") : defaultMethod(app);
+}
 
 function smoothingSwitch(app: App): HTMLElement {
   const words = strings.calm;
-  const key = "stabiliser.method";
   const isOn = () => kSmoothing.includes(stabiliserInForce(app));
-  const changes = (on: boolean): readonly Change[] => {
-    const enabled: Change = ["smoothing.enabled", String(on)];
-    // The method is said only where it has to change: the switch alone goes over in contact.
-    return unquote(app.store.value(key)) === "smoothing" ? [enabled] : [enabled, [key, quote("smoothing")]];
-  };
+  const changes = (on: boolean): readonly Change[] => [[kMethod, on ? methodTurnedOn(app) : quote("none")]];
   const blocked = () => (isOn() || stabiliserInForce(app) === "none" ? "" : words.smoothingOther);
   return switchRow(app, words.smoothing, words.smoothingHint, isOn, changes, blocked);
 }
 
 function calmSection(app: App): HTMLElement {
   const words = strings.calm;
-  const method = choiceRow(
-    app,
-    "stabiliser.method",
-    words.method,
-    words.methods,
-    (choice) =>
-      choice === "none"
-        ? [["stabiliser.method", quote("smoothing")], ["smoothing.enabled", "false"]]
-        : [["smoothing.enabled", "true"], ["stabiliser.method", quote(choice)]],
-    () => stabiliserInForce(app),
-  );
+  const method = choiceRow(app, kMethod, words.method, words.methods);
+  // Only the papers' method bounds the fall.
+  const fall = numberRow(app, "smoothing.min_n_per_s", words.fall, strings.units.newtonPerSecond);
+  const showFall = () => setShown(fall, stabiliserInForce(app) === "smoothing");
+  app.store.on(["state", "own", "connection"], showFall);
+  showFall();
   return section(
     words.title,
     smoothingSwitch(app),
     numberRow(app, "smoothing.max_n_per_s", words.rise, strings.units.newtonPerSecond),
-    numberRow(app, "smoothing.min_n_per_s", words.fall, strings.units.newtonPerSecond),
+    fall,
     method,
     numberRow(app, "rate_hz", words.rate, strings.units.hertz),
   );

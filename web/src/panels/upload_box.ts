@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh of one's own: choose, upload, read what the import says, use it.
+// Upload of a mesh: choose a file, upload it, read the import's report, use the mesh.
+import { KeyType } from "../gen/phalanx/cockpit_pb";
 import { fromTyped, quote } from "../state/toml";
 import { strings } from "../strings";
 import type { ImportReport } from "../wire/http";
@@ -11,7 +12,7 @@ import { row } from "./setting_controls";
 
 const words = strings.object;
 
-/// The report in lines, for people.
+/// Writes the report in lines.
 export function reportLines(report: ImportReport): string[] {
   const facts = report.facts;
   if (!facts) return [...report.report];
@@ -53,7 +54,7 @@ export function uploadBox(app: App): UploadBox {
   let done: ImportReport | null = null; // of the file, size and unit that are shown
   let running: AbortController | null = null; // the upload whose answer is awaited
 
-  const number = () => Math.max(0, Number(fromTyped(size.value, "number")) || 0);
+  const number = () => Math.max(0, Number(fromTyped(size.value, KeyType.KEY_NUMBER)) || 0);
 
   function show(report_: ImportReport | null): void {
     done = report_;
@@ -74,7 +75,7 @@ export function uploadBox(app: App): UploadBox {
 
   const failed = (why: string): ImportReport => ({ ok: false, error: why, report: [], facts: null, findings: [], file: "" });
 
-  /// Another file, size or unit: what was said is not of it, and what is under way is given up.
+  /// Handles another file, size or unit: the report is removed, and a running upload is abandoned.
   function outdated(): void {
     running?.abort();
     running = null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The place of the 3D view: its buttons, its keys, and what is said while it cannot be shown.
+// The place of the 3D view: its buttons, its keys, and the text that replaces it if it cannot be shown.
 import type { Store } from "../state/store";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";

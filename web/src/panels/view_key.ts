@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lengths and colours in the 3D view mean.
+// The key of lengths and colours in the 3D view.
 import { strings } from "../strings";
 import { arrowLargestForce, arrowMetresPerNewton } from "../view3d/arrow_scale";
 import { forceStops } from "../view3d/force_colour";

@@ -68,7 +68,7 @@ export function chart(kind: PlotKind, history: History, theme: ThemeName, digits
   const label = `${strings.plots.titles[kind]}. ${strings.plots.keys}`;
   const element = el("div", { class: "plot", tabindex: 0, role: "application", "aria-label": label }, host, tip, spoken);
 
-  /// Values for people; only angles differ from what is kept.
+  /// Values as displayed; only angles differ from the stored ones.
   function values(curve: Curve): Float32Array {
     const kept = history.channel(curve.channel.index);
     if (curve.scale === 1) return kept;
@@ -95,7 +95,7 @@ export function chart(kind: PlotKind, history: History, theme: ThemeName, digits
     };
   }
 
-  /// What stands where the cursor is; null: it is nowhere.
+  /// The values at the cursor; null: there is no cursor.
   function pointedAt(u: uPlot): { readonly ago: number; readonly found: readonly Reading[] } | null {
     const { idx: at, left = -1, top = 0 } = u.cursor;
     const time = at === null || at === undefined ? undefined : u.data[0][at];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is plotted, as files.
+// Export of a plot as a file.
 import { channels } from "../state/channels";
 import { toCsv } from "../state/csv";
 import { kHistorySeconds, type Store } from "../state/store";

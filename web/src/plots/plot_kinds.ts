@@ -22,7 +22,7 @@ export interface Curve {
   readonly width: number;
   readonly dash: readonly number[];
   readonly label: string;
-  readonly scale: number; // of the value, for people: degrees
+  readonly scale: number; // factor from the stored to the displayed value: degrees
 }
 
 const segmentDash: readonly (readonly number[])[] = [[2, 4], [8, 4], []];

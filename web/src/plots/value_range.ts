@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of the values a plot shows, and what of them lies beyond it.
+// The range of values that a plot shows, and the values beyond it.
 import type { PlotKind } from "./plot_kinds";
 
 const kSmallest: Readonly<Record<PlotKind, number>> = { force: 1, torque: 0.02, angle: 10 }; // span of the axis at least
@@ -17,7 +17,7 @@ export function valueRange(kind: PlotKind, low: number | null, high: number | nu
   return [min < 0 ? min - room : 0, max + room];
 }
 
-/// Where a curve is cut off at the upper edge: the place of the highest value of each stretch beyond it.
+/// Finds where a curve is cut off at the upper edge: the place of the highest value of each stretch beyond it.
 export function peaksBeyond(values: ArrayLike<number | null | undefined>, top: number): number[] {
   const peaks: number[] = [];
   for (let i = 0; i < values.length; ++i) {

@@ -72,8 +72,7 @@ export function fillRow(tick: Tick, row: Float64Array): void {
   row[shown + kJoints] = tick.stiffness;
 }
 
-/// What a digit's contacts push with together: the length of the sum of the forces that are sent for its segments, which is what the
-/// station limits [N].
+/// @returns for each digit the length of the vector sum of the forces on its segments, which the station limits [N]
 export function digitForces(tick: Tick | undefined): number[] {
   const sums = Array.from({ length: kDigits }, () => [0, 0, 0] as [number, number, number]);
   for (const contact of tick?.contact ?? []) {

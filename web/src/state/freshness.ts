@@ -7,9 +7,9 @@ export const kStaleMs = 500;
 /// Where the page itself stood still, so much of the pause counts as the station's silence [ms].
 const kPauseMs = 100;
 
-/// Whether what is shown is alive: a newer step, made from a fresh measurement, has come within kStaleMs. A station whose device is
-/// silent goes on with the last sample and says so; one that was reset says the same step again and again. A page that slept
-/// wakes with a picture that is not alive, until the next step has come.
+/// The age of the displayed picture. It is fresh if a newer step from a new measurement has come within kStaleMs. A station whose device is
+/// silent continues with the last sample and states it; one that was reset repeats the same step. A page that slept wakes with an old
+/// picture, until the next step has come.
 export class Freshness {
   private measuredAt = -Infinity; // when the newest measured step came [ms], on the page's clock
   private heardAt = -Infinity; // when the station's clock was last seen to go on [ms], likewise
@@ -36,8 +36,8 @@ export class Freshness {
     this.beatAt = now;
   }
 
-  /// The station has said nothing for kStaleMs although the page listened. A page that was busy with itself, as while it brings in its
-  /// view, has a picture that is stale and a station that is not silent.
+  /// True if the station has sent nothing for kStaleMs although the page listened. While a page is busy, for example as it loads its view,
+  /// its picture is stale and the station is not silent.
   get silent(): boolean {
     return this.unheardMs >= kStaleMs;
   }

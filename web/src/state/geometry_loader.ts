@@ -20,7 +20,7 @@ export class GeometryLoader {
     void this.go();
   }
 
-  /// What is there may be another station's.
+  /// Drops the loaded geometry, which may be another station's.
   forget(): void {
     ++this.era;
     this.have = undefined;

@@ -20,7 +20,7 @@ export class History {
     return this.filled;
   }
 
-  /// A time that is not after the last one begins a new history: the station's clock began anew.
+  /// A time that is not after the last one begins a new history: the station's clock has restarted.
   push(time: number, row: ArrayLike<number>): void {
     if (this.filled > 0) {
       const last = this.times[this.head + this.capacity - 1]!;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may do what on this page, now.
+// The role of this page and what it may do.
 import type { State, Welcome } from "../gen/phalanx/cockpit_pb";
 
-/// mine: this page operates. Otherwise why it does not: no connection; the address only watches; somebody else operates; nobody does.
+/// mine: this page operates. Otherwise the reason: no connection; the address may only watch; another page operates; no page operates.
 export type Role = "mine" | "offline" | "watch_only" | "other" | "nobody";
 
 export function roleOf(connected: boolean, welcome: Welcome | undefined, state: State | undefined): Role {
@@ -15,7 +15,7 @@ export function roleOf(connected: boolean, welcome: Welcome | undefined, state: 
 export const mayChange = (role: Role): boolean => role === "mine";
 export const mayTake = (role: Role): boolean => role === "other" || role === "nobody";
 
-/// A wizard needs a device whose sensors a person moves.
+/// A wizard needs a device whose sensors the wearer moves.
 export function mayCalibrate(role: Role, state: State | undefined): boolean {
   return mayChange(role) && state !== undefined && !state.deviceSimulated && state.source === 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the page knows. Panels read it and are told when something in it changed.
+// The state that the page knows. Panels read it and are called when a part of it has changed.
 import type { Notice, State, ToPage, Welcome } from "../gen/phalanx/cockpit_pb";
 import { SafetyState, type Tick } from "../gen/phalanx/tick_pb";
 import type { Shapes } from "../view3d/shapes";
@@ -16,7 +16,7 @@ export const kHistorySeconds = 10;
 const kFramesPerSecond = 60;
 const kNoticesKept = 200;
 const kPendingMs = 1500;
-/// The station says its State twice a second; one that is older says nothing of now [ms].
+/// The station sends its State twice a second; an older one does not count as the present state [ms].
 export const kStateStaleMs = 1500;
 
 export type Topic = "state" | "tick" | "notice" | "geometry" | "connection" | "own";
@@ -55,7 +55,7 @@ export class Store {
     }
   }
 
-  /// A listener that throws is reported; the others are told all the same.
+  /// A listener that throws is reported; the others are still called.
   tell(topic: Topic): void {
     for (const listener of this.listeners.get(topic) ?? []) {
       try {
@@ -88,18 +88,18 @@ export class Store {
     return this.connected && this.lost && !this.unmeasured && !this.freshness.silent;
   }
 
-  /// What the station is known to be doing now; undefined: no connection, or it has said nothing for too long.
+  /// The newest State of the station; undefined: no connection, or it has been silent for too long.
   get known(): State | undefined {
     return this.connected && this.now() - this.stateAt <= kStateStaleMs ? this.state : undefined;
   }
 
-  /// What is drawn is not what is felt: its shape has not come yet.
+  /// The displayed shape is not the one in force, whose shape has not arrived yet.
   get shapeMissing(): boolean {
     const state = this.connected && this.stateAt !== -Infinity ? this.state : undefined;
     return state !== undefined && !state.stationGone && state.geometry !== this.shape;
   }
 
-  /// What is drawn says nothing of now.
+  /// The picture is old.
   get viewDead(): boolean {
     return this.lost || this.shapeMissing;
   }
@@ -112,7 +112,7 @@ export class Store {
     this.phase = phase;
     if (phase !== "open") {
       this.pending.clear();
-      this.shape = undefined; // another station counts its revisions anew
+      this.shape = undefined; // another station counts its revisions from the beginning
       this.stateAt = -Infinity;
     } else {
       this.freshness.listen();
@@ -171,7 +171,7 @@ export class Store {
     this.tell("tick");
   }
 
-  // ---- values of keys, with what this page has just asked for on top until the station has answered
+  // ---- values of keys; a value that this page has requested counts until the station has answered
 
   value(setting: string): string {
     const asked = this.pending.get(setting);
@@ -183,12 +183,12 @@ export class Store {
     return isChanged(this.state, setting);
   }
 
-  /// The page asked for it; an empty value asks for the scene's own, which is not known here.
+  /// Records a request; an empty value requests the scene's own, which is not known here.
   asked(setting: string, value: string): void {
     if (value !== "") this.pending.set(setting, { value, until: Infinity });
   }
 
-  /// It was answered. Where it was done, it stays on top for a moment: the State that says so may still be on its way.
+  /// Records an answer. A granted value counts for a moment more: the State that has it may still be on its way.
   answered(setting: string, value: string, ok: boolean): void {
     const asked = this.pending.get(setting);
     if (!asked || asked.value !== value) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// Passes values on at most `perSecond` times a second; the last one goes out for sure.
+/// Passes values on, at most `perSecond` a second. The last one is always passed on.
 export class Throttle<T> {
   private waiting: { readonly value: T } | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -15,7 +15,7 @@ export class Throttle<T> {
     this.interval = 1000 / perSecond;
   }
 
-  /// A value has been pushed and not yet passed on.
+  /// @returns whether a value has been pushed and not yet passed on
   get waits(): boolean {
     return this.waiting !== null;
   }
@@ -31,14 +31,14 @@ export class Throttle<T> {
     }
   }
 
-  /// Forgets what waits.
+  /// Drops the waiting value.
   clear(): void {
     clearTimeout(this.timer);
     this.timer = undefined;
     this.waiting = null;
   }
 
-  /// Sends what waits, at once.
+  /// Passes the waiting value on at once.
   flush(): void {
     clearTimeout(this.timer);
     this.timer = undefined;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values as they stand in a scene file.
+import { KeyType } from "../gen/phalanx/cockpit_pb";
 
 /// A basic string of TOML.
 export function quote(text: string): string {
@@ -15,7 +16,7 @@ export function quote(text: string): string {
 
 const escapes: Readonly<Record<string, string>> = { n: "\n", t: "\t", r: "\r", b: "\b", f: "\f" };
 
-/// What a person reads: a string without its quotes, anything else as it is.
+/// @returns the displayed text: a string without its quotes, anything else unchanged
 export function unquote(value: string): string {
   const text = value.trim();
   if (text.length >= 2 && text.startsWith("'") && text.endsWith("'")) return text.slice(1, -1);
@@ -54,25 +55,25 @@ export function same(a: string, b: string): boolean {
   return unquote(a) === unquote(b);
 }
 
-/// Numbers of controls: no digits that nobody chose.
+/// Writes numbers of controls, without digits that come from rounding.
 export function fromNumber(value: number): string {
   if (value === Infinity) return "inf";
   if (value === -Infinity) return "-inf";
   return String(Number(value.toPrecision(9)));
 }
 
-/// What a person typed, as a value of a key of this type (KeyInfo.type). A number may have a decimal comma; in a vector commas part numbers.
-export function fromTyped(text: string, type: string): string {
+/// Converts typed text to a value of a key of this type. A number may have a decimal comma; in a vector commas separate numbers.
+export function fromTyped(text: string, type: KeyType): string {
   const typed = text.trim();
   const point = typed.replace(/^([^,.]*),([^,.]*)$/, "$1.$2");
   switch (type) {
-    case "number":
+    case KeyType.KEY_NUMBER:
       return point;
-    case "integer":
-    case "flag":
-    case "vector":
+    case KeyType.KEY_INTEGER:
+    case KeyType.KEY_FLAG:
+    case KeyType.KEY_VECTOR:
       return typed;
-    case 'number or "off"':
+    case KeyType.KEY_NUMBER_OR_OFF:
       return unquote(typed) === "off" ? '"off"' : point;
     default:
       return quote(unquote(typed));

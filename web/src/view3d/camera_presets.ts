@@ -8,7 +8,7 @@ export interface CameraPlace {
   readonly target: Vector3;
 }
 
-/// What there is to see, in W, z up.
+/// The visible content, in W, z up.
 export interface Sight {
   readonly hand: readonly Vector3[]; // corners of its parts
   readonly object: readonly Vector3[]; // corners; none: an empty scene

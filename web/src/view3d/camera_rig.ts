@@ -101,7 +101,7 @@ export class CameraRig {
     this.leavePreset();
   };
 
-  /// Following goes on while people turn and zoom.
+  /// Following continues while the user turns and zooms.
   private leavePreset(): CameraPlace {
     const place = this.place();
     this.flight = null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebGL canvas: made, made anew where the quality asks for another kind, lost and restored.
+// The WebGL canvas: creation, replacement if the quality needs another kind, loss and restoration.
 import { PCFShadowMap, NeutralToneMapping, WebGLRenderer } from "three";
 
 /// no-webgl: this browser cannot draw; context-lost: the graphics card let go and did not come back; context-restored: it did.
@@ -11,11 +11,11 @@ export class Canvas {
   private renderer: WebGLRenderer | null = null;
   private antialias = false;
   private lostTimer: ReturnType<typeof setTimeout> | undefined;
-  private told = false; // of a trouble that is still there
+  private told = false; // a trouble that still exists has been reported
 
   /// @param redraw   what is on the canvas is gone
   /// @param release  the renderer goes: what it has drawn must not hold on to it
-  /// @param trouble  for the page to tell people
+  /// @param trouble  reports to the page
   constructor(
     private readonly surface: HTMLElement,
     private readonly redraw: () => void,
@@ -23,7 +23,7 @@ export class Canvas {
     private readonly trouble: (what: ViewTrouble) => void,
   ) {}
 
-  /// A renderer of this kind. Null, and trouble said, if there is none.
+  /// Makes a renderer of this kind. Reports the trouble and returns null if there is none.
   use(antialias: boolean): WebGLRenderer | null {
     if (this.renderer && this.antialias === antialias) return this.renderer;
     const next = create(antialias);

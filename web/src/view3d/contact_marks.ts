@@ -26,7 +26,7 @@ export interface Mark {
   readonly touching: boolean;
 }
 
-/// What a tick says of its contacts. Those without a whole point and direction are left out.
+/// Reads the contacts of a tick. Those without a whole point and direction are left out.
 export function marksOf(tick: Tick): Mark[] {
   const marks: Mark[] = [];
   for (const contact of tick.contact) {

@@ -104,7 +104,7 @@ export class HandPair {
     return look.shape.boxes.slice(0, kPalm).flatMap((box, segment) => (box.isEmpty() ? [] : [capsuleIn(box, look.shown.frame(segment))]));
   }
 
-  /// Gives back what a renderer holds of both looks, seen or not; what is drawn later is made anew.
+  /// Releases the renderer's resources of both looks, visible or not. Later drawing creates them again.
   release(): void {
     this.material.dispose();
     for (const look of [this.looks.skin, this.looks.segments]) {
@@ -131,7 +131,7 @@ export class HandPair {
     return { shown, ghost, ghostMaterials, shape };
   }
 
-  /// Puts the wanted look into the groups, where the hand is now.
+  /// Puts the requested look into the groups, at the hand's present place.
   private choose(): void {
     const next = (this.wantsSkin ? this.looks.skin : null) ?? this.looks.segments ?? this.looks.skin;
     if (next !== this.look) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in the picture: hand, ghost, object, contacts, floor and lights. Knows no canvas.
+// The content of the picture: hand, ghost, object, contacts, floor and lights. It does not use the canvas.
 import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { themes } from "../theme";
@@ -70,7 +70,7 @@ export class HandScene {
     return this.whole;
   }
 
-  /// What is drawn says nothing of now.
+  /// The picture is old.
   get dead(): boolean {
     return this.lost || !this.whole;
   }
@@ -125,7 +125,7 @@ export class HandScene {
     return thumb && index ? thumb.add(index).multiplyScalar(0.5) : null;
   }
 
-  /// Gives back what a renderer holds of it, so that the renderer can go; what is drawn later is made anew.
+  /// Releases the renderer's resources of the scene, so that the renderer can be deleted. Later drawing creates them again.
   release(): void {
     this.object?.geometry.dispose();
     this.hands.release();

@@ -14,7 +14,7 @@ export interface ShownParts {
   readonly object: boolean;
 }
 
-/// What was drawn in the last frame: for tests and the curious. World frame, metres.
+/// The content of the last frame, for tests and inspection. World frame, metres.
 export interface ViewProbe {
   readonly frames: number;
   readonly tick: bigint; // shown

@@ -33,7 +33,7 @@ export class PosedHand {
     this.meshes = materials.map((material) => {
       const mesh = new SkinnedMesh(shape.geometry, material);
       mesh.bind(this.skeleton, new Matrix4());
-      mesh.frustumCulled = false; // its box in the bind pose says nothing about where it is
+      mesh.frustumCulled = false; // its box in the bind pose does not bound the posed hand
       mesh.matrixAutoUpdate = false;
       return mesh;
     });
@@ -102,12 +102,12 @@ export class PosedHand {
     for (const mesh of this.meshes) mesh.visible = visible;
   }
 
-  /// What a renderer holds of it.
+  /// Releases the texture of the bones.
   release(): void {
     this.skeleton.boneTexture?.dispose();
   }
 
-  /// Its bones' texture; the shape belongs to whoever made it.
+  /// Removes the meshes and disposes of the skeleton. The shape belongs to the caller that made it.
   dispose(): void {
     for (const mesh of this.meshes) mesh.removeFromParent();
     this.skeleton.dispose();

@@ -75,7 +75,7 @@ export class QualityWatch {
     return this.level < highestQuality && this.fastFor > this.patience && this.tries < kMostTries && this.up();
   }
 
-  /// The next frame's time says nothing: the page was hidden, the canvas resized, a new shape came.
+  /// The next frame's time does not count: the page was hidden, the canvas resized, or a new shape came.
   interrupted(): false {
     this.frames = this.sum = 0;
     this.settle = kSettle;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Shapes } from "./shapes";
 
-/// What of a Worker is used here.
+/// The part of a Worker that is used here.
 export interface ShapesWorker {
   onmessage: ((event: { readonly data: Shapes }) => void) | null;
   onerror: ((event: unknown) => void) | null;

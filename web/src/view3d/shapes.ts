@@ -7,7 +7,7 @@ import { roundedMesh } from "./rounded_mesh";
 import { kSegments } from "./segments";
 
 export const kInfluences = 4;
-const kRoundBelow = 6000; // triangles; a finer skin is round by itself
+const kRoundBelow = 6000; // triangles; a finer skin looks round without rounding
 const kSegmentCrease = (50 * Math.PI) / 180;
 const kObjectCrease = (38 * Math.PI) / 180;
 
@@ -28,7 +28,7 @@ export interface SkinSurface extends BonedSurface {
   readonly source: Uint32Array; // of its first vertices: which vertex of the station's skin each is; those behind lie between
 }
 
-/// What the page keeps of a Geometry.
+/// The part of a Geometry that the page keeps.
 export interface Shapes {
   readonly left: boolean;
   readonly segmentName: readonly string[];
@@ -49,7 +49,7 @@ export function shapesOf(geometry: Geometry): Shapes {
   };
 }
 
-/// What of it is handed over from one thread to another, not copied.
+/// The buffers that are transferred from one thread to another, not copied.
 export function buffersOf(shapes: Shapes): ArrayBufferLike[] {
   return [shapes.skin, shapes.segments, shapes.object].flatMap((surface) =>
     Object.values(surface ?? {}).flatMap((array: unknown) => (ArrayBuffer.isView(array) ? [array.buffer] : [])),

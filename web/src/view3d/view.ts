@@ -15,7 +15,7 @@ export type { ViewTrouble } from "./canvas";
 
 export interface HandViewOptions {
   readonly quality?: number; // 0 .. 3: stays there; otherwise it finds its own
-  readonly onTrouble?: (what: ViewTrouble) => void; // the page has to tell people
+  readonly onTrouble?: (what: ViewTrouble) => void; // the page has to report it
 }
 
 /// @param host  an element with a size of its own; the view fills it
@@ -36,7 +36,7 @@ class View implements HandView {
   private readonly resizing: ResizeObserver;
   private renderer: WebGLRenderer | null = null;
   private request = 0; // of the next frame, 0: none
-  private demanded = 0; // when it was asked for [s]
+  private demanded = 0; // time of the request [s]
   private lastFrame = 0;
   private frames = 0;
   private recent: number[] = []; // when the frames of the last second were

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket to the station: says hello, keeps the page's secret, numbers requests, and comes back by itself.
+// The WebSocket to the station. It sends hello, keeps the page's secret, numbers requests, and reconnects by itself.
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 import { HelloSchema, SeenSchema, ToHostSchema, ToPageSchema, type ToHost, type ToPage } from "../gen/phalanx/cockpit_pb";
 
-export const kProtocol = 1; // Cockpit::kProtocol
+export const kProtocol = 2; // Cockpit::kProtocol
 
-/// connecting: no Welcome yet; open: it came; waiting: until the next try; mismatch: the station speaks another protocol; expired: the
-/// station does not let this page's link in any more (it is tried on, but that is not shown).
+/// connecting: no Welcome yet; open: it has arrived; waiting: until the next try; mismatch: the station has another protocol; expired: the
+/// station refuses this page's link (further tries follow, but are not shown).
 export type Phase = "connecting" | "open" | "waiting" | "mismatch" | "expired" | "replaced";
 
-/// What of a WebSocket is used here.
+/// The part of a WebSocket that is used here.
 export interface Socket {
   binaryType: string;
   onopen: (() => void) | null;
@@ -26,7 +26,7 @@ export interface Memory {
 
 export interface Answer {
   readonly ok: boolean;
-  readonly error: string; // why not; empty: the connection was lost before an answer came
+  readonly error: string; // the reason of a refusal; empty: the connection was lost before an answer
 }
 
 export interface ConnectionParts {
@@ -35,21 +35,21 @@ export interface ConnectionParts {
   readonly name: () => string;
   readonly onPhase: (phase: Phase) => void;
   readonly onMessage: (message: ToPage) => void;
-  readonly onBroken?: (reason: unknown) => void; // a frame that is no ToPage: dropped
-  readonly linkExpired?: () => Promise<boolean>; // asked after some tries in vain: whether the station refuses this page's address
+  readonly onBroken?: (reason: unknown) => void; // a frame that is not a ToPage: dropped
+  readonly linkExpired?: () => Promise<boolean>; // called after some failed tries; returns whether the station refuses this page's address
   readonly random?: () => number; // [0, 1)
 }
 
 export const kFirstWaitMs = 250;
 export const kLongestWaitMs = 4000;
-/// Waits are longer or shorter by up to this share, so that many pages do not come back all at once.
+/// Waits vary by up to this share, so that many pages do not reconnect at once.
 const kJitter = 0.2;
 /// A connection that ends sooner after its Welcome counts as a failed try [ms].
 export const kSettledMs = 2000;
 const kTriesBeforeDoubt = 3;
-/// Ticks that were taken in are said after the first and after so many.
+/// Ticks are acknowledged after the first and after so many.
 export const kSeenEvery = 3;
-/// A station says something twice a second; a line that is silent for so long is dead, whatever the socket believes.
+/// A station sends twice a second. A connection that is silent for so long is lost, for any state of the socket.
 export const kSilenceMs = 5000;
 
 export type Request = ToHost["what"];
@@ -108,7 +108,7 @@ export class Connection {
     return this.state === "open" && this.post(what, 0);
   }
 
-  /// Sends and waits for the host's answer.
+  /// Sends a request and waits for the host's answer.
   ask(what: Request): Promise<Answer> {
     const request = this.nextRequest++;
     if (this.state !== "open" || !this.post(what, request)) {
@@ -166,7 +166,7 @@ export class Connection {
     this.parts.onMessage(message);
   }
 
-  /// Newer ticks wait until the station knows that these have come.
+  /// Newer ticks wait until the station has the acknowledgement of these.
   private seen(): void {
     ++this.ticks;
     if (this.ticks === 1n || this.ticks % BigInt(kSeenEvery) === 0n) {

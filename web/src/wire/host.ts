@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page may ask of the station, by name.
+// The requests of a page to the station.
 import { create } from "@bufbuild/protobuf";
 import {
   CalibrateSchema,
@@ -19,10 +19,10 @@ import {
 } from "../gen/phalanx/cockpit_pb";
 import type { Answer, Connection } from "./connection";
 
-/// A key and its value as it would stand in a scene file; an empty value goes back to the scene's own.
+/// A key and its value as in a scene file. An empty value restores the scene's own.
 export type Change = readonly [key: string, value: string];
 
-/// How long the socket may take to confirm a stop before it is said by HTTP too [ms].
+/// Time that the socket has to confirm a stop before the stop is sent by HTTP, too [ms].
 const kStopPatienceMs = 300;
 
 export class Host {
@@ -31,8 +31,8 @@ export class Host {
     private readonly fallback: () => Promise<boolean>,
   ) {}
 
-  /// Says it by the socket and, where that is down or does not confirm it soon, by HTTP as well.
-  /// @param patience  how long the socket has [ms]
+  /// Sends a stop by the socket. If the socket is down or does not confirm it soon, sends it by HTTP as well.
+  /// @param patienceMs  time that the socket has [ms]
   /// @returns whether the station confirmed it
   async stop(patienceMs = kStopPatienceMs): Promise<boolean> {
     const bySocket = this.connection.ask({ case: "stop", value: create(StopSchema) });
@@ -46,18 +46,18 @@ export class Host {
     ).catch(() => false);
   }
 
-  /// @param dragging  later values of the same keys follow: the log takes the last one
+  /// @param dragging  later values of the same keys follow; the log has the last one
   set(changes: readonly Change[], dragging = false): Promise<Answer> {
     const setting = changes.map(([key, value]) => create(SettingSchema, { key, value }));
     return this.connection.ask({ case: "set", value: create(SetSchema, { setting, dragging }) });
   }
 
-  /// @param stops  of the State that the person sees
+  /// @param stops  of the displayed State
   resume(stops: bigint): Promise<Answer> {
     return this.connection.ask({ case: "resume", value: create(ResumeSchema, { stops }) });
   }
 
-  /// @param faultTime  of the fault that the person sees; 0: there is none, a new try is wanted
+  /// @param faultTime  of the displayed fault; 0: none, a new try of a station is requested
   reset(faultTime: number): Promise<Answer> {
     return this.connection.ask({ case: "reset", value: create(ResetSchema, { faultTime }) });
   }

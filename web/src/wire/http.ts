@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes over plain HTTP: shapes, uploads, and the stop that is left when the socket is down.
+// Requests over plain HTTP: shapes, uploads, and the stop while the socket is down.
 import { strings } from "../strings";
 
 const kGeometryMs = 10_000;
@@ -46,7 +46,7 @@ export async function postStop(secret: string): Promise<boolean> {
   }
 }
 
-/// What the import says of a mesh.
+/// The import's report on a mesh.
 export interface ImportReport {
   readonly ok: boolean;
   readonly error: string;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the browser remembers for the page. A browser that forbids it only forgets.
+// The page's memory in the browser. If the browser forbids it, nothing is stored.
 
 function read(storage: () => Storage, key: string): string {
   try {

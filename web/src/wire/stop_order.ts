@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stop that somebody said on this page, until the station has confirmed it: it is owed, and said again and again.
+// A stop that was pressed on this page. It is sent again and again until the station has confirmed it.
 import type { State } from "../gen/phalanx/cockpit_pb";
 
-/// none: nobody said it; sent: on its way; owed: not confirmed, said again; confirmed: the station has it.
+/// none: not pressed; sent: on its way; owed: not confirmed, sent again; confirmed: the station has applied it.
 export type StopProgress = "none" | "sent" | "owed" | "confirmed";
 
-/// An owed stop is said again so often [ms].
+/// Interval at which an owed stop is sent again [ms].
 export const kStopAgainMs = 1000;
 
 export class StopOrder {
@@ -14,8 +14,8 @@ export class StopOrder {
   private stopsThen = -1n; // State.stops when it was pressed; -1: anything newer counts
   private again: ReturnType<typeof setInterval> | undefined;
 
-  /// @param say      one try, by the socket and by HTTP; whether the station confirmed it
-  /// @param changed  the progress is another one
+  /// @param say      makes one try, by the socket and by HTTP; returns whether the station confirmed it
+  /// @param changed  called when the progress has changed
   constructor(
     private readonly say: (atOnce: boolean) => Promise<boolean>,
     private readonly changed: () => void,
@@ -29,7 +29,7 @@ export class StopOrder {
     return this.now === "sent" || this.now === "owed";
   }
 
-  /// @param known  the newest State, where there is one that is worth something
+  /// @param known  the newest State, if there is a valid one
   press(known: State | undefined): void {
     ++this.newest;
     this.stopsThen = known?.stops ?? -1n;
@@ -42,14 +42,14 @@ export class StopOrder {
     void this.attempt(false);
   }
 
-  /// A new connection: what is owed is said there first. Whatever it then says of a stop is newer than the press.
+  /// Handles a new connection: an owed stop is sent there first. Each State of the connection is newer than the press.
   welcomed(): void {
     if (!this.open) return;
     this.stopsThen = -1n;
     void this.attempt(true);
   }
 
-  /// What the station is known to be doing; undefined: nothing.
+  /// Takes the newest State of the station; undefined: none is known.
   heard(known: State | undefined): void {
     if (!known) return;
     if (this.open && known.heldStopped && known.stops > this.stopsThen) this.enter("confirmed");

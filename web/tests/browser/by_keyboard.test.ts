@@ -72,7 +72,7 @@ describe("by keyboard", () => {
   it("switches smoothing on with Enter, and the hand settles", async () => {
     await tabTo(strings.calm.smoothing, "button");
     await cockpit.page.keyboard.press("Enter");
-    await cockpit.untilState("smoothing in force", (state) => valueOf(state, "smoothing.enabled") === "true");
+    await cockpit.untilState("smoothing in force", (state) => valueOf(state, "stabiliser.method") === '"smoothing"');
     await until(
       "steady",
       async () => (await cockpit.verdict()) === "steady" && !cockpit.stream.ticks.slice(-60).some((tick) => tick.contact.some((contact) => contact.oscillating)),

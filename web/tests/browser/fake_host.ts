@@ -10,7 +10,9 @@ import {
   ChangeKind,
   HandSource,
   KeyInfoSchema,
+  KeyType,
   NoticeSchema,
+  NumberRangeSchema,
   StateSchema,
   ToHostSchema,
   ToPageSchema,
@@ -21,22 +23,51 @@ import {
 } from "../../src/gen/phalanx/cockpit_pb";
 import { GeometrySchema, type Geometry } from "../../src/gen/phalanx/geometry_pb";
 import { SafetyState, TickSchema, type Tick } from "../../src/gen/phalanx/tick_pb";
+import { strings } from "../../src/strings";
+import { kProtocol } from "../../src/wire/connection";
 import { recording } from "./view3d_page/server";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = resolve(here, "../../..");
 const kPeriodMs = 1000 / 60;
 
+/// Bounds as docs/scenes.md writes them: "> 0, <= 15", ">= -1000000, < 0, or -inf".
+function rangeOfDocs(text: string): MessageInitShape<typeof NumberRangeSchema> {
+  const parts = text.split(", ");
+  const bound = (sign: string) => parts.find((part) => part.startsWith(sign))?.split(" ");
+  const lower = bound(">");
+  const upper = bound("<");
+  return {
+    min: Number(lower?.[1] ?? -Infinity), max: Number(upper?.[1] ?? Infinity),
+    minOpen: lower?.[0] === ">", maxOpen: upper?.[0] === "<", minusInfinity: parts.includes("or -inf"),
+  };
+}
+
+/// The kinds that a meaning begins with, "(bottle cup) outer diameter; default of cup 75", with their defaults.
+function kindsOfDocs(meaning: string, defaultValue: string): { kind: string; defaultValue: string }[] {
+  if (!meaning.startsWith("(")) return [];
+  const own = new Map((meaning.split("; default of ")[1] ?? "").split(/, (?=[a-z])/).map((one) => [one.slice(0, one.indexOf(" ")), one.slice(one.indexOf(" ") + 1)]));
+  return meaning.slice(1, meaning.indexOf(")")).split(" ").map((kind) => ({ kind, defaultValue: own.get(kind) ?? defaultValue }));
+}
+
+/// A meaning without the kinds and their defaults.
+const plain = (meaning: string) => meaning.slice(meaning.startsWith("(") ? meaning.indexOf(")") + 2 : 0).split("; default of ")[0]!;
+
 /// The keys as docs/scenes.md lists them.
 export function keysOfDocs(): KeyInfo[] {
   const lines = readFileSync(join(root, "docs/scenes.md"), "utf8").split("\n");
   const bare = (text: string) => text.trim().replace(/^`(.*)`$/, "$1");
   return lines
-    .filter((line) => /^\| `[a-z_.[\]]+` \| (number|integer|flag|text|choice|vector|file|name)/.test(line))
+    .filter((line) => /^\| `[a-z0-9_.[\]]+` \| (number|integer|flag|text|choice|vector|file|name)/.test(line))
     .map((line) => {
-      const [path, type, unit, range, value, meaning] = line.split("|").slice(1).map((cell) => bare(cell));
+      const [path, typeName, unit, range, value, meaning] = line.split("|").slice(1).map((cell) => bare(cell));
+      const type: KeyType = strings.settings.types.indexOf(typeName!);
+      const numeric = [KeyType.KEY_NUMBER, KeyType.KEY_NUMBER_OR_OFF, KeyType.KEY_INTEGER, KeyType.KEY_VECTOR].includes(type);
       return create(KeyInfoSchema, {
-        path: path!, type: type!, unit: unit!, range: range!, defaultValue: value!, meaning: meaning!,
+        path: path!, type, unit: unit!, defaultValue: value!, meaning: plain(meaning!),
+        ...(numeric ? { range: rangeOfDocs(range!) } : {}),
+        choice: type === KeyType.KEY_CHOICE ? range!.split(", ") : [],
+        kind: path!.startsWith("objects[].") ? kindsOfDocs(meaning!, value!) : [],
         change: /^(force|smoothing|stabiliser)/.test(path!) ? ChangeKind.CHANGE_IN_CONTACT : ChangeKind.CHANGE_NEW_STATION,
       });
     });
@@ -75,6 +106,7 @@ export class FakeHost {
   mayOperate = true;
   shaking = false;
   touching = true;
+  silent: readonly number[] = []; // digits that began inside the object
   playing = true;
   down = false;
   geometryOf: Geometry;
@@ -187,7 +219,7 @@ export class FakeHost {
     this.send({
       case: "welcome",
       value: create(WelcomeSchema, {
-        protocol: 1, version: "0.7.0", page: this.page, secret: "s3cret", mayOperate: this.mayOperate, key: keysOfDocs(),
+        protocol: kProtocol, version: "0.7.0", page: this.page, secret: "s3cret", mayOperate: this.mayOperate, key: keysOfDocs(),
         scene: scenes.map((name) => ({ name, meaning: `${name.replaceAll("_", " ")}, as shipped` })),
         profile: ["large-man", "small-woman", "stiff-hand"].map((name) => ({ name, meaning: name })),
         past: [
@@ -216,7 +248,7 @@ export class FakeHost {
       case: "tick",
       value: create(TickSchema, {
         ...source,
-        tick: BigInt(this.step), time, factor: stopped ? 0 : 1, atRest: stopped, state: this.state.safety,
+        tick: BigInt(this.step), time, factor: stopped ? 0 : 1, atRest: stopped, state: this.state.safety, startedInside: [...this.silent],
         hcpAngle: Array.from({ length: 20 }, (_, i) => (i % 4 === 1 ? 0.05 : flexion * (1 - 0.02 * i)) + 0.05),
         gdpAngle: Array.from({ length: 20 }, (_, i) => (i % 4 === 1 ? 0.05 : Math.min(flexion * (1 - 0.02 * i), 0.6))),
         torque: Array.from({ length: 20 }, (_, i) => (stopped ? 0 : 0.02 * Math.sin(time + i))),

@@ -84,7 +84,7 @@ describe("shake and settle", () => {
 
   it("settles when smoothing is switched on, and stays so", async () => {
     await cockpit.switch(strings.calm.smoothing).click();
-    await cockpit.untilState("smoothing in force", (state) => state.value.some((one) => one.key === "smoothing.enabled" && one.value === "true"));
+    await cockpit.untilState("smoothing in force", (state) => state.value.some((one) => one.key === "stabiliser.method" && one.value === '"smoothing"'));
     await until(
       "the light says steady, for a contact with force",
       async () => (await cockpit.verdict()) === "steady" && !cockpit.stream.ticks.slice(-60).some(shakes),

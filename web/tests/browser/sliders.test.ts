@@ -2,9 +2,11 @@
 // Without a patient: every slider moves its joint, the object is met and felt, and the patient comes back.
 import { beforeAll, describe, expect, it } from "vitest";
 import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
+import { silentText } from "../../src/panels/readouts";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
-import { differing } from "./support/pictures";
+import { faultsOfLayout, kSizes } from "./support/layout";
+import { differing, shoot } from "./support/pictures";
 import { small, stage } from "./support/stage";
 import { until } from "./support/until";
 
@@ -101,6 +103,28 @@ describe("the sliders", () => {
     expect(probe.arrows[0]!.length).toBeGreaterThan(0);
     await cockpit.button(strings.hand.open).click();
     await until("nothing is touched", () => cockpit.stream.newest!.contact.length === 0, () => cockpit.brief());
+  });
+
+  it("close on an object that then changes: the page says which digits feel nothing of it, until the hand is opened", async () => {
+    const { page, stream } = cockpit;
+    const line = page.locator(".silent-digits");
+    expect(await line.textContent()).toBe("");
+    await cockpit.button(strings.hand.fist).click();
+    await cockpit.untilTouching();
+    await cockpit.tab("touch");
+    await cockpit.fieldLike(strings.object.sizes["diameter_mm"]!).fill("68"); // the shown hand begins at the open hand again
+    await cockpit.button(strings.object.use).click();
+    const digits = await until("digits that began inside", () => stream.newest!.startedInside.length > 0 && stream.newest!.startedInside, () => cockpit.brief());
+    await until("the line names them", async () => (await line.textContent()) === silentText(digits), async () => `it says "${await line.textContent()}"`);
+    for (const [width, height] of kSizes) {
+      await page.setViewportSize({ width, height });
+      expect.soft(await page.evaluate(faultsOfLayout), `${width} x ${height}`).toEqual([]);
+      await shoot(page, `silent_digits_${width}`);
+    }
+    await page.setViewportSize(small.viewport!);
+    await cockpit.tab("hand");
+    await cockpit.button(strings.hand.open).click();
+    await until("the line is gone", async () => (await line.textContent()) === "" && stream.newest!.startedInside.length === 0, () => cockpit.brief());
   });
 
   it("give the hand back to the patient", async () => {

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The Phalanx link, version 1: what an exoskeleton's controller and its host say to each other, over UDP (a
- * frame a datagram) or over a serial line (COBS, a zero byte after each frame). This header and
- * phalanx_link.c are the reference: C99, no allocation, no other file, no operating system. Firmware may take
- * both as they are; docs/link.md has every byte for those who write their own.
+ * The Phalanx link, version 1: the messages between an exoskeleton's controller and its host. They go over
+ * UDP (one frame a datagram) or over a serial line. A serial line uses COBS (Consistent Overhead Byte
+ * Stuffing) with a zero byte after each frame. This header and phalanx_link.c are the reference: C99, no
+ * allocation, no other file, no operating system. Firmware may use both unchanged (bytes: docs/link.md).
  *
- * All numbers are little-endian, floats IEEE 754 binary32. SI and radians, but for raw counts. A frame is
- *   header (16 bytes), payload of the type's fixed size, CRC-32 (IEEE 802.3) of everything before it.
+ * All numbers are little-endian, floats IEEE 754 binary32. Units are SI and radians, except for raw counts.
+ * CRC-32 is the cyclic redundancy check of IEEE 802.3. A frame is
+ *   header (16 bytes), payload of the type's fixed size, CRC-32 of everything before it.
  */
 #ifndef PHALANX_DEVICE_LINK_PHALANX_LINK_H
 #define PHALANX_DEVICE_LINK_PHALANX_LINK_H
@@ -30,34 +31,35 @@ extern "C" {
 #define PHX_FRAME_MAX 1024u /* no frame is larger; see phx_frame_size() */
 #define PHX_COBS_MAX (PHX_FRAME_MAX + PHX_FRAME_MAX / 254u + 2u) /* encoded, with the closing zero */
 
-/* What a frame is. Sender: H host, C controller. */
+/* Type of a frame. Sender: H host, C controller. */
 enum phx_type {
   PHX_HELLO = 1,         /* H  asks for the session */
-  PHX_WELCOME = 2,       /* C  grants it: who it is, its channels, the session's epoch */
-  PHX_REFUSED = 3,       /* C  does not */
-  PHX_CONFIGURE = 4,     /* H  calibration and limits; repeated until a sample says `configured` */
+  PHX_WELCOME = 2,       /* C  grants it: serial number, channels, the session's epoch */
+  PHX_REFUSED = 3,       /* C  refuses it */
+  PHX_CONFIGURE = 4,     /* H  calibration and limits; repeated until a sample has CONFIGURED */
   PHX_SAMPLE = 5,        /* C  every tick of the controller while a session is open */
   PHX_COMMAND = 6,       /* H  torques, repeated at 1 kHz */
   PHX_COMMAND_WALLS = 7, /* H  torques and local walls */
   PHX_RESET = 8,         /* H  clears a latched fault whose cause is gone */
   PHX_GOODBYE = 9,       /* H  gives the session back */
-  PHX_PING = 10,         /* H  anyone may; answered with PONG */
+  PHX_PING = 10,         /* H  any sender may; answered with PONG */
   PHX_PONG = 11          /* C */
 };
 
+/* Reason of a refused HELLO. */
 enum phx_refusal {
   PHX_REFUSED_BUSY = 1,   /* another host has the session */
   PHX_REFUSED_VERSION = 2 /* this controller speaks phx_refused.version */
 };
 
-/* What a channel measures, and what `index` counts. */
+/* Quantity that a channel measures, and the meaning of `index`. */
 enum phx_channel_kind {
   PHX_CHANNEL_ANGLE = 0,  /* joint angle [rad]; index: joint, 0 .. 19 */
   PHX_CHANNEL_TORQUE = 1, /* torque on a joint [Nm]; index: joint */
   PHX_CHANNEL_FORCE = 2,  /* force at a digit's tip [N]; index: digit, 0 thumb .. 4 little */
   PHX_CHANNEL_MOTOR =
-      3, /* what a motor has wound up [m]; index: motor, in the order of their names in the device file */
-  PHX_CHANNEL_CURL = 4, /* one number for a whole digit: 0 open .. 1 closed; index: digit */
+      3, /* wound length of a motor [m]; index: motor, in the order of their names in the device file */
+  PHX_CHANNEL_CURL = 4, /* a whole digit: 0 open .. 1 closed; index: digit */
   PHX_CHANNEL_SPLAY = 5 /* abduction of a digit, -1 .. 1 of its range; index: digit */
 };
 
@@ -71,15 +73,16 @@ typedef struct {
   float offset; /* nominal */
 } phx_channel;
 
-/* Why the controller is latched. The host's own faults continue this list (phalanx/device/fault.h). */
+/* Reason of the controller's latch. The host's own faults continue this list (phalanx/device/fault.h). */
 enum phx_fault {
   PHX_FAULT_NONE = 0,
   PHX_FAULT_STEP_TOO_OLD = 1,   /* the step acted on became PHX_LATCH_AGE_US old */
-  PHX_FAULT_SENSOR_RANGE = 2,   /* a raw value was outside its channel's range in 3 samples running */
+  PHX_FAULT_SENSOR_RANGE = 2,   /* a raw value was outside its channel's range in 3 samples in a row */
   PHX_FAULT_EMERGENCY_STOP = 3, /* the emergency stop was pressed */
   PHX_FAULT_DRIVE = 4           /* the device's own: a motor driver, a supply, a temperature */
 };
 
+/* State of the controller. */
 enum phx_state {
   PHX_STATE_NO_SESSION = 0, /* zero torque */
   PHX_STATE_READY = 1,      /* session open, not enabled: zero torque, or on its way there */
@@ -89,16 +92,16 @@ enum phx_state {
   PHX_STATE_LATCHED = 5     /* zero torque until RESET */
 };
 
-/* The AGE of a step is the controller's time less its own time of the sample that the step was computed from,
- * which every command carries back. No clocks need to agree, and no repetition or queue can make an old step
- * look new. */
+/* The AGE of a step is the controller's time minus its own time of the sample that the step was computed
+ * from. Every command carries that time back. No clocks need to agree, and no repetition or queue can make an
+ * old step look new. */
 #define PHX_HOLD_AGE_US 14000u /* up to here the step acts in full */
 #define PHX_LATCH_AGE_US \
-  20000u /* from there it falls in a straight line to zero, here it is zero and latched */
+  20000u /* from PHX_HOLD_AGE_US on it falls linearly to zero; here it is zero and latched */
 #define PHX_START_RAMP_US 1000000u
-#define PHX_STOP_RAMP_US 5000u /* from the largest torque to zero, whatever the rate limit */
+#define PHX_STOP_RAMP_US 5000u /* from the largest torque to zero, for any rate limit */
 #define PHX_SESSION_US \
-  1000000u                 /* without a frame of its host for so long, a session may be taken by another */
+  1000000u                 /* without a frame of its host for this long, another host may take a session */
 #define PHX_BAD_SAMPLES 3u /* of a channel, in a row, until the controller latches */
 
 typedef struct {
@@ -110,11 +113,11 @@ typedef struct {
 } phx_header;
 
 typedef struct {
-  uint64_t host_id; /* random for each run of a host: who owns the session */
+  uint64_t host_id; /* random for each run of a host; identifies the session's owner */
 } phx_hello;
 
 typedef struct {
-  uint64_t host_id; /* that it answers */
+  uint64_t host_id; /* of the HELLO that it answers */
   char serial[PHX_SERIAL_SIZE];
   uint16_t rate_hz; /* of samples and control */
   uint8_t channel_count;
@@ -143,7 +146,7 @@ typedef struct {
   uint32_t acted_age_us; /* its age at this sample */
   uint8_t state;         /* enum phx_state */
   uint8_t flags;         /* PHX_SAMPLE_* */
-  uint16_t fault;        /* enum phx_fault; what it is latched for */
+  uint16_t fault;        /* enum phx_fault that it is latched for */
   uint8_t fault_channel; /* of SENSOR_RANGE */
   float factor;          /* on the commanded torque: 0 .. 1 */
   uint32_t corrupt;      /* frames dropped: not a frame, CRC, size, version, a number not finite */
@@ -153,7 +156,7 @@ typedef struct {
 } phx_sample;
 
 #define PHX_COMMAND_FAULT \
-  0x02u /* the host is in fault: whatever ENABLE says, torque is zero within PHX_STOP_RAMP_US */
+  0x02u /* the host is in fault: torque is zero within PHX_STOP_RAMP_US, also with ENABLE */
 #define PHX_COMMAND_ENABLE 0x01u /* without it the torque goes to zero and the state to READY, no fault */
 
 typedef struct {
@@ -163,8 +166,8 @@ typedef struct {
   float torque[PHX_JOINTS]; /* [Nm] */
 } phx_command;
 
-/* One contact, linearised at q_ref: f = clamp(stiffness (d_ref - g . (q - q_ref)), 0, force_max), torque g f
- * in place of the g host_force that `torque` holds for it. */
+/* One contact, linearised at q_ref:  f = clamp(stiffness (d_ref - g . (q - q_ref)), 0, force_max).  Its
+ * torque g f replaces the g host_force that `torque` contains for it. */
 typedef struct {
   float g[PHX_WALL_JOINTS]; /* [m] */
   float d_ref;              /* [m] */
@@ -181,7 +184,7 @@ typedef struct {
 } phx_command_walls;
 
 typedef struct {
-  uint64_t stamp;   /* of whoever asks; comes back as it is */
+  uint64_t stamp;   /* of the sender of PING; returned unchanged */
   uint64_t time_us; /* PONG: the controller's clock; PING: 0 */
 } phx_ping;         /* PONG has the same payload */
 
@@ -201,13 +204,14 @@ typedef struct {
 
 /* ---- frames ---- */
 
-/* Size of a frame of a type, header and CRC included; 0 for an unknown type. */
+/* Returns the size of a frame of a type, header and CRC included; 0 for an unknown type. */
 size_t phx_frame_size(uint8_t type);
 
 /* Writes `message` into `out`; header.type, epoch and sequence are taken from it, version and size are set.
  * Returns the frame's size, 0 if the type is unknown or `capacity` too small. */
 size_t phx_encode(const phx_message* message, uint8_t* out, size_t capacity);
 
+/* Result of phx_decode(). */
 enum phx_decoded {
   PHX_OK = 0,
   PHX_NOT_A_FRAME = 1, /* too short, wrong first bytes, unknown type, or a size that is not the type's */
@@ -219,10 +223,11 @@ enum phx_decoded {
 /* Reads one frame. `message` is whole only after PHX_OK. Any bytes of any size are allowed. */
 enum phx_decoded phx_decode(const uint8_t* frame, size_t size, phx_message* message);
 
-/* COBS with the closing zero. Returns the encoded size, 0 if `capacity` is too small. */
+/* Encodes with COBS and the closing zero. Returns the encoded size, 0 if `capacity` is too small. */
 size_t phx_cobs_encode(const uint8_t* frame, size_t size, uint8_t* out, size_t capacity);
 
-/* Collects a serial stream into frames: memory for one frame, resynchronises at the next zero byte. */
+/* Receiver that collects a serial stream into frames. It has memory for one frame, and resynchronises at the
+ * next zero byte. */
 typedef struct {
   uint8_t frame[PHX_FRAME_MAX]; /* decoded so far */
   size_t size;
@@ -233,9 +238,10 @@ typedef struct {
   uint32_t dropped; /* frames that were broken */
 } phx_receiver;
 
+/* Empties a receiver. */
 void phx_receiver_init(phx_receiver* receiver);
-/* Takes one byte. Returns the size of a frame that it completes, which then stands in receiver->frame until
- * the next call; else 0. */
+/* Takes one byte. If the byte completes a frame, returns its size; the frame stays in receiver->frame until
+ * the next call. Else returns 0. */
 size_t phx_receiver_take(phx_receiver* receiver, uint8_t byte);
 
 /* ---- the controller's side of a session: what firmware calls ---- */
@@ -252,8 +258,8 @@ typedef struct {
 typedef struct {
   phx_device device;
   uint32_t epoch;          /* of the session; also the last one given out */
-  uint64_t host_id;        /* whose session it is */
-  uint32_t hello_sequence; /* of the HELLO that opened it: the same or an older one is a repetition */
+  uint64_t host_id;        /* owner of the session */
+  uint32_t hello_sequence; /* of the HELLO that opened it; an older or equal one is a repetition */
   bool session;            /* a session is open */
   uint64_t heard_us;       /* when its host was last heard */
   bool configured;
@@ -267,7 +273,7 @@ typedef struct {
   uint64_t reset_us;        /* of the last RESET: steps from earlier samples are not taken */
   float factor;             /* of the last tick: start ramp times fade */
   float fade;               /* of the last tick: 1, less from PHX_HOLD_AGE_US on */
-  float torque[PHX_JOINTS]; /* of the last tick before the fade: what the rate limit counts from [Nm] */
+  float torque[PHX_JOINTS]; /* of the last tick before the fade; the rate limit counts from it [Nm] */
   uint8_t bad_samples[PHX_CHANNELS];
   bool estop;            /* at the last tick */
   bool drive_fault;      /* at the last tick */
@@ -279,35 +285,37 @@ typedef struct {
   uint32_t outdated;
 } phx_controller;
 
-/* `first_epoch`: differs from boot to boot (a counter in flash, a random number), so that commands of a
- * session before the restart are refused. */
+/* Initialises a controller. `first_epoch` differs from boot to boot (a counter in flash, a random number), so
+ * that commands of a session before the restart are refused. */
 void phx_controller_init(phx_controller* controller, const phx_device* device, uint32_t first_epoch);
 
+/* Result of phx_controller_receive(). */
 enum phx_received {
-  PHX_DROPPED = 0,     /* counted in corrupt, refused or outdated; nothing else has happened, but that a
-                          command of the session, even if not used, says that its host lives */
+  PHX_DROPPED = 0,     /* counted in corrupt, refused or outdated, without another effect, except
+                          that any command of the session shows that its host is alive */
   PHX_USED = 1,        /* from the session's host */
   PHX_NEW_SESSION = 2, /* a HELLO was granted: samples go to its sender from now on */
   PHX_ANSWERED = 3     /* not from the session's host; only `reply` concerns its sender */
 };
 
 /* Takes one received frame (bytes between COBS zeros, or a datagram) at the controller's time. If
- * `*reply_size` is not 0 afterwards, `reply` goes back to the sender. Never touches torque by itself: that is
- * phx_controller_tick's. */
+ * `*reply_size` is not 0 afterwards, send `reply` back to the sender. It never changes a torque; only
+ * phx_controller_tick() does. */
 enum phx_received phx_controller_receive(phx_controller* controller, const uint8_t* frame, size_t size,
                                          uint64_t now_us, uint8_t reply[PHX_FRAME_MAX], size_t* reply_size);
 
-/* What the controller does in one tick. */
+/* Output of the controller for one tick. */
 typedef struct {
   float torque[PHX_JOINTS]; /* to the motors: finite, within limit and rate, times the factor [Nm] */
   size_t sample_size;       /* of the frame below; 0: no session, nothing to send */
   uint8_t sample[PHX_FRAME_MAX];
 } phx_output;
 
-/* One tick: judges the sensors and the step's age, evaluates the walls, limits, and makes the sample frame.
- *   torque -> walls -> torque limit -> start ramp -> torque-rate limit -> finite check -> fade with age,
- * latch The ramp stands before the rate limit, so that nothing but a fade or a latch (towards zero) is
- * faster. `drive_fault`: the device's own hardware reports one; latches PHX_FAULT_DRIVE. */
+/* Makes one tick: judges the sensors and the step's age, evaluates the walls, limits the torques, and makes
+ * the sample frame. The order is
+ *   torque -> walls -> torque limit -> start ramp -> torque-rate limit -> finite check -> fade or latch.
+ * The ramp comes before the rate limit, so that only a fade or a latch (towards zero) is faster than that.
+ * `drive_fault`: the device's own hardware reports a fault, which latches PHX_FAULT_DRIVE. */
 void phx_controller_tick(phx_controller* controller, uint64_t now_us, const int32_t raw[PHX_CHANNELS],
                          bool estop, bool drive_fault, phx_output* output);
 

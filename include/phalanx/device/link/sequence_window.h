@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of a sender's numbered frames have come, which came twice or late, and which never did.
+// Bookkeeping of a sender's numbered frames: new, late, duplicate or lost.
 #pragma once
 
 #include <bit>
@@ -7,13 +7,13 @@
 
 namespace phalanx {
 
-/// The last 64 numbers. A number is lost when it leaves the window unseen, so that one that comes late is
-/// not. Real-time: no allocation, lock, throw or I/O.
+/// Window over the last 64 sequence numbers. A number is lost when it leaves the window unseen; a frame that
+/// comes late, but within the window, is not lost. Real-time: no allocation, lock, throw or I/O.
 class SequenceWindow {
  public:
   enum class Frame { kNew, kLate, kDuplicate };
 
-  /// Numbers may wrap around.
+  /// Takes the number of a received frame. Numbers may wrap around.
   Frame take(std::uint32_t sequence) noexcept {
     if (!begun_) {
       begun_ = true;
@@ -33,9 +33,9 @@ class SequenceWindow {
     return seen ? Frame::kDuplicate : Frame::kLate;
   }
 
-  /// Left the window unseen.
+  /// @returns how many numbers left the window unseen.
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
-  /// Still in the window, not seen: late or lost.
+  /// @returns how many numbers in the window are unseen: late or lost.
   [[nodiscard]] std::uint64_t missing() const noexcept {
     return kSize - static_cast<std::uint64_t>(std::popcount(seen_));
   }
@@ -57,7 +57,7 @@ class SequenceWindow {
 
   bool begun_ = false;
   std::uint32_t newest_ = 0;
-  /// Bit i: newest - i has come. What was before the first frame counts as seen.
+  /// Bit i: newest - i has come. Numbers before the first frame count as seen.
   std::uint64_t seen_ = ~std::uint64_t{0};
   std::uint64_t lost_ = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace phalanx {
 
-/// Heat maps and curves of a finished study, one HTML page that needs no other file.
+/// Writes heat maps and curves of a finished study as one HTML page that needs no other file.
 /// @param results  one for each point, in the order of the points
 [[nodiscard]] std::string study_report_html(const Study& study, const std::vector<PointResult>& results,
                                             const Made& made);

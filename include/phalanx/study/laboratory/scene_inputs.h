@@ -6,9 +6,9 @@
 
 namespace phalanx {
 
-/// Checks a point by loading the study's scene, its device and its patient with the point's overrides. What
-/// the point depends on: the numbers of device and patient, and the files of scene, hand, its collision
-/// meshes, profile, motion, mapping and objects.
+/// Makes a check that loads the study's scene, its device and its patient with a point's overrides. Its
+/// inputs are the parameters of device and patient, and the files of scene, hand, collision meshes, profile,
+/// motion, mapping and objects.
 [[nodiscard]] StudyCheck scene_check(const Study& study);
 
 }  // namespace phalanx

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of numbers as SVG: curves, bars, heat maps and stability maps, in a form that can go into a paper
-// as it is.
+// Charts as SVG: curves, bars, heat maps and stability maps, ready for a paper.
 #pragma once
 
 #include <limits>
@@ -10,16 +9,16 @@
 
 namespace phalanx {
 
-// Every function below gives a whole SVG document, 180 mm wide unless said otherwise, which depends on its
-// argument alone: the same bytes for the same numbers. Text is UTF-8 and may hold anything: it is escaped,
-// and cut with an ellipsis where it is too long. Colours are told apart by colour-blind readers, and shape or
-// hatching repeats what they say. Not real-time.
+// Every function below returns a whole SVG document, 180 mm wide unless stated otherwise. It depends on its
+// argument alone: equal numbers give equal bytes. Text is UTF-8 and may contain anything: it is escaped, and
+// cut with an ellipsis if it is too long. Colour-blind readers can distinguish the colours, and shape or
+// hatching repeats the information. Not real-time.
 
-/// One curve. Where x or y is not finite the line has a gap.
+/// One curve. The line has a gap where x or y is not finite.
 struct ChartSeries {
   std::string name;
-  std::vector<double> x;     ///< rising, in the unit that LineChart::x_label names
-  std::vector<double> y;     ///< as many, in the unit that ChartPanel::y_label names
+  std::vector<double> x;     ///< increasing, in the unit that LineChart::x_label names
+  std::vector<double> y;     ///< one for each x, in the unit that ChartPanel::y_label names
   std::vector<double> low;   ///< lower edge of a shaded band, one for each x; or empty
   std::vector<double> high;  ///< upper edge; as many as `low`
   std::vector<bool> at_least =
@@ -27,28 +26,28 @@ struct ChartSeries {
   bool dashed = false;
 };
 
-/// A horizontal line with words: "paper: 0.7".
+/// A horizontal line with a label: "paper: 0.7".
 struct ChartMark {
   double y = 0.0;
   std::string label;
 };
 
-/// A shaded stretch of the x axis, in all panels: a bump, a window of evaluation.
+/// A shaded range of the x axis, in all panels: a bump, or a window of evaluation.
 struct ChartWindow {
   double from = 0.0;
   double to = 0.0;
-  std::string label;  ///< in the topmost panel
+  std::string label;  ///< drawn in the topmost panel
 };
 
-/// One set of axes. The y axis runs over everything that is drawn.
+/// One set of axes. The y axis covers everything that is drawn.
 struct ChartPanel {
   std::string title;
   std::string y_label;  ///< with the unit: "force [N]"
   std::vector<ChartSeries> series;
   std::vector<ChartMark> marks;
   bool from_zero = true;  ///< the y axis includes 0
-  double height = 120.0;  ///< of the frame, in points (1/72 inch); more if its legend needs more
-  bool legend = true;     ///< off: the panel above has the same curves
+  double height = 120.0;  ///< height of the frame in points (1/72 inch); more if its legend needs more
+  bool legend = true;     ///< false: the panel above has the same curves
 };
 
 /// Panels over one x axis. S2 fig. 4: force and position over time; S2 fig. 5: one curve a phalanx.
@@ -62,36 +61,36 @@ struct LineChart {
 
 inline constexpr std::size_t kMostSeries = 24;  ///< in a panel: eight colours, three kinds of line
 
-/// Curves. Up to 40 points a curve each have a marker; longer curves have a few, and are thinned to what the
-/// width can show, keeping every extreme value. Of more than kMostSeries curves in a panel the first are
-/// drawn and the legend says how many.
+/// Draws curves. Curves of up to 40 points have a marker each; longer ones have a few. They are thinned to
+/// the resolution of the width, keeping every extreme value. Of more than kMostSeries curves in a panel, the
+/// first are drawn and the legend states the number.
 /// @throws std::invalid_argument if there is no panel, or the parts of a series differ in length.
 [[nodiscard]] std::string line_chart_svg(const LineChart& chart);
 
-/// Values of one quantity at the crossings of two lists.
+/// Values of one quantity over two lists, as rows and columns.
 struct HeatMap {
   std::string title;
-  std::string quantity;  ///< beside the colour scale, with the unit: "k_lim [N/mm]"
+  std::string quantity;  ///< label of the colour scale, with the unit: "k_lim [N/mm]"
   std::string x_label;
   std::string y_label;
   std::vector<std::string> columns;  ///< from the left
   std::vector<std::string> rows;     ///< from the top
-  std::vector<double> value;         ///< row after row, rows x columns; what is not finite is hatched
+  std::vector<double> value;         ///< row after row, rows x columns; a value that is not finite is hatched
   std::vector<bool> at_least = {};   ///< as `value`, or empty: the true value may be higher; written with >=
-  std::optional<double> low = {};    ///< ends of the colour scale; without: of the values
-  std::optional<double> high = {};
+  std::optional<double> low = {};    ///< end of the colour scale; none: of the values
+  std::optional<double> high = {};   ///< end of the colour scale; none: of the values
   double width_mm = 180.0;
 };
 
-/// A map from dark blue (low) to yellow (high), its lightness rising evenly; the number in every cell that
-/// has room.
+/// Draws a map from dark blue (low) to yellow (high) with uniformly increasing lightness. Each cell that has
+/// room shows its number.
 /// @throws std::invalid_argument if `value` or `at_least` is not rows x columns long.
 [[nodiscard]] std::string heat_map_svg(const HeatMap& map);
 
-/// What was found out about a stiffness.
+/// Result for a stiffness.
 enum class CellVerdict { kNotChecked, kStable, kUnstable, kInvalid };
 
-/// Stability over stiffness (upwards) for a number of points beside each other.
+/// Stability over stiffness (upwards) for several points beside each other.
 struct VerdictMap {
   struct Column {
     std::string name;
@@ -106,6 +105,7 @@ struct VerdictMap {
   double width_mm = 180.0;
 };
 
+/// Draws a stability map.
 /// @throws std::invalid_argument if a column does not have as many cells as there are stiffnesses.
 [[nodiscard]] std::string verdict_map_svg(const VerdictMap& map);
 
@@ -121,7 +121,7 @@ struct BarChart {
   std::vector<Quantity> quantities;
 };
 
-/// Horizontal bars with their numbers, each quantity on its own scale from 0.
+/// Draws horizontal bars with their numbers, each quantity on its own scale from 0.
 /// @throws std::invalid_argument if a quantity does not have as many values as there are names.
 [[nodiscard]] std::string bar_chart_svg(const BarChart& chart);
 

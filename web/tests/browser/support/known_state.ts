@@ -3,10 +3,9 @@
 import { create, fromBinary, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 import { HandSource, ToHostSchema, ToPageSchema, type State } from "../../../src/gen/phalanx/cockpit_pb";
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
+import { kProtocol } from "../../../src/wire/connection";
 import { until } from "./until";
 import { WebSocketClient } from "./web_socket";
-
-const kProtocol = 1; // Cockpit::kProtocol
 
 export type Values = Readonly<Record<string, string>>; // by key, as they would stand in a scene file
 type What = NonNullable<MessageInitShape<typeof ToHostSchema>["what"]>;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A page without a station: what it was told, and what it asked for.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
-import { StateSchema, ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { KeyType, StateSchema, ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import type { App } from "../../../src/panels/app";
 import { Store } from "../../../src/state/store";
+import { kProtocol } from "../../../src/wire/connection";
 import type { Change, Host } from "../../../src/wire/host";
 
 export const stiffness = "force.stiffness_n_per_mm";
@@ -25,13 +26,12 @@ export function fakeApp(): FakeApp {
   const store = new Store();
   store.setPhase("open");
   const key = [
-    { path: stiffness, type: "number", range: ">= 0, <= 100", defaultValue: "0.5" },
-    { path: "stabiliser.method", type: "choice", range: "none, smoothing, low_pass", defaultValue: '"smoothing"' },
-    { path: "smoothing.enabled", type: "flag", range: "true, false", defaultValue: "true" },
-    { path: "hand.side", type: "choice", range: "right, left", defaultValue: '"right"' },
-    { path: "mirror", type: "flag", range: "true, false", defaultValue: "false" },
+    { path: stiffness, type: KeyType.KEY_NUMBER, range: { min: 0, max: 100 }, defaultValue: "0.5" },
+    { path: "stabiliser.method", type: KeyType.KEY_CHOICE, choice: ["none", "smoothing", "rise_only", "low_pass"], defaultValue: '"rise_only"' },
+    { path: "hand.side", type: KeyType.KEY_CHOICE, choice: ["right", "left"], defaultValue: '"right"' },
+    { path: "mirror", type: KeyType.KEY_FLAG, defaultValue: "false" },
   ];
-  store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: 1, page: kMe, mayOperate: true, key }) } }));
+  store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: kProtocol, page: kMe, mayOperate: true, key }) } }));
   const answer = () => Promise.resolve({ ok: made.refuse === "", error: made.refuse });
   const host = {
     set: (changes: readonly Change[], dragging: boolean) => {

@@ -4,6 +4,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import { ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import { handPanel } from "../../../src/panels/hand_panel";
 import { strings } from "../../../src/strings";
+import { kProtocol } from "../../../src/wire/connection";
 import type { Change } from "../../../src/wire/host";
 import { fakeApp, kMe, type FakeApp } from "./fake_app";
 
@@ -14,7 +15,7 @@ const words = strings.hand;
 beforeEach(() => {
   fake = fakeApp();
   const profile = [{ name: "large-man", meaning: "a large man's left hand" }];
-  const welcome = create(WelcomeSchema, { protocol: 1, page: kMe, mayOperate: true, key: fake.store.welcome!.key, profile });
+  const welcome = create(WelcomeSchema, { protocol: kProtocol, page: kMe, mayOperate: true, key: fake.store.welcome!.key, profile });
   fake.store.receive(create(ToPageSchema, { what: { case: "welcome", value: welcome } }));
   panel = handPanel(fake.app);
   document.body.replaceChildren(panel);

@@ -1,56 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { KeyInfoSchema, StateSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { KeyInfoSchema, NumberRangeSchema, StateSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import { replaceObject } from "../../../src/panels/object_change";
-import { choicesOf, defaultOf, kindsOf, parseRange, settingOf, valueOf, within } from "../../../src/state/keys";
+import { belongsTo, defaultOf, settingOf, valueOf, within } from "../../../src/state/keys";
 
-const key = (path: string, range = "", meaning = "", defaultValue = "") => create(KeyInfoSchema, { path, range, meaning, defaultValue });
+const key = (path: string, defaultValue = "", kinds: readonly (readonly [string, string])[] = []) =>
+  create(KeyInfoSchema, { path, defaultValue, kind: kinds.map(([kind, value]) => ({ kind, defaultValue: value })) });
 
-describe("parseRange", () => {
-  it("reads bounds, open and closed", () => {
-    const range = parseRange("> 0, <= 15");
-    expect(range).toMatchObject({ min: 0, max: 15, minOpen: true, maxOpen: false, words: [] });
-    expect([within(0, range), within(1e-9, range), within(15, range), within(15.01, range)]).toEqual([false, true, true, false]);
+describe("within", () => {
+  it("compares with bounds, open and closed", () => {
+    const range = create(NumberRangeSchema, { min: 0, max: 15, minOpen: true });
+    expect([0, 1e-9, 15, 15.01].map((value) => within(value, range))).toEqual([false, true, true, false]);
+    const fall = create(NumberRangeSchema, { min: -1e6, max: 0, maxOpen: true });
+    expect([-1e6, -1, 0].map((value) => within(value, fall))).toEqual([true, true, false]);
   });
 
-  it("reads words that may stand in a number's place", () => {
-    expect(parseRange(">= -1000000, < 0, or -inf")).toMatchObject({ min: -1e6, max: 0, maxOpen: true, words: ["-inf"] });
-    expect(parseRange('> 0, <= 15, or "off"').words).toEqual(["off"]);
-  });
-
-  it("knows no bounds where none are said, and never lets NaN through", () => {
-    const range = parseRange("");
-    expect(range).toMatchObject({ min: -Infinity, max: Infinity });
-    expect(within(NaN, range)).toBe(false);
+  it("lets -inf through where it is allowed, and no other value that is not finite", () => {
+    const range = { min: -Infinity, max: Infinity };
+    expect(within(-Infinity, create(NumberRangeSchema, { ...range, minusInfinity: true }))).toBe(true);
+    for (const value of [-Infinity, Infinity, NaN]) expect(within(value, create(NumberRangeSchema, range))).toBe(false);
   });
 });
 
 describe("keys", () => {
-  it("choices are the words of the range", () => {
-    expect(choicesOf(key("force.law", "hooke, kelvin_voigt"))).toEqual(["hooke", "kelvin_voigt"]);
-    expect(choicesOf(key("force.law", ""))).toEqual([]);
-  });
-
-  it("an object's key belongs to the kinds in brackets, others to all", () => {
-    const kinds = ["sphere", "box", "file"];
-    expect(kindsOf(key("objects[].diameter_mm", "", "(sphere) outer diameter"), kinds)).toEqual(["sphere"]);
-    expect(kindsOf(key("objects[].position_mm", "", "the object's centre"), kinds)).toBeNull();
-    expect(kindsOf(key("force.law", "", "(sphere) no object's"), kinds)).toBeNull();
-    expect(kindsOf(key("objects[].x", "", "(of the tube) y"), kinds)).toBeNull();
+  it("an object's key belongs to the kinds that have it, others to all", () => {
+    const diameter = key("objects[].diameter_mm", "60", [["sphere", "60"]]);
+    expect(["sphere", "box"].map((kind) => belongsTo(diameter, kind))).toEqual([true, false]);
+    expect(belongsTo(key("objects[].position_mm"), "box")).toBe(true);
+    expect(belongsTo(key("force.law"), "box")).toBe(true);
   });
 
   it("defaults follow the kind", () => {
-    const diameter = key("objects[].diameter_mm", "", "outer diameter; default of bottle 65, cup 75, pen 10", "60");
-    expect(defaultOf(diameter, "cup")).toBe("75");
-    expect(defaultOf(diameter, "bottle")).toBe("65");
-    expect(defaultOf(diameter, "sphere")).toBe("60");
-    const extent = key("objects[].extent_mm", "", "edges; default of putty_bar [100, 35, 30]", "[50, 50, 50]");
+    const diameter = key("objects[].diameter_mm", "60", [["bottle", "65"], ["cup", "75"], ["sphere", "60"]]);
+    expect(["bottle", "cup", "sphere", "box"].map((kind) => defaultOf(diameter, kind))).toEqual(["65", "75", "60", "60"]);
+    const extent = key("objects[].extent_mm", "[50, 50, 50]", [["box", "[50, 50, 50]"], ["putty_bar", "[100, 35, 30]"]]);
     expect(defaultOf(extent, "putty_bar")).toBe("[100, 35, 30]");
   });
 
   it("a value is what is stated, else the default", () => {
-    const welcome = create(WelcomeSchema, { key: [key("objects[].size_mm", "", "", "100")] });
+    const welcome = create(WelcomeSchema, { key: [key("objects[].size_mm", "100")] });
     const state = create(StateSchema, { value: [{ key: "objects.0.size_mm", value: "80" }] });
     expect(settingOf("objects[].size_mm")).toBe("objects.0.size_mm");
     expect(valueOf(state, welcome, "objects.0.size_mm")).toBe("80");

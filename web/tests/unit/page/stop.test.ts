@@ -10,6 +10,7 @@ import { stopBox } from "../../../src/panels/stop_box";
 import { troubleCard } from "../../../src/panels/trouble_card";
 import { kStateStaleMs, Store } from "../../../src/state/store";
 import { strings } from "../../../src/strings";
+import { kProtocol } from "../../../src/wire/connection";
 import type { Host } from "../../../src/wire/host";
 import { kStopAgainMs } from "../../../src/wire/stop_order";
 
@@ -38,7 +39,7 @@ afterEach(() => vi.useRealTimers());
 
 function connect(): void {
   store.setPhase("open");
-  store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: 1, page: 2, mayOperate: true }) } }));
+  store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: kProtocol, page: 2, mayOperate: true }) } }));
 }
 function state(what: Partial<State>): void {
   store.receive(create(ToPageSchema, { what: { case: "state", value: create(StateSchema, { operatorPage: 2, safety: SafetyState.SAFETY_RUNNING, ...what } as State) } }));

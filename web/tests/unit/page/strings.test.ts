@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
-import { ChangeKind, HandSource, Notice_Level } from "../../../src/gen/phalanx/cockpit_pb";
+import { ChangeKind, HandSource, KeyType, Notice_Level } from "../../../src/gen/phalanx/cockpit_pb";
 import { strings } from "../../../src/strings";
 import { literals, unusedTexts } from "./source_texts";
 
@@ -37,6 +37,7 @@ describe("strings", () => {
   it("name every value of the messages' enumerations", () => {
     expect(strings.hand.sources.length).toBe(enumNames(HandSource));
     expect(strings.settings.change.length).toBe(enumNames(ChangeKind));
+    expect(strings.settings.types.length).toBe(enumNames(KeyType));
     expect(strings.notice.levels.length).toBe(enumNames(Notice_Level));
   });
 
@@ -60,12 +61,11 @@ describe("strings", () => {
 
   it("hold all the text: the sources have none of their own", () => {
     const keys = /^(Enter|Escape|Arrow\w+|Home|End|Space|Process)$/; // of the keyboard
-    const scene = 'number or "off"'; // KeyInfo.type
     const all = literals();
     expect(all.length).toBeGreaterThan(500);
     for (const folder of ["panels", "plots", "state", "view3d", "wire", "main.ts"]) expect(all.some(({ place }) => place.startsWith(folder)), folder).toBe(true);
     for (const { text, place } of all) {
-      if (/[;{}=<>#]/.test(text) || keys.test(text) || text === scene) continue; // shaders and the like
+      if (/[;{}=<>#]/.test(text) || keys.test(text)) continue; // shaders and the like
       expect(text, place).not.toMatch(/(^|\s)[A-Za-z]{2,} [a-z]{2,}(\s|[.,:!?…]|$)/); // a sentence
       expect(text, place).not.toMatch(/(^|\s)[A-Z][a-z]{2,}(\s|[.,:!?…]|$)/); // a label
       expect(text.trim(), place).not.toMatch(/^(N|Nm|rad|mm|cm|N\/s|Nm\/s|rad\/s|N\/mm|ms|µs|s|°|HTTP|–)$/);

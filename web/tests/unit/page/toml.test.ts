@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
+import { KeyType } from "../../../src/gen/phalanx/cockpit_pb";
 import { fromNumber, fromTyped, number, quote, same, table, unquote, vector } from "../../../src/state/toml";
 import { random } from "./random";
 
@@ -59,22 +60,22 @@ describe("same", () => {
 
 describe("fromTyped", () => {
   it("quotes texts, and leaves numbers, flags and vectors as they are", () => {
-    expect(fromTyped(" 0.9 ", "number")).toBe("0.9");
-    expect(fromTyped("[1, 2, 3]", "vector")).toBe("[1, 2, 3]");
-    expect(fromTyped("true", "flag")).toBe("true");
-    expect(fromTyped("hooke", "choice")).toBe('"hooke"');
-    expect(fromTyped('"hooke"', "choice")).toBe('"hooke"');
-    expect(fromTyped("off", 'number or "off"')).toBe('"off"');
-    expect(fromTyped("3", 'number or "off"')).toBe("3");
+    expect(fromTyped(" 0.9 ", KeyType.KEY_NUMBER)).toBe("0.9");
+    expect(fromTyped("[1, 2, 3]", KeyType.KEY_VECTOR)).toBe("[1, 2, 3]");
+    expect(fromTyped("true", KeyType.KEY_FLAG)).toBe("true");
+    expect(fromTyped("hooke", KeyType.KEY_CHOICE)).toBe('"hooke"');
+    expect(fromTyped('"hooke"', KeyType.KEY_CHOICE)).toBe('"hooke"');
+    expect(fromTyped("off", KeyType.KEY_NUMBER_OR_OFF)).toBe('"off"');
+    expect(fromTyped("3", KeyType.KEY_NUMBER_OR_OFF)).toBe("3");
   });
 
   it("takes a decimal comma in a number, and nowhere else", () => {
-    expect(fromTyped("1,6", "number")).toBe("1.6");
-    expect(fromTyped(" ,5", 'number or "off"')).toBe(".5");
-    expect(fromTyped("1,234.5", "number")).toBe("1,234.5"); // no number: refused by the station
-    expect(fromTyped("1,2,3", "number")).toBe("1,2,3");
-    expect(fromTyped("[1, 2]", "vector")).toBe("[1, 2]");
-    expect(fromTyped("a, b", "text")).toBe('"a, b"');
+    expect(fromTyped("1,6", KeyType.KEY_NUMBER)).toBe("1.6");
+    expect(fromTyped(" ,5", KeyType.KEY_NUMBER_OR_OFF)).toBe(".5");
+    expect(fromTyped("1,234.5", KeyType.KEY_NUMBER)).toBe("1,234.5"); // no number: refused by the station
+    expect(fromTyped("1,2,3", KeyType.KEY_NUMBER)).toBe("1,2,3");
+    expect(fromTyped("[1, 2]", KeyType.KEY_VECTOR)).toBe("[1, 2]");
+    expect(fromTyped("a, b", KeyType.KEY_TEXT)).toBe('"a, b"');
   });
 
   it("a table is one line", () => {

@@ -12,8 +12,8 @@ beforeEach(() => {
 afterEach(() => vi.useRealTimers());
 
 describe("smoothing", () => {
-  it("off is no stabiliser, and choosing one switches it on", async () => {
-    fake.operate(2, [["smoothing.enabled", "false"], ["stabiliser.method", '"smoothing"']]);
+  it("off is no stabiliser; the switch and the list set the method alone", async () => {
+    fake.operate(2, [["stabiliser.method", '"none"']]);
     expect(stabiliserInForce(fake.app)).toBe("none");
     const panel = touchPanel(fake.app);
     document.body.replaceChildren(panel);
@@ -29,10 +29,34 @@ describe("smoothing", () => {
     smoothing.click();
     await vi.advanceTimersByTimeAsync(10);
     expect(fake.asked).toEqual([
-      [["smoothing.enabled", "true"], ["stabiliser.method", '"low_pass"']],
-      [["stabiliser.method", '"smoothing"'], ["smoothing.enabled", "false"]],
-      [["smoothing.enabled", "true"]],
+      [["stabiliser.method", '"low_pass"']],
+      [["stabiliser.method", '"none"']],
+      [["stabiliser.method", '"rise_only"']],
     ]);
+  });
+
+  it("is the papers' where the scene bounds the fall", async () => {
+    for (const bound of ["smoothing.min_n_per_s", "smoothing.min_n"]) {
+      fake = fakeApp();
+      const panel = touchPanel(fake.app);
+      fake.operate(2, [["stabiliser.method", '"none"'], [bound, "-10"]]);
+      panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!.click();
+      await vi.advanceTimersByTimeAsync(10);
+      expect(fake.asked).toEqual([[["stabiliser.method", '"smoothing"']]]);
+    }
+  });
+
+  it("shows the bound on the fall only where the method has one", () => {
+    const panel = touchPanel(fake.app);
+    const shown = () => {
+      const labels = [...panel.querySelectorAll<HTMLElement>("label")].filter((one) => one.textContent === strings.calm.fall);
+      expect(labels.length).toBe(1);
+      return labels[0]!.closest("[hidden]") === null;
+    };
+    fake.operate(2, [["stabiliser.method", '"smoothing"']]);
+    expect(shown()).toBe(true);
+    fake.operate(2, [["stabiliser.method", '"rise_only"']]);
+    expect(shown()).toBe(false);
   });
 
   it("has a switch that speaks of it alone: another stabiliser blocks it, and says so", async () => {
@@ -41,7 +65,7 @@ describe("smoothing", () => {
       return [control.getAttribute("aria-checked"), control.disabled, panel.textContent!.includes(strings.calm.smoothingOther)];
     };
     const panel = touchPanel(fake.app);
-    const stabiliser = (method: string, enabled = "true") => fake.operate(2, [["stabiliser.method", `"${method}"`], ["smoothing.enabled", enabled]]);
+    const stabiliser = (method: string) => fake.operate(2, [["stabiliser.method", `"${method}"`]]);
     stabiliser("smoothing");
     expect(shown()).toEqual(["true", false, false]);
     stabiliser("rise_only");
@@ -52,6 +76,6 @@ describe("smoothing", () => {
     expect(shown()).toEqual(["false", false, false]);
     panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!.click();
     await vi.advanceTimersByTimeAsync(10);
-    expect(fake.asked).toEqual([[["smoothing.enabled", "true"], ["stabiliser.method", '"smoothing"']]]);
+    expect(fake.asked).toEqual([[["stabiliser.method", '"rise_only"']]]);
   });
 });

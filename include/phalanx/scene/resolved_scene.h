@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "phalanx/device/exoskeleton.h"
+#include "phalanx/device/motion.h"
+#include "phalanx/mesh/triangle_mesh.h"
+#include "phalanx/scene/hand_meshes.h"
+#include "phalanx/scene/scene.h"
+#include "phalanx/simulation/patient.h"
+
+namespace phalanx {
+
+/// Files that resolve() reads besides those of the objects.
+struct ResolveOptions {
+  HandDetail hand = HandDetail::kCollision;
+  bool device = false;  ///< the simulated exoskeleton and patient
+  bool motion = false;
+};
+
+/// A scene with the contents of the files that it names. What is made of it opens no file.
+struct ResolvedScene {
+  SceneDescription description;
+  LoadedHand hand;                         ///< as much of it as ResolveOptions::hand asks for
+  Pose X_WH;                               ///< pose of the palm, mirrored if the scene is
+  TriangleMesh world;                      ///< mesh of all objects, as make_world_mesh() [m]
+  std::optional<Exoskeleton> exoskeleton;  ///< with ResolveOptions::device, as `patient`
+  std::optional<PatientParameters> patient;
+  std::optional<Motion> motion;  ///< with ResolveOptions::motion
+};
+
+/// Reads the files that the scene names and `options` asks for, each once.
+/// @throws SceneError or std::invalid_argument as load_hand(), make_world_mesh(), load_device(),
+/// load_patient() and build_motion(). Set-up only.
+[[nodiscard]] ResolvedScene resolve(const SceneDescription& description, const ResolveOptions& options);
+
+}  // namespace phalanx

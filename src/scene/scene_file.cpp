@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "phalanx/scene/data_paths.h"
+#include "scene/scene_reader.h"
+#include "scene/scene_tree.h"
+#include "scene/toml_reader.h"
+
+namespace phalanx {
+namespace {
+
+bool holds_tables(const toml::array& array) {
+  return !array.empty() && array.is_homogeneous(toml::node_type::table);
+}
+
+/// Writes a number as a person would: 0.9, not 0.90000000000000002.
+std::string toml_text(const toml::node& node) {
+  if (const auto number = node.value_exact<double>(); number && std::isfinite(*number)) {
+    const std::string text = fmt::format("{}", *number);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+  }
+  if (const toml::array* array = node.as_array()) {
+    std::string text;
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + toml_text(element);
+    return "[" + text + "]";
+  }
+  std::ostringstream text;
+  constexpr auto kFlags = toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings;
+  text << toml::toml_formatter{node, kFlags};  // "file", not 'file'
+  return text.str();
+}
+
+void add(const toml::node& node, const std::string& path, Overrides& values) {
+  const auto below = [&](std::string_view name) {
+    return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
+  };
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, child] : *table) add(child, below(key.str()), values);
+  } else if (const toml::array* array = node.as_array(); array != nullptr && holds_tables(*array)) {
+    for (std::size_t i = 0; i < array->size(); ++i) add(*array->get(i), below(std::to_string(i)), values);
+  } else {
+    values.emplace_back(path, toml_text(node));
+  }
+}
+
+}  // namespace
+
+SceneFile::SceneFile(const std::string& scene) {
+  const std::filesystem::path file =
+      find_data_file("scene", scene, "scenes", ".toml", std::filesystem::current_path());
+  text_ = read_text_file(file.string(), "scene");
+  origin_ = file.string();
+  folder_ = file.parent_path();
+}
+
+SceneFile::SceneFile(std::string text, std::string origin, std::filesystem::path folder)
+    : text_(std::move(text)), origin_(std::move(origin)), folder_(std::move(folder)) {}
+
+SceneDescription SceneFile::scene(const Overrides& overrides) const {
+  SceneProblems first(nullptr);
+  return read_scene(SceneTree(text_, origin_, overrides), origin_, folder_, first);
+}
+
+Overrides SceneFile::values(const Overrides& overrides) const {
+  const SceneTree tree(text_, origin_, overrides);
+  Overrides values;
+  add(tree.root(), "", values);
+  return values;
+}
+
+}  // namespace phalanx

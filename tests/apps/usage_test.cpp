@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line itself: help, version, exit codes, misspelt words.
+#include <gmock/gmock.h>
+
+#include "apps/run_program.h"
+#include "support/sanitized.h"
+
+namespace phalanx {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::run_program;
+using testing::TemporaryFolder;
+
+TEST(CliUsage, HelpNamesTheCommandsAndTheExitCodes) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "--help");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* word :
+       {"simulate", "experiment", "scene", "hand", "0 done, 1 failed, 2 wrong usage or input"}) {
+    EXPECT_THAT(result.out, HasSubstr(word));
+  }
+}
+
+TEST(CliUsage, SimulateHelpNamesEveryOption) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "simulate --help");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* option :
+       {"--out", "--poses", "--plot", "--picture", "--set", "--object", "--object-size-mm", "--profile",
+        "--motion", "--mapping", "--trial", "--seconds", "--rate-hz", "--seed", "--quiet"}) {
+    EXPECT_THAT(result.out, HasSubstr(option));
+  }
+}
+
+TEST(CliUsage, VersionIsOneLine) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "--version");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, ::testing::StartsWith("phalanx 0."));
+}
+
+struct Case {
+  const char* arguments;
+  const char* message;
+};
+class CliWrongUsage : public ::testing::TestWithParam<Case> {};
+
+TEST_P(CliWrongUsage, ExitsWithTwoAndOneClearLine) {
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, GetParam().arguments);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, ::testing::StartsWith("phalanx"));
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CliWrongUsage,
+    ::testing::Values(
+        Case{"", "say what to do: run, simulate"}, Case{"simulat", "did you mean 'simulate'"},
+        Case{"simulate --rate 3", "did you mean '--rate-hz'"},
+        Case{"simulate --pictur a.png", "did you mean '--picture'"}, Case{"scene lst", "did you mean 'list'"},
+        Case{"experiment s1-fig9", "did you mean 's1-fig8'"}, Case{"experiment", "say what to do: s1-fig8"},
+        Case{"simulate a b", "'b' is one argument too many"}, Case{"simulate --seconds abc", "--seconds"},
+        Case{"simulate --plot", "--plot needs"}, Case{"simulate --plot wave", "must end in .svg"},
+        Case{"simulate --picture a.jpg", "must end in .png"}, Case{"simulate --poses", "--poses needs --out"},
+        Case{"simulate --object-size-mm 80", "needs --object"}, Case{"simulate --set force.law", "force.law"},
+        Case{"simulate wavee", "did you mean \"wave\"? Known: "}, Case{"run nope", "nope.toml; Known: "},
+        Case{"run --stifness 0.9", "did you mean '--set force.stiffness_n_per_mm=VALUE'? See"},
+        Case{"run --xyzzyxyzzy", "unknown option '--xyzzyxyzzy'; See"},
+        Case{"simulate wave --profile adult", "adult.toml; Known: large-man"},
+        Case{"simulate wave --rate-hz 200Hz", "--rate-hz 200Hz: is not a number; write its digits alone"},
+        Case{"run --port 1.5x", "--port 1.5x: is not a number"},
+        Case{"run --seconds abc", "--seconds: abc: is not a number"},
+        Case{"device simulate --slow-motion 1s", "--slow-motion 1s: is not a number"},
+        Case{"run --rate-hz 5000", "rate_hz = 5000: a station runs at 200 to 2000 Hz"},
+        Case{"run first_touch --set hand.side=left --headless --no-realtime", "set mirror=true in place of"},
+        Case{"run --tls-cert a.pem --tls-key b.pem", "--tls-cert a.pem: on 127.0.0.1 the page is for this"},
+        Case{"run --tls-cert a.pem --tls-key b.pem --listen 0.0.0.0 --headless", "--headless runs without"},
+        Case{"run --tls-key b.pem --listen 0.0.0.0", "--tls-cert and --tls-key: give both"},
+        Case{"device probe udp:127.0.0.1", "expected HOST:PORT"},
+        Case{"device test-link opengloves:/dev/null", "possible are udp:HOST:PORT and serial:PORT[:BAUD]\n"},
+        Case{"device test-link simulated", "possible are udp:HOST:PORT and serial:PORT[:BAUD]\n"},
+        Case{"mesh check missing.stl", "missing.stl: there is no such file"},
+        Case{"run --rate-hz 100", "200 to 2000 Hz"}, Case{"run --device usb:0", "udp:HOST:PORT"},
+        Case{"run --set limits.fingertip_force_n=8", "--clinician NAME"},
+        Case{"run --set limits.fingertip_force_n=11 --clinician Ada", "at most 10 N"},
+        Case{"run --set limits.torque_rate_nm_per_s=off", "every limit on"},
+        Case{"run --slow-motion 2 --device serial:/dev/ttyACM0", "may be a real device"},
+        Case{"run --calibration a.toml", "the simulated device needs none"},
+        Case{"run --watchdog-ms 200", "--watchdog-ms: it is for a glove (--device opengloves:PORT)"},
+        Case{"run --watchdog-ms 200 --device udp:127.0.0.1:9", "the device is udp:127.0.0.1:9; leave it out"},
+        Case{"run --no-force-feedback", "--no-force-feedback: it is for a glove (--device opengloves:PORT)"},
+        Case{"run --no-force-feedback --watchdog-ms 200 --device opengloves:/dev/null", "--watchdog-ms"},
+        Case{"run --watchdog-ms 0.9 --device opengloves:/dev/null",
+             "--watchdog-ms 0.9: must be 1 to 1000 ms"},
+        Case{"run --watchdog-ms 1001 --device opengloves:/dev/null",
+             "--watchdog-ms 1001: must be 1 to 1000 ms"},
+        Case{"run --watchdog-ms nan --device opengloves:/dev/null",
+             "--watchdog-ms nan: must be 1 to 1000 ms"},
+        Case{"run --seconds 0", "--seconds: 0: must be a number above 0; see"},
+        Case{"device simulate --seconds -1", "--seconds: -1: must be a number above 0; see"},
+        Case{"device simulate --fault dropp", "drop"}, Case{"device probe usb:0", "udp:HOST:PORT"},
+        Case{"simulate wave --out ''", "--out \"\": the value is empty"},
+        Case{"simulate wave --seconds ''", "--seconds"},
+        Case{"experiment s1-fig8 --out ''", "--out \"\": the value is empty"},
+        Case{"simulate wave --trial 99", "--trial 99: the scene plays no motion file"},
+        Case{"simulate wave --mapping cyberglove", "--mapping cyberglove: the scene plays no motion file"},
+        Case{"simulate --seed -1", "--seed -1: seed = -1: must be >= 0"},
+        Case{"simulate --seconds -1", "--seconds -1: seconds = -1: must be >= 0, <= 86400 s; the default"},
+        Case{"simulate --seconds nan", "--seconds nan: seconds = nan: must be"},
+        Case{"simulate --object a.obj --object-size-mm nan", "--object-size-mm nan: objects.0.size_mm = nan"},
+        Case{"simulate --object a.obj --object-size-mm 2001", "must be >= 0, <= 2000 mm"},
+        Case{"simulate --set 'hand.position_mm=[1,2,nan]'", "hand.position_mm = [1, 2, nan]: must be"}));
+
+TEST(CliUsage, TooFewFileDescriptorsAreSaidInWords) {
+  // The sanitizer asks through a pipe whether an object's memory can be read. Without a descriptor it calls
+  // sound objects damaged.
+  if (test::kSanitized) GTEST_SKIP() << "the sanitizer itself needs descriptors";
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, "run --headless --seconds 0.1", ".out", "ulimit -n 5");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("Too many open files; allow more with `ulimit -n`"));
+}
+
+class CliFullDisk : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CliFullDisk, IsNoSuccess) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const TemporaryFolder folder;
+  const auto result = run_program(folder, GetParam(), "/dev/full");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "phalanx: cannot write to standard output: No space left on device\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CliFullDisk,
+                         ::testing::Values("--help", "--version", "simulate --help", "scene keys",
+                                           "simulate wave --seconds 0.1", "experiment s1-fig8"));
+
+}  // namespace
+}  // namespace phalanx
