@@ -26,6 +26,7 @@ export function createHandView(host: HTMLElement, options: HandViewOptions = {})
 const kSoftwareQuality = 1; // where the processor draws
 const kContinuous = 0.025; // [s] a demand within this time of a frame: the next one comes as soon as it can
 const kRateWindow = 1; // [s]
+const kNoTick = 0n; // before the first tick
 
 class View implements HandView {
   private readonly surface = document.createElement("div");
@@ -41,7 +42,7 @@ class View implements HandView {
   private frames = 0;
   private recent: number[] = []; // when the frames of the last second were
   private pending: Tick | null = null;
-  private shownTick = 0n;
+  private shownTick = kNoTick;
   private seen = false; // a hand has been in the picture since the last geometry
   private size = { width: 0, height: 0 };
 
@@ -63,6 +64,7 @@ class View implements HandView {
   setGeometry(shapes: Shapes): void {
     this.content.setGeometry(shapes);
     this.pending = null;
+    this.shownTick = kNoTick; // what is shown of it comes with the next tick
     this.seen = false;
     this.watch.interrupted();
     this.redraw();
