@@ -15,7 +15,11 @@ if(PHALANX_SANITIZE AND NOT PHALANX_BUILD_FUZZERS)
 elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_options(phalanx_cold_options INTERFACE -O1)
 endif()
+# Meshes and contact search: with -O1 clang inlines nothing, and a sanitized test of the station spends 83 to 91 % of its time in building
+# the teapot.
+add_library(phalanx_hot_options INTERFACE)
 if(PHALANX_SANITIZE)
+  target_compile_options(phalanx_hot_options INTERFACE -O2)
   target_compile_options(phalanx_options INTERFACE -fsanitize=${PHALANX_SANITIZE} -fno-omit-frame-pointer
                                                    -fno-sanitize-recover=all)
   target_link_options(phalanx_options INTERFACE -fsanitize=${PHALANX_SANITIZE})

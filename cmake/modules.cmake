@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-# phalanx_module(NAME [COLD] SOURCES ... [LIBRARIES external ...] [PRECOMPILED header])
+# phalanx_module(NAME [COLD | HOT] SOURCES ... [LIBRARIES external ...] [PRECOMPILED header])
 # One folder of src/ as an object library `phalanx_NAME`, so that its tests link it and what it uses and nothing else.
-# COLD is what no tick and no simulation spends its time in, see phalanx_cold_options in compile_options.cmake.
+# COLD is what no tick and no simulation spends its time in, see phalanx_cold_options in compile_options.cmake. HOT is what a sanitized tree
+# spends its time in, see phalanx_hot_options.
 # PRECOMPILED is a header of its own to compile first, instead of the one that the other modules share.
 function(phalanx_module name)
-  cmake_parse_arguments(ARG "COLD" "PRECOMPILED" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;HOT" "PRECOMPILED" "SOURCES;LIBRARIES" ${ARGN})
   add_library(phalanx_${name} OBJECT ${ARG_SOURCES})
   target_include_directories(phalanx_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(phalanx_${name} PUBLIC Eigen3::Eigen PRIVATE phalanx_options ${ARG_LIBRARIES})
   if(ARG_COLD)
     target_link_libraries(phalanx_${name} PRIVATE phalanx_cold_options)
+  endif()
+  if(ARG_HOT)
+    target_link_libraries(phalanx_${name} PRIVATE phalanx_hot_options)
   endif()
   if(ARG_PRECOMPILED)
     target_precompile_headers(phalanx_${name} PRIVATE ${ARG_PRECOMPILED})
