@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/key_rows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 
 namespace phalanx {
 
@@ -62,6 +65,13 @@ void KeyRows::word(KeyType type, std::string path, std::optional<std::string> de
                    std::string meaning, Store store) const {
   SceneKey& key = add(type, std::move(path), std::move(meaning), std::move(store));
   if (default_value) key.default_value.emplace().text = *std::move(default_value);
+}
+
+NumberRange in_unit(NumberRange range, double unit) {
+  const auto rounded = [](double value) { return std::stod(fmt::format("{:.12g}", value)); };
+  range.min = rounded(range.min / unit);
+  range.max = rounded(range.max / unit);
+  return range;
 }
 
 Mat3 rotation_of(const Vec3& roll_pitch_yaw_deg) {

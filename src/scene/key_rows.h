@@ -48,6 +48,11 @@ class KeyRows {
   ChangeKind change_;
 };
 
+/// @returns the range of a number in a key's unit. Its ends are rounded to 12 digits, because the factors of
+/// units are not exact in binary.
+/// @param unit  size of the unit in SI units: kMm for mm
+[[nodiscard]] NumberRange in_unit(NumberRange range, double unit);
+
 /// @returns the rotation by roll, pitch, yaw in degrees:  R = Rz(yaw) Ry(pitch) Rx(roll).
 [[nodiscard]] Mat3 rotation_of(const Vec3& roll_pitch_yaw_deg);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys of the scene as a whole and of its hand.
+#include "phalanx/force/parameter_ranges.h"
 #include "scene/key_rows.h"
 
 namespace phalanx {
@@ -17,7 +18,7 @@ void add_general_keys(std::vector<SceneKey>& keys) {
   constexpr NumberRange kTurn = between(-360, 360);
   at_zero_torque.word(KeyType::kText, "description", "", "one line about the scene",
                       [](T t, V v) { t.scene.description = v.text; });
-  new_station.number("rate_hz", "Hz", between(1, 4000), 200, "ticks per second",
+  new_station.number("rate_hz", "Hz", ranges::kRate, 200, "ticks per second",
                      [](T t, V v) { t.scene.parameters.rate_hz = v.number; });
   new_station.number("seconds", "s", between(0, 86400), 0, "length of a simulation; 0: the motion's",
                      [](T t, V v) { t.scene.seconds = v.number; });

@@ -51,8 +51,9 @@ void add_object_keys(std::vector<SceneKey>& keys) {
                       [](T t, V v) { t.object.lid_diameter = v.number * kMm; });
   other_object.number("objects[].ring_diameter_mm", "mm", kSize, 80, "of the tube's centre line, around z",
                       [](T t, V v) { t.object.ring_diameter = v.number * kMm; });
-  other_object.number("objects[].tube_diameter_mm", "mm", kSize, 20, "of the tube; below the ring's",
-                      [](T t, V v) { t.object.tube_diameter = v.number * kMm; });
+  other_object.number(
+      "objects[].tube_diameter_mm", "mm", {.min = 0, .max = 2000, .min_open = true, .max_open = true}, 20,
+      "of the tube; below the ring's", [](T t, V v) { t.object.tube_diameter = v.number * kMm; });
   other_object.vector("objects[].extent_mm", "mm", kSize, 50, "full edge lengths along x, y, z",
                       [](T t, V v) { t.object.extent = v.vector * kMm; });
   other_object.integer("objects[].triangles", between(8, 2000000), 1000, "about how many triangles it has",

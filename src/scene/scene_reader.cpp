@@ -99,7 +99,7 @@ class Reader {
 
   [[nodiscard]] double checked(const SceneKey& key, const std::string& path, const toml::node& node,
                                const std::optional<KeyValue>& fallback) const {
-    const double number = *node.value<double>();
+    const double number = number_of(node);
     if (!key.range.contains(number)) {
       tree_.fail(path, fmt::format("must be {}{}{}{}", range_text(key), key.unit.empty() ? "" : " ", key.unit,
                                    remedy(key, fallback)));

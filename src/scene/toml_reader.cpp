@@ -12,6 +12,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/toml_bounds.h"
@@ -83,6 +84,8 @@ std::string show(const toml::node& node) {
   return text;
 }
 
+double number_of(const toml::node& node) { return node.value<double>().value_or(kInfinity); }
+
 std::string_view type_name(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
@@ -143,7 +146,7 @@ const toml::node& TomlTable::node(std::string_view key) {
 double TomlTable::number(std::string_view key, const NumberRange& range) {
   const toml::node& found = node(key);
   if (!found.is_number()) fail(key, fmt::format("is {}; write a number, {}", type_name(found), range.text()));
-  const double value = *found.value<double>();
+  const double value = number_of(found);
   if (!range.contains(value)) fail(key, fmt::format("must be {}; change the value", range.text()));
   return value;
 }
@@ -174,7 +177,7 @@ std::vector<double> TomlTable::numbers(std::string_view key, const NumberRange& 
     const toml::node& element = (*array)[i];
     if (!element.is_number())
       fail(key, fmt::format("element {} is {}; write a number", i, type_name(element)));
-    result.push_back(*element.value<double>());
+    result.push_back(number_of(element));
     if (!range.contains(result.back()))
       fail(key, fmt::format("element {} must be {}; change the value", i, range.text()));
   }

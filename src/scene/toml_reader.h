@@ -11,7 +11,7 @@
 #include <toml++/toml.h>
 
 #include "phalanx/core/math.h"
-#include "phalanx/scene/number_range.h"
+#include "phalanx/core/number_range.h"
 
 namespace phalanx {
 
@@ -29,6 +29,9 @@ namespace phalanx {
 
 /// @returns a value as written in a file, shortened.
 [[nodiscard]] std::string show(const toml::node& node);
+/// @returns the value of a number; infinity for an integer beyond +-2^53, which no range of the program allows
+/// @pre node.is_number()
+[[nodiscard]] double number_of(const toml::node& node);
 /// @returns "a string", "an integer", ...
 [[nodiscard]] std::string_view type_name(const toml::node& node);
 

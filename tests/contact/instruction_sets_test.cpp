@@ -14,6 +14,7 @@
 
 #include "contact/search/search_functions.h"
 #include "phalanx/contact/proximity.h"
+#include "phalanx/core/constants.h"
 #include "support/count_allocations.h"
 #include "support/search_cases.h"
 #include "support/simple_hand.h"
@@ -118,7 +119,7 @@ JointArray any_hand(test::Random& random, const HandParameters& hand, double rea
 ResultBits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks) {
   test::Random random(seed);
   test::Setup model(test::simple_hand(), ObjectModel(object));
-  model.parameters.limits.joint_speed = 1e4;
+  model.parameters.limits.joint_speed = kInfinity;
   test::Runner runner(model);
   ResultBits out;
   for (int n = 0; n < grasps; ++n) {
@@ -195,7 +196,7 @@ TEST_P(EverySet, WholeStepsAreTheSameBits) {
 TEST_P(EverySet, AllocatesNothingWhereTheListRunsOver) {
   test::Setup model(test::simple_hand(),
                     ObjectModel(test::moved(make_sphere(0.03, 4000), test::at(0.0, -0.03, -0.05))));
-  model.parameters.limits.joint_speed = 1e4;
+  model.parameters.limits.joint_speed = kInfinity;
   test::Random random(33);
   const UsedSet used(GetParam());
   HapticState state(model, model.parameters);

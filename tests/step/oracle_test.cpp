@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/step/haptic_step.h"
@@ -47,7 +48,7 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> u(0.0, 1.0);
-    scene_.parameters.limits.joint_speed = 1e4;
+    scene_.parameters.limits.joint_speed = kInfinity;
     HapticState state(model_, scene_.parameters);
     const HandParameters& hand = model_.hand.parameters();
     double time = 0.0;

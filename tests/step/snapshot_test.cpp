@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/simple_hand.h"
 #include "support/stabilised_hands.h"
@@ -114,7 +115,7 @@ TEST(StepSnapshot, WhatHasSlidIsTheWayInThePlaneOfTheContact) {
 // with the shown finger.
 TEST(StepSnapshot, AForceThatDecaysActsAtItsMaterialPoint) {
   test::Setup model = test::floor_model(Stabiliser::kSmoothing);
-  model.parameters.limits.joint_speed = 1e4;
+  model.parameters.limits.joint_speed = kInfinity;
   test::Runner hand(model);
   for (int n = 0; n <= 150; ++n) hand.tick(press_and_leave(n));
   const SegmentSnapshot before = hand.now().segment[kTip];

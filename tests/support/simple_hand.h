@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/hand/hand_model.h"
 #include "phalanx/step/haptic_step.h"
 
@@ -65,7 +66,7 @@ inline void turn_limits_off(Setup& model) {
   model.parameters.limits.fingertip_force_enabled = false;
   model.parameters.limits.joint_torque_enabled = false;
   model.parameters.limits.torque_rate_enabled = false;
-  model.parameters.limits.joint_speed = 1e4;
+  model.parameters.limits.joint_speed = kInfinity;
 }
 
 inline Pose at(double x, double y, double z) { return Pose{Mat3::Identity(), Vec3(x, y, z)}; }

@@ -9,7 +9,7 @@
 namespace phalanx {
 
 /// Every number of a step that is neither geometry nor state. A plain value: another set of parameters for
-/// the same hand and object copies no mesh.
+/// the same hand and object copies no mesh. parameter_ranges.h has the ranges.
 struct HapticParameters {
   ContactParameters contact;
   ForceLawParameters force;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "phalanx/core/math.h"
-#include "phalanx/scene/number_range.h"
+#include "phalanx/core/number_range.h"
 
 namespace phalanx {
 

@@ -46,7 +46,7 @@ bool can_be_a_value(const toml::node& node) {
 StudyValue study_value(const toml::node& node) {
   StudyValue value{.toml = as_toml(node), .shown = ""};
   value.shown = node.is_string() ? *node.value<std::string>() : value.toml;
-  if (node.is_number()) value.number = *node.value<double>();
+  if (node.is_number()) value.number = number_of(node);
   return value;
 }
 

@@ -6,8 +6,10 @@
 
 #include <filesystem>
 
+#include "phalanx/scene/scene_keys.h"
 #include "study/laboratory/expect_refusal.h"
 #include "study/laboratory/study_json.h"
+#include "study/laboratory/study_limits.h"
 #include "study/laboratory/synthetic.h"
 
 namespace phalanx {
@@ -118,6 +120,10 @@ TEST(StudyFile, SurvivesTheJournalsForm) {
   }
 }
 
+TEST(StudyFile, AllowsNoStifferGridThanASceneMayState) {
+  EXPECT_EQ(kLargestStiffness, find_scene_key("force.stiffness_n_per_mm")->range.max);
+}
+
 // A journal may come from elsewhere. Each bad grid has one thing wrong: the least value, the order, the
 // largest value, the step's sign, 30,001 values.
 TEST(StudyFile, RefusesAJournalWhoseNumbersNoStudyFileMayHold) {
@@ -128,10 +134,10 @@ TEST(StudyFile, RefusesAJournalWhoseNumbersNoStudyFileMayHold) {
     static_cast<void>(study_from_json(json));
   };
   EXPECT_NO_THROW(with_grid(0.1, 0.1, 0.1));
-  EXPECT_NO_THROW(with_grid(1.0, 1000.0, 1.0));
+  EXPECT_NO_THROW(with_grid(1.0, 100.0, 1.0));
   EXPECT_THROW(with_grid(0.0, 4.0, 0.1), std::out_of_range);
   EXPECT_THROW(with_grid(0.2, 0.1, 0.1), std::out_of_range);
-  EXPECT_THROW(with_grid(1.0, 1001.0, 1.0), std::out_of_range);
+  EXPECT_THROW(with_grid(1.0, 101.0, 1.0), std::out_of_range);
   EXPECT_THROW(with_grid(1.0, 4.0, -1.0), std::out_of_range);
   EXPECT_THROW(with_grid(1.0, 4.0, 1e-4), std::out_of_range);
   const auto with_number = [&](const char* key, const OrderedJson& number) {
