@@ -67,6 +67,7 @@ int print_keys(bool markdown) {
     if (!key.unit.empty()) value += fmt::format(" [{}]", key.unit);
     if (!row.range.empty()) value += ", " + row.range;
     if (!row.default_value.empty()) value += ", default " + row.default_value;
+    value += ", change " + row.change;
     fmt::print("{:<40} {}\n{:<40} {}\n", key.path, row.meaning, "", value);
   }
   return kDone;
@@ -86,8 +87,8 @@ void add_scene_command(CLI::App& app, Job& job) {
   check->callback([names, &job] { job = [names] { return check_scenes(*names); }; });
 
   auto markdown = std::make_shared<bool>(false);
-  CLI::App* keys =
-      scene->add_subcommand("keys", "List every key of a scene file with unit, range and default");
+  CLI::App* keys = scene->add_subcommand(
+      "keys", "List every key of a scene file with unit, range, default and what a change of it needs");
   keys->add_flag("--markdown", *markdown, "as the table of docs/scenes.md");
   keys->callback([markdown, &job] { job = [markdown] { return print_keys(*markdown); }; });
 

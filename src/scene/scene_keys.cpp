@@ -107,6 +107,20 @@ ChangeKind change_kind(const std::string& path) {
   return needs;
 }
 
+std::string_view change_text(ChangeKind change) {
+  switch (change) {
+    case ChangeKind::kInContact:
+      return "at once";
+    case ChangeKind::kAtZeroTorque:
+      return "at zero torque";
+    case ChangeKind::kOtherObject:
+      return "another object";
+    case ChangeKind::kNewStation:
+      return "new station";
+  }
+  return "";
+}
+
 std::string range_text(const SceneKey& key) {
   switch (key.type) {
     case KeyType::kNumber:
@@ -161,17 +175,19 @@ SceneKeyText text_of(const SceneKey& key) {
   return {.type = type_text(key.type),
           .range = range_text(key),
           .default_value = key.default_value ? value_text(key, *key.default_value) : "",
+          .change = std::string(change_text(key.change)),
           .meaning = (kinds.empty() ? "" : fmt::format("({}) ", kinds)) + key.meaning + defaults};
 }
 
 std::string scene_keys_markdown() {
   std::string text =
-      "| key | type | unit | range | default | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
+      "| key | type | unit | range | default | change | meaning |\n"
+      "| --- | --- | --- | --- | --- | --- | --- |\n";
   for (const SceneKey& key : scene_keys()) {
     const SceneKeyText row = text_of(key);
     const std::string fallback = row.default_value.empty() ? "" : fmt::format("`{}`", row.default_value);
-    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.path, row.type, key.unit, row.range,
-                        fallback, row.meaning);
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.path, row.type, key.unit, row.range,
+                        fallback, row.change, row.meaning);
   }
   return text;
 }

@@ -110,8 +110,9 @@ wire::ChangeKind wire_change(ChangeKind change) noexcept {
     case ChangeKind::kInContact:
       return wire::CHANGE_IN_CONTACT;
     case ChangeKind::kAtZeroTorque:
-    case ChangeKind::kOtherObject:
       return wire::CHANGE_AT_ZERO_TORQUE;
+    case ChangeKind::kOtherObject:
+      return wire::CHANGE_OTHER_OBJECT;
     case ChangeKind::kNewStation:
       return wire::CHANGE_NEW_STATION;
   }

@@ -408,7 +408,7 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
   const auto change_of = [&](const std::string& path) { return key_of(path).change(); };
   EXPECT_EQ(change_of("force.stiffness_n_per_mm"), wire::CHANGE_IN_CONTACT);
   EXPECT_EQ(change_of("force.law"), wire::CHANGE_AT_ZERO_TORQUE);
-  EXPECT_EQ(change_of("objects[].kind"), wire::CHANGE_AT_ZERO_TORQUE);
+  EXPECT_EQ(change_of("objects[].kind"), wire::CHANGE_OTHER_OBJECT);
   EXPECT_EQ(change_of("rate_hz"), wire::CHANGE_NEW_STATION);
   EXPECT_EQ(key_of("rate_hz").type(), wire::KEY_NUMBER);
   EXPECT_EQ(key_of("rate_hz").range().min(), 1.0);

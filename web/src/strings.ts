@@ -263,7 +263,12 @@ const en = {
     orMinusInfinity: "or -inf",
     orOff: 'or "off"',
     types: ["number", 'number or "off"', "integer", "flag", "text", "choice", "vector", "file", "name"],
-    change: ["changes in contact, within 0.2 s", "the torque goes to zero and returns", "the station ends and another one begins"],
+    change: [
+      "changes at once, within 0.2 s",
+      "the torque goes to zero and returns",
+      "the station ends and another one begins",
+      "another object: the torque goes to zero and returns; with the simulated patient, the station ends and another one begins",
+    ],
     none: "Nothing matches.",
     on: "on",
     off: "off",

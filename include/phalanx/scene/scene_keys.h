@@ -99,6 +99,9 @@ struct SceneKey {
 /// kAtZeroTorque.
 [[nodiscard]] ChangeKind change_kind(const std::string& path);
 
+/// @returns the requirement in words: "at once", "at zero torque", "another object", "new station".
+[[nodiscard]] std::string_view change_text(ChangeKind change);
+
 /// Describes the allowed values: "> 0, <= 15, or \"off\"", or the choices; empty: any.
 [[nodiscard]] std::string range_text(const SceneKey& key);
 
@@ -110,6 +113,7 @@ struct SceneKeyText {
   std::string type;  ///< number, integer, flag, text, choice, vector, file, name, number or "off"
   std::string range;
   std::string default_value;  ///< as written in a file; empty: no default
+  std::string change;         ///< as change_text()
   std::string meaning;        ///< with the kinds of object that have the key, and their own defaults
 };
 [[nodiscard]] SceneKeyText text_of(const SceneKey& key);

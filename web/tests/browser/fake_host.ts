@@ -53,6 +53,14 @@ function kindsOfDocs(meaning: string, defaultValue: string): { kind: string; def
 /// A meaning without the kinds and their defaults.
 const plain = (meaning: string) => meaning.slice(meaning.startsWith("(") ? meaning.indexOf(")") + 2 : 0).split("; default of ")[0]!;
 
+/// The words of docs/scenes.md for what a change needs.
+const changeOfDocs: Readonly<Record<string, ChangeKind>> = {
+  "at once": ChangeKind.CHANGE_IN_CONTACT,
+  "at zero torque": ChangeKind.CHANGE_AT_ZERO_TORQUE,
+  "another object": ChangeKind.CHANGE_OTHER_OBJECT,
+  "new station": ChangeKind.CHANGE_NEW_STATION,
+};
+
 /// The keys as docs/scenes.md lists them.
 export function keysOfDocs(): KeyInfo[] {
   const lines = readFileSync(join(root, "docs/scenes.md"), "utf8").split("\n");
@@ -60,7 +68,7 @@ export function keysOfDocs(): KeyInfo[] {
   return lines
     .filter((line) => /^\| `[a-z0-9_.[\]]+` \| (number|integer|flag|text|choice|vector|file|name)/.test(line))
     .map((line) => {
-      const [path, typeName, unit, range, value, meaning] = line.split("|").slice(1).map((cell) => bare(cell));
+      const [path, typeName, unit, range, value, changeName, meaning] = line.split("|").slice(1).map((cell) => bare(cell));
       const type: KeyType = strings.settings.types.indexOf(typeName!);
       const numeric = [KeyType.KEY_NUMBER, KeyType.KEY_NUMBER_OR_OFF, KeyType.KEY_INTEGER, KeyType.KEY_VECTOR].includes(type);
       return create(KeyInfoSchema, {
@@ -68,7 +76,7 @@ export function keysOfDocs(): KeyInfo[] {
         ...(numeric ? { range: rangeOfDocs(range!) } : {}),
         choice: type === KeyType.KEY_CHOICE ? range!.split(", ") : [],
         kind: path!.startsWith("objects[].") ? kindsOfDocs(meaning!, value!) : [],
-        change: /^(force|smoothing|stabiliser)/.test(path!) ? ChangeKind.CHANGE_IN_CONTACT : ChangeKind.CHANGE_NEW_STATION,
+        change: changeOfDocs[changeName!]!,
       });
     });
 }

@@ -38,8 +38,14 @@ describe("factsText", () => {
     expect(factsText(length, "sphere")).toBe(facts("50"));
   });
 
+  it("names each requirement of a change", () => {
+    const facts = (change: ChangeKind) => factsText(create(KeyInfoSchema, { type: KeyType.KEY_TEXT, change }), "");
+    expect(facts(ChangeKind.CHANGE_AT_ZERO_TORQUE)).toBe("text · the torque goes to zero and returns");
+    expect(facts(ChangeKind.CHANGE_OTHER_OBJECT)).toMatch(/^text · another object: /);
+  });
+
   it("leaves out a default that is no text", () => {
     const key = create(KeyInfoSchema, { type: KeyType.KEY_TEXT, defaultValue: '""', change: ChangeKind.CHANGE_IN_CONTACT });
-    expect(factsText(key, "")).toBe("text · changes in contact, within 0.2 s");
+    expect(factsText(key, "")).toBe("text · changes at once, within 0.2 s");
   });
 });
