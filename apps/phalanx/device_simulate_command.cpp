@@ -19,7 +19,7 @@
 #include "faulty_wire.h"
 #include "phalanx/device/link/transport.h"
 #include "phalanx/scene/build_model.h"
-#include "phalanx/scene/scene.h"
+#include "phalanx/scene/scene_file.h"
 #include "phalanx/station/assemble.h"
 #include "served_controller.h"
 #include "usage.h"
@@ -43,7 +43,8 @@ struct DeviceSimulateOptions {
 SimulatedDeviceSettings settings_of(const DeviceSimulateOptions& options) {
   Overrides overrides;
   for (const std::string& text : options.set) overrides.push_back(parse_override(text));
-  const ResolvedScene scene = resolve(load_scene(options.scene, overrides), {.device = true, .motion = true});
+  const ResolvedScene scene =
+      resolve(SceneFile(options.scene).scene(overrides), {.device = true, .motion = true});
   const auto model = std::make_unique<HapticModel>(build_model(scene));
   SimulatedDeviceSettings settings = simulated_settings(scene, *model);
   settings.seed = options.seed.value_or(scene.description.seed);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "papers/swing_watch.h"
+#include "phalanx/scene/scene_file.h"
 #include "phalanx/simulation/simulated_exoskeleton.h"
 
 namespace phalanx {
@@ -69,7 +70,7 @@ double LoopRun::largest_position_swing() const {
 }
 
 LoopRun run_loop(const std::string& name, const std::string& scene, const Overrides& overrides, int seeds) {
-  const auto setup = make_trial_setup(load_scene(scene, overrides));
+  const auto setup = make_trial_setup(SceneFile(scene).scene(overrides));
   LoopRun run;
   run.name = name;
   run.stiffness = setup->parameters.force.stiffness;

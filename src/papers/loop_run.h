@@ -48,7 +48,7 @@ struct LoopRun {
 };
 
 /// Runs seeds 1 .. `seeds` on all cores.
-/// @throws as load_scene() and make_trial_setup().
+/// @throws as SceneFile::scene() and make_trial_setup().
 [[nodiscard]] LoopRun run_loop(const std::string& name, const std::string& scene, const Overrides& overrides,
                                int seeds);
 

@@ -67,11 +67,14 @@ SceneDescription SceneFile::scene(const Overrides& overrides) const {
   return read_scene(SceneTree(text_, origin_, overrides), origin_, folder_, first);
 }
 
-Overrides SceneFile::values(const Overrides& overrides) const {
+SceneWithValues SceneFile::with_values(const Overrides& overrides) const {
   const SceneTree tree(text_, origin_, overrides);
-  Overrides values;
-  add(tree.root(), "", values);
-  return values;
+  SceneProblems first(nullptr);
+  SceneWithValues read{.scene = read_scene(tree, origin_, folder_, first), .values = {}};
+  add(tree.root(), "", read.values);
+  return read;
 }
+
+Overrides SceneFile::values(const Overrides& overrides) const { return with_values(overrides).values; }
 
 }  // namespace phalanx

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "phalanx/scene/build_model.h"
+#include "phalanx/scene/scene_file.h"
 #include "phalanx/simulation/closed_loop/closed_loop.h"
 
 namespace phalanx {
@@ -26,7 +27,7 @@ class Setups {
       for (const auto& [key, setup] : kept_)
         if (key == overrides) return setup;
     }
-    auto made = make_trial_setup(load_scene(scene_, overrides));
+    auto made = make_trial_setup(SceneFile(scene_).scene(overrides));
     const std::lock_guard lock(mutex_);
     kept_.emplace_back(overrides, made);
     if (kept_.size() > kMost) kept_.pop_front();

@@ -43,6 +43,18 @@ TEST(SceneFile, ReadsItsValuesBackTheSame) {
   EXPECT_EQ(SceneFile("first_touch").values(values), values);
 }
 
+TEST(SceneFile, GivesTheSceneTogetherWithItsValues) {
+  const SceneFile file("rate_hz = 400\n[force]\nlaw = \"duffing\"\n", "s.toml", ".");
+  const SceneWithValues read = file.with_values({{"force.stiffness_n_per_mm", "0.9"}});
+  EXPECT_EQ(read.scene.parameters.rate_hz, 400.0);
+  EXPECT_EQ(read.scene.parameters.force.law, ForceLaw::kDuffing);
+  EXPECT_EQ(read.scene.parameters.force.stiffness, 900.0);
+  EXPECT_THAT(read.values,
+              ::testing::UnorderedElementsAre(Pair("rate_hz", "400"), Pair("force.law", "\"duffing\""),
+                                              Pair("force.stiffness_n_per_mm", "0.9")));
+  EXPECT_THROW(static_cast<void>(file.with_values({{"rate_hz", "0"}})), SceneError);
+}
+
 TEST(SceneFile, SaysWhichSceneThereIsNot) {
   EXPECT_THROW(static_cast<void>(SceneFile("no_such_scene")), SceneError);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -42,6 +43,18 @@ TEST(Trial, OpensEachFileOnceForItsSetup) {
   const test::OpenedFiles opened(folder.path());
   EXPECT_FALSE(make_trial_setup(scene)->model.object.mesh().triangles.empty());
   const std::map<std::string, int> once = {{"device.toml", 1}, {"hand.toml", 1}, {"patient.toml", 1}};
+  EXPECT_EQ(opened.take(), once);
+}
+
+TEST(Trial, OpensEachFileOnceForAllTrialsOfAScene) {
+  const testing::TemporaryFolder folder;
+  const std::string scene = test::write_first_touch(folder.path());
+  const test::OpenedFiles opened(folder.path());
+  const TrialFunction trial = make_trial_function(scene);
+  for (const std::uint64_t seed : {1U, 2U})
+    static_cast<void>(trial({{"patient.bump_n", "0"}}, kAsItIs, kAsItIs, seed));
+  const std::map<std::string, int> once = {
+      {"device.toml", 1}, {"hand.toml", 1}, {"patient.toml", 1}, {"scene.toml", 1}};
   EXPECT_EQ(opened.take(), once);
 }
 

@@ -8,6 +8,13 @@
 
 namespace phalanx {
 
+/// A scene, and every value that its file or an override states as TOML text, by its path
+/// ("objects.0.size_mm"). A value that is left out has its default (scene_keys()).
+struct SceneWithValues {
+  SceneDescription scene;
+  Overrides values;
+};
+
 /// Text of a scene file, read once. It makes the scene of any overrides without opening a file again.
 class SceneFile {
  public:
@@ -17,15 +24,15 @@ class SceneFile {
   /// @param origin, folder  as for parse_scene()
   SceneFile(std::string text, std::string origin, std::filesystem::path folder);
 
-  /// Reads the whole scene. It opens no file: load_device(), load_patient() and resolve() are the first to
-  /// read those of the device and the patient.
+  /// Reads the whole scene. It opens no file: load_device(), load_patient() and resolve() read and check those
+  /// of the device and the patient.
   /// @throws SceneError as load_scene(), except for these two files
   [[nodiscard]] SceneDescription scene(const Overrides& overrides) const;
 
-  /// @returns every value that the file or an override states, as TOML text, by its path
-  /// ("objects.0.size_mm"). A value that is left out has its default (scene_keys()). scene() checks the
-  /// values; this does not. It opens no file.
-  /// @throws SceneError if the text is not TOML
+  /// Reads the whole scene with its values, as scene(). It parses the text once.
+  /// @throws SceneError as scene()
+  [[nodiscard]] SceneWithValues with_values(const Overrides& overrides) const;
+  /// @returns the values of with_values().
   [[nodiscard]] Overrides values(const Overrides& overrides) const;
 
  private:

@@ -9,7 +9,7 @@
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/profile_file.h"
-#include "phalanx/scene/scene.h"
+#include "phalanx/scene/scene_file.h"
 #include "phalanx/study/laboratory/study_file.h"
 
 namespace phalanx {
@@ -45,7 +45,7 @@ void add_motion(const MotionDescription& motion, Files& files) {
 
 StudyCheck scene_check(const Study& study) {
   return [name = scene_of(study)](const Overrides& overrides) {
-    const SceneDescription scene = load_scene(name, overrides);
+    const SceneDescription scene = SceneFile(name).scene(overrides);
     StudyInputs inputs;
     inputs.text = device_text(scene) + patient_text(scene);
     inputs.files.push_back(find_data_file("scene", name, "scenes", ".toml", fs::current_path()));
