@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "mesh/import/repair.h"
+#include "mesh/repair/repair.h"
 #include "phalanx/mesh/import.h"
 
 namespace {

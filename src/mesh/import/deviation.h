@@ -6,10 +6,6 @@
 
 namespace phalanx::mesh {
 
-/// Returns the point of a triangle nearest to p (Voronoi regions of corners, edges and face). The triangle
-/// may be degenerate.
-[[nodiscard]] Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
-
 /// Measures exact distances to the other surface from each surface's vertices, centroids and edge midpoints.
 /// The greatest is a lower bound of the Hausdorff distance, because a surface may bulge between these points.
 /// O(n log n).

@@ -19,7 +19,7 @@
 #include "mesh/import/deviation.h"
 #include "mesh/import/index_check.h"
 #include "mesh/import/obj_reduce.h"
-#include "mesh/import/repair.h"
+#include "mesh/repair/repair.h"
 #include "phalanx/mesh/isolation/isolation_helper.h"
 
 namespace phalanx {

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "mesh/import/shells.h"
-#include "mesh/import/spot.h"
+#include "mesh/repair/shells.h"
+#include "mesh/repair/triangle_measures.h"
 
 namespace phalanx::mesh {
 

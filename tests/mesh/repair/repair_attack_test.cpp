@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/import/box_tree.h"
 #include "mesh/import/deviation.h"
-#include "mesh/import/edge_table.h"
-#include "mesh/import/patches.h"
-#include "mesh/import/repair.h"
-#include "mesh/import/shells.h"
-#include "mesh/import/t_junctions.h"
-#include "mesh/import/weld.h"
 #include "mesh/mesh_checks.h"
+#include "mesh/repair/box_tree.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/patches.h"
+#include "mesh/repair/repair.h"
+#include "mesh/repair/shells.h"
+#include "mesh/repair/t_junctions.h"
+#include "mesh/repair/weld.h"
 #include "phalanx/mesh/corner_normals.h"
 
 namespace phalanx::mesh {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mesh/import/spot.h"
+#include "mesh/repair/triangle_measures.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx::mesh {

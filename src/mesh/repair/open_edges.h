@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-#include "mesh/import/edge_table.h"
-#include "mesh/import/shells.h"
-#include "mesh/import/spot.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/shells.h"
+#include "mesh/repair/triangle_measures.h"
 
 namespace phalanx::mesh {
 

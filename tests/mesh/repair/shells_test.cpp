@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/shells.h"
+#include "mesh/repair/shells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/flat_faces.h"
+#include "mesh/repair/flat_faces.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/import/edge_table.h"
-#include "mesh/import/measured_faces.h"
-#include "mesh/import/weld.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/triangle_measures.h"
+#include "mesh/repair/weld.h"
 
 namespace phalanx::mesh {
 namespace {

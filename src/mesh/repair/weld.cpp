@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/weld.h"
+#include "mesh/repair/weld.h"
 
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
-#include "mesh/import/edge_table.h"
+#include "mesh/repair/edge_table.h"
 
 namespace phalanx::mesh {
 

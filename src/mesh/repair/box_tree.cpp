@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/box_tree.h"
+#include "mesh/repair/box_tree.h"
 
 #include <algorithm>
 #include <cmath>

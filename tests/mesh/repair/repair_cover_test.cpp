@@ -14,7 +14,7 @@
 
 #include "mesh/import/assimp_reader.h"
 #include "mesh/import/deviation.h"
-#include "mesh/import/repair.h"
+#include "mesh/repair/repair.h"
 #include "phalanx/mesh/isolation/isolated.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/sanitized.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh/import/near_vertices.h"
+#include "mesh/repair/near_vertices.h"
 
 namespace phalanx::mesh {
 

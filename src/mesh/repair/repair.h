@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Repair of a triangle soup, as a file's reader returns it. repair() runs the steps in this order:
+//   1. weld: equal positions become one vertex; unused vertices and collapsed triangles go.
+//   2. Scale: the numbers become metres.
+//   3. Cracks, up to eight rounds, until nothing changes: duplicate faces go (weld), vertices of open edges
+//      that nearly coincide are merged (near_vertices), open edges are split at vertices on them
+//      (t_junctions), and triangles without height are removed (flat_faces). All rounds share an Allowance of
+//      displacement.
+//   4. Orientation: every patch gets one winding (patches), patches form shells (shells), and closed shells
+//      are turned outward.
+//   5. Findings that are reported only: crowded edges, holes, slits and outlines (open_edges), pinched
+//      vertices (patches), triangles that cross (self_intersection).
+// edge_table, box_tree and triangle_measures serve all steps. See docs/meshes.md for the findings.
 #pragma once
 
 #include <string>

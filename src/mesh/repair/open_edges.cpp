@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/open_edges.h"
+#include "mesh/repair/open_edges.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/import/box_tree.h"
+#include "mesh/repair/box_tree.h"
 
 namespace phalanx::mesh {
 namespace {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/import/box_tree.h"
-#include "mesh/import/edge_table.h"
-#include "mesh/import/patches.h"
-#include "mesh/import/spot.h"
+#include "mesh/repair/box_tree.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/patches.h"
+#include "mesh/repair/triangle_measures.h"
 
 namespace phalanx::mesh {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/import/measured_faces.h"
+#include "mesh/repair/triangle_measures.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx::mesh {

@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sizes and places on triangles, for a report's findings.
 #pragma once
 
 #include <cstddef>
 
-#include "mesh/import/spot.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx::mesh {
+
+/// Largest size found so far, with its place.
+struct Spot {
+  double size = -1.0;      ///< [m]; negative: nothing was found
+  Vec3 at = Vec3::Zero();  ///< in the mesh's frame [m]
+
+  [[nodiscard]] bool known() const noexcept { return size >= 0.0; }
+  /// Keeps the larger size; of equal sizes the first.
+  void take(double other, const Vec3& place) noexcept {
+    if (!(other > size)) return;
+    size = other;
+    at = place;
+  }
+  void take(const Spot& other) noexcept {
+    if (other.known()) take(other.size, other.at);
+  }
+};
 
 inline const Vec3& corner_of(const TriangleMesh& mesh, const Triangle& t, std::size_t k) noexcept {
   return mesh.vertices[static_cast<std::size_t>(t[k])];
@@ -32,6 +49,10 @@ inline const Vec3& corner_of(const TriangleMesh& mesh, const Triangle& t, std::s
   }
   return longest;
 }
+
+/// Returns the point of a triangle nearest to p (Voronoi regions of corners, edges and face). The triangle
+/// may be degenerate.
+[[nodiscard]] Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 /// Total area and longest edge of a set of triangles.
 struct MeasuredFaces {

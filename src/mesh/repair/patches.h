@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/import/edge_table.h"
-#include "mesh/import/measured_faces.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/triangle_measures.h"
 
 namespace phalanx::mesh {
 

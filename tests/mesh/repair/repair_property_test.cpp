@@ -7,8 +7,8 @@
 #include <random>
 #include <string>
 
-#include "mesh/import/repair.h"
 #include "mesh/mesh_checks.h"
+#include "mesh/repair/repair.h"
 #include "phalanx/mesh/primitives.h"
 
 namespace phalanx::mesh {

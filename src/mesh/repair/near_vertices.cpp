@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/near_vertices.h"
+#include "mesh/repair/near_vertices.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/import/edge_table.h"
-#include "mesh/import/weld.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/weld.h"
 
 namespace phalanx::mesh {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/patches.h"
+#include "mesh/repair/patches.h"
 
 #include <limits>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/repair.h"
+#include "mesh/repair/repair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/import/box_tree.h"
-#include "mesh/import/edge_table.h"
-#include "mesh/import/flat_faces.h"
-#include "mesh/import/near_vertices.h"
-#include "mesh/import/open_edges.h"
-#include "mesh/import/patches.h"
-#include "mesh/import/self_intersection.h"
-#include "mesh/import/shells.h"
-#include "mesh/import/t_junctions.h"
-#include "mesh/import/weld.h"
+#include "mesh/repair/box_tree.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/flat_faces.h"
+#include "mesh/repair/near_vertices.h"
+#include "mesh/repair/open_edges.h"
+#include "mesh/repair/patches.h"
+#include "mesh/repair/self_intersection.h"
+#include "mesh/repair/shells.h"
+#include "mesh/repair/t_junctions.h"
+#include "mesh/repair/weld.h"
 
 namespace phalanx::mesh {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/shells.h"
+#include "mesh/repair/shells.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "mesh/import/deviation.h"
+#include "mesh/repair/triangle_measures.h"
 
 namespace phalanx::mesh {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small meshes with one thing wrong with each, counted by hand.
-#include "mesh/import/repair.h"
+#include "mesh/repair/repair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

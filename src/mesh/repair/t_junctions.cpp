@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/t_junctions.h"
+#include "mesh/repair/t_junctions.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "mesh/import/box_tree.h"
-#include "mesh/import/edge_table.h"
-#include "mesh/import/flat_faces.h"
+#include "mesh/repair/box_tree.h"
+#include "mesh/repair/edge_table.h"
+#include "mesh/repair/flat_faces.h"
 
 namespace phalanx::mesh {
 namespace {

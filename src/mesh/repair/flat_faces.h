@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "mesh/import/near_vertices.h"
+#include "mesh/repair/near_vertices.h"
 
 namespace phalanx::mesh {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/edge_table.h"
+#include "mesh/repair/edge_table.h"
 
 namespace phalanx::mesh {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/import/self_intersection.h"
+#include "mesh/repair/self_intersection.h"
 
 #include <algorithm>
 #include <array>
