@@ -9,7 +9,6 @@
 #include "phalanx/figures/picture.h"
 #include "phalanx/figures/picture_moment.h"
 #include "phalanx/figures/plot.h"
-#include "phalanx/figures/trace.h"
 #include "phalanx/record/poses_csv.h"
 #include "phalanx/record/summary.h"
 #include "phalanx/record/ticks_csv.h"

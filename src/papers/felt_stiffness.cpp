@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "phalanx/figures/chart.h"
 #include "phalanx/force/force_law.h"
-#include "phalanx/study/report/chart.h"
 #include "study/made_json.h"
 
 namespace phalanx {

@@ -49,7 +49,7 @@ ExperimentReport s2_fig4() {
   const auto windows = trial_windows(load_patient(load_scene("stability_press")));
   report.svg = line_chart_svg(
       {.title = "The index finger presses the teapot at 0.9 N/mm",
-       .subtitle = "S2 fig. 4; simulated exoskeleton, host at 200 Hz, seed 1",
+       .subtitles = {"S2 fig. 4; simulated exoskeleton, host at 200 Hz, seed 1"},
        .x_label = "time [s]",
        .panels = {force_panel(runs[0], "without smoothing"),
                   force_panel(runs[1], "with smoothing, at most 0.05 N a step"),

@@ -58,8 +58,8 @@ ExperimentReport s2_fig5() {
   report.csv = curves_csv({run});
   report.svg = line_chart_svg(
       {.title = "A power grasp of the teapot at 1.4 N/mm",
-       .subtitle = "S2 fig. 5; at most 0.1 N a step; index and thumb move the device, the other "
-                   "fingers copy the index; seed 1",
+       .subtitles = {"S2 fig. 5; at most 0.1 N a step; index and thumb move the device, the other "
+                     "fingers copy the index; seed 1"},
        .x_label = "time [s]",
        .panels = {force_panel(run, "force of every touching phalanx"),
                   position_panel(run, "way of the contact points")},

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "papers/loop_run.h"
+#include "phalanx/figures/chart.h"
 #include "phalanx/papers/experiments_report.h"
-#include "phalanx/study/report/chart.h"
 
 namespace phalanx {
 

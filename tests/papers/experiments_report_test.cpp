@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "phalanx/study/report/chart.h"
-#include "study/report/page_checks.h"
+#include "phalanx/figures/chart.h"
 #include "study/report/synthetic_study.h"
+#include "support/page_checks.h"
 
 namespace phalanx {
 namespace {

@@ -2,11 +2,29 @@
 // Curves of a run as an SVG figure, ready for a paper.
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
-#include "phalanx/figures/trace.h"
+#include "phalanx/step/snapshot.h"
 
 namespace phalanx {
+
+/// Values of one tick that a plot needs.
+struct TraceTick {
+  double time_s = 0.0;
+  std::array<double, kSegments> force_raw{};  ///< of the force law, on each segment [N]
+  std::array<double, kSegments> force{};      ///< sent, on each segment [N]
+  JointArray torque{};                        ///< [Nm]
+  JointArray hcp_angle{};                     ///< [rad]
+  JointArray gdp_angle{};                     ///< [rad]
+};
+
+/// Curves of a run, in the order of its ticks. They grow by 0.8 kB a tick. Not real-time.
+using Trace = std::vector<TraceTick>;
+
+/// Copies from a snapshot what a plot needs.
+[[nodiscard]] TraceTick trace_tick(const Snapshot& snapshot);
 
 /// Text of a plot, one line each; a line that is too long for the width is cut with an ellipsis.
 struct PlotText {

@@ -15,7 +15,7 @@ class Pen {
   void line(float x0, float y0, float x1, float y1) { lines_.emplace_back(Vec2f(x0, y0), Vec2f(x1, y1)); }
   /// Draws part of an ellipse between two angles [deg], counter-clockwise from +x.
   void arc(float cx, float cy, float rx, float ry, float from_deg, float to_deg) {
-    constexpr int kParts = 12;
+    constexpr int kParts = 14;
     const auto at = [&](int i) {
       const float a = (from_deg + (to_deg - from_deg) * static_cast<float>(i) / kParts) * 0.01745329252F;
       return Vec2f(cx + rx * std::cos(a), cy + ry * std::sin(a));
@@ -41,6 +41,53 @@ constexpr std::string_view kWide = "mw";
 void letter_strokes(char letter, Strokes& lines) {
   Pen pen(lines);
   switch (letter) {
+    case '0':
+      pen.arc(2, 3, 2, 3, 0, 360);
+      break;
+    case '1':
+      pen.line(2.2F, 0, 2.2F, 6);
+      pen.line(2.2F, 6, 0.7F, 4.8F);
+      break;
+    case '2':
+      pen.arc(2, 4.2F, 1.9F, 1.8F, 170, -35);
+      pen.line(3.55F, 3.15F, 0.1F, 0);
+      pen.line(0.1F, 0, 4, 0);
+      break;
+    case '3':
+      pen.arc(1.9F, 4.5F, 1.6F, 1.5F, 150, -90);
+      pen.arc(1.9F, 1.55F, 1.9F, 1.55F, 90, -155);
+      break;
+    case '4':
+      pen.line(3, 0, 3, 6);
+      pen.line(3, 6, 0, 1.7F);
+      pen.line(0, 1.7F, 4.1F, 1.7F);
+      break;
+    case '5':
+      pen.line(3.7F, 6, 0.7F, 6);
+      pen.line(0.7F, 6, 0.4F, 3.3F);
+      pen.arc(1.9F, 1.95F, 2, 1.95F, 133, -145);
+      break;
+    case '6':
+      pen.arc(2, 1.95F, 1.95F, 1.95F, 0, 360);
+      pen.arc(4.6F, 1.95F, 4.55F, 4.4F, 180, 113);
+      break;
+    case '7':
+      pen.line(0, 6, 4, 6);
+      pen.line(4, 6, 1.3F, 0);
+      break;
+    case '8':
+      pen.arc(2, 4.55F, 1.55F, 1.45F, 0, 360);
+      pen.arc(2, 1.55F, 1.9F, 1.55F, 0, 360);
+      break;
+    case '9':
+      pen.arc(2, 4.05F, 1.95F, 1.95F, 0, 360);
+      pen.arc(-0.6F, 4.05F, 4.55F, 4.4F, 0, -67);
+      break;
+    case 'N':
+      pen.line(0, 0, 0, 6);
+      pen.line(0, 6, 4, 0);
+      pen.line(4, 0, 4, 6);
+      break;
     case 'a':
       pen.bowl();
       pen.line(3.4F, 4, 3.4F, 0);
@@ -155,6 +202,9 @@ void letter_strokes(char letter, Strokes& lines) {
     case '_':
       pen.line(0, -0.7F, 3.4F, -0.7F);
       break;
+    case '.':
+      pen.line(0.6F, 0.1F, 0.6F, 0.15F);
+      break;
     default:
       break;
   }
@@ -162,7 +212,9 @@ void letter_strokes(char letter, Strokes& lines) {
 
 float letter_advance(char letter) {
   if (letter == '_') return 4.6F;
-  if (letter < 'a' || letter > 'z') return 0.0F;
+  if (letter == '.') return 2.2F;
+  if (letter == ' ') return 2.6F;
+  if (letter < 'a' || letter > 'z') return 5.6F;
   if (kNarrow.find(letter) != std::string_view::npos) return letter == 'r' || letter == 't' ? 3.6F : 3.1F;
   return kWide.find(letter) != std::string_view::npos ? 6.7F : 4.9F;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small letters as strokes, for labels. Internal to src/figures/picture.
+// The stroke font for text in images: digits, small letters, 'N', '.' and '_'.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,11 +10,11 @@ namespace phalanx::picture {
 
 using Strokes = std::vector<std::pair<Eigen::Vector2f, Eigen::Vector2f>>;
 
-/// Adds the strokes of 'a' .. 'z' or '_' in a box 4 wide, y up. The base line is at 0, small letters are 4
-/// high, tall ones 6, and tails go down to -2. It adds nothing for any other character.
+/// Adds the strokes of a character, y up. The base line is at 0; small letters are 4 high, digits, 'N' and
+/// tall letters 6, and tails go down to -2. Most are 4 wide. Any other character has no stroke.
 void letter_strokes(char letter, Strokes& lines);
 
-/// @returns the distance from one letter's left edge to the next one's; 0 for a character without strokes.
+/// @returns the distance from one character's left edge to the next one's.
 [[nodiscard]] float letter_advance(char letter);
 
 }  // namespace phalanx::picture

@@ -15,81 +15,6 @@ namespace {
 using Vec2f = Eigen::Vector2f;
 const Vec3f kInk(0.035F, 0.04F, 0.055F);
 
-/// Adds the strokes of a character in a box 4 wide and 6 high, y up.
-void glyph(char c, std::vector<std::pair<Vec2f, Vec2f>>& lines) {
-  const auto arc = [&](float cx, float cy, float rx, float ry, float from_deg, float to_deg) {
-    constexpr int kParts = 14;
-    const auto at = [&](int i) {
-      const float a = (from_deg + (to_deg - from_deg) * static_cast<float>(i) / kParts) * 0.01745329252F;
-      return Vec2f(cx + rx * std::cos(a), cy + ry * std::sin(a));
-    };
-    for (int i = 0; i < kParts; ++i) lines.emplace_back(at(i), at(i + 1));
-  };
-  const auto line = [&](float x0, float y0, float x1, float y1) {
-    lines.emplace_back(Vec2f(x0, y0), Vec2f(x1, y1));
-  };
-  switch (c) {
-    case '0':
-      arc(2, 3, 2, 3, 0, 360);
-      break;
-    case '1':
-      line(2.2F, 0, 2.2F, 6);
-      line(2.2F, 6, 0.7F, 4.8F);
-      break;
-    case '2':
-      arc(2, 4.2F, 1.9F, 1.8F, 170, -35);
-      line(3.55F, 3.15F, 0.1F, 0);
-      line(0.1F, 0, 4, 0);
-      break;
-    case '3':
-      arc(1.9F, 4.5F, 1.6F, 1.5F, 150, -90);
-      arc(1.9F, 1.55F, 1.9F, 1.55F, 90, -155);
-      break;
-    case '4':
-      line(3, 0, 3, 6);
-      line(3, 6, 0, 1.7F);
-      line(0, 1.7F, 4.1F, 1.7F);
-      break;
-    case '5':
-      line(3.7F, 6, 0.7F, 6);
-      line(0.7F, 6, 0.4F, 3.3F);
-      arc(1.9F, 1.95F, 2, 1.95F, 133, -145);
-      break;
-    case '6':
-      arc(2, 1.95F, 1.95F, 1.95F, 0, 360);
-      arc(4.6F, 1.95F, 4.55F, 4.4F, 180, 113);
-      break;
-    case '7':
-      line(0, 6, 4, 6);
-      line(4, 6, 1.3F, 0);
-      break;
-    case '8':
-      arc(2, 4.55F, 1.55F, 1.45F, 0, 360);
-      arc(2, 1.55F, 1.9F, 1.55F, 0, 360);
-      break;
-    case '9':
-      arc(2, 4.05F, 1.95F, 1.95F, 0, 360);
-      arc(-0.6F, 4.05F, 4.55F, 4.4F, 0, -67);
-      break;
-    case 'N':
-      line(0, 0, 0, 6);
-      line(0, 6, 4, 0);
-      line(4, 0, 4, 6);
-      break;
-    case '.':
-      line(0.6F, 0.1F, 0.6F, 0.15F);
-      break;
-    default:
-      letter_strokes(c, lines);
-      break;
-  }
-}
-
-float advance(char c) {
-  if (const float letter = letter_advance(c); letter > 0.0F) return letter;
-  return c == '.' ? 2.2F : c == ' ' ? 2.6F : 5.6F;
-}
-
 }  // namespace
 
 Vec3f force_colour(float share) {
@@ -127,13 +52,13 @@ float draw_text(Canvas& canvas, float x, float y, float size, std::string_view t
   const float unit = size / 6.0F;
   float pen = x;
   for (const char c : text) {
-    std::vector<std::pair<Vec2f, Vec2f>> lines;
-    glyph(c, lines);
+    Strokes lines;
+    letter_strokes(c, lines);
     for (const auto& [a, b] : lines) {
       draw_stroke(canvas, {pen + unit * a.x(), y - unit * a.y()}, {pen + unit * b.x(), y - unit * b.y()},
                   0.13F * size, colour);
     }
-    pen += unit * advance(c);
+    pen += unit * letter_advance(c);
   }
   return pen - x;
 }

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "figures/plot/panel.h"
+#include "figures/chart/svg.h"
 
 namespace phalanx {
 namespace {

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "phalanx/study/report/chart.h"
+#include "figures/chart/axis.h"
+#include "phalanx/figures/chart.h"
 
 namespace phalanx {
 namespace {
@@ -52,7 +53,7 @@ std::vector<std::string> curve_charts(const StudyView& view, const Dimension& ax
   const bool bands = slices.size() <= kMostBands;
   const std::size_t first_half = quantities.size() - 4;
   std::vector<std::string> charts;
-  LineChart chart{.title = "", .subtitle = "", .x_label = axis.label, .panels = {}, .windows = {}};
+  LineChart chart{.title = "", .subtitles = {}, .x_label = axis.label, .panels = {}, .windows = {}};
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     ChartPanel panel{.title = quantities[q].label(),
                      .y_label = quantities[q].unit,
@@ -115,20 +116,13 @@ HeatMap heat_map(const StudyView& view, const Plane& plane, const Slice& slice, 
 
 /// Draws maps on one colour scale, so that they can be compared.
 std::vector<std::string> on_one_scale(std::vector<HeatMap> maps) {
-  double low = HUGE_VAL;
-  double high = -HUGE_VAL;
-  for (const HeatMap& map : maps) {
-    for (const double value : map.value) {
-      if (!std::isfinite(value)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
+  Range scale;
+  for (const HeatMap& map : maps) scale.include(map.value);
   std::vector<std::string> svgs;
   for (HeatMap& map : maps) {
-    if (low <= high) {
-      map.low = low;
-      map.high = high;
+    if (!scale.empty()) {
+      map.low = scale.low;
+      map.high = scale.high;
     }
     svgs.push_back(heat_map_svg(map));
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "phalanx/study/report/chart.h"
+#include "phalanx/figures/chart.h"
 #include "study/report/study_pictures.h"
 
 namespace phalanx {

@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "phalanx/study/laboratory/report.h"
-#include "study/report/page_checks.h"
 #include "study/report/study_view.h"
 #include "study/report/synthetic_study.h"
+#include "support/page_checks.h"
 
 namespace phalanx {
 namespace {

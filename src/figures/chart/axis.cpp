@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "figures/plot/ticks.h"
+#include "figures/chart/axis.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,23 @@
 #include <cmath>
 
 namespace phalanx {
+
+void Range::include(double value) noexcept {
+  if (!std::isfinite(value)) return;
+  constexpr double kLargest = 1e300;  // the extent and its ticks are then finite, too
+  low = std::min(low, std::clamp(value, -kLargest, kLargest));
+  high = std::max(high, std::clamp(value, -kLargest, kLargest));
+}
+
+void Range::include(const std::vector<double>& values) noexcept {
+  for (const double value : values) include(value);
+}
+
+Range Range::for_axis() const noexcept {
+  if (empty()) return {.low = 0.0, .high = 1.0};
+  if (high > low) return *this;
+  return {.low = low, .high = low + (low == 0.0 ? 1.0 : std::max(1e-12, 0.1 * std::abs(low)))};
+}
 
 std::vector<double> nice_ticks(double low, double high, int count) {
   const double rough = (high - low) / std::max(1, count - 1);

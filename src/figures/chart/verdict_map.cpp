@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "figures/plot/ticks.h"
-#include "phalanx/study/report/chart.h"
-#include "study/report/column_names.h"
-#include "study/report/svg.h"
+#include "figures/chart/axis.h"
+#include "figures/chart/column_names.h"
+#include "figures/chart/svg.h"
+#include "phalanx/figures/chart.h"
 
 namespace phalanx {
 namespace {
@@ -42,7 +42,7 @@ class VerdictMapDrawing {
 
   std::string draw() {
     svg_.define_hatch();
-    const double heading = svg_.heading(map_.title, "");
+    const double heading = svg_.heading(map_.title);
     legend(heading + 9);
     top_ = heading + 22;
     svg_.add(

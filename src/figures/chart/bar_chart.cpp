@@ -3,9 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "phalanx/study/report/chart.h"
-#include "study/report/palette.h"
-#include "study/report/svg.h"
+#include "figures/chart/axis.h"
+#include "figures/chart/palette.h"
+#include "figures/chart/svg.h"
+#include "phalanx/figures/chart.h"
 
 namespace phalanx {
 namespace {
@@ -23,12 +24,11 @@ void check(const BarChart& chart) {
   }
 }
 
-double largest(const std::vector<double>& values) {
-  double result = 0.0;
-  for (const double value : values) {
-    if (std::isfinite(value)) result = std::max(result, value);
-  }
-  return result > 0.0 ? result : 1.0;
+/// @returns the range from 0 to the largest value.
+Range bar_range(const std::vector<double>& values) {
+  Range range{.low = 0.0, .high = 0.0};
+  for (const double value : values) range.include(std::max(0.0, value));
+  return range.for_axis();
 }
 
 void draw_quantity(Svg& svg, const BarChart::Quantity& quantity, double x, double width, double top) {
@@ -38,7 +38,7 @@ void draw_quantity(Svg& svg, const BarChart::Quantity& quantity, double x, doubl
              R"( font-weight="bold")");
   }
   const double height = kRow * static_cast<double>(quantity.value.size());
-  const double per_unit = (width - kNumberRoom) / largest(quantity.value);
+  const double per_unit = (width - kNumberRoom) / bar_range(quantity.value).high;
   for (std::size_t i = 0; i < quantity.value.size(); ++i) {
     const double y = top + kRow * static_cast<double>(i);
     const double value = quantity.value[i];
@@ -57,10 +57,8 @@ void draw_quantity(Svg& svg, const BarChart::Quantity& quantity, double x, doubl
 std::string bar_chart_svg(const BarChart& chart) {
   check(chart);
   Svg svg(kBarsWidth);
-  const double top = svg.heading(chart.title, "") + 28;
-  double names = 0.0;
-  for (const std::string& name : chart.names) names = std::max(names, text_width(name));
-  names = std::min(names, 0.3 * kBarsWidth);
+  const double top = svg.heading(chart.title) + 28;
+  const double names = std::min(text_width(chart.names), 0.3 * kBarsWidth);
   for (std::size_t i = 0; i < chart.names.size(); ++i) {
     const double y = top + kRow * static_cast<double>(i);
     if (i % 2 == 0)

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/svg.h"
+#include "figures/chart/svg.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "figures/plot/panel.h"
 
 namespace phalanx {
 namespace {
@@ -42,7 +40,36 @@ const char* name(Anchor anchor) {
 
 }  // namespace
 
+std::string xml_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
 double text_width(const std::string& text) { return kCharacter * static_cast<double>(characters(text)); }
+
+double text_width(const std::vector<std::string>& texts) {
+  double widest = 0.0;
+  for (const std::string& text : texts) widest = std::max(widest, text_width(text));
+  return widest;
+}
 
 std::string cut_to(const std::string& text, double width) {
   const auto most = static_cast<std::size_t>(std::max(1.0, width / kCharacter));
@@ -82,14 +109,15 @@ void Svg::text_upwards(double x, double y, const std::string& text, Anchor ancho
       name(anchor), xml_escaped(text));
 }
 
-double Svg::heading(const std::string& title, const std::string& subtitle) {
+double Svg::heading(const std::string& title, const std::vector<std::string>& subtitles) {
   double y = 0.0;
   if (!title.empty()) {
     y += 15.0;
     text(4.0, y, cut_to(title, (width_ - 8.0) / 1.3), Anchor::kStart,
          R"( font-size="10" font-weight="bold")");
   }
-  if (!subtitle.empty()) {
+  for (const std::string& subtitle : subtitles) {
+    if (subtitle.empty()) continue;
     y += 12.0;
     text(4.0, y, cut_to(subtitle, width_ - 8.0), Anchor::kStart, R"( fill="#444")");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/column_names.h"
+#include "figures/chart/column_names.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,7 @@ std::size_t step(double needed, double cell) {
 
 double draw_column_names(Svg& svg, const std::vector<std::string>& names, double left, double cell,
                          double bottom) {
-  double widest = 0.0;
-  for (const std::string& name : names) widest = std::max(widest, text_width(name));
+  const double widest = text_width(names);
   const auto middle = [&](std::size_t i) { return left + cell * (static_cast<double>(i) + 0.5); };
   // Numbers may be thinned, since a reader can complete them; words may not.
   if (widest + kGap <= cell || std::all_of(names.begin(), names.end(), reads_as_number)) {

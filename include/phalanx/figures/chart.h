@@ -23,7 +23,7 @@ struct ChartSeries {
   std::vector<double> high;  ///< upper edge; as many as `low`
   std::vector<bool> at_least =
       {};  ///< one for each x, or empty: the true value may be higher; drawn as an arrow upwards
-  bool dashed = false;
+  std::vector<double> companion = {};  ///< one for each x, or empty: a dashed curve in the same colour
 };
 
 /// A horizontal line with a label: "paper: 0.7".
@@ -39,29 +39,38 @@ struct ChartWindow {
   std::string label;  ///< drawn in the topmost panel
 };
 
-/// One set of axes. The y axis covers everything that is drawn.
+/// One set of axes. The y axis covers everything that is drawn, but for cut companions.
 struct ChartPanel {
   std::string title;
   std::string y_label;  ///< with the unit: "force [N]"
   std::vector<ChartSeries> series;
   std::vector<ChartMark> marks;
-  bool from_zero = true;  ///< the y axis includes 0
-  double height = 120.0;  ///< height of the frame in points (1/72 inch); more if its legend needs more
-  bool legend = true;     ///< false: the panel above has the same curves
+  bool from_zero = true;         ///< the y axis includes 0
+  double height = 120.0;         ///< height of the frame in points (1/72 inch); more if its legend needs more
+  bool legend = true;            ///< false: the panel above has the same curves
+  std::string solid_means = {};  ///< legend's text for the curves; used if there are companions
+  std::string dashed_means = {};  ///< legend's text for the companions
+  /// The y axis follows the curves if the companions reach more than 2.5 times as high. These are then cut at
+  /// the frame, and the legend states how high they reach.
+  bool clip_companions = false;
+  std::string note = {};           ///< last line of the legend: "8 of 14 shown"
+  std::string empty = "no value";  ///< text in the middle if no value is finite
 };
 
 /// Panels over one x axis. S2 fig. 4: force and position over time; S2 fig. 5: one curve a phalanx.
 struct LineChart {
   std::string title;
-  std::string subtitle;
-  std::string x_label;  ///< with the unit: "time [s]"
+  std::vector<std::string> subtitles;  ///< one line each
+  std::string x_label;                 ///< with the unit: "time [s]"
   std::vector<ChartPanel> panels;
   std::vector<ChartWindow> windows;
+  std::vector<double> x_covers = {};  ///< x that the axis covers beside those of the curves
 };
 
-inline constexpr std::size_t kMostSeries = 24;  ///< in a panel: eight colours, three kinds of line
+inline constexpr std::size_t kCurveColours = 8;                ///< that readers can tell apart
+inline constexpr std::size_t kMostSeries = 3 * kCurveColours;  ///< in a panel: three kinds of line
 
-/// Draws curves. Curves of up to 40 points have a marker each; longer ones have a few. They are thinned to
+/// Draws curves. Curves of up to 40 points have a marker on each; longer ones have a few, none at y = 0. They are thinned to
 /// the resolution of the width, keeping every extreme value. Of more than kMostSeries curves in a panel, the
 /// first are drawn and the legend states the number.
 /// @throws std::invalid_argument if there is no panel, or the parts of a series differ in length.

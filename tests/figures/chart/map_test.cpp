@@ -8,11 +8,11 @@
 #include <regex>
 #include <stdexcept>
 
-#include "phalanx/study/report/chart.h"
-#include "study/report/column_names.h"
-#include "study/report/page_checks.h"
-#include "study/report/palette.h"
-#include "study/report/svg.h"
+#include "figures/chart/column_names.h"
+#include "figures/chart/palette.h"
+#include "figures/chart/svg.h"
+#include "phalanx/figures/chart.h"
+#include "support/page_checks.h"
 
 namespace phalanx {
 namespace {

@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/line_panel.h"
+#include "figures/chart/line_panel.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "figures/plot/polyline.h"
-#include "figures/plot/ticks.h"
-#include "study/report/palette.h"
+#include "figures/chart/axis.h"
+#include "figures/chart/palette.h"
+#include "figures/chart/polyline.h"
 
 namespace phalanx {
 namespace {
 
 constexpr double kLine = 10.5;          // height of a legend line [pt]
 constexpr double kLegendIndent = 23.0;  // room for a sample of the curve [pt]
-constexpr double kLegendText = kLegendWidth - kLegendIndent - 2.0;
 constexpr std::size_t kLongCurveMarkers = 6;
+constexpr const char* kCompanionDashes = "3 1.6";
+
+/// Breaks a text of the legend that begins `indent` from its left edge.
+std::vector<std::string> legend_lines(const std::string& text, double indent) {
+  return wrapped(text, kLegendWidth - indent - 2.0, 2);
+}
 
 std::size_t shown(const ChartPanel& panel) { return std::min(panel.series.size(), kMostSeries); }
 
@@ -28,11 +33,17 @@ bool has_at_least(const ChartPanel& panel) {
   });
 }
 
+bool has_companions(const ChartPanel& panel) {
+  return std::any_of(panel.series.begin(), panel.series.end(),
+                     [](const ChartSeries& series) { return !series.companion.empty(); });
+}
+
 /// Finds ranges [begin, end) without a gap.
-std::vector<std::pair<std::size_t, std::size_t>> stretches(const ChartSeries& series) {
+std::vector<std::pair<std::size_t, std::size_t>> stretches(const std::vector<double>& x,
+                                                           const std::vector<double>& y) {
   std::vector<std::pair<std::size_t, std::size_t>> result;
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
     if (!result.empty() && result.back().second == i) {
       ++result.back().second;
     } else {
@@ -40,6 +51,44 @@ std::vector<std::pair<std::size_t, std::size_t>> stretches(const ChartSeries& se
     }
   }
   return result;
+}
+
+/// The y axis of a panel.
+struct PanelScale {
+  Range range;             ///< of the axis
+  bool empty = false;      ///< no value is finite
+  double off_scale = 0.0;  ///< how high the companions reach if they are cut; 0: they are not
+};
+
+PanelScale scale_of(const ChartPanel& panel) {
+  Range curves;
+  for (std::size_t s = 0; s < shown(panel); ++s) {
+    for (const auto* part : {&panel.series[s].y, &panel.series[s].low, &panel.series[s].high})
+      curves.include(*part);
+  }
+  for (const ChartMark& mark : panel.marks) curves.include(mark.y);
+  Range all = curves;
+  for (std::size_t s = 0; s < shown(panel); ++s) all.include(panel.series[s].companion);
+  PanelScale scale{.range = all, .empty = all.empty()};
+  if (panel.clip_companions && curves.high > 0.0 && all.high > 2.5 * curves.high) {
+    scale.off_scale = all.high;
+    scale.range.high = 1.5 * curves.high;
+  }
+  if (panel.from_zero) scale.range.include(0.0);
+  scale.range = scale.range.for_axis();
+  if (has_at_least(panel)) scale.range.high += 0.12 * (scale.range.high - scale.range.low);  // arrows
+  return scale;
+}
+
+/// @returns the last lines of the legend, without a sample.
+std::vector<std::string> legend_notes(const ChartPanel& panel) {
+  std::vector<std::string> notes;
+  if (const double top = scale_of(panel).off_scale; top > 0.0)
+    notes.push_back(fmt::format("dashed up to {}, off scale", number_text(top)));
+  if (shown(panel) < panel.series.size())
+    notes.push_back(fmt::format("{} of {} curves shown", shown(panel), panel.series.size()));
+  if (!panel.note.empty()) notes.push_back(panel.note);
+  return notes;
 }
 
 class LinePanelDrawing {
@@ -52,24 +101,9 @@ class LinePanelDrawing {
         index_(index),
         axis_(axis),
         top_(top),
-        height_(height) {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-    const auto include = [&](double y) {
-      if (!std::isfinite(y)) return;
-      low = std::min(low, y);
-      high = std::max(high, y);
-    };
-    for (std::size_t s = 0; s < shown(panel_); ++s) {
-      for (const auto* part : {&panel_.series[s].y, &panel_.series[s].low, &panel_.series[s].high})
-        std::for_each(part->begin(), part->end(), include);
-    }
-    for (const ChartMark& mark : panel_.marks) include(mark.y);
-    empty_ = low > high;
-    if (panel_.from_zero || empty_) include(0.0);
-    if (!(high > low)) high = low + std::max(1e-12, low == 0.0 ? 1.0 : 0.1 * std::abs(low));
-    if (has_at_least(panel_)) high += 0.12 * (high - low);  // room for the arrows
-    ticks_ = nice_ticks(low, high, 5);
+        height_(height),
+        scale_(scale_of(panel_)) {
+    ticks_ = nice_ticks(scale_.range.low, scale_.range.high, 5);
   }
 
   void draw() {
@@ -77,11 +111,12 @@ class LinePanelDrawing {
     grid();
     for (std::size_t s = 0; s < shown(panel_); ++s) band(panel_.series[s], s);
     marks();
+    companions();
     for (std::size_t s = 0; s < shown(panel_); ++s) line(panel_.series[s], s);
     for (std::size_t s = 0; s < shown(panel_); ++s) markers(panel_.series[s], s);
     axes();
-    if (empty_)
-      svg_.text(axis_.left + axis_.width / 2, top_ + height_ / 2, "no value", Anchor::kMiddle,
+    if (scale_.empty)
+      svg_.text(axis_.left + axis_.width / 2, top_ + height_ / 2, panel_.empty, Anchor::kMiddle,
                 R"( fill="#666")");
     if (panel_.legend) legend();
   }
@@ -117,7 +152,7 @@ class LinePanelDrawing {
   }
 
   void band(const ChartSeries& series, std::size_t index) {
-    for (const auto& [begin, end] : stretches(series)) {
+    for (const auto& [begin, end] : stretches(series.x, series.y)) {
       if (series.low.empty()) return;
       std::string edge;
       std::string back;
@@ -146,43 +181,72 @@ class LinePanelDrawing {
     }
   }
 
-  void line(const ChartSeries& series, std::size_t index) {
-    std::string path;
+  /// @returns the path through the points, thinned, with gaps. A point far outside the frame is moved nearer:
+  /// only the direction to it is visible.
+  [[nodiscard]] std::string path(const std::vector<double>& x, const std::vector<double>& y) const {
+    std::string result;
     const double columns = 2.0 * axis_.width;
-    for (const auto& [begin, end] : stretches(series)) {
-      const auto from = static_cast<std::ptrdiff_t>(begin);
-      const std::vector<double> values(series.y.begin() + from,
-                                       series.y.begin() + static_cast<std::ptrdiff_t>(end));
-      const double share = static_cast<double>(values.size()) / static_cast<double>(series.x.size());
+    for (const auto& [begin, end] : stretches(x, y)) {
+      const std::vector<double> values(y.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       y.begin() + static_cast<std::ptrdiff_t>(end));
+      const double share = static_cast<double>(values.size()) / static_cast<double>(x.size());
       bool pen_down = false;
       for (const std::size_t i : thinned(values, static_cast<std::size_t>(std::ceil(columns * share)))) {
-        path += fmt::format("{}{:.2f},{:.2f}", pen_down ? "L" : "M", axis_.at(series.x[begin + i]),
-                            py(values[i]));
+        result += fmt::format("{}{:.2f},{:.2f}", pen_down ? "L" : "M", axis_.at(x[begin + i]),
+                              std::clamp(py(values[i]), top_ - height_, top_ + 2.0 * height_));
         pen_down = true;
       }
     }
-    if (path.empty()) return;
+    return result;
+  }
+
+  /// Draws the companions below all curves, cut at the frame if they reach beyond it.
+  void companions() {
+    if (!has_companions(panel_)) return;
+    const bool cut = scale_.off_scale > 0.0;
+    if (cut) {
+      svg_.add(
+          R"svg(<clipPath id="panel{0}"><rect x="{1:.2f}" y="{2:.2f}" width="{3:.2f}" height="{4:.2f}"/></clipPath>)svg",
+          index_, axis_.left, top_ - 1, axis_.width, height_ + 2);
+      svg_.add(R"svg(<g clip-path="url(#panel{})">)svg", index_);
+    }
+    for (std::size_t s = 0; s < shown(panel_); ++s) {
+      const ChartSeries& series = panel_.series[s];
+      if (series.companion.empty()) continue;
+      const std::string points = path(series.x, series.companion);
+      if (points.empty()) continue;
+      svg_.add(
+          R"svg(<path class="companion" d="{}" fill="none" stroke="{}" stroke-width="0.7" stroke-linejoin="round" stroke-dasharray="{}" stroke-opacity="0.85"/>)svg",
+          points, curve_style(s).colour, kCompanionDashes);
+    }
+    if (cut) svg_.add("</g>");
+  }
+
+  void line(const ChartSeries& series, std::size_t index) {
+    const std::string points = path(series.x, series.y);
+    if (points.empty()) return;
     const CurveStyle style = curve_style(index);
     svg_.add(
         R"svg(<path class="curve" d="{}" fill="none" stroke="{}" stroke-width="1.1" stroke-linejoin="round" stroke-dasharray="{}"/>)svg",
-        path, style.colour, series.dashed ? "3 1.6" : style.dashes);
+        points, style.colour, style.dashes);
   }
 
   void markers(const ChartSeries& series, std::size_t index) {
     const bool all = series.x.size() <= kMarkedPoints;
-    for (const auto& [begin, end] : stretches(series)) {
+    for (const auto& [begin, end] : stretches(series.x, series.y)) {
       if (all || end - begin == 1) {
         for (std::size_t i = begin; i < end; ++i) marker(series, i, index);
       }
     }
     arrows(series, index);
     if (all) return;
-    // Spread along the curve, at other places for each curve.
+    // Spread along the curve, at other places for each curve. At 0, where many curves lie, none is drawn.
     const double stagger = (static_cast<double>(index) + 0.5) / static_cast<double>(shown(panel_));
     for (std::size_t m = 0; m < kLongCurveMarkers; ++m) {
       const double share = (static_cast<double>(m) + stagger) / static_cast<double>(kLongCurveMarkers);
       const auto i = static_cast<std::size_t>(share * static_cast<double>(series.x.size() - 1));
-      if (std::isfinite(series.x[i]) && std::isfinite(series.y[i])) marker(series, i, index);
+      if (std::isfinite(series.x[i]) && std::isfinite(series.y[i]) && series.y[i] != 0.0)
+        marker(series, i, index);
     }
   }
 
@@ -242,16 +306,19 @@ class LinePanelDrawing {
     const double x = axis_.left + axis_.width + kLegendGap;
     double y = top_ + 3;
     const auto words = [&](const std::string& text, double indent, const char* fill) {
-      for (const std::string& part : wrapped(text, kLegendText, 2)) {
+      for (const std::string& part : legend_lines(text, indent)) {
         svg_.text(x + indent, y + 2.8, part, Anchor::kStart, fmt::format(R"( fill="{}")", fill));
         y += kLine;
       }
     };
+    const auto sample = [&](const char* colour, double stroke, const char* dashes) {
+      svg_.add(R"svg(<path d="M{:.2f},{:.2f}h18" stroke="{}" stroke-width="{}" stroke-dasharray="{}"/>)svg",
+               x, y, colour, stroke, dashes);
+    };
     for (std::size_t s = 0; s < shown(panel_); ++s) {
       if (panel_.series[s].name.empty()) continue;
       const CurveStyle style = curve_style(s);
-      svg_.add(R"svg(<path d="M{:.2f},{:.2f}h18" stroke="{}" stroke-width="1.1" stroke-dasharray="{}"/>)svg",
-               x, y, style.colour, panel_.series[s].dashed ? "3 1.6" : style.dashes);
+      sample(style.colour, 1.1, style.dashes);
       marker(x + 9, y, s);
       words(panel_.series[s].name, kLegendIndent, "#000");
     }
@@ -259,8 +326,13 @@ class LinePanelDrawing {
       arrow(x + 9, y + 7, kMostSeries);
       words("at least", kLegendIndent, "#555");
     }
-    if (shown(panel_) < panel_.series.size())
-      words(fmt::format("{} of {} curves shown", shown(panel_), panel_.series.size()), 0, "#555");
+    if (has_companions(panel_)) {
+      sample("#555", 1.1, "none");
+      words(panel_.solid_means, kLegendIndent, "#555");
+      sample("#555", 0.7, kCompanionDashes);
+      words(panel_.dashed_means, kLegendIndent, "#555");
+    }
+    for (const std::string& note : legend_notes(panel_)) words(note, 0.0, "#555");
   }
 
   Svg& svg_;
@@ -269,18 +341,26 @@ class LinePanelDrawing {
   std::size_t index_;
   const SharedAxis& axis_;
   double top_, height_;
+  PanelScale scale_;
   std::vector<double> ticks_;
-  bool empty_ = false;
 };
 
 }  // namespace
 
 double legend_height(const ChartPanel& panel) {
   if (!panel.legend) return 0.0;
-  std::size_t lines = (has_at_least(panel) ? 1U : 0U) + (panel.series.size() > kMostSeries ? 1U : 0U);
+  std::size_t lines = has_at_least(panel) ? 1U : 0U;
+  const auto add = [&](const std::string& text, double indent = kLegendIndent) {
+    lines += legend_lines(text, indent).size();
+  };
   for (std::size_t s = 0; s < shown(panel); ++s) {
-    if (!panel.series[s].name.empty()) lines += wrapped(panel.series[s].name, kLegendText, 2).size();
+    if (!panel.series[s].name.empty()) add(panel.series[s].name);
   }
+  if (has_companions(panel)) {
+    add(panel.solid_means);
+    add(panel.dashed_means);
+  }
+  for (const std::string& note : legend_notes(panel)) add(note, 0.0);
   return kLine * static_cast<double>(lines);
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "phalanx/study/report/chart.h"
-#include "study/report/svg.h"
+#include "figures/chart/svg.h"
+#include "phalanx/figures/chart.h"
 
 namespace phalanx {
 

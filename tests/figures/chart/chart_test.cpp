@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/report/chart.h"
+#include "phalanx/figures/chart.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,9 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
-#include "study/report/page_checks.h"
-#include "study/report/svg.h"
+#include "figures/chart/svg.h"
+#include "support/page_checks.h"
 
 namespace phalanx {
 namespace {
@@ -24,7 +25,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 LineChart press() {
   LineChart chart{
       .title = "Index presses the teapot at 0.9 N/mm",
-      .subtitle = "made-up numbers",
+      .subtitles = {"made-up numbers"},
       .x_label = "time [s]",
       .panels = {{.title = "Force", .y_label = "force [N]", .series = {}, .marks = {{3.0, "press: 3 N"}}},
                  {.title = "Position along n",
@@ -59,7 +60,7 @@ ChartSeries short_series(const std::string& name, std::vector<double> y) {
 
 LineChart chart_of(std::vector<ChartSeries> series) {
   return {.title = "title",
-          .subtitle = "",
+          .subtitles = {},
           .x_label = "friction [N]",
           .panels = {{.title = "panel", .y_label = "k_lim [N/mm]", .series = std::move(series), .marks = {}}},
           .windows = {}};
@@ -164,9 +165,79 @@ TEST(LineChartSvg, ShowsBandsAndLowerBounds) {
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
 }
 
+/// Three points of one curve and its companion, in a frame of 90 pt.
+std::string with_companion(std::vector<double> companion) {
+  ChartSeries series{.name = "index", .x = {1, 2, 3}, .y = {0, 2, 1}, .low = {}, .high = {}};
+  series.companion = std::move(companion);
+  LineChart chart = chart_of({series});
+  chart.panels[0].height = 90.0;
+  chart.panels[0].solid_means = "sent";
+  chart.panels[0].dashed_means = "asked";
+  chart.panels[0].clip_companions = true;
+  chart.panels[0].note = "note";
+  return line_chart_svg(chart);
+}
+
+// The curve reaches 2 and its companion five times that: the axis ends at 1.5 times 2, 30 points for each
+// newton, and the companion at a frame's height above it. The frame is 326.24 wide, for x from 0.95 to 3.05.
+// The legend's lines are 10.5 points apart.
+TEST(LineChartSvg, CutsACompanionThatWouldDwarfItsCurve) {
+  const std::string svg = with_companion({0, 10, 0});
+  EXPECT_EQ(flaw_of(svg), "");
+  for (const char* piece :
+       {"class=\"curve\" d=\"M53.77,130.00L209.12,70.00L364.47,100.00\"",
+        "class=\"companion\" d=\"M53.77,130.00L209.12,-50.00L364.47,130.00\"",
+        "<rect x=\"46.00\" y=\"39.00\" width=\"326.24\" height=\"92.00\"/></clipPath>",
+        "d=\"M384.24,43.00h18\"", "translate(393.24,43.00)",
+        "<text x=\"407.24\" y=\"45.80\" text-anchor=\"start\" fill=\"#000\">index<", "d=\"M384.24,53.50h18\"",
+        "<text x=\"407.24\" y=\"56.30\" text-anchor=\"start\" fill=\"#555\">sent<", "d=\"M384.24,64.00h18\"",
+        "<text x=\"407.24\" y=\"66.80\" text-anchor=\"start\" fill=\"#555\">asked<",
+        "<text x=\"384.24\" y=\"77.30\" text-anchor=\"start\" fill=\"#555\">dashed up to "
+        "10, off scale<",
+        "<text x=\"384.24\" y=\"87.80\" text-anchor=\"start\" fill=\"#555\">note<"})
+    EXPECT_EQ(count_of(svg, piece), 1U) << piece;
+}
+
+// Two and a half times as high is still drawn whole, on an axis from 0 to 6.
+TEST(LineChartSvg, KeepsACompanionThatFits) {
+  const std::string svg = with_companion({0, 5, 0});
+  EXPECT_THAT(svg, Not(HasSubstr("off scale")));
+  EXPECT_THAT(svg, Not(HasSubstr("clipPath")));
+  EXPECT_THAT(svg, HasSubstr("class=\"companion\" d=\"M53.77,130.00L209.12,55.00L364.47,130.00\""));
+}
+
+TEST(LineChartSvg, SpreadsNoMarkersAlongZero) {
+  const std::string svg = line_chart_svg(chart_of({short_series("rests", std::vector<double>(50, 0.0)),
+                                                   short_series("presses", std::vector<double>(50, 1.0))}));
+  EXPECT_EQ(count_of(svg, "class=\"marker\""), 6U + 2U);  // and the legend's
+}
+
+TEST(LineChartSvg, HasAnAxisForEqualValuesAndForNone) {
+  LineChart chart = chart_of({short_series("a", {-7.0, -7.0, -7.0})});
+  chart.panels[0].from_zero = false;
+  for (const LineChart& drawn : {chart, chart_of({}), chart_of({short_series("a", {0.0, 0.0})})}) {
+    const std::string svg = line_chart_svg(drawn);
+    EXPECT_EQ(flaw_of(svg), "");
+    EXPECT_THAT(svg, Not(HasSubstr("nan")));
+    EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  }
+}
+
+// Without a curve the axis still shows the time of the run: ticks from 2 to 4.
+TEST(LineChartSvg, CoversTheGivenX) {
+  LineChart chart = chart_of({});
+  chart.x_covers = {2.0, 4.0};
+  chart.panels[0].empty = "no segment touched";
+  const std::string svg = line_chart_svg(chart);
+  EXPECT_THAT(svg, HasSubstr(">2.0<"));
+  EXPECT_THAT(svg, HasSubstr(">4.0<"));
+  EXPECT_THAT(svg, HasSubstr(">no segment touched<"));
+}
+
 TEST(LineChartSvg, EscapesAllWords) {
   LineChart chart = chart_of({short_series(kNasty, {1, 2})});
-  chart.title = chart.subtitle = chart.x_label = kNasty;
+  chart.title = chart.x_label = kNasty;
+  chart.subtitles = {kNasty, kNasty};
   chart.panels[0].title = chart.panels[0].y_label = kNasty;
   chart.panels[0].marks = {{1.5, kNasty}};
   chart.windows = {{0.0, 0.1, kNasty}};
@@ -211,6 +282,12 @@ TEST(LineChartSvg, RefusesWhatDoesNotFitTogether) {
                std::invalid_argument);
   EXPECT_THROW((void)line_chart_svg(chart_of({{.name = "", .x = {1}, .y = {1}, .low = {1}, .high = {}}})),
                std::invalid_argument);
+}
+
+TEST(LineChartSvg, RefusesACompanionOfAnotherLength) {
+  ChartSeries series = short_series("a", {1, 2});
+  series.companion = {1};
+  EXPECT_THROW((void)line_chart_svg(chart_of({series})), std::invalid_argument);
 }
 
 TEST(BarChartSvg, DrawsEveryBarToScaleWithItsNumber) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/palette.h"
+#include "figures/chart/palette.h"
 
 #include <fmt/format.h>
 
@@ -8,20 +8,23 @@
 #include <cmath>
 #include <numbers>
 
+#include "phalanx/figures/chart.h"
+
 namespace phalanx {
 namespace {
 
 /// Okabe and Ito's palette. Its yellow is too pale for lines; a grey replaces it.
-constexpr std::array<const char*, 8> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                 "#000000", "#E69F00", "#56B4E9", "#7F7F7F"};
-constexpr std::array<const char*, 8> kMarkers = {"M-1.9,0a1.9,1.9 0 1,0 3.8,0a1.9,1.9 0 1,0 -3.8,0",
-                                                 "M-1.7,-1.7h3.4v3.4h-3.4z",
-                                                 "M0,-2.2L2.1,1.5H-2.1z",
-                                                 "M0,-2.3L2.3,0L0,2.3L-2.3,0z",
-                                                 "M0,2.2L2.1,-1.5H-2.1z",
-                                                 "M-2.2,0H2.2M0,-2.2V2.2",
-                                                 "M-1.7,-1.7L1.7,1.7M-1.7,1.7L1.7,-1.7",
-                                                 "M-2.1,-1h4.2v2h-4.2z"};
+constexpr std::array<const char*, kCurveColours> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                             "#000000", "#E69F00", "#56B4E9", "#7F7F7F"};
+constexpr std::array<const char*, kCurveColours> kMarkers = {
+    "M-1.9,0a1.9,1.9 0 1,0 3.8,0a1.9,1.9 0 1,0 -3.8,0",
+    "M-1.7,-1.7h3.4v3.4h-3.4z",
+    "M0,-2.2L2.1,1.5H-2.1z",
+    "M0,-2.3L2.3,0L0,2.3L-2.3,0z",
+    "M0,2.2L2.1,-1.5H-2.1z",
+    "M-2.2,0H2.2M0,-2.2V2.2",
+    "M-1.7,-1.7L1.7,1.7M-1.7,1.7L1.7,-1.7",
+    "M-2.1,-1h4.2v2h-4.2z"};
 constexpr std::array<const char*, 3> kDashes = {"none", "4 2", "1.2 1.8"};
 
 using Rgb = std::array<double, 3>;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "study/report/svg.h"
+#include "figures/chart/svg.h"
 
 namespace phalanx {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "figures/plot/ticks.h"
-#include "phalanx/study/report/chart.h"
-#include "study/report/column_names.h"
-#include "study/report/palette.h"
-#include "study/report/svg.h"
+#include "figures/chart/axis.h"
+#include "figures/chart/column_names.h"
+#include "figures/chart/palette.h"
+#include "figures/chart/svg.h"
+#include "phalanx/figures/chart.h"
 
 namespace phalanx {
 namespace {
@@ -17,31 +17,21 @@ constexpr double kScaleRoom = 58.0;   // with its numbers and words
 constexpr double kLeastScaleHeight = 70.0;
 constexpr double kLetter = 8.5;  // height of a line of text [pt]
 
-double widest(const std::vector<std::string>& texts) {
-  double result = 0.0;
-  for (const std::string& text : texts) result = std::max(result, text_width(text));
-  return result;
-}
-
 class HeatMapDrawing {
  public:
   explicit HeatMapDrawing(const HeatMap& map) : map_(map), width_(map.width_mm * kPointsPerMm), svg_(width_) {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-    for (const double value : map.value) {
-      if (!std::isfinite(value)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-    empty_ = low > high;
-    low_ = map.low.value_or(empty_ ? 0.0 : low);
-    high_ = map.high.value_or(empty_ ? 1.0 : high);
-    if (!(high_ > low_)) high_ = low_ + std::max(1e-12, low_ == 0.0 ? 1.0 : 0.1 * std::abs(low_));
-    row_room_ = std::min(widest(map.rows), 0.3 * width_);
+    Range values;
+    values.include(map.value);
+    empty_ = values.empty();
+    const Range drawn = values.for_axis();
+    scale_.low = map.low.value_or(drawn.low);
+    scale_.high = std::max(scale_.low, map.high.value_or(drawn.high));
+    scale_ = scale_.for_axis();
+    row_room_ = std::min(text_width(map.rows), 0.3 * width_);
     left_ = 8.0 + row_room_ + (map.y_label.empty() ? 0.0 : 14.0);
     const double columns = std::max(1.0, static_cast<double>(map.columns.size()));
     const double rows = std::max(1.0, static_cast<double>(map.rows.size()));
-    const double most = std::clamp(widest(map.columns) + 2.0, 46.0, 80.0);
+    const double most = std::clamp(text_width(map.columns) + 2.0, 46.0, 80.0);
     cell_w_ = std::min(most, (width_ - left_ - kScaleRoom - 16.0) / columns);
     // The cells have room for the number if the map then still fits on a page.
     cell_h_ = std::clamp(400.0 / rows, 1.5, 17.0);
@@ -49,7 +39,7 @@ class HeatMapDrawing {
 
   std::string draw() {
     svg_.define_hatch();
-    top_ = svg_.heading(map_.title, "") + 6.0;
+    top_ = svg_.heading(map_.title) + 6.0;
     cells();
     numbers();
     row_names();
@@ -63,7 +53,7 @@ class HeatMapDrawing {
   [[nodiscard]] double px(std::size_t column) const { return left_ + cell_w_ * static_cast<double>(column); }
   [[nodiscard]] double py(std::size_t row) const { return top_ + cell_h_ * static_cast<double>(row); }
   [[nodiscard]] double bottom() const { return py(map_.rows.size()); }
-  [[nodiscard]] double share(double value) const { return (value - low_) / (high_ - low_); }
+  [[nodiscard]] double share(double value) const { return (value - scale_.low) / (scale_.high - scale_.low); }
   [[nodiscard]] double value(std::size_t row, std::size_t column) const {
     return map_.value[row * map_.columns.size() + column];
   }
@@ -140,7 +130,7 @@ class HeatMapDrawing {
           scale_colour((i + 0.5) / kSteps).fill);
     }
     if (!empty_) {
-      const std::vector<double> ticks = nice_ticks(low_, high_, 5);
+      const std::vector<double> ticks = nice_ticks(scale_.low, scale_.high, 5);
       for (const double tick : ticks) {
         if (share(tick) < -1e-9 || share(tick) > 1 + 1e-9) continue;
         svg_.text(x + kScaleWidth + 3, top_ + height * (1 - share(tick)) + 2.8,
@@ -171,7 +161,7 @@ class HeatMapDrawing {
   double width_;
   Svg svg_;
   bool empty_ = false;
-  double low_ = 0.0, high_ = 1.0;
+  Range scale_;
   double row_room_ = 0.0, left_ = 0.0, top_ = 0.0, cell_w_ = 0.0, cell_h_ = 0.0;
 };
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "figures/plot/ticks.h"
-#include "phalanx/study/report/chart.h"
-#include "study/report/line_panel.h"
-#include "study/report/svg.h"
+#include "figures/chart/axis.h"
+#include "figures/chart/line_panel.h"
+#include "figures/chart/svg.h"
+#include "phalanx/figures/chart.h"
 
 namespace phalanx {
 namespace {
@@ -20,13 +20,15 @@ void check(const LineChart& chart) {
   for (const ChartPanel& panel : chart.panels) {
     for (const ChartSeries& series : panel.series) {
       const std::size_t size = series.x.size();
-      const bool band = series.low.empty() && series.high.empty();
-      if (series.y.size() != size || (!band && (series.low.size() != size || series.high.size() != size)) ||
-          (!series.at_least.empty() && series.at_least.size() != size))
-        throw std::invalid_argument(fmt::format(
-            "line chart: series '{}': x has {} values; y, low, high and at_least must have as many "
-            "(the last three may be empty)",
-            series.name, size));
+      const bool band = !series.low.empty() || !series.high.empty();
+      if (series.y.size() != size || (band && (series.low.size() != size || series.high.size() != size)) ||
+          (!series.at_least.empty() && series.at_least.size() != size) ||
+          (!series.companion.empty() && series.companion.size() != size))
+        throw std::invalid_argument(
+            fmt::format("line chart: series '{}': x has {} values; y, low, high, at_least and companion must "
+                        "have as many "
+                        "(the last four may be empty)",
+                        series.name, size));
     }
   }
 }
@@ -37,25 +39,17 @@ bool has_legend(const LineChart& chart) {
 }
 
 SharedAxis shared_axis(const LineChart& chart) {
-  double low = HUGE_VAL;
-  double high = -HUGE_VAL;
+  Range values;
+  values.include(chart.x_covers);
   bool marked = true;
   for (const ChartPanel& panel : chart.panels) {
     for (const ChartSeries& series : panel.series) {
       marked = marked && series.x.size() <= kMarkedPoints;
-      for (const double x : series.x) {
-        if (!std::isfinite(x)) continue;
-        low = std::min(low, x);
-        high = std::max(high, x);
-      }
+      values.include(series.x);
     }
   }
-  if (low > high) low = high = 0.0;
-  if (!(high > low)) {
-    const double room = low == 0.0 ? 0.5 : 0.1 * std::abs(low);
-    low -= room;
-    high += room;
-  }
+  auto [low, high] = values.for_axis();
+  if (values.low == values.high) low -= high - low;  // the only value in the middle
   // Markers on the first and the last value need room inside the frame.
   const double margin = marked ? 0.025 * (high - low) : 0.0;
   SharedAxis axis{
@@ -77,7 +71,7 @@ std::string line_chart_svg(const LineChart& chart) {
   check(chart);
   Svg svg(kChartWidth);
   const SharedAxis axis = shared_axis(chart);
-  double y = svg.heading(chart.title, chart.subtitle);
+  double y = svg.heading(chart.title, chart.subtitles);
   double bottom = y;
   for (std::size_t i = 0; i < chart.panels.size(); ++i) {
     const ChartPanel& panel = chart.panels[i];

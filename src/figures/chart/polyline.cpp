@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "figures/plot/polyline.h"
+#include "figures/chart/polyline.h"
 
 #include <algorithm>
 #include <array>

@@ -12,9 +12,13 @@ namespace phalanx {
 
 inline constexpr double kPointsPerMm = 72.0 / 25.4;
 
+/// @returns `text` with &, <, > and " as entities; control characters become spaces.
+[[nodiscard]] std::string xml_escaped(const std::string& text);
 /// @returns the width of `text` at 8 points, estimated a little too large, since the font is
 /// unknown here [pt].
 [[nodiscard]] double text_width(const std::string& text);
+/// @returns the width of the widest of `texts` at 8 points [pt]; 0 if there is none.
+[[nodiscard]] double text_width(const std::vector<std::string>& texts);
 /// @returns `text`, cut with an ellipsis to fit into `width`.
 [[nodiscard]] std::string cut_to(const std::string& text, double width);
 /// @returns `text` in lines no wider than `width`, broken at spaces if possible. The last of at most `most`
@@ -42,8 +46,9 @@ class Svg {
             const std::string& more = "");
   /// Adds text, turned a quarter to the left.
   void text_upwards(double x, double y, const std::string& text, Anchor anchor = Anchor::kMiddle);
-  /// Adds a bold heading at the top of the page. @returns its height, 0 if both are empty
-  double heading(const std::string& title, const std::string& subtitle);
+  /// Adds a bold title at the top of the page, and the lines below it. Empty ones have no height.
+  /// @returns the height of all, 0 if there is none
+  double heading(const std::string& title, const std::vector<std::string>& subtitles = {});
   /// Defines the hatching for "no value"; used as `fill="url(#hatch)"`.
   void define_hatch();
 
