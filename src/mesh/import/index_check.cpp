@@ -19,8 +19,8 @@ std::optional<T> value_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-[[noreturn]] void refuse(const std::string& origin, std::size_t face, std::uint64_t index,
-                         std::uint64_t count) {
+[[noreturn]] void refuse_index(const std::string& origin, std::size_t face, std::uint64_t index,
+                               std::uint64_t count) {
   throw std::invalid_argument(origin + ": face " + std::to_string(face) + " names vertex " +
                               std::to_string(index) + ", but its mesh has " + std::to_string(count) +
                               " (counted from 0); repair the mesh or export it again");
@@ -48,7 +48,7 @@ void check_3ds_mesh(std::string_view mesh, const std::string& origin) {
   for (std::size_t face = 0; face < count; ++face) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto index = value_at<std::uint16_t>(faces, 2 + 8 * face + 2 * k);  // 3 corners and a flag
-      if (index && *index >= vertices) refuse(origin, face, *index, vertices);
+      if (index && *index >= vertices) refuse_index(origin, face, *index, vertices);
     }
   }
 }
@@ -145,7 +145,7 @@ void check_glb_indices(std::string_view bytes, const std::string& origin) {
         const auto index = width == 1   ? std::optional<std::uint32_t>(value_at<std::uint8_t>(buffer, at))
                            : width == 2 ? std::optional<std::uint32_t>(value_at<std::uint16_t>(buffer, at))
                                         : value_at<std::uint32_t>(buffer, at);
-        if (index && *index >= vertices) refuse(origin, i / 3, *index, vertices);
+        if (index && *index >= vertices) refuse_index(origin, i / 3, *index, vertices);
       }
     }
   }
