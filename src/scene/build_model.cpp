@@ -30,8 +30,8 @@ class TriangleCount {
     count_ += triangles;
     if (count_ <= kMostSceneTriangles) return;
     throw SceneError(fmt::format(
-        "objects[{}]: with its {} triangles the scene's objects have {}, and may have {} together; make it "
-        "coarser (triangles, or decimate_to for a file) or leave objects out",
+        "objects[{}]: with its {} triangles the scene's objects have {} together, and at most {} "
+        "are allowed; make it coarser (triangles, or decimate_to for a file) or leave objects out",
         index, triangles, count_, kMostSceneTriangles));
   }
 

@@ -73,7 +73,7 @@ int read_name(TomlTable& table, std::string_view key, int count, Name name_of) {
 
 double read_gain(TomlTable& table) {
   const double gain = table.number("gain", kGain);
-  if (gain == 0.0) table.fail("gain", "every count would be the same; calibrate again");
+  if (gain == 0.0) table.fail("gain", "gives every count the same value; calibrate again");
   return gain;
 }
 
@@ -159,7 +159,7 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
   for (TomlTable& entry : table.tables("channel", -1)) {
     CalibratedChannel channel = read_channel(entry);
     if (has_channel(calibration, channel.channel)) {
-      table.fail("channel", fmt::format("{} is there twice; calibrate again",
+      table.fail("channel", fmt::format("{} appears twice; calibrate again",
                                         channel_label(channel.channel.kind, channel.channel.index)));
     }
     calibration.channels.push_back(std::move(channel));

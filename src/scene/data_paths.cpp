@@ -37,7 +37,7 @@ fs::path data_folder() {
   const fs::path source = PHALANX_SOURCE_TREE;
   if (holds_data(source)) return source;
   throw SceneError(fmt::format(
-      "found no scenes/ and assets/ in {} nor in {}; set PHALANX_DATA to the folder that holds them",
+      "there is no folder with scenes/ and assets/ at {} or {}; set PHALANX_DATA to the folder that has them",
       installed.string(), source.string()));
 }
 
@@ -66,7 +66,7 @@ std::string why_no_file(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) return file.string() + " is a folder; name a file in it";
   if (fs::exists(file, ignored))
-    return file.string() + " is not a regular file; copy what it holds into a file";
+    return file.string() + " is not a regular file; copy its contents into a file";
   return fmt::format("there is no file {}; check the path", file.string());
 }
 

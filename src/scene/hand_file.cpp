@@ -22,7 +22,8 @@ constexpr NumberRange kDirection = {.min = -1e3, .max = 1e3};
 /// Checks that the element has the name that its place implies: a file with two swapped lines is refused.
 void require_name(TomlTable& table, std::string_view expected) {
   if (table.text("name") != expected) {
-    table.fail("name", fmt::format("this place belongs to \"{}\"; put the lines in that order", expected));
+    table.fail("name", fmt::format("the entry at this place must be \"{}\"; put the entries in that order",
+                                   expected));
   }
 }
 
@@ -51,7 +52,7 @@ void read_segment(TomlTable table, int segment, HandParameters& hand) {
   shape.length = table.number("length_mm", kSizeMm) * kMm;
   if (shape.length <= std::abs(shape.radius_base - shape.radius_tip)) {
     table.fail("length_mm",
-               "one end's sphere swallows the other; it must exceed the difference of the radii");
+               "one end's sphere contains the other's; the length must exceed the difference of the radii");
   }
   table.finish();
 }

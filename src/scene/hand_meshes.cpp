@@ -71,10 +71,9 @@ class MeshReader {
                              file.string()));
     }
     if (const double volume = signed_volume(mesh); !(volume > 0.0)) {
-      fail(file,
-           fmt::format("encloses {:.4g} mm^3: its triangles wind inwards; turn them round (`phalanx mesh "
-                       "check {}`)",
-                       1e9 * volume, file.string()));
+      fail(file, fmt::format("encloses {:.4g} mm^3: its triangles wind inwards; reverse them (`phalanx mesh "
+                             "check {}`)",
+                             1e9 * volume, file.string()));
     }
   }
 
@@ -112,10 +111,10 @@ Source open(const HandDescription& hand) {
   source.base = std::move(file.parameters);
   if (hand.mesh_source == HandMeshSource::kFile) source.files = std::move(file.meshes);
   if (source.files && !hand.triangles_stated_at.empty()) {
-    throw SceneError(fmt::format(
-        "{}: means nothing for hand \"{}\", whose meshes are files; remove it, or ask for capsules "
-        "with hand.meshes = \"capsules\"",
-        hand.triangles_stated_at, source.base.name));
+    throw SceneError(
+        fmt::format("{}: has no effect on hand \"{}\", whose meshes are files; remove it, or state "
+                    "hand.meshes = \"capsules\"",
+                    hand.triangles_stated_at, source.base.name));
   }
   return source;
 }

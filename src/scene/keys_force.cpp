@@ -20,7 +20,7 @@ void add_contact_and_law(std::vector<SceneKey>& keys) {
                         [](T t, V v) { t.scene.parameters.contact.slid_distance = v.number * kMm; });
   at_zero_torque.choice(
       "gdp.method", {"continuous", "trajectory"}, "continuous",
-      "how the shown hand is found: first time of contact, or S1 fig. 4 to the letter",
+      "method for the shown hand: first time of contact, or S1 fig. 4 as printed",
       [](T t, V v) { t.scene.parameters.contact.method = static_cast<GdpMethod>(v.integer); });
   at_zero_torque.choice(
       "force.law", {"hooke", "kelvin_voigt", "hunt_crossley", "duffing", "linear_then_cubic"}, "hooke",
@@ -89,7 +89,7 @@ void add_smoothing_and_limits(std::vector<SceneKey>& keys) {
                       if (!v.off) t.scene.parameters.limits.torque_rate = v.number;
                     });
   new_station.limit("limits.joint_speed_rad_per_s", "rad/s", ranges::kJointSpeed, 40,
-                    "fastest believable joint; faster samples are slewed",
+                    "largest plausible speed of a joint; faster samples are slewed",
                     [](T t, V v) { t.scene.parameters.limits.joint_speed = v.off ? kInfinity : v.number; });
 }
 
@@ -99,7 +99,7 @@ void add_stabiliser(std::vector<SceneKey>& keys) {
       "stabiliser.method",
       {"none", "smoothing", "rise_only", "direction", "low_pass", "kelvin_voigt", "virtual_coupling",
        "passivity", "energy_bounding", "local_wall"},
-      "rise_only", "what keeps the loop through the device calm; docs/stabilisers.md",
+      "rise_only", "method that keeps the loop through the device stable; docs/stabilisers.md",
       [](T t, V v) { t.scene.parameters.stabiliser.method = static_cast<Stabiliser>(v.integer); });
   at_zero_torque.number("stabiliser.turn_deg_per_s", "deg/s", in_unit(ranges::kTurnRate, kDeg), 90,
                         "direction: fastest turn of a contact's force",
@@ -124,17 +124,18 @@ void add_stabiliser(std::vector<SceneKey>& keys) {
                         "energy_bounding: the device's own damping b; no contact is stiffer than 2 b rate_hz",
                         [](T t, V v) { t.scene.parameters.stabiliser.device_damping = v.number; });
   at_zero_torque.number("stabiliser.wall_valid_ms", "ms", in_unit(ranges::kWallValid, kMilli), 14,
-                        "local_wall: how long the controller may use a wall that the host has sent",
+                        "local_wall: time for which the controller may use a wall that the host has sent",
                         [](T t, V v) { t.scene.parameters.stabiliser.wall_valid = kMilli * v.number; });
   at_zero_torque.choice(
       "oscillation.reaction", {"report", "halve"}, "report",
-      "where a segment's force oscillates: say so, or halve the law's force as well (over 200 ms)",
+      "reaction to a segment's force that oscillates: report it, or also halve the law's force (over 200 ms)",
       [](T t, V v) {
         t.scene.parameters.oscillation.reaction = static_cast<OscillationReaction>(v.integer);
       });
-  at_zero_torque.number("oscillation.swing_n", "N", ranges::kSwing, 0.5,
-                        "swing of a segment's force, from peak to peak, beyond which it counts",
-                        [](T t, V v) { t.scene.parameters.oscillation.swing = v.number; });
+  at_zero_torque.number(
+      "oscillation.swing_n", "N", ranges::kSwing, 0.5,
+      "swing of a segment's force, from peak to peak, beyond which it counts as an oscillation",
+      [](T t, V v) { t.scene.parameters.oscillation.swing = v.number; });
 }
 
 }  // namespace

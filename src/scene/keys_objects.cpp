@@ -25,13 +25,14 @@ void add_object_keys(std::vector<SceneKey>& keys) {
   other_object.word(KeyType::kFile, "objects[].file", std::nullopt, "a mesh file: .obj .3ds .stl .ply .glb",
                     [](T t, V v) { t.object.file = v.text; });
   other_object.number("objects[].size_mm", "mm", between(0, 2000), 100,
-                      "teapot: from handle to spout; file: its largest extent, 0 keeps its numbers as metres",
+                      "teapot: from handle to spout; file: its largest extent, 0: its numbers are in `unit`",
                       [](T t, V v) { t.object.size = v.number * kMm; });
-  other_object.choice(
-      "objects[].unit", {"m", "mm", "cm", "in"}, "m", "what the file's numbers are; counts with size_mm = 0",
-      [](T t, V v) { t.object.unit = kLengthUnits[static_cast<std::size_t>(v.integer)].metres; });
+  other_object.choice("objects[].unit", {"m", "mm", "cm", "in"}, "m",
+                      "unit of the file's numbers; has an effect with size_mm = 0 only", [](T t, V v) {
+                        t.object.unit = kLengthUnits[static_cast<std::size_t>(v.integer)].metres;
+                      });
   other_object.integer("objects[].decimate_to", between(0, 10000000), 0,
-                       "simplified to about this many triangles; 0 keeps the file's own",
+                       "approximate number of triangles after simplification; 0: none",
                        [](T t, V v) { t.object.decimate_to = static_cast<int>(v.integer); });
   other_object.number("objects[].diameter_mm", "mm", kSize, 60, "outer diameter",
                       [](T t, V v) { t.object.diameter = v.number * kMm; });
@@ -56,7 +57,7 @@ void add_object_keys(std::vector<SceneKey>& keys) {
       "of the tube; below the ring's", [](T t, V v) { t.object.tube_diameter = v.number * kMm; });
   other_object.vector("objects[].extent_mm", "mm", kSize, 50, "full edge lengths along x, y, z",
                       [](T t, V v) { t.object.extent = v.vector * kMm; });
-  other_object.integer("objects[].triangles", between(8, 2000000), 1000, "about how many triangles it has",
+  other_object.integer("objects[].triangles", between(8, 2000000), 1000, "approximate number of triangles",
                        [](T t, V v) { t.object.triangles = static_cast<int>(v.integer); });
   other_object.vector("objects[].position_mm", "mm", between(-10000, 10000), 0,
                       "the object's centre in the world", [](T t, V v) { t.object.pose.p = v.vector * kMm; });

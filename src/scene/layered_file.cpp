@@ -25,7 +25,7 @@ void insert_at(toml::table& root, const OverlaidValue& value) {
   toml::table parsed = parse_toml("v = " + value.value, value.place);
   toml::node* leaf = parsed.get("v");
   if (leaf == nullptr)
-    throw SceneError(fmt::format("{}: {} is no value; write one", value.place, value.value));
+    throw SceneError(fmt::format("{}: {} is not a value; write one", value.place, value.value));
   toml::table* at = &root;
   std::size_t begin = 0;
   for (std::size_t dot = value.path.find('.'); dot != std::string::npos; dot = value.path.find('.', begin)) {
@@ -83,7 +83,8 @@ void LayeredFile::add_text(const std::string& text, const std::string& origin, c
   TomlTable table(layer.tree, origin, "");
   if (table.has("base")) {
     const std::string base = table.text("base");
-    if (depth == kMaxBases) table.fail("base", "files stand on one another in a circle; remove one `base`");
+    if (depth == kMaxBases)
+      table.fail("base", "the files name each other as base in a circle; remove one `base`");
     const auto file = find_data_file(layer.places["base"].place.place + ": base: " + what_, base,
                                      fmt::format("assets/{}s", what_), ".toml", folder);
     add_text(read_text_file(file.string(), what_), file.string(), file.parent_path(), depth + 1);
@@ -106,8 +107,9 @@ void LayeredFile::add_overlay(const std::vector<OverlaidValue>& values) {
     layer.places[value.path] = {place, value.value == "{}"};
   }
   if (layer.tree.contains("base"))
-    throw SceneError(fmt::format("{}: {}base: belongs in a file; name the file that stands on it as {}file",
-                                 layer.places["base"].place.place, prefix, prefix));
+    throw SceneError(fmt::format(
+        "{}: {}base: is a key of a file, not of a scene; state the file that has this base as {}file",
+        layer.places["base"].place.place, prefix, prefix));
   add(std::move(layer));
 }
 

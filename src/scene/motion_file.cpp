@@ -39,10 +39,10 @@ void refuse_unknown_columns(const CsvLines& lines, const Header& header) {
   for (int joint = 0; joint < kJoints; ++joint) known.emplace_back(joint_name(joint));
   for (const std::string& name : header.names) {
     if (name == "time_s" || find_joint(name)) continue;
-    lines.fail(fmt::format(
-        "column \"{}\" is no joint; did you mean \"{}\"? For a recording with its own columns name a mapping "
-        "(--mapping, motion.mapping)",
-        show_cell(name), nearest_name(name, known)));
+    lines.fail(
+        fmt::format("column \"{}\" is not a joint; did you mean \"{}\"? For a recording with its own columns "
+                    "state a mapping (--mapping, motion.mapping)",
+                    show_cell(name), nearest_name(name, known)));
   }
 }
 
@@ -146,7 +146,7 @@ Motion parse_motion(std::string_view text, const std::string& origin,
     const bool wanted = trials == trial.value_or(1);
     if (wanted && time == last_time) {
       lines.fail(fmt::format(
-          "column \"time_s\": {} s stands twice; time must increase: remove one of the rows", time));
+          "column \"time_s\": {} s appears twice; time must increase: remove one of the rows", time));
     }
     last_time = time;
     if (!wanted) continue;

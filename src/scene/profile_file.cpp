@@ -79,9 +79,10 @@ void read_ranges(TomlTable table, Profile& profile) {
     const auto [min_deg, max_deg] = table.pair(key, kAnyNumber);
     const PlausibleRange possible = plausible_angle(joint);
     if (!(min_deg < max_deg)) {
-      table.fail(key,
-                 "is an empty range; write [least, largest] in degrees, for a joint that does not move "
-                 "one degree of play");
+      table.fail(
+          key,
+          "is an empty range; write [least, largest] in degrees. For a joint that does not move, write a "
+          "range of one degree");
     }
     if (!within(possible, min_deg * kDeg) || !within(possible, max_deg * kDeg)) {
       table.fail(key,
@@ -101,8 +102,8 @@ void check_fit(const Profile& profile, const HandParameters& base, const HandFit
                         const PlausibleRange& range) {
     const std::string& place = stated_at.empty() ? profile.origin : stated_at;
     throw SceneError(
-        fmt::format("{}: {} comes to {:.4g} {}, which is implausible: {} ({}); correct the sizes that "
-                    "the profile states",
+        fmt::format("{}: {} is {:.4g} {}, which is implausible: {} ({}); correct the sizes that the "
+                    "profile states",
                     place, what, value / unit, unit_name, in_words(range, unit, unit_name), range.source));
   };
   for (int s = 0; s < kSegments - 1; ++s) {

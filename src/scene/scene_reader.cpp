@@ -135,21 +135,23 @@ void apply_object_key(const SceneTree& tree, const Reader& reader, const SceneKe
   } else if (tree.find(path) != nullptr) {
     std::string kinds;
     for (const KindWithKey& having : key.kinds) kinds += (kinds.empty() ? "" : " ") + having.kind;
-    tree.fail(path, fmt::format("means nothing for a {}; it belongs to: {}. Remove it or change {}.kind",
-                                kind, kinds, prefix));
+    tree.fail(path, fmt::format(
+                        "a {} has no such key; the kinds that have it are: {}. Remove it, or change {}.kind",
+                        kind, kinds, prefix));
   }
 }
 
 void check_object(const SceneTree& tree, const ObjectDescription& object, const std::string& prefix) {
   if (object.kind == "teapot" && object.size <= 0.0)
-    tree.fail(prefix + ".size_mm", "must be > 0 for a teapot; give its length");
+    tree.fail(prefix + ".size_mm", "must be > 0 for a teapot; state its length");
   if (object.kind == "file" && object.file.empty())
     tree.fail(prefix + ".file", "is missing; name the mesh file");
   if (object.kind == "file" && object.unit != 1.0 && object.size > 0.0)
-    tree.fail(prefix + ".unit",
-              "size_mm scales the file whatever its unit; give size_mm = 0 or leave the unit out");
+    tree.fail(
+        prefix + ".unit",
+        "has no effect with size_mm > 0, which scales the file; state size_mm = 0, or leave the unit out");
   if (object.kind == "torus" && object.tube_diameter >= object.ring_diameter) {
-    tree.fail(prefix + ".tube_diameter_mm", "the tube is as thick as its ring is wide; make it thinner");
+    tree.fail(prefix + ".tube_diameter_mm", "must be less than ring_diameter_mm; make the tube thinner");
   }
 }
 
@@ -180,18 +182,18 @@ void refuse_both_smoothing_forms(const SceneTree& tree) {
   }
 }
 
-void refuse_what_the_profile_says(const SceneTree& tree) {
+void refuse_what_the_profile_states(const SceneTree& tree) {
   if (tree.find("hand.profile") == nullptr) return;
   for (const char* key : {"hand.file", "hand.side", "mirror"}) {
     if (tree.find(key) == nullptr) continue;
-    tree.fail(key, fmt::format("the profile says this ({}); remove it, or remove hand.profile",
+    tree.fail(key, fmt::format("the profile states this ({}); remove it, or remove hand.profile",
                                tree.statement("hand.profile")));
   }
 }
 
 void check_tree(const SceneTree& tree, SceneProblems& problems) {
   refuse_unknown_keys(tree, problems);
-  for (const auto& check : {refuse_both_smoothing_forms, refuse_what_the_profile_says})
+  for (const auto& check : {refuse_both_smoothing_forms, refuse_what_the_profile_states})
     problems.run([&] { check(tree); });
 }
 

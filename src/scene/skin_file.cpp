@@ -57,11 +57,11 @@ class SkinReader {
     std::error_code unknown;
     if (const auto bytes = std::filesystem::file_size(file_, unknown); !unknown && bytes > kMaxBytes)
       throw SceneError(
-          fmt::format("{}: is {} bytes long; a skin has at most 16 MB: take fewer vertices", file_, bytes));
+          fmt::format("{}: is {} bytes long; a skin has at most 16 MB: use fewer vertices", file_, bytes));
     const auto keep_shallow = [this](int depth, Json::parse_event_t, const Json&) {
       if (depth > kDeepest)
         throw SceneError(
-            fmt::format("{}: has lists in lists, {} deep; the deepest of a skin are the pairs in influences: "
+            fmt::format("{}: its lists are nested {} deep, deeper than the pairs in influences: "
                         "write it as docs/hands.md says",
                         file_, depth));
       return true;
@@ -81,8 +81,7 @@ class SkinReader {
     const auto found = root_.find(key);
     if (found == root_.end()) throw SceneError(fmt::format("{}: {}: is missing; add it", file_, key));
     if (!found->is_array() || found->empty())
-      throw SceneError(
-          fmt::format("{}: {} = {}: write a list with something in it", file_, key, show(*found)));
+      throw SceneError(fmt::format("{}: {} = {}: write a list that is not empty", file_, key, show(*found)));
     return *found;
   }
 

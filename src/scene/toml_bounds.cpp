@@ -44,7 +44,7 @@ class BoundsCheck {
       case '{':
         header_ = header_ || (c == '[' && brackets_ == 0 && !value_ && is_blank_since_begin());
         if (++brackets_ > kMostBrackets)
-          fail(fmt::format("more than {} brackets within one another; write it flatter", kMostBrackets));
+          fail(fmt::format("brackets are nested more than {} deep; nest them less deep", kMostBrackets));
         return begin();
       case ']':
       case '}':
@@ -59,8 +59,7 @@ class BoundsCheck {
         return begin();
       case '.':
         if (++dots_ >= kMostKeyParts)
-          fail(
-              fmt::format("a key of more than {} parts; no key here has so many, shorten it", kMostKeyParts));
+          fail(fmt::format("a key of more than {} parts; shorten it", kMostKeyParts));
         return;
       default:
         return;

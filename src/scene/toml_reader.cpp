@@ -222,7 +222,7 @@ void TomlTable::finish() const {
     const std::string_view name = key.str();
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const std::string prefix = place_of_ ? place_of_(full(name)).prefix : "";
-    fail(name, fmt::format("nobody knows this key; the nearest known one is {}{}", prefix,
+    fail(name, fmt::format("is not a known key; the nearest known one is {}{}", prefix,
                            full(nearest_name(name, known_))));
   }
 }

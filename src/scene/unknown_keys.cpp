@@ -32,17 +32,15 @@ void refuse_below(const SceneTree& tree, const toml::node& node, const std::stri
     const bool holds_keys = std::any_of(
         keys.begin(), keys.end(), [&](const SceneKey& key) { return starts_with_part(key.path, pattern); });
     if (pattern == "smoothing.enabled")
-      tree.fail(
-          path,
-          "there is no such key any more, stabiliser.method replaces it; remove it, and for no bound on "
-          "the force write stabiliser.method = \"none\"");
+      tree.fail(path,
+                "this key no longer exists: stabiliser.method replaces it; remove it. For no bound on the "
+                "force write stabiliser.method = \"none\"");
     if (!holds_keys) {
       std::vector<std::string> known;
       for (const SceneKey& key : keys) known.push_back(key.path);
-      tree.fail(
-          path,
-          fmt::format("nobody knows this key; the nearest known one is {} (`phalanx scene keys` lists all)",
-                      nearest_name(pattern, known)));
+      tree.fail(path, fmt::format(
+                          "is not a known key; the nearest known one is {} (`phalanx scene keys` lists all)",
+                          nearest_name(pattern, known)));
     }
     if (pattern == "objects" && !node.is_array())
       tree.fail(path, "is not an array; start each object with a line [[objects]]");

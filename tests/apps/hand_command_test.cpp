@@ -91,7 +91,7 @@ TEST(CliHand, RefusesInOneLineAndWritesNothing) {
   refuses("hand export --format urdf --out ''", {"--out \"\": the value is empty"});
   refuses("hand shwo", {"did you mean 'show'"});
   refuses("simulate wave --profile smal-woman", {"profile \"smal-woman\"", "did you mean \"small-woman\""});
-  refuses("simulate wave --profile large-man --set hand.side=left", {"hand.side", "the profile says this"});
+  refuses("simulate wave --profile large-man --set hand.side=left", {"hand.side", "the profile states this"});
 }
 
 TEST(CliHand, SimulateWithAProfileMovesWithinItsRange) {

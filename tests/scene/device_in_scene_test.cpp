@@ -56,7 +56,7 @@ TEST(DeviceInAScene, IsCheckedWhenTheSceneIsRead) {
   refused(
       "\n[device.motors.index_pip.arms_mm]\nindex_pip_flexion = 0", {},
       {"beihang.toml", "s.toml:3: device.motors.index_pip.arms_mm.index_pip_flexion = 0", "moves no joint"});
-  refused("\ndevice.foo = {}", {}, {"s.toml:2: device.foo", "nobody knows this key"});
+  refused("\ndevice.foo = {}", {}, {"s.toml:2: device.foo", "is not a known key"});
   refused("\ndevice.\"a b\" = 1", {}, {"s.toml:2: device", "a b"});
   refused("device = 3", {}, {"s.toml:1: device = 3", "is a table"});
   refused("device.file = 3", {}, {"s.toml:1: device.file = 3", "a string"});

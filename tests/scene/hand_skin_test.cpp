@@ -140,7 +140,7 @@ TEST(LoadHandSkin, ThatIsNoJsonIsRefused) {
   expect_skin_refused("\xff\xfe\x01", {"not valid JSON"});
   expect_skin_refused("[1, 2]", {"is [1,2]", "write an object"});
   expect_skin_refused("{\"segments\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}",
-                      {"lists in lists"});
+                      {"lists are nested"});
   expect_skin_refused(std::string((16U << 20U) + 1, ' '), {"at most 16 MB"});
 }
 

@@ -132,7 +132,7 @@ TEST(MotionFile, ThatIsMissing) {
 
 TEST(MotionFile, WithATimeTwice) {
   expect_motion_refused("time_s,index_pip_flexion\n0,1\n0,2\n",
-                        {"m.csv:3", "column \"time_s\"", "0 s stands twice"});
+                        {"m.csv:3", "column \"time_s\"", "0 s appears twice"});
 }
 
 TEST(MotionFile, WithAHugeLine) {
@@ -166,7 +166,7 @@ TEST(MotionFile, MayTurnAJointByAFullTurnAndNoFurther) {
 TEST(MotionFile, IsReadThoughAnotherTrialThanTheChosenOneIsBroken) {
   const std::string text = "time_s,index_pip_flexion\n0,0.1\n0,0.2\n-1,0.3\n";
   EXPECT_EQ(parse_csv(text, 2).time_s, (std::vector<double>{-1.0}));
-  expect_motion_refused(text, {"m.csv:3", "stands twice"}, 1);
+  expect_motion_refused(text, {"m.csv:3", "appears twice"}, 1);
 }
 
 constexpr const char* kThreeTrials = "time_s,index_pip_flexion\n4,0.1\n5,0.2\n4.5,0.3\n5,0.4\n6,0.5\n0,0.6\n";

@@ -87,7 +87,7 @@ TEST(Profile, RefusesSizesBeyondFourDeviationsWithTheRangeAndItsSource) {
                          {"segments.0.length_mm = 60", "20.02 to 59.54 mm", "Buryanov"});
   expect_profile_refused(
       "segments = [{ name = \"index-finger-phalanx-proximal\", breadth_mm = 40 }]",
-      {"p.toml:3: segments.0.breadth_mm: the breadth of index-finger-phalanx-proximal comes to 40 mm",
+      {"p.toml:3: segments.0.breadth_mm: the breadth of index-finger-phalanx-proximal is 40 mm",
        "our own bounds"});
 }
 
@@ -140,7 +140,7 @@ TEST(Profile, OfASceneSaysWhichHand) {
   EXPECT_NEAR(hand_length(model.hand.parameters()), 0.2085, 1e-9);
   EXPECT_EQ(build_model(scene("", {{"hand.profile", "stiff-hand"}})).hand.parameters().name, "stiff hand");
   expect_scene_error([&] { (void)scene("hand.profile = \"large-man\"\nhand.side = \"left\""); },
-                     {"s.toml:2: hand.side = ", "the profile says this", "hand.profile = "});
+                     {"s.toml:2: hand.side = ", "the profile states this", "hand.profile = "});
   expect_scene_error([&] { (void)scene("hand.file = \"adult\"", {{"hand.profile", "large-man"}}); },
                      {"s.toml:1: hand.file = ", "--set hand.profile=large-man"});
 }

@@ -78,8 +78,8 @@ TEST(SceneBounds, ASegmentIsLongerThanTheDifferenceOfItsRadii) {
     return parse_hand(hand, "hand.toml");
   };
   EXPECT_DOUBLE_EQ(read("5.001").segments[0].length, 5.001e-3);
-  expect_scene_error([&] { static_cast<void>(read("5")); }, {"length_mm = 5", "swallows"});
-  expect_scene_error([&] { static_cast<void>(read("4.999")); }, {"length_mm = 4.999", "swallows"});
+  expect_scene_error([&] { static_cast<void>(read("5")); }, {"length_mm = 5", "contains the other"});
+  expect_scene_error([&] { static_cast<void>(read("4.999")); }, {"length_mm = 4.999", "contains the other"});
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(SceneErrors, UnknownChoice) {
 TEST(SceneErrors, SizeThatTheKindDoesNotHave) {
   expect_scene_refused(
       "[[objects]]\nkind = \"teapot\"\ndiameter_mm = 50",
-      {"bad.toml:3", "objects.0.diameter_mm = 50", "means nothing for a teapot", "sphere cylinder mug"});
+      {"bad.toml:3", "objects.0.diameter_mm = 50", "a teapot has no such key", "sphere cylinder mug"});
 }
 
 TEST(SceneErrors, SizeOfZero) {

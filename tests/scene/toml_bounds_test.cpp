@@ -57,10 +57,11 @@ TEST(TomlBounds, NoKeyHidesBehindAStringOrAComment) {
 }
 
 TEST(TomlBounds, BracketsWithinOneAnotherAreCounted) {
-  expect_refused("a = " + repeated(kMany, "["), {"f.toml:1: more than 16 brackets within one another"});
-  expect_refused("a = " + repeated(kMany, "{b="), {"more than 16 brackets"});
-  expect_refused("a = " + repeated(kMany, "[\n"), {"f.toml:17: more than 16 brackets"});
-  expect_refused("a = " + repeated(200, "{b=[") + repeated(200, "]}"), {"more than 16 brackets"});
+  expect_refused("a = " + repeated(kMany, "["), {"f.toml:1: brackets are nested more than 16 deep"});
+  expect_refused("a = " + repeated(kMany, "{b="), {"brackets are nested more than 16 deep"});
+  expect_refused("a = " + repeated(kMany, "[\n"), {"f.toml:17: brackets are nested more than 16 deep"});
+  expect_refused("a = " + repeated(200, "{b=[") + repeated(200, "]}"),
+                 {"brackets are nested more than 16 deep"});
 }
 
 TEST(TomlBounds, AKeyIsNoLongerThanAThousandBytes) {

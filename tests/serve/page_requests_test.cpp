@@ -152,7 +152,7 @@ TEST_F(PageRequestsTest, TheLimitsOfASetAreExact) {
   EXPECT_THAT(why_not(set("description", "v", 65)), HasSubstr("65"));
   // A key of 200 bytes is read. The scene does not know it.
   applied(set(std::string(200, 'k'), "1"));
-  EXPECT_THAT(refused, HasSubstr("nobody knows this key"));
+  EXPECT_THAT(refused, HasSubstr("is not a known key"));
 }
 
 TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsArePassedOn) {

@@ -188,8 +188,7 @@ TEST(RunStudy, KeepsThePointsBesideOneThatThrows) {
 TEST(RunStudy, ChecksEveryPointBeforeAnythingRuns) {
   const TemporaryFolder folder;
   const auto check = [](const Overrides& overrides) -> StudyInputs {
-    if (testing::number_of(overrides, "synthetic.gain", 1.0) == 3.0)
-      throw SceneError("nobody knows this key");
+    if (testing::number_of(overrides, "synthetic.gain", 1.0) == 3.0) throw SceneError("is not a known key");
     return {};
   };
   const auto never = [](const Overrides&, double, double, std::uint64_t) -> TrialResult {
@@ -198,7 +197,7 @@ TEST(RunStudy, ChecksEveryPointBeforeAnythingRuns) {
   };
   expect_refusal(
       [&] { static_cast<void>(run_study(twelve_points(), check, never, folder / "out", options_for(2))); },
-      {"study synthetic", "point 8", "friction 0", "nobody knows this key"});
+      {"study synthetic", "point 8", "friction 0", "is not a known key"});
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
