@@ -12,7 +12,7 @@
 
 #include "commands.h"
 #include "error_line.h"
-#include "phalanx/papers/experiment_report.h"
+#include "phalanx/papers/experiments.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "progress.h"

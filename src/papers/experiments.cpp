@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "phalanx/papers/experiments.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "papers/felt_stiffness.h"
+#include "papers/s1_fig8.h"
 #include "papers/s2_experiments.h"
-#include "phalanx/papers/experiment_report.h"
-#include "phalanx/papers/experiments.h"
+#include "papers/timing.h"
 
 namespace phalanx {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "phalanx/figures/chart.h"
 #include "phalanx/force/force_law.h"
-#include "study/made_json.h"
+#include "record/made_json.h"
 
 namespace phalanx {
 namespace {

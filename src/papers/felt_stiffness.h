@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "phalanx/force/stabiliser.h"
-#include "phalanx/papers/experiment_report.h"
+#include "phalanx/papers/experiments.h"
 #include "phalanx/scene/scene.h"
 
 namespace phalanx {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "papers/s1_fig8.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <stdexcept>
 
 #include "phalanx/core/constants.h"
-#include "phalanx/papers/experiments.h"
 #include "phalanx/scene/build_model.h"
 
 namespace phalanx {

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "papers/s1_fig8.h"
 #include "phalanx/core/constants.h"
-#include "phalanx/papers/experiments.h"
 #include "phalanx/record/made.h"
-#include "study/made_json.h"
+#include "record/made_json.h"
 
 namespace phalanx {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "papers/loop_run.h"
-#include "phalanx/papers/experiment_report.h"
+#include "phalanx/papers/experiments.h"
 #include "phalanx/study/laboratory/study.h"
 
 namespace phalanx {

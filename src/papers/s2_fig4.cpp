@@ -7,7 +7,7 @@
 #include "papers/s2_experiments.h"
 #include "papers/s2_loop_figures.h"
 #include "phalanx/scene/patient_file.h"
-#include "study/made_json.h"
+#include "record/made_json.h"
 
 namespace phalanx {
 namespace {

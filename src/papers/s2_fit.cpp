@@ -12,7 +12,7 @@
 #include "papers/s2_loop_figures.h"
 #include "phalanx/simulation/closed_loop/reduced_model.h"
 #include "phalanx/study/laboratory/limit_search.h"
-#include "study/made_json.h"
+#include "record/made_json.h"
 
 namespace phalanx {
 namespace {

@@ -12,8 +12,8 @@
 #include "papers/s2_experiments.h"
 #include "papers/s2_loop_figures.h"
 #include "phalanx/scene/scene.h"
+#include "record/made_json.h"
 #include "study/laboratory/measure_point.h"
-#include "study/made_json.h"
 
 namespace phalanx {
 namespace {

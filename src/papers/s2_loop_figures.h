@@ -8,7 +8,7 @@
 
 #include "papers/loop_run.h"
 #include "phalanx/figures/chart.h"
-#include "phalanx/papers/experiments_report.h"
+#include "phalanx/papers/experiments.h"
 
 namespace phalanx {
 

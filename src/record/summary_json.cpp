@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "phalanx/record/summary.h"
+#include "record/made_json.h"
 
 namespace phalanx {
 namespace {
@@ -37,11 +38,7 @@ std::string summary_json(const Summary& summary) {
   for (const LimiterActivity& limiter : limiters(summary)) limiter_ticks[limiter.name] = limiter.ticks;
   json["status_ticks"] = by_name(summary.status_ticks, status_name);
   json["warnings"] = warnings(summary);
-  json["made"] = {{"commit", summary.made.commit},
-                  {"cpu", summary.made.cpu},
-                  {"compiler", summary.made.compiler},
-                  {"build_type", summary.made.build_type},
-                  {"date", summary.made.date}};
+  json["made"] = made_json(summary.made);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "apps/run_program.h"
-#include "phalanx/papers/experiment_report.h"
+#include "phalanx/papers/experiments.h"
 
 namespace phalanx {
 namespace {

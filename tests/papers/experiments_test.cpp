@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "papers/s1_fig8.h"
 #include "papers/timing.h"
-#include "phalanx/papers/experiment_report.h"
 
 namespace phalanx {
 namespace {

@@ -2,6 +2,7 @@
 // Charts as SVG: curves, bars, heat maps and stability maps, ready for a paper.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -70,9 +71,9 @@ struct LineChart {
 inline constexpr std::size_t kCurveColours = 8;                ///< that readers can tell apart
 inline constexpr std::size_t kMostSeries = 3 * kCurveColours;  ///< in a panel: three kinds of line
 
-/// Draws curves. Curves of up to 40 points have a marker on each; longer ones have a few, none at y = 0. They are thinned to
-/// the resolution of the width, keeping every extreme value. Of more than kMostSeries curves in a panel, the
-/// first are drawn and the legend states the number.
+/// Draws curves. Curves of up to 40 points have a marker on each; longer ones have a few, none at y = 0. They
+/// are thinned to the resolution of the width, keeping every extreme value. Of more than kMostSeries curves in
+/// a panel, the first are drawn and the legend states the number.
 /// @throws std::invalid_argument if there is no panel, or the parts of a series differ in length.
 [[nodiscard]] std::string line_chart_svg(const LineChart& chart);
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "phalanx/record/output_file.h"
+#include "record/made_json.h"
 #include "study/laboratory/study_json.h"
 #include "study/laboratory/study_values.h"
-#include "study/made_json.h"
 
 namespace phalanx {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/papers/experiments_report.h"
+#include "phalanx/papers/experiments.h"
 
 #include <gmock/gmock.h>
 
@@ -58,7 +58,7 @@ std::vector<ReportSection> sections() {
            .table = {.header = {"friction", "k_lim"}, .rows = {{"none", "0.25"}, {"half", "0.55"}}}}};
 }
 
-TEST(ExperimentsReport, SetsEveryNumberBesideThePapers) {
+TEST(ExperimentsPage, SetsEveryNumberBesideThePapers) {
   const std::string page = experiments_html(rows(), sections(), kMadeUp, "1 to 20");
   keep("experiments.html", page);
   EXPECT_EQ(flaw_of(page), "");
@@ -93,13 +93,13 @@ TEST(ExperimentsReport, SetsEveryNumberBesideThePapers) {
   EXPECT_EQ(page, experiments_html(rows(), sections(), kMadeUp, "1 to 20"));
 }
 
-TEST(ExperimentsReport, WithoutAnythingIsStillAPage) {
+TEST(ExperimentsPage, WithoutAnythingIsStillAPage) {
   const std::string page = experiments_html({}, {}, {});
   EXPECT_EQ(flaw_of(page), "");
   EXPECT_THAT(page, HasSubstr("No number was compared."));
 }
 
-TEST(ExperimentsReport, EscapesAllWords) {
+TEST(ExperimentsPage, EscapesAllWords) {
   PaperRow row = rows()[0];
   row.experiment = row.quantity = row.unit = row.paper = row.ours = row.difference = row.note = kNasty;
   const ReportSection section = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/papers/experiments_report.h"
+#include "phalanx/papers/experiments.h"
 
 #include "study/report/html.h"
 

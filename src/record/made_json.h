@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/made_json.h"
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "phalanx/record/made.h"
 
 namespace phalanx {
 
-nlohmann::ordered_json made_json(const Made& made) {
+/// Writes the origin of a result: commit, cpu, compiler, build_type, date.
+[[nodiscard]] inline nlohmann::ordered_json made_json(const Made& made) {
   return {{"commit", made.commit},
           {"cpu", made.cpu},
           {"compiler", made.compiler},
