@@ -21,6 +21,7 @@ class RoundTrips {
 
   /// Records a PING. @returns its number, from 0
   std::uint64_t send(double now);
+  /// Records an answer; one to an unknown PING is ignored.
   void receive(std::uint64_t number, double now);
 
   [[nodiscard]] std::uint64_t sent() const noexcept { return sent_.size(); }
@@ -31,7 +32,6 @@ class RoundTrips {
   }
   [[nodiscard]] std::uint64_t duplicates() const noexcept { return duplicates_; }
   [[nodiscard]] std::uint64_t reordered() const noexcept { return reordered_; }  ///< came after a later one
-  [[nodiscard]] std::uint64_t strange() const noexcept { return strange_; }  ///< answers to an unknown PING
   /// @returns the percentiles: the smallest time that at least this part of the answers did not exceed.
   [[nodiscard]] RoundTripTimes times() const;
   /// Draws bars over doubling times, one line each.
@@ -47,7 +47,6 @@ class RoundTrips {
   std::uint64_t newest_ = 0;
   std::uint64_t duplicates_ = 0;
   std::uint64_t reordered_ = 0;
-  std::uint64_t strange_ = 0;
 };
 
 }  // namespace phalanx
