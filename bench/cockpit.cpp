@@ -21,7 +21,7 @@
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/serve/cockpit.h"
 #include "phalanx/simulation/press_intent.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 #include "rounds.h"
 
 namespace phalanx::bench {
@@ -48,23 +48,23 @@ WebServerSettings any_port() {
 class Bench {
  public:
   Bench()
-      : host_({.scene = "grasp_teapot",
-               .overrides = {{"rate_hz", "1000"}},
-               .device = "simulated",
-               .calibration = {},
-               .clinician = {},
-               .realtime = {},
-               .ask_for_realtime = true,
-               .write_calibration = {}},
-              clock_),
-        cockpit_(host_, {}),
+      : session_({.scene = "grasp_teapot",
+                  .overrides = {{"rate_hz", "1000"}},
+                  .device = "simulated",
+                  .calibration = {},
+                  .clinician = {},
+                  .realtime = {},
+                  .ask_for_realtime = true,
+                  .write_calibration = {}},
+                 clock_),
+        cockpit_(session_, {}),
         server_(any_port(), cockpit_) {
     cockpit_.attach(server_);
     server_.start();
   }
   ~Bench() {
     server_.stop();
-    host_.shut_down();
+    session_.shut_down();
   }
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
@@ -78,16 +78,16 @@ class Bench {
     run(seconds, &phase);
   }
 
-  [[nodiscard]] std::string realtime() const { return host_.state()->realtime; }
+  [[nodiscard]] std::string realtime() const { return session_.info()->realtime; }
 
  private:
   void run(double seconds, Phase* phase) {
     const auto end = std::chrono::steady_clock::now() + Seconds(seconds);
     while (std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      host_.poll();
+      session_.poll();
       StepRecord record;
-      while (host_.next_record(record)) {
+      while (session_.next_record(record)) {
         if (phase == nullptr) continue;
         phase->step.back().push_back(record.duration * 1e6);
         phase->lateness.back().push_back(record.lateness * 1e6);
@@ -97,7 +97,7 @@ class Bench {
   }
 
   const Clock clock_;
-  StationHost host_;
+  Session session_;
   Cockpit cockpit_;
   WebServer server_;
 };

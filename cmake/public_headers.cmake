@@ -72,8 +72,7 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     station/safety.h
     station/safety_settings.h
     station/sensor_watch.h
+    station/session.h
     station/session_statistics.h
     station/station.h
-    station/station_device.h
-    station/station_host.h
     station/station_view.h)

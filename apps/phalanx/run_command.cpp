@@ -16,12 +16,12 @@
 #include "phalanx/mesh/isolation/isolation_helper.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 #include "run_console.h"
-#include "run_host.h"
 #include "run_options.h"
 #include "run_page.h"
 #include "run_recorder.h"
+#include "run_session.h"
 #include "status_line.h"
 #include "terminate.h"
 #include "typed_lines.h"
@@ -41,16 +41,16 @@ class Run {
     if (const auto earlier = recorder_.finished_earlier(); !earlier.empty())
       console_.say(
           fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
-    host_ = std::make_unique<StationHost>(host_settings(options_), clock_);
+    session_ = std::make_unique<Session>(session_settings(options_), clock_);
     std::exception_ptr failure;
     {
-      const LetsGoAtTerminate lets_go(*host_, clock_);
+      const LetsGoAtTerminate lets_go(*session_, clock_);
       try {
         serve();
       } catch (...) {
         failure = std::current_exception();
       }
-      host_->shut_down();
+      session_->shut_down();
     }
     const bool saved = save(failure == nullptr);
     if (failure) std::rethrow_exception(failure);
@@ -59,25 +59,25 @@ class Run {
 
  private:
   void serve() {
-    typed_.emplace(*host_);
-    recorder_.begin(*host_);
+    typed_.emplace(*session_);
+    recorder_.begin(*session_);
     seen_ = look();
     introduce();
-    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *host_, console_);
+    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, console_);
     watch();
   }
 
   void introduce() {
-    const auto state = host_->state();
-    console_.say(fmt::format(
-        "scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", state->scene,
-        state->geometry->rate_hz, state->device.name, state->device.serial, state->fingertip_force,
-        options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
-    if (state->source == HandSource::kDevice && options_.calibration.empty())
+    const auto info = session_->info();
+    console_.say(
+        fmt::format("scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", info->scene,
+                    info->geometry->rate_hz, info->device.name, info->device.serial, info->fingertip_force,
+                    options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
+    if (info->source == HandSource::kDevice && options_.calibration.empty())
       console_.complain(
           "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`",
           Emphasis::kWarning);
-    if (holds_without_host(state->device)) console_.complain(kHoldsWithoutHost, Emphasis::kWarning);
+    if (holds_without_host(info->device)) console_.complain(kHoldsWithoutHost, Emphasis::kWarning);
     console_.say(
         "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
         "quit.");
@@ -91,14 +91,14 @@ class Run {
       const double seconds = clock_.now() - begin;
       seconds_ = seconds;
       if (options_.seconds && seconds >= *options_.seconds) break;
-      host_->poll();
+      session_->poll();
       drain();
       handle_typed();
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
       if (options_.quiet) continue;
       const Seen seen = look();
-      if (console_.status(status_line(host_->view(), host_->deadlines(), seconds, console_.width())))
+      if (console_.status(status_line(session_->view(), session_->deadlines(), seconds, console_.width())))
         seen_ = seen;
     }
   }
@@ -110,8 +110,8 @@ class Run {
     double fault = 0.0;  ///< FaultEvent::time; 0: none [s]
   };
   [[nodiscard]] Seen look() const {
-    const std::uint64_t stops = host_->stops();
-    const FaultEvent fault = host_->view().fault;
+    const std::uint64_t stops = session_->stops();
+    const FaultEvent fault = session_->view().fault;
     return {.stops = stops, .fault = fault.fault == Fault::kNone ? 0.0 : fault.time};
   }
 
@@ -125,16 +125,16 @@ class Run {
   /// Reports what the loop and the recorder have stored.
   void drain() {
     say_grant();
-    if (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
+    if (auto report = session_->take_fault_report()) tell_fault(std::move(*report));
     while (const auto note = recorder_.next_note()) tell(*note);
-    const bool oscillates = host_->view().oscillates;
+    const bool oscillates = session_->view().oscillates;
     if (oscillates && !oscillates_) {
       const std::string what = "the force oscillates: it fades, and returns by itself once it is quiet";
       console_.say(what, Emphasis::kWarning);
       if (page_) page_->tell("oscillation", what, true);
     }
     oscillates_ = oscillates;
-    const std::uint64_t refused = host_->view().resets_refused;
+    const std::uint64_t refused = session_->view().resets_refused;
     if (std::exchange(resets_refused_, refused) < refused) {
       const std::string why =
           "reset refused: the cause is still there, no sample comes, or the torque is not at rest yet";
@@ -161,7 +161,7 @@ class Run {
 
   void say_grant() {
     if (granted_) return;
-    granted_ = host_->grant();
+    granted_ = session_->grant();
     if (!granted_) return;
     console_.say("real time: " + describe(*granted_));
     for (const std::string& missing : granted_->missing) console_.complain(missing, Emphasis::kWarning);
@@ -188,13 +188,13 @@ class Run {
         seen_.stops = typed.stops;
         tell_typed("stopped", "stopped");
       } else if (line == "resume") {
-        const bool resumed = host_->resume(seen_.stops);
+        const bool resumed = session_->resume(seen_.stops);
         look_after(resumed);
         if (!resumed)
           throw std::invalid_argument("another stop or fault has come since; look, then resume again");
         tell_typed("resumed", "resumed");
       } else if (line == "reset") {
-        const bool reset = host_->reset(seen_.fault);
+        const bool reset = session_->reset(seen_.fault);
         look_after(reset);
         if (!reset) throw std::invalid_argument("another fault has come since; look, then reset again");
         tell_typed("reset", "asked for a reset");
@@ -203,11 +203,11 @@ class Run {
         tell_typed("quit", "ends the station");
       } else if (line.starts_with("set ")) {
         const std::string change = line.substr(4);
-        host_->set({parse_override(change)}, [this, change](const ChangeOutcome& outcome) {
+        session_->set({parse_override(change)}, [this, change](const ChangeOutcome& outcome) {
           say_typed("set", change, change, outcome);
         });
       } else if (line.starts_with("scene ")) {
-        host_->load_scene(line.substr(6), [this, line](const ChangeOutcome& outcome) {
+        session_->load_scene(line.substr(6), [this, line](const ChangeOutcome& outcome) {
           say_typed("scene", line.substr(6), line, outcome);
         });
       } else if (!line.empty()) {
@@ -234,7 +234,7 @@ class Run {
 
   /// Writes log, summary and reports; the torque is zero. @returns false if log or summary is not complete
   [[nodiscard]] bool save(bool in_good_order) {
-    while (auto report = host_->take_fault_report()) tell_fault(std::move(*report));
+    while (auto report = session_->take_fault_report()) tell_fault(std::move(*report));
     recorder_.finish(in_good_order);
     const bool summarised = in_good_order && write_summary();
     drain();
@@ -245,7 +245,7 @@ class Run {
   /// Reports the end. @returns false if it was a fault
   [[nodiscard]] bool say_end() {
     if (!options_.quiet) say_statistics();
-    const StationView last = host_->view();
+    const StationView last = session_->view();
     const bool faulty = last.state == SafetyState::kFault;
     console_.say(faulty ? fmt::format("ended at zero torque, in fault {}", fault_name(last.fault.fault))
                         : "ended at zero torque",
@@ -257,7 +257,7 @@ class Run {
     if (options_.summary.empty()) return true;
     try {
       write_text_file(options_.summary,
-                      station_summary_json(host_->session(), host_->view(),
+                      station_summary_json(session_->statistics(), session_->view(),
                                            granted_ ? describe(*granted_) : "not asked for", seconds_));
       return true;
     } catch (const std::exception& error) {
@@ -267,21 +267,21 @@ class Run {
   }
 
   void say_statistics() {
-    const SessionStatistics session = host_->session();
-    const DeadlineStatistics& deadlines = session.deadlines;
+    const SessionStatistics sums = session_->statistics();
+    const DeadlineStatistics& deadlines = sums.deadlines;
     console_.say(histogram_text(deadlines.lateness, "woken late"));
     console_.say(histogram_text(deadlines.step, "step"));
     console_.say(
         fmt::format("{} steps, {} overruns (at most {} in a row), {} deadlines left out; {} samples, {} "
                     "lost, {} corrupt",
                     deadlines.steps, deadlines.overruns, deadlines.longest_run, deadlines.skipped,
-                    session.link.received, session.link.lost, session.link.corrupt));
+                    sums.link.received, sums.link.lost, sums.link.corrupt));
   }
 
   const RunOptions& options_;
   const Clock& clock_;
   RunConsole console_;
-  std::unique_ptr<StationHost> host_;
+  std::unique_ptr<Session> session_;
   RunRecorder recorder_;
   std::unique_ptr<RunPage> page_;
   std::optional<TypedLines> typed_;

@@ -74,10 +74,10 @@ CockpitSettings cockpit_settings(const RunOptions& o) {
 }  // namespace
 
 struct RunPage::Parts {
-  Parts(const RunOptions& o, StationHost& host)
+  Parts(const RunOptions& o, Session& session)
       : options(o),
         settings(server_settings(o)),
-        cockpit(host, cockpit_settings(o)),
+        cockpit(session, cockpit_settings(o)),
         server(settings, cockpit) {
     cockpit.attach(server, is_loopback(o.listen)
                                ? std::vector<std::string>()
@@ -148,8 +148,8 @@ void check_page_options(const RunOptions& o) {
   }
 }
 
-RunPage::RunPage(const RunOptions& options, StationHost& host, RunConsole& console)
-    : parts_(std::make_unique<Parts>(options, host)) {
+RunPage::RunPage(const RunOptions& options, Session& session, RunConsole& console)
+    : parts_(std::make_unique<Parts>(options, session)) {
   parts_->server.start();
   parts_->introduce(console);
 }

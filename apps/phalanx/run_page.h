@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 #include "run_console.h"
 #include "run_options.h"
 
@@ -18,9 +18,9 @@ void check_page_options(const RunOptions& options);
 class RunPage {
  public:
   /// Binds the server, shows the page's addresses on the console, and serves.
-  /// @param host, console  outlive the page
+  /// @param session, console  outlive the page
   /// @throws WebServerError or std::runtime_error, naming the remedy
-  RunPage(const RunOptions& options, StationHost& host, RunConsole& console);
+  RunPage(const RunOptions& options, Session& session, RunConsole& console);
   ~RunPage();
 
   /// Writes a line for each address. Addresses with a token are written to a terminal only.

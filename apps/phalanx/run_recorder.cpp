@@ -33,8 +33,8 @@ std::filesystem::path RunRecorder::finished_earlier() const {
   return log_ ? log_->finished_earlier() : std::filesystem::path();
 }
 
-void RunRecorder::begin(StationHost& host) {
-  host_ = &host;
+void RunRecorder::begin(Session& session) {
+  session_ = &session;
   thread_ = start_nice_thread("phalanx-record", [this] { work(); });
 }
 
@@ -88,7 +88,7 @@ void RunRecorder::work() noexcept {
 void RunRecorder::write_steps() noexcept {
   StepRecord record;
   try {
-    while (host_->next_record(record))
+    while (session_->next_record(record))
       if (log_) write_step(*log_, record);
     if (log_) log_->write_through();
   } catch (const std::exception& error) {

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "phalanx/record/output_file.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -40,13 +40,13 @@ class RunRecorder {
   /// @returns OutputFile::finished_earlier() of the log.
   [[nodiscard]] std::filesystem::path finished_earlier() const;
   /// Starts the thread.
-  /// @param host  outlives the recorder
+  /// @param session  outlives the recorder
   /// @throws std::system_error if no thread can be made
-  void begin(StationHost& host);
+  void begin(Session& session);
   void write_report(FaultReport report);
   [[nodiscard]] std::optional<Note> next_note();
   /// Writes the steps that the station still holds, and ends the thread. Call
-  /// it after StationHost::shut_down().
+  /// it after Session::shut_down().
   /// @param in_good_order  false: the log keeps the name FILE.partial, so that it does not replace
   /// a finished log
   void finish(bool in_good_order) noexcept;
@@ -66,7 +66,7 @@ class RunRecorder {
   void note(Make make) noexcept;
 
   const std::filesystem::path reports_;
-  StationHost* host_ = nullptr;
+  Session* session_ = nullptr;
   std::optional<OutputFile> log_;  ///< the thread uses it while there is one
   std::atomic<bool> lost_{false};
   std::atomic<bool> ending_{false};

@@ -9,7 +9,7 @@
 #include <exception>
 #include <new>
 
-#include "usage.h"
+#include "commands.h"
 
 namespace phalanx {
 namespace {
@@ -56,8 +56,8 @@ void end_at_once() {
   std::abort();
 }
 
-LetsGoAtTerminate::LetsGoAtTerminate(StationHost& host, const Clock& clock) noexcept
-    : host_(host), clock_(clock) {
+LetsGoAtTerminate::LetsGoAtTerminate(Session& session, const Clock& clock) noexcept
+    : session_(session), clock_(clock) {
   holding = this;
 }
 
@@ -67,8 +67,8 @@ LetsGoAtTerminate::~LetsGoAtTerminate() {
 }
 
 void LetsGoAtTerminate::let_go() noexcept {
-  host_.stop();
-  for (double waited = 0.0; waited < kRamp && !host_.view().at_rest; waited += kLook)
+  session_.stop();
+  for (double waited = 0.0; waited < kRamp && !session_.view().at_rest; waited += kLook)
     clock_.sleep_until(clock_.now() + kLook);
   clock_.sleep_until(clock_.now() + kWritten);
 }

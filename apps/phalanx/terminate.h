@@ -3,7 +3,7 @@
 #pragma once
 
 #include "phalanx/device/clock.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -17,8 +17,8 @@ namespace phalanx {
 /// has been written up to then. Only one may live at a time.
 class LetsGoAtTerminate {
  public:
-  /// @param host, clock  outlive the guard
-  LetsGoAtTerminate(StationHost& host, const Clock& clock) noexcept;
+  /// @param session, clock  outlive the guard
+  LetsGoAtTerminate(Session& session, const Clock& clock) noexcept;
   LetsGoAtTerminate(const LetsGoAtTerminate&) = delete;
   LetsGoAtTerminate& operator=(const LetsGoAtTerminate&) = delete;
   ~LetsGoAtTerminate();  ///< if std::terminate() has begun, waits for the program's end
@@ -27,7 +27,7 @@ class LetsGoAtTerminate {
   void let_go() noexcept;
 
  private:
-  StationHost& host_;
+  Session& session_;
   const Clock& clock_;
 };
 

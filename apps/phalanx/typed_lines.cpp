@@ -67,8 +67,8 @@ bool is_stop(std::string_view line) noexcept {
 
 }  // namespace
 
-TypedLines::TypedLines(StationHost& host)
-    : host_(host),
+TypedLines::TypedLines(Session& session)
+    : session_(session),
       wake_(make_event()),
       input_(open_input()),
       thread_(start_nice_thread("phalanx-typed", [this] { read_all(); })) {}
@@ -104,7 +104,7 @@ void TypedLines::read_all() noexcept {
     if (count < 0) continue;
     if (wake.revents != 0) return;
     if (end.revents != 0) {
-      host_.stop();
+      session_.stop();
       end.fd = -1;
     }
     if (count == 0) in_background_ = terminal_belongs_to_another_job();
@@ -112,7 +112,7 @@ void TypedLines::read_all() noexcept {
     try {
       read_some();
     } catch (const std::exception&) {  // no memory for the typed text: it may have been `stop`
-      host_.stop();
+      session_.stop();
       pending_.clear();
     }
   }
@@ -142,8 +142,8 @@ void TypedLines::take_lines() {
     if (std::exchange(too_long_, false)) continue;  // the rest of a line that was too long
     if (is_stop(line.text)) {
       line.text = "stop";
-      host_.stop();
-      line.stops = host_.stops();
+      session_.stop();
+      line.stops = session_.stops();
     }
     const std::lock_guard lock(mutex_);
     if (lines_.size() < kWaiting)

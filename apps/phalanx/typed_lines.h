@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -25,12 +25,12 @@ class TypedLines {
 
   struct Line {
     std::string text;
-    std::uint64_t stops = 0;  ///< for `stop`: StationHost::stops() right after it
+    std::uint64_t stops = 0;  ///< for `stop`: Session::stops() right after it
   };
 
-  /// @param host  outlives the reader
+  /// @param session  outlives the reader
   /// @throws std::system_error if there is no thread or no descriptor
-  explicit TypedLines(StationHost& host);
+  explicit TypedLines(Session& session);
   TypedLines(const TypedLines&) = delete;
   TypedLines& operator=(const TypedLines&) = delete;
   ~TypedLines();
@@ -44,7 +44,7 @@ class TypedLines {
   void read_some();
   void take_lines();
 
-  StationHost& host_;
+  Session& session_;
   const int wake_;   ///< eventfd that signals the end
   const int input_;  ///< standard input, opened without blocking where that is possible
 

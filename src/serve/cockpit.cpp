@@ -51,8 +51,8 @@ WebResponse take_mesh(const UploadedMesh& mesh, const std::filesystem::path& fol
 
 }  // namespace
 
-Cockpit::Impl::Impl(StationHost& station, CockpitSettings given)
-    : host(station), settings(with_clock(std::move(given))), log(settings.log) {
+Cockpit::Impl::Impl(Session& served, CockpitSettings given)
+    : session(served), settings(with_clock(std::move(given))), log(settings.log) {
   write_choices(choices);
   choices.set_protocol(kProtocol);
   choices.set_version(settings.version);
@@ -63,8 +63,8 @@ Cockpit::Impl::~Impl() {
   if (upload) upload->abandon(kAbandonTimeout);
 }
 
-Cockpit::Cockpit(StationHost& host, CockpitSettings settings)
-    : impl_(std::make_shared<Impl>(host, std::move(settings))) {}
+Cockpit::Cockpit(Session& session, CockpitSettings settings)
+    : impl_(std::make_shared<Impl>(session, std::move(settings))) {}
 
 Cockpit::~Cockpit() = default;
 
@@ -167,7 +167,7 @@ std::size_t Cockpit::body_limit(const WebRequest& head) {
 
 void Cockpit::Impl::respond_with_geometry(const std::string& revision,
                                           std::function<void(WebResponse)> respond) {
-  auto geometry = host.state()->geometry;
+  auto geometry = session.info()->geometry;
   if (!geometry || revision != std::to_string(geometry->revision))
     return respond(text_response(404, "this geometry is no longer shown; pages are told the new revision\n"));
   geometry_cache->request(std::move(geometry), std::move(respond));
@@ -196,7 +196,7 @@ void Cockpit::Impl::begin_upload(const WebRequest& request, std::function<void(W
   // hold a token.
   notify(wire::Notice::CHANGE, participant->label(), "upload",
          fmt::format("sends a mesh: {}, {} bytes", shortened(one_line(mesh.name), 100), mesh.bytes.size()));
-  const auto job = std::make_shared<UploadJob>(host);
+  const auto job = std::make_shared<UploadJob>(session);
   start_upload(
       job,
       [mesh = std::move(mesh), folder = settings.uploads](const ValuesInForce& in_force) {

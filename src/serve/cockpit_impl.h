@@ -4,11 +4,11 @@
 // Threads: all of Cockpit::Impl runs on the server's thread, whose functions must return soon. Three further
 // threads do what takes long: the log of changes (audit_log.h), the encoding of a geometry
 // (geometry_message.h), and one upload at a time (uploads.h). The station's owner reports the outcome of a
-// change in StationHost::poll(); the report is posted to the server's thread.
+// change in Session::poll(); the report is posted to the server's thread.
 //
 // Way of a message: the bytes of a page arrive in Cockpit::received(), are decoded, and go to handle(). A
-// stop calls StationHost::stop() right there: no queue and no other thread stand between the page and the
-// station. Requests of the operator go through page_requests.h to the StationHost; their outcome becomes a
+// stop calls Session::stop() right there: no queue and no other thread stand between the page and the
+// station. Requests of the operator go through page_requests.h to the Session; their outcome becomes a
 // Reply and a Notice. Each frame sends the newest tick (tick_message.h), and the state (state_message.h) if
 // it has changed or is due.
 //
@@ -46,7 +46,7 @@ struct TickWindow {
 
 /// State and functions of the Cockpit. Server's thread only, except where a function says otherwise.
 struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
-  Impl(StationHost& station, CockpitSettings given);
+  Impl(Session& served, CockpitSettings given);
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
@@ -92,7 +92,7 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   [[nodiscard]] const Participant* operator_of(const WebRequest& request) const;
   void begin_upload(const WebRequest& request, std::function<void(WebResponse)> respond);
 
-  StationHost& host;
+  Session& session;
   const CockpitSettings settings;
   WebServer* server = nullptr;
   std::vector<std::string> viewer_urls;
@@ -135,7 +135,7 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   [[nodiscard]] bool continues_drag(PageId page, const PageRequest& request) const;
   void hold_back(PageId page, const std::string& who, const PageRequest& request);
   void refuse_unless_operator(PageId page) const;
-  void pass_to_host(PageId page, const wire::ToHost& message);
+  void pass_to_session(PageId page, const wire::ToHost& message);
   void on_outcome(PageId page, std::uint32_t number, const std::string& who, const PageRequest& request,
                   const ChangeOutcome& outcome);
 };

@@ -41,7 +41,7 @@ void Cockpit::Impl::handle(PageId page, const wire::ToHost& message) {
       break;
   }
   refuse_unless_operator(page);
-  pass_to_host(page, message);
+  pass_to_session(page, message);
 }
 
 void Cockpit::Impl::hello(PageId page, const wire::Hello& hello) {
@@ -55,7 +55,7 @@ void Cockpit::Impl::hello(PageId page, const wire::Hello& hello) {
     notify(wire::Notice::CHANGE, participants.find(page)->label(), "operator_taken",
            "operates: there was no operator");
   send_welcome(page);
-  if (holds_without_host(host.state()->device)) notify_page(page, "no_watchdog", kHoldsWithoutHost);
+  if (holds_without_host(session.info()->device)) notify_page(page, "no_watchdog", kHoldsWithoutHost);
   request_state();
 }
 
@@ -79,8 +79,8 @@ void Cockpit::Impl::stop(const Participant& participant) {
 }
 
 void Cockpit::Impl::stop(const std::string& source, const std::string& who) {
-  const bool held = host.held_stopped();  // if not, this stop has an effect and is logged in any case
-  host.stop();
+  const bool held = session.held_stopped();  // if not, this stop has an effect and is logged in any case
+  session.stop();
   request_state();
   std::erase_if(stops_notified, [&](const auto& entry) { return now() - entry.second >= kStopInterval; });
   if (held && stops_notified.contains(source)) return;
@@ -112,11 +112,11 @@ void Cockpit::Impl::refuse_unless_operator(PageId page) const {
 
 // Requests that are done at once are logged at once, in order with the stops. The others are logged when the
 // station has applied them.
-void Cockpit::Impl::pass_to_host(PageId page, const wire::ToHost& message) {
+void Cockpit::Impl::pass_to_session(PageId page, const wire::ToHost& message) {
   const std::uint32_t number = message.request();
   const std::string who = participants.find(page)->label();
   const auto request = std::make_shared<PageRequest>();
-  // The host may answer after the cockpit has been destroyed.
+  // The session may answer after the cockpit has been destroyed.
   const auto done = [weak = weak_from_this(), page, number, who, request](const ChangeOutcome& outcome) {
     const auto impl = weak.lock();
     if (!impl || impl->server == nullptr) return;
@@ -124,7 +124,7 @@ void Cockpit::Impl::pass_to_host(PageId page, const wire::ToHost& message) {
       if (const auto still = weak.lock()) still->on_outcome(page, number, who, *request, outcome);
     });
   };
-  *request = apply_request(message, host, choices, settings.uploads, done);
+  *request = apply_request(message, session, choices, settings.uploads, done);
   if (request->done_at_once) on_outcome(page, number, who, *request, {});
 }
 

@@ -106,7 +106,7 @@ void Cockpit::Impl::send_welcome(PageId page) {
   welcome.set_page(participant.number);
   welcome.set_secret(participant.secret);
   welcome.set_may_operate(participant.client.may_operate);
-  welcome.set_clock(host.now());
+  welcome.set_clock(session.now());
   welcome.set_unix_time(unix_now());
   if (participant.client.may_operate)
     for (const std::string& url : viewer_urls) welcome.add_viewer_url(url);
@@ -129,7 +129,7 @@ void Cockpit::Impl::refuse_protocol(PageId page, std::uint32_t protocol) {
 Bytes Cockpit::Impl::encoded_state() {
   wire::ToPage message;
   wire::State& state = *message.mutable_state();
-  write_state(host, state);
+  write_state(session, state);
   state.set_trouble(for_pages(state.trouble()));
   if (state.has_fault() && state.fault().time() == reported)
     state.mutable_fault()->set_report(as_utf8(report));
@@ -139,8 +139,8 @@ Bytes Cockpit::Impl::encoded_state() {
 
 void Cockpit::Impl::send_state_if_due() {
   // Read before the state is encoded: a change in between is sent with the next state.
-  const std::uint64_t revision = host.state()->revision;
-  const SafetyState safety = host.view().state;
+  const std::uint64_t revision = session.info()->revision;
+  const SafetyState safety = session.view().state;
   const bool changed = state_requested || revision != sent_revision || safety != sent_safety;
   const double since = now() - state_sent;
   if (since < kShortestStateInterval || (!changed && since < kLongestStateInterval)) return;
@@ -152,7 +152,7 @@ void Cockpit::Impl::send_state_if_due() {
 }
 
 void Cockpit::Impl::send_tick() {
-  const StationView view = host.view();
+  const StationView view = session.view();
   // Before the first step there is no hand to show.
   if (view.snapshot.tick == 0) return;
   Bytes bytes;

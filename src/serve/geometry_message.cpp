@@ -69,7 +69,7 @@ WebResponse response_with(const Bytes& bytes) {
 
 }  // namespace
 
-std::string geometry_message(const HostGeometry& geometry) {
+std::string geometry_message(const SessionGeometry& geometry) {
   wire::Geometry out;
   out.set_revision(geometry.revision);
   out.set_left(geometry.handedness == Handedness::kLeft);
@@ -85,7 +85,7 @@ std::string geometry_message(const HostGeometry& geometry) {
   return out.SerializeAsString();
 }
 
-Bytes GeometryCache::encode(const HostGeometry& geometry) noexcept {
+Bytes GeometryCache::encode(const SessionGeometry& geometry) noexcept {
   try {
     return std::make_shared<const std::string>(geometry_message(geometry));
   } catch (const std::bad_alloc&) {
@@ -93,7 +93,7 @@ Bytes GeometryCache::encode(const HostGeometry& geometry) noexcept {
   }
 }
 
-void GeometryCache::request(std::shared_ptr<const HostGeometry> geometry, Respond respond) {
+void GeometryCache::request(std::shared_ptr<const SessionGeometry> geometry, Respond respond) {
   std::unique_lock lock(mutex_);
   if (bytes_ && revision_ == geometry->revision) {
     const Bytes bytes = bytes_;

@@ -9,12 +9,12 @@
 #include <string>
 
 #include "phalanx/serve/web_server.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
 /// @returns the encoded wire::Geometry, which a page fetches once for each revision. Set-up only.
-[[nodiscard]] std::string geometry_message(const HostGeometry& geometry);
+[[nodiscard]] std::string geometry_message(const SessionGeometry& geometry);
 
 /// Cache of the newest encoded geometry. Two million triangles are tens of megabytes to encode. A
 /// thread of its own does that once for each revision, so that neither a stop nor a tick waits for it
@@ -25,16 +25,16 @@ class GeometryCache : public std::enable_shared_from_this<GeometryCache> {
 
   /// Responds with the encoded geometry: at once if this revision is encoded, else from the encoding thread.
   /// The status is 500 if there is no memory or no thread. Any thread; allocates.
-  void request(std::shared_ptr<const HostGeometry> geometry, Respond respond);
+  void request(std::shared_ptr<const SessionGeometry> geometry, Respond respond);
 
  private:
   struct Request {
-    std::shared_ptr<const HostGeometry> geometry;
+    std::shared_ptr<const SessionGeometry> geometry;
     Respond respond;
   };
   void work();
   /// @returns the encoded geometry; null if there is no memory
-  static Bytes encode(const HostGeometry& geometry) noexcept;
+  static Bytes encode(const SessionGeometry& geometry) noexcept;
 
   std::mutex mutex_;  ///< of all members below
   Bytes bytes_;       ///< the newest encoded geometry

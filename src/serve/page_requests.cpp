@@ -79,8 +79,8 @@ constexpr int kMostSettings = 64;
 constexpr std::size_t kLongestKey = 200;     ///< [bytes]
 constexpr std::size_t kLongestValue = 4096;  ///< [bytes]
 
-PageRequest set(const wire::Set& message, StationHost& host, const std::filesystem::path& uploads,
-                StationHost::Done done) {
+PageRequest set(const wire::Set& message, Session& session, const std::filesystem::path& uploads,
+                Session::Done done) {
   if (message.setting_size() == 0 || message.setting_size() > kMostSettings)
     throw std::invalid_argument(
         fmt::format("{} settings at once; send 1 to {}", message.setting_size(), kMostSettings));
@@ -102,41 +102,41 @@ PageRequest set(const wire::Set& message, StationHost& host, const std::filesyst
     request.keys += setting.key() + "\n";
   }
   request.text = settings_text(changes);
-  host.set(std::move(changes), std::move(done));
+  session.set(std::move(changes), std::move(done));
   return request;
 }
 
-PageRequest load(const std::string& name, StationHost& host, const wire::Welcome& choices,
-                 StationHost::Done done) {
+PageRequest load(const std::string& name, Session& session, const wire::Welcome& choices,
+                 Session::Done done) {
   const auto& shipped = choices.scene();
   if (std::none_of(shipped.begin(), shipped.end(), [&](const auto& scene) { return scene.name() == name; }))
     throw std::invalid_argument(
         fmt::format("scene {}: this is no shipped scene; choose one of the list", name));
-  host.load_scene(name, std::move(done));
+  session.load_scene(name, std::move(done));
   return {.code = "scene", .text = name};
 }
 
-PageRequest source(wire::HandSource wanted, StationHost& host, StationHost::Done done) {
+PageRequest source(wire::HandSource wanted, Session& session, Session::Done done) {
   const bool sliders = wanted == wire::HAND_SLIDERS;
   if (!sliders && wanted != wire::HAND_PATIENT)
     throw std::invalid_argument("a page can switch between the simulated patient and the sliders only");
-  host.set_source(sliders ? HandSource::kSliders : HandSource::kPatient, std::move(done));
+  session.set_source(sliders ? HandSource::kSliders : HandSource::kPatient, std::move(done));
   return {.code = "source",
           .text = sliders ? "the sliders move the hand" : "the simulated patient moves the hand"};
 }
 
-void pose(const wire::Sliders& sliders, StationHost& host) {
+void pose(const wire::Sliders& sliders, Session& session) {
   JointArray angle{};
   if (sliders.angle_size() != kJoints)
     throw std::invalid_argument(
         fmt::format("{} angles; send one for each joint, {}", sliders.angle_size(), kJoints));
   for (int j = 0; j < kJoints; ++j)
     angle[static_cast<std::size_t>(j)] = static_cast<double>(sliders.angle(j));
-  if (!host.set_sliders(angle))
+  if (!session.set_sliders(angle))
     throw std::invalid_argument("the sliders do not move the hand now; choose them as its source first");
 }
 
-PageRequest calibrate(const wire::Calibrate& message, StationHost& host, StationHost::Done done) {
+PageRequest calibrate(const wire::Calibrate& message, Session& session, Session::Done done) {
   using Step = CalibrationSession::Step;
   struct Known {
     Step step;
@@ -154,7 +154,7 @@ PageRequest calibrate(const wire::Calibrate& message, StationHost& host, Station
     throw std::invalid_argument(fmt::format("step {} of a calibration: there are 0 to {}; reload the page",
                                             index, kSteps.size() - 1));
   const Known& known = kSteps[index];
-  host.calibrate(known.step, message.pose(), std::move(done));
+  session.calibrate(known.step, message.pose(), std::move(done));
   std::string text = fmt::format("calibration: {}", known.words);
   if (known.step == Step::kGoTo) text += fmt::format(" {}", message.pose() + 1);
   return {.code = "calibrate", .text = std::move(text)};
@@ -162,28 +162,28 @@ PageRequest calibrate(const wire::Calibrate& message, StationHost& host, Station
 
 }  // namespace
 
-PageRequest apply_request(const wire::ToHost& message, StationHost& host, const wire::Welcome& choices,
-                          const std::filesystem::path& uploads, StationHost::Done done) {
+PageRequest apply_request(const wire::ToHost& message, Session& session, const wire::Welcome& choices,
+                          const std::filesystem::path& uploads, Session::Done done) {
   switch (message.what_case()) {
     case wire::ToHost::kResume:
-      if (!host.resume(message.resume().stops()))
+      if (!session.resume(message.resume().stops()))
         throw std::invalid_argument("another stop or fault has come since; look, then resume again");
       return {.code = "resumed", .text = "resumed", .done_at_once = true};
     case wire::ToHost::kReset:
-      if (!host.reset(message.reset().fault_time()))
+      if (!session.reset(message.reset().fault_time()))
         throw std::invalid_argument("another fault has come since; look, then reset again");
       return {.code = "reset", .text = "asked for a reset", .done_at_once = true};
     case wire::ToHost::kSet:
-      return set(message.set(), host, uploads, std::move(done));
+      return set(message.set(), session, uploads, std::move(done));
     case wire::ToHost::kScene:
-      return load(message.scene().name(), host, choices, std::move(done));
+      return load(message.scene().name(), session, choices, std::move(done));
     case wire::ToHost::kSource:
-      return source(message.source().source(), host, std::move(done));
+      return source(message.source().source(), session, std::move(done));
     case wire::ToHost::kSliders:
-      pose(message.sliders(), host);
+      pose(message.sliders(), session);
       return {.code = "sliders", .text = "moves the hand with the sliders", .done_at_once = true};
     case wire::ToHost::kCalibrate:
-      return calibrate(message.calibrate(), host, std::move(done));
+      return calibrate(message.calibrate(), session, std::move(done));
     default:
       throw std::invalid_argument("the station does not know this message; reload the page");
   }

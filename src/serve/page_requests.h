@@ -6,7 +6,7 @@
 #include <string>
 
 #include "phalanx/cockpit.pb.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -22,12 +22,12 @@ struct PageRequest {
 /// Passes an operator's message on to the station. Does not read the disk, because the server's thread waits.
 /// @param choices  what pages may choose from: write_choices()
 /// @param uploads  folder of the meshes that pages have sent
-/// @param done     as StationHost's; not called for a request that is done at once
+/// @param done     as Session's; not called for a request that is done at once
 /// @returns the request, for the log of changes
 /// @throws std::invalid_argument if the message is malformed, names another file, or refers to an earlier
 /// stop or fault; std::runtime_error if too many changes wait
-PageRequest apply_request(const wire::ToHost& message, StationHost& host, const wire::Welcome& choices,
-                          const std::filesystem::path& uploads, StationHost::Done done);
+PageRequest apply_request(const wire::ToHost& message, Session& session, const wire::Welcome& choices,
+                          const std::filesystem::path& uploads, Session::Done done);
 
 /// Checks a value that a page sets. Pages may name shipped files by their bare names, and meshes that pages
 /// have sent. They may not name other files of the disk or of the working directory. Reads the value as the

@@ -78,26 +78,26 @@ wire::HandSource wire_source(HandSource source) noexcept {
   return source == HandSource::kPatient ? wire::HAND_PATIENT : wire::HAND_SLIDERS;
 }
 
-void put_host(const HostState& state, wire::State& out) {
-  out.set_scene(as_utf8(state.scene));
-  out.set_scene_description(as_utf8(state.description));
-  put(state.overrides, *out.mutable_changed());
-  put(state.values, *out.mutable_value());
-  if (state.geometry) out.set_geometry(state.geometry->revision);
-  out.set_busy(shortened(as_utf8(state.busy), kBusyLength));
-  out.set_station_gone(!state.running);
-  out.set_trouble(as_utf8(state.trouble));
-  out.set_realtime(as_utf8(state.realtime));
-  out.set_source(wire_source(state.source));
-  out.set_device_spec(as_utf8(state.device_spec));
-  out.set_device_name(as_utf8(state.device.name));
-  out.set_device_serial(as_utf8(state.device.serial));
-  out.set_device_simulated(state.device.simulated);
-  out.set_renders_torque(state.device.renders_torque);
-  out.set_holds_without_host(holds_without_host(state.device));
-  out.set_calibration(as_utf8(state.calibration));
-  for (const int joint : state.sensed_joints) out.add_sensed_joint(static_cast<std::uint32_t>(joint));
-  if (state.wizard) put(*state.wizard, *out.mutable_wizard());
+void put_info(const SessionInfo& info, wire::State& out) {
+  out.set_scene(as_utf8(info.scene));
+  out.set_scene_description(as_utf8(info.description));
+  put(info.overrides, *out.mutable_changed());
+  put(info.values, *out.mutable_value());
+  if (info.geometry) out.set_geometry(info.geometry->revision);
+  out.set_busy(shortened(as_utf8(info.busy), kBusyLength));
+  out.set_station_gone(!info.running);
+  out.set_trouble(as_utf8(info.trouble));
+  out.set_realtime(as_utf8(info.realtime));
+  out.set_source(wire_source(info.source));
+  out.set_device_spec(as_utf8(info.device_spec));
+  out.set_device_name(as_utf8(info.device.name));
+  out.set_device_serial(as_utf8(info.device.serial));
+  out.set_device_simulated(info.device.simulated);
+  out.set_renders_torque(info.device.renders_torque);
+  out.set_holds_without_host(holds_without_host(info.device));
+  out.set_calibration(as_utf8(info.calibration));
+  for (const int joint : info.sensed_joints) out.add_sensed_joint(static_cast<std::uint32_t>(joint));
+  if (info.wizard) put(*info.wizard, *out.mutable_wizard());
 }
 
 /// File names without their ending, sorted.
@@ -186,23 +186,23 @@ void write_link(const LinkStatistics& link, wire::Link& out) {
   out.set_sent(link.sent);
 }
 
-void write_state(const StationHost& host, wire::State& out) {
-  const auto state = host.state();
-  const StationView view = host.view();
-  put_host(*state, out);
-  out.set_time(host.now());
+void write_state(const Session& session, wire::State& out) {
+  const auto info = session.info();
+  const StationView view = session.view();
+  put_info(*info, out);
+  out.set_time(session.now());
   out.set_safety(wire_state(view.state));
-  out.set_stops(host.stops());
-  out.set_held_stopped(host.held_stopped());
+  out.set_stops(session.stops());
+  out.set_held_stopped(session.held_stopped());
   // There is no station during a calibration: the fault is that of the station before it.
-  if (view.fault.fault != Fault::kNone && !state->wizard) put(view.fault, *out.mutable_fault());
+  if (view.fault.fault != Fault::kNone && !info->wizard) put(view.fault, *out.mutable_fault());
   out.set_degraded(view.degraded);
   out.set_device_state(device_state_name(view.device));
   out.set_estop(view.estop);
   write_link(view.link, *out.mutable_link());
-  put(host.deadlines(), *out.mutable_loop());
-  if (state->source == HandSource::kSliders)
-    for (const double angle : host.sliders()) out.add_slider(static_cast<float>(angle));
+  put(session.deadlines(), *out.mutable_loop());
+  if (info->source == HandSource::kSliders)
+    for (const double angle : session.sliders()) out.add_slider(static_cast<float>(angle));
 }
 
 void write_participants(const Participants& participants, double now, wire::State& out) {

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "phalanx/cockpit.pb.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 #include "serve/participants.h"
 
 namespace phalanx {
 
 /// Writes all that a page shows of the station beside the hand, in the form of proto/phalanx/cockpit.proto.
 /// Does not write the file of a fault report.
-void write_state(const StationHost& host, wire::State& out);
+void write_state(const Session& session, wire::State& out);
 
 /// Writes the counters of the device's link.
 void write_link(const LinkStatistics& link, wire::Link& out);

@@ -243,8 +243,8 @@ std::string take_upload(const UploadedMesh& mesh, const fs::path& folder, const 
 
 std::optional<Overrides> UploadJob::values() const {
   const std::lock_guard lock(mutex_);
-  if (host_ == nullptr) return std::nullopt;
-  return host_->state()->values;
+  if (session_ == nullptr) return std::nullopt;
+  return session_->info()->values;
 }
 
 bool UploadJob::done() const {
@@ -260,7 +260,7 @@ void UploadJob::finish() {
 
 void UploadJob::abandon(std::chrono::milliseconds wait) {
   std::unique_lock lock(mutex_);
-  host_ = nullptr;
+  session_ = nullptr;
   done_changed_.wait_for(lock, wait, [this] { return done_; });
 }
 

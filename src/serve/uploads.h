@@ -15,7 +15,7 @@
 
 #include "phalanx/scene/scene.h"
 #include "phalanx/serve/web_server.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -31,7 +31,7 @@ struct UploadedMesh {
 /// @throws std::invalid_argument that names the wrong value
 [[nodiscard]] UploadedMesh upload_of(const std::string& query, std::string bytes);
 
-/// Function that returns HostState::values of the station, or none if the upload has been abandoned.
+/// Function that returns SessionInfo::values of the station, or none if the upload has been abandoned.
 using ValuesInForce = std::function<std::optional<Overrides>()>;
 
 constexpr std::size_t kMostUploadedTriangles = 500'000;  ///< more would take minutes to check
@@ -49,20 +49,20 @@ constexpr std::size_t kMostUploadedTriangles = 500'000;  ///< more would take mi
 /// other. Any thread.
 class UploadJob {
  public:
-  explicit UploadJob(const StationHost& host) : host_(&host) {}
+  explicit UploadJob(const Session& session) : session_(&session) {}
 
-  /// @returns HostState::values; none if the job has been abandoned
+  /// @returns SessionInfo::values; none if the job has been abandoned
   [[nodiscard]] std::optional<Overrides> values() const;
   [[nodiscard]] bool done() const;
   void finish();
-  /// Abandons the job: it does not use the host any more and ends with its current step. Waits for that end,
+  /// Abandons the job: it does not use the session any more and ends with its current step. Waits for that end,
   /// but no longer than `wait`.
   void abandon(std::chrono::milliseconds wait);
 
  private:
   mutable std::mutex mutex_;
   std::condition_variable done_changed_;
-  const StationHost* host_;  ///< null: abandoned
+  const Session* session_;  ///< null: abandoned
   bool done_ = false;
 };
 

@@ -25,7 +25,7 @@ void CalibrationWizard::end() noexcept {
   trouble_.clear();
 }
 
-void CalibrationWizard::update(double now) noexcept {
+void CalibrationWizard::update(double now) {
   if (!on()) return;
   try {
     session_->update(now);
@@ -36,11 +36,11 @@ void CalibrationWizard::update(double now) noexcept {
 
 void CalibrationWizard::step(CalibrationSession::Step step, std::size_t pose, double now) {
   refuse_unless_on();
-  trouble_.clear();
   if (step == CalibrationSession::Step::kMeasure) session_->measure(now);
   if (step == CalibrationSession::Step::kSkip) session_->skip();
   if (step == CalibrationSession::Step::kBack) session_->back();
   if (step == CalibrationSession::Step::kGoTo) session_->go_to(pose);
+  trouble_.clear();
 }
 
 const Calibration& CalibrationWizard::found() const {

@@ -22,8 +22,9 @@ class CalibrationWizard {
 
   /// Takes in the device's new samples. A failure is reported by trouble(), and the pose stays the current
   /// one: the user can mend the cause, measure again, or abandon.
-  void update(double now) noexcept;
-  /// Takes the step kMeasure, kSkip, kBack or kGoTo.
+  /// @throws std::bad_alloc
+  void update(double now);
+  /// Takes the step kMeasure, kSkip, kBack or kGoTo. A step that fails changes nothing.
   /// @throws std::invalid_argument if no calibration runs; as CalibrationSession
   void step(CalibrationSession::Step step, std::size_t pose, double now);
   /// @returns the result.

@@ -53,12 +53,6 @@ struct Station::Rendering {
   Rendering(std::shared_ptr<const HapticModel> of_model, const HapticParameters& parameters)
       : model(std::move(of_model)), ramp(parameters), state(*model, parameters) {}
 
-  /// Makes one step. Real-time.
-  Status advance(const Sample& sample) noexcept {
-    ramp.advance();
-    return step(*model, ramp.parameters(), sample, state);
-  }
-
   const std::shared_ptr<const HapticModel> model;
   ParameterRamp ramp;
   HapticState state;
@@ -134,7 +128,8 @@ void Station::one_step(const Wake& wake) noexcept {
   }
   if (heard_) {
     channels_.convert(newest_, sample_);
-    status_ = rendering_->advance(sample_);
+    rendering_->ramp.advance();
+    status_ = step(*rendering_->model, rendering_->ramp.parameters(), sample_, rendering_->state);
   }
   safety_.command(rendering_->state.snapshot(), newest_, wake.now, command_);
   if (heard_) device_.send(command_);

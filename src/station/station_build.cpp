@@ -8,9 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/device/calibration.h"
+#include "phalanx/device/link/link_device.h"
+#include "phalanx/device/opengloves/opengloves_device.h"
 #include "phalanx/device/posed_device.h"
-#include "phalanx/scene/build_model.h"
-#include "phalanx/station/station_device.h"
+#include "phalanx/scene/calibration_file.h"
+#include "phalanx/station/open_device.h"
+#include "phalanx/station/realtime.h"
 #include "station/parameter_ramp.h"
 
 namespace phalanx {
@@ -20,8 +24,8 @@ bool is_below(const std::string& key, const std::string& parent) {
   return key.size() > parent.size() && key.starts_with(parent) && key[parent.size()] == '.';
 }
 
-std::shared_ptr<HostGeometry> geometry_of(ResolvedScene scene) {
-  auto geometry = std::make_shared<HostGeometry>();
+std::shared_ptr<SessionGeometry> geometry_of(ResolvedScene scene) {
+  auto geometry = std::make_shared<SessionGeometry>();
   geometry->handedness = scene.hand.handedness;
   geometry->hand = std::move(scene.hand.parameters);
   geometry->X_WH = scene.X_WH;
@@ -33,31 +37,55 @@ std::shared_ptr<HostGeometry> geometry_of(ResolvedScene scene) {
   return geometry;
 }
 
+/// Opens the device on a wire as `device`, with the limits and the calibration. @returns its channels
+std::vector<DeviceChannel> open_wired(const StationBuild& build, const SessionSettings& settings,
+                                      const Clock& clock, std::unique_ptr<Device>& device) {
+  LinkSettings link_settings;
+  link_settings.torque_limit = build.made.safety.joint_torque;
+  link_settings.torque_rate = build.made.safety.torque_rate;
+  if (settings.ask_for_realtime)
+    link_settings.on_thread_start = [] {
+      static_cast<void>(make_realtime({.priority = 79, .cpu = -1, .lock_memory = true}));
+    };
+  device = open_device(settings.device, clock, link_settings);
+  auto* link = dynamic_cast<LinkDevice*>(device.get());
+  auto* glove = dynamic_cast<OpenGlovesDevice*>(device.get());
+  std::optional<Calibration> calibration;
+  if (!build.plan.calibration.empty()) calibration = load_calibration(build.plan.calibration);
+  if (glove != nullptr) {
+    glove->set_hand(build.made.model->hand.parameters());
+    glove->set_watchdog(settings.watchdog);
+    glove->set_force_feedback(settings.force_feedback);
+  }
+  device->open();
+  if (!calibration) return device->info().channels;
+  std::vector<DeviceChannel> channels = apply_calibration(*calibration, device->info());
+  if (glove != nullptr) glove->set_calibration(channels);
+  if (link != nullptr) {  // a controller gets the gains when its session begins
+    link->close();
+    link->set_calibration(channels);
+    link->open();
+  }
+  return channels;
+}
+
 /// Opens the device of the plan as `running.device`. @returns its channels
-std::vector<DeviceChannel> open_for(const StationBuild& build, const StationHostSettings& settings,
+std::vector<DeviceChannel> open_for(const StationBuild& build, const SessionSettings& settings,
                                     const Clock& clock, RunningStation& running) {
-  const HandParameters& hand = build.made.model->hand.parameters();
   switch (build.plan.source) {
     case HandSource::kPatient:
       running.device = make_simulated_device(*build.patient);
       break;
     case HandSource::kSliders: {
+      const HandParameters& hand = build.made.model->hand.parameters();
       auto posed = std::make_unique<PosedDevice>(PosedDeviceSettings{
           .hand = hand, .start = hand.open_angle, .host_rate_hz = build.made.parameters.rate_hz});
       running.sliders = posed.get();
       running.device = std::move(posed);
       break;
     }
-    case HandSource::kDevice: {
-      OpenDevice wired = open_wired_device({.spec = settings.device,
-                                            .calibration = build.plan.calibration,
-                                            .ask_for_realtime = settings.ask_for_realtime,
-                                            .watchdog = settings.watchdog,
-                                            .force_feedback = settings.force_feedback},
-                                           build.made.safety, hand, clock);
-      running.device = std::move(wired.device);
-      return std::move(wired.channels);
-    }
+    case HandSource::kDevice:
+      return open_wired(build, settings, clock, running.device);
   }
   running.device->open();
   return running.device->info().channels;
@@ -120,8 +148,7 @@ StationBuild build_station(const StationPlan& plan, SceneFile file, const std::s
   return build;
 }
 
-RunningStation make_station(const StationBuild& build, const StationHostSettings& settings,
-                            const Clock& clock) {
+RunningStation make_station(const StationBuild& build, const SessionSettings& settings, const Clock& clock) {
   RunningStation running;
   const std::vector<DeviceChannel> channels = open_for(build, settings, clock, running);
   StationOptions options;

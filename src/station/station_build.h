@@ -8,7 +8,8 @@
 
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/scene/scene_keys.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/assemble.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -32,7 +33,7 @@ struct StationBuild {
   Overrides values = {};
   Exoskeleton exoskeleton = {};
   StationModel made = {};
-  std::shared_ptr<HostGeometry> geometry = nullptr;
+  std::shared_ptr<SessionGeometry> geometry = nullptr;
   std::optional<SimulatedDeviceSettings> patient = {};  ///< for HandSource::kPatient
 };
 
@@ -61,9 +62,12 @@ struct RunningStation {
   std::unique_ptr<Station> station;  ///< declared after the device, so that it ends before it
 };
 
-/// Opens the device and makes the station, which shares the build's model; the caller starts it.
-/// @throws as open_wired_device() or check_watchdog(). Set-up only.
-[[nodiscard]] RunningStation make_station(const StationBuild& build, const StationHostSettings& settings,
+/// Opens the device, gives it the limits and the calibration, and makes the station, which shares the build's
+/// model; the caller starts it.
+/// @param clock  the process's clock; outlives the station
+/// @throws DeviceError, CalibrationError, SceneError or std::invalid_argument; each names the remedy. Set-up
+/// only.
+[[nodiscard]] RunningStation make_station(const StationBuild& build, const SessionSettings& settings,
                                           const Clock& clock);
 
 }  // namespace phalanx

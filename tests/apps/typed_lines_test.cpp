@@ -20,10 +20,10 @@ namespace {
 class TypedLinesTest : public ::testing::Test {
  protected:
   TypedLinesTest() : kept_(::dup(STDIN_FILENO)) {
-    StationHostSettings settings;
+    SessionSettings settings;
     settings.device = "sliders";
     settings.ask_for_realtime = false;
-    host = std::make_unique<StationHost>(settings, clock_);
+    session = std::make_unique<Session>(settings, clock_);
   }
   ~TypedLinesTest() override {
     if (kept_ < 0) return;
@@ -35,7 +35,7 @@ class TypedLinesTest : public ::testing::Test {
     typed.reset();  // a reader that has not seen the end of its input must not read the new one
     Ends input = pipe_to_program();
     ::dup2(input.theirs.number(), STDIN_FILENO);
-    typed = std::make_unique<TypedLines>(*host);
+    typed = std::make_unique<TypedLines>(*session);
     write_text(input.ours, text);
   }
   /// @returns false: it was not so within minutes
@@ -58,7 +58,7 @@ class TypedLinesTest : public ::testing::Test {
     return text;
   }
 
-  std::unique_ptr<StationHost> host;
+  std::unique_ptr<Session> session;
   std::unique_ptr<TypedLines> typed;
 
  private:
@@ -68,11 +68,11 @@ class TypedLinesTest : public ::testing::Test {
 
 TEST_F(TypedLinesTest, StopActsInCapitalsAmongBlanksAndWithoutALineFeedAtTheEndOfTheInput) {
   for (const std::string text : {"STOP\n", "sToP\n", "  stop\n", "\t stop \t\r\n", "stop", " Stop "}) {
-    const std::uint64_t before = host->stops();
+    const std::uint64_t before = session->stops();
     type(text);
     EXPECT_EQ(line(), "stop") << '"' << text << '"';
-    EXPECT_EQ(host->stops(), before + 1) << '"' << text << '"';
-    EXPECT_TRUE(host->held_stopped());
+    EXPECT_EQ(session->stops(), before + 1) << '"' << text << '"';
+    EXPECT_TRUE(session->held_stopped());
   }
 }
 
@@ -80,7 +80,7 @@ TEST_F(TypedLinesTest, NothingElseIsAStop) {
   for (const std::string text : {"stopp\n", "sto\n", "s top\n", "set stop\n", "resume\n", "3TOP\n"}) {
     type(text);
     EXPECT_NE(line(), "stop") << text;
-    EXPECT_EQ(host->stops(), 0U) << text;
+    EXPECT_EQ(session->stops(), 0U) << text;
   }
 }
 
@@ -88,7 +88,7 @@ TEST_F(TypedLinesTest, NothingElseIsAStop) {
 TEST_F(TypedLinesTest, AnotherReaderOfTheSameInputHangsNothing) {
   const Ends input = pipe_to_program();
   ::dup2(input.theirs.number(), STDIN_FILENO);
-  typed = std::make_unique<TypedLines>(*host);
+  typed = std::make_unique<TypedLines>(*session);
   const Descriptor other(::open("/proc/self/fd/0", O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   ASSERT_GE(other.number(), 0);
   std::array<char, 16> taken;
@@ -106,7 +106,7 @@ TEST_F(TypedLinesTest, AnotherReaderOfTheSameInputHangsNothing) {
 TEST_F(TypedLinesTest, ALineForWhichThereIsNoMemoryStops) {
   const StarvedThread starved("phalanx-typed");
   type("set force.stiffness_n_per_mm=0.9 # a line that is long enough to need memory\n");
-  EXPECT_TRUE(eventually([&] { return host->stops() == 1; }));
+  EXPECT_TRUE(eventually([&] { return session->stops() == 1; }));
 }
 
 }  // namespace

@@ -104,9 +104,9 @@ inline wire::ToHost to_stop() {
   message.mutable_stop();
   return message;
 }
-inline wire::ToHost to_resume(const StationHost& host) {
+inline wire::ToHost to_resume(const Session& session) {
   wire::ToHost message;
-  message.mutable_resume()->set_stops(host.stops());
+  message.mutable_resume()->set_stops(session.stops());
   return message;
 }
 inline wire::ToHost to_see(std::uint64_t ticks) {
@@ -133,17 +133,17 @@ class CockpitTest : public ::testing::Test {
   /// @param still  the cockpit's clock advances by skip() only; then a page receives the states after its
   /// Welcome and no further ones
   explicit CockpitTest(bool still = false, const std::string& device = "sliders") : still_(still) {
-    StationHostSettings station;
+    SessionSettings station;
     station.scene = "first_touch";
     station.device = device;
     station.overrides = {{"hand.meshes", "\"capsules\""}};  // no files to read for each test
     station.ask_for_realtime = false;
-    host_ = std::make_unique<StationHost>(station, clock_);
+    session_ = std::make_unique<Session>(station, clock_);
     cockpit_ = std::make_unique<Cockpit>(
-        *host_, CockpitSettings{.log = folder_ / "audit.jsonl",
-                                .uploads = folder_ / "up",
-                                .version = "1.2.3",
-                                .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); }});
+        *session_, CockpitSettings{.log = folder_ / "audit.jsonl",
+                                   .uploads = folder_ / "up",
+                                   .version = "1.2.3",
+                                   .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); }});
     serve();
   }
   ~CockpitTest() override {
@@ -166,7 +166,7 @@ class CockpitTest : public ::testing::Test {
     server_ = std::make_unique<WebServer>(settings, *cockpit_);
     cockpit_->attach(*server_, {kViewerUrl});
     server_->start();
-    owner_ = std::make_unique<Owner>(*host_);
+    owner_ = std::make_unique<Owner>(*session_);
   }
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   /// Advances the cockpit's clock.
@@ -209,7 +209,7 @@ class CockpitTest : public ::testing::Test {
   const bool still_;
   std::atomic<double> skipped_{0.0};
   mutable int marks_ = 0;  ///< written to the log
-  std::unique_ptr<StationHost> host_;
+  std::unique_ptr<Session> session_;
   std::unique_ptr<Cockpit> cockpit_;
   std::unique_ptr<WebServer> server_;
   std::unique_ptr<Owner> owner_;

@@ -33,13 +33,13 @@ using CockpitHttp = CockpitTest;
 TEST_F(CockpitHttp, AStopMayAlsoBeAPost) {
   Page page(port(), "", "Anna");
   EXPECT_EQ(status_of(post("/stop", "")), 200);
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   EXPECT_EQ(page.notice("stopped").who(), "a page (127.0.0.1)");
   EXPECT_EQ(status_of(post("/stop", "", "X-Phalanx-Page: " + page.welcome.secret() + "\r\n")), 200);
   EXPECT_EQ(page.notice("stopped").who(), "page 1 (127.0.0.1), Anna");
   EXPECT_EQ(status_of(ask(port(), get("/stop"))), 405) << "a link cannot stop";
   EXPECT_EQ(status_of(post("/resume", "")), 404);
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
 }
 
 TEST_F(CockpitHttp, TheGeometryIsFetchedByItsRevision) {
@@ -126,11 +126,9 @@ TEST_F(CockpitHttp, MayEndWhileChangesWaitWhichAreAnsweredAfterItsEnd) {
   server_.reset();
   EXPECT_EQ(page.client().receive_until_closed().code(), 1001);
   cockpit_.reset();
-  EXPECT_EQ(host_->state()->scene, "first_touch");
-  while (host_->state()->scene != "pinch_ball" || !host_->state()->busy.empty()) {
-    host_->poll();  // answers to a cockpit that has been destroyed
+  while (session_->info()->scene != "pinch_ball" || !session_->info()->busy.empty())
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  session_->poll();  // answers to a cockpit that has been destroyed
 }
 
 TEST_F(CockpitHttp, AStopIsAppliedWhenAllConnectionsAreInUse) {
@@ -139,7 +137,7 @@ TEST_F(CockpitHttp, AStopIsAppliedWhenAllConnectionsAreInUse) {
     pages.push_back(std::make_unique<Page>(port()));
   EXPECT_EQ(status_of(PageClient(port()).handshake()), 503);
   EXPECT_EQ(status_of(post("/stop", "")), 200);
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
 }
 
 /// File with a lease: a program that opens it for writing waits until this object is destroyed (45

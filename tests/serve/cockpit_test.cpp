@@ -47,7 +47,7 @@ TEST_F(CockpitTest, APageGetsAWelcomeAndSeesTheHandMove) {
   EXPECT_TRUE(page.welcome.may_operate());
   EXPECT_GT(page.welcome.key_size(), 0);
   EXPECT_GE(page.welcome.clock(), 1.0);
-  EXPECT_LE(page.welcome.clock(), host_->now());
+  EXPECT_LE(page.welcome.clock(), session_->now());
   EXPECT_EQ(page.state.operator_page(), 1U);
   EXPECT_EQ(page.state.operator_name(), "Anna");
   EXPECT_EQ(page.state.scene(), "first_touch");
@@ -103,15 +103,15 @@ TEST_F(CockpitTest, AViewerMayNotChangeButMayStopAndIsLogged) {
   const wire::Reply refused = watching.set("rate_hz", "250");
   EXPECT_FALSE(refused.ok());
   EXPECT_THAT(refused.error(), HasSubstr("page 1"));
-  EXPECT_FALSE(watching.ask(to_resume(*host_)).ok());
+  EXPECT_FALSE(watching.ask(to_resume(*session_)).ok());
   EXPECT_TRUE(watching.ask(to_stop()).ok());
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   EXPECT_EQ(operating.notice("stopped").who(), "page 2 (127.0.0.1), Ben");
   operating.until(
       [](const wire::State& s) { return s.held_stopped() && s.safety() == wire::SAFETY_STOPPED; });
-  EXPECT_FALSE(watching.ask(to_resume(*host_)).ok()) << "a viewer remains one after a stop";
-  EXPECT_TRUE(host_->held_stopped());
-  EXPECT_TRUE(operating.ask(to_resume(*host_)).ok());
+  EXPECT_FALSE(watching.ask(to_resume(*session_)).ok()) << "a viewer remains one after a stop";
+  EXPECT_TRUE(session_->held_stopped());
+  EXPECT_TRUE(operating.ask(to_resume(*session_)).ok());
   operating.until([](const wire::State& s) { return s.safety() == wire::SAFETY_RUNNING; });
   ASSERT_EQ(logged("stopped"), 1U);
   EXPECT_EQ(log()[1]["who"], "page 2 (127.0.0.1), Ben");
@@ -123,9 +123,9 @@ TEST_F(StillCockpitTest, ARepeatedStopIsAppliedEachTimeAndLoggedOnceASecondAndAf
   for (int i = 0; i < 50; ++i) page.send(to_stop());
   EXPECT_TRUE(page.ask(to_stop()).ok());
   EXPECT_EQ(logged("stopped"), 1U);
-  EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
+  EXPECT_TRUE(page.ask(to_resume(*session_)).ok());
   EXPECT_TRUE(page.ask(to_stop()).ok());
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   const auto lines = log();
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_EQ(lines[1]["code"], "stopped");
@@ -139,7 +139,7 @@ TEST_F(StillCockpitTest, ARepeatedStopIsAppliedEachTimeAndLoggedOnceASecondAndAf
 TEST_F(StillCockpitTest, AStopWithAnEffectIsLoggedHoweverSoonItComes) {
   Page page(port());
   EXPECT_TRUE(page.ask(to_stop()).ok());
-  host_->resume();  // at the terminal
+  session_->resume();  // at the terminal
   EXPECT_TRUE(page.ask(to_stop()).ok());
   EXPECT_EQ(logged("stopped"), 2U);
   EXPECT_TRUE(page.ask(to_stop()).ok());
@@ -178,13 +178,13 @@ TEST_F(CockpitTest, BecomingTheFirstOperatorIsNotifiedAndLogged) {
 TEST_F(CockpitTest, AResumeAfterANewerStopIsRefused) {
   Page page(port());
   EXPECT_TRUE(page.ask(to_stop()).ok());
-  const wire::ToHost late = to_resume(*host_);
+  const wire::ToHost late = to_resume(*session_);
   EXPECT_EQ(status_of(post("/stop", "")), 200);
   EXPECT_EQ(page.ask(late).error(), "another stop or fault has come since; look, then resume again");
-  EXPECT_TRUE(host_->held_stopped());
-  page.until([&](const wire::State& s) { return s.stops() == host_->stops(); });
-  EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
-  EXPECT_FALSE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
+  page.until([&](const wire::State& s) { return s.stops() == session_->stops(); });
+  EXPECT_TRUE(page.ask(to_resume(*session_)).ok());
+  EXPECT_FALSE(session_->held_stopped());
 }
 
 TEST_F(CockpitTest, APageIsSentAtMostTwelveUnacknowledgedTicks) {
@@ -214,9 +214,9 @@ TEST_F(CockpitTest, APageIsSentAtMostTwelveUnacknowledgedTicks) {
 // sent before the clock was advanced; the others follow the state that is due then.
 TEST_F(StillCockpitTest, AStateComesWhenItIsDueOrSomethingHasChangedAndOnlyOnce) {
   const auto rests = [this](SafetyState state) {
-    for (int i = 0; i < 60'000 && host_->view().state != state; ++i)
+    for (int i = 0; i < 60'000 && session_->view().state != state; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return host_->view().state == state;
+    return session_->view().state == state;
   };
   ASSERT_TRUE(rests(SafetyState::kRunning));
   Page page(port());
@@ -246,7 +246,7 @@ TEST_F(StillCockpitTest, AStateComesWhenItIsDueOrSomethingHasChangedAndOnlyOnce)
   EXPECT_EQ(states(), 0) << "too soon";
   skip(0.1);
   EXPECT_EQ(states(), 1) << "a page has changed";
-  host_->stop();  // at the terminal
+  session_->stop();  // at the terminal
   ASSERT_TRUE(rests(SafetyState::kStopped));
   skip(0.1);
   EXPECT_EQ(states(), 1) << "the station has changed";
@@ -260,7 +260,7 @@ TEST_F(CockpitTest, AStopAtTheEndOfABurstIsAppliedAndNothingElse) {
   burst.push_back(to_stop().SerializeAsString());
   fast.client().send_at_once(burst);
   EXPECT_EQ(operating.notice("stopped").who(), "page 2 (127.0.0.1), Ben");
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   EXPECT_EQ(logged("operator_taken"), 1U) << "the first page";
   EXPECT_THAT(fast.client().receive_until_closed().reason(), HasSubstr("too many"));
 }
@@ -381,9 +381,9 @@ TEST_F(CockpitTest, IdleConnectionsDoNotLockOutStopsAndPages) {
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 200; ++i) idle.push_back(std::make_unique<RawClient>(port()));
   EXPECT_EQ(status_of(post("/stop", "")), 200);
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   Page page(port());
-  EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
+  EXPECT_TRUE(page.ask(to_resume(*session_)).ok());
 }
 
 TEST_F(CockpitTest, ControlIsTakenOpenlyAndGivenBack) {
@@ -471,7 +471,7 @@ TEST_F(CockpitTest, AnOvertakenValueIsNoChange) {
     page.send(message);
   }
   EXPECT_TRUE(page.ask(to_stop()).ok());  // the values before it have been handled
-  owner_ = std::make_unique<Owner>(*host_);
+  owner_ = std::make_unique<Owner>(*session_);
   for (int i = 0; i < 3; ++i) {
     const wire::Reply reply = page.receive(wire::ToPage::kReply).reply();
     EXPECT_EQ(reply.request(), 100U);
@@ -532,7 +532,7 @@ TEST_F(CockpitTest, APageWithoutHelloMayStopAndIsDisconnectedAfterItsTime) {
   PageClient silent(port());
   silent.send(to_stop().SerializeAsString());
   EXPECT_EQ(page.notice("stopped").who(), "page 2 (127.0.0.1)");
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   skip(11.0);
   EXPECT_THAT(silent.receive_until_closed().reason(), HasSubstr("hello"));
   page.until([](const wire::State& s) { return s.pages() == 1; });
@@ -552,7 +552,7 @@ TEST_F(CockpitTest, APageOfAnotherProtocolIsRefusedWithAReasonAndMayStop) {
     EXPECT_EQ(only.welcome().secret(), "");
     EXPECT_THAT(other.receive_until_closed().reason(), HasSubstr("reload"));
   }
-  EXPECT_TRUE(host_->held_stopped());
+  EXPECT_TRUE(session_->held_stopped());
   EXPECT_EQ(logged("operator_taken"), 0U);
 }
 
@@ -578,7 +578,7 @@ TEST_F(CockpitTest, AFullDiskIsNotifiedAndTheLogNamesTheMissingLines) {
     EXPECT_TRUE(page.ask(to_stop()).ok());
     EXPECT_EQ(page.notice("log_broken").level(), wire::Notice::WARNING);
   }
-  EXPECT_TRUE(page.ask(to_resume(*host_)).ok());
+  EXPECT_TRUE(page.ask(to_resume(*session_)).ok());
   const auto lines = log();
   ASSERT_GE(lines.size(), 3U);
   EXPECT_EQ(lines[1]["code"], "log_gap");

@@ -24,8 +24,8 @@ TriangleMesh triangle(int number) {
           .triangles = {{0, 2, 1}}};
 }
 
-HostGeometry simple_geometry() {
-  HostGeometry geometry;
+SessionGeometry simple_geometry() {
+  SessionGeometry geometry;
   geometry.revision = 7;
   geometry.hand = test::simple_parameters();
   for (int s = 0; s < kSegments; ++s) geometry.segment[idx(s)] = triangle(s);
@@ -45,7 +45,7 @@ HandSkin simple_skin() {
   return skin;
 }
 
-wire::Geometry sent(const HostGeometry& geometry) {
+wire::Geometry sent(const SessionGeometry& geometry) {
   wire::Geometry message;
   EXPECT_TRUE(message.ParseFromString(geometry_message(geometry)));
   return message;
@@ -65,7 +65,7 @@ void expect_same(const wire::Mesh& message, const TriangleMesh& mesh) {
 }
 
 TEST(GeometryMessage, HoldsTheMeshesOfSegmentsAndObject) {
-  const HostGeometry geometry = simple_geometry();
+  const SessionGeometry geometry = simple_geometry();
   const wire::Geometry message = sent(geometry);
   EXPECT_EQ(message.revision(), 7U);
   EXPECT_FALSE(message.left());
@@ -78,7 +78,7 @@ TEST(GeometryMessage, HoldsTheMeshesOfSegmentsAndObject) {
 }
 
 TEST(GeometryMessage, HoldsTheDisplayMeshesOnlyWhereTheyDiffer) {
-  HostGeometry geometry = simple_geometry();
+  SessionGeometry geometry = simple_geometry();
   geometry.display[5].vertices[1].x() += 1e-3;
   const wire::Geometry message = sent(geometry);
   ASSERT_EQ(message.display_size(), kSegments);
@@ -89,7 +89,7 @@ TEST(GeometryMessage, HoldsTheDisplayMeshesOnlyWhereTheyDiffer) {
 }
 
 TEST(GeometryMessage, OfAnEmptySceneHasAnObjectWithoutVertices) {
-  HostGeometry geometry = simple_geometry();
+  SessionGeometry geometry = simple_geometry();
   geometry.object = {};
   geometry.handedness = Handedness::kLeft;
   const wire::Geometry message = sent(geometry);
@@ -99,7 +99,7 @@ TEST(GeometryMessage, OfAnEmptySceneHasAnObjectWithoutVertices) {
 }
 
 TEST(GeometryMessage, HoldsTheSkin) {
-  HostGeometry geometry = simple_geometry();
+  SessionGeometry geometry = simple_geometry();
   geometry.skin = simple_skin();
   const wire::Geometry message = sent(geometry);
   ASSERT_TRUE(message.has_skin());
@@ -117,7 +117,7 @@ TEST(GeometryMessage, HoldsTheSkin) {
 
 // A page computes the same rotation from the message.
 TEST(GeometryMessage, HoldsTheBindPosesAsPositionAndQuaternion) {
-  HostGeometry geometry = simple_geometry();
+  SessionGeometry geometry = simple_geometry();
   geometry.skin = simple_skin();
   const wire::Skin skin = sent(geometry).skin();
   ASSERT_EQ(skin.bind_pose_size(), 7 * kSegments);
@@ -135,7 +135,7 @@ TEST(GeometryMessage, HoldsTheBindPosesAsPositionAndQuaternion) {
 }
 
 TEST(GeometryMessage, NamesSegmentsAndJointsWithTheirRanges) {
-  HostGeometry geometry = simple_geometry();
+  SessionGeometry geometry = simple_geometry();
   geometry.hand.open_angle[6] = 0.375;
   const wire::Geometry message = sent(geometry);
   ASSERT_EQ(message.segment_name_size(), kSegments);
@@ -153,8 +153,8 @@ TEST(GeometryMessage, NamesSegmentsAndJointsWithTheirRanges) {
 
 // ---- GeometryCache ----
 
-std::shared_ptr<const HostGeometry> geometry_of(std::uint32_t revision) {
-  auto geometry = std::make_shared<HostGeometry>();
+std::shared_ptr<const SessionGeometry> geometry_of(std::uint32_t revision) {
+  auto geometry = std::make_shared<SessionGeometry>();
   geometry->revision = revision;
   return geometry;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread that owns a StationHost.
+// A thread that owns a Session.
 #pragma once
 
 #include <atomic>
@@ -8,21 +8,21 @@
 #include <memory>
 #include <thread>
 
-#include "station/host_fixture.h"
+#include "station/session_fixture.h"
 
 namespace phalanx::test {
 
-/// Owner of a StationHost on a thread of its own: polls it, and fetches records and fault reports.
+/// Owner of a Session on a thread of its own: polls it, and fetches records and fault reports.
 class Owner {
  public:
-  explicit Owner(StationHost& host)
-      : thread_([this, &host] {
+  explicit Owner(Session& session)
+      : thread_([this, &session] {
           StepRecord record;
           while (!ended_) {
-            host.poll();
-            while (host.next_record(record)) {
+            session.poll();
+            while (session.next_record(record)) {
             }
-            static_cast<void>(host.take_fault_report());
+            static_cast<void>(session.take_fault_report());
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
           }
         }) {}

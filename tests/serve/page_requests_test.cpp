@@ -24,18 +24,18 @@
 #include "phalanx/scene/scene_keys.h"
 #include "phalanx/station/assemble.h"
 #include "serve/state_message.h"
-#include "station/host_fixture.h"
+#include "station/session_fixture.h"
 
 namespace phalanx {
 namespace {
 
 using test::ControllerThread;
-using test::HostTest;
+using test::SessionFixture;
 using ::testing::AllOf;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
-class PageRequestsTest : public HostTest {
+class PageRequestsTest : public SessionFixture {
  protected:
   PageRequestsTest() {
     start(with("sliders"));
@@ -45,9 +45,9 @@ class PageRequestsTest : public HostTest {
   /// Applies a message and waits for the outcome. @returns the request
   PageRequest applied(const wire::ToHost& message) {
     auto [answer, done] = awaited();
-    const PageRequest asked = apply_request(message, *host, choices, "/tmp/up", done);
+    const PageRequest asked = apply_request(message, *session, choices, "/tmp/up", done);
     if (asked.done_at_once) {
-      EXPECT_TRUE(until_idle());
+      pass(0.1);
       EXPECT_EQ(answer->times, 0);
       return asked;
     }
@@ -56,20 +56,16 @@ class PageRequestsTest : public HostTest {
     refused = got->refused.value_or("no answer");
     return asked;
   }
-  /// Waits until no change is under way.
-  bool until_idle() {
-    return until([&] { return host->state()->busy.empty(); });
-  }
   /// @returns the reason for which the message is refused at once; expects that nothing of it is done later
   std::string why_not(const wire::ToHost& message) {
     auto [answer, done] = awaited();
     std::string why;
     try {
-      static_cast<void>(apply_request(message, *host, choices, "/tmp/up", done));
+      static_cast<void>(apply_request(message, *session, choices, "/tmp/up", done));
     } catch (const std::invalid_argument& error) {
       why = error.what();
     }
-    EXPECT_TRUE(until_idle());
+    pass(0.1);
     EXPECT_EQ(answer->times, 0);
     return why;
   }
@@ -83,7 +79,7 @@ class PageRequestsTest : public HostTest {
   }
   wire::State state() {
     wire::State out;
-    write_state(*host, out);
+    write_state(*session, out);
     return out;
   }
   wire::Welcome choices;
@@ -95,6 +91,7 @@ TEST_F(PageRequestsTest, ASetOverridesTheSceneAndIsShown) {
   EXPECT_EQ(asked.code, "set");
   EXPECT_EQ(asked.text, "force.stiffness_n_per_mm = 0.8");
   EXPECT_EQ(refused, "");
+  pass(0.5);
   const wire::State shown = state();
   ASSERT_EQ(shown.changed_size(), 1);
   EXPECT_EQ(shown.changed(0).value(), "0.8");
@@ -139,7 +136,7 @@ TEST_F(PageRequestsTest, TooMuchAndForeignFilesAreRefusedAtOnce) {
   message.mutable_calibrate()->set_step(static_cast<wire::Calibrate::Step>(-1));
   EXPECT_FALSE(why_not(message).empty());
   EXPECT_FALSE(why_not(wire::ToHost()).empty());
-  EXPECT_EQ(host->state()->overrides.size(), 0U);
+  EXPECT_EQ(session->info()->overrides.size(), 0U);
 }
 
 TEST_F(PageRequestsTest, TheLimitsOfASetAreExact) {
@@ -188,14 +185,14 @@ TEST_F(PageRequestsTest, SlidersOfAnyNumberStayInTheRangeOfMotion) {
   applied(message);
   for (int j = 0; j < kJoints; ++j) sliders.set_angle(j, -3e38F);
   applied(message);
-  for (const double angle : host->sliders()) EXPECT_LT(std::abs(angle), 4.0);
+  for (const double angle : session->sliders()) EXPECT_LT(std::abs(angle), 4.0);
   sliders.add_angle(0.0F);
   EXPECT_THAT(why_not(message), HasSubstr("21"));
 }
 
 // A different angle for each joint, from the lower end of its range upwards; the page sends single precision.
 TEST_F(PageRequestsTest, EachSliderMovesItsOwnJoint) {
-  const auto geometry = host->state()->geometry;
+  const auto geometry = session->info()->geometry;
   const HandParameters& hand = geometry->hand;
   wire::ToHost message;
   for (std::size_t j = 0; j < kJoints; ++j) {
@@ -207,7 +204,7 @@ TEST_F(PageRequestsTest, EachSliderMovesItsOwnJoint) {
   const wire::State shown = state();
   ASSERT_EQ(shown.slider_size(), kJoints);
   for (int j = 0; j < kJoints; ++j) {
-    EXPECT_EQ(host->sliders()[idx(j)], static_cast<double>(message.sliders().angle(j))) << j;
+    EXPECT_EQ(session->sliders()[idx(j)], static_cast<double>(message.sliders().angle(j))) << j;
     EXPECT_EQ(shown.slider(j), message.sliders().angle(j)) << j;
   }
 }
@@ -220,7 +217,7 @@ TEST_F(PageRequestsTest, SlidersThatMoveNothingAreRefused) {
 }
 
 TEST_F(PageRequestsTest, ResumeAndResetAreDoneAtOnce) {
-  host->stop();
+  session->stop();
   EXPECT_TRUE(state().held_stopped());
   wire::ToHost message;
   message.mutable_resume()->set_stops(state().stops());
@@ -231,20 +228,20 @@ TEST_F(PageRequestsTest, ResumeAndResetAreDoneAtOnce) {
 }
 
 TEST_F(PageRequestsTest, AResumeOrAResetAfterANewerStopOrFaultIsRefused) {
-  host->stop();
+  session->stop();
   wire::ToHost message;
   message.mutable_resume()->set_stops(state().stops());
-  host->stop();
+  session->stop();
   EXPECT_EQ(why_not(message), "another stop or fault has come since; look, then resume again");
-  EXPECT_TRUE(host->held_stopped());
+  EXPECT_TRUE(session->held_stopped());
   message.mutable_resume()->set_stops(state().stops());
   EXPECT_EQ(applied(message).code, "resumed");
-  EXPECT_FALSE(host->held_stopped());
+  EXPECT_FALSE(session->held_stopped());
   ASSERT_TRUE(until_running());
   overload();
   message.mutable_reset()->set_fault_time(0.0);
   EXPECT_EQ(why_not(message), "another fault has come since; look, then reset again");
-  EXPECT_EQ(host->view().state, SafetyState::kFault);
+  EXPECT_EQ(session->view().state, SafetyState::kFault);
   message.mutable_reset()->set_fault_time(state().fault().time());
   EXPECT_EQ(applied(message).code, "reset");
   EXPECT_TRUE(until_running());
@@ -254,9 +251,9 @@ TEST_F(PageRequestsTest, AResumeOrAResetAfterANewerStopOrFaultIsRefused) {
 TEST_F(PageRequestsTest, AFaultIsShownWithTheLoopsOverruns) {
   ASSERT_TRUE(until_running());
   overload();
-  const DeadlineStatistics before = host->deadlines();
+  const DeadlineStatistics before = session->deadlines();
   const wire::State shown = state();
-  const DeadlineStatistics after = host->deadlines();
+  const DeadlineStatistics after = session->deadlines();
   EXPECT_EQ(shown.fault().name(), "overload");
   EXPECT_EQ(shown.fault().meaning(), fault_meaning(Fault::kOverload));
   EXPECT_EQ(shown.fault().remedy(), fault_remedy(Fault::kOverload));
@@ -281,23 +278,27 @@ TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandAsRequested) {
 }
 
 /// Fixture with a station whose wired device has two angle sensors.
-class WiredPagesTest : public HostTest {
+class WiredPagesTest : public SessionFixture {
  protected:
   using Step = CalibrationSession::Step;
 
   WiredPagesTest() {
-    StationHostSettings settings = with(controller.address(), "grasp_teapot");
+    SessionSettings settings = with(controller.address(), "grasp_teapot");
     settings.overrides = {{"limits.joint_torque_nm", "0.4"}, {"limits.torque_rate_nm_per_s", "80"}};
     start(settings);
   }
-  ~WiredPagesTest() override { host.reset(); }
+  ~WiredPagesTest() override { session.reset(); }
 
   /// Expects that the state shows the station's calibration.
   void expect_shown() {
-    const auto view = host->state()->wizard;
-    ASSERT_NE(view, nullptr);
+    std::shared_ptr<const CalibrationSession::View> view;
     wire::State state;
-    write_state(*host, state);
+    do {  // once more if the worker has published another view meanwhile
+      view = session->info()->wizard;
+      ASSERT_NE(view, nullptr);
+      state.Clear();
+      write_state(*session, state);
+    } while (session->info()->wizard != view);
     const wire::Wizard& shown = state.wizard();
     EXPECT_EQ(shown.pose(), view->pose);
     EXPECT_EQ(std::vector<std::string>(shown.name().begin(), shown.name().end()), view->names);
@@ -314,9 +315,9 @@ class WiredPagesTest : public HostTest {
   ControllerThread controller{listen_udp("127.0.0.1:0"), clock};
 };
 
-class GlovePagesTest : public HostTest {
+class GlovePagesTest : public SessionFixture {
  protected:
-  ~GlovePagesTest() override { host.reset(); }
+  ~GlovePagesTest() override { session.reset(); }
   test::GloveFirmware firmware{"A0B0C0D0E0F2047G2047"};
 };
 
@@ -324,7 +325,7 @@ TEST_F(GlovePagesTest, AGloveWithoutAWatchdogIsShownAsSuchAlsoWithoutAStation) {
   start(with("opengloves:" + firmware.port()));
   ASSERT_EQ(calibrate(CalibrationSession::Step::kBegin), "");
   wire::State state;
-  write_state(*host, state);
+  write_state(*session, state);
   EXPECT_TRUE(state.station_gone());
   EXPECT_TRUE(state.holds_without_host());
 }
@@ -334,44 +335,44 @@ TEST_F(WiredPagesTest, ADeviceAndItsCalibrationAreShown) {
   ASSERT_TRUE(until_running());
   overload();
   wire::State state;
-  write_state(*host, state);
+  write_state(*session, state);
   EXPECT_TRUE(state.has_fault());
   ASSERT_EQ(calibrate(Step::kBegin), "");
-  ASSERT_TRUE(until([&] { return !host->state()->wizard->raw.empty(); }));
+  ASSERT_TRUE(until([&] { return !session->info()->wizard->raw.empty(); }));
   expect_shown();
   state.Clear();
-  write_state(*host, state);
+  write_state(*session, state);
   EXPECT_FALSE(state.has_fault()) << "it was the station's that has ended";
   EXPECT_EQ(state.source(), wire::HAND_DEVICE);
   EXPECT_EQ(state.device_spec(), controller.address());
-  EXPECT_EQ(state.device_name(), host->state()->device.name);
+  EXPECT_EQ(state.device_name(), session->info()->device.name);
   EXPECT_EQ(state.device_serial(), "BENCH-1");
   EXPECT_FALSE(state.device_simulated());
   EXPECT_EQ(state.slider_size(), 0);
   EXPECT_EQ(std::vector<int>(state.sensed_joint().begin(), state.sensed_joint().end()),
-            host->state()->sensed_joints);
-  const std::size_t poses = host->state()->wizard->names.size();
+            session->info()->sensed_joints);
+  const std::size_t poses = session->info()->wizard->names.size();
   for (std::size_t p = 0; p < poses; ++p) ASSERT_EQ(calibrate(Step::kSkip), "");
-  EXPECT_FALSE(host->state()->wizard->problems.empty());
+  EXPECT_FALSE(session->info()->wizard->problems.empty());
   expect_shown();
   const std::vector<CalibrationPose> known =
-      calibration_poses(host->state()->device.channels, host->state()->geometry->hand);
+      calibration_poses(session->info()->device.channels, session->info()->geometry->hand);
   for (std::size_t p = 0; p < 2; ++p) {
     ASSERT_EQ(calibrate(Step::kGoTo, p), "");
     std::vector<std::int32_t> raw;  // 1,000 counts a radian, and 1 rad too much
     for (std::size_t c = 0; c < 2; ++c)
       raw.push_back(static_cast<std::int32_t>(std::lround(1000.0 * (known[p].value[c].value() + 1.0))));
     controller.hold({raw[0], raw[1]});
-    ASSERT_TRUE(until([&] { return host->state()->wizard->raw == raw; }));
+    ASSERT_TRUE(until([&] { return session->info()->wizard->raw == raw; }));
     ASSERT_EQ(calibrate(Step::kMeasure), "");
     pass(0.3);
-    EXPECT_TRUE(host->state()->wizard->measuring);
-    EXPECT_GT(host->state()->wizard->measured, 0.0);
+    EXPECT_TRUE(session->info()->wizard->measuring);
+    EXPECT_GT(session->info()->wizard->measured, 0.0);
     expect_shown();
-    ASSERT_TRUE(until([&] { return !host->state()->wizard->measuring; }));
+    ASSERT_TRUE(until([&] { return !session->info()->wizard->measuring; }));
   }
-  EXPECT_TRUE(host->state()->wizard->finished);
-  EXPECT_EQ(host->state()->wizard->results.size(), 2U);
+  EXPECT_TRUE(session->info()->wizard->finished);
+  EXPECT_EQ(session->info()->wizard->results.size(), 2U);
   expect_shown();
 }
 

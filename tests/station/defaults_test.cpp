@@ -9,8 +9,7 @@
 #include "phalanx/station/safety.h"
 #include "phalanx/station/safety_settings.h"
 #include "phalanx/station/sensor_watch.h"
-#include "phalanx/station/station_device.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 #include "support/zero_bytes.h"
 
 namespace phalanx {
@@ -70,8 +69,7 @@ TEST(StationDefaults, RealTimeIsAskedForAndNotGranted) {
   EXPECT_EQ(request.cpu, -1);
   EXPECT_TRUE(request.lock_memory);
   EXPECT_TRUE(StationOptions{}.ask_for_realtime);
-  EXPECT_TRUE(StationHostSettings{}.ask_for_realtime);
-  EXPECT_TRUE(WiredDeviceSettings{}.ask_for_realtime);
+  EXPECT_TRUE(SessionSettings{}.ask_for_realtime);
   const RealtimeGrant grant;
   EXPECT_EQ(grant.scheduler, "SCHED_OTHER");
   EXPECT_FALSE(grant.fifo);
@@ -104,16 +102,16 @@ TEST(StationDefaults, NothingHasHappenedBeforeTheFirstStep) {
   EXPECT_EQ(deadlines.last_overrun, 0.0);
 }
 
-TEST(StationDefaults, AHostThatIsToldNothingRunsTheFirstSceneWithoutADevice) {
-  const StationHostSettings settings;
+TEST(StationDefaults, ASessionThatIsToldNothingRunsTheFirstSceneWithoutADevice) {
+  const SessionSettings settings;
   EXPECT_EQ(settings.scene, "first_touch");
   EXPECT_EQ(settings.device, "simulated");
-  const HostState state{};
-  EXPECT_EQ(state.revision, 0U);
-  EXPECT_EQ(state.source, HandSource::kPatient);
-  EXPECT_EQ(state.fingertip_force, 0.0);
-  EXPECT_FALSE(state.running);
-  const HostGeometry geometry{};
+  const SessionInfo info{};
+  EXPECT_EQ(info.revision, 0U);
+  EXPECT_EQ(info.source, HandSource::kPatient);
+  EXPECT_EQ(info.fingertip_force, 0.0);
+  EXPECT_FALSE(info.running);
+  const SessionGeometry geometry{};
   EXPECT_EQ(geometry.revision, 0U);
   EXPECT_EQ(geometry.handedness, Handedness::kRight);
   EXPECT_EQ(geometry.rate_hz, 0.0);

@@ -7,14 +7,14 @@
 
 #include "device/link/controller_thread.h"
 #include "device/opengloves/glove_firmware.h"
-#include "station/host_fixture.h"
+#include "station/session_fixture.h"
 #include "station/small_station.h"
 
 namespace phalanx {
 namespace {
 
 using test::GloveFirmware;
-using test::HostTest;
+using test::SessionFixture;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -79,10 +79,10 @@ TEST(PatientSession, IsRefusedByTheStationItself) {
       std::invalid_argument);
 }
 
-class GloveSession : public HostTest {
+class GloveSession : public SessionFixture {
  protected:
-  [[nodiscard]] StationHostSettings with_glove(const Overrides& overrides) const {
-    StationHostSettings settings = with("opengloves:" + firmware.port(), "grasp_teapot");
+  [[nodiscard]] SessionSettings with_glove(const Overrides& overrides) const {
+    SessionSettings settings = with("opengloves:" + firmware.port(), "grasp_teapot");
     settings.overrides = overrides;
     return settings;
   }
@@ -92,7 +92,7 @@ class GloveSession : public HostTest {
 TEST_F(GloveSession, AGloveIsTriedOutButRefusedForAPatient) {
   start(with_glove({}));
   ASSERT_TRUE(until_running());
-  EXPECT_FALSE(host->state()->device.watchdog);
+  EXPECT_FALSE(session->info()->device.watchdog);
   records.clear();
   EXPECT_THAT(set(kProfile), AllOf(HasSubstr("hand.profile = small-woman"), HasSubstr("has no watchdog")));
   pass(0.1);
@@ -100,23 +100,23 @@ TEST_F(GloveSession, AGloveIsTriedOutButRefusedForAPatient) {
     ASSERT_EQ(step.state, SafetyState::kRunning) << "the trial goes on undisturbed";
   EXPECT_FALSE(records.empty());
   EXPECT_EQ(value("hand.profile"), "");
-  EXPECT_EQ(host->state()->patient, "");
-  host.reset();
+  EXPECT_EQ(session->info()->patient, "");
+  session.reset();
   EXPECT_THAT([&] { start(with_glove(kProfile)); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("has no watchdog")));
 }
 
 // What is known of the glove does not depend on the scene: another one keeps it.
 TEST_F(GloveSession, AGloveWhoseFirmwareIsKnownToLetGoServesAPatientInEveryScene) {
-  StationHostSettings settings = with_glove({});
+  SessionSettings settings = with_glove({});
   settings.watchdog = 0.2;
   settings.clinician = "Dr A";
   start(settings);
-  EXPECT_EQ(host->state()->patient, "--clinician Dr A");
+  EXPECT_EQ(session->info()->patient, "--clinician Dr A");
   EXPECT_EQ(load("grasp_box"), "");
   ASSERT_TRUE(until_running());
-  EXPECT_EQ(host->state()->device.watchdog, 0.2);
-  EXPECT_EQ(host->state()->patient, "--clinician Dr A");
+  EXPECT_EQ(session->info()->device.watchdog, 0.2);
+  EXPECT_EQ(session->info()->patient, "--clinician Dr A");
 }
 
 // Not even a key of the device file: it would be any page's, and any scene's.
@@ -126,31 +126,31 @@ TEST_F(GloveSession, NoKeyOfASceneStatesAWatchdog) {
 }
 
 TEST_F(GloveSession, AGloveThatOnlySensesServesAPatient) {
-  StationHostSettings settings = with_glove(kProfile);
+  SessionSettings settings = with_glove(kProfile);
   settings.force_feedback = false;
   start(settings);
-  EXPECT_FALSE(host->state()->device.actuated);
-  EXPECT_FALSE(holds_without_host(host->state()->device));
+  EXPECT_FALSE(session->info()->device.actuated);
+  EXPECT_FALSE(holds_without_host(session->info()->device));
 }
 
 TEST_F(GloveSession, APatientsSessionStaysOneUntilTheProgramEnds) {
-  StationHostSettings settings = with_glove(kProfile);
+  SessionSettings settings = with_glove(kProfile);
   settings.watchdog = 0.2;
   start(settings);
-  EXPECT_EQ(host->state()->patient, "hand.profile = small-woman");
+  EXPECT_EQ(session->info()->patient, "hand.profile = small-woman");
   EXPECT_EQ(load("grasp_box"), "");
   EXPECT_EQ(value("hand.profile"), "");
-  EXPECT_EQ(host->state()->patient, "hand.profile = small-woman");
+  EXPECT_EQ(session->info()->patient, "hand.profile = small-woman");
 }
 
-using LinkedSession = HostTest;
+using LinkedSession = SessionFixture;
 
 TEST_F(LinkedSession, AControllerOnTheLinkServesAPatient) {
   test::ControllerThread controller(listen_udp("127.0.0.1:0"), clock);
-  StationHostSettings settings = with(controller.address(), "grasp_teapot");
+  SessionSettings settings = with(controller.address(), "grasp_teapot");
   settings.overrides = kProfile;
   start(settings);
-  EXPECT_EQ(host->state()->device.watchdog, 0.02) << "the link's rule of ages";
+  EXPECT_EQ(session->info()->device.watchdog, 0.02) << "the link's rule of ages";
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "phalanx/serve/web_server.h"
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 
@@ -22,7 +22,7 @@ struct CockpitSettings {
   std::function<double()> clock;  ///< monotonic [s]; empty: the system's. For tests
 };
 
-/// Application behind the web server: connects the pages with a StationHost.
+/// Application behind the web server: connects the pages with a Session.
 ///
 /// Roles. Every page may stop. One page at a time is the operator and may also do the rest. The first page
 /// that may operate becomes the operator; others take control openly, and all pages are told who took it
@@ -39,13 +39,13 @@ class Cockpit final : public WebApplication {
   static constexpr std::uint32_t kProtocol = 2;                     ///< of proto/phalanx/cockpit.proto
   static constexpr std::size_t kUploadLimit = 64U * 1024U * 1024U;  ///< [bytes]
 
-  /// @param host  outlives the cockpit
+  /// @param session  outlives the cockpit
   /// @throws std::runtime_error if the log cannot be written
-  Cockpit(StationHost& host, CockpitSettings settings);
+  Cockpit(Session& session, CockpitSettings settings);
   ~Cockpit() override;
 
   /// Connects the cockpit with its server. Call it before WebServer::start().
-  /// @param server       is destroyed before the cockpit; nothing may call StationHost::poll() meanwhile
+  /// @param server       is destroyed before the cockpit; nothing may call Session::poll() meanwhile
   /// @param viewer_urls  links for viewers, which pages that may operate are sent
   void attach(WebServer& server, const std::vector<std::string>& viewer_urls = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics over all stations of a host, from the start of the first one.
+// Statistics over all stations of a session, from the start of the first one.
 #pragma once
 
 #include <cstdint>

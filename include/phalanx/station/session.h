@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The owner of a station: it keeps one running while scene, object, hand, rate and device change.
+// The session: it keeps a station running while scene, object, hand, rate and device change.
+//
+// Any thread asks for a change, and command_queue.h holds it. The worker's thread (session_worker.h) makes it.
+// The owner's thread calls Session::poll(), which answers. The three share session_state.h.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +17,36 @@
 #include "phalanx/hand/hand_meshes.h"
 #include "phalanx/hand/hand_skin.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/station/assemble.h"
 #include "phalanx/station/session_statistics.h"
 #include "phalanx/station/station.h"
 
 namespace phalanx {
 
+class CommandQueue;
+class SessionState;
+class SessionWorker;
+
 /// Source of the hand's motion.
 enum class HandSource { kDevice, kPatient, kSliders };
 
-/// Settings of a StationHost.
-struct StationHostSettings {
+/// Settings of a Session.
+struct SessionSettings {
   std::string scene = "first_touch";    ///< name of a shipped scene, or a file
   Overrides overrides;                  ///< replace values of the scene, until another scene is loaded
   std::string device = "simulated";     ///< "simulated", "sliders", or an address: open_device.h
   std::string calibration;              ///< calibration file; empty: the device's own values
   std::string clinician;                ///< who answers for a fingertip force above 5 N: safety_settings.h
-  std::optional<double> watchdog = {};  ///< WiredDeviceSettings::watchdog of a glove [s]
-  bool force_feedback = true;           ///< WiredDeviceSettings::force_feedback of a glove
+  std::optional<double> watchdog = {};  ///< DeviceInfo::watchdog of a glove's firmware [s]
+  bool force_feedback = true;           ///< false: a glove that only senses (DeviceInfo::actuated)
   RealtimeRequest realtime;             ///< for the loop's thread
   bool ask_for_realtime = true;         ///< false: the loop and the link are ordinary threads
-  /// Writes the calibration wizard's result. @returns the file's path. @throws if it cannot
+  /// Writes the calibration wizard's result, on the worker's thread.
+  /// @returns the file's path. @throws if it cannot
   std::function<std::string(const Calibration&)> write_calibration;
 };
 
 /// Geometry that stays the same from step to step.
-struct HostGeometry {
+struct SessionGeometry {
   std::uint32_t revision = 0;
   Handedness handedness = Handedness::kRight;
   HandParameters hand;    ///< as a right hand
@@ -51,8 +58,9 @@ struct HostGeometry {
   double rate_hz = 0.0;
 };
 
-/// State that seldom changes. Each change publishes a new HostState; a reader keeps the one that it holds.
-struct HostState {
+/// State of a session that seldom changes. Each change publishes a new SessionInfo; a reader keeps the one that
+/// it holds.
+struct SessionInfo {
   std::uint64_t revision = 0;
   std::string scene;
   std::string description;
@@ -69,7 +77,7 @@ struct HostState {
   std::string busy;      ///< the change being made; empty: none
   bool running = false;  ///< a station exists
   std::string trouble;   ///< why no station exists, or a problem of the device in calibration
-  std::shared_ptr<const HostGeometry> geometry;
+  std::shared_ptr<const SessionGeometry> geometry;
   std::shared_ptr<const CalibrationSession::View> wizard;  ///< null: no calibration runs
 };
 
@@ -79,8 +87,8 @@ struct ChangeOutcome {
   bool overtaken = false;  ///< newer values of all its keys came before it was tried; it was not made
 };
 
-/// Host of a station. Any thread asks for changes; a worker makes them one after the other. The owner's
-/// thread calls poll(), which answers them.
+/// Keeper of one running station. Any thread asks for changes. The session's worker thread makes them, one after
+/// the other. The owner's thread calls poll(), which answers them.
 ///
 /// If a change is refused, everything stays as it was. If the old station cannot be made again either (the
 /// device does not open, for example), there is none until reset() or another change. A station that has to
@@ -90,24 +98,27 @@ struct ChangeOutcome {
 ///
 /// Once a station was for a patient's session (SafetySettings::patient), all later ones are.
 ///
-/// Not real-time: all functions take locks. stop(), view(), state() and the other functions for any thread
+/// Not real-time: all functions take locks. stop(), view(), info() and the other functions for any thread
 /// hold a lock only to copy, and never wait for a change. The station's loop shares no lock with them.
-class StationHost {
+class Session {
  public:
   /// Callback with the result of a change. poll() calls it once, but not after shut_down() has begun.
   using Done = std::function<void(const ChangeOutcome&)>;
 
-  /// Loads the scene, opens the device and starts the station.
-  /// @param clock  the process's clock; outlives the host
-  /// @throws SceneError, DeviceError, CalibrationError or std::invalid_argument; each names the remedy
-  StationHost(StationHostSettings settings, const Clock& clock);
-  StationHost(const StationHost&) = delete;
-  StationHost& operator=(const StationHost&) = delete;
-  ~StationHost();  ///< shut_down()
+  /// Loads the scene, opens the device, and starts the station and the worker's thread. That thread and the
+  /// threads that it starts inherit the caller's scheduling.
+  /// @param clock  the process's clock; outlives the session
+  /// @throws SceneError, DeviceError, CalibrationError or std::invalid_argument; each names the remedy.
+  /// std::system_error if no thread can be made
+  Session(SessionSettings settings, const Clock& clock);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+  ~Session();  ///< shut_down()
 
   // ---- for any thread
-  // A function with a Done throws std::runtime_error if too many changes wait already; it then does not call
-  // Done. Waiting sets become one: if newer values of the same keys overtake a value, it is never tried.
+  // A function with a Done throws std::runtime_error if too many changes wait already, or after shut_down()
+  // has begun. It then does not call Done. Waiting sets become one: if newer values of the same keys overtake
+  // a value, it is never tried.
   /// Ramps to zero torque now. The torque stays zero until resume(), also over changes.
   void stop() noexcept;
   /// Ends a stop().
@@ -143,9 +154,9 @@ class StationHost {
   [[nodiscard]] JointArray sliders() const;          ///< the angles last set [rad]
   [[nodiscard]] StationView view() const;  ///< after the newest step; without a station, the last one's
   [[nodiscard]] DeadlineStatistics deadlines() const;  ///< of the station that view() shows
-  [[nodiscard]] SessionStatistics session() const;     ///< over all stations since the host's start
-  [[nodiscard]] std::shared_ptr<const HostState> state() const;
-  [[nodiscard]] const StationHostSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] SessionStatistics statistics() const;  ///< over all stations since the session's start
+  [[nodiscard]] std::shared_ptr<const SessionInfo> info() const;
+  [[nodiscard]] const SessionSettings& settings() const noexcept { return settings_; }
 
   // ---- for one thread at a time
   /// Fetches the next step's record, station by station, also after shut_down().
@@ -153,7 +164,8 @@ class StationHost {
   [[nodiscard]] bool next_record(StepRecord& record);
 
   // ---- the owner's thread
-  /// Answers the change that is done and begins the next one. Returns at once; call it every 20 ms or so.
+  /// Answers the changes that are done. Returns at once; call it every 20 ms or so.
+  /// @throws what a Done throws; the next call then goes on with the answer after that one
   void poll();
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
   [[nodiscard]] std::optional<RealtimeGrant> grant() const;
@@ -161,9 +173,14 @@ class StationHost {
   void shut_down() noexcept;
 
  private:
-  struct Parts;
-  StationHostSettings settings_;
-  std::unique_ptr<Parts> parts_;
+  void publish_grant();
+
+  const SessionSettings settings_;
+  const Clock& clock_;
+  const std::unique_ptr<SessionState> state_;
+  const std::unique_ptr<CommandQueue> queue_;
+  const std::unique_ptr<SessionWorker> worker_;  ///< declared last, so that it ends first
+  bool ended_ = false;                           ///< shut_down() has begun; the owner's thread
 };
 
 }  // namespace phalanx

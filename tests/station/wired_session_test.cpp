@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A StationHost with the reference controller on the other end of a wire: the calibration wizard, and a
+// A Session with the reference controller on the other end of a wire: the calibration wizard, and a
 // device that goes away.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@
 #include "phalanx/device/calibration_poses.h"
 #include "phalanx/scene/calibration_file.h"
 #include "record/temporary_folder.h"
-#include "station/host_fixture.h"
+#include "station/session_fixture.h"
 
 namespace phalanx {
 namespace {
 
 using test::ControllerThread;
-using test::HostTest;
+using test::SessionFixture;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -27,10 +27,10 @@ using Step = CalibrationSession::Step;
 
 /// Its raw values rise for ever, whatever pose is asked for, until they are held: nothing can be calibrated
 /// by it, and a station ends in a fault after a while.
-class WiredHostTest : public HostTest {
+class WiredSessionTest : public SessionFixture {
  protected:
   void connect(const std::string& scene = "grasp_teapot") {
-    StationHostSettings settings = with(controller->address(), scene);
+    SessionSettings settings = with(controller->address(), scene);
     settings.overrides = {{"limits.joint_torque_nm", "0.4"}, {"limits.torque_rate_nm_per_s", "80"}};
     settings.write_calibration = [this](Calibration found) -> std::string {
       ++written;
@@ -49,10 +49,10 @@ class WiredHostTest : public HostTest {
     for (std::size_t c = 0; c < raw.size(); ++c)
       raw[c] = static_cast<std::int32_t>(std::lround(1000.0 * (angle[c] + kTooMuch)));
     controller->hold(raw);
-    const auto before = host->state()->wizard;
+    const auto before = session->info()->wizard;
     if (before == nullptr || before->pose == before->names.size()) return;
     ASSERT_TRUE(until([&] {  // what was on its way is no part of the pose
-      const auto wizard = host->state()->wizard;
+      const auto wizard = session->info()->wizard;
       for (const std::int32_t seen : wizard->raw)
         if (seen != raw[0] && seen != raw[1]) return false;
       return !wizard->raw.empty();
@@ -60,12 +60,12 @@ class WiredHostTest : public HostTest {
   }
   void measure() {
     ASSERT_EQ(calibrate(Step::kMeasure), "");
-    ASSERT_TRUE(until([&] { return !host->state()->wizard->measuring; }));
-    ASSERT_EQ(host->state()->trouble, "");
+    ASSERT_TRUE(until([&] { return !session->info()->wizard->measuring; }));
+    ASSERT_EQ(session->info()->trouble, "");
   }
   /// A wearer goes into every pose.
   void measure_all() {
-    const auto state = host->state();
+    const auto state = session->info();
     const HandParameters& hand = state->geometry->hand;
     std::array<double, 2> angle = {hand.open_angle[kJoint[0]], hand.open_angle[kJoint[1]]};
     for (const CalibrationPose& pose : calibration_poses(state->device.channels, hand)) {
@@ -76,7 +76,7 @@ class WiredHostTest : public HostTest {
   }
   void begin() {
     ASSERT_EQ(calibrate(Step::kBegin), "");
-    ASSERT_NE(host->state()->wizard, nullptr);
+    ASSERT_NE(session->info()->wizard, nullptr);
   }
 
   std::unique_ptr<ControllerThread> controller =
@@ -89,198 +89,205 @@ class WiredHostTest : public HostTest {
 };
 
 // The limits that connect() lays over the scene. A sample is not connecting any more once CONFIGURE has come.
-TEST_F(WiredHostTest, TheControllerIsToldTheStationsLimits) {
+TEST_F(WiredSessionTest, TheControllerIsToldTheStationsLimits) {
   connect();
-  ASSERT_TRUE(until([&] { return host->view().device != DeviceState::kConnecting; }));
+  ASSERT_TRUE(until([&] { return session->view().device != DeviceState::kConnecting; }));
   const phx_controller told = controller->controller();
   EXPECT_TRUE(told.configured);
   EXPECT_EQ(told.configure.torque_limit, 0.4F);
   EXPECT_EQ(told.configure.torque_rate, 80.0F);
 }
 
-TEST_F(WiredHostTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
+TEST_F(WiredSessionTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
   connect();
   begin();
   measure_all();
-  ASSERT_TRUE(host->state()->wizard->finished) << ::testing::PrintToString(host->state()->wizard->problems);
+  ASSERT_TRUE(session->info()->wizard->finished)
+      << ::testing::PrintToString(session->info()->wizard->problems);
   disk_full = true;
   EXPECT_THAT(calibrate(Step::kWrite), HasSubstr("the disk is full"));
-  ASSERT_NE(host->state()->wizard, nullptr) << "what was measured is still there";
-  const HandParameters& hand = host->state()->geometry->hand;
+  ASSERT_NE(session->info()->wizard, nullptr) << "what was measured is still there";
+  const HandParameters& hand = session->info()->geometry->hand;
   std::array<double, 2> middle{};
   for (std::size_t c = 0; c < middle.size(); ++c)
     middle[c] = 0.5 * (hand.min_angle[kJoint[c]] + hand.max_angle[kJoint[c]]);
   hold(middle);
   disk_full = false;
-  const double asked = host->now();
+  const double asked = session->now();
   EXPECT_EQ(calibrate(Step::kWrite), "");
   EXPECT_EQ(written, 2);
-  EXPECT_EQ(host->state()->wizard, nullptr);
-  EXPECT_EQ(host->state()->calibration, folder / "found.toml");
-  EXPECT_TRUE(host->state()->running);
-  EXPECT_EQ(host->state()->trouble, "");
+  EXPECT_EQ(session->info()->wizard, nullptr);
+  EXPECT_EQ(session->info()->calibration, folder / "found.toml");
+  EXPECT_TRUE(session->info()->running);
+  EXPECT_EQ(session->info()->trouble, "");
   ASSERT_TRUE(until([&] {
-    const StationView view = host->view();
+    const StationView view = session->view();
     return view.time > asked && view.snapshot.tick > 0;
   })) << "until then the last station's is shown";
   for (std::size_t c = 0; c < middle.size(); ++c)
-    EXPECT_NEAR(host->view().snapshot.hcp_angle[kJoint[c]], middle[c], 2e-3);
-  ASSERT_TRUE(until([&] { return host->view().device != DeviceState::kConnecting; }));
+    EXPECT_NEAR(session->view().snapshot.hcp_angle[kJoint[c]], middle[c], 2e-3);
+  ASSERT_TRUE(until([&] { return session->view().device != DeviceState::kConnecting; }));
   const phx_controller told = controller->controller();
   for (std::size_t c = 0; c < middle.size(); ++c)
     EXPECT_NEAR(static_cast<double>(told.configure.offset[c]), -kTooMuch, 0.01) << "for its walls";
   // With its file gone neither the new rate nor the old one gets a station: that was tried once.
   std::filesystem::remove(folder / "found.toml");
-  ASSERT_NE(host->view().state, SafetyState::kFault) << "which would hold the torque, too";
-  const std::uint64_t stops = host->stops();
+  ASSERT_NE(session->view().state, SafetyState::kFault) << "which would hold the torque, too";
+  const std::uint64_t stops = session->stops();
   EXPECT_THAT(set({{"rate_hz", "250"}}), HasSubstr("found.toml"));
-  EXPECT_FALSE(host->state()->running);
-  EXPECT_EQ(host->stops(), stops + 1);
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_EQ(session->stops(), stops + 1);
 }
 
-TEST_F(WiredHostTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {
+TEST_F(WiredSessionTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {
   const std::filesystem::path shipped = PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml";
   const std::string scene = folder / "own.toml";
   std::filesystem::copy_file(shipped, scene);
   connect(scene);
   begin();
-  const std::uint64_t before = host->stops();
+  const std::uint64_t before = session->stops();
   std::filesystem::remove(scene);
   const std::string refused = calibrate(Step::kAbandon);
   EXPECT_THAT(refused, HasSubstr("own.toml"));
-  EXPECT_EQ(host->state()->wizard, nullptr);
-  EXPECT_FALSE(host->state()->running);
-  EXPECT_EQ(host->state()->trouble, refused);
-  EXPECT_FALSE(host->resume(before));
-  EXPECT_TRUE(host->held_stopped());
+  EXPECT_EQ(session->info()->wizard, nullptr);
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_EQ(session->info()->trouble, refused);
+  EXPECT_FALSE(session->resume(before));
+  EXPECT_TRUE(session->held_stopped());
   EXPECT_EQ(load("grasp_teapot"), "");
-  EXPECT_TRUE(host->state()->running);
-  EXPECT_TRUE(host->held_stopped());
+  EXPECT_TRUE(session->info()->running);
+  EXPECT_TRUE(session->held_stopped());
 }
 
-TEST_F(WiredHostTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation) {
+TEST_F(WiredSessionTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation) {
   connect();
-  ASSERT_TRUE(until([&] { return host->view().snapshot.tick > 0; }));
+  ASSERT_TRUE(until([&] { return session->view().snapshot.tick > 0; }));
   EXPECT_FALSE(move_by(HandSource::kSliders).empty()) << "a device on a wire moves the hand";
   begin();
-  EXPECT_FALSE(host->state()->running);
-  EXPECT_FALSE(any_torque(host->view()));
-  const std::size_t poses = host->state()->wizard->names.size();
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_FALSE(any_torque(session->view()));
+  const std::size_t poses = session->info()->wizard->names.size();
   ASSERT_GT(poses, 2U);
   EXPECT_EQ(calibrate(Step::kSkip), "");
-  EXPECT_EQ(host->state()->wizard->pose, 1U);
+  EXPECT_EQ(session->info()->wizard->pose, 1U);
   EXPECT_EQ(calibrate(Step::kGoTo, 2), "");
-  EXPECT_EQ(host->state()->wizard->pose, 2U);
+  EXPECT_EQ(session->info()->wizard->pose, 2U);
   for (const std::size_t before : {std::size_t{1}, std::size_t{0}}) {
     EXPECT_EQ(calibrate(Step::kBack), "");
-    EXPECT_EQ(host->state()->wizard->pose, before);
+    EXPECT_EQ(session->info()->wizard->pose, before);
   }
   for (std::size_t i = 0; i < poses; ++i) {
     measure();
   }
-  const auto end = host->state()->wizard;
+  const auto end = session->info()->wizard;
   EXPECT_EQ(end->pose, poses);
   EXPECT_FALSE(end->finished);
   EXPECT_THAT(end->problems, Not(IsEmpty()));
   EXPECT_THAT(calibrate(Step::kWrite), HasSubstr("not finished"));
   EXPECT_EQ(written, 0);
-  EXPECT_NE(host->state()->wizard, nullptr) << "what was measured is still there";
+  EXPECT_NE(session->info()->wizard, nullptr) << "what was measured is still there";
   EXPECT_FALSE(calibrate(Step::kGoTo, 999).empty());
   EXPECT_EQ(calibrate(Step::kAbandon), "");
-  EXPECT_EQ(host->state()->wizard, nullptr);
-  EXPECT_TRUE(until([&] { return host->state()->running && host->view().snapshot.tick > 0; }));
+  EXPECT_EQ(session->info()->wizard, nullptr);
+  EXPECT_TRUE(until([&] { return session->info()->running && session->view().snapshot.tick > 0; }));
 }
 
-TEST_F(WiredHostTest, NothingElseChangesWhileACalibrationIsOn) {
+TEST_F(WiredSessionTest, NothingElseChangesWhileACalibrationIsOn) {
   connect();
   begin();
-  const auto before = host->state();
+  const auto before = session->info();
   EXPECT_THAT(set({{"force.stiffness_n_per_mm", "0.9"}}), HasSubstr("calibration"));
   EXPECT_THAT(set({{"rate_hz", "250"}}), HasSubstr("calibration"));
   EXPECT_THAT(load("pinch_ball"), HasSubstr("calibration"));
   EXPECT_THAT(calibrate(Step::kBegin), HasSubstr("calibration"));
-  host->reset();
-  host->resume();
+  session->reset();
+  session->resume();
   pass(0.3);
-  EXPECT_FALSE(host->state()->running);
-  EXPECT_EQ(host->state()->overrides, before->overrides);
-  EXPECT_NE(host->state()->wizard, nullptr);
-  host->stop();
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_EQ(session->info()->overrides, before->overrides);
+  EXPECT_NE(session->info()->wizard, nullptr);
+  session->stop();
   EXPECT_EQ(calibrate(Step::kAbandon), "");
   pass(0.5);
-  EXPECT_TRUE(host->held_stopped());
-  EXPECT_EQ(host->view().factor, 0.0);
+  EXPECT_TRUE(session->held_stopped());
+  EXPECT_EQ(session->view().factor, 0.0);
 }
 
-TEST_F(WiredHostTest, ADeviceLostDuringACalibrationIsSaidAndItCanBeAbandoned) {
+TEST_F(WiredSessionTest, ADeviceLostDuringACalibrationIsSaidAndItCanBeAbandoned) {
   connect();
   begin();
-  ASSERT_TRUE(until([&] { return !host->state()->wizard->raw.empty(); }));
+  ASSERT_TRUE(until([&] { return !session->info()->wizard->raw.empty(); }));
   pass(0.1);              // before the first samples a restart is just another session
   controller->restart();  // it knows nothing of our session any more
-  EXPECT_TRUE(until([&] { return !host->state()->trouble.empty(); }));
-  EXPECT_NE(host->state()->wizard, nullptr);
+  EXPECT_TRUE(until([&] { return !session->info()->trouble.empty(); }));
+  EXPECT_NE(session->info()->wizard, nullptr);
   EXPECT_EQ(calibrate(Step::kAbandon), "");
-  EXPECT_EQ(host->state()->trouble, "");
-  EXPECT_TRUE(host->state()->running);
+  EXPECT_EQ(session->info()->trouble, "");
+  EXPECT_TRUE(session->info()->running);
 }
 
 // Whoever plugs the device in again is not whom the hand waits for; nor is a slider that is dragged.
-TEST_F(WiredHostTest, AStationThatWasLostComesBackStoppedWhateverBringsItBack) {
+TEST_F(WiredSessionTest, AStationThatWasLostComesBackStoppedWhateverBringsItBack) {
   connect();
   hold({-kTooMuch, -kTooMuch});
   const std::string address = controller->after_scheme();
-  ASSERT_TRUE(until([&] { return host->view().snapshot.tick > 0; }));
+  ASSERT_TRUE(until([&] { return session->view().snapshot.tick > 0; }));
   for (const bool by_reset : {false, true}) {
-    host->stop();
-    const std::uint64_t seen = host->stops();
-    EXPECT_TRUE(host->resume(seen));
+    session->stop();
+    const std::uint64_t seen = session->stops();
+    EXPECT_TRUE(session->resume(seen));
     controller.reset();
     EXPECT_FALSE(set({{"rate_hz", "250"}}).empty());
-    EXPECT_FALSE(host->state()->running);
+    EXPECT_FALSE(session->info()->running);
     controller = std::make_unique<ControllerThread>(listen_udp(address), clock);
     hold({-kTooMuch, -kTooMuch});
-    EXPECT_FALSE(host->resume(seen)) << "said before it was lost";
+    EXPECT_FALSE(session->resume(seen)) << "said before it was lost";
     records.clear();
     if (by_reset)
-      host->reset();
+      session->reset();
     else
       EXPECT_EQ(set({{"force.stiffness_n_per_mm", "0.6"}}), "");
-    ASSERT_TRUE(until([&] { return host->state()->running && host->view().state == SafetyState::kStopped; }));
+    ASSERT_TRUE(
+        until([&] { return session->info()->running && session->view().state == SafetyState::kStopped; }));
     pass(0.5);
     for (const StepRecord& record : records) EXPECT_EQ(record.factor, 0.0);
-    EXPECT_TRUE(host->held_stopped());
-    EXPECT_TRUE(host->resume(host->stops()));
-    EXPECT_TRUE(until([&] { return host->view().factor > 0.0; }));
+    EXPECT_TRUE(session->held_stopped());
+    EXPECT_TRUE(session->resume(session->stops()));
+    EXPECT_TRUE(until([&] { return session->view().factor > 0.0; }));
   }
 }
 
-TEST_F(WiredHostTest, ADeviceThatDoesNotOpenAgainIsTroubleUntilAReset) {
+TEST_F(WiredSessionTest, ADeviceThatDoesNotOpenAgainIsTroubleUntilAReset) {
   connect();
   const std::string address = controller->after_scheme();
-  ASSERT_TRUE(until([&] { return host->view().snapshot.tick > 0; }));
+  ASSERT_TRUE(until([&] { return session->view().snapshot.tick > 0; }));
   controller.reset();
-  const auto before = host->state();
-  // Two that wait together are tried together, and the device is not asked once more for each.
+  const auto before = session->info();
+  // Two that wait together are tried together, and the device is not asked once more for each. They wait while
+  // another object is built.
+  session->set({{"objects.0.size_mm", "125"}}, {});
+  ASSERT_FALSE(until_busy().empty());
   auto [rate, rate_done] = awaited();
   auto [force, force_done] = awaited();
-  host->set({{"rate_hz", "250"}}, std::move(rate_done));
-  host->set({{"force.stiffness_n_per_mm", "0.6"}}, std::move(force_done));
+  session->set({{"rate_hz", "250"}}, std::move(rate_done));
+  session->set({{"force.stiffness_n_per_mm", "0.6"}}, std::move(force_done));
   const auto first = rate;
   const auto second = force;
   ASSERT_TRUE(until([&] { return first->refused.has_value() && second->refused.has_value(); }));
   EXPECT_THAT(*first->refused, HasSubstr("no controller answers"));
   EXPECT_EQ(second->refused, first->refused);
-  EXPECT_FALSE(host->state()->running);
-  EXPECT_FALSE(host->state()->trouble.empty());
-  EXPECT_FALSE(any_torque(host->view()));
-  EXPECT_EQ(host->state()->overrides, before->overrides) << "what was refused is not kept";
-  EXPECT_EQ(host->state()->scene, before->scene);
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_FALSE(session->info()->trouble.empty());
+  EXPECT_FALSE(any_torque(session->view()));
+  Overrides kept = before->overrides;
+  kept.emplace_back("objects.0.size_mm", "125");
+  EXPECT_EQ(session->info()->overrides, kept) << "what was refused is not kept";
+  EXPECT_EQ(session->info()->scene, before->scene);
   controller = std::make_unique<ControllerThread>(listen_udp(address), clock);
-  for (int i = 0; i < 100; ++i) host->reset();
-  EXPECT_TRUE(until([&] { return host->state()->running; }));
-  EXPECT_EQ(host->state()->trouble, "");
-  EXPECT_EQ(host->state()->geometry->rate_hz, 200.0);
+  for (int i = 0; i < 100; ++i) session->reset();
+  EXPECT_TRUE(until([&] { return session->info()->running; }));
+  EXPECT_EQ(session->info()->trouble, "");
+  EXPECT_EQ(session->info()->geometry->rate_hz, 200.0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "run_host.h"
+#include "run_session.h"
 
 #include <fmt/format.h>
 
@@ -72,12 +72,12 @@ std::string write_calibration(const std::string& folder, Calibration calibration
 
 }  // namespace
 
-StationHostSettings host_settings(const RunOptions& o) {
+SessionSettings session_settings(const RunOptions& o) {
   refuse_slow_motion(o);
   check_glove_options(o);
   if (is_simulated(o) && !o.calibration.empty())
     throw std::invalid_argument("--calibration: the simulated device needs none; leave it out");
-  StationHostSettings settings;
+  SessionSettings settings;
   settings.scene = !o.scene.empty()  ? o.scene
                    : is_simulated(o) ? RunOptions::kDemonstration
                                      : RunOptions::kGrasp;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "station/shared_station.h"
+#include "station/session_state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,35 +31,35 @@ std::vector<int> sensed_joints(const DeviceInfo& device) {
 
 }  // namespace
 
-SharedStation::SharedStation() {
+SessionState::SessionState() {
   retired_.reserve(kRetired + 1);
   reports_.reserve(kReports + 1);
 }
 
-std::shared_ptr<const HostState> SharedStation::state() const {
+std::shared_ptr<const SessionInfo> SessionState::info() const {
   const std::lock_guard lock(mutex_);
-  return state_;
+  return info_;
 }
 
-std::shared_ptr<RunningStation> SharedStation::current() const {
+std::shared_ptr<RunningStation> SessionState::current() const {
   const std::lock_guard lock(mutex_);
   return running_;
 }
 
 // ---- requests of users ----
 
-void SharedStation::hold() noexcept {
+void SessionState::hold() noexcept {
   ++stops_;
   held_.store(true);
 }
 
-void SharedStation::stop() noexcept {
+void SessionState::stop() noexcept {
   const std::lock_guard lock(mutex_);
   hold();
   if (running_) running_->station->stop_torque();
 }
 
-bool SharedStation::resume(std::uint64_t stops) noexcept {
+bool SessionState::resume(std::uint64_t stops) noexcept {
   const std::lock_guard lock(mutex_);
   if (stops != stops_ || ending_) return false;
   held_.store(false);
@@ -67,12 +67,12 @@ bool SharedStation::resume(std::uint64_t stops) noexcept {
   return true;
 }
 
-std::uint64_t SharedStation::stops() const noexcept {
+std::uint64_t SessionState::stops() const noexcept {
   const std::lock_guard lock(mutex_);
   return stops_;
 }
 
-void SharedStation::end() noexcept {
+void SessionState::end() noexcept {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
@@ -80,33 +80,33 @@ void SharedStation::end() noexcept {
   stop();
 }
 
-bool SharedStation::set_sliders(const JointArray& angle) noexcept {
+bool SessionState::set_sliders(const JointArray& angle) noexcept {
   const std::lock_guard lock(mutex_);
   if (!running_ || running_->sliders == nullptr) return false;
-  const HandParameters& hand = state_->geometry->hand;
+  const HandParameters& hand = info_->geometry->hand;
   for (std::size_t j = 0; j < angle.size(); ++j)
     if (std::isfinite(angle[j])) slider_[j] = std::clamp(angle[j], hand.min_angle[j], hand.max_angle[j]);
   running_->sliders->pose(slider_);
   return true;
 }
 
-JointArray SharedStation::sliders() const {
+JointArray SessionState::sliders() const {
   const std::lock_guard lock(mutex_);
   return slider_;
 }
 
 // ---- the worker's thread ----
 
-void SharedStation::begin(std::shared_ptr<RunningStation> next) {
+void SessionState::begin(std::shared_ptr<RunningStation> next) {
   const DeviceInfo device = next->device->info();
   const std::vector<int> joints = sensed_joints(device);
-  change_state([&](HostState& s) {
-    s.device = device;
-    s.sensed_joints = joints;
-    s.running = true;
-    s.trouble.clear();
-    s.realtime.clear();
-    slider_ = s.geometry->hand.open_angle;
+  change_info([&](SessionInfo& info) {
+    info.device = device;
+    info.sensed_joints = joints;
+    info.running = true;
+    info.trouble.clear();
+    info.realtime.clear();
+    slider_ = info.geometry->hand.open_angle;
     running_ = next;
     // Under the lock and before the first step, so that no stop() or resume() is lost between two stations.
     if (held_.load()) next->station->stop_torque();
@@ -114,19 +114,19 @@ void SharedStation::begin(std::shared_ptr<RunningStation> next) {
   try {
     next->station->start();
   } catch (...) {
-    change_state([&](HostState& s) {
-      s.running = false;
+    change_info([&](SessionInfo& info) {
+      info.running = false;
       running_ = nullptr;
     });
     throw;
   }
 }
 
-void SharedStation::retire() {
+void SessionState::retire() {
   const std::shared_ptr<RunningStation> old = current();
   if (!old) return;
-  // What needs memory comes first. Until the end below, others change nothing in the state but the grant.
-  const auto next = std::make_shared<HostState>(*state());
+  // What needs memory comes first. Until the end below, others change nothing but the grant in it.
+  const auto next = std::make_shared<SessionInfo>(*info());
   next->running = false;
   old->station->shut_down();  // still published, so that its last steps are shown
   StationView last = old->station->view();
@@ -135,11 +135,11 @@ void SharedStation::retire() {
   last.sent = {};
   const DeadlineStatistics deadlines = old->station->deadlines();
   keep_report(*old->station);
-  std::shared_ptr<const HostState> before;  // both are freed after the lock is released
+  std::shared_ptr<const SessionInfo> before;  // both are freed after the lock is released
   std::shared_ptr<RunningStation> gone;
   std::unique_lock lock(mutex_);
-  next->revision = state_->revision + 1;
-  before = std::exchange(state_, next);
+  next->revision = info_->revision + 1;
+  before = std::exchange(info_, next);
   running_ = nullptr;
   last_view_ = last;
   last_deadlines_ = deadlines;
@@ -155,14 +155,15 @@ void SharedStation::retire() {
   keep_report(*gone->station);
 }
 
-void SharedStation::set_unavailable(const std::string& why) {
-  change_state([&](HostState& s) {
-    s.trouble = why;
-    hold();
-  });
+void SessionState::set_unavailable(const std::string& why) {
+  {
+    const std::lock_guard lock(mutex_);
+    hold();  // first, because it needs no memory
+  }
+  change_info([&](SessionInfo& info) { info.trouble = why; });
 }
 
-void SharedStation::keep_report(Station& station) noexcept {
+void SessionState::keep_report(Station& station) noexcept {
   const std::lock_guard lock(reports_mutex_);
   try {
     if (auto report = station.take_fault_report()) reports_.push_back(std::move(*report));
@@ -174,21 +175,21 @@ void SharedStation::keep_report(Station& station) noexcept {
 
 // ---- what readers see ----
 
-StationView SharedStation::view() const {
+StationView SessionState::view() const {
   if (const auto now = current())
     if (const StationView view = now->station->view(); view.time > 0.0) return view;
   const std::lock_guard lock(mutex_);
   return last_view_;  // also until a new station has made its first step
 }
 
-DeadlineStatistics SharedStation::deadlines() const {
+DeadlineStatistics SessionState::deadlines() const {
   if (const auto now = current())
     if (const DeadlineStatistics of_now = now->station->deadlines(); of_now.steps > 0) return of_now;
   const std::lock_guard lock(mutex_);
   return last_deadlines_;
 }
 
-SessionStatistics SharedStation::session() const {
+SessionStatistics SessionState::statistics() const {
   std::unique_lock lock(mutex_);
   SessionStatistics sum = ended_;
   const std::shared_ptr<RunningStation> now = running_;
@@ -197,7 +198,7 @@ SessionStatistics SharedStation::session() const {
   return sum;
 }
 
-bool SharedStation::next_record(StepRecord& record) {
+bool SessionState::next_record(StepRecord& record) {
   for (bool any = true; any;) {
     std::unique_lock lock(mutex_);
     if (!retired_.empty() && retired_.front()->station->next_record(record)) return true;
@@ -212,7 +213,7 @@ bool SharedStation::next_record(StepRecord& record) {
   return now && now->station->next_record(record);
 }
 
-std::optional<FaultReport> SharedStation::take_fault_report() {
+std::optional<FaultReport> SessionState::take_fault_report() {
   const std::lock_guard lock(reports_mutex_);
   if (!reports_.empty()) {
     FaultReport oldest = std::move(reports_.front());

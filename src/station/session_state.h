@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The running station and the published state, shared among the threads of a StationHost.
+// The running station and the published information, shared among the threads of a Session.
 #pragma once
 
 #include <atomic>
@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "phalanx/station/session_statistics.h"
@@ -14,23 +15,26 @@
 
 namespace phalanx {
 
-/// The running station and the state that readers see. All functions are for any thread, unless stated
-/// otherwise. The lock is held for copies only, never while something is built, opened, waited for or freed:
-/// stop() never waits for these.
-class SharedStation {
+/// State shared by the worker, the owner and readers of a Session. All functions are for any thread, unless
+/// stated otherwise. The lock is held for copies only, never while something is built, opened, waited for or
+/// freed: stop() never waits for these.
+class SessionState {
  public:
-  SharedStation();
+  SessionState();
 
+  /// Publishes a changed copy of the information.
+  /// @param change  called with the copy, under the lock
+  /// @throws std::bad_alloc or what `change` throws; nothing is then published
   template <class Change>
-  void change_state(Change&& change) {
-    std::shared_ptr<const HostState> gone;  // freed after the lock is released
+  void change_info(Change&& change) {
+    std::shared_ptr<const SessionInfo> gone;  // freed after the lock is released
     const std::lock_guard lock(mutex_);
-    auto next = std::make_shared<HostState>(*state_);
+    auto next = std::make_shared<SessionInfo>(*info_);
     change(*next);
     ++next->revision;
-    gone = std::exchange(state_, std::move(next));
+    gone = std::exchange(info_, std::move(next));
   }
-  [[nodiscard]] std::shared_ptr<const HostState> state() const;
+  [[nodiscard]] std::shared_ptr<const SessionInfo> info() const;
   [[nodiscard]] std::shared_ptr<RunningStation> current() const;
 
   // ---- requests of users
@@ -55,13 +59,14 @@ class SharedStation {
   /// @throws std::bad_alloc; the station then runs on
   void retire();
   /// Records that there is no station and why none could be made. The next station begins held.
+  /// @throws std::bad_alloc; the next station begins held, but the reason is not published
   void set_unavailable(const std::string& why);
 
   // ---- what readers see
   [[nodiscard]] StationView view() const;
   [[nodiscard]] DeadlineStatistics deadlines() const;
   /// @returns sums over all stations so far, the running one included.
-  [[nodiscard]] SessionStatistics session() const;
+  [[nodiscard]] SessionStatistics statistics() const;
   /// Fetches the next step's record. For one thread.
   [[nodiscard]] bool next_record(StepRecord& record);
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
@@ -73,7 +78,7 @@ class SharedStation {
   mutable std::mutex mutex_;
   std::shared_ptr<RunningStation> running_;
   std::vector<std::shared_ptr<RunningStation>> retired_;  ///< kept until their records have been fetched
-  std::shared_ptr<const HostState> state_ = std::make_shared<HostState>();
+  std::shared_ptr<const SessionInfo> info_ = std::make_shared<SessionInfo>();
   StationView last_view_;
   DeadlineStatistics last_deadlines_;
   SessionStatistics ended_;  ///< sums over the stations that have ended

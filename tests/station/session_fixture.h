@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A StationHost and its owner. The program runs under a held clock: a busy machine makes no faults of its
+// A Session and its owner. The program runs under a held clock: a busy machine makes no faults of its
 // own.
 #pragma once
 
@@ -13,21 +13,21 @@
 #include <thread>
 #include <vector>
 
-#include "phalanx/station/station_host.h"
+#include "phalanx/station/session.h"
 #include "support/held_clock/hold_this_process.h"
 
 namespace phalanx::test {
 
-class HostTest : public ::testing::Test {
+class SessionFixture : public ::testing::Test {
  protected:
-  static StationHostSettings with(const std::string& device, const std::string& scene = "first_touch") {
-    StationHostSettings settings;
+  static SessionSettings with(const std::string& device, const std::string& scene = "first_touch") {
+    SessionSettings settings;
     settings.scene = scene;
     settings.device = device;
     settings.ask_for_realtime = false;
     return settings;
   }
-  void start(const StationHostSettings& settings) { host = std::make_unique<StationHost>(settings, clock); }
+  void start(const SessionSettings& settings) { session = std::make_unique<Session>(settings, clock); }
 
   /// Does what an owner does until it is so. @returns whether it came, within minutes
   bool until(const std::function<bool()>& so) {
@@ -40,10 +40,10 @@ class HostTest : public ::testing::Test {
     return false;
   }
   void own() {
-    host->poll();
+    session->poll();
     StepRecord record;
-    while (host->next_record(record)) records.push_back(record);
-    if (auto report = host->take_fault_report()) reports.push_back(std::move(*report));
+    while (session->next_record(record)) records.push_back(record);
+    if (auto report = session->take_fault_report()) reports.push_back(std::move(*report));
   }
   void sleep(double seconds) const { clock.sleep_until(clock.now() + seconds); }
   /// The owner's work for so long by the process's clock.
@@ -52,14 +52,28 @@ class HostTest : public ::testing::Test {
     ASSERT_TRUE(until([&] { return clock.now() >= end; }));
   }
   bool until_running() {
-    return until([&] { return host->state()->running && host->view().state == SafetyState::kRunning; });
+    return until([&] { return session->info()->running && session->view().state == SafetyState::kRunning; });
+  }
+
+  /// Waits until the worker makes a change, without a wait that would let time pass meanwhile.
+  /// @returns SessionInfo::busy
+  std::string until_busy() const {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    std::string busy;
+    while (busy.empty() && std::chrono::steady_clock::now() < give_up) busy = session->info()->busy;
+    return busy;
+  }
+  /// Lets the worker load a scene: what is asked next waits meanwhile.
+  void occupy(const std::string& scene = "first_touch") {
+    session->load_scene(scene, {});
+    ASSERT_EQ(until_busy(), "scene " + scene);
   }
 
   /// Until steps that end too late have led to a fault, at rest.
   void overload() {
     const LoopWakesLate late(0.0075);  // the period is 5 ms
     ASSERT_TRUE(until([&] {
-      const StationView view = host->view();
+      const StationView view = session->view();
       return view.state == SafetyState::kFault && view.at_rest;
     }));
   }
@@ -70,7 +84,7 @@ class HostTest : public ::testing::Test {
     bool overtaken = false;
     int times = 0;
   };
-  std::pair<std::shared_ptr<Answer>, StationHost::Done> awaited() {
+  std::pair<std::shared_ptr<Answer>, Session::Done> awaited() {
     auto answer = std::make_shared<Answer>();
     return {answer, [answer](const ChangeOutcome& outcome) {
               answer->refused = outcome.refused;
@@ -79,7 +93,7 @@ class HostTest : public ::testing::Test {
             }};
   }
   /// Asks and waits. @returns why it was refused; empty: it is done
-  std::string ask(const std::function<void(StationHost::Done)>& how) {
+  std::string ask(const std::function<void(Session::Done)>& how) {
     auto [answer, done] = awaited();
     how(done);
     const auto got = answer;
@@ -89,21 +103,21 @@ class HostTest : public ::testing::Test {
     return got->refused.value_or("no answer");
   }
   std::string set(const Overrides& changes) {
-    return ask([&](StationHost::Done done) { host->set(changes, std::move(done)); });
+    return ask([&](Session::Done done) { session->set(changes, std::move(done)); });
   }
   std::string load(const std::string& scene) {
-    return ask([&](StationHost::Done done) { host->load_scene(scene, std::move(done)); });
+    return ask([&](Session::Done done) { session->load_scene(scene, std::move(done)); });
   }
   std::string move_by(HandSource source) {
-    return ask([&](StationHost::Done done) { host->set_source(source, std::move(done)); });
+    return ask([&](Session::Done done) { session->set_source(source, std::move(done)); });
   }
   std::string calibrate(CalibrationSession::Step step, std::size_t pose = 0) {
-    return ask([&](StationHost::Done done) { host->calibrate(step, pose, std::move(done)); });
+    return ask([&](Session::Done done) { session->calibrate(step, pose, std::move(done)); });
   }
 
   [[nodiscard]] std::string value(const std::string& key) const {
     std::string found;
-    for (const auto& [name, text] : host->state()->values)
+    for (const auto& [name, text] : session->info()->values)
       if (name == key) found = text;
     return found;
   }
@@ -116,7 +130,7 @@ class HostTest : public ::testing::Test {
   const Clock clock;
   std::vector<StepRecord> records;
   std::vector<FaultReport> reports;
-  std::unique_ptr<StationHost> host;
+  std::unique_ptr<Session> session;
 };
 
 }  // namespace phalanx::test

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/station/session.h"
+
+#include <utility>
+
+#include "station/command_queue.h"
+#include "station/session_state.h"
+#include "station/session_worker.h"
+
+namespace phalanx {
+
+Session::Session(SessionSettings settings, const Clock& clock)
+    : settings_(std::move(settings)),
+      clock_(clock),
+      state_(std::make_unique<SessionState>()),
+      queue_(std::make_unique<CommandQueue>()),
+      worker_(std::make_unique<SessionWorker>(settings_, clock_, *state_, *queue_)) {}
+
+Session::~Session() { shut_down(); }
+
+// ---- any thread ----
+
+void Session::stop() noexcept { state_->stop(); }
+
+bool Session::resume() noexcept { return state_->resume(state_->stops()); }
+
+bool Session::resume(std::uint64_t stops) noexcept { return state_->resume(stops); }
+
+std::uint64_t Session::stops() const noexcept { return state_->stops(); }
+
+bool Session::reset(double fault_time) noexcept {
+  const StationView seen = view();
+  const double time = seen.fault.fault == Fault::kNone ? 0.0 : seen.fault.time;
+  if (state_->current() && time != fault_time) return false;
+  reset();
+  return true;
+}
+
+void Session::reset() noexcept {
+  if (const auto now = state_->current()) return now->station->reset();
+  try {
+    queue_->ask(MakeStation{}, {});
+  } catch (const std::exception&) {  // with so many changes waiting, a station will be tried anyway
+  }
+}
+
+void Session::set(Overrides changes, Done done) {
+  queue_->ask(SetValues{std::move(changes)}, std::move(done));
+}
+
+void Session::load_scene(std::string scene, Done done) {
+  queue_->ask(LoadScene{std::move(scene)}, std::move(done));
+}
+
+void Session::set_source(HandSource source, Done done) { queue_->ask(SelectSource{source}, std::move(done)); }
+
+bool Session::set_sliders(const JointArray& angle) noexcept { return state_->set_sliders(angle); }
+
+void Session::calibrate(CalibrationSession::Step step, std::size_t pose, Done done) {
+  queue_->ask(StepCalibration{.step = step, .pose = pose}, std::move(done));
+}
+
+bool Session::held_stopped() const noexcept { return state_->held(); }
+
+double Session::now() const noexcept { return clock_.now(); }
+
+JointArray Session::sliders() const { return state_->sliders(); }
+
+StationView Session::view() const { return state_->view(); }
+
+DeadlineStatistics Session::deadlines() const { return state_->deadlines(); }
+
+SessionStatistics Session::statistics() const { return state_->statistics(); }
+
+std::shared_ptr<const SessionInfo> Session::info() const { return state_->info(); }
+
+// ---- one thread at a time ----
+
+bool Session::next_record(StepRecord& record) { return state_->next_record(record); }
+
+// ---- the owner's thread ----
+
+void Session::poll() {
+  if (ended_) return;
+  publish_grant();
+  while (!ended_) {  // a Done may call shut_down()
+    const std::optional<Answer> answer = queue_->next_answer();
+    if (!answer) return;
+    answer->done(answer->outcome);
+  }
+}
+
+/// Publishes the granted scheduling, which is known once the loop has begun.
+void Session::publish_grant() {
+  if (!info()->realtime.empty()) return;
+  if (const auto granted = grant())
+    state_->change_info([&](SessionInfo& info) { info.realtime = describe(*granted); });
+}
+
+std::optional<FaultReport> Session::take_fault_report() { return state_->take_fault_report(); }
+
+std::optional<RealtimeGrant> Session::grant() const {
+  const auto now = state_->current();
+  return now ? now->station->grant() : std::nullopt;
+}
+
+void Session::shut_down() noexcept {
+  ended_ = true;
+  state_->end();  // a change being made may take long, but not with torque on
+  worker_->end();
+  if (const auto now = state_->current()) now->station->shut_down();
+}
+
+}  // namespace phalanx

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "station/session_worker.h"
+
+#include <pthread.h>
+
+#include <chrono>
+#include <future>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "phalanx/core/error_text.h"
+#include "phalanx/core/give_way.h"
+
+namespace phalanx {
+namespace {
+
+using Step = CalibrationSession::Step;
+
+/// Interval of the updates of a calibration, and of further tries to publish that no change is being made.
+constexpr std::chrono::milliseconds kUpdate{20};
+
+HandSource source_of(const std::string& device) {
+  if (device == "simulated") return HandSource::kPatient;
+  return device == "sliders" ? HandSource::kSliders : HandSource::kDevice;
+}
+
+/// Runs a computation of seconds on a thread of its own with low priority, so that it does not slow the loop.
+/// The worker keeps its priority: threads that it starts inherit it and cannot raise their own.
+template <class Work>
+auto run_at_low_priority(const Work& work) {
+  return std::async(std::launch::async,
+                    [&work] {
+                      give_way("phalanx-build");
+                      return work();
+                    })
+      .get();
+}
+
+/// Notes why a request is refused. Without memory the text is short enough to need none.
+void refuse(Request& request, const std::exception& error) noexcept {
+  try {
+    request.refused = error_text(error);
+    if (request.refused.empty()) request.refused = "refused without a reason";
+  } catch (const std::bad_alloc&) {
+    request.refused = "out of memory";
+  }
+}
+
+}  // namespace
+
+SessionWorker::SessionWorker(const SessionSettings& settings, const Clock& clock, SessionState& state,
+                             CommandQueue& queue)
+    : settings_(settings),
+      clock_(clock),
+      state_(state),
+      queue_(queue),
+      plan_{.scene = settings.scene,
+            .overrides = laid_over({}, settings.overrides),
+            .source = source_of(settings.device),
+            .calibration = settings.calibration} {
+  state_.change_info([&](SessionInfo& info) { info.device_spec = settings_.device; });
+  StationBuild first = built(plan_, SceneFile(plan_.scene));
+  take_over(first);
+  thread_ = std::thread([this] { run(); });
+}
+
+SessionWorker::~SessionWorker() { end(); }
+
+void SessionWorker::end() noexcept {
+  queue_.end();
+  if (thread_.joinable()) thread_.join();
+  wizard_.end();
+}
+
+// ---- the thread ----
+
+void SessionWorker::run() noexcept {
+  ::pthread_setname_np(::pthread_self(), "phalanx-worker");
+  bool idle = true;  // and published as such
+  while (!queue_.ended()) {
+    std::list<Command> taken = queue_.take(wizard_.on() || !idle ? std::optional(kUpdate) : std::nullopt);
+    if (!taken.empty()) {
+      static_cast<void>(publish_busy(&taken.front()));
+      make(taken.front());
+      idle = false;
+    }
+    if (!idle) idle = publish_busy(nullptr);
+    queue_.answer(std::move(taken));
+    update_wizard();
+  }
+}
+
+bool SessionWorker::publish_busy(const Command* command) noexcept {
+  try {
+    std::string text = command != nullptr ? text_of(*command) : std::string();
+    state_.change_info([&](SessionInfo& info) { info.busy = std::move(text); });
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+}
+
+/// Makes a command. Every exception becomes the refusal of its request.
+void SessionWorker::make(Command& command) noexcept {
+  if (command.requests.size() > 1 && make_together(command)) return;
+  for (Request& request : command.requests) {
+    try {
+      std::visit([this](const auto& action) { apply(action); }, request.action);
+    } catch (const std::exception& error) {
+      refuse(request, error);
+    } catch (...) {
+      request.refused = "unknown error";  // short: needs no memory
+    }
+  }
+}
+
+/// Makes all sets at once.
+/// @returns false if that is refused: trying each of them shows which one is refused
+bool SessionWorker::make_together(Command& command) noexcept {
+  try {
+    apply(SetValues{changes_of(command)});
+  } catch (const DeviceError& error) {  // not worth another try of each
+    for (Request& request : command.requests) refuse(request, error);
+  } catch (...) {
+    return false;
+  }
+  return true;
+}
+
+// ---- changes ----
+
+void SessionWorker::apply(const SetValues& set) {
+  refuse_while_calibrating();
+  StationPlan next = plan_;
+  next.overrides = laid_over(std::move(next.overrides), set.changes);
+  const auto now = state_.current();
+  if (now == nullptr) return switch_to(next, SceneFile(next.scene));
+  SceneDescription scene = file_->scene(next.overrides);
+  const ChangeKind kind = change_kind(set.changes, plan_.source, scene_.parameters, scene.parameters);
+  if (kind == ChangeKind::kNewStation) return switch_to(next, *file_);
+  if (kind == ChangeKind::kOtherObject) return exchange_object(*now->station, next);
+  // The parameters of the same model, without opening a file.
+  Overrides values = file_->values(next.overrides);
+  if (kind == ChangeKind::kInContact)
+    now->station->change_to(scene.parameters);
+  else
+    run_at_low_priority([&] { now->station->replace(model_, scene.parameters); });
+  plan_ = std::move(next);
+  scene_ = std::move(scene);
+  state_.change_info([&](SessionInfo& info) {
+    info.overrides = plan_.overrides;
+    info.values = std::move(values);
+    info.description = scene_.description;
+  });
+}
+
+void SessionWorker::exchange_object(Station& station, const StationPlan& next) {
+  StationBuild build = built(next, *file_);
+  // The gate and the channels know the hand of the start: a hand file that has changed needs a new station.
+  const bool same_hand = build.made.model->hand.parameters() == model_->hand.parameters() &&
+                         build.geometry->handedness == state_.info()->geometry->handedness;
+  if (!same_hand) return switch_to(next, *file_);
+  run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters); });
+  plan_ = next;
+  scene_ = std::move(build.scene);
+  model_ = build.made.model;
+  state_.change_info([&](SessionInfo& info) {
+    info.overrides = plan_.overrides;
+    info.values = std::move(build.values);
+    info.description = scene_.description;
+    build.geometry->revision = info.geometry->revision + 1;
+    info.geometry = build.geometry;
+  });
+}
+
+void SessionWorker::apply(const LoadScene& load) {
+  refuse_while_calibrating();
+  StationPlan next = plan_;
+  next.scene = load.scene;
+  next.overrides.clear();
+  switch_to(next, SceneFile(load.scene));
+}
+
+void SessionWorker::apply(const SelectSource& select) {
+  refuse_while_calibrating();
+  if (plan_.source == select.source) return;
+  if (select.source == HandSource::kDevice || plan_.source == HandSource::kDevice)
+    throw std::invalid_argument(
+        "a device on a wire moves the hand; start the station without --device for this");
+  StationPlan next = plan_;
+  next.source = select.source;
+  switch_to(next, file_of_plan());
+}
+
+void SessionWorker::apply(const MakeStation&) {
+  refuse_while_calibrating();
+  if (state_.current() != nullptr) return;
+  try {
+    switch_to(plan_, SceneFile(plan_.scene));
+  } catch (const std::exception& error) {
+    state_.set_unavailable(error_text(error));
+  }
+}
+
+// ---- from one station to the next ----
+
+StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file) const {
+  StationBuild build =
+      run_at_low_priority([&] { return build_station(plan, std::move(file), settings_.clinician); });
+  if (build.made.safety.patient.empty()) build.made.safety.patient = patient_;
+  // The device stays the same: refuse what it cannot do while the last station still runs.
+  const auto info = state_.info();
+  if (info->running) check_watchdog(build.made.safety, info->device);
+  return build;
+}
+
+SceneFile SessionWorker::file_of_plan() const { return file_ ? *file_ : SceneFile(plan_.scene); }
+
+void SessionWorker::switch_to(const StationPlan& next, SceneFile file) {
+  StationBuild build = built(next, std::move(file));
+  state_.retire();
+  try {
+    take_over(build);
+    plan_ = next;
+  } catch (const std::exception& error) {
+    if (next == plan_)
+      state_.set_unavailable(error_text(error));
+    else
+      go_back();
+    throw;
+  }
+}
+
+/// Makes the station of the old plan again: the device may refuse only the new plan.
+void SessionWorker::go_back() {
+  try {
+    StationBuild build = built(plan_, file_of_plan());
+    take_over(build);
+  } catch (const std::exception& error) {
+    state_.set_unavailable(error_text(error));
+  }
+}
+
+void SessionWorker::take_over(StationBuild& build) {
+  state_.change_info([&](SessionInfo& info) {
+    info.scene = build.plan.scene;
+    info.description = build.scene.description;
+    info.overrides = build.plan.overrides;
+    info.values = build.values;
+    info.source = build.plan.source;
+    info.calibration = build.plan.calibration;
+    info.fingertip_force = build.made.safety.fingertip_force;
+    info.patient = build.made.safety.patient;
+    build.geometry->revision = info.geometry ? info.geometry->revision + 1 : 1;
+    info.geometry = build.geometry;
+  });
+  state_.begin(std::make_shared<RunningStation>(make_station(build, settings_, clock_)));
+  file_ = std::move(build.file);
+  scene_ = std::move(build.scene);
+  model_ = build.made.model;
+  patient_ = build.made.safety.patient;
+}
+
+// ---- calibration ----
+
+void SessionWorker::refuse_while_calibrating() const {
+  if (wizard_.on()) throw std::invalid_argument("a calibration is on; finish or abandon it first");
+}
+
+void SessionWorker::apply(const StepCalibration& calibration) {
+  switch (calibration.step) {
+    case Step::kBegin:
+      return begin_wizard();
+    case Step::kAbandon:
+      wizard_.refuse_unless_on();
+      return leave_wizard(plan_);
+    case Step::kWrite:
+      return write_wizard();
+    default:
+      wizard_.step(calibration.step, calibration.pose, clock_.now());
+      publish_wizard();
+  }
+}
+
+void SessionWorker::begin_wizard() {
+  refuse_while_calibrating();
+  if (plan_.source != HandSource::kDevice)
+    throw std::invalid_argument("the simulated device needs no calibration; start with --device to have one");
+  const StationBuild build = built(plan_, file_of_plan());
+  state_.retire();
+  try {
+    wizard_.begin(settings_.device, build.made.model->hand.parameters(), clock_);
+    publish_wizard();
+  } catch (const std::exception&) {
+    wizard_.end();
+    go_back();
+    throw;
+  }
+}
+
+/// Writes the calibration before it ends the wizard: if writing fails, the measured poses are still there.
+void SessionWorker::write_wizard() {
+  const Calibration& found = wizard_.found();
+  if (!settings_.write_calibration)
+    throw std::invalid_argument("this program writes no calibrations; use `phalanx device calibrate`");
+  StationPlan next = plan_;
+  next.calibration = settings_.write_calibration(found);
+  leave_wizard(next);
+}
+
+/// Ends the wizard and starts a station. No station runs meanwhile: if anything is refused, its scene for
+/// example, there is none.
+void SessionWorker::leave_wizard(const StationPlan& next) {
+  // First, because it may fail without memory: the wizard is then still on, and shown.
+  state_.change_info([](SessionInfo& info) { info.wizard = nullptr; });
+  wizard_.end();
+  try {
+    switch_to(next, SceneFile(next.scene));
+  } catch (const std::exception& error) {
+    if (state_.current() == nullptr) state_.set_unavailable(error_text(error));
+    throw;
+  }
+}
+
+void SessionWorker::update_wizard() noexcept {
+  if (!wizard_.on()) return;
+  try {
+    wizard_.update(clock_.now());
+    publish_wizard();
+  } catch (const std::bad_alloc&) {  // the next update tries again
+  }
+}
+
+void SessionWorker::publish_wizard() {
+  auto view = std::make_shared<const CalibrationSession::View>(wizard_.view());
+  state_.change_info([&](SessionInfo& info) {
+    info.wizard = std::move(view);
+    info.trouble = wizard_.trouble();
+  });
+}
+
+}  // namespace phalanx

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thread that makes the changes of a Session.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "station/calibration_wizard.h"
+#include "station/command_queue.h"
+#include "station/session_state.h"
+
+namespace phalanx {
+
+/// Worker of a Session. One thread takes the commands from the queue, makes them, and hands the answers back.
+/// If a change is refused, everything is as it was. If the old station cannot be made again, there is no
+/// station: SessionState::set_unavailable(). No failure ends the thread; without memory a change is refused.
+class SessionWorker {
+ public:
+  /// Makes the first station, then starts the thread.
+  /// @param settings, clock, state, queue  outlive the worker
+  /// @throws as Session
+  SessionWorker(const SessionSettings& settings, const Clock& clock, SessionState& state,
+                CommandQueue& queue);
+  SessionWorker(const SessionWorker&) = delete;
+  SessionWorker& operator=(const SessionWorker&) = delete;
+  ~SessionWorker();  ///< end()
+
+  /// Ends the queue, waits for the change being made, and closes the device of a calibration.
+  void end() noexcept;
+
+ private:
+  void run() noexcept;
+  /// Publishes the command that is being made. @param command  null: none
+  /// @returns false if there is no memory for it
+  [[nodiscard]] bool publish_busy(const Command* command) noexcept;
+  void make(Command& command) noexcept;
+  [[nodiscard]] bool make_together(Command& command) noexcept;
+
+  // Each makes one action. They throw if it is refused.
+  void apply(const SetValues& set);
+  void apply(const LoadScene& load);
+  void apply(const SelectSource& select);
+  void apply(const StepCalibration& calibration);
+  void apply(const MakeStation& again);
+
+  /// Calls build_station() beside a station that runs. @throws as that; also as check_watchdog() if one runs
+  [[nodiscard]] StationBuild built(const StationPlan& plan, SceneFile file) const;
+  /// @returns the file of the plan's scene as it was read last; reads it if there was no station yet. Only
+  /// LoadScene and a start after there was no station read it again.
+  [[nodiscard]] SceneFile file_of_plan() const;
+  void exchange_object(Station& station, const StationPlan& next);
+  void switch_to(const StationPlan& next, SceneFile file);
+  void go_back();
+  void take_over(StationBuild& build);
+
+  void refuse_while_calibrating() const;
+  void begin_wizard();
+  void write_wizard();
+  void leave_wizard(const StationPlan& next);
+  void update_wizard() noexcept;
+  void publish_wizard();
+
+  const SessionSettings& settings_;
+  const Clock& clock_;
+  SessionState& state_;
+  CommandQueue& queue_;
+  StationPlan plan_;
+  std::optional<SceneFile> file_;  ///< the scene's file, as read for the newest station; none before
+  SceneDescription scene_;         ///< of the running station, after changes on their way
+  std::shared_ptr<const HapticModel> model_;  ///< of the running station, after changes on their way
+  std::string patient_;  ///< SafetySettings::patient; once stated, it holds for every later station
+  CalibrationWizard wizard_;
+  std::thread thread_;
+};
+
+}  // namespace phalanx
