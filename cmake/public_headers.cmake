@@ -63,7 +63,6 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     scene/resolved_scene.h
     scene/scene.h
     scene/scene_error.h
-    station/assemble.h
     station/deadline_statistics.h
     station/histogram.h
     station/history.h
@@ -75,4 +74,5 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     station/session.h
     station/session_statistics.h
     station/station.h
+    station/station_model.h
     station/station_view.h)

@@ -8,8 +8,8 @@
 
 #include "my_device.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/station/assemble.h"
 #include "phalanx/station/station.h"
+#include "phalanx/station/station_model.h"
 
 namespace {
 

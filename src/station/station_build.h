@@ -8,8 +8,8 @@
 
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/scene/scene_keys.h"
-#include "phalanx/station/assemble.h"
 #include "phalanx/station/session.h"
+#include "phalanx/station/station_model.h"
 
 namespace phalanx {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The session: it keeps a station running while scene, object, hand, rate and device change.
 //
-// Any thread asks for a change, and command_queue.h holds it. The worker's thread (session_worker.h) makes it.
-// The owner's thread calls Session::poll(), which answers. The three share session_state.h.
+// Any thread asks for a change, which waits in a CommandQueue. The worker's thread makes it (SessionWorker).
+// The owner's thread calls Session::poll(), which answers. They share a SessionState. Their headers are in
+// src/station.
 #pragma once
 
 #include <cstdint>
@@ -58,8 +59,8 @@ struct SessionGeometry {
   double rate_hz = 0.0;
 };
 
-/// State of a session that seldom changes. Each change publishes a new SessionInfo; a reader keeps the one that
-/// it holds.
+/// State of a session that seldom changes. Each change publishes a new SessionInfo; a reader keeps the one
+/// that it holds.
 struct SessionInfo {
   std::uint64_t revision = 0;
   std::string scene;
@@ -87,8 +88,8 @@ struct ChangeOutcome {
   bool overtaken = false;  ///< newer values of all its keys came before it was tried; it was not made
 };
 
-/// Keeper of one running station. Any thread asks for changes. The session's worker thread makes them, one after
-/// the other. The owner's thread calls poll(), which answers them.
+/// Session of one device with a running station. Any thread asks for changes. The worker's thread makes them,
+/// one after the other. The owner's thread calls poll(), which answers them.
 ///
 /// If a change is refused, everything stays as it was. If the old station cannot be made again either (the
 /// device does not open, for example), there is none until reset() or another change. A station that has to

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a scene and a device to everything that a Station needs.
+// From a scene to the model, the settings and the simulated device of a Station.
 #pragma once
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/simulation/simulated_device.h"
@@ -24,6 +23,8 @@ struct StationModel {
   HapticParameters parameters;
   SafetySettings safety;
 };
+
+/// Makes the model, the parameters and the safety settings of a scene. Set-up only.
 /// @param clinician  see make_safety_settings()
 /// @throws SceneError or std::invalid_argument: the scene, or a limit that a station does not allow.
 [[nodiscard]] StationModel make_station_model(const SceneDescription& scene, const std::string& clinician);

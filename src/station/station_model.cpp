@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/assemble.h"
+#include "phalanx/station/station_model.h"
 
 #include <utility>
 
