@@ -9,6 +9,7 @@
 #include "peer_clearance.h"
 #include "peer_engine.h"
 #include "peer_motion.h"
+#include "phalanx/contact/gdp.h"
 #include "phalanx/step/haptic_step.h"
 
 namespace phalanx::bench {

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "phalanx/contact/gdp.h"
 #include "phalanx/step/haptic_step.h"
 
 namespace phalanx::bench {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "contact/feature_pairs.h"
+#include "phalanx/contact/object_tree.h"
 #include "phalanx/contact/triangle_distance.h"
 
 namespace phalanx {
@@ -105,14 +106,15 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
     Vec3 foot;
     double apart;  // distance of the foot from the contact [m]
   };
+  const ObjectTree& tree = object.tree();
   const auto place_on = [&](int position) {
-    const Corners& t = object.tree().corners(position);
+    const Corners& t = tree.corners(position);
     const Vec3 w = barycentric(t, contact);
     const Vec3 foot = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
     return Place{w, foot, (foot - contact).norm()};
   };
   const auto normal_on = [&](int position, const Place& place) {
-    const Vec3 normal = object.normal_at(object.tree().source(position), place.weight);
+    const Vec3 normal = object.normal_at(tree.source(position), place.weight);
     return normal.dot(n_c) < 0.0 ? Vec3(-normal) : normal;  // a sheet is met from both sides
   };
   if (tied.begin() == tied.end()) return n_c;
@@ -138,8 +140,8 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
     const double share = clamp01(1.0 - (place.apart - main_place.apart) / (kEdgeBand + main_place.apart));
     add(normal_on(position, place), share);
 
-    const int open = object.open_edges(object.tree().source(position));
-    const Corners& corners = object.tree().corners(position);
+    const int open = object.open_edges(tree.source(position));
+    const Corners& corners = tree.corners(position);
     for (std::size_t k = 0; k < 3; ++k) {
       if ((open >> k & 1) == 0) continue;
       const Vec3 edge = corners[(k + 1) % 3] - corners[k];

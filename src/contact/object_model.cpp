@@ -5,29 +5,62 @@
 #include <string>
 #include <utility>
 
+#include "phalanx/contact/compact_normals.h"
+#include "phalanx/contact/object_tree.h"
+
 namespace phalanx {
 
-ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) : mesh_(std::move(mesh)) {
-  check_mesh(mesh_, "object");
+struct ObjectModel::Parts {
+  TriangleMesh mesh;
+  ObjectTree tree;
+  CompactNormals normals;
+};
+
+namespace {
+
+/// Returns the mesh.
+/// @throws std::invalid_argument as ObjectModel
+TriangleMesh checked(TriangleMesh mesh) {
+  check_mesh(mesh, "object");
   // Farther out, squares and products lose the micrometres that a contact needs.
   constexpr double kFarthest = 1e4;
-  for (const Vec3& v : mesh_.vertices) {
+  for (const Vec3& v : mesh.vertices) {
     if (v.cwiseAbs().maxCoeff() > kFarthest) {
       throw std::invalid_argument(
           "object: a vertex is " + std::to_string(v.cwiseAbs().maxCoeff()) +
           " m from the world's origin, more than 10 km; give the object's size (size_mm)");
     }
   }
-  tree_ = ObjectTree(mesh_);
-  normals_ = CompactNormals(surface_normals(mesh_, crease_angle));
+  return mesh;
 }
 
+}  // namespace
+
+ObjectModel::ObjectModel() : parts_(std::make_shared<const Parts>()) {}
+
+ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) {
+  auto parts = std::make_shared<Parts>();
+  parts->mesh = checked(std::move(mesh));
+  parts->tree = ObjectTree(parts->mesh);
+  parts->normals = CompactNormals(surface_normals(parts->mesh, crease_angle));
+  parts_ = std::move(parts);
+}
+
+const TriangleMesh& ObjectModel::mesh() const noexcept { return parts_->mesh; }
+
+int ObjectModel::triangle_count() const noexcept { return static_cast<int>(parts_->mesh.triangles.size()); }
+
+const ObjectTree& ObjectModel::tree() const noexcept { return parts_->tree; }
+
 Vec3 ObjectModel::normal_at(int triangle, const Vec3& weight) const noexcept {
-  const Vec3 first = normals_.normal(triangle, 0);
+  const CompactNormals& normals = parts_->normals;
+  const Vec3 first = normals.normal(triangle, 0);
   const Vec3 sum =
-      weight[0] * first + weight[1] * normals_.normal(triangle, 1) + weight[2] * normals_.normal(triangle, 2);
+      weight[0] * first + weight[1] * normals.normal(triangle, 1) + weight[2] * normals.normal(triangle, 2);
   const double length = sum.norm();
   return length > 1e-9 ? Vec3(sum / length) : first;
 }
+
+int ObjectModel::open_edges(int triangle) const noexcept { return parts_->normals.open_edges(triangle); }
 
 }  // namespace phalanx

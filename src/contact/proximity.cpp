@@ -127,6 +127,7 @@ double distance_of_admitted(const NearPairs& pairs, double cap, const Lead& lead
 ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, const NearPairs& pairs,
                       const Lead& lead, double least) noexcept {
   ContactPatch patch{.distance = least, .lead = lead.at, .lead_direction = lead.direction};
+  const ObjectTree& tree = object.tree();
   const double limit = least + kPatchBand;
   MeanDirection direction(std::sqrt(squared(limit) - squared(least)));
   TiedTriangles tied;
@@ -137,7 +138,7 @@ ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, c
     if (!lead.admits(n, closest.on_a)) return;
     Corners corners = segment.tree.corners(triangle);
     for (Vec3& x : corners) x = segment.X_WS * x;
-    TiedRegion region = tied_region(corners, object.tree().corners(slot), closest, limit, kPatchBand);
+    TiedRegion region = tied_region(corners, tree.corners(slot), closest, limit, kPatchBand);
     region.weight *= (limit - std::sqrt(closest.squared)) / kPatchBand;
     patch.on_segment += region.weight * region.on_a;
     patch.on_object += region.weight * region.on_b;
@@ -177,9 +178,10 @@ double distance_bound(const PlacedSegment& segment, const ObjectTree& object, do
 ContactPatch contact_patch(const PlacedSegment& segment, const ObjectModel& object, double cap,
                            const SegmentMotion* motion) noexcept {
   // Without a motion every pair counts, and only the band above the nearest one need be listed.
-  const double nearest = motion == nullptr ? distance(segment, object.tree(), cap) : cap;
+  const ObjectTree& tree = object.tree();
+  const double nearest = motion == nullptr ? distance(segment, tree, cap) : cap;
   if (motion == nullptr && !(nearest < cap)) return {.distance = cap};
-  const NearPairs pairs(segment, object.tree(), squared(nearest + kPatchBand));
+  const NearPairs pairs(segment, tree, squared(nearest + kPatchBand));
   const Lead lead = motion == nullptr ? Lead{} : find_lead(pairs, cap, *motion);
   const double least = motion == nullptr ? nearest : distance_of_admitted(pairs, cap, lead);
   if (!(least < cap)) return {.distance = cap};

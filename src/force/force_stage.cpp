@@ -189,14 +189,6 @@ Status limited_torque(const LimitParameters& limits, double period, double wante
 
 }  // namespace
 
-void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
-                 JointArray& torque) noexcept {
-  for (int i = 0; i < joints_that_move(k); ++i) {
-    const JointAxis& joint = pose.joint[idx(i)];
-    torque[idx(joint_index(digit, i))] += joint.axis.dot((p_W - joint.centre).cross(f_W));
-  }
-}
-
 Status compute_command(const HapticParameters& parameters, const GdpState& contacts, const HandPoses& hcp,
                        bool stale, ForceState& state) noexcept {
   Status status = Status::kOk;

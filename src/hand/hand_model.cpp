@@ -152,4 +152,12 @@ PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noex
   return J;
 }
 
+void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
+                 JointArray& torque) noexcept {
+  for (int i = 0; i < joints_that_move(k); ++i) {
+    const JointAxis& joint = pose.joint[idx(i)];
+    torque[idx(joint_index(digit, i))] += joint.axis.dot((p_W - joint.centre).cross(f_W));
+  }
+}
+
 }  // namespace phalanx

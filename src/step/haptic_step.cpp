@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/step/haptic_step.h"
 
+#include <utility>
+
+#include "phalanx/contact/gdp.h"
+#include "phalanx/force/force_stage.h"
+#include "phalanx/step/sample_guard.h"
 #include "step/check_parameters.h"
 
 namespace phalanx {
 namespace {
 
 ContactModel contact_model(const HapticModel& model, const HapticParameters& parameters) noexcept {
-  return {model.hand, model.trees, model.object, parameters.contact};
+  return {model.hand, model.trees(), model.object, parameters.contact};
 }
 
 /// @throws as check_parameters(). @returns its argument
@@ -65,24 +70,46 @@ void record(const HapticModel& model, const StabiliserParameters& stabiliser, do
 
 }  // namespace
 
+HapticModel::HapticModel(HandModel hand_model, ObjectModel object_model)
+    : hand(std::move(hand_model)),
+      object(std::move(object_model)),
+      trees_(std::make_unique<const SegmentTrees>(make_segment_trees(hand))) {}
+
+HapticModel::HapticModel(HapticModel&&) noexcept = default;
+HapticModel& HapticModel::operator=(HapticModel&&) noexcept = default;
+HapticModel::~HapticModel() = default;
+
+struct HapticState::Stages {
+  Stages(const HapticModel& model, const HapticParameters& parameters)
+      : guard(model.hand.parameters().open_angle), gdp(contact_model(model, parameters)) {}
+
+  SampleGuard guard;
+  HandPoses hcp;
+  GdpState gdp;
+  ForceState force;
+};
+
 HapticState::HapticState(const HapticModel& model, const HapticParameters& parameters)
-    : guard_(model.hand.parameters().open_angle), gdp_(contact_model(model, checked(parameters))) {
-  model.hand.poses(model.hand.parameters().open_angle, hcp_);
-  record(model, parameters.stabiliser, 0.0, hcp_, gdp_, force_, Status::kOk, snapshot_);
+    : stages_(std::make_unique<Stages>(model, checked(parameters))) {
+  model.hand.poses(model.hand.parameters().open_angle, stages_->hcp);
+  record(model, parameters.stabiliser, 0.0, stages_->hcp, stages_->gdp, stages_->force, Status::kOk,
+         snapshot_);
   snapshot_.tick = 0;
 }
 
+HapticState::HapticState(HapticState&&) noexcept = default;
+HapticState& HapticState::operator=(HapticState&&) noexcept = default;
+HapticState::~HapticState() = default;
+
 Status step(const HapticModel& model, const HapticParameters& parameters, const Sample& sample,
             HapticState& state) noexcept {
-  Status status =
-      state.guard_.accept(sample, model.hand.parameters(), parameters.limits, parameters.period());
+  auto& [guard, hcp, gdp, force] = *state.stages_;
+  Status status = guard.accept(sample, model.hand.parameters(), parameters.limits, parameters.period());
   pass_measured(sample, status, state.snapshot_);
-  model.hand.poses(state.guard_.angle(), state.hcp_);
-  status |= advance_gdp(contact_model(model, parameters), state.guard_.angle(), state.hcp_,
-                        state.guard_.measured(), state.gdp_);
-  status |= compute_command(parameters, state.gdp_, state.hcp_, state.guard_.stale(), state.force_);
-  record(model, parameters.stabiliser, state.guard_.time_s(), state.hcp_, state.gdp_, state.force_, status,
-         state.snapshot_);
+  model.hand.poses(guard.angle(), hcp);
+  status |= advance_gdp(contact_model(model, parameters), guard.angle(), hcp, guard.measured(), gdp);
+  status |= compute_command(parameters, gdp, hcp, guard.stale(), force);
+  record(model, parameters.stabiliser, guard.time_s(), hcp, gdp, force, status, state.snapshot_);
   return status;
 }
 

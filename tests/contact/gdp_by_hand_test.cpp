@@ -77,7 +77,7 @@ class Paper {
  public:
   explicit Paper(const test::Setup& model)
       : model_(model),
-        contact_{model.hand, model.trees, model.object, model.parameters.contact},
+        contact_{model.hand, model.trees(), model.object, model.parameters.contact},
         state_(contact_) {}
 
   const GdpState& tick(const JointArray& hcp) {
@@ -291,7 +291,7 @@ TEST(GdpByHand, AfterASearchThatGaveUpTheFingerGoesOn) {
 // of height there.)
 TEST(GdpByHand, ARecordOfASearchThatGaveUpIsAContactWithinTheMargin) {
   const test::Setup model = paper_model(plate(f1(0.5), y1(0.5)));
-  const ContactModel contact{model.hand, model.trees, model.object, model.parameters.contact};
+  const ContactModel contact{model.hand, model.trees(), model.object, model.parameters.contact};
   for (const double beyond : {10e-6, -10e-6}) {
     for (const bool gave_up : {true, false}) {
       SCOPED_TRACE(::testing::Message() << beyond << (gave_up ? " given up" : ""));

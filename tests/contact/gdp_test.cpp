@@ -37,7 +37,7 @@ test::Setup model_of(const TriangleMesh& object) {
 TriangleMesh floor_below() { return moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0)); }
 
 double clearance(const test::Setup& model, const Snapshot& s, int segment) {
-  const SegmentTree& tree = model.trees[static_cast<std::size_t>(segment)];
+  const SegmentTree& tree = model.trees()[static_cast<std::size_t>(segment)];
   SearchScratch scratch(tree);
   return distance({tree, s.gdp_pose[static_cast<std::size_t>(segment)], scratch}, model.object.tree(), 1e-3);
 }
@@ -53,8 +53,8 @@ double behind(const Snapshot& s, int segment) {
 bool goes_through(const test::Setup& model, const Snapshot& s, int digit) {
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     const std::size_t segment = static_cast<std::size_t>(segment_index(digit, k));
-    SearchScratch scratch(model.trees[segment]);
-    if (distance({model.trees[segment], s.hcp_pose[segment], scratch}, model.object.tree(), 1e-6) == 0.0)
+    SearchScratch scratch(model.trees()[segment]);
+    if (distance({model.trees()[segment], s.hcp_pose[segment], scratch}, model.object.tree(), 1e-6) == 0.0)
       return true;
   }
   return false;
@@ -289,7 +289,7 @@ TEST(Gdp, ThePalmsContactFacesThePalmAndStandsInItsFrame) {
   const TriangleMesh box =
       moved(make_box(Vec3(0.02, 0.02, 0.02), 12), X * at(lowest.x(), lowest.y() - 0.01 - 30e-6, lowest.z()));
   const test::Setup model(test::simple_hand(Handedness::kRight, X_WH), ObjectModel(box));
-  const GdpState state({model.hand, model.trees, model.object, model.parameters.contact});
+  const GdpState state({model.hand, model.trees(), model.object, model.parameters.contact});
   const ContactRecord& palm = state.record[kPalm];
   ASSERT_TRUE(palm.active);
   EXPECT_GT(palm.n_c.dot(X.R * Vec3::UnitY()), 0.99);
@@ -313,8 +313,9 @@ double index_clearance(const test::Setup& model, const JointArray& angle) {
   double least = 1e-3;
   for (int k = 1; k < kSegmentsPerDigit; ++k) {
     const std::size_t s = static_cast<std::size_t>(segment_index(1, k));
-    SearchScratch scratch(model.trees[s]);
-    const PlacedSegment placed{model.trees[s], poses.digit[1].segment[static_cast<std::size_t>(k)], scratch};
+    SearchScratch scratch(model.trees()[s]);
+    const PlacedSegment placed{model.trees()[s], poses.digit[1].segment[static_cast<std::size_t>(k)],
+                               scratch};
     least = std::min(least, distance(placed, model.object.tree(), 1e-3));
   }
   return least;

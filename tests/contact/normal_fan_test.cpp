@@ -336,7 +336,7 @@ TEST(ForceNormal, IsWithin30DegreesOfTheSeparationDirectionOnAnySoupOfTriangles)
                                      .heading = Vec3::UnitY(),
                                      .reach = 0.03});
     const test::Setup& model = finger.model();
-    const ContactModel contact{model.hand, model.trees, model.object, model.parameters.contact};
+    const ContactModel contact{model.hand, model.trees(), model.object, model.parameters.contact};
     GdpState state(contact);
     for (int i = 0; i <= 60; ++i) {
       const JointArray angle = test::LoneFinger::pose(start + 0.01 * i);

@@ -24,6 +24,7 @@
 
 #include "phalanx/contact/gdp.h"
 #include "phalanx/core/index.h"
+#include "phalanx/force/force_stage.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
@@ -113,7 +114,7 @@ class Beside {
  public:
   Beside(const test::Setup& model, From from)
       : model_(model),
-        contact_{model.hand, model.trees, model.object, model.parameters.contact},
+        contact_{model.hand, model.trees(), model.object, model.parameters.contact},
         from_(from),
         reference_(model.hand, model.object.mesh(), model.parameters.contact),
         gdp_(contact_),

@@ -66,7 +66,7 @@ class Player {
   Player(const HapticModel& model, const HapticParameters& parameters)
       : model_(model),
         law_(parameters.force),
-        contact_{model.hand, model.trees, model.object, parameters.contact},
+        contact_{model.hand, model.trees(), model.object, parameters.contact},
         gdp_(contact_),
         object_(model.object.mesh()),
         containment_(model.object.mesh()) {
@@ -173,7 +173,7 @@ std::optional<HapticModel> clear_of_the_open_hand(SceneDescription scene) {
     scene.objects.front().pose.p = at + Vec3(0.0, 2e-3 * n, 0.0);
     HapticModel model = build_model(scene);
     try {
-      const GdpState state({model.hand, model.trees, model.object, scene.parameters.contact});
+      const GdpState state({model.hand, model.trees(), model.object, scene.parameters.contact});
     } catch (const std::invalid_argument&) {
       continue;
     }

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <random>
 
+#include "phalanx/contact/gdp.h"
 #include "phalanx/core/constants.h"
+#include "phalanx/force/force_stage.h"
 #include "phalanx/force/local_wall.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
@@ -143,7 +145,7 @@ TEST(StabiliserStep, AllocatesNothing) {
 class LoneContact {
  public:
   explicit LoneContact(const test::Setup& model)
-      : model_(model), contacts_({model.hand, model.trees, model.object, model.parameters.contact}) {
+      : model_(model), contacts_({model.hand, model.trees(), model.object, model.parameters.contact}) {
     model.hand.poses(JointArray{}, hcp_);
     contacts_.poses = hcp_;
   }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <vector>
+#include <memory>
 
-#include "phalanx/contact/compact_normals.h"
-#include "phalanx/contact/object_tree.h"
+#include "phalanx/core/math.h"
 #include "phalanx/mesh/triangle_mesh.h"
 
 namespace phalanx {
 
+class ObjectTree;
+
 /// All objects that the hand may touch, merged into one triangle mesh in the world, with its search tree and
-/// its normals. Constant.
+/// its normals. Constant; copies share them.
 class ObjectModel {
  public:
-  /// Makes a world without objects.
-  ObjectModel() = default;
+  /// Makes a world without objects. Set-up only.
+  ObjectModel();
 
   /// Builds search tree and normals. Set-up only.
   /// @param mesh          in world frame W [m]
@@ -27,22 +27,23 @@ class ObjectModel {
 
   static constexpr double kDefaultCreaseAngle = 0.523598775598299;  // 30 degrees
 
-  [[nodiscard]] const TriangleMesh& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] const ObjectTree& tree() const noexcept { return tree_; }
-  [[nodiscard]] int triangle_count() const noexcept { return static_cast<int>(mesh_.triangles.size()); }
+  [[nodiscard]] const TriangleMesh& mesh() const noexcept;
+  [[nodiscard]] int triangle_count() const noexcept;
 
   /// Returns the unit surface normal at the point with barycentric coordinates `weight` on a triangle. Where
   /// the corners' normals cancel out it is the first corner's. Real-time.
   [[nodiscard]] Vec3 normal_at(int triangle, const Vec3& weight) const noexcept;
 
   /// Returns the triangle's open edges, which no second face continues: bit k for the edge from corner k to
-  /// the next one (SurfaceNormals::open_edges). Real-time.
-  [[nodiscard]] int open_edges(int triangle) const noexcept { return normals_.open_edges(triangle); }
+  /// the next one. Real-time.
+  [[nodiscard]] int open_edges(int triangle) const noexcept;
+
+  /// Returns the search tree, for the contact search. Real-time.
+  [[nodiscard]] const ObjectTree& tree() const noexcept;
 
  private:
-  TriangleMesh mesh_;
-  ObjectTree tree_;
-  CompactNormals normals_;
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace phalanx

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "phalanx/contact/object_model.h"
+#include "phalanx/contact/object_tree.h"
 #include "phalanx/contact/segment_motion.h"
 #include "phalanx/contact/segment_tree.h"
 

@@ -38,7 +38,7 @@ class SegmentTree {
 };
 
 /// Search trees of all segments.
-using SegmentTrees = std::array<SegmentTree, kSegments>;
+struct SegmentTrees : std::array<SegmentTree, kSegments> {};
 
 /// Memory of a search: lenses and triangles of a segment at the query's pose, placed on first use, and the
 /// pairs found near. Allocated once; one search at a time.

@@ -71,11 +71,4 @@ struct ForceState {
 Status compute_command(const HapticParameters& parameters, const GdpState& contacts, const HandPoses& hcp,
                        bool stale, ForceState& state) noexcept;
 
-/// Adds the torques of one force f_W [N], acting at p_W [m] on the digit's segment k, to `torque` [Nm]:
-///   tau_i = axis_i . ((p - centre_i) x f) = J_i . f
-/// These are the contact's torques on the finger. S1 eq. (3)-(5) print their negative, which balances
-/// the contact. Real-time.
-void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
-                 JointArray& torque) noexcept;
-
 }  // namespace phalanx

@@ -109,6 +109,13 @@ struct PointJacobian {
 /// Returns the Jacobian at the point p_W [m] of the digit's segment k. Real-time: O(1), no allocation.
 [[nodiscard]] PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept;
 
+/// Adds the torques of one force f_W [N], acting at p_W [m] on the digit's segment k, to `torque` [Nm]:
+///   tau_i = axis_i . ((p - centre_i) x f) = J_i . f
+/// For the force of a contact these are its torques on the finger. S1 eq. (3)-(5) print their negative, which
+/// balances the contact. Real-time: O(1), no allocation, lock, throw or I/O.
+void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
+                 JointArray& torque) noexcept;
+
 /// Returns tapered capsules for the digits and a rounded slab for the palm, from the lengths and breadths in
 /// `parameters`. The whole hand has about `triangles` triangles. Set-up only.
 /// @throws std::invalid_argument if `triangles` is below 800 or above 2,000,000

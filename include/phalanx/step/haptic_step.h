@@ -2,54 +2,61 @@
 // One constant model, its parameters, one preallocated state, one step().
 #pragma once
 
-#include <utility>
+#include <memory>
 
-#include "phalanx/contact/gdp.h"
 #include "phalanx/contact/object_model.h"
-#include "phalanx/force/force_stage.h"
+#include "phalanx/core/status.h"
 #include "phalanx/force/haptic_parameters.h"
 #include "phalanx/hand/hand_model.h"
-#include "phalanx/step/sample_guard.h"
 #include "phalanx/step/snapshot.h"
 
 namespace phalanx {
 
-/// The geometry that a step works on: the hand, what it meets, and the search trees of the hand. Constant,
-/// and shared by all who step it: it can be moved, but not copied.
-struct HapticModel {
-  /// Makes the trees. Set-up only.
-  HapticModel(HandModel hand_model, ObjectModel object_model)
-      : hand(std::move(hand_model)), object(std::move(object_model)), trees(make_segment_trees(hand)) {}
+struct SegmentTrees;
 
-  HapticModel(HapticModel&&) noexcept = default;
-  HapticModel& operator=(HapticModel&&) noexcept = default;
+/// Geometry that a step works on: the hand, the objects, and the search trees of both. Constant. Many states
+/// can share one model; it can be moved, but not copied.
+struct HapticModel {
+  /// Makes the trees of the hand. Set-up only.
+  HapticModel(HandModel hand_model, ObjectModel object_model);
+
+  HapticModel(HapticModel&&) noexcept;
+  HapticModel& operator=(HapticModel&&) noexcept;
   HapticModel(const HapticModel&) = delete;
   HapticModel& operator=(const HapticModel&) = delete;
-  ~HapticModel() = default;
+  ~HapticModel();
 
   HandModel hand;
   ObjectModel object;
-  SegmentTrees trees;
+
+  /// Returns the search trees of the hand, for the contact search. Real-time.
+  [[nodiscard]] const SegmentTrees& trees() const noexcept { return *trees_; }
+
+ private:
+  std::unique_ptr<const SegmentTrees> trees_;
 };
 
-/// What a step remembers for the next one. Sized at construction; step() allocates nothing.
+/// State that one step leaves for the next. All its memory is allocated at construction.
 class HapticState {
  public:
-  /// The open hand, no contact, zero torque.
+  /// Starts at the open hand, without contact, at zero torque. Set-up only.
   /// @throws std::invalid_argument if the open hand or the palm touches the object, or a parameter is out of
   /// range.
   HapticState(const HapticModel& model, const HapticParameters& parameters);
+  HapticState(HapticState&&) noexcept;
+  HapticState& operator=(HapticState&&) noexcept;
+  HapticState(const HapticState&) = delete;
+  HapticState& operator=(const HapticState&) = delete;
+  ~HapticState();
 
-  /// The result of the last step.
+  /// Returns the result of the last step.
   [[nodiscard]] const Snapshot& snapshot() const noexcept { return snapshot_; }
 
  private:
   friend Status step(const HapticModel&, const HapticParameters&, const Sample&, HapticState&) noexcept;
 
-  SampleGuard guard_;
-  HandPoses hcp_;
-  GdpState gdp_;
-  ForceState force_;
+  struct Stages;  ///< states of the sample guard, the contact search and the force stage
+  std::unique_ptr<Stages> stages_;
   Snapshot snapshot_;
 };
 
