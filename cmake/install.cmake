@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where: program, its completion in shells, page, public headers, libraries, assets, scenes, studies, documents, the
 # link's reference in C for firmware, and the package that find_package(phalanx) reads.
-# The two libraries install themselves into the export set, see phalanx_library() in modules.cmake.
+# The libraries install themselves into their export sets, see phalanx_library() in modules.cmake.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/phalanx)
@@ -15,7 +15,7 @@ endforeach()
 install(FILES ${completion}/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME phalanx)
 install(FILES ${completion}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _phalanx)
 include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
-foreach(header ${PHALANX_PUBLIC_HEADERS} ${PHALANX_STATION_PUBLIC_HEADERS})
+foreach(header ${PHALANX_PUBLIC_HEADERS} ${PHALANX_IMPORT_PUBLIC_HEADERS} ${PHALANX_STATION_PUBLIC_HEADERS})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES include/phalanx/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/phalanx/${folder})
 endforeach()
@@ -28,7 +28,9 @@ install(DIRECTORY web/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx/web OPT
 install(FILES src/device/link/phalanx_link.c DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx/link)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 install(FILES README.md CHANGELOG.md LICENSE NOTICE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(EXPORT phalanxTargets NAMESPACE phalanx:: DESTINATION ${package_dir})
+foreach(component phalanx import station)
+  install(EXPORT phalanx_${component} FILE phalanx_${component}Targets.cmake NAMESPACE phalanx:: DESTINATION ${package_dir})
+endforeach()
 
 configure_package_config_file(cmake/phalanxConfig.cmake.in ${CMAKE_BINARY_DIR}/phalanxConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/phalanxConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# phalanx_module(NAME [COLD | HOT] SOURCES ... [LIBRARIES external ...] [PRECOMPILED header])
+# phalanx_module(NAME [COLD | HOT] SOURCES ... [LIBRARIES external ...] [HEADERS external ...] [PRECOMPILED header])
 # One folder of src/ as an object library `phalanx_NAME`, so that its tests link it and what it uses and nothing else.
+# LIBRARIES must be linked wherever the module is; HEADERS have only headers, that the module alone includes.
 # COLD is what no tick and no simulation spends its time in, see phalanx_cold_options in compile_options.cmake. HOT is what a sanitized tree
 # spends its time in, see phalanx_hot_options.
 # PRECOMPILED is a header of its own to compile first, instead of the one that the other modules share.
 function(phalanx_module name)
-  cmake_parse_arguments(ARG "COLD;HOT" "PRECOMPILED" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;HOT" "PRECOMPILED" "SOURCES;LIBRARIES;HEADERS" ${ARGN})
   add_library(phalanx_${name} OBJECT ${ARG_SOURCES})
   target_include_directories(phalanx_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(phalanx_${name} PUBLIC Eigen3::Eigen PRIVATE phalanx_options ${ARG_LIBRARIES})
+  target_link_libraries(phalanx_${name} PUBLIC Eigen3::Eigen PRIVATE phalanx_options ${ARG_LIBRARIES} ${ARG_HEADERS})
   if(ARG_COLD)
     target_link_libraries(phalanx_${name} PRIVATE phalanx_cold_options)
   endif()
@@ -26,7 +27,8 @@ function(phalanx_module name)
 endfunction()
 
 # phalanx_library(TARGET OUTPUT file EXPORT name MODULES module ... [USES TARGET ...])
-# The installed static library phalanx::name (lib<file>.a) out of the modules' objects and the libraries that they need.
+# The installed static library phalanx::name (lib<file>.a) out of the modules' objects and the libraries that they need. It is the component
+# `name` of the package, and has an export set of its own.
 function(phalanx_library target)
   cmake_parse_arguments(ARG "" "OUTPUT;EXPORT" "MODULES;USES" ${ARGN})
   add_library(${target} STATIC)
@@ -43,5 +45,5 @@ function(phalanx_library target)
   endforeach()
   list(REMOVE_DUPLICATES libraries)
   target_link_libraries(${target} PUBLIC ${ARG_USES} Eigen3::Eigen PRIVATE ${libraries})
-  install(TARGETS ${target} EXPORT phalanxTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${target} EXPORT phalanx_${ARG_EXPORT} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()

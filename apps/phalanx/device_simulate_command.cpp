@@ -20,7 +20,7 @@
 #include "phalanx/device/link/transport.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene_file.h"
-#include "phalanx/station/station_model.h"
+#include "phalanx/station/resolved_station.h"
 #include "served_controller.h"
 #include "usage.h"
 

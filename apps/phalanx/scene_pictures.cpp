@@ -12,6 +12,7 @@
 #include "phalanx/figures/picture_moment.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/build_model.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/study/simulate.h"
 #include "progress.h"
 

@@ -16,6 +16,7 @@
 #include "error_line.h"
 #include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/study/simulate.h"
 #include "progress.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "phalanx/contact/compact_normals.h"
+#include "contact/compact_normals.h"
 #include "phalanx/contact/object_tree.h"
 
 namespace phalanx {

@@ -11,6 +11,7 @@
 #include "phalanx/record/made.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_file.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/study/simulate.h"
 #include "record/made_json.h"
 

@@ -9,6 +9,7 @@
 #include "phalanx/scene/mapping_file.h"
 #include "phalanx/scene/motion_file.h"
 #include "phalanx/scene/patient_file.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "scene/object_kinds.h"
 
 namespace phalanx {

@@ -3,8 +3,9 @@
 
 #include <utility>
 
-#include "phalanx/scene/build_model.h"
 #include "phalanx/simulation/press_plan.h"
+#include "phalanx/station/resolved_station.h"
+#include "phalanx/station/station.h"
 
 namespace phalanx {
 

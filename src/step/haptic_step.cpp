@@ -5,8 +5,8 @@
 
 #include "phalanx/contact/gdp.h"
 #include "phalanx/force/force_stage.h"
-#include "phalanx/step/sample_guard.h"
 #include "step/check_parameters.h"
+#include "step/sample_guard.h"
 
 namespace phalanx {
 namespace {

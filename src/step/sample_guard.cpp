@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/step/sample_guard.h"
+#include "step/sample_guard.h"
 
 #include <algorithm>
 #include <cmath>

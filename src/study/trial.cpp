@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/study/trial.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/contact/compact_normals.h"
+#include "contact/compact_normals.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 
 #include "phalanx/core/random.h"
 #include "phalanx/scene/build_model.h"
-#include "phalanx/station/station_model.h"
+#include "phalanx/station/resolved_station.h"
 #include "station/watched_device.h"
 #include "support/count_allocations.h"
 #include "support/sanitized.h"

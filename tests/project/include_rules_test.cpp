@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which folder may include which: the table of docs/architecture.md, held against every #include.
+// Which folder may include which: the table of docs/architecture.md, held against every #include. And what
+// the installed headers may include and name.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <regex>
 #include <set>
@@ -192,25 +194,64 @@ std::set<std::string> installed(const std::string& name) {
   return headers;
 }
 
+// The lists of the libraries; each library uses those before it.
+constexpr std::array kLibraries = {"PHALANX_PUBLIC_HEADERS", "PHALANX_IMPORT_PUBLIC_HEADERS",
+                                   "PHALANX_STATION_PUBLIC_HEADERS"};
+
+std::string source_of(const std::string& header) { return "include/phalanx/" + header; }
+
+std::set<std::string> all_installed() {
+  std::set<std::string> all;
+  for (const char* library : kLibraries) all.merge(installed(library));
+  return all;
+}
+
 TEST(InstalledHeaders, IncludeOnlyInstalledHeaders) {
-  const auto haptics = installed("PHALANX_PUBLIC_HEADERS");
-  const auto station = installed("PHALANX_STATION_PUBLIC_HEADERS");
-  const std::string base = "include/phalanx/";
-  for (const auto* list : {&haptics, &station}) {
-    ASSERT_GT(list->size(), 20U);
-    for (const std::string& header : *list)
-      EXPECT_TRUE(std::filesystem::exists(root() / (base + header))) << header;
-  }
-  for (const auto& include : includes_of_modules()) {
-    const std::string file = include.file.string();
-    if (!file.starts_with(base) || !include.path.starts_with("phalanx/")) continue;
-    const std::string header = file.substr(base.size());
-    const std::string used = include.path.substr(std::string("phalanx/").size());
-    if (haptics.contains(header)) {
-      EXPECT_TRUE(haptics.contains(used)) << where(include);
+  const auto includes = includes_of_modules();
+  std::set<std::string> usable;
+  for (const char* library : kLibraries) {
+    const auto headers = installed(library);
+    ASSERT_FALSE(headers.empty()) << library;
+    std::set<std::string> files;
+    for (const std::string& header : headers) {
+      EXPECT_TRUE(std::filesystem::exists(root() / source_of(header))) << header;
+      files.insert(source_of(header));
+      usable.insert("phalanx/" + header);
     }
-    if (station.contains(header)) {
-      EXPECT_TRUE(haptics.contains(used) || station.contains(used)) << where(include);
+    for (const auto& include : includes) {
+      if (!files.contains(include.file.string())) continue;
+      EXPECT_TRUE(usable.contains(include.path))
+          << where(include) << ", which a user of " << library << " does not have";
+    }
+  }
+}
+
+TEST(InstalledHeaders, NeedNoPackageButEigen) {
+  static const std::regex foreign(R"re(\s*#\s*include\s*<([^>]+)>.*)re");
+  static const std::regex allowed("[a-z_]+|std[a-z]+\\.h|Eigen/[A-Za-z]+");  // [a-z_]+: the C++ library's
+  for (const std::string& header : all_installed()) {
+    for (const std::string& line : lines_of(source_of(header))) {
+      std::smatch match;
+      if (!std::regex_match(line, match, foreign)) continue;
+      EXPECT_TRUE(std::regex_match(match[1].str(), allowed)) << header << ": " << line;
+    }
+  }
+}
+
+TEST(InstalledHeaders, NameOnlyInstalledHeadersInTheirComments) {
+  static const std::regex name(R"([A-Za-z0-9_/]+\.h\b)");
+  static const std::regex directive(R"(\s*#\s*include\b.*)");
+  const auto all = all_installed();
+  const auto is_installed = [&](const std::string& named) {
+    return std::any_of(all.begin(), all.end(), [&](const std::string& header) {
+      return ("/phalanx/" + header).ends_with("/" + named);
+    });
+  };
+  for (const std::string& header : all) {
+    for (const std::string& line : lines_of(source_of(header))) {
+      if (std::regex_match(line, directive)) continue;
+      for (std::sregex_iterator at(line.begin(), line.end(), name); at != std::sregex_iterator(); ++at)
+        EXPECT_TRUE(is_installed(at->str())) << header << ": " << line;
     }
   }
 }

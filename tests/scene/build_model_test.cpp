@@ -13,6 +13,7 @@
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/scene/device_file.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene_file.h"
 #include "record/temporary_folder.h"
 #include "support/opened_files.h"

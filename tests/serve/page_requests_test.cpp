@@ -22,7 +22,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
-#include "phalanx/station/station_model.h"
+#include "phalanx/station/resolved_station.h"
 #include "serve/state_message.h"
 #include "station/session_fixture.h"
 

@@ -7,6 +7,7 @@
 
 #include "device/link/controller_thread.h"
 #include "device/opengloves/glove_firmware.h"
+#include "phalanx/station/station_model.h"
 #include "station/session_fixture.h"
 #include "station/small_station.h"
 

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "phalanx/scene/build_model.h"
-#include "phalanx/station/station_model.h"
+#include "phalanx/station/resolved_station.h"
 #include "station/small_station.h"
 #include "station/watched_device.h"
 #include "support/sanitized.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guard by itself: how far an angle may go after a gap, whose clock is believed, which digits are
 // measured.
-#include "phalanx/step/sample_guard.h"
+#include "step/sample_guard.h"
 
 #include <gtest/gtest.h>
 

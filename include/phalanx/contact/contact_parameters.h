@@ -4,7 +4,7 @@
 
 namespace phalanx {
 
-/// Method by which the GDP, the hand that is shown (gdp.h), is found.
+/// Method by which the GDP, the shown hand, is found.
 enum class GdpMethod {
   kContinuous,  ///< first time of contact along the path, docs/architecture.md "The GDP, exactly"
   kTrajectory,  ///< S1 fig. 4 to the letter: sampled test, back through the recorded angles

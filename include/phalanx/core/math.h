@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linear algebra of the whole program: SI units, radians, double precision. The folder `core` holds what
-// every other folder uses: vectors and poses (math.h), unit factors (constants.h), the status bits of a step
-// (status.h), seeded random numbers, suggestions for misspelt names, and threads of lowered priority
-// (give_way.h, nice_thread.h). It includes no other folder.
+// every other folder uses: vectors and poses (math.h), the status bits of a step (status.h), unit factors,
+// seeded random numbers, suggestions for misspelt names, and threads of lowered priority. It includes no
+// other folder.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Status of one step: bits, not text, so that the loop body allocates nothing. GDP is the hand that
-// is shown (contact/gdp.h).
+// Status of one step: bits, not text, so that the loop body allocates nothing. GDP, the graphic display
+// position, is the shown hand (docs/glossary.md).
 #pragma once
 
 #include <array>

@@ -5,10 +5,6 @@
 // A Device gives samples of raw counts and takes commands of joint torques. channel_map.h turns raw counts
 // into joint angles; calibration.h fits its gains and offsets. link/ is the host's side of the link to a
 // controller, with its reference in C. opengloves/ holds the gloves.
-//
-// The simulated exoskeleton consists of the mechanics (plant.h), the motors' force distribution
-// (transmission.h), sensors and delays (simulated_exoskeleton.h), and the controller
-// (simulated_controller.h). A simulated patient (patient.h, press_intent.h) moves it from the inside.
 // motion.h holds recorded and scripted motions.
 #pragma once
 

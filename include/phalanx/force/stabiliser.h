@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Selection of a stabiliser, which keeps the loop through device and finger stable: none, or one of nine
-// methods from the law's force to the force sent. docs/stabilisers.md compares them. S2 is a paper listed in
-// docs/architecture.md; stabiliser_methods.h has the other citations in full.
+// methods from the law's force to the force sent. docs/stabilisers.md compares them and names
+// their sources. S2 is a paper listed in docs/architecture.md.
 #pragma once
 
 #include <numbers>

@@ -58,7 +58,7 @@ struct HandFit {
 ///     that finger are stated. Else the palm is scaled by the common ratio.
 ///   - Breadths follow the same rules with the hand breadth. At a joint between two segments, both have the
 ///     mean of their ratios. At a digit's first joint both have the palm's, so that neighbours keep matching.
-/// This function does not check whether a size is plausible: see anthropometry.h.
+/// This function does not check whether a size is plausible; docs/hands.md has published sizes.
 /// @throws std::invalid_argument if a size is not finite and above 0, or if the hand length leaves no length
 /// for the palm. Set-up only.
 [[nodiscard]] HandFit fit_hand(const HandParameters& base, const HandSize& size);

@@ -3,10 +3,9 @@
 //
 // The folder `hand` turns joint angles into poses of segments:
 // 1. joints.h numbers and names the 20 joints and 16 segments.
-// 2. sensor_mapping.h turns raw sensor values into joint angles.
-// 3. hand_parameters.h holds the numbers of one hand, always of a right one; fit.h scales them to a patient.
-// 4. HandModel (below) computes forward kinematics and Jacobians in the loop.
-// 5. hand_meshes.h and hand_skin.h hold what is shown; anthropometry.h says which sizes are plausible.
+// 2. hand_parameters.h holds the numbers of one hand, always of a right one; fit.h scales them to a patient.
+// 3. HandModel (below) computes forward kinematics and Jacobians in the loop.
+// 4. hand_skin.h holds the skin, which is for display only.
 // S1 and S2 are the papers listed in docs/architecture.md.
 #pragma once
 

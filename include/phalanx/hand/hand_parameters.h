@@ -64,7 +64,7 @@ struct HandParameters {
   PalmShape palm;
   JointArray min_angle{};   ///< range of motion [rad]
   JointArray max_angle{};   ///< range of motion [rad]
-  JointArray open_angle{};  ///< the open hand, where the GDP (contact/gdp.h) starts [rad]
+  JointArray open_angle{};  ///< the open hand, where the shown hand starts [rad]
 
   [[nodiscard]] bool operator==(const HandParameters&) const = default;
 };

@@ -2,7 +2,7 @@
 // Generated objects of daily life and of hand therapy. As the primitives they are closed 2-manifold meshes in
 // metres, z up, without self-intersection or degenerate triangles. Their bounding box is centred at the
 // origin. Vertices are on the named surface to rounding. The named dimensions are exact to 1e-12 m; all
-// others are in proportion to them (src/mesh/shapes/object_shapes.h).
+// others are in proportion to them.
 // `triangles`, 1 to 50,000,000, is the approximate count. From the stated number on it is met within 15 %;
 // below that the result is the coarsest valid solid. "Round from" states the count from which neighbouring
 // triangles of round parts meet at less than 30 degrees. Then normals are interpolated over them, while edges

@@ -27,8 +27,7 @@ namespace phalanx {
 
 /// Makes a hollow mug, open at the top (+z), its handle on the +x side: one closed surface of genus 1.
 /// Diameter and height are the body's outer ones [m]; the body is centred at the origin. Wall, floor,
-/// fillets and handle are in proportion (src/mesh/shapes/mug_shape.h). height from 0.5 to 3 diameters. From
-/// about 300 triangles.
+/// fillets and handle are in proportion. height from 0.5 to 3 diameters. From about 300 triangles.
 [[nodiscard]] TriangleMesh make_mug(double diameter, double height, int triangles);
 
 /// Makes the Utah teapot from Newell's patches (M. E. Newell, PhD thesis, University of Utah, 1975), closed

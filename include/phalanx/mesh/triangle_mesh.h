@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Indexed triangle mesh. The folder `mesh` makes and imports meshes; all of it is set-up and may throw:
 // 1. primitives.h and objects.h generate meshes of exact dimensions.
-// 2. import.h reads mesh files through Assimp, in the isolated process of isolated.h or isolation_helper.h.
-// 3. repair.h repairs the triangles: it welds vertices (weld.h), closes cracks (near_vertices.h,
-//    t_junctions.h) and turns shells outward (shells.h).
-// 4. mesh_report.h reports defects that were found and repaired.
-// 5. decimate.h reduces triangles, and corner_normals.h computes the normals of smooth surfaces.
+// 2. import.h reads mesh files through Assimp, in an isolated process. It repairs the triangles: it welds
+//    vertices, closes cracks and turns shells outward. It can also reduce their number.
+// 3. mesh_report.h reports defects that were found and repaired.
 #pragma once
 
 #include <array>

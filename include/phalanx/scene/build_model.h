@@ -6,7 +6,6 @@
 
 #include "phalanx/device/motion.h"
 #include "phalanx/mesh/triangle_mesh.h"
-#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/step/haptic_step.h"
 
@@ -30,9 +29,6 @@ inline constexpr std::size_t kMostSceneTriangles = 4'000'000;
 /// @throws SceneError or std::invalid_argument: hand file, mesh file, sizes. HapticState's constructor checks
 /// that the open hand does not touch the object. Set-up only.
 [[nodiscard]] HapticModel build_model(const SceneDescription& scene);
-
-/// Builds the model of a resolved scene, whose meshes it takes. It opens no file.
-[[nodiscard]] HapticModel build_model(ResolvedScene scene);
 
 /// Builds the scene's motion: its file, through its mapping if it names one, else the script.
 /// @throws SceneError or std::invalid_argument. Set-up only.

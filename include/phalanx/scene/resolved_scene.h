@@ -9,6 +9,7 @@
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/simulation/patient.h"
+#include "phalanx/step/haptic_step.h"
 
 namespace phalanx {
 
@@ -34,5 +35,9 @@ struct ResolvedScene {
 /// @throws SceneError or std::invalid_argument as load_hand(), make_world_mesh(), load_device(),
 /// load_patient() and build_motion(). Set-up only.
 [[nodiscard]] ResolvedScene resolve(const SceneDescription& description, const ResolveOptions& options);
+
+/// Builds the model of a resolved scene, whose meshes it takes. It opens no file.
+/// @throws std::invalid_argument as HandModel and ObjectModel. Set-up only.
+[[nodiscard]] HapticModel build_model(ResolvedScene scene);
 
 }  // namespace phalanx

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene as its file states it, checked and in SI units: hand, objects, forces, motion.
 //
-// A scene file is TOML. scene_keys.h lists all its keys; every value is checked against that table.
+// A scene file is TOML. docs/scenes.md lists all its keys; every value is checked against that table.
 // load_scene() reads a scene, and build_model.h turns it into the model of step(). The scene names further
-// files: hand_file.h and profile_file.h for the hand, motion_file.h and mapping_file.h for the motion.
-// device_file.h and patient_file.h read the simulated device and patient. All errors are SceneErrors that
-// name the file and line, the value, and the remedy.
+// files: of the hand or a profile, of a motion and its mapping, of the simulated device and patient. All
+// errors are SceneErrors that name the file and line, the value, and the remedy.
 #pragma once
 
 #include <cstdint>
@@ -101,9 +100,9 @@ struct SceneDescription {
   std::vector<ObjectDescription> objects;
   HapticParameters parameters;  ///< "off" clears a limit's flag; for joint_speed it means infinity
   MotionDescription motion;
-  /// Read by load_device(): phalanx/scene/device_file.h
+  /// The simulated device (docs/device-file.md)
   FileWithOverlay device = {.file = "beihang", .overlay = {}, .stated_at = {}};
-  /// Read by load_patient(): phalanx/scene/patient_file.h
+  /// The simulated patient (docs/device-file.md)
   FileWithOverlay patient = {.file = "adult", .overlay = {}, .stated_at = {}};
 };
 

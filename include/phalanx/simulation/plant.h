@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mechanics of exoskeleton and finger: motors, tendons in sheaths, joints, the patient's impedance.
+//
+// The simulated exoskeleton consists of these mechanics, the motors' force distribution (transmission.h),
+// sensors and delays (simulated_exoskeleton.h), and the controller (simulated_controller.h). A simulated
+// patient (patient.h, press_intent.h) moves it from the inside.
 #pragma once
 
 #include <cstddef>

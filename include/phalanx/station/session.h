@@ -15,7 +15,7 @@
 
 #include "phalanx/device/calibration_session.h"
 #include "phalanx/device/clock.h"
-#include "phalanx/hand/hand_meshes.h"
+#include "phalanx/hand/hand_model.h"
 #include "phalanx/hand/hand_skin.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/session_statistics.h"
@@ -34,7 +34,7 @@ enum class HandSource { kDevice, kPatient, kSliders };
 struct SessionSettings {
   std::string scene = "first_touch";    ///< name of a shipped scene, or a file
   Overrides overrides;                  ///< replace values of the scene, until another scene is loaded
-  std::string device = "simulated";     ///< "simulated", "sliders", or an address: open_device.h
+  std::string device = "simulated";     ///< "simulated", "sliders", or an address (docs/device.md)
   std::string calibration;              ///< calibration file; empty: the device's own values
   std::string clinician;                ///< who answers for a fingertip force above 5 N: safety_settings.h
   std::optional<double> watchdog = {};  ///< DeviceInfo::watchdog of a glove's firmware [s]

@@ -64,9 +64,9 @@ class Station {
   void resume_torque() noexcept;  ///< ends stop_torque(); the later call of the two counts
   void reset() noexcept;          ///< asks to leave a fault; Safety::reset() decides
 
-  /// Changes what may change in contact (ChangeKind::kInContact, scene_keys.h) within 0.2 s: stiffness, damping,
-  /// the bounds on the force's change, and the method among `none`, `smoothing` and `rise_only`. All other
-  /// parameters stay as they are, whatever `parameters` has. An exchange on its way comes first.
+  /// Changes what may change in contact within 0.2 s: stiffness, damping, the bounds on the force's change,
+  /// and the method among `none`, `smoothing` and `rise_only`. All other parameters stay as they are,
+  /// whatever `parameters` has. An exchange on its way comes first.
   /// @throws std::invalid_argument if a parameter is out of its range, or the rate differs
   void change_to(const HapticParameters& parameters);
   /// Exchanges the model, or the parameters of the same model: the torque ramps to zero, the exchange

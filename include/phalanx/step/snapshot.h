@@ -52,7 +52,7 @@ struct SegmentSnapshot {
   double oscillation_swing = 0.0;      ///< last full swing from peak to peak [N]; 0 while not oscillating
 };
 
-/// Result of one step. HCP is the hand at the measured angles, GDP the hand that is shown (contact/gdp.h).
+/// Result of one step. HCP is the hand at the measured angles, GDP the shown hand.
 struct Snapshot {
   std::uint64_t tick = 0;
   double time_s = 0.0;  ///< time of the last used sample [s]
