@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "phalanx/hand/fit.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -433,6 +434,19 @@ TEST(HandParameters, AreZeroUntilStated) {
   EXPECT_EQ(palm.offset, Vec3(0, 0, 0));
   for (const JointArray& angles : {hand.min_angle, hand.max_angle, hand.open_angle})
     for (const double angle : angles) EXPECT_EQ(angle, 0.0);
+}
+
+// Knuckles 90 mm before the wrist and 20 mm apart; bones of 40, 25 and 20 mm, and a tip of 5 mm.
+TEST(StraightHand, IsThatOfItsDescription) {
+  const HandModel hand = make_hand_model(straight_hand(), Handedness::kRight, {}, 2000);
+  EXPECT_NEAR(hand_length(hand.parameters()), 0.18, 1e-12);
+  HandPoses poses;
+  hand.poses({}, poses);
+  for (std::size_t d = 0; d < kDigits; ++d) {
+    const double x = 0.02 * (static_cast<double>(d) - 2.0);
+    EXPECT_LT((poses.digit[d].segment[0].p - Vec3(x, 0.0, -0.09)).norm(), 1e-12) << d;
+    EXPECT_LT((poses.digit[d].segment[2].p - Vec3(x, 0.0, -0.155)).norm(), 1e-12) << d;
+  }
 }
 
 }  // namespace

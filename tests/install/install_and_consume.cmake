@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs BUILD_DIR into a fresh prefix under WORK_DIR, moves that prefix (a package must not remember where it was installed), builds
-# CONSUMER_DIR and the example driver OWN_DEVICE_DIR against it and runs what came out.
+# the programs in CONSUMER_DIR, README's program and the example driver OWN_DEVICE_DIR against it and runs what came out.
 function(must)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   message("${output}")
@@ -8,6 +8,7 @@ function(must)
     list(JOIN ARGV " " command)
     message(FATAL_ERROR "failed (${result}): ${command}")
   endif()
+  set(output "${output}" PARENT_SCOPE)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK_DIR})
@@ -50,11 +51,41 @@ foreach(asset ${named})
   endif()
 endforeach()
 
-must(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
-     -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
-must(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-must(${WORK_DIR}/build/consumer)
-must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${WORK_DIR}/build/station_consumer)
+# No user of a library needs what only the program and its experiments use, nor libraries of headers.
+file(GLOB_RECURSE exported ${WORK_DIR}/prefix/phalanx*.cmake)
+foreach(file ${exported})
+  file(READ ${file} text)
+  if(text MATCHES "Boost|embree|PNG::|TBB|nlohmann")
+    message(FATAL_ERROR "${file} asks for ${CMAKE_MATCH_0}")
+  endif()
+endforeach()
+
+# Builds SOURCE with the library phalanx::COMPONENT, with the further options, and runs it. Its output is in `output`.
+function(consume component source)
+  set(build ${WORK_DIR}/${component}_consumer)
+  must(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${build} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+       -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DCOMPONENT=${component} -DSOURCE=${source} ${ARGN})
+  must(${CMAKE_COMMAND} --build ${build})
+  must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${build}/consumer)
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+# README's program needs Eigen and no other package.
+file(READ ${WORK_DIR}/prefix/share/doc/phalanx/README.md readme)
+if(NOT readme MATCHES "```cpp\n([^`]+)```")
+  message(FATAL_ERROR "README.md has no program in C++")
+endif()
+file(WRITE ${WORK_DIR}/readme.cpp "${CMAKE_MATCH_1}")
+set(without "")
+foreach(package assimp meshoptimizer tomlplusplus fmt Threads)
+  list(APPEND without -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+consume(phalanx ${WORK_DIR}/readme.cpp ${without})
+if(NOT output MATCHES "^-0[.][1-9][0-9]* Nm\n$") # the table pushes the finger open
+  message(FATAL_ERROR "README's program printed: ${output}")
+endif()
+consume(import import_consumer.cpp -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)
+consume(station station_consumer.cpp)
 
 must(${CMAKE_COMMAND} -S ${OWN_DEVICE_DIR} -B ${WORK_DIR}/own_device -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
      -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)

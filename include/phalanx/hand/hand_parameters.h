@@ -69,4 +69,8 @@ struct HandParameters {
   [[nodiscard]] bool operator==(const HandParameters&) const = default;
 };
 
+/// Returns a hand of round numbers, for examples and programs without a hand file. It is 180 mm long, with five
+/// equal straight digits along -Z. The knuckles are 20 mm apart, and 90 mm from the wrist. Set-up only.
+[[nodiscard]] HandParameters straight_hand();
+
 }  // namespace phalanx
