@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # phalanx_module(NAME [COLD | HOT] SOURCES ... [LIBRARIES external ...] [HEADERS external ...] [PRECOMPILED header])
 # One folder of src/ as an object library `phalanx_NAME`, so that its tests link it and what it uses and nothing else.
-# LIBRARIES must be linked wherever the module is; HEADERS have only headers, that the module alone includes.
+# LIBRARIES must be linked wherever the module is; HEADERS are header-only libraries, which the module alone includes.
 # COLD is what no tick and no simulation spends its time in, see phalanx_cold_options in compile_options.cmake. HOT is what a sanitized tree
 # spends its time in, see phalanx_hot_options.
 # PRECOMPILED is a header of its own to compile first, instead of the one that the other modules share.

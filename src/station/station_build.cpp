@@ -15,6 +15,7 @@
 #include "phalanx/scene/calibration_file.h"
 #include "phalanx/station/open_device.h"
 #include "phalanx/station/realtime.h"
+#include "phalanx/station/realtime.h"
 #include "phalanx/station/resolved_station.h"
 #include "station/parameter_ramp.h"
 

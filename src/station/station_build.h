@@ -8,6 +8,7 @@
 
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/scene/scene_keys.h"
+#include "phalanx/simulation/simulated_device.h"
 #include "phalanx/station/session.h"
 #include "phalanx/station/station_model.h"
 

@@ -51,7 +51,7 @@ foreach(asset ${named})
   endif()
 endforeach()
 
-# No user of a library needs what only the program and its experiments use, nor libraries of headers.
+# The installed libraries need neither packages that only the program uses, nor header-only libraries.
 file(GLOB_RECURSE exported ${WORK_DIR}/prefix/phalanx*.cmake)
 foreach(file ${exported})
   file(READ ${file} text)
