@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/count_allocations.h"
+
 namespace phalanx {
 namespace {
 
@@ -112,6 +114,21 @@ TEST_F(CommandQueueTest, AnEmptyCallbackIsLeftOut) {
   load("one");
   queue.answer(take());
   EXPECT_FALSE(queue.next_answer().has_value());
+}
+
+// So a change can be refused for want of memory, and the refusal arrives.
+TEST_F(CommandQueueTest, OnlyAskingNeedsMemory) {
+  set({{"a", "1"}}, 1);
+  set({{"a", "2"}}, 2);
+  const std::size_t before = test::allocations_of_this_thread();
+  std::list<Command> taken = take();
+  taken.front().requests.front().refused = "out of memory";
+  queue.answer(std::move(taken));
+  const std::optional<Answer> older = queue.next_answer();
+  const std::optional<Answer> newer = queue.next_answer();
+  EXPECT_EQ(test::allocations_of_this_thread(), before);
+  EXPECT_TRUE(older.value().outcome.overtaken);
+  EXPECT_EQ(newer.value().outcome.refused, "out of memory");
 }
 
 TEST_F(CommandQueueTest, AThreadThatWaitsIsWokenByACommandAndByTheEnd) {
