@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
-#include "mesh/shapes/extruded_solid.h"
+#include "mesh/shapes/mesh_builder.h"
 #include "mesh/shapes/object_shapes.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/mesh/objects.h"
@@ -37,6 +38,53 @@ const std::vector<KeyCut>& key_upper_edge() {
 }
 
 namespace {
+
+/// Triangulated flat area.
+struct PlaneArea {
+  std::vector<Eigen::Vector2d> points;
+  std::vector<Triangle> triangles;  ///< counter-clockwise
+  std::vector<Ring> edges;          ///< indices of points: outer edge counter-clockwise, holes clockwise
+};
+
+/// Makes the plate from z = -thickness/2 to thickness/2, its walls cut into `bands`.
+TriangleMesh extrude(const PlaneArea& area, double thickness, int bands) {
+  MeshBuilder builder;
+  const auto side = [&](double z) {
+    std::vector<std::int32_t> index;
+    index.reserve(area.points.size());
+    for (const Eigen::Vector2d& p : area.points) index.push_back(builder.vertex({p.x(), p.y(), z}));
+    return index;
+  };
+  const auto at = [](const std::vector<std::int32_t>& index, std::int32_t i) {
+    return index[static_cast<std::size_t>(i)];
+  };
+  const std::vector<std::int32_t> below = side(-0.5 * thickness);
+  const std::vector<std::int32_t> above = side(0.5 * thickness);
+  for (const auto& [a, b, c] : area.triangles) {
+    builder.triangle(at(above, a), at(above, b), at(above, c));
+    builder.triangle(at(below, a), at(below, c), at(below, b));
+  }
+  for (const Ring& edge : area.edges) {
+    Ring last;
+    for (int band = 0; band <= bands; ++band) {
+      Ring ring;
+      for (const std::int32_t i : edge) {
+        if (band == 0) {
+          ring.push_back(at(below, i));
+        } else if (band == bands) {
+          ring.push_back(at(above, i));
+        } else {
+          const Eigen::Vector2d& p = area.points[static_cast<std::size_t>(i)];
+          ring.push_back(
+              builder.vertex({p.x(), p.y(), thickness * (static_cast<double>(band) / bands - 0.5)}));
+        }
+      }
+      if (!last.empty()) builder.strip(last, ring);
+      last = std::move(ring);
+    }
+  }
+  return builder.take();
+}
 
 double depth_at(const std::vector<KeyCut>& edge, double along) {
   for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
