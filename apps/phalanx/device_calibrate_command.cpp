@@ -13,7 +13,7 @@
 #include <string>
 
 #include "calibration_dialogue.h"
-#include "device_commands.h"
+#include "commands.h"
 #include "device_text.h"
 #include "phalanx/device/opengloves/opengloves_device.h"
 #include "phalanx/record/made.h"

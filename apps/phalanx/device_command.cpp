@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // phalanx device: commands that test a device, and one that simulates it.
-#include "device_commands.h"
+#include "commands.h"
 
 namespace phalanx {
 

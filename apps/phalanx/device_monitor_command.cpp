@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "device_commands.h"
+#include "commands.h"
 #include "device_text.h"
 #include "error_line.h"
 #include "phalanx/device/clock.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "device_commands.h"
+#include "commands.h"
 #include "device_text.h"
 #include "phalanx/device/clock.h"
 #include "phalanx/station/open_device.h"

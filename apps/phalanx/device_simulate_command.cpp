@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "commands.h"
 #include "controller_faults.h"
 #include "controller_log.h"
-#include "device_commands.h"
 #include "end_signals.h"
 #include "faulty_wire.h"
 #include "phalanx/device/link/transport.h"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "device_commands.h"
+#include "commands.h"
 #include "device_text.h"
 #include "emphasis.h"
 #include "phalanx/device/clock.h"
