@@ -75,6 +75,4 @@ SceneWithValues SceneFile::with_values(const Overrides& overrides) const {
   return read;
 }
 
-Overrides SceneFile::values(const Overrides& overrides) const { return with_values(overrides).values; }
-
 }  // namespace phalanx

@@ -136,21 +136,20 @@ void SessionWorker::apply(const SetValues& set) {
   next.overrides = laid_over(std::move(next.overrides), set.changes);
   const auto now = state_.current();
   if (now == nullptr) return switch_to(next, SceneFile(next.scene));
-  SceneDescription scene = file_->scene(next.overrides);
-  const ChangeKind kind = change_kind(set.changes, plan_.source, scene_.parameters, scene.parameters);
+  SceneWithValues read = file_->with_values(next.overrides);
+  const ChangeKind kind = change_kind(set.changes, plan_.source, scene_.parameters, read.scene.parameters);
   if (kind == ChangeKind::kNewStation) return switch_to(next, *file_);
   if (kind == ChangeKind::kOtherObject) return exchange_object(*now->station, next);
   // The parameters of the same model, without opening a file.
-  Overrides values = file_->values(next.overrides);
   if (kind == ChangeKind::kInContact)
-    now->station->change_to(scene.parameters);
+    now->station->change_to(read.scene.parameters);
   else
-    run_at_low_priority([&] { now->station->replace(model_, scene.parameters); });
+    run_at_low_priority([&] { now->station->replace(model_, read.scene.parameters); });
   plan_ = std::move(next);
-  scene_ = std::move(scene);
+  scene_ = std::move(read.scene);
   state_.change_info([&](SessionInfo& info) {
     info.overrides = plan_.overrides;
-    info.values = std::move(values);
+    info.values = std::move(read.values);
     info.description = scene_.description;
   });
 }

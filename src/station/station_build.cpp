@@ -15,7 +15,6 @@
 #include "phalanx/scene/calibration_file.h"
 #include "phalanx/station/open_device.h"
 #include "phalanx/station/realtime.h"
-#include "phalanx/station/realtime.h"
 #include "phalanx/station/resolved_station.h"
 #include "station/parameter_ramp.h"
 
@@ -116,7 +115,16 @@ Overrides laid_over(Overrides before, const Overrides& changes) {
   for (const auto& [key, value] : changes) {
     std::erase_if(
         before, [&key](const auto& earlier) { return earlier.first == key || is_below(earlier.first, key); });
-    if (!value.empty()) before.emplace_back(key, value);
+    if (!value.empty()) {
+      before.emplace_back(key, value);
+      continue;
+    }
+    const auto whole =
+        std::ranges::find_if(before, [&key](const auto& earlier) { return is_below(key, earlier.first); });
+    if (whole != before.end())
+      throw std::invalid_argument(fmt::format(
+          "{}: cannot be reset alone, since {} was replaced as a whole; reset {}, or give a value", key,
+          whole->first, whole->first));
   }
   return before;
 }
@@ -137,8 +145,9 @@ ChangeKind change_kind(const Overrides& changes, HandSource source, const Haptic
 
 StationBuild build_station(const StationPlan& plan, SceneFile file, const std::string& clinician) {
   StationBuild build{.plan = plan, .file = std::move(file)};
-  build.scene = build.file.scene(plan.overrides);
-  build.values = build.file.values(plan.overrides);
+  SceneWithValues read = build.file.with_values(plan.overrides);
+  build.scene = std::move(read.scene);
+  build.values = std::move(read.values);
   const bool presses = plan.source == HandSource::kPatient;
   ResolvedScene scene = resolve(build.scene, {.hand = HandDetail::kAll, .device = true, .motion = presses});
   build.exoskeleton = scene.exoskeleton.value();

@@ -15,7 +15,7 @@ using ::testing::Contains;
 using ::testing::Pair;
 
 TEST(SceneFile, NamesEveryValueOfTheFileAsAPersonWouldWriteIt) {
-  const Overrides values = SceneFile("stability_grasp").values({});
+  const Overrides values = SceneFile("stability_grasp").with_values({}).values;
   EXPECT_THAT(values, Contains(Pair("force.stiffness_n_per_mm", "1.4")));
   EXPECT_THAT(values, Contains(Pair("objects.0.kind", "\"teapot\"")).Times(1));
   EXPECT_THAT(values, Contains(Pair("objects.0.size_mm", "130")));
@@ -24,15 +24,16 @@ TEST(SceneFile, NamesEveryValueOfTheFileAsAPersonWouldWriteIt) {
 }
 
 TEST(SceneFile, TakesAnOverridesValueForTheFiles) {
-  const Overrides values =
-      SceneFile("stability_grasp").values({{"force.stiffness_n_per_mm", "0.9"}, {"mirror", "true"}});
+  const Overrides values = SceneFile("stability_grasp")
+                               .with_values({{"force.stiffness_n_per_mm", "0.9"}, {"mirror", "true"}})
+                               .values;
   EXPECT_THAT(values, Contains(Pair("force.stiffness_n_per_mm", "0.9")).Times(1));
   EXPECT_THAT(values, Contains(Pair("mirror", "true")));
 }
 
 // What is shown can be laid over the scene again and changes nothing.
 TEST(SceneFile, ReadsItsValuesBackTheSame) {
-  const Overrides values = SceneFile("first_touch").values({{"smoothing.min_n_per_s", "-inf"}});
+  const Overrides values = SceneFile("first_touch").with_values({{"smoothing.min_n_per_s", "-inf"}}).values;
   const SceneDescription once = load_scene("first_touch", {{"smoothing.min_n_per_s", "-inf"}});
   const SceneDescription again = load_scene("first_touch", values);
   EXPECT_EQ(again.parameters.force.stiffness, once.parameters.force.stiffness);
@@ -40,7 +41,7 @@ TEST(SceneFile, ReadsItsValuesBackTheSame) {
   EXPECT_EQ(again.parameters.stabiliser.max_rate, once.parameters.stabiliser.max_rate);
   EXPECT_EQ(again.hand.pose.p, once.hand.pose.p);
   EXPECT_EQ(again.objects.size(), once.objects.size());
-  EXPECT_EQ(SceneFile("first_touch").values(values), values);
+  EXPECT_EQ(SceneFile("first_touch").with_values(values).values, values);
 }
 
 TEST(SceneFile, GivesTheSceneTogetherWithItsValues) {

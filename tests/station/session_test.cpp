@@ -719,6 +719,10 @@ TEST(LaidOver, KeepsTheLastWordOfEachKeyAndForgetsWhatItReplaces) {
               ElementsAre(Pair("a", "1"), Pair("objects.0", "{kind='box'}")));
   EXPECT_THAT(laid_over(before, {{"objects", ""}}), ElementsAre(Pair("a", "1")));
   EXPECT_THAT(laid_over(before, {{"object", ""}}), ::testing::SizeIs(3)) << "another key";
+  const Overrides whole = {{"objects.0", "{kind='box'}"}};
+  EXPECT_THAT([&] { static_cast<void>(laid_over(whole, {{"objects.0.size_mm", ""}})); },
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("reset objects.0")));
+  EXPECT_THAT(laid_over(whole, {{"objects.0", ""}, {"objects.0.size_mm", ""}}), ::testing::IsEmpty());
 }
 
 TEST(ChangeKindOf, APatientHasToBeToldOfAnotherObject) {

@@ -32,8 +32,6 @@ class SceneFile {
   /// Reads the whole scene with its values, as scene(). It parses the text once.
   /// @throws SceneError as scene()
   [[nodiscard]] SceneWithValues with_values(const Overrides& overrides) const;
-  /// @returns the values of with_values().
-  [[nodiscard]] Overrides values(const Overrides& overrides) const;
 
  private:
   std::string text_;
