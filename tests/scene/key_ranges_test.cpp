@@ -25,7 +25,8 @@ struct End {
 
 /// @param away  +1 for the upper end, -1 for the lower
 End end_of(const SceneKey& key, double end, bool open, double away) {
-  if (key.type == KeyType::kInteger) return {end, end + away};
+  // From 2^53 on the next integer that is a double is 2 away.
+  if (key.type == KeyType::kInteger) return {end, end + (std::abs(end) < 0x1p53 ? away : 2 * away)};
   if (open) return {end - away * 1e-9 * (key.range.max - key.range.min), end};
   return {end, end == 0.0 ? away * 1e-300 : std::nextafter(end, away * kInfinity)};
 }

@@ -9,7 +9,7 @@
 namespace phalanx {
 
 /// Every number of a step that is neither geometry nor state. A plain value: another set of parameters for
-/// the same hand and object copies no mesh. parameter_ranges.h has the ranges.
+/// the same hand and object copies no mesh. docs/scenes.md lists the ranges, in the units of a scene's keys.
 struct HapticParameters {
   ContactParameters contact;
   ForceLawParameters force;

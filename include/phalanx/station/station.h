@@ -6,8 +6,8 @@
 // step then publishes a StationView and appends a StepRecord (station_view.h). Other threads read these, and
 // none of them can make the loop wait.
 //
-// Around the loop: open_device.h opens a device. station_model.h makes a scene's model and settings. session.h
-// changes parameters, model or the whole station as a change needs; it is what programs use.
+// Around the loop: station_model.h makes a scene's model and settings. session.h opens and calibrates a device,
+// and changes parameters, model or the whole station as a change needs; it is what programs use.
 #pragma once
 
 #include <atomic>
