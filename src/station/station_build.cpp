@@ -113,15 +113,15 @@ SimulatedDeviceSettings patient_of(const ResolvedScene& scene, const HapticModel
 
 Overrides laid_over(Overrides before, const Overrides& changes) {
   for (const auto& [key, value] : changes) {
-    std::erase_if(
+    const auto holds_key = [&key](const auto& other) { return is_below(key, other.first); };
+    const std::size_t removed = std::erase_if(
         before, [&key](const auto& earlier) { return earlier.first == key || is_below(earlier.first, key); });
     if (!value.empty()) {
       before.emplace_back(key, value);
       continue;
     }
-    const auto whole =
-        std::ranges::find_if(before, [&key](const auto& earlier) { return is_below(key, earlier.first); });
-    if (whole != before.end())
+    const auto whole = std::ranges::find_if(before, holds_key);
+    if (removed == 0 && whole != before.end() && std::ranges::none_of(changes, holds_key))
       throw std::invalid_argument(fmt::format(
           "{}: cannot be reset alone, since {} was replaced as a whole; reset {}, or give a value", key,
           whole->first, whole->first));

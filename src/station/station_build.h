@@ -40,7 +40,8 @@ struct StationBuild {
 
 /// Merges overrides; the newest value of each key counts. A new value of a key removes the older values of
 /// the keys below it; an empty value removes the key itself too.
-/// @throws std::invalid_argument for an empty value below a table that was replaced as a whole ("objects.0")
+/// @throws std::invalid_argument for an empty value that removes nothing because its table ("objects.0") was
+/// replaced as a whole, unless the changes replace or remove the table, too
 [[nodiscard]] Overrides laid_over(Overrides before, const Overrides& changes);
 
 /// @returns the common requirement of the changes: the largest of those in the table (scene_keys()), with two

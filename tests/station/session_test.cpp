@@ -723,6 +723,12 @@ TEST(LaidOver, KeepsTheLastWordOfEachKeyAndForgetsWhatItReplaces) {
   EXPECT_THAT([&] { static_cast<void>(laid_over(whole, {{"objects.0.size_mm", ""}})); },
               ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("reset objects.0")));
   EXPECT_THAT(laid_over(whole, {{"objects.0", ""}, {"objects.0.size_mm", ""}}), ::testing::IsEmpty());
+  const Overrides sized = {{"objects.0", "{kind='box'}"}, {"objects.0.size_mm", "80"}};
+  EXPECT_THAT(laid_over(sized, {{"objects.0.size_mm", ""}}), ElementsAre(Pair("objects.0", "{kind='box'}")));
+  // As the page replaces an object: it resets the keys first.
+  for (const Overrides& earlier : {whole, sized})
+    EXPECT_THAT(laid_over(earlier, {{"objects.0.size_mm", ""}, {"objects.0", "{kind='key'}"}}),
+                ElementsAre(Pair("objects.0", "{kind='key'}")));
 }
 
 TEST(ChangeKindOf, APatientHasToBeToldOfAnotherObject) {
