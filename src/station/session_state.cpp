@@ -36,6 +36,13 @@ SessionState::SessionState() {
   reports_.reserve(kReports + 1);
 }
 
+void SessionState::publish(std::shared_ptr<SessionInfo> next) noexcept {
+  std::shared_ptr<const SessionInfo> gone;  // freed after the lock is released
+  const std::lock_guard lock(mutex_);
+  next->revision = info_->revision + 1;
+  gone = std::exchange(info_, std::move(next));
+}
+
 std::shared_ptr<const SessionInfo> SessionState::info() const {
   const std::lock_guard lock(mutex_);
   return info_;

@@ -34,6 +34,9 @@ class SessionState {
     ++next->revision;
     gone = std::exchange(info_, std::move(next));
   }
+  /// Publishes information that was prepared from a copy of info(). Allocates nothing. The worker's thread.
+  /// Meanwhile others change nothing but SessionInfo::realtime, which Session::poll() then publishes again.
+  void publish(std::shared_ptr<SessionInfo> next) noexcept;
   [[nodiscard]] std::shared_ptr<const SessionInfo> info() const;
   [[nodiscard]] std::shared_ptr<RunningStation> current() const;
 

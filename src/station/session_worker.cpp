@@ -135,42 +135,43 @@ void SessionWorker::apply(const SetValues& set) {
   StationPlan next = plan_;
   next.overrides = laid_over(std::move(next.overrides), set.changes);
   const auto now = state_.current();
-  if (now == nullptr) return switch_to(next, SceneFile(next.scene));
+  if (now == nullptr) return switch_to(built(next, SceneFile(next.scene)));
   SceneWithValues read = file_->with_values(next.overrides);
   const ChangeKind kind = change_kind(set.changes, plan_.source, scene_.parameters, read.scene.parameters);
-  if (kind == ChangeKind::kNewStation) return switch_to(next, *file_);
-  if (kind == ChangeKind::kOtherObject) return exchange_object(*now->station, next);
-  // The parameters of the same model, without opening a file.
+  if (kind == ChangeKind::kNewStation) return switch_to(built(next, *file_, std::move(read)));
+  if (kind == ChangeKind::kOtherObject)
+    return exchange_object(*now->station, built(next, *file_, std::move(read)));
+  // The parameters of the same model, without opening a file. What needs memory comes before the change.
+  const auto info = std::make_shared<SessionInfo>(*state_.info());
+  info->overrides = next.overrides;
+  info->values = std::move(read.values);
+  info->description = read.scene.description;
   if (kind == ChangeKind::kInContact)
     now->station->change_to(read.scene.parameters);
   else
     run_at_low_priority([&] { now->station->replace(model_, read.scene.parameters); });
   plan_ = std::move(next);
   scene_ = std::move(read.scene);
-  state_.change_info([&](SessionInfo& info) {
-    info.overrides = plan_.overrides;
-    info.values = std::move(read.values);
-    info.description = scene_.description;
-  });
+  state_.publish(info);
 }
 
-void SessionWorker::exchange_object(Station& station, const StationPlan& next) {
-  StationBuild build = built(next, *file_);
+void SessionWorker::exchange_object(Station& station, StationBuild build) {
+  // What needs memory comes before the change.
+  const auto info = std::make_shared<SessionInfo>(*state_.info());
   // The gate and the channels know the hand of the start: a hand file that has changed needs a new station.
   const bool same_hand = build.made.model->hand.parameters() == model_->hand.parameters() &&
-                         build.geometry->handedness == state_.info()->geometry->handedness;
-  if (!same_hand) return switch_to(next, *file_);
+                         build.geometry->handedness == info->geometry->handedness;
+  if (!same_hand) return switch_to(std::move(build));
+  info->overrides = build.plan.overrides;
+  info->values = std::move(build.values);
+  info->description = build.scene.description;
+  build.geometry->revision = info->geometry->revision + 1;
+  info->geometry = build.geometry;
   run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters); });
-  plan_ = next;
+  plan_ = std::move(build.plan);
   scene_ = std::move(build.scene);
   model_ = build.made.model;
-  state_.change_info([&](SessionInfo& info) {
-    info.overrides = plan_.overrides;
-    info.values = std::move(build.values);
-    info.description = scene_.description;
-    build.geometry->revision = info.geometry->revision + 1;
-    info.geometry = build.geometry;
-  });
+  state_.publish(info);
 }
 
 void SessionWorker::apply(const LoadScene& load) {
@@ -178,7 +179,7 @@ void SessionWorker::apply(const LoadScene& load) {
   StationPlan next = plan_;
   next.scene = load.scene;
   next.overrides.clear();
-  switch_to(next, SceneFile(load.scene));
+  switch_to(built(next, SceneFile(next.scene)));
 }
 
 void SessionWorker::apply(const SelectSource& select) {
@@ -189,14 +190,14 @@ void SessionWorker::apply(const SelectSource& select) {
         "a device on a wire moves the hand; start the station without --device for this");
   StationPlan next = plan_;
   next.source = select.source;
-  switch_to(next, file_of_plan());
+  switch_to(built(next, file_of_plan()));
 }
 
 void SessionWorker::apply(const MakeStation&) {
   refuse_while_calibrating();
   if (state_.current() != nullptr) return;
   try {
-    switch_to(plan_, SceneFile(plan_.scene));
+    switch_to(built(plan_, SceneFile(plan_.scene)));
   } catch (const std::exception& error) {
     state_.set_unavailable(error_text(error));
   }
@@ -205,8 +206,13 @@ void SessionWorker::apply(const MakeStation&) {
 // ---- from one station to the next ----
 
 StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file) const {
-  StationBuild build =
-      run_at_low_priority([&] { return build_station(plan, std::move(file), settings_.clinician); });
+  SceneWithValues read = file.with_values(plan.overrides);
+  return built(plan, std::move(file), std::move(read));
+}
+
+StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file, SceneWithValues read) const {
+  StationBuild build = run_at_low_priority(
+      [&] { return build_station(plan, std::move(file), std::move(read), settings_.clinician); });
   if (build.made.safety.patient.empty()) build.made.safety.patient = patient_;
   // The device stays the same: refuse what it cannot do while the last station still runs.
   const auto info = state_.info();
@@ -216,14 +222,12 @@ StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file) const
 
 SceneFile SessionWorker::file_of_plan() const { return file_ ? *file_ : SceneFile(plan_.scene); }
 
-void SessionWorker::switch_to(const StationPlan& next, SceneFile file) {
-  StationBuild build = built(next, std::move(file));
+void SessionWorker::switch_to(StationBuild build) {
   state_.retire();
   try {
     take_over(build);
-    plan_ = next;
   } catch (const std::exception& error) {
-    if (next == plan_)
+    if (build.plan == plan_)
       state_.set_unavailable(error_text(error));
     else
       go_back();
@@ -242,6 +246,8 @@ void SessionWorker::go_back() {
 }
 
 void SessionWorker::take_over(StationBuild& build) {
+  // Nothing is published before the device is open.
+  auto next = std::make_shared<RunningStation>(make_station(build, settings_, clock_));
   state_.change_info([&](SessionInfo& info) {
     info.scene = build.plan.scene;
     info.description = build.scene.description;
@@ -254,11 +260,13 @@ void SessionWorker::take_over(StationBuild& build) {
     build.geometry->revision = info.geometry ? info.geometry->revision + 1 : 1;
     info.geometry = build.geometry;
   });
-  state_.begin(std::make_shared<RunningStation>(make_station(build, settings_, clock_)));
+  state_.begin(std::move(next));
+  // The station runs. Nothing below throws: an exception would bring back the old station beside it.
+  plan_ = std::move(build.plan);
   file_ = std::move(build.file);
   scene_ = std::move(build.scene);
   model_ = build.made.model;
-  patient_ = build.made.safety.patient;
+  patient_ = std::move(build.made.safety.patient);
 }
 
 // ---- calibration ----
@@ -273,7 +281,7 @@ void SessionWorker::apply(const StepCalibration& calibration) {
       return begin_wizard();
     case Step::kAbandon:
       wizard_.refuse_unless_on();
-      return leave_wizard(plan_);
+      return leave_wizard();
     case Step::kWrite:
       return write_wizard();
     default:
@@ -303,19 +311,18 @@ void SessionWorker::write_wizard() {
   const Calibration& found = wizard_.found();
   if (!settings_.write_calibration)
     throw std::invalid_argument("this program writes no calibrations; use `phalanx device calibrate`");
-  StationPlan next = plan_;
-  next.calibration = settings_.write_calibration(found);
-  leave_wizard(next);
+  plan_.calibration = settings_.write_calibration(found);  // it is written, also if no station can be made
+  leave_wizard();
 }
 
 /// Ends the wizard and starts a station. No station runs meanwhile: if anything is refused, its scene for
 /// example, there is none.
-void SessionWorker::leave_wizard(const StationPlan& next) {
+void SessionWorker::leave_wizard() {
   // First, because it may fail without memory: the wizard is then still on, and shown.
   state_.change_info([](SessionInfo& info) { info.wizard = nullptr; });
   wizard_.end();
   try {
-    switch_to(next, SceneFile(next.scene));
+    switch_to(built(plan_, SceneFile(plan_.scene)));
   } catch (const std::exception& error) {
     if (state_.current() == nullptr) state_.set_unavailable(error_text(error));
     throw;

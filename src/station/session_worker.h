@@ -45,19 +45,25 @@ class SessionWorker {
   void apply(const MakeStation& again);
 
   /// Calls build_station() beside a station that runs. @throws as that; also as check_watchdog() if one runs
+  /// @param read  the file's scene with the plan's overrides
+  [[nodiscard]] StationBuild built(const StationPlan& plan, SceneFile file, SceneWithValues read) const;
+  /// The same; parses the file's text.
   [[nodiscard]] StationBuild built(const StationPlan& plan, SceneFile file) const;
   /// @returns the file of the plan's scene as it was read last; reads it if there was no station yet. Only
   /// LoadScene and a start after there was no station read it again.
   [[nodiscard]] SceneFile file_of_plan() const;
-  void exchange_object(Station& station, const StationPlan& next);
-  void switch_to(const StationPlan& next, SceneFile file);
+  void exchange_object(Station& station, StationBuild build);
+  void switch_to(StationBuild build);
   void go_back();
+  /// Opens the device, publishes and starts the station, and keeps its parts.
+  /// @throws as make_station() and SessionState::begin(); the plan and the parts of the last station are then
+  /// still kept
   void take_over(StationBuild& build);
 
   void refuse_while_calibrating() const;
   void begin_wizard();
   void write_wizard();
-  void leave_wizard(const StationPlan& next);
+  void leave_wizard();
   void update_wizard() noexcept;
   void publish_wizard();
 

@@ -143,11 +143,12 @@ ChangeKind change_kind(const Overrides& changes, HandSource source, const Haptic
   return needs;
 }
 
-StationBuild build_station(const StationPlan& plan, SceneFile file, const std::string& clinician) {
-  StationBuild build{.plan = plan, .file = std::move(file)};
-  SceneWithValues read = build.file.with_values(plan.overrides);
-  build.scene = std::move(read.scene);
-  build.values = std::move(read.values);
+StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithValues read,
+                           const std::string& clinician) {
+  StationBuild build{.plan = plan,
+                     .file = std::move(file),
+                     .scene = std::move(read.scene),
+                     .values = std::move(read.values)};
   const bool presses = plan.source == HandSource::kPatient;
   ResolvedScene scene = resolve(build.scene, {.hand = HandDetail::kAll, .device = true, .motion = presses});
   build.exoskeleton = scene.exoskeleton.value();

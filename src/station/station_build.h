@@ -53,9 +53,10 @@ struct StationBuild {
 
 /// Reads the files that the scene names, each once, and makes the parts.
 /// @param file  of the plan's scene
+/// @param read  its scene with the plan's overrides
 /// @throws SceneError or std::invalid_argument: the scene, a limit that a station does not allow, an open
 /// hand that touches the object, a patient who meets nothing. Set-up only.
-[[nodiscard]] StationBuild build_station(const StationPlan& plan, SceneFile file,
+[[nodiscard]] StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithValues read,
                                          const std::string& clinician);
 
 /// A station and its open device.
