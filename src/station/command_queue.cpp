@@ -30,7 +30,7 @@ bool is(const Command& command) noexcept {
 
 std::runtime_error too_many(std::size_t waiting) {
   return std::runtime_error(
-      fmt::format("{} changes wait already; wait until the station has made them, and ask again", waiting));
+      fmt::format("{} changes wait to be made or answered; wait a moment, and ask again", waiting));
 }
 
 }  // namespace
@@ -75,10 +75,11 @@ void CommandQueue::ask(Action action, Session::Done done) {
   {
     const std::lock_guard lock(mutex_);
     if (ended_) throw std::runtime_error("the station has ended; start it again");
-    if (is<MakeStation>(next.front()) && waits_to_make_station()) return;
-    if (answers_ >= kAnswers) throw too_many(answers_);
+    const bool makes_station = is<MakeStation>(next.front());
+    if (makes_station && waits_to_make_station()) return;
+    if (!makes_station && answers_ >= kAnswers) throw too_many(answers_);
     if (!join(next.front())) {
-      if (waiting_.size() >= kCommands) throw too_many(waiting_.size());
+      if (!makes_station && waiting_.size() >= kCommands) throw too_many(waiting_.size());
       waiting_.splice(waiting_.end(), next);
     }
     ++answers_;

@@ -63,7 +63,8 @@ class CommandQueue {
   /// Callbacks that wait, until next_answer() returns them: 5 s at 200 sets a second.
   static constexpr std::size_t kAnswers = 1024;
 
-  /// Appends a request and wakes the worker. A second MakeStation that waits is left out.
+  /// Appends a request and wakes the worker. A MakeStation is not bounded; a second one that waits is left
+  /// out.
   /// @param done  may be empty
   /// @throws std::runtime_error if too many wait already or after end(); std::bad_alloc. Done is then not
   /// called

@@ -131,6 +131,8 @@ TEST_F(CommandQueueTest, OnlyAskingNeedsMemory) {
   EXPECT_EQ(newer.value().outcome.refused, "out of memory");
 }
 
+// Time passes while all threads sleep (held clock): after sleep_for() the worker waits, and nothing but a
+// notification ends its wait.
 TEST_F(CommandQueueTest, AThreadThatWaitsIsWokenByACommandAndByTheEnd) {
   std::promise<std::string> first;
   std::size_t second = 1;
@@ -138,8 +140,10 @@ TEST_F(CommandQueueTest, AThreadThatWaitsIsWokenByACommandAndByTheEnd) {
     first.set_value(text_of(queue.take(std::nullopt).front()));
     second = queue.take(std::nullopt).size();
   });
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
   load("one");
   EXPECT_EQ(first.get_future().get(), "scene one");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
   queue.end();
   worker.join();
   EXPECT_EQ(second, 0U);
@@ -172,6 +176,22 @@ TEST_F(CommandQueueTest, EachKindOfCommandHasAText) {
   queue.ask(MakeStation{}, {});
   for (const char* text : {"sliders", "simulated patient", "calibration", "another try"})
     EXPECT_EQ(take_text(), text);
+}
+
+TEST_F(CommandQueueTest, ATryToMakeAStationIsAcceptedWhenNothingElseIs) {
+  for (std::size_t i = 0; i < CommandQueue::kCommands; ++i) load("one");
+  EXPECT_THROW(load("more"), std::runtime_error);
+  EXPECT_NO_THROW(queue.ask(MakeStation{}, {}));
+  for (std::size_t i = 0; i < CommandQueue::kCommands; ++i) EXPECT_EQ(take_text(), "scene one");
+  EXPECT_EQ(take_text(), "another try");
+}
+
+TEST_F(CommandQueueTest, ATryToMakeAStationIsAcceptedBesideUnfetchedAnswers) {
+  for (std::size_t i = 0; i < CommandQueue::kAnswers; ++i) set({{"a", "1"}});
+  queue.answer(take());
+  EXPECT_THROW(load("more"), std::runtime_error);
+  EXPECT_NO_THROW(queue.ask(MakeStation{}, {}));
+  EXPECT_EQ(take_text(), "another try");
 }
 
 TEST_F(CommandQueueTest, OneTryToMakeAStationIsEnough) {

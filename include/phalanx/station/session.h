@@ -75,7 +75,7 @@ struct SessionInfo {
   std::string patient;           ///< SafetySettings::patient of the station
   std::vector<int> sensed_joints;
   std::string realtime;  ///< granted scheduling; empty: not asked for, or not known yet
-  std::string busy;      ///< the change being made; empty: none
+  std::string busy;      ///< the change being made; empty: none. It is cleared before poll() can answer
   bool running = false;  ///< a station exists
   std::string trouble;   ///< why no station exists, or a problem of the device in calibration
   std::shared_ptr<const SessionGeometry> geometry;
