@@ -316,6 +316,7 @@ TEST_F(SessionTest, OfSetsThatWereJoinedOnlyTheWrongOneIsRefused) {
 
 TEST_F(SessionTest, MoreChangesThanTheQueueHoldsAreRefusedAtOnce) {
   start(with("sliders"));
+  ASSERT_TRUE(until_running());
   occupy();
   int answered = 0;
   int refused = 0;
@@ -512,6 +513,7 @@ TEST_F(SessionTest, AResetDuringASwitchDoesNotStartTheStationTwice) {
 // The callbacks after it wait for the next poll().
 TEST_F(SessionTest, ACallbackThatThrowsEndsThePollAndNothingElse) {
   start(with("sliders"));
+  ASSERT_TRUE(until_running());
   occupy();
   const Session::Done throws = [](const ChangeOutcome&) { throw std::runtime_error("from a callback"); };
   auto [answer, done] = awaited();
@@ -528,6 +530,7 @@ TEST_F(SessionTest, ACallbackThatThrowsEndsThePollAndNothingElse) {
 
 TEST_F(SessionTest, ACallbackMayShutTheSessionDownAndNoneFollows) {
   start(with("sliders"));
+  ASSERT_TRUE(until_running());
   occupy();
   auto [answer, done] = awaited();
   session->set({{"force.stiffness_n_per_mm", "0.7"}}, [this](const ChangeOutcome&) { session->shut_down(); });
@@ -541,6 +544,7 @@ TEST_F(SessionTest, ACallbackMayShutTheSessionDownAndNoneFollows) {
 
 TEST_F(SessionTest, NothingIsAnsweredOrBegunOnceItIsShutDown) {
   start(with("sliders"));
+  ASSERT_TRUE(until_running());
   int answers = 0;
   const auto done = [&](const ChangeOutcome&) { ++answers; };
   session->load_scene("pinch_ball", done);
