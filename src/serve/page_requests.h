@@ -25,7 +25,7 @@ struct PageRequest {
 /// @param done     as Session's; not called for a request that is done at once
 /// @returns the request, for the log of changes
 /// @throws std::invalid_argument if the message is malformed, names another file, or refers to an earlier
-/// stop or fault; std::runtime_error if too many changes wait
+/// stop or fault; std::runtime_error if too many changes wait or after Session::shut_down() has begun
 PageRequest apply_request(const wire::ToHost& message, Session& session, const wire::Welcome& choices,
                           const std::filesystem::path& uploads, Session::Done done);
 
