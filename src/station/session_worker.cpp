@@ -7,6 +7,7 @@
 #include <future>
 #include <new>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "phalanx/core/error_text.h"
@@ -262,6 +263,9 @@ void SessionWorker::take_over(StationBuild& build) {
   });
   state_.begin(std::move(next));
   // The station runs. Nothing below throws: an exception would bring back the old station beside it.
+  static_assert(std::is_nothrow_move_assignable_v<StationPlan> &&
+                std::is_nothrow_move_assignable_v<std::optional<SceneFile>> &&
+                std::is_nothrow_move_assignable_v<SceneDescription>);
   plan_ = std::move(build.plan);
   file_ = std::move(build.file);
   scene_ = std::move(build.scene);
