@@ -8,19 +8,26 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 
 #include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/toml_bounds.h"
+#include "scene/why_no_file.h"
 
 namespace phalanx {
 
 std::string read_text_file(const std::string& path, const std::string& what) {
   constexpr std::size_t kMostTextBytes = 16U << 20U;
+  // Before it is opened: opening a named pipe waits until another program writes to it.
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw SceneError(fmt::format("{} file: {}", what, why_no_file(path)));
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw SceneError(fmt::format("{}: cannot be opened as a {} ({}); check the path and its permissions",
@@ -31,7 +38,7 @@ std::string read_text_file(const std::string& path, const std::string& what) {
     file.read(block.data(), block.size());
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
   }
-  if (file.bad()) throw SceneError(fmt::format("{}: cannot be read as a {}; is it a folder?", path, what));
+  if (file.bad()) throw SceneError(fmt::format("{}: cannot be read as a {}; check the disk", path, what));
   if (text.size() > kMostTextBytes) {
     throw SceneError(
         fmt::format("{}: is larger than 16 MB; a {} file is a few kilobytes of TOML", path, what));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/calibration_file.h"
 
+#include <sys/stat.h>
+
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -219,6 +221,16 @@ TEST(CalibrationFile, WithADamagedByteIsReadOrRefused) {
     }
   }
   EXPECT_GT(refused, 1000) << "seed " << kSeed;
+}
+
+// Opening a named pipe would wait until another program writes to it.
+TEST(CalibrationFile, ThatIsNoRegularFileIsRefusedWithoutAWait) {
+  const testing::TemporaryFolder folder;
+  const std::string pipe = folder / "pipe.toml";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& file : {pipe, std::string("/dev/zero")})
+    expect_scene_error([&] { static_cast<void>(load_calibration(file)); },
+                       {"calibration file: ", file, "is not a regular file", "copy its contents"});
 }
 
 }  // namespace

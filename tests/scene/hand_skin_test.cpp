@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // load_hand_skin(): what a hand file's skin becomes, and which files are refused.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
 #include <vector>
@@ -121,7 +122,11 @@ TEST(LoadHandSkin, ThatIsMissingIsRefusedByItsName) {
   expect_scene_error([&] { (void)load_hand_skin(hand); },
                      {"hand.toml:", "meshes.skin", "skin.json", "cannot be opened"});
   hand.file = folder.write_hand("collision = \"{segment}.obj\"\nunit_mm = 1\nskin = \"meshes\"\n");
-  expect_scene_error([&] { (void)load_hand_skin(hand); }, {"meshes.skin", "is it a folder?"});
+  expect_scene_error([&] { (void)load_hand_skin(hand); }, {"meshes.skin", "is a folder"});
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  hand.file = folder.write_hand("collision = \"{segment}.obj\"\nunit_mm = 1\nskin = \"pipe\"\n");
+  expect_scene_error([&] { (void)load_hand_skin(hand); }, {"meshes.skin", "is not a regular file"});
   const std::string empty = folder.write_hand("collision = \"{segment}.obj\"\nunit_mm = 1\nskin = \"\"\n");
   expect_scene_error([&] { (void)read_hand_file(empty); }, {"meshes.skin = ", "names no file"});
   const std::string number = folder.write_hand("collision = \"{segment}.obj\"\nunit_mm = 1\nskin = 3\n");

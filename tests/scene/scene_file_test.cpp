@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 
+#include "expect_error.h"
 #include "phalanx/scene/scene_error.h"
+#include "record/temporary_folder.h"
 
 namespace phalanx {
 namespace {
@@ -54,6 +57,13 @@ TEST(SceneFile, GivesTheSceneTogetherWithItsValues) {
               ::testing::UnorderedElementsAre(Pair("rate_hz", "400"), Pair("force.law", "\"duffing\""),
                                               Pair("force.stiffness_n_per_mm", "0.9")));
   EXPECT_THROW(static_cast<void>(file.with_values({{"rate_hz", "0"}})), SceneError);
+}
+
+TEST(SceneFile, RefusesANamedPipeWithoutAWait) {
+  const testing::TemporaryFolder folder;
+  const std::string pipe = folder / "pipe.toml";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_scene_error([&] { static_cast<void>(SceneFile(pipe)); }, {pipe, "is not a regular file"});
 }
 
 TEST(SceneFile, SaysWhichSceneThereIsNot) {
