@@ -16,8 +16,8 @@
 namespace phalanx {
 
 /// Reads the text of a file. Does not wait for a named pipe.
-/// @throws SceneError if it is not a regular file, cannot be read, or is larger than 16 MB, which no valid TOML
-/// file of the program is.
+/// @throws SceneError if it is not a regular file, cannot be read, or is larger than 16 MB, which no valid
+/// TOML file of the program is.
 [[nodiscard]] std::string read_text_file(const std::string& path, const std::string& what);
 
 /// Parses TOML of bounded depth. All TOML that is not in the source code is parsed here.

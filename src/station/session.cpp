@@ -40,7 +40,7 @@ void Session::reset() noexcept {
   if (const auto now = state_->current()) return now->station->reset();
   try {
     queue_->ask(MakeStation{}, {});
-  } catch (const std::exception&) {  // without memory, or after shut_down() has begun: there is no other try
+  } catch (const std::exception&) {  // without memory, or after shut_down() has begun: no other try
   }
 }
 

@@ -56,8 +56,8 @@ class SessionWorker {
   void switch_to(StationBuild build);
   void go_back();
   /// Opens the device, publishes and starts the station, and keeps its parts.
-  /// @throws as make_station() and SessionState::begin(); the plan and the parts of the last station are then
-  /// still kept
+  /// @throws as make_station() and SessionState::begin(); the plan and the parts of the last station are
+  /// then still kept
   void take_over(StationBuild& build);
 
   void refuse_while_calibrating() const;

@@ -461,20 +461,21 @@ TEST_F(CockpitTest, ARefusalDoesNotShowWhereTheProgramIsInstalled) {
 
 TEST_F(CockpitTest, AnOvertakenValueIsNoChange) {
   Page page(port());
-  // The station first ramps to zero torque. The clock stands still until all messages have arrived, so that
-  // the values wait.
+  // The station first ramps to zero torque. The messages arrive together, and the clock stands still until
+  // all are handled, so that the values wait.
   wire::ToHost load;
   load.mutable_scene()->set_name("first_touch");
   load.set_request(99);
-  page.send(load);
+  std::vector<std::string> burst = {load.SerializeAsString()};
   for (const std::string value : {"99", "0.7", "0.8"}) {
     wire::ToHost message;
     auto& setting = *message.mutable_set()->add_setting();
     setting.set_key("force.stiffness_n_per_mm");
     setting.set_value(value);
     message.set_request(100);
-    page.send(message);
+    burst.push_back(message.SerializeAsString());
   }
+  page.client().send_at_once(burst);
   for (int i = 0; i < 4; ++i) {
     const wire::Reply reply = page.receive(wire::ToPage::kReply).reply();
     EXPECT_EQ(reply.request(), i == 0 ? 99U : 100U);

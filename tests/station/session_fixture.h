@@ -58,8 +58,8 @@ class SessionFixture : public ::testing::Test {
   }
 
   /// Waits until the worker makes a change that needs clock time: a running station that has to end first.
-  /// The clock stands still meanwhile, because this thread runs and does not look at it; so the change is not
-  /// done when this returns. Another change may be missed, and the test then ends at its time limit.
+  /// The clock stands still meanwhile, because this thread runs and does not look at it; so the change is
+  /// not done when this returns. Another change may be missed, and the test then ends at its time limit.
   /// @returns SessionInfo::busy
   std::string until_busy() const {
     std::string busy;
@@ -67,8 +67,8 @@ class SessionFixture : public ::testing::Test {
       ::syscall(SYS_sched_yield);  // not sched_yield(), with which a held clock lets time pass
     return busy;
   }
-  /// Lets the worker load a scene. What is asked next waits until this thread sleeps, because the station ends
-  /// first.
+  /// Lets the worker load a scene while a station runs. What is asked next waits until this thread sleeps,
+  /// because that station ends first.
   void occupy(const std::string& scene = "first_touch") {
     session->load_scene(scene, {});
     ASSERT_EQ(until_busy(), "scene " + scene);

@@ -159,6 +159,22 @@ TEST_F(WiredSessionTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNext
   EXPECT_TRUE(session->held_stopped());
 }
 
+TEST_F(WiredSessionTest, AWizardsWrittenCalibrationIsUsedByTheNextStationIfItsOwnIsRefused) {
+  const std::string scene = folder / "own.toml";
+  std::filesystem::copy_file(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", scene);
+  connect(scene);
+  begin();
+  measure_all();
+  std::filesystem::remove(scene);
+  EXPECT_THAT(calibrate(Step::kWrite), HasSubstr("own.toml"));
+  EXPECT_EQ(written, 1);
+  EXPECT_EQ(session->info()->wizard, nullptr);
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_EQ(load("grasp_teapot"), "");
+  EXPECT_EQ(session->info()->calibration, folder / "found.toml");
+  EXPECT_TRUE(session->info()->running);
+}
+
 TEST_F(WiredSessionTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation) {
   connect();
   ASSERT_TRUE(until([&] { return session->view().snapshot.tick > 0; }));
