@@ -21,7 +21,7 @@ FOLDERS: dict[str, tuple[int, str, list[str]]] = {
     "step": (95, "step device simulation scene station study papers figures", ["*/step/*"]),
     "safety": (95, "station faults serve", ["*/station/safety*", "*/station/sensor_watch*"]),
     "link": (95, "device/link device simulation station faults", ["*/device/link/*"]),
-    "import": (90, "mesh scene step serve study papers figures apps", [f"*/mesh/{folder}{name}.*" for folder in ("", "import/", "isolation/") for name in IMPORT.split()]),
+    "import": (90, "mesh scene step serve study papers figures apps", ["*/mesh/import.h"] + [f"*/mesh/*/{name}.*" for name in IMPORT.split()]),
     "scene": (90, "scene study papers figures device simulation station serve apps", ["*/scene/*"]),
     "serve": (90, "serve faults apps", ["*/serve/*"]),
     "study": (90, "study papers figures simulation apps",
@@ -184,9 +184,13 @@ def mutants_of(file: str, text: str) -> dict[int, list[Mutant]]:
 
 
 def sources_of(folder: str, root: Path) -> list[str]:
+    """The source files of a folder of mutants. A pattern that no file matches is an error: its files were renamed or moved."""
     files = [path for top in ("src", "include") for path in (root / top).rglob("*") if path.suffix in (".cpp", ".c", ".h")]
     names = sorted(path.relative_to(root).as_posix() for path in files)
     patterns = ALL_FOLDERS[folder][2]
+    for pattern in patterns:
+        if not any(fnmatch(name, pattern) for name in names):
+            sys.exit(f"{folder}: no source file matches {pattern}; correct it in scripts/mutant_draw.py")
     return [name for name in names if any(fnmatch(name, pattern) for pattern in patterns)
             and not (folder == "device" and name.count("/device/") and "/" in name.split("/device/")[1])]
 

@@ -160,6 +160,11 @@ class MadeTree(unittest.TestCase):
         self.assertEqual(len(first), 3 * per_file)
         self.assertFalse([name for name in first if "other" in name])
 
+    def test_a_pattern_without_a_file_is_an_error(self) -> None:
+        self.assertEqual(len(mutant_draw.sources_of("force", self.root)), 3)
+        with self.assertRaises(SystemExit):
+            mutant_draw.sources_of("import", self.root)
+
     def test_a_mutant_is_in_the_copy_alone_and_is_put_back_with_its_time(self) -> None:
         copy = mutants.Copy(self.root, Path(self.root.parent) / "place")
         source, program = copy.tree / "src/force/one.cpp", copy.build / "bin/program"
@@ -194,6 +199,15 @@ class MadeTree(unittest.TestCase):
         one, other = (mutant_draw.mutants_of("made.cpp", f'  say("// no", 1\'000);{comment}')[1][0] for comment in ("  // \"why\"", ""))
         self.assertEqual(one.diff, other.diff)
         self.assertIn('- say("// no", 1\'000);\n', one.diff)
+
+
+class Sources(unittest.TestCase):
+    def test_each_pattern_names_files_of_this_tree(self) -> None:
+        for folder in mutant_draw.ALL_FOLDERS:
+            self.assertTrue(mutant_draw.sources_of(folder, SCRIPTS.parent), folder)
+
+    def test_the_import_has_the_repair_of_meshes(self) -> None:
+        self.assertIn("src/mesh/repair/weld.cpp", mutant_draw.sources_of("import", SCRIPTS.parent))
 
 
 def stale(entry: str, root: Path) -> bool:
