@@ -348,6 +348,13 @@ TEST(ObjectModel, RefusesAVertexThatIsMoreThanTenKilometresAwayAlongAnyAxis) {
   }
 }
 
+TEST(ObjectModel, KeepsItsPartsWhenItIsMovedFrom) {
+  ObjectModel from(make_sphere(0.01, 100));
+  const ObjectModel to = std::move(from);
+  EXPECT_EQ(from.triangle_count(), to.triangle_count());  // NOLINT(bugprone-use-after-move)
+  EXPECT_EQ(&from.tree(), &to.tree());
+}
+
 TEST(Containment, SeesASegmentInsideAnObjectAndAnObjectInsideASegment) {
   const TriangleMesh small = make_sphere(0.01, 100);
   const TriangleMesh large = make_sphere(0.1, 400);

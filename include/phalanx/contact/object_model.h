@@ -25,6 +25,10 @@ class ObjectModel {
   /// finite, or is farther than 10 km from the origin.
   explicit ObjectModel(TriangleMesh mesh, double crease_angle = kDefaultCreaseAngle);
 
+  // A move is a copy of the pointer, too, so that no object is without its parts.
+  ObjectModel(const ObjectModel&) = default;
+  ObjectModel& operator=(const ObjectModel&) = default;
+
   static constexpr double kDefaultCreaseAngle = 0.523598775598299;  // 30 degrees
 
   [[nodiscard]] const TriangleMesh& mesh() const noexcept;
