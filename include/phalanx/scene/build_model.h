@@ -21,7 +21,8 @@ inline constexpr std::size_t kMostSceneTriangles = 4'000'000;
 
 /// Makes the mesh of all objects in the world frame, merged [m]; it is empty if there are none. The mesh is
 /// mirrored in x = 0 if the scene is (its key `mirror`, or the profile of a left hand).
-/// @throws as make_object_mesh() and load_hand_numbers(), and SceneError beyond kMostSceneTriangles.
+/// @throws as make_object_mesh(). Also SceneError for a hand file or profile that cannot be read, and beyond
+/// kMostSceneTriangles. Set-up only.
 [[nodiscard]] TriangleMesh make_world_mesh(const SceneDescription& scene);
 
 /// Builds the model: the scene's hand at its pose, and its objects merged into one, both mirrored as in

@@ -15,7 +15,7 @@ namespace phalanx {
 struct SegmentTrees;
 
 /// Geometry that a step works on: the hand, the objects, and the search trees of both. Constant. Many states
-/// can share one model; it can be moved, but not copied.
+/// can share one model. It can be moved, not copied; a moved-from object may only be assigned to or destroyed.
 struct HapticModel {
   /// Makes the trees of the hand. Set-up only.
   HapticModel(HandModel hand_model, ObjectModel object_model);
@@ -36,7 +36,8 @@ struct HapticModel {
   std::unique_ptr<const SegmentTrees> trees_;
 };
 
-/// State that one step leaves for the next. All its memory is allocated at construction.
+/// State that one step leaves for the next. All its memory is allocated at construction. It can be moved, not
+/// copied; a moved-from object may only be assigned to or destroyed.
 class HapticState {
  public:
   /// Starts at the open hand, without contact, at zero torque. Set-up only.
