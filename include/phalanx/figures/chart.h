@@ -46,10 +46,11 @@ struct ChartPanel {
   std::string y_label;  ///< with the unit: "force [N]"
   std::vector<ChartSeries> series;
   std::vector<ChartMark> marks;
-  bool from_zero = true;         ///< the y axis includes 0
-  double height = 120.0;         ///< height of the frame in points (1/72 inch); more if its legend needs more
-  bool legend = true;            ///< false: the panel above has the same curves
-  std::string solid_means = {};  ///< legend's text for the curves; used if there are companions
+  bool from_zero = true;  ///< the y axis includes 0
+  /// Height of the frame in points (1/72 inch). The next panel begins lower if the legend needs more.
+  double height = 120.0;
+  bool legend = true;             ///< false: the panel above has the same curves
+  std::string solid_means = {};   ///< legend's text for the curves; used if there are companions
   std::string dashed_means = {};  ///< legend's text for the companions
   /// The y axis follows the curves if the companions reach more than 2.5 times as high. These are then cut at
   /// the frame, and the legend states how high they reach.

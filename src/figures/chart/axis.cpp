@@ -8,11 +8,12 @@
 
 namespace phalanx {
 
+double drawable(double value) noexcept { return std::clamp(value, -1e300, 1e300); }
+
 void Range::include(double value) noexcept {
   if (!std::isfinite(value)) return;
-  constexpr double kLargest = 1e300;  // the extent and its ticks are then finite, too
-  low = std::min(low, std::clamp(value, -kLargest, kLargest));
-  high = std::max(high, std::clamp(value, -kLargest, kLargest));
+  low = std::min(low, drawable(value));
+  high = std::max(high, drawable(value));
 }
 
 void Range::include(const std::vector<double>& values) noexcept {

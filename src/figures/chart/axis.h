@@ -8,12 +8,16 @@
 
 namespace phalanx {
 
+/// @returns a value that is not beyond 1e300, either way: the extent of such values and its ticks are finite,
+/// and so are their places in a frame.
+[[nodiscard]] double drawable(double value) noexcept;
+
 /// Range of the finite values that a chart shows. It begins empty.
 struct Range {
   double low = HUGE_VAL;  ///< larger than `high`: no value yet
   double high = -HUGE_VAL;
 
-  /// Includes a value. One that is not finite changes nothing; one beyond 1e300 counts as that.
+  /// Includes a value. One that is not finite changes nothing; one beyond 1e300 counts as drawable() returns it.
   void include(double value) noexcept;
   void include(const std::vector<double>& values) noexcept;
   [[nodiscard]] bool empty() const noexcept { return low > high; }

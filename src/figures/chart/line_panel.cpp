@@ -123,7 +123,7 @@ class LinePanelDrawing {
 
  private:
   [[nodiscard]] double py(double y) const {
-    return top_ + height_ * (ticks_.back() - y) / (ticks_.back() - ticks_.front());
+    return top_ + height_ * (ticks_.back() - drawable(y)) / (ticks_.back() - ticks_.front());
   }
   [[nodiscard]] bool first() const { return index_ == 0; }
   [[nodiscard]] bool last() const { return index_ + 1 == chart_.panels.size(); }
@@ -205,10 +205,10 @@ class LinePanelDrawing {
     if (!has_companions(panel_)) return;
     const bool cut = scale_.off_scale > 0.0;
     if (cut) {
+      // A viewport cuts without an id, which would have to be unique on a page with several charts.
       svg_.add(
-          R"svg(<clipPath id="panel{0}"><rect x="{1:.2f}" y="{2:.2f}" width="{3:.2f}" height="{4:.2f}"/></clipPath>)svg",
-          index_, axis_.left, top_ - 1, axis_.width, height_ + 2);
-      svg_.add(R"svg(<g clip-path="url(#panel{})">)svg", index_);
+          R"svg(<svg x="{0:.2f}" y="{1:.2f}" width="{2:.2f}" height="{3:.2f}" viewBox="{0:.2f} {1:.2f} {2:.2f} {3:.2f}" overflow="hidden">)svg",
+          axis_.left, top_ - 1, axis_.width, height_ + 2);
     }
     for (std::size_t s = 0; s < shown(panel_); ++s) {
       const ChartSeries& series = panel_.series[s];
@@ -219,7 +219,7 @@ class LinePanelDrawing {
           R"svg(<path class="companion" d="{}" fill="none" stroke="{}" stroke-width="0.7" stroke-linejoin="round" stroke-dasharray="{}" stroke-opacity="0.85"/>)svg",
           points, curve_style(s).colour, kCompanionDashes);
     }
-    if (cut) svg_.add("</g>");
+    if (cut) svg_.add("</svg>");
   }
 
   void line(const ChartSeries& series, std::size_t index) {

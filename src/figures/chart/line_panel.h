@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "figures/chart/axis.h"
 #include "figures/chart/svg.h"
 #include "phalanx/figures/chart.h"
 
@@ -15,7 +16,7 @@ struct SharedAxis {
   double left, width;  ///< of the frame [pt]
   double low, high;    ///< in the unit of x
   std::vector<double> ticks;
-  [[nodiscard]] double at(double x) const { return left + width * (x - low) / (high - low); }
+  [[nodiscard]] double at(double x) const { return left + width * (drawable(x) - low) / (high - low); }
 };
 
 inline constexpr std::size_t kMarkedPoints = 40;  ///< a curve with at most this many points has a

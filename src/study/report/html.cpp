@@ -29,7 +29,7 @@ td.n { white-space: nowrap; }
 .warnings { border-left: 1.2mm solid #D55E00; background: #FDF3EC; padding: 1mm 3mm; margin: 3mm 0; }
 figure { margin: 3mm 0; }
 .row { display: flex; flex-wrap: wrap; gap: 3mm; align-items: flex-start; }
-.row svg { max-width: 100%; height: auto; break-inside: avoid; }
+.row > svg { max-width: 100%; height: auto; break-inside: avoid; }
 figcaption { font-size: 9pt; color: #444; margin-top: 1mm; }
 .made { font-size: 9pt; color: #333; }
 @page { margin: 12mm; }

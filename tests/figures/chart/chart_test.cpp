@@ -187,7 +187,8 @@ TEST(LineChartSvg, CutsACompanionThatWouldDwarfItsCurve) {
   for (const char* piece :
        {"class=\"curve\" d=\"M53.77,130.00L209.12,70.00L364.47,100.00\"",
         "class=\"companion\" d=\"M53.77,130.00L209.12,-50.00L364.47,130.00\"",
-        "<rect x=\"46.00\" y=\"39.00\" width=\"326.24\" height=\"92.00\"/></clipPath>",
+        "<svg x=\"46.00\" y=\"39.00\" width=\"326.24\" height=\"92.00\" viewBox=\"46.00 39.00 326.24 92.00\" "
+        "overflow=\"hidden\">",
         "d=\"M384.24,43.00h18\"", "translate(393.24,43.00)",
         "<text x=\"407.24\" y=\"45.80\" text-anchor=\"start\" fill=\"#000\">index<", "d=\"M384.24,53.50h18\"",
         "<text x=\"407.24\" y=\"56.30\" text-anchor=\"start\" fill=\"#555\">sent<", "d=\"M384.24,64.00h18\"",
@@ -202,7 +203,7 @@ TEST(LineChartSvg, CutsACompanionThatWouldDwarfItsCurve) {
 TEST(LineChartSvg, KeepsACompanionThatFits) {
   const std::string svg = with_companion({0, 5, 0});
   EXPECT_THAT(svg, Not(HasSubstr("off scale")));
-  EXPECT_THAT(svg, Not(HasSubstr("clipPath")));
+  EXPECT_THAT(svg, Not(HasSubstr("overflow")));
   EXPECT_THAT(svg, HasSubstr("class=\"companion\" d=\"M53.77,130.00L209.12,55.00L364.47,130.00\""));
 }
 
@@ -221,6 +222,21 @@ TEST(LineChartSvg, HasAnAxisForEqualValuesAndForNone) {
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
     EXPECT_THAT(svg, Not(HasSubstr("inf")));
   }
+}
+
+TEST(LineChartSvg, DrawsTheLargestNumbersInsideTheFrame) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  ChartSeries series{.name = "a", .x = {-kMax, 0.0, kMax}, .y = {-kMax, 0.0, kMax}, .low = {}, .high = {}};
+  series.low = {-kMax, -1.0, 0.0};
+  series.high = {0.0, 1.0, kMax};
+  series.companion = {kMax, kMax, -kMax};
+  LineChart chart = chart_of({series});
+  chart.panels[0].marks = {{kMax, "largest"}};
+  chart.windows = {{-kMax, kMax, "all"}};
+  const std::string svg = line_chart_svg(chart);
+  EXPECT_EQ(flaw_of(svg), "");
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
 }
 
 // Without a curve the axis still shows the time of the run: ticks from 2 to 4.
