@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs BUILD_DIR into a fresh prefix under WORK_DIR, moves that prefix (a package must not remember where it was installed), builds
-# the programs in CONSUMER_DIR, README's program and the example driver OWN_DEVICE_DIR against it and runs what came out.
+# the programs in CONSUMER_DIR, README's program and the example driver OWN_DEVICE_DIR against it and runs what came out. Also asks for what
+# the package does not have.
 function(must)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   message("${output}")
@@ -76,16 +77,33 @@ if(NOT readme MATCHES "```cpp\n([^`]+)```")
   message(FATAL_ERROR "README.md has no program in C++")
 endif()
 file(WRITE ${WORK_DIR}/readme.cpp "${CMAKE_MATCH_1}")
-set(without "")
-foreach(package assimp meshoptimizer tomlplusplus fmt Threads)
-  list(APPEND without -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+set(without_station "") # without the packages of phalanx::station
+foreach(package tomlplusplus fmt Threads)
+  list(APPEND without_station -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
-consume(phalanx ${WORK_DIR}/readme.cpp ${without})
+set(without_import -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON)
+consume(phalanx ${WORK_DIR}/readme.cpp ${without_import} ${without_station})
 if(NOT output MATCHES "^-0[.][1-9][0-9]* Nm\n$") # the table pushes the finger open
   message(FATAL_ERROR "README's program printed: ${output}")
 endif()
-consume(import import_consumer.cpp -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)
+consume(import import_consumer.cpp ${without_station})
 consume(station station_consumer.cpp)
+
+# Configures a consumer of phalanx::COMPONENT with the further options. CMake must refuse it and state `reason`.
+function(refuse component reason)
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/refused_${component} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+            -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DCOMPONENT=${component} -DSOURCE=import_consumer.cpp ${ARGN}
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  string(REGEX REPLACE "[ \n]+" " " stated "${output}") # CMake breaks lines
+  string(FIND "${stated}" "${reason}" place)
+  if(result EQUAL 0 OR place EQUAL -1)
+    message(FATAL_ERROR "${component} with \"${ARGN}\": expected a refusal that states \"${reason}\", got ${result}:\n${output}")
+  endif()
+endfunction()
+
+refuse(physics "there is no component physics; the components are phalanx, import, station")
+refuse(phalanx "phalanx::phalanx needs the package Eigen3 3.4, which was not found" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON)
 
 must(${CMAKE_COMMAND} -S ${OWN_DEVICE_DIR} -B ${WORK_DIR}/own_device -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
      -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
