@@ -27,12 +27,14 @@ class HeatMapDrawing {
     scale_.low = map.low.value_or(drawn.low);
     scale_.high = std::max(scale_.low, map.high.value_or(drawn.high));
     scale_ = scale_.for_axis();
-    row_room_ = std::min(text_width(map.rows), 0.3 * width_);
-    left_ = 8.0 + row_room_ + (map.y_label.empty() ? 0.0 : 14.0);
     const double columns = std::max(1.0, static_cast<double>(map.columns.size()));
     const double rows = std::max(1.0, static_cast<double>(map.rows.size()));
     const double most = std::clamp(text_width(map.columns) + 2.0, 46.0, 80.0);
-    cell_w_ = std::min(most, (width_ - left_ - kScaleRoom - 16.0) / columns);
+    const double room = width_ - 8.0 - (map.y_label.empty() ? 0.0 : 14.0) - kScaleRoom - 16.0;
+    // The rows' names may have what the widest cells leave.
+    row_room_ = std::min(text_width(map.rows), std::max(0.3 * width_, room - most * columns));
+    left_ = 8.0 + row_room_ + (map.y_label.empty() ? 0.0 : 14.0);
+    cell_w_ = std::min(most, (room - row_room_) / columns);
     // The cells have room for the number if the map then still fits on a page.
     cell_h_ = std::clamp(400.0 / rows, 1.5, 17.0);
   }

@@ -111,6 +111,22 @@ TEST(ColumnNames, StandUnderTheirColumns) {
   EXPECT_THAT(upright, HasSubstr(R"x(translate(42.80,105.00) rotate(-90)" text-anchor="end">right<)x"));
 }
 
+// A name of 40 letters is 172.8 pt wide, more than 0.3 of the width. Beside 2 cells of 46 pt there is room for
+// it, beside 20 there is not.
+TEST(HeatMapSvg, CutsARowsNameOnlyIfTheCellsNeedTheRoom) {
+  const std::string name(40, 'n');
+  for (const std::size_t columns : {2U, 20U}) {
+    const HeatMap map{.title = "",
+                      .quantity = "",
+                      .x_label = "",
+                      .y_label = "",
+                      .columns = std::vector<std::string>(columns, "c"),
+                      .rows = {name},
+                      .value = std::vector<double>(columns, 1.5)};
+    EXPECT_EQ(count_of(heat_map_svg(map), ">" + name + "<"), columns == 2U ? 1U : 0U) << columns;
+  }
+}
+
 TEST(HeatMapSvg, ColoursTheSmallestDarkAndTheLargestBright) {
   const std::string svg = heat_map_svg(small_map());
   EXPECT_EQ(count_of(svg, "fill=\"" + scale_colour(0.0).fill + "\""), 1U);
