@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/study/trial.h"
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "phalanx/scene/build_model.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/simulation/closed_loop/closed_loop.h"
 
