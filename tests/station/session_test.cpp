@@ -626,7 +626,7 @@ TEST_F(SessionTest, AResumeThatIsOlderThanAStopDoesNothing) {
   ASSERT_TRUE(until_running());
   session->stop();
   const std::uint64_t seen = session->stops();
-  session->stop();  // somebody else's, not seen yet
+  session->stop();  // the stop of another user, not seen yet
   EXPECT_FALSE(session->resume(seen));
   EXPECT_TRUE(session->held_stopped());
   EXPECT_TRUE(until([&] { return session->view().state == SafetyState::kStopped; }));
