@@ -50,7 +50,7 @@ GdpState::GdpState(const ContactModel& model)
     : angle(model.hand.parameters().open_angle), hcp_angle(angle), scratch(model.trees) {
   model.hand.poses(angle, poses);
   const double margin = model.parameters.margin;
-  const Containment containment(model.object.mesh());
+  const Containment& containment = model.object.containment();
   for (int s = 0; s < kSegments; ++s) {
     const bool palm = s == kPalm;
     const Pose& X = palm ? model.hand.palm_pose()

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contact/compact_normals.h"
+#include "contact/containment.h"
 #include "phalanx/contact/object_tree.h"
 
 namespace phalanx {
@@ -14,6 +15,7 @@ struct ObjectModel::Parts {
   TriangleMesh mesh;
   ObjectTree tree;
   CompactNormals normals;
+  Containment containment;  ///< refers to `mesh`
 };
 
 namespace {
@@ -43,6 +45,7 @@ ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) {
   parts->mesh = checked(std::move(mesh));
   parts->tree = ObjectTree(parts->mesh);
   parts->normals = CompactNormals(surface_normals(parts->mesh, crease_angle));
+  parts->containment = Containment(parts->mesh);
   parts_ = std::move(parts);
 }
 
@@ -51,6 +54,8 @@ const TriangleMesh& ObjectModel::mesh() const noexcept { return parts_->mesh; }
 int ObjectModel::triangle_count() const noexcept { return static_cast<int>(parts_->mesh.triangles.size()); }
 
 const ObjectTree& ObjectModel::tree() const noexcept { return parts_->tree; }
+
+const Containment& ObjectModel::containment() const noexcept { return parts_->containment; }
 
 Vec3 ObjectModel::normal_at(int triangle, const Vec3& weight) const noexcept {
   const CompactNormals& normals = parts_->normals;

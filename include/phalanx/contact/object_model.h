@@ -8,6 +8,7 @@
 
 namespace phalanx {
 
+class Containment;
 class ObjectTree;
 
 /// All objects that the hand may touch, merged into one triangle mesh in the world, with its search tree and
@@ -17,7 +18,7 @@ class ObjectModel {
   /// Makes a world without objects. Set-up only.
   ObjectModel();
 
-  /// Builds search tree and normals. Set-up only.
+  /// Builds search tree and normals, and finds the closed parts. Set-up only.
   /// @param mesh          in world frame W [m]
   /// @param crease_angle  edges with a dihedral angle below it are smooth: normals are interpolated
   /// over them [rad]
@@ -44,6 +45,9 @@ class ObjectModel {
 
   /// Returns the search tree, for the contact search. Real-time.
   [[nodiscard]] const ObjectTree& tree() const noexcept;
+
+  /// Returns the test whether a segment is inside the object, for the search's start. Set-up only.
+  [[nodiscard]] const Containment& containment() const noexcept;
 
  private:
   struct Parts;
