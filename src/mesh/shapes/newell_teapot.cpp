@@ -11,8 +11,8 @@
 namespace phalanx::mesh {
 namespace {
 
-template <typename Point>
-Point cubic(const Point& p0, const Point& p1, const Point& p2, const Point& p3, double t) {
+/// A coordinate of the Bezier curve with these control points.
+double cubic(double p0, double p1, double p2, double p3, double t) {
   const double s = 1.0 - t;
   return p0 * (s * s * s) + p1 * (3.0 * s * s * t) + p2 * (3.0 * s * t * t) + p3 * (t * t * t);
 }
@@ -58,15 +58,16 @@ Vec3 on_tube(const HalfTube& tube, double a, double v) {
   const double u = mirrored ? 2.0 - 2.0 * a : 2.0 * a;
   const std::size_t first = v < 0.5 ? 0 : 3;
   const double within = v < 0.5 ? 2.0 * v : 2.0 * v - 1.0;
-  std::array<Vec3, 4> row;
-  for (std::size_t i = 0; i < 4; ++i) {
-    std::array<Vec3, 4> p;
-    for (std::size_t j = 0; j < 4; ++j) p[j] = Vec3(tube[first + i][j].data());
-    row[i] = cubic(p[0], p[1], p[2], p[3], u);
+  std::array<double, 3> p{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::array<double, 4> row{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& c = tube[first + i];
+      row[i] = cubic(c[0][axis], c[1][axis], c[2][axis], c[3][axis], u);
+    }
+    p[axis] = cubic(row[0], row[1], row[2], row[3], within);
   }
-  Vec3 p = cubic(row[0], row[1], row[2], row[3], within);
-  if (mirrored) p.y() = 0.0 - p.y();
-  return p;
+  return {p[0], mirrored ? 0.0 - p[1] : p[1], p[2]};
 }
 
 /// Returns v at which the curve a = 1/2 of a tube is farthest along `direction`.
@@ -93,15 +94,14 @@ RevolvedSurface newell_body() {
   body.profile = [](double t) -> Eigen::Vector2d {
     const int piece = std::clamp(static_cast<int>(std::floor(t)), 0, static_cast<int>(kProfile.size()) - 1);
     const auto& c = kProfile[static_cast<std::size_t>(piece)];
-    using V = Eigen::Vector2d;
-    return cubic(V(c[0].data()), V(c[1].data()), V(c[2].data()), V(c[3].data()), t - piece);
+    return {cubic(c[0][0], c[1][0], c[2][0], c[3][0], t - piece),
+            cubic(c[0][1], c[1][1], c[2][1], c[3][1], t - piece)};
   };
   // Newell's quarter circles have the control points (1, 0), (1, k), (k, 1), (0, 1). He rounded k r to
   // his drawing's grid. All his body rings share k = 0.56: 0.2 k is written as 0.112, 1.3 k as 0.728, and
   // 2 k as 1.12.
   body.quarter = [](double q) -> Eigen::Vector2d {
-    using V = Eigen::Vector2d;
-    return cubic(V{1.0, 0.0}, V{1.0, 0.56}, V{0.56, 1.0}, V{0.0, 1.0}, q);
+    return {cubic(1.0, 1.0, 0.56, 0.0, q), cubic(0.0, 0.56, 1.0, 1.0, q)};
   };
   body.least_bands = {1, 2, 3, 2, 1, 2, 2};
   body.wall_begin = 1;
