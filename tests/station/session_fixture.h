@@ -17,11 +17,14 @@
 
 #include "phalanx/station/session.h"
 #include "support/held_clock/hold_this_process.h"
+#include "support/reading_helper.h"
 
 namespace phalanx::test {
 
 class SessionFixture : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() { read_meshes_in_helper(); }
+
   static SessionSettings with(const std::string& device, const std::string& scene = "first_touch") {
     SessionSettings settings;
     settings.scene = scene;

@@ -21,6 +21,7 @@
 #include "phalanx/station/resolved_station.h"
 #include "station/small_station.h"
 #include "station/watched_device.h"
+#include "support/reading_helper.h"
 #include "support/sanitized.h"
 
 namespace phalanx {
@@ -28,6 +29,8 @@ namespace {
 
 class StationTest : public testing::Test {
  protected:
+  static void SetUpTestSuite() { test::read_meshes_in_helper(); }
+
   /// Four times as fast as real time; overruns are judged only where a test asks for it.
   void start(const Overrides& overrides = {}, double slowdown = 0.25, int overruns = 1000000) {
     scene_ = load_scene(PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml", overrides);
