@@ -375,6 +375,20 @@ TEST(Step, AllocatesNothing) {
   EXPECT_GT(test::allocations(), before) << "the counter counts";
 }
 
+// Many trials share one model: a state has no copy of the object's triangles or of what is made from them.
+TEST(HapticState, TakesNoMemoryForTheObjectsTriangles) {
+  const auto bytes_with = [](int triangles) {
+    const test::Setup model(test::simple_hand(),
+                            ObjectModel(moved(make_sphere(0.03, triangles), at(0.0, -0.028, -0.028))));
+    const std::size_t before = test::bytes_of_this_thread();
+    const HapticState state(model, model.parameters);
+    return test::bytes_of_this_thread() - before;
+  };
+  const std::size_t coarse = bytes_with(2000);
+  EXPECT_EQ(bytes_with(50'000), coarse);
+  EXPECT_LT(coarse, 1U << 20);
+}
+
 TEST(Step, SameSamplesSameBits) {
   const test::Setup model = ball_model();
   Runner a(model);

@@ -15,12 +15,14 @@ namespace {
 
 std::atomic<std::size_t> count{0};
 constinit thread_local std::size_t count_of_this_thread = 0;
+constinit thread_local std::size_t bytes_asked_by_this_thread = 0;
 constinit thread_local std::size_t until_failure = 0;  ///< allocations of this thread; 0: none fails
 
 /// @returns true if it is to fail
-bool count_one() noexcept {
+bool count_one(std::size_t bytes) noexcept {
   count.fetch_add(1, std::memory_order_relaxed);
   ++count_of_this_thread;
+  bytes_asked_by_this_thread += bytes;
   return until_failure > 0 && --until_failure == 0;
 }
 
@@ -39,18 +41,18 @@ void* __wrap_realloc(void* old, std::size_t size);
 void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size);
 int __wrap_posix_memalign(void** out, std::size_t alignment, std::size_t size);
 
-void* __wrap_malloc(std::size_t size) { return count_one() ? nullptr : __real_malloc(size); }
+void* __wrap_malloc(std::size_t size) { return count_one(size) ? nullptr : __real_malloc(size); }
 void* __wrap_calloc(std::size_t members, std::size_t size) {
-  return count_one() ? nullptr : __real_calloc(members, size);
+  return count_one(members * size) ? nullptr : __real_calloc(members, size);
 }
 void* __wrap_realloc(void* old, std::size_t size) {
-  return count_one() ? nullptr : __real_realloc(old, size);
+  return count_one(size) ? nullptr : __real_realloc(old, size);
 }
 void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-  return count_one() ? nullptr : __real_aligned_alloc(alignment, size);
+  return count_one(size) ? nullptr : __real_aligned_alloc(alignment, size);
 }
 int __wrap_posix_memalign(void** out, std::size_t alignment, std::size_t size) {
-  return count_one() ? ENOMEM : __real_posix_memalign(out, alignment, size);
+  return count_one(size) ? ENOMEM : __real_posix_memalign(out, alignment, size);
 }
 }
 
@@ -62,7 +64,7 @@ std::size_t at_least_one(std::size_t size) noexcept { return size > 0 ? size : 1
 
 /// By way of memalign(), which is not wrapped, so that one call counts once.
 void* aligned(std::size_t size, std::align_val_t alignment) noexcept {
-  return count_one() ? nullptr : memalign(static_cast<std::size_t>(alignment), at_least_one(size));
+  return count_one(size) ? nullptr : memalign(static_cast<std::size_t>(alignment), at_least_one(size));
 }
 
 }  // namespace
@@ -106,6 +108,7 @@ void operator delete[](void* p, std::align_val_t, const std::nothrow_t&) noexcep
 namespace phalanx::test {
 std::size_t allocations() noexcept { return count.load(std::memory_order_relaxed); }
 std::size_t allocations_of_this_thread() noexcept { return count_of_this_thread; }
+std::size_t bytes_of_this_thread() noexcept { return bytes_asked_by_this_thread; }
 
 FailingAllocation::FailingAllocation(std::size_t number) noexcept { until_failure = number; }
 FailingAllocation::~FailingAllocation() { until_failure = 0; }

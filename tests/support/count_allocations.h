@@ -29,6 +29,9 @@ inline constexpr bool kCountsNew = true;
 /// Those of the calling thread alone.
 [[nodiscard]] std::size_t allocations_of_this_thread() noexcept;
 
+/// Bytes that the calling thread has asked for so far, whether they were freed since or not.
+[[nodiscard]] std::size_t bytes_of_this_thread() noexcept;
+
 /// While it lives, one allocation of its thread fails once: malloc() and its like give nullptr, operator new
 /// throws std::bad_alloc. One at a time in a thread. In a program where kCountsNew is false, operator new
 /// does not fail.
