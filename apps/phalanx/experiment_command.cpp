@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "commands.h"
-#include "error_line.h"
 #include "phalanx/papers/experiments.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
-#include "progress.h"
+#include "terminal/error_line.h"
+#include "terminal/progress.h"
 #include "usage.h"
 
 namespace phalanx {

@@ -17,9 +17,9 @@
 #include <string>
 
 #include "commands.h"
-#include "error_line.h"
 #include "phalanx/record/made.h"
-#include "terminate.h"
+#include "run/terminate.h"
+#include "terminal/error_line.h"
 #include "usage.h"
 
 namespace {

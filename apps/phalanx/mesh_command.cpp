@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "commands.h"
-#include "emphasis.h"
-#include "error_line.h"
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
+#include "terminal/emphasis.h"
+#include "terminal/error_line.h"
 #include "usage.h"
 
 namespace phalanx {

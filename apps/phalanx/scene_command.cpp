@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "commands.h"
-#include "error_line.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
 #include "scene_pictures.h"
+#include "terminal/error_line.h"
 #include "usage.h"
 
 namespace phalanx {

@@ -14,7 +14,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/study/simulate.h"
-#include "progress.h"
+#include "terminal/progress.h"
 
 namespace phalanx {
 namespace {

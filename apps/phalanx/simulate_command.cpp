@@ -13,15 +13,15 @@
 #include <vector>
 
 #include "commands.h"
-#include "error_line.h"
 #include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/study/simulate.h"
-#include "progress.h"
 #include "run_outputs.h"
 #include "summary_table.h"
+#include "terminal/error_line.h"
+#include "terminal/progress.h"
 #include "usage.h"
 
 namespace phalanx {

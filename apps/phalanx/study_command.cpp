@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "commands.h"
-#include "error_line.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/study/laboratory/outputs.h"
@@ -21,8 +20,9 @@
 #include "phalanx/study/laboratory/scene_inputs.h"
 #include "phalanx/study/laboratory/study_file.h"
 #include "phalanx/study/trial.h"
-#include "progress.h"
 #include "study_progress.h"
+#include "terminal/error_line.h"
+#include "terminal/progress.h"
 #include "usage.h"
 
 namespace phalanx {

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <string>
 
-#include "error_line.h"
-#include "progress.h"
+#include "terminal/error_line.h"
+#include "terminal/progress.h"
 
 namespace phalanx {
 namespace {

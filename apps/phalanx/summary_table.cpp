@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "emphasis.h"
 #include "phalanx/figures/human_names.h"
+#include "terminal/emphasis.h"
 
 namespace phalanx {
 namespace {

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Apache-2.0
+// phalanx run [SCENE]: runs the station.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "phalanx/mesh/isolation/isolation_helper.h"
+#include "phalanx/record/station_csv.h"
+#include "phalanx/scene/scene.h"
+#include "phalanx/station/session.h"
+#include "run/run_console.h"
+#include "run/run_options.h"
+#include "run/run_page.h"
+#include "run/run_recorder.h"
+#include "run/status_line.h"
+#include "run/terminate.h"
+#include "terminal/end_signals.h"
+#include "terminal/error_line.h"
+#include "terminal/typed_lines.h"
+#include "usage.h"
+
+namespace phalanx {
+namespace {
+
+/// One run of the station, with its terminal. This thread waits for neither the terminal nor the disk.
+class Run {
+ public:
+  Run(const RunOptions& options, const Clock& clock)
+      : options_(options), clock_(clock), recorder_(options.log, options.faults) {}
+
+  /// Runs the station. In every case the station first ends at zero torque, and the files are then written.
+  int go() {
+    if (const auto earlier = recorder_.finished_earlier(); !earlier.empty())
+      console_.say(
+          fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
+    session_ = std::make_unique<Session>(session_settings(options_), clock_);
+    std::exception_ptr failure;
+    {
+      const LetsGoAtTerminate lets_go(*session_, clock_);
+      try {
+        serve();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      session_->shut_down();
+    }
+    const bool saved = save(failure == nullptr);
+    if (failure) std::rethrow_exception(failure);
+    return say_end() && saved ? kDone : kFailed;
+  }
+
+ private:
+  void serve() {
+    typed_.emplace(*session_);
+    recorder_.begin(*session_);
+    seen_ = look();
+    introduce();
+    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, console_);
+    watch();
+  }
+
+  void introduce() {
+    const auto info = session_->info();
+    console_.say(
+        fmt::format("scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", info->scene,
+                    info->geometry->rate_hz, info->device.name, info->device.serial, info->fingertip_force,
+                    options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
+    if (info->source == HandSource::kDevice && options_.calibration.empty())
+      console_.complain(
+          "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`",
+          Emphasis::kWarning);
+    if (holds_without_host(info->device)) console_.complain(kHoldsWithoutHost, Emphasis::kWarning);
+    console_.say(
+        "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
+        "quit.");
+  }
+
+  void watch() {
+    const double begin = clock_.now();
+    double next_line = begin + 1.0;
+    while (asked_to_end == 0 && !quit_) {
+      clock_.sleep_until(clock_.now() + 0.02);
+      const double seconds = clock_.now() - begin;
+      seconds_ = seconds;
+      if (options_.seconds && seconds >= *options_.seconds) break;
+      session_->poll();
+      drain();
+      handle_typed();
+      if (clock_.now() < next_line) continue;
+      next_line += 1.0;
+      if (options_.quiet) continue;
+      const Seen seen = look();
+      if (console_.status(status_line(session_->view(), session_->deadlines(), seconds, console_.width())))
+        seen_ = seen;
+    }
+  }
+
+  /// State of which the user at the terminal is informed. Lines may be read late: a line typed before another
+  /// stop or fault does not refer to that one.
+  struct Seen {
+    std::uint64_t stops = 0;
+    double fault = 0.0;  ///< FaultEvent::time; 0: none [s]
+  };
+  [[nodiscard]] Seen look() const {
+    const std::uint64_t stops = session_->stops();
+    const FaultEvent fault = session_->view().fault;
+    return {.stops = stops, .fault = fault.fault == Fault::kNone ? 0.0 : fault.time};
+  }
+
+  /// Updates `seen_` after a command. After a refusal, only the next status line counts as seen: a second
+  /// `resume` typed with the first must not end a stop that was not shown. Without status lines, the
+  /// refusal itself counts.
+  void look_after(bool granted) {
+    if (granted || options_.quiet) seen_ = look();
+  }
+
+  /// Reports what the loop and the recorder have stored.
+  void drain() {
+    say_grant();
+    if (auto report = session_->take_fault_report()) tell_fault(std::move(*report));
+    while (const auto note = recorder_.next_note()) tell(*note);
+    const bool oscillates = session_->view().oscillates;
+    if (oscillates && !oscillates_) {
+      const std::string what = "the force oscillates: it fades, and returns by itself once it is quiet";
+      console_.say(what, Emphasis::kWarning);
+      if (page_) page_->tell("oscillation", what, true);
+    }
+    oscillates_ = oscillates;
+    const std::uint64_t refused = session_->view().resets_refused;
+    if (std::exchange(resets_refused_, refused) < refused) {
+      const std::string why =
+          "reset refused: the cause is still there, no sample comes, or the torque is not at rest yet";
+      console_.say(why, Emphasis::kError);
+      if (page_) page_->tell("reset_refused", why, false);
+    }
+  }
+
+  void tell_fault(FaultReport report) {
+    const FaultEvent& event = report.event;
+    const std::string text = fmt::format("{}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
+                                         fault_remedy(event.fault));
+    seen_.fault = event.time;
+    console_.say("FAULT " + text, Emphasis::kError);
+    if (page_) page_->tell("fault", text, true);
+    recorder_.write_report(std::move(report));
+  }
+
+  void tell(const RunRecorder::Note& note) {
+    if (!note.complaint.empty()) return console_.complain(note.complaint);
+    console_.say("report: " + note.report);
+    if (page_) page_->fault_reported(note.report, note.fault_time);
+  }
+
+  void say_grant() {
+    if (granted_) return;
+    granted_ = session_->grant();
+    if (!granted_) return;
+    console_.say("real time: " + describe(*granted_));
+    for (const std::string& missing : granted_->missing) console_.complain(missing, Emphasis::kWarning);
+    if (page_) page_->say_addresses(console_);  // again at the end, where users look for them
+  }
+
+  void handle_typed() {
+    while (asked_to_end == 0 && !quit_) {
+      const auto line = typed_->next();
+      if (!line) break;
+      handle(*line);
+    }
+    if (const std::size_t left_out = typed_->take_left_out(); left_out > 0)
+      console_.complain(
+          fmt::format("{} lines were left out: they came faster than they are handled", left_out),
+          Emphasis::kWarning);
+  }
+
+  void handle(const TypedLines::Line& typed) {
+    const std::string& line = typed.text;
+    try {
+      if (line == "stop") {  // TypedLines has stopped already
+        seen_ = look();
+        seen_.stops = typed.stops;
+        tell_typed("stopped", "stopped");
+      } else if (line == "resume") {
+        const bool resumed = session_->resume(seen_.stops);
+        look_after(resumed);
+        if (!resumed)
+          throw std::invalid_argument("another stop or fault has come since; look, then resume again");
+        tell_typed("resumed", "resumed");
+      } else if (line == "reset") {
+        const bool reset = session_->reset(seen_.fault);
+        look_after(reset);
+        if (!reset) throw std::invalid_argument("another fault has come since; look, then reset again");
+        tell_typed("reset", "asked for a reset");
+      } else if (line == "quit") {
+        quit_ = true;
+        tell_typed("quit", "ends the station");
+      } else if (line.starts_with("set ")) {
+        const std::string change = line.substr(4);
+        session_->set({parse_override(change)}, [this, change](const ChangeOutcome& outcome) {
+          say_typed("set", change, change, outcome);
+        });
+      } else if (line.starts_with("scene ")) {
+        session_->load_scene(line.substr(6), [this, line](const ChangeOutcome& outcome) {
+          say_typed("scene", line.substr(6), line, outcome);
+        });
+      } else if (!line.empty()) {
+        throw std::invalid_argument(fmt::format(
+            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, scene NAME or quit", line));
+      }
+    } catch (const std::exception& error) {  // a refusal ends nothing
+      console_.complain(reason(error));
+    }
+  }
+
+  void say_typed(const std::string& code, const std::string& text, const std::string& line,
+                 const ChangeOutcome& outcome) {
+    if (!outcome.refused.empty()) return console_.say("refused: " + outcome.refused, Emphasis::kError);
+    if (outcome.overtaken) return console_.say("overtaken by a newer value: " + line);
+    console_.say("changed: " + line);
+    tell_typed(code, text);
+  }
+
+  /// Reports a typed command to the pages and the log of changes, as a page's change.
+  void tell_typed(const std::string& code, const std::string& text) {
+    if (page_) page_->typed(code, text);
+  }
+
+  /// Writes log, summary and reports; the torque is zero. @returns false if log or summary is not complete
+  [[nodiscard]] bool save(bool in_good_order) {
+    while (auto report = session_->take_fault_report()) tell_fault(std::move(*report));
+    recorder_.finish(in_good_order);
+    const bool summarised = in_good_order && write_summary();
+    drain();
+    page_.reset();
+    return summarised && !recorder_.lost();
+  }
+
+  /// Reports the end. @returns false if it was a fault
+  [[nodiscard]] bool say_end() {
+    if (!options_.quiet) say_statistics();
+    const StationView last = session_->view();
+    const bool faulty = last.state == SafetyState::kFault;
+    console_.say(faulty ? fmt::format("ended at zero torque, in fault {}", fault_name(last.fault.fault))
+                        : "ended at zero torque",
+                 faulty ? Emphasis::kError : Emphasis::kStrong);
+    return !faulty;
+  }
+
+  [[nodiscard]] bool write_summary() {
+    if (options_.summary.empty()) return true;
+    try {
+      write_text_file(options_.summary,
+                      station_summary_json(session_->statistics(), session_->view(),
+                                           granted_ ? describe(*granted_) : "not asked for", seconds_));
+      return true;
+    } catch (const std::exception& error) {
+      console_.complain(fmt::format("there is no summary: {}", reason(error)));
+      return false;
+    }
+  }
+
+  void say_statistics() {
+    const SessionStatistics sums = session_->statistics();
+    const DeadlineStatistics& deadlines = sums.deadlines;
+    console_.say(histogram_text(deadlines.lateness, "woken late"));
+    console_.say(histogram_text(deadlines.step, "step"));
+    console_.say(
+        fmt::format("{} steps, {} overruns (at most {} in a row), {} deadlines left out; {} samples, {} "
+                    "lost, {} corrupt",
+                    deadlines.steps, deadlines.overruns, deadlines.longest_run, deadlines.skipped,
+                    sums.link.received, sums.link.lost, sums.link.corrupt));
+  }
+
+  const RunOptions& options_;
+  const Clock& clock_;
+  RunConsole console_;
+  std::unique_ptr<Session> session_;
+  RunRecorder recorder_;
+  std::unique_ptr<RunPage> page_;
+  std::optional<TypedLines> typed_;
+  std::optional<RealtimeGrant> granted_;
+  bool quit_ = false;
+  std::uint64_t resets_refused_ = 0;
+  bool oscillates_ = false;
+  Seen seen_;
+  double seconds_ = 0.0;
+};
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Job& job) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* run = app.add_subcommand(
+      "run",
+      "The station: device, hand and scene in real time, with the simulated device if there is no other");
+  run->add_option("scene", options->scene,
+                  fmt::format("a scene's name or file [{}; {} with a device]", RunOptions::kDemonstration,
+                              RunOptions::kGrasp));
+  run->add_option("--device", options->device,
+                  "simulated, sliders, udp:HOST:PORT, serial:PORT[:BAUD] or opengloves:PORT[:BAUD]")
+      ->capture_default_str();
+  run->add_option("--calibration", options->calibration,
+                  "the device's calibration file (phalanx device calibrate)");
+  run->add_option("--seconds", options->seconds, "end after so long; else with Ctrl-C")->check(positive());
+  run->add_option("--rate-hz", options->rate_hz, "the loop's rate, 200 .. 2000 Hz; else the scene's");
+  run->add_option("--profile", options->profile, "the patient's hand: a profile's name or file");
+  run->add_option("--set", options->set, "a scene's key: KEY=VALUE; may be repeated")
+      ->allow_extra_args(false);
+  run->add_option("--clinician", options->clinician,
+                  "who answers for a fingertip force above 5 N (up to 10 N)");
+  CLI::Option* watchdog = run->add_option(
+      "--watchdog-ms", options->watchdog_ms,
+      "a glove's firmware lets go by itself so long after this program's last message [1 .. 1000]");
+  run->add_flag("--no-force-feedback", options->no_force_feedback,
+                "the glove only senses: it is never told to hold a finger")
+      ->excludes(watchdog);
+  run->add_option("--log", options->log, "write every step to this CSV file");
+  run->add_option("--summary", options->summary, "write percentiles and counts to this JSON file at the end");
+  run->add_option("--fault-reports", options->faults, "folder of the fault reports")->capture_default_str();
+  run->add_option("--priority", options->priority, "of SCHED_FIFO")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  run->add_option("--cpu", options->cpu, "keep the loop on this CPU")->check(CLI::NonNegativeNumber);
+  run->add_option("--slow-motion", options->slow_motion,
+                  "run everything so many times slower, time limits included")
+      ->check(CLI::Range(1.0, 1000.0));
+  run->add_flag("--no-realtime", options->no_realtime, "do not ask for SCHED_FIFO and locked memory");
+  run->add_flag("--headless", options->headless, "no page");
+  run->add_option("--listen", options->listen, "address of the page; any but this machine's own needs TLS")
+      ->capture_default_str();
+  CLI::Option* port =
+      run->add_option("--port", options->port, "of the page; 0: any; else the next free one from 8480")
+          ->check(CLI::Range(0, 65535));
+  run->add_option("--tls-cert", options->certificate,
+                  "the page's certificate (PEM); else one of its own is made");
+  run->add_option("--tls-key", options->key, "its key (PEM)");
+  run->add_option("--audit", options->audit, "every change made in the page, a JSON line each")
+      ->capture_default_str();
+  run->add_option("--uploads", options->uploads, "folder of the meshes that pages send")
+      ->capture_default_str();
+  run->add_option("--calibrations", options->calibrations, "folder of what the page's calibration writes")
+      ->capture_default_str();
+  run->add_flag("--quiet", options->quiet, "no status line");
+  run->callback([options, run, port, &job] {
+    refuse_empty_values(*run);
+    options->port_stated = port->count() > 0;
+    check_page_options(*options);
+    job = [options] {
+      end_on_signal();
+      const mesh::IsolationHelper helper;  // before there are threads, while memory is small
+      const Clock clock(options->slow_motion);
+      return Run(*options, clock).go();
+    };
+  });
+}
+
+}  // namespace phalanx

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run/run_options.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "phalanx/record/made.h"
+#include "phalanx/record/output_file.h"
+#include "phalanx/scene/calibration_file.h"
+#include "phalanx/station/station.h"
+
+namespace phalanx {
+namespace {
+
+bool is_simulated(const RunOptions& o) { return o.device == "simulated" || o.device == "sliders"; }
+
+/// Refuses slow motion for a controller whose clock is not slowed: its time limits would be judged too long.
+void refuse_slow_motion(const RunOptions& o) {
+  const bool ours = is_simulated(o) || o.device.starts_with("udp:127.") ||
+                    o.device.starts_with("udp:localhost:") || o.device.starts_with("serial:/dev/pts/");
+  if (o.slow_motion == 1.0 || ours) return;
+  throw std::invalid_argument(
+      fmt::format("--slow-motion {}: {} may be a real device, whose time goes on as ever; leave it out",
+                  o.slow_motion, o.device));
+}
+
+/// Checks the options of gloves. A glove's protocol does not report these values; other devices report them.
+void check_glove_options(const RunOptions& o) {
+  if (o.watchdog_ms && !(*o.watchdog_ms >= 1.0 && *o.watchdog_ms <= 1000.0))
+    throw std::invalid_argument(fmt::format(
+        "--watchdog-ms {}: must be 1 to 1000 ms; state within which time the glove's firmware lets go",
+        *o.watchdog_ms));
+  if (o.device.starts_with("opengloves:")) return;
+  const char* stated = o.watchdog_ms         ? "--watchdog-ms"
+                       : o.no_force_feedback ? "--no-force-feedback"
+                                             : nullptr;
+  if (stated == nullptr) return;
+  throw std::invalid_argument(
+      fmt::format("{}: it is for a glove (--device opengloves:PORT), and the device is {}; leave it out",
+                  stated, o.device));
+}
+
+Overrides overrides_of(const RunOptions& o) {
+  Overrides overrides;
+  for (const std::string& text : o.set) overrides.push_back(parse_override(text));
+  if (!o.profile.empty()) overrides.emplace_back("hand.profile", fmt::format("\"{}\"", o.profile));
+  if (o.rate_hz) check_station_rate(*o.rate_hz);
+  if (o.rate_hz) overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *o.rate_hz));
+  return overrides;
+}
+
+/// Writes the page's calibration: one file a device, named after its serial number.
+std::string write_calibration(const std::string& folder, Calibration calibration) {
+  calibration.date = made_here().date;
+  calibration.phalanx = PHALANX_VERSION;
+  std::string name = calibration.serial;
+  for (char& c : name) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-';
+    if (!plain) c = '_';
+  }
+  prepare_output_folder(folder);
+  const std::filesystem::path file =
+      std::filesystem::absolute(std::filesystem::path(folder) / ((name.empty() ? "device" : name) + ".toml"));
+  const std::string text = calibration_text(calibration);
+  // A device's name may contain bytes that a TOML file cannot: refuse it now, not when the file is read.
+  static_cast<void>(parse_calibration(text, file.string()));
+  write_text_file(file, text);
+  return file.string();
+}
+
+}  // namespace
+
+SessionSettings session_settings(const RunOptions& o) {
+  refuse_slow_motion(o);
+  check_glove_options(o);
+  if (is_simulated(o) && !o.calibration.empty())
+    throw std::invalid_argument("--calibration: the simulated device needs none; leave it out");
+  SessionSettings settings;
+  settings.scene = !o.scene.empty()  ? o.scene
+                   : is_simulated(o) ? RunOptions::kDemonstration
+                                     : RunOptions::kGrasp;
+  settings.overrides = overrides_of(o);
+  settings.device = o.device;
+  settings.calibration = o.calibration;
+  settings.clinician = o.clinician;
+  if (o.watchdog_ms) settings.watchdog = 1e-3 * *o.watchdog_ms;
+  settings.force_feedback = !o.no_force_feedback;
+  settings.realtime = {.priority = o.priority, .cpu = o.cpu, .lock_memory = true};
+  settings.ask_for_realtime = !o.no_realtime;
+  settings.write_calibration = [folder = o.calibrations](const Calibration& found) {
+    return write_calibration(folder, found);
+  };
+  return settings;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// `phalanx run`. run_command.cpp has the command and its main loop. These options give it a session, RunConsole
+// its messages, RunPage the cockpit, and RunRecorder the files. terminate.h removes the torque if the program
+// fails.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "phalanx/station/session.h"
+
+namespace phalanx {
+
+/// Options of `phalanx run` on its command line.
+struct RunOptions {
+  static constexpr const char* kDemonstration = "first_touch";
+  static constexpr const char* kGrasp = "grasp_teapot";
+
+  std::string scene;  ///< empty: kDemonstration with a simulated device, else kGrasp
+  std::string device = "simulated";
+  std::string calibration;
+  std::string clinician;
+  std::optional<double> watchdog_ms;  ///< watchdog of a glove's firmware [ms]
+  bool no_force_feedback = false;     ///< a glove that only senses
+  std::string profile;
+  std::string log;
+  std::string summary;
+  std::string faults = "out/faults";
+  std::vector<std::string> set;
+  std::optional<double> seconds;
+  std::optional<double> rate_hz;
+  double slow_motion = 1.0;
+  int priority = 80;
+  int cpu = -1;
+  bool no_realtime = false;
+  bool headless = false;
+  std::string listen = "127.0.0.1";
+  int port = 8480;
+  bool port_stated = false;  ///< --port was given: use that port or none
+  std::string certificate;
+  std::string key;
+  std::string audit = "out/cockpit/changes.jsonl";
+  std::string uploads = "out/cockpit/meshes";
+  std::string calibrations = "out/calibrations";
+  bool quiet = false;
+};
+
+/// Makes the station's settings from the command line of `phalanx run`.
+/// @throws SceneError or std::invalid_argument if options contradict each other
+[[nodiscard]] SessionSettings session_settings(const RunOptions& options);
+
+}  // namespace phalanx

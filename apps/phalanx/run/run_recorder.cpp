@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run/run_recorder.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include "phalanx/core/nice_thread.h"
+#include "phalanx/record/station_csv.h"
+#include "terminal/error_line.h"
+
+namespace phalanx {
+namespace {
+
+/// Interval of fetching steps. The station holds 4 s of unfetched steps at 2 kHz.
+constexpr std::chrono::milliseconds kBetweenFetches{50};
+
+}  // namespace
+
+RunRecorder::RunRecorder(const std::string& log, std::filesystem::path reports)
+    : reports_(std::move(reports)) {
+  if (log.empty()) return;
+  log_.emplace(log, Unfinished::kLeft);
+  write_step_header(*log_);
+}
+
+RunRecorder::~RunRecorder() { finish(false); }
+
+std::filesystem::path RunRecorder::finished_earlier() const {
+  return log_ ? log_->finished_earlier() : std::filesystem::path();
+}
+
+void RunRecorder::begin(Session& session) {
+  session_ = &session;
+  thread_ = start_nice_thread("phalanx-record", [this] { work(); });
+}
+
+void RunRecorder::write_report(FaultReport report) {
+  const std::lock_guard lock(mutex_);
+  faults_.push_back(std::move(report));
+}
+
+std::optional<RunRecorder::Note> RunRecorder::next_note() {
+  const std::lock_guard lock(mutex_);
+  if (notes_.empty()) return std::nullopt;
+  Note next = std::move(notes_.front());
+  notes_.pop_front();
+  return next;
+}
+
+void RunRecorder::finish(bool in_good_order) noexcept {
+  if (!thread_.joinable()) return;
+  ending_ = true;
+  thread_.join();
+  if (in_good_order) commit();
+  log_.reset();
+}
+
+template <class Text>
+void RunRecorder::complain(Text text) noexcept {
+  note([&] { return Note{.complaint = text(), .report = {}, .fault_time = 0.0}; });
+}
+
+template <class Make>
+void RunRecorder::note(Make make) noexcept {
+  try {
+    Note made = make();
+    const std::lock_guard lock(mutex_);
+    notes_.push_back(std::move(made));
+  } catch (const std::exception&) {  // no memory for it
+  }
+}
+
+void RunRecorder::work() noexcept {
+  while (!ending_) {
+    write_steps();
+    write_reports();
+    std::this_thread::sleep_for(kBetweenFetches);
+  }
+  write_steps();
+  write_reports();
+}
+
+/// Fetches and writes all steps. Without a log, too: the station must not keep a fetched record.
+void RunRecorder::write_steps() noexcept {
+  StepRecord record;
+  try {
+    while (session_->next_record(record))
+      if (log_) write_step(*log_, record);
+    if (log_) log_->write_through();
+  } catch (const std::exception& error) {
+    if (log_) give_up_log(error);
+  }
+}
+
+void RunRecorder::write_reports() noexcept {
+  for (;;) {
+    std::unique_lock lock(mutex_);
+    if (faults_.empty()) return;
+    const FaultReport report = std::move(faults_.front());
+    faults_.pop_front();
+    lock.unlock();
+    try {
+      const std::string folder = write_fault_report(reports_, report).string();
+      note([&] { return Note{.complaint = {}, .report = folder, .fault_time = report.event.time}; });
+    } catch (const std::exception& error) {
+      complain([&] { return "the fault's report could not be written: " + reason(error); });
+    }
+  }
+}
+
+void RunRecorder::commit() noexcept {
+  try {
+    if (log_) log_->commit();
+  } catch (const std::exception& error) {
+    give_up_log(error);
+  }
+}
+
+void RunRecorder::give_up_log(const std::exception& error) noexcept {
+  lost_ = true;
+  complain([&] {
+    const std::filesystem::path partial = log_->partial();
+    log_.reset();  // first: its memory may be needed for the text; an empty file is removed
+    std::error_code ignored;
+    return fmt::format("the log ends here: {}; {}", reason(error),
+                       std::filesystem::exists(partial, ignored)
+                           ? "what was written is in " + partial.string()
+                           : "nothing was written");
+  });
+  log_.reset();
+}
+
+}  // namespace phalanx
