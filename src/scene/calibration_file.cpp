@@ -9,7 +9,8 @@
 #include <string_view>
 
 #include "phalanx/core/nearest_name.h"
-#include "scene/toml_reader.h"
+#include "scene/text_file.h"
+#include "scene/toml/toml_reader.h"
 
 namespace phalanx {
 namespace {

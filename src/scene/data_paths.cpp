@@ -10,7 +10,7 @@
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
-#include "scene/why_no_file.h"
+#include "scene/text_file.h"
 
 namespace phalanx {
 namespace fs = std::filesystem;
@@ -60,14 +60,6 @@ fs::path find_data_file(const std::string& what, const std::string& name, const 
   const auto known = names_in_folder(root, extension);
   throw SceneError(fmt::format("{} \"{}\": there is no {}; {}Known: {}", what, name, file.string(),
                                did_you_mean(name, known), fmt::join(known, ", ")));
-}
-
-std::string why_no_file(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) return file.string() + " is a folder; name a file in it";
-  if (fs::exists(file, ignored))
-    return file.string() + " is not a regular file; copy its contents into a file";
-  return fmt::format("there is no file {}; check the path", file.string());
 }
 
 std::vector<std::string> names_in_folder(const fs::path& folder, const std::string& extension) {

@@ -8,7 +8,7 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
-#include "scene/layered_file.h"
+#include "scene/toml/layered_file.h"
 
 namespace phalanx {
 namespace {

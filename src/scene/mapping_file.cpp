@@ -6,7 +6,8 @@
 #include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
-#include "scene/toml_reader.h"
+#include "scene/text_file.h"
+#include "scene/toml/toml_reader.h"
 
 namespace phalanx {
 namespace {

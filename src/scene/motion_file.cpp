@@ -11,7 +11,7 @@
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"
 #include "scene/csv_lines.h"
-#include "scene/why_no_file.h"
+#include "scene/text_file.h"
 
 namespace phalanx {
 namespace {

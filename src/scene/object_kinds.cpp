@@ -12,7 +12,7 @@
 #include "phalanx/mesh/import.h"
 #include "phalanx/mesh/objects.h"
 #include "phalanx/mesh/primitives.h"
-#include "scene/why_no_file.h"
+#include "scene/text_file.h"
 
 namespace phalanx {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "phalanx/core/constants.h"
-#include "scene/layered_file.h"
+#include "scene/toml/layered_file.h"
 
 namespace phalanx {
 namespace {

@@ -10,7 +10,8 @@
 #include "phalanx/scene/data_paths.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_tree.h"
-#include "scene/toml_reader.h"
+#include "scene/text_file.h"
+#include "scene/toml/toml_reader.h"
 
 namespace phalanx {
 namespace {

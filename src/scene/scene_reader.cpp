@@ -13,7 +13,8 @@
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/scene/scene_keys.h"
-#include "scene/unknown_keys.h"
+#include "scene/keys/unknown_keys.h"
+#include "scene/text_file.h"
 
 namespace phalanx {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "phalanx/scene/scene_keys.h"
-#include "scene/toml_bounds.h"
+#include "scene/toml/toml_bounds.h"
 
 namespace phalanx {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "phalanx/scene/scene.h"
-#include "scene/toml_reader.h"
+#include "scene/toml/toml_reader.h"
 
 namespace phalanx {
 

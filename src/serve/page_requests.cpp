@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "phalanx/scene/scene_keys.h"
-#include "scene/toml_reader.h"
+#include "scene/toml/toml_reader.h"
 #include "serve/plain_text.h"
 #include "serve/settings_text.h"
 

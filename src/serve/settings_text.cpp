@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "phalanx/scene/scene_error.h"
-#include "scene/toml_reader.h"
+#include "scene/toml/toml_reader.h"
 
 namespace phalanx {
 namespace {

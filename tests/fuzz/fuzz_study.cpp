@@ -17,7 +17,7 @@
 #include "phalanx/study/laboratory/outputs.h"
 #include "phalanx/study/laboratory/report.h"
 #include "phalanx/study/laboratory/study_file.h"
-#include "scene/toml_reader.h"
+#include "scene/toml/toml_reader.h"
 #include "study/laboratory/journal.h"
 #include "study/laboratory/study_json.h"
 

@@ -7,7 +7,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "expect_error.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/hand/hand_meshes.h"
 #include "phalanx/mesh/import.h"
@@ -16,6 +15,7 @@
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene_file.h"
 #include "record/temporary_folder.h"
+#include "scene/expect_error.h"
 #include "support/opened_files.h"
 
 namespace phalanx {

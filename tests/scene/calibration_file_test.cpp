@@ -7,8 +7,8 @@
 #include <fstream>
 #include <random>
 
-#include "expect_error.h"
 #include "record/temporary_folder.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

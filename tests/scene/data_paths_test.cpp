@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "expect_error.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

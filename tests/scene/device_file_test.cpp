@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "expect_error.h"
 #include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
 #include "phalanx/scene/patient_file.h"
 #include "record/temporary_folder.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "expect_error.h"
 #include "phalanx/scene/device_file.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "expect_error.h"
 #include "phalanx/core/constants.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

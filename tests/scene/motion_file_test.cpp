@@ -10,8 +10,8 @@
 #include <numbers>
 #include <random>
 
-#include "expect_error.h"
 #include "phalanx/scene/mapping_file.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

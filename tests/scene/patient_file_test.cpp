@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "expect_error.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

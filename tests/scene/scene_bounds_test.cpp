@@ -6,11 +6,11 @@
 #include <sstream>
 #include <string>
 
-#include "expect_error.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/motion_file.h"
 #include "phalanx/scene/scene.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "expect_error.h"
 #include "phalanx/scene/scene.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 
-#include "expect_error.h"
 #include "phalanx/scene/scene_error.h"
 #include "record/temporary_folder.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 
-#include "expect_error.h"
 #include "phalanx/scene/scene.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

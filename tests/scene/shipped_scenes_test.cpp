@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
-#include "expect_error.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/step/haptic_step.h"
+#include "scene/expect_error.h"
 
 namespace phalanx {
 namespace {

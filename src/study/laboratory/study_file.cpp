@@ -9,7 +9,8 @@
 
 #include "phalanx/scene/scene_error.h"
 #include "phalanx/study/laboratory/limit_search.h"
-#include "scene/toml_reader.h"
+#include "scene/text_file.h"
+#include "scene/toml/toml_reader.h"
 #include "study/laboratory/study_limits.h"
 #include "study/laboratory/study_values.h"
 

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "phalanx/scene/hand_export.h"
+#include "scene/hands/hand_tree.h"
+#include "scene/hands/mass_properties.h"
+
+namespace phalanx {
+namespace {
+
+class Writer {
+ public:
+  Writer(const LoadedHand& hand, const ExportedMeshes& meshes)
+      : hand_(hand), meshes_(meshes), tree_(hand_tree(hand)) {}
+
+  std::string text() {
+    line(0, "<mujoco model=\"{}\">", xml_escaped(hand_.parameters.name));
+    line(1, "<compiler angle=\"radian\"/>");
+    line(1, "<default>");
+    line(2, "<default class=\"collision\"><geom type=\"mesh\" group=\"3\"/></default>");
+    line(2,
+         "<default class=\"display\"><geom type=\"mesh\" group=\"2\" contype=\"0\" "
+         "conaffinity=\"0\"/></default>");
+    line(1, "</default>");
+    assets();
+    line(1, "<worldbody>");
+    line(2, "<body name=\"{}\">", segment_name(kPalm));
+    contents(kPalm, 3);
+    for (int digit = 0; digit < kDigits; ++digit) chain(digit);
+    line(2, "</body>");
+    line(1, "</worldbody>");
+    excluded_contacts();
+    line(0, "</mujoco>");
+    return text_;
+  }
+
+ private:
+  template <typename... Parts>
+  void line(int depth, fmt::format_string<Parts...> format, Parts&&... parts) {
+    text_.append(static_cast<std::size_t>(2 * depth), ' ');
+    text_ += fmt::format(format, std::forward<Parts>(parts)...);
+    text_ += '\n';
+  }
+
+  [[nodiscard]] bool one_set() const { return meshes_.collision == meshes_.display; }
+
+  void assets() {
+    line(1, "<asset>");
+    for (int segment = 0; segment < kSegments; ++segment) {
+      const std::string_view name = segment_name(segment);
+      line(2, "<mesh name=\"{0}\" file=\"{1}/{0}.obj\"/>", name, xml_escaped(meshes_.collision));
+      if (!one_set())
+        line(2, "<mesh name=\"{0}-display\" file=\"{1}/{0}.obj\"/>", name, xml_escaped(meshes_.display));
+    }
+    line(1, "</asset>");
+  }
+
+  /// Writes inertia and geoms. The inertial is explicit, so that a mesh's own centre has no influence.
+  void contents(int segment, int depth) {
+    const MassProperties m =
+        mass_properties(hand_.meshes.collision[static_cast<std::size_t>(segment)], kHandDensity);
+    const Mat3& I = m.inertia;
+    line(depth, "<inertial pos=\"{}\" mass=\"{}\" fullinertia=\"{} {} {} {} {} {}\"/>", exact(m.centre),
+         exact(m.mass), exact(I(0, 0)), exact(I(1, 1)), exact(I(2, 2)), exact(I(0, 1)), exact(I(0, 2)),
+         exact(I(1, 2)));
+    const std::string_view name = segment_name(segment);
+    line(depth, "<geom class=\"collision\" mesh=\"{}\"/>", name);
+    line(depth, "<geom class=\"display\" mesh=\"{}{}\"/>", name, one_set() ? "" : "-display");
+  }
+
+  void chain(int digit) {
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const int depth = 3 + k;
+      const int segment = segment_index(digit, k);
+      const Hinge& own = hinge(digit, k + 1);
+      const Pose X = k == 0 ? hinge(digit, 0).X_parent_child * own.X_parent_child : own.X_parent_child;
+      const Eigen::Quaterniond q(X.R);
+      line(depth, "<body name=\"{}\" pos=\"{}\" quat=\"{} {} {} {}\">", segment_name(segment), exact(X.p),
+           exact(q.w()), exact(q.x()), exact(q.y()), exact(q.z()));
+      if (k == 0) {
+        // MuJoCo applies a body's joints in their order, each in the frame that the earlier ones have turned.
+        const Hinge& first = hinge(digit, 0);
+        const Pose X_child_first = own.X_parent_child.inverse();
+        joint(joint_index(digit, 0), depth + 1, X_child_first.p, X_child_first.R * first.axis_child, first);
+      }
+      joint(joint_index(digit, k + 1), depth + 1, Vec3::Zero(), own.axis_child, own);
+      contents(segment, depth + 1);
+    }
+    for (int k = kSegmentsPerDigit - 1; k >= 0; --k) line(3 + k, "</body>");
+  }
+
+  void joint(int index, int depth, const Vec3& pos, const Vec3& axis, const Hinge& limits) {
+    line(depth, "<joint name=\"{}\" type=\"hinge\" pos=\"{}\" axis=\"{}\" limited=\"true\" range=\"{} {}\"/>",
+         joint_name(index), exact(pos), exact(axis), exact(limits.min_angle), exact(limits.max_angle));
+  }
+
+  void excluded_contacts() {
+    line(1, "<contact>");
+    for (int segment = 0; segment < kPalm; ++segment)
+      line(2, "<exclude body1=\"{}\" body2=\"{}\"/>", segment_name(kPalm), segment_name(segment));
+    for (int digit = 1; digit < kDigits; ++digit) {
+      line(2, "<exclude body1=\"{}\" body2=\"{}\"/>", segment_name(segment_index(digit - 1, 0)),
+           segment_name(segment_index(digit, 0)));
+    }
+    line(1, "</contact>");
+  }
+
+  [[nodiscard]] const Hinge& hinge(int digit, int i) const {
+    return tree_.hinge[static_cast<std::size_t>(joint_index(digit, i))];
+  }
+
+  const LoadedHand& hand_;
+  const ExportedMeshes& meshes_;
+  HandTree tree_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string mjcf_text(const LoadedHand& hand, const ExportedMeshes& meshes) {
+  return Writer(hand, meshes).text();
+}
+
+}  // namespace phalanx

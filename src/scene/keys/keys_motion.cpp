@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keys of the motion that a simulation plays.
+#include "scene/keys/key_rows.h"
+
+namespace phalanx {
+namespace {
+
+using T = const KeyTarget&;
+using V = const KeyValue&;
+
+}  // namespace
+
+void add_motion_keys(std::vector<SceneKey>& keys) {
+  const KeyRows new_station(keys, ChangeKind::kNewStation);
+  constexpr NumberRange kPause = between(0, 600);
+  constexpr NumberRange kMove = between(0.01, 600);
+  new_station.choice("motion.name", scripted_motion_names(), "power_grasp", "the scripted motion",
+                     [](T t, V v) { t.scene.motion.script.name = v.text; });
+  new_station.number("motion.start_s", "s", kPause, 0.2, "time with the open hand before it closes",
+                     [](T t, V v) { t.scene.motion.script.start_s = v.number; });
+  new_station.number("motion.close_s", "s", kMove, 1, "time to close",
+                     [](T t, V v) { t.scene.motion.script.close_s = v.number; });
+  new_station.number("motion.hold_s", "s", kPause, 1, "time to hold",
+                     [](T t, V v) { t.scene.motion.script.hold_s = v.number; });
+  new_station.number("motion.open_s", "s", kMove, 1, "time to open",
+                     [](T t, V v) { t.scene.motion.script.open_s = v.number; });
+  new_station.integer("motion.repeat", between(1, 1000), 1, "number of repetitions",
+                      [](T t, V v) { t.scene.motion.script.repeat = static_cast<int>(v.integer); });
+  new_station.number("motion.closure", "", between(0, 1), 0.6,
+                     "how far the hand closes: 0 stays open, 1 is a full posture of the motion",
+                     [](T t, V v) { t.scene.motion.script.closure = v.number; });
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const std::string name(digit_name(digit));
+    new_station.number("motion." + name, "", between(0, 10), 1,
+                       "the " + name + "'s closure relative to motion.closure", [digit](T t, V v) {
+                         t.scene.motion.script.digit_closure[static_cast<std::size_t>(digit)] = v.number;
+                       });
+  }
+  new_station.number("motion.tremor_deg", "deg", between(0, 20), 0,
+                     "amplitude bound of a 5-12 Hz tremor on every moving joint",
+                     [](T t, V v) { t.scene.motion.script.tremor_rad = v.number * kDeg; });
+  new_station.word(KeyType::kFile, "motion.file", std::nullopt,
+                   "a CSV to play instead of the scripted motion: time_s and joint angles in rad",
+                   [](T t, V v) { t.scene.motion.file = v.text; });
+  new_station.word(KeyType::kName, "motion.mapping", std::nullopt,
+                   "conversion of the CSV's columns to joint angles: a name in assets/mappings, or a path",
+                   [](T t, V v) { t.scene.motion.mapping = v.text; });
+  new_station.integer("motion.trial", between(1, 1000000), std::nullopt,
+                      "number of the trial, from 1, in a CSV with several",
+                      [](T t, V v) { t.scene.motion.trial = static_cast<int>(v.integer); });
+  new_station.number("motion.lead_in_s", "s", between(0, 10), 0,
+                     "time for the way from the open hand to the CSV's first sample",
+                     [](T t, V v) { t.scene.motion.lead_in_s = v.number; });
+}
+}  // namespace phalanx
