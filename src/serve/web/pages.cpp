@@ -4,7 +4,7 @@
 #include <atomic>
 #include <utility>
 
-#include "serve/web/page_session.h"
+#include "serve/web/session/page_session.h"
 
 namespace phalanx::web {
 

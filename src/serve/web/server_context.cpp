@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "phalanx/serve/reach.h"
-#include "serve/web/http_session.h"
-#include "serve/web/page_session.h"
 #include "serve/web/secret_file.h"
+#include "serve/web/session/http_session.h"
+#include "serve/web/session/page_session.h"
 
 namespace phalanx::web {
 namespace {

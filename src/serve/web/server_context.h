@@ -7,7 +7,7 @@
 // Objects: WebServer (web_server.cpp) owns the thread, the Listener and the ServerContext. The Listener
 // makes an HttpSession for each connection. An HttpSession that becomes a WebSocket hands its stream to a
 // PageSession. Pages lists the PageSessions and calls the application once a frame. The handlers of a
-// session's asynchronous operations keep it alive.
+// session's asynchronous operations keep it alive. Both sessions are in session/.
 //
 // Way of a request: HttpSession reads the head, and http_request.cpp checks it in the order that
 // web_server.h states. Then it is answered with a file of the Site, becomes a PageSession, or goes with its

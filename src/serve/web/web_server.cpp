@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "phalanx/core/nice_thread.h"
-#include "serve/web/http_session.h"
 #include "serve/web/server_context.h"
+#include "serve/web/session/http_session.h"
 
 namespace phalanx {
 namespace web {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/web/http_session.h"
+#include "serve/web/session/http_session.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "serve/web/page_session.h"
+#include "serve/web/session/page_session.h"
 
 namespace phalanx::web {
 namespace {

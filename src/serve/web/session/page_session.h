@@ -7,7 +7,7 @@
 #include "phalanx/serve/web_server.h"
 #include "serve/web/limits.h"
 #include "serve/web/response.h"
-#include "serve/web/stream.h"
+#include "serve/web/session/stream.h"
 
 namespace phalanx::web {
 

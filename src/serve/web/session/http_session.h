@@ -10,7 +10,7 @@
 #include "serve/web/request_checks.h"
 #include "serve/web/response.h"
 #include "serve/web/server_context.h"
-#include "serve/web/stream.h"
+#include "serve/web/session/stream.h"
 
 namespace phalanx::web {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/web/page_session.h"
+#include "serve/web/session/page_session.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The read of a WebSocket, compiled by itself: see page_session.h.
-#include "serve/web/page_session.h"
+#include "serve/web/session/page_session.h"
 
 namespace phalanx::web {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "serve/web/http_session.h"
+#include "serve/web/session/http_session.h"
 
 namespace phalanx::web {
 namespace {
