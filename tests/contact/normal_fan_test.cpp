@@ -13,7 +13,7 @@
 #include "phalanx/mesh/primitives.h"
 #include "support/corner_down.h"
 #include "support/lone_finger.h"
-#include "support/surface_bound.h"
+#include "support/reference/surface_bound.h"
 
 namespace phalanx {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program beside a slow, plain second writing of "The GDP, exactly" (support/reference_gdp.h), tick by
-// tick.
+// The program beside a slow, plain second writing of "The GDP, exactly", tick by tick.
 //
 // Smooth motions run from the reference's own state: it is never told what the program found. Motions that
 // jump far in each tick are begun from the program's state at every tick: a finger that glances off an edge
@@ -11,7 +10,7 @@
 // PHALANX_FULL=1 runs more seeds, without a sanitizer. PHALANX_REFERENCE_MOTION=FILE.csv[:FILE.csv...] runs
 // recordings of a glove (columns thumb_mcp, index_pip, ... in rad), in front of the mesh file
 // PHALANX_REFERENCE_MESH if there is one.
-#include "support/reference_gdp.h"
+#include "support/reference/reference_gdp.h"
 
 #include <gmock/gmock.h>
 

@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "phalanx/contact/proximity.h"
-#include "support/exact_triangles.h"
+#include "support/reference/exact_triangles.h"
 #include "support/sanitized.h"
 #include "support/search_cases.h"
 

@@ -12,7 +12,7 @@
 #include "phalanx/mesh/primitives.h"
 #include "support/dirty_mesh.h"
 #include "support/lone_finger.h"
-#include "support/raw_triangles.h"
+#include "support/reference/raw_triangles.h"
 #include "support/sanitized.h"
 
 namespace phalanx {

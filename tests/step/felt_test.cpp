@@ -23,8 +23,8 @@
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_error.h"
-#include "support/fcl_oracle.h"
 #include "support/human_motion.h"
+#include "support/reference/fcl_oracle.h"
 #include "support/sanitized.h"
 
 namespace phalanx {

@@ -22,7 +22,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/step/haptic_step.h"
-#include "support/raw_triangles.h"
+#include "support/reference/raw_triangles.h"
 #include "support/sanitized.h"
 
 namespace phalanx {

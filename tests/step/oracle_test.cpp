@@ -9,7 +9,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/step/haptic_step.h"
-#include "support/fcl_oracle.h"
+#include "support/reference/fcl_oracle.h"
 
 namespace phalanx {
 namespace {

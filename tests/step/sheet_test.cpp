@@ -8,7 +8,7 @@
 
 #include "phalanx/mesh/primitives.h"
 #include "support/lone_finger.h"
-#include "support/raw_triangles.h"
+#include "support/reference/raw_triangles.h"
 
 namespace phalanx {
 namespace {

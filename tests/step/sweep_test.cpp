@@ -22,10 +22,10 @@
 #include "phalanx/mesh/primitives.h"
 #include "support/dirty_mesh.h"
 #include "support/lone_finger.h"
+#include "support/reference/surface_bound.h"
 #include "support/rolling.h"
 #include "support/sanitized.h"
 #include "support/sheets.h"
-#include "support/surface_bound.h"
 
 namespace phalanx {
 namespace {

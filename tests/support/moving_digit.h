@@ -7,7 +7,7 @@
 
 #include "contact/first_contact.h"
 #include "contact/pair_search.h"
-#include "support/exact_triangles.h"
+#include "support/reference/exact_triangles.h"
 #include "support/search_cases.h"
 #include "support/simple_hand.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/lone_finger.h"
-#include "support/surface_bound.h"
+#include "support/reference/surface_bound.h"
 
 namespace phalanx::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/reference_gdp.h"
+#include "support/reference/reference_gdp.h"
 
 #include <algorithm>
 #include <cmath>

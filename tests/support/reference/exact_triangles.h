@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second distance of triangles, in extended precision and by other formulas than the program's, and what it
-// says of all pairs of two meshes. No tree: what the contact search is held against.
+// This folder has second, independent computations of the program's results. Tests compare the two.
+// Here: the distance of triangles in extended precision, by other formulas than the program's, and the least
+// one of all pairs of two meshes. No tree: what the contact search is held against.
 #pragma once
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "phalanx/mesh/triangle_mesh.h"
-#include "support/raw_file.h"
-#include "support/surface_bound.h"
+#include "support/reference/raw_file.h"
+#include "support/reference/surface_bound.h"
 
 namespace phalanx::test {
 
