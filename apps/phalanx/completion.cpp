@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "phalanx/scene/data_paths.h"
-#include "phalanx/scene/names_in_folder.h"
 #include "phalanx/scene/scene.h"
 #include "usage.h"
 

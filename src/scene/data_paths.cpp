@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/data_paths.h"
-#include "phalanx/scene/names_in_folder.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <system_error>
-#include <vector>
 
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/scene_error.h"

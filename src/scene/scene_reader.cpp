@@ -9,7 +9,6 @@
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/device_file.h"
-#include "phalanx/scene/names_in_folder.h"
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/scene/scene_keys.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "phalanx/scene/data_paths.h"
-#include "phalanx/scene/names_in_folder.h"
 #include "phalanx/scene/scene_keys.h"
 #include "serve/plain_text.h"
 #include "serve/tick_message.h"

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace phalanx {
 
@@ -23,5 +24,10 @@ namespace phalanx {
 [[nodiscard]] std::filesystem::path find_data_file(const std::string& what, const std::string& name,
                                                    const std::string& folder, const std::string& extension,
                                                    const std::filesystem::path& base);
+
+/// @returns the sorted names, without extension, of a folder's files with this extension; none if the folder
+/// cannot be read. Set-up only.
+[[nodiscard]] std::vector<std::string> names_in_folder(const std::filesystem::path& folder,
+                                                       const std::string& extension);
 
 }  // namespace phalanx
