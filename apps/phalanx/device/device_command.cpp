@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx device: commands that test a device, and one that simulates it.
+// phalanx device: commands that test a device, and one that simulates it. Each has a file device_*_command.cpp.
+// `device calibrate` leads a dialogue, `device test-link` counts round trips, and `device simulate` serves a
+// controller behind a wire that can have faults.
 #include "commands.h"
 
 namespace phalanx {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour, bold type and control sequences on terminals.
+// Colour, bold type and control sequences on terminals. The other files of this folder write messages
+// (error_line.h), progress (progress.h) and lines that nothing waits for (line_writer.h), and read what is typed
+// (typed_lines.h) and the signals that ask a command to end (end_signals.h).
 #pragma once
 
 #include <string>

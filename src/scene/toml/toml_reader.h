@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading TOML; every error names file, line, key, value and remedy.
+// Reading TOML; every error names file, line, key, value and remedy. toml_bounds.h limits the depth of a text
+// before it is parsed, and layered_file.h merges a file with those that it extends.
 #pragma once
 
 #include <functional>
