@@ -45,7 +45,7 @@ bool is_mirrored(const SceneDescription& scene, Handedness of_hand) {
   return scene.hand.profile.empty() ? scene.mirror : of_hand == Handedness::kLeft;
 }
 
-TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored) {
+TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCache* imports) {
   TriangleCount count;
   // The number of triangles of generated objects is known, and checked before they are made.
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -53,7 +53,7 @@ TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored) {
   }
   TriangleMesh world;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const TriangleMesh mesh = make_object(scene.objects[i], i);
+    const TriangleMesh mesh = make_object(scene.objects[i], {.index = i, .imports = imports});
     if (scene.objects[i].kind == "file") count.add(i, mesh.triangles.size());
     append(world, mesh, scene.objects[i].pose);
   }
@@ -71,12 +71,12 @@ Motion motion_of(const MotionDescription& motion, const HandParameters& hand) {
 
 }  // namespace
 
-TriangleMesh make_object_mesh(const ObjectDescription& object) { return make_object(object, 0); }
+TriangleMesh make_object_mesh(const ObjectDescription& object) { return make_object(object, {}); }
 
 TriangleMesh make_world_mesh(const SceneDescription& scene) {
   const bool profile = !scene.hand.profile.empty();
-  return world_mesh(
-      scene, is_mirrored(scene, profile ? load_hand_numbers(scene.hand).handedness : scene.hand.handedness));
+  const Handedness of_hand = profile ? load_hand_numbers(scene.hand).handedness : scene.hand.handedness;
+  return world_mesh(scene, is_mirrored(scene, of_hand), nullptr);
 }
 
 ResolvedScene resolve(const SceneDescription& description, const ResolveOptions& options) {
@@ -86,10 +86,10 @@ ResolvedScene resolve(const SceneDescription& description, const ResolveOptions&
     scene.exoskeleton = load_device(description);
     scene.patient = load_patient(description);
   }
-  scene.hand = load_hand(description.hand, options.hand);
+  scene.hand = load_hand(description.hand, options.hand, options.imports);
   const bool mirror = is_mirrored(description, scene.hand.handedness);
   scene.X_WH = mirror ? mirrored(description.hand.pose) : description.hand.pose;
-  scene.world = world_mesh(description, mirror);
+  scene.world = world_mesh(description, mirror, options.imports);
   if (options.motion) scene.motion = motion_of(description.motion, scene.hand.parameters);
   return scene;
 }

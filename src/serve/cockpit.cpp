@@ -38,11 +38,11 @@ WebResponse text_response(int status, std::string text) {
 
 /// Takes an upload. Does not throw, because the browser waits for the response.
 WebResponse take_mesh(const UploadedMesh& mesh, const std::filesystem::path& folder,
-                      const ValuesInForce& in_force) noexcept {
+                      const ValuesInForce& in_force, ImportCache& imports) noexcept {
   try {
     return {.status = 200,
             .type = "application/json",
-            .body = std::make_shared<const std::string>(take_upload(mesh, folder, in_force)),
+            .body = std::make_shared<const std::string>(take_upload(mesh, folder, in_force, imports)),
             .immutable = false};
   } catch (const std::exception&) {  // no memory
     return {.status = 500, .type = "text/plain", .body = nullptr, .immutable = false};
@@ -199,9 +199,8 @@ void Cockpit::Impl::begin_upload(const WebRequest& request, std::function<void(W
   const auto job = std::make_shared<UploadJob>(session);
   start_upload(
       job,
-      [mesh = std::move(mesh), folder = settings.uploads](const ValuesInForce& in_force) {
-        return take_mesh(mesh, folder, in_force);
-      },
+      [mesh = std::move(mesh), folder = settings.uploads, imports = session.imports()](
+          const ValuesInForce& in_force) { return take_mesh(mesh, folder, in_force, *imports); },
       std::move(respond));
   upload = job;
 }

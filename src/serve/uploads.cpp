@@ -7,15 +7,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
-#include "phalanx/mesh/import.h"
-#include "phalanx/mesh/isolation/isolation_helper.h"
+#include "phalanx/core/constants.h"
+#include "phalanx/mesh/isolated_import.h"
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "phalanx/record/output_file.h"
@@ -29,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kKept = 50;
 /// Limits of the import in a process of its own. A faulty mesh can harm that process only. A mesh that
-/// passes there also passes when the station imports it.
+/// passes there also passes if the station imports it with another size.
 constexpr mesh::IsolationLimits kImportLimits{
     .cpu_seconds = 60, .memory_bytes = std::uint64_t{4} << 30, .wall_seconds = 180.0};
 constexpr std::array<const char*, 5> kFormats = {".obj", ".3ds", ".stl", ".ply", ".glb"};
@@ -148,57 +147,31 @@ std::string as_text(const Json& answer) {
   return answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Imports and checks the mesh. @returns the answer for the page, without the file
-Json checked(const UploadedMesh& mesh, const std::string& format, const ImportOptions& options) {
-  const ImportedMesh imported =
-      import_and_check_from_memory(mesh.bytes.data(), mesh.bytes.size(), format, options);
-  Json answer = {{"ok", imported.report.finding(FindingKind::kUnits).found == 0}};
-  answer["report"] = Json::parse(mesh_report_json(mesh.name, imported.report));
-  if (!answer["ok"].get<bool>()) answer["error"] = mesh_verdict(imported.report);
+/// @returns the answer about an imported mesh for the page, without the file
+Json answer_about(const std::string& name, const MeshReport& report) {
+  Json answer = {{"ok", report.finding(FindingKind::kUnits).found == 0}};
+  answer["report"] = Json::parse(mesh_report_json(name, report));
+  if (!answer["ok"].get<bool>()) answer["error"] = mesh_verdict(report);
   return answer;
 }
 
-/// Calls checked() with "format NUL size NUL metres NUL length of the name NUL name bytes", see packed().
-std::string check_packed(const std::string& packed) {
-  std::size_t at = 0;
-  const auto next = [&] {
-    const std::size_t end = packed.find('\0', at);
-    std::string field = packed.substr(at, end - at);
-    at = end + 1;
-    return field;
-  };
-  const std::string format = next();
-  const ImportOptions options{.size = std::strtod(next().c_str(), nullptr),
-                              .unit = std::strtod(next().c_str(), nullptr),
+Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force,
+              ImportCache& imports) {
+  const std::string extension = extension_of(mesh.name);
+  const std::string format = extension.substr(1);
+  const ImportOptions options{.size = mesh.size_mm * kMm,
+                              .unit = metres_per_unit_of(mesh),
                               .triangles = 0,
                               .most_triangles = kMostUploadedTriangles};
-  const auto name_length = static_cast<std::size_t>(std::strtoull(next().c_str(), nullptr, 10));
-  UploadedMesh mesh;
-  mesh.name = packed.substr(at, name_length);
-  mesh.bytes = packed.substr(at + name_length);
-  return as_text(checked(mesh, format, options));
-}
-
-/// @returns the argument of check_packed()
-std::string packed(const UploadedMesh& mesh, const std::string& format) {
-  std::string fields;
-  for (const std::string& field :
-       {format, fmt::format("{:a}", 1e-3 * mesh.size_mm), fmt::format("{:a}", metres_per_unit_of(mesh)),
-        std::to_string(mesh.name.size())})
-    fields.append(field).push_back('\0');
-  return fields + mesh.name + mesh.bytes;
-}
-
-Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
-  const std::string extension = extension_of(mesh.name);
   require_station(in_force);
-  Json answer = Json::parse(
-      mesh::run_isolated_work(check_packed, packed(mesh, extension.substr(1)), mesh.name, kImportLimits));
+  ImportedMesh imported = mesh::import_isolated(mesh.bytes, format, options, mesh.name, kImportLimits);
+  Json answer = answer_about(mesh.name, imported.report);
   if (!answer["ok"].get<bool>()) return answer;
   require_station(in_force);
   fs::create_directories(folder);
   const fs::path file = fs::absolute(folder) / file_name(mesh, extension);
   write_text_file(file, mesh.bytes);
+  imports.keep(mesh.bytes, format, options, std::move(imported));
   keep_newest(folder, values_now(in_force));
   answer["file"] = file.lexically_normal().string();
   return answer;
@@ -229,10 +202,11 @@ UploadedMesh upload_of(const std::string& query, std::string bytes) {
   return mesh;
 }
 
-std::string take_upload(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force) {
+std::string take_upload(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force,
+                        ImportCache& imports) {
   Json answer;
   try {
-    answer = accepted(mesh, folder, in_force);
+    answer = accepted(mesh, folder, in_force, imports);
   } catch (const std::exception& refused) {
     answer = {{"ok", false}, {"error", with_file_name(refused.what(), mesh.name)}};
   }

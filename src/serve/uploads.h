@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "phalanx/mesh/import_cache.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/serve/web_server.h"
 #include "phalanx/station/session.h"
@@ -36,14 +37,15 @@ using ValuesInForce = std::function<std::optional<Overrides>()>;
 
 constexpr std::size_t kMostUploadedTriangles = 500'000;  ///< more would take minutes to check
 
-/// Checks a mesh in a process of its own and, if a scene could use it, writes it into the folder. Keeps the
-/// newest 50 uploads there and those that the scene in force names. Does not touch files with names of
-/// another form. Does not throw for a mesh that is refused. Forks; takes long.
+/// Imports a mesh in a process of its own. If a scene could use it, writes the file into the folder and
+/// keeps the imported mesh in the cache: a scene with this file, size and unit needs no other import. Keeps
+/// the newest 50 uploads in the folder and those that the scene in force names. Does not touch files with
+/// names of another form. Does not throw for a mesh that is refused. Forks; takes long.
 /// @param in_force  called before each step, so that an abandoned upload ends with its step
 /// @returns a JSON object: "ok"; "error" (if not ok); "file", the value for objects.N.file;
 /// "report", see docs/meshes.md
 [[nodiscard]] std::string take_upload(const UploadedMesh& mesh, const std::filesystem::path& folder,
-                                      const ValuesInForce& in_force);
+                                      const ValuesInForce& in_force, ImportCache& imports);
 
 /// State of one upload, which the cockpit and the upload's thread share: either may outlive the
 /// other. Any thread.

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "phalanx/mesh/import_cache.h"
 #include "station/command_queue.h"
 #include "station/session_state.h"
 #include "station/session_worker.h"
@@ -14,7 +15,8 @@ Session::Session(SessionSettings settings, const Clock& clock)
       clock_(clock),
       state_(std::make_unique<SessionState>()),
       queue_(std::make_unique<CommandQueue>()),
-      worker_(std::make_unique<SessionWorker>(settings_, clock_, *state_, *queue_)) {}
+      imports_(std::make_shared<ImportCache>()),
+      worker_(std::make_unique<SessionWorker>(settings_, clock_, *state_, *queue_, *imports_)) {}
 
 Session::~Session() { shut_down(); }
 

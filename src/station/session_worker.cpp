@@ -51,11 +51,12 @@ void refuse(Request& request, const std::exception& error) noexcept {
 }  // namespace
 
 SessionWorker::SessionWorker(const SessionSettings& settings, const Clock& clock, SessionState& state,
-                             CommandQueue& queue)
+                             CommandQueue& queue, ImportCache& imports)
     : settings_(settings),
       clock_(clock),
       state_(state),
       queue_(queue),
+      imports_(imports),
       plan_{.scene = settings.scene,
             .overrides = laid_over({}, settings.overrides),
             .source = source_of(settings.device),
@@ -213,7 +214,7 @@ StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file) const
 
 StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file, SceneWithValues read) const {
   StationBuild build = run_at_low_priority(
-      [&] { return build_station(plan, std::move(file), std::move(read), settings_.clinician); });
+      [&] { return build_station(plan, std::move(file), std::move(read), settings_.clinician, imports_); });
   if (build.made.safety.patient.empty()) build.made.safety.patient = patient_;
   // The device stays the same: refuse what it cannot do while the last station still runs.
   const auto info = state_.info();

@@ -18,10 +18,10 @@ namespace phalanx {
 class SessionWorker {
  public:
   /// Makes the first station, then starts the thread.
-  /// @param settings, clock, state, queue  outlive the worker
+  /// @param settings, clock, state, queue, imports  outlive the worker
   /// @throws as Session
-  SessionWorker(const SessionSettings& settings, const Clock& clock, SessionState& state,
-                CommandQueue& queue);
+  SessionWorker(const SessionSettings& settings, const Clock& clock, SessionState& state, CommandQueue& queue,
+                ImportCache& imports);
   SessionWorker(const SessionWorker&) = delete;
   SessionWorker& operator=(const SessionWorker&) = delete;
   ~SessionWorker();  ///< end()
@@ -71,6 +71,7 @@ class SessionWorker {
   const Clock& clock_;
   SessionState& state_;
   CommandQueue& queue_;
+  ImportCache& imports_;
   StationPlan plan_;
   std::optional<SceneFile> file_;  ///< the scene's file, as read for the newest station; none before
   SceneDescription scene_;         ///< of the running station, after changes on their way

@@ -144,13 +144,14 @@ ChangeKind change_kind(const Overrides& changes, HandSource source, const Haptic
 }
 
 StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithValues read,
-                           const std::string& clinician) {
+                           const std::string& clinician, ImportCache& imports) {
   StationBuild build{.plan = plan,
                      .file = std::move(file),
                      .scene = std::move(read.scene),
                      .values = std::move(read.values)};
   const bool presses = plan.source == HandSource::kPatient;
-  ResolvedScene scene = resolve(build.scene, {.hand = HandDetail::kAll, .device = true, .motion = presses});
+  ResolvedScene scene = resolve(
+      build.scene, {.hand = HandDetail::kAll, .device = true, .motion = presses, .imports = &imports});
   build.exoskeleton = scene.exoskeleton.value();
   build.made = make_station_model(scene, clinician);
   // Finds what a station would refuse now, while the last one still runs.

@@ -14,6 +14,7 @@
 
 namespace phalanx {
 
+class ImportCache;
 class PosedDevice;
 
 /// Inputs of a station.
@@ -54,10 +55,11 @@ struct StationBuild {
 /// Reads the files that the scene names, each once, and makes the parts.
 /// @param file  of the plan's scene
 /// @param read  its scene with the plan's overrides
+/// @param imports  cache of imported meshes
 /// @throws SceneError or std::invalid_argument: the scene, a limit that a station does not allow, an open
 /// hand that touches the object, a patient who meets nothing. Set-up only.
 [[nodiscard]] StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithValues read,
-                                         const std::string& clinician);
+                                         const std::string& clinician, ImportCache& imports);
 
 /// A station and its open device.
 struct RunningStation {

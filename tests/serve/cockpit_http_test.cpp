@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "phalanx/geometry.pb.h"
+#include "phalanx/mesh/import_cache.h"
 #include "serve/cockpit_fixture.h"
 
 namespace phalanx {
@@ -110,6 +111,8 @@ TEST_F(CockpitHttp, TheOperatorUploadsAMeshAndUsesIt) {
                        "\", size_mm = 0, unit = \"mm\", position_mm = [0, 400, 0]}");
   const wire::Reply reply = page.ask(set);
   EXPECT_TRUE(reply.ok()) << reply.error();
+  EXPECT_EQ(session_->imports()->misses(), 0U) << "the upload's import is used";
+  EXPECT_EQ(session_->imports()->hits(), 1U);
   EXPECT_FALSE(page.set("objects.0.file", "/etc/passwd").ok());
 }
 

@@ -9,9 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
-#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/import_cache.h"
+#include "phalanx/scene/build_model.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "record/temporary_folder.h"
 #include "serve/page_requests.h"
 
@@ -29,7 +32,9 @@ std::string solid(int mm) {
 
 nlohmann::json taken(const std::string& query, const std::string& bytes, const std::filesystem::path& folder,
                      const Overrides& in_force = {}) {
-  return nlohmann::json::parse(take_upload(upload_of(query, bytes), folder, [&] { return in_force; }));
+  ImportCache imports;
+  return nlohmann::json::parse(
+      take_upload(upload_of(query, bytes), folder, [&] { return in_force; }, imports));
 }
 
 std::size_t files_in(const std::filesystem::path& folder) {
@@ -172,13 +177,49 @@ TEST(Uploads, AnAbandonedUploadLeavesNothing) {
   const TemporaryFolder folder;
   for (const int asked_before : {0, 1}) {
     int asked = 0;
-    const auto answer =
-        nlohmann::json::parse(take_upload(upload_of("name=a.obj&unit=mm", solid(60)), folder / "up", [&] {
-          return asked++ < asked_before ? std::optional(Overrides()) : std::nullopt;
-        }));
+    ImportCache imports;
+    const auto in_force = [&] { return asked++ < asked_before ? std::optional(Overrides()) : std::nullopt; };
+    const auto answer = nlohmann::json::parse(
+        take_upload(upload_of("name=a.obj&unit=mm", solid(60)), folder / "up", in_force, imports));
     EXPECT_FALSE(answer["ok"].get<bool>());
     EXPECT_EQ(asked, asked_before + 1);
     EXPECT_EQ(files_in(folder / "up"), 0U);
+    EXPECT_EQ(imports.bytes(), 0U);
+  }
+}
+
+// The page sends size_mm as the user typed it, and the unit only if the size is 0.
+TEST(Uploads, ASceneWithTheMeshNeedsNoOtherImport) {
+  const TemporaryFolder folder;
+  const auto scene_with = [](const std::string& file, const std::string& keys) {
+    return load_scene("first_touch", {{"hand.meshes", "\"capsules\""},
+                                      {"objects.0", "{kind = 'file', file = '" + file + "', " + keys + "}"}});
+  };
+  for (const auto& [query, keys] : std::vector<std::pair<std::string, std::string>>{
+           {"size_mm=90.1&unit=mm", "size_mm = 90.1"}, {"size_mm=0&unit=mm", "size_mm = 0, unit = 'mm'"}}) {
+    ImportCache imports;
+    const auto answer = nlohmann::json::parse(take_upload(
+        upload_of("name=a.obj&" + query, solid(60)), folder / "up", [] { return Overrides(); }, imports));
+    ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
+    const std::string file = answer["file"].get<std::string>();
+    const TriangleMesh world = resolve(scene_with(file, keys), {.imports = &imports}).world;
+    EXPECT_EQ(imports.hits(), 1U) << keys;
+    EXPECT_EQ(imports.misses(), 0U) << keys;
+    EXPECT_EQ(world.vertices, make_world_mesh(scene_with(file, keys)).vertices);
+    EXPECT_EQ(world.triangles, make_world_mesh(scene_with(file, keys)).triangles);
+    static_cast<void>(resolve(scene_with(file, "size_mm = 91"), {.imports = &imports}));
+    EXPECT_EQ(imports.misses(), 1U) << "another size";
+  }
+}
+
+TEST(Uploads, AMeshThatNoSceneCanUseIsNotKeptInTheCache) {
+  const TemporaryFolder folder;
+  ImportCache imports;
+  for (const char* query : {"name=a.obj&unit=m", "name=a.exe&unit=mm"}) {
+    const auto answer = nlohmann::json::parse(
+        take_upload(upload_of(query, solid(60)), folder / "up", [] { return Overrides(); }, imports));
+    EXPECT_FALSE(answer["ok"].get<bool>()) << query;
+    EXPECT_EQ(imports.bytes(), 0U) << query;
   }
 }
 

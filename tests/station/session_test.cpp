@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -23,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/mesh/import_cache.h"
 #include "phalanx/scene/scene_error.h"
 #include "record/temporary_folder.h"
 #include "station/session_fixture.h"
@@ -189,6 +191,23 @@ TEST_F(SessionTest, AStationReadsEachFileOnceAndAnotherParameterReadsNone) {
   const std::map<std::string, int> without_scene = {
       {"device.toml", 1}, {"hand.toml", 1}, {"patient.toml", 1}};
   EXPECT_EQ(opened.take(), without_scene);
+}
+
+TEST_F(SessionTest, AnotherStationImportsNoMeshAgain) {
+  start(with("sliders"));
+  ASSERT_TRUE(until_running());
+  const auto first = session->info()->geometry;
+  EXPECT_EQ(session->imports()->misses(), std::size_t{kSegments}) << "the files of the hand";
+  EXPECT_EQ(session->imports()->hits(), 0U);
+  EXPECT_EQ(set({{"rate_hz", "250"}}), "");
+  EXPECT_EQ(session->imports()->misses(), std::size_t{kSegments});
+  EXPECT_EQ(session->imports()->hits(), std::size_t{kSegments});
+  const auto second = session->info()->geometry;
+  ASSERT_NE(second, first);
+  for (std::size_t s = 0; s < kSegments; ++s) {
+    EXPECT_EQ(second->segment[s].vertices, first->segment[s].vertices) << s;
+    EXPECT_EQ(second->segment[s].triangles, first->segment[s].triangles) << s;
+  }
 }
 
 // A scene's file that is edited, or broken, while a station runs changes nothing until it is loaded again.

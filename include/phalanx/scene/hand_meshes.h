@@ -12,6 +12,8 @@
 
 namespace phalanx {
 
+class ImportCache;
+
 /// Parameters of a hand without its meshes, as a motion needs them.
 struct HandNumbers {
   HandParameters parameters;                   ///< as a right hand
@@ -45,8 +47,10 @@ enum class HandDetail {
 /// whose meshes are files. For a mesh file, the message names the file, its value and the remedy. It refuses a
 /// missing or unreadable file, and a collision mesh that is not closed or winds inwards. It refuses a vertex
 /// more than 300 mm from the segment's joint. A largest extent below 3 mm is refused too, since the unit is
-/// then wrong. Set-up only: one forked reader a file.
-[[nodiscard]] LoadedHand load_hand(const HandDescription& hand, HandDetail detail = HandDetail::kDisplay);
+/// then wrong. Set-up only: one forked reader for each mesh that is not in the cache.
+/// @param imports  cache of imported meshes; null: none
+[[nodiscard]] LoadedHand load_hand(const HandDescription& hand, HandDetail detail = HandDetail::kDisplay,
+                                   ImportCache* imports = nullptr);
 
 /// @throws SceneError as load_hand_numbers(), or naming the skin file, the element, its value and the remedy.
 /// It refuses a missing file, one larger than 16 MB, broken JSON, and a missing or malformed entry. It

@@ -13,11 +13,14 @@
 
 namespace phalanx {
 
-/// Files that resolve() reads besides those of the objects.
+class ImportCache;
+
+/// Options of resolve(): files that it reads besides those of the objects, and a cache of meshes.
 struct ResolveOptions {
   HandDetail hand = HandDetail::kCollision;
   bool device = false;  ///< the simulated exoskeleton and patient
   bool motion = false;
+  ImportCache* imports = nullptr;  ///< for the mesh files of the hand and the objects; null: none
 };
 
 /// A scene with the contents of the files that it names. What is made of it opens no file.

@@ -24,6 +24,7 @@
 namespace phalanx {
 
 class CommandQueue;
+class ImportCache;
 class SessionState;
 class SessionWorker;
 
@@ -158,6 +159,8 @@ class Session {
   [[nodiscard]] SessionStatistics statistics() const;  ///< over all stations since the session's start
   [[nodiscard]] std::shared_ptr<const SessionInfo> info() const;
   [[nodiscard]] const SessionSettings& settings() const noexcept { return settings_; }
+  /// @returns the cache of the meshes that the stations import; it may outlive the session
+  [[nodiscard]] std::shared_ptr<ImportCache> imports() const noexcept { return imports_; }
 
   // ---- for one thread at a time
   /// Fetches the next step's record, station by station, also after shut_down().
@@ -180,6 +183,7 @@ class Session {
   const Clock& clock_;
   const std::unique_ptr<SessionState> state_;
   const std::unique_ptr<CommandQueue> queue_;
+  const std::shared_ptr<ImportCache> imports_;
   const std::unique_ptr<SessionWorker> worker_;  ///< declared last, so that it ends first
   bool ended_ = false;                           ///< shut_down() has begun; the owner's thread
 };

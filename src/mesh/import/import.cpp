@@ -12,7 +12,6 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "mesh/import/assimp_reader.h"
 #include "mesh/import/decimate.h"
@@ -20,6 +19,7 @@
 #include "mesh/import/index_check.h"
 #include "mesh/import/obj_reduce.h"
 #include "mesh/repair/repair.h"
+#include "phalanx/mesh/import_cache.h"
 #include "phalanx/mesh/isolation/isolation_helper.h"
 
 namespace phalanx {
@@ -161,7 +161,7 @@ ImportedMesh check_soup(Soup soup, const ImportOptions& options, const std::stri
   return imported;
 }
 
-std::vector<char> read_file(const std::filesystem::path& file, const std::string& origin) {
+std::string read_file(const std::filesystem::path& file, const std::string& origin) {
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw std::invalid_argument(origin + ": there is no such file; check the path");
@@ -172,7 +172,7 @@ std::vector<char> read_file(const std::filesystem::path& file, const std::string
   if (error || bytes > kMostBytes)
     throw std::invalid_argument(origin + ": " + std::to_string(bytes) + " bytes are more than the " +
                                 std::to_string(kMostBytes) + " that are read; decimate the mesh");
-  std::vector<char> data(static_cast<std::size_t>(bytes));
+  std::string data(static_cast<std::size_t>(bytes), '\0');
   std::ifstream in(file, std::ios::binary);
   if (!in)
     throw std::invalid_argument(origin + ": the file cannot be opened (" + std::strerror(errno) +
@@ -185,17 +185,25 @@ std::vector<char> read_file(const std::filesystem::path& file, const std::string
 }  // namespace
 
 ImportedMesh import_and_check(const std::filesystem::path& file, const ImportOptions& options) {
+  return import_and_check(file, options, nullptr);
+}
+
+ImportedMesh import_and_check(const std::filesystem::path& file, const ImportOptions& options,
+                              ImportCache* cache) {
   const std::string origin = file.string();
   std::string format = lower(file.extension().string());
   if (!format.empty()) format.erase(0, 1);
   check_format(format, origin);
   check_options(options, origin);
-  Soup soup;
-  {
-    const std::vector<char> data = read_file(file, origin);
-    soup = read_soup(data.data(), data.size(), format, origin);
+  std::string content = read_file(file, origin);
+  if (cache != nullptr) {
+    if (const auto known = cache->find(content, format, options)) return *known;
   }
-  return check_soup(std::move(soup), options, origin);
+  Soup soup = read_soup(content.data(), content.size(), format, origin);
+  if (cache == nullptr) std::string().swap(content);  // frees the memory, which the repair may need
+  ImportedMesh imported = check_soup(std::move(soup), options, origin);
+  if (cache != nullptr) cache->keep(std::move(content), std::move(format), options, imported);
+  return imported;
 }
 
 ImportedMesh import_and_check_from_memory(const void* data, std::size_t bytes, const std::string& format,

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "phalanx/mesh/import.h"
+#include "phalanx/mesh/import_cache.h"
 #include "phalanx/scene/profile_file.h"
 #include "scene/hands/skin_file.h"
 
@@ -20,7 +20,7 @@ constexpr double kSmallest = 3e-3;
 
 class MeshReader {
  public:
-  explicit MeshReader(const HandMeshFiles& files) : files_(files) {}
+  MeshReader(const HandMeshFiles& files, ImportCache* imports) : files_(files), imports_(imports) {}
 
   /// Reads one mesh a segment, of a right hand.
   [[nodiscard]] SegmentMeshes read(const std::filesystem::path& pattern, bool collision) const {
@@ -37,7 +37,7 @@ class MeshReader {
   [[nodiscard]] TriangleMesh read_one(const std::filesystem::path& file, bool collision) const {
     TriangleMesh mesh;
     try {
-      mesh = import_and_check(file, {.size = 0.0, .unit = files_.unit, .triangles = 0}).mesh;
+      mesh = import_and_check(file, {.size = 0.0, .unit = files_.unit, .triangles = 0}, imports_).mesh;
     } catch (const std::invalid_argument& error) {
       throw SceneError(fmt::format("{}: {}", files_.place, error.what()));
     }
@@ -82,6 +82,7 @@ class MeshReader {
   }
 
   const HandMeshFiles& files_;
+  ImportCache* const imports_;
 };
 
 /// A described hand before its meshes are read.
@@ -126,17 +127,17 @@ SegmentMeshes of_the_hand(const Source& source, SegmentMeshes meshes) {
   return meshes;
 }
 
-SegmentMeshes collision_meshes(const Source& source, const HandDescription& hand) {
+SegmentMeshes collision_meshes(const Source& source, const HandDescription& hand, ImportCache* imports) {
   if (!source.files)
     return of_the_hand(source, make_capsule_meshes(source.base, Handedness::kRight, hand.triangles));
-  return of_the_hand(source, MeshReader(*source.files).read(source.files->collision, true));
+  return of_the_hand(source, MeshReader(*source.files, imports).read(source.files->collision, true));
 }
 
 bool has_own_display(const Source& source) { return source.files && !source.files->display.empty(); }
 
-SegmentMeshes display_meshes(const Source& source, const SegmentMeshes& collision) {
+SegmentMeshes display_meshes(const Source& source, const SegmentMeshes& collision, ImportCache* imports) {
   if (!has_own_display(source)) return collision;
-  return of_the_hand(source, MeshReader(*source.files).read(source.files->display, false));
+  return of_the_hand(source, MeshReader(*source.files, imports).read(source.files->display, false));
 }
 
 /// Reads the skin of a right hand; its bind poses are not known yet.
@@ -167,14 +168,14 @@ HandNumbers load_hand_numbers(const HandDescription& hand) {
   return {std::move(source.parameters), source.handedness};
 }
 
-LoadedHand load_hand(const HandDescription& hand, HandDetail detail) {
+LoadedHand load_hand(const HandDescription& hand, HandDetail detail, ImportCache* imports) {
   Source source = open(hand);
   LoadedHand loaded;
   loaded.handedness = source.handedness;
-  loaded.meshes.collision = collision_meshes(source, hand);
+  loaded.meshes.collision = collision_meshes(source, hand, imports);
   if (detail == HandDetail::kDrawn || detail == HandDetail::kAll) loaded.skin = skin_of(source);
   const bool display = detail == HandDetail::kDrawn ? !loaded.skin : detail != HandDetail::kCollision;
-  if (display) loaded.meshes.display = display_meshes(source, loaded.meshes.collision);
+  if (display) loaded.meshes.display = display_meshes(source, loaded.meshes.collision, imports);
   loaded.parameters = std::move(source.parameters);
   return loaded;
 }
