@@ -43,12 +43,9 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     scene/scene_error.h
     station/deadline_statistics.h
     station/histogram.h
-    station/history.h
     station/pacer.h
     station/realtime.h
-    station/safety.h
     station/safety_settings.h
-    station/sensor_watch.h
     station/session.h
     station/session_statistics.h
     station/station.h

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/safety.h"
+#include "station/safety.h"
 
 #include <algorithm>
 #include <array>
@@ -38,12 +38,6 @@ Fault latch_of(const DeviceSample& sample) noexcept {
 }
 
 }  // namespace
-
-std::string_view safety_state_name(SafetyState state) noexcept {
-  constexpr std::array<std::string_view, 6> kNames = {"waiting",  "starting", "running",
-                                                      "stopping", "stopped",  "fault"};
-  return kNames[static_cast<std::size_t>(state)];
-}
 
 Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const DeviceInfo& device,
                const HandParameters& hand, std::vector<MotorWitness> witnesses, double period)

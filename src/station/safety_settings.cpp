@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -60,6 +61,12 @@ void check_watchdog(const SafetySettings& settings, const DeviceInfo& device) {
       "glove lets go by itself, start with --watchdog-ms MS; if a glove has no force feedback, with "
       "--no-force-feedback (docs/device.md)",
       settings.patient, device.name, device.serial.empty() ? "unknown" : device.serial));
+}
+
+std::string_view safety_state_name(SafetyState state) noexcept {
+  constexpr std::array<std::string_view, 6> kNames = {"waiting",  "starting", "running",
+                                                      "stopping", "stopped",  "fault"};
+  return kNames[static_cast<std::size_t>(state)];
 }
 
 }  // namespace phalanx

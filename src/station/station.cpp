@@ -5,13 +5,19 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
+#include "phalanx/device/latest.h"
 #include "phalanx/station/pacer.h"
+#include "station/history.h"
 #include "station/parameter_ramp.h"
+#include "station/safety.h"
 #include "step/check_parameters.h"
 
 namespace phalanx {
@@ -48,25 +54,85 @@ DigitArray digit_forces(const Snapshot& snapshot) noexcept {
 
 }  // namespace
 
-/// A model, its parameters and its state, which are exchanged together.
-struct Station::Rendering {
-  Rendering(std::shared_ptr<const HapticModel> of_model, const HapticParameters& parameters)
-      : model(std::move(of_model)), ramp(parameters), state(*model, parameters) {}
+/// The loop's functions and state, and the data that it shares with other threads.
+struct Station::Loop {
+  enum Request : unsigned { kStop = 1, kResume = 2, kReset = 4, kEnd = 8 };
 
-  const std::shared_ptr<const HapticModel> model;
-  ParameterRamp ramp;
-  HapticState state;
-  std::uint64_t replacement = 0;  ///< 0 for the first, then counted by replace()
+  /// A model, its parameters and its state, which are exchanged together.
+  struct Rendering {
+    Rendering(std::shared_ptr<const HapticModel> of_model, const HapticParameters& parameters)
+        : model(std::move(of_model)), ramp(parameters), state(*model, parameters) {}
+
+    const std::shared_ptr<const HapticModel> model;
+    ParameterRamp ramp;
+    HapticState state;
+    std::uint64_t replacement = 0;  ///< 0 for the first, then counted by replace()
+  };
+
+  struct WantedParameters {
+    HapticParameters parameters;
+    std::uint64_t replacement = 0;  ///< number of their Rendering
+  };
+
+  Loop(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters, Device& of_device,
+       ChannelMap map, StationOptions given, const Clock& process_clock);
+
+  // The loop's thread only.
+  void run() noexcept;
+  void serve_requests(double now) noexcept;
+  void reset_now(double now) noexcept;
+  void exchange_rendering() noexcept;
+  void one_step(const Wake& wake) noexcept;
+  void write_down(const Wake& wake, std::size_t count, double sent_at) noexcept;
+  void freeze_history() noexcept;
+
+  // Other threads.
+  void ask(unsigned set, unsigned clear) noexcept;
+  void check_rate(const HapticParameters& parameters) const;
+
+  Device& device;
+  const ChannelMap channels;
+  const StationOptions options;
+  const Clock& clock;
+  const double period;
+
+  // The loop's thread only.
+  std::unique_ptr<Rendering> rendering;
+  Safety safety;
+  std::vector<DeviceSample> inbox;
+  DeviceSample newest_sample;
+  bool heard = false;  ///< a sample has come since the beginning or the last reset
+  bool late = false;
+  bool ending = false;
+  std::uint64_t resets_refused = 0;
+  Sample sample;
+  Status status = Status::kOk;
+  DeviceCommand command;
+  DeadlineStatistics statistics;
+  History<DeviceSample> sample_history;
+  History<StepRecord> step_history;
+  bool reported = false;  ///< this fault's history has been frozen
+  bool resume_after_exchange = false;
+  bool wants_parameters = false;  ///< `wanted` has a value for which no ramp has begun
+
+  // Shared between threads.
+  std::atomic<unsigned> requests{0};
+  std::atomic<bool> finish{false};
+  FaultEvent frozen_event;          ///< fault of the frozen history
+  LinkStatistics frozen_link;       ///< link statistics at that time
+  std::atomic<bool> frozen{false};  ///< true: the history belongs to take_fault_report(), which clears it
+  std::atomic<Rendering*> incoming{nullptr};
+  std::atomic<Rendering*> outgoing{nullptr};  ///< exchanged; another thread deletes it
+  std::mutex readers;                         ///< excludes the other threads from each other
+  std::uint64_t replacements = 0;             ///< calls of replace(); guarded by `readers`
+  Latest<WantedParameters> wanted;            ///< written under `readers`
+  Latest<StationView> newest_view;
+  Latest<DeadlineStatistics> newest_deadlines;
+  boost::lockfree::spsc_queue<StepRecord> records{kRecords};
+  std::uint64_t records_lost = 0;  ///< the loop's thread only
+  std::optional<RealtimeGrant> grant;
+  std::thread thread;
 };
-
-struct Station::Records {
-  explicit Records(std::size_t size) : queue(size) {}
-  boost::lockfree::spsc_queue<StepRecord> queue;
-};
-
-bool Station::next_record(StepRecord& record) { return records_->queue.pop(record); }
-
-std::size_t Station::records_waiting() const { return records_->queue.read_available(); }
 
 void check_station_rate(double rate_hz) {
   if (rate_hz >= 200.0 && rate_hz <= 2000.0) return;
@@ -74,134 +140,125 @@ void check_station_rate(double rate_hz) {
       fmt::format("rate_hz = {}: a station runs at 200 to 2000 Hz; change rate_hz", rate_hz));
 }
 
-Station::Station(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters, Device& device,
-                 ChannelMap channels, StationOptions options, const Clock& clock)
-    : device_(device),
-      channels_(std::move(channels)),
-      options_(std::move(options)),
-      clock_(clock),
-      period_(checked_period(parameters)),
-      rendering_(std::make_unique<Rendering>(std::move(model), parameters)),
-      safety_(options_.safety, channels_, device.info(), rendering_->model->hand.parameters(),
-              options_.witnesses, period_),
-      inbox_(kInbox),
-      samples_(count_of(kReportSeconds, device.info().rate_hz)),
-      steps_(count_of(kReportSeconds, parameters.rate_hz)),
-      records_(std::make_unique<Records>(kRecords)) {
-  check_watchdog(options_.safety, device.info());
-  statistics_.period = period_;
+Station::Loop::Loop(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters,
+                    Device& of_device, ChannelMap map, StationOptions given, const Clock& process_clock)
+    : device(of_device),
+      channels(std::move(map)),
+      options(std::move(given)),
+      clock(process_clock),
+      period(checked_period(parameters)),
+      rendering(std::make_unique<Rendering>(std::move(model), parameters)),
+      safety(options.safety, channels, device.info(), rendering->model->hand.parameters(), options.witnesses,
+             period),
+      inbox(kInbox),
+      sample_history(count_of(kReportSeconds, device.info().rate_hz)),
+      step_history(count_of(kReportSeconds, parameters.rate_hz)) {
+  check_watchdog(options.safety, device.info());
+  statistics.period = period;
 }
 
-Station::~Station() { shut_down(); }
-
-void Station::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-// ---- the loop ----
-
-void Station::loop() noexcept {
+void Station::Loop::run() noexcept {
   ::pthread_setname_np(::pthread_self(), "phalanx-loop");
-  if (options_.ask_for_realtime) {
-    RealtimeGrant granted = make_realtime(options_.realtime);
-    const std::lock_guard lock(readers_);
-    grant_ = std::move(granted);
+  if (options.ask_for_realtime) {
+    RealtimeGrant granted = make_realtime(options.realtime);
+    const std::lock_guard lock(readers);
+    grant = std::move(granted);
   }
-  Pacer pacer(clock_, period_);
-  while (!finish_.load(std::memory_order_acquire)) {
+  Pacer pacer(clock, period);
+  while (!finish.load(std::memory_order_acquire)) {
     const Wake wake = pacer.wait();
     one_step(wake);
-    statistics_.add(wake, clock_.now());
-    late_ = statistics_.overruns_in_row > 0;
-    deadlines_.write(statistics_);
+    statistics.add(wake, clock.now());
+    late = statistics.overruns_in_row > 0;
+    newest_deadlines.write(statistics);
   }
 }
 
-void Station::one_step(const Wake& wake) noexcept {
+void Station::Loop::one_step(const Wake& wake) noexcept {
   serve_requests(wake.now);
-  const std::size_t count = device_.receive(wake.now, inbox_);
-  const std::span<const DeviceSample> samples(inbox_.data(), count);
-  safety_.observe(samples, device_.connection_fault(), late_, wake.now);
+  const std::size_t count = device.receive(wake.now, inbox);
+  const std::span<const DeviceSample> samples(inbox.data(), count);
+  safety.observe(samples, device.connection_fault(), late, wake.now);
   if (count > 0) {
-    newest_ = samples.back();
-    heard_ = true;
+    newest_sample = samples.back();
+    heard = true;
   }
-  if (heard_) {
-    channels_.convert(newest_, sample_);
-    rendering_->ramp.advance();
-    status_ = step(*rendering_->model, rendering_->ramp.parameters(), sample_, rendering_->state);
+  if (heard) {
+    channels.convert(newest_sample, sample);
+    rendering->ramp.advance();
+    status = step(*rendering->model, rendering->ramp.parameters(), sample, rendering->state);
   }
-  safety_.command(rendering_->state.snapshot(), newest_, wake.now, command_);
-  if (heard_) device_.send(command_);
-  write_down(wake, count, clock_.now());
+  safety.command(rendering->state.snapshot(), newest_sample, wake.now, command);
+  if (heard) device.send(command);
+  write_down(wake, count, clock.now());
 }
 
-void Station::serve_requests(double now) noexcept {
-  const unsigned asked = requests_.exchange(0, std::memory_order_acq_rel);
-  ending_ = ending_ || (asked & kEnd) != 0;
-  if ((asked & kStop) != 0 || ending_) {
-    safety_.stop();
-    resume_after_exchange_ = false;
+void Station::Loop::serve_requests(double now) noexcept {
+  const unsigned asked = requests.exchange(0, std::memory_order_acq_rel);
+  ending = ending || (asked & kEnd) != 0;
+  if ((asked & kStop) != 0 || ending) {
+    safety.stop();
+    resume_after_exchange = false;
   }
-  if (ending_) return;
-  if ((asked & kResume) != 0) safety_.start();
+  if (ending) return;
+  if ((asked & kResume) != 0) safety.start();
   if ((asked & kReset) != 0) reset_now(now);
-  if (incoming_.load(std::memory_order_acquire) != nullptr) exchange_rendering();
-  wants_parameters_ = wanted_.update() || wants_parameters_;
-  if (wants_parameters_ && wanted_.value().replacement == rendering_->replacement) {
-    rendering_->ramp.go_to(wanted_.value().parameters);
-    wants_parameters_ = false;
+  if (incoming.load(std::memory_order_acquire) != nullptr) exchange_rendering();
+  wants_parameters = wanted.update() || wants_parameters;
+  if (wants_parameters && wanted.value().replacement == rendering->replacement) {
+    rendering->ramp.go_to(wanted.value().parameters);
+    wants_parameters = false;
   }
 }
 
-void Station::reset_now(double now) noexcept {
-  if (safety_.state() != SafetyState::kFault) return;
-  if (!safety_.reset(device_.connection_fault(), now)) {
-    ++resets_refused_;
+void Station::Loop::reset_now(double now) noexcept {
+  if (safety.state() != SafetyState::kFault) return;
+  if (!safety.reset(device.connection_fault(), now)) {
+    ++resets_refused;
     return;
   }
-  device_.reset();
-  heard_ = false;
-  reported_ = false;
+  device.reset();
+  heard = false;
+  reported = false;
 }
 
 /// Exchanges the model where there is no force: the ramp down first, then the exchange, then the start ramp.
-void Station::exchange_rendering() noexcept {
-  const SafetyState state = safety_.state();
+void Station::Loop::exchange_rendering() noexcept {
+  const SafetyState state = safety.state();
   if (state == SafetyState::kStarting || state == SafetyState::kRunning) {
-    safety_.stop();
-    resume_after_exchange_ = true;
+    safety.stop();
+    resume_after_exchange = true;
   }
-  if (!safety_.at_rest() || safety_.state() == SafetyState::kStopping || outgoing_.load() != nullptr) return;
-  Rendering* incoming = incoming_.exchange(nullptr, std::memory_order_acq_rel);
-  if (incoming == nullptr) return;
-  outgoing_.store(rendering_.release(), std::memory_order_release);
-  rendering_.reset(incoming);  // frees nothing, since it is empty
-  if (std::exchange(resume_after_exchange_, false)) safety_.start();
+  if (!safety.at_rest() || safety.state() == SafetyState::kStopping || outgoing.load() != nullptr) return;
+  Rendering* next = incoming.exchange(nullptr, std::memory_order_acq_rel);
+  if (next == nullptr) return;
+  outgoing.store(rendering.release(), std::memory_order_release);
+  rendering.reset(next);  // frees nothing, since it is empty
+  if (std::exchange(resume_after_exchange, false)) safety.start();
 }
 
-void Station::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
-  const Snapshot& snapshot = rendering_->state.snapshot();
-  const StepRecord record{.tick = command_.tick,
+void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
+  const Snapshot& snapshot = rendering->state.snapshot();
+  const StepRecord record{.tick = command.tick,
                           .time = wake.now,
                           .lateness = wake.lateness,
                           .duration = sent_at - wake.now,
-                          .overrun = late_,
+                          .overrun = late,
                           .samples = static_cast<std::uint32_t>(count),
-                          .sample_sequence = newest_.sequence,
-                          .sample_time_us = newest_.time_us,
-                          .state = safety_.state(),
-                          .fault = safety_.fault().fault,
-                          .factor = safety_.factor(),
-                          .status = status_,
-                          .stiffness = rendering_->ramp.parameters().force.stiffness,
+                          .sample_sequence = newest_sample.sequence,
+                          .sample_time_us = newest_sample.time_us,
+                          .state = safety.state(),
+                          .fault = safety.fault().fault,
+                          .factor = safety.factor(),
+                          .status = status,
+                          .stiffness = rendering->ramp.parameters().force.stiffness,
                           .angle = snapshot.hcp_angle,
-                          .torque = command_.torque,
+                          .torque = command.torque,
                           .force = digit_forces(snapshot)};
-  if (!records_->queue.push(record)) ++records_lost_;
-  if (!frozen_.load(std::memory_order_acquire)) {
-    for (std::size_t i = 0; i < count; ++i) samples_.push(inbox_[i]);
-    steps_.push(record);
+  if (!records.push(record)) ++records_lost;
+  if (!frozen.load(std::memory_order_acquire)) {
+    for (std::size_t i = 0; i < count; ++i) sample_history.push(inbox[i]);
+    step_history.push(record);
     freeze_history();
   }
   StationView view;
@@ -209,118 +266,133 @@ void Station::write_down(const Wake& wake, std::size_t count, double sent_at) no
   view.snapshot = snapshot;
   view.stiffness = record.stiffness;
   view.duration = record.duration;
-  view.sent = command_.torque;
-  view.state = safety_.state();
-  view.fault = safety_.fault();
-  view.factor = safety_.factor();
-  view.at_rest = safety_.at_rest();
-  view.degraded = statistics_.degraded(wake.now);
-  view.changing = rendering_->ramp.moving() || incoming_.load(std::memory_order_relaxed) != nullptr;
-  view.device = newest_.state;
-  view.estop = newest_.estop;
-  view.oscillates = safety_.oscillates();
-  view.ending = ending_;
-  view.resets_refused = resets_refused_;
-  view.link = device_.statistics();
-  view.records_lost = records_lost_;
-  view_.write(view);
+  view.sent = command.torque;
+  view.state = safety.state();
+  view.fault = safety.fault();
+  view.factor = safety.factor();
+  view.at_rest = safety.at_rest();
+  view.degraded = statistics.degraded(wake.now);
+  view.changing = rendering->ramp.moving() || incoming.load(std::memory_order_relaxed) != nullptr;
+  view.device = newest_sample.state;
+  view.estop = newest_sample.estop;
+  view.oscillates = safety.oscillates();
+  view.ending = ending;
+  view.resets_refused = resets_refused;
+  view.link = device.statistics();
+  view.records_lost = records_lost;
+  newest_view.write(view);
 }
 
 /// Freezes the history once the torque of a fault has come to rest, until take_fault_report().
-void Station::freeze_history() noexcept {
-  if (safety_.state() != SafetyState::kFault || reported_ || !safety_.at_rest()) return;
-  reported_ = true;
-  frozen_event_ = safety_.fault();
-  frozen_link_ = device_.statistics();  // only this thread may call the device
-  frozen_.store(true, std::memory_order_release);
+void Station::Loop::freeze_history() noexcept {
+  if (safety.state() != SafetyState::kFault || reported || !safety.at_rest()) return;
+  reported = true;
+  frozen_event = safety.fault();
+  frozen_link = device.statistics();  // only this thread may call the device
+  frozen.store(true, std::memory_order_release);
 }
 
 // ---- other threads ----
 
 /// Adds requests for the next step. If several are made between two steps, the last one counts. An end is
 /// never taken back.
-void Station::ask(unsigned set, unsigned clear) noexcept {
-  unsigned before = requests_.load(std::memory_order_relaxed);
-  while (!requests_.compare_exchange_weak(before, (before & ~clear) | set, std::memory_order_acq_rel)) {
+void Station::Loop::ask(unsigned set, unsigned clear) noexcept {
+  unsigned before = requests.load(std::memory_order_relaxed);
+  while (!requests.compare_exchange_weak(before, (before & ~clear) | set, std::memory_order_acq_rel)) {
   }
 }
 
-void Station::stop_torque() noexcept { ask(kStop, kResume); }
-void Station::resume_torque() noexcept { ask(kResume, kStop); }
-void Station::reset() noexcept { ask(kReset, 0); }
-
-void Station::check_rate(const HapticParameters& parameters) const {
-  if (parameters.period() == period_) return;
+void Station::Loop::check_rate(const HapticParameters& parameters) const {
+  if (parameters.period() == period) return;
   throw std::invalid_argument(
       fmt::format("rate_hz = {}: the running station has {}; end it and start one with the new rate",
-                  parameters.rate_hz, 1.0 / period_));
+                  parameters.rate_hz, 1.0 / period));
 }
+
+Station::Station(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters, Device& device,
+                 ChannelMap channels, StationOptions options, const Clock& clock)
+    : loop_(std::make_unique<Loop>(std::move(model), parameters, device, std::move(channels),
+                                   std::move(options), clock)) {}
+
+Station::~Station() { shut_down(); }
+
+void Station::start() {
+  loop_->thread = std::thread([loop = loop_.get()] { loop->run(); });
+}
+
+bool Station::next_record(StepRecord& record) { return loop_->records.pop(record); }
+
+std::size_t Station::records_waiting() const { return loop_->records.read_available(); }
+
+void Station::stop_torque() noexcept { loop_->ask(Loop::kStop, Loop::kResume); }
+void Station::resume_torque() noexcept { loop_->ask(Loop::kResume, Loop::kStop); }
+void Station::reset() noexcept { loop_->ask(Loop::kReset, 0); }
 
 /// Hands over parameters for the model of the last replace(); for an earlier model, the loop drops them.
 void Station::change_to(const HapticParameters& parameters) {
-  check_rate(parameters);
+  loop_->check_rate(parameters);
   check_parameters(parameters);
-  const std::lock_guard lock(readers_);
-  wanted_.write({.parameters = parameters, .replacement = replacements_});
+  const std::lock_guard lock(loop_->readers);
+  loop_->wanted.write({.parameters = parameters, .replacement = loop_->replacements});
 }
 
 void Station::replace(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters) {
-  check_rate(parameters);
-  auto replacement = std::make_unique<Rendering>(std::move(model), parameters);
-  const std::lock_guard lock(readers_);
-  replacement->replacement = ++replacements_;
-  delete outgoing_.exchange(nullptr, std::memory_order_acq_rel);
-  delete incoming_.exchange(replacement.release(), std::memory_order_acq_rel);
+  loop_->check_rate(parameters);
+  auto replacement = std::make_unique<Loop::Rendering>(std::move(model), parameters);
+  const std::lock_guard lock(loop_->readers);
+  replacement->replacement = ++loop_->replacements;
+  delete loop_->outgoing.exchange(nullptr, std::memory_order_acq_rel);
+  delete loop_->incoming.exchange(replacement.release(), std::memory_order_acq_rel);
 }
 
 StationView Station::view() const {
-  const std::lock_guard lock(readers_);
-  delete outgoing_.exchange(nullptr, std::memory_order_acq_rel);
-  view_.update();
-  return view_.value();
+  const std::lock_guard lock(loop_->readers);
+  delete loop_->outgoing.exchange(nullptr, std::memory_order_acq_rel);
+  loop_->newest_view.update();
+  return loop_->newest_view.value();
 }
 
 DeadlineStatistics Station::deadlines() const {
-  const std::lock_guard lock(readers_);
-  deadlines_.update();
-  return deadlines_.value();
+  const std::lock_guard lock(loop_->readers);
+  loop_->newest_deadlines.update();
+  return loop_->newest_deadlines.value();
 }
 
 std::optional<RealtimeGrant> Station::grant() const {
-  const std::lock_guard lock(readers_);
-  return grant_;
+  const std::lock_guard lock(loop_->readers);
+  return loop_->grant;
 }
 
 std::optional<FaultReport> Station::take_fault_report() {
-  if (!frozen_.load(std::memory_order_acquire)) return std::nullopt;
+  if (!loop_->frozen.load(std::memory_order_acquire)) return std::nullopt;
   FaultReport report;
-  report.samples = samples_.all();
-  report.steps = steps_.all();
-  report.device = device_.info();
-  report.link = frozen_link_;
-  report.event = frozen_event_;
-  samples_.clear();
-  steps_.clear();
-  frozen_.store(false, std::memory_order_release);
+  report.samples = loop_->sample_history.all();
+  report.steps = loop_->step_history.all();
+  report.device = loop_->device.info();
+  report.link = loop_->frozen_link;
+  report.event = loop_->frozen_event;
+  loop_->sample_history.clear();
+  loop_->step_history.clear();
+  loop_->frozen.store(false, std::memory_order_release);
   return report;
 }
 
 void Station::shut_down() noexcept {
-  if (thread_.joinable()) {
-    ask(kEnd, kResume | kReset);
+  if (loop_->thread.joinable()) {
+    loop_->ask(Loop::kEnd, Loop::kResume | Loop::kReset);
     // Counted, not timed: while the machine stands still, the ramp does not advance either.
-    for (double waited = 0.0; waited < shut_down_within(options_.safety); waited += kLook) {
+    for (double waited = 0.0; waited < shut_down_within(loop_->options.safety); waited += kLook) {
       const StationView now = view();
       const bool stopped = now.state == SafetyState::kStopped || now.state == SafetyState::kFault;
       if (now.ending && stopped && now.at_rest) break;
-      clock_.sleep_until(clock_.now() + kLook);
+      loop_->clock.sleep_until(loop_->clock.now() + kLook);
     }
-    finish_.store(true, std::memory_order_release);
-    thread_.join();
+    loop_->finish.store(true, std::memory_order_release);
+    loop_->thread.join();
   }
-  device_.close();
-  delete incoming_.exchange(nullptr);
-  delete outgoing_.exchange(nullptr);
+  loop_->device.close();
+  delete loop_->incoming.exchange(nullptr);
+  delete loop_->outgoing.exchange(nullptr);
 }
 
 }  // namespace phalanx

@@ -17,6 +17,7 @@
 #include "phalanx/station/realtime.h"
 #include "phalanx/station/resolved_station.h"
 #include "station/parameter_ramp.h"
+#include "station/sensor_watch.h"
 
 namespace phalanx {
 namespace {

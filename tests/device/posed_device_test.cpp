@@ -16,6 +16,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/station/resolved_station.h"
 #include "phalanx/station/station.h"
+#include "station/safety.h"
 #include "station/watched_device.h"
 #include "support/count_allocations.h"
 #include "support/sanitized.h"

@@ -16,9 +16,9 @@
 #include "phalanx/simulation/closed_loop/closed_loop.h"
 #include "phalanx/simulation/press_cycle.h"
 #include "phalanx/simulation/simulated_channels.h"
-#include "phalanx/station/safety.h"
 #include "phalanx/station/station_model.h"
 #include "phalanx/study/trial.h"
+#include "station/safety.h"
 
 namespace phalanx {
 namespace {

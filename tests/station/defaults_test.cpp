@@ -6,10 +6,10 @@
 
 #include "phalanx/device/device.h"
 #include "phalanx/station/realtime.h"
-#include "phalanx/station/safety.h"
 #include "phalanx/station/safety_settings.h"
-#include "phalanx/station/sensor_watch.h"
 #include "phalanx/station/session.h"
+#include "station/safety.h"
+#include "station/sensor_watch.h"
 #include "support/zero_bytes.h"
 
 namespace phalanx {

@@ -9,7 +9,7 @@
 #include "phalanx/device/channel_map.h"
 #include "phalanx/device/device.h"
 #include "phalanx/hand/hand_parameters.h"
-#include "phalanx/station/safety.h"
+#include "station/safety.h"
 
 namespace phalanx::test {
 

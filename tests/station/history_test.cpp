@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/history.h"
+#include "station/history.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "phalanx/core/constants.h"
-#include "phalanx/station/safety.h"
 #include "station/fake_samples.h"
+#include "station/safety.h"
 
 namespace phalanx {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "phalanx/station/safety.h"
 #include "station/fake_samples.h"
+#include "station/safety.h"
 
 namespace phalanx {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/safety.h"
+#include "station/safety.h"
 
 #include <gtest/gtest.h>
 

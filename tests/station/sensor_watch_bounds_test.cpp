@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "phalanx/station/sensor_watch.h"
 #include "station/fake_samples.h"
+#include "station/sensor_watch.h"
 
 namespace phalanx {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/sensor_watch.h"
+#include "station/sensor_watch.h"
 
 #include <gtest/gtest.h>
 

@@ -19,6 +19,7 @@
 
 #include "phalanx/scene/build_model.h"
 #include "phalanx/station/resolved_station.h"
+#include "station/sensor_watch.h"
 #include "station/small_station.h"
 #include "station/watched_device.h"
 #include "support/reading_helper.h"

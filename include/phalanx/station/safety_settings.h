@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters of the station's safety gate. docs/safety.md lists each with its consequence.
+// Parameters of the station's safety gate, its states and its faults. docs/safety.md describes the gate, and
+// lists each parameter with its consequence.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 #include "phalanx/device/device.h"
 #include "phalanx/force/force_parameters.h"
+#include "phalanx/hand/joints.h"
 
 namespace phalanx {
 
@@ -57,6 +62,15 @@ struct SafetySettings {
   int overruns = 10;  ///< number of steps in a row that end after the next was due; it is a fault
 };
 
+/// A motor that measures its wound length, and the joints that it moves. A sensor that stands still is
+/// compared with it.
+struct MotorWitness {
+  int channel = -1;                   ///< channel of kind kMotor
+  std::array<double, kJoints> arm{};  ///< moment arm of the tendon at each joint [m]
+  double slack = 0.0;  ///< motion of the motor that moves no joint: tendon stretch at the largest torque,
+                       ///< and play [m]
+};
+
 /// Makes the settings for a scene's limits. A station accepts no limit that is turned off, and none beyond
 /// the constants above.
 /// @param clinician  who answers for a fingertip force above kForceWithoutClinician; empty: no one
@@ -74,5 +88,28 @@ inline constexpr const char* kHoldsWithoutHost =
 /// Checks that the device has a watchdog if this is a patient's session.
 /// @throws std::invalid_argument naming the setting that makes it one, the device and the remedy.
 void check_watchdog(const SafetySettings& settings, const DeviceInfo& device);
+
+/// State of the safety gate.
+enum class SafetyState : std::uint8_t {
+  kWaiting,   ///< zero torque, until the device is ready, its samples are good and no force oscillates
+  kStarting,  ///< torque rises over SafetySettings::start_ramp
+  kRunning,
+  kStopping,  ///< torque falls over SafetySettings::stop_ramp
+  kStopped,   ///< zero torque, until a person resumes it
+  kFault,     ///< zero torque after SafetySettings::fault_ramp, until a reset
+};
+
+/// Names a state: "waiting", "starting", "running", "stopping", "stopped", "fault".
+[[nodiscard]] std::string_view safety_state_name(SafetyState state) noexcept;
+
+/// One fault: its kind, place and time. The first fault is kept until a reset; later ones, which may follow
+/// from it, do not replace it.
+struct FaultEvent {
+  Fault fault = Fault::kNone;
+  int channel = -1;          ///< channel of the sensor at fault; -1: no single sensor
+  double time = 0.0;         ///< the host's clock [s]
+  std::uint64_t tick = 0;    ///< number of the step that found it
+  bool from_device = false;  ///< true: the controller found it
+};
 
 }  // namespace phalanx

@@ -7,7 +7,7 @@
 
 #include "phalanx/device/device.h"
 #include "phalanx/station/deadline_statistics.h"
-#include "phalanx/station/safety.h"
+#include "phalanx/station/safety_settings.h"
 #include "phalanx/step/snapshot.h"
 
 namespace phalanx {
@@ -18,7 +18,7 @@ struct StationView {
   Snapshot snapshot;
   double stiffness = 0.0;  ///< stiffness of the force law at this step [N/m]
   double duration = 0.0;   ///< from the start of the step until the command was handed to the device [s]
-  JointArray sent{};       ///< torques after Safety [Nm]
+  JointArray sent{};       ///< torques after the safety gate [Nm]
   SafetyState state = SafetyState::kWaiting;
   FaultEvent fault;                  ///< the present fault; kNone: no fault
   double factor = 0.0;               ///< factor of the ramps on the step's torques, 0 .. 1 [-]
@@ -29,7 +29,7 @@ struct StationView {
   bool changing = false;             ///< a change is on its way
   DeviceState device = DeviceState::kConnecting;
   bool estop = false;
-  bool oscillates = false;  ///< Safety::oscillates(): the force fades, or waits until it is quiet
+  bool oscillates = false;  ///< the force oscillates: it fades, or waits until it is quiet
   LinkStatistics link;
   std::uint64_t records_lost = 0;  ///< StepRecords that were not fetched in time
 };

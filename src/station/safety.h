@@ -13,33 +13,10 @@
 #include "phalanx/force/oscillation.h"
 #include "phalanx/hand/hand_parameters.h"
 #include "phalanx/station/safety_settings.h"
-#include "phalanx/station/sensor_watch.h"
 #include "phalanx/step/snapshot.h"
+#include "station/sensor_watch.h"
 
 namespace phalanx {
-
-/// State of the safety gate.
-enum class SafetyState : std::uint8_t {
-  kWaiting,   ///< zero torque, until the device is ready, its samples are good and no force oscillates
-  kStarting,  ///< torque rises over SafetySettings::start_ramp
-  kRunning,
-  kStopping,  ///< torque falls over SafetySettings::stop_ramp
-  kStopped,   ///< zero torque, until start()
-  kFault,     ///< zero torque after SafetySettings::fault_ramp, until reset()
-};
-
-/// Names a state: "waiting", "starting", "running", "stopping", "stopped", "fault".
-[[nodiscard]] std::string_view safety_state_name(SafetyState state) noexcept;
-
-/// One fault: its kind, place and time. The first fault is kept until a reset; later ones, which may follow
-/// from it, do not replace it.
-struct FaultEvent {
-  Fault fault = Fault::kNone;
-  int channel = -1;          ///< channel of the sensor at fault; -1: no single sensor
-  double time = 0.0;         ///< the host's clock [s]
-  std::uint64_t tick = 0;    ///< number of the step that found it
-  bool from_device = false;  ///< true: the controller found it
-};
 
 /// Safety gate: a state machine without a clock or thread of its own. Once a step the loop calls
 ///   observe()   with every sample since the last step, the connection's state, and whether it was late

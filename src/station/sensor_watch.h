@@ -14,15 +14,6 @@
 
 namespace phalanx {
 
-/// A motor that measures its wound length, and the joints that it moves. A sensor that stands still is
-/// compared with it.
-struct MotorWitness {
-  int channel = -1;                   ///< channel of kind kMotor
-  std::array<double, kJoints> arm{};  ///< moment arm of the tendon at each joint [m]
-  double slack = 0.0;  ///< motion of the motor that moves no joint: tendon stretch at the largest torque,
-                       ///< and play [m]
-};
-
 /// Result of judging a sample.
 struct SensorFinding {
   Fault fault = Fault::kNone;
