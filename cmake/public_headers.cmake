@@ -42,8 +42,6 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     scene/scene.h
     scene/scene_error.h
     station/deadline_statistics.h
-    station/histogram.h
-    station/pacer.h
     station/realtime.h
     station/safety_settings.h
     station/session.h

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/pacer.h"
+#include "station/pacer.h"
 
 #include <fmt/format.h>
 

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "phalanx/device/latest.h"
-#include "phalanx/station/pacer.h"
 #include "station/history.h"
+#include "station/pacer.h"
 #include "station/parameter_ramp.h"
 #include "station/safety.h"
 #include "step/check_parameters.h"

@@ -8,6 +8,7 @@
 #include "phalanx/station/realtime.h"
 #include "phalanx/station/safety_settings.h"
 #include "phalanx/station/session.h"
+#include "station/pacer.h"
 #include "station/safety.h"
 #include "station/sensor_watch.h"
 #include "support/zero_bytes.h"

@@ -1,14 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics of the loop's deadlines: lateness, duration of a step, overruns.
+// Statistics of the loop's deadlines: lateness, duration of a step, overruns. The bins of their histograms grow
+// with the duration, so that 1 us and 1 s have the same relative error.
 #pragma once
 
-#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
-
-#include "phalanx/station/histogram.h"
-#include "phalanx/station/pacer.h"
+#include <string>
 
 namespace phalanx {
+
+struct Wake;  // one waking-up of the loop: its deadline and its time
+
+/// Histogram of durations: 16 equal bins in each octave (doubling), from 0.1 us to 13.4 s, in 3.5 KiB.
+/// A percentile is the middle of its bin, at most 1/32 of the true value away from it; the largest duration
+/// is exact. All durations below 0.1 us share one bin, and all above 13.4 s another.
+/// One thread writes it; readers get a copy by value (device/latest.h).
+/// Real-time: add() and merge(); no allocation, lock, throw or I/O.
+class Histogram {
+ public:
+  static constexpr std::size_t kPerOctave = 16;
+  static constexpr std::size_t kOctaves = 27;
+  static constexpr double kFloor = 1e-7;  ///< lower edge of the first ordinary bin [s]
+
+  /// Adds one duration.
+  /// @param duration  [s]; a negative one counts as 0, and NaN (not a number) is left out
+  void add(double duration) noexcept {
+    if (duration != duration) return;
+    ++count_[bin(duration)];
+    ++total_;
+    if (duration > max_) max_ = duration;
+  }
+  /// Adds everything that was added to `other`.
+  void merge(const Histogram& other) noexcept;
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return total_; }
+  /// @returns the largest duration, exact [us]; 0 if empty.
+  [[nodiscard]] double max_us() const noexcept { return max_ * 1e6; }
+  /// @returns the percentile by nearest rank: `percent` of all durations are not longer [us]. 0 if empty.
+  /// @param percent  0 (the shortest) .. 100 (the longest, which is exact)
+  [[nodiscard]] double percentile_us(double percent) const noexcept;
+  /// @returns the count of durations in octave k, which is [0.1 us 2^k, 0.1 us 2^(k+1)).  @pre k < kOctaves
+  [[nodiscard]] std::uint64_t in_octave(std::size_t k) const noexcept;
+  [[nodiscard]] std::uint64_t below_range() const noexcept { return count_.front(); }
+  [[nodiscard]] std::uint64_t above_range() const noexcept { return count_.back(); }
+
+ private:
+  static constexpr std::size_t kBins = 1 + kOctaves * kPerOctave + 1;
+
+  /// Finds the bin of a duration. The exponent of a double and the four highest bits of its fraction, read as
+  /// one number, count exactly these bins: 16 equally wide ones in each octave.
+  [[nodiscard]] static std::size_t bin(double duration) noexcept {
+    const double ratio = duration / kFloor;
+    if (!(ratio >= 1.0)) return 0;
+    const std::uint64_t above_one =
+        (std::bit_cast<std::uint64_t>(ratio) >> 48U) - (std::bit_cast<std::uint64_t>(1.0) >> 48U);
+    return above_one < kOctaves * kPerOctave ? 1 + static_cast<std::size_t>(above_one) : kBins - 1;
+  }
+  [[nodiscard]] static double middle(std::size_t bin) noexcept;
+
+  std::array<std::uint64_t, kBins> count_{};
+  std::uint64_t total_ = 0;
+  double max_ = 0.0;
+};
+
+/// Writes a line of percentiles, then one line for each octave from the first to the last that is not empty.
+/// For reports only: it allocates.
+[[nodiscard]] std::string histogram_text(const Histogram& histogram, const std::string& title);
 
 /// Counts and histograms of all steps since the start, about 7 KiB. It holds no pointers, so that it can be
 /// copied to readers by value.
@@ -30,33 +89,10 @@ struct DeadlineStatistics {
   /// Adds one step.
   /// @param wake      what the pacer returned for this step
   /// @param step_end  time at which the step's command had been handed over, of the same clock [s]
-  void add(const Wake& wake, double step_end) noexcept {
-    ++steps;
-    skipped += wake.skipped;
-    lateness.add(wake.lateness);
-    step.add(step_end - wake.now);
-    if (step_end <= wake.deadline + period) {
-      overruns_in_row = 0;
-      return;
-    }
-    ++overruns;
-    ++overruns_in_row;
-    longest_run = std::max(longest_run, overruns_in_row);
-    last_overrun = step_end;
-  }
+  void add(const Wake& wake, double step_end) noexcept;
 
   /// Adds the steps of `later`, as if this loop had made them after its own, at the period of `later`.
-  void append(const DeadlineStatistics& later) noexcept {
-    period = later.period;
-    lateness.merge(later.lateness);
-    step.merge(later.step);
-    steps += later.steps;
-    overruns += later.overruns;
-    overruns_in_row = later.overruns_in_row;
-    longest_run = std::max(longest_run, later.longest_run);
-    skipped += later.skipped;
-    if (later.overruns > 0) last_overrun = later.last_overrun;
-  }
+  void append(const DeadlineStatistics& later) noexcept;
 
   /// @returns true if a step overran in the last second before `now` [s].
   [[nodiscard]] bool degraded(double now) const noexcept {

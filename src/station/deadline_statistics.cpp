@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/histogram.h"
+#include "phalanx/station/deadline_statistics.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "station/pacer.h"
 
 namespace phalanx {
 
@@ -71,6 +73,33 @@ std::string histogram_text(const Histogram& histogram, const std::string& title)
   }
   if (histogram.above_range() > 0) text += row("longer", histogram.above_range(), total);
   return text;
+}
+
+void DeadlineStatistics::add(const Wake& wake, double step_end) noexcept {
+  ++steps;
+  skipped += wake.skipped;
+  lateness.add(wake.lateness);
+  step.add(step_end - wake.now);
+  if (step_end <= wake.deadline + period) {
+    overruns_in_row = 0;
+    return;
+  }
+  ++overruns;
+  ++overruns_in_row;
+  longest_run = std::max(longest_run, overruns_in_row);
+  last_overrun = step_end;
+}
+
+void DeadlineStatistics::append(const DeadlineStatistics& later) noexcept {
+  period = later.period;
+  lateness.merge(later.lateness);
+  step.merge(later.step);
+  steps += later.steps;
+  overruns += later.overruns;
+  overruns_in_row = later.overruns_in_row;
+  longest_run = std::max(longest_run, later.longest_run);
+  skipped += later.skipped;
+  if (later.overruns > 0) last_overrun = later.last_overrun;
 }
 
 }  // namespace phalanx

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/station/histogram.h"
+#include "phalanx/station/deadline_statistics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
+#include "phalanx/device/latest.h"
+#include "station/pacer.h"
 #include "support/count_allocations.h"
 
 namespace phalanx {
@@ -176,6 +180,114 @@ TEST(Histogram, AllocatesNothing) {
   const double median = b.percentile_us(50.0);
   EXPECT_EQ(test::allocations_of_this_thread(), before);
   EXPECT_GT(median, 0.0);
+}
+
+TEST(DeadlineStatistics, OfTwoLoopsAreThoseOfBothOneAfterTheOther) {
+  DeadlineStatistics both{.period = 0.5};
+  DeadlineStatistics later{.period = 0.25};
+  for (const double end : {11.125, 11.25, 10.25})
+    both.add({.deadline = 10.0, .now = 10.0, .lateness = 0.125, .skipped = 2}, end);
+  for (const double end : {20.5, 20.125})
+    later.add({.deadline = 20.0, .now = 20.0, .lateness = 0.5, .skipped = 1}, end);
+  both.append(later);
+  EXPECT_EQ(both.period, 0.25);
+  EXPECT_EQ(both.steps, 5U);
+  EXPECT_EQ(both.overruns, 3U);
+  EXPECT_EQ(both.longest_run, 2U);
+  EXPECT_EQ(both.overruns_in_row, 0U);
+  EXPECT_EQ(both.skipped, 8U);
+  EXPECT_EQ(both.last_overrun, 20.5);
+  EXPECT_EQ(both.lateness.count(), 5U);
+  EXPECT_EQ(both.lateness.max_us(), 0.5e6);
+  EXPECT_EQ(both.step.count(), 5U);
+  both.append({.period = 0.125});
+  EXPECT_EQ(both.last_overrun, 20.5) << "a loop that was always in time has none";
+}
+
+// The reader sees each of the writer's states whole: what was added together is there together.
+TEST(DeadlineStatistics, AreCarriedToAReaderWhole) {
+  Latest<DeadlineStatistics> latest;
+  constexpr std::uint64_t kSteps = 5000;
+  std::thread writer([&latest] {
+    DeadlineStatistics s{.period = 0.5};
+    for (std::uint64_t i = 0; i < kSteps; ++i) {
+      const auto t = static_cast<double>(i);
+      s.add({.deadline = t, .now = t, .lateness = 0.0, .skipped = 1}, t + 0.75);
+      latest.write(s);
+    }
+  });
+  std::uint64_t seen = 0;
+  while (seen < kSteps) {
+    if (!latest.update()) continue;
+    const DeadlineStatistics& s = latest.value();
+    EXPECT_GT(s.steps, seen);
+    EXPECT_EQ(s.lateness.count(), s.steps);
+    EXPECT_EQ(s.step.count(), s.steps);
+    EXPECT_EQ(s.longest_run, s.steps);
+    EXPECT_EQ(s.skipped, s.steps);
+    seen = s.steps;
+  }
+  writer.join();
+}
+
+static_assert(std::is_trivially_copyable_v<DeadlineStatistics>);
+static_assert(sizeof(DeadlineStatistics) < 16384);
+
+/// A wake 1/64 s late for the deadline at t; the loop's period is 1/2 s.
+Wake wake_at(double t) { return {.deadline = t, .now = t + 0.015625, .lateness = 0.015625, .skipped = 0}; }
+
+TEST(DeadlineStatistics, CountsAStepThatEndsAfterTheNextDeadline) {
+  DeadlineStatistics s{.period = 0.5};
+  s.add(wake_at(1.0), 1.25);
+  EXPECT_EQ(s.overruns, 0U);
+  s.add(wake_at(1.5), 2.0);  // right on the next deadline: in time
+  EXPECT_EQ(s.overruns, 0U);
+  s.add(wake_at(2.0), 2.501);
+  EXPECT_EQ(s.overruns, 1U);
+  EXPECT_EQ(s.steps, 3U);
+}
+
+TEST(DeadlineStatistics, MeasuresTheWakeFromItsDeadlineAndTheStepFromTheWake) {
+  DeadlineStatistics s{.period = 0.5};
+  s.add(wake_at(1.0), 1.265625);  // 0.25 s after the wake
+  EXPECT_DOUBLE_EQ(s.lateness.max_us(), 15625.0);
+  EXPECT_DOUBLE_EQ(s.step.max_us(), 250000.0);
+  EXPECT_EQ(s.lateness.count(), 1U);
+  EXPECT_EQ(s.step.count(), 1U);
+}
+
+// late, late, in time, late, late, late, in time
+TEST(DeadlineStatistics, RemembersTheLongestRunOfOverruns) {
+  DeadlineStatistics s{.period = 0.5};
+  const std::vector<bool> late = {true, true, false, true, true, true, false};
+  const std::vector<std::uint64_t> in_row = {1, 2, 0, 1, 2, 3, 0};
+  const std::vector<std::uint64_t> longest = {1, 2, 2, 2, 2, 3, 3};
+  for (std::size_t i = 0; i < late.size(); ++i) {
+    const double t = static_cast<double>(i);
+    s.add(wake_at(t), t + (late[i] ? 0.75 : 0.25));
+    EXPECT_EQ(s.overruns_in_row, in_row[i]) << i;
+    EXPECT_EQ(s.longest_run, longest[i]) << i;
+  }
+  EXPECT_EQ(s.overruns, 5U);
+}
+
+TEST(DeadlineStatistics, IsDegradedForOneSecondAfterAnOverrun) {
+  DeadlineStatistics s{.period = 0.5};
+  EXPECT_FALSE(s.degraded(0.0));
+  s.add(wake_at(1.0), 1.75);
+  EXPECT_TRUE(s.degraded(1.75));
+  s.add(wake_at(2.0), 2.25);  // in time again, but the second is not over
+  EXPECT_TRUE(s.degraded(2.625));
+  EXPECT_FALSE(s.degraded(2.75));
+}
+
+TEST(DeadlineStatistics, AddsUpWhatThePacerLeftOut) {
+  DeadlineStatistics s{.period = 0.5};
+  Wake wake = wake_at(3.0);
+  wake.skipped = 4;
+  s.add(wake, 3.25);
+  s.add(wake_at(3.5), 3.75);
+  EXPECT_EQ(s.skipped, 4U);
 }
 
 }  // namespace
