@@ -26,7 +26,6 @@ set(PHALANX_IMPORT_PUBLIC_HEADERS # of phalanx::import
     mesh/mesh_report.h)
 set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     device/calibration.h
-    device/calibration_poses.h
     device/calibration_session.h
     device/channel_map.h
     device/clock.h
@@ -40,7 +39,6 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     scene/build_model.h
     scene/calibration_file.h
     scene/scene.h
-    scene/scene_error.h
     station/deadline_statistics.h
     station/realtime.h
     station/safety_settings.h

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 
 namespace phalanx {
 namespace {

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "phalanx/core/nearest_name.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/text_file.h"
 
 namespace phalanx {

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "phalanx/core/nearest_name.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/csv_lines.h"
 #include "scene/text_file.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 
 namespace phalanx {
 

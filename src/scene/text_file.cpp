@@ -9,7 +9,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 
 namespace phalanx {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/toml/toml_reader.h"
 
 namespace phalanx {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "phalanx/scene/motion_file.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "phalanx/study/laboratory/outputs.h"
 #include "phalanx/study/laboratory/report.h"
 #include "phalanx/study/laboratory/study_file.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 
 namespace phalanx {
 

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "record/temporary_folder.h"
 #include "scene/expect_error.h"
 

@@ -17,7 +17,7 @@
 #include "device/link/controller_thread.h"
 #include "device/opengloves/glove_firmware.h"
 #include "phalanx/core/index.h"
-#include "phalanx/device/calibration_poses.h"
+#include "phalanx/device/calibration_session.h"
 #include "phalanx/device/fault.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "phalanx/mesh/import_cache.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "record/temporary_folder.h"
 #include "station/session_fixture.h"
 #include "station/station_build.h"

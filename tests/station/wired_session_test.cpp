@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "device/link/controller_thread.h"
-#include "phalanx/device/calibration_poses.h"
+#include "phalanx/device/calibration_session.h"
 #include "phalanx/scene/calibration_file.h"
 #include "record/temporary_folder.h"
 #include "station/session_fixture.h"

@@ -22,7 +22,6 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/scene/scene_error.h"
 #include "support/human_motion.h"
 #include "support/reference/fcl_oracle.h"
 #include "support/sanitized.h"

@@ -7,7 +7,6 @@
 
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/scene/scene_error.h"
 
 namespace phalanx {
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "phalanx/scene/scene.h"
-#include "phalanx/scene/scene_error.h"
 #include "phalanx/simulation/patient.h"
 
 namespace phalanx {

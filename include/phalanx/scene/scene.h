@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,9 +19,15 @@
 #include "phalanx/device/motion.h"
 #include "phalanx/force/haptic_parameters.h"
 #include "phalanx/hand/joints.h"
-#include "phalanx/scene/scene_error.h"
 
 namespace phalanx {
+
+/// Error of a scene, hand, mapping or motion file that cannot be used. what() names the file and line (or the
+/// override), the key or column, the value and the remedy.
+class SceneError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
 
 /// One object of a scene. Its kind decides which sizes apply (docs/scenes.md); a scene that states another
 /// size is refused.

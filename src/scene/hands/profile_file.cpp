@@ -9,7 +9,7 @@
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/hand/anthropometry.h"
 #include "phalanx/scene/data_paths.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/text_file.h"
 #include "scene/toml/toml_reader.h"
 

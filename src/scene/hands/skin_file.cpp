@@ -13,7 +13,7 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/text_file.h"
 
 namespace phalanx {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "phalanx/scene/data_paths.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/text_file.h"
 
 namespace phalanx {

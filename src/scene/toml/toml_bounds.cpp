@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 
 namespace phalanx {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "scene/toml/toml_bounds.h"
 
 namespace phalanx {

@@ -19,7 +19,7 @@
 #include "phalanx/core/error_text.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "phalanx/study/laboratory/outputs.h"
 #include "study/laboratory/fingerprint.h"
 #include "study/laboratory/journal.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "phalanx/scene/scene_error.h"
+#include "phalanx/scene/scene.h"
 #include "phalanx/study/laboratory/limit_search.h"
 #include "scene/text_file.h"
 #include "scene/toml/toml_reader.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/device/calibration_poses.h"
+#include "phalanx/device/calibration_session.h"
 
 #include <gtest/gtest.h>
 

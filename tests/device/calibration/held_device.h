@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "phalanx/device/calibration_poses.h"
+#include "phalanx/device/calibration_session.h"
 #include "phalanx/device/device.h"
 
 namespace phalanx::test {

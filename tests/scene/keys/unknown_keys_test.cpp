@@ -15,7 +15,6 @@
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/profile_file.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/scene/scene_error.h"
 
 namespace phalanx {
 namespace {
