@@ -30,7 +30,6 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     device/channel_map.h
     device/clock.h
     device/device.h
-    device/exoskeleton.h
     device/fault.h
     device/latest.h
     device/link/phalanx_link.h

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "phalanx/core/index.h"
+#include "phalanx/device/exoskeleton.h"
 
 namespace phalanx {
 namespace {

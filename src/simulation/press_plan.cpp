@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "phalanx/core/index.h"
-#include "phalanx/device/channel_map.h"
 
 namespace phalanx {
 namespace {

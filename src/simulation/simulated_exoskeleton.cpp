@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "phalanx/core/index.h"
-#include "phalanx/device/channel_map.h"
 
 namespace phalanx {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "phalanx/device/exoskeleton.h"
 #include "support/count_allocations.h"
 #include "support/simple_hand.h"
 

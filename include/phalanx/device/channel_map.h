@@ -3,17 +3,33 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <cstdint>
 #include <vector>
 
 #include "phalanx/device/device.h"
-#include "phalanx/device/exoskeleton.h"
 #include "phalanx/hand/hand_parameters.h"
+#include "phalanx/hand/joints.h"
 #include "phalanx/step/snapshot.h"
 
 namespace phalanx {
 
-/// Rules for joints that a device does not sense: Exoskeleton's `coupled` and `copy`.
+/// A joint that is not sensed but follows a sensed one, for example the distal interphalangeal joint (DIP)
+/// from the proximal one (PIP):  q = ratio q_of + offset.
+struct CoupledJoint {
+  int joint = 0;        ///< joint_index() of the joint that follows
+  int of = 0;           ///< joint_index() of one of the device's joints
+  double ratio = 1.0;   ///< [-]
+  double offset = 0.0;  ///< [rad]
+};
+
+/// Rule for a digit that the device does not have. It shows the angles of another digit, joint by joint:
+///   q = q_open + gain (q_of - q_of,open).
+struct DigitCopy {
+  int of = -1;        ///< digit that is copied; -1: none, this digit stays at the open hand
+  double gain = 1.0;  ///< [-] >= 0; 0: this digit stays at the open hand
+};
+
+/// Rules for all joints that a device does not sense.
 struct JointFollowers {
   std::vector<CoupledJoint> coupled;
   std::array<DigitCopy, kDigits> copy{};
@@ -56,14 +72,5 @@ class ChannelMap {
   std::array<int, kJoints> angle_channel_{};
   std::array<bool, kJoints> measured_{};  ///< a channel sets the joint
 };
-
-/// @returns the angles that the host receives for a hand at `angle` [rad]: the device's own joints unchanged,
-/// coupled joints and copied digits from those that they follow, all others at the open hand. Real-time:
-/// O(joints), no allocation.
-[[nodiscard]] JointArray sensed_angles(const Exoskeleton& exoskeleton, const JointArray& open,
-                                       const JointArray& angle) noexcept;
-
-/// @returns the followers of a device file.
-[[nodiscard]] JointFollowers followers_of(const Exoskeleton& exoskeleton);
 
 }  // namespace phalanx

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "phalanx/device/channel_map.h"
 #include "phalanx/hand/joints.h"
 
 namespace phalanx {
@@ -37,15 +38,6 @@ struct ExoJoint {
   bool torque_sensor = false;  ///< the tendon's torque on the joint is measured and sent with the sample
 };
 
-/// A joint that is not sensed but follows a sensed one, for example the distal interphalangeal joint (DIP)
-/// from the proximal one (PIP):  q = ratio q_of + offset.
-struct CoupledJoint {
-  int joint = 0;        ///< joint_index() of the joint that follows
-  int of = 0;           ///< joint_index() of one of the device's joints
-  double ratio = 1.0;   ///< [-]
-  double offset = 0.0;  ///< [rad]
-};
-
 /// A motor and the tendon that it pulls, in the tendon's coordinates. y is the length that the motor has
 /// wound up [m]. T is the tendon's tension [N], positive where it pulls. `arm` is a row of the moment-arm
 /// matrix: tension T exerts the torque arm[j] T on joint j, and the joints unwind  e = sum_j arm[j] q_j.
@@ -63,13 +55,6 @@ struct ExoMotor {
   double tendon_damping = 0.0;        ///< [N s/m] >= 0
   double backlash = 0.0;              ///< play between winding and unwinding, full width [m] >= 0
   DryFriction sheath;                 ///< between tendon and sheath; acts on the rotor
-};
-
-/// Rule for a digit that the device does not have. It shows the angles of another digit, joint by joint:
-///   q = q_open + gain (q_of - q_of,open).
-struct DigitCopy {
-  int of = -1;        ///< digit that is copied; -1: none, this digit stays at the open hand
-  double gain = 1.0;  ///< [-] >= 0; 0: this digit stays at the open hand
 };
 
 /// Timing of controller and host. The host's own rate is the scene's.
@@ -99,5 +84,14 @@ struct Exoskeleton {
 /// or outside the range stated above, or a joint appears twice. It also throws if a motor moves no joint or
 /// one that the device does not have, or if a digit copies one without a sensed joint. Set-up only.
 void check_exoskeleton(const Exoskeleton& exoskeleton);
+
+/// @returns the angles that the host receives for a hand at `angle` [rad]: the device's own joints unchanged,
+/// coupled joints and copied digits from those that they follow, all others at the open hand. Real-time:
+/// O(joints), no allocation.
+[[nodiscard]] JointArray sensed_angles(const Exoskeleton& exoskeleton, const JointArray& open,
+                                       const JointArray& angle) noexcept;
+
+/// @returns the followers of a device file.
+[[nodiscard]] JointFollowers followers_of(const Exoskeleton& exoskeleton);
 
 }  // namespace phalanx
