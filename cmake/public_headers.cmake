@@ -35,7 +35,6 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     device/link/phalanx_link.h
     device/motion.h
     device/sample_queue.h
-    scene/build_model.h
     scene/calibration_file.h
     scene/scene.h
     station/deadline_statistics.h

@@ -2,9 +2,10 @@
 // A scene as its file states it, checked and in SI units: hand, objects, forces, motion.
 //
 // A scene file is TOML. docs/scenes.md lists all its keys; every value is checked against that table.
-// load_scene() reads a scene, and build_model.h turns it into the model of step(). The scene names further
-// files: of the hand or a profile, of a motion and its mapping, of the simulated device and patient. All
-// errors are SceneErrors that name the file and line, the value, and the remedy.
+// load_scene() reads a scene. build_model() turns it into the model of step(), and make_station_model() into
+// that of a Station. The scene names further files: of the hand or a profile, of a motion and its mapping, of
+// the simulated device and patient. All errors are SceneErrors that name the file and line, the value, and the
+// remedy.
 #pragma once
 
 #include <cstdint>
