@@ -27,10 +27,10 @@ namespace phalanx {
 
 /// Settings of a Station.
 struct StationOptions {
-  RealtimeRequest realtime;
-  bool ask_for_realtime = true;
-  SafetySettings safety;
-  std::vector<MotorWitness> witnesses;
+  RealtimeRequest realtime;             ///< for the loop's thread
+  bool ask_for_realtime = true;         ///< false: the loop is an ordinary thread
+  SafetySettings safety;                ///< of the safety gate
+  std::vector<MotorWitness> witnesses;  ///< motors of the device; empty: no sensor is compared with a motor
 };
 
 /// Checks that a station can run at this rate.
