@@ -104,7 +104,8 @@ double stabilise(const HapticParameters& parameters, const StabiliserInput& by_l
   return parameters.limits.fingertip_force;
 }
 
-/// Computes the forces of one digit: law -> fingertip cap -> stabiliser -> cap.
+/// Computes the forces of one digit: law -> fingertip cap -> stabiliser -> cap. Each cap acts per contact,
+/// then on the vector sum.
 Status digit_forces(const HapticParameters& parameters, const GdpState& contacts, int digit, bool stale,
                     ForceState& state) noexcept {
   Status status = Status::kOk;
@@ -163,7 +164,7 @@ Status come_to_rest(const HapticParameters& parameters, int digit, ForceState& s
   return status;
 }
 
-/// Applies torque limit, torque-rate limit and finite check to one joint.
+/// Applies finite check, torque limit and torque-rate limit to one joint.
 Status limited_torque(const LimitParameters& limits, double period, double wanted,
                       double& commanded) noexcept {
   Status status = Status::kOk;

@@ -59,7 +59,7 @@ struct ForceState {
 };
 
 /// Computes the torque command of one tick, in this order: law -> fingertip cap -> stabiliser -> fingertip
-/// cap -> joint torques -> torque limit -> torque-rate limit -> finite check.
+/// cap -> joint torques -> finite check -> torque limit -> torque-rate limit.
 /// The cap holds for each contact and for the vector sum of a digit's contacts. The second cap acts on the
 /// sum, because some forces may fall slowly while others rise. It acts on each contact where the stabiliser
 /// adds to the law's force. The force sent is then watched for oscillation (kOscillating).

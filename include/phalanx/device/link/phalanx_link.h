@@ -313,7 +313,8 @@ typedef struct {
 
 /* Makes one tick: judges the sensors and the step's age, evaluates the walls, limits the torques, and makes
  * the sample frame. The order is
- *   torque -> walls -> torque limit -> start ramp -> torque-rate limit -> finite check -> fade or latch.
+ *   torque -> walls -> finite check -> torque limit -> start ramp -> torque-rate limit -> torque limit
+ *   -> finite check -> fade or latch.
  * The ramp comes before the rate limit, so that only a fade or a latch (towards zero) is faster than that.
  * `drive_fault`: the device's own hardware reports a fault, which latches PHX_FAULT_DRIVE. */
 void phx_controller_tick(phx_controller* controller, uint64_t now_us, const int32_t raw[PHX_CHANNELS],
