@@ -3,36 +3,55 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 namespace phalanx {
 namespace {
 
+// These switches have no default: the compiler then reports a law or a method without a name.
+
+const char* law_name(ForceLaw law) {
+  switch (law) {
+    case ForceLaw::kHooke:
+      return "Hooke";
+    case ForceLaw::kKelvinVoigt:
+      return "Kelvin-Voigt";
+    case ForceLaw::kHuntCrossley:
+      return "Hunt-Crossley";
+    case ForceLaw::kDuffing:
+      return "Duffing";
+    case ForceLaw::kLinearThenCubic:
+      return "linear then cubic";
+  }
+  return "";
+}
+
 std::string law_text(const ForceLawParameters& law) {
-  static constexpr std::array<const char*, 5> kNames = {"Hooke", "Kelvin-Voigt", "Hunt-Crossley", "Duffing",
-                                                        "linear then cubic"};
-  return fmt::format("{}, k = {:.6g} N/mm", kNames[static_cast<std::size_t>(law.law)], 1e-3 * law.stiffness);
+  return fmt::format("{}, k = {:.6g} N/mm", law_name(law.law), 1e-3 * law.stiffness);
 }
 
 std::string stabiliser_text(const StabiliserParameters& stabiliser) {
-  static constexpr std::array<const char*, 10> kNames = {"no smoothing",
-                                                         "",
-                                                         "",
-                                                         "direction smoothing",
-                                                         "low-pass",
-                                                         "damper",
-                                                         "virtual coupling",
-                                                         "time-domain passivity",
-                                                         "energy bounding",
-                                                         "local wall"};
   switch (stabiliser.method) {
+    case Stabiliser::kNone:
+      return "no smoothing";
     case Stabiliser::kSmoothing:
       return fmt::format("smoothing \u2212{:.6g} to +{:.6g} N/s", -stabiliser.min_rate, stabiliser.max_rate);
     case Stabiliser::kRiseOnly:
       return fmt::format("rise-only smoothing +{:.6g} N/s", stabiliser.max_rate);
-    default:
-      return kNames[static_cast<std::size_t>(stabiliser.method)];
+    case Stabiliser::kDirection:
+      return "direction smoothing";
+    case Stabiliser::kLowPass:
+      return "low-pass";
+    case Stabiliser::kKelvinVoigt:
+      return "damper";
+    case Stabiliser::kVirtualCoupling:
+      return "virtual coupling";
+    case Stabiliser::kPassivity:
+      return "time-domain passivity";
+    case Stabiliser::kEnergyBounding:
+      return "energy bounding";
+    case Stabiliser::kLocalWall:
+      return "local wall";
   }
+  return "";
 }
 
 }  // namespace
