@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "phalanx/core/constants.h"
@@ -126,7 +127,42 @@ int read_copied(TomlTable& entry, const std::vector<std::string_view>& names) {
   return static_cast<int>(found - names.begin());
 }
 
-std::array<DigitCopy, kDigits> read_copies(TomlTable table) {
+std::array<bool, kDigits> sensed_digits(const Exoskeleton& exo) {
+  std::array<bool, kDigits> sensed{};
+  for (const ExoJoint& joint : exo.joints)
+    sensed[static_cast<std::size_t>(digit_of_joint(joint.joint))] = true;
+  return sensed;
+}
+
+/// Refuses a copy that the device's joints contradict. The message gives the options for all digits with
+/// joints of their own.
+/// @param origin  device file
+void check_copies(TomlTable& table, const std::array<DigitCopy, kDigits>& copies,
+                  const std::array<bool, kDigits>& sensed, const std::string& origin) {
+  std::string options;
+  int conflict = -1;
+  for (int digit = kDigits - 1; digit >= 0; --digit) {
+    const auto d = static_cast<std::size_t>(digit);
+    if (copies[d].of < 0 || !sensed[d]) continue;
+    conflict = digit;
+    options.insert(0, fmt::format(" --set device.copy.{}.of=none", digit_name(digit)));
+  }
+  if (conflict >= 0)
+    table.table(digit_name(conflict))
+        .fail("of",
+              fmt::format("{} has joints of this digit, so that it needs no copy; write \"none\", or type{}",
+                          origin, options));
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const int of = copies[static_cast<std::size_t>(digit)].of;
+    if (of >= 0 && !sensed[static_cast<std::size_t>(of)])
+      table.table(digit_name(digit))
+          .fail("of", fmt::format("{} has no joint of the {}; name a digit that it senses, or \"none\"",
+                                  origin, digit_name(of)));
+  }
+}
+
+std::array<DigitCopy, kDigits> read_copies(TomlTable table, const std::array<bool, kDigits>& sensed,
+                                           const std::string& origin) {
   std::vector<std::string_view> names;
   for (int digit = 0; digit < kDigits; ++digit) names.push_back(digit_name(digit));
   std::array<DigitCopy, kDigits> copies;
@@ -138,6 +174,7 @@ std::array<DigitCopy, kDigits> read_copies(TomlTable table) {
     entry.finish();
   }
   table.finish();
+  check_copies(table, copies, sensed, origin);
   return copies;
 }
 
@@ -216,7 +253,8 @@ Exoskeleton read_device(const LayeredFile& file) {
   if (root.has("description")) exo.description = root.text("description");
   read_mechanics(root, exo);
   if (root.has("controller")) exo.controller = read_controller(root.table("controller"));
-  if (root.has("copy")) exo.controller.copy = read_copies(root.table("copy"));
+  if (root.has("copy"))
+    exo.controller.copy = read_copies(root.table("copy"), sensed_digits(exo), file.origin());
   static_cast<void>(root.has("base"));  // known, although already handled, like the scales
   static_cast<void>(root.has("scale"));
   root.finish();

@@ -48,8 +48,9 @@ bool is_bare_key(std::string_view key) {
   return !key.empty() && std::all_of(key.begin(), key.end(), bare);
 }
 
-/// Writes a value as text that reads back the same.
+/// Writes a value as text that reads back the same. The library prints all seventeen digits of a number.
 std::string as_toml(const toml::node& value) {
+  if (const auto* number = value.as_floating_point()) return fmt::format("{}", number->get());
   std::ostringstream out;
   value.visit([&](const auto& node) { out << node; });
   return out.str();

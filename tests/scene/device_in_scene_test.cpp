@@ -63,6 +63,40 @@ TEST(DeviceInAScene, IsCheckedWhenTheSceneIsRead) {
   refused("device.file.x = 3", {}, {"s.toml:1: device.file", "a string"});
 }
 
+// The message names the statement, the device file and the options that remove every such copy. The scene's
+// other keys are not in it.
+TEST(DeviceInAScene, RefusesACopyOfADigitWithJointsAtTheStatementOfTheCopy) {
+  const std::string text =
+      "[device]\nfile = \"five_digits\"\nscale.lag = 0.7\n[device.copy]\n"
+      "middle = { of = \"index\", gain = 1.32 }\nring = { of = \"index\" }\n";
+  try {
+    static_cast<void>(scene(text));
+    FAIL() << "read";
+  } catch (const SceneError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find("s.toml:5: device.copy.middle.of = "), 0U) << message;
+    EXPECT_NE(message.find("five_digits.toml has joints of this digit"), std::string::npos) << message;
+    EXPECT_NE(message.find("type --set device.copy.middle.of=none --set device.copy.ring.of=none"),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(message.find("scale"), std::string::npos) << message;
+    EXPECT_EQ(message.find("gain"), std::string::npos) << message;
+  }
+  EXPECT_NO_THROW(
+      static_cast<void>(scene(text, {{"device.copy.middle.of", "none"}, {"device.copy.ring.of", "none"}})));
+  expect_scene_error([] { static_cast<void>(scene("device.copy.middle.of = \"ring\"")); },
+                     {"s.toml:1: device.copy.middle.of = ", "has no joint of the ring", "\"none\""});
+}
+
+TEST(DeviceInAScene, NamesTheScenesNumbersAsTheyWereWritten) {
+  expect_scene_error(
+      [] {
+        static_cast<void>(
+            scene("device.scale.lag = 0.7\n[device.motors.index_pip.arms_mm]\nindex_pip_flexion = 0"));
+      },
+      {"moves no joint", "s.toml:1: device.scale.lag = 0.7)"});
+}
+
 // A path in a scene is relative to the scene's folder.
 TEST(DeviceInAScene, MayBeAPathBesideTheScene) {
   const auto folder = std::filesystem::temp_directory_path() / "phalanx_device_beside";
