@@ -117,8 +117,10 @@ class Collector {
       if (!q.allFinite()) {
         std::ostringstream what;
         const auto number = [](double x) { return std::isnan(x) ? std::abs(x) : x; };  // avoids "-nan"
-        what << "vertex " << i << " of mesh '" << mesh.mName.C_Str() << "' is (" << number(q.x()) << ", "
-             << number(q.y()) << ", " << number(q.z()) << "), not finite; repair the mesh or export it again";
+        const Vec3 shown = p.allFinite() ? q : Vec3(p.head<3>());  // the file's own numbers if they are bad
+        what << "vertex " << i << " (counted from 0) of mesh '" << mesh.mName.C_Str() << "' is ("
+             << number(shown.x()) << ", " << number(shown.y()) << ", " << number(shown.z())
+             << "), not finite; repair the mesh or export it again";
         refuse(what.str());
       }
       out_.vertices.push_back(q);
