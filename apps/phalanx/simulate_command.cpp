@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "nearest_approach.h"
 #include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
@@ -203,6 +204,7 @@ int simulate_scene(const SimulateOptions& options) {
     const HapticState checked(*model, scene.parameters);
   }  // a hand that starts inside is reported before any file is written
   RunOutputs outputs(output_plan, *model, std::move(drawn), ticks);
+  NearestApproach approach(ticks);
   if (draws && !options.quiet)
     print_aside(fmt::format("the picture takes about {}\n", duration_text(on_all_cores(kPictureSeconds))));
   {
@@ -213,6 +215,7 @@ int simulate_scene(const SimulateOptions& options) {
                       [&](const Snapshot& snapshot) {
                         add_tick(summary, snapshot);
                         outputs.add(snapshot);
+                        approach.add(snapshot);
                       },
                   .progress = [&](std::uint64_t done, std::uint64_t total) { bar.show(done, total); }});
     if (!output_plan.picture.empty()) bar.show("rendering");
@@ -223,7 +226,7 @@ int simulate_scene(const SimulateOptions& options) {
   }
   if (options.quiet) return kDone;
   if (options.out.empty()) {
-    fmt::print("{}", summary_table(summary));
+    fmt::print("{}", summary_table(summary, touched(summary) ? "" : approach.text(*model, scene)));
   } else {
     fmt::print("{}", warning_lines(summary));
     fmt::print("wrote    {} ({} ticks, peak {:.2f} N in all at {:.3f} s)\n", options.out, ticks,

@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "phalanx/figures/human_names.h"
 #include "terminal/emphasis.h"
 
 namespace phalanx {
 namespace {
 
-std::string segments(const Summary& summary) {
+std::string segments(const Summary& summary, const std::string& without_contact) {
+  if (!touched(summary)) return "no segment touched the object" + without_contact + "\n";
   std::string rows;
   for (int s = 0; s < kSegments; ++s) {
     const auto i = static_cast<std::size_t>(s);
@@ -19,7 +22,6 @@ std::string segments(const Summary& summary) {
         fmt::format("{:<20}{:>12}{:>16.3f}{:>16.2f}   {}\n", human_segment_name(s), summary.contact_ticks[i],
                     summary.peak_force[i], 1e3 * summary.peak_depth[i], segment_name(s));
   }
-  if (rows.empty()) return "no segment touched the object\n";
   return fmt::format("{:<20}{:>12}{:>16}{:>16}   {}\n", "segment", "contact", "peak force [N]",
                      "peak depth [mm]", "name in files") +
          rows;
@@ -47,11 +49,16 @@ std::string warning_lines(const Summary& summary) {
   return text;
 }
 
-std::string summary_table(const Summary& summary) {
+bool touched(const Summary& summary) {
+  return std::any_of(summary.contact_ticks.begin(), summary.contact_ticks.end(),
+                     [](std::uint64_t ticks) { return ticks > 0; });
+}
+
+std::string summary_table(const Summary& summary, const std::string& without_contact) {
   std::string text = fmt::format("{}: {} ticks, {:.6g} s at {:.6g} Hz; triangles: hand {}, object {}\n\n",
                                  summary.scene, summary.ticks, summary.seconds, summary.rate_hz,
                                  summary.hand_triangles, summary.object_triangles);
-  text += segments(summary) + "\n" + joints(summary) + "\n";
+  text += segments(summary, without_contact) + "\n" + joints(summary) + "\n";
   for (const LimiterActivity& limiter : limiters(summary)) {
     if (limiter.ticks > 0) text += fmt::format("limit    {} acted in {} ticks\n", limiter.key, limiter.ticks);
   }

@@ -11,6 +11,10 @@ namespace phalanx {
 [[nodiscard]] std::string warning_lines(const Summary& summary);
 
 /// Formats a run in a few lines of text: contacts, peaks, limits that acted, warnings, step times.
-[[nodiscard]] std::string summary_table(const Summary& summary);
+/// @param without_contact  follows "no segment touched the object"
+[[nodiscard]] std::string summary_table(const Summary& summary, const std::string& without_contact);
+
+/// @returns true if a segment had a contact
+[[nodiscard]] bool touched(const Summary& summary);
 
 }  // namespace phalanx

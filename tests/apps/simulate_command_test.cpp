@@ -123,6 +123,20 @@ TEST(CliSimulate, TakesAnObjectFromAFile) {
   EXPECT_EQ(summary["triangles"]["object"], 4);
 }
 
+TEST(CliSimulate, NamesTheNearestSegmentAndTheRemediesIfNoneTouchedTheObject) {
+  const TemporaryFolder folder;
+  const std::string command = "simulate index_ball --seconds 0.1";
+  const auto result = run_program(folder, command + " --set objects.0.position_mm=[0,0,400]");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              ::testing::ContainsRegex("no segment touched the object: the nearest was the [a-zA-Z ]+, "
+                                       "[0-9.]+ mm away; move the object"));
+  EXPECT_THAT(result.out, HasSubstr("(--set objects.0.position_mm=[x,y,z])"));
+  EXPECT_THAT(result.out, HasSubstr("(--set motion.closure=0.8)\n"));
+  EXPECT_THAT(run_program(folder, command + " --set objects=[]").out,
+              HasSubstr("no segment touched the object\n"));
+}
+
 // The scene's ball has a diameter; the file in its place has a unit and no diameter.
 TEST(CliSimulate, TakesWhatSetSaysOfTheFileInTheObjectsPlace) {
   const TemporaryFolder folder;
