@@ -180,6 +180,19 @@ std::uint64_t tick_at(double seconds, std::uint64_t ticks, double rate_hz) {
       "--at {}: the motion is played from 0 to {} s; name a time within it", seconds, last / rate_hz));
 }
 
+/// @returns a sentence for each --set of a key that only the closed loop reads.
+std::vector<std::string> notes_on_overrides(const std::vector<std::string>& set) {
+  std::vector<std::string> notes;
+  for (const std::string& typed : set) {
+    const std::string key = parse_override(typed).first;
+    const std::string table = key.substr(0, key.find('.'));
+    if (table == "device" || table == "patient")
+      notes.push_back(
+          fmt::format("--set {}: {} has no effect in simulate; use `phalanx run` or a study", typed, key));
+  }
+  return notes;
+}
+
 int simulate_scene(const SimulateOptions& options) {
   OutputPlan output_plan = plan(options);
   SceneDescription scene = described(options);
@@ -190,12 +203,14 @@ int simulate_scene(const SimulateOptions& options) {
       resolve(scene, {.hand = draws ? HandDetail::kDrawn : HandDetail::kCollision, .motion = true});
   const Motion motion = resolved.motion.value();
   DrawnHand drawn = draws ? drawn_hand(resolved.hand) : DrawnHand();
+  std::vector<std::string> notes = notes_on_overrides(options.set);
   const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
   const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.parameters.rate_hz);
   if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.parameters.rate_hz);
 
   Summary summary;
   summary.scene = scene.name;
+  summary.notes = std::move(notes);
   summary.rate_hz = scene.parameters.rate_hz;
   summary.seconds = static_cast<double>(ticks) / scene.parameters.rate_hz;
   summary.hand_triangles = model->hand.triangle_count();

@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using testing::read_file;
 using testing::run_program;
 using testing::TemporaryFolder;
@@ -135,6 +136,17 @@ TEST(CliSimulate, NamesTheNearestSegmentAndTheRemediesIfNoneTouchedTheObject) {
   EXPECT_THAT(result.out, HasSubstr("(--set motion.closure=0.8)\n"));
   EXPECT_THAT(run_program(folder, command + " --set objects=[]").out,
               HasSubstr("no segment touched the object\n"));
+}
+
+TEST(CliSimulate, WarnsOfKeysOfDeviceAndPatientWhichOnlyTheClosedLoopReads) {
+  const TemporaryFolder folder;
+  const std::string command = "simulate index_ball --seconds 0.1";
+  const auto result = run_program(folder, command + " --set device.file=light --set patient.press_n=3");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              HasSubstr("warning  --set device.file=light: device.file has no effect in simulate; "));
+  EXPECT_THAT(result.out, HasSubstr("warning  --set patient.press_n=3: patient.press_n has no effect"));
+  EXPECT_THAT(run_program(folder, "simulate first_touch --seconds 0.1").out, Not(HasSubstr("no effect")));
 }
 
 // The scene's ball has a diameter; the file in its place has a unit and no diameter.
