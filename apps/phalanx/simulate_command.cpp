@@ -193,6 +193,18 @@ std::vector<std::string> notes_on_overrides(const std::vector<std::string>& set)
   return notes;
 }
 
+/// @returns a sentence if a mesh file is among the objects and their surface is not closed, else none.
+std::vector<std::string> notes_on_meshes(const SceneDescription& scene, const TriangleMesh& world) {
+  std::string files;
+  for (const ObjectDescription& object : scene.objects)
+    if (object.kind == "file") files += " " + object.file.string();
+  if (files.empty() || is_closed(world)) return {};
+  return {
+      fmt::format("the mesh is open, or has edges of more than two triangles: a finger may go through a "
+                  "hole; see `phalanx mesh check{}`",
+                  files)};
+}
+
 int simulate_scene(const SimulateOptions& options) {
   OutputPlan output_plan = plan(options);
   SceneDescription scene = described(options);
@@ -204,6 +216,7 @@ int simulate_scene(const SimulateOptions& options) {
   const Motion motion = resolved.motion.value();
   DrawnHand drawn = draws ? drawn_hand(resolved.hand) : DrawnHand();
   std::vector<std::string> notes = notes_on_overrides(options.set);
+  for (std::string& note : notes_on_meshes(scene, resolved.world)) notes.push_back(std::move(note));
   const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
   const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.parameters.rate_hz);
   if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.parameters.rate_hz);

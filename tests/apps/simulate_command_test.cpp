@@ -149,6 +149,19 @@ TEST(CliSimulate, WarnsOfKeysOfDeviceAndPatientWhichOnlyTheClosedLoopReads) {
   EXPECT_THAT(run_program(folder, "simulate first_touch --seconds 0.1").out, Not(HasSubstr("no effect")));
 }
 
+TEST(CliSimulate, WarnsOfAnObjectWithAHole) {
+  const TemporaryFolder folder;
+  const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
+  write_file(folder / "open.obj", faces);
+  write_file(folder / "closed.obj", faces + "f 1 4 3\n");
+  const auto simulated = [&](const std::string& file) {
+    return run_program(folder, "simulate index_ball --seconds 0.1 --object-size-mm 40 --object " + file).out;
+  };
+  EXPECT_THAT(simulated("open.obj"), HasSubstr("warning  the mesh is open"));
+  EXPECT_THAT(simulated("open.obj"), ::testing::ContainsRegex("see `phalanx mesh check .*open.obj`"));
+  EXPECT_THAT(simulated("closed.obj"), Not(HasSubstr("warning  the mesh")));
+}
+
 // The scene's ball has a diameter; the file in its place has a unit and no diameter.
 TEST(CliSimulate, TakesWhatSetSaysOfTheFileInTheObjectsPlace) {
   const TemporaryFolder folder;
