@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -57,6 +58,14 @@ void print_decimation(const DecimationReport& d) {
       d.deviation.probes);
 }
 
+/// @returns the option that corrects a size that suits no hand; empty if the size suits one.
+std::string size_option(const MeshReport& r) {
+  const MeshFinding units = r.finding(FindingKind::kUnits);
+  if (units.found == 0) return "";
+  const std::string_view unit = probable_unit(units.size, r.scale);
+  return unit.empty() ? "; type --size-mm 100" : fmt::format("; type --unit {}", unit);
+}
+
 void print_report(const std::string& file, const MeshReport& r) {
   fmt::print("{}\n", file);
   if (r.decimation) {
@@ -89,7 +98,8 @@ void print_report(const std::string& file, const MeshReport& r) {
     fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<22} {:<30} {}\n", finding_name(f.kind), f.found, f.repaired,
                f.found - f.repaired, size_text(f), place_text(f), finding_meaning(f));
   }
-  fmt::print("  {}\n", emphasised(Emphasis::kStrong, mesh_verdict(r), takes_colour(STDOUT_FILENO)));
+  fmt::print("  {}\n",
+             emphasised(Emphasis::kStrong, mesh_verdict(r) + size_option(r), takes_colour(STDOUT_FILENO)));
 }
 
 void check_out(const std::string& out, const std::string& file) {

@@ -60,7 +60,7 @@ TEST(CliMesh, RefusesASizeThatNoHandHolds) {
   write_obj(make_box({90, 60, 30}, 12), folder / "box.obj", "box");
   const auto as_metres = run_program(folder, "mesh check box.obj");
   EXPECT_EQ(as_metres.exit_code, 2);
-  EXPECT_THAT(as_metres.out, HasSubstr("mm"));
+  EXPECT_THAT(as_metres.out, HasSubstr("the size in mm; type --unit mm\n"));
   EXPECT_EQ(run_program(folder, "mesh check box.obj --unit mm").exit_code, 0);
   EXPECT_EQ(run_program(folder, "mesh check box.obj --size-mm 90").exit_code, 0);
 }
