@@ -61,6 +61,9 @@ INSTANTIATE_TEST_SUITE_P(
     All, CliWrongUsage,
     ::testing::Values(
         Case{"", "say what to do: run, simulate"}, Case{"simulat", "did you mean 'simulate'"},
+        Case{"mine/my.toml",
+             "'mine/my.toml' is a file, not a command; to run a scene, type phalanx run mine/my.toml"},
+        Case{"scene my.toml", "phalanx scene: unknown command 'my.toml'"},
         Case{"simulate --rate 3", "did you mean '--rate-hz'"},
         Case{"simulate --pictur a.png", "did you mean '--picture'"}, Case{"scene lst", "did you mean 'list'"},
         Case{"experiment s1-fig9", "did you mean 's1-fig8'"}, Case{"experiment", "say what to do: s1-fig8"},
