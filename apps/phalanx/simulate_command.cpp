@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,6 +22,7 @@
 #include "summary_table.h"
 #include "terminal/error_line.h"
 #include "terminal/progress.h"
+#include "toml_string.h"
 #include "usage.h"
 
 namespace phalanx {
@@ -52,15 +52,8 @@ struct KeyOption {
   std::string value;  ///< TOML
 };
 
-/// Makes a TOML basic string; JSON's escapes are a subset of TOML's.
 KeyOption text_option(const std::string& option, const std::string& key, const std::string& text) {
-  try {
-    return {fmt::format("{} {}", option, text), key, nlohmann::json(text).dump()};
-  } catch (const nlohmann::json::type_error&) {
-    const auto replace = nlohmann::json::error_handler_t::replace;
-    throw std::invalid_argument(fmt::format("{} {}: the name is not valid UTF-8; rename the file", option,
-                                            nlohmann::json(text).dump(-1, ' ', false, replace)));
-  }
+  return {fmt::format("{} {}", option, text), key, toml_string(option, text)};
 }
 
 /// Makes a TOML float: without a point or exponent, the number would be an integer.

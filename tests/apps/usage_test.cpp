@@ -88,6 +88,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"device test-link opengloves:/dev/null", "possible are udp:HOST:PORT and serial:PORT[:BAUD]\n"},
         Case{"device test-link simulated", "possible are udp:HOST:PORT and serial:PORT[:BAUD]\n"},
         Case{"mesh check missing.stl", "missing.stl: there is no such file"},
+        Case{"run --object-size-mm 80", "--object-size-mm needs --object"},
+        Case{"run --object a.stl --object-size-mm 2001", "--object-size-mm"},
+        Case{"run --object nope.stl --headless --no-realtime", "nope.stl"},
         Case{"run --rate-hz 100", "200 to 2000 Hz"}, Case{"run --device usb:0", "udp:HOST:PORT"},
         Case{"run --set limits.fingertip_force_n=8", "--clinician NAME"},
         Case{"run --set limits.fingertip_force_n=11 --clinician Ada", "at most 10 N"},
@@ -118,6 +121,20 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"simulate --object a.obj --object-size-mm nan", "--object-size-mm nan: objects.0.size_mm = nan"},
         Case{"simulate --object a.obj --object-size-mm 2001", "must be >= 0, <= 2000 mm"},
         Case{"simulate --set 'hand.position_mm=[1,2,nan]'", "hand.position_mm = [1, 2, nan]: must be"}));
+
+// The scene's ball has a diameter, the file in its place has none.
+TEST(CliUsage, RunPutsAFileInTheObjectsPlace) {
+  const TemporaryFolder folder;
+  testing::write_file(folder / "tetra.obj",
+                      "v 0 0 0\nv 7 0 0\nv 0 7 0\nv 0 0 7\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::string command = "run index_ball --headless --no-realtime --seconds 0.1 --object tetra.obj";
+  const auto seven_metres = run_program(folder, command);
+  EXPECT_EQ(seven_metres.exit_code, 2);
+  EXPECT_THAT(seven_metres.err, HasSubstr("type --set objects.0.unit=cm\n"));
+  const auto as_ball = run_program(folder, command + " --object-size-mm 40 --set objects.0.diameter_mm=3");
+  EXPECT_EQ(as_ball.exit_code, 2);
+  EXPECT_THAT(as_ball.err, HasSubstr("a file has no such key"));
+}
 
 TEST(CliUsage, TooFewFileDescriptorsAreSaidInWords) {
   // The sanitizer asks through a pipe whether an object's memory can be read. Without a descriptor it calls

@@ -310,6 +310,11 @@ void add_run_command(CLI::App& app, Job& job) {
   run->add_option("--seconds", options->seconds, "end after so long; else with Ctrl-C")->check(positive());
   run->add_option("--rate-hz", options->rate_hz, "the loop's rate, 200 .. 2000 Hz; else the scene's");
   run->add_option("--profile", options->profile, "the patient's hand: a profile's name or file");
+  run->add_option("--object", options->object,
+                  "a mesh in place of the scene's objects: .obj .3ds .stl .ply .glb");
+  run->add_option("--object-size-mm", options->object_size_mm,
+                  "its largest extent; without it the file's numbers are metres")
+      ->check(CLI::Range(0.0, 2000.0));
   run->add_option("--set", options->set, "a scene's key: KEY=VALUE; may be repeated")
       ->allow_extra_args(false);
   run->add_option("--clinician", options->clinician,

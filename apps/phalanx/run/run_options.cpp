@@ -9,7 +9,9 @@
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/calibration_file.h"
+#include "phalanx/scene/scene_file.h"
 #include "phalanx/station/station.h"
+#include "toml_string.h"
 
 namespace phalanx {
 namespace {
@@ -42,8 +44,23 @@ void check_glove_options(const RunOptions& o) {
                   stated, o.device));
 }
 
-Overrides overrides_of(const RunOptions& o) {
+/// Makes the value of `objects` that replaces the scene's objects by --object, at the pose of the first.
+std::string own_object(const RunOptions& o, const std::string& scene) {
+  std::string keys = fmt::format("kind = \"file\", file = {}, size_mm = {}",
+                                 toml_string("--object", o.object), o.object_size_mm.value_or(0.0));
+  const SceneWithValues read = SceneFile(scene).with_values({});
+  for (const auto& [key, value] : read.values) {
+    if (key == "objects.0.position_mm") keys += ", position_mm = " + value;
+    if (key == "objects.0.rotation_deg") keys += ", rotation_deg = " + value;
+  }
+  return fmt::format("[{{ {} }}]", keys);
+}
+
+Overrides overrides_of(const RunOptions& o, const std::string& scene) {
   Overrides overrides;
+  if (o.object.empty() && o.object_size_mm)
+    throw std::invalid_argument("--object-size-mm needs --object FILE");
+  if (!o.object.empty()) overrides.emplace_back("objects", own_object(o, scene));
   for (const std::string& text : o.set) overrides.push_back(parse_override(text));
   if (!o.profile.empty()) overrides.emplace_back("hand.profile", fmt::format("\"{}\"", o.profile));
   if (o.rate_hz) check_station_rate(*o.rate_hz);
@@ -81,7 +98,7 @@ SessionSettings session_settings(const RunOptions& o) {
   settings.scene = !o.scene.empty()  ? o.scene
                    : is_simulated(o) ? RunOptions::kDemonstration
                                      : RunOptions::kGrasp;
-  settings.overrides = overrides_of(o);
+  settings.overrides = overrides_of(o, settings.scene);
   settings.device = o.device;
   settings.calibration = o.calibration;
   settings.clinician = o.clinician;

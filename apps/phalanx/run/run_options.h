@@ -23,6 +23,8 @@ struct RunOptions {
   std::string clinician;
   std::optional<double> watchdog_ms;  ///< watchdog of a glove's firmware [ms]
   bool no_force_feedback = false;     ///< a glove that only senses
+  std::string object;                 ///< mesh file in place of the scene's objects
+  std::optional<double> object_size_mm;
   std::string profile;
   std::string log;
   std::string summary;

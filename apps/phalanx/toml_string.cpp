@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toml_string.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace phalanx {
+
+// JSON's escapes are a subset of those of a TOML basic string.
+std::string toml_string(const std::string& option, const std::string& text) {
+  try {
+    return nlohmann::json(text).dump();
+  } catch (const nlohmann::json::type_error&) {
+    const auto replace = nlohmann::json::error_handler_t::replace;
+    throw std::invalid_argument(fmt::format("{} {}: the name is not valid UTF-8; rename the file", option,
+                                            nlohmann::json(text).dump(-1, ' ', false, replace)));
+  }
+}
+
+}  // namespace phalanx
