@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 
+#include "phalanx/core/index.h"
 #include "simulation/natural_frequency.h"
 
 namespace phalanx {
@@ -27,15 +29,23 @@ double dry_friction(const DryFriction& friction, double speed) noexcept {
 
 double finite_or_0(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
-void check_step(double step, double fastest) {
+void check_step(double step, const Exoskeleton& exoskeleton, const PatientParameters& patient) {
   if (!(step >= 1e-7 && step <= 1e-3))
     throw std::invalid_argument(fmt::format(
         "integration step = {} s: must be in 1e-7 .. 1e-3; the default is {}", step, Plant::kDefaultStep));
-  if (step * fastest > 1.0)
-    throw std::invalid_argument(fmt::format(
-        "integration step = {} s: too long for a natural frequency of {:.4g} rad/s; make it at most "
-        "{:.3g} s, or a tendon softer, or a mass or inertia larger",
-        step, fastest, 1.0 / fastest));
+  const FastestFrequency fastest = fastest_frequency(exoskeleton, patient);
+  const double frequency = std::sqrt(fastest.square);
+  if (!(step * frequency > 1.0)) return;
+  const auto joint = std::ranges::find(exoskeleton.joints, fastest.joint, &ExoJoint::joint);
+  const double inertia = joint == exoskeleton.joints.end() ? 0.0 : joint->inertia;
+  const bool tendon = fastest.motor >= 0;
+  const std::string spring = tendon ? "motor " + exoskeleton.motors[idx(fastest.motor)].name
+                                    : std::string("the patient's stiffness");
+  throw std::invalid_argument(fmt::format(
+      "device {}: {} on joint {} (inertia {} kg m^2) has a natural frequency of {:.4g} rad/s, too fast for "
+      "the integration step of {} s; make {}the inertia larger, {} softer, or the step at most {:.3g} s",
+      exoskeleton.name, spring, joint_name(fastest.joint), inertia, frequency, step,
+      tendon ? "the motor's mass or " : "", tendon ? "the tendon" : "the patient", 1.0 / frequency));
 }
 
 }  // namespace
@@ -45,7 +55,7 @@ Plant::Plant(const Exoskeleton& exoskeleton, const PatientParameters& patient, c
     : step_(step), angle_(start) {
   check_exoskeleton(exoskeleton);
   check_patient(patient);
-  check_step(step, std::sqrt(fastest_square_frequency(exoskeleton, patient)));
+  check_step(step, exoskeleton, patient);
   for (const ExoJoint& joint : exoskeleton.joints) {
     const auto j = static_cast<std::size_t>(joint.joint);
     if (!std::isfinite(start[j]))

@@ -267,6 +267,7 @@ TEST(Plant, RefusesAStepThatItsTendonsDoNotBear) {
   EXPECT_NO_THROW(Plant(exo, no_patient(), {}, 1.29e-4));
   EXPECT_THAT([&] { Plant(exo, no_patient(), {}, 1.30e-4); },
               testing::ThrowsMessage<std::invalid_argument>(testing::AllOf(
+                  testing::HasSubstr("motor mcp on joint index_mcp_flexion (inertia 0.0001 kg m^2)"),
                   testing::HasSubstr("frequency of 7746 rad/s"), testing::HasSubstr("at most 0.000129 s"))));
   for (const double step : {0.0, 9e-8, 1.1e-3, kNotANumber})
     EXPECT_THROW(Plant(one_motor(0.01), no_patient(), {}, step), std::invalid_argument) << step;
