@@ -136,6 +136,18 @@ TEST(CliUsage, RunPutsAFileInTheObjectsPlace) {
   EXPECT_THAT(as_ball.err, HasSubstr("a file has no such key"));
 }
 
+// first_touch copies the index finger with gains of its own.
+TEST(CliUsage, RunWarnsOfCopiesOfAnOwnDeviceThatTheSceneReplaces) {
+  const TemporaryFolder folder;
+  testing::write_file(folder / "mine.toml",
+                      "base = \"beihang\"\n[copy]\nmiddle = { of = \"index\", gain = 0.9 }\n");
+  const std::string command = "run first_touch --headless --no-realtime --seconds 0.1 --set device.file=";
+  EXPECT_THAT(run_program(folder, command + "mine.toml").err,
+              HasSubstr("mine.toml; to keep the file's, type --set device.copy.middle.of=index --set "
+                        "device.copy.middle.gain=0.9"));
+  EXPECT_THAT(run_program(folder, command + "light").err, ::testing::Not(HasSubstr("to keep the file's")));
+}
+
 TEST(CliUsage, TooFewFileDescriptorsAreSaidInWords) {
   // The sanitizer asks through a pipe whether an object's memory can be read. Without a descriptor it calls
   // sound objects damaged.

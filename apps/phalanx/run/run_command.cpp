@@ -40,11 +40,14 @@ class Run {
     if (const auto earlier = recorder_.finished_earlier(); !earlier.empty())
       console_.say(
           fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
-    session_ = std::make_unique<Session>(session_settings(options_), clock_);
+    const SessionSettings settings = session_settings(options_);
+    session_ = std::make_unique<Session>(settings, clock_);
     std::exception_ptr failure;
     {
       const LetsGoAtTerminate lets_go(*session_, clock_);
       try {
+        if (const std::string warning = replaced_copies(settings); !warning.empty())
+          console_.complain(warning, Emphasis::kWarning);
         serve();
       } catch (...) {
         failure = std::current_exception();

@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
+#include "phalanx/core/index.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/calibration_file.h"
+#include "phalanx/scene/device_file.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/station/station.h"
 #include "toml_string.h"
@@ -110,6 +113,29 @@ SessionSettings session_settings(const RunOptions& o) {
     return write_calibration(folder, found);
   };
   return settings;
+}
+
+std::string replaced_copies(const SessionSettings& settings) {
+  const auto typed = [&](const std::string& key) {
+    return std::ranges::any_of(settings.overrides,
+                               [&](const auto& set) { return set.first.starts_with(key); });
+  };
+  if (!typed("device.file")) return "";
+  const SceneDescription scene = load_scene(settings.scene, settings.overrides);
+  if (!scene.device.file.ends_with(".toml")) return "";  // a shipped device, for which the scenes were made
+  const ExoController of_file = load_device_file(scene.device.file).controller;
+  const ExoController in_scene = load_device(scene).controller;
+  std::string options;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const DigitCopy& own = of_file.copy[idx(digit)];
+    const DigitCopy& used = in_scene.copy[idx(digit)];
+    const std::string key = fmt::format("device.copy.{}", digit_name(digit));
+    if (own.of < 0 || (own.of == used.of && own.gain == used.gain) || typed(key)) continue;
+    options += fmt::format(" --set {0}.of={1} --set {0}.gain={2}", key, digit_name(own.of), own.gain);
+  }
+  if (options.empty()) return "";
+  return fmt::format("the scene replaces copies of {}; to keep the file's, type{}", scene.device.file,
+                     options);
 }
 
 }  // namespace phalanx

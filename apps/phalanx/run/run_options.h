@@ -52,4 +52,9 @@ struct RunOptions {
 /// @throws SceneError or std::invalid_argument if options contradict each other
 [[nodiscard]] SessionSettings session_settings(const RunOptions& options);
 
+/// @returns a warning if the scene replaces copies that the user's own device file states, with the options
+/// that keep the file's; empty if it replaces none
+/// @throws SceneError if the scene or the device file cannot be read
+[[nodiscard]] std::string replaced_copies(const SessionSettings& settings);
+
 }  // namespace phalanx
