@@ -5,8 +5,8 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 table=$(mktemp)
 trap 'rm -f "$table" "$table.docs"' EXIT
-PHALANX_WRITE_CORPUS_TABLE=$table "${1:-$root/build/release}/bin/mesh_corpus_test" > /dev/null || true # the old table may differ
-[ -s "$table" ] || { echo "update_mesh_table.sh: no table; build mesh_corpus_test and install assimp-testmodels" >&2; exit 1; }
+PHALANX_WRITE_CORPUS_TABLE=$table "${1:-$root/build/release}/bin/step_test" --gtest_filter='MeshCorpus.*' > /dev/null || true # the old table may differ
+[ -s "$table" ] || { echo "update_mesh_table.sh: no table; build step_test and install assimp-testmodels" >&2; exit 1; }
 awk -v table="$table" '
   /<!-- end of corpus table -->/ { inside = 0 }
   !inside { print }
