@@ -592,7 +592,7 @@ TEST_F(SessionTest, EndsWhileWorkIsOnItsWayWithoutTorqueOrAnAnswer) {
     session->set({{"objects.0.size_mm", "50"}}, done);
     ASSERT_EQ(until_busy(), "scene pinch_ball");
     {
-      const test::TimePassesBeside building("phalanx-build");
+      const test::ThreadsWait building("phalanx-build");
       std::this_thread::sleep_for(std::chrono::milliseconds(20 * i));  // wherever the work has come to
     }
     session->shut_down();
@@ -624,15 +624,15 @@ TEST_F(SessionTest, WhatComputesGivesWayAndNoLoopDoes) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
   auto [answer, done] = awaited();
-  session->set({{"objects.0.triangles", "400000"}}, done);
-  const auto got = answer;
+  std::optional<test::ThreadsWait> building("phalanx-build");
+  session->set({{"objects.0.triangles", "2000"}}, done);
+  ASSERT_TRUE(until([&] { return building->one_waits(); }));
   std::optional<int> computing;
-  while (!computing && !got->refused) {  // without a wait: no time passes while the worker computes
-    own();
-    for (const auto& [name, nice] : threads())
-      if (name == "phalanx-build") computing = nice;
-  }
+  for (const auto& [name, nice] : threads())
+    if (name == "phalanx-build") computing = nice;
+  building.reset();
   EXPECT_EQ(computing, std::max(5, own_nice));
+  const auto got = answer;
   EXPECT_TRUE(until([&] { return got->refused.has_value(); }));
   EXPECT_EQ(load("pinch_ball"), "");
   ASSERT_TRUE(until_running());
@@ -699,13 +699,13 @@ TEST_F(SessionTest, AResetOfAnotherFaultThanTheOneThatIsThereDoesNothing) {
   EXPECT_TRUE(until_running());
 }
 
-// The program ends while a large object is being built, for which time is made to pass.
+// The program ends while an object is being built, for which time is made to pass.
 TEST_F(SessionTest, TheTorqueIsZeroBeforeAChangeOnItsWayIsDone) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());
-  session->set({{"objects.0.triangles", "200000"}}, {});
-  std::optional<test::TimePassesBeside> building("phalanx-build");
-  ASSERT_TRUE(until([&] { return !session->info()->busy.empty(); }));
+  std::optional<test::ThreadsWait> building("phalanx-build");
+  session->set({{"objects.0.triangles", "2000"}}, {});
+  ASSERT_TRUE(until([&] { return building->one_waits(); }));
   std::thread ending([&] { session->shut_down(); });
   bool resumed = false;
   bool at_rest_while_busy = false;

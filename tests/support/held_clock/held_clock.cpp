@@ -126,7 +126,6 @@ struct HeldClock::Threads {
   std::uint32_t changes = 0;
   std::vector<std::int32_t> watched;  ///< of this process
   std::vector<std::int32_t> ignored;
-  std::atomic<const char*> ignored_name{nullptr};
   std::size_t busy = 0;  ///< of all: the one that was at work at the last look, which is looked at first
 
   void read(ClockPage& page) {
@@ -155,16 +154,10 @@ struct HeldClock::Threads {
       if (tid <= 0) continue;
       ++process.threads;
       const std::string path = folder + "/" + entry->d_name;
-      if (std::ranges::find(ignored, tid) == ignored.end() && !has_ignored_name(path))
-        all.emplace_back(path, tid);
+      if (std::ranges::find(ignored, tid) == ignored.end()) all.emplace_back(path, tid);
     }
     ::closedir(directory);
     return true;
-  }
-  [[nodiscard]] bool has_ignored_name(const std::string& thread) const {
-    const char* name = ignored_name.load();
-    std::array<char, 32> text{};
-    return name != nullptr && File(thread + "/comm").read(text) == std::string(name) + "\n";
   }
   [[nodiscard]] bool knows(std::int32_t tid) const {
     return std::ranges::any_of(all, [&](const Thread& thread) { return thread.tid == tid; });
@@ -218,11 +211,6 @@ void HeldClock::watch_thread(std::int32_t tid) {
 
 void HeldClock::ignore_thread(std::int32_t tid) {
   threads_->ignored.push_back(tid);
-  page_->changes.fetch_add(1);
-}
-
-void HeldClock::ignore_threads_named(const char* name) {
-  threads_->ignored_name.store(name);
   page_->changes.fetch_add(1);
 }
 

@@ -47,8 +47,6 @@ class HeldClock {
   void watch_thread(std::int32_t tid);
   /// A thread of this process that is not waited for, although the process is attached.
   void ignore_thread(std::int32_t tid);
-  /// Threads of a name that are not waited for, from whatever thread it is called. @param name  nullptr: none
-  void ignore_threads_named(const char* name);
 
   /// From here on the loops of stations wake up so much later than they ask, as on an overloaded computer.
   void delay_loop(double seconds) noexcept;

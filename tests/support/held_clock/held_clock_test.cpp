@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -15,11 +16,13 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "phalanx/core/index.h"
+#include "support/held_clock/hold_this_process.h"
 
 namespace phalanx::test {
 namespace {
@@ -43,6 +46,24 @@ TEST(HeldClock, StandsStillWhileAThreadComputes) {
   EXPECT_EQ(Clock::now(), before);
   sleeper.join();
   EXPECT_EQ(Clock::now(), before + milliseconds(1));
+}
+
+TEST(HeldClock, PassesWhileAThreadOfANameIsMadeToWait) {
+  const Clock::time_point begin = Clock::now();
+  std::optional<ThreadsWait> waiting("named");
+  std::atomic<bool> went_on{false};
+  std::thread thread([&] {
+    ::pthread_setname_np(::pthread_self(), "another");
+    ::pthread_setname_np(::pthread_self(), "named");
+    went_on = true;
+  });
+  while (!waiting->one_waits()) std::this_thread::sleep_for(milliseconds(1));
+  std::this_thread::sleep_for(std::chrono::hours(1));
+  EXPECT_GE(Clock::now(), begin + std::chrono::hours(1));
+  EXPECT_FALSE(went_on);
+  waiting.reset();
+  thread.join();
+  EXPECT_TRUE(went_on);
 }
 
 TEST(HeldClock, MovesToEachDeadlineInTurnOnceAllThreadsSleep) {

@@ -3,9 +3,14 @@
 // its threads sleep.
 #include "support/held_clock/hold_this_process.h"
 
+#include <dlfcn.h>
+#include <pthread.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
 #include <thread>
 
 #include "support/held_clock/held_clock.h"
@@ -34,12 +39,57 @@ const struct Release {
   ~Release() { hold(nullptr); }
 } kRelease;
 
+/// The threads of a name that wait.
+struct Named {
+  std::mutex mutex;
+  std::condition_variable changed;
+  const char* name = nullptr;  ///< null: none waits
+  int waiting = 0;
+};
+
+/// For the life of the process: threads may take names to the last moment.
+Named& named() {
+  static Named& the_only = *new Named;
+  return the_only;
+}
+
+void wait_if_named(const char* name) {
+  std::unique_lock lock(named().mutex);
+  const auto is_to_wait = [&] { return named().name != nullptr && std::strcmp(name, named().name) == 0; };
+  if (!is_to_wait()) return;
+  ++named().waiting;
+  named().changed.wait(lock, [&] { return !is_to_wait(); });
+  --named().waiting;
+  named().changed.notify_all();
+}
+
 }  // namespace
 
-TimePassesBeside::TimePassesBeside(const char* threads) { kProcessClock->ignore_threads_named(threads); }
-TimePassesBeside::~TimePassesBeside() { kProcessClock->ignore_threads_named(nullptr); }
+ThreadsWait::ThreadsWait(const char* name) {
+  const std::lock_guard lock(named().mutex);
+  named().name = name;
+}
+ThreadsWait::~ThreadsWait() {
+  std::unique_lock lock(named().mutex);
+  named().name = nullptr;
+  named().changed.notify_all();
+  named().changed.wait(lock, [] { return named().waiting == 0; });
+}
+bool ThreadsWait::one_waits() const {
+  const std::lock_guard lock(named().mutex);
+  return named().waiting > 0;
+}
 
 LoopWakesLate::LoopWakesLate(double seconds) { kProcessClock->delay_loop(seconds); }
 LoopWakesLate::~LoopWakesLate() { kProcessClock->delay_loop(0.0); }
 
 }  // namespace phalanx::test
+
+/// The C library's function, after which a thread may have to wait.
+extern "C" int pthread_setname_np(pthread_t thread, const char* name) {
+  static const auto in_c_library =
+      reinterpret_cast<decltype(&pthread_setname_np)>(::dlsym(RTLD_NEXT, "pthread_setname_np"));
+  const int result = in_c_library(thread, name);
+  if (::pthread_equal(thread, ::pthread_self()) != 0) phalanx::test::wait_if_named(name);
+  return result;
+}

@@ -3,15 +3,15 @@
 
 namespace phalanx::test {
 
-/// While it lives, time passes although threads of a name compute, for what has to happen meanwhile. For
-/// programs under HELD_CLOCK (cmake/tests.cmake). One at a time.
-class TimePassesBeside {
+/// While it lives, each thread that takes a name waits as soon as it has it. Time passes meanwhile. For
+/// programs under HELD_CLOCK. One at a time.
+class ThreadsWait {
  public:
-  /// @param threads  their name, as pthread_setname_np() has set it
-  explicit TimePassesBeside(const char* threads);
-  TimePassesBeside(const TimePassesBeside&) = delete;
-  TimePassesBeside& operator=(const TimePassesBeside&) = delete;
-  ~TimePassesBeside();
+  explicit ThreadsWait(const char* name);
+  ThreadsWait(const ThreadsWait&) = delete;
+  ThreadsWait& operator=(const ThreadsWait&) = delete;
+  ~ThreadsWait();  ///< they go on
+  [[nodiscard]] bool one_waits() const;
 };
 
 /// While it lives, the loops of this process's stations wake up too late, as on an overloaded computer. For
