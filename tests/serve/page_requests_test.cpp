@@ -209,6 +209,18 @@ TEST_F(PageRequestsTest, EachSliderMovesItsOwnJoint) {
   }
 }
 
+// A page sends the joints that it moves. What it was told of the others may be old.
+TEST_F(PageRequestsTest, JointsWithoutANumberStayWhereTheyAre) {
+  wire::ToHost message;
+  for (int j = 0; j < kJoints; ++j) message.mutable_sliders()->add_angle(0.1F);
+  applied(message);
+  for (int j = 0; j < kJoints; ++j)
+    message.mutable_sliders()->set_angle(j, j == 6 ? 0.3F : std::numeric_limits<float>::quiet_NaN());
+  applied(message);
+  for (int j = 0; j < kJoints; ++j)
+    EXPECT_EQ(session->sliders()[idx(j)], static_cast<double>(j == 6 ? 0.3F : 0.1F)) << j;
+}
+
 TEST_F(PageRequestsTest, SlidersThatMoveNothingAreRefused) {
   EXPECT_EQ(move_by(HandSource::kPatient), "");
   wire::ToHost message;

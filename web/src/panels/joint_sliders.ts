@@ -43,12 +43,19 @@ export class WantedAngles {
     this.own.clear();
   }
 
+  /// The angles that are shown.
   angles(station: readonly number[]): number[] {
+    return this.toSend().map((angle, joint) => (Number.isNaN(angle) ? (station[joint] ?? 0) : angle));
+  }
+
+  /// The angles of this page; NaN leaves a joint as it is. The station's values are not sent back to it: they
+  /// may be older than what this page has sent.
+  toSend(): number[] {
     return Array.from({ length: kJoints }, (_, joint) => {
       const word = this.own.get(joint);
       if (word && this.now() < word.until) return word.angle;
       this.own.delete(joint);
-      return station[joint] ?? 0;
+      return NaN;
     });
   }
 }
@@ -64,7 +71,7 @@ export function jointSliders(app: App): HTMLElement {
   const sliders: JointSlider[] = [];
   const angles = () => wanted.angles(app.store.state?.slider ?? []);
   const throttle = new Throttle<null>(() => {
-    app.host.sliders(angles());
+    app.host.sliders(wanted.toSend());
     wanted.sent(held);
   }, kPerSecond);
 

@@ -3,7 +3,17 @@ import { describe, expect, it } from "vitest";
 import { fist, WantedAngles } from "../../../src/panels/joint_sliders";
 
 describe("sliders of joints", () => {
-  it("send for joints that nobody holds what the station says", () => {
+  it("send only the joints of this page: the station's values may be old", () => {
+    let now = 0;
+    const wanted = new WantedAngles(() => now);
+    wanted.want(3, 0.9);
+    wanted.want(4, 0.2);
+    wanted.sent(new Set([4]));
+    now += 60_000;
+    expect(wanted.toSend()).toEqual(Array.from({ length: 20 }, (_, joint) => (joint === 4 ? 0.2 : NaN)));
+  });
+
+  it("show for joints that are not held what the station says", () => {
     let now = 0;
     const wanted = new WantedAngles(() => now);
     const station = new Array<number>(20).fill(0.1);
