@@ -58,15 +58,17 @@ void print_decimation(const DecimationReport& d) {
       d.deviation.probes);
 }
 
+/// @param sized  --size-mm was typed
 /// @returns the option that corrects a size that suits no hand; empty if the size suits one.
-std::string size_option(const MeshReport& r) {
+std::string size_option(const MeshReport& r, bool sized) {
   const MeshFinding units = r.finding(FindingKind::kUnits);
   if (units.found == 0) return "";
   const std::string_view unit = probable_unit(units.size, r.scale);
-  return unit.empty() ? "; type --size-mm 100" : fmt::format("; type --unit {}", unit);
+  if (unit.empty()) return "; type --size-mm 100";
+  return fmt::format("; type --unit {}{}", unit, sized ? " in place of --size-mm" : "");
 }
 
-void print_report(const std::string& file, const MeshReport& r) {
+void print_report(const std::string& file, const MeshReport& r, bool sized) {
   fmt::print("{}\n", file);
   if (r.decimation) {
     fmt::print("  triangles    {} in the file, {} after the repair, {} after decimation\n",
@@ -98,8 +100,8 @@ void print_report(const std::string& file, const MeshReport& r) {
     fmt::print("  {:<22} {:>8} {:>8} {:>8}  {:<22} {:<30} {}\n", finding_name(f.kind), f.found, f.repaired,
                f.found - f.repaired, size_text(f), place_text(f), finding_meaning(f));
   }
-  fmt::print("  {}\n",
-             emphasised(Emphasis::kStrong, mesh_verdict(r) + size_option(r), takes_colour(STDOUT_FILENO)));
+  fmt::print("  {}\n", emphasised(Emphasis::kStrong, mesh_verdict(r) + size_option(r, sized),
+                                  takes_colour(STDOUT_FILENO)));
 }
 
 void check_out(const std::string& out, const std::string& file) {
@@ -129,7 +131,7 @@ int check_meshes(const MeshCheck& check) {
       if (check.json) {
         all.push_back(nlohmann::ordered_json::parse(mesh_report_json(file, imported.report)));
       } else {
-        print_report(file, imported.report);
+        print_report(file, imported.report, check.size_mm > 0.0);
       }
       if (!check.out.empty()) write_obj(imported.mesh, check.out, "repaired");
     } catch (const std::invalid_argument& refusal) {

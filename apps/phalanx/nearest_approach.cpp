@@ -21,6 +21,7 @@ std::string NearestApproach::text(const HapticModel& model, const SceneDescripti
   SearchScratch scratch(model.trees());
   for (const auto& poses : poses_) {
     for (int s = 0; s < kSegments; ++s) {
+      if (s == kPalm) continue;  // it does not move
       const double apart =
           distance({model.trees()[idx(s)], poses[idx(s)], scratch}, model.object.tree(), nearest);
       if (apart >= nearest) continue;
@@ -32,9 +33,10 @@ std::string NearestApproach::text(const HapticModel& model, const SceneDescripti
   const std::string found = nearest == kFarthest ? ""
                                                  : fmt::format("the nearest was the {}, {:.3g} mm away; ",
                                                                human_segment_name(segment), 1e3 * nearest);
-  const bool scripted = scene.motion.file.empty();
+  constexpr double kCloser = 0.8;
+  const bool closes = scene.motion.file.empty() && scene.motion.script.closure < kCloser;
   return fmt::format(": {}move the object (--set objects.0.position_mm=[x,y,z]){}", found,
-                     scripted ? " or close the hand further (--set motion.closure=0.8)" : "");
+                     closes ? " or close the hand further (--set motion.closure=0.8)" : "");
 }
 
 }  // namespace phalanx

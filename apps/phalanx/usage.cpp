@@ -138,7 +138,8 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
                          question(meant_option(command, bare)), name);
     }
     if (command.get_parent() == nullptr && word.ends_with(".toml"))
-      return fmt::format("{0}: '{1}' is a file, not a command; to run a scene, type {0} run {1}", name, word);
+      return fmt::format("{0}: '{1}' is a file, not a command; if it is a scene, type {0} run {1}", name,
+                         word);
     if (!subcommands.empty()) {
       return fmt::format("{}: unknown command '{}'; {}Known: {}", name, word,
                          question(suggestion(word, subcommands)), fmt::join(subcommands, ", "));

@@ -21,9 +21,11 @@ class Containment {
   explicit Containment(const TriangleMesh& object);
   explicit Containment(TriangleMesh&&) = delete;
 
-  /// O(triangles of the object) at worst; O(parts) if the segment is outside the boxes around them.
+  /// O(parts) if segment and parts are outside the boxes around each other. Otherwise O(triangles) of a closed
+  /// part that the segment may be in, and of the segment for each part that may be in it.
   /// @returns true if one contains the other, or a part of the other
-  /// @param segment  closed and connected, in its own frame; placed in the world by X_WS
+  /// @param segment  closed, in its own frame; placed in the world by X_WS. Of a segment in several parts only
+  /// the part with its first vertex is tested for being inside the object.
   [[nodiscard]] bool with(const TriangleMesh& segment, const Pose& X_WS) const;
 
  private:

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "phalanx/device/channel_map.h"
 #include "phalanx/device/device.h"

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Case{"", "say what to do: run, simulate"}, Case{"simulat", "did you mean 'simulate'"},
         Case{"mine/my.toml",
-             "'mine/my.toml' is a file, not a command; to run a scene, type phalanx run mine/my.toml"},
+             "'mine/my.toml' is a file, not a command; if it is a scene, type phalanx run mine/my.toml"},
         Case{"scene my.toml", "phalanx scene: unknown command 'my.toml'"},
         Case{"simulate --rate 3", "did you mean '--rate-hz'"},
         Case{"simulate --pictur a.png", "did you mean '--picture'"}, Case{"scene lst", "did you mean 'list'"},
@@ -146,6 +146,30 @@ TEST(CliUsage, RunWarnsOfCopiesOfAnOwnDeviceThatTheSceneReplaces) {
               HasSubstr("mine.toml; to keep the file's, type --set device.copy.middle.of=index --set "
                         "device.copy.middle.gain=0.9"));
   EXPECT_THAT(run_program(folder, command + "light").err, ::testing::Not(HasSubstr("to keep the file's")));
+}
+
+// The file alone is refused, since its copy of the middle finger contradicts that finger's joint.
+TEST(CliUsage, RunStartsWithADeviceFileThatItsOptionsComplete) {
+  const TemporaryFolder folder;
+  testing::write_file(folder / "mine.toml",
+                      "base = \"beihang\"\n[joints.middle_mcp_flexion]\ninertia_kg_m2 = 0.0006\n"
+                      "[copy]\nmiddle = { of = \"index\", gain = 0.9 }\n");
+  const std::string command =
+      "run tripod_ball --headless --no-realtime --seconds 0.1 --set device.file=mine.toml";
+  EXPECT_EQ(run_program(folder, command).exit_code, 2);
+  const auto completed = run_program(folder, command + " --set device.copy.middle.of=none");
+  EXPECT_EQ(completed.exit_code, 0) << completed.err;
+}
+
+TEST(CliUsage, RunTakesAnObjectWhoseNameNeedsEscapes) {
+  const TemporaryFolder folder;
+  const std::string name = "a \"b\" \\ \x7f.obj";
+  testing::write_file(folder / name,
+                      "v 0 0 0\nv 7 0 0\nv 0 7 0\nv 0 0 7\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const auto run = run_program(
+      folder, "run index_ball --device sliders --headless --no-realtime --seconds 0.1 --object '" + name +
+                  "' --object-size-mm 40");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
 TEST(CliUsage, TooFewFileDescriptorsAreSaidInWords) {

@@ -593,7 +593,7 @@ TEST_F(SessionTest, EndsWhileWorkIsOnItsWayWithoutTorqueOrAnAnswer) {
     ASSERT_EQ(until_busy(), "scene pinch_ball");
     {
       const test::ThreadsWait building("phalanx-build");
-      std::this_thread::sleep_for(std::chrono::milliseconds(20 * i));  // wherever the work has come to
+      std::this_thread::sleep_for(std::chrono::milliseconds(20 * i));  // the build has not begun, or is done
     }
     session->shut_down();
     EXPECT_EQ(session->view().factor, 0.0);

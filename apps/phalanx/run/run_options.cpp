@@ -65,7 +65,7 @@ Overrides overrides_of(const RunOptions& o, const std::string& scene) {
     throw std::invalid_argument("--object-size-mm needs --object FILE");
   if (!o.object.empty()) overrides.emplace_back("objects", own_object(o, scene));
   for (const std::string& text : o.set) overrides.push_back(parse_override(text));
-  if (!o.profile.empty()) overrides.emplace_back("hand.profile", fmt::format("\"{}\"", o.profile));
+  if (!o.profile.empty()) overrides.emplace_back("hand.profile", toml_string("--profile", o.profile));
   if (o.rate_hz) check_station_rate(*o.rate_hz);
   if (o.rate_hz) overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *o.rate_hz));
   return overrides;
@@ -120,10 +120,16 @@ std::string replaced_copies(const SessionSettings& settings) {
     return std::ranges::any_of(settings.overrides,
                                [&](const auto& set) { return set.first.starts_with(key); });
   };
-  if (!typed("device.file")) return "";
+  const auto whole_table = [](const auto& set) { return set.first == "device.copy"; };
+  if (!typed("device.file") || std::ranges::any_of(settings.overrides, whole_table)) return "";
   const SceneDescription scene = load_scene(settings.scene, settings.overrides);
   if (!scene.device.file.ends_with(".toml")) return "";  // a shipped device, for which the scenes were made
-  const ExoController of_file = load_device_file(scene.device.file).controller;
+  ExoController of_file;
+  try {
+    of_file = load_device_file(scene.device.file).controller;
+  } catch (const SceneError&) {
+    return "";  // a file that only the scene's values and --set complete: it has no copies of its own to keep
+  }
   const ExoController in_scene = load_device(scene).controller;
   std::string options;
   for (int digit = 0; digit < kDigits; ++digit) {

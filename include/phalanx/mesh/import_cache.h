@@ -35,6 +35,7 @@ class ImportCache {
   /// @param format  as for find()
   void keep(std::string content, std::string format, const ImportOptions& options, ImportedMesh imported);
 
+  // For tests.
   [[nodiscard]] std::size_t hits() const;    ///< calls of find() that found a mesh
   [[nodiscard]] std::size_t misses() const;  ///< calls of find() that found none
   [[nodiscard]] std::size_t bytes() const;   ///< of all meshes and contents that are kept

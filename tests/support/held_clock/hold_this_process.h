@@ -3,14 +3,14 @@
 
 namespace phalanx::test {
 
-/// While it lives, each thread that takes a name waits as soon as it has it. Time passes meanwhile. For
-/// programs under HELD_CLOCK. One at a time.
+/// While it lives, each thread that takes the name `name` waits as soon as it has it. Time passes meanwhile.
+/// For programs under HELD_CLOCK. One at a time.
 class ThreadsWait {
  public:
   explicit ThreadsWait(const char* name);
   ThreadsWait(const ThreadsWait&) = delete;
   ThreadsWait& operator=(const ThreadsWait&) = delete;
-  ~ThreadsWait();  ///< they go on
+  ~ThreadsWait();  ///< the threads continue
   [[nodiscard]] bool one_waits() const;
 };
 
