@@ -35,8 +35,9 @@ std::string NearestApproach::text(const HapticModel& model, const SceneDescripti
                                                                human_segment_name(segment), 1e3 * nearest);
   constexpr double kCloser = 0.8;
   const bool closes = scene.motion.file.empty() && scene.motion.script.closure < kCloser;
-  return fmt::format(": {}move the object (--set objects.0.position_mm=[x,y,z]){}", found,
-                     closes ? " or close the hand further (--set motion.closure=0.8)" : "");
+  return fmt::format(
+      ": {}move the object (--set objects.0.position_mm=[x,y,z]){}", found,
+      closes ? fmt::format(" or close the hand further (--set motion.closure={})", kCloser) : "");
 }
 
 }  // namespace phalanx

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "nearest_approach.h"
+#include "option_text.h"
 #include "parameters_text.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
@@ -22,7 +23,6 @@
 #include "summary_table.h"
 #include "terminal/error_line.h"
 #include "terminal/progress.h"
-#include "toml_string.h"
 #include "usage.h"
 
 namespace phalanx {
@@ -53,7 +53,7 @@ struct KeyOption {
 };
 
 KeyOption text_option(const std::string& option, const std::string& key, const std::string& text) {
-  return {fmt::format("{} {}", option, text), key, toml_string(option, text)};
+  return {fmt::format("{} {}", option, text), key, option_as_toml(option, text)};
 }
 
 /// Makes a TOML float: without a point or exponent, the number would be an integer.

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
 #include "phalanx/core/nearest_name.h"
+#include "phalanx/scene/scene_file.h"
 #include "scene/text_file.h"
 #include "scene/toml/toml_reader.h"
 
@@ -32,13 +32,6 @@ std::string_view kind_name(ChannelKind kind) {
 }
 
 // ---- writing ----
-
-// Writes a TOML string with all necessary escapes.
-std::string quoted(const std::string& text) {
-  std::ostringstream out;
-  out << toml::toml_formatter{toml::value<std::string>(text), toml::format_flags::none};
-  return out.str();
-}
 
 std::string place_of(const DeviceChannel& channel) {
   if (!is_posable(channel.kind) || channel.index < 0 ||
@@ -137,16 +130,16 @@ std::string calibration_text(const Calibration& calibration) {
   std::string text = fmt::format(
       "# Written by `phalanx device calibrate`: value = gain raw + offset, angles in rad.\n"
       "format = {}\ndevice = {}\nserial = {}\ndate = {}\nphalanx = {}\n",
-      kCalibrationFormat, quoted(calibration.device), quoted(calibration.serial), quoted(calibration.date),
-      quoted(calibration.phalanx));
+      kCalibrationFormat, toml_string(calibration.device), toml_string(calibration.serial),
+      toml_string(calibration.date), toml_string(calibration.phalanx));
   for (const CalibratedChannel& c : calibration.channels) {
     text += fmt::format("\n[[channel]]\nkind = \"{}\"\n{}\ngain = {}\noffset = {}\nresidual_rad = {}\n",
                         kind_name(c.channel.kind), place_of(c.channel), c.channel.gain, c.channel.offset,
                         c.residual);
     text += "poses = [\n";
     for (const PoseReading& pose : c.poses)
-      text +=
-          fmt::format("  {{ name = {}, raw = {}, value = {} }},\n", quoted(pose.pose), pose.raw, pose.value);
+      text += fmt::format("  {{ name = {}, raw = {}, value = {} }},\n", toml_string(pose.pose), pose.raw,
+                          pose.value);
     text += "]\n";
   }
   return text;

@@ -134,8 +134,9 @@ std::array<bool, kDigits> sensed_digits(const Exoskeleton& exo) {
   return sensed;
 }
 
-/// Refuses a copy that the device's joints contradict. The message gives the options for all digits with
-/// joints of their own.
+/// Refuses a copy that the device's joints contradict, where it is stated. The message gives the options
+/// for all digits with joints of their own. check_exoskeleton() has the same rules for devices of a
+/// program.
 /// @param origin  device file
 void check_copies(TomlTable& table, const std::array<DigitCopy, kDigits>& copies,
                   const std::array<bool, kDigits>& sensed, const std::string& origin) {

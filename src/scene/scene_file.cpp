@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -20,23 +19,6 @@ bool holds_tables(const toml::array& array) {
   return !array.empty() && array.is_homogeneous(toml::node_type::table);
 }
 
-/// Writes a number as a person would: 0.9, not 0.90000000000000002.
-std::string toml_text(const toml::node& node) {
-  if (const auto number = node.value_exact<double>(); number && std::isfinite(*number)) {
-    const std::string text = fmt::format("{}", *number);
-    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-  }
-  if (const toml::array* array = node.as_array()) {
-    std::string text;
-    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + toml_text(element);
-    return "[" + text + "]";
-  }
-  std::ostringstream text;
-  constexpr auto kFlags = toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings;
-  text << toml::toml_formatter{node, kFlags};  // "file", not 'file'
-  return text.str();
-}
-
 void add(const toml::node& node, const std::string& path, Overrides& values) {
   const auto below = [&](std::string_view name) {
     return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
@@ -51,6 +33,12 @@ void add(const toml::node& node, const std::string& path, Overrides& values) {
 }
 
 }  // namespace
+
+std::string toml_string(const std::string& text) {
+  std::ostringstream out;
+  out << toml::toml_formatter{toml::value<std::string>(text), toml::format_flags::none};
+  return out.str();
+}
 
 SceneFile::SceneFile(const std::string& scene) {
   const std::filesystem::path file =

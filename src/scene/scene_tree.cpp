@@ -7,7 +7,6 @@
 #include <cctype>
 #include <charconv>
 #include <optional>
-#include <sstream>
 #include <vector>
 
 #include "phalanx/scene/scene_keys.h"
@@ -46,14 +45,6 @@ toml::table parse_value(const std::string& value, const std::string& origin) {
 bool is_bare_key(std::string_view key) {
   const auto bare = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
   return !key.empty() && std::all_of(key.begin(), key.end(), bare);
-}
-
-/// Writes a value as text that reads back the same. The library prints all seventeen digits of a number.
-std::string as_toml(const toml::node& value) {
-  if (const auto* number = value.as_floating_point()) return fmt::format("{}", number->get());
-  std::ostringstream out;
-  value.visit([&](const auto& node) { out << node; });
-  return out.str();
 }
 
 /// Makes paths absolute: a typed path is relative to the working directory, not to the scene file.
@@ -180,7 +171,7 @@ void SceneTree::add_values_below(const toml::table& table, const std::string& pa
     if (below != nullptr && !below->empty())
       add_values_below(*below, at, skip, values);
     else
-      values.push_back({at.substr(skip), below != nullptr ? "{}" : as_toml(value), place(at)});
+      values.push_back({at.substr(skip), below != nullptr ? "{}" : toml_text(value), place(at)});
   }
 }
 

@@ -41,13 +41,13 @@ class Run {
       console_.say(
           fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
     const SessionSettings settings = session_settings(options_);
+    if (const std::string warning = replaced_copies(settings); !warning.empty())
+      console_.complain(warning, Emphasis::kWarning);
     session_ = std::make_unique<Session>(settings, clock_);
     std::exception_ptr failure;
     {
       const LetsGoAtTerminate lets_go(*session_, clock_);
       try {
-        if (const std::string warning = replaced_copies(settings); !warning.empty())
-          console_.complain(warning, Emphasis::kWarning);
         serve();
       } catch (...) {
         failure = std::current_exception();

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "option_text.h"
 #include "phalanx/core/index.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
@@ -14,7 +15,6 @@
 #include "phalanx/scene/device_file.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/station/station.h"
-#include "toml_string.h"
 
 namespace phalanx {
 namespace {
@@ -50,7 +50,7 @@ void check_glove_options(const RunOptions& o) {
 /// Makes the value of `objects` that replaces the scene's objects by --object, at the pose of the first.
 std::string own_object(const RunOptions& o, const std::string& scene) {
   std::string keys = fmt::format("kind = \"file\", file = {}, size_mm = {}",
-                                 toml_string("--object", o.object), o.object_size_mm.value_or(0.0));
+                                 option_as_toml("--object", o.object), o.object_size_mm.value_or(0.0));
   const SceneWithValues read = SceneFile(scene).with_values({});
   for (const auto& [key, value] : read.values) {
     if (key == "objects.0.position_mm") keys += ", position_mm = " + value;
@@ -65,7 +65,7 @@ Overrides overrides_of(const RunOptions& o, const std::string& scene) {
     throw std::invalid_argument("--object-size-mm needs --object FILE");
   if (!o.object.empty()) overrides.emplace_back("objects", own_object(o, scene));
   for (const std::string& text : o.set) overrides.push_back(parse_override(text));
-  if (!o.profile.empty()) overrides.emplace_back("hand.profile", toml_string("--profile", o.profile));
+  if (!o.profile.empty()) overrides.emplace_back("hand.profile", option_as_toml("--profile", o.profile));
   if (o.rate_hz) check_station_rate(*o.rate_hz);
   if (o.rate_hz) overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *o.rate_hz));
   return overrides;

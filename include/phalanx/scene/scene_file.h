@@ -8,6 +8,10 @@
 
 namespace phalanx {
 
+/// Writes a text as a value of Overrides: a TOML string in quotes, with all necessary escapes.
+/// @pre valid UTF-8; of other text no TOML can be made
+[[nodiscard]] std::string toml_string(const std::string& text);
+
 /// A scene, and every value that its file or an override states as TOML text, by its path
 /// ("objects.0.size_mm"). A value that is left out has its default (scene_keys()).
 struct SceneWithValues {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "phalanx/core/constants.h"
@@ -51,6 +52,22 @@ std::string one_line(const toml::node& node) {
 }
 
 }  // namespace
+
+std::string toml_text(const toml::node& node) {
+  if (const auto number = node.value_exact<double>(); number && std::isfinite(*number)) {
+    const std::string text = fmt::format("{}", *number);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+  }
+  if (const toml::array* array = node.as_array()) {
+    std::string text;
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + toml_text(element);
+    return "[" + text + "]";
+  }
+  std::ostringstream text;
+  constexpr auto kFlags = toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings;
+  text << toml::toml_formatter{node, kFlags};  // "file", not 'file'
+  return text.str();
+}
 
 std::string show(const toml::node& node) {
   std::string text = one_line(node);

@@ -23,6 +23,9 @@ namespace phalanx {
 /// Parses TOML of bounded depth. @throws SceneError with file, line and problem.
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& origin);
 
+/// @returns a value as TOML text that reads back the same. Numbers are in the shortest form (0.9, not
+/// 0.90000000000000002), strings in double quotes.
+[[nodiscard]] std::string toml_text(const toml::node& node);
 /// @returns a value as written in a file, shortened.
 [[nodiscard]] std::string show(const toml::node& node);
 /// @returns the value of a number; infinity for an integer beyond +-2^53, which no range of the program allows
