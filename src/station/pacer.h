@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "phalanx/device/clock.h"
+#include "phalanx/station/deadline_statistics.h"
 
 namespace phalanx {
 
@@ -17,14 +18,6 @@ struct DeadlineGrid {
   [[nodiscard]] double at(std::uint64_t k) const noexcept { return begin + static_cast<double>(k) * period; }
   /// @returns the first k > last with t_k >= now. Missed deadlines are left out; the grid does not move.
   [[nodiscard]] std::uint64_t next(std::uint64_t last, double now) const noexcept;
-};
-
-/// One waking-up of the loop.
-struct Wake {
-  double deadline = 0.0;      ///< the deadline that was waited for [s]
-  double now = 0.0;           ///< time of the waking-up [s]
-  double lateness = 0.0;      ///< now - deadline, >= 0 [s]
-  std::uint64_t skipped = 0;  ///< missed deadlines between the one before and this one
 };
 
 /// Pacer of a loop with absolute deadlines. A loop that overran does not catch up with several steps at once:

@@ -11,7 +11,13 @@
 
 namespace phalanx {
 
-struct Wake;  // one waking-up of the loop: its deadline and its time
+/// One waking-up of the loop.
+struct Wake {
+  double deadline = 0.0;      ///< the deadline that was waited for [s]
+  double now = 0.0;           ///< time of the waking-up [s]
+  double lateness = 0.0;      ///< now - deadline, >= 0 [s]
+  std::uint64_t skipped = 0;  ///< missed deadlines between the one before and this one
+};
 
 /// Histogram of durations: 16 equal bins in each octave (doubling), from 0.1 us to 13.4 s, in 3.5 KiB.
 /// A percentile is the middle of its bin, at most 1/32 of the true value away from it; the largest duration
@@ -87,7 +93,7 @@ struct DeadlineStatistics {
   double last_overrun = 0.0;          ///< end of the last overrun [s]; without meaning while overruns is 0
 
   /// Adds one step.
-  /// @param wake      what the pacer returned for this step
+  /// @param wake      the waking-up that began it
   /// @param step_end  time at which the step's command had been handed over, of the same clock [s]
   void add(const Wake& wake, double step_end) noexcept;
 
