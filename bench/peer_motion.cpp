@@ -10,23 +10,24 @@ namespace phalanx::bench {
 SegmentField field_of(const HandModel& hand, int digit, int k, const DigitPose& pose,
                       const DigitAngles& rate) {
   SegmentField field;
-  const int joints = joints_that_move(k);
-  for (int j = 0; j < joints; ++j) {
-    const double w = std::abs(rate[idx(j)]);
+  const AxisAngles rates = axis_angles(hand.coupling(digit), rate);
+  const int axes = axes_that_move(k);
+  for (int j = 0; j < axes; ++j) {
+    const double w = std::abs(rates[idx(j)]);
     const double reach = hand.reach(digit, j, k);
     double nearer = 0.0;
     double from_here = 0.0;
-    for (int i = 0; i < joints; ++i) {
-      const double w_i = std::abs(rate[idx(i)]);
+    for (int i = 0; i < axes; ++i) {
+      const double w_i = std::abs(rates[idx(i)]);
       if (i < j) {
         nearer += w_i;
       } else {
         from_here += w_i * hand.reach(digit, i, k);
       }
     }
-    const JointAxis& joint = pose.joint[idx(j)];
-    field.angular += rate[idx(j)] * joint.axis;
-    field.linear -= rate[idx(j)] * joint.axis.cross(joint.centre);
+    const JointAxis& joint = pose.axis[idx(j)];
+    field.angular += rates[idx(j)] * joint.axis;
+    field.linear -= rates[idx(j)] * joint.axis.cross(joint.centre);
     field.speed += w * reach;
     field.acceleration += w * (2.0 * reach * nearer + from_here);
   }
@@ -34,10 +35,11 @@ SegmentField field_of(const HandModel& hand, int digit, int k, const DigitPose& 
 }
 
 double travel(const HandModel& hand, int digit, int k, const DigitAngles& a, const DigitAngles& b) {
+  DigitAngles way{};
+  for (int i = 0; i < kJointsPerDigit; ++i) way[idx(i)] = b[idx(i)] - a[idx(i)];
+  const AxisAngles turned = axis_angles(hand.coupling(digit), way);
   double sum = 0.0;
-  for (int j = 0; j < joints_that_move(k); ++j) {
-    sum += std::abs(b[idx(j)] - a[idx(j)]) * hand.reach(digit, j, k);
-  }
+  for (int j = 0; j < axes_that_move(k); ++j) sum += std::abs(turned[idx(j)]) * hand.reach(digit, j, k);
   return sum;
 }
 

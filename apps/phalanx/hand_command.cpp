@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct HandOptions {
-  std::string profile, file, side, meshes;
+  std::string profile, file, side, meshes, coupling;
   std::string format, out;
 };
 
@@ -40,6 +40,7 @@ HandDescription described(const HandOptions& options) {
   if (!options.file.empty()) hand.file = options.file;
   if (options.side == "left") hand.handedness = Handedness::kLeft;
   if (options.meshes == "capsules") hand.mesh_source = HandMeshSource::kCapsules;
+  if (options.coupling == "none") hand.coupling = HandCoupling::kNone;
   return hand;
 }
 
@@ -78,6 +79,29 @@ std::string ranges(const HandParameters& hand) {
   return text;
 }
 
+/// Lists the coupled rotations, in degrees at the ends of the joint's range.
+std::string couplings(const HandParameters& hand) {
+  std::string text;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const DigitCoupling& coupling = hand.digits[static_cast<std::size_t>(digit)].coupling;
+    const auto add = [&](std::string_view rotation, int i, double ratio) {
+      if (ratio == 0.0) return;
+      const auto joint = static_cast<std::size_t>(joint_index(digit, i));
+      text += fmt::format("{:<24}{:>24}{:>8.3f}{:>12.1f}{:>9.1f}\n",
+                          fmt::format("{} {}", digit_name(digit), rotation),
+                          joint_name(joint_index(digit, i)), ratio, kRadToDeg * ratio * hand.min_angle[joint],
+                          kRadToDeg * ratio * hand.max_angle[joint]);
+    };
+    add("metacarpal", 0, coupling.metacarpal_per_flexion);
+    add("pronation", 0, coupling.pronation_per_flexion);
+    add("pronation", kAbductionJoint, coupling.pronation_per_abduction);
+  }
+  if (text.empty()) return text;
+  return fmt::format("\n{:<24}{:>24}{:>8}{:>12}{:>9}\n", "coupled rotation", "follows", "ratio", "from [deg]",
+                     "to") +
+         text;
+}
+
 std::size_t triangles(const SegmentMeshes& meshes) {
   std::size_t count = 0;
   for (const TriangleMesh& mesh : meshes) count += mesh.triangles.size();
@@ -89,7 +113,7 @@ std::size_t triangles(const SegmentMeshes& meshes) {
 std::string hand_table(const LoadedHand& hand) {
   return fmt::format("{}: a {} hand\n", hand.parameters.name,
                      hand.handedness == Handedness::kLeft ? "left" : "right") +
-         sizes(hand.parameters) + ranges(hand.parameters) +
+         sizes(hand.parameters) + ranges(hand.parameters) + couplings(hand.parameters) +
          fmt::format("\ntriangles: {} that collide, {} that are shown\n", triangles(hand.meshes.collision),
                      triangles(hand.meshes.display));
 }
@@ -175,6 +199,12 @@ void add_hand_options(CLI::App& command, HandOptions& options) {
                   "file: the hand file's meshes; capsules: capsules in any case [file]")
       ->type_name("WHAT")
       ->check(CLI::IsMember({"file", "capsules"}));
+  command
+      .add_option(
+          "--coupling", options.coupling,
+          "file: the rotations that follow from the joints' angles, as the hand file has them; none [file]")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"file", "none"}));
 }
 
 }  // namespace

@@ -8,19 +8,21 @@
 namespace phalanx {
 
 double segment_speed(const HandModel& hand, int digit, const DigitAngles& rate, int k) noexcept {
+  const AxisAngles w = axis_angles(hand.coupling(digit), rate);
   double speed = 0.0;
-  for (int j = 0; j < joints_that_move(k); ++j) speed += std::abs(rate[idx(j)]) * hand.reach(digit, j, k);
+  for (int j = 0; j < axes_that_move(k); ++j) speed += std::abs(w[idx(j)]) * hand.reach(digit, j, k);
   return speed;
 }
 
 SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& pose, const DigitAngles& rate,
                              int k) noexcept {
   SegmentMotion motion;
+  const AxisAngles rates = axis_angles(hand.coupling(digit), rate);
   double turned = 0.0;
-  for (int j = 0; j < joints_that_move(k); ++j) {
-    const double w = rate[idx(j)];
+  for (int j = 0; j < axes_that_move(k); ++j) {
+    const double w = rates[idx(j)];
     if (w == 0.0) continue;
-    const JointAxis& joint = pose.joint[idx(j)];
+    const JointAxis& joint = pose.axis[idx(j)];
     const Vec3 moment = joint.centre.cross(joint.axis);
     // The links before this axis carry it; their motion has been summed so far.
     motion.angular_rate += w * motion.angular.cross(joint.axis);

@@ -142,6 +142,7 @@ HandParameters fitted_parameters(const HandParameters& base, const HandFit& fit)
   for (int digit = 0; digit < kDigits; ++digit) {
     DigitParameters& parameters = hand.digits[idx(digit)];
     parameters.base = palm.cwiseProduct(parameters.base);
+    parameters.metacarpal_base = palm.cwiseProduct(parameters.metacarpal_base);
     for (int i = 0; i < kJointsPerDigit; ++i) {
       const double ratio = fit.segment[idx(segment_index(digit, segment_in_digit_of_joint(i)))].length;
       parameters.dh[idx(i)].a *= ratio;

@@ -46,6 +46,15 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
       finite = finite && std::isfinite(row.a) && std::isfinite(row.alpha) && std::isfinite(row.d) &&
                std::isfinite(row.theta);
     }
+    const DigitCoupling& coupling = digit.coupling;
+    finite = finite && std::isfinite(coupling.pronation_per_flexion) &&
+             std::isfinite(coupling.pronation_per_abduction) &&
+             std::isfinite(coupling.metacarpal_per_flexion) && digit.metacarpal_base.allFinite() &&
+             digit.metacarpal_axis.allFinite();
+    if (finite && !(digit.metacarpal_axis.norm() > 1e-6)) {
+      throw std::invalid_argument(name + "digit " + std::string(digit_name(d)) +
+                                  ": its metacarpal's axis is zero; give it a direction");
+    }
     if (!finite || digit.distal.cross(digit.dorsal).norm() < 1e-6) {
       throw std::invalid_argument(
           name + "digit " + std::string(digit_name(d)) +
@@ -80,19 +89,34 @@ HandModel::HandModel(HandParameters parameters, Handedness handedness, const Pos
       const DhRow& row = digit.dh[idx(i)];
       joint_[idx(d)][idx(i)] = {row.a, row.d, row.theta, std::cos(row.alpha), std::sin(row.alpha)};
     }
-    for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      double radius = 0.0;  // of the segment's vertices around its origin [m]
-      for (const Vec3& v : mesh(segment_index(d, k)).vertices) radius = std::max(radius, v.norm());
-      // The segment's origin is at this distance along the axis from the joint's centre.
-      radius += std::abs(digit.dh[idx(k + 1)].d);
-      // Distances between successive D-H origins do not depend on the angles. Joint k + 1 is
-      // the segment's own.
-      for (int i = k + 1; i >= 0; --i) {
-        reach_[idx(d)][idx(i)][idx(k)] = radius;
-        if (i > 0) radius += std::hypot(digit.dh[idx(i - 1)].a, digit.dh[idx(i - 1)].d);
-      }
-    }
+    const Vec3 axis_H = digit.metacarpal_axis.normalized();
+    // An axis is a pseudovector: a reflection keeps its component across the plane and turns the others round.
+    metacarpal_axis_[idx(d)] = {
+        X_WH.R * (mirrored ? Vec3(-(reflection() * axis_H)) : axis_H),
+        X_WH * (mirrored ? Vec3(reflection() * digit.metacarpal_base) : digit.metacarpal_base)};
+    for (int k = 0; k < kSegmentsPerDigit; ++k) set_reach(d, k);
   }
+}
+
+void HandModel::set_reach(int d, int k) {
+  const DigitParameters& digit = parameters_.digits[idx(d)];
+  double radius = 0.0;  // of the segment's vertices around its origin [m]
+  double beside = 0.0;  // and around its bone
+  for (const Vec3& v : mesh(segment_index(d, k)).vertices) {
+    radius = std::max(radius, v.norm());
+    beside = std::max(beside, std::hypot(v.x(), v.y()));
+  }
+  const auto reach = [&](int axis) -> double& { return reach_[idx(d)][idx(axis)][idx(k)]; };
+  // The segment's origin is at this distance along the axis from the joint's centre.
+  radius += std::abs(digit.dh[idx(k + 1)].d);
+  // Distances between successive D-H origins do not depend on the angles. Joint k + 1 is the segment's own.
+  for (int i = k + 1; i >= 0; --i) {
+    reach(axis_of_joint(i)) = radius;
+    if (i > 0) radius += std::hypot(digit.dh[idx(i - 1)].a, digit.dh[idx(i - 1)].d);
+  }
+  // The axis of pronation is the first segment's bone and passes through the centre of the next joint.
+  reach(kPronationAxis) = k == 0 ? beside : reach(axis_of_joint(2));
+  reach(kMetacarpalAxis) = reach(axis_of_joint(0)) + (digit.base - digit.metacarpal_base).norm();
 }
 
 int HandModel::triangle_count() const noexcept {
@@ -111,12 +135,23 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
   Vec3 y = base.R.col(1);
   Vec3 z = base.R.col(2);
   Vec3 p = base.p;
+  const AxisAngles turn = axis_angles(coupling(digit), angle);
+  const JointAxis& metacarpal = metacarpal_axis_[idx(digit)];
+  pose.axis[kMetacarpalAxis] = metacarpal;
+  pose.coupling = coupling(digit);
+  if (turn[kMetacarpalAxis] != 0.0) {
+    const Mat3 R = rotation_about(metacarpal.axis, turn[kMetacarpalAxis]);
+    x = R * x;
+    y = R * y;
+    z = R * z;
+    p = metacarpal.centre + R * (p - metacarpal.centre);
+  }
   for (int i = 0; i < kJointsPerDigit; ++i) {
     const ChainJoint& joint = joint_[idx(digit)][idx(i)];
     const double c = std::cos(joint.theta + angle[idx(i)]);
     const double s = std::sin(joint.theta + angle[idx(i)]);
     const Vec3 axis = flexion * z;
-    pose.joint[idx(i)] = {axis, p};
+    pose.axis[idx(axis_of_joint(i))] = {axis, p};
     // Rz(theta + q) Tz(d): `across` is normal to the link and to z.
     const Vec3 link = c * x + s * y;
     const Vec3 across = c * y - s * x;
@@ -127,6 +162,16 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
     y = joint.cos_alpha * across + joint.sin_alpha * z;
     z = joint.cos_alpha * z - joint.sin_alpha * across;
     if (i == 0) continue;
+    if (i == kAbductionJoint) {
+      pose.axis[kPronationAxis] = {-flexion * x, start};
+      if (turn[kPronationAxis] != 0.0) {
+        const double cp = std::cos(turn[kPronationAxis]);
+        const double sp = std::sin(turn[kPronationAxis]);
+        const Vec3 side = y;
+        y = cp * side - sp * z;
+        z = cp * z + sp * side;
+      }
+    }
     // The frame at the link's far end is turned into WebXR's: origin at the joint, -Z along the link, -X
     // along the flexion axis.
     Pose& segment = pose.segment[idx(i - 1)];
@@ -142,22 +187,35 @@ void HandModel::poses(const JointArray& angle, HandPoses& poses) const noexcept 
 }
 
 PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept {
+  const DigitCoupling& coupling = pose.coupling;
   PointJacobian J;
-  for (int i = 0; i < kJointsPerDigit; ++i) {
-    const JointAxis& joint = pose.joint[idx(i)];
-    const bool moves = i < joints_that_move(k);
-    J.linear[idx(i)] = moves ? Vec3(joint.axis.cross(p_W - joint.centre)) : Vec3(Vec3::Zero());
-    J.angular[idx(i)] = moves ? joint.axis : Vec3(Vec3::Zero());
-  }
+  J.linear.fill(Vec3::Zero());
+  J.angular.fill(Vec3::Zero());
+  const auto add = [&](int joint, double coefficient, const JointAxis& axis) {
+    J.linear[idx(joint)] += coefficient * axis.axis.cross(p_W - axis.centre);
+    J.angular[idx(joint)] += coefficient * axis.axis;
+  };
+  for (int i = 0; i < joints_that_move(k); ++i) add(i, 1.0, pose.axis[idx(axis_of_joint(i))]);
+  add(0, coupling.metacarpal_per_flexion, pose.axis[kMetacarpalAxis]);
+  add(0, coupling.pronation_per_flexion, pose.axis[kPronationAxis]);
+  add(kAbductionJoint, coupling.pronation_per_abduction, pose.axis[kPronationAxis]);
   return J;
 }
 
 void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
                  JointArray& torque) noexcept {
-  for (int i = 0; i < joints_that_move(k); ++i) {
-    const JointAxis& joint = pose.joint[idx(i)];
-    torque[idx(joint_index(digit, i))] += joint.axis.dot((p_W - joint.centre).cross(f_W));
-  }
+  const auto about = [&](int axis) {
+    const JointAxis& a = pose.axis[idx(axis)];
+    return a.axis.dot((p_W - a.centre).cross(f_W));
+  };
+  for (int i = 0; i < joints_that_move(k); ++i) torque[idx(joint_index(digit, i))] += about(axis_of_joint(i));
+  const DigitCoupling& coupling = pose.coupling;
+  if (coupling.metacarpal_per_flexion != 0.0)
+    torque[idx(joint_index(digit, 0))] += coupling.metacarpal_per_flexion * about(kMetacarpalAxis);
+  if (coupling.pronation_per_flexion == 0.0 && coupling.pronation_per_abduction == 0.0) return;
+  const double pronation = about(kPronationAxis);
+  torque[idx(joint_index(digit, 0))] += coupling.pronation_per_flexion * pronation;
+  torque[idx(joint_index(digit, kAbductionJoint))] += coupling.pronation_per_abduction * pronation;
 }
 
 }  // namespace phalanx

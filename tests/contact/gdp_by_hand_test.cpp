@@ -884,11 +884,11 @@ TEST(ReachByHand, CountsTheOffsetsAlongTheAxes) {
   for (int k = 0; k < kSegmentsPerDigit; ++k) meshes[idx(segment_index(test::kIndex, k))] = diamond();
   const HandModel hand(parameters, Handedness::kRight, Pose{}, std::move(meshes));
   constexpr double kOwn = 21e-3;  // a diamond's farthest corner
-  EXPECT_NEAR(hand.reach(test::kIndex, 1, 0), kOwn + 0.030, 1e-15);
-  EXPECT_NEAR(hand.reach(test::kIndex, 0, 0), kOwn + 0.030, 1e-15);
-  EXPECT_NEAR(hand.reach(test::kIndex, 2, 1), kOwn + 0.020, 1e-15);
-  EXPECT_NEAR(hand.reach(test::kIndex, 1, 1), kOwn + 0.020 + 0.050, 1e-15);
-  EXPECT_NEAR(hand.reach(test::kIndex, 2, 2), kOwn + std::hypot(test::kLength2, 0.020), 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, axis_of_joint(1), 0), kOwn + 0.030, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, axis_of_joint(0), 0), kOwn + 0.030, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, axis_of_joint(2), 1), kOwn + 0.020, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, axis_of_joint(1), 1), kOwn + 0.020 + 0.050, 1e-15);
+  EXPECT_NEAR(hand.reach(test::kIndex, axis_of_joint(2), 2), kOwn + std::hypot(test::kLength2, 0.020), 1e-15);
 }
 
 // A point beyond a corner's angle has no negative share: (1, 1) mm before the legs x + y = 1 mm.

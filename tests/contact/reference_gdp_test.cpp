@@ -458,7 +458,7 @@ class Beside {
 };
 
 /// A hand of 800 triangles with its fingers 22 mm apart, so that several reach the same object.
-HandModel close_hand(Handedness side = Handedness::kRight) {
+HandModel close_hand(Handedness side = Handedness::kRight, bool with_coupling = false) {
   HandParameters hand = test::simple_parameters();
   for (int d = 0; d < kDigits; ++d) {
     hand.digits[idx(d)].base.x() = 0.022 * (d - 2);
@@ -470,7 +470,7 @@ HandModel close_hand(Handedness side = Handedness::kRight) {
     }
   }
   hand.digits[0].dorsal = Vec3(0.3, 1.0, 0.0);
-  return make_hand_model(hand, side, Pose{}, 800);
+  return make_hand_model(with_coupling ? test::coupled(hand) : hand, side, Pose{}, 800);
 }
 
 struct Place {
@@ -497,8 +497,9 @@ std::vector<Place> places() {
           {"sheet", sheet}};
 }
 
-test::Setup model_before(const TriangleMesh& object, Handedness side = Handedness::kRight) {
-  test::Setup model(close_hand(side), ObjectModel(object));
+test::Setup model_before(const TriangleMesh& object, Handedness side = Handedness::kRight,
+                         bool with_coupling = false) {
+  test::Setup model(close_hand(side, with_coupling), ObjectModel(object));
   test::turn_limits_off(model);
   return model;
 }
@@ -572,12 +573,13 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverRecordingsGivenByHand) {
   }
 }
 
-TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) {
-  const int seeds = runs_whole_range() ? 20 : test::kSanitized ? 1 : 3;
+void compare_over_human_motions(bool with_coupling) {
+  const int seeds = runs_whole_range() ? 20 : test::kSanitized || with_coupling ? 1 : 3;
   Compared all;
   for (const Place& place : places()) {
     SCOPED_TRACE(place.name);
-    const test::Setup model = model_before(place.object);
+    const Handedness side = with_coupling && place.name == "bars" ? Handedness::kLeft : Handedness::kRight;
+    const test::Setup model = model_before(place.object, side, with_coupling);
     for (int seed = 1; seed <= seeds; ++seed) {
       SCOPED_TRACE(::testing::Message() << "seed " << seed);
       Beside beside(model, From::kOwnState);
@@ -591,6 +593,10 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) {
   }
   expect_touches(all);
 }
+
+TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotions) { compare_over_human_motions(false); }
+
+TEST(ReferenceGdp, AgreesFromItsOwnStateOverHumanMotionsOfACoupledHand) { compare_over_human_motions(true); }
 
 TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
   const int seeds = runs_whole_range() ? 20 : 1;

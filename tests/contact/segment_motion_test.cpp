@@ -33,6 +33,12 @@ struct Way {
     return out;
   }
   [[nodiscard]] Vec3 place(double s) const { return pose(s).segment[static_cast<std::size_t>(k)] * point; }
+  /// Sum of the rates of all axes.
+  [[nodiscard]] double turned() const {
+    double sum = 0.0;
+    for (const double w : axis_angles(hand.coupling(digit), rate)) sum += std::abs(w);
+    return sum;
+  }
   [[nodiscard]] SegmentMotion motion(double s) const { return segment_motion(hand, digit, pose(s), rate, k); }
 };
 
@@ -63,6 +69,7 @@ std::vector<HandModel> hands(Random& random) {
       }
     }
     out.push_back(make_hand_model(crooked, side, test::any_pose(random, 0.5), 800));
+    out.push_back(make_hand_model(test::coupled(crooked), side, test::any_pose(random, 0.5), 800));
   }
   return out;
 }
@@ -84,8 +91,7 @@ TEST(SegmentMotion, VelocityAndAccelerationAreTheDifferencesOfThePoses) {
   for_each_way(11, [](Random&, const Way& way) {
     const SegmentMotion motion = way.motion(0.0);
     const Vec3 x = way.place(0.0);
-    double turned = 0.0;
-    for (const double w : way.rate) turned += std::abs(w);
+    const double turned = way.turned();
     const double h = 1e-4;
     const Vec3 v = (way.place(h) - way.place(-h)) / (2.0 * h);
     ASSERT_LE((v - motion.velocity(x)).norm(), motion.jerk * h * h / 6.0 + 1e-11);
@@ -106,8 +112,7 @@ TEST(SegmentMotion, BendBoundsTheSecondDifferencesAllAlongTheWay) {
     const double s = between(random, -1.0, 1.0);
     const double h = 1e-3;
     const double bend = (way.place(s + h) - 2.0 * way.place(s) + way.place(s - h)).norm() / (h * h);
-    double turned = 0.0;
-    for (const double w : way.rate) turned += std::abs(w);
+    const double turned = way.turned();
     ASSERT_LE(bend, motion.bend + motion.jerk * turned * h * h / 12.0 + 4e-9);
     if (motion.bend > 0.0) most = std::max(most, bend / motion.bend);
   });
@@ -138,8 +143,8 @@ TEST(SegmentMotion, OfTwoJointsTheBoundsAreTheSumsByHand) {
   DigitPose pose;
   hand.digit_pose(test::kIndex, {}, pose);
   const SegmentMotion motion = segment_motion(hand, test::kIndex, pose, {1.0, 0.0, -2.0, 0.0}, 1);
-  const double near = hand.reach(test::kIndex, 2, 1);
-  const double far = hand.reach(test::kIndex, 0, 1);
+  const double near = hand.reach(test::kIndex, axis_of_joint(2), 1);
+  const double far = hand.reach(test::kIndex, axis_of_joint(0), 1);
   EXPECT_NEAR(far - near, test::kLength1, 1e-15);
   EXPECT_NEAR(motion.speed, far + 2.0 * near, 1e-15);
   EXPECT_NEAR(motion.bend, far + (9.0 - 1.0) * near, 1e-15);

@@ -45,6 +45,10 @@ TEST(JointNames, EachIsFoundWhereItStands) {
   }
 }
 
+HandModel coupled_hand(Handedness side = Handedness::kRight, const Pose& X_WH = {}) {
+  return make_hand_model(test::coupled(simple_parameters()), side, X_WH, 800);
+}
+
 Pose somewhere(std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   return Pose{rotation_about(Vec3(u(random), u(random), u(random)).normalized(), 3.0 * u(random)),
@@ -69,11 +73,17 @@ Eigen::Matrix4d translate(const Vec3& v) {
 std::array<Eigen::Matrix4d, 3> homogeneous_chain(const DigitParameters& digit, const DigitAngles& q) {
   const Vec3 z = -digit.distal.normalized();
   const Vec3 x = digit.dorsal.cross(z).normalized();
+  const DigitCoupling& coupling = digit.coupling;
   Eigen::Matrix4d T = translate(digit.base);
   T.col(0).head<3>() = x;
   T.col(1).head<3>() = z.cross(x);
   T.col(2).head<3>() = z;
+  T = translate(digit.metacarpal_base) *
+      rotate(digit.metacarpal_axis.normalized(), coupling.metacarpal_per_flexion * q[0]) *
+      translate(-digit.metacarpal_base) * T;
   T = T * rotate(-Vec3::UnitX(), q[0]) * rotate(Vec3::UnitY(), q[1]);
+  T = T *
+      rotate(Vec3::UnitZ(), coupling.pronation_per_flexion * q[0] + coupling.pronation_per_abduction * q[1]);
   std::array<Eigen::Matrix4d, 3> out;
   out[0] = T;
   T = T * translate(Vec3(0, 0, -digit.dh[1].a)) * rotate(-Vec3::UnitX(), q[2]);
@@ -87,7 +97,8 @@ TEST(HandModel, ForwardKinematicsEqualTheProductOfHomogeneousTransforms) {
   std::mt19937_64 random(1);
   for (int n = 0; n < 200; ++n) {
     const Pose X_WH = somewhere(random);
-    const HandModel hand = simple_hand(Handedness::kRight, X_WH, 800);
+    const HandModel hand =
+        n % 2 == 0 ? simple_hand(Handedness::kRight, X_WH, 800) : coupled_hand(Handedness::kRight, X_WH);
     const JointArray q = random_angles(random);
     HandPoses poses;
     hand.poses(q, poses);
@@ -122,8 +133,11 @@ TEST(HandModel, AFlexedFingerIsWhereTrigonometryPutsIt) {
 
 TEST(HandModel, JacobiansEqualFiniteDifferences) {
   std::mt19937_64 random(2);
-  const HandModel hand = simple_hand(Handedness::kLeft, somewhere(random), 800);
+  const Pose X_WH = somewhere(random);
+  const HandModel plain = simple_hand(Handedness::kLeft, X_WH, 800);
+  const HandModel with_coupling = coupled_hand(Handedness::kLeft, X_WH);
   for (int n = 0; n < 50; ++n) {
+    const HandModel& hand = n % 2 == 0 ? plain : with_coupling;
     const JointArray q = random_angles(random);
     const Vec3 p_S(0.003, -0.004, -0.01);
     for (int d = 0; d < kDigits; ++d) {
@@ -153,10 +167,8 @@ TEST(HandModel, JacobiansEqualFiniteDifferences) {
   }
 }
 
-TEST(HandModel, ALeftHandMirrorsARightHandExactly) {
+void expect_mirrored(const HandModel& right, const HandModel& left) {
   std::mt19937_64 random(3);
-  const HandModel right = simple_hand(Handedness::kRight);
-  const HandModel left = simple_hand(Handedness::kLeft);
   const Vec3 mirror(-1.0, 1.0, 1.0);
   for (int n = 0; n < 50; ++n) {
     const JointArray q = random_angles(random);
@@ -179,12 +191,112 @@ TEST(HandModel, ALeftHandMirrorsARightHandExactly) {
   for (int s = 0; s < kSegments; ++s) EXPECT_GT(signed_volume(left.mesh(s)), 0.0) << segment_name(s);
 }
 
+TEST(HandModel, ALeftHandMirrorsARightHandExactly) {
+  expect_mirrored(simple_hand(Handedness::kRight), simple_hand(Handedness::kLeft));
+}
+
+TEST(HandModel, ALeftHandMirrorsARightHandExactlyWithCouplingToo) {
+  expect_mirrored(coupled_hand(Handedness::kRight), coupled_hand(Handedness::kLeft));
+}
+
+// By hand: q = 0.4 flexes, 0.1 abducts. The metacarpal turns by 0.25 x 0.4, pronation is 0.35 x 0.4 - 0.2 x 0.1.
+TEST(DigitCoupling, TurnsTheCoupledAxesInProportion) {
+  const DigitCoupling coupling = test::coupled(simple_parameters()).digits[0].coupling;
+  const AxisAngles expected{0.1, 0.4, 0.1, 0.12, 0.7, 0.6};
+  const AxisAngles found = axis_angles(coupling, {0.4, 0.1, 0.7, 0.6});
+  for (std::size_t a = 0; a < kAxesPerDigit; ++a) EXPECT_NEAR(found[a], expected[a], 1e-15) << a;
+  const AxisAngles plain = axis_angles({}, {0.4, 0.1, 0.7, 0.6});
+  EXPECT_EQ(plain, (AxisAngles{0.0, 0.4, 0.1, 0.0, 0.7, 0.6}));
+}
+
+// A straight digit along -Z that flexes by a quarter turn, and pronates by another: it points to -Y, and its
+// back, which would look along -Z, has turned about the bone: to -X of a right hand, the thumb's side.
+TEST(DigitCoupling, PronationTurnsTheBackOfARightHandsThumbAwayFromTheFingers) {
+  HandParameters parameters = simple_parameters();
+  parameters.digits[0].coupling.pronation_per_flexion = 1.0;
+  const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
+  DigitPose pose;
+  constexpr double kQuarter = 1.5707963267948966;
+  hand.digit_pose(0, {kQuarter, 0.0, 0.0, 0.0}, pose);
+  EXPECT_LT((-pose.segment[0].R.col(2) + Vec3::UnitY()).norm(), 1e-15);
+  EXPECT_LT((pose.segment[0].R.col(1) + Vec3::UnitX()).norm(), 1e-15);
+}
+
+// The metacarpal turns by half of the flexion about an axis 100 mm before the knuckle. At a flexion of 90
+// degrees the knuckle is 45 degrees round, and the finger points 135 degrees round, down and back.
+TEST(DigitCoupling, TheMetacarpalCarriesTheDigit) {
+  HandParameters parameters = simple_parameters();
+  DigitParameters& digit = parameters.digits[test::kIndex];
+  digit.coupling.metacarpal_per_flexion = 0.5;
+  digit.metacarpal_base = Vec3(0.0, 0.0, 0.1);
+  const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
+  DigitPose pose;
+  constexpr double kQuarter = 1.5707963267948966;
+  hand.digit_pose(test::kIndex, {kQuarter, 0.0, 0.0, 0.0}, pose);
+  const double c = std::sqrt(0.5);
+  EXPECT_LT((pose.segment[0].p - Vec3(0.0, -0.1 * c, 0.1 - 0.1 * c)).norm(), 1e-15);
+  EXPECT_LT((-pose.segment[0].R.col(2) - Vec3(0.0, -c, c)).norm(), 1e-15);
+}
+
+// The torques of a force are its virtual work for a small turn of each joint, also through coupled axes.
+TEST(DigitCoupling, TorquesAreTheVirtualWorkByFiniteDifferences) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (const Handedness side : {Handedness::kRight, Handedness::kLeft}) {
+    const HandModel hand = coupled_hand(side, somewhere(random));
+    for (int n = 0; n < 100; ++n) {
+      const JointArray q = random_angles(random);
+      const int d = n % kDigits;
+      const int k = n / kDigits % kSegmentsPerDigit;
+      const Vec3 p_S(0.01 * u(random), 0.01 * u(random), -0.02);
+      const Vec3 force(u(random), u(random), u(random));
+      DigitPose pose;
+      hand.digit_pose(d, digit_angles(q, d), pose);
+      JointArray torque{};
+      add_torques(pose, d, k, pose.segment[static_cast<std::size_t>(k)] * p_S, force, torque);
+      for (int i = 0; i < kJointsPerDigit; ++i) {
+        constexpr double h = 1e-5;
+        const auto work = [&](double turn) {
+          DigitAngles at = digit_angles(q, d);
+          at[static_cast<std::size_t>(i)] += turn;
+          DigitPose there;
+          hand.digit_pose(d, at, there);
+          return force.dot(there.segment[static_cast<std::size_t>(k)] * p_S);
+        };
+        EXPECT_NEAR(torque[static_cast<std::size_t>(joint_index(d, i))], (work(h) - work(-h)) / (2.0 * h),
+                    1e-9)
+            << "seed 7 case " << n << " joint " << i;
+      }
+    }
+  }
+}
+
+TEST(DigitCoupling, IsRefusedIfItIsNotFiniteOrHasNoAxis) {
+  const auto refused = [](const auto& change, const char* words) {
+    HandParameters parameters = test::coupled(simple_parameters());
+    change(parameters.digits[test::kIndex]);
+    try {
+      (void)make_hand_model(parameters, Handedness::kRight, {}, 800);
+      ADD_FAILURE() << "accepted: " << words;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr("index"), ::testing::HasSubstr(words)));
+    }
+  };
+  const double nan = std::nan("");
+  refused([&](DigitParameters& d) { d.coupling.pronation_per_flexion = nan; }, "not finite");
+  refused([&](DigitParameters& d) { d.coupling.pronation_per_abduction = nan; }, "not finite");
+  refused([&](DigitParameters& d) { d.coupling.metacarpal_per_flexion = nan; }, "not finite");
+  refused([&](DigitParameters& d) { d.metacarpal_base.y() = nan; }, "not finite");
+  refused([&](DigitParameters& d) { d.metacarpal_axis.z() = nan; }, "not finite");
+  refused([](DigitParameters& d) { d.metacarpal_axis = Vec3::Zero(); }, "axis");
+}
+
 TEST(HandModel, OfEitherSideMovesWithItsPoseInTheWorld) {
   std::mt19937_64 random(5);
   for (const Handedness side : {Handedness::kRight, Handedness::kLeft}) {
     const Pose X_WH = somewhere(random);
-    const HandModel here = simple_hand(side, {}, 800);
-    const HandModel there = simple_hand(side, X_WH, 800);
+    const HandModel here = coupled_hand(side);
+    const HandModel there = coupled_hand(side, X_WH);
     const JointArray q = random_angles(random);
     for (int d = 0; d < kDigits; ++d) {
       DigitPose a;
@@ -196,29 +308,30 @@ TEST(HandModel, OfEitherSideMovesWithItsPoseInTheWorld) {
         EXPECT_LT((X_WH * a.segment[k].p - b.segment[k].p).norm(), 1e-13) << "seed 5";
         EXPECT_NEAR(b.segment[k].R.determinant(), 1.0, 1e-13) << "seed 5: not a reflection";
       }
-      for (std::size_t i = 0; i < kJointsPerDigit; ++i) {
-        EXPECT_LT((X_WH.R * a.joint[i].axis - b.joint[i].axis).norm(), 1e-13) << "seed 5";
-        EXPECT_LT((X_WH * a.joint[i].centre - b.joint[i].centre).norm(), 1e-13) << "seed 5";
+      for (std::size_t i = 0; i < kAxesPerDigit; ++i) {
+        EXPECT_LT((X_WH.R * a.axis[i].axis - b.axis[i].axis).norm(), 1e-13) << "seed 5";
+        EXPECT_LT((X_WH * a.axis[i].centre - b.axis[i].centre).norm(), 1e-13) << "seed 5";
       }
     }
   }
 }
 
+double distance(const Vec3& p, const JointAxis& axis) { return axis.axis.cross(p - axis.centre).norm(); }
+
 TEST(HandModel, ReachBoundsEveryPointOfTheSegmentAtEveryAngle) {
   std::mt19937_64 random(4);
-  const HandModel hand = simple_hand();
+  const HandModel hand = coupled_hand();
   for (int n = 0; n < 100; ++n) {
     const JointArray q = random_angles(random);
     for (int d = 0; d < kDigits; ++d) {
       DigitPose pose;
       hand.digit_pose(d, digit_angles(q, d), pose);
       for (int k = 0; k < kSegmentsPerDigit; ++k) {
-        for (int i = 0; i < joints_that_move(k); ++i) {
+        for (int i = 0; i < axes_that_move(k); ++i) {
           for (const Vec3& v : hand.mesh(segment_index(d, k)).vertices) {
-            const double r = (pose.segment[static_cast<std::size_t>(k)] * v -
-                              pose.joint[static_cast<std::size_t>(i)].centre)
-                                 .norm();
-            ASSERT_LE(r, hand.reach(d, i, k) + 1e-15);
+            const double r = distance(pose.segment[static_cast<std::size_t>(k)] * v,
+                                      pose.axis[static_cast<std::size_t>(i)]);
+            ASSERT_LE(r, hand.reach(d, i, k) + 1e-15) << "axis " << i << " segment " << k;
           }
         }
       }
@@ -236,14 +349,14 @@ TEST(HandModel, ReachHoldsForLinkOffsetsToo) {
       row.a += 0.2 * std::abs(u(random));
       row.theta = u(random);
     }
-    const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
+    const HandModel hand = make_hand_model(test::coupled(parameters), Handedness::kRight, {}, 800);
     DigitPose pose;
     hand.digit_pose(1, digit_angles(random_angles(random), 1), pose);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      for (int i = 0; i < joints_that_move(k); ++i) {
+      for (int i = 0; i < axes_that_move(k); ++i) {
         for (const Vec3& v : hand.mesh(segment_index(1, k)).vertices) {
           const Vec3 p = pose.segment[static_cast<std::size_t>(k)] * v;
-          ASSERT_LE((p - pose.joint[static_cast<std::size_t>(i)].centre).norm(), hand.reach(1, i, k) + 1e-15)
+          ASSERT_LE(distance(p, pose.axis[static_cast<std::size_t>(i)]), hand.reach(1, i, k) + 1e-15)
               << "seed 6 case " << n;
         }
       }
@@ -257,7 +370,7 @@ TEST(HandModel, ReachIsNoFartherThanTheStraightDigit) {
   HandParameters parameters = simple_parameters();
   const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
   const auto expect = [](const HandModel& of, int joint, int k, double reach) {
-    EXPECT_NEAR(of.reach(test::kIndex, joint, k), reach, 1e-12) << joint << " " << k;
+    EXPECT_NEAR(of.reach(test::kIndex, axis_of_joint(joint), k), reach, 1e-12) << joint << " " << k;
   };
   expect(hand, 3, 2, 0.025);
   expect(hand, 2, 2, 0.050);
@@ -274,6 +387,20 @@ TEST(HandModel, ReachIsNoFartherThanTheStraightDigit) {
   expect(offset, 2, 2, 0.053);
   expect(offset, 0, 2, 0.093);
   expect(offset, 2, 1, 0.038);
+}
+
+// Pronation turns the first segment about its bone, 8 mm round at its base, and the others about a line through
+// their first joint. The metacarpal's axis is 30 mm before the knuckle and 40 mm below it: 50 mm farther away.
+TEST(HandModel, ReachOfTheCoupledAxesByHand) {
+  HandParameters parameters = simple_parameters();
+  parameters.digits[test::kIndex].metacarpal_base =
+      parameters.digits[test::kIndex].base + Vec3(0.0, -0.040, 0.030);
+  const HandModel hand = make_hand_model(parameters, Handedness::kRight, {}, 800);
+  EXPECT_NEAR(hand.reach(test::kIndex, kPronationAxis, 0), 0.008, 5e-6) << "the widest ring's distance";
+  EXPECT_NEAR(hand.reach(test::kIndex, kPronationAxis, 1), 0.031, 1e-12);
+  EXPECT_NEAR(hand.reach(test::kIndex, kPronationAxis, 2), 0.050, 1e-12);
+  EXPECT_NEAR(hand.reach(test::kIndex, kMetacarpalAxis, 0), 0.047 + 0.050, 1e-12);
+  EXPECT_NEAR(hand.reach(test::kIndex, kMetacarpalAxis, 2), 0.090 + 0.050, 1e-12);
 }
 
 TEST(HandModel, RefusesAPoseThatIsNotRigid) {

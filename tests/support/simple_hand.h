@@ -46,6 +46,17 @@ inline HandParameters simple_parameters() {
   return hand;
 }
 
+/// Couples every digit: the thumb's rotations and the arch's, in all digits together.
+inline HandParameters coupled(HandParameters hand) {
+  for (DigitParameters& digit : hand.digits) {
+    digit.coupling = {
+        .pronation_per_flexion = 0.35, .pronation_per_abduction = -0.2, .metacarpal_per_flexion = 0.25};
+    digit.metacarpal_base = digit.base + Vec3(0.006, -0.004, 0.050);
+    digit.metacarpal_axis = Vec3(-0.9, 0.4, 0.2);
+  }
+  return hand;
+}
+
 inline HandModel simple_hand(Handedness side = Handedness::kRight, const Pose& X_WH = {},
                              int triangles = 2250) {
   return make_hand_model(simple_parameters(), side, X_WH, triangles);

@@ -7,7 +7,7 @@ namespace phalanx {
 
 /// Motion of a segment's points as its digit's joints follow a straight line q(s) in joint space. It holds
 /// exact first and second derivatives at one s, and bounds for the whole line, per unit of s, in W. With the
-/// joints' axes z_j through c_j and rates w_j = dq_j/ds, z_1 nearest to the palm:
+/// chain's axes z_j through c_j and their rates w_j, coupled ones among them, z_1 nearest to the palm:
 ///   velocity      v(x) = W x x + U,               W = sum w_j z_j,  U = -sum w_j z_j x c_j
 ///   acceleration  a(x) = W' x x + U' + W x v(x)   (W', U': each axis moves with the link that carries it)
 struct SegmentMotion {
@@ -23,12 +23,12 @@ struct SegmentMotion {
   [[nodiscard]] Vec3 velocity(const Vec3& x) const noexcept { return angular.cross(x) + linear; }
 };
 
-/// Returns the motion of the digit's segment k. Let R_j be the farthest that the segment reaches from joint
+/// Returns the motion of the digit's segment k. Let R_j be the farthest that the segment reaches from axis
 /// j, and V_j = |w_1| + .. + |w_j|. They bound the products of exponentials term by term:
 ///   |dx/ds| <= sum |w_j| R_j,   |d2x/ds2| <= sum (V_j^2 - V_(j-1)^2) R_j,
 ///   |d3x/ds3| <= sum (V_j^3 - V_(j-1)^3) R_j
 /// @param pose  poses of the digit at this s
-/// @param rate  w [rad per unit of s]
+/// @param rate  of the joints, dq/ds [rad per unit of s]; coupled axes follow linearly
 /// Real-time: O(1), no allocation, lock, throw or I/O.
 [[nodiscard]] SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& pose,
                                            const DigitAngles& rate, int k) noexcept;

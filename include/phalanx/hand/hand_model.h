@@ -22,17 +22,32 @@ namespace phalanx {
 /// along the bone towards the tip, +Y out of the back of the hand.
 using SegmentMeshes = std::array<TriangleMesh, kSegments>;
 
-/// A joint of a digit at one pose, in world W: a point on its axis [m], and the unit vector along it. A
+/// An axis of a digit's chain at one pose, in world W: a point on it [m], and the unit vector along it. A
 /// positive angle turns about this vector (right-handed).
 struct JointAxis {
   Vec3 axis = Vec3::UnitX();
   Vec3 centre = Vec3::Zero();
 };
 
-/// Poses of a digit's three segments and axes of its four joints at one set of angles, in world W.
+/// Velocity of a chain's axes for given velocities of the digit's joints, or the axes' angles for given angles:
+///   axis velocity = C joint velocity,  C constant
+/// Entries of C other than 0 and 1 are the coupling's coefficients.
+using AxisAngles = std::array<double, kAxesPerDigit>;
+/// Returns C q. Real-time: O(1), no allocation, lock, throw or I/O.
+[[nodiscard]] constexpr AxisAngles axis_angles(const DigitCoupling& coupling, const DigitAngles& q) noexcept {
+  return {coupling.metacarpal_per_flexion * q[0],
+          q[0],
+          q[1],
+          coupling.pronation_per_flexion * q[0] + coupling.pronation_per_abduction * q[1],
+          q[2],
+          q[3]};
+}
+
+/// Poses of a digit's three segments and of its chain's axes at one set of angles, in world W.
 struct DigitPose {
   std::array<Pose, kSegmentsPerDigit> segment;  ///< X_WS
-  std::array<JointAxis, kJointsPerDigit> joint;
+  std::array<JointAxis, kAxesPerDigit> axis;    ///< in the order of joints.h; coupled ones also if unused
+  DigitCoupling coupling;                       ///< the hand's, constant
 };
 
 /// Poses of all digits at one set of angles, in world W. The palm is fixed: HandModel::palm_pose().
@@ -62,7 +77,8 @@ class HandModel {
   /// Returns the pose X_WS of the palm, which does not move.
   [[nodiscard]] const Pose& palm_pose() const noexcept { return X_WH_; }
 
-  /// Computes the forward kinematics of one digit as the product of its D-H transforms.           S1 sec. II
+  /// Computes the forward kinematics of one digit as the product of its D-H transforms, with the coupled
+  /// rotations between them.                                                                      S1 sec. II
   /// @param angle  the digit's joint angles, finite [rad]
   /// Real-time: O(1), no allocation, lock, throw or I/O.
   void digit_pose(int digit, const DigitAngles& angle, DigitPose& pose) const noexcept;
@@ -70,15 +86,22 @@ class HandModel {
   /// Computes the poses of all five digits. Real-time.
   void poses(const JointArray& angle, HandPoses& poses) const noexcept;
 
-  /// Returns an upper bound [m] on the distance of the digit's segment k from the centre of its joint i. It
-  /// holds for each point of the segment and at all angles. Real-time.
-  /// @pre joint i moves segment k
-  [[nodiscard]] double reach(int digit, int joint, int k) const noexcept {
-    return reach_[static_cast<std::size_t>(digit)][static_cast<std::size_t>(joint)]
+  /// Returns the digit's coupled rotations.
+  [[nodiscard]] const DigitCoupling& coupling(int digit) const noexcept {
+    return parameters_.digits[static_cast<std::size_t>(digit)].coupling;
+  }
+
+  /// Returns an upper bound [m] on the distance of the digit's segment k from an axis of its chain. It holds
+  /// for each point of the segment and at all angles. Real-time.
+  /// @pre the axis moves segment k
+  [[nodiscard]] double reach(int digit, int axis, int k) const noexcept {
+    return reach_[static_cast<std::size_t>(digit)][static_cast<std::size_t>(axis)]
                  [static_cast<std::size_t>(k)];
   }
 
  private:
+  void set_reach(int digit, int k);
+
   HandParameters parameters_;
   Handedness handedness_;
   Pose X_WH_;
@@ -96,22 +119,25 @@ class HandModel {
   /// the right hand's frame reflected in H's plane x = 0, and thus left-handed.
   std::array<Pose, kDigits> X_WB_;
   std::array<std::array<ChainJoint, kJointsPerDigit>, kDigits> joint_{};
-  std::array<std::array<std::array<double, kSegmentsPerDigit>, kJointsPerDigit>, kDigits> reach_{};
+  std::array<JointAxis, kDigits> metacarpal_axis_;  ///< in W
+  std::array<std::array<std::array<double, kSegmentsPerDigit>, kAxesPerDigit>, kDigits> reach_{};
 };
 
 /// Columns of the geometric Jacobian of a point fixed to a digit's segment:  v = sum_i column_i dq_i/dt.
-/// Columns of joints that do not move the segment are zero.
+/// Columns of joints that do not move the segment are zero. A coupled axis adds its column to those of the joints
+/// that drive it, times the coupling's coefficient.
 struct PointJacobian {
-  std::array<Vec3, kJointsPerDigit> linear;   ///< axis x (p - centre) [m]
-  std::array<Vec3, kJointsPerDigit> angular;  ///< axis [-]
+  std::array<Vec3, kJointsPerDigit> linear;   ///< sum of axis x (p - centre) [m]
+  std::array<Vec3, kJointsPerDigit> angular;  ///< sum of axis [-]
 };
 /// Returns the Jacobian at the point p_W [m] of the digit's segment k. Real-time: O(1), no allocation.
 [[nodiscard]] PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noexcept;
 
 /// Adds the torques of one force f_W [N], acting at p_W [m] on the digit's segment k, to `torque` [Nm]:
-///   tau_i = axis_i . ((p - centre_i) x f) = J_i . f
+///   tau_i = J_i . f,  without coupling  axis_i . ((p - centre_i) x f)
 /// For the force of a contact these are its torques on the finger. S1 eq. (3)-(5) print their negative, which
-/// balances the contact. Real-time: O(1), no allocation, lock, throw or I/O.
+/// balances the contact. With coupling they are the torques of virtual work: a joint also feels what the axes
+/// that it drives feel. Real-time: O(1), no allocation, lock, throw or I/O.
 void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
                  JointArray& torque) noexcept;
 

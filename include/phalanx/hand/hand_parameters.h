@@ -21,6 +21,20 @@ struct DhRow {
   [[nodiscard]] bool operator==(const DhRow&) const = default;
 };
 
+/// Rotations of a digit's chain that no sensor measures and no motor drives: each is a linear function of the
+/// digit's joint angles q [rad]. A coefficient of 0 leaves the rotation out.
+struct DigitCoupling {
+  /// Conjunct rotation of the first segment about its bone, after flexion and abduction:
+  ///   pronation_per_flexion q_0 + pronation_per_abduction q_1.
+  /// Positive pronates the thumb of a right hand: it turns the segment about the direction from tip to joint.
+  double pronation_per_flexion = 0.0;    ///< [rad/rad]
+  double pronation_per_abduction = 0.0;  ///< [rad/rad]
+  /// Rotation of the whole digit with its metacarpal bone, before the first joint: metacarpal_per_flexion q_0.
+  double metacarpal_per_flexion = 0.0;  ///< [rad/rad]
+
+  [[nodiscard]] bool operator==(const DigitCoupling&) const = default;
+};
+
 /// Parameters of a digit's kinematic chain in the hand frame H, which is WebXR's `wrist`. Its origin is the
 /// wrist's centre. Axis -Z points towards the middle finger's knuckle, +Y out of the back of the hand. Axis
 /// +X points to the right of a right hand held palm down, which is the little finger's side.
@@ -30,6 +44,10 @@ struct DigitParameters {
   Vec3 dorsal = Vec3::UnitY();   ///< out of the digit's back at q = 0, in H [-]; made orthogonal to `distal`
   /// Joints in the order flexion, abduction, hinge, hinge. The last row's a is the distal bone's length.
   std::array<DhRow, kJointsPerDigit> dh;
+  DigitCoupling coupling;
+  /// Centre [m] and direction, in H, of the axis about which the coupling turns the metacarpal bone (right-handed).
+  Vec3 metacarpal_base = Vec3::Zero();
+  Vec3 metacarpal_axis = -Vec3::UnitX();
 
   [[nodiscard]] bool operator==(const DigitParameters&) const = default;
 };

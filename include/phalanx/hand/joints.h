@@ -52,6 +52,17 @@ using DigitAngles = std::array<double, kJointsPerDigit>;
 /// Returns how many of a digit's joints, counted from the palm, move its segment k: 2, 3 or 4.
 [[nodiscard]] constexpr int joints_that_move(int k) noexcept { return k + 2; }
 
+/// A digit's chain turns about six axes, numbered from palm to tip: the metacarpal's, flexion, abduction, pronation,
+/// hinge, hinge. Four are its joints. The metacarpal's and pronation are coupled: they follow from the joints'
+/// angles (DigitCoupling).
+inline constexpr int kAxesPerDigit = 6;
+inline constexpr int kMetacarpalAxis = 0;
+inline constexpr int kPronationAxis = 3;
+/// Returns the number of the axis of a digit's joint `i`.
+[[nodiscard]] constexpr int axis_of_joint(int i) noexcept { return i < 2 ? i + 1 : i + 2; }
+/// Returns how many of a digit's axes, counted from the palm, move its segment k: 4, 5 or 6.
+[[nodiscard]] constexpr int axes_that_move(int k) noexcept { return k + 4; }
+
 /// Returns the name of a joint in files: "index_mcp_flexion", ...
 [[nodiscard]] std::string_view joint_name(int joint) noexcept;
 /// Returns the WebXR hand joint name of the segment's frame: "index-finger-phalanx-proximal", ... The

@@ -60,12 +60,19 @@ enum class HandMeshSource {
   kCapsules,  ///< capsules in any case
 };
 
+/// Rotations of the hand that follow from the joints' angles.
+enum class HandCoupling {
+  kFile,  ///< those of the hand file
+  kNone,  ///< none: the palm is rigid, and a digit turns about its four joints only, as in the papers
+};
+
 /// The hand of a scene.
 struct HandDescription {
   std::string file = "adult";  ///< name of a hand file in assets/hands, or a path
   Handedness handedness = Handedness::kRight;
   std::string profile;  ///< name of a profile in assets/profiles, or a path; if not empty, it replaces `file`
                         ///< and `handedness`
+  HandCoupling coupling = HandCoupling::kFile;
   HandMeshSource mesh_source = HandMeshSource::kFile;
   int triangles = 2250;             ///< capsules: approximate number over all segments (2,248 in S2,
                                     ///< docs/architecture.md)

@@ -19,6 +19,8 @@ constexpr NumberRange kLengthMm = {.min = 0.0, .max = 200.0};
 constexpr NumberRange kSizeMm = {.min = 0.0, .max = 200.0, .min_open = true};
 constexpr NumberRange kAngleDeg = {.min = -180.0, .max = 180.0};
 constexpr NumberRange kDirection = {.min = -1e3, .max = 1e3};
+/// An angle that follows from a joint's is at most as large.
+constexpr NumberRange kRatio = {.min = -1.0, .max = 1.0};
 
 /// Checks that the element has the name that its place implies: a file with two swapped lines is refused.
 void require_name(TomlTable& table, std::string_view expected) {
@@ -64,6 +66,22 @@ Vec3 unit_vector(TomlTable& table, std::string_view key) {
   return v.normalized();
 }
 
+void read_coupling(TomlTable& table, DigitParameters& digit) {
+  if (table.has("pronation")) {
+    TomlTable pronation = table.table("pronation");
+    digit.coupling.pronation_per_flexion = pronation.number("per_flexion", kRatio);
+    digit.coupling.pronation_per_abduction = pronation.number_or("per_abduction", kRatio, 0.0);
+    pronation.finish();
+  }
+  if (table.has("metacarpal")) {
+    TomlTable metacarpal = table.table("metacarpal");
+    digit.coupling.metacarpal_per_flexion = metacarpal.number("per_flexion", kRatio);
+    digit.metacarpal_base = metacarpal.vector("base_mm", kPlaceMm) * kMm;
+    digit.metacarpal_axis = unit_vector(metacarpal, "axis");
+    metacarpal.finish();
+  }
+}
+
 void read_digit(TomlTable table, int digit, HandParameters& hand) {
   DigitParameters& parameters = hand.digits[static_cast<std::size_t>(digit)];
   parameters.base = table.vector("base_mm", kPlaceMm) * kMm;
@@ -80,6 +98,7 @@ void read_digit(TomlTable table, int digit, HandParameters& hand) {
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     read_segment(segments[static_cast<std::size_t>(k)], segment_index(digit, k), hand);
   }
+  read_coupling(table, parameters);
   table.finish();
 }
 

@@ -94,6 +94,10 @@ struct Source {
   std::optional<HandMeshFiles> files;  ///< none: capsules
 };
 
+void remove_coupling(HandParameters& hand) {
+  for (DigitParameters& digit : hand.digits) digit.coupling = {};
+}
+
 Source open(const HandDescription& hand) {
   Source source;
   HandFile file;
@@ -110,6 +114,10 @@ Source open(const HandDescription& hand) {
     source.fit = fitted.fit;
   }
   source.base = std::move(file.parameters);
+  if (hand.coupling == HandCoupling::kNone) {
+    remove_coupling(source.base);
+    remove_coupling(source.parameters);
+  }
   if (hand.mesh_source == HandMeshSource::kFile) source.files = std::move(file.meshes);
   if (source.files && !hand.triangles_stated_at.empty()) {
     throw SceneError(

@@ -7,24 +7,31 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "phalanx/scene/hand_meshes.h"
 
 namespace phalanx {
 
-/// A hinge between two frames; it turns about the child's origin.
+/// A hinge between two frames; it turns about a point of its axis, the child's origin.
 struct Hinge {
-  Pose X_parent_child;              ///< at angle 0
+  std::string name;                 ///< of the joint: joint_name(), or its own for a coupled one
+  Pose X_parent_child{};            ///< at angle 0
   Vec3 axis_child = Vec3::UnitX();  ///< unit vector; a positive angle turns the child about it
   double min_angle = 0.0;           ///< [rad]
   double max_angle = 0.0;           ///< [rad]
+  int joint = 0;                    ///< the joint whose angle it follows
+  double ratio = 1.0;               ///< its angle is ratio times the joint's
+  bool coupled = false;             ///< it is not the joint itself
 };
 
-/// Hinges of a hand, four for each digit. The first one's parent is H; its child is a frame in the joint's
-/// centre, with the axes of the digit's first segment at angle 0. The others' children are the
-/// segments' frames S.
+/// Hinges of a hand: for each digit's segment those between it and the segment before it (the palm), from the
+/// palm outwards. The last one's child is the segment's frame S. The children of the others are frames on their
+/// axes, with the directions of S at angle 0.
+/// A digit's first segment has two, and one more for each coefficient of its coupling that is not 0. The other
+/// segments have one each.
 struct HandTree {
-  std::array<Hinge, kJoints> hinge;
+  std::array<std::vector<Hinge>, kSegments - 1> hinges;
 };
 
 /// Makes the tree of a hand, of its own handedness.

@@ -30,6 +30,7 @@ class Writer {
     line(2, "</body>");
     line(1, "</worldbody>");
     excluded_contacts();
+    equalities();
     line(0, "</mujoco>");
     return text_;
   }
@@ -72,26 +73,42 @@ class Writer {
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       const int depth = 3 + k;
       const int segment = segment_index(digit, k);
-      const Hinge& own = hinge(digit, k + 1);
-      const Pose X = k == 0 ? hinge(digit, 0).X_parent_child * own.X_parent_child : own.X_parent_child;
+      const std::vector<Hinge>& hinges = tree_.hinges[static_cast<std::size_t>(segment)];
+      Pose X;
+      for (const Hinge& hinge : hinges) X = X * hinge.X_parent_child;
       const Eigen::Quaterniond q(X.R);
       line(depth, "<body name=\"{}\" pos=\"{}\" quat=\"{} {} {} {}\">", segment_name(segment), exact(X.p),
            exact(q.w()), exact(q.x()), exact(q.y()), exact(q.z()));
-      if (k == 0) {
-        // MuJoCo applies a body's joints in their order, each in the frame that the earlier ones have turned.
-        const Hinge& first = hinge(digit, 0);
-        const Pose X_child_first = own.X_parent_child.inverse();
-        joint(joint_index(digit, 0), depth + 1, X_child_first.p, X_child_first.R * first.axis_child, first);
+      // MuJoCo applies a body's joints in their order, each in the frame that the earlier ones have turned.
+      Pose X_at;  // of the hinge's frame in the parent's
+      for (const Hinge& hinge : hinges) {
+        X_at = X_at * hinge.X_parent_child;
+        const Pose X_child_at = X.inverse() * X_at;
+        joint(hinge, depth + 1, X_child_at.p, X_child_at.R * hinge.axis_child);
       }
-      joint(joint_index(digit, k + 1), depth + 1, Vec3::Zero(), own.axis_child, own);
       contents(segment, depth + 1);
     }
     for (int k = kSegmentsPerDigit - 1; k >= 0; --k) line(3 + k, "</body>");
   }
 
-  void joint(int index, int depth, const Vec3& pos, const Vec3& axis, const Hinge& limits) {
+  void joint(const Hinge& hinge, int depth, const Vec3& pos, const Vec3& axis) {
     line(depth, "<joint name=\"{}\" type=\"hinge\" pos=\"{}\" axis=\"{}\" limited=\"true\" range=\"{} {}\"/>",
-         joint_name(index), exact(pos), exact(axis), exact(limits.min_angle), exact(limits.max_angle));
+         hinge.name, exact(pos), exact(axis), exact(hinge.min_angle), exact(hinge.max_angle));
+  }
+
+  /// Writes that each coupled hinge's angle is its ratio times its joint's.
+  void equalities() {
+    std::vector<const Hinge*> coupled;
+    for (const std::vector<Hinge>& hinges : tree_.hinges)
+      for (const Hinge& hinge : hinges)
+        if (hinge.coupled) coupled.push_back(&hinge);
+    if (coupled.empty()) return;
+    line(1, "<equality>");
+    for (const Hinge* hinge : coupled) {
+      line(2, "<joint joint1=\"{}\" joint2=\"{}\" polycoef=\"0 {} 0 0 0\"/>", hinge->name,
+           joint_name(hinge->joint), exact(hinge->ratio));
+    }
+    line(1, "</equality>");
   }
 
   void excluded_contacts() {
@@ -103,10 +120,6 @@ class Writer {
            segment_name(segment_index(digit, 0)));
     }
     line(1, "</contact>");
-  }
-
-  [[nodiscard]] const Hinge& hinge(int digit, int i) const {
-    return tree_.hinge[static_cast<std::size_t>(joint_index(digit, i))];
   }
 
   const LoadedHand& hand_;

@@ -39,15 +39,19 @@ std::string link_with_meshes(const LoadedHand& hand, int segment, const Exported
          geometry("visual", meshes.display) + geometry("collision", meshes.collision) + "  </link>\n";
 }
 
-std::string joint(int index, const Hinge& hinge, std::string_view parent, std::string_view child) {
+std::string joint(const Hinge& hinge, std::string_view parent, std::string_view child) {
   const LimitParameters limits;
+  const std::string mimic = hinge.coupled
+                                ? fmt::format("    <mimic joint=\"{}\" multiplier=\"{}\" offset=\"0\"/>\n",
+                                              joint_name(hinge.joint), exact(hinge.ratio))
+                                : "";
   return fmt::format(
       "  <joint name=\"{}\" type=\"revolute\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n    "
       "<origin xyz=\"{}\" rpy=\"{}\"/>\n    <axis xyz=\"{}\"/>\n    <limit lower=\"{}\" upper=\"{}\" "
-      "effort=\"{}\" velocity=\"{}\"/>\n  </joint>\n",
-      joint_name(index), parent, child, exact(hinge.X_parent_child.p),
-      exact(roll_pitch_yaw(hinge.X_parent_child.R)), exact(hinge.axis_child), exact(hinge.min_angle),
-      exact(hinge.max_angle), exact(limits.joint_torque), exact(limits.joint_speed));
+      "effort=\"{}\" velocity=\"{}\"/>\n{}  </joint>\n",
+      hinge.name, parent, child, exact(hinge.X_parent_child.p), exact(roll_pitch_yaw(hinge.X_parent_child.R)),
+      exact(hinge.axis_child), exact(hinge.min_angle), exact(hinge.max_angle), exact(limits.joint_torque),
+      exact(std::abs(hinge.ratio) * limits.joint_speed), mimic);
 }
 
 }  // namespace
@@ -59,15 +63,17 @@ std::string urdf_text(const LoadedHand& hand, const ExportedMeshes& meshes) {
   text += link_with_meshes(hand, kPalm, meshes);
   for (int digit = 0; digit < kDigits; ++digit) {
     std::string parent(segment_name(kPalm));
-    for (int i = 0; i < kJointsPerDigit; ++i) {
-      const int index = joint_index(digit, i);
-      const int segment = segment_index(digit, segment_in_digit_of_joint(i));
-      const std::string child =
-          i == 0 ? fmt::format("{}_link", joint_name(index)) : std::string(segment_name(segment));
-      text +=
-          i == 0 ? fmt::format("  <link name=\"{}\"/>\n", child) : link_with_meshes(hand, segment, meshes);
-      text += joint(index, tree.hinge[static_cast<std::size_t>(index)], parent, child);
-      parent = child;
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const int segment = segment_index(digit, k);
+      const std::vector<Hinge>& hinges = tree.hinges[static_cast<std::size_t>(segment)];
+      for (std::size_t i = 0; i < hinges.size(); ++i) {
+        const bool last = i + 1 == hinges.size();
+        const std::string child = last ? std::string(segment_name(segment)) : hinges[i].name + "_link";
+        text +=
+            last ? link_with_meshes(hand, segment, meshes) : fmt::format("  <link name=\"{}\"/>\n", child);
+        text += joint(hinges[i], parent, child);
+        parent = child;
+      }
     }
   }
   return text + "</robot>\n";

@@ -41,6 +41,12 @@ void add_general_keys(std::vector<SceneKey>& keys) {
                    "hand.side, which must not be stated too; the profile of a left hand mirrors the scene",
                    [](T t, V v) { t.scene.hand.profile = v.text; });
   new_station.choice(
+      "hand.coupling", {"file", "none"}, "file",
+      "rotations that follow from the joints' angles (the thumb's pronation, the palm's arch): those of the "
+      "hand "
+      "file, or none",
+      [](T t, V v) { t.scene.hand.coupling = v.integer == 0 ? HandCoupling::kFile : HandCoupling::kNone; });
+  new_station.choice(
       "hand.meshes", {"file", "capsules"}, "file",
       "source of the hand's meshes: the hand file (capsules if it names none), or capsules in any case",
       [](T t, V v) {

@@ -14,6 +14,7 @@
 #include "phalanx/mesh/primitives.h"
 #include "scene/hands/hand_files.h"
 #include "scene/hands/mass_properties.h"
+#include "support/simple_hand.h"
 
 namespace phalanx {
 namespace {
@@ -48,7 +49,9 @@ LoadedHand load(const Case& c) {
   description.profile = c.profile;
   description.handedness = c.handedness;
   LoadedHand hand = load_hand(description);
-  if (std::string_view(c.name).find("General") != std::string_view::npos) make_general(hand.parameters);
+  const std::string_view name(c.name);
+  if (name.find("General") != std::string_view::npos) make_general(hand.parameters);
+  if (name.find("Coupled") != std::string_view::npos) hand.parameters = test::coupled(hand.parameters);
   return hand;
 }
 
@@ -78,6 +81,17 @@ class HandExport : public ::testing::TestWithParam<Case> {
     }
   }
 
+  /// Number of hinges that are no joints: one a coefficient.
+  [[nodiscard]] int coupled_hinges() const {
+    int count = 0;
+    for (const DigitParameters& digit : hand_.parameters.digits) {
+      for (const double ratio : {digit.coupling.metacarpal_per_flexion, digit.coupling.pronation_per_flexion,
+                                 digit.coupling.pronation_per_abduction})
+        count += ratio != 0.0 ? 1 : 0;
+    }
+    return count;
+  }
+
   LoadedHand hand_;
   HandModel model_;
 };
@@ -104,7 +118,12 @@ Pose link_pose(const urdf::ModelInterface& robot, const std::string& name, const
        link = link->getParent()) {
     const urdf::Joint& joint = *link->parent_joint;
     const Vec3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
-    const double angle = q[static_cast<std::size_t>(find_joint(joint.name).value())];
+    const auto angle_of = [&](const std::string& of) {
+      return q[static_cast<std::size_t>(find_joint(of).value())];
+    };
+    const double angle =
+        joint.mimic ? joint.mimic->multiplier * angle_of(joint.mimic->joint_name) + joint.mimic->offset
+                    : angle_of(joint.name);
     X = of_urdf(joint.parent_to_joint_origin_transform) *
         (Pose{rotation_about(axis, angle), Vec3::Zero()} * X);
   }
@@ -116,8 +135,8 @@ TEST_P(HandExport, AsUrdfHasOurForwardKinematicsAndLimitsInUrdfdom) {
   ASSERT_TRUE(robot);
   EXPECT_EQ(robot->getName(), hand_.parameters.name);
   EXPECT_EQ(robot->getRoot()->name, "wrist");
-  EXPECT_EQ(robot->links_.size(), static_cast<std::size_t>(kSegments + kDigits));
-  EXPECT_EQ(robot->joints_.size(), static_cast<std::size_t>(kJoints));
+  EXPECT_EQ(robot->links_.size(), static_cast<std::size_t>(kSegments + kDigits + coupled_hinges()));
+  EXPECT_EQ(robot->joints_.size(), static_cast<std::size_t>(kJoints + coupled_hinges()));
   for (int j = 0; j < kJoints; ++j) {
     const auto joint = robot->getJoint(std::string(joint_name(j)));
     ASSERT_TRUE(joint) << joint_name(j);
@@ -191,6 +210,11 @@ class MujocoHand {
   void pose(const JointArray& q) {
     for (int j = 0; j < kJoints; ++j)
       data_->qpos[model_->jnt_qposadr[id(mjOBJ_JOINT, joint_name(j))]] = q[static_cast<std::size_t>(j)];
+    for (int e = 0; e < model_->neq; ++e) {  // what MuJoCo's solver would bring about
+      const mjtNum* coefficient = model_->eq_data + mjNEQDATA * e;
+      const mjtNum driver = data_->qpos[model_->jnt_qposadr[model_->eq_obj2id[e]]];
+      data_->qpos[model_->jnt_qposadr[model_->eq_obj1id[e]]] = coefficient[0] + coefficient[1] * driver;
+    }
     mj_kinematics(model_.get(), data_.get());
   }
   [[nodiscard]] Pose body(int segment) const {
@@ -214,7 +238,8 @@ class MujocoHand {
 TEST_P(HandExport, AsMjcfHasOurForwardKinematicsAndLimitsInMujoco) {
   MujocoHand mujoco(hand_);
   ASSERT_TRUE(mujoco.model());
-  EXPECT_EQ(mujoco.model()->njnt, kJoints);
+  EXPECT_EQ(mujoco.model()->njnt, kJoints + coupled_hinges());
+  EXPECT_EQ(mujoco.model()->neq, coupled_hinges());
   EXPECT_EQ(mujoco.model()->nbody, kSegments + 1);
   for (int j = 0; j < kJoints; ++j) {
     const int id = mujoco.id(mjOBJ_JOINT, joint_name(j));
@@ -274,15 +299,16 @@ TEST_P(HandExport, AsMjcfKeepsItsMeshesAndMassesInPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, HandExport,
-    ::testing::Values(Case{"AdultRight", "", Handedness::kRight, HandMeshSource::kFile},
-                      Case{"AdultLeft", "", Handedness::kLeft, HandMeshSource::kFile},
-                      Case{"CapsulesRight", "", Handedness::kRight},
-                      Case{"CapsulesLeft", "", Handedness::kLeft},
-                      Case{"GeneralDhRight", "", Handedness::kRight},
-                      Case{"GeneralDhLeft", "", Handedness::kLeft},
-                      Case{"SmallWomanRight", "small-woman", Handedness::kRight, HandMeshSource::kFile},
-                      Case{"LargeManLeft", "large-man", Handedness::kRight, HandMeshSource::kFile},
-                      Case{"StiffHandRight", "stiff-hand", Handedness::kRight, HandMeshSource::kFile}),
+    ::testing::Values(
+        Case{"AdultRight", "", Handedness::kRight, HandMeshSource::kFile},
+        Case{"AdultLeft", "", Handedness::kLeft, HandMeshSource::kFile},
+        Case{"CapsulesRight", "", Handedness::kRight}, Case{"CapsulesLeft", "", Handedness::kLeft},
+        Case{"GeneralDhRight", "", Handedness::kRight}, Case{"GeneralDhLeft", "", Handedness::kLeft},
+        Case{"CoupledRight", "", Handedness::kRight}, Case{"CoupledLeft", "", Handedness::kLeft},
+        Case{"GeneralCoupledLeft", "", Handedness::kLeft},
+        Case{"SmallWomanRight", "small-woman", Handedness::kRight, HandMeshSource::kFile},
+        Case{"LargeManLeft", "large-man", Handedness::kRight, HandMeshSource::kFile},
+        Case{"StiffHandRight", "stiff-hand", Handedness::kRight, HandMeshSource::kFile}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // A mesh that is shown and met is read once, two that differ are both. Contacts are left out between the palm

@@ -229,5 +229,38 @@ TEST(HandFile, ThatIsMissing) {
                      {"/nowhere/none.toml", "there is no file"});
 }
 
+TEST(HandFileCoupling, ReadsThePronationOfADigitAndItsMetacarpal) {
+  const HandParameters hand = parse_hand(
+      changed(
+          "[ring]\n",
+          "[ring]\nmetacarpal = { per_flexion = 0.1, base_mm = [8.09, -6.06, -27.0], axis = [-2, 0, 0] }\n"
+          "pronation = { per_flexion = -0.2, per_abduction = 0.3 }\n"),
+      "hand.toml");
+  const DigitParameters& ring = hand.digits[static_cast<std::size_t>(Digit::kRing)];
+  EXPECT_EQ(ring.coupling, (DigitCoupling{-0.2, 0.3, 0.1}));
+  EXPECT_LT((ring.metacarpal_base - Vec3(8.09e-3, -6.06e-3, -27e-3)).norm(), 1e-15);
+  EXPECT_EQ(ring.metacarpal_axis, Vec3(-1.0, 0.0, 0.0)) << "made a unit vector";
+  EXPECT_EQ(hand.digits[0].coupling, DigitCoupling{}) << "the other digits have none";
+  const HandParameters thumb =
+      parse_hand(changed("[thumb]\n", "[thumb]\npronation = { per_flexion = 0.25 }\n"), "hand.toml");
+  EXPECT_EQ(thumb.digits[0].coupling, (DigitCoupling{0.25, 0.0, 0.0})) << "abduction may be left out";
+}
+
+TEST(HandFileCoupling, IsRefusedByItsPlace) {
+  const auto refuse = [](const std::string& line, const std::vector<std::string>& words) {
+    SCOPED_TRACE(line);
+    expect_hand_refused(changed("[thumb]\n", "[thumb]\n" + line + "\n"), words);
+  };
+  refuse("pronation = 0.2", {"bad.toml:", "thumb.pronation"});
+  refuse("pronation = { per_abduction = 0.1 }", {"thumb.pronation.per_flexion"});
+  refuse("pronation = { per_flexion = 23 }", {"thumb.pronation.per_flexion", "23", "1"});
+  refuse("pronation = { per_flexion = nan }", {"thumb.pronation.per_flexion"});
+  refuse("pronation = { per_flexion = 0.2, per_flex = 1 }", {"thumb.pronation.per_flex"});
+  refuse("metacarpal = { per_flexion = 0.2, base_mm = [0, 0, 0] }", {"thumb.metacarpal.axis"});
+  refuse("metacarpal = { per_flexion = 0.2, axis = [1, 0, 0] }", {"thumb.metacarpal.base_mm"});
+  refuse("metacarpal = { per_flexion = 0.2, base_mm = [0, 0, 0], axis = [0, 0, 0] }",
+         {"thumb.metacarpal.axis", "direction"});
+}
+
 }  // namespace
 }  // namespace phalanx

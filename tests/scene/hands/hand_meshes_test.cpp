@@ -153,6 +153,34 @@ TEST(HandMeshes, AndAStatedNumberOfTrianglesAreRefusedTogether) {
             make_hand_model(load_hand_file("adult"), Handedness::kRight, {}, 900).triangle_count());
 }
 
+// The hand file's coupling turns the thumb; "none" leaves its four joints.
+TEST(HandMeshes, OfASceneWithoutCouplingHaveTheFourJointsAlone) {
+  const HandFolder folder;
+  folder.write_meshes(capsules());
+  const std::string file = folder.write_hand(kCollision);
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  std::string hand = text.str();
+  hand.replace(hand.find("[thumb]\n"), 8, "[thumb]\npronation = { per_flexion = 0.3 }\n");
+  std::ofstream(file) << hand;
+  const auto thumb = [&](const std::string& more) {
+    const HapticModel model =
+        build_model(parse_scene("hand.file = \"" + file + "\"\n" + more, "test.toml", "/"));
+    DigitPose pose;
+    model.hand.digit_pose(0, {0.5, 0.0, 0.0, 0.0}, pose);
+    return pose.segment[0].R;
+  };
+  DigitPose plain;
+  make_hand_model(load_hand_file("adult"), Handedness::kRight, {}, 800)
+      .digit_pose(0, {0.5, 0.0, 0.0, 0.0}, plain);
+  EXPECT_EQ(thumb("hand.coupling = \"none\""), plain.segment[0].R);
+  EXPECT_EQ(thumb("hand.coupling = \"file\""), thumb(""));
+  const Mat3 turn = thumb("") * plain.segment[0].R.transpose();
+  EXPECT_NEAR(turn.trace(), 1.0 + 2.0 * std::cos(0.3 * 0.5), 1e-12) << "by 0.3 of the flexion";
+  EXPECT_LT((turn * plain.segment[0].R.col(2) - plain.segment[0].R.col(2)).norm(), 1e-12) << "about the bone";
+}
+
 /// A set of meshes with one spoilt, and what the refusal says.
 template <typename Spoil>
 void expect_meshes_refused(Spoil&& spoil, const std::vector<std::string>& words,

@@ -230,11 +230,20 @@ Pose ReferenceGdp::pose(int digit, int k, const DigitAngles& angle) const {
   X.R.col(2) = chain.dorsal.cross(X.R.col(0)).normalized();
   X.R.col(1) = X.R.col(2).cross(X.R.col(0));
   X.p = chain.base;
+  const DigitCoupling& coupling = chain.coupling;
+  const Mat3 metacarpal =
+      rotation_about(chain.metacarpal_axis.normalized(), coupling.metacarpal_per_flexion * angle[0]);
+  X = Pose{metacarpal, chain.metacarpal_base - metacarpal * chain.metacarpal_base} * X;
   for (int i = 0; i < k + 2; ++i) {  // the first segment is moved by two joints, each further one by one more
     const DhRow& row = chain.dh[idx(i)];
     X = X * step(rotation_about(Vec3::UnitZ(), row.theta + angle[idx(i)]), Vec3::Zero());
     X = X * step(Mat3::Identity(), Vec3(0.0, 0.0, row.d));
     X = X * step(rotation_about(Vec3::UnitX(), row.alpha), Vec3(row.a, 0.0, 0.0));
+    if (i == 1) {
+      const double pronation =
+          coupling.pronation_per_flexion * angle[0] + coupling.pronation_per_abduction * angle[1];
+      X = X * step(rotation_about(-Vec3::UnitX(), pronation), Vec3::Zero());
+    }
   }
   // WebXR: the origin at the joint, -Z along the link, -X the axis of flexion.
   X = X * step(Mat3::Identity(), Vec3(-chain.dh[idx(k + 1)].a, 0.0, 0.0));
@@ -250,15 +259,18 @@ Pose ReferenceGdp::pose(int digit, int k, const DigitAngles& angle) const {
 
 double ReferenceGdp::speed(int digit, int k, const DigitAngles& rate) const {
   // A point is no farther from a joint than the links between and the segment's own radius.
+  const DigitParameters& chain = hand_.digits[idx(digit)];
+  const DigitCoupling& coupling = chain.coupling;
+  const double pronation = std::abs(coupling.pronation_per_flexion * rate[0]) +
+                           std::abs(coupling.pronation_per_abduction * rate[1]);
   double sum = 0.0;
-  double arm = radius_[idx(segment_index(digit, k))] + std::abs(hand_.digits[idx(digit)].dh[idx(k + 1)].d);
+  double arm = radius_[idx(segment_index(digit, k))] + std::abs(chain.dh[idx(k + 1)].d);
   for (int i = k + 1; i >= 0; --i) {
-    sum += std::abs(rate[idx(i)]) * arm;
-    if (i > 0)
-      arm += std::abs(hand_.digits[idx(digit)].dh[idx(i - 1)].a) +
-             std::abs(hand_.digits[idx(digit)].dh[idx(i - 1)].d);
+    sum += (std::abs(rate[idx(i)]) + (i == 1 ? pronation : 0.0)) * arm;
+    if (i > 0) arm += std::abs(chain.dh[idx(i - 1)].a) + std::abs(chain.dh[idx(i - 1)].d);
   }
-  return sum;
+  arm += (chain.base - chain.metacarpal_base).norm();
+  return sum + std::abs(coupling.metacarpal_per_flexion * rate[0]) * arm;
 }
 
 /// Whether all of `points` are farther than `limit` from the plane of `piece`, on one side.
