@@ -7,6 +7,7 @@ set(PHALANX_PUBLIC_HEADERS # of phalanx::phalanx
     mesh/objects.h
     mesh/primitives.h
     mesh/triangle_mesh.h
+    hand/angle_origin.h
     hand/fit.h
     hand/hand_model.h
     hand/hand_parameters.h

@@ -113,6 +113,23 @@ void follow(std::span<const CoupledJoint> coupled, const std::array<DigitCopy, k
   }
 }
 
+/// Sets the origins of the joints that follow() sets. A joint that follows a fixed one is fixed.
+void follow_origins(std::span<const CoupledJoint> coupled, const std::array<DigitCopy, kDigits>& copies,
+                    const std::array<bool, kJoints>& measured, AngleOrigins& origin) noexcept {
+  const auto follow_one = [&](std::size_t to, AngleOrigin of) {
+    if (!measured[to]) origin[to] = of == AngleOrigin::kFixed ? AngleOrigin::kFixed : AngleOrigin::kCompleted;
+  };
+  for (const CoupledJoint& joint : coupled) follow_one(idx(joint.joint), origin[idx(joint.of)]);
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const DigitCopy& copy = copies[idx(digit)];
+    if (copy.of < 0) continue;
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const AngleOrigin of = origin[idx(joint_index(copy.of, i))];
+      follow_one(idx(joint_index(digit, i)), copy.gain == 0.0 ? AngleOrigin::kFixed : of);
+    }
+  }
+}
+
 }  // namespace
 
 ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers followers,
@@ -127,6 +144,7 @@ ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers follo
         fmt::format("{} channels: a device has at most {}; leave some out", channels_.size(), kMaxChannels));
   check_followers(followers_);
   angle_channel_.fill(-1);
+  angle_origin_.fill(AngleOrigin::kFixed);
   std::array<int, kJoints> setter{};
   setter.fill(-1);
   for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -138,10 +156,13 @@ ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers follo
                fmt::format("channel {} sets {} already; leave one of the two out", setter[idx(joint)],
                            joint_name(joint)));
       setter[idx(joint)] = static_cast<int>(c);
+      angle_origin_[idx(joint)] =
+          channels_[c].kind == ChannelKind::kCurl ? AngleOrigin::kCompleted : AngleOrigin::kMeasured;
       if (channels_[c].kind == ChannelKind::kAngle) angle_channel_[idx(joint)] = static_cast<int>(c);
     }
   }
   for (std::size_t j = 0; j < setter.size(); ++j) measured_[j] = setter[j] >= 0;
+  follow_origins(followers_.coupled, followers_.copy, measured_, angle_origin_);
 }
 
 void ChannelMap::measure(std::size_t channel, double value, Sample& out) const noexcept {
@@ -176,6 +197,7 @@ void ChannelMap::convert(const DeviceSample& raw, Sample& out) const noexcept {
   out = Sample{};
   out.time_s = 1e-6 * static_cast<double>(raw.time_us);
   out.angle = open_;
+  out.angle_origin = angle_origin_;
   for (std::size_t c = 0; c < channels_.size(); ++c) measure(c, value(c, raw.raw[c]), out);
   follow(followers_.coupled, followers_.copy, measured_, open_, out.angle);
 }
@@ -190,6 +212,18 @@ JointArray sensed_angles(const Exoskeleton& exoskeleton, const JointArray& open,
   }
   follow(exoskeleton.coupled, exoskeleton.controller.copy, measured, open, sensed);
   return sensed;
+}
+
+AngleOrigins sensed_origins(const Exoskeleton& exoskeleton) noexcept {
+  AngleOrigins origin;
+  origin.fill(AngleOrigin::kFixed);
+  std::array<bool, kJoints> measured{};
+  for (const ExoJoint& joint : exoskeleton.joints) {
+    origin[idx(joint.joint)] = AngleOrigin::kMeasured;
+    measured[idx(joint.joint)] = true;
+  }
+  follow_origins(exoskeleton.coupled, exoskeleton.controller.copy, measured, origin);
+  return origin;
 }
 
 JointFollowers followers_of(const Exoskeleton& exoskeleton) {

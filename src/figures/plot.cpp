@@ -128,9 +128,11 @@ ChartPanel angle_plot(const Trace& trace) {
                    .dashed_means = "measured (HCP)",
                    .note = shown_note(indices.size(), total),
                    .empty = "no joint moved"};
-  for (const std::size_t i : indices)
-    panel.series.push_back(
-        curve(human_joint_name(static_cast<int>(i)), trace, values(trace, i, gdp), values(trace, i, hcp)));
+  for (const std::size_t i : indices) {
+    const bool completed = trace.back().angle_origin[i] == AngleOrigin::kCompleted;
+    const std::string name = human_joint_name(static_cast<int>(i)) + (completed ? " (completed)" : "");
+    panel.series.push_back(curve(name, trace, values(trace, i, gdp), values(trace, i, hcp)));
+  }
   return panel;
 }
 
@@ -140,7 +142,8 @@ TraceTick trace_tick(const Snapshot& snapshot) {
   TraceTick tick{.time_s = snapshot.time_s,
                  .torque = snapshot.torque,
                  .hcp_angle = snapshot.hcp_angle,
-                 .gdp_angle = snapshot.gdp_angle};
+                 .gdp_angle = snapshot.gdp_angle,
+                 .angle_origin = snapshot.angle_origin};
   for (std::size_t s = 0; s < snapshot.segment.size(); ++s) {
     tick.force_raw[s] = snapshot.segment[s].force_raw;
     tick.force[s] = snapshot.segment[s].force;

@@ -8,8 +8,8 @@
 
 namespace phalanx {
 
-double mapped_angle(const JointMapping& mapping, double raw) noexcept {
-  const double angle = mapping.gain * mapping.sign * raw + mapping.offset;
+double mapped_angle(const JointMapping& mapping, double value) noexcept {
+  const double angle = mapping.gain * mapping.sign * value + mapping.offset;
   if (!mapping.clamped || std::isnan(angle)) return angle;
   return std::clamp(angle, mapping.clamp_min, mapping.clamp_max);
 }
@@ -26,6 +26,24 @@ SensorMapping identity_mapping() {
   return mapping;
 }
 
+std::string completion_problem(const SensorMapping& mapping, const JointMapping& entry) {
+  const int from = *entry.completed_from;
+  if (from < 0 || from >= kJoints) {
+    return "joint number " + std::to_string(from) + " does not exist; the joints are 0 to " +
+           std::to_string(kJoints - 1);
+  }
+  const std::string digit(digit_name(digit_of_joint(entry.joint)));
+  const std::string remedy = "name a measured joint of the " + digit;
+  if (from == entry.joint) return "is the joint itself; " + remedy;
+  if (digit_of_joint(from) != digit_of_joint(entry.joint)) return "belongs to another digit; " + remedy;
+  const auto source = std::find_if(mapping.joints.begin(), mapping.joints.end(),
+                                   [from](const JointMapping& other) { return other.joint == from; });
+  if (source == mapping.joints.end()) return "is not measured; " + remedy + ", or give this one a source";
+  if (source->completed_from) return "is itself completed; " + remedy;
+  if (source->computed) return "is itself computed; " + remedy;
+  return "";
+}
+
 void check_mapping(const SensorMapping& mapping) {
   std::array<bool, kJoints> seen{};
   for (const JointMapping& entry : mapping.joints) {
@@ -39,7 +57,14 @@ void check_mapping(const SensorMapping& mapping) {
     const std::string name(joint_name(entry.joint));
     if (seen[static_cast<std::size_t>(entry.joint)]) fail(name + " is mapped twice; keep one");
     seen[static_cast<std::size_t>(entry.joint)] = true;
-    if (entry.source.empty()) fail(name + " has an empty source; name a column or sensor");
+    if (entry.completed_from) {
+      if (!entry.source.empty()) fail(name + " has a source and is completed; keep one");
+      if (entry.computed) fail(name + ": computed belongs to a source; leave it out");
+      const std::string problem = completion_problem(mapping, entry);
+      if (!problem.empty()) fail(name + ": completed_from " + problem);
+    } else if (entry.source.empty()) {
+      fail(name + " has an empty source; name a column or sensor");
+    }
     if (entry.sign != 1.0 && entry.sign != -1.0) fail(name + ": sign must be 1 or -1");
     if (!(std::isfinite(entry.gain) && entry.gain > 0.0))
       fail(name + ": gain must be finite and above 0; use sign to turn it round");

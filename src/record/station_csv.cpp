@@ -10,6 +10,7 @@
 #include <string>
 
 #include "phalanx/record/made.h"
+#include "record/angle_origin_json.h"
 
 namespace phalanx {
 namespace {
@@ -47,6 +48,7 @@ Json report_json(const FaultReport& report) {
           {"host_time_s", event.time},
           {"tick", event.tick},
           {"device", {{"name", report.device.name}, {"serial", report.device.serial}}},
+          {"angle_origin", angle_origin_json(report.angle_origin)},
           {"samples", report.samples.size()},
           {"steps", report.steps.size()},
           {"link", link_json(report.link)},
@@ -134,6 +136,7 @@ std::string station_summary_json(const SessionStatistics& session, const Station
                      {"records_lost", session.records_lost},
                      {"state", safety_state_name(last.state)},
                      {"fault", fault_name(last.fault.fault)},
+                     {"angle_origin", angle_origin_json(last.snapshot.angle_origin)},
                      {"link", link_json(session.link)},
                      {"made", {{"commit", built_from_commit()}}}};
   return json.dump(2) + "\n";

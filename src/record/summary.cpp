@@ -37,6 +37,7 @@ double total_force(const Snapshot& snapshot) {
 
 void add_tick(Summary& summary, const Snapshot& snapshot) {
   ++summary.ticks;
+  summary.angle_origin = snapshot.angle_origin;
   for (std::size_t s = 0; s < snapshot.segment.size(); ++s) {
     const SegmentSnapshot& segment = snapshot.segment[s];
     if (segment.contact) ++summary.contact_ticks[s];

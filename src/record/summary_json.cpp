@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "phalanx/record/summary.h"
+#include "record/angle_origin_json.h"
 #include "record/made_json.h"
 
 namespace phalanx {
@@ -29,6 +30,7 @@ std::string summary_json(const Summary& summary) {
   json["triangles"] = {{"hand", summary.hand_triangles}, {"object", summary.object_triangles}};
   const StepTimes& t = summary.step_us;
   json["step_us"] = {{"p50", t.p50}, {"p90", t.p90}, {"p99", t.p99}, {"p999", t.p999}, {"max", t.max}};
+  json["angle_origin"] = angle_origin_json(summary.angle_origin);
   json["contact_ticks"] = by_name(summary.contact_ticks, segment_name);
   json["peak_force_n"] = by_name(summary.peak_force, segment_name);
   json["peak_torque_nm"] = by_name(summary.peak_torque, joint_name);

@@ -9,6 +9,7 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
+#include "scene/joint_key.h"
 #include "scene/toml/layered_file.h"
 
 namespace phalanx {
@@ -40,15 +41,6 @@ class Defaulted {
   TomlTable own_;
   TomlTable* defaults_;
 };
-
-int read_joint_name(TomlTable& table, std::string_view key) {
-  const std::string name = table.text(key);
-  if (const auto joint = find_joint(name)) return *joint;
-  std::vector<std::string_view> known;
-  for (int j = 0; j < kJoints; ++j) known.push_back(joint_name(j));
-  table.fail(key,
-             fmt::format("is no joint of the hand; the nearest one is \"{}\"", nearest_name(name, known)));
-}
 
 ExoJoint read_joint(TomlTable own, TomlTable* defaults, int joint) {
   Defaulted table(std::move(own), defaults);

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "phalanx/core/constants.h"
-#include "phalanx/core/nearest_name.h"
 #include "phalanx/scene/data_paths.h"
+#include "scene/joint_key.h"
 #include "scene/text_file.h"
 #include "scene/toml/toml_reader.h"
 
@@ -36,8 +36,15 @@ void read_clamp(TomlTable& table, const std::string& key, double unit, JointMapp
 JointMapping read_joint(TomlTable table, int joint) {
   JointMapping entry;
   entry.joint = joint;
-  entry.source = table.text("source");
-  if (entry.source.empty()) table.fail("source", "name a column or a sensor");
+  if (table.has("completed_from")) {
+    if (table.has("source")) table.fail("completed_from", "the joint has a source, too; keep one");
+    if (table.has("computed")) table.fail("computed", "belongs to a source; leave it out");
+    entry.completed_from = read_joint_name(table, "completed_from");
+  } else {
+    entry.source = table.text("source");
+    if (entry.source.empty()) table.fail("source", "name a column or a sensor");
+    if (table.has("computed")) entry.computed = table.flag("computed");
+  }
   entry.sign = table.number_or("sign", {.min = -1.0, .max = 1.0}, 1.0);
   if (entry.sign != 1.0 && entry.sign != -1.0) table.fail("sign", "must be 1 or -1");
   entry.gain = table.number_or("gain", {.min = 0.0, .max = 1e6, .min_open = true}, 1.0);
@@ -63,6 +70,10 @@ SensorMapping parse_mapping(const std::string& text, const std::string& origin) 
   table.finish();
   if (mapping.joints.empty())
     table.fail("index_mcp_flexion", "no joint is mapped; add at least one table such as this");
+  for (const JointMapping& entry : mapping.joints) {
+    const std::string problem = entry.completed_from ? completion_problem(mapping, entry) : "";
+    if (!problem.empty()) table.table(joint_name(entry.joint)).fail("completed_from", problem);
+  }
   return mapping;
 }
 

@@ -26,6 +26,7 @@ struct Header {
   std::vector<std::string> names;
   std::size_t time = 0;
   std::vector<Column> columns;
+  std::vector<JointMapping> completed;  ///< joints that are completed from those of `columns`
 };
 
 std::optional<std::size_t> find_name(const std::vector<std::string>& names, std::string_view name) {
@@ -71,6 +72,10 @@ Header read_header(CsvLines& lines, const std::optional<SensorMapping>& mapping)
   if (!mapping) refuse_unknown_columns(lines, header);
   const SensorMapping wanted = mapping ? *mapping : identity_mapping();
   for (const JointMapping& entry : wanted.joints) {
+    if (entry.completed_from) {
+      header.completed.push_back(entry);
+      continue;
+    }
     const auto place = find_name(header.names, entry.source);
     if (place) {
       header.columns.push_back({*place, entry});
@@ -111,6 +116,29 @@ double read_angle(const CsvLines& lines, const Header& header, const std::vector
       header.names[column.place], show_cell(cells[column.place]), joint_name(column.mapping.joint), angle));
 }
 
+/// Returns the angle of a joint that is completed from those of `angle` [rad].
+double completed_angle(const CsvLines& lines, const JointMapping& entry, const JointArray& angle) {
+  const int from = *entry.completed_from;
+  const double of = angle[static_cast<std::size_t>(from)];
+  const double completed = mapped_angle(entry, of);
+  if (std::abs(completed) <= 2.0 * std::numbers::pi) return completed;
+  lines.fail(fmt::format(
+      "{} = {} rad gives {} = {} rad, more than a full turn; correct gain and offset of its completion",
+      joint_name(from), of, joint_name(entry.joint), completed));
+}
+
+/// Returns the origin of each joint's angle in a motion with this header.
+AngleOrigins angle_origins(const Header& header) {
+  AngleOrigins origin;
+  origin.fill(AngleOrigin::kFixed);
+  for (const Column& column : header.columns)
+    origin[static_cast<std::size_t>(column.mapping.joint)] =
+        column.mapping.computed ? AngleOrigin::kCompleted : AngleOrigin::kMeasured;
+  for (const JointMapping& entry : header.completed)
+    origin[static_cast<std::size_t>(entry.joint)] = AngleOrigin::kCompleted;
+  return origin;
+}
+
 }  // namespace
 
 Motion parse_motion(std::string_view text, const std::string& origin,
@@ -123,6 +151,7 @@ Motion parse_motion(std::string_view text, const std::string& origin,
   const Header header = read_header(lines, mapping);
 
   Motion motion;
+  motion.angle_origin = angle_origins(header);
   int trials = 1;
   double last_time = -std::numeric_limits<double>::infinity();
   struct {
@@ -154,6 +183,8 @@ Motion parse_motion(std::string_view text, const std::string& origin,
     for (const Column& column : header.columns) {
       angle[static_cast<std::size_t>(column.mapping.joint)] = read_angle(lines, header, cells, column);
     }
+    for (const JointMapping& entry : header.completed)
+      angle[static_cast<std::size_t>(entry.joint)] = completed_angle(lines, entry, angle);
     motion.time_s.push_back(time);
     motion.angle.push_back(angle);
   }

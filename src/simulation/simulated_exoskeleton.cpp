@@ -35,6 +35,7 @@ SimulatedExoskeleton::SimulatedExoskeleton(const Exoskeleton& exoskeleton, const
       on_the_way_(room_on_the_way(exoskeleton.controller)) {
   input_.motor_force.assign(exoskeleton.motors.size(), 0.0);
   sample_.angle = open;
+  sample_.angle_origin = sensed_origins(exoskeleton_);
 }
 
 /// @returns the slot for a new command. It overwrites the one before if that arrives for the same tick, or if

@@ -370,6 +370,7 @@ std::optional<FaultReport> Station::take_fault_report() {
   report.steps = loop_->step_history.all();
   report.device = loop_->device.info();
   report.link = loop_->frozen_link;
+  report.angle_origin = loop_->channels.angle_origins();
   report.event = loop_->frozen_event;
   loop_->sample_history.clear();
   loop_->step_history.clear();

@@ -77,6 +77,7 @@ void pass_measured(const Sample& sample, Status accepted, Snapshot& snapshot) no
   const bool keep = !has(accepted, Status::kTimeNotIncreasing);
   finite_or_nan(sample.measured_torque, keep, snapshot.measured_torque);
   finite_or_nan(sample.measured_force, keep, snapshot.measured_force);
+  snapshot.angle_origin = sample.angle_origin;
 }
 
 }  // namespace phalanx

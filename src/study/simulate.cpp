@@ -35,7 +35,7 @@ StepTimes simulate(const HapticModel& model, const HapticParameters& parameters,
   const std::uint64_t progress_every = std::max<std::uint64_t>(1, ticks / 100);
   for (std::uint64_t i = 0; i < ticks; ++i) {
     const double t = static_cast<double>(i) / parameters.rate_hz;
-    const Sample sample{.time_s = t, .angle = motion.at(t)};
+    const Sample sample{.time_s = t, .angle = motion.at(t), .angle_origin = motion.angle_origin};
     const auto start = Clock::now();
     step(model, parameters, sample, *state);
     const auto end = Clock::now();

@@ -10,6 +10,7 @@
 #include "phalanx/device/exoskeleton.h"
 #include "support/count_allocations.h"
 #include "support/simple_hand.h"
+#include "two_joint_device.h"
 
 namespace phalanx::test {
 namespace {
@@ -118,6 +119,48 @@ TEST(ChannelMap, AJointThatIsMeasuredDoesNotFollow) {
   EXPECT_DOUBLE_EQ(sample.angle[7], 0.2);
   EXPECT_DOUBLE_EQ(sample.angle[10], 0.4);
   EXPECT_DOUBLE_EQ(sample.angle[11], 0.2);
+}
+
+// The index finger has a curl, a splay and no MCP channel of its own; the thumb has one angle, which its IP
+// joint follows; the ring finger copies the index finger, the little finger the middle one, which has nothing.
+TEST(ChannelMap, StatesTheOriginOfEachAngle) {
+  using enum AngleOrigin;
+  JointFollowers followers;
+  followers.coupled = {{.joint = 3, .of = 2, .ratio = 0.7}, {.joint = 11, .of = 10, .ratio = 0.7}};
+  followers.copy[kRing] = {.of = kIndex, .gain = 1.0};
+  followers.copy[4] = {.of = kMiddle, .gain = 1.0};
+  const ChannelMap map({channel(ChannelKind::kAngle, 2, 0.001), channel(ChannelKind::kCurl, kIndex, 0.001),
+                        channel(ChannelKind::kSplay, kIndex, 0.001)},
+                       followers, hand());
+  AngleOrigins expected;
+  expected.fill(kFixed);
+  expected[2] = kMeasured;
+  expected[3] = kCompleted;
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    expected[joint(kIndex, i)] = i == kAbductionJoint ? kMeasured : kCompleted;
+    expected[joint(kRing, i)] = kCompleted;
+  }
+  EXPECT_EQ(map.angle_origins(), expected);
+  EXPECT_EQ(converted(map, {1, 2, 3}).angle_origin, expected);
+}
+
+// A copy with gain 0 stays at the open hand; a joint with a channel of its own does not follow.
+TEST(ChannelMap, AJointThatDoesNotFollowIsNotCompleted) {
+  JointFollowers followers;
+  followers.coupled = {{.joint = 7, .of = 6, .ratio = 0.7}};
+  followers.copy[kMiddle] = {.of = kIndex, .gain = 0.0};
+  const ChannelMap map({channel(ChannelKind::kAngle, 6, 0.001), channel(ChannelKind::kAngle, 7, 0.001)},
+                       followers, hand());
+  for (std::size_t j = 0; j < kJoints; ++j)
+    EXPECT_EQ(map.angle_origins()[j], j == 6 || j == 7 ? AngleOrigin::kMeasured : AngleOrigin::kFixed) << j;
+}
+
+TEST(ChannelMap, TheOriginsOfASimulatedDeviceAreThoseOfItsJoints) {
+  const AngleOrigins origins = sensed_origins(two_joint_device());
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const AngleOrigin other = j == 4 || j == 6 ? AngleOrigin::kMeasured : AngleOrigin::kFixed;
+    EXPECT_EQ(origins[j], j == 7 ? AngleOrigin::kCompleted : other) << j;
+  }
 }
 
 TEST(ChannelMap, TorqueAndForceArePassedOnAndMotorsAreNot) {

@@ -56,6 +56,13 @@ TEST(PlotSvg, DrawsSentAndLawOfEveryTouchingSegmentAndNothingElse) {
   EXPECT_THAT(svg, Not(HasSubstr(" shown<")));
 }
 
+TEST(PlotSvg, MarksACompletedAngle) {
+  Trace trace = trace_with(1);
+  EXPECT_THAT(plot_svg(trace, {}), Not(HasSubstr("completed")));
+  trace.back().angle_origin[4] = AngleOrigin::kCompleted;
+  EXPECT_EQ(count_of(plot_svg(trace, {}), ">index MCP flexion (completed)<"), 1U);
+}
+
 TEST(PlotSvg, SaysHowManyOfManyCurvesItShows) {
   const std::string svg = plot_svg(trace_with(14), {});
   EXPECT_THAT(svg, HasSubstr(">8 of 14 shown<"));

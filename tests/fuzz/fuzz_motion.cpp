@@ -18,9 +18,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::optional<phalanx::SensorMapping> mapping;
   if (data[0] % 8 >= 4) {
     mapping.emplace();
-    mapping->joints.resize(1);
+    mapping->joints.resize(2);
     mapping->joints[0].joint = 6;
     mapping->joints[0].source = "a";
+    mapping->joints[1].joint = 7;
+    mapping->joints[1].gain = 1.5;
+    mapping->joints[1].completed_from = 6;
   }
   try {
     const phalanx::Motion motion = phalanx::parse_motion(text, "fuzz.csv", mapping, trial);

@@ -10,6 +10,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "phalanx/core/constants.h"
+#include "phalanx/hand/angle_origin.h"
+
 namespace phalanx {
 namespace {
 
@@ -48,6 +51,29 @@ TEST(SensorMapping, TheIdentityReadsEachJointFromTheColumnOfItsName) {
     EXPECT_EQ(entry.source, joint_name(joint));
     EXPECT_EQ(mapped_angle(entry, 0.7), 0.7);
   }
+}
+
+// A DIP joint at 2/3 of the PIP's angle, which is at 60 degrees: 40 degrees.
+TEST(SensorMapping, CompletesAJointFromTheAngleOfAnother) {
+  const JointMapping dip{.joint = 7, .gain = 2.0 / 3.0, .completed_from = 6};
+  EXPECT_NEAR(mapped_angle(dip, 60.0 * kDeg), 40.0 * kDeg, 1e-15);
+}
+
+// Fingers that are spread by 12 degrees when the MCP joint is straight, and not at all when it is at 90:
+// 12 - 12/90 flexion. At 45 degrees it is 6; at -45 it would be 18, and is clamped.
+TEST(SensorMapping, CompletesAbductionThatVanishesWithFlexion) {
+  const JointMapping abduction{.joint = 5,
+                               .sign = -1.0,
+                               .gain = 12.0 / 90.0,
+                               .offset = 12.0 * kDeg,
+                               .clamp_min = 0.0,
+                               .clamp_max = 12.0 * kDeg,
+                               .clamped = true,
+                               .completed_from = 4};
+  EXPECT_NEAR(mapped_angle(abduction, 0.0), 12.0 * kDeg, 1e-15);
+  EXPECT_NEAR(mapped_angle(abduction, 45.0 * kDeg), 6.0 * kDeg, 1e-15);
+  EXPECT_NEAR(mapped_angle(abduction, 90.0 * kDeg), 0.0, 1e-15);
+  EXPECT_EQ(mapped_angle(abduction, -45.0 * kDeg), 12.0 * kDeg);
 }
 
 std::string refusal_of(const std::function<void(SensorMapping&)>& change) {
@@ -90,6 +116,49 @@ TEST(SensorMapping, IsRefusedByTheNameOfTheJointAndWhatIsWrong) {
   EXPECT_THAT(clamp(0.2, 0.1), HasSubstr("clamp"));
   EXPECT_THAT(clamp(-infinite, 0.1), HasSubstr("clamp"));
   EXPECT_THAT(clamp(0.1, nan), HasSubstr("clamp"));
+}
+
+/// The refusal of the index finger's DIP joint, completed from `joint`.
+std::string refusal_of_completion(int joint, const std::function<void(SensorMapping&)>& change = {}) {
+  return refusal_of([&](SensorMapping& mapping) {
+    mapping.joints[7].source.clear();
+    mapping.joints[7].completed_from = joint;
+    if (change) change(mapping);
+  });
+}
+
+TEST(SensorMapping, ACompletionFollowsAMeasuredJointOfItsDigit) {
+  EXPECT_EQ(refusal_of_completion(6), "");
+  EXPECT_EQ(refusal_of_completion(4), "");
+  EXPECT_THAT(refusal_of_completion(7), HasSubstr("index_dip_flexion: completed_from is the joint itself"));
+  EXPECT_THAT(refusal_of_completion(10),
+              HasSubstr("belongs to another digit; name a measured joint of the index"));
+  for (const int joint : {-1, kJoints})
+    EXPECT_THAT(refusal_of_completion(joint), HasSubstr("does not exist"));
+  EXPECT_THAT(refusal_of_completion(6, [](SensorMapping& m) { m.joints.erase(m.joints.begin() + 6); }),
+              HasSubstr("is not measured"));
+  EXPECT_THAT(refusal_of_completion(6,
+                                    [](SensorMapping& m) {
+                                      m.joints[6].source.clear();
+                                      m.joints[6].completed_from = 4;
+                                    }),
+              HasSubstr("index_dip_flexion: completed_from is itself completed"));
+  EXPECT_THAT(refusal_of_completion(6, [](SensorMapping& m) { m.joints[6].computed = true; }),
+              HasSubstr("index_dip_flexion: completed_from is itself computed"));
+  EXPECT_THAT(refusal_of_completion(6, [](SensorMapping& m) { m.joints[7].computed = true; }),
+              HasSubstr("computed belongs to a source"));
+  EXPECT_THAT(refusal_of_completion(6, [](SensorMapping& m) { m.joints[7].source = "column"; }),
+              HasSubstr("has a source and is completed; keep one"));
+  EXPECT_THAT(refusal_of_completion(
+                  6, [](SensorMapping& m) { m.joints[7].gain = std::numeric_limits<double>::infinity(); }),
+              HasSubstr("gain"));
+}
+
+TEST(AngleOrigin, IsMeasuredUnlessStated) {
+  EXPECT_EQ(AngleOrigins{}[3], AngleOrigin::kMeasured);
+  EXPECT_EQ(angle_origin_name(AngleOrigin::kMeasured), "measured");
+  EXPECT_EQ(angle_origin_name(AngleOrigin::kCompleted), "completed");
+  EXPECT_EQ(angle_origin_name(AngleOrigin::kFixed), "fixed");
 }
 
 TEST(SensorMapping, WithSignMinusOneAndAnUnusedClampIsFine) {

@@ -176,6 +176,7 @@ TEST(StationCsv, EveryColumnOfAFaultReportIsInTheUnitOfItsName) {
   report.samples = {sample, released};
   report.steps = {numbered_step()};
   report.link = numbered_link();
+  report.angle_origin[7] = AngleOrigin::kCompleted;
   const auto path = write_fault_report(folder.path(), report);
 
   EXPECT_EQ(read_file(path / "samples.csv"),
@@ -197,7 +198,9 @@ TEST(StationCsv, EveryColumnOfAFaultReportIsInTheUnitOfItsName) {
   EXPECT_EQ(json["steps"], 1);
   expect_numbered_link(json["link"]);
   EXPECT_FALSE(json["made"]["commit"].get<std::string>().empty());
-  EXPECT_EQ(json.size(), 12U) << "a field without a check";
+  EXPECT_EQ(json["angle_origin"]["index_dip_flexion"], "completed");
+  EXPECT_EQ(json["angle_origin"]["index_pip_flexion"], "measured");
+  EXPECT_EQ(json.size(), 13U) << "a field without a check";
 
   report.event.from_device = false;
   json = nlohmann::json::parse(read_file(write_fault_report(folder.path(), report) / "report.json"));
@@ -231,6 +234,7 @@ TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   StationView last;
   last.state = SafetyState::kFault;
   last.fault.fault = Fault::kNoSample;
+  last.snapshot.angle_origin[7] = AngleOrigin::kFixed;
   const SessionStatistics session{.deadlines = deadlines, .link = numbered_link(), .records_lost = 43};
   const auto json = nlohmann::json::parse(station_summary_json(session, last, "SCHED_FIFO 80", 50.0));
   EXPECT_EQ(json["seconds"], 50.0);
@@ -255,7 +259,9 @@ TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   EXPECT_EQ(json["fault"], "no_sample");
   expect_numbered_link(json["link"]);
   EXPECT_FALSE(json["made"]["commit"].get<std::string>().empty());
-  EXPECT_EQ(json.size(), 14U) << "a field without a check";
+  EXPECT_EQ(json["angle_origin"]["index_dip_flexion"], "fixed");
+  EXPECT_EQ(json["angle_origin"]["index_pip_flexion"], "measured");
+  EXPECT_EQ(json.size(), 15U) << "a field without a check";
 }
 
 TEST(StationCsv, EveryStepHasAsManyColumnsAsTheHeader) {

@@ -192,7 +192,20 @@ TEST(SummaryJson, EveryFieldIsInTheUnitOfItsName) {
   EXPECT_EQ(json["made"],
             (nlohmann::json{
                 {"commit", "c"}, {"cpu", "x"}, {"compiler", "g"}, {"build_type", "Release"}, {"date", "d"}}));
-  EXPECT_EQ(json.size(), 14U) << "a field without a check";
+  EXPECT_EQ(json["angle_origin"].size(), static_cast<std::size_t>(kJoints));
+  EXPECT_EQ(json.size(), 15U) << "a field without a check";
+}
+
+TEST(SummaryJson, MarksJointsThatAreNotMeasured) {
+  Summary summary;
+  Snapshot snapshot;
+  snapshot.angle_origin[7] = AngleOrigin::kCompleted;
+  snapshot.angle_origin[5] = AngleOrigin::kFixed;
+  add_tick(summary, snapshot);
+  const auto json = nlohmann::json::parse(summary_json(summary))["angle_origin"];
+  EXPECT_EQ(json["index_dip_flexion"], "completed");
+  EXPECT_EQ(json["index_mcp_abduction"], "fixed");
+  EXPECT_EQ(json["index_pip_flexion"], "measured");
 }
 
 // A torque of -0.08 Nm is larger than one of 0.05 Nm that comes after it, and smaller than one of 0.09 Nm.

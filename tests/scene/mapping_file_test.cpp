@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "phalanx/core/constants.h"
 #include "scene/expect_error.h"
@@ -112,6 +113,76 @@ TEST(MappingFile, WithABadNumber) {
   expect_mapping_refused(head + "clamp_rad = [1]", {"clamp_rad", "2 numbers"});
 }
 
+const std::string kPipAndDip = "[index_pip_flexion]\nsource = \"a\"\n[index_dip_flexion]\n";
+
+TEST(MappingFile, CompletesAJointFromAMeasuredOne) {
+  const SensorMapping mapping = parse_mapping(
+      kPipAndDip + "completed_from = \"index_pip_flexion\"\ngain = 0.5\noffset_deg = 3", "mine.toml");
+  ASSERT_EQ(mapping.joints.size(), 2U);
+  EXPECT_FALSE(mapping.joints[0].completed_from);
+  EXPECT_FALSE(mapping.joints[0].computed);
+  EXPECT_EQ(mapping.joints[1].completed_from, 6);
+  EXPECT_EQ(mapping.joints[1].source, "");
+  EXPECT_DOUBLE_EQ(mapped_angle(mapping.joints[1], 0.4), 0.2 + 3.0 * kDeg);
+}
+
+TEST(MappingFile, RefusesACompletionThatFollowsNothingMeasured) {
+  const auto refused = [](const std::string& from, const std::vector<std::string>& words) {
+    expect_mapping_refused(kPipAndDip + "completed_from = \"" + from + "\"", words);
+  };
+  refused("index_dip_flexion", {"bad.toml:4", "completed_from", "index_dip_flexion", "the joint itself"});
+  refused("index_mcp_flexion", {"bad.toml:4", "is not measured", "name a measured joint of the index"});
+  refused("thumb_ip_flexion", {"bad.toml:4", "belongs to another digit"});
+  refused("index_pip", {"bad.toml:4", "is no joint of the hand", "\"index_pip_flexion\""});
+  expect_mapping_refused(kPipAndDip + "completed_from = 6", {"bad.toml:4", "completed_from = 6"});
+  expect_mapping_refused(kPipAndDip + "completed_from = \"index_pip_flexion\"\nsource = \"b\"",
+                         {"bad.toml:4", "the joint has a source, too; keep one"});
+  expect_mapping_refused(kPipAndDip + "completed_from = \"index_pip_flexion\"\ngain = inf",
+                         {"bad.toml:5", "gain = inf"});
+  expect_mapping_refused(kPipAndDip + "completed_from = \"index_pip_flexion\"\ncomputed = true",
+                         {"bad.toml:5", "computed = true", "belongs to a source"});
+  expect_mapping_refused(
+      "[index_pip_flexion]\nsource = \"a\"\ncomputed = true\n[index_dip_flexion]\n"
+      "completed_from = \"index_pip_flexion\"",
+      {"bad.toml:5", "is itself computed"});
+  expect_mapping_refused(
+      "[index_mcp_flexion]\nsource = \"a\"\n[index_pip_flexion]\ncompleted_from = \"index_mcp_flexion\"\n"
+      "[index_dip_flexion]\ncompleted_from = \"index_pip_flexion\"",
+      {"bad.toml:6", "is itself completed"});
+}
+
+// Three joints of thumb and index, of which any may be completed from any: what the parser accepts, the check
+// accepts.
+TEST(MappingFile, AcceptsOnlyWhatTheCheckAccepts) {
+  std::mt19937_64 random(19);
+  int accepted = 0;
+  int completed = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::string text;
+    const auto any_joint = [&] { return std::string(joint_name(static_cast<int>(random() % 8))); };
+    for (int entries = 0; entries < 3; ++entries) {
+      const std::string name = any_joint();
+      if (text.find("[" + name + "]") != std::string::npos) continue;
+      text += "[" + name + "]\n";
+      if (random() % 3 != 0) text += "source = \"c\"\n";
+      if (random() % 5 == 0) text += "computed = true\n";
+      if (random() % 2 != 0) text += "completed_from = \"" + any_joint() + "\"\n";
+    }
+    try {
+      const SensorMapping mapping = parse_mapping(text, "fuzz.toml");
+      check_mapping(mapping);
+      ++accepted;
+      for (const JointMapping& entry : mapping.joints)
+        if (entry.completed_from) ++completed;
+    } catch (const SceneError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("fuzz.toml:")) << text;
+    }
+  }
+  EXPECT_GT(accepted, 100);
+  EXPECT_LT(accepted, 2500);
+  EXPECT_GT(completed, 0);
+}
+
 TEST(MappingFile, WithRadiansAndDegreesAtOnce) {
   const std::string head = "[index_pip_flexion]\nsource = \"a\"\n";
   expect_mapping_refused(head + "offset_rad = 1\noffset_deg = 1", {"offset_rad", "keep one"});
@@ -136,6 +207,31 @@ TEST(CybergloveMapping, MakesFlexionPositive) {
     if (!finger_flexion) continue;
     EXPECT_NEAR(mapped_angle(entry, 0.0), 0.0, 1e-12) << joint_name(entry.joint);
     EXPECT_GT(mapped_angle(entry, -1.2), 0.8) << joint_name(entry.joint);
+  }
+}
+
+// Both files state the other joints, so that one of them could be changed alone.
+TEST(CybergloveMapping, IsTheCompletedOneButForTheDipJointsOfTheFingers) {
+  const SensorMapping plain = load_mapping_file("cyberglove");
+  const SensorMapping completed = load_mapping_file("cyberglove-completed");
+  ASSERT_EQ(completed.joints.size(), plain.joints.size());
+  for (std::size_t j = 0; j < plain.joints.size(); ++j) {
+    const JointMapping& entry = completed.joints[j];
+    const std::string name(joint_name(entry.joint));
+    ASSERT_EQ(entry.joint, plain.joints[j].joint);
+    EXPECT_EQ(entry.clamp_min, plain.joints[j].clamp_min) << name;
+    EXPECT_EQ(entry.clamp_max, plain.joints[j].clamp_max) << name;
+    EXPECT_EQ(plain.joints[j].computed, name.ends_with("dip_flexion")) << name;
+    if (name.ends_with("dip_flexion")) {
+      EXPECT_EQ(entry.completed_from, entry.joint - 1) << name;
+      EXPECT_NEAR(mapped_angle(entry, 75.0 * kDeg), 50.0 * kDeg, 1e-12) << name;
+      continue;
+    }
+    EXPECT_EQ(entry.source, plain.joints[j].source) << name;
+    EXPECT_EQ(entry.sign, plain.joints[j].sign) << name;
+    EXPECT_EQ(entry.gain, plain.joints[j].gain) << name;
+    EXPECT_EQ(entry.offset, plain.joints[j].offset) << name;
+    EXPECT_FALSE(entry.completed_from) << name;
   }
 }
 

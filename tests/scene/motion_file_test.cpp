@@ -55,6 +55,50 @@ TEST(MotionFile, LeavesJointsWithoutAColumnAtTheOpenHand) {
   EXPECT_EQ(motion.angle[0][kPip], 1.0);
 }
 
+/// The PIP joint from column "a" with its sign, and the DIP joint at half the PIP's angle plus 0.1.
+SensorMapping pip_and_dip() {
+  SensorMapping mapping = pip_from("a");
+  mapping.joints.insert(mapping.joints.begin(), {.joint = static_cast<int>(kPip) + 1,
+                                                 .gain = 0.5,
+                                                 .offset = 0.1,
+                                                 .clamp_min = 0.0,
+                                                 .clamp_max = 0.45,
+                                                 .clamped = true,
+                                                 .completed_from = static_cast<int>(kPip)});
+  return mapping;
+}
+
+// 0.5 * 0.6 + 0.1 = 0.4; 0.5 * 1.0 + 0.1 = 0.6, which is clamped to 0.45. The completed joint is stated first.
+TEST(MotionFile, CompletesAJointFromTheMappedAngleOfAnother) {
+  const Motion motion = parse_motion("time_s,a\n0,-0.6\n1,-1\n", "m.csv", pip_and_dip());
+  EXPECT_DOUBLE_EQ(motion.angle[0][kPip], 0.6);
+  EXPECT_DOUBLE_EQ(motion.angle[0][kPip + 1], 0.4);
+  EXPECT_DOUBLE_EQ(motion.angle[1][kPip + 1], 0.45);
+}
+
+TEST(MotionFile, StatesTheOriginOfEachAngle) {
+  const Motion mapped = parse_motion("time_s,a\n0,-0.6\n", "m.csv", pip_and_dip());
+  const Motion plain = parse_csv("time_s,index_pip_flexion,index_dip_flexion\n0,0.6,0.4\n");
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const AngleOrigin other = j == kPip ? AngleOrigin::kMeasured : AngleOrigin::kFixed;
+    EXPECT_EQ(mapped.angle_origin[j], j == kPip + 1 ? AngleOrigin::kCompleted : other) << j;
+    EXPECT_EQ(plain.angle_origin[j], j == kPip + 1 ? AngleOrigin::kMeasured : other) << j;
+  }
+  SensorMapping computed = pip_from("a");
+  computed.joints[0].computed = true;
+  EXPECT_EQ(parse_motion("time_s,a\n0,-0.6\n", "m.csv", computed).angle_origin[kPip],
+            AngleOrigin::kCompleted);
+  EXPECT_EQ(led_in(mapped, JointArray{}, 0.5).angle_origin, mapped.angle_origin);
+}
+
+TEST(MotionFile, RefusesACompletedAngleOfMoreThanAFullTurn) {
+  SensorMapping mapping = pip_and_dip();
+  mapping.joints[0].clamped = false;
+  mapping.joints[0].gain = 20.0;
+  expect_scene_error([&] { static_cast<void>(parse_motion("time_s,a\n0,-0.1\n1,-0.5\n", "m.csv", mapping)); },
+                     {"m.csv:3", "index_pip_flexion = 0.5 rad", "index_dip_flexion = 10.1 rad", "full turn"});
+}
+
 TEST(MotionFile, MayComeFromAnySpreadsheet) {
   const Motion motion =
       parse_csv("\xEF\xBB\xBF\"time_s\" , \"index_pip_flexion\"\r\n 0 , +1e-1 \r\n\r\n1,.5\r\n");
@@ -229,6 +273,21 @@ TEST(MotionFile, PlaysAGlovesRecordingThroughItsMapping) {
   EXPECT_GT(motion.duration(), 1.0);
   EXPECT_NEAR(motion.at(0.0)[kPip], 0.1, 0.15);
   EXPECT_GT(motion.at(0.5 * motion.duration())[kPip], 0.9);
+}
+
+// The same recording with the DIP joints completed: 2/3 of the PIP joints, which are clamped to 100 degrees.
+TEST(MotionFile, PlaysAGlovesRecordingWithCompletedJoints) {
+  const auto file = fs::path(PHALANX_SOURCE_DIR) / "assets/motions/glove_two_trials.csv";
+  const Motion plain = load_motion(file, load_mapping_file("cyberglove"), 1);
+  const Motion motion = load_motion(file, load_mapping_file("cyberglove-completed"), 1);
+  ASSERT_EQ(motion.angle.size(), plain.angle.size());
+  for (std::size_t i = 0; i < motion.angle.size(); ++i) {
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const bool dip = j > 3 && j % kJointsPerDigit == 3;
+      EXPECT_NEAR(motion.angle[i][j], dip ? 2.0 / 3.0 * plain.angle[i][j - 1] : plain.angle[i][j], 1e-15);
+      EXPECT_EQ(motion.angle_origin[j], dip ? AngleOrigin::kCompleted : AngleOrigin::kMeasured);
+    }
+  }
 }
 
 }  // namespace

@@ -32,6 +32,25 @@ TEST(StepSnapshot, CountsItsTicksFromOne) {
   }
 }
 
+// A completed angle moves the hand like a measured one: only the mark differs.
+TEST(StepSnapshot, PassesTheOriginOfEachAngleAndNothingDependsOnIt) {
+  const test::Setup model = test::floor_model(Stabiliser::kNone);
+  HapticState plain(model, model.parameters);
+  HapticState marked(model, model.parameters);
+  for (int n = 1; n <= 160; ++n) {
+    Sample sample{.time_s = 0.005 * n, .angle = press_and_leave(n)};
+    step(model, model.parameters, sample, plain);
+    sample.angle_origin[4] = AngleOrigin::kCompleted;
+    sample.angle_origin[19] = AngleOrigin::kFixed;
+    step(model, model.parameters, sample, marked);
+    EXPECT_EQ(plain.snapshot().angle_origin, AngleOrigins{});
+    EXPECT_EQ(marked.snapshot().angle_origin, sample.angle_origin);
+    EXPECT_EQ(marked.snapshot().torque, plain.snapshot().torque) << n;
+    EXPECT_EQ(marked.snapshot().gdp_angle, plain.snapshot().gdp_angle) << n;
+  }
+  EXPECT_GT(plain.snapshot().segment[kTip].force, 0.0);
+}
+
 // The hand stands 20 mm along +Z, its index finger open at -0.2 rad, which is towards +Y: the distal
 // segment's joint is 40 + 25 mm from the knuckle.
 TEST(StepSnapshot, IsTheOpenHandBeforeTheFirstStep) {

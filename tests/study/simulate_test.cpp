@@ -52,5 +52,20 @@ TEST(Simulate, GivesEveryTickInOrderAndCountsThem) {
   EXPECT_GE(step_us.max, step_us.p50);
 }
 
+TEST(Simulate, PassesTheOriginsOfTheMotion) {
+  const SceneDescription scene = load_scene("index_ball");
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  Motion motion = build_motion(scene);
+  motion.angle_origin[7] = AngleOrigin::kCompleted;
+  int ticks = 0;
+  SimulationObservers observers;
+  observers.tick = [&](const Snapshot& snapshot) {
+    EXPECT_EQ(snapshot.angle_origin, motion.angle_origin);
+    ++ticks;
+  };
+  simulate(*model, scene.parameters, motion, 3, observers);
+  EXPECT_EQ(ticks, 3);
+}
+
 }  // namespace
 }  // namespace phalanx

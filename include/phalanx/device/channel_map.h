@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "phalanx/device/device.h"
+#include "phalanx/hand/angle_origin.h"
 #include "phalanx/hand/hand_parameters.h"
 #include "phalanx/hand/joints.h"
 #include "phalanx/step/snapshot.h"
@@ -56,6 +57,10 @@ class ChannelMap {
   /// Sets all of `out`; its time is the device's clock [s]. Raw values outside a channel's range are
   /// converted like any other. Real-time: no allocation, lock, throw or I/O.
   void convert(const DeviceSample& raw, Sample& out) const noexcept;
+  /// @returns the origin of each joint's angle, which convert() writes to each sample. Measured: an angle or
+  /// a splay. Completed: a curl, which sets several joints from one sensor, and joints that follow a joint
+  /// that is not fixed.
+  [[nodiscard]] const AngleOrigins& angle_origins() const noexcept { return angle_origin_; }
   /// @returns the angle channel of this joint; -1: none.
   [[nodiscard]] int angle_channel(int joint) const noexcept {
     return angle_channel_[static_cast<std::size_t>(joint)];
@@ -71,6 +76,7 @@ class ChannelMap {
   JointArray max_{};
   std::array<int, kJoints> angle_channel_{};
   std::array<bool, kJoints> measured_{};  ///< a channel sets the joint
+  AngleOrigins angle_origin_{};
 };
 
 }  // namespace phalanx

@@ -91,6 +91,10 @@ void check_exoskeleton(const Exoskeleton& exoskeleton);
 [[nodiscard]] JointArray sensed_angles(const Exoskeleton& exoskeleton, const JointArray& open,
                                        const JointArray& angle) noexcept;
 
+/// @returns the origins of sensed_angles(): the device's own joints are measured, those that follow them are
+/// completed, all others are fixed.
+[[nodiscard]] AngleOrigins sensed_origins(const Exoskeleton& exoskeleton) noexcept;
+
 /// @returns the followers of a device file.
 [[nodiscard]] JointFollowers followers_of(const Exoskeleton& exoskeleton);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "phalanx/hand/angle_origin.h"
 #include "phalanx/hand/hand_parameters.h"
 #include "phalanx/hand/joints.h"
 
@@ -18,6 +19,7 @@ namespace phalanx {
 struct Motion {
   std::vector<double> time_s;     ///< times of the keys [s]; the first may have any value
   std::vector<JointArray> angle;  ///< one per key [rad]
+  AngleOrigins angle_origin{};    ///< for each joint, the same at all keys
 
   /// @returns the time from the first key to the last [s].
   [[nodiscard]] double duration() const noexcept { return time_s.back() - time_s.front(); }

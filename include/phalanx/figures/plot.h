@@ -18,6 +18,7 @@ struct TraceTick {
   JointArray torque{};                        ///< [Nm]
   JointArray hcp_angle{};                     ///< [rad]
   JointArray gdp_angle{};                     ///< [rad]
+  AngleOrigins angle_origin{};                ///< of hcp_angle
 };
 
 /// Curves of a run, in the order of its ticks. They grow by 0.8 kB a tick. Not real-time.
@@ -36,7 +37,8 @@ struct PlotText {
 /// Draws three panels over one time axis, 180 mm wide:
 ///   forces [N]     of the segments that touched (law dashed, sent solid)
 ///   torques [Nm]   of the joints that carried any
-///   angles [deg]   of the joints that moved most (measured, HCP, dashed; displayed, GDP, solid)
+///   angles [deg]   of the joints that moved most (measured, HCP, dashed; displayed, GDP, solid). The legend
+///                  marks joints that are completed, by the origin in the last tick.
 /// Of more than eight curves (angles: six), the largest are drawn and the legend states it. Long runs are
 /// thinned to the resolution of the width, keeping every extreme value.
 /// @throws std::invalid_argument if `trace` is empty.

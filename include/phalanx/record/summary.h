@@ -22,6 +22,7 @@ struct Summary {
   int hand_triangles = 0;
   int object_triangles = 0;
   StepTimes step_us;
+  AngleOrigins angle_origin{};                           ///< of the joint angles
   std::array<std::uint64_t, kSegments> contact_ticks{};  ///< ticks with a contact record
   std::array<double, kSegments> peak_force{};            ///< largest magnitude sent [N]
   std::array<double, kSegments> peak_depth{};            ///< [m]

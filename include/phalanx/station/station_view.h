@@ -61,6 +61,7 @@ struct FaultReport {
   std::vector<DeviceSample> samples;
   std::vector<StepRecord> steps;
   LinkStatistics link;
+  AngleOrigins angle_origin{};  ///< of StepRecord::angle
 };
 
 }  // namespace phalanx

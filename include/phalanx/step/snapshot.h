@@ -10,6 +10,7 @@
 #include "phalanx/core/math.h"
 #include "phalanx/core/status.h"
 #include "phalanx/force/local_wall.h"
+#include "phalanx/hand/angle_origin.h"
 #include "phalanx/hand/joints.h"
 
 namespace phalanx {
@@ -28,11 +29,12 @@ using DigitArray = std::array<double, kDigits>;
 /// Measurement of the device at one tick.
 struct Sample {
   double time_s = 0.0;  ///< strictly increasing [s]
-  JointArray angle{};   ///< measured joint angles [rad]
+  JointArray angle{};   ///< joint angles [rad]
   /// Optional channels (S1 fig. 2), NaN where the device has no sensor. They are copied to the snapshot and
   /// do not affect the command.
   JointArray measured_torque = not_measured<JointArray>();  ///< at the joints [Nm]
   DigitArray measured_force = not_measured<DigitArray>();   ///< magnitude at each digit's tip [N]
+  AngleOrigins angle_origin{};  ///< of `angle`. It is copied to the snapshot and does not affect the command.
 };
 
 /// Contact of one segment at one tick; world frame W, SI.
@@ -52,12 +54,14 @@ struct SegmentSnapshot {
   double oscillation_swing = 0.0;      ///< last full swing from peak to peak [N]; 0 while not oscillating
 };
 
-/// Result of one step. HCP is the hand at the measured angles, GDP the shown hand.
+/// Result of one step. HCP is the hand at the sample's angles, GDP the shown hand.
 struct Snapshot {
   std::uint64_t tick = 0;
   double time_s = 0.0;  ///< time of the last used sample [s]
   Status status = Status::kOk;
   JointArray hcp_angle{};  ///< [rad]; also q_ref of the walls
+  /// Origin of each `hcp_angle`, from the last sample. Only measured angles may be scored.
+  AngleOrigins angle_origin{};
   /// Digits with Status::kStartInside: they give no force until clear.
   std::array<bool, kDigits> started_inside{};
   JointArray gdp_angle{};  ///< [rad]
