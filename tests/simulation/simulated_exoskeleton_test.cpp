@@ -52,6 +52,12 @@ TEST(SimulatedExoskeleton, ShowsTheOpenHandAndWhatFollowsWhereItHasNoSensor) {
   EXPECT_DOUBLE_EQ(q[at(11)], 0.11 + (0.3 - 0.07));
   EXPECT_DOUBLE_EQ(q[at(16)], 0.16 + 0.5 * (0.3 - 0.04));  // little
   EXPECT_DOUBLE_EQ(q[at(18)], 0.18 + 0.5 * (0.4 - 0.06));
+
+  const AngleOrigins& origin = device.sample().angle_origin;
+  for (const int j : {kMcp, kPip}) EXPECT_EQ(origin[at(j)], AngleOrigin::kMeasured);
+  for (const int j : {kOtherJoint, 8, 10, 11, 16, 18, 19})
+    EXPECT_EQ(origin[at(j)], AngleOrigin::kCompleted) << j;
+  for (const int j : {0, 3, 5, 9, 12, 15, 17}) EXPECT_EQ(origin[at(j)], AngleOrigin::kFixed) << j;
 }
 
 TEST(SimulatedExoskeleton, StampsEachSampleWithTheTimeOfItsTick) {

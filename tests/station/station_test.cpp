@@ -253,8 +253,13 @@ TEST_F(StationTest, ASilentDeviceIsAFaultWithTheLastTwoSecondsInItsReport) {
   ASSERT_TRUE(
       until([](const StationView& view) { return view.state == SafetyState::kFault && view.at_rest; }));
   std::optional<FaultReport> report;
-  ASSERT_TRUE(
-      until([&](const StationView&) { return (report = station_->take_fault_report()).has_value(); }));
+  AngleOrigins shown{};
+  ASSERT_TRUE(until([&](const StationView& view) {
+    shown = view.snapshot.angle_origin;
+    return (report = station_->take_fault_report()).has_value();
+  }));
+  EXPECT_EQ(report->angle_origin, shown);
+  EXPECT_NE(report->angle_origin, AngleOrigins{}) << "the device copies digits that it does not have";
   EXPECT_EQ(report->event.fault, Fault::kNoSample);
   EXPECT_EQ(report->samples.size(), 2000U);
   EXPECT_EQ(report->steps.size(), 400U);
