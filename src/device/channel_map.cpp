@@ -119,7 +119,8 @@ void follow_origins(std::span<const CoupledJoint> coupled, const std::array<Digi
   const auto follow_one = [&](std::size_t to, AngleOrigin of) {
     if (!measured[to]) origin[to] = of == AngleOrigin::kFixed ? AngleOrigin::kFixed : AngleOrigin::kCompleted;
   };
-  for (const CoupledJoint& joint : coupled) follow_one(idx(joint.joint), origin[idx(joint.of)]);
+  for (const CoupledJoint& joint : coupled)
+    follow_one(idx(joint.joint), joint.ratio == 0.0 ? AngleOrigin::kFixed : origin[idx(joint.of)]);
   for (int digit = 0; digit < kDigits; ++digit) {
     const DigitCopy& copy = copies[idx(digit)];
     if (copy.of < 0) continue;

@@ -131,6 +131,7 @@ Motion make_motion(const ScriptedMotion& script, const HandParameters& hand) {
   const Tremor tremor(script);
 
   Motion motion;
+  motion.angle_origin.fill(AngleOrigin::kScripted);
   const auto steps = static_cast<std::size_t>(std::ceil(total * script.key_rate_hz));
   motion.time_s.reserve(steps + 1);
   motion.angle.reserve(steps + 1);

@@ -24,6 +24,20 @@ Pose base_frame(const DigitParameters& digit) {
   return pose;
 }
 
+void check_coupling(const DigitParameters& digit, const std::string& name) {
+  const DigitCoupling& coupling = digit.coupling;
+  for (const double ratio :
+       {coupling.pronation_per_flexion, coupling.pronation_per_abduction, coupling.metacarpal_per_flexion}) {
+    if (!(std::abs(ratio) <= 1.0)) {
+      throw std::invalid_argument(name + ": a coupled rotation has the ratio " + std::to_string(ratio) +
+                                  "; it must be in -1 .. 1");
+    }
+  }
+  const double length = digit.metacarpal_axis.norm();
+  if (!(length > 1e-6 && std::isfinite(length)))
+    throw std::invalid_argument(name + ": its metacarpal's axis has no direction; give it one");
+}
+
 void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
   const std::string name = "hand '" + parameters.name + "': ";
   for (int j = 0; j < kJoints; ++j) {
@@ -46,15 +60,8 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
       finite = finite && std::isfinite(row.a) && std::isfinite(row.alpha) && std::isfinite(row.d) &&
                std::isfinite(row.theta);
     }
-    const DigitCoupling& coupling = digit.coupling;
-    finite = finite && std::isfinite(coupling.pronation_per_flexion) &&
-             std::isfinite(coupling.pronation_per_abduction) &&
-             std::isfinite(coupling.metacarpal_per_flexion) && digit.metacarpal_base.allFinite() &&
-             digit.metacarpal_axis.allFinite();
-    if (finite && !(digit.metacarpal_axis.norm() > 1e-6)) {
-      throw std::invalid_argument(name + "digit " + std::string(digit_name(d)) +
-                                  ": its metacarpal's axis is zero; give it a direction");
-    }
+    finite = finite && digit.metacarpal_base.allFinite();
+    check_coupling(digit, name + "digit " + std::string(digit_name(d)));
     if (!finite || digit.distal.cross(digit.dorsal).norm() < 1e-6) {
       throw std::invalid_argument(
           name + "digit " + std::string(digit_name(d)) +

@@ -93,6 +93,7 @@ SceneDescription scene_with_ball(double diameter, const Vec3& centre) {
   SceneDescription scene;
   scene.name = "s1-fig8";
   scene.hand.mesh_source = HandMeshSource::kCapsules;  // the ball is placed against capsules
+  scene.hand.coupling = HandCoupling::kNone;           // as S1's digits
   ObjectDescription ball;
   ball.kind = "sphere";
   ball.diameter = diameter;
@@ -183,6 +184,7 @@ std::vector<Fig8Situation> run_s1_fig8() {
   SceneDescription scene;
   scene.name = "s1-fig8";
   scene.hand.mesh_source = HandMeshSource::kCapsules;  // the ball is placed against capsules
+  scene.hand.coupling = HandCoupling::kNone;           // as S1's digits
   const auto empty_handed = std::make_unique<HapticModel>(build_model(scene));
   std::vector<Fig8Situation> situations;
   for (const Plan& plan : plans()) situations.push_back(play(plan, *empty_handed));

@@ -41,6 +41,8 @@ JointMapping read_joint(TomlTable table, int joint) {
     if (table.has("computed")) table.fail("computed", "belongs to a source; leave it out");
     entry.completed_from = read_joint_name(table, "completed_from");
   } else {
+    if (!table.has("source"))
+      table.fail("source", "is missing; name a column or a sensor, or use completed_from");
     entry.source = table.text("source");
     if (entry.source.empty()) table.fail("source", "name a column or a sensor");
     if (table.has("computed")) entry.computed = table.flag("computed");

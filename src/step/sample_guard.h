@@ -59,9 +59,9 @@ class SampleGuard {
   bool started_ = false;
 };
 
-/// Copies the optional channels and the angles' origins of a sample to the snapshot. A channel becomes NaN if the sample has none, if
-/// its value is not finite, or if the sample's time was refused (kTimeNotIncreasing). Real-time: O(1), no
-/// allocation, lock, throw or I/O.
+/// Copies the optional channels and the angles' origins of a sample to the snapshot. A channel becomes NaN if
+/// the sample has none, if its value is not finite, or if the sample's time was refused (kTimeNotIncreasing).
+/// Real-time: O(1), no allocation, lock, throw or I/O.
 void pass_measured(const Sample& sample, Status accepted, Snapshot& snapshot) noexcept;
 
 }  // namespace phalanx

@@ -31,6 +31,31 @@ TEST(CliHand, ShowSaysSizesRangesAndHowFarTheyAreFromThePublishedMeans) {
   EXPECT_THAT(result.out, ::testing::ContainsRegex("index_pip_flexion +15\\.0 +60\\.0 +15\\.0"));
 }
 
+// The thumb's flexion goes from -18 to 35 degrees; half of it, backwards, is 9 to -17.5.
+TEST(CliHand, ShowListsCoupledRotationsUnlessNoneAreWanted) {
+  const TemporaryFolder folder;
+  std::string hand = read_file(PHALANX_SOURCE_DIR "/assets/hands/adult.toml");
+  hand.replace(hand.find("[thumb]\n"), 8, "[thumb]\npronation = { per_flexion = -0.5 }\n");
+  hand.resize(hand.find("[meshes]"));
+  write_file(folder / "coupled.toml", hand);
+  const auto shown = run_program(folder, "hand show --hand coupled.toml");
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.out,
+              ::testing::ContainsRegex("thumb pronation +thumb_cmc_flexion +-0\\.500 +9\\.0 +-17\\.5"));
+  const auto none = run_program(folder, "hand show --hand coupled.toml --coupling none");
+  ASSERT_EQ(none.exit_code, 0) << none.err;
+  EXPECT_THAT(none.out, ::testing::Not(HasSubstr("coupled rotation")));
+  ASSERT_EQ(run_program(folder, "hand export --hand coupled.toml --format urdf --out with.urdf").exit_code,
+            0);
+  ASSERT_EQ(
+      run_program(folder, "hand export --hand coupled.toml --coupling none --format urdf --out without.urdf")
+          .exit_code,
+      0);
+  EXPECT_THAT(read_file(folder / "with.urdf"), HasSubstr("<mimic joint=\"thumb_cmc_flexion\""));
+  EXPECT_THAT(read_file(folder / "without.urdf"), ::testing::Not(HasSubstr("mimic")));
+  EXPECT_EQ(run_program(folder, "hand show --coupling some").exit_code, 2);
+}
+
 TEST(CliHand, ExportWritesTheHandAndItsMeshesIntoAFolderWithASpace) {
   const TemporaryFolder folder;
   const auto result = run_program(folder, "hand export --profile large-man --format urdf --out 'my hand'");

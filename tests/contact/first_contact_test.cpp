@@ -44,10 +44,12 @@ void aim_anywhere(Random& random, MovingDigit& digit, double length) {
 TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
   std::cout << "seed 21\n";
   Random random(21);
-  MovingDigit digit(ball_in_reach(300));
+  MovingDigit plain(ball_in_reach(300));
+  MovingDigit with_coupling(ball_in_reach(300), true);
   int met = 0;
   int most = 0;
   for (int n = 0; n < 40; ++n) {
+    MovingDigit& digit = n % 4 < 2 ? plain : with_coupling;
     aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.1);
     const DigitPose start = digit.pose(0.0);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
@@ -76,9 +78,11 @@ TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
 TEST(PairList, NoPairGoesBelowTheFloorBeforeItIsDue) {
   std::cout << "seed 22\n";
   Random random(22);
-  MovingDigit digit(ball_in_reach(300));
+  MovingDigit plain(ball_in_reach(300));
+  MovingDigit with_coupling(ball_in_reach(300), true);
   int stepped = 0;
   for (int n = 0; n < 60; ++n) {
+    MovingDigit& digit = n % 4 < 2 ? plain : with_coupling;
     aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.1);
     const DigitPose start = digit.pose(0.0);
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
@@ -159,11 +163,13 @@ TEST(FirstContact, WithoutEvaluationsLeftTheDigitStandsStillAsAWholeAndSaysSo) {
 
 TEST(FirstContact, IsTheFirstPlaceWithinTheMarginThatCloses) {
   std::cout << "seed 23\n";
-  MovingDigit digit(ball_in_reach(300));
-  for (const double length : {1.0, 0.1}) {
-    const Stops found = check_stops(23, digit, 40, test::kSanitized ? 1 : 8, length);
-    EXPECT_GT(found.stops, 3);
-    EXPECT_EQ(found.exhausted, 0);
+  for (const bool with_coupling : {false, true}) {
+    MovingDigit digit(ball_in_reach(300), with_coupling);
+    for (const double length : {1.0, 0.1}) {
+      const Stops found = check_stops(23, digit, with_coupling ? 20 : 40, test::kSanitized ? 1 : 8, length);
+      EXPECT_GT(found.stops, with_coupling ? 1 : 3);
+      EXPECT_EQ(found.exhausted, 0);
+    }
   }
 }
 
@@ -175,14 +181,18 @@ TEST(SoakFirstContact, IsTheFirstPlaceWithinTheMarginThatCloses) {
       test::moved(test::meridians(200), test::at(0.0, -0.07, -0.05)),
       test::moved(test::soup(shapes, 60), test::at(0.0, -0.13, -0.05))};
   for (const TriangleMesh& object : objects) {
-    MovingDigit digit(object);
+    MovingDigit plain(object);
+    MovingDigit with_coupling(object, true);
     // The independent distance looks at every pair of triangles, so the number of ways falls with the number
     // of triangles.
     const int ways = std::clamp(24'000 / static_cast<int>(object.triangles.size()), 10, 300);
     int stops = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       std::cout << "seed " << seed << ", " << ways << " ways\n";
-      for (const double length : {1.0, 0.1, 0.01}) stops += check_stops(seed, digit, ways, 32, length).stops;
+      for (const double length : {1.0, 0.1, 0.01}) {
+        MovingDigit& digit = seed % 2 == 1 ? plain : with_coupling;
+        stops += check_stops(seed, digit, ways, 32, length).stops;
+      }
     }
     EXPECT_GT(stops, 3) << object.triangles.size() << " triangles";
   }

@@ -151,6 +151,45 @@ TEST(SegmentMotion, OfTwoJointsTheBoundsAreTheSumsByHand) {
   EXPECT_NEAR(motion.jerk, far + (27.0 - 1.0) * near, 1e-15);
 }
 
+// One joint turns by 1 and two axes follow it: the metacarpal's by 0.5, then the joint, then pronation by -1. V is
+// 0.5, 1.5 and 2.5. The metacarpal's axis is 50 mm before the knuckle; pronation's reach is from the next joint.
+TEST(SegmentMotion, OfCoupledAxesTheBoundsAreTheSumsByHand) {
+  HandParameters parameters = test::simple_parameters();
+  DigitParameters& digit = parameters.digits[test::kIndex];
+  digit.coupling = {.pronation_per_flexion = -1.0, .metacarpal_per_flexion = 0.5};
+  digit.metacarpal_base = digit.base + Vec3(0.0, 0.0, 0.050);
+  const HandModel hand = make_hand_model(parameters, Handedness::kRight, Pose{}, 800);
+  DigitPose pose;
+  hand.digit_pose(test::kIndex, {}, pose);
+  const DigitAngles rate{1.0, 0.0, 0.0, 0.0};
+  const SegmentMotion motion = segment_motion(hand, test::kIndex, pose, rate, 1);
+  const double own = hand.reach(test::kIndex, axis_of_joint(2), 1);
+  const double flexion = own + test::kLength1;
+  const double metacarpal = flexion + 0.050;
+  EXPECT_NEAR(motion.speed, 0.5 * metacarpal + flexion + own, 1e-15);
+  EXPECT_NEAR(motion.speed, segment_speed(hand, test::kIndex, rate, 1), 1e-15);
+  EXPECT_NEAR(motion.bend, 0.25 * metacarpal + (2.25 - 0.25) * flexion + (6.25 - 2.25) * own, 1e-15);
+  EXPECT_NEAR(motion.jerk, 0.125 * metacarpal + (3.375 - 0.125) * flexion + (15.625 - 3.375) * own, 1e-15);
+  // Flexion and the metacarpal turn about -X; pronation's axis is +Z, from tip to joint, and it turns back.
+  EXPECT_LT((motion.angular - Vec3(-1.5, 0.0, -1.0)).norm(), 1e-15);
+}
+
+// Abduction by 1 drives pronation by 1 alone: V is 1, then 2.
+TEST(SegmentMotion, PronationByAbductionIsInTheBoundsByHand) {
+  HandParameters parameters = test::simple_parameters();
+  parameters.digits[test::kIndex].coupling.pronation_per_abduction = 1.0;
+  const HandModel hand = make_hand_model(parameters, Handedness::kRight, Pose{}, 800);
+  DigitPose pose;
+  hand.digit_pose(test::kIndex, {}, pose);
+  const SegmentMotion motion = segment_motion(hand, test::kIndex, pose, {0.0, 1.0, 0.0, 0.0}, 0);
+  const double along = hand.reach(test::kIndex, axis_of_joint(1), 0);
+  const double beside = hand.reach(test::kIndex, kPronationAxis, 0);
+  EXPECT_LT(beside, 0.2 * along);
+  EXPECT_NEAR(motion.speed, along + beside, 1e-15);
+  EXPECT_NEAR(motion.bend, along + 3.0 * beside, 1e-15);
+  EXPECT_NEAR(motion.jerk, along + 7.0 * beside, 1e-15);
+}
+
 TEST(SegmentMotion, SpeedAndJerkBoundEveryPointAllAlongTheWay) {
   double most_speed = 0.0;
   double most_jerk = 0.0;

@@ -283,11 +283,12 @@ TEST(DigitCoupling, IsRefusedIfItIsNotFiniteOrHasNoAxis) {
     }
   };
   const double nan = std::nan("");
-  refused([&](DigitParameters& d) { d.coupling.pronation_per_flexion = nan; }, "not finite");
-  refused([&](DigitParameters& d) { d.coupling.pronation_per_abduction = nan; }, "not finite");
-  refused([&](DigitParameters& d) { d.coupling.metacarpal_per_flexion = nan; }, "not finite");
+  refused([&](DigitParameters& d) { d.coupling.pronation_per_flexion = nan; }, "ratio nan");
+  refused([&](DigitParameters& d) { d.coupling.pronation_per_abduction = -1.5; }, "ratio -1.5");
+  refused([&](DigitParameters& d) { d.coupling.metacarpal_per_flexion = 1.01; }, "ratio 1.01");
   refused([&](DigitParameters& d) { d.metacarpal_base.y() = nan; }, "not finite");
-  refused([&](DigitParameters& d) { d.metacarpal_axis.z() = nan; }, "not finite");
+  refused([&](DigitParameters& d) { d.metacarpal_axis.z() = nan; }, "axis");
+  refused([](DigitParameters& d) { d.metacarpal_axis.z() = 1e200; }, "axis");
   refused([](DigitParameters& d) { d.metacarpal_axis = Vec3::Zero(); }, "axis");
 }
 

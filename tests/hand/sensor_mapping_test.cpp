@@ -154,8 +154,10 @@ TEST(SensorMapping, ACompletionFollowsAMeasuredJointOfItsDigit) {
               HasSubstr("gain"));
 }
 
-TEST(AngleOrigin, IsMeasuredUnlessStated) {
-  EXPECT_EQ(AngleOrigins{}[3], AngleOrigin::kMeasured);
+TEST(AngleOrigin, IsUnknownUnlessStated) {
+  EXPECT_EQ(AngleOrigins{}[3], AngleOrigin::kUnknown);
+  EXPECT_EQ(angle_origin_name(AngleOrigin::kUnknown), "unknown");
+  EXPECT_EQ(angle_origin_name(AngleOrigin::kScripted), "scripted");
   EXPECT_EQ(angle_origin_name(AngleOrigin::kMeasured), "measured");
   EXPECT_EQ(angle_origin_name(AngleOrigin::kCompleted), "completed");
   EXPECT_EQ(angle_origin_name(AngleOrigin::kFixed), "fixed");

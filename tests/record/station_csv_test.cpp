@@ -199,7 +199,7 @@ TEST(StationCsv, EveryColumnOfAFaultReportIsInTheUnitOfItsName) {
   expect_numbered_link(json["link"]);
   EXPECT_FALSE(json["made"]["commit"].get<std::string>().empty());
   EXPECT_EQ(json["angle_origin"]["index_dip_flexion"], "completed");
-  EXPECT_EQ(json["angle_origin"]["index_pip_flexion"], "measured");
+  EXPECT_EQ(json["angle_origin"]["index_pip_flexion"], "unknown") << "not stated";
   EXPECT_EQ(json.size(), 13U) << "a field without a check";
 
   report.event.from_device = false;
@@ -260,7 +260,7 @@ TEST(StationCsv, EveryNumberOfARunsSummaryIsInTheUnitOfItsName) {
   expect_numbered_link(json["link"]);
   EXPECT_FALSE(json["made"]["commit"].get<std::string>().empty());
   EXPECT_EQ(json["angle_origin"]["index_dip_flexion"], "fixed");
-  EXPECT_EQ(json["angle_origin"]["index_pip_flexion"], "measured");
+  EXPECT_EQ(json["angle_origin"]["index_pip_flexion"], "unknown") << "not stated";
   EXPECT_EQ(json.size(), 15U) << "a field without a check";
 }
 

@@ -31,9 +31,12 @@ test::Setup floor_model() {
                      ObjectModel(moved(make_box(Vec3(0.06, 0.02, 0.3), 12), at(0.0, -0.030, 0.0))));
 }
 /// A ball under the proximal phalanx, which the whole finger can close around.
-test::Setup ball_model() {
-  return test::Setup(test::simple_hand(),
-                     ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
+test::Setup ball_before(HandModel hand) {
+  return test::Setup(std::move(hand), ObjectModel(moved(make_sphere(0.03, 2000), at(0.0, -0.028, -0.028))));
+}
+test::Setup ball_model() { return ball_before(test::simple_hand()); }
+test::Setup coupled_ball_model() {
+  return ball_before(make_hand_model(test::coupled(test::simple_parameters()), Handedness::kRight, {}, 2250));
 }
 
 TEST(Step, FreeMotionGivesNoTorqueAnywhere) {
@@ -354,8 +357,10 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
 }
 
 TEST(Step, AllocatesNothing) {
-  for (const GdpMethod method : {GdpMethod::kContinuous, GdpMethod::kTrajectory}) {
-    test::Setup model = ball_model();
+  for (const auto& [method, with_coupling] :
+       {std::pair{GdpMethod::kContinuous, false}, std::pair{GdpMethod::kTrajectory, false},
+        std::pair{GdpMethod::kContinuous, true}}) {
+    test::Setup model = with_coupling ? coupled_ball_model() : ball_model();
     model.parameters.contact.method = method;
     HapticState state(model, model.parameters);
     double time = 0.0;

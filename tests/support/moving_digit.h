@@ -17,10 +17,12 @@ inline constexpr double kMargin = 50e-6;
 
 class MovingDigit {
  public:
-  explicit MovingDigit(const TriangleMesh& object) : MovingDigit(object, object) {}
+  explicit MovingDigit(const TriangleMesh& object, bool with_coupling = false)
+      : MovingDigit(object, object, with_coupling) {}
   /// @param once  the object without triangles that are there more than once: all that is measured
-  MovingDigit(TriangleMesh object, const TriangleMesh& once)
-      : hand_(simple_hand(Handedness::kRight, {}, 800)),
+  MovingDigit(TriangleMesh object, const TriangleMesh& once, bool with_coupling = false)
+      : hand_(make_hand_model(with_coupling ? coupled(simple_parameters()) : simple_parameters(),
+                              Handedness::kRight, {}, 800)),
         trees_(make_segment_trees(hand_)),
         object_(std::move(object)),
         exact_object_(corners_of(once)),

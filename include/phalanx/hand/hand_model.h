@@ -61,7 +61,8 @@ class HandModel {
   /// @param parameters  a right hand's numbers; `handedness` mirrors them in H's x = 0 plane
   /// @param X_WH        pose of the hand frame (the wrist) in the world; fixed
   /// @param meshes      in the segments' frames, already of the right handedness
-  /// @throws std::invalid_argument if a number is not finite, a limit is empty, or a mesh is empty.
+  /// @throws std::invalid_argument if a number is not finite, a limit or a mesh is empty, a coupling's ratio is
+  /// beyond -1 .. 1, or a metacarpal's axis has no direction.
   HandModel(HandParameters parameters, Handedness handedness, const Pose& X_WH, SegmentMeshes meshes);
 
   [[nodiscard]] const HandParameters& parameters() const noexcept { return parameters_; }
@@ -124,8 +125,8 @@ class HandModel {
 };
 
 /// Columns of the geometric Jacobian of a point fixed to a digit's segment:  v = sum_i column_i dq_i/dt.
-/// Columns of joints that do not move the segment are zero. A coupled axis adds its column to those of the joints
-/// that drive it, times the coupling's coefficient.
+/// Columns of joints that do not move the segment are zero. A coupled axis adds its column to those of the
+/// joints that drive it, times the coupling's coefficient.
 struct PointJacobian {
   std::array<Vec3, kJointsPerDigit> linear;   ///< sum of axis x (p - centre) [m]
   std::array<Vec3, kJointsPerDigit> angular;  ///< sum of axis [-]

@@ -45,7 +45,7 @@ struct DigitParameters {
   /// Joints in the order flexion, abduction, hinge, hinge. The last row's a is the distal bone's length.
   std::array<DhRow, kJointsPerDigit> dh;
   DigitCoupling coupling;
-  /// Centre [m] and direction, in H, of the axis about which the coupling turns the metacarpal bone (right-handed).
+  /// Centre [m] and direction, in H, of the axis about which the coupling turns the metacarpal (right-handed).
   Vec3 metacarpal_base = Vec3::Zero();
   Vec3 metacarpal_axis = -Vec3::UnitX();
 

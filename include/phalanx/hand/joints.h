@@ -52,9 +52,9 @@ using DigitAngles = std::array<double, kJointsPerDigit>;
 /// Returns how many of a digit's joints, counted from the palm, move its segment k: 2, 3 or 4.
 [[nodiscard]] constexpr int joints_that_move(int k) noexcept { return k + 2; }
 
-/// A digit's chain turns about six axes, numbered from palm to tip: the metacarpal's, flexion, abduction, pronation,
-/// hinge, hinge. Four are its joints. The metacarpal's and pronation are coupled: they follow from the joints'
-/// angles (DigitCoupling).
+/// A digit's chain turns about six axes, numbered from palm to tip: the metacarpal's, flexion, abduction,
+/// pronation, hinge, hinge. Four are its joints. The metacarpal's and pronation are coupled: they follow from
+/// the joints' angles (DigitCoupling).
 inline constexpr int kAxesPerDigit = 6;
 inline constexpr int kMetacarpalAxis = 0;
 inline constexpr int kPronationAxis = 3;

@@ -43,8 +43,8 @@ struct HandFile {
 /// @param name_or_path  a name in assets/hands ("adult") or a path (contains `/` or ends with .toml),
 /// @throws SceneError naming file, line, key, value and remedy. It refuses a missing file, broken TOML, an
 /// unknown, missing or misplaced key, and a number that is not finite or out of range. It also refuses an
-/// empty range of motion, an open angle outside it, and `distal` parallel to `dorsal`. Set-up only.
-/// angle outside it, or `distal` parallel to `dorsal`. Set-up only.
+/// empty range of motion, an open angle outside it, `distal` parallel to `dorsal`, and a coupling without its
+/// ratio, base or axis. Set-up only.
 [[nodiscard]] HandParameters load_hand_file(const std::string& name_or_path,
                                             const std::filesystem::path& base = ".");
 

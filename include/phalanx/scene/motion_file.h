@@ -15,7 +15,8 @@ namespace phalanx {
 
 /// Reads a motion. Without a mapping, every column but `time_s` must be a joint's name. With a mapping, the
 /// columns that it names must exist, and others are ignored. Completed joints follow. Joints without a column
-/// stay at `open_angle`. Motion::angle_origin states which joints are measured. Linear in the file's size. Set-up only.
+/// stay at `open_angle`. Motion::angle_origin states which joints are measured. Linear in the file's size.
+/// Set-up only.
 /// @param trial  number of the trial, counted from 1, in a file whose time runs backwards: it holds several
 /// trials. Without it, such a file is refused, and the message states how many there are. Of the rows outside
 /// the trial, only the time is read.

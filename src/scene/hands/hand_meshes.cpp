@@ -94,30 +94,31 @@ struct Source {
   std::optional<HandMeshFiles> files;  ///< none: capsules
 };
 
-void remove_coupling(HandParameters& hand) {
-  for (DigitParameters& digit : hand.digits) digit.coupling = {};
+/// Reads the hand file of a scene, without its coupling if the scene wants none.
+HandFile read_file(const HandDescription& hand, const std::string& name,
+                   const std::filesystem::path& folder) {
+  HandFile file = read_hand_file(name, folder);
+  if (hand.coupling == HandCoupling::kNone)
+    for (DigitParameters& digit : file.parameters.digits) digit.coupling = {};
+  return file;
 }
 
 Source open(const HandDescription& hand) {
   Source source;
   HandFile file;
   if (hand.profile.empty()) {
-    file = read_hand_file(hand.file);
+    file = read_file(hand, hand.file, ".");
     source.handedness = hand.handedness;
     source.parameters = file.parameters;
   } else {
     const Profile profile = load_profile(hand.profile);
-    file = read_hand_file(profile.hand, profile.folder);
+    file = read_file(hand, profile.hand, profile.folder);
     FittedHand fitted = fit_profile(profile, file.parameters);
     source.handedness = profile.handedness;
     source.parameters = std::move(fitted.parameters);
     source.fit = fitted.fit;
   }
   source.base = std::move(file.parameters);
-  if (hand.coupling == HandCoupling::kNone) {
-    remove_coupling(source.base);
-    remove_coupling(source.parameters);
-  }
   if (hand.mesh_source == HandMeshSource::kFile) source.files = std::move(file.meshes);
   if (source.files && !hand.triangles_stated_at.empty()) {
     throw SceneError(

@@ -80,20 +80,22 @@ class Writer {
       line(depth, "<body name=\"{}\" pos=\"{}\" quat=\"{} {} {} {}\">", segment_name(segment), exact(X.p),
            exact(q.w()), exact(q.x()), exact(q.y()), exact(q.z()));
       // MuJoCo applies a body's joints in their order, each in the frame that the earlier ones have turned.
-      Pose X_at;  // of the hinge's frame in the parent's
-      for (const Hinge& hinge : hinges) {
-        X_at = X_at * hinge.X_parent_child;
-        const Pose X_child_at = X.inverse() * X_at;
-        joint(hinge, depth + 1, X_child_at.p, X_child_at.R * hinge.axis_child);
+      // Their frames have the body's directions at angle 0: only their places differ.
+      Vec3 at = Vec3::Zero();
+      std::vector<Vec3> places(hinges.size(), at);
+      for (std::size_t i = hinges.size() - 1; i > 0; --i) {
+        at = at - hinges[i].X_parent_child.p;
+        places[i - 1] = at;
       }
+      for (std::size_t i = 0; i < hinges.size(); ++i) joint(hinges[i], depth + 1, places[i]);
       contents(segment, depth + 1);
     }
     for (int k = kSegmentsPerDigit - 1; k >= 0; --k) line(3 + k, "</body>");
   }
 
-  void joint(const Hinge& hinge, int depth, const Vec3& pos, const Vec3& axis) {
+  void joint(const Hinge& hinge, int depth, const Vec3& pos) {
     line(depth, "<joint name=\"{}\" type=\"hinge\" pos=\"{}\" axis=\"{}\" limited=\"true\" range=\"{} {}\"/>",
-         hinge.name, exact(pos), exact(axis), exact(hinge.min_angle), exact(hinge.max_angle));
+         hinge.name, exact(pos), exact(hinge.axis_child), exact(hinge.min_angle), exact(hinge.max_angle));
   }
 
   /// Writes that each coupled hinge's angle is its ratio times its joint's.

@@ -43,8 +43,7 @@ void add_general_keys(std::vector<SceneKey>& keys) {
   new_station.choice(
       "hand.coupling", {"file", "none"}, "file",
       "rotations that follow from the joints' angles (the thumb's pronation, the palm's arch): those of the "
-      "hand "
-      "file, or none",
+      "hand file, or none",
       [](T t, V v) { t.scene.hand.coupling = v.integer == 0 ? HandCoupling::kFile : HandCoupling::kNone; });
   new_station.choice(
       "hand.meshes", {"file", "capsules"}, "file",

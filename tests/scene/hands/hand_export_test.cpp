@@ -146,6 +146,16 @@ TEST_P(HandExport, AsUrdfHasOurForwardKinematicsAndLimitsInUrdfdom) {
     EXPECT_EQ(joint->limits->effort, LimitParameters{}.joint_torque);
     EXPECT_EQ(joint->limits->velocity, LimitParameters{}.joint_speed);
   }
+  for (const auto& [name, joint] : robot->joints_) {
+    if (!joint->mimic) continue;
+    const auto of = static_cast<std::size_t>(find_joint(joint->mimic->joint_name).value());
+    const double ratio = joint->mimic->multiplier;
+    const auto [least, largest] =
+        std::minmax({ratio * hand_.parameters.min_angle[of], ratio * hand_.parameters.max_angle[of]});
+    EXPECT_EQ(joint->limits->lower, least) << name;
+    EXPECT_EQ(joint->limits->upper, largest) << name;
+    EXPECT_EQ(joint->limits->velocity, std::abs(ratio) * LimitParameters{}.joint_speed) << name;
+  }
   Difference worst;
   at_random_angles([&](const JointArray& q, const auto& pose_of) {
     for (int s = 0; s < kSegments; ++s)
@@ -240,6 +250,17 @@ TEST_P(HandExport, AsMjcfHasOurForwardKinematicsAndLimitsInMujoco) {
   ASSERT_TRUE(mujoco.model());
   EXPECT_EQ(mujoco.model()->njnt, kJoints + coupled_hinges());
   EXPECT_EQ(mujoco.model()->neq, coupled_hinges());
+  for (int e = 0; e < mujoco.model()->neq; ++e) {
+    EXPECT_EQ(mujoco.model()->eq_type[e], mjEQ_JOINT);
+    const mjtNum* coefficient = mujoco.model()->eq_data + mjNEQDATA * e;
+    for (const int other : {0, 2, 3, 4}) EXPECT_EQ(coefficient[other], 0.0) << "proportional";
+    const int coupled = mujoco.model()->eq_obj1id[e];
+    const int joint = mujoco.model()->eq_obj2id[e];
+    const mjtNum* range = mujoco.model()->jnt_range + 2 * joint;
+    const auto [least, largest] = std::minmax({coefficient[1] * range[0], coefficient[1] * range[1]});
+    EXPECT_EQ(mujoco.model()->jnt_range[2 * coupled], least);
+    EXPECT_EQ(mujoco.model()->jnt_range[2 * coupled + 1], largest);
+  }
   EXPECT_EQ(mujoco.model()->nbody, kSegments + 1);
   for (int j = 0; j < kJoints; ++j) {
     const int id = mujoco.id(mjOBJ_JOINT, joint_name(j));

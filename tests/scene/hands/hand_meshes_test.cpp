@@ -176,6 +176,14 @@ TEST(HandMeshes, OfASceneWithoutCouplingHaveTheFourJointsAlone) {
       .digit_pose(0, {0.5, 0.0, 0.0, 0.0}, plain);
   EXPECT_EQ(thumb("hand.coupling = \"none\""), plain.segment[0].R);
   EXPECT_EQ(thumb("hand.coupling = \"file\""), thumb(""));
+  const std::string profile = (folder.path() / "patient.toml").string();
+  std::ofstream(profile) << "name = \"patient\"\nhandedness = \"right\"\nhand = \"" << file << "\"\n";
+  const auto coupling_of_patient = [&](const std::string& more) {
+    return build_model(parse_scene("hand.profile = \"" + profile + "\"\n" + more, "test.toml", "/"))
+        .hand.coupling(0);
+  };
+  EXPECT_EQ(coupling_of_patient(""), (DigitCoupling{.pronation_per_flexion = 0.3}));
+  EXPECT_EQ(coupling_of_patient("hand.coupling = \"none\""), DigitCoupling{});
   const Mat3 turn = thumb("") * plain.segment[0].R.transpose();
   EXPECT_NEAR(turn.trace(), 1.0 + 2.0 * std::cos(0.3 * 0.5), 1e-12) << "by 0.3 of the flexion";
   EXPECT_LT((turn * plain.segment[0].R.col(2) - plain.segment[0].R.col(2)).norm(), 1e-12) << "about the bone";
