@@ -201,11 +201,13 @@ TEST(SummaryJson, MarksJointsThatAreNotMeasured) {
   Snapshot snapshot;
   snapshot.angle_origin[7] = AngleOrigin::kCompleted;
   snapshot.angle_origin[5] = AngleOrigin::kFixed;
+  snapshot.angle_origin[6] = AngleOrigin::kMeasured;
   add_tick(summary, snapshot);
   const auto json = nlohmann::json::parse(summary_json(summary))["angle_origin"];
   EXPECT_EQ(json["index_dip_flexion"], "completed");
   EXPECT_EQ(json["index_mcp_abduction"], "fixed");
   EXPECT_EQ(json["index_pip_flexion"], "measured");
+  EXPECT_EQ(json["index_mcp_flexion"], "unknown");
 }
 
 // A torque of -0.08 Nm is larger than one of 0.05 Nm that comes after it, and smaller than one of 0.09 Nm.
