@@ -73,6 +73,14 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
   }
 }
 
+bool turns_metacarpal(const DigitCoupling& coupling) noexcept {
+  return coupling.metacarpal_per_flexion != 0.0;
+}
+
+bool pronates(const DigitCoupling& coupling) noexcept {
+  return coupling.pronation_per_flexion != 0.0 || coupling.pronation_per_abduction != 0.0;
+}
+
 /// Returns the reflection of vectors of H in its plane x = 0.
 Mat3 reflection() { return Vec3(-1.0, 1.0, 1.0).asDiagonal(); }
 
@@ -142,11 +150,11 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
   Vec3 y = base.R.col(1);
   Vec3 z = base.R.col(2);
   Vec3 p = base.p;
-  const AxisAngles turn = axis_angles(coupling(digit), angle);
-  const JointAxis& metacarpal = metacarpal_axis_[idx(digit)];
-  pose.axis[kMetacarpalAxis] = metacarpal;
   pose.coupling = coupling(digit);
-  if (turn[kMetacarpalAxis] != 0.0) {
+  const AxisAngles turn = axis_angles(pose.coupling, angle);
+  if (turns_metacarpal(pose.coupling)) {
+    const JointAxis& metacarpal = metacarpal_axis_[idx(digit)];
+    pose.axis[kMetacarpalAxis] = metacarpal;
     const Mat3 R = rotation_about(metacarpal.axis, turn[kMetacarpalAxis]);
     x = R * x;
     y = R * y;
@@ -169,15 +177,13 @@ void HandModel::digit_pose(int digit, const DigitAngles& angle, DigitPose& pose)
     y = joint.cos_alpha * across + joint.sin_alpha * z;
     z = joint.cos_alpha * z - joint.sin_alpha * across;
     if (i == 0) continue;
-    if (i == kAbductionJoint) {
+    if (i == kAbductionJoint && pronates(pose.coupling)) {
       pose.axis[kPronationAxis] = {-flexion * x, start};
-      if (turn[kPronationAxis] != 0.0) {
-        const double cp = std::cos(turn[kPronationAxis]);
-        const double sp = std::sin(turn[kPronationAxis]);
-        const Vec3 side = y;
-        y = cp * side - sp * z;
-        z = cp * z + sp * side;
-      }
+      const double cp = std::cos(turn[kPronationAxis]);
+      const double sp = std::sin(turn[kPronationAxis]);
+      const Vec3 side = y;
+      y = cp * side - sp * z;
+      z = cp * z + sp * side;
     }
     // The frame at the link's far end is turned into WebXR's: origin at the joint, -Z along the link, -X
     // along the flexion axis.
@@ -203,7 +209,8 @@ PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noex
     J.angular[idx(joint)] += coefficient * axis.axis;
   };
   for (int i = 0; i < joints_that_move(k); ++i) add(i, 1.0, pose.axis[idx(axis_of_joint(i))]);
-  add(0, coupling.metacarpal_per_flexion, pose.axis[kMetacarpalAxis]);
+  if (turns_metacarpal(coupling)) add(0, coupling.metacarpal_per_flexion, pose.axis[kMetacarpalAxis]);
+  if (!pronates(coupling)) return J;
   add(0, coupling.pronation_per_flexion, pose.axis[kPronationAxis]);
   add(kAbductionJoint, coupling.pronation_per_abduction, pose.axis[kPronationAxis]);
   return J;
@@ -217,9 +224,9 @@ void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const
   };
   for (int i = 0; i < joints_that_move(k); ++i) torque[idx(joint_index(digit, i))] += about(axis_of_joint(i));
   const DigitCoupling& coupling = pose.coupling;
-  if (coupling.metacarpal_per_flexion != 0.0)
+  if (turns_metacarpal(coupling))
     torque[idx(joint_index(digit, 0))] += coupling.metacarpal_per_flexion * about(kMetacarpalAxis);
-  if (coupling.pronation_per_flexion == 0.0 && coupling.pronation_per_abduction == 0.0) return;
+  if (!pronates(coupling)) return;
   const double pronation = about(kPronationAxis);
   torque[idx(joint_index(digit, 0))] += coupling.pronation_per_flexion * pronation;
   torque[idx(joint_index(digit, kAbductionJoint))] += coupling.pronation_per_abduction * pronation;

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "phalanx/record/made.h"
-#include "record/angle_origin_json.h"
+#include "record/json_by_name.h"
 
 namespace phalanx {
 namespace {

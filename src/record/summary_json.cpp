@@ -2,22 +2,13 @@
 #include <nlohmann/json.hpp>
 
 #include "phalanx/record/summary.h"
-#include "record/angle_origin_json.h"
+#include "record/json_by_name.h"
 #include "record/made_json.h"
 
 namespace phalanx {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Makes {"<name>": value, ...} in index order.
-template <class Values, class Name>
-Json by_name(const Values& values, Name name) {
-  Json json = Json::object();
-  int i = 0;
-  for (const auto& value : values) json[std::string(name(i++))] = value;
-  return json;
-}
 
 }  // namespace
 
@@ -31,14 +22,14 @@ std::string summary_json(const Summary& summary) {
   const StepTimes& t = summary.step_us;
   json["step_us"] = {{"p50", t.p50}, {"p90", t.p90}, {"p99", t.p99}, {"p999", t.p999}, {"max", t.max}};
   json["angle_origin"] = angle_origin_json(summary.angle_origin);
-  json["contact_ticks"] = by_name(summary.contact_ticks, segment_name);
-  json["peak_force_n"] = by_name(summary.peak_force, segment_name);
-  json["peak_torque_nm"] = by_name(summary.peak_torque, joint_name);
+  json["contact_ticks"] = json_by_name(summary.contact_ticks, segment_name);
+  json["peak_force_n"] = json_by_name(summary.peak_force, segment_name);
+  json["peak_torque_nm"] = json_by_name(summary.peak_torque, joint_name);
   json["peak_total_force"] = {{"force_n", summary.peak_total_force},
                               {"time_s", summary.peak_total_force_time_s}};
   Json& limiter_ticks = json["limiter_ticks"] = Json::object();
   for (const LimiterActivity& limiter : limiters(summary)) limiter_ticks[limiter.name] = limiter.ticks;
-  json["status_ticks"] = by_name(summary.status_ticks, status_name);
+  json["status_ticks"] = json_by_name(summary.status_ticks, status_name);
   json["warnings"] = warnings(summary);
   json["made"] = made_json(summary.made);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

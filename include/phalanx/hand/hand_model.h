@@ -46,7 +46,7 @@ using AxisAngles = std::array<double, kAxesPerDigit>;
 /// Poses of a digit's three segments and of its chain's axes at one set of angles, in world W.
 struct DigitPose {
   std::array<Pose, kSegmentsPerDigit> segment;  ///< X_WS
-  std::array<JointAxis, kAxesPerDigit> axis;    ///< in the order of joints.h; coupled ones also if unused
+  std::array<JointAxis, kAxesPerDigit> axis;    ///< in the order of joints.h; a coupled one if it turns
   DigitCoupling coupling;                       ///< the hand's, constant
 };
 
