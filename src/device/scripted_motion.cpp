@@ -13,11 +13,15 @@
 namespace phalanx {
 namespace {
 
-/// Part of the range that each joint of a digit (flexion, abduction, hinge, hinge) moves at closure 1.
+/// Part of the way from the open to the closed angle that each joint of a digit (flexion, abduction, hinge,
+/// hinge) goes at closure 1.
 using DigitWeights = std::array<double, kJointsPerDigit>;
 constexpr DigitWeights kStill = {0.0, 0.0, 0.0, 0.0};
 constexpr DigitWeights kFingerCloses = {1.0, 0.0, 1.0, 0.7};
-constexpr DigitWeights kThumbOpposes = {1.0, 1.0, 0.6, 0.6};
+/// Around an object.
+constexpr DigitWeights kThumbWraps = {1.0, 1.0, 0.6, 0.6};
+/// Pad to pad with the fingers, the hinges nearly straight.
+constexpr DigitWeights kThumbOpposes = {1.0, 1.0, 0.25, 0.2};
 
 struct Grip {
   std::array<DigitWeights, kDigits> weight;
@@ -27,7 +31,7 @@ struct Grip {
 constexpr Grip kPress = {{kStill, kFingerCloses, kStill, kStill, kStill}, false};
 constexpr Grip kPinch = {{kThumbOpposes, kFingerCloses, kStill, kStill, kStill}, false};
 constexpr Grip kTripod = {{kThumbOpposes, kFingerCloses, kFingerCloses, kStill, kStill}, false};
-constexpr Grip kPower = {{kThumbOpposes, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, false};
+constexpr Grip kPower = {{kThumbWraps, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, false};
 constexpr Grip kWave = {{kStill, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, true};
 
 const Grip& grip_of(const std::string& name) {
@@ -148,7 +152,7 @@ Motion make_motion(const ScriptedMotion& script, const HandParameters& hand) {
       const double weight = grip.weight[static_cast<std::size_t>(digit)][j % kJointsPerDigit];
       if (weight == 0.0) continue;
       const double reach = weight * script.closure * script.digit_closure[static_cast<std::size_t>(digit)] *
-                           (hand.max_angle[j] - hand.open_angle[j]);
+                           (hand.closed_angle[j].value_or(hand.max_angle[j]) - hand.open_angle[j]);
       angle[j] += reach * closed_at(script, grip.ripple, digit, t_cycle) + fade * tremor.at(joint, t);
       angle[j] = std::clamp(angle[j], hand.min_angle[j], hand.max_angle[j]);
     }

@@ -52,6 +52,11 @@ void check(const HandParameters& parameters, const SegmentMeshes& meshes) {
       throw std::invalid_argument(name + "joint " + std::string(joint_name(j)) +
                                   " is open outside its range of motion; move the open angle inside");
     }
+    const double closed = parameters.closed_angle[idx(j)].value_or(high);
+    if (!(closed >= low && closed <= high)) {
+      throw std::invalid_argument(name + "joint " + std::string(joint_name(j)) +
+                                  " is closed outside its range of motion; move the closed angle inside");
+    }
   }
   for (int d = 0; d < kDigits; ++d) {
     const DigitParameters& digit = parameters.digits[idx(d)];

@@ -118,6 +118,24 @@ TEST(ScriptedMotion, ClosesEachJointOfADigitByItsWeight) {
   }
 }
 
+// In a pinch the thumb's hinges stay nearly straight: 0.25 and 0.2 of the way.
+TEST(ScriptedMotion, APinchMeetsTheFingersWithTheThumbsPad) {
+  const JointArray held = make_motion(script("pinch"), simple_hand()).at(1.7);
+  EXPECT_NEAR(held[0], 0.1 + 0.84, 1e-12);
+  EXPECT_NEAR(held[1], 0.1 + 0.84, 1e-12);
+  EXPECT_NEAR(held[2], 0.1 + 0.84 * 0.25, 1e-12);
+  EXPECT_NEAR(held[3], 0.1 + 0.84 * 0.2, 1e-12);
+}
+
+// A joint that closes at -0.2 goes 0.6 of the way from 0.1 to there.
+TEST(ScriptedMotion, AJointClosesToItsClosedAngle) {
+  HandParameters hand = simple_hand();
+  hand.closed_angle[1] = -0.2;
+  const JointArray held = make_motion(script("power_grasp"), hand).at(1.7);
+  EXPECT_NEAR(held[0], 0.1 + 0.6 * 1.4, 1e-12);
+  EXPECT_NEAR(held[1], 0.1 - 0.6 * 0.3, 1e-12);
+}
+
 TEST(ScriptedMotion, WavesTheLittleFingerBeforeTheIndex) {
   const Motion motion = make_motion(script("wave"), simple_hand());
   EXPECT_NEAR(motion.at(0.7)[kLittleFlexion], 0.94, 1e-9);

@@ -44,6 +44,8 @@ void read_joint(TomlTable table, int joint, HandParameters& hand) {
   hand.min_angle[j] = min_deg * kDeg;
   hand.max_angle[j] = max_deg * kDeg;
   hand.open_angle[j] = open_deg * kDeg;
+  if (table.has("closed_deg"))
+    hand.closed_angle[j] = table.number("closed_deg", {.min = min_deg, .max = max_deg}) * kDeg;
   table.finish();
 }
 

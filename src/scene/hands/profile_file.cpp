@@ -178,6 +178,7 @@ FittedHand fit_profile(const Profile& profile, const HandParameters& base) {
     hand.parameters.min_angle[j] = least;
     hand.parameters.max_angle[j] = largest;
     hand.parameters.open_angle[j] = std::clamp(hand.parameters.open_angle[j], least, largest);
+    if (auto& closed = hand.parameters.closed_angle[j]) closed = std::clamp(*closed, least, largest);
   }
   return hand;
 }
