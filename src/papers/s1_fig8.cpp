@@ -92,6 +92,7 @@ Vec3 ball_centre(const HandModel& hand, const Plan& plan, const JointArray& post
 SceneDescription scene_with_ball(double diameter, const Vec3& centre) {
   SceneDescription scene;
   scene.name = "s1-fig8";
+  scene.hand.file = "papers";
   scene.hand.mesh_source = HandMeshSource::kCapsules;  // the ball is placed against capsules
   scene.hand.coupling = HandCoupling::kNone;           // as S1's digits
   ObjectDescription ball;
@@ -183,6 +184,7 @@ Fig8Situation play(const Plan& plan, const HapticModel& empty_handed) {
 std::vector<Fig8Situation> run_s1_fig8() {
   SceneDescription scene;
   scene.name = "s1-fig8";
+  scene.hand.file = "papers";
   scene.hand.mesh_source = HandMeshSource::kCapsules;  // the ball is placed against capsules
   scene.hand.coupling = HandCoupling::kNone;           // as S1's digits
   const auto empty_handed = std::make_unique<HapticModel>(build_model(scene));

@@ -23,7 +23,7 @@ struct Fig8Situation {
 
 /// Plays the seven situations. From the open hand, the finger moves to a posture. Then one joint after the
 /// other flexes until its segment meets the ball, and a few degrees more. The hand then holds for 0.5 s.
-/// Adult right hand, Hooke 0.5 N/mm, smoothing and limits at their defaults, 200 Hz.
+/// The papers' right hand, Hooke 0.5 N/mm, smoothing and limits at their defaults, 200 Hz.
 /// @throws std::runtime_error if a segment that has to meet the ball does not.
 [[nodiscard]] std::vector<Fig8Situation> run_s1_fig8();
 

@@ -10,14 +10,15 @@
 namespace phalanx {
 namespace {
 
-std::string adult_text() {
-  std::ifstream file(PHALANX_SOURCE_DIR "/assets/hands/adult.toml");
+/// A hand file without coupled rotations, whose numbers stay (tests/scene/hands/papers_hand_test.cpp).
+std::string papers_text() {
+  std::ifstream file(PHALANX_SOURCE_DIR "/assets/hands/papers.toml");
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// adult.toml with one piece of text replaced by another.
+/// papers.toml with one piece of text replaced by another.
 std::string changed(const std::string& from, const std::string& to) {
-  std::string text = adult_text();
+  std::string text = papers_text();
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -157,7 +158,7 @@ TEST(HandFile, WithANegativeRadius) {
                       {"thumb.segments.0.radius_tip_mm = -11.5", "> 0"});
 }
 
-// Each number in the place of the adult's first one of that name.
+// Each number in the place of the first one of that name in papers.toml.
 TEST(HandFile, TakesEachNumberUpToItsBoundAndNoFurther) {
   struct Bound {
     const char* key;
