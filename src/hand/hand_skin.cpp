@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/hand/hand_skin.h"
 
+#include <algorithm>
+
 #include "hand/fit_point.h"
 #include "phalanx/hand/hand_meshes.h"
 
@@ -14,21 +16,33 @@ SegmentMeshes any_meshes() {
   return meshes;
 }
 
-/// Returns the skin's vertices in W, blended by weight. Here map(s, p) moves the point p in s's bind pose
-/// frame as segment s alone moves it.
-template <typename Map>
-std::vector<Vec3> blended(const HandSkin& skin, Map&& map) {
-  std::array<Pose, kSegments> X_SB;
-  for (std::size_t s = 0; s < kSegments; ++s) X_SB[s] = skin.X_BS[s].inverse();
-  std::vector<Vec3> out(skin.mesh.vertices.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
-      if (skin.weight[i][k] == 0.0F) continue;
-      const std::size_t s = skin.segment[i][k];
-      out[i] += static_cast<double>(skin.weight[i][k]) * map(s, X_SB[s] * skin.mesh.vertices[i]);
-    }
+/// Quaternions of the rotations R_WS R_SB of the segments from the bind pose. q and -q are the same rotation;
+/// here each segment has the sign that is nearer to the segment before it, and a first segment to the palm.
+std::array<Eigen::Vector4d, kSegments> quaternions(const std::array<Pose, kSegments>& X_WB) {
+  std::array<Eigen::Vector4d, kSegments> q;
+  for (std::size_t s = 0; s < kSegments; ++s) q[s] = Eigen::Quaterniond(X_WB[s].R).coeffs();
+  for (std::size_t s = 0; s < kPalm; ++s) {
+    const std::size_t before = s % kSegmentsPerDigit == 0 ? kPalm : s - 1;
+    if (q[s].dot(q[before]) < 0.0) q[s] = -q[s];
   }
-  return out;
+  return q;
+}
+
+/// Returns the centre of rotation of a vertex that several segments hold, in the bind pose.
+Vec3 centre_of_rotation(const HandSkin& skin, std::size_t i) {
+  const Vec3& p = skin.mesh.vertices[i];
+  Vec3 sum = Vec3::Zero();
+  double weights = 0.0;
+  for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
+    const std::size_t s = skin.segment[i][k];
+    const auto weight = static_cast<double>(skin.weight[i][k]);
+    if (s == kPalm || weight == 0.0) continue;
+    const Pose& X_BS = skin.X_BS[s];
+    const Vec3 along = X_BS.R.col(2);
+    sum += weight * (X_BS.p + along.dot(p - X_BS.p) * along);
+    weights += weight;
+  }
+  return weights > 0.0 ? Vec3(sum / weights) : p;
 }
 
 }  // namespace
@@ -60,14 +74,46 @@ void mirror(HandSkin& skin) noexcept {
 HandSkin fitted_skin(const HandParameters& base, const HandFit& fit, const HandSkin& skin) {
   HandSkin out = skin;
   out.X_BS = bind_poses(fitted_parameters(base, fit), Handedness::kRight);
-  out.mesh.vertices = blended(skin, [&](std::size_t s, const Vec3& p_S) {
-    return Vec3(out.X_BS[s] * fitted_point(base, fit, static_cast<int>(s), p_S));
-  });
+  std::array<Pose, kSegments> X_SB;
+  for (std::size_t s = 0; s < kSegments; ++s) X_SB[s] = skin.X_BS[s].inverse();
+  for (std::size_t i = 0; i < out.mesh.vertices.size(); ++i) {
+    Vec3 fitted = Vec3::Zero();
+    for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
+      if (skin.weight[i][k] == 0.0F) continue;
+      const std::size_t s = skin.segment[i][k];
+      fitted += static_cast<double>(skin.weight[i][k]) *
+                (out.X_BS[s] * fitted_point(base, fit, static_cast<int>(s), X_SB[s] * skin.mesh.vertices[i]));
+    }
+    out.mesh.vertices[i] = fitted;
+  }
   return out;
 }
 
 std::vector<Vec3> skinned(const HandSkin& skin, const std::array<Pose, kSegments>& X_WS) {
-  return blended(skin, [&](std::size_t s, const Vec3& p_S) { return Vec3(X_WS[s] * p_S); });
+  std::array<Pose, kSegments> X_WB;  // where each segment takes the frame B of the bind pose
+  for (std::size_t s = 0; s < kSegments; ++s) X_WB[s] = X_WS[s] * skin.X_BS[s].inverse();
+  const std::array<Eigen::Vector4d, kSegments> q = quaternions(X_WB);
+  std::vector<Vec3> out;
+  out.reserve(skin.mesh.vertices.size());
+  for (std::size_t i = 0; i < skin.mesh.vertices.size(); ++i) {
+    const Vec3& p = skin.mesh.vertices[i];
+    const auto whole = std::ranges::find(skin.weight[i], 1.0F);
+    if (whole != skin.weight[i].end()) {  // one segment holds it: rigid, without rounding by a quaternion
+      const std::size_t s = skin.segment[i][static_cast<std::size_t>(whole - skin.weight[i].begin())];
+      out.emplace_back(X_WS[s] * (skin.X_BS[s].inverse() * p));
+      continue;
+    }
+    const Vec3 centre = centre_of_rotation(skin, i);
+    Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
+    Vec3 moved_centre = Vec3::Zero();
+    for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
+      const std::size_t s = skin.segment[i][k];
+      rotation += static_cast<double>(skin.weight[i][k]) * q[s];
+      moved_centre += static_cast<double>(skin.weight[i][k]) * (X_WB[s] * centre);
+    }
+    out.emplace_back(Eigen::Quaterniond(rotation.normalized()) * (p - centre) + moved_centre);
+  }
+  return out;
 }
 
 }  // namespace phalanx

@@ -56,17 +56,56 @@ SegmentColours grey(float value) {
   return colours;
 }
 
-/// What the page computes in single precision: sum of weight x (X_WS X_BS^-1) p.
+/// v turned by the unit quaternion (x, y, z, w).
+Vec3f turned(const Eigen::Vector4f& q, const Vec3f& v) {
+  const Vec3f u = q.head<3>();
+  return v + 2.0F * u.cross(u.cross(v) + q[3] * v);
+}
+
+/// A segment's motion X_WS X_BS^-1 as the page gives it to the graphics card.
+struct Motion {
+  Eigen::Vector4f rotation;
+  Vec3f translation;
+};
+
+std::array<Motion, kSegments> motions_on_the_page(const HandSkin& skin, const SegmentPoses& X_WS) {
+  std::array<Eigen::Vector4d, kSegments> q;
+  std::array<Motion, kSegments> motions;
+  for (int n = 0; n < kSegments; ++n) {
+    const int s = n == 0 ? kPalm : n - 1;  // the palm first
+    const Pose bone = X_WS[idx(s)] * skin.X_BS[idx(s)].inverse();
+    q[idx(s)] = Eigen::Quaterniond(bone.R).coeffs();
+    const int before = s % kSegmentsPerDigit == 0 ? kPalm : s - 1;
+    if (s != kPalm && q[idx(s)].dot(q[idx(before)]) < 0.0) q[idx(s)] = -q[idx(s)];
+    motions[idx(s)] = {q[idx(s)].cast<float>(), bone.p.cast<float>()};
+  }
+  return motions;
+}
+
+/// The foot of the perpendicular from p to the axis of a segment in the bind pose.
+Vec3 foot(const Pose& X_BS, const Vec3& p) { return X_BS * Vec3(0.0, 0.0, (X_BS.inverse() * p).z()); }
+
+/// Where the page draws a vertex, in single precision.
 Vec3f on_the_page(const HandSkin& skin, const SegmentPoses& X_WS, std::size_t vertex) {
-  Vec3f out = Vec3f::Zero();
+  const auto motions = motions_on_the_page(skin, X_WS);
+  const Vec3& p = skin.mesh.vertices[vertex];
+  Vec3 feet = Vec3::Zero();
+  double weights = 0.0;
   for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
     const std::size_t s = skin.segment[vertex][k];
-    const Pose bone = X_WS[s] * skin.X_BS[s].inverse();
-    const Vec3f moved =
-        bone.R.cast<float>() * skin.mesh.vertices[vertex].cast<float>() + bone.p.cast<float>();
-    out += skin.weight[vertex][k] * moved;
+    if (s == kPalm) continue;
+    feet += static_cast<double>(skin.weight[vertex][k]) * foot(skin.X_BS[s], p);
+    weights += static_cast<double>(skin.weight[vertex][k]);
   }
-  return out;
+  const Vec3f centre = (weights > 0.0 ? Vec3(feet / weights) : p).cast<float>();
+  Eigen::Vector4f rotation = Eigen::Vector4f::Zero();
+  Vec3f moved = Vec3f::Zero();
+  for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
+    const Motion& motion = motions[skin.segment[vertex][k]];
+    rotation += skin.weight[vertex][k] * motion.rotation;
+    moved += skin.weight[vertex][k] * (turned(motion.rotation, centre) + motion.translation);
+  }
+  return turned(rotation.normalized(), p.cast<float>() - centre) + moved;
 }
 
 TEST(DrawnHand, IsTheSkinWhereTheHandHasOneAndElseItsSegments) {

@@ -113,15 +113,33 @@ TEST(Skinned, IsTheSkinItselfInTheStraightPose) {
   EXPECT_LT(largest_difference(skinned(skin, poses(hand, Handedness::kRight, {}, X_WH)), carried), 1e-7);
 }
 
-// Half of each, 10 mm below the PIP joint: the first segment keeps the point there, the second, at a right
-// angle, takes it to 10 mm behind the joint.
-TEST(Skinned, BlendsWhatItsSegmentsDo) {
+// Half of each, 10 mm below the PIP joint, which is at a right angle: the first segment keeps the point
+// there, the second takes it to 10 mm behind the joint. Half way round it is still 10 mm from the axis; the
+// mean of both places would be 7.07 mm from it.
+TEST(Skinned, KeepsItsDistanceFromABentJoint) {
   const HandParameters hand = forward_hand();
   HandSkin skin = bare(hand);
   add_vertex(skin, segment_index(test::kIndex, 1), Vec3(0.0, -0.010, 0.0));
   const auto X_WS = poses(hand, Handedness::kRight, test::index_angles(0.0, kRightAngle));
   const Vec3 pip(0.0, 0.0, -0.09 - test::kLength1);
-  EXPECT_LT((skinned(skin, X_WS).front() - (pip + Vec3(0.0, -0.005, 0.005))).norm(), 1e-12);
+  const double along = 0.010 / std::numbers::sqrt2;
+  EXPECT_LT((skinned(skin, X_WS).front() - (pip + Vec3(0.0, -along, along))).norm(), 1e-12);
+}
+
+// Half the palm's, half the second segment's, which MCP and PIP joint together have turned by 190 deg: the
+// vertex turns by 95 deg, not by 85 deg the other way round. Its centre is the PIP joint, which goes half way
+// to where the MCP joint's 90 deg take it.
+TEST(Skinned, BlendsMoreThanHalfATurnTheWayItWasBent) {
+  const HandParameters hand = forward_hand();
+  HandSkin skin = bare(hand);
+  add_vertex(skin, segment_index(test::kIndex, 1), Vec3(0.002, -0.010, 0.0));
+  skin.segment.front()[1] = kPalm;
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const auto X_WS = poses(hand, Handedness::kRight, test::index_angles(90.0 * kDegree, 100.0 * kDegree));
+  const Vec3 mcp(0.0, 0.0, -0.09);
+  const Vec3 straight = mcp - test::kLength1 * Vec3::UnitZ(), bent = mcp - test::kLength1 * Vec3::UnitY();
+  const Vec3 turned = rotation_about(-Vec3::UnitX(), 95.0 * kDegree) * Vec3(0.002, -0.010, 0.0);
+  EXPECT_LT((skinned(skin, X_WS).front() - ((straight + bent) / 2.0 + turned)).norm(), 1e-12);
 }
 
 TEST(Skinned, IsRigidWhereOneSegmentHoldsIt) {

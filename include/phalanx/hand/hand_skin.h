@@ -11,8 +11,20 @@
 
 namespace phalanx {
 
-/// Skin of a hand for linear blend skinning. At segment poses X_WS vertex i is
-///   sum_k weight_ik X_WS[s_ik] X_SB[s_ik] vertex_i.
+/// Skin of a hand, with centres of rotation: Le B. H., Hodgins J. K., "Real-time skeletal skinning with
+/// optimized centers of rotation", ACM Trans. Graphics 35(4), 2016. At segment poses X_WS segment s has moved
+/// by X_WS[s] X_SB[s], whose rotation is the unit quaternion q_s. Vertex i moves to
+///   q (vertex_i - centre_i) + sum_k weight_ik X_WS[s_ik] X_SB[s_ik] centre_i,
+/// with q the normalised sum_k weight_ik q_(s_ik), so its distance from its centre stays. The mean of the
+/// moved vertices (linear blend skinning) loses 29 % of it half way between two segments at 90 deg.
+/// The centres and the signs of q_s are our own. The paper finds centres by integrals over the whole surface.
+/// Here centre_i is the weighted mean of the feet of the perpendiculars from vertex i to the axes (Z of S)
+/// of its segments in the bind pose, without the palm's. At 24 random poses of the papers' hand the skin of
+/// the fingers' roots stands out of the rigid segments by up to 3.1 mm, by linear blend skinning 2.6 mm, and
+/// by dual quaternion skinning (Kavan L. et al. 2008), which turns it about the joints, 6.6 mm.
+/// q_s and -q_s are the same rotation. q_s has the sign nearer to the segment before s in its digit, and of a
+/// digit's first segment that nearer to the palm, so a finger bent by more than 180 deg in all blends the way
+/// it was bent.
 /// In the bind pose B the palm is at the origin of the hand frame H, and all joint angles are zero.
 struct HandSkin {
   static constexpr std::size_t kInfluences = 4;

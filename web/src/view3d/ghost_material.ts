@@ -4,40 +4,30 @@
 import { Color, EqualStencilFunc, NotEqualStencilFunc, ShaderMaterial } from "three";
 import type { StencilFunc } from "three";
 import type { DataTexture } from "three";
+import { withCentresOfRotation } from "./skinning";
 
 const kFadesFrom = 0.3e-3; // [m] apart: unseen up to here
 const kFadesTo = 2.0e-3; // fully seen from here
 
-const vertexShader = `
+const vertexShader = withCentresOfRotation(`
 #include <common>
 #include <skinning_pars_vertex>
 uniform highp sampler2D shownBones;
 varying vec3 vNormal;
 varying vec3 vToEye;
 varying float vApart;
-mat4 shownBone(const in float i) {
-  int size = textureSize(shownBones, 0).x;
-  int j = int(i) * 4;
-  int x = j % size;
-  int y = j / size;
-  return mat4(texelFetch(shownBones, ivec2(x, y), 0), texelFetch(shownBones, ivec2(x + 1, y), 0),
-              texelFetch(shownBones, ivec2(x + 2, y), 0), texelFetch(shownBones, ivec2(x + 3, y), 0));
-}
 void main() {
   #include <beginnormal_vertex>
   #include <skinbase_vertex>
   #include <skinnormal_vertex>
   #include <begin_vertex>
   #include <skinning_vertex>
-  vec4 p = vec4(position, 1.0);
-  vec4 shown = skinWeight.x * (shownBone(skinIndex.x) * p) + skinWeight.y * (shownBone(skinIndex.y) * p)
-             + skinWeight.z * (shownBone(skinIndex.z) * p) + skinWeight.w * (shownBone(skinIndex.w) * p);
-  vApart = distance(transformed, shown.xyz);
+  vApart = distance(transformed, movedBy(blendedBones(shownBones), position));
   vec4 seen = viewMatrix * vec4(transformed, 1.0);
   vNormal = mat3(viewMatrix) * objectNormal;
   vToEye = -seen.xyz;
   gl_Position = projectionMatrix * seen;
-}`;
+}`);
 
 const fragmentShader = `
 uniform vec3 colour;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shown hand: each bone has the colour of its force, strongest around the contact and blended over the skin by the bones' weights, and
 // light that seems to come through at its rim.
-import { Color, MeshStandardMaterial, ReplaceStencilOp, Vector3 } from "three";
+import { Color, MeshDepthMaterial, MeshStandardMaterial, ReplaceStencilOp, RGBADepthPacking, Vector3 } from "three";
 import { forceColour } from "./force_colour";
 import { handStencil } from "./ghost_material";
 import { kSegments } from "./segments";
+import { withCentresOfRotation } from "./skinning";
 
 const kReach = 0.018; // of the full colour around a contact [m], one standard deviation
 const kElsewhere = 0.45; // share of the colour on the rest of the segment
@@ -38,14 +39,14 @@ export class HandMaterial extends MeshStandardMaterial {
     shader.uniforms["segmentTouch"] = { value: this.touches };
     shader.uniforms["plainColour"] = { value: this.plainColour };
     shader.uniforms["rimLight"] = this.rim;
-    shader.vertexShader = shader.vertexShader
+    shader.vertexShader = withCentresOfRotation(shader.vertexShader
       .replace("#include <common>", `#include <common>\n${tinting}`)
       .replace(
         "#include <skinning_vertex>",
         `#include <skinning_vertex>
         vSegmentColour = skinWeight.x * tinted(int(skinIndex.x), transformed) + skinWeight.y * tinted(int(skinIndex.y), transformed)
                        + skinWeight.z * tinted(int(skinIndex.z), transformed) + skinWeight.w * tinted(int(skinIndex.w), transformed);`,
-      );
+      ));
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nuniform float rimLight;\nvarying vec3 vSegmentColour;")
       .replace("#include <color_fragment>", "diffuseColor.rgb = vSegmentColour;")
@@ -77,6 +78,17 @@ export class HandMaterial extends MeshStandardMaterial {
       this.touches[press.segment]?.set(...press.point);
     }
   }
+}
+
+/// What the hand's shadow is drawn with.
+export class HandShadowMaterial extends MeshDepthMaterial {
+  constructor() {
+    super({ depthPacking: RGBADepthPacking });
+  }
+
+  override onBeforeCompile: MeshDepthMaterial["onBeforeCompile"] = (shader) => {
+    shader.vertexShader = withCentresOfRotation(shader.vertexShader);
+  };
 }
 
 export interface Press {

@@ -3,7 +3,7 @@
 import { Box3, Group, Matrix4, Vector3 } from "three";
 import type { SkinnedMesh } from "three";
 import { GhostMaterials } from "./ghost_material";
-import { HandMaterial } from "./hand_material";
+import { HandMaterial, HandShadowMaterial } from "./hand_material";
 import type { Press } from "./hand_material";
 import { segmentShape, skinShape } from "./hand_shape";
 import type { HandShape } from "./hand_shape";
@@ -25,6 +25,7 @@ export class HandPair {
   readonly shownGroup = new Group();
   readonly ghostGroup = new Group();
   private readonly material = new HandMaterial();
+  private readonly shadowMaterial = new HandShadowMaterial();
   private looks: { skin: Look | null; segments: Look | null } = { skin: null, segments: null };
   private look: Look | null = null; // the one in use
   private wantsSkin = true;
@@ -107,6 +108,7 @@ export class HandPair {
   /// Releases the renderer's resources of both looks, visible or not. Later drawing creates them again.
   release(): void {
     this.material.dispose();
+    this.shadowMaterial.dispose();
     for (const look of [this.looks.skin, this.looks.segments]) {
       look?.shown.release();
       look?.ghost.release();
@@ -118,12 +120,16 @@ export class HandPair {
   dispose(): void {
     this.dropLooks();
     this.material.dispose();
+    this.shadowMaterial.dispose();
   }
 
   private lookOf(shape: HandShape | null): Look | null {
     if (!shape) return null;
     const shown = new PosedHand(shape, [this.material]);
-    for (const mesh of shown.meshes) mesh.castShadow = mesh.receiveShadow = true;
+    for (const mesh of shown.meshes) {
+      mesh.castShadow = mesh.receiveShadow = true;
+      mesh.customDepthMaterial = this.shadowMaterial;
+    }
     const ghostMaterials = new GhostMaterials(shown.skeleton.boneTexture!);
     ghostMaterials.setColour(this.ghostColour);
     const ghost = new PosedHand(shape, [ghostMaterials.depth, ...ghostMaterials.layers]);

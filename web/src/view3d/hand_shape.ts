@@ -4,9 +4,10 @@ import { Box3, BufferAttribute, BufferGeometry, Matrix4, Vector3 } from "three";
 import { bindInverses } from "./poses";
 import { kSegments } from "./segments";
 import { kInfluences, type BonedSurface, type SkinSurface, type Surface } from "./shapes";
+import { centresOfRotation } from "./skinning";
 
 export interface HandShape {
-  readonly geometry: BufferGeometry; // with skinIndex and skinWeight
+  readonly geometry: BufferGeometry; // with skinIndex, skinWeight and skinCentre
   readonly inverses: readonly Matrix4[]; // X_SB: bone matrix = X_WS X_SB
   readonly boxes: readonly Box3[]; // of each segment's part, in its frame S; empty: it has none
   readonly source: Uint32Array; // SkinSurface.source; empty: no skin
@@ -42,6 +43,7 @@ function assemble(surface: BonedSurface, inverses: readonly Matrix4[], source: U
   const geometry = geometryOf(surface);
   geometry.setAttribute("skinIndex", new BufferAttribute(surface.bone, kInfluences));
   geometry.setAttribute("skinWeight", new BufferAttribute(surface.weight, kInfluences));
+  geometry.setAttribute("skinCentre", new BufferAttribute(centresOfRotation(surface.position, surface.bone, surface.weight, inverses), 3));
   return { geometry, inverses, boxes: boxesOf(geometry, surface, inverses), source };
 }
 

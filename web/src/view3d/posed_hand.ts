@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hand's surface at the poses of a tick: 16 bones that stand directly in the world.
-import { Bone, Matrix4, Skeleton, SkinnedMesh, Vector3 } from "three";
+import { Bone, Matrix4, SkinnedMesh, Vector3 } from "three";
 import type { Material } from "three";
 import type { HandShape } from "./hand_shape";
 import { poseMatrices } from "./poses";
 import { kSegments } from "./segments";
+import { kInfluences } from "./shapes";
+import { HandSkeleton } from "./skinning";
 
 export type Point = readonly [number, number, number];
 
@@ -19,7 +21,7 @@ const kProbed = 64; // vertices of the skin
 /// One skeleton, under one or several meshes of the same shape (a ghost is drawn twice).
 export class PosedHand {
   readonly meshes: readonly SkinnedMesh[];
-  readonly skeleton: Skeleton;
+  readonly skeleton: HandSkeleton;
   posed = false; // it has been somewhere
 
   constructor(private readonly shape: HandShape, materials: readonly Material[]) {
@@ -28,7 +30,7 @@ export class PosedHand {
       bone.matrixAutoUpdate = bone.matrixWorldAutoUpdate = false;
       return bone;
     });
-    this.skeleton = new Skeleton(bones, shape.inverses.map((matrix) => matrix.clone()));
+    this.skeleton = new HandSkeleton(bones, shape.inverses.map((matrix) => matrix.clone()));
     this.skeleton.computeBoneTexture();
     this.meshes = materials.map((material) => {
       const mesh = new SkinnedMesh(shape.geometry, material);
@@ -49,29 +51,34 @@ export class PosedHand {
     return true;
   }
 
-  /// Origin of each segment's frame [m], worked back from the bone matrices as the graphics card has them.
+  /// Origin of each segment's frame [m], worked back from the bones' motions as the graphics card has them.
   drawn(): Point[] {
     if (!this.posed) return [];
-    const bone = new Matrix4();
     const origin = new Vector3();
     return Array.from({ length: kSegments }, (_, segment): Point => {
-      bone.fromArray(this.skeleton.boneMatrices, 16 * segment);
-      origin.setFromMatrixPosition(new Matrix4().copy(this.shape.inverses[segment]!).invert()).applyMatrix4(bone);
+      origin.setFromMatrixPosition(new Matrix4().copy(this.shape.inverses[segment]!).invert());
+      this.skeleton.move(origin, origin.clone(), [segment], [1]);
       return [origin.x, origin.y, origin.z];
     });
   }
 
   /// Vertices all over the skin, moved by the bones as the graphics card moves them.
   drawnVertices(): DrawnVertex[] {
-    const { source } = this.shape;
-    const mesh = this.meshes[0];
-    if (!this.posed || !mesh) return [];
-    const position = this.shape.geometry.getAttribute("position");
+    const { source, geometry } = this.shape;
+    if (!this.posed) return [];
+    const position = geometry.getAttribute("position");
+    const centre = geometry.getAttribute("skinCentre");
+    const bone = geometry.getAttribute("skinIndex").array;
+    const weight = geometry.getAttribute("skinWeight").array;
     const point = new Vector3();
+    const about = new Vector3();
     const count = Math.min(kProbed, source.length);
     return Array.from({ length: count }, (_, i): DrawnVertex => {
       const at = Math.floor((i * source.length) / count);
-      mesh.applyBoneTransform(at, point.fromBufferAttribute(position, at));
+      point.fromBufferAttribute(position, at);
+      const [first, end] = [kInfluences * at, kInfluences * (at + 1)];
+      about.fromBufferAttribute(centre, at);
+      this.skeleton.move(point, about, bone.slice(first, end), weight.slice(first, end));
       return { vertex: source[at]!, at: [point.x, point.y, point.z] };
     });
   }

@@ -56,7 +56,7 @@ export function faultsOfLayout(): string[] {
   const note = document.querySelector(".silent-digits:not(:empty)");
   if (note) {
     note.scrollIntoView({ block: "nearest" });
-    if (!within(note.getBoundingClientRect(), screen) || !uncovered(note)) say("which digits are silent is not wholly in sight");
+    if (!within(note.getBoundingClientRect(), screen) || (!question && !uncovered(note))) say("which digits are silent is not wholly in sight");
     if (note.scrollWidth > note.clientWidth + kSlack || note.scrollHeight > note.clientHeight + kSlack) say("which digits are silent is cut off");
   }
   const stop = document.querySelector(".stop")!;

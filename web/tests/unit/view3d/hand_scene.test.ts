@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene without a canvas: shapes that come and go, what is visible, and where it is drawn.
 import { create } from "@bufbuild/protobuf";
-import { BoxGeometry, BufferGeometry, InstancedMesh, Material, Mesh, Skeleton, SkinnedMesh, SphereGeometry } from "three";
-import type { EventDispatcher } from "three";
+import { BoxGeometry, BufferGeometry, InstancedMesh, Material, Mesh, MeshDepthMaterial, ShaderLib, ShaderMaterial, Skeleton, SkinnedMesh, SphereGeometry } from "three";
+import type { EventDispatcher, WebGLProgramParametersWithUniforms, WebGLRenderer } from "three";
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { GeometrySchema, MeshSchema, SkinSchema } from "../../../src/gen/phalanx/geometry_pb";
 import type { Geometry, Mesh as MeshMessage } from "../../../src/gen/phalanx/geometry_pb";
@@ -11,6 +11,7 @@ import type { Tick } from "../../../src/gen/phalanx/tick_pb";
 import { arrowLargestForce, arrowMetresPerNewton } from "../../../src/view3d/arrow_scale";
 import { arrowLength } from "../../../src/view3d/contact_marks";
 import { HandScene } from "../../../src/view3d/hand_scene";
+import type { DrawnVertex } from "../../../src/view3d/posed_hand";
 import { qualityLevels } from "../../../src/view3d/quality";
 import { shapesOf } from "../../../src/view3d/shapes";
 
@@ -45,6 +46,16 @@ function tick(force: number, factor = 1): Tick {
   return create(TickSchema, { tick: 9n, factor, gdpPose: poses(0.5), hcpPose: poses(0.7, 0.003), contact: [contact] });
 }
 
+/// Vertices of the skin at poses of the shown hand.
+function drawnAt(input: Geometry, gdpPose: number[]): DrawnVertex[] {
+  const scene = new HandScene();
+  scene.setGeometry(shapesOf(input));
+  scene.show({ ...tick(1), gdpPose });
+  const drawn = scene.hands.shownSkin();
+  expect(drawn.length).toBe(64);
+  return drawn;
+}
+
 afterEach(() => vi.restoreAllMocks());
 
 describe("where it is drawn", () => {
@@ -77,6 +88,59 @@ describe("where it is drawn", () => {
       expect(at[0]).toBeCloseTo(middle + cos * (x - middle) - sin * y, 6);
       expect(at[1]).toBeCloseTo(sin * (x - middle) + cos * y, 6);
       expect(at[2]).toBeCloseTo(z, 6); // bound and shown at the same height
+    }
+  });
+  it("the skin keeps its distance from a bent joint, by hand: half of each of two bones, at a right angle", () => {
+    const input = geometry(true);
+    const straight = input.skin!.bindPose = poses(0);
+    const bent = [...straight];
+    bent.splice(7 * 4 + 3, 4, 0, 0, Math.SQRT1_2, Math.SQRT1_2); // bone 4 turns by 90 degrees about its origin
+    for (const { vertex, at } of drawnAt(input, bent)) {
+      const [x, y, z] = input.skin!.mesh!.position.slice(3 * vertex, 3 * vertex + 3) as [number, number, number];
+      const arm = x - 0.02 * 3.5; // from the centre, half way between the bones' axes, which are along z
+      // The centre is 0.01 from bone 4's origin, along -x; turned, it is there along -y: half way is the mean of both.
+      expect(at[0]).toBeCloseTo(0.02 * 4 - 0.005 + Math.SQRT1_2 * (arm - y), 6); // half of the turn
+      expect(at[1]).toBeCloseTo(-0.005 + Math.SQRT1_2 * (arm + y), 6);
+      expect(at[2]).toBeCloseTo(z, 6); // the turn is about z
+    }
+  });
+  it("a finger bent by more than half a turn blends the way it was bent", () => {
+    const input = geometry(true);
+    input.skin!.segment = input.skin!.segment.map((segment) => (segment === 4 ? 5 : segment)); // half of bone 3, half of bone 5
+    const straight = input.skin!.bindPose = poses(0);
+    const bent = [...straight];
+    const turn = (bone: number, degrees: number): void => {
+      const half = (degrees * Math.PI) / 360;
+      bent.splice(7 * bone + 3, 4, 0, 0, Math.sin(half), Math.cos(half));
+    };
+    turn(4, 100);
+    turn(5, 200 - 360); // the quaternion with the other sign of 200 degrees: the same pose
+    const [cos, sin] = [Math.cos((100 * Math.PI) / 180), Math.sin((100 * Math.PI) / 180)];
+    const [far, across] = [Math.cos((200 * Math.PI) / 180), Math.sin((200 * Math.PI) / 180)];
+    for (const { vertex, at } of drawnAt(input, bent)) {
+      const [x, y] = input.skin!.mesh!.position.slice(3 * vertex, 3 * vertex + 2) as [number, number];
+      const arm = x - 0.02 * 4; // the centre, between bones 3 and 5, 0.02 from bone 5
+      expect(at[0]).toBeCloseTo((0.02 * 4 + 0.02 * 5 - 0.02 * far) / 2 + cos * arm - sin * y, 6);
+      expect(at[1]).toBeCloseTo((-0.02 * across) / 2 + sin * arm + cos * y, 6);
+    }
+  });
+  it("every material of the hand, its shadow's too, is skinned about the centres of rotation", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(true)));
+    const drawn: Material[] = [];
+    for (const part of [scene.scene, scene.over]) {
+      part.traverse((node) => {
+        if (node instanceof SkinnedMesh) drawn.push(node.material as Material);
+        if (node instanceof SkinnedMesh && node.castShadow) drawn.push(node.customDepthMaterial!);
+      });
+    }
+    expect(drawn.length).toBeGreaterThan(3);
+    for (const material of drawn) {
+      const own = material instanceof ShaderMaterial ? material.vertexShader : ShaderLib[material instanceof MeshDepthMaterial ? "depth" : "standard"].vertexShader;
+      const shader = { vertexShader: own, fragmentShader: "", uniforms: {} };
+      material.onBeforeCompile(shader as unknown as WebGLProgramParametersWithUniforms, null as unknown as WebGLRenderer);
+      expect(shader.vertexShader).toContain("movedBy(skinMotion, transformed)");
+      expect(shader.vertexShader).not.toMatch(/#include <skin/);
     }
   });
   it("nothing before the first tick, and nothing moves by half a hand, which is grey until a whole one comes", () => {
@@ -218,6 +282,7 @@ describe("memory", () => {
 
 function collect(node: object, into: Set<Material>): void {
   if ("material" in node && node.material instanceof Material) into.add(node.material);
+  if (node instanceof Mesh && node.customDepthMaterial) into.add(node.customDepthMaterial);
 }
 
 describe("a skin that does not fit together", () => {
@@ -279,6 +344,6 @@ function drawnOf(node: object): EventDispatcher<{ dispose: object }>[] {
   const found: unknown[] = [];
   if (node instanceof Mesh) found.push(node.geometry, node.material);
   if (node instanceof InstancedMesh) found.push(node);
-  if (node instanceof SkinnedMesh) found.push(node.skeleton.boneTexture);
+  if (node instanceof SkinnedMesh) found.push(node.skeleton.boneTexture, node.customDepthMaterial ?? null);
   return found.filter((one) => one !== null) as EventDispatcher<{ dispose: object }>[];
 }
