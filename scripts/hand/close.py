@@ -10,9 +10,9 @@ from hand_source import PALM
 
 SLACK = 0.2      # [mm] a dome stays this much below what sweeps past it
 INSIDE = 0.3     # [mm] and this much below the neighbour's skin
-PROUD = 1.0      # [mm] except at the knuckles, where it may stand out of the skin's chords so much more
+PROUD = {3: 1.0, 6: 1.5, 9: 2.0, 12: 2.5}  # [mm] except at the knuckles, where it may stand out of the skin's chords so much more
 REACH = np.radians(18.0)  # directions within this of a dome's vertex count for its radius
-RINGS = {1: 3, 6: 3, 9: 3}      # of domes at a segment's base; 2 elsewhere
+RINGS = {1: 3, 6: 3, 9: 3, 12: 3}  # of domes at a segment's base; 2 elsewhere
 
 
 def parent_of(segment):
@@ -105,7 +105,7 @@ class Closer:
         rings.append((apex[None], np.array([middle])))
         ids = [list(loop)]
         for u, r in rings:
-            limit = first_hit(centre, u, self.cut.vertices[self.cut.triangles[skin]]) - INSIDE + (PROUD if k in ROOTS else 0.0)
+            limit = first_hit(centre, u, self.cut.vertices[self.cut.triangles[skin]]) - INSIDE + PROUD.get(k, 0.0)
             for i, way in enumerate(u):
                 close = ways @ way > np.cos(REACH)
                 if close.any():

@@ -13,6 +13,13 @@ def unit(v):
     return np.asarray(v, float) / np.linalg.norm(v)
 
 
+def turn(axis, angle):
+    """Rotation about a unit vector, in rad."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
+
+
 class Digit:
     """One digit of the hand file; angles in degrees."""
 
@@ -23,6 +30,12 @@ class Digit:
         z = unit(np.cross(table["dorsal"], x))
         self.frame = np.column_stack([x, np.cross(z, x), z])  # D-H base: x distal, z the flexion axis
         self.rows = [(j["a_mm"], np.radians(j["alpha_deg"])) for j in table["joints"]]
+        pronation = table.get("pronation", {})
+        self.pronation = pronation.get("per_flexion", 0.0), pronation.get("per_abduction", 0.0)
+        metacarpal = table.get("metacarpal", {})
+        self.metacarpal = metacarpal.get("per_flexion", 0.0)
+        self.metacarpal_base = np.array(metacarpal.get("base_mm", (0, 0, 0)), float)
+        self.metacarpal_axis = unit(metacarpal.get("axis", (-1, 0, 0)))
         self.limits = [(j["min_deg"], j["max_deg"]) for j in table["joints"]]
         if any(j["d_mm"] or j["theta_deg"] for j in table["joints"]):
             raise SystemExit(f"hand file: digit {name} has an offset d_mm or theta_deg; this program knows rows without them")
@@ -32,11 +45,15 @@ class Digit:
 
     def poses(self, angles_deg):
         """Rotation and origin of the three segments in the hand frame H at four joint angles."""
-        R, p, out = self.frame, self.base, []
+        q0, q1 = np.radians(angles_deg[:2])
+        M = turn(self.metacarpal_axis, self.metacarpal * q0)
+        R, p, out = M @ self.frame, self.metacarpal_base + M @ (self.base - self.metacarpal_base), []
         for i, ((a, alpha), q) in enumerate(zip(self.rows, np.radians(angles_deg))):
             c, s, ca, sa = np.cos(q), np.sin(q), np.cos(alpha), np.sin(alpha)
             p = p + R @ (a * np.array([c, s, 0.0]))
             R = R @ np.array([[c, -s * ca, s * sa], [s, c * ca, -c * sa], [0.0, sa, ca]])
+            if i == 1:
+                R = R @ turn((-1.0, 0.0, 0.0), self.pronation[0] * q0 + self.pronation[1] * q1)
             if i:
                 out.append((np.column_stack([-R[:, 2], -R[:, 1], -R[:, 0]]), p - a * R[:, 0]))
         return out

@@ -8,14 +8,16 @@ import numpy as np
 
 from check import faults, gaps, rim_points
 from close import Closer, parent_of
-from cut import Cut
+from cut import ROOTS, Cut
 from hand_numbers import read_hand
 from hand_source import PALM, SEGMENTS, HandSource, mirror_deviation
 from skin import fitted_skin
 
 ALLOWED = 0.7      # [mm] a rim point that gaps more is drawn towards its joint
+ROOT_ALLOWED = 0.8  # [mm] the same at the fingers' roots
 CMC_ALLOWED = 0.4  # [mm] the same at the thumb's CMC joint,
 CMC_REACH = 18.0   # [mm] as far as this from it: farther out is the web
+ROUNDS = 24        # of drawing
 STEPS = 13         # of each angle's range of motion
 HEADER = """# SPDX-License-Identifier: MIT
 # Source: hand model of npm @webxr-input-profiles/assets 1.0.20, dist/profiles/generic-hand/right.glb, Copyright (c) 2019 Amazon,
@@ -25,21 +27,28 @@ HEADER = """# SPDX-License-Identifier: MIT
 
 
 def closed_without_gaps(cut, digits):
-    """Draws rim points that still gap towards their joint, a little at a time, and closes again."""
-    for _ in range(30):
+    """Draws rim points that still gap towards their joint, a little at a time, and closes again. Neighbouring roots share rim
+    points, so that a draw for one may open a gap at the other: the closing with the least excess counts."""
+    best, least = None, np.inf
+    for _ in range(ROUNDS):
         closer = Closer(cut, digits)
-        drawn = False
+        draws, excess = [], 0.0
         for k in range(PALM):
-            ends, _, worst, _ = gaps(closer, k, STEPS)
-            for i, gap in zip(ends, worst):
-                way = cut.vertices[i] - closer.pose[k][1]
-                far = np.linalg.norm(way)
-                if gap > (ALLOWED if k else CMC_ALLOWED) and (k or far < CMC_REACH):
-                    cut.vertices[i] -= way / far * 0.2
-                    drawn = True
-        if not drawn:
+            allowed = CMC_ALLOWED if k == 0 else ROOT_ALLOWED if k in ROOTS else ALLOWED
+            pairs, _, worst, _ = gaps(closer, k, STEPS, np.inf if k else CMC_REACH)
+            ends = sorted({i for e in pairs for i in e})
+            wide = {i for i, gap in zip(ends, worst) if gap > allowed}
+            wide |= {i for e, gap in zip(pairs, worst[len(ends):]) if gap > allowed for i in e}
+            draws += [(k, i) for i in sorted(wide)]
+            excess = max(excess, worst.max() - allowed)
+        if excess < least and not any(faults(closer.points, mesh) for mesh in closer.meshes):
+            best, least = closer, excess
+        if not draws:
             break
-    return closer
+        for k, i in draws:
+            way = cut.vertices[i] - closer.pose[k][1]
+            cut.vertices[i] -= way / np.linalg.norm(way) * 0.2
+    return best or closer
 
 
 def write(closer, folder):
@@ -73,7 +82,8 @@ def main():
     digits, _ = read_hand(options.hand)
     skin, scales = fitted_skin(right, digits)
     for digit, scale in zip(digits, scales):
-        print(f"{digit.name}: scales across at its joints " + " ".join(f"{s:.3f}" for s in scale))
+        joints = (" x ".join(f"{s:.3f}" for s in np.atleast_1d(joint)) for joint in scale)
+        print(f"{digit.name}: scales across at its joints", "; ".join(joints))
     cut = Cut(skin, right.triangles, right.owner, digits, right.joints["index-finger-metacarpal"][:3, 3])
     print("pinch vertices cleaned:", ", ".join(f"{v} of {SEGMENTS[k]}" for k, v in cut.pinches) or "none")
     closer = closed_without_gaps(cut, digits)

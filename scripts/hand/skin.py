@@ -6,6 +6,7 @@ from hand_numbers import unit
 from hand_source import SEGMENTS
 
 FINGERS = ["index", "middle", "ring", "pinky"]
+KNUCKLES = 0.80, 0.72  # scales of breadth and thickness at the metacarpals' heads: the hand is then as broad and thick as [palm] states
 
 
 def bones_of(digit):
@@ -22,14 +23,21 @@ def frame(origin, back, dorsal):
     return np.column_stack([x, np.cross(z, x), z]), np.asarray(origin, float)
 
 
+def transported(v, old, new):
+    """The vector v, turned by the smallest rotation that takes the direction `old` to `new`."""
+    old, new = unit(old), unit(new)
+    across = np.cross(old, new)
+    return v + np.cross(across, v) + np.cross(across, np.cross(across, v)) / (1.0 + old @ new)
+
+
 class Bone:
     """Maps points around a bone of the source to the same bone of the hand file: stretched along it, and across by a scale
-    that runs from one joint's to the other's."""
+    (breadth and thickness alike, or one each) that runs from one joint's to the other's."""
 
     def __init__(self, source, target, length, new_length, scale, end_scale):
         self.source, self.target = source, target
         self.length, self.new_length = length, new_length
-        self.scale, self.end_scale = scale, end_scale
+        self.scale, self.end_scale = np.broadcast_to(scale, 2), np.broadcast_to(end_scale, 2)
 
     def __call__(self, points):
         R, origin = self.source
@@ -63,10 +71,14 @@ def fitted_skin(source, digits):
         length.append(-((source.vertices - origin) @ R)[source.weight[:, 3 * d + 2] > 0.5, 2].min())  # to the skin's end
         new_length = digit.length[:2] + [digit.end]
         scale = [digit.radius[k] / mean_radius(source, d, k, frames[k]) for k in (1, 2)]
-        # The first joint lies in the palm and keeps a finger's own scale; the thumb's grows out of the thenar, which stays.
-        scale = [1.0, 1.0, scale[1]] if d == 0 else [scale[0]] + scale
+        # A finger's first joint has the palm's scale; the thumb's grows out of the thenar, which stays.
+        scale = [1.0, 1.0, scale[1]] if d == 0 else [KNUCKLES] + scale
         scales.append(scale)
         target = digit.poses([0.0] * 4)
+        if d == 0:  # The thumb's skin keeps its roll about the bones: the hand file's frames follow the joints' axes.
+            new_back = -digit.frame[:, 0]
+            target = [frame(p, new_back, transported(joint[k][:3, 1], frames[k][0][:, 2], new_back))
+                      for k, (_, p) in enumerate(target)]
         for k in range(3):
             bones[names[k]] = Bone(frames[k], target[k], length[k], new_length[k], scale[k], scale[min(k + 1, 2)])
         bones[names[3]] = bones[names[2]]
@@ -75,7 +87,7 @@ def fitted_skin(source, digits):
             base, dorsal, head = start[:3, 3], start[:3, 1], joint[0][:3, 3]
             bones[FINGERS[d - 1] + "-finger-metacarpal"] = Bone(
                 frame(base, base - head, dorsal), frame(base, base - digit.base, dorsal),
-                np.linalg.norm(head - base), np.linalg.norm(digit.base - base), 1.0, 1.0)
+                np.linalg.norm(head - base), np.linalg.norm(digit.base - base), 1.0, KNUCKLES)
     skin = np.zeros_like(source.vertices)
     for j, name in enumerate(source.joint_names):
         share = source.joint_weight[:, j:j + 1]

@@ -67,8 +67,7 @@ std::string digit_words(int digit) {
 std::string joint_words(int joint) {
   constexpr std::array<std::string_view, kJointsPerDigit> kFinger = {"knuckle", "", "middle joint",
                                                                      "end joint"};
-  constexpr std::array<std::string_view, kJointsPerDigit> kThumb = {"base joint", "", "middle joint",
-                                                                    "end joint"};
+  constexpr std::array<std::string_view, kJointsPerDigit> kThumb = {"", "", "middle joint", "end joint"};
   const int digit = digit_of_joint(joint);
   const auto i = static_cast<std::size_t>(joint % kJointsPerDigit);
   return fmt::format("the {} of the {}", is_thumb(digit) ? kThumb[i] : kFinger[i], digit_words(digit));
@@ -91,6 +90,13 @@ EndStops end_stops(const DeviceChannel& c) {
     return {.name = fmt::format("{} curl", digit_name(c.index)),
             .towards_largest = fmt::format("Close the {}, all its joints, as far as it goes.", digit),
             .towards_smallest = fmt::format("Stretch the {} and bend it back as far as it goes.", digit)};
+  }
+  if (c.index == joint_index(static_cast<int>(Digit::kThumb), 0)) {  // its flexion is opposition
+    return {.name = std::string(joint_name(c.index)),
+            .towards_largest = "Move the thumb across the palm towards the little finger as far as it goes.",
+            .towards_smallest =
+                "Move the thumb back to the side of the hand as far as it goes, "
+                "behind the palm's plane if it can."};
   }
   const std::string joint = joint_words(c.index);
   return {

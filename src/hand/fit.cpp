@@ -143,6 +143,8 @@ HandParameters fitted_parameters(const HandParameters& base, const HandFit& fit)
     DigitParameters& parameters = hand.digits[idx(digit)];
     parameters.base = palm.cwiseProduct(parameters.base);
     parameters.metacarpal_base = palm.cwiseProduct(parameters.metacarpal_base);
+    // The knuckle's way is across the palm and stays in proportion to its breadth.
+    parameters.coupling.metacarpal_per_flexion *= fit.palm_breadth / fit.palm_length;
     for (int i = 0; i < kJointsPerDigit; ++i) {
       const double ratio = fit.segment[idx(segment_index(digit, segment_in_digit_of_joint(i)))].length;
       parameters.dh[idx(i)].a *= ratio;

@@ -17,7 +17,7 @@ namespace {
 const std::string kThumbCmcFlexion = "0";
 const std::string kThumbIpFlexion = "3";
 const std::string kIndexMcpFlexion = "4";
-const std::string kMotorOfThumbCmcFlexion = "5";  // motors are in the order of their names
+const std::string kMotorOfIndexMcp = "2";  // motors are in the order of their names
 constexpr double kAt = 2.4;                       ///< when it breaks: mid-contact [s]
 
 std::string at(const std::string& fault, double time = kAt) { return fmt::format("{}@{}", fault, time); }
@@ -172,9 +172,9 @@ TEST(Faults, AStuckSensorIsAFault) {
 }
 
 const Registered kDead("ADeadMotorIsAFault", "",
-                       {.controller = {"--fault", at("dead-motor=" + kMotorOfThumbCmcFlexion)},
-                        .both = {"--set", "device.joints.thumb_cmc_flexion.torque_sensor=true", "--set",
-                                 "patient.press_n=4.5"},
+                       {.controller = {"--fault", at("dead-motor=" + kMotorOfIndexMcp)},
+                        .both = {"--set", "device.joints.index_mcp_flexion.torque_sensor=true", "--set",
+                                 "patient.press_n=8"},
                         .seconds = 4.2});
 TEST(Faults, ADeadMotorIsAFault) {
   const Outcome& o = outcome("ADeadMotorIsAFault");

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/mapping_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "phalanx/core/constants.h"
+#include "phalanx/core/index.h"
+#include "phalanx/hand/joints.h"
+#include "phalanx/scene/hand_file.h"
 #include "scene/expect_error.h"
 
 namespace phalanx {
@@ -208,6 +212,30 @@ TEST(CybergloveMapping, MakesFlexionPositive) {
     EXPECT_NEAR(mapped_angle(entry, 0.0), 0.0, 1e-12) << joint_name(entry.joint);
     EXPECT_GT(mapped_angle(entry, -1.2), 0.8) << joint_name(entry.joint);
   }
+}
+
+// The clamps are the adult's range of motion, and the ends of the recordings' thumb (0.50 and -2.19 rad of
+// rotation, -0.46 of abduction; 0.20 is closed) are its CMC joint's, as the file states.
+TEST(CybergloveMapping, KeepsToTheAdultsRangeOfMotionAndOpposesTheThumb) {
+  const HandParameters adult = load_hand_file("adult");
+  const SensorMapping mapping = load_mapping_file("cyberglove");
+  for (const JointMapping& entry : mapping.joints) {
+    EXPECT_DOUBLE_EQ(entry.clamp_min, adult.min_angle[idx(entry.joint)]) << joint_name(entry.joint);
+    EXPECT_DOUBLE_EQ(entry.clamp_max, adult.max_angle[idx(entry.joint)]) << joint_name(entry.joint);
+  }
+  const auto degrees = [&](int joint, const char* source, double raw) {
+    const auto entry = std::ranges::find(mapping.joints, joint, &JointMapping::joint);
+    EXPECT_EQ(entry->source, source);
+    JointMapping free = *entry;
+    free.clamped = false;
+    return mapped_angle(free, raw) / kDeg;
+  };
+  const int flexion = find_joint("thumb_cmc_flexion").value();
+  const int abduction = find_joint("thumb_cmc_abduction").value();
+  EXPECT_NEAR(degrees(flexion, "thumb_rotation", 0.50), -13.0, 0.5);
+  EXPECT_NEAR(degrees(flexion, "thumb_rotation", -2.19), 63.0, 0.5);
+  EXPECT_NEAR(degrees(abduction, "thumb_abduction", -0.46), 11.0, 0.5);
+  EXPECT_NEAR(degrees(abduction, "thumb_abduction", 0.20), -27.0, 0.5);
 }
 
 // Both files state the other joints, so that one of them could be changed alone.

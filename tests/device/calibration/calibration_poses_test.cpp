@@ -102,6 +102,16 @@ TEST(CalibrationPoses, LeaveOutWhatNoChannelNeeds) {
   EXPECT_TRUE(calibration_poses(std::vector<DeviceChannel>{thumb[1]}, hand()).empty());
 }
 
+// The flexion of the thumb's CMC joint is no bending of the thumb: it takes the thumb across the palm.
+TEST(CalibrationPoses, AskForOppositionAtTheThumbsFirstJoint) {
+  const auto poses = calibration_poses(every_joint(), hand());
+  const CalibrationPose* largest = find(poses, "thumb_cmc_flexion largest");
+  const CalibrationPose* next = find(poses, "thumb_mcp_flexion largest");
+  ASSERT_TRUE(largest && next);
+  EXPECT_NE(largest->instruction.find("across the palm"), std::string::npos) << largest->instruction;
+  EXPECT_EQ(next->instruction, "Bend the middle joint of the thumb as far as it goes.");
+}
+
 // Counts that a device with these gains would send at the poses give the gains back.
 TEST(CalibrationPoses, AreEnoughForAFitOfEveryChannel) {
   auto channels = every_joint();

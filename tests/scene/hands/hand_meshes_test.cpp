@@ -158,12 +158,6 @@ TEST(HandMeshes, OfASceneWithoutCouplingHaveTheFourJointsAlone) {
   const HandFolder folder;
   folder.write_meshes(capsules());
   const std::string file = folder.write_hand(kCollision);
-  std::ifstream in(file);
-  std::stringstream text;
-  text << in.rdbuf();
-  std::string hand = text.str();
-  hand.replace(hand.find("[thumb]\n"), 8, "[thumb]\npronation = { per_flexion = 0.3 }\n");
-  std::ofstream(file) << hand;
   const auto thumb = [&](const std::string& more) {
     const HapticModel model =
         build_model(parse_scene("hand.file = \"" + file + "\"\n" + more, "test.toml", "/"));
@@ -171,9 +165,12 @@ TEST(HandMeshes, OfASceneWithoutCouplingHaveTheFourJointsAlone) {
     model.hand.digit_pose(0, {0.5, 0.0, 0.0, 0.0}, pose);
     return pose.segment[0].R;
   };
+  HandParameters rigid = load_hand_file("adult");
+  const DigitCoupling coupling = rigid.digits[0].coupling;
+  ASSERT_GT(coupling.pronation_per_flexion, 0.2);
+  for (DigitParameters& digit : rigid.digits) digit.coupling = {};
   DigitPose plain;
-  make_hand_model(load_hand_file("adult"), Handedness::kRight, {}, 800)
-      .digit_pose(0, {0.5, 0.0, 0.0, 0.0}, plain);
+  make_hand_model(rigid, Handedness::kRight, {}, 800).digit_pose(0, {0.5, 0.0, 0.0, 0.0}, plain);
   EXPECT_EQ(thumb("hand.coupling = \"none\""), plain.segment[0].R);
   EXPECT_EQ(thumb("hand.coupling = \"file\""), thumb(""));
   const std::string profile = (folder.path() / "patient.toml").string();
@@ -182,10 +179,10 @@ TEST(HandMeshes, OfASceneWithoutCouplingHaveTheFourJointsAlone) {
     return build_model(parse_scene("hand.profile = \"" + profile + "\"\n" + more, "test.toml", "/"))
         .hand.coupling(0);
   };
-  EXPECT_EQ(coupling_of_patient(""), (DigitCoupling{.pronation_per_flexion = 0.3}));
+  EXPECT_EQ(coupling_of_patient(""), coupling);
   EXPECT_EQ(coupling_of_patient("hand.coupling = \"none\""), DigitCoupling{});
   const Mat3 turn = thumb("") * plain.segment[0].R.transpose();
-  EXPECT_NEAR(turn.trace(), 1.0 + 2.0 * std::cos(0.3 * 0.5), 1e-12) << "by 0.3 of the flexion";
+  EXPECT_NEAR(turn.trace(), 1.0 + 2.0 * std::cos(coupling.pronation_per_flexion * 0.5), 1e-12);
   EXPECT_LT((turn * plain.segment[0].R.col(2) - plain.segment[0].R.col(2)).norm(), 1e-12) << "about the bone";
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
@@ -126,6 +128,89 @@ TEST(AdultSkin, OfTheStraightHandIsAsTheFileHasIt) {
   }
 }
 
+/// Breadth and thickness (extents along x and y) of the straight hand's section at a height z, without the
+/// thumb [m].
+std::pair<double, double> section(const HandSkin& skin, double z) {
+  const TriangleMesh& mesh = skin.mesh;
+  const std::vector<int> owner = owners(skin);
+  Bounds box;
+  box.min.setConstant(test::kFar);
+  box.max.setConstant(-test::kFar);
+  for (const Triangle& t : mesh.triangles) {
+    if (std::ranges::any_of(t, [&](int vertex) { return owner[idx(vertex)] < kSegmentsPerDigit; })) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& a = mesh.vertices[idx(t[k])];
+      const Vec3& b = mesh.vertices[idx(t[(k + 1) % 3])];
+      if ((a.z() < z) == (b.z() < z)) continue;
+      const Vec3 p = a + (z - a.z()) / (b.z() - a.z()) * (b - a);
+      box.min = box.min.cwiseMin(p);
+      box.max = box.max.cwiseMax(p);
+    }
+  }
+  const Vec3 extent = box.max - box.min;
+  return {extent.x(), extent.y()};
+}
+
+// At the height of the four MCP joints the hand is as broad and thick as [palm] states, within 2 mm.
+// Measured: adult 82.45 x 31.16 mm (stated: 81.50 x 30.50), small-woman 74.53 x 28.18 (73.70 x 27.58),
+// large-man 97.67 x 36.95 (96.70 x 36.19).
+TEST(AdultSkin, IsAsBroadAndThickAtTheKnucklesAsItsFileStates) {
+  for (const char* profile : {"", "small-woman", "large-man"}) {
+    HandDescription description = adult();
+    description.profile = profile;
+    const HandSkin skin = load_hand_skin(description).value();
+    const HandParameters hand = load_hand(description).parameters;
+    double z = 0.0;
+    for (std::size_t d = 1; d < kDigits; ++d) z += hand.digits[d].base.z() / 4.0;
+    const auto [breadth, thickness] = section(skin, z);
+    EXPECT_NEAR(breadth, hand.palm.knuckle_breadth, 2e-3) << profile;
+    EXPECT_NEAR(thickness, hand.palm.knuckle_thickness, 2e-3) << profile;
+  }
+}
+
+/// @returns the sum of a vertex's weights of the segments first..last.
+double weight_of(const HandSkin& skin, std::size_t vertex, int first, int last) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
+    if (skin.segment[vertex][k] >= first && skin.segment[vertex][k] <= last)
+      sum += static_cast<double>(skin.weight[vertex][k]);
+  }
+  return sum;
+}
+
+// One flexion at 90 deg, beyond the range of some, all other joints at zero: skin around the joint that both
+// sides hold keeps its distance from the joint's axis. Measured: at least 0.90 of it. By linear blend skinning
+// it would be at most 0.76 with these weights.
+TEST(AdultSkin, KeepsItsThicknessOverEachJointAtARightAngle) {
+  HandDescription description = adult();
+  description.coupling = HandCoupling::kNone;  // then all that lies beyond a joint turns about its axis
+  const HandSkin skin = load_hand_skin(description).value();
+  const LoadedHand loaded = load_hand(description);
+  const HandModel hand(loaded.parameters, Handedness::kRight, {}, loaded.meshes.collision);
+  for (int j = 0; j < static_cast<int>(kJoints); ++j) {
+    if (j % kJointsPerDigit == 1) continue;  // abduction
+    const int last = segment_index(j / kJointsPerDigit, kSegmentsPerDigit - 1);
+    const int first = segment_index(j / kJointsPerDigit, std::max(j % kJointsPerDigit - 1, 0));
+    JointArray angle{};
+    angle[idx(j)] = std::numbers::pi / 2.0;
+    const auto X_WS = poses(hand, angle);
+    const Pose& X_BS = skin.X_BS[idx(first)];
+    const Vec3 axis = Eigen::AngleAxisd(X_WS[idx(first)].R * X_BS.R.transpose()).axis();
+    const auto from_axis = [&](const Vec3& p) { return (p - X_BS.p).cross(axis).norm(); };
+    const std::vector<Vec3> bent = skinned(skin, X_WS);
+    int around = 0;
+    for (std::size_t i = 0; i < bent.size(); ++i) {
+      const Vec3& straight = skin.mesh.vertices[i];
+      const double beyond = weight_of(skin, i, first, last);
+      if (beyond < 0.3 || beyond > 0.7 || std::abs((X_BS.inverse() * straight).z()) > 4e-3) continue;
+      if (from_axis(straight) < 4e-3) continue;
+      ++around;
+      EXPECT_GT(from_axis(bent[i]), 0.85 * from_axis(straight)) << "joint " << j << ", vertex " << i;
+    }
+    EXPECT_GE(around, 2) << "joint " << j;
+  }
+}
+
 /// Where the skin stretches as no rigid segment does.
 enum Region { kTip, kMiddle, kKnuckle, kThumbWeb, kRegions };
 
@@ -136,8 +221,9 @@ Region region_of(int owner, bool moved_by_thumb) {
 }
 
 // The farthest that any vertex stands out of the segments, over the whole range of motion. Measured over
-// these poses: distal phalanges 0.63 mm, the phalanges before them 1.26 mm, the fingers' roots 2.59 mm; 6.03
-// mm in the web between thumb and palm, where the rigid segments open a fold.
+// these poses: distal phalanges 0.90 mm, the phalanges before them 1.54 mm, the fingers' roots 3.97 mm, around
+// the knuckles, where the cut's points were drawn towards the joints; 5.87 mm in the web between thumb and
+// palm, where the rigid segments open a fold.
 TEST(AdultSkin, StaysCloseToTheSegmentsAtRandomPoses) {
   const HandSkin skin = load_hand_skin(adult()).value();
   const LoadedHand loaded = load_hand(adult());
@@ -156,9 +242,9 @@ TEST(AdultSkin, StaysCloseToTheSegmentsAtRandomPoses) {
       region = std::max(region, out[i]);
     }
   }
-  EXPECT_LT(largest[kTip], 0.7e-3) << "seed " << kSeed;
-  EXPECT_LT(largest[kMiddle], 1.4e-3) << "seed " << kSeed;
-  EXPECT_LT(largest[kKnuckle], 2.7e-3) << "seed " << kSeed;
+  EXPECT_LT(largest[kTip], 1.0e-3) << "seed " << kSeed;
+  EXPECT_LT(largest[kMiddle], 1.6e-3) << "seed " << kSeed;
+  EXPECT_LT(largest[kKnuckle], 4.1e-3) << "seed " << kSeed;
   EXPECT_LT(largest[kThumbWeb], 6.3e-3) << "seed " << kSeed;
 }
 
@@ -177,8 +263,8 @@ std::vector<Vec3> points_on(const TriangleMesh& mesh) {
 class ShippedSkin : public ::testing::TestWithParam<std::string> {};
 
 // What is shown touches where it is felt, and does not reach into the object: at the end of the hold of
-// shipped grasps. Measured over the 18 scenes with a contact that are no benchmarks: no point in the object;
-// from a contact to the skin at most 0.35 mm, at the thumb's metacarpal 0.91 mm.
+// shipped grasps. Measured over the 19 scenes with a contact that are neither benchmarks nor the papers': no
+// point in the object; from a contact to the skin at most 0.38 mm.
 TEST_P(ShippedSkin, TouchesTheObjectAndDoesNotReachIntoIt) {
   const SceneDescription scene = load_scene(GetParam());
   const HapticModel model = build_model(scene);
@@ -202,8 +288,7 @@ TEST_P(ShippedSkin, TouchesTheObjectAndDoesNotReachIntoIt) {
     const SegmentSnapshot& contact = now.segment[idx(segment)];
     if (!contact.contact) continue;
     ++contacts;
-    EXPECT_LT(Solid(shown).to_surface(contact.point), segment == kThumbMetacarpal ? 1e-3 : 0.4e-3)
-        << segment_name(segment);
+    EXPECT_LT(Solid(shown).to_surface(contact.point), 0.4e-3) << segment_name(segment);
   }
   EXPECT_GT(contacts, 0);
 }
