@@ -43,9 +43,9 @@ Candidates commands_of(const CLI::App& command) {
   return all;
 }
 
-Candidates files_of(const std::string& folder) {
+Candidates files_of(const std::string& folder, const std::string& extension = ".toml") {
   Candidates all;
-  for (std::string& name : names_in_folder(data_folder() / folder, ".toml"))
+  for (std::string& name : names_in_folder(data_folder() / folder, extension))
     all.push_back({std::move(name), ""});
   return all;
 }
@@ -77,6 +77,7 @@ Candidates choices(const CLI::Option& option) {
 Candidates values_of(const CLI::Option& option) {
   const std::string name = CLI::detail::to_lower(option.get_single_name());
   if (option.get_positional() && name == "scene") return scenes();
+  if (option.get_positional() && name == "postures") return files_of("assets/postures", ".csv");
   if (is_named(option, "set")) return settings();
   if (is_named(option, "profile")) return files_of("assets/profiles");
   if (is_named(option, "mapping")) return files_of("assets/mappings");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx hand show|export: the hand of a hand file or of a patient's profile.
+// phalanx hand show|export|pictures: the hand of a hand file or of a patient's profile.
 #include <fmt/format.h>
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <string>
 
 #include "commands.h"
+#include "hand_pictures.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/hand/anthropometry.h"
 #include "phalanx/hand/fit.h"
@@ -237,6 +238,29 @@ void add_hand_command(CLI::App& app, Job& job) {
   to_file->callback([to_file, exported, &job] {
     refuse_empty_values(*to_file);
     job = [exported] { return export_hand(*exported); };
+  });
+
+  auto posed = std::make_shared<HandOptions>();
+  auto pictures = std::make_shared<HandPicturesOptions>();
+  CLI::App* draw =
+      hand->add_subcommand("pictures", "Draw the hand in named postures, one by one and on one sheet");
+  draw->add_option("POSTURES", pictures->postures,
+                   "a file of postures: a name in assets/postures or a .csv file, in degrees")
+      ->required();
+  add_hand_options(*draw, *posed);
+  draw->add_option("--out", pictures->folder,
+                   "writes NAME.png for each posture and postures.png into this folder")
+      ->required()
+      ->type_name("DIR");
+  draw->add_option("--width", pictures->width, "of one picture in pixels; its height is 5/4 of it")
+      ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
+  draw->add_option("--columns", pictures->columns, "pictures in a row of the sheet")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  draw->callback([draw, posed, pictures, &job] {
+    refuse_empty_values(*draw);
+    job = [posed, pictures] { return draw_postures(described(*posed), *pictures); };
   });
 }
 

@@ -37,7 +37,7 @@ bool CsvLines::next(std::string_view& line) {
     }
     line = rest_.substr(0, end);
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    if (line.find_first_not_of(kBlank) != std::string_view::npos) return true;
+    if (line.find_first_not_of(kBlank) != std::string_view::npos && !line.starts_with('#')) return true;
   }
   return false;
 }

@@ -10,12 +10,12 @@
 namespace phalanx {
 
 /// Reader of a text's lines, without copying. It skips a byte order mark, accepts \n and \r\n, and
-/// skips blank lines.
+/// skips blank lines and comments: lines whose first character is #.
 class CsvLines {
  public:
   CsvLines(std::string_view text, std::string origin);
 
-  /// Reads the next line that is not blank. @throws SceneError if it is longer than 64 KiB.
+  /// Reads the next line that is neither blank nor a comment. @throws SceneError if it is longer than 64 KiB.
   [[nodiscard]] bool next(std::string_view& line);
   /// @returns the number of the last line read, from 1.
   [[nodiscard]] std::size_t number() const noexcept { return number_; }

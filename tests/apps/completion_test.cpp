@@ -94,6 +94,7 @@ TEST_F(CliCompletion, OffersTheValuesThatAreListed) {
   EXPECT_THAT(offered("simulate --profile ="), Contains("small-woman"));
   EXPECT_THAT(offered("run --set force.stiff"), ElementsAre("force.stiffness_n_per_mm="));
   EXPECT_THAT(offered("hand export --format ''"), UnorderedElementsAre("urdf", "mjcf"));
+  EXPECT_THAT(offered("hand pictures small"), ElementsAre("small-woman")) << "postures";
   EXPECT_THAT(offered("scene check a b grasp_t"), Contains("grasp_teapot")) << "one of several arguments";
   EXPECT_THAT(offered("simulate wave grasp_t"), IsEmpty()) << "one argument too many";
   EXPECT_THAT(offered("simulate --out ''"), IsEmpty()) << "file names are the shell's";

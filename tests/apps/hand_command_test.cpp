@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `phalanx hand show|export` and the option --profile, as their users meet them.
+// `phalanx hand show|export|pictures` and the option --profile, as their users meet them.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -31,17 +31,18 @@ TEST(CliHand, ShowSaysSizesRangesAndHowFarTheyAreFromThePublishedMeans) {
   EXPECT_THAT(result.out, ::testing::ContainsRegex("index_pip_flexion +15\\.0 +60\\.0 +15\\.0"));
 }
 
-// The thumb's flexion goes from -18 to 35 degrees; half of it, backwards, is 9 to -17.5.
+// The thumb's flexion goes from -13 to 63 degrees; half of it, backwards, is 6.5 to -31.5.
 TEST(CliHand, ShowListsCoupledRotationsUnlessNoneAreWanted) {
   const TemporaryFolder folder;
   std::string hand = read_file(PHALANX_SOURCE_DIR "/assets/hands/adult.toml");
-  hand.replace(hand.find("[thumb]\n"), 8, "[thumb]\npronation = { per_flexion = -0.5 }\n");
+  const std::string shipped = "pronation = { per_flexion = 0.3026 }";
+  hand.replace(hand.find(shipped), shipped.size(), "pronation = { per_flexion = -0.5 }");
   hand.resize(hand.find("[meshes]"));
   write_file(folder / "coupled.toml", hand);
   const auto shown = run_program(folder, "hand show --hand coupled.toml");
   ASSERT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_THAT(shown.out,
-              ::testing::ContainsRegex("thumb pronation +thumb_cmc_flexion +-0\\.500 +9\\.0 +-17\\.5"));
+              ::testing::ContainsRegex("thumb pronation +thumb_cmc_flexion +-0\\.500 +6\\.5 +-31\\.5"));
   const auto none = run_program(folder, "hand show --hand coupled.toml --coupling none");
   ASSERT_EQ(none.exit_code, 0) << none.err;
   EXPECT_THAT(none.out, ::testing::Not(HasSubstr("coupled rotation")));
@@ -86,6 +87,31 @@ TEST(CliHand, ExportOfTheSameHandTwiceIsTheSameToTheByte) {
   EXPECT_EQ(read_file(folder / "a/hand.xml"), read_file(folder / "b/hand.xml"));
 }
 
+/// A file of two postures in which only the index finger differs.
+std::string two_postures(const std::string& second) {
+  std::string header = "time_s,posture", open = "1,open", bent = "2," + second;
+  for (int j = 0; j < kJoints; ++j) {
+    header += "," + std::string(joint_name(j));
+    open += ",0";
+    bent += j == 4 ? ",60" : ",0";
+  }
+  return header + "\n" + open + "\n" + bent + "\n";
+}
+
+TEST(CliHand, PicturesShowEachPostureAndTheSheet) {
+  const TemporaryFolder folder;
+  write_file(folder / "two.csv", two_postures("bent"));
+  const auto result =
+      run_program(folder, "hand pictures two.csv --side left --out drawn --width 64 --columns 2");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "wrote    drawn/NAME.png of 2 postures, and all of them on drawn/postures.png\n");
+  for (const char* name : {"drawn/open.png", "drawn/bent.png", "drawn/postures.png"})
+    EXPECT_THAT(read_file(folder / name), ::testing::StartsWith("\x89PNG")) << name;
+  EXPECT_NE(read_file(folder / "drawn/open.png"), read_file(folder / "drawn/bent.png"));
+  ASSERT_EQ(run_program(folder, "hand pictures two.csv --out right --width 64").exit_code, 0);
+  EXPECT_NE(read_file(folder / "drawn/open.png"), read_file(folder / "right/open.png"));
+}
+
 TEST(CliHand, RefusesInOneLineAndWritesNothing) {
   const TemporaryFolder folder;
   write_file(folder / "wide.toml", "name = \"w\"\nhandedness = \"right\"\nhand_length_mm = 300\n");
@@ -114,6 +140,11 @@ TEST(CliHand, RefusesInOneLineAndWritesNothing) {
   refuses("hand export --format sdf --out out", {"--format"});
   refuses("hand export --format urdf", {"--out"});
   refuses("hand export --format urdf --out ''", {"--out \"\": the value is empty"});
+  write_file(folder / "sheet.csv", two_postures("postures"));
+  refuses("hand pictures sheet.csv --out out", {"posture \"postures\"", "rename it"});
+  refuses("hand pictures nobody --out out", {"posture \"nobody\"", "adult"});
+  refuses("hand pictures adult", {"--out"});
+  refuses("hand pictures adult --out out --width 63", {"--width"});
   refuses("hand shwo", {"did you mean 'show'"});
   refuses("simulate wave --profile smal-woman", {"profile \"smal-woman\"", "did you mean \"small-woman\""});
   refuses("simulate wave --profile large-man --set hand.side=left", {"hand.side", "the profile states this"});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "figures/picture/camera.h"
@@ -78,6 +79,30 @@ TEST(Picture, OfNoObjectShowsTheHandAlone) {
   EXPECT_EQ(count(image, teal), 0);
   EXPECT_EQ(count(image, hot), 0);
   EXPECT_GT(count(image, bone), 500);
+}
+
+// Two balls 10 cm apart along x: seen along y there is a gap in the middle of the image, along x there is not.
+TEST(Picture, IsSeenFromTheStatedView) {
+  SegmentMeshes two_balls;
+  Snapshot snapshot;
+  for (const std::size_t s : {3U, 12U}) {
+    two_balls[s] = make_sphere(0.04, 500);
+    snapshot.gdp_pose[s].p = (s == 3 ? 0.05 : -0.05) * Vec3::UnitX();
+  }
+  snapshot.hcp_pose = snapshot.gdp_pose;
+  const auto balls_in_the_middle = [&](const Vec3& view) {
+    PictureOptions options = kSmall;
+    options.view = view;
+    const Image image = render_picture(two_balls, {}, snapshot, options);
+    constexpr int kMiddle = 84;  // of the part of the width that the scene takes
+    Image column{.width = 1, .height = image.height, .rgb = {}};
+    for (int y = 0; y < image.height; ++y)
+      for (int c = 0; c < 3; ++c)
+        column.rgb.push_back(image.rgb[static_cast<std::size_t>(3 * (y * image.width + kMiddle) + c)]);
+    return count(column, bone);
+  };
+  EXPECT_EQ(balls_in_the_middle(Vec3::UnitY()), 0);
+  EXPECT_GT(balls_in_the_middle(3.0 * Vec3::UnitX()), 60);
 }
 
 // The measured hand lies 5 cm below the shown one, so its disc, some 23 pixels in radius, is in the lower
@@ -161,6 +186,17 @@ TEST(Picture, RefusesASizeThatMakesNoSense) {
                std::invalid_argument);
   EXPECT_THROW((void)render_picture(scene.hand.meshes(), scene.object, scene.snapshot, {.samples = 0}),
                std::invalid_argument);
+}
+
+TEST(Picture, RefusesAViewWithoutAHorizon) {
+  const Scene scene;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Vec3& view : {Vec3(0, 0, 0), Vec3(0, 0, -1), Vec3(nan, 1, 0), Vec3(1, 0, nan)}) {
+    PictureOptions options = kSmall;
+    options.view = view;
+    EXPECT_THROW((void)render_picture(scene.hand.meshes(), {}, scene.snapshot, options),
+                 std::invalid_argument);
+  }
 }
 
 // A sphere's patches come nearer to the sphere than its flat triangles do; their corners stay.

@@ -47,6 +47,13 @@ TEST(MotionFile, MayNameAnyJointsInAnyOrder) {
   EXPECT_EQ(motion.angle[1][3], 0.2);
 }
 
+TEST(MotionFile, SkipsCommentsAndCountsTheirLines) {
+  const Motion motion = parse_csv("# recorded\ntime_s,index_pip_flexion\n0,1\n#0,3\n1,2\n");
+  EXPECT_EQ(motion.time_s, (std::vector<double>{0.0, 1.0}));
+  EXPECT_EQ(motion.angle[1][kPip], 2.0);
+  expect_motion_refused("# recorded\ntime_s,index_pip_flexion\n0,x\n", {"m.csv:3"});
+}
+
 TEST(MotionFile, LeavesJointsWithoutAColumnAtTheOpenHand) {
   JointArray open{};
   open.fill(0.25);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -38,17 +39,21 @@ struct PictureOptions {
   double full_force =
       0.0;  ///< force at the upper end of the colour scale [N]; 0: the largest in the snapshot, rounded up
   bool force_scale = true;  ///< draws the scale at the left edge if there is a force
+  /// Direction in which the camera looks, in W, of any length and not vertical; none: the best of a fixed set.
+  std::optional<Vec3> view = std::nullopt;
 };
 
 /// Ray-traces a picture on the CPU, without a display or GPU. It shows the displayed hand (GDP, graphic
 /// display position), tinted by the force on each segment. The measured hand (HCP, haptic device controlled
 /// position) is a translucent ghost where it differs. Contact points have force arrows, drawn through what
-/// hides them, and a colour scale. The meshes' edges are rounded by their own normals. The camera is the one,
-/// of a fixed set around the scene, that sees most of the contacts. World z is up. Equal input and options
+/// hides them, and a colour scale. The meshes' edges are rounded by their own normals. Unless
+/// `options` state the view, the camera is the one, of a fixed set around the scene, that sees most of the
+/// contacts. World z is up. Equal input and options
 /// give equal pixels, for any number of threads.
 /// @param hand    the poses come from `snapshot`
 /// @param object  in world frame [m]; may be empty
-/// @throws std::invalid_argument for a size below 16 or above 16384 pixels, or samples outside 1..32
+/// @throws std::invalid_argument for a size below 16 or above 16384 pixels, samples outside 1..32,
+/// or a view that is vertical, zero or not finite
 /// @throws std::runtime_error if the ray tracer cannot start
 [[nodiscard]] Image render_picture(const DrawnHand& hand, const TriangleMesh& object,
                                    const Snapshot& snapshot, const PictureOptions& options = {});

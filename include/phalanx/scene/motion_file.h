@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motions as CSV (comma-separated values): a header with `time_s` and names of joints (any, in any order),
-// times in s, angles in rad, any rate.
+// times in s, angles in rad, any rate. Lines that begin with # are comments.
 #pragma once
 
 #include <filesystem>

@@ -17,36 +17,6 @@ constexpr float kSceneLeft = 0.10F,
                 kSceneRight = 0.95F;  // part of the width for the scene: the force scale is left of it
 constexpr float kFill = 0.86F;        // part of the height for the scene
 
-/// Makes a camera that looks along `forward` and just holds all vertices.
-Camera fitted(const std::vector<const RenderMesh*>& meshes, const Vec3f& forward, int width, int height) {
-  Camera camera;
-  camera.forward = forward;
-  camera.right = forward.cross(Vec3f::UnitZ()).normalized();
-  camera.up = camera.right.cross(forward);
-  camera.focal = 0.5F * static_cast<float>(height) / std::tan(0.5F * kFieldOfView);
-  camera.centre_x = 0.5F * (kSceneLeft + kSceneRight) * static_cast<float>(width);
-  camera.centre_y = 0.5F * static_cast<float>(height);
-  // In the camera's axes, a vertex (x, y, z) is inside if |x - ex| <= tx (z - ez). For each pair of planes,
-  // this finds the nearest apex.
-  const float tx = 0.5F * (kSceneRight - kSceneLeft) * static_cast<float>(width) / camera.focal;
-  const float ty = 0.5F * kFill * static_cast<float>(height) / camera.focal;
-  float x_high = -1e9F, x_low = -1e9F, y_high = -1e9F, y_low = -1e9F;
-  for (const RenderMesh* mesh : meshes) {
-    for (const Vec3f& v : mesh->vertices) {
-      const float x = v.dot(camera.right), y = v.dot(camera.up), z = v.dot(forward);
-      x_high = std::max(x_high, x - tx * z);
-      x_low = std::max(x_low, -x - tx * z);
-      y_high = std::max(y_high, y - ty * z);
-      y_low = std::max(y_low, -y - ty * z);
-    }
-  }
-  const float ex = 0.5F * (x_high - x_low);
-  const float ey = 0.5F * (y_high - y_low);
-  const float ez = std::min(-0.5F * (x_high + x_low) / tx, -0.5F * (y_high + y_low) / ty);
-  camera.eye = ex * camera.right + ey * camera.up + ez * forward;
-  return camera;
-}
-
 /// @returns the weighted part of the contacts that the camera sees, from 0 to 1. A force towards or away from
 /// the camera has less weight.
 float contacts_seen(const RayScene& scene, const Camera& camera, const std::vector<Sight>& contacts) {
@@ -131,6 +101,36 @@ Shown shown(const RayScene& scene, const Camera& camera, int width, int height) 
 
 }  // namespace
 
+Camera camera_along(const Vec3f& forward, const std::vector<const RenderMesh*>& meshes, int width,
+                    int height) {
+  Camera camera;
+  camera.forward = forward;
+  camera.right = forward.cross(Vec3f::UnitZ()).normalized();
+  camera.up = camera.right.cross(forward);
+  camera.focal = 0.5F * static_cast<float>(height) / std::tan(0.5F * kFieldOfView);
+  camera.centre_x = 0.5F * (kSceneLeft + kSceneRight) * static_cast<float>(width);
+  camera.centre_y = 0.5F * static_cast<float>(height);
+  // In the camera's axes, a vertex (x, y, z) is inside if |x - ex| <= tx (z - ez). For each pair of planes,
+  // this finds the nearest apex.
+  const float tx = 0.5F * (kSceneRight - kSceneLeft) * static_cast<float>(width) / camera.focal;
+  const float ty = 0.5F * kFill * static_cast<float>(height) / camera.focal;
+  float x_high = -1e9F, x_low = -1e9F, y_high = -1e9F, y_low = -1e9F;
+  for (const RenderMesh* mesh : meshes) {
+    for (const Vec3f& v : mesh->vertices) {
+      const float x = v.dot(camera.right), y = v.dot(camera.up), z = v.dot(forward);
+      x_high = std::max(x_high, x - tx * z);
+      x_low = std::max(x_low, -x - tx * z);
+      y_high = std::max(y_high, y - ty * z);
+      y_low = std::max(y_low, -y - ty * z);
+    }
+  }
+  const float ex = 0.5F * (x_high - x_low);
+  const float ey = 0.5F * (y_high - y_low);
+  const float ez = std::min(-0.5F * (x_high + x_low) / tx, -0.5F * (y_high + y_low) / ty);
+  camera.eye = ex * camera.right + ey * camera.up + ez * forward;
+  return camera;
+}
+
 Camera choose_camera(const RayScene& scene, const std::vector<const RenderMesh*>& also,
                      const std::vector<Sight>& contacts, const Vec3f& thumb_side, int width, int height) {
   std::vector<const RenderMesh*> all = also;
@@ -143,7 +143,7 @@ Camera choose_camera(const RayScene& scene, const std::vector<const RenderMesh*>
       const float azimuth = static_cast<float>(i) * 7.5F * kDegree;
       const Vec3f forward(-std::cos(elevation * kDegree) * std::cos(azimuth),
                           -std::cos(elevation * kDegree) * std::sin(azimuth), -std::sin(elevation * kDegree));
-      const Camera camera = fitted(all, forward, width, height);
+      const Camera camera = camera_along(forward, all, width, height);
       const Shown image = shown(scene, camera, width, height);
       const float tilt = (elevation - 20.0F) / 60.0F;
       const float value = contacts_seen(scene, camera, contacts) + 2.0F * share_seen(scene, camera, ends) +

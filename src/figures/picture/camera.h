@@ -34,6 +34,11 @@ struct Sight {
   float weight;
 };
 
+/// Makes a camera that looks along `forward`, at the least distance at which all vertices fit the image.
+/// @param forward  unit vector, not vertical
+[[nodiscard]] Camera camera_along(const Vec3f& forward, const std::vector<const RenderMesh*>& meshes,
+                                  int width, int height);
+
 /// Chooses a camera from 48 azimuths x 4 elevations, each at the least distance at which everything fits the
 /// image. The best one shows most of the contacts, with their forces across the image. It shows much of the
 /// fingers and of the object, little of the palm, and the object's long side and its ends. It looks at the

@@ -87,8 +87,7 @@ class Renderer {
         solid_(device_.get(), std::move(contents.solid)),
         ghost_(device_.get(), std::move(contents.ghost)),
         arrows_(device_.get(), std::move(contents.arrows)),
-        camera_(choose_camera(solid_, {&ghost_.mesh(), &arrows_.mesh()}, contents.contacts,
-                              contents.thumb_side, options.width, options.height)) {
+        camera_(camera(contents, options)) {
     float low = 1e9F, high = -1e9F;
     for (const Vec3f& v : solid_.mesh().vertices) {
       low = std::min(low, v.z());
@@ -124,6 +123,14 @@ class Renderer {
   }
 
  private:
+  [[nodiscard]] Camera camera(const Contents& contents, const PictureOptions& options) const {
+    if (options.view)
+      return camera_along(options.view->normalized().cast<float>(),
+                          {&solid_.mesh(), &ghost_.mesh(), &arrows_.mesh()}, options.width, options.height);
+    return choose_camera(solid_, {&ghost_.mesh(), &arrows_.mesh()}, contents.contacts, contents.thumb_side,
+                         options.width, options.height);
+  }
+
   [[nodiscard]] Vec3f background(float y) const {
     const float t = y / static_cast<float>(options_.height);
     return (1.0F - t) * Vec3f(0.71F, 0.76F, 0.82F) + t * Vec3f(0.90F, 0.91F, 0.915F);
@@ -218,6 +225,8 @@ Image render_picture(const DrawnHand& hand, const TriangleMesh& object, const Sn
     throw std::invalid_argument(
         fmt::format("picture with {} samples: must be from 1 to 32", options.samples));
   }
+  if (options.view && !(options.view->head<2>().norm() > 1e-6 * options.view->norm()))
+    throw std::invalid_argument("picture: the view must be finite, not zero and not vertical");
   return picture::Renderer(picture::collect(hand, object, snapshot, options.full_force), options).render();
 }
 
