@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSheet = "postures";
+constexpr double kMostPixels = 2e8;  ///< of all pictures together: they stay in memory for the sheet
 
 /// Returns the pose of the hand in the world: the fingers point up, the palm to +y.
 Pose upright() {
@@ -69,6 +71,16 @@ int draw_postures(const HandDescription& description, const HandPicturesOptions&
     if (posture.name == kSheet)
       throw std::invalid_argument(fmt::format("{}: posture \"{}\" has the name of the sheet; rename it",
                                               options.postures, posture.name));
+  const double pixels = 1.25 * options.width * options.width * static_cast<double>(postures.size());
+  if (pixels > kMostPixels)
+    throw std::invalid_argument(fmt::format(
+        "{}: {} postures at a width of {} are {:.0f} million pixels; at most {:.0f} million fit a "
+        "sheet: draw fewer postures or smaller pictures",
+        options.postures, postures.size(), options.width, 1e-6 * pixels, 1e-6 * kMostPixels));
+  const fs::path sheet = options.folder / fmt::format("{}.png", kSheet);
+  if (fs::is_directory(sheet))
+    throw std::invalid_argument(
+        fmt::format("{} is a folder; remove it, or choose another --out", sheet.string()));
   LoadedHand loaded = load_hand(description, HandDetail::kDrawn);
   const HandModel model(loaded.parameters, loaded.handedness, upright(), loaded.meshes.collision);
   const PictureOptions picture{.width = options.width,
@@ -86,7 +98,7 @@ int draw_postures(const HandDescription& description, const HandPicturesOptions&
     tiles.push_back({std::move(image), caption(posture.name)});
   }
   bar.show(tiles.size(), postures.size());
-  save(contact_sheet(tiles, options.columns), options.folder / fmt::format("{}.png", kSheet));
+  save(contact_sheet(tiles, options.columns), sheet);
   fmt::print("wrote    {}/NAME.png of {} postures, and all of them on {}/{}.png\n", options.folder.string(),
              tiles.size(), options.folder.string(), kSheet);
   return kDone;

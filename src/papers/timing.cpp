@@ -100,7 +100,11 @@ TimingResult run_s1_timing() {
 }
 
 TimingResult run_s2_timing() {
+  // The closures are those that this hand's digits meet the teapot with.
   SceneDescription scene = load_scene("grasp_teapot", {{"motion.repeat", "5"},
+                                                       {"motion.thumb", "0.77"},
+                                                       {"motion.ring", "0.58"},
+                                                       {"motion.little", "1.09"},
                                                        {"hand.file", "papers"},
                                                        {"hand.meshes", "capsules"},
                                                        {"hand.coupling", "none"}});

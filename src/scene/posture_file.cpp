@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <unordered_set>
 
 #include "phalanx/core/constants.h"
@@ -35,19 +38,48 @@ void check_name(const CsvLines& lines, std::string_view name) {
                   kNameColumn, show_cell(name), kLongestName));
 }
 
+constexpr std::string_view kTimeColumn = "time_s";
+constexpr double kFullTurn = 360.0;  // [deg]
+
+/// Refuses what parse_motion() would explain with words for a recording.
+void check_numbers(const CsvLines& lines, const std::vector<std::string_view>& names,
+                   const std::vector<std::string_view>& cells, double& latest) {
+  for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i) {
+    const std::optional<double> value = parse_number(cells[i]);
+    if (!value) continue;
+    if (names[i] == kTimeColumn) {
+      if (*value <= latest)
+        lines.fail(fmt::format("{} = {} does not increase; number the postures in order", kTimeColumn,
+                               show_cell(cells[i])));
+      latest = *value;
+    } else if (find_joint(names[i]) && std::abs(*value) > kFullTurn) {
+      lines.fail(fmt::format("{} = {} is beyond a full turn; write degrees", names[i], show_cell(cells[i])));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Posture> parse_postures(std::string_view text, const std::string& origin) {
-  const Motion motion = parse_motion(text, origin, degrees());
   CsvLines lines(text, origin);
   std::string_view line;
+  std::vector<std::string_view> header;
   std::vector<std::string_view> cells;
+  if (lines.next(line)) split_cells(line, header);
+  const auto column = std::find(header.begin(), header.end(), kNameColumn);
+  if (column == header.end())
+    lines.fail(
+        fmt::format("column \"{}\" is missing; the first line names the columns: {}, {} and the joints",
+                    kNameColumn, kTimeColumn, kNameColumn));
+  const auto place = static_cast<std::size_t>(column - header.begin());
+  double latest = -std::numeric_limits<double>::infinity();
+  while (lines.next(line)) {
+    split_cells(line, cells);
+    check_numbers(lines, header, cells, latest);
+  }
+  const Motion motion = parse_motion(text, origin, degrees());
+  lines = CsvLines(text, origin);
   static_cast<void>(lines.next(line));
-  split_cells(line, cells);
-  const auto column = std::find(cells.begin(), cells.end(), kNameColumn);
-  if (column == cells.end())
-    lines.fail(fmt::format("column \"{}\" is missing; give each row a name", kNameColumn));
-  const auto place = static_cast<std::size_t>(column - cells.begin());
 
   std::vector<Posture> postures;
   std::unordered_set<std::string> names;

@@ -18,7 +18,7 @@ const std::string kThumbCmcFlexion = "0";
 const std::string kThumbIpFlexion = "3";
 const std::string kIndexMcpFlexion = "4";
 const std::string kMotorOfIndexMcp = "2";  // motors are in the order of their names
-constexpr double kAt = 2.4;                       ///< when it breaks: mid-contact [s]
+constexpr double kAt = 2.4;                ///< when it breaks: mid-contact [s]
 
 std::string at(const std::string& fault, double time = kAt) { return fmt::format("{}@{}", fault, time); }
 
@@ -185,10 +185,12 @@ TEST(Faults, ADeadMotorIsAFault) {
   EXPECT_EQ(o.faults, std::vector<std::string>{"torque_disagrees"});
   EXPECT_GE(found.seen, 200);
   EXPECT_EQ(o.host_exit, 1);
-  print_row("commanded and measured torque disagree (dead motor, torque sensor on its joint)",
-            "fault; bound: 150 mNm + 50 % of the command for 200 ms",
-            fmt::format("`{}` {} ticks after the motor died at {:.0f} mNm; zero after {} ticks", found.fault,
-                        found.seen, 1e3 * found.before, found.to_zero));
+  print_row(
+      "commanded and measured torque disagree (dead motor of the index finger's MCP joint, torque sensor, "
+      "pressed with 8 N)",
+      "fault; bound: 150 mNm + 50 % of the command for 200 ms",
+      fmt::format("`{}` {} ticks after the motor died at {:.0f} mNm; zero after {} ticks", found.fault,
+                  found.seen, 1e3 * found.before, found.to_zero));
 }
 
 const Registered kEstop("TheEmergencyStopIsAFault", "",

@@ -54,6 +54,14 @@ TEST(PostureFile, RefusesNamesThatAreNoFileNames) {
   expect_postures_refused("time_s,posture,index_pip_flexion\n1,a,0\n", {"thumb_cmc_flexion", "is missing"});
 }
 
+TEST(PostureFile, RefusesNumbersInItsOwnWords) {
+  expect_postures_refused("", {"\"posture\" is missing", "time_s"});
+  expect_postures_refused(postures_csv("2,a,0" + zeros() + "1,b,0" + zeros()),
+                          {"p.csv:4", "time_s = 1 does not increase"});
+  expect_postures_refused(postures_csv("1,a,400" + zeros()),
+                          {"p.csv:3", "thumb_cmc_flexion = 400", "full turn"});
+}
+
 TEST(PostureFile, IsFoundByNameAndNamesTheNearest) {
   EXPECT_FALSE(load_postures("adult").empty());
   expect_scene_error([] { static_cast<void>(load_postures("adul")); },

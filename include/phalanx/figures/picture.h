@@ -46,10 +46,9 @@ struct PictureOptions {
 /// Ray-traces a picture on the CPU, without a display or GPU. It shows the displayed hand (GDP, graphic
 /// display position), tinted by the force on each segment. The measured hand (HCP, haptic device controlled
 /// position) is a translucent ghost where it differs. Contact points have force arrows, drawn through what
-/// hides them, and a colour scale. The meshes' edges are rounded by their own normals. Unless
-/// `options` state the view, the camera is the one, of a fixed set around the scene, that sees most of the
-/// contacts. World z is up. Equal input and options
-/// give equal pixels, for any number of threads.
+/// hides them, and a colour scale. The meshes' edges are rounded by their own normals. Unless `options` state
+/// the view, the camera is the one, of a fixed set around the scene, that sees most of the contacts. World z is
+/// up. Equal input and options give equal pixels, for any number of threads.
 /// @param hand    the poses come from `snapshot`
 /// @param object  in world frame [m]; may be empty
 /// @throws std::invalid_argument for a size below 16 or above 16384 pixels, samples outside 1..32,

@@ -21,8 +21,9 @@ struct Posture {
 
 /// Reads postures, in the file's order.
 /// @param name_or_path  a name in assets/postures ("adult") or a path (contains `/` or ends with .csv)
-/// @throws SceneError if there is no such file, as parse_motion(), or naming file, line, name and remedy. It refuses a missing column, an
-/// empty name, one with other characters or of more than 64, and a name that appears twice. Set-up only.
+/// @throws SceneError if there is no such file, as parse_motion(), or naming file, line, name and remedy. It
+/// refuses a missing column, times that do not increase, angles beyond a full turn, an empty name, one with
+/// other characters or of more than 64, and a name that appears twice. Set-up only.
 [[nodiscard]] std::vector<Posture> load_postures(const std::string& name_or_path,
                                                  const std::filesystem::path& base = ".");
 

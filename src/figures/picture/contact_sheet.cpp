@@ -27,7 +27,7 @@ void paste(Image& sheet, const Image& tile, int left, int top) {
   for (int y = 0; y < tile.height; ++y) {
     const auto from = tile.rgb.begin() + static_cast<std::ptrdiff_t>(3) * y * tile.width;
     std::copy(from, from + static_cast<std::ptrdiff_t>(3) * tile.width,
-              sheet.rgb.begin() + static_cast<std::ptrdiff_t>(3) * ((top + y) * sheet.width + left));
+              sheet.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(top + y) * sheet.width + left));
   }
 }
 

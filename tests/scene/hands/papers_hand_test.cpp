@@ -4,16 +4,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "phalanx/core/index.h"
+#include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/scene.h"
+#include "phalanx/step/haptic_step.h"
 
 namespace phalanx {
 namespace {
@@ -104,6 +109,43 @@ TEST(PapersHand, IsTheHandOfTheStabilityScenes) {
     const SceneDescription scene = load_scene(name);
     EXPECT_EQ(scene.hand.file, "papers") << name;
     EXPECT_EQ(scene.hand.coupling, HandCoupling::kNone) << name;
+  }
+}
+
+/// The digits' forces [N] 1.5 s after the start of a scene's motion, within its hold.
+std::array<double, kDigits> held(const std::string& name, const Overrides& set) {
+  const SceneDescription scene = load_scene(name, set);
+  const HapticModel model = build_model(scene);
+  const Motion motion = build_motion(scene);
+  HapticState state(model, scene.parameters);
+  const auto ticks = static_cast<int>(1.5 * scene.parameters.rate_hz);
+  for (int tick = 0; tick <= ticks; ++tick) {
+    const double time = tick / scene.parameters.rate_hz;
+    (void)step(model, scene.parameters, {time, motion.at(time)}, state);
+  }
+  std::array<double, kDigits> force{};
+  for (int s = 0; s < kPalm; ++s) force[idx(digit_of_segment(s))] += state.snapshot().segment[idx(s)].force;
+  return force;
+}
+
+// Values of the adult's hand of commit e959a5c, from which this hand was taken: its ticks were equal to the bit.
+TEST(PapersHand, KeepsTheForcesOfThePapersScenes) {
+  const std::vector<std::tuple<std::string, Overrides, std::array<double, kDigits>>> scenes = {
+      {"stability_press", {}, {0.0, 1.8259154722779491, 0.0, 0.0, 0.0}},
+      {"stability_grasp",
+       {},
+       {3.03201025203497, 3.356796192824002, 3.1216058771081787, 3.097102537851146, 3.5394333955456654}},
+      {"grasp_teapot",  // s2-timing
+       {{"motion.thumb", "0.77"},
+        {"motion.ring", "0.58"},
+        {"motion.little", "1.09"},
+        {"hand.file", "papers"},
+        {"hand.coupling", "none"},
+        {"hand.meshes", "capsules"}},
+       {1.8694794633537775, 1.1509770767257166, 1.321156458392862, 1.068441309119821, 1.5564530636482907}}};
+  for (const auto& [name, set, expected] : scenes) {
+    const auto force = held(name, set);
+    for (std::size_t d = 0; d < kDigits; ++d) EXPECT_NEAR(force[d], expected[d], 1e-9) << name << ", " << d;
   }
 }
 
