@@ -65,7 +65,8 @@ struct HandFit {
 
 /// Returns the base hand's numbers, scaled. A segment's ratios scale its D-H lengths and its capsule. The
 /// palm's ratios scale the palm and the digits' bases: along z by its length, along x and y by its breadth.
-/// Directions, twists and ranges of motion stay.
+/// DigitCoupling::metacarpal_per_flexion is multiplied by the palm's breadth ratio over its length ratio, so that
+/// the knuckle's way scales with the breadth. Directions, twists and ranges of motion stay.
 /// hand_length(), hand_breadth(), segment_length() and segment_breadth() of the result equal the requested
 /// sizes to 1e-12 m.
 /// @throws std::invalid_argument if a segment is too short for its breadth. Set-up only.

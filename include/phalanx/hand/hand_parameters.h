@@ -84,8 +84,8 @@ struct HandParameters {
   JointArray min_angle{};   ///< range of motion [rad]
   JointArray max_angle{};   ///< range of motion [rad]
   JointArray open_angle{};  ///< the open hand, where the shown hand starts [rad]
-  /// Where a scripted motion of closure 1 takes a joint [rad]; its largest angle if left out. A thumb opposes with
-  /// an abduction of its own.
+  /// Where a scripted motion of closure 1 takes a joint [rad]; its largest angle if left out. A thumb opposes
+  /// with an abduction of its own.
   std::array<std::optional<double>, kJoints> closed_angle{};
 
   [[nodiscard]] bool operator==(const HandParameters&) const = default;
