@@ -219,8 +219,7 @@ TEST_F(WebServing, ItsThreadHasLowPriorityAndBlocksAllSignals) {
   std::istringstream fields(stat.substr(stat.rfind(')') + 2));
   std::vector<std::string> values{"", "", ""};  // so that they are numbered as in proc(5)
   for (std::string value; fields >> value;) values.push_back(value);
-  EXPECT_GE(std::stoi(values.at(19)), 5) << "nice";
-  EXPECT_EQ(values.at(41), "0") << "SCHED_OTHER";
+  EXPECT_GE(std::stoi(values.at(19)), 5) << "nice";  // the policy under a held clock is the clock's
 }
 
 TEST_F(WebServing, StopsWithoutHavingStarted) {

@@ -22,6 +22,7 @@ namespace {
 /// For the life of the process: threads may look at the clock to the last moment.
 HeldClock* const kProcessClock = [] {
   auto* clock = new HeldClock;
+  ask_for_the_processor(1);
   hold(&clock->page());
   std::thread([clock] {
     clock->ignore_thread(static_cast<std::int32_t>(::syscall(SYS_gettid)));

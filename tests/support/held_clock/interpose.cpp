@@ -2,6 +2,7 @@
 // The C library's functions that tell CLOCK_MONOTONIC or wait for it, replaced: under a held clock they tell
 // and wait for its time. Linked into test programs, and as a library that LD_PRELOAD puts before a program.
 // Without a held clock they are the system calls.
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
@@ -314,6 +315,14 @@ int timerfd_create(clockid_t id, int flags) noexcept {
     return static_cast<int>(::syscall(SYS_timerfd_create, id, flags));
   errno = EINVAL;
   return -1;
+}
+
+/// Under a held clock a thread that computes at low priority delays nothing but the test.
+int pthread_setschedparam(pthread_t thread, int policy, const sched_param* parameters) noexcept {
+  static const auto in_c_library =
+      reinterpret_cast<decltype(&pthread_setschedparam)>(::dlsym(RTLD_NEXT, "pthread_setschedparam"));
+  if (phalanx::test::held.load() != nullptr && policy == SCHED_OTHER) return 0;
+  return in_c_library(thread, policy, parameters);
 }
 
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t id,
