@@ -41,7 +41,7 @@ declare global {
       state: () => State | undefined;
       lost: () => boolean;
       page: () => number;
-      history: () => { readonly seconds: number; readonly samples: number };
+      history: () => { readonly seconds: number; readonly end: number; readonly samples: number };
       newest: (channel: number) => number;
     };
   }
@@ -181,7 +181,8 @@ window.phalanx = {
   page: () => store.welcome?.page ?? 0,
   history: () => {
     const time = store.history.time();
-    return { seconds: (time.at(-1) ?? 0) - (time[0] ?? 0), samples: store.history.length };
+    const end = time.at(-1) ?? 0;
+    return { seconds: end - (time[0] ?? 0), end, samples: store.history.length };
   },
   newest: (channel) => store.history.channel(channel).at(-1) ?? NaN,
 };
