@@ -16,6 +16,7 @@
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/posture_file.h"
+#include "picture_file.h"
 #include "terminal/progress.h"
 
 namespace phalanx {
@@ -54,10 +55,6 @@ Snapshot posed(const HandModel& model, const JointArray& angle) {
   return snapshot;
 }
 
-void save(const Image& image, const fs::path& file) {
-  write_then_rename(file, [&](const fs::path& temporary) { write_png(image, temporary); });
-}
-
 std::string caption(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -94,11 +91,11 @@ int draw_postures(const HandDescription& description, const HandPicturesOptions&
   for (const Posture& posture : postures) {
     bar.show(tiles.size(), postures.size());
     Image image = render_picture(drawn, {}, posed(model, posture.angle), picture);
-    save(image, options.folder / (posture.name + ".png"));
+    save_picture(image, options.folder / (posture.name + ".png"));
     tiles.push_back({std::move(image), caption(posture.name)});
   }
   bar.show(tiles.size(), postures.size());
-  save(contact_sheet(tiles, options.columns), sheet);
+  save_picture(contact_sheet(tiles, options.columns), sheet);
   fmt::print("wrote    {}/NAME.png of {} postures, and all of them on {}/{}.png\n", options.folder.string(),
              tiles.size(), options.folder.string(), kSheet);
   return kDone;

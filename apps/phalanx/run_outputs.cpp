@@ -7,6 +7,7 @@
 
 #include "phalanx/mesh/import.h"
 #include "phalanx/record/output_file.h"
+#include "picture_file.h"
 
 namespace phalanx {
 namespace {
@@ -53,7 +54,7 @@ void RunOutputs::finish(const Summary& summary, const PlotText& text) {
   if (!plan_.plot.empty()) write_text_file(plan_.plot, plot_svg(trace_, text));
   if (!plan_.picture.empty()) {
     const Image image = render_picture(drawn_, model_.object.mesh(), moment_.snapshot());
-    write_then_rename(plan_.picture, [&](const std::filesystem::path& file) { write_png(image, file); });
+    save_picture(image, plan_.picture);
   }
   if (plan_.folder.empty()) return;
   write_meshes();

@@ -14,6 +14,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/study/simulate.h"
+#include "picture_file.h"
 #include "terminal/progress.h"
 
 namespace phalanx {
@@ -51,10 +52,6 @@ Sitting sit(const std::string& name) {
   return sitting;
 }
 
-void save(const Image& image, const fs::path& file) {
-  write_then_rename(file, [&](const fs::path& temporary) { write_png(image, temporary); });
-}
-
 }  // namespace
 
 int draw_scenes(const ScenePicturesOptions& options) {
@@ -78,11 +75,11 @@ int draw_scenes(const ScenePicturesOptions& options) {
                                  .full_force = full_force,
                                  .force_scale = false};
     Image image = render_picture(sitting.hand, sitting.object, sitting.snapshot, picture);
-    save(image, options.folder / (sitting.name + ".png"));
+    save_picture(image, options.folder / (sitting.name + ".png"));
     tiles.push_back({std::move(image), fmt::format("{}  {:.1f} N", sitting.name, sitting.largest_force)});
   }
   bar.show(tiles.size(), sittings.size());
-  save(contact_sheet(tiles, options.columns), options.folder / "scenes.png");
+  save_picture(contact_sheet(tiles, options.columns), options.folder / "scenes.png");
   fmt::print("wrote    {}/NAME.png of {} scenes, and all of them on {}/scenes.png\n", options.folder.string(),
              tiles.size(), options.folder.string());
   return kDone;
