@@ -2,6 +2,7 @@
 #include "contact/first_contact.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/pair_search.h"
 
@@ -37,12 +38,16 @@ class Search {
   }
 
   Stop run(int& evaluations) noexcept {
+    if (const int blocked = still_blocked(); blocked >= 0) {
+      refresh_clearances();
+      return {s_, blocked};
+    }
     while (evaluations < kMaxEvaluations) {
       const double horizon = gather();
       const bool crowded = s_ < 1.0 && !(horizon > s_);  // too many pairs to list at s
       for (bool reached = false; !reached && evaluations < kMaxEvaluations; ++evaluations) {
         const int blocked = evaluate(horizon);
-        if (blocked >= 0) return {s_, blocked};
+        if (blocked >= 0) return stopped_by(blocked);
         if (crowded) return exhausted();
         const double next = std::min(horizon, least_until(state_.pairs));
         reached = s_ >= horizon || (next >= horizon && !any_near(state_.pairs));
@@ -70,13 +75,48 @@ class Search {
     return segment_motion(model_.hand, tick_.digit, tick_.pose, path_.rate, k);
   }
 
+  [[nodiscard]] NearPairs& near(int k) noexcept { return state_.near[idx(segment_index(tick_.digit, k))]; }
+
+  Stop stopped_by(int blocked) noexcept {
+    for (int k = first_; k < kSegmentsPerDigit; ++k)
+      if (!has_room(k)) near(k).stop_at(tick_.pose.segment[idx(k)]);
+    return {s_, blocked};
+  }
+  /// @returns true if the segment is known to be farther than the margin from the object
+  [[nodiscard]] bool has_room(int k) noexcept { return clearance(k).bound() > model_.parameters.margin; }
+
+  /// Asks whether a segment that has not moved since it last stopped is blocked again. Then what the digit may
+  /// meet farther on need not be listed.
+  /// @returns the most distal blocked segment, as evaluate() finds it; -1 if none is known to be blocked
+  int still_blocked() noexcept {
+    const double reach = std::nextafter(model_.parameters.margin, 1.0) + kPatchBand;
+    int blocked = -1;
+    for (int k = first_; k < kSegmentsPerDigit; ++k) {
+      if (has_room(k) || (blocked < 0 && !near(k).is_at(tick_.pose.segment[idx(k)]))) continue;
+      const PairSearch search{placed(k), model_.object.tree(), motion(k),
+                              stop_band(model_.parameters.margin)};
+      near(k).find(search.segment, search.object, reach);
+      if (near(k).count() > NearPairs::kMost) return -1;
+      if (is_blocked(search, near(k))) blocked = k;
+    }
+    return blocked;
+  }
+  /// Does to the clearances what gather() does, so that the next ticks are the same to the last bit.
+  void refresh_clearances() noexcept {
+    const double horizon = first_horizon();
+    for (int k = first_; k < kSegmentsPerDigit; ++k) (void)is_clear(k, horizon);
+  }
+  [[nodiscard]] double first_horizon() noexcept {
+    return std::min(1.0, s_ + std::max(kLongestReach / speed_.back(), known_to_be_clear()));
+  }
+
   /// Lists the pairs that may be met before s reaches the horizon.
   /// @returns the horizon: 1, or less if the way is long or too many pairs are near
   double gather() noexcept {
     PairList& list = state_.pairs;
     list.count = 0;
     list.begin = {};
-    double horizon = std::min(1.0, s_ + std::max(kLongestReach / speed_.back(), known_to_be_clear()));
+    double horizon = first_horizon();
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
       if (!is_clear(k, horizon)) {
         horizon =
@@ -110,6 +150,10 @@ class Search {
     Clearance& known = clearance(k);
     if (known.bound() > margin + reach) return true;
     if (!known.worth_asking()) return false;
+    if (near(k).is_within(tick_.pose.segment[idx(k)], margin)) {
+      known.learn(0.0, false);
+      return false;
+    }
     const double ahead = margin + std::max({std::min(kTicks * reach, kMostAhead), 2.0 * reach, kLeastAhead});
     const double bound = distance_bound(placed(k), model_.object.tree(), ahead);
     known.learn(bound, bound > margin + reach);

@@ -178,7 +178,8 @@ void make_record(const ContactModel& model, DigitTick& tick, int k, double s, do
                  const SegmentMotion* motion, GdpState& state) noexcept {
   const Pose& gdp = tick.pose.segment[idx(k)];
   const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], gdp, state.scratch};
-  const ContactPatch patch = contact_patch(placed, model.object, cap, motion);
+  const ContactPatch patch =
+      contact_patch(placed, model.object, cap, motion, state.near[idx(segment_index(tick.digit, k))]);
   if (patch.pairs == 0) return;
   ContactRecord record;
   record.active = true;

@@ -130,6 +130,22 @@ bool evaluate_pairs(const PairSearch& search, double s, double horizon, int k, b
   return evaluate_range(Views(search, s, horizon), list.begin[idx(k)], list.begin[idx(k + 1)], due, list);
 }
 
+bool is_blocked(const PairSearch& search, const NearPairs& near) noexcept {
+  // Whether a pair blocks does not depend on the horizon.
+  const Views v(search, 0.0, 1.0);
+  std::array<search::PairIndex, kBatch> pair;
+  std::array<search::PairStep, kBatch> step;
+  for (std::size_t first = 0; first < near.count(); first += kBatch) {
+    const std::size_t n = std::min<std::size_t>(kBatch, near.count() - first);
+    for (std::size_t i = 0; i < n; ++i) pair[i] = {near[first + i].triangle, near[first + i].slot};
+    search::functions().advance(v.segment, v.object, v.motion, v.horizon, v.band.margin, v.band.floor,
+                                pair.data(), static_cast<int>(n), step.data());
+    if (std::any_of(step.begin(), step.begin() + n, [](const search::PairStep& s) { return s.blocked; }))
+      return true;
+  }
+  return false;
+}
+
 double least_until(const PairList& list) noexcept {
   double least = 1e300;
   for (int i = 0; i < list.count; ++i) least = std::min(least, list.pair[idx(i)].until);

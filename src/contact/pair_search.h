@@ -27,6 +27,10 @@ struct PairSearch {
 [[nodiscard]] bool evaluate_pairs(const PairSearch& search, double s, double horizon, int k, bool all,
                                   PairList& list) noexcept;
 
+/// @returns true if a pair of those near the segment at its pose blocks it.
+/// @pre near.count() <= NearPairs::kMost, and `near` holds all pairs within the margin. Real-time.
+[[nodiscard]] bool is_blocked(const PairSearch& search, const NearPairs& near) noexcept;
+
 /// Returns the s at which the next pair is due, or 1e300 if the list is empty. Real-time.
 [[nodiscard]] double least_until(const PairList& list) noexcept;
 /// @returns true if a pair may be within the margin at the horizon. Real-time.

@@ -13,6 +13,8 @@
 namespace phalanx {
 namespace {
 
+double squared(double x) noexcept { return x * x; }
+
 enum class Order {
   kFixed,    ///< the trees' own order, independent of pruning
   kNearest,  ///< nearer boxes first, which lowers the cap early
@@ -53,54 +55,30 @@ Vec3 direction_of(const TriangleDistance& closest) noexcept {
   return d > 0.0 ? Vec3((closest.on_a - closest.on_b) / d) : Vec3(Vec3::Zero());
 }
 
-/// Pairs within a cap, found once and visited several times, in the trees' fixed order. If they exceed the
-/// scratch memory, each visit searches again.
-class NearPairs {
- public:
-  NearPairs(const PlacedSegment& segment, const ObjectTree& object, double cap_squared) noexcept
-      : segment_(segment), object_(object), cap_squared_(cap_squared) {
-    std::size_t count = 0;
-    seek([&](int triangle, int slot, const TriangleDistance& closest) {
-      if (count < SearchScratch::kNearPairs) segment_.scratch.near()[count] = {triangle, slot, closest};
-      ++count;
-    });
-    complete_ = count <= SearchScratch::kNearPairs;
-    count_ = count;
-  }
+/// Pairs within a reach, visited several times in the trees' fixed order. If they exceed the memory, each
+/// visit searches again.
+struct PairsInReach {
+  const PlacedSegment& segment;
+  const ObjectTree& object;
+  double reach;
+  const NearPairs& near;
 
-  /// Calls f(triangle, slot, closest points).
+  /// Calls use(triangle, slot, closest points).
   template <class Use>
   void for_each(Use&& use) const noexcept {
-    if (!complete_) {
-      seek(use);
+    if (near.count() > NearPairs::kMost) {
+      for_each_pair<Order::kFixed>(segment, object, squared(reach),
+                                   [&](int triangle, int slot, const TriangleDistance& closest, double&) {
+                                     use(triangle, slot, closest);
+                                   });
       return;
     }
-    for (std::size_t i = 0; i < count_; ++i) {
-      const SearchScratch::NearPair& pair = segment_.scratch.near()[i];
-      use(pair.triangle, pair.slot, pair.closest);
-    }
+    for (std::size_t i = 0; i < near.count(); ++i) use(near[i].triangle, near[i].slot, near[i].closest);
   }
-
- private:
-  template <class Use>
-  void seek(Use&& use) const noexcept {
-    for_each_pair<Order::kFixed>(segment_, object_, cap_squared_,
-                                 [&](int triangle, int slot, const TriangleDistance& closest, double&) {
-                                   use(triangle, slot, closest);
-                                 });
-  }
-
-  const PlacedSegment& segment_;
-  const ObjectTree& object_;
-  double cap_squared_;
-  bool complete_ = false;
-  std::size_t count_ = 0;
 };
 
-double squared(double x) noexcept { return x * x; }
-
 /// Returns the pair nearer than the cap that closes fastest.
-Lead find_lead(const NearPairs& pairs, double cap, const SegmentMotion& motion) noexcept {
+Lead find_lead(const PairsInReach& pairs, double cap, const SegmentMotion& motion) noexcept {
   Lead lead{.motion = &motion};
   pairs.for_each([&](int, int, const TriangleDistance& closest) {
     if (closest.squared >= squared(cap)) return;
@@ -115,7 +93,7 @@ Lead find_lead(const NearPairs& pairs, double cap, const SegmentMotion& motion) 
 }
 
 /// Returns the smallest distance below `cap` of the pairs that count [m].
-double distance_of_admitted(const NearPairs& pairs, double cap, const Lead& lead) noexcept {
+double distance_of_admitted(const PairsInReach& pairs, double cap, const Lead& lead) noexcept {
   double best = squared(cap);
   pairs.for_each([&](int, int, const TriangleDistance& closest) {
     if (closest.squared < best && lead.admits(direction_of(closest), closest.on_a)) best = closest.squared;
@@ -124,7 +102,7 @@ double distance_of_admitted(const NearPairs& pairs, double cap, const Lead& lead
 }
 
 /// Returns the contact of the pairs that count and are within kPatchBand of `least`.
-ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, const NearPairs& pairs,
+ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, const PairsInReach& pairs,
                       const Lead& lead, double least) noexcept {
   ContactPatch patch{.distance = least, .lead = lead.at, .lead_direction = lead.direction};
   const ObjectTree& tree = object.tree();
@@ -156,6 +134,28 @@ ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, c
 
 }  // namespace
 
+void NearPairs::find(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept {
+  if (known(segment.X_WS, reach)) return;
+  X_WS_ = segment.X_WS;
+  reach_ = reach;
+  least_squared_ = 1e300;
+  count_ = 0;
+  for_each_pair<Order::kFixed>(segment, object, squared(reach),
+                               [&](int triangle, int slot, const TriangleDistance& closest, double&) {
+                                 if (count_ < kMost) pair_[count_] = {triangle, slot, closest};
+                                 ++count_;
+                                 least_squared_ = std::min(least_squared_, closest.squared);
+                               });
+}
+
+void NearPairs::stop_at(const Pose& X_WS) noexcept {
+  if (is_at(X_WS)) return;
+  X_WS_ = X_WS;
+  reach_ = -1.0;
+  least_squared_ = 1e300;
+  count_ = 0;
+}
+
 double distance(const PlacedSegment& segment, const ObjectTree& object, double cap) noexcept {
   double best = squared(cap);
   for_each_pair<Order::kNearest>(segment, object, best,
@@ -176,14 +176,16 @@ double distance_bound(const PlacedSegment& segment, const ObjectTree& object, do
 }
 
 ContactPatch contact_patch(const PlacedSegment& segment, const ObjectModel& object, double cap,
-                           const SegmentMotion* motion) noexcept {
+                           const SegmentMotion* motion, NearPairs& near) noexcept {
   // Without a motion every pair counts, and only the band above the nearest one need be listed.
   const ObjectTree& tree = object.tree();
-  const double nearest = motion == nullptr ? distance(segment, tree, cap) : cap;
-  if (motion == nullptr && !(nearest < cap)) return {.distance = cap};
-  const NearPairs pairs(segment, tree, squared(nearest + kPatchBand));
+  const bool every = motion == nullptr && !near.known(segment.X_WS, cap + kPatchBand);
+  const double nearest = every ? distance(segment, tree, cap) : cap;
+  if (every && !(nearest < cap)) return {.distance = cap};
+  near.find(segment, tree, nearest + kPatchBand);
+  const PairsInReach pairs{segment, tree, nearest + kPatchBand, near};
   const Lead lead = motion == nullptr ? Lead{} : find_lead(pairs, cap, *motion);
-  const double least = motion == nullptr ? nearest : distance_of_admitted(pairs, cap, lead);
+  const double least = every ? nearest : distance_of_admitted(pairs, cap, lead);
   if (!(least < cap)) return {.distance = cap};
   return patch_of(segment, object, pairs, lead, least);
 }

@@ -101,7 +101,7 @@ TEST(Proximity, ATouchOfMorePairsThanAreKeptIsTheSame) {
   const SegmentMotion* motions[] = {nullptr, &down};
   for (const SegmentMotion* motion : motions) {
     const ContactPatch patch = contact_patch({box, X, scratch}, table, 51e-6, motion);
-    EXPECT_GT(patch.pairs, static_cast<int>(SearchScratch::kNearPairs));
+    EXPECT_GT(patch.pairs, static_cast<int>(NearPairs::kMost));
     EXPECT_NEAR(patch.distance, 50e-6, 1e-15);
     EXPECT_NEAR(patch.on_segment.x(), 0.013, 2e-5);
     EXPECT_NEAR(patch.on_segment.y(), -0.007, 2e-5);

@@ -18,6 +18,7 @@
 
 #include "phalanx/contact/clearance.h"
 #include "phalanx/contact/contact_parameters.h"
+#include "phalanx/contact/near_pairs.h"
 #include "phalanx/contact/object_model.h"
 #include "phalanx/contact/pair_list.h"
 #include "phalanx/contact/segment_tree.h"
@@ -90,6 +91,7 @@ struct GdpState {
   std::array<bool, kDigits> inside{};   ///< Status::kStartInside: no force until the digit has been clear
   std::array<ContactRecord, kSegments> record;
   std::array<Clearance, kSegments> clearance;  ///< bounds for the GDP's segments
+  std::array<NearPairs, kSegments> near;       ///< of the GDP's segments where they last stopped
   SearchScratch scratch;                       ///< memory of one search
   PairList pairs;  ///< scratch: pairs of triangles that a digit may meet in this tick
   std::array<AngleRing, kDigits> recorded;  ///< for GdpMethod::kTrajectory

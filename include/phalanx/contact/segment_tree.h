@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "phalanx/contact/near_pairs.h"
 #include "phalanx/contact/tree_layout.h"
 #include "phalanx/contact/triangle_distance.h"
 #include "phalanx/hand/joints.h"
@@ -57,13 +58,8 @@ class SearchScratch {
   /// Returns the memory of the placed lenses, or of the placed triangles.
   [[nodiscard]] PlacedLenses* lenses() noexcept { return lenses_.data(); }
   [[nodiscard]] PlacedTriangle* triangles() noexcept { return triangles_.data(); }
-  struct NearPair {
-    std::int32_t triangle;  ///< index in the segment's mesh
-    std::int32_t slot;      ///< slot in the object's tree
-    TriangleDistance closest;
-  };
-  static constexpr std::size_t kNearPairs = 512;
-  [[nodiscard]] NearPair* near() noexcept { return near_.data(); }
+  /// Returns the memory of near pairs for queries whose caller has none.
+  [[nodiscard]] NearPairs& near() noexcept { return near_; }
   /// Returns a number that no earlier query had, which invalidates what earlier queries have placed.
   [[nodiscard]] std::uint64_t next_query() noexcept { return ++query_; }
 
@@ -72,7 +68,7 @@ class SearchScratch {
 
   std::vector<PlacedLenses> lenses_;
   std::vector<PlacedTriangle> triangles_;
-  std::vector<NearPair> near_ = std::vector<NearPair>(kNearPairs);
+  NearPairs near_;
   std::uint64_t query_ = 0;
 };
 
