@@ -14,7 +14,7 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
       ->check(CLI::Range(1, 10000));
   app.add_flag("--peers,!--no-peers", options.peers, "Run FCL and brute force and compare (default)");
   app.add_flag("--cold,!--no-cold", options.cold, "Time steps with flushed caches too (default)");
-  app.add_flag("--large,!--no-large", options.large, "Build an object of a million triangles too (default)");
+  app.add_flag("--large,!--no-large", options.large, "Objects of a million triangles too (default)");
   app.add_option("--cold-every", options.cold_every, "Ticks from one flushed step to the next (default 10)")
       ->check(CLI::Range(1, 100000));
   app.add_option("--naive-every", options.naive_every,
@@ -22,6 +22,16 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
       ->check(CLI::Range(1, 100000));
   app.add_flag("--record", options.record,
                "Take this run's forces as those that bench/expected_hashes.txt holds");
+  CLI::Option* recordings =
+      app.add_option("--recordings", options.recordings,
+                     "Folder of recorded motions (.csv), in place of the scenes: bench/recordings.md")
+          ->check(CLI::ExistingDirectory);
+  CLI::Option* meshes =
+      app.add_option("--meshes", options.meshes, "Folder of the mesh files that they are run before")
+          ->check(CLI::ExistingDirectory);
+  recordings->needs(meshes);
+  app.add_option("--mapping", options.mapping,
+                 "How the recordings' columns become joint angles (default cyberglove)");
   app.add_option("--json", options.json, "File for all figures");
   app.add_option("--markdown", options.markdown, "File for the tables");
   try {

@@ -12,12 +12,15 @@ struct Options {
   int grasps = 20;  ///< a scene, beside the one squeeze
   bool peers = true;
   bool cold = true;
-  bool large = true;     ///< build the object of a million triangles
-  bool record = false;   ///< write expected_hashes.txt anew
-  int cold_every = 10;   ///< ticks from one flush of the caches to the next
-  int naive_every = 10;  ///< ticks from one that naive FCL runs to the next
-  std::string json;      ///< file to write; empty: none
-  std::string markdown;  ///< file to write; empty: none
+  bool large = true;                   ///< build the object of a million triangles
+  bool record = false;                 ///< write expected_hashes.txt anew
+  int cold_every = 10;                 ///< ticks from one flush of the caches to the next
+  int naive_every = 10;                ///< ticks from one that naive FCL runs to the next
+  std::string recordings;              ///< folder of recorded motions; empty: the scenes are run
+  std::string meshes;                  ///< folder of the objects before them
+  std::string mapping = "cyberglove";  ///< of the recordings' columns to joint angles
+  std::string json;                    ///< file to write; empty: none
+  std::string markdown;                ///< file to write; empty: none
 };
 
 /// @param exit_code  set if the program is to end here: --help, or a wrong option, which has been answered

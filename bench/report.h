@@ -53,11 +53,26 @@ struct SceneReport {
   ObjectCost cost;
 };
 
+/// One recording of human motion before one object.
+struct RecordingReport {
+  std::string recording;  ///< the file's name
+  std::string object;     ///< the mesh file's name
+  double size_mm = 0.0;   ///< its largest extent
+  int triangles = 0;
+  double lowered_mm = 0.0;   ///< so far below the scene's place that the open hand is clear of it
+  double in_contact = 0.0;   ///< share of the ticks with a contact [-]
+  double slid = 0.0;         ///< share of the ticks in which a contact has slid [-]
+  double farthest_mm = 0.0;  ///< greatest tangential offset between measured and shown finger
+  std::uint64_t hash = 0;    ///< of the forces
+  TimesRow times;            ///< warm, all ticks
+};
+
 struct Report {
   Made made;
   std::string instructions;  ///< the set that the contact search used
   std::vector<SceneReport> scenes;
   ObjectCost million;  ///< 0 triangles if it was not measured
+  std::vector<RecordingReport> recordings;
 };
 
 /// One row a phase that occurs, and one for all ticks.
@@ -69,6 +84,8 @@ struct Report {
 [[nodiscard]] PeerRow peer_row(const PeerTimes& peer, const OurTimes& ours,
                                const std::vector<PeerTick>& pruned);
 
+[[nodiscard]] std::string recordings_heading();
+[[nodiscard]] std::string recording_text(const RecordingReport& recording);
 [[nodiscard]] std::string scene_text(const SceneReport& scene);
 [[nodiscard]] std::string cost_text(const ObjectCost& cost);
 [[nodiscard]] std::string markdown(const Report& report);

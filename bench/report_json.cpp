@@ -70,6 +70,20 @@ Json json_of(const SceneReport& scene) {
           {"object", json_of(scene.cost)}};
 }
 
+Json json_of(const RecordingReport& recording) {
+  Json out = json_of(std::vector<TimesRow>{recording.times}).front();
+  out.update({{"recording", recording.recording},
+              {"object", recording.object},
+              {"size_mm", recording.size_mm},
+              {"object_triangles", recording.triangles},
+              {"lowered_mm", recording.lowered_mm},
+              {"in_contact", recording.in_contact},
+              {"slid", recording.slid},
+              {"farthest_slid_mm", recording.farthest_mm},
+              {"hash", fmt::format("{:016x}", recording.hash)}});
+  return out;
+}
+
 }  // namespace
 
 Json json(const Report& report) {
@@ -82,6 +96,7 @@ Json json(const Report& report) {
               {"build_type", report.made.build_type},
               {"date", report.made.date},
               {"scenes", scenes}};
+  for (const RecordingReport& recording : report.recordings) out["recordings"].push_back(json_of(recording));
   if (report.million.triangles > 0) out["large_object"] = json_of(report.million);
   return out;
 }

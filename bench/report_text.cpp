@@ -28,6 +28,19 @@ std::string idle_words(const PeerRow& peer) {
                      peer.ticks - peer.with_queries, peer.idle_p50, peer.our_idle_p50);
 }
 
+std::string recordings_markdown(const std::vector<RecordingReport>& recordings) {
+  std::string text =
+      "\n## Recorded human motion\n\n| recording | object | mm | triangles | ticks | contact | slid | p50 | "
+      "p99 | p99.9 | max | raw max |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+  for (const RecordingReport& r : recordings) {
+    text += fmt::format(
+        "| {} | {} | {:.0f} | {} | {} | {:.0f} % | {:.0f} % | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
+        r.recording, r.object, r.size_mm, r.triangles, r.times.ticks, 100.0 * r.in_contact, 100.0 * r.slid,
+        r.times.us.p50, r.times.us.p99, r.times.us.p999, r.times.us.max, r.times.raw_max);
+  }
+  return text;
+}
+
 double ratio(double theirs, double ours) { return ours > 0.0 ? theirs / ours : 0.0; }
 
 std::string agreement_words(const PeerRow& peer) {
@@ -91,6 +104,20 @@ std::string scene_markdown(const SceneReport& scene) {
 
 }  // namespace
 
+std::string recordings_heading() {
+  return fmt::format("\n{:<44}{:<12}{:>5}{:>10}{:>8}{:>9}{:>7}{:>9}{:>9}{:>9}{:>9}{:>10}\n", "recording",
+                     "object", "mm", "triangles", "ticks", "contact", "slid", "p50", "p99", "p99.9", "max",
+                     "raw max");
+}
+
+std::string recording_text(const RecordingReport& recording) {
+  return fmt::format(
+      "{:<44}{:<12}{:>5.0f}{:>10}{:>8}{:>8.0f}%{:>6.0f}%{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>10.2f}\n",
+      recording.recording, recording.object, recording.size_mm, recording.triangles, recording.times.ticks,
+      100.0 * recording.in_contact, 100.0 * recording.slid, recording.times.us.p50, recording.times.us.p99,
+      recording.times.us.p999, recording.times.us.max, recording.times.raw_max);
+}
+
 std::string cost_text(const ObjectCost& cost) {
   return fmt::format("{} triangles: {:.1f} bytes a triangle ({:.1f} of them the mesh), built in {:.3f} s\n",
                      cost.triangles, cost.bytes_a_triangle, cost.mesh_bytes_a_triangle, cost.build_s);
@@ -133,6 +160,7 @@ std::string markdown(const Report& report) {
   if (report.million.triangles > 0) {
     text += "\n## A large object\n\n" + cost_text(report.million);
   }
+  if (!report.recordings.empty()) text += recordings_markdown(report.recordings);
   return text;
 }
 

@@ -13,6 +13,7 @@
 #include "phalanx/contact/instruction_set.h"
 #include "phalanx/mesh/objects.h"
 #include "phalanx/scene/build_model.h"
+#include "recordings.h"
 #include "report.h"
 
 namespace phalanx::bench {
@@ -172,9 +173,21 @@ int run(const Options& options) {
   Report report{.made = made_here(),
                 .instructions = std::string(instruction_set_name(instruction_set())),
                 .scenes = {},
-                .million = {}};
+                .million = {},
+                .recordings = {}};
   fmt::print("phalanx_bench {} on {} ({}), {}, {}, {}\n", report.made.commit, report.made.cpu,
              report.instructions, report.made.compiler, report.made.build_type, report.made.date);
+  if (!options.recordings.empty()) {
+    fmt::print("{}", recordings_heading());
+    run_recordings(options, [&](const RecordingReport& recording) {
+      report.recordings.push_back(recording);
+      fmt::print("{}", recording_text(recording));
+      std::fflush(stdout);
+    });
+    write(options.json, json(report).dump(2) + "\n");
+    write(options.markdown, markdown(report));
+    return 0;
+  }
   ExpectedHashes expected(PHALANX_BENCH_FOLDER "/expected_hashes.txt");
   for (const std::string& scene : options.scenes) {
     report.scenes.push_back(run_scene(scene, options, expected));
