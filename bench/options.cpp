@@ -8,8 +8,9 @@ namespace phalanx::bench {
 bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
   CLI::App app{"Times the whole haptic step, and holds it against FCL and brute force. See bench/README.md."};
   app.set_help_flag("--help", "This text");
-  app.add_option("--scene", options.scenes, "Scene in scenes/, or a path; may be repeated (default: all six)")
-      ->take_all();
+  CLI::Option* scenes = app.add_option("--scene", options.scenes,
+                                       "Scene in scenes/, or a path; may be repeated (default: all six)")
+                            ->take_all();
   app.add_option("--motions", options.grasps, "Seeded grasps a scene, beside the squeeze (default 20)")
       ->check(CLI::Range(1, 10000));
   app.add_flag("--peers,!--no-peers", options.peers, "Run FCL and brute force and compare (default)");
@@ -20,8 +21,8 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
   app.add_option("--naive-every", options.naive_every,
                  "Ticks from one that naive FCL runs to the next (default 10)")
       ->check(CLI::Range(1, 100000));
-  app.add_flag("--record", options.record,
-               "Take this run's forces as those that bench/expected_hashes.txt holds");
+  CLI::Option* record = app.add_flag("--record", options.record,
+                                     "Take this run's forces as those that bench/expected_hashes.txt holds");
   CLI::Option* recordings =
       app.add_option("--recordings", options.recordings,
                      "Folder of recorded motions (.csv), in place of the scenes: bench/recordings.md")
@@ -29,9 +30,11 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
   CLI::Option* meshes =
       app.add_option("--meshes", options.meshes, "Folder of the mesh files that they are run before")
           ->check(CLI::ExistingDirectory);
-  recordings->needs(meshes);
+  recordings->needs(meshes)->excludes(scenes)->excludes(record);
+  meshes->needs(recordings);
   app.add_option("--mapping", options.mapping,
-                 "How the recordings' columns become joint angles (default cyberglove)");
+                 "How the recordings' columns become joint angles (default cyberglove)")
+      ->needs(recordings);
   app.add_option("--json", options.json, "File for all figures");
   app.add_option("--markdown", options.markdown, "File for the tables");
   try {

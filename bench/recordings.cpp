@@ -2,6 +2,7 @@
 #include "recordings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -30,16 +31,29 @@ constexpr double kLower = 1e-3;   // step in which the object is lowered [m]
 constexpr double kLowest = 0.3;   // [m]
 constexpr double kLeadInS = 0.5;  // from the open hand to the recording's first sample
 
+/// @param extensions  in lower case
 std::vector<fs::path> files(const std::string& folder, const std::vector<std::string>& extensions) {
   std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (std::ranges::find(extensions, entry.path().extension().string()) != extensions.end())
-      found.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::string extension = entry.path().extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (std::ranges::find(extensions, extension) != extensions.end()) found.push_back(entry.path());
+  }
   if (found.empty())
-    throw std::runtime_error(
-        fmt::format("{}: there is no {} file in this folder", folder, fmt::join(extensions, ", ")));
+    throw std::runtime_error(fmt::format("{}: no file of this folder ends in {}; name a folder that has one",
+                                         folder, fmt::join(extensions, " or ")));
   std::ranges::sort(found);
   return found;
+}
+
+/// The absolute path as a TOML string.
+std::string quoted(const fs::path& file) {
+  std::string text = "\"";
+  for (const char c : fs::absolute(file).string()) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + '"';
 }
 
 /// Divides every triangle into four, by the middles of its edges.
@@ -62,7 +76,8 @@ TriangleMesh divided(const TriangleMesh& mesh) {
   return fine;
 }
 
-/// How far the object must be lowered, in whole steps, so that the open hand is clear of it [m].
+/// How far the object must be lowered, in whole steps, so that the open hand is clear of it [m]. Negative: it
+/// is not even at kLowest.
 double way_down(const HapticModel& model) {
   HandPoses poses;
   model.hand.poses(model.hand.parameters().open_angle, poses);
@@ -78,7 +93,7 @@ double way_down(const HapticModel& model) {
   };
   for (double lower = 0.0; lower <= kLowest; lower += kLower)
     if (is_clear(lower)) return lower;
-  throw std::runtime_error("the object is still in the hand 300 mm below its place; is its size right?");
+  return -1.0;
 }
 
 /// An object below the scene's hand.
@@ -90,15 +105,20 @@ struct Placed {
 
 Placed place(const fs::path& object, double size_mm, bool fine) {
   const Pose pose = load_scene(kScene).objects.front().pose;
-  SceneDescription scene =
-      load_scene(kScene, {{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
-                          {"objects.0.file", fmt::format("\"{}\"", fs::absolute(object).string())},
-                          {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
-                          {"rate_hz", "1000.0"}});
+  SceneDescription scene = load_scene(kScene, {{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
+                                               {"objects.0.file", quoted(object)},
+                                               {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
+                                               {"rate_hz", "1000.0"}});
   scene.objects.front().pose = pose;
   ResolvedScene resolved = resolve(scene, {});
   Placed placed{.scene = scene, .model = nullptr, .lowered = 0.0};
   placed.lowered = way_down(build_model(resolved));
+  if (placed.lowered < 0.0)
+    throw std::runtime_error(
+        fmt::format("{}: {:.0f} mm wide and {:.0f} mm below its place it still touches the open hand; take "
+                    "this mesh out of "
+                    "the folder",
+                    object.string(), size_mm, 1e3 * kLowest));
   for (Vec3& x : resolved.world.vertices) x.z() -= placed.lowered;
   while (fine && resolved.world.triangles.size() < kFineTriangles) resolved.world = divided(resolved.world);
   placed.model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
@@ -106,11 +126,10 @@ Placed place(const fs::path& object, double size_mm, bool fine) {
 }
 
 BenchMotion recorded(const SceneDescription& of_scene, const fs::path& file, const std::string& mapping) {
-  SceneDescription scene =
-      load_scene(kScene, {{"motion.file", fmt::format("\"{}\"", fs::absolute(file).string())},
-                          {"motion.mapping", fmt::format("\"{}\"", mapping)},
-                          {"motion.trial", "1"},
-                          {"motion.lead_in_s", fmt::format("{:.1f}", kLeadInS)}});
+  SceneDescription scene = load_scene(kScene, {{"motion.file", quoted(file)},
+                                               {"motion.mapping", fmt::format("\"{}\"", mapping)},
+                                               {"motion.trial", "1"},
+                                               {"motion.lead_in_s", fmt::format("{:.1f}", kLeadInS)}});
   const Motion motion = build_motion(scene);
   const double rate = of_scene.parameters.rate_hz;
   const auto ticks = static_cast<std::size_t>(simulation_seconds(scene, motion) * rate);
@@ -147,8 +166,8 @@ RecordingReport measure(const Placed& placed, const BenchMotion& motion) {
   describe(placed, motion, report);
   const OurTimes times = time_ours(*placed.model, placed.scene.parameters, {motion});
   if (!times.same_hash)
-    throw std::runtime_error(
-        fmt::format("{}: two runs of the same motion gave different forces", motion.name));
+    throw std::runtime_error(fmt::format(
+        "{}: two runs of the same motion gave different forces; the step is not deterministic", motion.name));
   report.hash = times.hash;
   report.times = warm_rows(std::vector<Phase>(motion.angle.size(), Phase::kNear), times).back();
   return report;

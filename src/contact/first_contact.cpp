@@ -39,7 +39,8 @@ class Search {
 
   Stop run(int& evaluations) noexcept {
     if (const int blocked = still_blocked(); blocked >= 0) {
-      refresh_clearances();
+      find_clear(
+          first_horizon());  // as gather() would: later ticks then do not depend on which way was taken
       return {s_, blocked};
     }
     while (evaluations < kMaxEvaluations) {
@@ -92,19 +93,22 @@ class Search {
     const double reach = std::nextafter(model_.parameters.margin, 1.0) + kPatchBand;
     int blocked = -1;
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
-      if (has_room(k) || (blocked < 0 && !near(k).is_at(tick_.pose.segment[idx(k)]))) continue;
+      const Pose& X_WS = tick_.pose.segment[idx(k)];
+      if (has_room(k) || (blocked < 0 && !near(k).is_at(X_WS))) continue;
+      if (near(k).is_at(X_WS) && near(k).overflows()) return -1;
       const PairSearch search{placed(k), model_.object.tree(), motion(k),
                               stop_band(model_.parameters.margin)};
       near(k).find(search.segment, search.object, reach);
-      if (near(k).count() > NearPairs::kMost) return -1;
+      if (near(k).overflows()) return -1;
       if (is_blocked(search, near(k))) blocked = k;
     }
     return blocked;
   }
-  /// Does to the clearances what gather() does, so that the next ticks are the same to the last bit.
-  void refresh_clearances() noexcept {
-    const double horizon = first_horizon();
-    for (int k = first_; k < kSegmentsPerDigit; ++k) (void)is_clear(k, horizon);
+  /// Tells which segments need no search up to the horizon.
+  std::array<bool, kSegmentsPerDigit> find_clear(double horizon) noexcept {
+    std::array<bool, kSegmentsPerDigit> clear{};
+    for (int k = first_; k < kSegmentsPerDigit; ++k) clear[idx(k)] = is_clear(k, horizon);
+    return clear;
   }
   [[nodiscard]] double first_horizon() noexcept {
     return std::min(1.0, s_ + std::max(kLongestReach / speed_.back(), known_to_be_clear()));
@@ -117,8 +121,9 @@ class Search {
     list.count = 0;
     list.begin = {};
     double horizon = first_horizon();
+    const std::array<bool, kSegmentsPerDigit> clear = find_clear(horizon);
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
-      if (!is_clear(k, horizon)) {
+      if (!clear[idx(k)]) {
         horizon =
             gather_pairs({placed(k), model_.object.tree(), motion(k), stop_band(model_.parameters.margin)},
                          s_, horizon, k, list);
@@ -150,7 +155,7 @@ class Search {
     Clearance& known = clearance(k);
     if (known.bound() > margin + reach) return true;
     if (!known.worth_asking()) return false;
-    if (near(k).is_within(tick_.pose.segment[idx(k)], margin)) {
+    if (near(k).is_within(tick_.pose.segment[idx(k)], margin)) {  // no bound can exceed the margin
       known.learn(0.0, false);
       return false;
     }

@@ -37,7 +37,8 @@ struct Stop {
 /// between a pair's closest points, close at speed v and recede with acceleration a. Over a step h it keeps
 /// at least z - v h + a h^2 / 2 - J h^3 / 6. See docs/contact.md.
 /// @param evaluations  number of poses evaluated in this tick. At kMaxEvaluations the digit stops early with
-/// kSearchExhausted, and the result is its most distal segment.
+/// kSearchExhausted, and the result is its most distal segment. A segment that is blocked where it last
+/// stopped (GdpState::near) is found without a pose.
 /// Real-time: no allocation, lock, throw or I/O.
 [[nodiscard]] Stop first_contact(const ContactModel& model, const Path& path, double s, int& evaluations,
                                  DigitTick& tick, GdpState& state) noexcept;

@@ -28,7 +28,7 @@ struct PairSearch {
                                   PairList& list) noexcept;
 
 /// @returns true if a pair of those near the segment at its pose blocks it.
-/// @pre near.count() <= NearPairs::kMost, and `near` holds all pairs within the margin. Real-time.
+/// @pre `near` holds all pairs within the margin. Real-time.
 [[nodiscard]] bool is_blocked(const PairSearch& search, const NearPairs& near) noexcept;
 
 /// Returns the s at which the next pair is due, or 1e300 if the list is empty. Real-time.

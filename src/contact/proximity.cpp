@@ -66,7 +66,7 @@ struct PairsInReach {
   /// Calls use(triangle, slot, closest points).
   template <class Use>
   void for_each(Use&& use) const noexcept {
-    if (near.count() > NearPairs::kMost) {
+    if (near.overflows()) {
       for_each_pair<Order::kFixed>(segment, object, squared(reach),
                                    [&](int triangle, int slot, const TriangleDistance& closest, double&) {
                                      use(triangle, slot, closest);
@@ -135,7 +135,7 @@ ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, c
 }  // namespace
 
 void NearPairs::find(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept {
-  if (known(segment.X_WS, reach)) return;
+  if (holds(segment.X_WS, reach)) return;
   X_WS_ = segment.X_WS;
   reach_ = reach;
   least_squared_ = 1e300;
@@ -179,7 +179,7 @@ ContactPatch contact_patch(const PlacedSegment& segment, const ObjectModel& obje
                            const SegmentMotion* motion, NearPairs& near) noexcept {
   // Without a motion every pair counts, and only the band above the nearest one need be listed.
   const ObjectTree& tree = object.tree();
-  const bool every = motion == nullptr && !near.known(segment.X_WS, cap + kPatchBand);
+  const bool every = motion == nullptr && !near.holds(segment.X_WS, cap + kPatchBand);
   const double nearest = every ? distance(segment, tree, cap) : cap;
   if (every && !(nearest < cap)) return {.distance = cap};
   near.find(segment, tree, nearest + kPatchBand);

@@ -40,6 +40,7 @@ class MovingDigit {
     for (std::size_t i = 0; i < kJointsPerDigit; ++i) path_.rate[i] = to[i] - from[i];
     for (Clearance& clearance : state_.clearance) clearance = {};
     for (ContactRecord& record : state_.record) record = {};
+    for (NearPairs& near : state_.near) near.clear();
   }
 
   [[nodiscard]] DigitAngles angles(double s) const { return path_.at(s, to_, to_, 0); }

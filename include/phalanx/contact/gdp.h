@@ -91,7 +91,7 @@ struct GdpState {
   std::array<bool, kDigits> inside{};   ///< Status::kStartInside: no force until the digit has been clear
   std::array<ContactRecord, kSegments> record;
   std::array<Clearance, kSegments> clearance;  ///< bounds for the GDP's segments
-  std::array<NearPairs, kSegments> near;       ///< of the GDP's segments where they last stopped
+  std::array<NearPairs, kPalm> near;           ///< of the digits' segments where they last stopped
   SearchScratch scratch;                       ///< memory of one search
   PairList pairs;  ///< scratch: pairs of triangles that a digit may meet in this tick
   std::array<AngleRing, kDigits> recorded;  ///< for GdpMethod::kTrajectory

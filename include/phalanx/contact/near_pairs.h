@@ -14,8 +14,8 @@ class ObjectTree;
 struct PlacedSegment;
 
 /// Pairs of triangles within a distance of a segment at one pose, with their closest points, in the trees'
-/// fixed order. Of one segment and one object: only a pose tells whether they still hold. A segment that was
-/// blocked in the last tick, and has not moved, needs no search. Allocated once.
+/// fixed order. They hold for exactly this pose, one segment and one object. A segment that was blocked in the
+/// last tick, and has not moved, needs no search. Allocated once.
 class NearPairs {
  public:
   struct Pair {
@@ -25,26 +25,29 @@ class NearPairs {
   };
   static constexpr std::size_t kMost = 512;
 
-  /// Finds all pairs whose distance is at most `reach` [m], unless they are known.
+  /// Finds all pairs whose distance is at most `reach` [m]. Does nothing if they are stored.
+  /// @pre since the last clear(), the segment and the object are the same
   /// Real-time: no allocation, lock, throw or I/O.
   void find(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept;
-  /// @returns true if find() at this pose with this reach has nothing to do
-  [[nodiscard]] bool known(const Pose& X_WS, double reach) const noexcept {
-    return count_ <= kMost && reach_ >= reach && is_at(X_WS);
+  /// @returns true if all pairs within `reach` [m] at this pose are stored
+  [[nodiscard]] bool holds(const Pose& X_WS, double reach) const noexcept {
+    return !overflows() && reach_ >= reach && is_at(X_WS);
   }
-  /// Notes that the segment has stopped at a pose, without a search. What is known of this pose is kept.
+  /// Stores a pose at which the segment has stopped, without a search. Pairs found at this pose stay.
   void stop_at(const Pose& X_WS) noexcept;
-  /// Nothing is known any more: another segment or object is asked about next.
-  void forget() noexcept { stop_at({Mat3::Zero(), Vec3::Zero()}); }
-  /// @returns true if the last pose that was searched, or noted, is this one
+  /// Removes pairs and pose.
+  void clear() noexcept { stop_at({Mat3::Zero(), Vec3::Zero()}); }
+  /// @returns true if the pose of the last find() or stop_at() is this one, to the last bit
   [[nodiscard]] bool is_at(const Pose& X_WS) const noexcept { return X_WS_.p == X_WS.p && X_WS_.R == X_WS.R; }
-  /// @returns true if a pair is known to be within `distance` [m] at this pose
+  /// @returns true if a pair that was found at this pose is within `distance` [m]
   [[nodiscard]] bool is_within(const Pose& X_WS, double distance) const noexcept {
     return is_at(X_WS) && least_squared_ <= distance * distance;
   }
-  /// Number of pairs found; if it is more than kMost, none are kept.
+  /// Returns the number of pairs found.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// @pre count() <= kMost
+  /// @returns true if more pairs were found than can be stored: then they are not complete
+  [[nodiscard]] bool overflows() const noexcept { return count_ > kMost; }
+  /// @pre !overflows()
   [[nodiscard]] const Pair& operator[](std::size_t i) const noexcept { return pair_[i]; }
 
  private:

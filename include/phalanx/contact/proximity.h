@@ -55,14 +55,14 @@ inline constexpr double kPatchBand = 5e-6;
 /// @param motion  null, or the motion that the contact stops. With a motion, surfaces that the segment does
 /// not run into do not count. A pair counts if it faces within 30 degrees of the fastest closing one, or
 /// closes at least half as fast.
-/// @param near    memory of the pairs; what it knows of this segment at this pose is not searched again
+/// @param near    pairs of this segment and this object; those that it holds are not searched again
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 [[nodiscard]] ContactPatch contact_patch(const PlacedSegment& segment, const ObjectModel& object, double cap,
                                          const SegmentMotion* motion, NearPairs& near) noexcept;
-/// The same with the scratch's memory, in which nothing is known.
+/// The same with the scratch's memory, cleared before.
 [[nodiscard]] inline ContactPatch contact_patch(const PlacedSegment& segment, const ObjectModel& object,
                                                 double cap, const SegmentMotion* motion = nullptr) noexcept {
-  segment.scratch.near().forget();
+  segment.scratch.near().clear();
   return contact_patch(segment, object, cap, motion, segment.scratch.near());
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -64,6 +65,15 @@ TEST(HeldClock, PassesWhileAThreadOfANameIsMadeToWait) {
   waiting.reset();
   thread.join();
   EXPECT_TRUE(went_on);
+}
+
+TEST(HeldClock, AThreadThatGivesWayKeepsItsPolicy) {
+  const int policy = ::sched_getscheduler(0);
+  const sched_param ordinary{};
+  EXPECT_EQ(::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &ordinary), 0);
+  EXPECT_EQ(::sched_getscheduler(0), policy);
+  if (policy == SCHED_OTHER) GTEST_SKIP() << "real-time priority is not permitted here";
+  EXPECT_EQ(policy, SCHED_RR);
 }
 
 TEST(HeldClock, MovesToEachDeadlineInTurnOnceAllThreadsSleep) {

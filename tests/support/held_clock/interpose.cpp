@@ -317,7 +317,7 @@ int timerfd_create(clockid_t id, int flags) noexcept {
   return -1;
 }
 
-/// Under a held clock a thread that computes at low priority delays nothing but the test.
+/// Under a held clock a thread that waits for its turn delays no deadline, but the test. It keeps its policy.
 int pthread_setschedparam(pthread_t thread, int policy, const sched_param* parameters) noexcept {
   static const auto in_c_library =
       reinterpret_cast<decltype(&pthread_setschedparam)>(::dlsym(RTLD_NEXT, "pthread_setschedparam"));

@@ -64,7 +64,8 @@ inline long futex(std::atomic<std::uint32_t>* word, int what, std::uint32_t valu
 
 /// Where it is allowed, the calling thread runs as soon as it wakes up, whatever else a busy computer does:
 /// under a held clock threads wake up some hundred thousand times a test. Elsewhere the same test takes
-/// longer. Threads and processes that the caller starts inherit it, and keep it when they give way.
+/// longer. Threads and processes that the caller starts inherit it, and keep it when they give way: they all
+/// precede ordinary processes, other tests among them.
 inline void ask_for_the_processor(int priority) noexcept {
   const sched_param wanted{priority};
   ::syscall(SYS_sched_setscheduler, 0, SCHED_RR, &wanted);

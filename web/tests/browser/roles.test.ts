@@ -129,8 +129,10 @@ describe("roles", () => {
     expect(await cleo.number()).toBe(number);
     expect(cleo.stream.newest!.tick, "the station began anew").toBeGreaterThan(before);
     expect(cleo.stream.newest!.stiffness).toBeCloseTo(900, 2);
-    const history = await cleo.page.evaluate(() => window.phalanx.history()); // its samples may be as many as it holds
-    await until("the history goes on", async () => (await cleo.page.evaluate(() => window.phalanx.history())).end > history.end + 0.5);
+    const history = () => cleo.page.evaluate(() => window.phalanx.history());
+    await until("the history begins", async () => (await history()).samples > 0);
+    const { end } = await history(); // not the number of samples: the history may be full
+    await until("the history goes on", async () => (await history()).end > end + 0.5);
     expect(cleo.stream.notices.some((notice) => notice.code === "set" && notice.who.includes("Bert") && notice.text.includes("0.9")), "what happened before the reload").toBe(true);
     await anna.untilState("the same operator, and three pages", (state) => state.operatorPage === number && state.pages === 3);
   });
