@@ -31,6 +31,7 @@
 #include "phalanx/mesh/import_cache.h"
 #include "phalanx/scene/hand_meshes.h"
 #include "phalanx/scene/posture_file.h"
+#include "support/sanitized.h"
 #include "support/segment_rims.h"
 
 namespace phalanx::opposition {
@@ -392,16 +393,19 @@ TEST_P(Kapandji, PulpPinchesAreNearTheMiddleOfTheRanges) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Hands, Kapandji,
-    ::testing::Values(Case{"adult", Handedness::kRight}, Case{"adult", Handedness::kLeft},
-                      Case{"small-woman", Handedness::kRight}, Case{"small-woman", Handedness::kLeft},
-                      Case{"large-man", Handedness::kRight}, Case{"large-man", Handedness::kLeft}),
-    [](const auto& one) {
-      std::string name = one.param.hand;
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name + (one.param.side == Handedness::kRight ? "_right" : "_left");
-    });
+/// Of these, one with a sanitizer, which takes a hundred times as long.
+std::vector<Case> cases() {
+  if (test::kSanitized) return {{"large-man", Handedness::kLeft}};
+  return {{"adult", Handedness::kRight},       {"adult", Handedness::kLeft},
+          {"small-woman", Handedness::kRight}, {"small-woman", Handedness::kLeft},
+          {"large-man", Handedness::kRight},   {"large-man", Handedness::kLeft}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Hands, Kapandji, ::testing::ValuesIn(cases()), [](const auto& one) {
+  std::string name = one.param.hand;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name + (one.param.side == Handedness::kRight ? "_right" : "_left");
+});
 
 // A thumb that does not pronate and a palm without an arch, at the same joint angles.
 TEST(KapandjiCoupling, CarriesThePadsOfRingAndLittleFinger) {
