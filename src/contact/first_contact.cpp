@@ -39,8 +39,8 @@ class Search {
 
   Stop run(int& evaluations) noexcept {
     if (const int blocked = still_blocked(); blocked >= 0) {
-      find_clear(
-          first_horizon());  // as gather() would: later ticks then do not depend on which way was taken
+      // As gather() does: the bounds of later ticks are then the same.
+      (void)find_clear(first_horizon());
       return {s_, blocked};
     }
     while (evaluations < kMaxEvaluations) {
@@ -104,7 +104,7 @@ class Search {
     }
     return blocked;
   }
-  /// Tells which segments need no search up to the horizon.
+  /// Tells which segments need no search up to the horizon, and refreshes their bounds.
   std::array<bool, kSegmentsPerDigit> find_clear(double horizon) noexcept {
     std::array<bool, kSegmentsPerDigit> clear{};
     for (int k = first_; k < kSegmentsPerDigit; ++k) clear[idx(k)] = is_clear(k, horizon);
