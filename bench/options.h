@@ -13,7 +13,7 @@ struct Options {
   bool peers = true;
   bool cold = true;
   bool large = true;                   ///< build the object of a million triangles
-  bool record = false;                 ///< write expected_hashes.txt anew
+  bool record = false;                 ///< write this run's hashes to expected_hashes.txt
   int cold_every = 10;                 ///< ticks from one flush of the caches to the next
   int naive_every = 10;                ///< ticks from one that naive FCL runs to the next
   std::string recordings;              ///< folder of recorded motions; empty: the scenes are run

@@ -116,8 +116,7 @@ Placed place(const fs::path& object, double size_mm, bool fine) {
   if (placed.lowered < 0.0)
     throw std::runtime_error(
         fmt::format("{}: {:.0f} mm wide and {:.0f} mm below its place it still touches the open hand; take "
-                    "this mesh out of "
-                    "the folder",
+                    "this mesh out of the folder",
                     object.string(), size_mm, 1e3 * kLowest));
   for (Vec3& x : resolved.world.vertices) x.z() -= placed.lowered;
   while (fine && resolved.world.triangles.size() < kFineTriangles) resolved.world = divided(resolved.world);
