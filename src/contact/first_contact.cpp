@@ -8,7 +8,7 @@
 
 namespace phalanx {
 
-DigitAngles Path::at(double s, const DigitAngles& end, const DigitAngles& now, int fixed) const noexcept {
+DigitAngles Path::at(double s, const DigitAngles& now, int fixed) const noexcept {
   DigitAngles q = now;
   for (int i = fixed; i < kJointsPerDigit; ++i)
     q[idx(i)] = s >= 1.0 ? end[idx(i)] : from[idx(i)] + s * rate[idx(i)];
@@ -38,7 +38,8 @@ class Search {
   }
 
   Stop run(int& evaluations) noexcept {
-    if (const int blocked = still_blocked(); blocked >= 0) {
+    if (path_.near_known) start_from_near();
+    if (const int blocked = path_.near_known ? -1 : still_blocked(); blocked >= 0) {
       // As gather() does: the bounds of later ticks are then the same.
       (void)find_clear(first_horizon());
       return {s_, blocked};
@@ -104,6 +105,22 @@ class Search {
     }
     return blocked;
   }
+  /// Takes the bounds of the segments from their near pairs.
+  void start_from_near() noexcept {
+    for (int k = first_; k < kSegmentsPerDigit; ++k)
+      clearance(k).learn(near(k).bound(tick_.pose.segment[idx(k)]), true);
+  }
+  /// @returns true if the near pairs of segment k are all that it may meet before s reaches the horizon
+  [[nodiscard]] bool near_suffices(int k, double horizon) noexcept {
+    return path_.near_known && near(k).holds(tick_.pose.segment[idx(k)],
+                                             model_.parameters.margin + speed_[idx(k)] * (horizon - s_));
+  }
+  /// Lists the near pairs of segment k.
+  void list_near(int k) noexcept {
+    PairList& list = state_.pairs;
+    for (std::size_t i = 0; i < near(k).count(); ++i)
+      list.pair[idx(list.count++)] = {near(k)[i].triangle, near(k)[i].slot, s_, true};
+  }
   /// Tells which segments need no search up to the horizon, and refreshes their bounds.
   std::array<bool, kSegmentsPerDigit> find_clear(double horizon) noexcept {
     std::array<bool, kSegmentsPerDigit> clear{};
@@ -123,7 +140,9 @@ class Search {
     double horizon = first_horizon();
     const std::array<bool, kSegmentsPerDigit> clear = find_clear(horizon);
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
-      if (!clear[idx(k)]) {
+      if (!clear[idx(k)] && near_suffices(k, horizon)) {
+        list_near(k);
+      } else if (!clear[idx(k)]) {
         horizon =
             gather_pairs({placed(k), model_.object.tree(), motion(k), stop_band(model_.parameters.margin)},
                          s_, horizon, k, list);
@@ -154,6 +173,7 @@ class Search {
     const double reach = speed_[idx(k)] * (horizon - s_);
     Clearance& known = clearance(k);
     if (known.bound() > margin + reach) return true;
+    if (near_suffices(k, horizon)) return false;
     if (!known.worth_asking()) return false;
     if (near(k).is_within(tick_.pose.segment[idx(k)], margin)) {  // no bound can exceed the margin
       known.learn(0.0, false);
@@ -188,8 +208,8 @@ class Search {
       record_of(state_, tick_, k).active = false;  // the segment has moved
     }
     s_ = s;
-    tick_.angle = path_.at(s, tick_.hcp, tick_.angle, tick_.fixed);
-    if (s >= 1.0 && tick_.fixed == 0) {
+    tick_.angle = path_.at(s, tick_.angle, tick_.fixed);
+    if (tick_.angle == tick_.hcp) {
       tick_.pose = tick_.hcp_pose;
     } else {
       model_.hand.digit_pose(tick_.digit, tick_.angle, tick_.pose);

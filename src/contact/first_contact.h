@@ -17,10 +17,12 @@ struct StopBand {
 struct Path {
   DigitAngles from;  ///< at s = 0 [rad]
   DigitAngles rate;  ///< dq/ds [rad]
+  DigitAngles end;   ///< at s = 1 [rad]
+  /// The near pairs of the segments at s = 0 (GdpState::near) are the pairs to search, where they suffice.
+  bool near_known = false;
 
   /// Returns the digit's angles at s [rad]: for s >= 1 exactly `end`; joints before `fixed` stay at `now`.
-  [[nodiscard]] DigitAngles at(double s, const DigitAngles& end, const DigitAngles& now,
-                               int fixed) const noexcept;
+  [[nodiscard]] DigitAngles at(double s, const DigitAngles& now, int fixed) const noexcept;
   /// Returns the first segment that moves, or kSegmentsPerDigit if none does.
   [[nodiscard]] int first_moving() const noexcept;
 };

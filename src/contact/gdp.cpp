@@ -207,9 +207,24 @@ void make_record(const ContactModel& model, DigitTick& tick, int k, double s, do
   record_of(state, tick, k) = record;
 }
 
+namespace {
+
+/// Removes what one mode knows of the digits' contacts when another begins.
+void forget_contacts(ContactMode mode, GdpState& state) noexcept {
+  for (int s = 0; s < kPalm; ++s) {
+    state.record[idx(s)] = {};
+    state.near[idx(s)].clear();
+  }
+  state.sliding = {};
+  state.mode = mode;
+}
+
+}  // namespace
+
 Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const HandPoses& hcp,
                    const std::array<bool, kDigits>& measured, GdpState& state) noexcept {
   Status status = Status::kOk;
+  if (model.parameters.mode != state.mode) forget_contacts(model.parameters.mode, state);
   for (int d = 0; d < kDigits; ++d) {
     DigitTick tick{.digit = d,
                    .hcp_from = digit_angles(state.started[idx(d)] ? state.hcp_angle : hcp_angle, d),
@@ -218,8 +233,11 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
                    .angle = digit_angles(state.angle, d),
                    .pose = state.poses.digit[idx(d)]};
     tick.lagged = state.started[idx(d)] && tick.angle != tick.hcp_from;
-    tick.fixed = joints_held(model, tick, state);
-    if (model.parameters.method == GdpMethod::kContinuous) {
+    const bool sliding = model.parameters.mode == ContactMode::kSliding;
+    if (!sliding) tick.fixed = joints_held(model, tick, state);
+    if (sliding) {
+      advance_sliding(model, tick, state);
+    } else if (model.parameters.method == GdpMethod::kContinuous) {
       advance_continuous(model, tick, state);
     } else {
       advance_trajectory(model, tick, state);
@@ -234,7 +252,7 @@ Status advance_gdp(const ContactModel& model, const JointArray& hcp_angle, const
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       ContactRecord& record = record_of(state, tick, k);
       if (!record.active) continue;
-      follow(model, tick, k, record);
+      if (!sliding) follow(model, tick, k, record);
       record.silent = state.inside[idx(d)];
       const Vec3 apart = record.p_hcp - record.p_gdp;
       record.slid = (apart - apart.dot(record.n_c) * record.n_c).norm();

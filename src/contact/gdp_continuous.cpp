@@ -11,7 +11,7 @@ void advance_continuous(const ContactModel& model, DigitTick& tick, GdpState& st
   const double margin = model.parameters.margin;
   double s = 0.0;
   int evaluations = 0;
-  Path path{tick.angle, {}};
+  Path path{tick.angle, {}, tick.hcp};
   for (int i = 0; i < kJointsPerDigit; ++i) path.rate[idx(i)] = tick.hcp[idx(i)] - tick.angle[idx(i)];
   while (tick.fixed < kJointsPerDigit) {
     for (int i = 0; i < tick.fixed; ++i) path.rate[idx(i)] = 0.0;

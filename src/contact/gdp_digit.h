@@ -54,6 +54,9 @@ inline constexpr double kFade = 0.2;
                                  const DigitAngles& hcp_angle, const DigitPose& hcp,
                                  const GdpState& state) noexcept;
 
+/// Moves the digit in sliding mode and sets its contact points and records.
+void advance_sliding(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
+
 /// Returns the greatest depth on [0, 1] of the parabola that starts at 0 with downward rate `closing` and has
 /// depth `end` at 1.
 [[nodiscard]] double deepest(double closing, double end) noexcept;

@@ -74,6 +74,7 @@ Status apply_law(const HapticParameters& parameters, const ContactRecord& record
   if (record.active) {
     force.p_S = record.p_S;
     force.normal = direction(parameters, record, force);
+    force.couple = record.couple;
     if (input.pressing)
       force.raw = state.stiffness_factor.value() * law_force(parameters.force, record.depth, force.speed);
   }
@@ -211,6 +212,7 @@ Status compute_command(const HapticParameters& parameters, const GdpState& conta
       const SegmentForce& force = force_of(state, d, k);
       if (force.sent == 0.0) continue;
       add_torques(gdp, d, k, gdp.segment[idx(k)] * force.p_S, force.sent * force.normal, wanted);
+      if (!force.couple.isZero(0.0)) add_couple(gdp, d, k, force.sent * force.couple, wanted);
     }
   }
   for (std::size_t j = 0; j < kJoints; ++j) {

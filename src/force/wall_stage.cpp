@@ -132,11 +132,14 @@ void make_walls(const HapticParameters& parameters, const GdpState& contacts, co
                     .p_S = record.p_S,
                     .normal = force.normal,
                     .p_W = record.p_gdp};
+    } else if (parameters.contact.mode == ContactMode::kSliding) {
+      remembered.kept = false;  // the wall ends with the contact
     } else if (remembered.kept && !record.active) {
       wall = wall_left(parameters, hcp.digit[idx(digit)].segment[idx(k)], remembered);
     }
     JointArray unit_torque{};
     add_torques(gdp, digit, k, gdp.segment[idx(k)] * remembered.p_S, remembered.normal, unit_torque);
+    if (record.active && !record.couple.isZero(0.0)) add_couple(gdp, digit, k, record.couple, unit_torque);
     for (int i = 0; i < kJointsPerDigit; ++i) wall.g[idx(i)] = unit_torque[idx(joint_index(digit, i))];
     wall.active = usable(wall);
     if (!wall.active) {

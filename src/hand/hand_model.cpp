@@ -221,12 +221,11 @@ PointJacobian point_jacobian(const DigitPose& pose, int k, const Vec3& p_W) noex
   return J;
 }
 
-void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
-                 JointArray& torque) noexcept {
-  const auto about = [&](int axis) {
-    const JointAxis& a = pose.axis[idx(axis)];
-    return a.axis.dot((p_W - a.centre).cross(f_W));
-  };
+namespace {
+
+/// Adds the torques of a load whose virtual work per axis is about(axis).
+template <class About>
+void add_work(const DigitPose& pose, int digit, int k, About&& about, JointArray& torque) noexcept {
   for (int i = 0; i < joints_that_move(k); ++i) torque[idx(joint_index(digit, i))] += about(axis_of_joint(i));
   const DigitCoupling& coupling = pose.coupling;
   if (turns_metacarpal(coupling))
@@ -235,6 +234,23 @@ void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const
   const double pronation = about(kPronationAxis);
   torque[idx(joint_index(digit, 0))] += coupling.pronation_per_flexion * pronation;
   torque[idx(joint_index(digit, kAbductionJoint))] += coupling.pronation_per_abduction * pronation;
+}
+
+}  // namespace
+
+void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
+                 JointArray& torque) noexcept {
+  add_work(
+      pose, digit, k,
+      [&](int axis) {
+        const JointAxis& a = pose.axis[idx(axis)];
+        return a.axis.dot((p_W - a.centre).cross(f_W));
+      },
+      torque);
+}
+
+void add_couple(const DigitPose& pose, int digit, int k, const Vec3& m_W, JointArray& torque) noexcept {
+  add_work(pose, digit, k, [&](int axis) { return pose.axis[idx(axis)].axis.dot(m_W); }, torque);
 }
 
 }  // namespace phalanx

@@ -63,6 +63,10 @@ void check_parameters(const HapticParameters& parameters) {
   check("rate_hz", parameters.rate_hz, ranges::kRate);
   check("contact.margin [m]", parameters.contact.margin, ranges::kMargin);
   check("contact.slid_distance [m]", parameters.contact.slid_distance, ranges::kSlidDistance);
+  check_choice("contact.mode", parameters.contact.mode, ContactMode::kSliding);
+  check("contact.friction", parameters.contact.friction, ranges::kFriction);
+  check("contact.spin_radius [m]", parameters.contact.spin_radius, ranges::kSpinRadius);
+  check("contact.max_contacts", parameters.contact.max_contacts, ranges::kMaxContacts);
   check_law(parameters.force);
   check_stabiliser(parameters.stabiliser);
   check_choice("oscillation.reaction", parameters.oscillation.reaction, OscillationReaction::kHalve);

@@ -12,7 +12,7 @@ namespace phalanx {
 namespace {
 
 ContactModel contact_model(const HapticModel& model, const HapticParameters& parameters) noexcept {
-  return {model.hand, model.trees(), model.object, parameters.contact};
+  return {model.hand, model.trees(), model.object, parameters.contact, parameters.period()};
 }
 
 /// @throws as check_parameters(). @returns its argument

@@ -116,9 +116,11 @@ JointArray any_hand(test::Random& random, const HandParameters& hand, double rea
 }
 
 /// A hand that grasps and lets go at random.
-ResultBits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks) {
+ResultBits stepped(std::uint64_t seed, const TriangleMesh& object, int grasps, int ticks,
+                   ContactMode mode = ContactMode::kStatic) {
   test::Random random(seed);
   test::Setup model(test::simple_hand(), ObjectModel(object));
+  model.parameters.contact.mode = mode;
   model.parameters.limits.joint_speed = kInfinity;
   test::Runner runner(model);
   ResultBits out;
@@ -191,6 +193,12 @@ TEST_P(EverySet, WholeStepsAreTheSameBits) {
   std::cout << "seed 32\n";
   for (const TriangleMesh& object : grasped_objects())
     expect_same_as_portable([&] { return stepped(32, object, 6, 20); });
+}
+
+TEST_P(EverySet, WholeStepsOfSlidingContactsAreTheSameBits) {
+  std::cout << "seed 32\n";
+  for (const TriangleMesh& object : grasped_objects())
+    expect_same_as_portable([&] { return stepped(32, object, 6, 20, ContactMode::kSliding); });
 }
 
 TEST_P(EverySet, AllocatesNothingWhereTheListRunsOver) {

@@ -125,6 +125,10 @@ TEST(Scene, KeepsEachNumberInItsOwnPlace) {
   const SceneDescription scene = parse(R"(
     seconds = 6.5
     contact.slid_mm = 7
+    contact.mode = "sliding"
+    contact.friction = 0.35
+    contact.spin_radius_mm = 3
+    contact.max_contacts = 2
     [motion]
     start_s = 0.125
     close_s = 2
@@ -154,6 +158,10 @@ TEST(Scene, KeepsEachNumberInItsOwnPlace) {
     joint_speed_rad_per_s = 35)");
   EXPECT_EQ(scene.seconds, 6.5);
   EXPECT_DOUBLE_EQ(scene.parameters.contact.slid_distance, 7e-3);
+  EXPECT_EQ(scene.parameters.contact.mode, ContactMode::kSliding);
+  EXPECT_EQ(scene.parameters.contact.friction, 0.35);
+  EXPECT_DOUBLE_EQ(scene.parameters.contact.spin_radius, 3e-3);
+  EXPECT_EQ(scene.parameters.contact.max_contacts, 2);
   EXPECT_EQ(scene.motion.script.start_s, 0.125);
   EXPECT_EQ(scene.motion.script.close_s, 2.0);
   EXPECT_EQ(scene.motion.script.hold_s, 3.0);

@@ -36,6 +36,8 @@ const Range kRanges[] = {
     {"contact.margin", [](HapticParameters& p) -> double& { return p.contact.margin; }, 1e-6, 1e-3},
     {"contact.slid_distance", [](HapticParameters& p) -> double& { return p.contact.slid_distance; },
      kSmallest, 0.1},
+    {"contact.friction", [](HapticParameters& p) -> double& { return p.contact.friction; }, 0.0, 2.0},
+    {"contact.spin_radius", [](HapticParameters& p) -> double& { return p.contact.spin_radius; }, 0.0, 0.02},
     {"force.stiffness", [](HapticParameters& p) -> double& { return p.force.stiffness; }, 0.0, 1e5},
     {"force.damping", [](HapticParameters& p) -> double& { return p.force.damping; }, 0.0, 1000.0},
     {"force.velocity_lowpass_hz", [](HapticParameters& p) -> double& { return p.force.velocity_lowpass_hz; },
@@ -94,6 +96,14 @@ TEST(CheckParameters, TakesEachNumberUpToItsBoundAndNoFurther) {
       expect_refused(parameters, range.name, bad);
     }
     range.of(parameters) = usual;
+  }
+}
+
+TEST(CheckParameters, RefusesMoreContactsThanThereIsRoomFor) {
+  for (const int most : {0, 5, -1}) {
+    HapticParameters parameters;
+    parameters.contact.max_contacts = most;
+    EXPECT_THROW(check_parameters(parameters), std::invalid_argument) << most;
   }
 }
 

@@ -55,6 +55,10 @@ TEST(Defaults, OfContact) {
   const ContactParameters contact;
   EXPECT_EQ(contact.margin, 50e-6);
   EXPECT_EQ(contact.slid_distance, 5e-3);
+  EXPECT_EQ(contact.mode, ContactMode::kStatic);
+  EXPECT_EQ(contact.friction, 0.6);
+  EXPECT_EQ(contact.spin_radius, 4e-3);
+  EXPECT_EQ(contact.max_contacts, 4);
   EXPECT_EQ(contact.method, GdpMethod::kContinuous);
   EXPECT_EQ(contact.depth, DepthOrigin::kContinuous);
   EXPECT_EQ(contact.normal, ForceNormal::kInterpolated);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <string>
+#include <tuple>
 
 #include "phalanx/core/constants.h"
 #include "phalanx/scene/build_model.h"
@@ -17,9 +19,18 @@ namespace {
 /// How far below the margin a stopped segment may be.
 constexpr double kOracleTolerance = 10e-9;
 
-class OracleOnScene : public ::testing::TestWithParam<const char*> {
+/// Scene and contact mode.
+using OracleCase = std::tuple<const char*, ContactMode>;
+
+std::string case_name(const ::testing::TestParamInfo<OracleCase>& info) {
+  return std::string(std::get<0>(info.param)) +
+         (std::get<1>(info.param) == ContactMode::kSliding ? "_sliding" : "_static");
+}
+
+class OracleOnScene : public ::testing::TestWithParam<OracleCase> {
  protected:
   OracleOnScene() {
+    scene_.parameters.contact.mode = std::get<1>(GetParam());
     for (int s = 0; s < kSegments; ++s) segment_.emplace_back(model_.hand.mesh(s));
   }
 
@@ -37,7 +48,8 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
       for (int k = 0; k < kSegmentsPerDigit; ++k) {
         record = record || snapshot.segment[static_cast<std::size_t>(segment_index(d, k))].contact;
       }
-      ASSERT_TRUE(record || digit_angles(snapshot.gdp_angle, d) == digit_angles(snapshot.hcp_angle, d));
+      ASSERT_TRUE(record || digit_angles(snapshot.gdp_angle, d) == digit_angles(snapshot.hcp_angle, d))
+          << digit_name(d) << " at tick " << snapshot.tick;
       contacts_ += record ? 1 : 0;
     }
   }
@@ -64,7 +76,7 @@ class OracleOnScene : public ::testing::TestWithParam<const char*> {
     }
   }
 
-  SceneDescription scene_ = load_scene(GetParam(), {{"objects.0.triangles", "1000"}});
+  SceneDescription scene_ = load_scene(std::get<0>(GetParam()), {{"objects.0.triangles", "1000"}});
   const HapticModel model_ = build_model(scene_);
   test::FclMesh object_{model_.object.mesh()};
   std::vector<test::FclMesh> segment_;
@@ -97,12 +109,18 @@ TEST_P(SoakOracleOnScene, NothingPenetratesAtTwentyThousandSeededPoses) {
   EXPECT_GT(contacts_, 2000);
 }
 
+const auto kBothModes = ::testing::Values(ContactMode::kStatic, ContactMode::kSliding);
+
 INSTANTIATE_TEST_SUITE_P(Soak, SoakOracleOnScene,
-                         ::testing::Values("grasp_teapot", "grasp_mug", "grasp_torus", "grasp_box",
-                                           "tripod_ball"));
+                         ::testing::Combine(::testing::Values("grasp_teapot", "grasp_mug", "grasp_torus",
+                                                              "grasp_box", "tripod_ball"),
+                                            kBothModes),
+                         case_name);
 
 INSTANTIATE_TEST_SUITE_P(Scenes, OracleOnScene,
-                         ::testing::Values("grasp_teapot", "grasp_mug", "grasp_torus"));
+                         ::testing::Combine(::testing::Values("grasp_teapot", "grasp_mug", "grasp_torus"),
+                                            kBothModes),
+                         case_name);
 
 }  // namespace
 }  // namespace phalanx

@@ -357,11 +357,20 @@ TEST(Step, WhateverArrivesTheCommandIsFiniteAndWithinItsLimits) {
 }
 
 TEST(Step, AllocatesNothing) {
-  for (const auto& [method, with_coupling] :
-       {std::pair{GdpMethod::kContinuous, false}, std::pair{GdpMethod::kTrajectory, false},
-        std::pair{GdpMethod::kContinuous, true}}) {
+  struct Case {
+    GdpMethod method;
+    ContactMode mode;
+    bool with_coupling;
+  };
+  for (const auto& [method, mode, with_coupling] :
+       {Case{GdpMethod::kContinuous, ContactMode::kStatic, false},
+        Case{GdpMethod::kTrajectory, ContactMode::kStatic, false},
+        Case{GdpMethod::kContinuous, ContactMode::kStatic, true},
+        Case{GdpMethod::kContinuous, ContactMode::kSliding, false},
+        Case{GdpMethod::kContinuous, ContactMode::kSliding, true}}) {
     test::Setup model = with_coupling ? coupled_ball_model() : ball_model();
     model.parameters.contact.method = method;
+    model.parameters.contact.mode = mode;
     HapticState state(model, model.parameters);
     double time = 0.0;
     std::size_t contacts = 0;

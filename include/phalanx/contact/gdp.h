@@ -22,6 +22,7 @@
 #include "phalanx/contact/object_model.h"
 #include "phalanx/contact/pair_list.h"
 #include "phalanx/contact/segment_tree.h"
+#include "phalanx/contact/sliding_contact.h"
 #include "phalanx/core/status.h"
 #include "phalanx/hand/hand_model.h"
 
@@ -47,6 +48,8 @@ struct ContactRecord {
   Vec3 p_gdp = Vec3::Zero();  ///< p on the GDP segment, in W [m]
   Vec3 p_hcp = Vec3::Zero();  ///< p on the HCP segment, in W [m]
   double slid = 0.0;          ///< tangential offset between p_hcp and p_gdp [m]
+  /// Sliding mode: moment about p_gdp per force, of several contact points and of spin, in W [m].
+  Vec3 couple = Vec3::Zero();
 };
 
 /// Angles of one digit at the last ticks: S1's "recorded motion trajectory". Real-time: O(1), no allocation.
@@ -75,6 +78,7 @@ struct ContactModel {
   const SegmentTrees& trees;
   const ObjectModel& object;
   const ContactParameters& parameters;
+  double period = 1e-3;  ///< of a tick [s]; sliding mode divides it into substeps of 1 ms at most
 };
 
 /// State of the GDP between ticks, and the search's scratch memory.
@@ -94,7 +98,9 @@ struct GdpState {
   std::array<NearPairs, kPalm> near;           ///< of the digits' segments where they last stopped
   SearchScratch scratch;                       ///< memory of one search
   PairList pairs;  ///< scratch: pairs of triangles that a digit may meet in this tick
-  std::array<AngleRing, kDigits> recorded;  ///< for GdpMethod::kTrajectory
+  std::array<AngleRing, kDigits> recorded;     ///< for GdpMethod::kTrajectory
+  std::array<DigitContacts, kDigits> sliding;  ///< for ContactMode::kSliding
+  ContactMode mode = ContactMode::kStatic;     ///< of the last tick
 };
 
 /// Moves the GDP towards the HCP for one tick and updates the contact records.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -35,6 +37,13 @@ class NearPairs {
   }
   /// Stores a pose at which the segment has stopped, without a search. Pairs found at this pose stay.
   void stop_at(const Pose& X_WS) noexcept;
+  /// Takes the pairs to a pose to which no point of the segment has moved farther than `moved` [m]. They are then
+  /// complete within a reach that is smaller by this, but their closest points are those of the old pose.
+  void carry(const Pose& X_WS, double moved) noexcept {
+    X_WS_ = X_WS;
+    reach_ -= moved;
+    least_squared_ = least_squared_ > moved * moved ? std::pow(std::sqrt(least_squared_) - moved, 2) : 0.0;
+  }
   /// Removes pairs and pose.
   void clear() noexcept { stop_at({Mat3::Zero(), Vec3::Zero()}); }
   /// @returns true if the pose of the last find() or stop_at() is this one, to the last bit
@@ -42,6 +51,10 @@ class NearPairs {
   /// @returns true if a pair that was found at this pose is within `distance` [m]
   [[nodiscard]] bool is_within(const Pose& X_WS, double distance) const noexcept {
     return is_at(X_WS) && least_squared_ <= distance * distance;
+  }
+  /// Returns a lower bound on the distance at this pose [m]; 0 if the pairs are not of this pose.
+  [[nodiscard]] double bound(const Pose& X_WS) const noexcept {
+    return is_at(X_WS) && reach_ > 0.0 ? std::min(reach_, std::sqrt(least_squared_)) : 0.0;
   }
   /// Returns the number of pairs found.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }

@@ -30,6 +30,7 @@ struct SegmentForce {
   double sent = 0.0;           ///< F' of S2 eq. (4): the force after caps and stabiliser [N]
   Vec3 p_S = Vec3::Zero();     ///< point where the force acts, in the segment's frame [m]
   Vec3 normal = Vec3::Zero();  ///< direction of the force on the finger, in W
+  Vec3 couple = Vec3::Zero();  ///< moment about that point per force, in W [m]; 0 in static mode
   double speed = 0.0;          ///< low-passed closing speed [m/s]
   StabiliserMemory memory;
 };

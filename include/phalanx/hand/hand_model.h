@@ -142,6 +142,10 @@ struct PointJacobian {
 void add_torques(const DigitPose& pose, int digit, int k, const Vec3& p_W, const Vec3& f_W,
                  JointArray& torque) noexcept;
 
+/// Adds the torques of a couple m_W [Nm] on the digit's segment k: tau_i = sum of axis . m, coupled axes among
+/// them, as add_torques() does for a force. Real-time: O(1), no allocation, lock, throw or I/O.
+void add_couple(const DigitPose& pose, int digit, int k, const Vec3& m_W, JointArray& torque) noexcept;
+
 /// Returns tapered capsules for the digits and a rounded slab for the palm, from the lengths and breadths in
 /// `parameters`. The whole hand has about `triangles` triangles. Set-up only.
 /// @throws std::invalid_argument if `triangles` is below 800 or above 2,000,000

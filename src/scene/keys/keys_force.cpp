@@ -18,6 +18,20 @@ void add_contact_and_law(std::vector<SceneKey>& keys) {
   at_zero_torque.number("contact.slid_mm", "mm", in_unit(ranges::kSlidDistance, kMm), 5,
                         "tangential offset beyond which a contact reports `slid`",
                         [](T t, V v) { t.scene.parameters.contact.slid_distance = v.number * kMm; });
+  at_zero_torque.choice("contact.mode", {"static", "sliding"}, "static",
+                        "contacts are fixed points, as in the papers, or slide with friction", [](T t, V v) {
+                          t.scene.parameters.contact.mode = static_cast<ContactMode>(v.integer);
+                        });
+  at_zero_torque.number("contact.friction", "", ranges::kFriction, 0.6,
+                        "sliding: Coulomb friction coefficient",
+                        [](T t, V v) { t.scene.parameters.contact.friction = v.number; });
+  at_zero_torque.number("contact.spin_radius_mm", "mm", in_unit(ranges::kSpinRadius, kMm), 4,
+                        "sliding: radius of the area whose friction resists rotation about the normal",
+                        [](T t, V v) { t.scene.parameters.contact.spin_radius = v.number * kMm; });
+  at_zero_torque.integer("contact.max_contacts", ranges::kMaxContacts, 4,
+                         "sliding: greatest number of contact points of a segment", [](T t, V v) {
+                           t.scene.parameters.contact.max_contacts = static_cast<int>(v.integer);
+                         });
   at_zero_torque.choice(
       "gdp.method", {"continuous", "trajectory"}, "continuous",
       "method for the shown hand: first time of contact, or S1 fig. 4 as printed",

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "phalanx/core/math.h"
+
+namespace phalanx {
+
+/// Contact point of a segment in sliding mode, and what friction remembers of it. See docs/sliding.md.
+struct SlidingContact {
+  int k = 0;                      ///< segment of the digit: 0 nearest the palm, 2 distal
+  std::int32_t triangle = -1;     ///< of the segment's mesh
+  std::int32_t slot = -1;         ///< of the object's tree
+  Vec3 p_S = Vec3::Zero();        ///< point on the segment, in the segment's frame [m]
+  Vec3 p_W = Vec3::Zero();        ///< the same in W, at the pose of the last solution [m]
+  Vec3 normal = Vec3::UnitZ();    ///< unit vector from the object to the segment at closest approach, in W
+  std::array<Vec3, 2> tangent{};  ///< unit vectors that complete the normal to a right-handed frame, in W
+  double gap = 0.0;               ///< distance of segment and object at that pose [m]
+  /// Depths whose forces the law gives: along the normal (>= 0), and friction's along both tangents [m].
+  /// Friction is within the cone |depth_t| <= mu depth_n.
+  std::array<double, 3> depth{};
+  double spin_depth = 0.0;  ///< the same about the normal: moment per stiffness [m^2]
+  /// Multipliers of the contact problem: normal, tangents [1/m], spin [-].
+  std::array<double, 4> multiplier{};
+  Vec3 anchor = Vec3::Zero();  ///< displacement along the surface since the contact last slipped, in W [m]
+  double turned = 0.0;         ///< rotation about the normal while spin is held [rad]
+  bool slips = false;          ///< friction along the surface is at its bound
+  bool spins = true;           ///< friction about the normal is at its bound
+};
+
+/// Contact points of one digit in sliding mode.
+struct DigitContacts {
+  static constexpr int kMost = 16;
+  int count = 0;
+  std::array<SlidingContact, kMost> contact;
+  double depth_per_multiplier = 0.0;  ///< kappa over stiffness: turns multipliers into depths [m^2]
+  double unchecked_for = 0.0;         ///< time since the HCP was last looked for beyond the object [s]
+  double beyond_for = 0.0;            ///< time for which the HCP has been clear of the object [s]
+};
+
+}  // namespace phalanx

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contact problem of one digit: how far its joints move in one tick towards the measured angles while contacts
+// with friction stop them. See docs/sliding.md.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "phalanx/hand/joints.h"
+
+namespace phalanx {
+
+/// Rows of a contact: motion along its normal, along two tangents, and about its normal.
+enum ContactRow { kNormalRow, kTangentRow, kSecondTangentRow, kSpinRow };
+inline constexpr std::size_t kContactRows = 4;
+using ContactRows = std::array<double, kContactRows>;
+
+/// One contact of the problem, and its solution.
+struct ProblemContact {
+  /// Jacobian rows: displacement of the segment's point along each direction per joint displacement [m/rad],
+  /// and for the spin row the rotation about the normal [rad/rad].
+  std::array<DigitAngles, kContactRows> row{};
+  /// Distance that the contact may close before it pushes [m]; < 0: it must open by so much.
+  double room = 0.0;
+  /// Of a contact without friction: the normal row gives way by softness |row_n|^2 p_n [-].
+  double softness = 0.0;
+  /// Displacement along the tangents that friction aims at, negated [m]: 0 keeps the point where it is.
+  std::array<double, 2> anchor{};
+  double spin_anchor = 0.0;  ///< the same for the rotation about the normal [rad]
+  double friction = 0.0;     ///< Coulomb coefficient mu [-], >= 0
+  /// r_c: friction resists a rotation up to mu r_c times the normal multiplier [m].
+  double spin_radius = 0.0;
+  /// Normal multiplier above which friction grows no further [1/m].
+  double most_friction_normal = std::numeric_limits<double>::infinity();
+  /// Solution, and the start of the iteration: multipliers of the rows [1/m], of the spin row [-].
+  ContactRows multiplier{};
+  bool slips = false;  ///< the tangential multiplier is on its bound
+  bool spins = false;  ///< the spin multiplier is on its bound
+};
+
+/// Contact problem of one digit. With the joints' displacement x and each contact's multipliers p:
+///   x = free + sum row^T p                                          (quasi-static, massless, unit stiffness)
+///   normal    0 <= row_n . x + room   complementary to   p_n >= 0
+///   tangent   row_t . x + anchor = 0  if |p_t| <= mu min(p_n, most_friction_normal), else p_t is on that
+///             bound and opposes row_t . x + anchor
+///   spin      row_s . x + anchor_s = -0.02 |row_s|^2 p_s  if |p_s| <= mu r_c min(p_n, most_friction_normal), else
+///             p_s is on that bound and opposes it. The anchor takes the small rotation back.
+///   limits    lowest <= x <= highest
+struct ContactProblem {
+  static constexpr int kMostContacts = 16;
+
+  DigitAngles free{};  ///< displacement without contact [rad]
+  DigitAngles lowest{};
+  DigitAngles highest{};  ///< bounds of x, of both signs or zero [rad]
+  int count = 0;
+  std::array<ProblemContact, kMostContacts> contact;
+
+  DigitAngles limit{};         ///< solution: multipliers of the limits [rad]
+  DigitAngles displacement{};  ///< solution: x [rad]
+};
+
+/// Solves the problem by block Gauss-Seidel, a block for each contact. Contacts are in the order of `contact`.
+/// @param sweeps     greatest number of iterations
+/// @param tolerance  ends when no row changes by more in one sweep [m]
+/// @returns the number of sweeps done; the result after the last one is bounded and finite for finite input.
+/// Normal multipliers are >= 0 and friction is within its bound in any case.
+/// Real-time: bounded, no allocation, lock, throw or I/O.
+int solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept;
+
+}  // namespace phalanx

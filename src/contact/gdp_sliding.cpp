@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: Apache-2.0
+// The GDP in sliding mode: joints move towards the HCP while contacts with Coulomb friction stop them, and the
+// continuous search ends each motion before anything penetrates. See docs/sliding.md.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact_problem.h"
+#include "contact/first_contact.h"
+#include "contact/gdp_digit.h"
+#include "contact/manifold.h"
+#include "phalanx/core/constants.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kClearance = 10e-6;        // h1 - h0: working clearance above the margin [m]
+constexpr double kMostReach = 50e-6;        // beyond it the continuous search finds contacts [m]
+constexpr double kSlack = 20e-6;            // of the reach, above the way of this tick [m]
+constexpr double kAnchorGain = 0.2;         // share of the anchor's displacement taken back in a substep
+constexpr double kFrictionDepth = 40e-6;    // friction at zero depth counts this much [m]
+constexpr double kMostRecovery = 2e-6;      // way back to the working clearance in a substep [m]
+constexpr double kLeastRecovery = 1e-9;     // [m]
+constexpr double kRounding = 1e-12;         // [m]
+constexpr double kMostSlide = 1e-3;         // of a touching segment in a substep [m]
+constexpr double kTolerance = 1e-12;        // of the contact problem [m]
+constexpr double kStill = 1e-13;            // displacement that is no motion [rad]
+constexpr double kSamePlace = 3e-3;         // a contact may move by this much between two substeps [m]
+constexpr double kSameDirection = 0.99995;  // cosine: a contact that opposes a motion already
+constexpr double kSameBlock = 1e-3;         // [m]
+constexpr double kDepthChange = 0.02;       // greatest relative change of depth_per_multiplier in a substep
+constexpr double kLongestSubstep = 1e-3;    // [s]
+constexpr double kMostSubsteps = 20.0;
+constexpr double kLeastBeyond = 1e-3;  // depth below which the measured finger is not looked for beyond [m]
+constexpr double kCheckBeyond = 4e-3;  // [s]
+constexpr double kBeyondFor = 30e-3;   // [s]
+constexpr int kSweeps = 20;
+constexpr int kRecoverySweeps = 8;
+constexpr double kSoftness = 0.05;  // of the recovery, so that opposed contacts agree
+constexpr int kMostEvents = 4;
+
+static_assert(DigitContacts::kMost == ContactProblem::kMostContacts);
+
+/// Motion of one digit in one substep.
+class Substep {
+ public:
+  Substep(const ContactModel& model, const DigitAngles& goal, const DigitPose& goal_pose, DigitTick& tick,
+          GdpState& state, int& evaluations) noexcept
+      : model_(model),
+        goal_(goal),
+        goal_pose_(goal_pose),
+        tick_(tick),
+        state_(state),
+        contacts_(state.sliding[idx(tick.digit)]),
+        evaluations_(evaluations) {
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const std::size_t joint = idx(joint_index(tick.digit, i));
+      lowest_[idx(i)] = model.hand.parameters().min_angle[joint];
+      highest_[idx(i)] = model.hand.parameters().max_angle[joint];
+    }
+  }
+
+  void run() noexcept {
+    bool gathered = false;
+    for (int event = 0;; ++event) {
+      if (contacts_.count > 0 || event > 0) {
+        gather();
+        gathered_ = true;
+        if (blocked_ >= 0) add_blocking();
+        recover(event == 0 ? kMostRecovery : kClearance);
+        gathered = true;
+      }
+      const DigitAngles from = tick_.angle;
+      const DigitAngles x = displacement();
+      const Stop stop = move(x);
+      if (gathered) follow_anchors(from);
+      if (stop.segment < 0) return;
+      if (event == kMostEvents || has(tick_.status, Status::kSearchExhausted)) {
+        tick_.status |= Status::kSearchExhausted;
+        return;
+      }
+      blocked_ = stop.segment;
+      blocked_rate_ = x;
+    }
+  }
+
+ private:
+  [[nodiscard]] PlacedSegment placed(int k) noexcept {
+    return {model_.trees[idx(segment_index(tick_.digit, k))], tick_.pose.segment[idx(k)], state_.scratch};
+  }
+
+  [[nodiscard]] NearPairs& near(int k) noexcept { return state_.near[idx(segment_index(tick_.digit, k))]; }
+
+  /// Lists the contacts at the digit's pose. What friction remembers goes from the last ones to these.
+  void gather() noexcept {
+    const DigitContacts last = contacts_;
+    contacts_.count = 0;
+    std::array<bool, DigitContacts::kMost> taken{};
+    DigitAngles change{};
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] = tick_.hcp[i] - tick_.hcp_from[i];
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const double h1 = model_.parameters.margin + kClearance;
+      const double reach =
+          h1 + std::min(kMostReach, segment_speed(model_.hand, tick_.digit, change, k) + kSlack);
+      const std::size_t s = idx(segment_index(tick_.digit, k));
+      if (state_.clearance[s].bound() > reach) continue;
+      Manifold manifold;
+      find_manifold(placed(k), model_.object, reach, h1 + kSlack, model_.parameters.max_contacts,
+                    state_.near[s], manifold);
+      for (int i = 0; i < manifold.count && contacts_.count < DigitContacts::kMost - 1; ++i)
+        add(k, manifold.place[idx(i)], last, taken);
+    }
+  }
+
+  void add(int k, const ContactPlace& place, const DigitContacts& last,
+           std::array<bool, DigitContacts::kMost>& taken) noexcept {
+    SlidingContact& contact = contacts_.contact[idx(contacts_.count++)];
+    const Pose& X_WS = tick_.pose.segment[idx(k)];
+    contact = {};
+    contact.k = k;
+    contact.triangle = place.triangle;
+    contact.slot = place.slot;
+    contact.p_S = X_WS.R.transpose() * (place.on_segment - X_WS.p);
+    contact.p_W = place.on_segment;
+    contact.normal = place.direction;
+    contact.tangent[0] = place.direction.unitOrthogonal();
+    contact.tangent[1] = place.direction.cross(contact.tangent[0]);
+    contact.gap = place.gap;
+
+    int best = -1;
+    double nearest = kSamePlace * kSamePlace;
+    for (int i = 0; i < last.count; ++i) {
+      const SlidingContact& before = last.contact[idx(i)];
+      if (taken[idx(i)] || before.k != k || before.normal.dot(contact.normal) < kCos30Deg) continue;
+      const bool same = before.triangle == place.triangle && before.slot == place.slot;
+      const double apart = same ? -1.0 : (before.p_S - contact.p_S).squaredNorm();
+      if (apart < nearest) {
+        nearest = apart;
+        best = i;
+      }
+    }
+    if (best < 0) return;
+    taken[idx(best)] = true;
+    const SlidingContact& before = last.contact[idx(best)];
+    const Vec3 friction = before.multiplier[1] * before.tangent[0] + before.multiplier[2] * before.tangent[1];
+    contact.multiplier = {before.multiplier[0], friction.dot(contact.tangent[0]),
+                          friction.dot(contact.tangent[1]), before.multiplier[3]};
+    contact.anchor = before.anchor - before.anchor.dot(contact.normal) * contact.normal;
+    contact.turned = before.turned;
+    contact.slips = before.slips;
+  }
+
+  /// Adds the pair that stopped the last motion, unless a contact is there already.
+  void add_blocking() noexcept {
+    const SegmentMotion motion =
+        segment_motion(model_.hand, tick_.digit, tick_.pose, blocked_rate_, blocked_);
+    const double cap = std::nextafter(model_.parameters.margin, 1.0);
+    const ContactPatch patch = contact_patch(placed(blocked_), model_.object, cap, &motion,
+                                             state_.near[idx(segment_index(tick_.digit, blocked_))]);
+    if (patch.pairs == 0 || patch.lead_direction.isZero(0.0)) return;
+    for (int i = 0; i < contacts_.count; ++i) {
+      const SlidingContact& contact = contacts_.contact[idx(i)];
+      if (contact.k == blocked_ && contact.normal.dot(patch.lead_direction) >= kSameDirection &&
+          (contact.p_W - patch.lead).squaredNorm() <= kSameBlock * kSameBlock)
+        return;
+    }
+    ContactPlace place;
+    place.triangle = place.slot = -1;
+    place.gap = patch.distance;
+    place.on_segment = patch.lead;
+    place.direction = patch.lead_direction;
+    std::array<bool, DigitContacts::kMost> taken{};
+    add(blocked_, place, DigitContacts{}, taken);
+  }
+
+  /// Returns the contact's row along its normal at the digit's pose [m/rad].
+  [[nodiscard]] DigitAngles normal_row(const SlidingContact& contact) const noexcept {
+    const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
+    DigitAngles row{};
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = contact.normal.dot(J.linear[i]);
+    return row;
+  }
+
+  /// Returns the joints' displacement towards the goal that the contacts admit [rad].
+  DigitAngles displacement() noexcept {
+    DigitAngles free{};
+    for (std::size_t i = 0; i < free.size(); ++i) free[i] = goal_[i] - tick_.angle[i];
+    if (contacts_.count == 0) return free;
+    ContactProblem problem;
+    set_up(free, problem);
+    (void)solve_contacts(problem, kSweeps, kTolerance);
+    for (int i = 0; i < problem.count; ++i) {
+      contacts_.contact[idx(i)].multiplier = problem.contact[idx(i)].multiplier;
+      contacts_.contact[idx(i)].slips = problem.contact[idx(i)].slips;
+      contacts_.contact[idx(i)].spins = problem.contact[idx(i)].spins;
+    }
+    DigitAngles x = problem.displacement;
+    double farthest = 0.0;
+    for (int c = 0; c < contacts_.count; ++c)
+      if (contacts_.contact[idx(c)].multiplier[0] > 0.0)
+        farthest =
+            std::max(farthest, segment_speed(model_.hand, tick_.digit, x, contacts_.contact[idx(c)].k));
+    if (farthest > kMostSlide)
+      for (double& angle : x) angle *= kMostSlide / farthest;
+    return x;
+  }
+
+  void set_up(const DigitAngles& free, ContactProblem& problem) const noexcept {
+    const double h1 = model_.parameters.margin + kClearance;
+    problem.free = free;
+    problem.count = contacts_.count;
+    set_limits(problem);
+    for (int c = 0; c < contacts_.count; ++c) {
+      const SlidingContact& contact = contacts_.contact[idx(c)];
+      ProblemContact& out = problem.contact[idx(c)];
+      const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
+      for (std::size_t i = 0; i < free.size(); ++i) {
+        out.row[kNormalRow][i] = contact.normal.dot(J.linear[i]);
+        out.row[kTangentRow][i] = contact.tangent[0].dot(J.linear[i]);
+        out.row[kSecondTangentRow][i] = contact.tangent[1].dot(J.linear[i]);
+        out.row[kSpinRow][i] = contact.normal.dot(J.angular[i]);
+      }
+      out.room = std::max(0.0, contact.gap - h1);
+      out.anchor = {kAnchorGain * contact.anchor.dot(contact.tangent[0]),
+                    kAnchorGain * contact.anchor.dot(contact.tangent[1])};
+      out.spin_anchor = kAnchorGain * contact.turned;
+      out.friction = model_.parameters.friction;
+      out.spin_radius = model_.parameters.spin_radius;
+      if (contacts_.depth_per_multiplier > 0.0) {
+        const Vec3 apart = contact.p_W - goal_pose_.segment[idx(contact.k)] * contact.p_S;
+        const double depth = std::max(0.0, apart.dot(contact.normal));
+        out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / contacts_.depth_per_multiplier;
+      }
+      out.multiplier = contact.multiplier;
+      out.slips = contact.slips;
+    }
+  }
+
+  void set_limits(ContactProblem& problem) const noexcept {
+    for (std::size_t i = 0; i < lowest_.size(); ++i) {
+      problem.lowest[i] = std::min(0.0, lowest_[i] - tick_.angle[i]);
+      problem.highest[i] = std::max(0.0, highest_[i] - tick_.angle[i]);
+    }
+  }
+
+  /// Moves the digit away from what is nearer than the working clearance, at most by `most` [m]. Where that is
+  /// not possible, as between two walls, it moves less. The motion carries no force.
+  void recover(double most) noexcept {
+    const double h1 = model_.parameters.margin + kClearance;
+    ContactProblem problem;
+    problem.count = contacts_.count;
+    set_limits(problem);
+    bool any = false;
+    for (int c = 0; c < contacts_.count; ++c) {
+      const SlidingContact& contact = contacts_.contact[idx(c)];
+      ProblemContact& out = problem.contact[idx(c)];
+      out.row[kNormalRow] = normal_row(contact);
+      out.room = std::max(-most, contact.gap - h1);
+      out.softness = kSoftness;
+      any = any || out.room < -kLeastRecovery;
+    }
+    if (!any) return;
+    (void)solve_contacts(problem, kRecoverySweeps, kLeastRecovery);
+    const DigitAngles& away = problem.displacement;
+    std::array<bool, kSegmentsPerDigit> known{};
+    for (int k = 0; k < kSegmentsPerDigit; ++k) known[idx(k)] = near(k).is_at(tick_.pose.segment[idx(k)]);
+    (void)move(away);
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      if (!known[idx(k)]) continue;
+      near(k).carry(tick_.pose.segment[idx(k)], segment_speed(model_.hand, tick_.digit, away, k) + kRounding);
+    }
+    gathered_ = true;
+    for (int c = 0; c < contacts_.count; ++c) {
+      SlidingContact& contact = contacts_.contact[idx(c)];
+      const Vec3 before = contact.p_W;
+      contact.p_W = tick_.pose.segment[idx(contact.k)] * contact.p_S;
+      contact.gap += contact.normal.dot(contact.p_W - before);
+    }
+  }
+
+  /// Moves the digit along a straight line in joint space up to the first stop.
+  Stop move(const DigitAngles& x) noexcept {
+    Path path{tick_.angle, x, tick_.angle};
+    bool still = true;
+    bool free = true;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      path.end[i] = x[i] == goal_[i] - tick_.angle[i]
+                        ? goal_[i]
+                        : std::clamp(tick_.angle[i] + x[i], lowest_[i], highest_[i]);
+      path.rate[i] = path.end[i] - tick_.angle[i];
+      still = still && std::abs(path.rate[i]) <= kStill;
+      free = free && path.end[i] == goal_[i];
+    }
+    if (still && (!free || tick_.angle == goal_)) return {};
+    path.near_known = gathered_;
+    gathered_ = false;
+    return first_contact(model_, path, 0.0, evaluations_, tick_, state_);
+  }
+
+  /// Adds the motion to the anchors of contacts that stick.
+  void follow_anchors(const DigitAngles& from) noexcept {
+    for (int c = 0; c < contacts_.count; ++c) {
+      SlidingContact& contact = contacts_.contact[idx(c)];
+      if (contact.spins) {
+        contact.turned = 0.0;
+      } else {
+        const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
+        for (std::size_t i = 0; i < from.size(); ++i)
+          contact.turned += contact.normal.dot(J.angular[i]) * (tick_.angle[i] - from[i]);
+      }
+      if (contact.slips || !(contact.multiplier[0] > 0.0)) {
+        contact.anchor = Vec3::Zero();
+        continue;
+      }
+      const Vec3 now = tick_.pose.segment[idx(contact.k)] * contact.p_S;
+      const Vec3 moved = now - contact.p_W;
+      contact.anchor += moved - moved.dot(contact.normal) * contact.normal;
+    }
+  }
+
+  const ContactModel& model_;
+  const DigitAngles& goal_;
+  const DigitPose& goal_pose_;
+  DigitTick& tick_;
+  GdpState& state_;
+  DigitContacts& contacts_;
+  int& evaluations_;
+  DigitAngles lowest_{};
+  DigitAngles highest_{};
+  bool gathered_ = false;  ///< the near pairs are those of the digit's pose
+  int blocked_ = -1;
+  DigitAngles blocked_rate_{};
+};
+
+/// Sets the depths of the contacts from their multipliers, and the digit's factor between them.
+void set_depths(const ContactModel& model, const DigitTick& tick, const DigitAngles& goal,
+                DigitContacts& contacts) noexcept {
+  DigitAngles middle{};
+  for (std::size_t i = 0; i < middle.size(); ++i) middle[i] = 0.5 * (tick.angle[i] + goal[i]);
+  DigitPose pose;
+  model.hand.digit_pose(tick.digit, middle, pose);
+  double sum = 0.0;
+  double weighted = 0.0;
+  for (int c = 0; c < contacts.count; ++c) {
+    const SlidingContact& contact = contacts.contact[idx(c)];
+    const double p = contact.multiplier[0];
+    if (!(p > 0.0)) continue;
+    const PointJacobian J = point_jacobian(tick.pose, contact.k, contact.p_W);
+    const PointJacobian half = point_jacobian(pose, contact.k, pose.segment[idx(contact.k)] * contact.p_S);
+    double squared = 0.0;
+    double A = 0.0;
+    for (std::size_t i = 0; i < middle.size(); ++i) {
+      const double g = contact.normal.dot(J.linear[i]);
+      squared += g * g;
+      A += g * contact.normal.dot(half.linear[i]);
+    }
+    sum += p * p;
+    weighted += p * p / std::max(A, 0.1 * squared);
+  }
+  double& factor = contacts.depth_per_multiplier;
+  if (sum > 0.0) {
+    const double wanted = sum / weighted;
+    factor = factor > 0.0 ? std::clamp(wanted, factor * (1.0 - kDepthChange), factor * (1.0 + kDepthChange))
+                          : wanted;
+  } else {
+    factor = 0.0;
+  }
+  for (int c = 0; c < contacts.count; ++c) {
+    SlidingContact& contact = contacts.contact[idx(c)];
+    for (std::size_t r = 0; r < contact.depth.size(); ++r) contact.depth[r] = factor * contact.multiplier[r];
+    contact.spin_depth = factor * contact.multiplier[3];
+  }
+}
+
+/// Makes one record of the contacts of segment k: their resultant, at their centre of pressure.
+void set_record(const DigitTick& tick, int k, const DigitContacts& contacts, ContactRecord& record) noexcept {
+  record = {};
+  Vec3 sum = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();
+  Vec3 centre = Vec3::Zero();
+  double weight = 0.0;
+  for (int c = 0; c < contacts.count; ++c) {
+    const SlidingContact& contact = contacts.contact[idx(c)];
+    if (contact.k != k || !(contact.depth[0] > 0.0)) continue;
+    normal += contact.depth[0] * contact.normal;
+    sum += contact.depth[1] * contact.tangent[0] + contact.depth[2] * contact.tangent[1];
+    centre += contact.depth[0] * contact.p_S;
+    weight += contact.depth[0];
+  }
+  sum += normal;
+  const double depth = sum.norm();
+  const double pressing = normal.norm();
+  if (!(weight > 0.0) || !(depth > 0.0) || !(pressing > 0.0)) return;
+  record.active = true;
+  record.p_S = centre / weight;
+  record.n_c = normal / pressing;
+  record.force_normal = sum / depth;
+  record.penetration = record.depth = depth;
+  record.p_gdp = tick.pose.segment[idx(k)] * record.p_S;
+  record.p_hcp = tick.hcp_pose.segment[idx(k)] * record.p_S;
+  Vec3 couple = Vec3::Zero();
+  for (int c = 0; c < contacts.count; ++c) {
+    const SlidingContact& contact = contacts.contact[idx(c)];
+    if (contact.k != k || !(contact.depth[0] > 0.0)) continue;
+    const Vec3 force = contact.depth[0] * contact.normal + contact.depth[1] * contact.tangent[0] +
+                       contact.depth[2] * contact.tangent[1];
+    const Vec3 arm = tick.pose.segment[idx(k)] * contact.p_S - record.p_gdp;
+    couple += arm.cross(force) + contact.spin_depth * contact.normal;
+  }
+  record.couple = couple / depth;
+}
+
+/// @returns true if the measured digit has been clear of the object for a while, though the shown one is held by
+/// a contact: it has passed the object's end, or gone through it. All segments are clear of the surface, and the
+/// chain begins outside, so that none is inside.
+bool is_beyond(const ContactModel& model, const DigitTick& tick, GdpState& state) noexcept {
+  DigitContacts& contacts = state.sliding[idx(tick.digit)];
+  double deepest = 0.0;
+  for (int c = 0; c < contacts.count; ++c) deepest = std::max(deepest, contacts.contact[idx(c)].depth[0]);
+  if (!(deepest > kLeastBeyond)) {
+    contacts.unchecked_for = contacts.beyond_for = 0.0;
+    return false;
+  }
+  contacts.unchecked_for += model.period;
+  if (contacts.unchecked_for < kCheckBeyond) return false;
+  bool clear = true;
+  for (int k = 0; k < kSegmentsPerDigit && clear; ++k) {
+    const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], tick.hcp_pose.segment[idx(k)],
+                               state.scratch};
+    const double margin = model.parameters.margin;
+    clear = distance(placed, model.object.tree(), 2.0 * margin) > margin;
+  }
+  contacts.beyond_for = clear ? contacts.beyond_for + contacts.unchecked_for : 0.0;
+  contacts.unchecked_for = 0.0;
+  return contacts.beyond_for >= kBeyondFor;
+}
+
+/// Shows the digit where it is measured, without contacts.
+void rejoin(DigitTick& tick, GdpState& state) noexcept {
+  tick.angle = tick.hcp;
+  tick.pose = tick.hcp_pose;
+  state.sliding[idx(tick.digit)] = {};
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    const std::size_t s = idx(segment_index(tick.digit, k));
+    state.clearance[s] = {};
+    state.near[s].clear();
+  }
+}
+
+}  // namespace
+
+void advance_sliding(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
+  DigitContacts& contacts = state.sliding[idx(tick.digit)];
+  if (is_beyond(model, tick, state)) rejoin(tick, state);
+  const int substeps =
+      contacts.count > 0
+          ? static_cast<int>(std::clamp(std::ceil(model.period / kLongestSubstep - 1e-9), 1.0, kMostSubsteps))
+          : 1;
+  int evaluations = 0;
+  for (int n = 1; n <= substeps; ++n) {
+    DigitAngles goal = tick.hcp;
+    DigitPose goal_pose = tick.hcp_pose;
+    if (n < substeps) {
+      const double s = static_cast<double>(n) / substeps;
+      for (std::size_t i = 0; i < goal.size(); ++i)
+        goal[i] = tick.hcp_from[i] + s * (tick.hcp[i] - tick.hcp_from[i]);
+      model.hand.digit_pose(tick.digit, goal, goal_pose);
+    }
+    Substep(model, goal, goal_pose, tick, state, evaluations).run();
+    set_depths(model, tick, goal, contacts);
+  }
+  for (int k = 0; k < kSegmentsPerDigit; ++k) set_record(tick, k, contacts, record_of(state, tick, k));
+}
+
+}  // namespace phalanx

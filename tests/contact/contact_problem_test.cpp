@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contact problem of a digit: against closed forms, and against Siconos, an independent solver.
+#include "contact/contact_problem.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "support/reference/siconos_problem.h"
+#include "support/simple_hand.h"
+
+namespace phalanx {
+namespace {
+
+using test::kIndex;
+
+constexpr double kTight = 1e-15;  // tolerance of the iteration [m]
+
+/// A problem whose joints move one point along x, y and z, and turn it about z: x is normal.
+ContactProblem with_one_contact(const DigitAngles& free, double mu) {
+  ContactProblem problem;
+  problem.free = free;
+  problem.lowest.fill(-1.0);
+  problem.highest.fill(1.0);
+  problem.count = 1;
+  ProblemContact& contact = problem.contact[0];
+  contact.row[kNormalRow] = {0.1, 0.0, 0.0, 0.0};
+  contact.row[kTangentRow] = {0.0, 0.05, 0.0, 0.0};
+  contact.row[kSecondTangentRow] = {0.0, 0.0, 0.02, 0.0};
+  contact.row[kSpinRow] = {0.0, 0.0, 0.0, 1.0};
+  contact.friction = mu;
+  return problem;
+}
+
+TEST(ContactProblem, WithoutContactTheDigitIsFree) {
+  ContactProblem problem;
+  problem.free = {0.1, -0.2, 0.3, -0.4};
+  problem.lowest.fill(-1.0);
+  problem.highest.fill(1.0);
+  solve_contacts(problem, 20, kTight);
+  EXPECT_EQ(problem.displacement, problem.free);
+}
+
+TEST(ContactProblem, AnOpeningContactDoesNotPush) {
+  ContactProblem problem = with_one_contact({0.01, 0.02, 0.03, 0.04}, 0.5);
+  solve_contacts(problem, 20, kTight);
+  EXPECT_EQ(problem.displacement, problem.free);
+  EXPECT_EQ(problem.contact[0].multiplier, ContactRows{});
+}
+
+TEST(ContactProblem, AContactStopsAtItsRoom) {
+  ContactProblem problem = with_one_contact({-0.02, 0.03, 0.0, 0.1}, 0.0);
+  problem.contact[0].room = 0.5e-3;
+  solve_contacts(problem, 20, kTight);
+  EXPECT_NEAR(problem.displacement[0], -0.005, 1e-15);
+  EXPECT_DOUBLE_EQ(problem.displacement[1], 0.03);
+  EXPECT_NEAR(problem.contact[0].multiplier[kNormalRow], (0.02 - 0.005) / 0.1, 1e-13);
+}
+
+TEST(ContactProblem, AContactWithinItsConeSticks) {
+  // Multipliers 0.02 / 0.1 = 0.2 along the normal, 0.004 / 0.05 = 0.08 and 0.001 / 0.02 = 0.05 across it.
+  ContactProblem problem = with_one_contact({-0.02, -0.004, 0.001, 0.0}, 0.6);
+  solve_contacts(problem, 20, kTight);
+  for (const double x : problem.displacement) EXPECT_NEAR(x, 0.0, 1e-12);
+  EXPECT_THAT(problem.contact[0].multiplier,
+              testing::ElementsAre(testing::DoubleNear(0.2, 1e-9), testing::DoubleNear(0.08, 1e-9),
+                                   testing::DoubleNear(-0.05, 1e-9), 0.0));
+  EXPECT_FALSE(problem.contact[0].slips);
+}
+
+TEST(ContactProblem, AContactBeyondItsConeSlipsAtItsBound) {
+  ContactProblem problem = with_one_contact({-0.02, -0.03, 0.0, 0.0}, 0.6);
+  solve_contacts(problem, 20, kTight);
+  const ProblemContact& contact = problem.contact[0];
+  EXPECT_TRUE(contact.slips);
+  EXPECT_NEAR(contact.multiplier[kNormalRow], 0.2, 1e-12);
+  EXPECT_NEAR(contact.multiplier[kTangentRow], 0.12, 1e-12);
+  EXPECT_NEAR(problem.displacement[1], -0.03 + 0.12 * 0.05, 1e-12);
+}
+
+TEST(ContactProblem, FrictionCountsTheNormalUpToItsMost) {
+  ContactProblem problem = with_one_contact({-0.02, -0.03, 0.0, 0.0}, 0.6);
+  problem.contact[0].most_friction_normal = 0.05;
+  solve_contacts(problem, 20, kTight);
+  EXPECT_NEAR(problem.contact[0].multiplier[kNormalRow], 0.2, 1e-12);
+  EXPECT_NEAR(problem.contact[0].multiplier[kTangentRow], 0.6 * 0.05, 1e-12);
+}
+
+TEST(ContactProblem, FrictionResistsSpinUpToItsBound) {
+  ContactProblem problem = with_one_contact({-0.02, 0.0, 0.0, 0.0004}, 0.6);
+  problem.contact[0].spin_radius = 0.004;
+  solve_contacts(problem, 20, kTight);
+  // The bound is 0.6 x 0.004 x 0.2 = 0.00048. A spin that is held gives way by 2 %, which its anchor takes back.
+  EXPECT_NEAR(problem.displacement[3], 0.0004 * 0.02 / 1.02, 1e-12);
+  problem.contact[0].spin_anchor = 0.2 * 0.0004;
+  solve_contacts(problem, 20, kTight);
+  EXPECT_NEAR(problem.displacement[3], 0.0004 * 0.02 / 1.02 - 0.2 * 0.0004 / 1.02, 1e-12);
+  problem.contact[0].spin_anchor = 0.0;
+  problem.free[3] = 0.0006;
+  problem.contact[0].multiplier = {};
+  solve_contacts(problem, 20, kTight);
+  EXPECT_NEAR(problem.displacement[3], 0.0006 - 0.00048, 1e-12);
+  EXPECT_NEAR(problem.contact[0].multiplier[kSpinRow], -0.00048, 1e-12);
+}
+
+TEST(ContactProblem, AnAnchorIsTakenBack) {
+  ContactProblem problem = with_one_contact({-0.02, 0.0, 0.0, 0.0}, 0.6);
+  problem.contact[0].anchor = {1e-6, -2e-6};
+  solve_contacts(problem, 20, kTight);
+  EXPECT_NEAR(0.05 * problem.displacement[1], -1e-6, 1e-12);
+  EXPECT_NEAR(0.02 * problem.displacement[2], 2e-6, 1e-12);
+}
+
+TEST(ContactProblem, AJointStopsAtItsLimitAndTheOthersGiveWay) {
+  // Joints 0 and 1 both open the contact; joint 0 cannot go on.
+  ContactProblem problem = with_one_contact({-0.01, -0.01, 0.0, 0.0}, 0.0);
+  problem.contact[0].row[kNormalRow] = {0.1, 0.1, 0.0, 0.0};
+  problem.lowest[0] = -0.002;
+  problem.highest[1] = 0.001;
+  solve_contacts(problem, 20, kTight);
+  EXPECT_NEAR(0.1 * problem.displacement[0] + 0.1 * problem.displacement[1], 0.0, 1e-14);
+  EXPECT_GE(problem.displacement[0], -0.002);
+  EXPECT_LE(problem.displacement[1], 0.001);
+}
+
+TEST(ContactProblem, BetweenTwoWallsTheDigitStaysAndNothingIsUnbounded) {
+  for (const double mu : {0.1, 0.6, 2.0}) {
+    ContactProblem problem = with_one_contact({-0.02, 0.0, 0.0, 0.0}, mu);
+    problem.count = 2;
+    problem.contact[1] = problem.contact[0];
+    problem.contact[1].row[kNormalRow] = {-0.1, 0.0, 0.0, 0.0};
+    solve_contacts(problem, 20, kTight);
+    EXPECT_NEAR(problem.displacement[0], 0.0, 1e-12) << mu;
+    EXPECT_NEAR(problem.contact[0].multiplier[0], 0.2, 1e-6) << mu;
+    EXPECT_NEAR(problem.contact[1].multiplier[0], 0.0, 1e-6) << mu << ": the far wall has nothing to hold";
+  }
+}
+
+/// Contacts at random points of a random digit.
+ContactProblem random_problem(std::mt19937_64& random, int most) {
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  static const HandModel hand = test::simple_hand();
+  DigitPose pose;
+  hand.digit_pose(
+      kIndex, {0.5 + 0.5 * u(random), 0.3 * u(random), 0.6 + 0.5 * u(random), 0.5 + 0.4 * u(random)}, pose);
+  ContactProblem problem;
+  problem.count = std::uniform_int_distribution<int>(1, most)(random);
+  for (double& angle : problem.free) angle = 0.1 * u(random);
+  problem.lowest.fill(-10.0);
+  problem.highest.fill(10.0);
+  const double mu = 0.1 + 0.9 * (0.5 + 0.5 * u(random));
+  for (int i = 0; i < problem.count; ++i) {
+    ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+    const int k = 2 - i % 3;
+    const Vec3 normal = Vec3(0.4 * u(random), 1.0, 0.4 * u(random)).normalized();
+    const Vec3 tangent = normal.unitOrthogonal();
+    const Vec3 other = normal.cross(tangent);
+    const Vec3 at = pose.segment[static_cast<std::size_t>(k)] *
+                    Vec3(0.005 * u(random), -0.006, -0.02 * (0.5 + 0.5 * u(random)));
+    const PointJacobian J = point_jacobian(pose, k, at);
+    for (std::size_t j = 0; j < problem.free.size(); ++j) {
+      contact.row[kNormalRow][j] = normal.dot(J.linear[j]);
+      contact.row[kTangentRow][j] = tangent.dot(J.linear[j]);
+      contact.row[kSecondTangentRow][j] = other.dot(J.linear[j]);
+      contact.row[kSpinRow][j] = normal.dot(J.angular[j]);
+    }
+    contact.room = std::max(0.0, 1e-4 * u(random));
+    contact.friction = mu;
+  }
+  return problem;
+}
+
+/// Returns by how much the solution violates the conditions of the problem without spin and limits [m].
+double violation(const ContactProblem& problem) {
+  double worst = 0.0;
+  for (int i = 0; i < problem.count; ++i) {
+    const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+    std::array<double, 3> v{};
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t j = 0; j < problem.free.size(); ++j)
+        v[r] += contact.row[r][j] * problem.displacement[j];
+    }
+    const double gap = v[0] + contact.room;
+    const double normal = contact.multiplier[0];
+    const double tangent = std::hypot(contact.multiplier[1], contact.multiplier[2]);
+    const double slip = std::hypot(v[1], v[2]);
+    const double bound = contact.friction * normal;
+    worst = std::max({worst, -gap, -normal, tangent - bound * (1.0 + 1e-9)});
+    if (normal > 0.0) worst = std::max(worst, std::abs(gap));
+    if (normal > 0.0 && tangent < bound * (1.0 - 1e-6)) worst = std::max(worst, slip);
+    if (normal > 0.0 && tangent >= bound * (1.0 - 1e-6) && slip > 0.0 && tangent > 0.0) {
+      worst = std::max(worst, std::hypot(v[1] + contact.multiplier[1] / tangent * slip,
+                                         v[2] + contact.multiplier[2] / tangent * slip));
+    }
+  }
+  return worst;
+}
+
+/// Compares the joints' displacement at full convergence. A problem may have several solutions: where the two
+/// differ, ours must fulfil the conditions, and such problems must be few.
+void expect_siconos_agrees(std::uint64_t seed, int problems) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937_64 random(seed);
+  int compared = 0;
+  int other_solutions = 0;
+  int unfinished = 0;
+  for (int n = 0; n < problems; ++n) {
+    ContactProblem problem = random_problem(random, 5);
+    const auto reference = test::solve_with_siconos(problem);
+    if (!reference) continue;
+    ++compared;
+    solve_contacts(problem, 5000, kTight);
+    double apart = 0.0;
+    for (std::size_t j = 0; j < reference->size(); ++j)
+      apart = std::max(apart, std::abs((*reference)[j] - problem.displacement[j]));
+    if (apart <= 1e-9) continue;
+    const double violated = violation(problem);
+    ++(violated <= 1e-9 ? other_solutions : unfinished);
+  }
+  std::printf("seed %llu: %d compared, %d with another solution, %d not converged\n",
+              static_cast<unsigned long long>(seed), compared, other_solutions, unfinished);
+  EXPECT_GE(compared, problems * 9 / 10) << "Siconos solves the others to less than 1e-11";
+  EXPECT_LE(other_solutions, compared / 100);
+  EXPECT_LE(unfinished, compared / 100) << "Gauss-Seidel converges slowly where contacts jam";
+}
+
+TEST(ContactProblem, SiconosAgrees) { expect_siconos_agrees(20, 200); }
+
+/// The long version, for ./test --full.
+TEST(ManyContactProblems, SiconosAgrees) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) expect_siconos_agrees(seed, 1000);
+}
+
+TEST(ContactProblem, AFewSweepsLeaveNothingThatClosesOrIsUnbounded) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (int n = 0; n < 2000; ++n) {
+    ContactProblem problem = random_problem(random, ContactProblem::kMostContacts);
+    for (int i = 0; i < problem.count; ++i) {
+      ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      contact.friction = 1.0 + u(random);
+      contact.spin_radius = 0.004;
+      if (n % 7 == 0) contact.row[kNormalRow].fill(0.0);
+      if (n % 5 == 0) contact.row[kTangentRow] = contact.row[kNormalRow];
+      if (n % 3 == 0) contact.most_friction_normal = 0.1;
+    }
+    for (std::size_t j = 0; j < problem.lowest.size(); ++j) {
+      problem.lowest[j] = -0.05 * (1.0 + u(random));
+      problem.highest[j] = 0.05 * (1.0 + u(random));
+    }
+    solve_contacts(problem, 20, 1e-9);
+    for (std::size_t j = 0; j < problem.lowest.size(); ++j) {
+      ASSERT_TRUE(std::isfinite(problem.displacement[j])) << n;
+      ASSERT_GE(problem.displacement[j], problem.lowest[j]) << n;
+      ASSERT_LE(problem.displacement[j], problem.highest[j]) << n;
+    }
+    for (int i = 0; i < problem.count; ++i) {
+      const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      const double counted = std::min(contact.multiplier[0], contact.most_friction_normal);
+      ASSERT_GE(contact.multiplier[0], 0.0) << n;
+      ASSERT_LE(std::hypot(contact.multiplier[1], contact.multiplier[2]),
+                contact.friction * counted * (1.0 + 1e-9) + 1e-15)
+          << n;
+      ASSERT_LE(std::abs(contact.multiplier[3]),
+                contact.friction * contact.spin_radius * counted * (1.0 + 1e-9))
+          << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace phalanx

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sliding mode: forces and motion of a finger that slides with friction, against closed forms, and what happens
+// where an object ends. docs/sliding.md describes the motions.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "phalanx/contact/gdp.h"
+#include "phalanx/contact/proximity.h"
+#include "phalanx/mesh/primitives.h"
+#include "support/lone_finger.h"
+
+namespace phalanx {
+namespace {
+
+using test::Approach;
+using test::LoneFinger;
+using test::Runner;
+
+constexpr double kTick = 1e-3;  // of LoneFinger [s]
+
+/// A lone finger in sliding mode, with 0.5 N/mm.
+LoneFinger sliding_finger(TriangleMesh object, double mu) {
+  LoneFinger finger(ObjectModel(std::move(object)));
+  finger.model().parameters.contact.mode = ContactMode::kSliding;
+  finger.model().parameters.contact.friction = mu;
+  finger.model().parameters.force.stiffness = 500.0;
+  return finger;
+}
+
+/// A block whose top is z = 0, 30 mm long along the finger.
+TriangleMesh block(double breadth, double height, int triangles = 12) {
+  return test::moved(make_box({breadth, 0.03, height}, triangles), test::at(0.0, 0.009, -0.5 * height));
+}
+TriangleMesh ball() { return test::moved(make_sphere(0.06, 20000), test::at(0.0, 0.0, -0.03)); }
+
+/// Places the fingertip 2 mm above the origin, and presses by `depth` below the place where it touches.
+struct Pressed {
+  Pressed(LoneFinger& finger, double depth)
+      : first(finger.aim({.from = Vec3(0.0, 0.0, LoneFinger::kTipRadius + 2e-3)})), hand(finger.model()) {
+    double angle = first;
+    hand.tick(LoneFinger::pose(angle));
+    while (LoneFinger::contacts(hand.now()) == 0 && angle < first + 0.2) {
+      angle += 0.05e-3 / LoneFinger::lever();
+      hand.tick(LoneFinger::pose(angle));
+    }
+    touched = angle;
+    goal = touched + depth / LoneFinger::lever();
+    hand.move(LoneFinger::pose(goal), 200);
+    rest(100);
+  }
+  void rest(int ticks) {
+    for (int i = 0; i < ticks; ++i) hand.tick(hand.now().hcp_angle);
+  }
+  [[nodiscard]] const SegmentSnapshot& tip() const { return test::index_segment(hand.now(), 2); }
+
+  double first;  ///< angle of the first joint at the start [rad]
+  Runner hand;
+  double touched = 0.0;
+  double goal = 0.0;
+};
+
+/// Returns where the contact's material point of the shown finger is on the measured one [m].
+Vec3 on_measured(const Snapshot& s, int k) {
+  const auto segment = static_cast<std::size_t>(segment_index(test::kIndex, k));
+  return s.hcp_pose[segment] * (s.gdp_pose[segment].inverse() * test::index_segment(s, k).point);
+}
+
+double raw_force(const Snapshot& s) {
+  double sum = 0.0;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) sum += test::index_segment(s, k).force_raw;
+  return sum;
+}
+
+TEST(Sliding, APressWithoutFrictionGivesTheLawsForce) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.0);
+  const Pressed press(finger, 3e-3);
+  ASSERT_TRUE(press.tip().contact);
+  const double depth = (press.tip().point - on_measured(press.hand.now(), 2)).z();
+  EXPECT_NEAR(depth, 3e-3, 0.1e-3);
+  EXPECT_NEAR(press.tip().force, 500.0 * depth, 1e-3 * 500.0 * depth);
+  EXPECT_NEAR(press.tip().normal.z(), 1.0, 1e-9);
+}
+
+TEST(Sliding, TorquesAreThoseOfTheWholeForce) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  Pressed press(finger, 3e-3);
+  for (int i = 1; i <= 200; ++i) press.hand.tick(LoneFinger::pose(press.goal, 0.3e-3 * i));
+  const Snapshot& s = press.hand.now();
+  DigitPose pose;
+  finger.model().hand.digit_pose(test::kIndex, digit_angles(s.gdp_angle, test::kIndex), pose);
+  const Vec3 f = press.tip().force * press.tip().normal;
+  // Spin about the normal adds a moment along z of at most mu r_c f_n.
+  const PointJacobian J = point_jacobian(pose, 2, press.tip().point);
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    const auto j = static_cast<std::size_t>(i);
+    EXPECT_NEAR(test::index_torque(s, i), J.linear[j].dot(f),
+                1e-9 + 0.6 * 4e-3 * f.z() * std::abs(J.angular[j].z()))
+        << i;
+  }
+}
+
+TEST(Sliding, JointsBeyondTheContactFollowAndCarryNoTorque) {
+  // A straight finger lies with its middle segment on a block; the last joint bends freely.
+  test::Setup model(test::simple_hand(), ObjectModel(test::moved(make_box({0.04, 0.02, 0.015}, 12),
+                                                                 test::at(0.0, -0.03, -0.052))));
+  test::turn_limits_off(model);
+  model.parameters.rate_hz = 1000.0;
+  model.parameters.contact.mode = ContactMode::kSliding;
+  Runner hand(model);
+  hand.move(test::index_angles(0.35), 300);
+  ASSERT_TRUE(test::index_segment(hand.now(), 1).contact);
+  ASSERT_FALSE(test::index_segment(hand.now(), 2).contact);
+  for (int i = 1; i <= 200; ++i) {
+    const Snapshot& s = hand.tick(test::index_angles(0.35, 0.0, 1e-3 * i));
+    ASSERT_EQ(test::index_gdp(s, 3), 1e-3 * i);
+    ASSERT_LE(std::abs(test::index_torque(s, 3)), 1e-12);
+    ASSERT_GT(std::abs(test::index_torque(s, 0)), 1e-3);
+  }
+}
+
+class SlidingMu : public testing::TestWithParam<double> {};
+
+TEST_P(SlidingMu, ADraggedFingerSlipsAtMu) {
+  const double mu = GetParam();
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), mu);
+  Pressed press(finger, 3e-3);
+  double largest = 0.0;
+  const Vec3 start = press.tip().point;
+  for (int i = 1; i <= 400; ++i) {
+    press.hand.tick(LoneFinger::pose(press.goal, 0.4e-3 * i));
+    const Vec3 f = press.tip().force * press.tip().normal;
+    const double ratio = std::hypot(f.x(), f.y()) / f.z();
+    largest = std::max(largest, ratio);
+    if (i > 300) ASSERT_NEAR(ratio, mu, 1e-5) << i;
+  }
+  EXPECT_NEAR(largest, mu, 1e-9);
+  EXPECT_GT((press.tip().point - start).norm(), 5e-3) << "it slides";
+}
+
+INSTANTIATE_TEST_SUITE_P(Mu, SlidingMu, testing::Values(0.1, 0.3, 0.6, 1.0));
+
+TEST(Sliding, AtRestNothingChanges) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  Pressed press(finger, 3e-3);
+  for (int i = 1; i <= 200; ++i) press.hand.tick(LoneFinger::pose(press.goal, 0.3e-3 * i));
+  press.rest(1000);
+  const Snapshot before = press.hand.now();
+  double sum = 0.0;
+  double squares = 0.0;
+  constexpr int kTicks = 2000;
+  for (int i = 0; i < kTicks; ++i) {
+    press.rest(1);
+    const double change = press.tip().force - test::index_segment(before, 2).force;
+    sum += change;
+    squares += change * change;
+  }
+  EXPECT_LT(std::sqrt(std::max(0.0, squares / kTicks - sum / kTicks * (sum / kTicks))), 1e-9) << "[N]";
+  const auto tip = static_cast<std::size_t>(segment_index(test::kIndex, 2));
+  EXPECT_LT((press.hand.now().gdp_pose[tip].p - before.gdp_pose[tip].p).norm(), 1e-6 / 60.0 * kTicks * kTick)
+      << "less than 1 um a minute";
+}
+
+TEST(Sliding, SensorNoiseAtRestIsNotAmplified) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  Pressed press(finger, 3e-3);
+  const JointArray rest = press.hand.now().hcp_angle;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.2e-3);
+  Vec3 sum = Vec3::Zero();
+  Vec3 squares = Vec3::Zero();
+  constexpr int kTicks = 3000;
+  for (int i = 0; i < kTicks; ++i) {
+    JointArray q = rest;
+    for (int j = 0; j < kJointsPerDigit; ++j)
+      q[static_cast<std::size_t>(joint_index(test::kIndex, j))] += noise(random);
+    press.hand.tick(q);
+    const Vec3 f = press.tip().force * press.tip().normal;
+    sum += f;
+    squares += f.cwiseProduct(f);
+  }
+  const Vec3 mean = sum / kTicks;
+  const Vec3 rms = (squares / kTicks - mean.cwiseProduct(mean)).cwiseSqrt();
+  // 0.2 mrad move the fingertip by 17 um, and 0.5 N/mm make 9 mN of it. Along the finger the joints' arms are
+  // short, and the same angles take more friction.
+  EXPECT_LT(rms.z(), 0.01) << "[N], seed 3";
+  EXPECT_LT(rms.x(), 0.02);
+  EXPECT_LT(rms.y(), 0.05);
+}
+
+TEST(Sliding, AFinerMeshOfTheSameFaceGivesTheSameForce) {
+  LoneFinger coarse = sliding_finger(block(0.2, 0.02), 0.6);
+  LoneFinger fine = sliding_finger(block(0.2, 0.02, 20000), 0.6);
+  Pressed on_coarse(coarse, 3e-3);
+  Pressed on_fine(fine, 3e-3);
+  const auto force = [](const Pressed& p) { return Vec3(p.tip().force * p.tip().normal); };
+  EXPECT_LT((force(on_coarse) - force(on_fine)).norm(), 1e-3) << "[N]";
+  for (int i = 1; i <= 200; ++i) {
+    for (Pressed* press : {&on_coarse, &on_fine}) press->hand.tick(LoneFinger::pose(press->goal, 0.4e-3 * i));
+    ASSERT_LT((force(on_coarse) - force(on_fine)).norm(), 1e-3) << i;
+  }
+}
+
+/// Two faces at right angles, that meet below the origin along the finger.
+TriangleMesh groove() {
+  TriangleMesh mesh;
+  for (const double side : {-1.0, 1.0}) {
+    Pose X;
+    X.R = Eigen::AngleAxisd(side * kPi / 4.0, Vec3::UnitY()).toRotationMatrix();
+    X.p = X.R * Vec3(side * 0.01, 0.0, -0.01) + Vec3(0.0, 0.009, -0.007);
+    append(mesh, make_box({0.02, 0.03, 0.02}, 12), X);
+  }
+  return mesh;
+}
+
+TEST(Sliding, AFingerComesOutOfAGrooveWithoutAPull) {
+  for (const double mu : {0.1, 0.6, 1.0, 2.0}) {
+    LoneFinger finger = sliding_finger(groove(), mu);
+    Pressed press(finger, 2e-3);
+    ASSERT_GT(raw_force(press.hand.now()), 0.1) << mu;
+    press.hand.move(LoneFinger::pose(press.touched - 0.3e-3 / LoneFinger::lever()), 100);
+    EXPECT_LE(raw_force(press.hand.now()), 1e-3) << mu;
+    EXPECT_EQ(digit_angles(press.hand.now().gdp_angle, test::kIndex),
+              digit_angles(press.hand.now().hcp_angle, test::kIndex))
+        << mu;
+  }
+}
+
+/// Work that the finger puts into the object on a closed path over a ball, 2 mm deep [J].
+double work_of_a_loop(double mu) {
+  LoneFinger finger = sliding_finger(ball(), mu);
+  Pressed press(finger, 2e-3);
+  constexpr int kTicks = 4000;
+  double work = 0.0;
+  for (int round = 0; round < 2; ++round) {
+    Snapshot before = press.hand.now();
+    work = 0.0;
+    for (int i = 1; i <= kTicks; ++i) {
+      const double t = 2.0 * kPi * i / kTicks;
+      const JointArray q =
+          test::index_angles(press.goal + 0.02 * (std::cos(t) - 1.0), 0.01 * std::sin(2.0 * t),
+                             LoneFinger::kBend, 0.06 * std::sin(t));
+      const Snapshot& s = press.hand.tick(q);
+      for (std::size_t j = 0; j < kJoints; ++j)
+        work -= 0.5 * (s.torque[j] + before.torque[j]) * (s.hcp_angle[j] - before.hcp_angle[j]);
+      before = s;
+    }
+  }
+  return work;
+}
+
+TEST(Sliding, AClosedPathGivesBackWhatItTookAndFrictionTakesMore) {
+  const double without = work_of_a_loop(0.0);
+  EXPECT_GT(without, -1e-6);
+  EXPECT_LT(without, 1e-4);
+  EXPECT_GT(work_of_a_loop(0.6), 1e-3);
+}
+
+/// Watches for how long the law still gives a force after the measured finger has left the object: each of its
+/// segments is clear of the surface.
+class Leaving {
+ public:
+  explicit Leaving(const test::Setup& model) : model_(model), scratch_(model.trees()) {}
+
+  void see(const Snapshot& s) {
+    if (!outside(s)) {
+      since_ = 0;
+      return;
+    }
+    ever_ = true;
+    ++since_;
+    if (raw_force(s) > 0.0) latest_ = std::max(latest_, since_);
+  }
+  [[nodiscard]] bool ever() const { return ever_; }
+  [[nodiscard]] double latest() const { return latest_ * kTick; }
+
+ private:
+  bool outside(const Snapshot& s) {
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const auto segment = static_cast<std::size_t>(segment_index(test::kIndex, k));
+      const PlacedSegment placed{model_.trees()[segment], s.hcp_pose[segment], scratch_};
+      if (!(distance(placed, model_.object.tree(), 1e-3) > model_.parameters.contact.margin)) return false;
+    }
+    return true;
+  }
+
+  const test::Setup& model_;
+  SearchScratch scratch_;
+  int since_ = 0;
+  int latest_ = 0;
+  bool ever_ = false;
+};
+
+constexpr double kEnds = 50e-3;  // [s]
+
+TEST(SlidingEnds, AFingerThatSlidesOffABarFeelsNothingBesideIt) {
+  for (const double mu : {0.0, 0.6, 1.0}) {
+    LoneFinger finger = sliding_finger(block(0.016, 0.016), mu);
+    Pressed press(finger, 3e-3);
+    ASSERT_GT(press.tip().force, 1.0);
+    Leaving leaving(finger.model());
+    for (int i = 1; i <= 400; ++i) leaving.see(press.hand.tick(LoneFinger::pose(press.goal, 0.6e-3 * i)));
+    for (int i = 1; i <= 200; ++i)  // on, beside the bar
+      leaving.see(press.hand.tick(LoneFinger::pose(press.goal + 0.5e-3 * i, 0.24)));
+    EXPECT_TRUE(leaving.ever()) << mu;
+    EXPECT_LE(leaving.latest(), kEnds) << mu;
+    EXPECT_EQ(press.hand.now().gdp_angle, press.hand.now().hcp_angle) << mu;
+  }
+}
+
+TEST(SlidingEnds, AFingerThatHasGoneThroughABarFeelsNothingBeyond) {
+  LoneFinger finger = sliding_finger(block(0.016, 0.016), 0.6);
+  Pressed press(finger, 3e-3);
+  Leaving leaving(finger.model());
+  double most = 0.0;
+  for (int i = 1; i <= 700; ++i) {
+    leaving.see(press.hand.tick(LoneFinger::pose(press.goal + 1e-3 * i)));
+    most = std::max(most, raw_force(press.hand.now()));
+  }
+  EXPECT_GT(most, 5.0) << "inside, the force grows with the depth";
+  EXPECT_TRUE(leaving.ever());
+  EXPECT_LE(leaving.latest(), kEnds);
+  EXPECT_EQ(press.hand.now().gdp_angle, press.hand.now().hcp_angle);
+}
+
+TEST(SlidingEnds, AFingerThatLeavesABallFeelsNothingAboveIt) {
+  LoneFinger finger = sliding_finger(ball(), 0.6);
+  Pressed press(finger, 3e-3);
+  Leaving leaving(finger.model());
+  for (int i = 1; i <= 500; ++i) leaving.see(press.hand.tick(LoneFinger::pose(press.goal, 0.8e-3 * i)));
+  EXPECT_TRUE(leaving.ever());
+  EXPECT_LE(leaving.latest(), kEnds);
+}
+
+TEST(Sliding, CapsAndSmoothingKeepTheForceInItsCone) {
+  for (const Stabiliser method : {Stabiliser::kSmoothing, Stabiliser::kRiseOnly, Stabiliser::kLowPass}) {
+    LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+    finger.model().parameters.stabiliser.method = method;
+    finger.model().parameters.limits.fingertip_force_enabled = true;
+    finger.model().parameters.limits.fingertip_force = 1.2;
+    Pressed press(finger, 4e-3);
+    double most = 0.0;
+    for (int i = 1; i <= 300; ++i) {
+      press.hand.tick(LoneFinger::pose(press.goal, 0.08 * std::sin(0.05 * i)));
+      const Vec3 f = press.tip().force * press.tip().normal;
+      ASSERT_LE(std::hypot(f.x(), f.y()), 0.6 * f.z() * (1.0 + 1e-9)) << i;
+      ASSERT_LE(f.norm(), 1.2 + 1e-9) << i;
+      most = std::max(most, f.norm());
+    }
+    EXPECT_GT(most, 1.0) << static_cast<int>(method);
+  }
+}
+
+TEST(Sliding, TheLocalWallReplacesTheTorqueOfItsContact) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  finger.model().parameters.stabiliser.method = Stabiliser::kLocalWall;
+  Pressed press(finger, 3e-3);
+  for (int i = 1; i <= 200; ++i) {
+    const Snapshot& s = press.hand.tick(LoneFinger::pose(press.goal, 0.3e-3 * i));
+    const LocalWall& wall = s.wall[static_cast<std::size_t>(segment_index(test::kIndex, 2))];
+    ASSERT_TRUE(wall.active) << i;
+    for (int j = 0; j < kJointsPerDigit; ++j) {
+      ASSERT_NEAR(wall.g[static_cast<std::size_t>(j)] * wall.host_force, test::index_torque(s, j), 1e-12)
+          << i << ", joint " << j;
+    }
+  }
+  press.hand.move(LoneFinger::pose(press.touched - 1e-2), 5);
+  const Snapshot& off = press.hand.now();
+  EXPECT_FALSE(off.wall[static_cast<std::size_t>(segment_index(test::kIndex, 2))].active)
+      << "the wall ends with its contact";
+}
+
+TEST(Sliding, AChangeOfTheModeForgetsTheContacts) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  Pressed press(finger, 3e-3);
+  ASSERT_TRUE(press.tip().contact);
+  finger.model().parameters.contact.mode = ContactMode::kStatic;
+  press.rest(1);
+  EXPECT_EQ(raw_force(press.hand.now()), 0.0) << "static: a new contact begins when the finger moves on";
+  press.hand.move(LoneFinger::pose(press.touched - 1e-3), 20);
+  press.hand.move(LoneFinger::pose(press.goal), 20);
+  EXPECT_GT(raw_force(press.hand.now()), 1.0);
+  finger.model().parameters.contact.mode = ContactMode::kSliding;
+  press.rest(2);
+  EXPECT_GT(raw_force(press.hand.now()), 1.0);
+}
+
+TEST(Sliding, AtTwoHundredHertzThePathIsTheSame) {
+  std::array<Vec3, 2> force;
+  for (const std::size_t n : {0U, 1U}) {
+    LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+    finger.model().parameters.rate_hz = n == 0 ? 1000.0 : 200.0;
+    Pressed press(finger, 3e-3);
+    const int ticks = n == 0 ? 400 : 80;
+    for (int i = 1; i <= ticks; ++i) press.hand.tick(LoneFinger::pose(press.goal, 0.16 * i / ticks));
+    force[n] = press.tip().force * press.tip().normal;
+  }
+  EXPECT_LT((force[0] - force[1]).norm(), 0.01) << "[N]";
+}
+
+}  // namespace
+}  // namespace phalanx
