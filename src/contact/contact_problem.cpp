@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 
 namespace phalanx {
@@ -317,28 +319,28 @@ Triple solve_rows(const Rows& rows, const ProblemContact& contact, const Triple&
     slips = false;
     return stick;
   }
+  // Friction that the bound on the counted normal limits is constant. With p_n = -(c_n + A_nt p_t) / A_nn the
+  // tangents are then a problem of their own.
+  if (cap < kInfinity) {
+    const Pair g = {c[1] - A[1][0] * c[0] / A[0][0], c[2] - A[2][0] * c[0] / A[0][0]};
+    const Pair t = least_on_disc(rows.sliding, g, mu * cap);
+    const double normal = -(c[0] + A[0][1] * t[0] + A[0][2] * t[1]) / A[0][0];
+    if (normal >= cap) return {normal, t[0], t[1]};
+  }
   Pair d = {1.0, 0.0};
   if (const double size = length_of(before[1], before[2]); size > 0.0) {
     d = {before[1] / size, before[2] / size};
   } else if (tangent > 0.0) {
     d = {stick[1] / tangent, stick[2] / tangent};
   }
-  const SlipDirection direction(A, c, mu);
-  if (!direction.find(d)) {
-    // The nearest point of the cone: bounded, and the iteration goes on from it.
-    const double p = -c[0] / A[0][0];
-    const double counted = std::min(p, cap);
-    const double share = tangent > 0.0 ? std::min(1.0, mu * counted / tangent) : 0.0;
-    return {p, share * stick[1], share * stick[2]};
+  if (const SlipDirection direction(A, c, mu); direction.find(d)) {
+    if (const double p = direction.normal(d); p <= cap) return {p, mu * p * d[0], mu * p * d[1]};
   }
-  const double p = direction.normal(d);
-  if (p <= cap) return {p, mu * p * d[0], mu * p * d[1]};
-  // Friction is constant. With p_n = -(c_n + A_nt p_t) / A_nn the tangents are a problem of their own.
-  const Pair g = {c[1] - A[1][0] * c[0] / A[0][0], c[2] - A[2][0] * c[0] / A[0][0]};
-  const Pair t = least_on_disc(rows.sliding, g, mu * cap);
-  const double normal = std::max(0.0, -(c[0] + A[0][1] * t[0] + A[0][2] * t[1]) / A[0][0]);
-  const double within = std::min(1.0, normal / cap);
-  return {normal, within * t[0], within * t[1]};
+  // Neither: the direction of sticking, with as much friction as the normal multiplier that it leaves admits.
+  const double along = mu * (A[0][1] * d[0] + A[0][2] * d[1]);
+  const double counted = std::min(cap, -c[0] / std::max(A[0][0] + along, A[0][0]));
+  const double normal = std::max(counted, -(c[0] + counted * along) / A[0][0]);
+  return {normal, mu * counted * d[0], mu * counted * d[1]};
 }
 
 /// Solves one contact.
@@ -401,21 +403,25 @@ void open_contacts(ContactProblem& problem, const std::array<Block, ContactProbl
   }
 }
 
+/// Bound at which each joint of a digit is held.
+enum class Held : std::uint8_t { kNo, kLowest, kHighest };
+using HeldJoints = std::array<Held, kJointsPerDigit>;
+
 /// Sweeps over the contacts with the joints of `held` fixed at their bounds.
 /// @returns the number of sweeps
-int sweep_contacts(ContactProblem& problem, const std::array<bool, kJointsPerDigit>& held, int sweeps,
-                   double tolerance) noexcept {
+int sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance) noexcept {
   const auto count = static_cast<std::size_t>(problem.count);
   DigitAngles& x = problem.displacement;
   std::array<Block, ContactProblem::kMostContacts> block;
   std::array<ProblemContact, ContactProblem::kMostContacts> contact;
   for (std::size_t j = 0; j < x.size(); ++j)
-    x[j] = held[j] ? (problem.limit[j] < 0.0 ? problem.highest[j] : problem.lowest[j]) : problem.free[j];
+    x[j] = held[j] == Held::kNo ? problem.free[j]
+                                : (held[j] == Held::kHighest ? problem.highest[j] : problem.lowest[j]);
   for (std::size_t i = 0; i < count; ++i) {
     contact[i] = problem.contact[i];
     for (DigitAngles& row : contact[i].row) {
       for (std::size_t j = 0; j < row.size(); ++j)
-        if (held[j]) row[j] = 0.0;
+        if (held[j] != Held::kNo) row[j] = 0.0;
     }
     block[i] = block_of(contact[i]);
     if (!block[i].used) contact[i].multiplier = {};
@@ -461,30 +467,37 @@ int sweep_contacts(ContactProblem& problem, const std::array<bool, kJointsPerDig
 }  // namespace
 
 int solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
-  // Joints at their limits: an active set, from the last solution on.
-  std::array<bool, kJointsPerDigit> held{};
-  for (std::size_t j = 0; j < held.size(); ++j) held[j] = problem.limit[j] != 0.0;
+  // Joints at their limits are an active set, from the last solution on. After some rounds no joint is released
+  // any more, so that the set settles.
+  constexpr int kReleasingRounds = 3;
+  constexpr int kRounds = kReleasingRounds + kJointsPerDigit;
+  HeldJoints held{};
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    if (problem.limit[j] != 0.0) held[j] = problem.limit[j] < 0.0 ? Held::kHighest : Held::kLowest;
+  }
   int done = 0;
-  for (int round = 0; round < kJointsPerDigit; ++round) {
+  bool changed = true;
+  for (int round = 0; round < kRounds && changed; ++round) {
     done += sweep_contacts(problem, held, sweeps, tolerance);
-    // Computed from the multipliers alone, so that a contact that has let go leaves no rounding.
-    DigitAngles displacement{};
-    bool changed = false;
+    changed = false;
     for (std::size_t j = 0; j < held.size(); ++j) {
+      // Computed from the multipliers alone, so that a contact that has let go leaves no rounding.
       double without = problem.free[j];
       for (int i = 0; i < problem.count; ++i) {
         const ProblemContact& contact = problem.contact[idx(i)];
         for (std::size_t r = 0; r < kContactRows; ++r) without += contact.row[r][j] * contact.multiplier[r];
       }
-      const double limited = std::clamp(without, problem.lowest[j], problem.highest[j]);
-      const bool holds = limited != without;
-      changed = changed || holds != held[j];
-      held[j] = holds;
-      problem.limit[j] = limited - without;
-      displacement[j] = limited;
+      const bool above = without > problem.highest[j];
+      const bool below = without < problem.lowest[j];
+      const Held wanted = above ? Held::kHighest : (below ? Held::kLowest : Held::kNo);
+      if (wanted != held[j] && (held[j] == Held::kNo || round < kReleasingRounds)) {
+        held[j] = wanted;
+        changed = true;
+      }
+      const double bound = held[j] == Held::kHighest ? problem.highest[j] : problem.lowest[j];
+      problem.displacement[j] = held[j] == Held::kNo ? without : bound;
+      problem.limit[j] = problem.displacement[j] - without;
     }
-    problem.displacement = displacement;
-    if (!changed) break;
   }
   return done;
 }

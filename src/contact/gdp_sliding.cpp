@@ -184,10 +184,15 @@ class Substep {
   DigitAngles displacement() noexcept {
     DigitAngles free{};
     for (std::size_t i = 0; i < free.size(); ++i) free[i] = goal_[i] - tick_.angle[i];
-    if (contacts_.count == 0) return free;
+    if (contacts_.count == 0) {
+      contacts_.limit = {};
+      return free;
+    }
     ContactProblem problem;
     set_up(free, problem);
+    problem.limit = contacts_.limit;
     (void)solve_contacts(problem, kSweeps, kTolerance);
+    contacts_.limit = problem.limit;
     for (int i = 0; i < problem.count; ++i) {
       contacts_.contact[idx(i)].multiplier = problem.contact[idx(i)].multiplier;
       contacts_.contact[idx(i)].slips = problem.contact[idx(i)].slips;

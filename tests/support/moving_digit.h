@@ -37,13 +37,14 @@ class MovingDigit {
   void aim(const DigitAngles& from, const DigitAngles& to) {
     to_ = to;
     path_.from = from;
+    path_.end = to;
     for (std::size_t i = 0; i < kJointsPerDigit; ++i) path_.rate[i] = to[i] - from[i];
     for (Clearance& clearance : state_.clearance) clearance = {};
     for (ContactRecord& record : state_.record) record = {};
     for (NearPairs& near : state_.near) near.clear();
   }
 
-  [[nodiscard]] DigitAngles angles(double s) const { return path_.at(s, to_, to_, 0); }
+  [[nodiscard]] DigitAngles angles(double s) const { return path_.at(s, to_, 0); }
   [[nodiscard]] DigitPose pose(double s) const {
     DigitPose out;
     hand_.digit_pose(kIndex, angles(s), out);

@@ -35,6 +35,7 @@ struct DigitContacts {
   static constexpr int kMost = 16;
   int count = 0;
   std::array<SlidingContact, kMost> contact;
+  std::array<double, 4> limit{};      ///< multipliers of the joints' limits [rad]
   double depth_per_multiplier = 0.0;  ///< kappa over stiffness: turns multipliers into depths [m^2]
   double unchecked_for = 0.0;         ///< time since the HCP was last looked for beyond the object [s]
   double beyond_for = 0.0;            ///< time for which the HCP has been clear of the object [s]
