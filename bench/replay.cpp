@@ -7,7 +7,7 @@
 namespace phalanx::bench {
 
 ContactModel contact_model(const HapticModel& model, const HapticParameters& parameters) {
-  return {model.hand, model.trees(), model.object, parameters.contact};
+  return {model.hand, model.trees(), model.object, parameters.contact, parameters.period()};
 }
 
 GdpValues values_of(const GdpState& state) {

@@ -85,12 +85,15 @@ Pair least_on_disc(const Spectrum& A, const Pair& g, double radius) noexcept {
 using Triple = std::array<double, 3>;
 using Square = std::array<Triple, 3>;
 
-constexpr double kRegular = 1e-11;    // of a block's trace, added to the tangents' diagonal
+constexpr double kRegular = 1e-11;  // of a block's trace, added to the tangents' diagonal
+constexpr double kStronglyRegular = 1e-6;
+constexpr double kLeastDeterminant = 1e-14;  // of the cubed trace: below it rounding decides
 constexpr double kLeastArm = 1e-6;    // below it the joints do not move a contact along its normal [m/rad]
 constexpr double kLeastShare = 1e-6;  // of A_nn, for the denominator of the normal multiplier
 constexpr double kLeastSpin =
     1e-6;  // below it the joints do not turn a contact about its normal [rad^2/rad^2]
-/// Where one joint alone both turns a contact and moves it sideways, this leaves the work to the tangents.
+/// Relative softness of the spin row. Where one joint alone both turns a contact and moves it sideways, the
+/// tangents then hold it.
 constexpr double kSpinSoftness = 0.02;
 constexpr double kArm = 0.02;  // length that makes a rotation a displacement, for the tolerance [m]
 
@@ -102,11 +105,19 @@ struct Rows {
   Spectrum sliding;  ///< of the tangents' products while the normal row is solved: A_tt - A_tn A_nt / A_nn
 
   static Rows of(const Square& A) noexcept {
-    Rows rows{A, {}, {}};
-    Square& B = rows.A;
-    const double little = kRegular * (A[0][0] + A[1][1] + A[2][2]);
-    B[1][1] += little;
-    B[2][2] += little;
+    Rows rows;
+    if (!rows.set(A, kRegular)) (void)rows.set(A, kStronglyRegular);  // one joint alone moves the contact
+    return rows;
+  }
+
+ private:
+  /// @returns false if the inverse is rounding noise
+  bool set(const Square& products, double regular) noexcept {
+    Square& B = A;
+    B = products;
+    const double trace = B[0][0] + B[1][1] + B[2][2];
+    B[1][1] += regular * trace;
+    B[2][2] += regular * trace;
     const auto minor = [&](std::size_t i, std::size_t j) {
       const std::size_t i1 = (i + 1) % 3;
       const std::size_t i2 = (i + 2) % 3;
@@ -115,12 +126,13 @@ struct Rows {
       return B[i1][j1] * B[i2][j2] - B[i1][j2] * B[i2][j1];
     };
     const double determinant = B[0][0] * minor(0, 0) + B[0][1] * minor(0, 1) + B[0][2] * minor(0, 2);
+    if (!(determinant > kLeastDeterminant * trace * trace * trace)) return false;
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) rows.inverse[i][j] = minor(j, i) / determinant;
+      for (std::size_t j = 0; j < 3; ++j) inverse[i][j] = minor(j, i) / determinant;
     }
     const auto reduced = [&](std::size_t i, std::size_t j) { return B[i][j] - B[i][0] * B[0][j] / B[0][0]; };
-    rows.sliding = Spectrum::of(reduced(1, 1), reduced(1, 2), reduced(2, 2));
-    return rows;
+    sliding = Spectrum::of(reduced(1, 1), reduced(1, 2), reduced(2, 2));
+    return true;
   }
 };
 
@@ -184,7 +196,7 @@ class SlipDirection {
       d = tried;
       return true;
     }
-    // Changes of sign all around.
+    // The directions all around between which across() changes its sign.
     constexpr int kAround = 32;
     constexpr double kCos = 0.98078528040323045;  // of 360 / 32 degrees
     constexpr double kSin = 0.19509032201612827;
@@ -219,7 +231,7 @@ class SlipDirection {
   [[nodiscard]] double share(const Pair& d) const noexcept {
     return A_[0][0] + mu_ * (A_[0][1] * d[0] + A_[0][2] * d[1]);
   }
-  /// Displacement along the tangents, times share(d).
+  /// Returns the displacement along the tangents, times share(d).
   [[nodiscard]] Pair shared_motion(const Pair& d) const noexcept {
     const double s = share(d);
     return {c_[1] * s - c_[0] * (A_[1][0] + mu_ * (A_[1][1] * d[0] + A_[1][2] * d[1])),
@@ -250,13 +262,13 @@ class SlipDirection {
     }
     return a;
   }
-  /// Displacement along the tangents.
+  /// Returns the displacement along the tangents.
   [[nodiscard]] Pair motion(const Pair& d) const noexcept {
     const double p = normal(d);
     return {c_[1] + p * (A_[1][0] + mu_ * (A_[1][1] * d[0] + A_[1][2] * d[1])),
             c_[2] + p * (A_[2][0] + mu_ * (A_[2][1] * d[0] + A_[2][2] * d[1]))};
   }
-  /// Newton's method for d x motion(d) = 0. @returns true if it found a d that opposes the motion
+  /// Solves d x motion(d) = 0 by Newton's method. @returns true if the d found opposes the motion
   bool newton(Pair& d) const noexcept {
     constexpr int kSteps = 12;
     for (int i = 0; i < kSteps; ++i) {
@@ -380,8 +392,8 @@ ContactRows solve_block(const Block& block, const ContactRows& c, ProblemContact
   return {p[0], p[1], p[2], 0.0};
 }
 
-/// After an iteration that has not converged: adds to the normal multipliers until no contact closes by more than
-/// its room. Friction stays, and so within its bound.
+/// Adds to the normal multipliers after an iteration that has not converged, so that contacts close by no more than
+/// their room. At most 10 sweeps; the continuous search stops what is left. Friction stays within its bound.
 void open_contacts(ContactProblem& problem, const std::array<Block, ContactProblem::kMostContacts>& block,
                    double tolerance,
                    std::array<ProblemContact, ContactProblem::kMostContacts>& contact) noexcept {
@@ -408,8 +420,7 @@ enum class Held : std::uint8_t { kNo, kLowest, kHighest };
 using HeldJoints = std::array<Held, kJointsPerDigit>;
 
 /// Sweeps over the contacts with the joints of `held` fixed at their bounds.
-/// @returns the number of sweeps
-int sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance) noexcept {
+void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance) noexcept {
   const auto count = static_cast<std::size_t>(problem.count);
   DigitAngles& x = problem.displacement;
   std::array<Block, ContactProblem::kMostContacts> block;
@@ -427,9 +438,8 @@ int sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, 
     if (!block[i].used) contact[i].multiplier = {};
     for (std::size_t r = 0; r < kContactRows; ++r) add(x, contact[i].row[r], contact[i].multiplier[r]);
   }
-  int sweep = 0;
   double change = 2.0 * tolerance;
-  for (; sweep < sweeps && change > tolerance; ++sweep) {
+  for (int sweep = 0; sweep < sweeps && change > tolerance; ++sweep) {
     change = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       if (!block[i].used) continue;
@@ -461,12 +471,11 @@ int sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, 
     problem.contact[i].slips = contact[i].slips;
     problem.contact[i].spins = contact[i].spins;
   }
-  return sweep;
 }
 
 }  // namespace
 
-int solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
+void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
   // Joints at their limits are an active set, from the last solution on. After some rounds no joint is released
   // any more, so that the set settles.
   constexpr int kReleasingRounds = 3;
@@ -475,10 +484,9 @@ int solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexce
   for (std::size_t j = 0; j < held.size(); ++j) {
     if (problem.limit[j] != 0.0) held[j] = problem.limit[j] < 0.0 ? Held::kHighest : Held::kLowest;
   }
-  int done = 0;
   bool changed = true;
   for (int round = 0; round < kRounds && changed; ++round) {
-    done += sweep_contacts(problem, held, sweeps, tolerance);
+    sweep_contacts(problem, held, sweeps, tolerance);
     changed = false;
     for (std::size_t j = 0; j < held.size(); ++j) {
       // Computed from the multipliers alone, so that a contact that has let go leaves no rounding.
@@ -499,7 +507,6 @@ int solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexce
       problem.limit[j] = problem.displacement[j] - without;
     }
   }
-  return done;
 }
 
 }  // namespace phalanx

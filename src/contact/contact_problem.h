@@ -62,9 +62,9 @@ struct ContactProblem {
 /// Solves the problem by block Gauss-Seidel, a block for each contact. Contacts are in the order of `contact`.
 /// @param sweeps     greatest number of iterations
 /// @param tolerance  ends when no row changes by more in one sweep [m]
-/// @returns the number of sweeps done; the result after the last one is bounded and finite for finite input.
-/// Normal multipliers are >= 0 and friction is within its bound in any case.
+/// The result after the last sweep is finite for finite input. Normal multipliers are >= 0, friction is within its
+/// bound and joints are within their limits, whether the iteration has converged or not.
 /// Real-time: bounded, no allocation, lock, throw or I/O.
-int solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept;
+void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept;
 
 }  // namespace phalanx

@@ -209,7 +209,7 @@ void make_record(const ContactModel& model, DigitTick& tick, int k, double s, do
 
 namespace {
 
-/// Removes what one mode knows of the digits' contacts when another begins.
+/// Removes the digits' contacts and records when the contact mode changes.
 void forget_contacts(ContactMode mode, GdpState& state) noexcept {
   for (int s = 0; s < kPalm; ++s) {
     state.record[idx(s)] = {};

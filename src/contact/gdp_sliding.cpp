@@ -26,8 +26,9 @@ constexpr double kTolerance = 1e-12;        // of the contact problem [m]
 constexpr double kStill = 1e-13;            // displacement that is no motion [rad]
 constexpr double kSamePlace = 3e-3;         // a contact may move by this much between two substeps [m]
 constexpr double kSameDirection = 0.99995;  // cosine: a contact that opposes a motion already
-constexpr double kSameBlock = 1e-3;         // [m]
-constexpr double kDepthChange = 0.02;       // greatest relative change of depth_per_multiplier in a substep
+constexpr double kSameBlock = 50e-6;        // [m]
+constexpr double kDepthRise = 0.02;         // greatest relative rise of depth_per_multiplier in a substep
+constexpr double kLeastFactor = 1e-12;      // of depth_per_multiplier [m^2]
 constexpr double kLongestSubstep = 1e-3;    // [s]
 constexpr double kMostSubsteps = 20.0;
 constexpr double kLeastBeyond = 1e-3;  // depth below which the measured finger is not looked for beyond [m]
@@ -35,10 +36,11 @@ constexpr double kCheckBeyond = 4e-3;  // [s]
 constexpr double kBeyondFor = 30e-3;   // [s]
 constexpr int kSweeps = 20;
 constexpr int kRecoverySweeps = 8;
-constexpr double kSoftness = 0.05;  // of the recovery, so that opposed contacts agree
+constexpr double kSoftness = 0.05;  // of the recovery, so that it converges between opposed contacts
 constexpr int kMostEvents = 4;
 
 static_assert(DigitContacts::kMost == ContactProblem::kMostContacts);
+static_assert(kSegmentsPerDigit * Manifold::kMost + kMostEvents <= DigitContacts::kMost);
 
 /// Motion of one digit in one substep.
 class Substep {
@@ -60,26 +62,22 @@ class Substep {
   }
 
   void run() noexcept {
-    bool gathered = false;
     for (int event = 0;; ++event) {
-      if (contacts_.count > 0 || event > 0) {
+      const bool touching = contacts_.count > 0 || event > 0;
+      if (touching) {
         gather();
-        gathered_ = true;
-        if (blocked_ >= 0) add_blocking();
         recover(event == 0 ? kMostRecovery : kClearance);
-        gathered = true;
       }
       const DigitAngles from = tick_.angle;
       const DigitAngles x = displacement();
       const Stop stop = move(x);
-      if (gathered) follow_anchors(from);
+      if (touching) follow_anchors(from);
       if (stop.segment < 0) return;
       if (event == kMostEvents || has(tick_.status, Status::kSearchExhausted)) {
         tick_.status |= Status::kSearchExhausted;
         return;
       }
-      blocked_ = stop.segment;
-      blocked_rate_ = x;
+      add_block(stop.segment, x);
     }
   }
 
@@ -90,7 +88,8 @@ class Substep {
 
   [[nodiscard]] NearPairs& near(int k) noexcept { return state_.near[idx(segment_index(tick_.digit, k))]; }
 
-  /// Lists the contacts at the digit's pose. What friction remembers goes from the last ones to these.
+  /// Lists the contacts at the digit's pose, and the pairs that have stopped it in this substep. Multipliers and
+  /// anchors go from the last contacts to these.
   void gather() noexcept {
     const DigitContacts last = contacts_;
     contacts_.count = 0;
@@ -98,17 +97,34 @@ class Substep {
     DigitAngles change{};
     for (std::size_t i = 0; i < change.size(); ++i) change[i] = tick_.hcp[i] - tick_.hcp_from[i];
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      const double h1 = model_.parameters.margin + kClearance;
-      const double reach =
-          h1 + std::min(kMostReach, segment_speed(model_.hand, tick_.digit, change, k) + kSlack);
-      const std::size_t s = idx(segment_index(tick_.digit, k));
-      if (state_.clearance[s].bound() > reach) continue;
+      const double reach = working_clearance() +
+                           std::min(kMostReach, segment_speed(model_.hand, tick_.digit, change, k) + kSlack);
+      if (state_.clearance[idx(segment_index(tick_.digit, k))].bound() > reach) continue;
       Manifold manifold;
-      find_manifold(placed(k), model_.object, reach, h1 + kSlack, model_.parameters.max_contacts,
-                    state_.near[s], manifold);
-      for (int i = 0; i < manifold.count && contacts_.count < DigitContacts::kMost - 1; ++i)
-        add(k, manifold.place[idx(i)], last, taken);
+      find_manifold(placed(k), model_.object, reach, working_clearance() + kSlack,
+                    model_.parameters.max_contacts, near(k), manifold);
+      for (int i = 0; i < manifold.count; ++i) add(k, manifold.place[idx(i)], last, taken);
     }
+    for (int b = 0; b < blocks_; ++b) {
+      const Block& block = block_[idx(b)];
+      ContactPlace place;
+      place.triangle = place.slot = -1;
+      place.on_segment = tick_.pose.segment[idx(block.k)] * block.p_S;
+      place.gap = block.direction.dot(place.on_segment - block.on_object);
+      place.direction = block.direction;
+      if (place.gap > 0.0 && !is_listed(block.k, place)) add(block.k, place, last, taken);
+    }
+    gathered_ = true;
+  }
+
+  [[nodiscard]] double working_clearance() const noexcept { return model_.parameters.margin + kClearance; }
+
+  [[nodiscard]] bool is_listed(int k, const ContactPlace& place) const noexcept {
+    return std::any_of(contacts_.contact.begin(), contacts_.contact.begin() + contacts_.count,
+                       [&](const SlidingContact& contact) {
+                         return contact.k == k && contact.normal.dot(place.direction) >= kSameDirection &&
+                                (contact.p_W - place.on_segment).squaredNorm() <= kSameBlock * kSameBlock;
+                       });
   }
 
   void add(int k, const ContactPlace& place, const DigitContacts& last,
@@ -149,27 +165,15 @@ class Substep {
     contact.slips = before.slips;
   }
 
-  /// Adds the pair that stopped the last motion, unless a contact is there already.
-  void add_blocking() noexcept {
-    const SegmentMotion motion =
-        segment_motion(model_.hand, tick_.digit, tick_.pose, blocked_rate_, blocked_);
+  /// Stores the pair that stopped a motion x of segment k, so that it is a contact for the rest of the substep.
+  void add_block(int k, const DigitAngles& x) noexcept {
+    const SegmentMotion motion = segment_motion(model_.hand, tick_.digit, tick_.pose, x, k);
     const double cap = std::nextafter(model_.parameters.margin, 1.0);
-    const ContactPatch patch = contact_patch(placed(blocked_), model_.object, cap, &motion,
-                                             state_.near[idx(segment_index(tick_.digit, blocked_))]);
+    const ContactPatch patch = contact_patch(placed(k), model_.object, cap, &motion, near(k));
     if (patch.pairs == 0 || patch.lead_direction.isZero(0.0)) return;
-    for (int i = 0; i < contacts_.count; ++i) {
-      const SlidingContact& contact = contacts_.contact[idx(i)];
-      if (contact.k == blocked_ && contact.normal.dot(patch.lead_direction) >= kSameDirection &&
-          (contact.p_W - patch.lead).squaredNorm() <= kSameBlock * kSameBlock)
-        return;
-    }
-    ContactPlace place;
-    place.triangle = place.slot = -1;
-    place.gap = patch.distance;
-    place.on_segment = patch.lead;
-    place.direction = patch.lead_direction;
-    std::array<bool, DigitContacts::kMost> taken{};
-    add(blocked_, place, DigitContacts{}, taken);
+    const Pose& X_WS = tick_.pose.segment[idx(k)];
+    block_[idx(blocks_++)] = {k, X_WS.R.transpose() * (patch.lead - X_WS.p),
+                              patch.lead - patch.distance * patch.lead_direction, patch.lead_direction};
   }
 
   /// Returns the contact's row along its normal at the digit's pose [m/rad].
@@ -191,7 +195,7 @@ class Substep {
     ContactProblem problem;
     set_up(free, problem);
     problem.limit = contacts_.limit;
-    (void)solve_contacts(problem, kSweeps, kTolerance);
+    solve_contacts(problem, kSweeps, kTolerance);
     contacts_.limit = problem.limit;
     for (int i = 0; i < problem.count; ++i) {
       contacts_.contact[idx(i)].multiplier = problem.contact[idx(i)].multiplier;
@@ -210,7 +214,7 @@ class Substep {
   }
 
   void set_up(const DigitAngles& free, ContactProblem& problem) const noexcept {
-    const double h1 = model_.parameters.margin + kClearance;
+    const double h1 = working_clearance();
     problem.free = free;
     problem.count = contacts_.count;
     set_limits(problem);
@@ -230,11 +234,13 @@ class Substep {
       out.spin_anchor = kAnchorGain * contact.turned;
       out.friction = model_.parameters.friction;
       out.spin_radius = model_.parameters.spin_radius;
-      if (contacts_.depth_per_multiplier > 0.0) {
-        const Vec3 apart = contact.p_W - goal_pose_.segment[idx(contact.k)] * contact.p_S;
-        const double depth = std::max(0.0, apart.dot(contact.normal));
-        out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / contacts_.depth_per_multiplier;
+      const Vec3 apart = contact.p_W - goal_pose_.segment[idx(contact.k)] * contact.p_S;
+      const double depth = std::max(0.0, apart.dot(contact.normal));
+      double factor = contacts_.depth_per_multiplier;
+      if (!(factor > 0.0)) {  // the digit begins to press: the contact alone
+        for (const double arm : out.row[kNormalRow]) factor += arm * arm;
       }
+      out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / std::max(factor, kLeastFactor);
       out.multiplier = contact.multiplier;
       out.slips = contact.slips;
     }
@@ -250,7 +256,7 @@ class Substep {
   /// Moves the digit away from what is nearer than the working clearance, at most by `most` [m]. Where that is
   /// not possible, as between two walls, it moves less. The motion carries no force.
   void recover(double most) noexcept {
-    const double h1 = model_.parameters.margin + kClearance;
+    const double h1 = working_clearance();
     ContactProblem problem;
     problem.count = contacts_.count;
     set_limits(problem);
@@ -264,7 +270,7 @@ class Substep {
       any = any || out.room < -kLeastRecovery;
     }
     if (!any) return;
-    (void)solve_contacts(problem, kRecoverySweeps, kLeastRecovery);
+    solve_contacts(problem, kRecoverySweeps, kLeastRecovery);
     const DigitAngles& away = problem.displacement;
     std::array<bool, kSegmentsPerDigit> known{};
     for (int k = 0; k < kSegmentsPerDigit; ++k) known[idx(k)] = near(k).is_at(tick_.pose.segment[idx(k)]);
@@ -305,7 +311,7 @@ class Substep {
   void follow_anchors(const DigitAngles& from) noexcept {
     for (int c = 0; c < contacts_.count; ++c) {
       SlidingContact& contact = contacts_.contact[idx(c)];
-      if (contact.spins) {
+      if (contact.spins || !(contact.multiplier[0] > 0.0)) {
         contact.turned = 0.0;
       } else {
         const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
@@ -332,8 +338,15 @@ class Substep {
   DigitAngles lowest_{};
   DigitAngles highest_{};
   bool gathered_ = false;  ///< the near pairs are those of the digit's pose
-  int blocked_ = -1;
-  DigitAngles blocked_rate_{};
+  /// Pair that has stopped a motion in this substep.
+  struct Block {
+    int k = 0;
+    Vec3 p_S = Vec3::Zero();
+    Vec3 on_object = Vec3::Zero();
+    Vec3 direction = Vec3::Zero();
+  };
+  int blocks_ = 0;
+  std::array<Block, kMostEvents> block_;
 };
 
 /// Sets the depths of the contacts from their multipliers, and the digit's factor between them.
@@ -364,8 +377,7 @@ void set_depths(const ContactModel& model, const DigitTick& tick, const DigitAng
   double& factor = contacts.depth_per_multiplier;
   if (sum > 0.0) {
     const double wanted = sum / weighted;
-    factor = factor > 0.0 ? std::clamp(wanted, factor * (1.0 - kDepthChange), factor * (1.0 + kDepthChange))
-                          : wanted;
+    factor = factor > 0.0 ? std::min(wanted, factor * (1.0 + kDepthRise)) : wanted;
   } else {
     factor = 0.0;
   }
@@ -376,42 +388,50 @@ void set_depths(const ContactModel& model, const DigitTick& tick, const DigitAng
   }
 }
 
-/// Makes one record of the contacts of segment k: their resultant, at their centre of pressure.
-void set_record(const DigitTick& tick, int k, const DigitContacts& contacts, ContactRecord& record) noexcept {
+/// Makes one record of the contacts of segment k: their resultant at their centre of pressure, and their moment about
+/// it per force. The moment counts with the farthest contact's arm and the spin radius at most: where contacts of
+/// one segment oppose each other, their resultant vanishes and their moment does not.
+void set_record(const ContactModel& model, const DigitTick& tick, int k, const DigitContacts& contacts,
+                ContactRecord& record) noexcept {
   record = {};
-  Vec3 sum = Vec3::Zero();
+  Vec3 force = Vec3::Zero();
   Vec3 normal = Vec3::Zero();
   Vec3 centre = Vec3::Zero();
   double weight = 0.0;
-  for (int c = 0; c < contacts.count; ++c) {
-    const SlidingContact& contact = contacts.contact[idx(c)];
-    if (contact.k != k || !(contact.depth[0] > 0.0)) continue;
+  const auto for_each = [&](auto&& use) {
+    for (int c = 0; c < contacts.count; ++c) {
+      const SlidingContact& contact = contacts.contact[idx(c)];
+      if (contact.k != k || !(contact.depth[0] > 0.0)) continue;
+      use(contact, Vec3(contact.depth[0] * contact.normal + contact.depth[1] * contact.tangent[0] +
+                        contact.depth[2] * contact.tangent[1]));
+    }
+  };
+  for_each([&](const SlidingContact& contact, const Vec3& f) {
+    force += f;
     normal += contact.depth[0] * contact.normal;
-    sum += contact.depth[1] * contact.tangent[0] + contact.depth[2] * contact.tangent[1];
     centre += contact.depth[0] * contact.p_S;
     weight += contact.depth[0];
-  }
-  sum += normal;
-  const double depth = sum.norm();
+  });
+  const double depth = force.norm();
   const double pressing = normal.norm();
   if (!(weight > 0.0) || !(depth > 0.0) || !(pressing > 0.0)) return;
   record.active = true;
   record.p_S = centre / weight;
   record.n_c = normal / pressing;
-  record.force_normal = sum / depth;
+  record.force_normal = force / depth;
   record.penetration = record.depth = depth;
   record.p_gdp = tick.pose.segment[idx(k)] * record.p_S;
   record.p_hcp = tick.hcp_pose.segment[idx(k)] * record.p_S;
-  Vec3 couple = Vec3::Zero();
-  for (int c = 0; c < contacts.count; ++c) {
-    const SlidingContact& contact = contacts.contact[idx(c)];
-    if (contact.k != k || !(contact.depth[0] > 0.0)) continue;
-    const Vec3 force = contact.depth[0] * contact.normal + contact.depth[1] * contact.tangent[0] +
-                       contact.depth[2] * contact.tangent[1];
+  Vec3 moment = Vec3::Zero();
+  double longest = 0.0;
+  for_each([&](const SlidingContact& contact, const Vec3& f) {
     const Vec3 arm = tick.pose.segment[idx(k)] * contact.p_S - record.p_gdp;
-    couple += arm.cross(force) + contact.spin_depth * contact.normal;
-  }
-  record.couple = couple / depth;
+    moment += arm.cross(f) + contact.spin_depth * contact.normal;
+    longest = std::max(longest, arm.norm());
+  });
+  const double most = longest + model.parameters.friction * model.parameters.spin_radius;
+  const double length = moment.norm() / depth;
+  record.couple = (length > most ? most / length : 1.0) / depth * moment;
 }
 
 /// @returns true if the measured digit has been clear of the object for a while, though the shown one is held by
@@ -473,7 +493,7 @@ void advance_sliding(const ContactModel& model, DigitTick& tick, GdpState& state
     Substep(model, goal, goal_pose, tick, state, evaluations).run();
     set_depths(model, tick, goal, contacts);
   }
-  for (int k = 0; k < kSegmentsPerDigit; ++k) set_record(tick, k, contacts, record_of(state, tick, k));
+  for (int k = 0; k < kSegmentsPerDigit; ++k) set_record(model, tick, k, contacts, record_of(state, tick, k));
 }
 
 }  // namespace phalanx

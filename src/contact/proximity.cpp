@@ -135,8 +135,9 @@ ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, c
 }  // namespace
 
 void NearPairs::find(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept {
-  if (holds(segment.X_WS, reach)) return;
+  if (!carried_ && holds(segment.X_WS, reach)) return;
   X_WS_ = segment.X_WS;
+  carried_ = false;
   reach_ = reach;
   least_squared_ = 1e300;
   count_ = 0;
@@ -151,6 +152,7 @@ void NearPairs::find(const PlacedSegment& segment, const ObjectTree& object, dou
 void NearPairs::stop_at(const Pose& X_WS) noexcept {
   if (is_at(X_WS)) return;
   X_WS_ = X_WS;
+  carried_ = false;
   reach_ = -1.0;
   least_squared_ = 1e300;
   count_ = 0;

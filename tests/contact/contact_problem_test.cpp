@@ -114,15 +114,33 @@ TEST(ContactProblem, AnAnchorIsTakenBack) {
 }
 
 TEST(ContactProblem, AJointStopsAtItsLimitAndTheOthersGiveWay) {
-  // Joints 0 and 1 both open the contact; joint 0 cannot go on.
+  // Both joints open the contact, and joint 0 is at its limit: joint 1 alone holds.
   ContactProblem problem = with_one_contact({-0.01, -0.01, 0.0, 0.0}, 0.0);
-  problem.contact[0].row[kNormalRow] = {0.1, 0.1, 0.0, 0.0};
-  problem.lowest[0] = -0.002;
-  problem.highest[1] = 0.001;
+  problem.contact[0].row[kNormalRow] = {0.1, 0.05, 0.0, 0.0};
+  problem.highest[0] = 0.0;
+  problem.lowest[0] = -0.5;
+  problem.free[0] = 0.0;
   solve_contacts(problem, 20, kTight);
-  EXPECT_NEAR(0.1 * problem.displacement[0] + 0.1 * problem.displacement[1], 0.0, 1e-14);
-  EXPECT_GE(problem.displacement[0], -0.002);
-  EXPECT_LE(problem.displacement[1], 0.001);
+  EXPECT_EQ(problem.displacement[0], 0.0);
+  EXPECT_NEAR(problem.displacement[1], 0.0, 1e-14);
+  EXPECT_NEAR(problem.contact[0].multiplier[0], 0.01 / 0.05, 1e-12);
+  EXPECT_NEAR(problem.limit[0], -0.1 * 0.2, 1e-12) << "without the limit joint 0 would open the contact";
+}
+
+TEST(ContactProblem, OneJointAloneHoldsAContactInAllDirections) {
+  // All rows are those of one joint, as of a proximal segment whose other joint is at its limit.
+  for (const double mu : {0.1, 0.6, 2.0}) {
+    ContactProblem problem = with_one_contact({-0.02, 0.01, 0.0, 0.0}, mu);
+    problem.contact[0].row[kNormalRow] = {0.04, 0.0, 0.0, 0.0};
+    problem.contact[0].row[kTangentRow] = {0.03, 0.0, 0.0, 0.0};
+    problem.contact[0].row[kSecondTangentRow] = {-0.01, 0.0, 0.0, 0.0};
+    problem.contact[0].row[kSpinRow] = {0.3, 0.0, 0.0, 0.0};
+    problem.contact[0].spin_radius = 0.004;
+    solve_contacts(problem, 20, kTight);
+    EXPECT_NEAR(0.04 * problem.displacement[0], 0.0, 1e-9) << mu;
+    EXPECT_EQ(problem.displacement[1], 0.01) << mu;
+    EXPECT_LT(problem.contact[0].multiplier[0], 0.02 / 0.04 * 1.01) << mu;
+  }
 }
 
 TEST(ContactProblem, BetweenTwoWallsTheDigitStaysAndNothingIsUnbounded) {
@@ -233,7 +251,7 @@ TEST(ManyContactProblems, SiconosAgrees) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) expect_siconos_agrees(seed, 1000);
 }
 
-TEST(ContactProblem, AFewSweepsLeaveNothingThatClosesOrIsUnbounded) {
+TEST(ContactProblem, WhateverTheRowsAreTheSolutionIsFiniteAndBounded) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (int n = 0; n < 2000; ++n) {

@@ -271,6 +271,31 @@ TEST(DigitCoupling, TorquesAreTheVirtualWorkByFiniteDifferences) {
   }
 }
 
+TEST(DigitCoupling, ACoupleIsTwoOppositeForces) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (const Handedness side : {Handedness::kRight, Handedness::kLeft}) {
+    const HandModel hand = coupled_hand(side, somewhere(random));
+    for (int n = 0; n < 30; ++n) {
+      const JointArray q = random_angles(random);
+      const int d = n % kDigits;
+      const int k = n / kDigits % kSegmentsPerDigit;
+      const Vec3 at(u(random), u(random), u(random));
+      const Vec3 arm(u(random), u(random), u(random));
+      const Vec3 force(u(random), u(random), u(random));
+      DigitPose pose;
+      hand.digit_pose(d, digit_angles(q, d), pose);
+      JointArray by_forces{};
+      add_torques(pose, d, k, at + arm, force, by_forces);
+      add_torques(pose, d, k, at, -force, by_forces);
+      JointArray by_couple{};
+      add_couple(pose, d, k, arm.cross(force), by_couple);
+      for (std::size_t j = 0; j < kJoints; ++j)
+        EXPECT_NEAR(by_couple[j], by_forces[j], 1e-14) << "seed 8 case " << n << " joint " << j;
+    }
+  }
+}
+
 TEST(DigitCoupling, IsRefusedIfItIsNotFiniteOrHasNoAxis) {
   const auto refused = [](const auto& change, const char* words) {
     HandParameters parameters = test::coupled(simple_parameters());

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <utility>
 
 #include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
+#include "phalanx/force/force_stage.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/lone_finger.h"
 
@@ -19,8 +21,6 @@ namespace {
 using test::Approach;
 using test::LoneFinger;
 using test::Runner;
-
-constexpr double kTick = 1e-3;  // of LoneFinger [s]
 
 /// A lone finger in sliding mode, with 0.5 N/mm.
 LoneFinger sliding_finger(TriangleMesh object, double mu) {
@@ -85,22 +85,58 @@ TEST(Sliding, APressWithoutFrictionGivesTheLawsForce) {
   EXPECT_NEAR(press.tip().normal.z(), 1.0, 1e-9);
 }
 
-TEST(Sliding, TorquesAreThoseOfTheWholeForce) {
-  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
-  Pressed press(finger, 3e-3);
-  for (int i = 1; i <= 200; ++i) press.hand.tick(LoneFinger::pose(press.goal, 0.3e-3 * i));
-  const Snapshot& s = press.hand.now();
-  DigitPose pose;
-  finger.model().hand.digit_pose(test::kIndex, digit_angles(s.gdp_angle, test::kIndex), pose);
-  const Vec3 f = press.tip().force * press.tip().normal;
-  // Spin about the normal adds a moment along z of at most mu r_c f_n.
-  const PointJacobian J = point_jacobian(pose, 2, press.tip().point);
-  for (int i = 0; i < kJointsPerDigit; ++i) {
-    const auto j = static_cast<std::size_t>(i);
-    EXPECT_NEAR(test::index_torque(s, i), J.linear[j].dot(f),
-                1e-9 + 0.6 * 4e-3 * f.z() * std::abs(J.angular[j].z()))
-        << i;
+TEST(Sliding, TorquesAreThoseOfEveryContact) {
+  // The middle segment lies flat on a block, with several contact points, and is dragged sideways.
+  test::Setup model(test::simple_hand(),
+                    ObjectModel(test::moved(make_box({0.3, 0.02, 0.03}, 12), test::at(0.0, -0.031, -0.055))));
+  test::turn_limits_off(model);
+  HapticParameters& parameters = model.parameters;
+  parameters.contact.mode = ContactMode::kSliding;
+  parameters.rate_hz = 1000.0;
+  const ContactModel contact{model.hand, model.trees(), model.object, parameters.contact,
+                             parameters.period()};
+  GdpState gdp(contact);
+  ForceState force;
+  HandPoses hcp;
+  std::array<bool, kDigits> measured{};
+  measured.fill(true);
+  int most = 0;
+  double largest_couple = 0.0;
+  for (int i = 0; i <= 600; ++i) {
+    const double close = std::min(1.0, i / 300.0);
+    const double flexion = 0.45 * close;
+    const JointArray q =
+        test::index_angles(flexion, 0.04 * close - flexion, 0.0, 0.3e-3 * std::max(0, i - 300));
+    model.hand.poses(q, hcp);
+    (void)advance_gdp(contact, q, hcp, measured, gdp);
+    (void)compute_command(parameters, gdp, hcp, false, force);
+    const DigitPose& pose = gdp.poses.digit[test::kIndex];
+    const DigitContacts& contacts = gdp.sliding[test::kIndex];
+    DigitAngles torque{};
+    std::array<int, kSegmentsPerDigit> pressing{};
+    for (int c = 0; c < contacts.count; ++c) {
+      const SlidingContact& at = contacts.contact[static_cast<std::size_t>(c)];
+      const PointJacobian J =
+          point_jacobian(pose, at.k, pose.segment[static_cast<std::size_t>(at.k)] * at.p_S);
+      const Vec3 f = at.depth[0] * at.normal + at.depth[1] * at.tangent[0] + at.depth[2] * at.tangent[1];
+      for (std::size_t j = 0; j < torque.size(); ++j) {
+        torque[j] +=
+            parameters.force.stiffness * (J.linear[j].dot(f) + J.angular[j].dot(at.normal) * at.spin_depth);
+      }
+      pressing[static_cast<std::size_t>(at.k)] += at.depth[0] > 0.0 ? 1 : 0;
+    }
+    most = std::max(most, *std::max_element(pressing.begin(), pressing.end()));
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      largest_couple = std::max(
+          largest_couple, gdp.record[static_cast<std::size_t>(segment_index(test::kIndex, k))].couple.norm());
+    for (int j = 0; j < kJointsPerDigit; ++j) {
+      ASSERT_NEAR(force.torque[static_cast<std::size_t>(joint_index(test::kIndex, j))],
+                  torque[static_cast<std::size_t>(j)], 1e-9)
+          << "tick " << i << ", joint " << j;
+    }
   }
+  EXPECT_GE(most, 2) << "contact points of one segment";
+  EXPECT_GT(largest_couple, 1e-4);
 }
 
 TEST(Sliding, JointsBeyondTheContactFollowAndCarryNoTorque) {
@@ -131,11 +167,16 @@ TEST_P(SlidingMu, ADraggedFingerSlipsAtMu) {
   double largest = 0.0;
   const Vec3 start = press.tip().point;
   for (int i = 1; i <= 400; ++i) {
+    const Vec3 before = press.tip().point;
     press.hand.tick(LoneFinger::pose(press.goal, 0.4e-3 * i));
     const Vec3 f = press.tip().force * press.tip().normal;
     const double ratio = std::hypot(f.x(), f.y()) / f.z();
     largest = std::max(largest, ratio);
-    if (i > 300) ASSERT_NEAR(ratio, mu, 1e-5) << i;
+    if (i > 300) {
+      ASSERT_NEAR(ratio, mu, 1e-5) << i;
+      const Vec3 moved = press.tip().point - before;
+      ASSERT_LT(f.x() * moved.x() + f.y() * moved.y(), 0.0) << i << ": friction opposes the motion";
+    }
   }
   EXPECT_NEAR(largest, mu, 1e-9);
   EXPECT_GT((press.tip().point - start).norm(), 5e-3) << "it slides";
@@ -160,7 +201,7 @@ TEST(Sliding, AtRestNothingChanges) {
   }
   EXPECT_LT(std::sqrt(std::max(0.0, squares / kTicks - sum / kTicks * (sum / kTicks))), 1e-9) << "[N]";
   const auto tip = static_cast<std::size_t>(segment_index(test::kIndex, 2));
-  EXPECT_LT((press.hand.now().gdp_pose[tip].p - before.gdp_pose[tip].p).norm(), 1e-6 / 60.0 * kTicks * kTick)
+  EXPECT_LT((press.hand.now().gdp_pose[tip].p - before.gdp_pose[tip].p).norm(), 1e-6 / 60.0 * kTicks * 1e-3)
       << "less than 1 um a minute";
 }
 
@@ -221,7 +262,11 @@ TEST(Sliding, AFingerComesOutOfAGrooveWithoutAPull) {
     LoneFinger finger = sliding_finger(groove(), mu);
     Pressed press(finger, 2e-3);
     ASSERT_GT(raw_force(press.hand.now()), 0.1) << mu;
-    press.hand.move(LoneFinger::pose(press.touched - 0.3e-3 / LoneFinger::lever()), 100);
+    const double out = press.touched - 0.3e-3 / LoneFinger::lever();
+    for (int i = 1; i <= 100; ++i) {
+      press.hand.tick(LoneFinger::pose(press.goal + (out - press.goal) * i / 100.0));
+      ASSERT_GE(press.tip().force * press.tip().normal.z(), -1e-3) << mu << ", tick " << i << ": it pulls";
+    }
     EXPECT_LE(raw_force(press.hand.now()), 1e-3) << mu;
     EXPECT_EQ(digit_angles(press.hand.now().gdp_angle, test::kIndex),
               digit_angles(press.hand.now().hcp_angle, test::kIndex))
@@ -275,7 +320,7 @@ class Leaving {
     if (raw_force(s) > 0.0) latest_ = std::max(latest_, since_);
   }
   [[nodiscard]] bool ever() const { return ever_; }
-  [[nodiscard]] double latest() const { return latest_ * kTick; }
+  [[nodiscard]] double latest() const { return latest_ * model_.parameters.period(); }
 
  private:
   bool outside(const Snapshot& s) {
@@ -296,44 +341,57 @@ class Leaving {
 
 constexpr double kEnds = 50e-3;  // [s]
 
-TEST(SlidingEnds, AFingerThatSlidesOffABarFeelsNothingBesideIt) {
+class SlidingEnds : public testing::TestWithParam<double> {
+ protected:
+  /// Ticks of one millisecond's motion in this test's rate.
+  void play(Pressed& press, Leaving& leaving, int milliseconds, const std::function<JointArray(double)>& at) {
+    const int step = static_cast<int>(std::lround(1000.0 / GetParam()));
+    for (int ms = step; ms <= milliseconds; ms += step) {
+      leaving.see(press.hand.tick(at(ms)));
+      most_ = std::max(most_, raw_force(press.hand.now()));
+    }
+  }
+  double most_ = 0.0;  ///< greatest force of the law [N]
+};
+
+TEST_P(SlidingEnds, AFingerThatSlidesOffABarFeelsNothingBesideIt) {
   for (const double mu : {0.0, 0.6, 1.0}) {
     LoneFinger finger = sliding_finger(block(0.016, 0.016), mu);
+    finger.model().parameters.rate_hz = GetParam();
     Pressed press(finger, 3e-3);
     ASSERT_GT(press.tip().force, 1.0);
     Leaving leaving(finger.model());
-    for (int i = 1; i <= 400; ++i) leaving.see(press.hand.tick(LoneFinger::pose(press.goal, 0.6e-3 * i)));
-    for (int i = 1; i <= 200; ++i)  // on, beside the bar
-      leaving.see(press.hand.tick(LoneFinger::pose(press.goal + 0.5e-3 * i, 0.24)));
+    play(press, leaving, 400, [&](double ms) { return LoneFinger::pose(press.goal, 0.6e-3 * ms); });
+    play(press, leaving, 200, [&](double ms) { return LoneFinger::pose(press.goal + 0.5e-3 * ms, 0.24); });
     EXPECT_TRUE(leaving.ever()) << mu;
     EXPECT_LE(leaving.latest(), kEnds) << mu;
     EXPECT_EQ(press.hand.now().gdp_angle, press.hand.now().hcp_angle) << mu;
   }
 }
 
-TEST(SlidingEnds, AFingerThatHasGoneThroughABarFeelsNothingBeyond) {
+TEST_P(SlidingEnds, AFingerThatHasGoneThroughABarFeelsNothingBeyond) {
   LoneFinger finger = sliding_finger(block(0.016, 0.016), 0.6);
+  finger.model().parameters.rate_hz = GetParam();
   Pressed press(finger, 3e-3);
   Leaving leaving(finger.model());
-  double most = 0.0;
-  for (int i = 1; i <= 700; ++i) {
-    leaving.see(press.hand.tick(LoneFinger::pose(press.goal + 1e-3 * i)));
-    most = std::max(most, raw_force(press.hand.now()));
-  }
-  EXPECT_GT(most, 5.0) << "inside, the force grows with the depth";
+  play(press, leaving, 700, [&](double ms) { return LoneFinger::pose(press.goal + 1e-3 * ms); });
+  EXPECT_GT(most_, 5.0) << "inside, the force grows with the depth";
   EXPECT_TRUE(leaving.ever());
   EXPECT_LE(leaving.latest(), kEnds);
   EXPECT_EQ(press.hand.now().gdp_angle, press.hand.now().hcp_angle);
 }
 
-TEST(SlidingEnds, AFingerThatLeavesABallFeelsNothingAboveIt) {
+TEST_P(SlidingEnds, AFingerThatLeavesABallFeelsNothingAboveIt) {
   LoneFinger finger = sliding_finger(ball(), 0.6);
+  finger.model().parameters.rate_hz = GetParam();
   Pressed press(finger, 3e-3);
   Leaving leaving(finger.model());
-  for (int i = 1; i <= 500; ++i) leaving.see(press.hand.tick(LoneFinger::pose(press.goal, 0.8e-3 * i)));
+  play(press, leaving, 500, [&](double ms) { return LoneFinger::pose(press.goal, 0.8e-3 * ms); });
   EXPECT_TRUE(leaving.ever());
   EXPECT_LE(leaving.latest(), kEnds);
 }
+
+INSTANTIATE_TEST_SUITE_P(Hertz, SlidingEnds, testing::Values(1000.0, 200.0));
 
 TEST(Sliding, CapsAndSmoothingKeepTheForceInItsCone) {
   for (const Stabiliser method : {Stabiliser::kSmoothing, Stabiliser::kRiseOnly, Stabiliser::kLowPass}) {
@@ -371,6 +429,14 @@ TEST(Sliding, TheLocalWallReplacesTheTorqueOfItsContact) {
   const Snapshot& off = press.hand.now();
   EXPECT_FALSE(off.wall[static_cast<std::size_t>(segment_index(test::kIndex, 2))].active)
       << "the wall ends with its contact";
+}
+
+TEST(Sliding, OneContactPointASegmentSufficesInAGroove) {
+  LoneFinger finger = sliding_finger(groove(), 0.6);
+  finger.model().parameters.contact.max_contacts = 1;
+  Pressed press(finger, 2e-3);
+  EXPECT_GT(raw_force(press.hand.now()), 0.1);
+  EXPECT_FALSE(has(press.hand.now().status, Status::kSearchExhausted));
 }
 
 TEST(Sliding, AChangeOfTheModeForgetsTheContacts) {

@@ -5,7 +5,7 @@
 //
 // The folder `contact` moves the GDP towards the HCP for one tick, and records where its segments touch:
 // 1. advance_gdp() (below) goes digit by digit: joints up to the most distal pushing contact stay,
-//    the others move.
+//    the others move. In sliding mode contacts slide instead: docs/sliding.md.
 // 2. first_contact.h finds the first time of contact along the digit's path in joint space.
 // 3. clearance.h, pair_search.h and proximity.h answer its questions about distance.
 // 4. segment_tree.h and object_tree.h hold the meshes; src/contact/search holds the vectorised inner loops.
@@ -28,7 +28,9 @@
 
 namespace phalanx {
 
-/// Contact of one segment with the object; at most one a segment.
+/// Contact of one segment with the object; at most one a segment. In sliding mode the resultant of its contact
+/// points: p_S is their centre of pressure, n_c the direction of their normal forces, and `depth` and `penetration`
+/// are the size of their depths' sum. Then no offset is used.
 struct ContactRecord {
   bool active = false;
   Vec3 p_S = Vec3::Zero();  ///< the material point, in the segment's frame [m]

@@ -16,7 +16,7 @@ class ObjectTree;
 struct PlacedSegment;
 
 /// Pairs of triangles within a distance of a segment at one pose, with their closest points, in the trees'
-/// fixed order. They hold for exactly this pose, one segment and one object. A segment that was blocked in the
+/// fixed order. Unless carried to another pose, they hold for exactly this pose, one segment and one object. A segment that was blocked in the
 /// last tick, and has not moved, needs no search. Allocated once.
 class NearPairs {
  public:
@@ -41,12 +41,13 @@ class NearPairs {
   /// complete within a reach that is smaller by this, but their closest points are those of the old pose.
   void carry(const Pose& X_WS, double moved) noexcept {
     X_WS_ = X_WS;
+    carried_ = true;
     reach_ -= moved;
     least_squared_ = least_squared_ > moved * moved ? std::pow(std::sqrt(least_squared_) - moved, 2) : 0.0;
   }
   /// Removes pairs and pose.
   void clear() noexcept { stop_at({Mat3::Zero(), Vec3::Zero()}); }
-  /// @returns true if the pose of the last find() or stop_at() is this one, to the last bit
+  /// @returns true if the pose of the last find(), stop_at() or carry() is this one, to the last bit
   [[nodiscard]] bool is_at(const Pose& X_WS) const noexcept { return X_WS_.p == X_WS.p && X_WS_.R == X_WS.R; }
   /// @returns true if a pair that was found at this pose is within `distance` [m]
   [[nodiscard]] bool is_within(const Pose& X_WS, double distance) const noexcept {
@@ -65,6 +66,7 @@ class NearPairs {
 
  private:
   Pose X_WS_ = {Mat3::Zero(), Vec3::Zero()};  ///< no segment is here
+  bool carried_ = false;                      ///< the closest points are those of an earlier pose
   double reach_ = -1.0;                       ///< [m]; negative: not searched
   double least_squared_ = 1e300;              ///< of the pairs found [m^2]
   std::size_t count_ = 0;

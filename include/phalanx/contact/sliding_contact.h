@@ -8,7 +8,7 @@
 
 namespace phalanx {
 
-/// Contact point of a segment in sliding mode, and what friction remembers of it. See docs/sliding.md.
+/// Contact point of a segment in sliding mode, with the state of its friction. See docs/sliding.md.
 struct SlidingContact {
   int k = 0;                      ///< segment of the digit: 0 nearest the palm, 2 distal
   std::int32_t triangle = -1;     ///< of the segment's mesh

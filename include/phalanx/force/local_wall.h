@@ -19,7 +19,8 @@ namespace phalanx {
 /// digit's torque at a step, it sends no walls for that digit.
 struct LocalWall {
   bool active = false;
-  /// n'J: the force's direction times the digit's Jacobian, at the contact on the shown hand [m].
+  /// n'J: the force's direction times the digit's Jacobian, at the contact on the shown hand [m]. In sliding mode
+  /// with the couple of several contact points.
   std::array<double, kJointsPerDigit> g{};
   double d_ref = 0.0;       ///< depth for which k d_ref is the law's force at q_ref [m]; may be < 0
   double stiffness = 0.0;   ///< k, slope of the law at the contact's depth [N/m]
