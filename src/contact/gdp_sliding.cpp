@@ -24,6 +24,7 @@ constexpr double kRounding = 1e-12;         // [m]
 constexpr double kMostSlide = 1e-3;         // of a touching segment in a substep [m]
 constexpr double kTolerance = 1e-12;        // of the contact problem [m]
 constexpr double kStill = 1e-13;            // displacement that is no motion [rad]
+constexpr double kTouching = 0.2e-6;        // above the working clearance [m]
 constexpr double kSamePlace = 3e-3;         // a contact may move by this much between two substeps [m]
 constexpr double kSameDirection = 0.99995;  // cosine: a contact that opposes a motion already
 constexpr double kSameBlock = 50e-6;        // [m]
@@ -158,8 +159,12 @@ class Substep {
     taken[idx(best)] = true;
     const SlidingContact& before = last.contact[idx(best)];
     const Vec3 friction = before.multiplier[1] * before.tangent[0] + before.multiplier[2] * before.tangent[1];
-    contact.multiplier = {before.multiplier[0], friction.dot(contact.tangent[0]),
-                          friction.dot(contact.tangent[1]), before.multiplier[3]};
+    // A contact that has opened seldom pushes again at once. Of two contacts of one segment, the iteration would
+    // take many sweeps to hand its load over.
+    if (place.gap <= working_clearance() + kTouching) {
+      contact.multiplier = {before.multiplier[0], friction.dot(contact.tangent[0]),
+                            friction.dot(contact.tangent[1]), before.multiplier[3]};
+    }
     contact.anchor = before.anchor - before.anchor.dot(contact.normal) * contact.normal;
     contact.turned = before.turned;
     contact.slips = before.slips;

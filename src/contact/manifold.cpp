@@ -3,20 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "contact/feature_pairs.h"
 #include "contact/normal_fan.h"
 #include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kMerge = 1e-3;  // points nearer than this on the segment belong to one place [m]
-constexpr double kTie = 1e-6;    // a point on a face is this near to it [m]
-constexpr double kSame = 10e-6;  // points nearer than this are one [m]
-constexpr double kTier = 5e-6;   // places whose distances differ by less are about as near [m]
+constexpr double kMerge = 1e-3;    // points nearer than this on the segment belong to one place [m]
+constexpr double kTie = 1e-6;      // a point on a face is this near to it [m]
+constexpr double kSame = 10e-6;    // points nearer than this are one [m]
+constexpr double kEqual = 0.1e-6;  // places whose distances differ by less are equally near [m]
+constexpr double kTier = 5e-6;     // places whose distances differ by less are about as near [m]
 constexpr int kMostCandidates = 32;
 constexpr int kMostTests = 64;                       // of pairs against their neighbours
-constexpr double kCosInside = 0.99999847691328769;   // 0.1 degrees, of a direction beside its fan
+constexpr double kCosInside = 1.0 - 5e-10;           // 0.002 degrees, of a direction beside its fan
 constexpr double kCosBetween = 0.99619469809174555;  // 5 degrees, between directions of one place
 
 using Order = std::array<std::uint16_t, NearPairs::kMost>;
@@ -63,10 +66,16 @@ bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const Ne
          on_segment.nearest(-direction).dot(-direction) >= kCosInside;
 }
 
-/// @returns true if the place is the same as a nearer one, seen by another pair
-bool is_same(const ContactPlace& nearer, const ContactPlace& place) noexcept {
-  return place.direction.dot(nearer.direction) >= kCosBetween &&
-         (place.on_segment - nearer.on_segment).squaredNorm() <= kSame * kSame;
+/// Returns the place of a pair at two of its points.
+ContactPlace place_of(const NearPairs::Pair& pair, const Vec3& on_segment, const Vec3& on_object) noexcept {
+  const Vec3 apart = on_segment - on_object;
+  const double gap = apart.norm();
+  return {.triangle = pair.triangle,
+          .slot = pair.slot,
+          .gap = gap,
+          .on_segment = on_segment,
+          .on_object = on_object,
+          .direction = gap > 0.0 ? Vec3(apart / gap) : Vec3(Vec3::Zero())};
 }
 
 bool belongs_to(const ContactPlace& chosen, const ContactPlace& place) noexcept {
@@ -74,25 +83,122 @@ bool belongs_to(const ContactPlace& chosen, const ContactPlace& place) noexcept 
          (place.on_segment - chosen.on_segment).squaredNorm() <= kMerge * kMerge;
 }
 
-/// Places that a manifold is chosen from, the nearest first.
+/// Places that a manifold is chosen from. The first is the nearest.
 struct Candidates {
   int count = 0;
   std::array<ContactPlace, kMostCandidates> place;
+
+  /// @returns true if the place is one of them, seen by another pair
+  [[nodiscard]] bool has(const ContactPlace& other) const noexcept {
+    return std::any_of(place.begin(), place.begin() + count, [&](const ContactPlace& at) {
+      return other.direction.dot(at.direction) >= kCosBetween &&
+             (other.on_segment - at.on_segment).squaredNorm() <= kSame * kSame;
+    });
+  }
+  /// Adds a place, unless there are too many.
+  void add(const ContactPlace& other) noexcept {
+    if (count < kMostCandidates) place[idx(count++)] = other;
+  }
 };
 
-/// Chooses places: the nearest; then, of those that are about as near as the nearest one left, the farthest from
-/// all that are chosen, so that a line or a face that lies flat is held at its ends.
-void choose(const Candidates& from, int most, Manifold& out) noexcept {
-  out.place[0] = from.place[0];
-  out.count = 1;
+/// @returns true if the place is as near as the nearest one and faces the same way
+bool is_tied(const ContactPlace& nearest, const ContactPlace& place) noexcept {
+  return place.gap - nearest.gap <= kTier && place.direction.dot(nearest.direction) >= kCosBetween;
+}
+
+/// Adds a place unless it belongs to one that is chosen.
+void choose(const ContactPlace& place, int most, Manifold& out) noexcept {
+  const auto end = out.place.begin() + out.count;
+  const bool belongs = std::any_of(out.place.begin(), end,
+                                   [&](const ContactPlace& chosen) { return belongs_to(chosen, place); });
+  if (!belongs && out.count < most) out.place[idx(out.count++)] = place;
+}
+
+/// Points farthest along four directions.
+class Ends {
+ public:
+  explicit Ends(const ContactPlace& nearest) noexcept {
+    // Not along the axes: there two corners of a box are equally far.
+    constexpr double kCos = 0.82533561490967833;  // of 0.6 rad
+    constexpr double kSin = 0.56464247339503537;
+    const Vec3 u = nearest.direction.unitOrthogonal();
+    const Vec3 v = nearest.direction.cross(u);
+    const Vec3 a = kCos * u + kSin * v;
+    const Vec3 b = kCos * v - kSin * u;
+    along_ = {a, Vec3(-a), b, Vec3(-b)};
+    farthest_.fill(nearest);
+    for (std::size_t e = 0; e < along_.size(); ++e) value_[e] = along_[e].dot(nearest.on_segment);
+  }
+  void add(const ContactPlace& place) noexcept {
+    for (std::size_t e = 0; e < along_.size(); ++e) {
+      const double value = along_[e].dot(place.on_segment);
+      if (value <= value_[e]) continue;
+      value_[e] = value;
+      farthest_[e] = place;
+    }
+  }
+  /// @returns true if a point in both triangles may be farther
+  [[nodiscard]] bool may_be_farther(const Corners& t, const Corners& other) const noexcept {
+    for (std::size_t e = 0; e < along_.size(); ++e) {
+      const auto farthest = [&](const Corners& c) {
+        return std::max({along_[e].dot(c[0]), along_[e].dot(c[1]), along_[e].dot(c[2])});
+      };
+      if (std::min(farthest(t), farthest(other)) > value_[e]) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] const std::array<ContactPlace, 4>& places() const noexcept { return farthest_; }
+  /// Returns the greatest distance between opposite ends [m].
+  [[nodiscard]] double extent() const noexcept {
+    return std::max((farthest_[0].on_segment - farthest_[1].on_segment).norm(),
+                    (farthest_[2].on_segment - farthest_[3].on_segment).norm());
+  }
+
+ private:
+  std::array<Vec3, 4> along_;
+  std::array<double, 4> value_{};
+  std::array<ContactPlace, 4> farthest_;
+};
+
+/// Ends of a line or face that lies flat: of the places equally near, and of those about as near as the nearest.
+/// Without ties all are the nearest place.
+struct FlatContact {
+  explicit FlatContact(const ContactPlace& place) noexcept : nearest(place), equal(place), tied(place) {}
+
+  /// Adds all points of a tied pair that are about as near. Points of parallel edges and faces are.
+  /// @param corners  of the segment's triangle, in W
+  void add(const NearPairs::Pair& pair, const Corners& corners, const Corners& object) noexcept {
+    if (!equal.may_be_farther(corners, object) && !tied.may_be_farther(corners, object)) return;
+    for_each_feature_pair(corners, object, [&](const Vec3& on_a, const Vec3& on_b) {
+      if ((on_a - on_b).squaredNorm() > std::pow(nearest.gap + kTier, 2)) return;
+      const ContactPlace place = place_of(pair, on_a, on_b);
+      if (!is_tied(nearest, place)) return;
+      tied.add(place);
+      if (place.gap <= nearest.gap + kEqual) equal.add(place);
+    });
+  }
+
+  ContactPlace nearest;
+  Ends equal;
+  Ends tied;
+};
+
+/// Chooses places: the ends of what is nearest; then, of those about as near as the nearest one left, the farthest
+/// from all that are chosen.
+void choose(const FlatContact& flat, const Candidates& from, int most, Manifold& out) noexcept {
+  // The ends of what is long come first; on a curved surface these are all near the nearest place.
+  const bool is_long = flat.tied.extent() >= kMerge;
+  for (const Ends* ends : {is_long ? &flat.tied : &flat.equal, is_long ? &flat.equal : &flat.tied}) {
+    for (const ContactPlace& end : ends->places()) choose(end, most, out);
+  }
   while (out.count < most) {
     int best = -1;
     double least_tier = 0.0;
     double farthest = 0.0;
-    for (int i = 0; i < from.count; ++i) {
+    for (int i = 1; i < from.count; ++i) {
       const ContactPlace& place = from.place[idx(i)];
       double apart = 1e300;
-      bool belongs = false;
+      bool belongs = is_tied(from.place[0], place);
       for (int j = 0; j < out.count && !belongs; ++j) {
         belongs = belongs_to(out.place[idx(j)], place);
         apart = std::min(apart, (place.on_segment - out.place[idx(j)].on_segment).squaredNorm());
@@ -132,27 +238,32 @@ void find_manifold(const PlacedSegment& segment, const ObjectModel& object, doub
               const double db = near[b].closest.squared;
               return da != db ? da < db : a < b;
             });
+  if (count == 0 || !(near[order[0]].closest.squared > 0.0)) return;
   Candidates candidates;
+  const NearPairs::Pair& first = near[order[0]];
+  const ContactPlace nearest = place_of(first, first.closest.on_a, first.closest.on_b);
+  candidates.add(nearest);
+  FlatContact flat(nearest);
   int tests = 0;
-  for (std::size_t n = 0; n < count && candidates.count < kMostCandidates && tests < kMostTests; ++n) {
+  for (std::size_t n = 0; n < count && tests < kMostTests; ++n) {
     const NearPairs::Pair& pair = near[order[n]];
-    const double gap = std::sqrt(pair.closest.squared);
-    if (!(gap > 0.0)) continue;
-    const ContactPlace place{.triangle = pair.triangle,
-                             .slot = pair.slot,
-                             .gap = gap,
-                             .on_segment = pair.closest.on_a,
-                             .on_object = pair.closest.on_b,
-                             .direction = (pair.closest.on_a - pair.closest.on_b) / gap};
-    const auto end = candidates.place.begin() + candidates.count;
-    if (std::any_of(candidates.place.begin(), end,
-                    [&](const ContactPlace& at) { return is_same(at, place); }))
+    const ContactPlace place = place_of(pair, pair.closest.on_a, pair.closest.on_b);
+    if (is_tied(nearest, place)) {
+      Corners corners = segment.tree.corners(pair.triangle);
+      for (Vec3& x : corners) x = segment.X_WS * x;
+      flat.add(pair, corners, object.tree().corners(pair.slot));
       continue;
+    }
+    if (candidates.has(place)) continue;
     ++tests;
-    if (n > 0 && !is_nearest(segment, object.tree(), near, pair, place.direction)) continue;
-    candidates.place[idx(candidates.count++)] = place;
+    if (is_nearest(segment, object.tree(), near, pair, place.direction)) candidates.add(place);
   }
-  if (candidates.count > 0) choose(candidates, std::min(most, Manifold::kMost), out);
+  choose(flat, candidates, std::min(most, Manifold::kMost), out);
+  // The nearest first. Places that are equally near keep their order, so that rounding does not decide.
+  for (int n = 1; n < out.count; ++n) {
+    for (int i = n; i > 0 && out.place[idx(i)].gap < out.place[idx(i - 1)].gap - kEqual; --i)
+      std::swap(out.place[idx(i)], out.place[idx(i - 1)]);
+  }
 }
 
 }  // namespace phalanx

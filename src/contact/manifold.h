@@ -19,7 +19,7 @@ struct ContactPlace {
   Vec3 direction = Vec3::Zero();  ///< unit vector from the object to the segment, in W
 };
 
-/// Contact manifold of one segment: up to kMost places. The first is the nearest.
+/// Contact manifold of one segment: up to kMost places, the nearest first.
 struct Manifold {
   static constexpr int kMost = 4;
   int count = 0;
