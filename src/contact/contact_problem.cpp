@@ -348,7 +348,7 @@ Triple solve_rows(const Rows& rows, const ProblemContact& contact, const Triple&
   if (const SlipDirection direction(A, c, mu); direction.find(d)) {
     if (const double p = direction.normal(d); p <= cap) return {p, mu * p * d[0], mu * p * d[1]};
   }
-  // Neither: the direction of sticking, with as much friction as the normal multiplier that it leaves admits.
+  // Neither: friction along d, as much as the normal multiplier that it leaves admits.
   const double along = mu * (A[0][1] * d[0] + A[0][2] * d[1]);
   const double counted = std::min(cap, -c[0] / std::max(A[0][0] + along, A[0][0]));
   const double normal = std::max(counted, -(c[0] + counted * along) / A[0][0]);
