@@ -106,8 +106,9 @@ TEST(AuditLog, RemembersTheNewestShortenedAndWritesThemWhole) {
   for (int i = 0; i < 150; ++i) {
     log.add(notice("page " + std::to_string(i), text));
     // The writer's queue holds some megabytes; what does not fit is dropped.
-    if (i % 50 == 49)
+    if (i % 50 == 49) {
       ASSERT_EQ(lines_of(folder / "audit.jsonl", i + 1).size(), static_cast<std::size_t>(i + 1));
+    }
   }
   ASSERT_EQ(log.newest().size(), AuditLog::kRemembered);
   EXPECT_EQ(log.newest().back().who(), "page 149");
