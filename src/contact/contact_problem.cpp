@@ -90,8 +90,7 @@ constexpr double kStronglyRegular = 1e-6;
 constexpr double kLeastDeterminant = 1e-14;  // of the cubed trace: below it rounding decides
 constexpr double kLeastArm = 1e-6;    // below it the joints do not move a contact along its normal [m/rad]
 constexpr double kLeastShare = 1e-6;  // of A_nn, for the denominator of the normal multiplier
-constexpr double kLeastSpin =
-    1e-6;  // below it the joints do not turn a contact about its normal [rad^2/rad^2]
+constexpr double kLeastSpin = 1e-6;   // below it they do not turn it about its normal [rad^2/rad^2]
 /// Relative softness of the spin row. Where one joint alone both turns a contact and moves it sideways, the
 /// tangents then hold it.
 constexpr double kSpinSoftness = 0.02;

@@ -102,7 +102,7 @@ class Substep {
                            std::min(kMostReach, segment_speed(model_.hand, tick_.digit, change, k) + kSlack);
       if (state_.clearance[idx(segment_index(tick_.digit, k))].bound() > reach) continue;
       Manifold manifold;
-      find_manifold(placed(k), model_.object, reach, working_clearance() + kSlack,
+      find_manifold(placed(k), model_.object.tree(), reach, working_clearance() + kSlack,
                     model_.parameters.max_contacts, near(k), manifold);
       for (int i = 0; i < manifold.count; ++i) add(k, manifold.place[idx(i)], last, taken);
     }
@@ -247,7 +247,6 @@ class Substep {
       }
       out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / std::max(factor, kLeastFactor);
       out.multiplier = contact.multiplier;
-      out.slips = contact.slips;
     }
   }
 

@@ -22,7 +22,7 @@ constexpr int kMostTests = 64;                       // of pairs against their n
 constexpr double kCosInside = 1.0 - 5e-10;           // 0.002 degrees, of a direction beside its fan
 constexpr double kCosBetween = 0.99619469809174555;  // 5 degrees, between directions of one place
 
-using Order = std::array<std::uint16_t, NearPairs::kMost>;
+double squared(double x) noexcept { return x * x; }
 
 /// Adds the face normal of a triangle, on the side of `direction`. A sliver's normal is rounding noise; its
 /// neighbours' suffice.
@@ -48,7 +48,7 @@ bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const Ne
                 const NearPairs::Pair& pair, const Vec3& direction) noexcept {
   NormalFan on_object;
   NormalFan on_segment;
-  const double limit = std::pow(std::sqrt(pair.closest.squared) + kTie, 2);
+  const double limit = squared(std::sqrt(pair.closest.squared) + kTie);
   for (std::size_t i = 0; i < near.count(); ++i) {
     const NearPairs::Pair& other = near[i];
     if (other.closest.squared > limit) continue;
@@ -170,7 +170,7 @@ struct FlatContact {
   void add(const NearPairs::Pair& pair, const Corners& corners, const Corners& object) noexcept {
     if (!equal.may_be_farther(corners, object) && !tied.may_be_farther(corners, object)) return;
     for_each_feature_pair(corners, object, [&](const Vec3& on_a, const Vec3& on_b) {
-      if ((on_a - on_b).squaredNorm() > std::pow(nearest.gap + kTier, 2)) return;
+      if ((on_a - on_b).squaredNorm() > squared(nearest.gap + kTier)) return;
       const ContactPlace place = place_of(pair, on_a, on_b);
       if (!is_tied(nearest, place)) return;
       tied.add(place);
@@ -217,18 +217,18 @@ void choose(const FlatContact& flat, const Candidates& from, int most, Manifold&
 
 }  // namespace
 
-void find_manifold(const PlacedSegment& segment, const ObjectModel& object, double reach, double least,
+void find_manifold(const PlacedSegment& segment, const ObjectTree& object, double reach, double least,
                    int most, NearPairs& near, Manifold& out) noexcept {
   out.count = 0;
-  near.find(segment, object.tree(), reach);
+  near.find(segment, object, reach);
   while (near.overflows() && reach > least) {
     reach = std::max(least, 0.5 * reach);
-    near.find(segment, object.tree(), reach);
+    near.find(segment, object, reach);
   }
   if (near.overflows() || near.count() == 0) return;
 
   const double limit = reach * reach;
-  Order order;
+  std::array<std::uint16_t, NearPairs::kMost> order;
   std::size_t count = 0;
   for (std::size_t i = 0; i < near.count(); ++i)
     if (near[i].closest.squared <= limit) order[count++] = static_cast<std::uint16_t>(i);
@@ -251,12 +251,12 @@ void find_manifold(const PlacedSegment& segment, const ObjectModel& object, doub
     if (is_tied(nearest, place)) {
       Corners corners = segment.tree.corners(pair.triangle);
       for (Vec3& x : corners) x = segment.X_WS * x;
-      flat.add(pair, corners, object.tree().corners(pair.slot));
+      flat.add(pair, corners, object.corners(pair.slot));
       continue;
     }
     if (candidates.has(place)) continue;
     ++tests;
-    if (is_nearest(segment, object.tree(), near, pair, place.direction)) candidates.add(place);
+    if (is_nearest(segment, object, near, pair, place.direction)) candidates.add(place);
   }
   choose(flat, candidates, std::min(most, Manifold::kMost), out);
   // The nearest first. Places that are equally near keep their order, so that rounding does not decide.

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "phalanx/contact/near_pairs.h"
-#include "phalanx/contact/object_model.h"
+#include "phalanx/contact/object_tree.h"
 #include "phalanx/contact/proximity.h"
 
 namespace phalanx {
 
-/// Place where a segment is near the object: a pair of triangles that is nearer than its neighbours.
+/// Point at which a segment is near the object: of a pair of triangles that is nearer than its neighbours.
 struct ContactPlace {
   std::int32_t triangle = 0;       ///< of the segment's mesh
   std::int32_t slot = 0;           ///< of the object's tree
@@ -34,7 +35,7 @@ struct Manifold {
 /// @param most   greatest number of places, at most Manifold::kMost
 /// @param near   pairs of this segment and this object
 /// Real-time: bounded, no allocation, lock, throw or I/O.
-void find_manifold(const PlacedSegment& segment, const ObjectModel& object, double reach, double least,
+void find_manifold(const PlacedSegment& segment, const ObjectTree& object, double reach, double least,
                    int most, NearPairs& near, Manifold& out) noexcept;
 
 }  // namespace phalanx

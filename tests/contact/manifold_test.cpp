@@ -29,7 +29,7 @@ class Placed {
   Manifold at(const Pose& X_WS, int most = Manifold::kMost) {
     X_WS_ = X_WS;
     Manifold manifold;
-    find_manifold({tree_, X_WS_, scratch_}, object_, kReach, kReach, most, near_, manifold);
+    find_manifold({tree_, X_WS_, scratch_}, object_.tree(), kReach, kReach, most, near_, manifold);
     return manifold;
   }
   NearPairs& near() { return near_; }

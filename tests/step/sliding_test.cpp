@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sliding mode: forces and motion of a finger that slides with friction, against closed forms, and what happens
-// where an object ends. docs/sliding.md describes the motions.
+// where an object ends.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,7 +20,6 @@
 namespace phalanx {
 namespace {
 
-using test::Approach;
 using test::LoneFinger;
 using test::Runner;
 

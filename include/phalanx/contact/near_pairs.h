@@ -16,8 +16,9 @@ class ObjectTree;
 struct PlacedSegment;
 
 /// Pairs of triangles within a distance of a segment at one pose, with their closest points, in the trees'
-/// fixed order. Unless carried to another pose, they hold for exactly this pose, one segment and one object. A segment that was blocked in the
-/// last tick, and has not moved, needs no search. Allocated once.
+/// fixed order. They hold for exactly this pose, one segment and one object; carry() takes them to another
+/// pose without their points. A segment that was blocked in the last tick, and has not moved, needs no
+/// search. Allocated once.
 class NearPairs {
  public:
   struct Pair {
@@ -43,7 +44,8 @@ class NearPairs {
     X_WS_ = X_WS;
     carried_ = true;
     reach_ -= moved;
-    least_squared_ = least_squared_ > moved * moved ? std::pow(std::sqrt(least_squared_) - moved, 2) : 0.0;
+    const double least = std::max(0.0, std::sqrt(least_squared_) - moved);
+    least_squared_ = least * least;
   }
   /// Removes pairs and pose.
   void clear() noexcept { stop_at({Mat3::Zero(), Vec3::Zero()}); }
