@@ -22,8 +22,6 @@ constexpr int kMostTests = 64;                       // of pairs against their n
 constexpr double kCosInside = 1.0 - 5e-10;           // 0.002 degrees, of a direction beside its fan
 constexpr double kCosBetween = 0.99619469809174555;  // 5 degrees, between directions of one place
 
-double squared(double x) noexcept { return x * x; }
-
 /// Adds the face normal of a triangle, on the side of `direction`. A sliver's normal is rounding noise; its
 /// neighbours' suffice.
 void add_face(const Corners& t, const Vec3& direction, NormalFan& fan) noexcept {
@@ -48,7 +46,8 @@ bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const Ne
                 const NearPairs::Pair& pair, const Vec3& direction) noexcept {
   NormalFan on_object;
   NormalFan on_segment;
-  const double limit = squared(std::sqrt(pair.closest.squared) + kTie);
+  const double reach = std::sqrt(pair.closest.squared) + kTie;
+  const double limit = reach * reach;
   for (std::size_t i = 0; i < near.count(); ++i) {
     const NearPairs::Pair& other = near[i];
     if (other.closest.squared > limit) continue;
@@ -170,7 +169,8 @@ struct FlatContact {
   void add(const NearPairs::Pair& pair, const Corners& corners, const Corners& object) noexcept {
     if (!equal.may_be_farther(corners, object) && !tied.may_be_farther(corners, object)) return;
     for_each_feature_pair(corners, object, [&](const Vec3& on_a, const Vec3& on_b) {
-      if ((on_a - on_b).squaredNorm() > squared(nearest.gap + kTier)) return;
+      const double limit = nearest.gap + kTier;
+      if ((on_a - on_b).squaredNorm() > limit * limit) return;
       const ContactPlace place = place_of(pair, on_a, on_b);
       if (!is_tied(nearest, place)) return;
       tied.add(place);
