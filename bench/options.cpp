@@ -35,6 +35,8 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
   app.add_option("--mapping", options.mapping,
                  "How the recordings' columns become joint angles (default cyberglove)")
       ->needs(recordings);
+  app.add_flag("--sliding", options.sliding, "The recordings' contacts slide: contact.mode = \"sliding\"")
+      ->needs(recordings);
   app.add_option("--json", options.json, "File for all figures");
   app.add_option("--markdown", options.markdown, "File for the tables");
   try {

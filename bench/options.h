@@ -19,6 +19,7 @@ struct Options {
   std::string recordings;              ///< folder of recorded motions; empty: the scenes are run
   std::string meshes;                  ///< folder of the objects before them
   std::string mapping = "cyberglove";  ///< of the recordings' columns to joint angles
+  bool sliding = false;                ///< the recordings' contacts slide
   std::string json;                    ///< file to write; empty: none
   std::string markdown;                ///< file to write; empty: none
 };

@@ -103,11 +103,12 @@ struct Placed {
   double lowered = 0.0;  ///< [m]
 };
 
-Placed place(const fs::path& object, double size_mm, bool fine) {
+Placed place(const fs::path& object, double size_mm, bool fine, bool sliding) {
   const Pose pose = load_scene(kScene).objects.front().pose;
   SceneDescription scene = load_scene(kScene, {{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
                                                {"objects.0.file", quoted(object)},
                                                {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
+                                               {"contact.mode", sliding ? "\"sliding\"" : "\"static\""},
                                                {"rate_hz", "1000.0"}});
   scene.objects.front().pose = pose;
   ResolvedScene resolved = resolve(scene, {});
@@ -137,29 +138,55 @@ BenchMotion recorded(const SceneDescription& of_scene, const fs::path& file, con
   return out;
 }
 
+/// Returns how far the contact's material point is on the measured segment from where it is on the shown one, along
+/// the surface [mm]. The surface's normal is the direction of the force without friction.
+double offset_along(const Snapshot& snapshot, int segment) {
+  const SegmentSnapshot& contact = snapshot.segment[idx(segment)];
+  const Pose& shown = snapshot.gdp_pose[idx(segment)];
+  const Vec3 offset = snapshot.hcp_pose[idx(segment)] * (shown.inverse() * contact.point) - contact.point;
+  const Vec3 pushing = contact.force * contact.normal - contact.friction;
+  const double size = pushing.norm();
+  const Vec3 normal = size > 0.0 ? Vec3(pushing / size) : contact.normal;
+  return 1e3 * (offset - offset.dot(normal) * normal).norm();
+}
+
 /// What the hand does over the motion.
 void describe(const Placed& placed, const BenchMotion& motion, RecordingReport& report) {
   HapticState state(*placed.model, placed.scene.parameters);
   std::size_t contacts = 0;
   std::size_t slid = 0;
+  std::size_t exhausted = 0;
+  std::vector<double> offsets;
   for (std::size_t t = 0; t < motion.angle.size(); ++t) {
     const Sample sample{static_cast<double>(t) / placed.scene.parameters.rate_hz, motion.angle[t]};
-    slid += has(step(*placed.model, placed.scene.parameters, sample, state), Status::kSlid) ? 1U : 0U;
+    const Status status = step(*placed.model, placed.scene.parameters, sample, state);
+    slid += has(status, Status::kSlid) ? 1U : 0U;
+    exhausted += has(status, Status::kSearchExhausted) ? 1U : 0U;
     bool any = false;
-    for (const SegmentSnapshot& segment : state.snapshot().segment) {
-      any = any || segment.contact;
-      if (segment.contact) report.farthest_mm = std::max(report.farthest_mm, 1e3 * segment.slid);
+    double greatest = 0.0;
+    for (int s = 0; s < kPalm; ++s) {
+      if (!state.snapshot().segment[idx(s)].contact) continue;
+      any = true;
+      greatest = std::max(greatest, offset_along(state.snapshot(), s));
     }
     contacts += any ? 1U : 0U;
+    if (any) offsets.push_back(greatest);
+  }
+  if (!offsets.empty()) {
+    std::ranges::sort(offsets);
+    report.offset_mm = offsets[offsets.size() / 2];
+    report.farthest_mm = offsets.back();
   }
   const auto ticks = static_cast<double>(motion.angle.size());
   report.in_contact = static_cast<double>(contacts) / ticks;
   report.slid = static_cast<double>(slid) / ticks;
+  report.exhausted = static_cast<double>(exhausted) / ticks;
 }
 
 RecordingReport measure(const Placed& placed, const BenchMotion& motion) {
   RecordingReport report;
   report.recording = motion.name;
+  report.sliding = placed.scene.parameters.contact.mode == ContactMode::kSliding;
   report.triangles = placed.model->object.triangle_count();
   report.lowered_mm = 1e3 * placed.lowered;
   describe(placed, motion, report);
@@ -178,7 +205,7 @@ void run_recordings(const Options& options, const std::function<void(const Recor
   const std::vector<fs::path> recordings = files(options.recordings, {".csv"});
   for (const fs::path& object : files(options.meshes, {".obj", ".stl", ".ply", ".3ds", ".glb"})) {
     const auto run = [&](double size_mm, bool fine) {
-      const Placed placed = place(object, size_mm, fine);
+      const Placed placed = place(object, size_mm, fine, options.sliding);
       for (const fs::path& recording : recordings) {
         RecordingReport report = measure(placed, recorded(placed.scene, recording, options.mapping));
         report.object = object.filename().string();

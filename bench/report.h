@@ -59,10 +59,13 @@ struct RecordingReport {
   std::string object;     ///< the mesh file's name
   double size_mm = 0.0;   ///< its largest extent
   int triangles = 0;
-  double lowered_mm = 0.0;   ///< so far below the scene's place that the open hand is clear of it
-  double in_contact = 0.0;   ///< share of the ticks with a contact [-]
-  double slid = 0.0;         ///< share of the ticks in which a contact has slid [-]
-  double farthest_mm = 0.0;  ///< greatest tangential offset between measured and shown finger
+  double lowered_mm = 0.0;  ///< so far below the scene's place that the open hand is clear of it
+  bool sliding = false;     ///< contacts slide; otherwise they are fixed points
+  double in_contact = 0.0;  ///< share of the ticks with a contact [-]
+  double slid = 0.0;        ///< share of the ticks in which a contact has slid [-]
+  double exhausted = 0.0;   ///< share of the ticks in which the search ran out of iterations [-]
+  double offset_mm = 0.0;  ///< median over the ticks with contact of the greatest offset_along() of a segment
+  double farthest_mm = 0.0;  ///< the greatest of them
   std::uint64_t hash = 0;    ///< of the forces
   TimesRow times;            ///< warm, all ticks
 };

@@ -78,8 +78,11 @@ Json json_of(const RecordingReport& recording) {
               {"object_triangles", recording.triangles},
               {"lowered_mm", recording.lowered_mm},
               {"in_contact", recording.in_contact},
+              {"contact_mode", recording.sliding ? "sliding" : "static"},
               {"slid", recording.slid},
-              {"farthest_slid_mm", recording.farthest_mm},
+              {"search_exhausted", recording.exhausted},
+              {"offset_along_mm", recording.offset_mm},
+              {"farthest_offset_along_mm", recording.farthest_mm},
               {"hash", fmt::format("{:016x}", recording.hash)}});
   return out;
 }

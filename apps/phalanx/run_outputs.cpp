@@ -36,16 +36,18 @@ RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, DrawnHand draw
     prepare_output_folder(plan_.folder);
     prepare_output_folder(plan_.folder / "hand");
     // Remove files of an earlier run: one that this run does not write must not stay beside the others.
-    for (const char* name : {"summary.json", "ticks.csv", "poses.csv"})
+    for (const char* name : {"summary.json", "ticks.csv", "poses.csv", "contacts.csv"})
       std::filesystem::remove(plan_.folder / name);
     ticks_.emplace(plan_.folder / "ticks.csv");
     if (plan_.poses) poses_.emplace(plan_.folder / "poses.csv");
+    if (plan_.contacts) contacts_.emplace(plan_.folder / "contacts.csv");
   }
 }
 
 void RunOutputs::add(const Snapshot& snapshot) {
   if (ticks_) ticks_->write(snapshot);
   if (poses_) poses_->write(snapshot);
+  if (contacts_) contacts_->write(snapshot);
   if (!plan_.plot.empty()) trace_.push_back(trace_tick(snapshot));
   moment_.see(snapshot);
 }
@@ -60,6 +62,7 @@ void RunOutputs::finish(const Summary& summary, const PlotText& text) {
   write_meshes();
   ticks_->commit();
   if (poses_) poses_->commit();
+  if (contacts_) contacts_->commit();
   write_text_file(plan_.folder / "summary.json", summary_json(summary));
 }
 

@@ -9,6 +9,7 @@
 #include "phalanx/figures/picture.h"
 #include "phalanx/figures/picture_moment.h"
 #include "phalanx/figures/plot.h"
+#include "phalanx/record/contacts_csv.h"
 #include "phalanx/record/poses_csv.h"
 #include "phalanx/record/summary.h"
 #include "phalanx/record/ticks_csv.h"
@@ -20,6 +21,7 @@ namespace phalanx {
 struct OutputPlan {
   std::filesystem::path folder;
   bool poses = false;
+  bool contacts = false;
   std::filesystem::path plot;
   std::filesystem::path picture;
   std::optional<std::uint64_t> picture_at = {};  ///< tick of the picture; none: PictureMoment chooses
@@ -48,6 +50,7 @@ class RunOutputs {
   DrawnHand drawn_;
   std::optional<TicksCsv> ticks_;
   std::optional<PosesCsv> poses_;
+  std::optional<ContactsCsv> contacts_;
   Trace trace_;
   PictureMoment moment_;
 };

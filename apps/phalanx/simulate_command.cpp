@@ -42,6 +42,7 @@ struct SimulateOptions {
   std::string out, plot, picture;
   CLI::Option* plot_asked = nullptr;
   bool poses = false;
+  bool contacts = false;
   bool quiet = false;
 };
 
@@ -143,8 +144,11 @@ SceneDescription described(const SimulateOptions& options) {
 }
 
 OutputPlan plan(const SimulateOptions& options) {
-  OutputPlan result{
-      .folder = options.out, .poses = options.poses, .plot = options.plot, .picture = options.picture};
+  OutputPlan result{.folder = options.out,
+                    .poses = options.poses,
+                    .contacts = options.contacts,
+                    .plot = options.plot,
+                    .picture = options.picture};
   if (options.plot_asked->count() > 0 && options.plot.empty()) {
     if (options.out.empty())
       throw std::invalid_argument("--plot needs a FILE.svg, or --out DIR to put plot.svg into");
@@ -161,6 +165,7 @@ OutputPlan plan(const SimulateOptions& options) {
   if (options.at && options.picture.empty())
     throw std::invalid_argument("--at needs --picture FILE.png, whose moment it names");
   if (options.poses && options.out.empty()) throw std::invalid_argument("--poses needs --out DIR");
+  if (options.contacts && options.out.empty()) throw std::invalid_argument("--contacts needs --out DIR");
   return result;
 }
 
@@ -201,6 +206,10 @@ std::vector<std::string> notes_on_meshes(const SceneDescription& scene, const Tr
 int simulate_scene(const SimulateOptions& options) {
   OutputPlan output_plan = plan(options);
   SceneDescription scene = described(options);
+  if (options.contacts && scene.parameters.contact.mode != ContactMode::kSliding)
+    throw std::invalid_argument(
+        "--contacts: the scene has contact.mode = \"static\", and ticks.csv holds its one contact point a "
+        "segment; leave --contacts out or add --set contact.mode=sliding");
   // The scene's description of its own motion and objects does not hold for others.
   if (!options.motion.empty() || !options.object.empty()) scene.description.clear();
   const bool draws = !output_plan.picture.empty();
@@ -275,6 +284,8 @@ void add_simulate_command(CLI::App& app, Job& job) {
                    "write summary.json, ticks.csv, object.obj and hand/*.obj into this folder")
       ->type_name("DIR");
   command->add_flag("--poses", options->poses, "with --out: poses.csv too");
+  command->add_flag("--contacts", options->contacts,
+                    "with --out: contacts.csv too, the contact points of sliding mode");
   options->plot_asked =
       command->add_option("--plot", options->plot, "draw forces, torques and angles [DIR/plot.svg]")
           ->expected(0, 1)

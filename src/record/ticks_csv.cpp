@@ -35,8 +35,9 @@ std::string ticks_csv_header() {
     for (int joint = 0; joint < kJoints; ++joint) header.append(",").append(joint_name(joint)).append(unit);
   }
   for (int segment = 0; segment < kSegments; ++segment) {
-    for (const std::string_view field : {"_contact", "_depth_m", "_force_raw_n", "_force_n", "_px_m", "_py_m",
-                                         "_pz_m", "_nx", "_ny", "_nz", "_slid_m"}) {
+    for (const std::string_view field :
+         {"_contact", "_depth_m", "_force_raw_n", "_force_n", "_px_m", "_py_m", "_pz_m", "_nx", "_ny", "_nz",
+          "_slid_m", "_force_tx_n", "_force_ty_n", "_force_tz_n", "_slip", "_slip_mm_per_s", "_spin_nm"}) {
       header.append(",").append(segment_column(segment)).append(field);
     }
   }
@@ -66,6 +67,11 @@ void TicksCsv::write(const Snapshot& snapshot) {
     write_vector(out_, segment.normal);
     out_.text(",");
     out_.number(segment.slid);
+    write_vector(out_, segment.friction);
+    out_.text(segment.slips ? ",1," : ",0,");
+    out_.number(1e3 * segment.slip_speed);
+    out_.text(",");
+    out_.number(segment.spin);
   }
   out_.text("\n");
 }

@@ -49,6 +49,18 @@ void put_contact(int number, const SegmentSnapshot& segment, wire::Contact& out)
   out.set_oscillating(segment.oscillating);
   out.set_frequency(static_cast<float>(segment.oscillation_frequency));
   out.set_swing(static_cast<float>(segment.oscillation_swing));
+  out.set_slips(segment.slips);
+}
+
+void put_point(const ContactPoint& point, wire::ContactPoint& out) {
+  out.set_segment(static_cast<std::uint32_t>(point.segment));
+  put(point.point, *out.mutable_point());
+  put(point.normal, *out.mutable_normal());
+  out.set_force(static_cast<float>(point.force));
+  put(point.friction, *out.mutable_friction());
+  out.set_spin(static_cast<float>(point.spin));
+  out.set_coefficient(static_cast<float>(point.coefficient));
+  out.set_slips(point.slips);
 }
 
 }  // namespace
@@ -87,6 +99,7 @@ void write_tick(const StationView& view, wire::Tick& out) {
     if (segment.contact || segment.force > 0.0 || segment.oscillating)
       put_contact(s, segment, *out.add_contact());
   }
+  for (const ContactPoint& point : snapshot.contact_points) put_point(point, *out.add_contact_point());
   for (int d = 0; d < kDigits; ++d) {
     if (snapshot.started_inside[idx(d)]) out.add_started_inside(static_cast<std::uint32_t>(d));
   }

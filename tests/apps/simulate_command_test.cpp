@@ -64,11 +64,25 @@ TEST(CliSimulate, WritesTheSameTicksTwice) {
   EXPECT_EQ(a, read_file(folder / "b/ticks.csv"));
 }
 
-TEST(CliSimulate, LeavesNoPosesOfAnEarlierRun) {
+TEST(CliSimulate, LeavesNoFileOfAnEarlierRunThatItDoesNotWrite) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_program(folder, "simulate wave --seconds 0.1 --poses --out a").exit_code, 0);
+  ASSERT_EQ(
+      run_program(folder, "simulate wave --seconds 0.1 --poses --contacts --set contact.mode=sliding --out a")
+          .exit_code,
+      0);
   ASSERT_EQ(run_program(folder, "simulate wave --seconds 0.1 --out a").exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "a/poses.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a/contacts.csv"));
+}
+
+TEST(CliSimulate, WritesTheContactPointsOfSlidingMode) {
+  const TemporaryFolder folder;
+  const auto result =
+      run_program(folder, "simulate index_ball --quiet --set contact.mode=sliding --contacts --out a");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string contacts = read_file(folder / "a/contacts.csv");
+  EXPECT_THAT(contacts, ::testing::StartsWith("tick,segment,px_m"));
+  EXPECT_GT(lines(contacts), 50);
 }
 
 TEST(CliSimulate, OverridesRateSecondsAndSceneKeys) {

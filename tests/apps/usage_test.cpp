@@ -28,8 +28,8 @@ TEST(CliUsage, SimulateHelpNamesEveryOption) {
   const auto result = run_program(folder, "simulate --help");
   EXPECT_EQ(result.exit_code, 0);
   for (const char* option :
-       {"--out", "--poses", "--plot", "--picture", "--set", "--object", "--object-size-mm", "--profile",
-        "--motion", "--mapping", "--trial", "--seconds", "--rate-hz", "--seed", "--quiet"}) {
+       {"--out", "--poses", "--contacts", "--plot", "--picture", "--set", "--object", "--object-size-mm",
+        "--profile", "--motion", "--mapping", "--trial", "--seconds", "--rate-hz", "--seed", "--quiet"}) {
     EXPECT_THAT(result.out, HasSubstr(option));
   }
 }
@@ -70,6 +70,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"simulate a b", "'b' is one argument too many"}, Case{"simulate --seconds abc", "--seconds"},
         Case{"simulate --plot", "--plot needs"}, Case{"simulate --plot wave", "must end in .svg"},
         Case{"simulate --picture a.jpg", "must end in .png"}, Case{"simulate --poses", "--poses needs --out"},
+        Case{"simulate --contacts", "--contacts needs --out"},
+        Case{"simulate --contacts --out a", "leave --contacts out or add --set contact.mode=sliding"},
         Case{"simulate --object-size-mm 80", "needs --object"}, Case{"simulate --set force.law", "force.law"},
         Case{"simulate wavee", "did you mean \"wave\"? Known: "}, Case{"run nope", "nope.toml; Known: "},
         Case{"run --stifness 0.9", "did you mean '--set force.stiffness_n_per_mm=VALUE'? See"},

@@ -27,7 +27,7 @@ std::vector<std::string> split(const std::string& line) {
 
 TEST(TicksCsv, HeaderNamesEveryColumnInOrder) {
   const auto cells = split(ticks_csv_header());
-  ASSERT_EQ(cells.size(), 2U + 3U * 20U + 16U * 11U);
+  ASSERT_EQ(cells.size(), 2U + 3U * 20U + 16U * 17U);
   EXPECT_EQ(cells[0], "tick");
   EXPECT_EQ(cells[1], "time_s");
   EXPECT_EQ(cells[2], "thumb_cmc_flexion_hcp_rad");
@@ -35,13 +35,16 @@ TEST(TicksCsv, HeaderNamesEveryColumnInOrder) {
   EXPECT_EQ(cells[22], "thumb_cmc_flexion_gdp_rad");
   EXPECT_EQ(cells[42], "thumb_cmc_flexion_torque_nm");
   EXPECT_EQ(cells[61], "little_dip_flexion_torque_nm");
-  const std::vector<std::string> first(cells.begin() + 62, cells.begin() + 73);
-  EXPECT_THAT(first, ::testing::ElementsAre(
-                         "thumb_metacarpal_contact", "thumb_metacarpal_depth_m",
-                         "thumb_metacarpal_force_raw_n", "thumb_metacarpal_force_n", "thumb_metacarpal_px_m",
-                         "thumb_metacarpal_py_m", "thumb_metacarpal_pz_m", "thumb_metacarpal_nx",
-                         "thumb_metacarpal_ny", "thumb_metacarpal_nz", "thumb_metacarpal_slid_m"));
-  EXPECT_EQ(cells.back(), "wrist_slid_m");
+  const std::vector<std::string> first(cells.begin() + 62, cells.begin() + 79);
+  EXPECT_THAT(
+      first, ::testing::ElementsAre(
+                 "thumb_metacarpal_contact", "thumb_metacarpal_depth_m", "thumb_metacarpal_force_raw_n",
+                 "thumb_metacarpal_force_n", "thumb_metacarpal_px_m", "thumb_metacarpal_py_m",
+                 "thumb_metacarpal_pz_m", "thumb_metacarpal_nx", "thumb_metacarpal_ny", "thumb_metacarpal_nz",
+                 "thumb_metacarpal_slid_m", "thumb_metacarpal_force_tx_n", "thumb_metacarpal_force_ty_n",
+                 "thumb_metacarpal_force_tz_n", "thumb_metacarpal_slip", "thumb_metacarpal_slip_mm_per_s",
+                 "thumb_metacarpal_spin_nm"));
+  EXPECT_EQ(cells.back(), "wrist_spin_nm");
   for (const std::string& cell : cells)
     EXPECT_THAT(cell, ::testing::MatchesRegex("[a-z][a-z0-9_]*")) << "a name in any programming language";
 }
@@ -64,7 +67,11 @@ TEST(TicksCsv, ARowHoldsEveryFieldUnderItsColumn) {
                            .force = base + 2,
                            .point = Vec3(base + 3, base + 4, base + 5),
                            .normal = Vec3(base + 6, base + 7, base + 8),
-                           .slid = base + 9};
+                           .slid = base + 9,
+                           .friction = Vec3(base + 10, base + 11, base + 12),
+                           .spin = base + 14,
+                           .slips = s % 3 == 1,
+                           .slip_speed = 1e-3 * (base + 13)};
   }
   const TemporaryFolder folder;
   TicksCsv csv(folder / "ticks.csv");
@@ -78,7 +85,8 @@ TEST(TicksCsv, ARowHoldsEveryFieldUnderItsColumn) {
   for (int s = 0; s < kSegments; ++s) {
     const int base = 1000 * (s + 1);
     expected += fmt::format(",{},{}.5", s % 2, base);
-    for (int i = 1; i <= 9; ++i) expected += fmt::format(",{}", base + i);
+    for (int i = 1; i <= 12; ++i) expected += fmt::format(",{}", base + i);
+    expected += fmt::format(",{},{},{}", s % 3 == 1 ? 1 : 0, 1e3 * (1e-3 * (base + 13)), base + 14);
   }
   EXPECT_EQ(read_file(folder / "ticks.csv"), ticks_csv_header() + "\n" + expected + "\n");
 }

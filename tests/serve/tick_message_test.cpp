@@ -124,6 +124,7 @@ TEST(TickMessage, EveryFieldOfAContactHasItsOwnNumber) {
   view.snapshot.segment[5].oscillating = true;
   view.snapshot.segment[5].oscillation_frequency = 7.5;
   view.snapshot.segment[5].oscillation_swing = 0.625;
+  view.snapshot.segment[5].slips = true;
   view.snapshot.stiffness_factor = 0.875;
   view.snapshot.status = static_cast<Status>(6);
   view.snapshot.measured_force[2] = 3.25;
@@ -146,10 +147,48 @@ TEST(TickMessage, EveryFieldOfAContactHasItsOwnNumber) {
   EXPECT_TRUE(contact.oscillating());
   EXPECT_EQ(contact.frequency(), 7.5F);
   EXPECT_EQ(contact.swing(), 0.625F);
+  EXPECT_TRUE(contact.slips());
   EXPECT_EQ(tick.stiffness_factor(), 0.875F);
   EXPECT_EQ(tick.status(), 6U);
   ASSERT_GT(tick.measured_force_size(), 2);
   EXPECT_EQ(tick.measured_force(2), 3.25F);
+}
+
+TEST(TickMessage, EveryFieldOfAContactPointHasItsOwnNumber) {
+  StationView view = a_view();
+  wire::Tick tick;
+  write_tick(view, tick);
+  EXPECT_EQ(tick.contact_point_size(), 0);
+  view.snapshot.contact_points.count = 2;
+  view.snapshot.contact_points.point[0].segment = 3;
+  view.snapshot.contact_points.point[1] = {.segment = 5,
+                                           .point = Vec3(0.125, 0.25, 0.375),
+                                           .normal = Vec3(0.5, -0.5, 0.75),
+                                           .force = 1.5,
+                                           .friction = Vec3(-0.125, 2.5, 3.25),
+                                           .spin = 0.0078125,
+                                           .coefficient = 0.625,
+                                           .slips = true};
+  write_tick(view, tick);
+  write_tick(view, tick);  // the second time nothing is left of the first
+  ASSERT_EQ(tick.contact_point_size(), 2);
+  EXPECT_EQ(tick.contact_point(0).segment(), 3U);
+  EXPECT_FALSE(tick.contact_point(0).slips());
+  const wire::ContactPoint& point = tick.contact_point(1);
+  EXPECT_EQ(point.segment(), 5U);
+  const float numbers[] = {0.125F, 0.25F, 0.375F, 0.5F, -0.5F, 0.75F, -0.125F, 2.5F, 3.25F};
+  ASSERT_EQ(point.point_size(), 3);
+  ASSERT_EQ(point.normal_size(), 3);
+  ASSERT_EQ(point.friction_size(), 3);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(point.point(k), numbers[k]) << k;
+    EXPECT_EQ(point.normal(k), numbers[3 + k]) << k;
+    EXPECT_EQ(point.friction(k), numbers[6 + k]) << k;
+  }
+  EXPECT_EQ(point.force(), 1.5F);
+  EXPECT_EQ(point.spin(), 0.0078125F);
+  EXPECT_EQ(point.coefficient(), 0.625F);
+  EXPECT_TRUE(point.slips());
 }
 
 TEST(StateMessage, EveryCounterOfTheLinkHasItsOwnNumber) {

@@ -258,23 +258,30 @@ TEST(Sliding, AFinerMeshOfTheSameFaceGivesTheSameForce) {
   EXPECT_LE(beyond, 30) << "of 201 ticks";
 }
 
-/// Two faces at right angles, that meet below the origin along the finger.
-TriangleMesh groove() {
+/// Two faces that meet below the origin along the finger, and that the tip touches together when its centre is at the
+/// origin. The groove ends 5 mm above these places.
+TriangleMesh groove(double opening) {
+  const double half = 0.5 * opening;
+  const double length = LoneFinger::kTipRadius / std::tan(half) + 5e-3;
+  const double depth = LoneFinger::kTipRadius / std::sin(half);
   TriangleMesh mesh;
   for (const double side : {-1.0, 1.0}) {
     Pose X;
-    X.R = Eigen::AngleAxisd(side * kPi / 4.0, Vec3::UnitY()).toRotationMatrix();
-    X.p = X.R * Vec3(side * 0.01, 0.0, -0.01) + Vec3(0.0, 0.009, -0.007);
-    append(mesh, make_box({0.02, 0.03, 0.02}, 12), X);
+    X.R = Eigen::AngleAxisd(side * (half - kPi / 2.0), Vec3::UnitY()).toRotationMatrix();
+    X.p = X.R * Vec3(side * 0.5 * length, 0.0, -0.01) + Vec3(0.0, 0.009, -depth);
+    append(mesh, make_box({length, 0.03, 0.02}, 12), X);
   }
   return mesh;
 }
 
-TEST(Sliding, AFingerComesOutOfAGrooveWithoutAPull) {
+class SlidingGroove : public testing::TestWithParam<double> {};
+
+TEST_P(SlidingGroove, AFingerComesOutWithoutAPull) {
   for (const double mu : {0.1, 0.6, 1.0, 2.0}) {
-    LoneFinger finger = sliding_finger(groove(), mu);
+    LoneFinger finger = sliding_finger(groove(GetParam() * kDeg), mu);
     Pressed press(finger, 2e-3);
     ASSERT_GT(raw_force(press.hand.now()), 0.1) << mu;
+    ASSERT_EQ(press.hand.now().contact_points.count, 2) << mu << ": it is between both faces";
     const double out = press.touched - 0.3e-3 / LoneFinger::lever();
     for (int i = 1; i <= 100; ++i) {
       press.hand.tick(LoneFinger::pose(press.goal + (out - press.goal) * i / 100.0));
@@ -286,6 +293,8 @@ TEST(Sliding, AFingerComesOutOfAGrooveWithoutAPull) {
         << mu;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Degrees, SlidingGroove, testing::Values(90.0, 20.0));
 
 /// Work that the finger puts into the object on a closed path over a ball, 2 mm deep [J].
 double work_of_a_loop(double mu) {
@@ -425,6 +434,92 @@ TEST(Sliding, CapsAndSmoothingKeepTheForceInItsCone) {
   }
 }
 
+/// Checks the contact points of the index finger's tip: their shares add up to the force sent, and each is in its
+/// cone. @returns their number
+int check_points(const Snapshot& s, const ContactParameters& parameters) {
+  const SegmentSnapshot& tip = test::index_segment(s, 2);
+  Vec3 sum = Vec3::Zero();
+  Vec3 friction = Vec3::Zero();
+  int count = 0;
+  for (const ContactPoint& at : s.contact_points) {
+    EXPECT_EQ(at.segment, segment_index(test::kIndex, 2));
+    EXPECT_NEAR(at.normal.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(at.friction.dot(at.normal), 0.0, 1e-12);
+    EXPECT_GE(at.force, 0.0);
+    EXPECT_EQ(at.coefficient, parameters.friction);
+    EXPECT_LE(at.friction.norm(), at.coefficient * at.force * (1.0 + 1e-9));
+    EXPECT_LE(std::abs(at.spin), at.coefficient * parameters.spin_radius * at.force * (1.0 + 1e-9));
+    sum += at.force * at.normal + at.friction;
+    friction += at.friction;
+    ++count;
+  }
+  EXPECT_LT((sum - tip.force * tip.normal).norm(), 1e-12);
+  EXPECT_LT((friction - tip.friction).norm(), 1e-12);
+  return count;
+}
+
+TEST(Sliding, ContactPointsShareTheForceSent) {
+  for (const bool in_groove : {false, true}) {
+    LoneFinger finger =
+        in_groove ? sliding_finger(groove(90.0 * kDeg), 0.1) : sliding_finger(block(0.2, 0.02), 0.6);
+    finger.model().parameters.limits.fingertip_force_enabled = true;
+    finger.model().parameters.limits.fingertip_force = 1.2;
+    Pressed press(finger, 3e-3);
+    const ContactParameters& parameters = finger.model().parameters.contact;
+    const int at_rest = check_points(press.hand.now(), parameters);
+    EXPECT_EQ(at_rest, in_groove ? 2 : 1);
+    double spin = 0.0;
+    for (int i = 1; i <= 300; ++i) {
+      press.hand.tick(LoneFinger::pose(press.goal, 0.4e-3 * i));
+      check_points(press.hand.now(), parameters);
+      spin = std::max(spin, std::abs(press.tip().spin));
+    }
+    EXPECT_GT(spin, 1e-5) << "a finger that turns as it is dragged [Nm]";
+  }
+}
+
+TEST(Sliding, ASegmentSlipsAtTheSpeedAtWhichItIsDragged) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  Pressed press(finger, 3e-3);
+  EXPECT_FALSE(press.tip().slips);
+  EXPECT_LT(press.tip().slip_speed, 1e-9) << "at rest [m/s]";
+  for (int i = 1; i <= 400; ++i) {
+    const double before = test::index_gdp(press.hand.now(), 1);
+    press.hand.tick(LoneFinger::pose(press.goal, 0.4e-3 * i));
+    if (i <= 300) continue;
+    ASSERT_TRUE(press.tip().slips) << i;
+    // The shown finger turns about its first joint, which is above the block, and bends a little as it slides.
+    const auto first = static_cast<std::size_t>(segment_index(test::kIndex, 0));
+    const Vec3 arm = press.tip().point - press.hand.now().gdp_pose[first].p;
+    const double rate = (test::index_gdp(press.hand.now(), 1) - before) / 1e-3;
+    const double speed = rate * std::hypot(arm.x(), arm.y());
+    ASSERT_GT(rate, 0.3) << i << " [rad/s]";
+    ASSERT_NEAR(press.tip().slip_speed, speed, 0.1 * speed) << i;
+  }
+}
+
+TEST(Sliding, StaticModeAndForcesWithoutContactHaveNoContactPoints) {
+  LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
+  finger.model().parameters.stabiliser.method = Stabiliser::kSmoothing;
+  finger.model().parameters.stabiliser.min_rate = -10.0;
+  Pressed press(finger, 3e-3);
+  press.hand.move(LoneFinger::pose(press.goal, 0.1), 50);
+  ASSERT_GT(press.hand.now().contact_points.count, 0);
+  ASSERT_GT(press.tip().friction.norm(), 0.1);
+  press.hand.move(LoneFinger::pose(press.touched - 2e-2, 0.1), 5);
+  ASSERT_FALSE(press.tip().contact);
+  ASSERT_GT(press.tip().force, 0.1) << "it decays";
+  EXPECT_EQ(press.hand.now().contact_points.count, 0);
+  EXPECT_EQ(press.tip().friction, Vec3::Zero());
+  EXPECT_EQ(press.tip().slip_speed, 0.0);
+  EXPECT_FALSE(press.tip().slips);
+  finger.model().parameters.contact.mode = ContactMode::kStatic;
+  press.hand.move(LoneFinger::pose(press.goal, 0.1), 100);
+  ASSERT_TRUE(press.tip().contact);
+  EXPECT_EQ(press.hand.now().contact_points.count, 0);
+  EXPECT_EQ(press.tip().friction, Vec3::Zero());
+}
+
 TEST(Sliding, TheLocalWallReplacesTheTorqueOfItsContact) {
   LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
   finger.model().parameters.stabiliser.method = Stabiliser::kLocalWall;
@@ -445,7 +540,7 @@ TEST(Sliding, TheLocalWallReplacesTheTorqueOfItsContact) {
 }
 
 TEST(Sliding, OneContactPointASegmentSufficesInAGroove) {
-  LoneFinger finger = sliding_finger(groove(), 0.6);
+  LoneFinger finger = sliding_finger(groove(90.0 * kDeg), 0.6);
   finger.model().parameters.contact.max_contacts = 1;
   Pressed press(finger, 2e-3);
   EXPECT_GT(raw_force(press.hand.now()), 0.1);

@@ -26,6 +26,7 @@ export interface Theme {
   readonly object: string;
   readonly floor: string;
   readonly arrow: string;
+  readonly slip: string; // an arrow, where the finger slips
   readonly lost: string; // the hand of a page without connection
 }
 
@@ -45,6 +46,7 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     object: "#8d99a6",
     floor: "#1a2027",
     arrow: "#F0E442",
+    slip: "#56B4E9",
     lost: "#6b7076",
   },
   light: {
@@ -62,6 +64,7 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     object: "#9aa5b1",
     floor: "#e6ebf0",
     arrow: "#8a4b00",
+    slip: "#0072B2",
     lost: "#9a9fa5",
   },
 };

@@ -17,7 +17,8 @@ namespace phalanx {
 
 /// @returns the header line without its line feed: `tick,time_s`, 20 `<joint>_hcp_rad`, 20 `<joint>_gdp_rad`,
 /// 20 `<joint>_torque_nm`. Then per segment `_contact _depth_m _force_raw_n _force_n _px_m _py_m _pz_m _nx
-/// _ny _nz _slid_m`, in the order of joint_name() and segment_column().
+/// _ny _nz _slid_m _force_tx_n _force_ty_n _force_tz_n _slip _slip_mm_per_s _spin_nm`, in the order of
+/// joint_name() and segment_column().
 [[nodiscard]] std::string ticks_csv_header();
 
 /// File of the ticks. It holds no wall-clock time, so that equal motions give equal files, bit for bit. Not

@@ -37,6 +37,31 @@ struct Sample {
   AngleOrigins angle_origin{};  ///< of `angle`. It is copied to the snapshot and does not affect the command.
 };
 
+/// Contact point that presses in sliding mode, with its share of the segment's force; world frame W, SI. The shares
+/// `force` * normal + friction of a segment's points add up to the force sent to it. Where points oppose each other,
+/// and their resultant is less than a tenth of the sum of their sizes, the shares are those for a tenth. With the
+/// stabiliser `direction` the force sent may have another direction.
+struct ContactPoint {
+  int segment = 0;
+  Vec3 point = Vec3::Zero();     ///< on the GDP segment [m]
+  Vec3 normal = Vec3::Zero();    ///< unit vector from the object to the segment at closest approach
+  double force = 0.0;            ///< along the normal, on the finger [N]
+  Vec3 friction = Vec3::Zero();  ///< along the surface, on the finger [N]
+  double spin = 0.0;             ///< friction's moment about the normal, on the finger [Nm]
+  double coefficient = 0.0;      ///< of Coulomb friction, mu [-]: |friction| <= mu force
+  bool slips = false;            ///< friction along the surface is at its bound
+};
+
+/// Contact points of all digits, in the digits' order. Empty in static mode.
+struct ContactPoints {
+  static constexpr int kMost = 16 * kDigits;
+  int count = 0;
+  std::array<ContactPoint, kMost> point;
+
+  [[nodiscard]] const ContactPoint* begin() const noexcept { return point.data(); }
+  [[nodiscard]] const ContactPoint* end() const noexcept { return point.data() + count; }
+};
+
 /// Contact of one segment at one tick; world frame W, SI.
 struct SegmentSnapshot {
   bool contact = false;    ///< the segment has a contact record
@@ -49,6 +74,11 @@ struct SegmentSnapshot {
   Vec3 normal = Vec3::Zero();
   /// Tangential offset between the contact's material point on the HCP and on the GDP [m].
   double slid = 0.0;
+  // Sliding mode; 0 in static mode, and while a force decays without contact:
+  Vec3 friction = Vec3::Zero();        ///< sum of ContactPoint::friction [N]
+  double spin = 0.0;                   ///< moment of friction's spin about the mean normal of the points [Nm]
+  bool slips = false;                  ///< points with more than half of the normal force slip
+  double slip_speed = 0.0;             ///< of the GDP's material point at `point`, along the surface [m/s]
   bool oscillating = false;            ///< `force` oscillates: OscillationObserver
   double oscillation_frequency = 0.0;  ///< [Hz]; 0 while not oscillating
   double oscillation_swing = 0.0;      ///< last full swing from peak to peak [N]; 0 while not oscillating
@@ -67,6 +97,7 @@ struct Snapshot {
   JointArray gdp_angle{};  ///< [rad]
   JointArray torque{};     ///< commanded torque of the contacts on the finger's joints, axis . (r x f) [Nm]
   std::array<SegmentSnapshot, kSegments> segment{};
+  ContactPoints contact_points;
   std::array<Pose, kSegments> hcp_pose{};                   ///< X_WS
   std::array<Pose, kSegments> gdp_pose{};                   ///< X_WS
   JointArray measured_torque = not_measured<JointArray>();  ///< from the sample; NaN: not measured [Nm]

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The place of the 3D view: its buttons, its keys, and the text that replaces it if it cannot be shown.
+import { slides } from "../state/keys";
 import type { Store } from "../state/store";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
@@ -24,7 +25,7 @@ export interface ViewFrame {
 
 export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame {
   let view: HandView | undefined;
-  let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true };
+  let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   const host = el("div", { class: "view-host", tabindex: 0, role: "application", "aria-label": words.label });
   const wait = el("p", { class: "view-wait" }, words.loading);
 
@@ -33,15 +34,20 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
   const presets = (Object.keys(words.presets) as CameraPreset[]).map((preset, i) =>
     button(words.presets[preset], () => camera(preset), { title: String(i + 1), "aria-keyshortcuts": String(i + 1) }),
   );
-  const switches = (Object.keys(words.parts) as Part[]).map((part) => {
+  function partSwitch(part: Part): HTMLElement {
     const control = switchButton(words.parts[part], (on) => {
       parts = { ...parts, [part]: on };
       setSwitch(control, on);
       view?.setParts(parts);
     });
-    setSwitch(control, true);
+    setSwitch(control, parts[part]);
     return control;
-  });
+  }
+  const cones = partSwitch("cones");
+  const switches = [...(["skin", "ghost", "arrows", "object"] as const).map(partSwitch), cones];
+  const showCones = () => setShown(cones, slides(store.state, store.welcome));
+  store.on(["state", "connection"], showCones);
+  showCones();
   const picture = button(words.picture, () => view && saveFile(`phalanx-${stamp()}.png`, view.picture()));
   const cameras = el(
     "div",
@@ -90,7 +96,7 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
     store.on(["tick"], () => store.tick && view?.show(store.tick));
   }
   return {
-    element: el("div", { class: "view-frame" }, host, wait, viewKey(), el("div", { class: "view-tools" }, cameras, menu), ...over),
+    element: el("div", { class: "view-frame" }, host, wait, viewKey(store), el("div", { class: "view-tools" }, cameras, menu), ...over),
     view: () => view,
     load,
     setTheme: (theme) => view?.setTheme(theme),

@@ -46,6 +46,11 @@ export function valueOf(state: State | undefined, welcome: Welcome | undefined, 
   return key ? defaultOf(key, objectKind(state, welcome)) : "";
 }
 
+/// Whether contacts slide, with friction.
+export function slides(state: State | undefined, welcome: Welcome | undefined): boolean {
+  return unquote(valueOf(state, welcome, "contact.mode")) === "sliding";
+}
+
 /// Whether another value overrides the scene's.
 export function isChanged(state: State | undefined, setting: string): boolean {
   return state?.changed.some((one) => one.key === setting) ?? false;

@@ -5,8 +5,8 @@ import type { Tick } from "../gen/phalanx/tick_pb";
 import { themes } from "../theme";
 import type { ThemeName } from "../theme";
 import type { Sight } from "./camera_presets";
-import { ContactMarks, marksOf } from "./contact_marks";
-import type { Mark } from "./contact_marks";
+import { ContactMarks, marksOf, pointsOf } from "./contact_marks";
+import type { Mark, PointMark } from "./contact_marks";
 import { Floor } from "./floor";
 import { HandPair } from "./hand_pair";
 import { objectShape } from "./hand_shape";
@@ -28,18 +28,19 @@ export class HandScene {
   private readonly background = new Color();
   private readonly objectMaterial = new ObjectMaterial();
   private object: Mesh<BufferGeometry, ObjectMaterial> | null = null;
-  private parts: ShownParts = { skin: true, ghost: true, arrows: true, object: true };
+  private parts: ShownParts = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   private theme: ThemeName = "dark";
   private lost = false;
   private whole = true; // the newest tick had a whole hand
   private left = false;
   private contacts: readonly Mark[] = [];
+  private points: readonly PointMark[] = [];
   private covered = new Box3();
 
   constructor() {
     this.scene.background = this.background;
     this.scene.add(this.lights.group, this.floor.group, this.hands.shownGroup, this.marks.solid);
-    this.over.add(this.hands.ghostGroup, this.marks.faint);
+    this.over.add(this.hands.ghostGroup, this.marks.cones, this.marks.faint);
     this.setTheme(this.theme);
   }
 
@@ -56,6 +57,7 @@ export class HandScene {
     this.floor.standUnder(shape, new Box3());
     this.covered.makeEmpty();
     this.contacts = [];
+    this.points = [];
     this.paint();
   }
 
@@ -64,6 +66,7 @@ export class HandScene {
     this.whole = this.hands.pose(tick.gdpPose, tick.hcpPose);
     if (this.whole) {
       this.contacts = marksOf(tick);
+      this.points = pointsOf(tick);
       this.coverHand();
     }
     this.paint();
@@ -92,7 +95,7 @@ export class HandScene {
     this.background.set(theme.background);
     this.floor.setTheme(theme, name === "dark");
     this.lights.setTheme(name === "dark");
-    this.marks.setColour(theme.arrow, theme.background);
+    this.marks.setColours({ arrow: theme.arrow, slip: theme.slip, around: theme.background });
     this.hands.setGhostColour(theme.ghost);
     this.objectMaterial.color.set(theme.object);
     this.paint();
@@ -148,8 +151,9 @@ export class HandScene {
     const contacts = dead ? [] : this.contacts;
     this.hands.paint(dead ? theme.lost : theme.skin, !dead, contacts);
     this.hands.ghostGroup.visible = this.parts.ghost && !dead;
-    this.marks.show(contacts);
+    this.marks.show(contacts, dead ? [] : this.points);
     this.marks.visible = this.parts.arrows && !dead;
+    this.marks.cones.visible = this.parts.cones && !dead;
     if (this.object) this.object.visible = this.parts.object;
     this.objectMaterial.setTouches(contacts.filter((mark) => mark.touching), kTouchRadius);
     this.objectMaterial.setFingers(this.hands.capsules());

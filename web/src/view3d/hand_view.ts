@@ -12,6 +12,7 @@ export interface ShownParts {
   readonly ghost: boolean; // the measured hand
   readonly arrows: boolean;
   readonly object: boolean;
+  readonly cones: boolean; // of friction, at each contact point of sliding mode
 }
 
 /// The content of the last frame, for tests and inspection. World frame, metres.
@@ -21,7 +22,9 @@ export interface ViewProbe {
   readonly shown: readonly Point[]; // origin of each segment's frame as drawn, 16
   readonly ghost: readonly Point[];
   readonly skin: readonly DrawnVertex[]; // some of it; empty: the segments are shown
-  readonly arrows: readonly { readonly segment: number; readonly length: number }[]; // visible ones [m]
+  readonly arrows: readonly { readonly segment: number; readonly length: number; readonly slips: boolean }[]; // visible ones [m]
+  readonly rings: number; // visible, two where a finger slips
+  readonly cones: number; // visible
   readonly quality: number; // 0 lowest .. 3
   readonly framesPerSecond: number;
   readonly lost: boolean; // grey

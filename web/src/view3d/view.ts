@@ -110,6 +110,7 @@ class View implements HandView {
       ghost: this.content.hands.ghostOrigins(),
       skin: this.content.hands.shownSkin(),
       arrows: this.content.marks.drawn(),
+      ...this.content.marks.counts(),
       quality: this.watch.level,
       framesPerSecond: this.recent.filter((at) => at > now() - kRateWindow).length / kRateWindow,
       lost: this.content.dead,

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `phalanx simulate SCENE --out DIR --poses` wrote, as the messages that a station would send.
-import { readFileSync } from "node:fs";
+// What `phalanx simulate SCENE --out DIR --poses [--contacts]` wrote, as the messages that a station would send.
+import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { create } from "@bufbuild/protobuf";
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { GeometrySchema, MeshSchema, SkinSchema } from "../../../src/gen/phalanx/geometry_pb";
 import type { Geometry, Mesh, Skin } from "../../../src/gen/phalanx/geometry_pb";
-import { ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
+import { ContactPointSchema, ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import type { Contact, Tick } from "../../../src/gen/phalanx/tick_pb";
 
+const kFriction = 0.6; // the default of contact.friction
 const fingers = ["index-finger", "middle-finger", "ring-finger", "pinky-finger"];
 export const segmentNames: readonly string[] = [
   "thumb-metacarpal", "thumb-phalanx-proximal", "thumb-phalanx-distal",
@@ -65,7 +66,21 @@ function readTicks(folder: string): Tick[] {
     const tick = byTick.get(line[0]!)!;
     (line[2] === "hcp" ? tick.hcpPose : tick.gdpPose).push(x!, y!, z!, qx!, qy!, qz!, qw!);
   }
+  const contacts = join(folder, "contacts.csv");
+  if (existsSync(contacts)) readContacts(contacts, byTick);
   return result;
+}
+
+function readContacts(path: string, byTick: ReadonlyMap<string, Tick>): void {
+  for (const line of rows(path).lines) {
+    const numbers = line.slice(2).map(Number);
+    const [x, y, z] = numbers.slice(7, 10) as [number, number, number]; // friction
+    const force = numbers[6]!;
+    byTick.get(line[0]!)?.contactPoint.push(create(ContactPointSchema, {
+      segment: segmentNames.indexOf(line[1]!), point: numbers.slice(0, 3), normal: numbers.slice(3, 6), force, friction: [x, y, z],
+      spin: numbers[10]!, coefficient: kFriction, slips: numbers[11]! > 0,
+    }));
+  }
 }
 
 function contactOf(get: (name: string) => number, segmentName: string, segment: number): Contact[] {
@@ -74,7 +89,7 @@ function contactOf(get: (name: string) => number, segmentName: string, segment: 
   const force = get(`${name}_force_n`);
   if (!touching && !(force > 0)) return [];
   return [create(ContactSchema, {
-    segment, touching, depth: get(`${name}_depth_m`), forceRaw: get(`${name}_force_raw_n`), force,
+    segment, touching, depth: get(`${name}_depth_m`), forceRaw: get(`${name}_force_raw_n`), force, slips: get(`${name}_slip`) > 0,
     point: [get(`${name}_px_m`), get(`${name}_py_m`), get(`${name}_pz_m`)],
     normal: [get(`${name}_nx`), get(`${name}_ny`), get(`${name}_nz`)],
   })];

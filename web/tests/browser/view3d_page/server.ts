@@ -36,7 +36,7 @@ export function recording(name: string): Recording {
   const left = words.includes("left");
   const settings = words.filter((word) => word.includes("=")).concat(left ? ["mirror=true"] : []);
   const folder = join(folderOfRecordings(), name.replaceAll(/[^\w,=.-]/g, "_"));
-  execFileSync(program, ["simulate", scene!, "--out", folder, "--poses", "--quiet", ...settings.flatMap((word) => ["--set", word])]);
+  execFileSync(program, ["simulate", scene!, "--out", folder, "--poses", "--quiet", ...(settings.includes("contact.mode=sliding") ? ["--contacts"] : []), ...settings.flatMap((word) => ["--set", word])]);
   const skin = words.includes("skin") ? skinFile : words.includes("made") ? "made" : "none";
   // The teapot's grasp begins with all joints at zero.
   const straight = skin === skinFile ? recording(left ? "grasp_teapot,left" : "grasp_teapot").ticks[0]!.gdpPose : [];

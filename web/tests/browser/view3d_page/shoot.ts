@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of the 3D view for people to look at. From web/:
-//   npx vite-node tests/browser/view3d_page/shoot.ts FOLDER NAME:RECORDING:TICK:PRESET:THEME:QUALITY[:lost][:noskin][:noghost][:noobject][:zoom=1.5] ...
+//   npx vite-node tests/browser/view3d_page/shoot.ts FOLDER NAME:RECORDING:TICK:PRESET:THEME:QUALITY[:lost][:noskin][:noghost][:noobject][:cones][:zoom=1.5] ...
 //   for example  /tmp/pictures home:grasp_teapot,skin:240:home:dark:3
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -34,7 +34,7 @@ for (const words of shots) {
   const probe = await page.evaluate(async ({ recording, tick, preset, theme, flags }: Shot) => {
     const { view, load, show, settled } = window.viewPage;
     view.setTheme(theme);
-    view.setParts({ skin: !flags.includes("noskin"), ghost: !flags.includes("noghost"), arrows: true, object: !flags.includes("noobject") });
+    view.setParts({ skin: !flags.includes("noskin"), ghost: !flags.includes("noghost"), arrows: true, object: !flags.includes("noobject"), cones: flags.includes("cones") });
     await load(recording);
     await show(recording, tick);
     await settled();

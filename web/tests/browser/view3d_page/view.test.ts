@@ -149,7 +149,7 @@ describe("what is drawn", () => {
       expect(seen.colours).toBeGreaterThan(1000);
       const hashes = new Set([seen.hash]);
       for (const off of ["ghost", "arrows", "object"] as const) {
-        await page.evaluate((part) => window.viewPage.view.setParts({ skin: true, ghost: true, arrows: true, object: true, [part]: false }), off);
+        await page.evaluate((part) => window.viewPage.view.setParts({ skin: true, ghost: true, arrows: true, object: true, cones: false, [part]: false }), off);
         hashes.add((await look()).hash);
       }
       await page.evaluate(() => window.viewPage.view.setTheme("light"));

@@ -29,6 +29,7 @@ export function fakeApp(): FakeApp {
     { path: stiffness, type: KeyType.KEY_NUMBER, range: { min: 0, max: 100 }, defaultValue: "0.5" },
     { path: "stabiliser.method", type: KeyType.KEY_CHOICE, choice: ["none", "smoothing", "rise_only", "low_pass"], defaultValue: '"rise_only"' },
     { path: "hand.side", type: KeyType.KEY_CHOICE, choice: ["right", "left"], defaultValue: '"right"' },
+    { path: "contact.mode", type: KeyType.KEY_CHOICE, choice: ["static", "sliding"], defaultValue: '"static"' },
     { path: "mirror", type: KeyType.KEY_FLAG, defaultValue: "false" },
   ];
   store.receive(create(ToPageSchema, { what: { case: "welcome", value: create(WelcomeSchema, { protocol: kProtocol, page: kMe, mayOperate: true, key }) } }));

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene without a canvas: shapes that come and go, what is visible, and where it is drawn.
 import { create } from "@bufbuild/protobuf";
-import { BoxGeometry, BufferGeometry, InstancedMesh, Material, Mesh, MeshDepthMaterial, ShaderLib, ShaderMaterial, Skeleton, SkinnedMesh, SphereGeometry } from "three";
+import {
+  BoxGeometry, BufferGeometry, InstancedMesh, Material, Matrix4, Mesh, MeshDepthMaterial, ShaderLib, ShaderMaterial, Skeleton, SkinnedMesh,
+  SphereGeometry, Vector3,
+} from "three";
 import type { EventDispatcher, WebGLProgramParametersWithUniforms, WebGLRenderer } from "three";
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { GeometrySchema, MeshSchema, SkinSchema } from "../../../src/gen/phalanx/geometry_pb";
 import type { Geometry, Mesh as MeshMessage } from "../../../src/gen/phalanx/geometry_pb";
-import { ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
+import { ContactPointSchema, ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
 import { arrowLargestForce, arrowMetresPerNewton } from "../../../src/view3d/arrow_scale";
 import { arrowLength } from "../../../src/view3d/contact_marks";
@@ -44,6 +47,16 @@ function geometry(withSkin: boolean, withObject = true): Geometry {
 function tick(force: number, factor = 1): Tick {
   const contact = create(ContactSchema, { segment: 5, touching: true, force, point: [0.1, 0, 0.1], normal: [0, 0, 2] });
   return create(TickSchema, { tick: 9n, factor, gdpPose: poses(0.5), hcpPose: poses(0.7, 0.003), contact: [contact] });
+}
+
+/// Slides, or sticks, with two contact points of one segment, the second of which slips.
+function sliding(slips: boolean): Tick {
+  const made = tick(2);
+  made.contact[0]!.slips = slips;
+  made.contactPoint = [0, 1].map((i) =>
+    create(ContactPointSchema, { segment: 5, point: [0.1, 0.01 * i, 0.1], normal: [0, 0, 1], force: 1, coefficient: 0.75, slips: i === 1 }),
+  );
+  return made;
 }
 
 /// Vertices of the skin at poses of the shown hand.
@@ -173,7 +186,7 @@ describe("where it is drawn", () => {
     scene.setGeometry(shapesOf(geometry(true)));
     scene.show(tick(1));
     const before = scene.hands.shownOrigins();
-    scene.setParts({ skin: false, ghost: true, arrows: true, object: true });
+    scene.setParts({ skin: false, ghost: true, arrows: true, object: true, cones: false });
     scene.hands.shownOrigins().forEach((origin, i) => origin.forEach((x, k) => expect(x).toBeCloseTo(before[i]![k]!, 6)));
   });
   it("a new hand is not seen in the old one's place", () => {
@@ -218,6 +231,60 @@ describe("arrows", () => {
   });
 });
 
+describe("contact points", () => {
+  it("each has a ring, one that slips two, and the arrow of a segment that slips another colour", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(false)));
+    scene.show(tick(2));
+    expect(scene.marks.counts()).toEqual({ rings: 1, cones: 0 });
+    for (const slips of [true, false]) {
+      scene.show(sliding(slips));
+      expect(scene.marks.counts().rings).toBe(3);
+      expect(scene.marks.drawn().map((arrow) => arrow.slips)).toEqual([slips]);
+    }
+  });
+  it("have cones on demand, as wide as friction allows, whether or not there are arrows", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(false)));
+    scene.show(sliding(true));
+    expect(scene.marks.counts().cones).toBe(0);
+    scene.setParts({ skin: true, ghost: true, arrows: false, object: true, cones: true });
+    expect(scene.marks.counts()).toEqual({ rings: 0, cones: 2 });
+    const [surface, rim] = scene.marks.cones.children as [InstancedMesh, InstancedMesh];
+    for (const [i, y] of [0, 0.01].entries()) {
+      const placed = new Matrix4();
+      surface.getMatrixAt(i, placed);
+      // The tip is at the point. On the rim, across divided by along the normal is the coefficient.
+      expect(new Vector3(0, 0, 0).applyMatrix4(placed).toArray().map((x) => +x.toFixed(6))).toEqual([0.1, y, 0.1]);
+      const edge = new Vector3(1, 0, 1).applyMatrix4(placed);
+      expect(Math.hypot(edge.x - 0.1, edge.y - y) / (edge.z - 0.1)).toBeCloseTo(0.75, 3);
+      rim.getMatrixAt(i, placed);
+      expect(new Vector3(1, 0, 1).applyMatrix4(placed).distanceTo(edge)).toBeLessThan(1e-9);
+    }
+    scene.setLost(true);
+    expect(scene.marks.counts().cones).toBe(0);
+  });
+  it("that are not whole are left out, and a coefficient that is no number is none", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(false)));
+    scene.setParts({ skin: true, ghost: true, arrows: true, object: true, cones: true });
+    for (const bad of [{ point: [NaN, 0, 0] }, { point: [] }, { normal: [0, 0, 0] }, { normal: [Infinity, 0, 0] }, { segment: 16 }]) {
+      const spoilt = sliding(false);
+      Object.assign(spoilt.contactPoint[1]!, bad);
+      scene.show(spoilt);
+      expect(scene.marks.counts()).toEqual({ rings: 1, cones: 1 });
+    }
+    const many = sliding(false);
+    many.contactPoint = Array.from({ length: 500 }, () => many.contactPoint[0]!);
+    many.contactPoint[3] = { ...many.contactPoint[3]!, coefficient: NaN };
+    scene.show(many);
+    expect(scene.marks.counts().cones).toBe(80);
+    const placed = new Matrix4();
+    (scene.marks.cones.children[0] as InstancedMesh).getMatrixAt(3, placed);
+    expect(placed.elements.every((x) => Number.isFinite(x))).toBe(true);
+  });
+});
+
 describe("a lost connection", () => {
   it("takes ghost and arrows away at once, and gives them back", () => {
     const scene = new HandScene();
@@ -228,7 +295,7 @@ describe("a lost connection", () => {
     expect(scene.hands.ghostGroup.visible).toBe(false);
     expect(scene.marks.drawn()).toEqual([]);
     scene.setTheme("light"); // must not bring them back
-    scene.setParts({ skin: true, ghost: true, arrows: true, object: true });
+    scene.setParts({ skin: true, ghost: true, arrows: true, object: true, cones: false });
     expect(scene.hands.ghostGroup.visible).toBe(false);
     expect(scene.marks.drawn()).toEqual([]);
     scene.setLost(false);
@@ -266,7 +333,7 @@ describe("memory", () => {
     for (let i = 0; i < 20; ++i) {
       scene.setGeometry(inputs);
       scene.show(tick(1));
-      scene.setParts({ skin: i % 2 === 0, ghost: true, arrows: true, object: true });
+      scene.setParts({ skin: i % 2 === 0, ghost: true, arrows: true, object: true, cones: false });
     }
     expect(count().geometries).toBe(once.geometries);
     expect(count().bones).toBe(once.bones);
@@ -322,7 +389,7 @@ describe("a renderer that goes", () => {
     const drawn = new Set<EventDispatcher<{ dispose: object }>>();
     const collectAll = () => [scene.scene, scene.over].forEach((part) => part.traverse((node) => drawnOf(node).forEach((one) => drawn.add(one))));
     for (const skin of [true, false]) {
-      scene.setParts({ skin, ghost: true, arrows: true, object: true });
+      scene.setParts({ skin, ghost: true, arrows: true, object: true, cones: false });
       for (const settings of qualityLevels) {
         scene.setQuality(settings);
         collectAll();

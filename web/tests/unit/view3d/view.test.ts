@@ -19,7 +19,7 @@ describe("without WebGL", () => {
     view.show(create(TickSchema, { tick: 3n }));
     view.setTheme("light");
     view.setLost(true);
-    view.setParts({ skin: true, ghost: true, arrows: true, object: true });
+    view.setParts({ skin: true, ghost: true, arrows: true, object: true, cones: false });
     for (const preset of ["home", "palm", "thumb", "follow"] as const) view.camera(preset);
     view.zoom(2);
     view.zoom(NaN);
