@@ -35,8 +35,16 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
   app.add_option("--mapping", options.mapping,
                  "How the recordings' columns become joint angles (default cyberglove)")
       ->needs(recordings);
-  app.add_flag("--sliding", options.sliding, "The recordings' contacts slide: contact.mode = \"sliding\"")
-      ->needs(recordings);
+  CLI::Option* sliding =
+      app.add_flag("--sliding", options.sliding, "The recordings' contacts slide: contact.mode = \"sliding\"")
+          ->needs(recordings);
+  app.add_option("--friction", options.friction,
+                 "Coefficient of the friction of contacts that slide (default 0.6)")
+      ->needs(sliding)
+      ->check(CLI::Range(0.0, 2.0));
+  app.add_option("--seconds", options.seconds, "Greatest length of a recording (default: all of it)")
+      ->needs(recordings)
+      ->check(CLI::PositiveNumber);
   app.add_option("--json", options.json, "File for all figures");
   app.add_option("--markdown", options.markdown, "File for the tables");
   try {

@@ -103,13 +103,15 @@ struct Placed {
   double lowered = 0.0;  ///< [m]
 };
 
-Placed place(const fs::path& object, double size_mm, bool fine, bool sliding) {
+Placed place(const fs::path& object, double size_mm, bool fine, const Options& options) {
   const Pose pose = load_scene(kScene).objects.front().pose;
-  SceneDescription scene = load_scene(kScene, {{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
-                                               {"objects.0.file", quoted(object)},
-                                               {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
-                                               {"contact.mode", sliding ? "\"sliding\"" : "\"static\""},
-                                               {"rate_hz", "1000.0"}});
+  SceneDescription scene =
+      load_scene(kScene, {{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
+                          {"objects.0.file", quoted(object)},
+                          {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
+                          {"contact.mode", options.sliding ? "\"sliding\"" : "\"static\""},
+                          {"contact.friction", fmt::format("{}", options.friction)},
+                          {"rate_hz", "1000.0"}});
   scene.objects.front().pose = pose;
   ResolvedScene resolved = resolve(scene, {});
   Placed placed{.scene = scene, .model = nullptr, .lowered = 0.0};
@@ -125,28 +127,36 @@ Placed place(const fs::path& object, double size_mm, bool fine, bool sliding) {
   return placed;
 }
 
-BenchMotion recorded(const SceneDescription& of_scene, const fs::path& file, const std::string& mapping) {
+BenchMotion recorded(const SceneDescription& of_scene, const fs::path& file, const Options& options) {
   SceneDescription scene = load_scene(kScene, {{"motion.file", quoted(file)},
-                                               {"motion.mapping", fmt::format("\"{}\"", mapping)},
+                                               {"motion.mapping", fmt::format("\"{}\"", options.mapping)},
                                                {"motion.trial", "1"},
                                                {"motion.lead_in_s", fmt::format("{:.1f}", kLeadInS)}});
   const Motion motion = build_motion(scene);
   const double rate = of_scene.parameters.rate_hz;
-  const auto ticks = static_cast<std::size_t>(simulation_seconds(scene, motion) * rate);
+  const double length = simulation_seconds(scene, motion);
+  const auto ticks =
+      static_cast<std::size_t>((options.seconds > 0.0 ? std::min(options.seconds, length) : length) * rate);
   BenchMotion out{.name = file.filename().string(), .angle = {}};
   for (std::size_t t = 0; t < ticks; ++t) out.angle.push_back(motion.at(static_cast<double>(t) / rate));
   return out;
 }
 
+/// Returns the normal of the surface that a segment touches: of its contact points, or of its static contact.
+Vec3 surface_normal(const Snapshot& snapshot, int segment) {
+  Vec3 sum = Vec3::Zero();
+  for (const ContactPoint& at : snapshot.contact_points)
+    if (at.segment == segment) sum += at.force * at.normal;
+  return sum.norm() > 0.0 ? sum.normalized() : snapshot.segment[idx(segment)].normal;
+}
+
 /// Returns how far the contact's material point is on the measured segment from where it is on the shown one, along
-/// the surface [mm]. The surface's normal is the direction of the force without friction.
+/// the surface [mm].
 double offset_along(const Snapshot& snapshot, int segment) {
-  const SegmentSnapshot& contact = snapshot.segment[idx(segment)];
+  const Vec3& point = snapshot.segment[idx(segment)].point;
   const Pose& shown = snapshot.gdp_pose[idx(segment)];
-  const Vec3 offset = snapshot.hcp_pose[idx(segment)] * (shown.inverse() * contact.point) - contact.point;
-  const Vec3 pushing = contact.force * contact.normal - contact.friction;
-  const double size = pushing.norm();
-  const Vec3 normal = size > 0.0 ? Vec3(pushing / size) : contact.normal;
+  const Vec3 offset = snapshot.hcp_pose[idx(segment)] * (shown.inverse() * point) - point;
+  const Vec3 normal = surface_normal(snapshot, segment);
   return 1e3 * (offset - offset.dot(normal) * normal).norm();
 }
 
@@ -165,7 +175,8 @@ void describe(const Placed& placed, const BenchMotion& motion, RecordingReport& 
     bool any = false;
     double greatest = 0.0;
     for (int s = 0; s < kPalm; ++s) {
-      if (!state.snapshot().segment[idx(s)].contact) continue;
+      const SegmentSnapshot& segment = state.snapshot().segment[idx(s)];
+      if (!segment.contact || !(segment.force > 0.0)) continue;
       any = true;
       greatest = std::max(greatest, offset_along(state.snapshot(), s));
     }
@@ -203,19 +214,25 @@ RecordingReport measure(const Placed& placed, const BenchMotion& motion) {
 
 void run_recordings(const Options& options, const std::function<void(const RecordingReport&)>& done) {
   const std::vector<fs::path> recordings = files(options.recordings, {".csv"});
+  bool touched = false;
   for (const fs::path& object : files(options.meshes, {".obj", ".stl", ".ply", ".3ds", ".glb"})) {
     const auto run = [&](double size_mm, bool fine) {
-      const Placed placed = place(object, size_mm, fine, options.sliding);
+      const Placed placed = place(object, size_mm, fine, options);
       for (const fs::path& recording : recordings) {
-        RecordingReport report = measure(placed, recorded(placed.scene, recording, options.mapping));
+        RecordingReport report = measure(placed, recorded(placed.scene, recording, options));
         report.object = object.filename().string();
         report.size_mm = size_mm;
+        touched = touched || report.in_contact > 0.0;
         done(report);
       }
     };
     for (const double size_mm : kSizesMm) run(size_mm, false);
     if (options.large) run(kFineSizeMm, true);
   }
+  if (!touched)
+    throw std::runtime_error(fmt::format(
+        "{} before {}: the hand touches nothing in any recording; take other meshes, or longer recordings",
+        options.recordings, options.meshes));
 }
 
 }  // namespace phalanx::bench

@@ -87,7 +87,7 @@ struct Report {
 [[nodiscard]] PeerRow peer_row(const PeerTimes& peer, const OurTimes& ours,
                                const std::vector<PeerTick>& pruned);
 
-[[nodiscard]] std::string recordings_heading();
+[[nodiscard]] std::string recordings_heading(bool sliding);
 [[nodiscard]] std::string recording_text(const RecordingReport& recording);
 [[nodiscard]] std::string scene_text(const SceneReport& scene);
 [[nodiscard]] std::string cost_text(const ObjectCost& cost);

@@ -29,8 +29,10 @@ std::string idle_words(const PeerRow& peer) {
 }
 
 std::string recordings_markdown(const std::vector<RecordingReport>& recordings) {
-  std::string text =
-      "\n## Recorded human motion\n\n| recording | object | mm | triangles | ticks | contact | offset | "
+  std::string text = fmt::format("\n## Recorded human motion, {} contacts\n\n",
+                                 recordings.front().sliding ? "sliding" : "static");
+  text +=
+      "| recording | object | mm | triangles | ticks | contact | offset | "
       "farthest | p50 | p99 | p99.9 | max | raw max "
       "|\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
   for (const RecordingReport& r : recordings) {
@@ -107,10 +109,11 @@ std::string scene_markdown(const SceneReport& scene) {
 
 }  // namespace
 
-std::string recordings_heading() {
-  return fmt::format("\n{:<44}{:<12}{:>5}{:>10}{:>8}{:>9}{:>9}{:>10}{:>9}{:>9}{:>9}{:>9}{:>10}\n",
-                     "recording", "object", "mm", "triangles", "ticks", "contact", "offset", "farthest",
-                     "p50", "p99", "p99.9", "max", "raw max");
+std::string recordings_heading(bool sliding) {
+  return fmt::format(
+      "\n{} contacts\n{:<44}{:<12}{:>5}{:>10}{:>8}{:>9}{:>9}{:>10}{:>9}{:>9}{:>9}{:>9}{:>10}\n",
+      sliding ? "sliding" : "static", "recording", "object", "mm", "triangles", "ticks", "contact", "offset",
+      "farthest", "p50", "p99", "p99.9", "max", "raw max");
 }
 
 std::string recording_text(const RecordingReport& recording) {

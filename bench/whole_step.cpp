@@ -178,7 +178,7 @@ int run(const Options& options) {
   fmt::print("phalanx_bench {} on {} ({}), {}, {}, {}\n", report.made.commit, report.made.cpu,
              report.instructions, report.made.compiler, report.made.build_type, report.made.date);
   if (!options.recordings.empty()) {
-    fmt::print("{}", recordings_heading());
+    fmt::print("{}", recordings_heading(options.sliding));
     run_recordings(options, [&](const RecordingReport& recording) {
       report.recordings.push_back(recording);
       fmt::print("{}", recording_text(recording));

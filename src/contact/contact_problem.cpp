@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
+#include "contact/contact_newton.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 
@@ -12,12 +12,6 @@ namespace phalanx {
 namespace {
 
 using Pair = std::array<double, 2>;
-
-double length_of(double x, double y) noexcept { return std::sqrt(x * x + y * y); }
-
-double dot(const DigitAngles& a, const DigitAngles& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + (a[2] * b[2] + a[3] * b[3]);
-}
 
 void add(DigitAngles& x, const DigitAngles& row, double multiplier) noexcept {
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += multiplier * row[i];
@@ -88,12 +82,7 @@ using Square = std::array<Triple, 3>;
 constexpr double kRegular = 1e-11;  // of a block's trace, added to the tangents' diagonal
 constexpr double kStronglyRegular = 1e-6;
 constexpr double kLeastDeterminant = 1e-14;  // of the cubed trace: below it rounding decides
-constexpr double kLeastArm = 1e-6;    // below it the joints do not move a contact along its normal [m/rad]
-constexpr double kLeastShare = 1e-6;  // of A_nn, for the denominator of the normal multiplier
-constexpr double kLeastSpin = 1e-6;   // below it they do not turn it about its normal [rad^2/rad^2]
-/// Relative softness of the spin row. Where one joint alone both turns a contact and moves it sideways, the
-/// tangents then hold it.
-constexpr double kSpinSoftness = 0.02;
+constexpr double kLeastShare = 1e-6;         // of A_nn, for the denominator of the normal multiplier
 constexpr double kArm = 0.02;  // length that makes a rotation a displacement, for the tolerance [m]
 
 /// Products of the rows of normal and tangents, and what is constant in the iteration. A little is added to the
@@ -156,7 +145,7 @@ Block block_of(const ProblemContact& contact) noexcept {
   block.used = A[0][0] > kLeastArm * kLeastArm;
   if (!block.used) return block;
   block.alone = Rows::of(A);
-  block.spin = (1.0 + kSpinSoftness) * dot(contact.row[kSpinRow], contact.row[kSpinRow]);
+  block.spin = (1.0 + ContactProblem::kSpinSoftness) * dot(contact.row[kSpinRow], contact.row[kSpinRow]);
   if (!(block.spin > kLeastSpin)) {
     block.spin = 0.0;
     return block;
@@ -393,30 +382,26 @@ ContactRows solve_block(const Block& block, const ContactRows& c, ProblemContact
 
 /// Adds to the normal multipliers after an iteration that has not converged, so that contacts close by no more than
 /// their room. At most 10 sweeps; the continuous search stops what is left. Friction stays within its bound.
-void open_contacts(ContactProblem& problem, const std::array<Block, ContactProblem::kMostContacts>& block,
-                   double tolerance,
-                   std::array<ProblemContact, ContactProblem::kMostContacts>& contact) noexcept {
+void open_contacts(ContactProblem& problem, const HeldJoints& held, double tolerance) noexcept {
   constexpr int kSweeps = 10;
   std::array<double, ContactProblem::kMostContacts> added{};
   double change = 2.0 * tolerance;
   for (int sweep = 0; sweep < kSweeps && change > tolerance; ++sweep) {
     change = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(problem.count); ++i) {
-      if (!block[i].used) continue;
-      const double A = block[i].A[0][0];
-      const double closes = dot(problem.contact[i].row[kNormalRow], problem.displacement) + contact[i].room;
-      const double step = std::max(-added[i], -closes / ((1.0 + contact[i].softness) * A));
+      ProblemContact& contact = problem.contact[i];
+      const DigitAngles moves = free_part(contact.row[kNormalRow], held);
+      const double A = dot(moves, moves);
+      if (!(A > kLeastArm * kLeastArm)) continue;
+      const double closes = dot(contact.row[kNormalRow], problem.displacement) + contact.room;
+      const double step = std::max(-added[i], -closes / ((1.0 + contact.softness) * A));
       added[i] += step;
-      contact[i].multiplier[kNormalRow] += step;
-      add(problem.displacement, contact[i].row[kNormalRow], step);
+      contact.multiplier[kNormalRow] += step;
+      add(problem.displacement, moves, step);
       change = std::max(change, std::abs(step) * A);
     }
   }
 }
-
-/// Bound at which each joint of a digit is held.
-enum class Held : std::uint8_t { kNo, kLowest, kHighest };
-using HeldJoints = std::array<Held, kJointsPerDigit>;
 
 /// Sweeps over the contacts with the joints of `held` fixed at their bounds.
 void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance) noexcept {
@@ -425,14 +410,10 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
   std::array<Block, ContactProblem::kMostContacts> block;
   std::array<ProblemContact, ContactProblem::kMostContacts> contact;
   for (std::size_t j = 0; j < x.size(); ++j)
-    x[j] = held[j] == Held::kNo ? problem.free[j]
-                                : (held[j] == Held::kHighest ? problem.highest[j] : problem.lowest[j]);
+    x[j] = held[j] == Held::kNo ? problem.free[j] : held_displacement(problem, held, j);
   for (std::size_t i = 0; i < count; ++i) {
     contact[i] = problem.contact[i];
-    for (DigitAngles& row : contact[i].row) {
-      for (std::size_t j = 0; j < row.size(); ++j)
-        if (held[j] != Held::kNo) row[j] = 0.0;
-    }
+    for (DigitAngles& row : contact[i].row) row = free_part(row, held);
     block[i] = block_of(contact[i]);
     if (!block[i].used) contact[i].multiplier = {};
     for (std::size_t r = 0; r < kContactRows; ++r) add(x, contact[i].row[r], contact[i].multiplier[r]);
@@ -464,12 +445,15 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
       }
     }
   }
-  if (change > tolerance) open_contacts(problem, block, tolerance, contact);
   for (std::size_t i = 0; i < count; ++i) {
     problem.contact[i].multiplier = contact[i].multiplier;
     problem.contact[i].slips = contact[i].slips;
     problem.contact[i].spins = contact[i].spins;
   }
+  if (change <= tolerance) return;
+  const bool solved = newton_contacts(problem, held, tolerance) <= tolerance;
+  x = displacement_of(problem, held);
+  if (!solved) open_contacts(problem, held, tolerance);
 }
 
 }  // namespace
@@ -489,11 +473,7 @@ void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexc
     changed = false;
     for (std::size_t j = 0; j < held.size(); ++j) {
       // Computed from the multipliers alone, so that a contact that has let go leaves no rounding.
-      double without = problem.free[j];
-      for (int i = 0; i < problem.count; ++i) {
-        const ProblemContact& contact = problem.contact[idx(i)];
-        for (std::size_t r = 0; r < kContactRows; ++r) without += contact.row[r][j] * contact.multiplier[r];
-      }
+      const double without = unlimited_displacement(problem, j);
       const bool above = without > problem.highest[j];
       const bool below = without < problem.lowest[j];
       const Held wanted = above ? Held::kHighest : (below ? Held::kLowest : Held::kNo);
@@ -501,8 +481,7 @@ void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexc
         held[j] = wanted;
         changed = true;
       }
-      const double bound = held[j] == Held::kHighest ? problem.highest[j] : problem.lowest[j];
-      problem.displacement[j] = held[j] == Held::kNo ? without : bound;
+      problem.displacement[j] = held[j] == Held::kNo ? without : held_displacement(problem, held, j);
       problem.limit[j] = problem.displacement[j] - without;
     }
   }

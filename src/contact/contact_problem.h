@@ -48,6 +48,9 @@ struct ProblemContact {
 ///   limits    lowest <= x <= highest
 struct ContactProblem {
   static constexpr int kMostContacts = 16;
+  /// Relative softness of the spin row. Where one joint alone both turns a contact and moves it sideways, the
+  /// tangents then hold it.
+  static constexpr double kSpinSoftness = 0.02;
 
   DigitAngles free{};  ///< displacement without contact [rad]
   DigitAngles lowest{};
@@ -59,8 +62,9 @@ struct ContactProblem {
   DigitAngles displacement{};  ///< solution: x [rad]
 };
 
-/// Solves the problem by block Gauss-Seidel, a block for each contact. Contacts are in the order of `contact`.
-/// @param sweeps     greatest number of iterations
+/// Solves the problem by block Gauss-Seidel, a block for each contact, and where that has not converged by
+/// Newton's method (contact_newton.h). Contacts are in the order of `contact`.
+/// @param sweeps     greatest number of sweeps over the blocks
 /// @param tolerance  ends when no row changes by more in one sweep [m]
 /// The result after the last sweep is finite for finite input. Normal multipliers are >= 0, friction is within its
 /// bound and joints are within their limits, whether the iteration has converged or not.

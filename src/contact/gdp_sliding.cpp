@@ -35,7 +35,7 @@ constexpr double kMostSubsteps = 20.0;
 constexpr double kLeastBeyond = 1e-3;  // depth below which the measured finger is not looked for beyond [m]
 constexpr double kCheckBeyond = 4e-3;  // [s]
 constexpr double kBeyondFor = 30e-3;   // [s]
-constexpr int kSweeps = 20;
+constexpr int kSweeps = 6;
 constexpr int kRecoverySweeps = 8;
 constexpr double kSoftness = 0.05;  // of the recovery, so that it converges between opposed contacts
 constexpr int kMostEvents = 4;
@@ -405,9 +405,7 @@ void set_record(const ContactModel& model, const DigitTick& tick, int k, const D
   const auto for_each = [&](auto&& use) {
     for (int c = 0; c < contacts.count; ++c) {
       const SlidingContact& contact = contacts.contact[idx(c)];
-      if (contact.k != k || !(contact.depth[0] > 0.0)) continue;
-      use(contact, Vec3(contact.depth[0] * contact.normal + contact.depth[1] * contact.tangent[0] +
-                        contact.depth[2] * contact.tangent[1]));
+      if (contact.k == k && contact.presses()) use(contact, contact.resultant());
     }
   };
   for_each([&](const SlidingContact& contact, const Vec3& f) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/step/haptic_step.h"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "phalanx/contact/gdp.h"
-#include "phalanx/core/index.h"
 #include "phalanx/force/force_stage.h"
 #include "step/check_parameters.h"
+#include "step/contact_points.h"
 #include "step/sample_guard.h"
 
 namespace phalanx {
@@ -23,60 +23,12 @@ const HapticParameters& checked(const HapticParameters& parameters) {
   return parameters;
 }
 
-static_assert(ContactPoints::kMost == kDigits * DigitContacts::kMost);
-
-constexpr double kLeastResultant = 0.1;  // of the sum of a segment's contact points
-
-/// Writes down the contact points of one digit in sliding mode, and what they add up to for its segments.
-void record_points(const GdpState& gdp, const ForceState& force, int digit, double coefficient,
-                   Snapshot& out) noexcept {
-  const DigitContacts& contacts = gdp.sliding[idx(digit)];
-  const auto presses = [](const SlidingContact& contact) { return contact.depth[0] > 0.0; };
-  std::array<double, kSegmentsPerDigit> size{};  // of the points' depths, added
-  for (int c = 0; c < contacts.count; ++c) {
-    const SlidingContact& contact = contacts.contact[idx(c)];
-    if (presses(contact)) size[idx(contact.k)] += Vec3(contact.depth.data()).norm();
-  }
-  std::array<double, kSegmentsPerDigit> normal_force{};
-  std::array<double, kSegmentsPerDigit> slipping_force{};
-  for (int c = 0; c < contacts.count; ++c) {
-    const SlidingContact& contact = contacts.contact[idx(c)];
-    if (!presses(contact)) continue;
-    const int s = segment_index(digit, contact.k);
-    const double sent = force.segment[idx(s)].sent;
-    const double resultant = std::max(gdp.record[idx(s)].depth, kLeastResultant * size[idx(contact.k)]);
-    ContactPoint& at = out.contact_points.point[idx(out.contact_points.count++)];
-    at.segment = s;
-    at.point = out.gdp_pose[idx(s)] * contact.p_S;
-    at.normal = contact.normal;
-    at.force = sent * (contact.depth[0] / resultant);
-    at.friction = sent * (contact.depth[1] / resultant * contact.tangent[0] +
-                          contact.depth[2] / resultant * contact.tangent[1]);
-    at.spin = sent * (contact.spin_depth / resultant);
-    at.coefficient = coefficient;
-    at.slips = contact.slips;
-
-    SegmentSnapshot& segment = out.segment[idx(s)];
-    segment.friction += at.friction;
-    segment.spin += at.spin * at.normal.dot(gdp.record[idx(s)].n_c);
-    normal_force[idx(contact.k)] += contact.depth[0];
-    if (contact.slips) slipping_force[idx(contact.k)] += contact.depth[0];
-  }
-  for (int k = 0; k < kSegmentsPerDigit; ++k)
-    out.segment[idx(segment_index(digit, k))].slips = slipping_force[idx(k)] > 0.5 * normal_force[idx(k)];
-}
-
-/// Returns the speed of the contact's material point along the surface, from the pose of the last tick [m/s].
-double slip_speed(const ContactRecord& contact, const Pose& before, double period) noexcept {
-  const Vec3 moved = contact.p_gdp - before * contact.p_S;
-  return (moved - moved.dot(contact.n_c) * contact.n_c).norm() / period;
-}
-
 /// Writes down what the stages have left behind.
 void record(const HapticModel& model, const HapticParameters& parameters, double time_s, const HandPoses& hcp,
             const GdpState& gdp, const ForceState& force, Status status, Snapshot& out) noexcept {
   const StabiliserParameters& stabiliser = parameters.stabiliser;
-  const bool sliding = gdp.mode == ContactMode::kSliding;
+  std::optional<LastHand> last;
+  if (gdp.mode == ContactMode::kSliding) last.emplace(out);
   ++out.tick;
   out.time_s = time_s;
   out.status = status;
@@ -93,7 +45,6 @@ void record(const HapticModel& model, const HapticParameters& parameters, double
     const bool palm = s == kPalm;
     const std::size_t d = s / kSegmentsPerDigit;
     const std::size_t k = s % kSegmentsPerDigit;
-    const Pose before = out.gdp_pose[s];
     out.hcp_pose[s] = palm ? model.hand.palm_pose() : hcp.digit[d].segment[k];
     out.gdp_pose[s] = palm ? model.hand.palm_pose() : gdp.poses.digit[d].segment[k];
 
@@ -114,14 +65,13 @@ void record(const HapticModel& model, const HapticParameters& parameters, double
       segment.point = contact.p_gdp;
       segment.normal = sent.normal;
       segment.slid = contact.slid;
-      if (sliding) segment.slip_speed = slip_speed(contact, before, parameters.period());
     } else if (sent.sent > 0.0) {
       segment.point = out.gdp_pose[s] * sent.p_S;
       segment.normal = sent.normal;
     }
   }
   out.contact_points.count = 0;
-  for (int d = 0; d < kDigits && sliding; ++d) record_points(gdp, force, d, parameters.contact.friction, out);
+  if (last) record_contact_points(parameters, gdp, force, *last, out);
 }
 
 }  // namespace

@@ -32,9 +32,9 @@ TEST(ContactsCsv, HasOneRowForEachPointAndNoneForATickWithoutContact) {
   csv.write(snapshot);
   csv.commit();
   EXPECT_EQ(read_file(folder / "contacts.csv"),
-            "tick,segment,px_m,py_m,pz_m,nx,ny,nz,force_n,tx_n,ty_n,tz_n,spin_nm,slip\n"
-            "8,index-finger-phalanx-distal,1,2,3,4,5,6,7,8,9,10,11.5,1\n"
-            "8,pinky-finger-phalanx-distal,0,0,0,0,0,0,0,0,0,0,0,0\n");
+            "tick,segment,px_m,py_m,pz_m,nx,ny,nz,force_n,tx_n,ty_n,tz_n,spin_nm,mu,slip\n"
+            "8,index-finger-phalanx-distal,1,2,3,4,5,6,7,8,9,10,11.5,0.5,1\n"
+            "8,pinky-finger-phalanx-distal,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
 }
 
 }  // namespace

@@ -247,8 +247,8 @@ TEST(Sliding, AFinerMeshOfTheSameFaceGivesTheSameForce) {
     coarsely.push_back(force(on_coarse));
     finely.push_back(force(on_fine));
   }
-  // Where the finger rolls from one corner of its facets to the next, the solver hands the load over in several
-  // ticks, and rounding decides in which.
+  // Where the finger rolls from one corner of its facets to the next, the two meshes list different pairs, and the
+  // load goes over in different ticks.
   int beyond = 0;
   for (std::size_t i = 0; i < coarsely.size(); ++i) {
     const double apart = (coarsely[i] - finely[i]).norm();

@@ -46,7 +46,7 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     object: "#8d99a6",
     floor: "#1a2027",
     arrow: "#F0E442",
-    slip: "#56B4E9",
+    slip: "#CC79A7",
     lost: "#6b7076",
   },
   light: {
@@ -64,7 +64,7 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     object: "#9aa5b1",
     floor: "#e6ebf0",
     arrow: "#8a4b00",
-    slip: "#0072B2",
+    slip: "#a8477f",
     lost: "#9a9fa5",
   },
 };

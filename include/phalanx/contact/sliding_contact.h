@@ -28,6 +28,12 @@ struct SlidingContact {
   double turned = 0.0;         ///< rotation about the normal while spin is held [rad]
   bool slips = false;          ///< friction along the surface is at its bound
   bool spins = true;           ///< friction about the normal is at its bound
+
+  [[nodiscard]] bool presses() const noexcept { return depth[0] > 0.0; }
+  /// Returns the sum of the depths along normal and tangents, in W [m].
+  [[nodiscard]] Vec3 resultant() const noexcept {
+    return depth[0] * normal + depth[1] * tangent[0] + depth[2] * tangent[1];
+  }
 };
 
 /// Contact points of one digit in sliding mode.

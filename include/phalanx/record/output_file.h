@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A text file that appears under its name only when it is complete.
 //
-// All outputs of the folder are written with it. ticks_csv.h and poses_csv.h hold the steps of a simulation,
-// and summary.h its result. station_csv.h holds the log and the fault reports of a station.
+// All outputs of the folder are written with it. ticks_csv.h, poses_csv.h and contacts_csv.h hold the steps of a
+// simulation, and summary.h its result. station_csv.h holds the log and the fault reports of a station.
 // mesh_report_json.h holds the report of a mesh import. made.h states commit and machine in each result.
 // docs/outputs.md describes the files.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ticks.csv: one row a tick with all results of the step, except the poses. docs/outputs.md describes
+// ticks.csv: one row a tick with all results of the step, except poses and contact points. docs/outputs.md describes
 // columns and units.
 #pragma once
 

@@ -49,7 +49,8 @@ struct ContactPoint {
   Vec3 friction = Vec3::Zero();  ///< along the surface, on the finger [N]
   double spin = 0.0;             ///< friction's moment about the normal, on the finger [Nm]
   double coefficient = 0.0;      ///< of Coulomb friction, mu [-]: |friction| <= mu force
-  bool slips = false;            ///< friction along the surface is at its bound
+  /// Friction along the surface is at its bound, and the point moves along it by more than 0.1 mm/s.
+  bool slips = false;
 };
 
 /// Contact points of all digits, in the digits' order. Empty in static mode.
@@ -75,10 +76,12 @@ struct SegmentSnapshot {
   /// Tangential offset between the contact's material point on the HCP and on the GDP [m].
   double slid = 0.0;
   // Sliding mode; 0 in static mode, and while a force decays without contact:
-  Vec3 friction = Vec3::Zero();        ///< sum of ContactPoint::friction [N]
-  double spin = 0.0;                   ///< moment of friction's spin about the mean normal of the points [Nm]
-  bool slips = false;                  ///< points with more than half of the normal force slip
-  double slip_speed = 0.0;             ///< of the GDP's material point at `point`, along the surface [m/s]
+  Vec3 friction = Vec3::Zero();  ///< sum of ContactPoint::friction [N]
+  double spin = 0.0;             ///< sum of ContactPoint::spin about the points' mean normal [Nm]
+  bool slips = false;            ///< points with more than half of the normal force slip
+  /// Speed of the GDP's material point at `point` along the surface, from the last tick to this one; 0 in the tick in
+  /// which contact begins [m/s].
+  double slip_speed = 0.0;
   bool oscillating = false;            ///< `force` oscillates: OscillationObserver
   double oscillation_frequency = 0.0;  ///< [Hz]; 0 while not oscillating
   double oscillation_swing = 0.0;      ///< last full swing from peak to peak [N]; 0 while not oscillating

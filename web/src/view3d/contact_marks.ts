@@ -3,8 +3,8 @@
 // they can be seen, and once more, faint, over everything, because most of an arrow lies inside the finger that it pushes. Where a finger
 // slips, arrow and ring have another colour, and a second ring is around the first. Friction cones are drawn on demand.
 import {
-  Color, ConeGeometry, CylinderGeometry, DoubleSide, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, NotEqualStencilFunc,
-  Quaternion, ReplaceStencilOp, RingGeometry, Vector3,
+  Color, ConeGeometry, CylinderGeometry, DoubleSide, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshBasicMaterial,
+  NotEqualStencilFunc, Quaternion, ReplaceStencilOp, RingGeometry, Vector3,
 } from "three";
 import type { BufferGeometry } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
@@ -129,7 +129,7 @@ export class ContactMarks {
   private readonly solidMaterial = new MeshBasicMaterial({ toneMapped: false });
   private readonly faintMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.72, depthTest: false, depthWrite: false, ...oneLayer, stencilZPass: ReplaceStencilOp });
   private readonly outlineMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.7, depthTest: false, depthWrite: false, ...oneLayer });
-  private readonly coneMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.3, side: DoubleSide, depthTest: false, depthWrite: false });
+  private readonly coneMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.3, side: DoubleSide, forceSinglePass: true, depthTest: false, depthWrite: false });
   private readonly meshes: InstancedMesh[] = []; // shaft, head, ring of `solid`, then of `faint`, then of the outline
   private readonly coneParts: InstancedMesh[]; // surfaces and rims
   private readonly colour = { arrow: new Color(), slip: new Color() };
@@ -145,10 +145,10 @@ export class ContactMarks {
     const layers = [[this.solid, this.solidMaterial, 0], [this.faint, this.faintMaterial, 0], [this.faint, this.outlineMaterial, 1]] as const;
     for (const [group, material, order] of layers) {
       for (const part of [shaft, head, ring]) {
-        this.meshes.push(made(part, material, part === ring ? 2 * (kSegments + kMostPoints) : kSegments, order, group));
+        this.meshes.push(made(part, material, part === ring ? 2 * (kSegments + kMostPoints) : kSegments, order, group, material !== this.outlineMaterial));
       }
     }
-    this.coneParts = [cone, rim].map((part) => made(part, this.coneMaterial, kMostPoints, 0, this.cones));
+    this.coneParts = [cone, rim].map((part) => made(part, this.coneMaterial, kMostPoints, 0, this.cones, true));
     this.faint.renderOrder = 3;
     this.cones.renderOrder = 2;
   }
@@ -218,10 +218,9 @@ export class ContactMarks {
   }
 
   private place<T extends Place & { readonly slips: boolean }>(mesh: InstancedMesh, marks: readonly T[], matrix: (mark: T) => Matrix4): void {
-    const coloured = mesh.material !== this.outlineMaterial;
     marks.forEach((mark, i) => {
       mesh.setMatrixAt(i, matrix(mark));
-      if (coloured) mesh.setColorAt(i, mark.slips ? this.colour.slip : this.colour.arrow);
+      if (mesh.instanceColor) mesh.setColorAt(i, mark.slips ? this.colour.slip : this.colour.arrow);
     });
     mesh.count = marks.length;
     mesh.instanceMatrix.needsUpdate = true;
@@ -233,9 +232,11 @@ function difference(a: Color, b: Color): number {
   return Math.hypot(a.r - b.r, a.g - b.g, a.b - b.b);
 }
 
-function made(part: BufferGeometry, material: MeshBasicMaterial, most: number, order: number, group: Group): InstancedMesh {
+/// @param coloured  each instance has a colour of its own, from the start: a later one would need another shader
+function made(part: BufferGeometry, material: MeshBasicMaterial, most: number, order: number, group: Group, coloured: boolean): InstancedMesh {
   const mesh = new InstancedMesh(part, material, most);
   mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+  if (coloured) mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(3 * most), 3).setUsage(DynamicDrawUsage);
   mesh.frustumCulled = false;
   mesh.count = 0;
   mesh.renderOrder = order;

@@ -9,7 +9,6 @@ import type { Geometry, Mesh, Skin } from "../../../src/gen/phalanx/geometry_pb"
 import { ContactPointSchema, ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import type { Contact, Tick } from "../../../src/gen/phalanx/tick_pb";
 
-const kFriction = 0.6; // the default of contact.friction
 const fingers = ["index-finger", "middle-finger", "ring-finger", "pinky-finger"];
 export const segmentNames: readonly string[] = [
   "thumb-metacarpal", "thumb-phalanx-proximal", "thumb-phalanx-distal",
@@ -78,7 +77,7 @@ function readContacts(path: string, byTick: ReadonlyMap<string, Tick>): void {
     const force = numbers[6]!;
     byTick.get(line[0]!)?.contactPoint.push(create(ContactPointSchema, {
       segment: segmentNames.indexOf(line[1]!), point: numbers.slice(0, 3), normal: numbers.slice(3, 6), force, friction: [x, y, z],
-      spin: numbers[10]!, coefficient: kFriction, slips: numbers[11]! > 0,
+      spin: numbers[10]!, coefficient: numbers[11]!, slips: numbers[12]! > 0,
     }));
   }
 }

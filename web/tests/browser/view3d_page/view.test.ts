@@ -157,6 +157,21 @@ describe("what is drawn", () => {
       expect(hashes.size).toBe(5); // each looks different
     });
   }
+  it("has a ring at each sliding contact point, and cones on demand", async () => {
+    const sliding = "grasp_teapot,contact.mode=sliding";
+    await open(1);
+    await load(sliding);
+    await show(pressing, sliding);
+    const points = recording(sliding).ticks[pressing]!.contactPoint.length;
+    expect(points).toBeGreaterThanOrEqual(5);
+    const without = await page.evaluate(() => window.viewPage.view.probe());
+    expect(without.cones).toBe(0);
+    expect(without.rings).toBeGreaterThanOrEqual(points);
+    const picture = await look();
+    await page.evaluate(() => window.viewPage.view.setParts({ skin: true, ghost: true, arrows: true, object: true, cones: true }));
+    expect((await look()).hash).not.toBe(picture.hash);
+    expect(await page.evaluate(() => window.viewPage.view.probe().cones)).toBe(points);
+  });
 });
 
 describe("a lost connection", () => {

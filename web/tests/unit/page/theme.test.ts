@@ -28,10 +28,10 @@ describe("the digits' colours", () => {
 
 describe("arrows of forces", () => {
   it("are seen on the background of either theme, whether or not the finger slips", () => {
-    for (const { arrow, slip, background } of Object.values(themes)) {
+    for (const { arrow, slip, ghost, background } of Object.values(themes)) {
       expect(contrast(arrow, background)).toBeGreaterThanOrEqual(kLeast);
       expect(contrast(slip, background)).toBeGreaterThanOrEqual(kLeast);
-      expect(slip).not.toBe(arrow);
+      expect(new Set([slip, arrow, ghost]).size).toBe(3);
     }
   });
 });

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/contact_newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "phalanx/core/index.h"
+
+namespace phalanx {
+namespace {
+
+using JointMatrix = std::array<DigitAngles, kJointsPerDigit>;
+
+/// Solves A x = b by elimination with row pivots. @returns false if A is singular
+bool solve_linear(JointMatrix A, DigitAngles b, DigitAngles& x) noexcept {
+  constexpr std::size_t n = kJointsPerDigit;
+  for (std::size_t c = 0; c < n; ++c) {
+    std::size_t pivot = c;
+    for (std::size_t r = c + 1; r < n; ++r)
+      if (std::abs(A[r][c]) > std::abs(A[pivot][c])) pivot = r;
+    if (!(std::abs(A[pivot][c]) > 0.0)) return false;
+    std::swap(A[c], A[pivot]);
+    std::swap(b[c], b[pivot]);
+    for (std::size_t r = c + 1; r < n; ++r) {
+      const double factor = A[r][c] / A[c][c];
+      for (std::size_t k = c; k < n; ++k) A[r][k] -= factor * A[c][k];
+      b[r] -= factor * b[c];
+    }
+  }
+  for (std::size_t c = n; c-- > 0;) {
+    double sum = b[c];
+    for (std::size_t k = c + 1; k < n; ++k) sum -= A[c][k] * x[k];
+    x[c] = sum / A[c][c];
+  }
+  return true;
+}
+
+/// Product of a contact's rows with themselves that makes its tangential multipliers displacements [m^2].
+double sliding_product(const ProblemContact& contact) noexcept {
+  const double tangents = 0.5 * (dot(contact.row[1], contact.row[1]) + dot(contact.row[2], contact.row[2]));
+  return std::max(dot(contact.row[0], contact.row[0]), tangents);
+}
+
+/// Compliances of one contact's rows [m^2], of the spin row [rad^2].
+struct RowCompliance {
+  double normal = 0.0;  ///< 0: the joints cannot move the contact along its normal
+  double tangent = 0.0;
+  double spin = 0.0;  ///< 0: they do not turn it about its normal
+};
+
+/// Slopes of a contact's multipliers over the displacements of its rows, negated.
+struct LawSlopes {
+  double normal = 0.0;
+  std::array<double, 3> tangents{};  ///< of the first, of one over the other, of the second
+  std::array<double, 2> tangent_over_normal{};
+  double spin = 0.0;
+  double spin_over_normal = 0.0;
+};
+
+/// Law of one contact as a function of the displacements of its rows.
+struct RegularisedLaw {
+  ContactRows multiplier{};
+  LawSlopes slope;
+  bool slips = false;
+  bool spins = true;
+
+  /// @param u       displacements of the rows, with room and anchors
+  /// @param offset  multipliers at which the compliances are at rest
+  RegularisedLaw(const ProblemContact& contact, const RowCompliance& e, const ContactRows& u,
+                 const ContactRows& offset) noexcept {
+    const double normal = offset[kNormalRow] - u[kNormalRow] / e.normal;
+    if (!(normal > 0.0)) return;
+    multiplier[kNormalRow] = normal;
+    slope.normal = 1.0 / e.normal;
+    const double mu = contact.friction;
+    slips = mu > 0.0;
+    if (!slips) return;
+    const double bound = mu * std::min(normal, contact.most_friction_normal);
+    const double bound_slope = normal < contact.most_friction_normal ? mu * slope.normal : 0.0;
+    set_tangents(e.tangent, {offset[1] - u[1] / e.tangent, offset[2] - u[2] / e.tangent}, bound, bound_slope);
+    if (!(e.spin > 0.0) || !(contact.spin_radius > 0.0)) return;
+    const double spin = -u[kSpinRow] / e.spin;
+    const double most = contact.spin_radius * bound;
+    spins = std::abs(spin) > most;
+    multiplier[kSpinRow] = std::clamp(spin, -most, most);
+    if (spins) {
+      slope.spin_over_normal = std::copysign(contact.spin_radius * bound_slope, spin);
+    } else {
+      slope.spin = 1.0 / e.spin;
+    }
+  }
+
+ private:
+  void set_tangents(double compliance, const std::array<double, 2>& sticking, double bound,
+                    double bound_slope) noexcept {
+    const double size = length_of(sticking[0], sticking[1]);
+    slips = size > bound;
+    if (!slips) {
+      multiplier[1] = sticking[0];
+      multiplier[2] = sticking[1];
+      slope.tangents = {1.0 / compliance, 0.0, 1.0 / compliance};
+      return;
+    }
+    const std::array<double, 2> d = {sticking[0] / size, sticking[1] / size};
+    multiplier[1] = bound * d[0];
+    multiplier[2] = bound * d[1];
+    const double across = bound / (size * compliance);
+    slope.tangents = {across * d[1] * d[1], -across * d[0] * d[1], across * d[0] * d[0]};
+    slope.tangent_over_normal = {bound_slope * d[0], bound_slope * d[1]};
+  }
+};
+
+class Newton {
+ public:
+  static constexpr int kRounds = 7;       // of the augmented Lagrangian
+  static constexpr int kSoftRounds = 4;   // of them with the greater compliance
+  static constexpr double kSoft = 1e-3;   // compliance, of the product of a row with itself
+  static constexpr double kStiff = 1e-5;  // after the soft rounds
+
+  Newton(ContactProblem& problem, const HeldJoints& held) noexcept
+      : problem_(problem), held_(held), count_(static_cast<std::size_t>(problem.count)) {
+    for (std::size_t i = 0; i < count_; ++i) offset_[i] = problem.contact[i].multiplier;
+    x_ = displacement_of(problem, held);
+  }
+
+  void set_compliance(double share) noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const ProblemContact& contact = problem_.contact[i];
+      const double normal = product_of_free(contact.row[kNormalRow]);
+      const double spin = product_of_free(contact.row[kSpinRow]);
+      if (!(normal > kLeastArm * kLeastArm)) continue;
+      const double tangents = 0.5 * (product_of_free(contact.row[1]) + product_of_free(contact.row[2]));
+      compliance_[i] = {(contact.softness > 0.0 ? contact.softness : share) * normal,
+                        share * std::max(normal, tangents),
+                        spin > kLeastSpin ? ContactProblem::kSpinSoftness * spin : 0.0};
+    }
+  }
+
+  /// Solves for the displacement, and moves the offsets to the multipliers, which it stores in the problem.
+  void round() noexcept {
+    DigitAngles F{};
+    double size = evaluate(x_, F);
+    for (int step = 0; step < kSteps && size > 0.0; ++step) {
+      DigitAngles change{};
+      if (!solve_linear(slopes(), F, change)) break;
+      double greatest = 0.0;
+      for (const double c : change) greatest = std::max(greatest, std::abs(c));
+      if (!(greatest > kStill)) break;
+      DigitAngles next{};
+      double next_size = 2.0 * size;
+      double along = 1.0;
+      for (int halving = 0; halving <= kHalvings && !(next_size < size); ++halving, along *= 0.5) {
+        next = less(change, along);
+        next_size = evaluate(next, F);
+      }
+      if (!(next_size < size)) {  // at a kink of the law: beyond it
+        next = less(change, 1.0);
+        next_size = evaluate(next, F);
+      }
+      x_ = next;
+      size = next_size;
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      ProblemContact& contact = problem_.contact[i];
+      contact.multiplier = multiplier_[i];
+      contact.slips = slips_[i];
+      contact.spins = spins_[i];
+      offset_[i] = multiplier_[i];
+    }
+  }
+
+ private:
+  static constexpr int kSteps = 8;         // of Newton's method in a round
+  static constexpr int kHalvings = 5;      // of a step that does not improve
+  static constexpr double kStill = 1e-13;  // step that changes nothing [rad]
+  static constexpr std::size_t kMost = ContactProblem::kMostContacts;
+
+  [[nodiscard]] bool is_free(std::size_t joint) const noexcept { return held_[joint] == Held::kNo; }
+
+  [[nodiscard]] double product_of_free(const DigitAngles& row) const noexcept {
+    const DigitAngles moves = free_part(row, held_);
+    return dot(moves, moves);
+  }
+
+  [[nodiscard]] DigitAngles less(const DigitAngles& change, double along) const noexcept {
+    DigitAngles x = x_;
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] -= along * change[j];
+    return x;
+  }
+
+  /// Sets F = x - free - sum row^T p(x) for the joints that are free. @returns |F|^2 [rad^2]
+  double evaluate(const DigitAngles& x, DigitAngles& F) noexcept {
+    for (std::size_t j = 0; j < x.size(); ++j) F[j] = is_free(j) ? x[j] - problem_.free[j] : 0.0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!(compliance_[i].normal > 0.0)) continue;
+      const ProblemContact& contact = problem_.contact[i];
+      ContactRows u = {contact.room, contact.anchor[0], contact.anchor[1], contact.spin_anchor};
+      for (std::size_t r = 0; r < kContactRows; ++r) u[r] += dot(contact.row[r], x);
+      ContactRows offset = offset_[i];
+      if (contact.softness > 0.0) offset[kNormalRow] = 0.0;  // its compliance is part of the problem
+      const RegularisedLaw law(contact, compliance_[i], u, offset);
+      multiplier_[i] = law.multiplier;
+      slope_[i] = law.slope;
+      slips_[i] = law.slips;
+      spins_[i] = law.spins;
+      for (std::size_t j = 0; j < x.size(); ++j) {
+        if (!is_free(j)) continue;
+        for (std::size_t r = 0; r < kContactRows; ++r) F[j] -= contact.row[r][j] * law.multiplier[r];
+      }
+    }
+    return dot(F, F);
+  }
+
+  /// Returns dF/dx where it was evaluated last.
+  [[nodiscard]] JointMatrix slopes() const noexcept {
+    JointMatrix K{};
+    for (std::size_t j = 0; j < K.size(); ++j) K[j][j] = 1.0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!(multiplier_[i][kNormalRow] > 0.0)) continue;
+      const auto& row = problem_.contact[i].row;
+      const LawSlopes& s = slope_[i];
+      for (std::size_t k = 0; k < K.size(); ++k) {
+        if (!is_free(k)) continue;
+        const double n = row[kNormalRow][k];
+        const double gradient[kContactRows] = {
+            s.normal * n,
+            s.tangents[0] * row[1][k] + s.tangents[1] * row[2][k] + s.tangent_over_normal[0] * n,
+            s.tangents[1] * row[1][k] + s.tangents[2] * row[2][k] + s.tangent_over_normal[1] * n,
+            s.spin * row[kSpinRow][k] + s.spin_over_normal * n};
+        for (std::size_t j = 0; j < K.size(); ++j) {
+          if (!is_free(j)) continue;
+          for (std::size_t r = 0; r < kContactRows; ++r) K[j][k] += row[r][j] * gradient[r];
+        }
+      }
+    }
+    return K;
+  }
+
+  ContactProblem& problem_;
+  const HeldJoints& held_;
+  std::size_t count_;
+  DigitAngles x_{};
+  std::array<RowCompliance, kMost> compliance_{};
+  std::array<ContactRows, kMost> offset_{};
+  std::array<ContactRows, kMost> multiplier_{};
+  std::array<LawSlopes, kMost> slope_{};
+  std::array<bool, kMost> slips_{};
+  std::array<bool, kMost> spins_{};
+};
+
+}  // namespace
+
+DigitAngles displacement_of(const ContactProblem& problem, const HeldJoints& held) noexcept {
+  DigitAngles x{};
+  for (std::size_t j = 0; j < x.size(); ++j)
+    x[j] = held[j] == Held::kNo ? unlimited_displacement(problem, j) : held_displacement(problem, held, j);
+  return x;
+}
+
+double contact_residual(const ContactProblem& problem, const HeldJoints& held) noexcept {
+  const DigitAngles x = displacement_of(problem, held);
+  double worst = 0.0;
+  for (int i = 0; i < problem.count; ++i) {
+    const ProblemContact& contact = problem.contact[idx(i)];
+    const ContactRows& p = contact.multiplier;
+    const double A = dot(contact.row[kNormalRow], contact.row[kNormalRow]);
+    if (!(A > kLeastArm * kLeastArm)) continue;
+    const double u = dot(contact.row[kNormalRow], x) + contact.room + contact.softness * A * p[kNormalRow];
+    worst = std::max(worst, std::abs(std::min(u, A * p[kNormalRow])));
+    const double S = sliding_product(contact);
+    const double t1 = S * p[1] - dot(contact.row[1], x) - contact.anchor[0];
+    const double t2 = S * p[2] - dot(contact.row[2], x) - contact.anchor[1];
+    const double bound = S * contact.friction * std::min(p[kNormalRow], contact.most_friction_normal);
+    const double size = length_of(t1, t2);
+    const double share = size > bound ? bound / size : 1.0;
+    worst = std::max(worst, length_of(S * p[1] - share * t1, S * p[2] - share * t2));
+  }
+  return worst;
+}
+
+double newton_contacts(ContactProblem& problem, const HeldJoints& held, double tolerance) noexcept {
+  double least = contact_residual(problem, held);
+  auto best = problem.contact;
+  Newton newton(problem, held);
+  newton.set_compliance(Newton::kSoft);
+  for (int round = 0; round < Newton::kRounds && !(least <= tolerance); ++round) {
+    if (round == Newton::kSoftRounds) newton.set_compliance(Newton::kStiff);
+    newton.round();
+    const double residual = contact_residual(problem, held);
+    if (!(residual < least)) continue;
+    least = residual;
+    best = problem.contact;
+  }
+  problem.contact = best;
+  return least;
+}
+
+}  // namespace phalanx
