@@ -44,7 +44,7 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
       ->check(CLI::Range(0.0, 2.0));
   app.add_option("--seconds", options.seconds, "Greatest length of a recording (default: all of it)")
       ->needs(recordings)
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.01, 1e5));
   app.add_option("--json", options.json, "File for all figures");
   app.add_option("--markdown", options.markdown, "File for the tables");
   try {

@@ -198,6 +198,8 @@ RecordingReport measure(const Placed& placed, const BenchMotion& motion) {
   RecordingReport report;
   report.recording = motion.name;
   report.sliding = placed.scene.parameters.contact.mode == ContactMode::kSliding;
+  report.friction = report.sliding ? placed.scene.parameters.contact.friction : 0.0;
+  report.seconds = static_cast<double>(motion.angle.size()) / placed.scene.parameters.rate_hz;
   report.triangles = placed.model->object.triangle_count();
   report.lowered_mm = 1e3 * placed.lowered;
   describe(placed, motion, report);

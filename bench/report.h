@@ -61,6 +61,8 @@ struct RecordingReport {
   int triangles = 0;
   double lowered_mm = 0.0;  ///< so far below the scene's place that the open hand is clear of it
   bool sliding = false;     ///< contacts slide; otherwise they are fixed points
+  double friction = 0.0;    ///< coefficient of contacts that slide [-]
+  double seconds = 0.0;     ///< length of the motion that was run [s]
   double in_contact = 0.0;  ///< share of the ticks with a contact [-]
   double slid = 0.0;        ///< share of the ticks in which a contact has slid [-]
   double exhausted = 0.0;   ///< share of the ticks in which the search ran out of iterations [-]

@@ -79,6 +79,8 @@ Json json_of(const RecordingReport& recording) {
               {"lowered_mm", recording.lowered_mm},
               {"in_contact", recording.in_contact},
               {"contact_mode", recording.sliding ? "sliding" : "static"},
+              {"friction", recording.friction},
+              {"seconds", recording.seconds},
               {"slid", recording.slid},
               {"search_exhausted", recording.exhausted},
               {"offset_along_mm", recording.offset_mm},

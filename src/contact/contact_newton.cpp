@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 
 namespace phalanx {
@@ -36,11 +37,23 @@ bool solve_linear(JointMatrix A, DigitAngles b, DigitAngles& x) noexcept {
   return true;
 }
 
-/// Product of a contact's rows with themselves that makes its tangential multipliers displacements [m^2].
-double sliding_product(const ProblemContact& contact) noexcept {
-  const double tangents = 0.5 * (dot(contact.row[1], contact.row[1]) + dot(contact.row[2], contact.row[2]));
-  return std::max(dot(contact.row[0], contact.row[0]), tangents);
-}
+/// Products of a contact's rows with themselves, of joints that are free.
+struct RowProducts {
+  double normal = 0.0;   ///< [m^2]
+  double sliding = 0.0;  ///< of the tangents: their mean, the normal's at least [m^2]
+  double spin = 0.0;     ///< [rad^2/rad^2]
+
+  RowProducts(const ProblemContact& contact, const HeldJoints& held) noexcept {
+    const auto product = [&](ContactRow row) {
+      const DigitAngles moves = free_part(contact.row[row], held);
+      return dot(moves, moves);
+    };
+    normal = product(kNormalRow);
+    sliding = std::max(normal, 0.5 * (product(kTangentRow) + product(kSecondTangentRow)));
+    spin = product(kSpinRow);
+  }
+  [[nodiscard]] bool moves_normal() const noexcept { return normal > kLeastArm * kLeastArm; }
+};
 
 /// Compliances of one contact's rows [m^2], of the spin row [rad^2].
 struct RowCompliance {
@@ -74,8 +87,8 @@ struct RegularisedLaw {
     multiplier[kNormalRow] = normal;
     slope.normal = 1.0 / e.normal;
     const double mu = contact.friction;
-    slips = mu > 0.0;
-    if (!slips) return;
+    slips = true;
+    if (!(mu > 0.0)) return;
     const double bound = mu * std::min(normal, contact.most_friction_normal);
     const double bound_slope = normal < contact.most_friction_normal ? mu * slope.normal : 0.0;
     set_tangents(e.tangent, {offset[1] - u[1] / e.tangent, offset[2] - u[2] / e.tangent}, bound, bound_slope);
@@ -120,33 +133,42 @@ class Newton {
 
   Newton(ContactProblem& problem, const HeldJoints& held) noexcept
       : problem_(problem), held_(held), count_(static_cast<std::size_t>(problem.count)) {
-    for (std::size_t i = 0; i < count_; ++i) offset_[i] = problem.contact[i].multiplier;
-    x_ = displacement_of(problem, held);
+    restart();
+  }
+
+  /// Goes back to the multipliers of the problem.
+  void restart() noexcept {
+    for (std::size_t i = 0; i < count_; ++i) offset_[i] = problem_.contact[i].multiplier;
+    x_ = displacement_of(problem_, held_);
   }
 
   void set_compliance(double share) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       const ProblemContact& contact = problem_.contact[i];
-      const double normal = product_of_free(contact.row[kNormalRow]);
-      const double spin = product_of_free(contact.row[kSpinRow]);
-      if (!(normal > kLeastArm * kLeastArm)) continue;
-      const double tangents = 0.5 * (product_of_free(contact.row[1]) + product_of_free(contact.row[2]));
-      compliance_[i] = {(contact.softness > 0.0 ? contact.softness : share) * normal,
-                        share * std::max(normal, tangents),
-                        spin > kLeastSpin ? ContactProblem::kSpinSoftness * spin : 0.0};
+      const RowProducts product(contact, held_);
+      if (!product.moves_normal()) continue;
+      compliance_[i] = {(contact.softness > 0.0 ? contact.softness : share) * product.normal,
+                        share * product.sliding,
+                        product.spin > kLeastSpin ? ContactProblem::kSpinSoftness * product.spin : 0.0};
     }
   }
 
   /// Solves for the displacement, and moves the offsets to the multipliers, which it stores in the problem.
-  void round() noexcept {
+  /// @param budget  steps that are left; lowered by those taken
+  void round(int& budget) noexcept {
     DigitAngles F{};
     double size = evaluate(x_, F);
-    for (int step = 0; step < kSteps && size > 0.0; ++step) {
+    bool still = false;
+    for (int step = 0; step < kSteps && budget > 0 && size > 0.0 && !still; ++step, --budget) {
       DigitAngles change{};
       if (!solve_linear(slopes(), F, change)) break;
       double greatest = 0.0;
       for (const double c : change) greatest = std::max(greatest, std::abs(c));
-      if (!(greatest > kStill)) break;
+      if (!(greatest <= kLongest)) {  // also not a number: the law has no slope there
+        if (!std::isfinite(greatest)) break;
+        for (double& c : change) c *= kLongest / greatest;
+      }
+      still = greatest <= kStill;
       DigitAngles next{};
       double next_size = 2.0 * size;
       double along = 1.0;
@@ -173,15 +195,11 @@ class Newton {
  private:
   static constexpr int kSteps = 8;         // of Newton's method in a round
   static constexpr int kHalvings = 5;      // of a step that does not improve
-  static constexpr double kStill = 1e-13;  // step that changes nothing [rad]
+  static constexpr double kStill = 1e-13;  // step that is the last [rad]
+  static constexpr double kLongest = 0.5;  // step [rad]
   static constexpr std::size_t kMost = ContactProblem::kMostContacts;
 
   [[nodiscard]] bool is_free(std::size_t joint) const noexcept { return held_[joint] == Held::kNo; }
-
-  [[nodiscard]] double product_of_free(const DigitAngles& row) const noexcept {
-    const DigitAngles moves = free_part(row, held_);
-    return dot(moves, moves);
-  }
 
   [[nodiscard]] DigitAngles less(const DigitAngles& change, double along) const noexcept {
     DigitAngles x = x_;
@@ -259,35 +277,56 @@ DigitAngles displacement_of(const ContactProblem& problem, const HeldJoints& hel
 }
 
 double contact_residual(const ContactProblem& problem, const HeldJoints& held) noexcept {
+  constexpr double kArm = 0.02;  // length that makes a rotation a displacement [m]
   const DigitAngles x = displacement_of(problem, held);
   double worst = 0.0;
+  const auto add = [&](double violated) {
+    if (!(violated <= worst)) worst = std::isnan(violated) ? kInfinity : violated;
+  };
   for (int i = 0; i < problem.count; ++i) {
     const ProblemContact& contact = problem.contact[idx(i)];
     const ContactRows& p = contact.multiplier;
-    const double A = dot(contact.row[kNormalRow], contact.row[kNormalRow]);
-    if (!(A > kLeastArm * kLeastArm)) continue;
-    const double u = dot(contact.row[kNormalRow], x) + contact.room + contact.softness * A * p[kNormalRow];
-    worst = std::max(worst, std::abs(std::min(u, A * p[kNormalRow])));
-    const double S = sliding_product(contact);
-    const double t1 = S * p[1] - dot(contact.row[1], x) - contact.anchor[0];
-    const double t2 = S * p[2] - dot(contact.row[2], x) - contact.anchor[1];
-    const double bound = S * contact.friction * std::min(p[kNormalRow], contact.most_friction_normal);
+    const RowProducts product(contact, held);
+    if (!product.moves_normal()) continue;
+    const double u =
+        dot(contact.row[kNormalRow], x) + contact.room + contact.softness * product.normal * p[kNormalRow];
+    const double n = product.normal * p[kNormalRow];
+    add(std::abs(u < n ? u : n));
+
+    const double bound = contact.friction * std::min(p[kNormalRow], contact.most_friction_normal);
+    const double t1 = product.sliding * p[1] - dot(contact.row[1], x) - contact.anchor[0];
+    const double t2 = product.sliding * p[2] - dot(contact.row[2], x) - contact.anchor[1];
     const double size = length_of(t1, t2);
-    const double share = size > bound ? bound / size : 1.0;
-    worst = std::max(worst, length_of(S * p[1] - share * t1, S * p[2] - share * t2));
+    const double share = size > product.sliding * bound ? product.sliding * bound / size : 1.0;
+    add(length_of(product.sliding * p[1] - share * t1, product.sliding * p[2] - share * t2));
+
+    if (!(product.spin > kLeastSpin) || !(contact.spin_radius > 0.0)) continue;
+    const double most = contact.spin_radius * bound;
+    const double turned = dot(contact.row[kSpinRow], x) + contact.spin_anchor +
+                          ContactProblem::kSpinSoftness * product.spin * p[kSpinRow];
+    add(kArm * product.spin *
+        std::abs(p[kSpinRow] - std::clamp(p[kSpinRow] - turned / product.spin, -most, most)));
   }
   return worst;
 }
 
-double newton_contacts(ContactProblem& problem, const HeldJoints& held, double tolerance) noexcept {
+double newton_contacts(ContactProblem& problem, const HeldJoints& held, double tolerance,
+                       int& budget) noexcept {
   double least = contact_residual(problem, held);
   auto best = problem.contact;
+  double residual = least;
   Newton newton(problem, held);
   newton.set_compliance(Newton::kSoft);
-  for (int round = 0; round < Newton::kRounds && !(least <= tolerance); ++round) {
-    if (round == Newton::kSoftRounds) newton.set_compliance(Newton::kStiff);
-    newton.round();
-    const double residual = contact_residual(problem, held);
+  for (int round = 0; round < Newton::kRounds && budget > 0 && !(least <= tolerance); ++round) {
+    if (round == Newton::kSoftRounds) {
+      newton.set_compliance(Newton::kStiff);
+      if (residual > least) {
+        problem.contact = best;
+        newton.restart();
+      }
+    }
+    newton.round(budget);
+    residual = contact_residual(problem, held);
     if (!(residual < least)) continue;
     least = residual;
     best = problem.contact;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Newton's method for the contact problem of one digit, where block Gauss-Seidel is slow. See docs/sliding.md.
+// Newton's method for the contact problem of one digit, where block Gauss-Seidel is slow: docs/sliding.md.
 #pragma once
 
 #include <array>
@@ -51,20 +51,23 @@ using HeldJoints = std::array<Held, kJointsPerDigit>;
 /// Returns the displacement of all joints that the multipliers give, of those that are held their bounds [rad].
 [[nodiscard]] DigitAngles displacement_of(const ContactProblem& problem, const HeldJoints& held) noexcept;
 
-/// Returns by how much the multipliers violate the conditions of normal and tangents, as the distance of each
-/// row's multiplier from its projection on what the law allows, times the product of the row with itself: the
-/// greatest over all contacts [m]. 0 for a solution. Real-time.
+/// Returns by how much the multipliers violate the conditions of normal, tangents and spin: the distance of each
+/// multiplier from its projection on what the law allows, as a displacement. The greatest over all contacts
+/// [m]: 0 for a solution, infinity if something is not a number. Real-time.
 [[nodiscard]] double contact_residual(const ContactProblem& problem, const HeldJoints& held) noexcept;
 
-/// Brings the multipliers nearer to a solution, from those of an iteration that has not converged, with the joints of
-/// `held` fixed at their bounds. The law is made a function of the displacement by small compliances, whose offsets
-/// an augmented Lagrangian moves until nothing of them is left:
+/// Brings the multipliers nearer to a solution, from those of an iteration that has not converged, with the
+/// joints of `held` fixed at their bounds. The law is made a function of the displacement by small compliances
+/// e, whose offsets q an augmented Lagrangian moves until nothing of them is left:
 ///   p_n = max(0, q_n - (row_n . x + room) / e),   p_t = q_t - (row_t . x + anchor) / e, within its disc
-/// Newton's method solves x = free + sum row^T p(x), four equations whatever the number of contacts is. Not every
-/// problem is solved: the multipliers with the least residual stay, those at the start included.
+/// A soft contact's normal and spin have the compliance of the problem, and no offset. Newton's method solves
+/// x = free + sum row^T p(x), four equations whatever the number of contacts is. Not every problem is solved:
+/// the multipliers with the least residual stay, those at the start included.
 /// @param tolerance  ends at this residual [m]
+/// @param budget     greatest number of Newton's steps, lowered by those taken
 /// @returns the residual of the multipliers that stay [m]
 /// Real-time: bounded, no allocation, lock, throw or I/O.
-double newton_contacts(ContactProblem& problem, const HeldJoints& held, double tolerance) noexcept;
+double newton_contacts(ContactProblem& problem, const HeldJoints& held, double tolerance,
+                       int& budget) noexcept;
 
 }  // namespace phalanx

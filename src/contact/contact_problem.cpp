@@ -403,8 +403,9 @@ void open_contacts(ContactProblem& problem, const HeldJoints& held, double toler
   }
 }
 
-/// Sweeps over the contacts with the joints of `held` fixed at their bounds.
-void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance) noexcept {
+/// Sweeps over the contacts with the joints of `held` fixed at their bounds, and goes on with Newton's method.
+void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance,
+                    int& newton_budget) noexcept {
   const auto count = static_cast<std::size_t>(problem.count);
   DigitAngles& x = problem.displacement;
   std::array<Block, ContactProblem::kMostContacts> block;
@@ -451,7 +452,7 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
     problem.contact[i].spins = contact[i].spins;
   }
   if (change <= tolerance) return;
-  const bool solved = newton_contacts(problem, held, tolerance) <= tolerance;
+  const bool solved = newton_contacts(problem, held, tolerance, newton_budget) <= tolerance;
   x = displacement_of(problem, held);
   if (!solved) open_contacts(problem, held, tolerance);
 }
@@ -461,15 +462,17 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
 void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
   // Joints at their limits are an active set, from the last solution on. After some rounds no joint is released
   // any more, so that the set settles.
+  constexpr int kNewtonSteps = 60;  // of all rounds
   constexpr int kReleasingRounds = 3;
   constexpr int kRounds = kReleasingRounds + kJointsPerDigit;
+  int newton_budget = kNewtonSteps;
   HeldJoints held{};
   for (std::size_t j = 0; j < held.size(); ++j) {
     if (problem.limit[j] != 0.0) held[j] = problem.limit[j] < 0.0 ? Held::kHighest : Held::kLowest;
   }
   bool changed = true;
   for (int round = 0; round < kRounds && changed; ++round) {
-    sweep_contacts(problem, held, sweeps, tolerance);
+    sweep_contacts(problem, held, sweeps, tolerance, newton_budget);
     changed = false;
     for (std::size_t j = 0; j < held.size(); ++j) {
       // Computed from the multipliers alone, so that a contact that has let go leaves no rounding.

@@ -65,8 +65,8 @@ struct ContactProblem {
 /// Solves the problem by block Gauss-Seidel, a block for each contact, and where that has not converged by
 /// Newton's method (contact_newton.h). Contacts are in the order of `contact`.
 /// @param sweeps     greatest number of sweeps over the blocks
-/// @param tolerance  ends when no row changes by more in one sweep [m]
-/// The result after the last sweep is finite for finite input. Normal multipliers are >= 0, friction is within its
+/// @param tolerance  ends when no row changes by more in one sweep, or the residual of Newton's method is this [m]
+/// The result is finite for finite input. Normal multipliers are >= 0, friction is within its
 /// bound and joints are within their limits, whether the iteration has converged or not.
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept;

@@ -21,8 +21,9 @@ struct LastHand {
   std::array<bool, kSegments> in_contact{};
 };
 
-/// Writes the contact points of sliding mode, and what they add up to for their segments. The other fields of `out`
-/// are those of this tick, and its list of points is empty. Real-time: O(1), no allocation, lock, throw or I/O.
+/// Writes the contact points of sliding mode, and what they add up to for their segments. The other fields of
+/// `out` are those of this tick, and its list of points is empty. Real-time: O(1), no allocation, lock, throw or
+/// I/O.
 void record_contact_points(const HapticParameters& parameters, const GdpState& gdp, const ForceState& force,
                            const LastHand& last, Snapshot& out) noexcept;
 

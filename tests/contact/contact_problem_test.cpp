@@ -5,10 +5,14 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
 
+#include "contact/contact_newton.h"
+#include "phalanx/core/constants.h"
 #include "support/reference/siconos_problem.h"
 #include "support/simple_hand.h"
 
@@ -242,7 +246,7 @@ void expect_siconos_agrees(std::uint64_t seed, int problems) {
               static_cast<unsigned long long>(seed), compared, other_solutions, unfinished);
   EXPECT_GE(compared, problems * 9 / 10) << "Siconos solves the others to less than 1e-11";
   EXPECT_LE(other_solutions, compared / 100);
-  EXPECT_LE(unfinished, compared / 100) << "Gauss-Seidel converges slowly where contacts jam";
+  EXPECT_LE(unfinished, compared / 100) << "some problems in which contacts jam are not solved";
 }
 
 TEST(ContactProblem, SiconosAgrees) { expect_siconos_agrees(20, 200); }
@@ -250,6 +254,122 @@ TEST(ContactProblem, SiconosAgrees) { expect_siconos_agrees(20, 200); }
 /// The long version, for ./test --full.
 TEST(ManyContactProblems, SiconosAgrees) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) expect_siconos_agrees(seed, 1000);
+}
+
+constexpr int kManySteps = 100;  // of Newton's method
+
+/// Returns by how much normal multipliers violate the conditions of contacts without friction, of joints of which one
+/// may be held [m].
+double violation_of_normals(const ContactProblem& problem, const DigitAngles& x, int held) {
+  double worst = 0.0;
+  for (int i = 0; i < problem.count; ++i) {
+    const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+    double gap = contact.room;
+    double product = 0.0;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const double arm = contact.row[kNormalRow][j];
+      gap += arm * x[j];
+      product += static_cast<int>(j) == held ? 0.0 : arm * arm;
+    }
+    const double p = contact.multiplier[kNormalRow];
+    gap += contact.softness * product * p;
+    worst = std::max({worst, -p, -gap, p > 0.0 ? std::abs(gap) : 0.0});
+  }
+  return worst;
+}
+
+TEST(ContactProblem, NewtonAloneSolvesProblemsWithoutFriction) {
+  std::mt19937_64 random(11);
+  int unsolved = 0;
+  for (int n = 0; n < 500; ++n) {
+    ContactProblem problem = random_problem(random, 8);
+    for (int i = 0; i < problem.count; ++i) {
+      ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      contact.friction = 0.0;
+      contact.softness = n % 3 == 0 ? 0.05 : 0.0;
+    }
+    HeldJoints held{};
+    const int fixed = std::array{-1, 2, 3}[static_cast<std::size_t>(n / 3 % 3)];
+    problem.lowest.fill(-0.01);
+    if (fixed >= 0) held[static_cast<std::size_t>(fixed)] = Held::kLowest;
+    int budget = kManySteps;
+    if (newton_contacts(problem, held, 1e-12, budget) > 1e-9) {
+      ++unsolved;  // some have no solution: contacts of a bent finger that no joint opens together
+      continue;
+    }
+    const DigitAngles x = displacement_of(problem, held);
+    if (fixed >= 0) {
+      ASSERT_EQ(x[static_cast<std::size_t>(fixed)], -0.01) << n;
+    }
+    ASSERT_LE(violation_of_normals(problem, x, fixed), 1e-9) << n;
+    for (int i = 0; i < problem.count; ++i) {
+      const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      ASSERT_EQ(contact.slips, contact.multiplier[kNormalRow] > 0.0) << n << ": as the sweeps say";
+    }
+  }
+  EXPECT_LE(unsolved, 15) << "of 500, seed 11";
+}
+
+TEST(ContactProblem, NewtonAloneSolvesMostProblemsWithFrictionAndSpin) {
+  std::mt19937_64 random(12);
+  int solved = 0;
+  constexpr int kProblems = 500;
+  for (int n = 0; n < kProblems; ++n) {
+    ContactProblem problem = random_problem(random, 5);
+    for (int i = 0; i < problem.count; ++i) {
+      ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      contact.spin_radius = 0.004;
+      if (n % 3 == 0) contact.most_friction_normal = 0.3;
+    }
+    int budget = kManySteps;
+    const double residual = newton_contacts(problem, {}, 1e-12, budget);
+    ASSERT_GE(budget, 0) << n;
+    solved += residual <= 1e-9 ? 1 : 0;
+    for (int i = 0; i < problem.count; ++i) {
+      const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      const double most =
+          contact.friction * std::min(contact.multiplier[0], contact.most_friction_normal) * (1.0 + 1e-12);
+      ASSERT_GE(contact.multiplier[kNormalRow], 0.0) << n;
+      ASSERT_LE(std::hypot(contact.multiplier[1], contact.multiplier[2]), most) << n;
+      ASSERT_LE(std::abs(contact.multiplier[kSpinRow]), contact.spin_radius * most) << n;
+    }
+    if (residual > 1e-9) continue;
+    problem.displacement = displacement_of(problem, {});
+    if (n % 3 != 0) {
+      ASSERT_LE(violation(problem), 1e-8) << n;
+    }
+    for (int i = 0; i < problem.count; ++i) {
+      const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
+      if (contact.spins || !(contact.multiplier[kNormalRow] > 0.0)) continue;
+      double turned = 0.0;
+      double product = 0.0;
+      for (std::size_t j = 0; j < problem.free.size(); ++j) {
+        turned += contact.row[kSpinRow][j] * problem.displacement[j];
+        product += contact.row[kSpinRow][j] * contact.row[kSpinRow][j];
+      }
+      ASSERT_NEAR(turned, -0.02 * product * contact.multiplier[kSpinRow], 1e-7) << n << ": spin is held";
+    }
+  }
+  EXPECT_GE(solved, kProblems * 3 / 4) << "of " << kProblems << ", seed 12";
+}
+
+TEST(ContactProblem, WhereNothingIsANumberNothingIsTakenForASolution) {
+  std::mt19937_64 random(13);
+  ContactProblem problem = random_problem(random, 5);
+  problem.contact[0].multiplier[kNormalRow] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(contact_residual(problem, {}), kInfinity);
+}
+
+TEST(ContactProblem, FewSweepsAndNewtonSolveMostProblems) {
+  std::mt19937_64 random(11);
+  int solved = 0;
+  constexpr int kProblems = 500;
+  for (int n = 0; n < kProblems; ++n) {
+    ContactProblem problem = random_problem(random, 5);
+    solve_contacts(problem, 6, 1e-12);
+    solved += violation(problem) <= 1e-9 ? 1 : 0;
+  }
+  EXPECT_GE(solved, kProblems * 9 / 10) << "of " << kProblems << ", seed 11";
 }
 
 TEST(ContactProblem, WhateverTheRowsAreTheSolutionIsFiniteAndBounded) {

@@ -37,10 +37,10 @@ struct Sample {
   AngleOrigins angle_origin{};  ///< of `angle`. It is copied to the snapshot and does not affect the command.
 };
 
-/// Contact point that presses in sliding mode, with its share of the segment's force; world frame W, SI. The shares
-/// `force` * normal + friction of a segment's points add up to the force sent to it. Where points oppose each other,
-/// and their resultant is less than a tenth of the sum of their sizes, the shares are those for a tenth. With the
-/// stabiliser `direction` the force sent may have another direction.
+/// Contact point that presses in sliding mode, with its share of the segment's force; world frame W, SI. The
+/// shares `force` * normal + friction of a segment's points add up to the force sent to it. Where points oppose
+/// each other, and their resultant is less than a tenth of the sum of their sizes, the shares are those for a
+/// tenth. With the stabiliser `direction` the force sent may have another direction.
 struct ContactPoint {
   int segment = 0;
   Vec3 point = Vec3::Zero();     ///< on the GDP segment [m]
@@ -79,8 +79,8 @@ struct SegmentSnapshot {
   Vec3 friction = Vec3::Zero();  ///< sum of ContactPoint::friction [N]
   double spin = 0.0;             ///< sum of ContactPoint::spin about the points' mean normal [Nm]
   bool slips = false;            ///< points with more than half of the normal force slip
-  /// Speed of the GDP's material point at `point` along the surface, from the last tick to this one; 0 in the tick in
-  /// which contact begins [m/s].
+  /// Speed of the GDP's material point at `point` along the surface, from the last tick to this one; 0 in the
+  /// tick in which contact begins [m/s].
   double slip_speed = 0.0;
   bool oscillating = false;            ///< `force` oscillates: OscillationObserver
   double oscillation_frequency = 0.0;  ///< [Hz]; 0 while not oscillating
