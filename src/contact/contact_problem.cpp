@@ -403,6 +403,8 @@ void open_contacts(ContactProblem& problem, const HeldJoints& held, double toler
   }
 }
 
+constexpr double kNearlySolved = 1e-9;  // residual [m]
+
 /// Sweeps over the contacts with the joints of `held` fixed at their bounds, and goes on with Newton's method.
 void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance,
                     int& newton_budget) noexcept {
@@ -452,7 +454,11 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
     problem.contact[i].spins = contact[i].spins;
   }
   if (change <= tolerance) return;
-  const bool solved = newton_contacts(problem, held, tolerance, newton_budget) <= tolerance;
+  // A single contact that the sweeps do not solve jams: Newton's method finds nothing better, or another of several
+  // solutions, and the force would jump.
+  // The same holds for several that they have nearly solved.
+  const bool solved = count > 1 && contact_residual(problem, held) > kNearlySolved &&
+                      newton_contacts(problem, held, tolerance, newton_budget) <= tolerance;
   x = displacement_of(problem, held);
   if (!solved) open_contacts(problem, held, tolerance);
 }

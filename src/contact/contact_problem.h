@@ -62,8 +62,8 @@ struct ContactProblem {
   DigitAngles displacement{};  ///< solution: x [rad]
 };
 
-/// Solves the problem by block Gauss-Seidel, a block for each contact, and where that has not converged by
-/// Newton's method (contact_newton.h). Contacts are in the order of `contact`.
+/// Solves the problem by block Gauss-Seidel, a block for each contact. Where that has not converged for several
+/// contacts, Newton's method goes on (contact_newton.h). Contacts are in the order of `contact`.
 /// @param sweeps     greatest number of sweeps over the blocks
 /// @param tolerance  ends when no row changes by more in one sweep, or the residual of Newton's method is this [m]
 /// The result is finite for finite input. Normal multipliers are >= 0, friction is within its

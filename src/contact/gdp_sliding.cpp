@@ -35,7 +35,8 @@ constexpr double kMostSubsteps = 20.0;
 constexpr double kLeastBeyond = 1e-3;  // depth below which the measured finger is not looked for beyond [m]
 constexpr double kCheckBeyond = 4e-3;  // [s]
 constexpr double kBeyondFor = 30e-3;   // [s]
-constexpr int kSweeps = 6;
+constexpr int kSweeps = 6;             // then Newton's method goes on
+constexpr int kSweepsOfOne = 20;       // contact alone
 constexpr int kRecoverySweeps = 8;
 constexpr double kSoftness = 0.05;  // of the recovery, so that it converges between opposed contacts
 constexpr int kMostEvents = 4;
@@ -200,7 +201,7 @@ class Substep {
     ContactProblem problem;
     set_up(free, problem);
     problem.limit = contacts_.limit;
-    solve_contacts(problem, kSweeps, kTolerance);
+    solve_contacts(problem, contacts_.count > 1 ? kSweeps : kSweepsOfOne, kTolerance);
     contacts_.limit = problem.limit;
     for (int i = 0; i < problem.count; ++i) {
       contacts_.contact[idx(i)].multiplier = problem.contact[idx(i)].multiplier;
