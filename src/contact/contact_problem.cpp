@@ -454,9 +454,8 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
     problem.contact[i].spins = contact[i].spins;
   }
   if (change <= tolerance) return;
-  // A single contact that the sweeps do not solve jams: Newton's method finds nothing better, or another of several
-  // solutions, and the force would jump.
-  // The same holds for several that they have nearly solved.
+  // A single contact that the sweeps do not solve jams: Newton's method finds nothing better. It may find another of
+  // several solutions, and the force would jump: it is left out where several contacts are nearly solved, too.
   const bool solved = count > 1 && contact_residual(problem, held) > kNearlySolved &&
                       newton_contacts(problem, held, tolerance, newton_budget) <= tolerance;
   x = displacement_of(problem, held);
