@@ -110,16 +110,35 @@ class Search {
     for (int k = first_; k < kSegmentsPerDigit; ++k)
       clearance(k).learn(near(k).bound(tick_.pose.segment[idx(k)]), true);
   }
+  /// Returns the distance within which segment k may meet pairs before s reaches the horizon [m].
+  [[nodiscard]] double reach(int k, double horizon) const noexcept {
+    return model_.parameters.margin + speed_[idx(k)] * (horizon - s_);
+  }
   /// @returns true if the near pairs of segment k are all that it may meet before s reaches the horizon
   [[nodiscard]] bool near_suffices(int k, double horizon) noexcept {
-    return path_.near_known && near(k).holds(tick_.pose.segment[idx(k)],
-                                             model_.parameters.margin + speed_[idx(k)] * (horizon - s_));
+    return path_.near_known && near(k).holds(tick_.pose.segment[idx(k)], reach(k, horizon));
   }
-  /// Lists the near pairs of segment k.
-  void list_near(int k) noexcept {
+  /// @returns true if segment k need not be searched before s reaches the horizon
+  [[nodiscard]] bool is_listed(int k, double horizon) noexcept {
+    return near_suffices(k, horizon) || near(k).candidates().cover(placed(k), reach(k, horizon));
+  }
+  /// Lists the pairs of segment k that may be met before s reaches the horizon.
+  /// @returns the horizon up to which they are complete
+  double list_pairs(int k, double horizon) noexcept {
     PairList& list = state_.pairs;
-    for (std::size_t i = 0; i < near(k).count(); ++i)
-      list.pair[idx(list.count++)] = {near(k)[i].triangle, near(k)[i].slot, s_, true};
+    if (near_suffices(k, horizon)) {
+      for (std::size_t i = 0; i < near(k).count(); ++i)
+        list.pair[idx(list.count++)] = {near(k)[i].triangle, near(k)[i].slot, s_, true};
+      return horizon;
+    }
+    const PairSearch search{placed(k), model_.object.tree(), motion(k), stop_band(model_.parameters.margin)};
+    CandidatePairs& candidates = near(k).candidates();
+    if (model_.parameters.mode == ContactMode::kSliding)
+      candidates.list(search.segment, search.object, reach(k, horizon));
+    if (!candidates.cover(search.segment, reach(k, horizon)))
+      return gather_pairs(search, s_, horizon, k, list);
+    gather_candidates(search, s_, horizon, reach(k, horizon), candidates, list);
+    return horizon;
   }
   /// Tells which segments need no search up to the horizon, and refreshes their bounds.
   std::array<bool, kSegmentsPerDigit> find_clear(double horizon) noexcept {
@@ -140,13 +159,7 @@ class Search {
     double horizon = first_horizon();
     const std::array<bool, kSegmentsPerDigit> clear = find_clear(horizon);
     for (int k = first_; k < kSegmentsPerDigit; ++k) {
-      if (!clear[idx(k)] && near_suffices(k, horizon)) {
-        list_near(k);
-      } else if (!clear[idx(k)]) {
-        horizon =
-            gather_pairs({placed(k), model_.object.tree(), motion(k), stop_band(model_.parameters.margin)},
-                         s_, horizon, k, list);
-      }
+      if (!clear[idx(k)]) horizon = list_pairs(k, horizon);
       for (int later = k + 1; later <= kSegmentsPerDigit; ++later) list.begin[idx(later)] = list.count;
     }
     return horizon;
@@ -170,19 +183,20 @@ class Search {
     constexpr double kLeastAhead = 0.3e-3;  // least distance that it should cover [m]
     constexpr double kMostAhead = 4e-3;     // greatest, but at least twice the required one [m]
     const double margin = model_.parameters.margin;
-    const double reach = speed_[idx(k)] * (horizon - s_);
+    const double way = speed_[idx(k)] * (horizon - s_);
     Clearance& known = clearance(k);
-    if (known.bound() > margin + reach) return true;
-    if (near_suffices(k, horizon)) return false;
+    if (known.bound() > margin + way) return true;
+    // Where a segment has candidates it is near: a new list of them is worth more than a bound.
+    if (is_listed(k, horizon) || !near(k).candidates().empty()) return false;
     if (!known.worth_asking()) return false;
     if (near(k).is_within(tick_.pose.segment[idx(k)], margin)) {  // no bound can exceed the margin
       known.learn(0.0, false);
       return false;
     }
-    const double ahead = margin + std::max({std::min(kTicks * reach, kMostAhead), 2.0 * reach, kLeastAhead});
+    const double ahead = margin + std::max({std::min(kTicks * way, kMostAhead), 2.0 * way, kLeastAhead});
     const double bound = distance_bound(placed(k), model_.object.tree(), ahead);
-    known.learn(bound, bound > margin + reach);
-    return bound > margin + reach;
+    known.learn(bound, bound > margin + way);
+    return bound > margin + way;
   }
 
   /// Evaluates the pairs that are due at s.

@@ -99,9 +99,10 @@ class Substep {
     DigitAngles change{};
     for (std::size_t i = 0; i < change.size(); ++i) change[i] = tick_.hcp[i] - tick_.hcp_from[i];
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
-      const double reach = working_clearance() +
-                           std::min(kMostReach, segment_speed(model_.hand, tick_.digit, change, k) + kSlack);
+      const double way = segment_speed(model_.hand, tick_.digit, change, k) + kSlack;
+      const double reach = working_clearance() + std::min(kMostReach, way);
       if (state_.clearance[idx(segment_index(tick_.digit, k))].bound() > reach) continue;
+      near(k).candidates().list(placed(k), model_.object.tree(), working_clearance() + way);
       Manifold manifold;
       find_manifold(placed(k), model_.object.tree(), reach, working_clearance() + kSlack,
                     model_.parameters.max_contacts, near(k), manifold);
@@ -451,11 +452,12 @@ bool is_beyond(const ContactModel& model, const DigitTick& tick, GdpState& state
   contacts.unchecked_for += model.period;
   if (contacts.unchecked_for < kCheckBeyond) return false;
   bool clear = true;
-  for (int k = 0; k < kSegmentsPerDigit && clear; ++k) {
+  for (int k = kSegmentsPerDigit - 1; k >= 0 && clear; --k) {  // the fingertip is the likeliest to be inside
     const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], tick.hcp_pose.segment[idx(k)],
                                state.scratch};
     const double margin = model.parameters.margin;
-    clear = distance(placed, model.object.tree(), 2.0 * margin) > margin;
+    clear =
+        !crosses(placed, model.object.tree()) && distance(placed, model.object.tree(), 2.0 * margin) > margin;
   }
   contacts.beyond_for = clear ? contacts.beyond_for + contacts.unchecked_for : 0.0;
   contacts.unchecked_for = 0.0;

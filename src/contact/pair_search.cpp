@@ -123,6 +123,24 @@ double gather_pairs(const PairSearch& search, double s, double horizon, int k, P
   return context.views.horizon;
 }
 
+void gather_candidates(const PairSearch& search, double s, double horizon, double reach,
+                       CandidatePairs& candidates, PairList& list) noexcept {
+  const Views v(search, s, horizon);
+  std::array<search::PairIndex, kBatch> pair;
+  int n = 0;
+  const auto sift = [&] {
+    n = search::functions().sift(v.segment, v.object, v.motion, horizon - s, v.band.margin, pair.data(), n);
+    for (int i = 0; i < n; ++i)
+      list.pair[idx(list.count++)] = {pair[idx(i)].triangle, pair[idx(i)].slot, s, true};
+    n = 0;
+  };
+  candidates.for_each(reach, [&](const CandidatePairs::Pair& candidate) {
+    pair[idx(n++)] = {candidate.triangle, candidate.slot};
+    if (n == kBatch) sift();
+  });
+  sift();
+}
+
 bool evaluate_pairs(const PairSearch& search, double s, double horizon, int k, bool all,
                     PairList& list) noexcept {
   // Pairs that are due soon are evaluated now, because a pose costs more than a pair.

@@ -22,6 +22,12 @@ struct PairSearch {
 [[nodiscard]] double gather_pairs(const PairSearch& search, double s, double horizon, int k,
                                   PairList& list) noexcept;
 
+/// Appends those candidates of the digit's segment k that may come within the margin before s reaches `horizon`, all
+/// due at s.
+/// @pre the candidates cover the margin and the segment's way up to the horizon at its pose. Real-time.
+void gather_candidates(const PairSearch& search, double s, double horizon, double reach,
+                       CandidatePairs& candidates, PairList& list) noexcept;
+
 /// Computes how far each due pair of segment k, or every pair if `all` is set, may advance.
 /// @returns true if one of them blocks the segment. Real-time.
 [[nodiscard]] bool evaluate_pairs(const PairSearch& search, double s, double horizon, int k, bool all,

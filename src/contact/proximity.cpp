@@ -2,6 +2,7 @@
 #include "phalanx/contact/proximity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -9,6 +10,7 @@
 #include "contact/search/views.h"
 #include "phalanx/contact/triangle_distance.h"
 #include "phalanx/core/constants.h"
+#include "phalanx/core/index.h"
 
 namespace phalanx {
 namespace {
@@ -20,6 +22,11 @@ enum class Order {
   kNearest,  ///< nearer boxes first, which lowers the cap early
 };
 
+TriangleDistance to_distance(const search::PairDistance& p) noexcept {
+  return {p.squared, Vec3(p.on_segment[0], p.on_segment[1], p.on_segment[2]),
+          Vec3(p.on_object[0], p.on_object[1], p.on_object[2])};
+}
+
 /// Calls found(triangle, slot, closest points, cap^2) for every pair whose squared distance is at most the
 /// cap. found() may lower the cap.
 template <Order order, class Found>
@@ -27,9 +34,8 @@ void for_each_pair(const PlacedSegment& segment, const ObjectTree& object, doubl
                    Found&& found) noexcept {
   if (segment.tree.empty() || object.empty()) return;
   const auto sink = [](void* context, const search::PairDistance& p, double& cap) {
-    const TriangleDistance closest{p.squared, Vec3(p.on_segment[0], p.on_segment[1], p.on_segment[2]),
-                                   Vec3(p.on_object[0], p.on_object[1], p.on_object[2])};
-    (*static_cast<std::remove_reference_t<Found>*>(context))(p.pair.triangle, p.pair.slot, closest, cap);
+    (*static_cast<std::remove_reference_t<Found>*>(context))(p.pair.triangle, p.pair.slot, to_distance(p),
+                                                             cap);
   };
   search::functions().visit(search::view_of(segment, object), search::view_of(object), cap_squared,
                             order == Order::kNearest, sink, &found);
@@ -141,12 +147,42 @@ void NearPairs::find(const PlacedSegment& segment, const ObjectTree& object, dou
   reach_ = reach;
   least_squared_ = 1e300;
   count_ = 0;
+  if (candidates_.cover(segment, reach)) return find_among_candidates(segment, object, reach);
   for_each_pair<Order::kFixed>(segment, object, squared(reach),
                                [&](int triangle, int slot, const TriangleDistance& closest, double&) {
-                                 if (count_ < kMost) pair_[count_] = {triangle, slot, closest};
-                                 ++count_;
-                                 least_squared_ = std::min(least_squared_, closest.squared);
+                                 add({triangle, slot, closest});
                                });
+}
+
+void NearPairs::add(const Pair& pair) noexcept {
+  if (count_ < kMost) pair_[count_] = pair;
+  ++count_;
+  least_squared_ = std::min(least_squared_, pair.closest.squared);
+}
+
+void NearPairs::find_among_candidates(const PlacedSegment& segment, const ObjectTree& object,
+                                      double reach) noexcept {
+  constexpr int kBatch = 64;
+  std::array<CandidatePairs::Pair*, kBatch> candidate;
+  std::array<search::PairIndex, kBatch> pair;
+  std::array<search::PairDistance, kBatch> found;
+  const search::SegmentView segment_view = search::view_of(segment, object);
+  int n = 0;
+  const auto measure = [&] {
+    search::functions().measure(segment_view, search::view_of(object), pair.data(), n, found.data());
+    for (int i = 0; i < n; ++i) {
+      const search::PairDistance& p = found[idx(i)];
+      candidates_.measured(*candidate[idx(i)], std::sqrt(p.squared));
+      if (p.squared <= squared(reach)) add({p.pair.triangle, p.pair.slot, to_distance(p)});
+    }
+    n = 0;
+  };
+  candidates_.for_each(reach, [&](CandidatePairs::Pair& near) {
+    candidate[idx(n)] = &near;
+    pair[idx(n++)] = {near.triangle, near.slot};
+    if (n == kBatch) measure();
+  });
+  measure();
 }
 
 void NearPairs::stop_at(const Pose& X_WS) noexcept {

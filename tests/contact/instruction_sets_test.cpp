@@ -13,8 +13,10 @@
 #endif
 
 #include "contact/search/search_functions.h"
+#include "contact/search/views.h"
 #include "phalanx/contact/proximity.h"
 #include "phalanx/core/constants.h"
+#include "phalanx/core/index.h"
 #include "support/count_allocations.h"
 #include "support/search_cases.h"
 #include "support/simple_hand.h"
@@ -63,6 +65,46 @@ void expect_same_bits(const ResultBits& portable, const ResultBits& wide) {
   EXPECT_EQ(portable.first_difference(wide), portable.size()) << "place of the first different number";
 }
 
+/// Adds the candidates near the segment, their distances, and those that a motion may bring near.
+void add_candidates(const PlacedSegment& placed, const ObjectModel& object, double found,
+                    test::Random& random, ResultBits& out) {
+  const search::SegmentView segment = search::view_of(placed, object.tree());
+  const search::ObjectView tree = search::view_of(object.tree());
+  struct Candidates {
+    std::vector<search::PairIndex> pair;
+    ResultBits& out;
+  } candidates{{}, out};
+  search::functions().list(
+      segment, tree, found + 1e-3,
+      [](void* self, const search::PairIndex& pair, double bound) {
+        auto& list = *static_cast<Candidates*>(self);
+        list.pair.push_back(pair);
+        list.out.add(bound);
+        return list.pair.size() < 300;
+      },
+      &candidates);
+  std::vector<search::PairDistance> distances(candidates.pair.size());
+  const int n = static_cast<int>(candidates.pair.size());
+  search::functions().measure(segment, tree, candidates.pair.data(), n, distances.data());
+  for (const search::PairDistance& p : distances) {
+    out.add(static_cast<std::uint64_t>(p.pair.triangle));
+    out.add(static_cast<std::uint64_t>(p.pair.slot));
+    for (const double x : {p.squared, p.on_segment[0], p.on_segment[1], p.on_segment[2], p.on_object[0]})
+      out.add(x);
+  }
+  SegmentMotion motion;
+  motion.angular = test::in_cube(random, 1e-2);
+  motion.linear = test::in_cube(random, 1e-3);
+  motion.linear_rate = test::in_cube(random, 1e-4);
+  motion.jerk = 1e-6;
+  const int kept =
+      search::functions().sift(segment, tree, search::view_of(motion), 1.0, found, candidates.pair.data(), n);
+  for (int i = 0; i < kept; ++i) {
+    out.add(static_cast<std::uint64_t>(candidates.pair[idx(i)].triangle));
+    out.add(static_cast<std::uint64_t>(candidates.pair[idx(i)].slot));
+  }
+}
+
 ResultBits searched(std::uint64_t seed, int poses) {
   test::Random random(seed);
   ResultBits out;
@@ -85,6 +127,7 @@ ResultBits searched(std::uint64_t seed, int poses) {
       out.add(patch.direction);
       out.add(patch.object_normal);
       out.add(static_cast<std::uint64_t>(patch.pairs));
+      add_candidates(placed, object, found, random, out);
     }
   }
   return out;

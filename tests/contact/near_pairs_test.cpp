@@ -16,6 +16,7 @@
 #include "phalanx/step/haptic_step.h"
 #include "support/human_motion.h"
 #include "support/sanitized.h"
+#include "support/search_cases.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -91,12 +92,131 @@ TEST_F(NearPairsTest, AContactWithTheScratchsMemorySearchesEachTime) {
   EXPECT_EQ(contact_patch({segment_, X, scratch_}, lower, 60e-6).pairs, 0);
 }
 
+/// @returns true if both hold the same pairs in the same order, with the same bits
+bool same_pairs(const NearPairs& a, const NearPairs& b) {
+  if (a.count() != b.count()) return false;
+  if (a.overflows()) return true;
+  for (std::size_t i = 0; i < a.count(); ++i) {
+    const NearPairs::Pair& p = a[i];
+    const NearPairs::Pair& q = b[i];
+    if (p.triangle != q.triangle || p.slot != q.slot || p.closest.squared != q.closest.squared ||
+        p.closest.on_a != q.closest.on_a || p.closest.on_b != q.closest.on_b)
+      return false;
+  }
+  return true;
+}
+
+// Segments of all kinds wander beside objects of all kinds, by up to a quarter of a millimetre at a time.
+TEST(CandidatePairs, AreThoseThatASearchFinds) {
+  constexpr std::uint64_t kSeed = 7;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  test::Random random(kSeed);
+  int from_list = 0;
+  int found = 0;
+  for (const test::SearchCase& shapes : test::search_cases(random)) {
+    SCOPED_TRACE(shapes.name);
+    const ObjectModel object(shapes.object);
+    const SegmentTree segment(shapes.segment);
+    SearchScratch scratch(segment);
+    NearPairs listed;
+    NearPairs searched;
+    for (int start = 0; start < 6; ++start) {
+      Pose X = shapes.pose(random);
+      const ContactPatch patch = contact_patch({segment, X, scratch}, object, 1.0);
+      if (patch.pairs == 0) continue;
+      X.p += (100e-6 - patch.distance) * patch.direction;
+      const double step = test::between(random, 0.0, 1.0);
+      listed.clear();
+      for (int i = 0; i < 40; ++i) {
+        const Vec3 axis = test::in_cube(random, 1.0);
+        const Mat3 turn = rotation_about(axis.normalized(), step * test::between(random, 0.0, 2e-3));
+        const Vec3 pivot = patch.on_segment;
+        X.p = pivot + turn * (X.p - pivot) + step * test::in_cube(random, 0.1e-3);
+        X.R = turn * X.R;
+        const PlacedSegment placed{segment, X, scratch};
+        const double reach = test::between(random, 0.0, 400e-6);
+        from_list += listed.candidates().cover(placed, reach) ? 1 : 0;
+        if (i % 3 != 2) listed.candidates().list(placed, object.tree(), reach);
+        listed.find(placed, object.tree(), reach);
+        searched.clear();
+        searched.find(placed, object.tree(), reach);
+        ASSERT_TRUE(same_pairs(listed, searched))
+            << "step " << i << ", " << listed.count() << " and " << searched.count() << " pairs";
+        found += static_cast<int>(searched.count());
+      }
+    }
+  }
+  EXPECT_GT(from_list, 500);
+  EXPECT_GT(found, 5000);
+}
+
+TEST(CandidatePairs, LastForTheWayThatTheyWereListedFor) {
+  const SegmentTree segment(make_box(Vec3(0.02, 0.02, 0.02), 300));
+  const ObjectModel object(make_box(Vec3(0.2, 0.2, 0.2), 1200));
+  SearchScratch scratch(segment);
+  CandidatePairs candidates;
+  Pose X{Mat3::Identity(), Vec3(0.003, -0.002, 0.11 + 50e-6)};
+  const PlacedSegment placed{segment, X, scratch};
+  EXPECT_FALSE(candidates.cover(placed, 0.0)) << "nothing is listed";
+  candidates.list(placed, object.tree(), 60e-6);
+  EXPECT_FALSE(candidates.empty());
+  EXPECT_TRUE(candidates.cover(placed, 60e-6));
+  EXPECT_TRUE(candidates.cover(placed, 359e-6));
+  EXPECT_FALSE(candidates.cover(placed, 361e-6));
+  X.p.x() += 200e-6;  // to and fro: it is the way that counts
+  EXPECT_TRUE(candidates.cover(placed, 159e-6));
+  X.p.x() -= 90e-6;
+  EXPECT_TRUE(candidates.cover(placed, 69e-6));
+  EXPECT_FALSE(candidates.cover(placed, 71e-6));
+  // Half the diagonal of the box is 17.3 mm: 2 mrad about its middle move a corner by 34.6 um.
+  X.R = rotation_about(Vec3::UnitX(), 2e-3);
+  EXPECT_TRUE(candidates.cover(placed, 35e-6));
+  EXPECT_FALSE(candidates.cover(placed, 36e-6));
+  const auto near = [&](double reach) {
+    int count = 0;
+    candidates.for_each(reach, [&](const CandidatePairs::Pair&) { ++count; });
+    return count;
+  };
+  EXPECT_GT(near(60e-6), 0);
+  candidates.for_each(60e-6, [&](CandidatePairs::Pair& pair) { candidates.measured(pair, 80e-6); });
+  EXPECT_EQ(near(79e-6), 0) << "measured here, not where they were listed";
+  EXPECT_GT(near(81e-6), 0);
+  candidates.clear();
+  EXPECT_TRUE(candidates.empty());
+  EXPECT_FALSE(candidates.cover(placed, 0.0));
+}
+
+TEST(CandidatePairs, AreNotListedForAFastSegmentOrBesideTooFineAMesh) {
+  const ObjectModel object(make_box(Vec3(0.2, 0.2, 0.2), 1200));
+  const SegmentTree coarse(make_box(Vec3(0.02, 0.02, 0.02), 300));
+  const SegmentTree fine(make_box(Vec3(0.02, 0.02, 0.02), 30'000));
+  const Pose X{Mat3::Identity(), Vec3(0.003, -0.002, 0.11 + 50e-6)};
+  CandidatePairs candidates;
+  {
+    SearchScratch scratch(coarse);
+    candidates.list({coarse, X, scratch}, object.tree(), 1.001e-3);
+    EXPECT_FALSE(candidates.cover({coarse, X, scratch}, 0.0));
+    candidates.list({coarse, X, scratch}, object.tree(), 0.999e-3);
+    EXPECT_TRUE(candidates.cover({coarse, X, scratch}, 0.999e-3));
+    candidates.clear();
+  }
+  SearchScratch scratch(fine);
+  candidates.list({fine, X, scratch}, object.tree(), 60e-6);
+  EXPECT_TRUE(candidates.empty());
+  EXPECT_FALSE(candidates.cover({fine, X, scratch}, 0.0));
+  NearPairs near;
+  near.candidates().list({fine, X, scratch}, object.tree(), 60e-6);
+  near.find({fine, X, scratch}, object.tree(), 60e-6);
+  EXPECT_TRUE(near.overflows()) << "a search found them";
+}
+
 /// Two hands in the same motion. The stored pairs of one are removed before each tick, so that it lists what
 /// its digits may meet.
 class Twice {
  public:
-  explicit Twice(const TriangleMesh& mesh, int hand_triangles)
+  explicit Twice(const TriangleMesh& mesh, int hand_triangles, ContactMode mode = ContactMode::kStatic)
       : model_(hand(hand_triangles), ObjectModel(mesh)),
+        parameters_{.mode = mode},
         contact_{model_.hand, model_.trees(), model_.object, parameters_},
         stores_(contact_),
         lists_(contact_) {}
@@ -119,6 +239,9 @@ class Twice {
       ASSERT_EQ(a.force_normal, b.force_normal) << segment_name(s);
       ASSERT_EQ(a.offset, b.offset) << segment_name(s);
       ASSERT_EQ(a.depth, b.depth) << segment_name(s);
+      ASSERT_EQ(a.couple, b.couple) << segment_name(s);
+      if (parameters_.mode == ContactMode::kSliding)
+        continue;  // where there are candidates, no bound is computed
       // Bounds within the margin tell the search nothing.
       ASSERT_EQ(std::max(stores_.clearance[idx(s)].bound(), parameters_.margin),
                 std::max(lists_.clearance[idx(s)].bound(), parameters_.margin))
@@ -175,6 +298,15 @@ TriangleMesh ball(int triangles) {
 TriangleMesh rod(int triangles) {
   const Pose across{rotation_about(Vec3::UnitY(), std::numbers::pi / 2.0), Vec3(0.0, -0.030, -0.050)};
   return test::moved(make_cylinder(0.012, 0.12, triangles), across);
+}
+
+TEST(NearPairsOfTheHand, ChangeNoBitWhereFingersSlide) {
+  for (const TriangleMesh& object : {bar(300), ball(2000)}) {
+    for (std::uint64_t seed = 4; seed <= 6; ++seed) {
+      Twice hands(object, 800, ContactMode::kSliding);
+      play(hands, seed, test::kSanitized ? 300 : 3000);
+    }
+  }
 }
 
 TEST(NearPairsOfTheHand, ChangeNoBit) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "phalanx/contact/candidate_pairs.h"
 #include "phalanx/contact/triangle_distance.h"
 #include "phalanx/core/math.h"
 
@@ -28,7 +29,8 @@ class NearPairs {
   };
   static constexpr std::size_t kMost = 512;
 
-  /// Finds all pairs whose distance is at most `reach` [m]. Does nothing if they are stored.
+  /// Finds all pairs whose distance is at most `reach` [m]: among the candidates if these cover it, else in the
+  /// trees, with the same bits. Does nothing if they are stored.
   /// @pre since the last clear(), the segment and the object are the same
   /// Real-time: no allocation, lock, throw or I/O.
   void find(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept;
@@ -48,7 +50,12 @@ class NearPairs {
     least_squared_ = least * least;
   }
   /// Removes pairs and pose.
-  void clear() noexcept { stop_at({Mat3::Zero(), Vec3::Zero()}); }
+  void clear() noexcept {
+    stop_at({Mat3::Zero(), Vec3::Zero()});
+    candidates_.clear();
+  }
+  /// Returns the pairs that the segment may come near to next. Static mode lists none.
+  [[nodiscard]] CandidatePairs& candidates() noexcept { return candidates_; }
   /// @returns true if the pose of the last find(), stop_at() or carry() is this one, to the last bit
   [[nodiscard]] bool is_at(const Pose& X_WS) const noexcept { return X_WS_.p == X_WS.p && X_WS_.R == X_WS.R; }
   /// @returns true if a pair that was found at this pose is within `distance` [m]
@@ -67,11 +74,17 @@ class NearPairs {
   [[nodiscard]] const Pair& operator[](std::size_t i) const noexcept { return pair_[i]; }
 
  private:
+  /// Stores a pair, or counts it.
+  void add(const Pair& pair) noexcept;
+  /// Finds all pairs within `reach` among the candidates. @pre they cover it
+  void find_among_candidates(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept;
+
   Pose X_WS_ = {Mat3::Zero(), Vec3::Zero()};  ///< no segment is here
   bool carried_ = false;                      ///< the closest points are those of an earlier pose
   double reach_ = -1.0;                       ///< [m]; negative: not searched
   double least_squared_ = 1e300;              ///< of the pairs found [m^2]
   std::size_t count_ = 0;
+  CandidatePairs candidates_;
   std::vector<Pair> pair_ = std::vector<Pair>(kMost);
 };
 

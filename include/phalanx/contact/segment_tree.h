@@ -29,6 +29,11 @@ class SegmentTree {
   [[nodiscard]] Corners corners(int i) const noexcept;
   [[nodiscard]] const LensNode* nodes() const noexcept { return nodes_.data(); }
   [[nodiscard]] const SegmentTriangle* triangles() const noexcept { return triangles_.data(); }
+  /// Return a sphere that holds the segment, in its frame [m]. @pre !empty(). Real-time.
+  [[nodiscard]] Vec3 centre() const noexcept {
+    return {nodes_[0].centre[0][0], nodes_[0].centre[1][0], nodes_[0].centre[2][0]};
+  }
+  [[nodiscard]] double radius() const noexcept { return nodes_[0].radius[0]; }
   /// Returns the distance of the farthest vertex from the segment's origin [m].
   [[nodiscard]] double extent() const noexcept { return extent_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles by distance: all pairs within a cap, a crossing test, and a lower bound.
+// Pairs of triangles by distance: all pairs within a cap, a crossing test, lower bounds, and given pairs.
 #pragma once
 
 #include "contact/search/lens_box.h"
@@ -120,6 +120,49 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
     walk.run<false>(box_cap, wanted, leaf);
   }
   flush();
+}
+
+/// Implements SearchFunctions::list.
+inline void list(const SegmentView& segment, const ObjectView& object, double cap, BoundSink sink,
+                 void* context) noexcept {
+  const Sweep still{nullptr, 0.0, 0.0};
+  const double limit = cap * 1.000000001;
+  const float box_cap = single_cap(limit);
+  bool wanted = true;
+  const LensMotion no_motion{};
+  Walk<false> walk(segment, object, no_motion);
+  walk.run<false>(
+      box_cap, [&](float) { return wanted; },
+      [&](std::int32_t triangle, std::int32_t block, float) {
+        const PlacedTriangle& s = placed_triangle(segment, triangle, still);
+        for (int i = 0; i < kWide && wanted; i += kDoubles) {
+          const Doubles apart = separation(s, block_triangles(object.blocks[block], i), still);
+          for (unsigned left = double_bits(apart <= limit); left != 0 && wanted; left &= left - 1) {
+            const int l = __builtin_ctz(left);
+            const std::int32_t slot = block * kWide + i + l;
+            if (slot >= object.size) break;
+            wanted = sink(context, {triangle, slot}, apart[l]);
+          }
+        }
+      });
+}
+
+/// Implements SearchFunctions::measure.
+inline void measure(const SegmentView& segment, const ObjectView& object, const PairIndex* pairs, int n,
+                    PairDistance* out) noexcept {
+  const Sweep still{nullptr, 0.0, 0.0};
+  Waiting waiting(segment, object);
+  const auto write = [&](const PairIndex& pair, const Closest& closest, int l) {
+    *out++ = {pair,
+              closest.squared[l],
+              {closest.on_a.x[l], closest.on_a.y[l], closest.on_a.z[l]},
+              {closest.on_b.x[l], closest.on_b.y[l], closest.on_b.z[l]}};
+  };
+  for (int i = 0; i < n; ++i) {
+    (void)placed_triangle(segment, pairs[i].triangle, still);
+    if (waiting.add(pairs[i])) waiting.take(write);
+  }
+  waiting.take(write);
 }
 
 /// Implements SearchFunctions::crosses: visits the deepest pairs first, until a pair touches. If kMostPairs

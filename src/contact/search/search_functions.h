@@ -61,6 +61,10 @@ struct PairDistance {
 /// Callback that receives pairs in a fixed order. It may lower the cap, but not below 0 [m^2].
 using PairSink = void (*)(void* context, const PairDistance& pair, double& cap_squared);
 
+/// Callback that receives pairs in a fixed order, each with a lower bound on its distance [m], which may be
+/// negative. It returns false to end the search.
+using BoundSink = bool (*)(void* context, const PairIndex& pair, double bound);
+
 /// Buffer for pairs. If a gather has too little room for a block, it calls make_room, which must make enough.
 struct PairStore {
   PairIndex* pair;
@@ -98,6 +102,18 @@ struct SearchFunctions {
                   double horizon, double margin, double floor, const PairIndex* pairs, int n, PairStep* out);
   /// Computes the closest points of two triangles, [corner][axis].
   void (*closest)(const double (*a)[3], const double (*b)[3], PairDistance& out);
+  /// Hands every pair to the sink that the plane of neither triangle separates by more than `cap` [m], in the order
+  /// of visit(). The bound is that separation.
+  void (*list)(const SegmentView& segment, const ObjectView& object, double cap, BoundSink sink,
+               void* context);
+  /// Computes the closest points of n pairs, with the bits of visit().
+  void (*measure)(const SegmentView& segment, const ObjectView& object, const PairIndex* pairs, int n,
+                  PairDistance* out);
+  /// Keeps those of n pairs, in order, that the plane of neither triangle separates by more than `margin` until the
+  /// parameter has grown by `horizon`.
+  /// @returns their number
+  int (*sift)(const SegmentView& segment, const ObjectView& object, const MotionView& motion, double horizon,
+              double margin, PairIndex* pairs, int n);
 };
 
 /// Return the functions of one instruction set, or null if the program was built without it.

@@ -24,6 +24,7 @@ inline void closest(const double (*a)[3], const double (*b)[3], PairDistance& ou
          {found.on_b.x[0], found.on_b.y[0], found.on_b.z[0]}};
 }
 
-inline constexpr SearchFunctions kFunctions{&visit, &crosses, &lower_bound, &gather, &advance, &closest};
+inline constexpr SearchFunctions kFunctions{&visit,   &crosses, &lower_bound, &gather, &advance,
+                                            &closest, &list,    &measure,     &sift};
 
 }  // namespace phalanx::search::PHALANX_SEARCH_SET

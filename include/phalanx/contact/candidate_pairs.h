@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "phalanx/core/math.h"
+
+namespace phalanx {
+
+class ObjectTree;
+struct PlacedSegment;
+
+/// Pairs of triangles that a moving segment may come near to, of one segment and one object, in the trees' fixed
+/// order. One search lists them for many poses. Each has a lower bound on its distance, and the way adds up bounds
+/// on how far any point of the segment has moved: a pair at distance d stays farther than r until the way has
+/// grown by d - r. Allocated once. See docs/contact.md "Pairs of a segment that slides". Real-time: no allocation,
+/// lock, throw or I/O.
+class CandidatePairs {
+ public:
+  struct Pair {
+    std::int32_t triangle;  ///< index in the segment's mesh
+    std::int32_t slot;      ///< slot in the object's tree
+    double touches;         ///< way before which the pair does not touch [m]
+  };
+  static constexpr std::size_t kMost = 2048;
+  /// A segment that needs pairs within more than this is better searched directly [m].
+  static constexpr double kMostReach = 1e-3;
+  /// Way for which a new list lasts [m].
+  static constexpr double kAhead = 0.3e-3;
+
+  /// Lists the pairs within `reach` [m] at this pose, and for the next kAhead of the way, unless they are listed.
+  /// Lists none if the reach exceeds kMostReach or the pairs kMost; after too many, not for the next few calls.
+  /// @pre since the last clear(), the segment and the object are the same
+  void list(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept;
+  /// Adds the way to this pose.
+  /// @returns true if all pairs within `reach` [m] are listed
+  [[nodiscard]] bool cover(const PlacedSegment& segment, double reach) noexcept;
+  /// Calls use(pair) for each pair that may be within `reach` [m] at the last pose of cover(). use() may call
+  /// measured(pair, distance).
+  template <class Use>
+  void for_each(double reach, Use&& use) noexcept {
+    const double limit = way_ + reach * (1.0 + 1e-9) + kRounding;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (pair_[i].touches <= limit) use(pair_[i]);
+  }
+  /// Takes a pair's distance at the last pose of cover() [m].
+  void measured(Pair& pair, double distance) const noexcept { pair.touches = way_ + distance; }
+  /// @returns true if no pair is listed
+  [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
+  /// Removes the pairs.
+  void clear() noexcept {
+    count_ = 0;
+    complete_ = -1.0;
+    pause_ = 0;
+  }
+
+ private:
+  static constexpr double kRounding = 1e-12;  ///< of a bound [m]
+  static constexpr int kPause = 16;           ///< calls of list() that do nothing after too many pairs
+
+  Pose X_WS_ = {Mat3::Zero(), Vec3::Zero()};  ///< where the way has been added up to
+  double way_ = 0.0;                          ///< since the pairs were listed [m]
+  double complete_ = -1.0;  ///< way before which no other pair touches [m]; negative: nothing is listed
+  int pause_ = 0;
+  std::size_t count_ = 0;
+  std::vector<Pair> pair_ = std::vector<Pair>(kMost);
+};
+
+}  // namespace phalanx
