@@ -229,6 +229,20 @@ std::vector<Failure> by_kind_in_turn(std::vector<Failure> failures) {
   return result;
 }
 
+/// Checks failures in their order until `wanted` of the calls were made. A call is not made where the program's threads
+/// run in another order than when it was recorded, as on a busy computer; then the next one takes its place.
+void check_some(const Command& command, const std::vector<Failure>& failures, std::size_t wanted) {
+  std::size_t tried = 0;
+  std::size_t failed = 0;
+  while (tried < failures.size() && failed < wanted && tried < 4 * wanted) {
+    if (command.check(failures[tried++])) ++failed;
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  std::printf("%zu calls, of which %zu failed; seed %u\n", tried, failed, kSeed);
+  EXPECT_EQ(failed, std::min(wanted, failures.size()))
+      << "their call stacks are other ones than were recorded";
+}
+
 /// Most calls that fail must be those that were meant: threads may come to another one first.
 void check_all(const Command& command, const std::vector<Failure>& failures) {
   std::size_t failed = 0;
@@ -251,8 +265,7 @@ TEST_P(InjectedFailures, OfASampleLoseNothingThatWasPromised) {
     const std::uint64_t stack = std::strtoull(wanted, nullptr, 16);
     std::erase_if(failures, [&](const Failure& failure) { return failure.stack != stack; });
   }
-  failures.resize(std::min(failures.size(), kSample));
-  check_all(*command, failures);
+  check_some(*command, failures, kSample);
 }
 INSTANTIATE_TEST_SUITE_P(Of, InjectedFailures, ::testing::ValuesIn(kCommands),
                          [](const auto& command) { return std::string(command.param); });
