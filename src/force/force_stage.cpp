@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "force/wall_stage.h"
 #include "phalanx/core/index.h"
@@ -58,14 +59,30 @@ bool is_free(const GdpState& contacts, int digit, ForceState& state) noexcept {
   return true;
 }
 
+/// Advances the opening of a digit that started inside the object.
+void advance_opening(const GdpState& contacts, int digit, double period, ForceState& state) noexcept {
+  std::optional<double> way;
+  double sent = 0.0;
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    const ContactRecord& record = contacts.record[idx(segment_index(digit, k))];
+    if (record.active) way = std::max(way.value_or(0.0), (record.p_gdp - record.p_hcp).norm());
+    const SegmentForce& force = force_of(state, digit, k);
+    sent = std::max(sent, force.sent);
+    sum += force.sent * force.normal;
+  }
+  state.opening[idx(digit)].advance(contacts.inside[idx(digit)], way, std::max(sent, sum.norm()), period);
+}
+
 using DigitInputs = std::array<StabiliserInput, kSegmentsPerDigit>;
 
 /// Computes the law's force of one contact and the stabiliser's input.
 Status apply_law(const HapticParameters& parameters, const ContactRecord& record, const Pose& hcp_before,
-                 bool stale, const ForceState& state, SegmentForce& force, StabiliserInput& input) noexcept {
+                 bool stale, double opening_force, const ForceState& state, SegmentForce& force,
+                 StabiliserInput& input) noexcept {
   Status status = Status::kOk;
   input.speed_now = update_speed(parameters, record, hcp_before, state.started, force);
-  input.pressing = record.active && !record.silent && !stale;
+  input.pressing = record.active && !stale && (!record.silent || opening_force > 0.0);
   input.speed = force.speed;
   input.depth = record.depth;
   input.sent = force.sent;
@@ -77,6 +94,7 @@ Status apply_law(const HapticParameters& parameters, const ContactRecord& record
     force.couple = record.couple;
     if (input.pressing)
       force.raw = state.stiffness_factor.value() * law_force(parameters.force, record.depth, force.speed);
+    if (record.silent) force.raw = std::min(force.raw, opening_force);
   }
   input.force = std::isfinite(force.raw) ? force.raw : 0.0;
   if (!std::isfinite(force.raw)) status |= Status::kCommandNotFinite;
@@ -110,13 +128,17 @@ double stabilise(const HapticParameters& parameters, const StabiliserInput& by_l
 Status digit_forces(const HapticParameters& parameters, const GdpState& contacts, int digit, bool stale,
                     ForceState& state) noexcept {
   Status status = Status::kOk;
-  const bool capped = parameters.limits.fingertip_force_enabled;
-  const double cap = parameters.limits.fingertip_force;
+  const DigitOpening& opening = state.opening[idx(digit)].now();
+  const bool inside = opening.phase != OpeningPhase::kNone;
+  const bool limited = parameters.limits.fingertip_force_enabled;
+  const bool capped = limited || inside;
+  double cap = limited ? parameters.limits.fingertip_force : opening.force;
+  if (inside) cap = std::min(cap, opening.force);
   std::array<double, kSegmentsPerDigit> magnitude{};
   DigitInputs input;
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     status |= apply_law(parameters, contacts.record[idx(segment_index(digit, k))],
-                        state.hcp_before.digit[idx(digit)].segment[idx(k)], stale, state,
+                        state.hcp_before.digit[idx(digit)].segment[idx(k)], stale, opening.force, state,
                         force_of(state, digit, k), input[idx(k)]);
     magnitude[idx(k)] = capped ? std::min(cap, input[idx(k)].force) : input[idx(k)].force;
   }
@@ -124,6 +146,8 @@ Status digit_forces(const HapticParameters& parameters, const GdpState& contacts
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     magnitude[idx(k)] = stabilise(parameters, input[idx(k)], before * magnitude[idx(k)],
                                   force_of(state, digit, k).memory, status);
+    // A stabiliser may add to the law's force, or decay for a while.
+    if (inside) magnitude[idx(k)] = std::min(magnitude[idx(k)], cap);
   }
   const double after = capped ? sum_factor(magnitude, digit, cap, state) : 1.0;
   if (after < 1.0) status |= Status::kForceLimited;
@@ -199,6 +223,7 @@ Status compute_command(const HapticParameters& parameters, const GdpState& conta
   const double period = parameters.period();
   const bool walls = parameters.stabiliser.method == Stabiliser::kLocalWall;
   for (int d = 0; d < kDigits; ++d) {
+    advance_opening(contacts, d, period, state);
     if (is_free(contacts, d, state) && !(walls && remembers_walls(d, state))) {  // most digits at most ticks
       if (!state.resting[idx(d)]) status |= come_to_rest(parameters, d, state, swings);
       continue;

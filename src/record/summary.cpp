@@ -46,7 +46,7 @@ void add_tick(Summary& summary, const Snapshot& snapshot) {
     summary.largest_slid = std::max(summary.largest_slid, segment.slid);
   }
   for (std::size_t d = 0; d < summary.inside_ticks.size(); ++d)
-    if (snapshot.started_inside[d]) ++summary.inside_ticks[d];
+    if (snapshot.opening[d].phase != OpeningPhase::kNone) ++summary.inside_ticks[d];
   for (std::size_t j = 0; j < snapshot.torque.size(); ++j) {
     summary.peak_torque[j] = std::max(summary.peak_torque[j], std::abs(snapshot.torque[j]));
   }

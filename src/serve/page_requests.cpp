@@ -136,6 +136,15 @@ void pose(const wire::Sliders& sliders, Session& session) {
     throw std::invalid_argument("the sliders do not move the hand now; choose them as its source first");
 }
 
+PageRequest open_digit(const wire::OpenDigit& message, Session& session) {
+  const int digit = static_cast<int>(std::min(message.digit(), 1000U));
+  session.open_digit(digit, static_cast<double>(message.way()), message.running());
+  return {.code = "opened",
+          .text = fmt::format("asked to open the digit {}, {:.0f} mm", digit_name(digit),
+                              1e3 * static_cast<double>(message.way())),
+          .done_at_once = true};
+}
+
 PageRequest calibrate(const wire::Calibrate& message, Session& session, Session::Done done) {
   using Step = CalibrationSession::Step;
   struct Known {
@@ -173,6 +182,8 @@ PageRequest apply_request(const wire::ToHost& message, Session& session, const w
       if (!session.reset(message.reset().fault_time()))
         throw std::invalid_argument("another fault has come since; look, then reset again");
       return {.code = "reset", .text = "asked for a reset", .done_at_once = true};
+    case wire::ToHost::kOpen:
+      return open_digit(message.open(), session);
     case wire::ToHost::kSet:
       return set(message.set(), session, uploads, std::move(done));
     case wire::ToHost::kScene:

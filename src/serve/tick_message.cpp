@@ -63,6 +63,26 @@ void put_point(const ContactPoint& point, wire::ContactPoint& out) {
   out.set_slips(point.slips);
 }
 
+wire::Opening::Phase wire_phase(OpeningPhase phase) noexcept {
+  switch (phase) {
+    case OpeningPhase::kNone:
+    case OpeningPhase::kUnconfirmed:
+      return wire::Opening::UNCONFIRMED;
+    case OpeningPhase::kConfirmed:
+      return wire::Opening::CONFIRMED;
+    case OpeningPhase::kNotFollowed:
+      return wire::Opening::NOT_FOLLOWED;
+  }
+  return wire::Opening::UNCONFIRMED;
+}
+
+void put_opening(int digit, const DigitOpening& opening, std::uint64_t running, wire::Opening& out) {
+  out.set_digit(static_cast<std::uint32_t>(digit));
+  out.set_phase(wire_phase(opening.phase));
+  out.set_way(static_cast<float>(opening.way));
+  out.set_running(running);
+}
+
 }  // namespace
 
 wire::SafetyState wire_state(SafetyState state) noexcept {
@@ -101,7 +121,8 @@ void write_tick(const StationView& view, wire::Tick& out) {
   }
   for (const ContactPoint& point : snapshot.contact_points) put_point(point, *out.add_contact_point());
   for (int d = 0; d < kDigits; ++d) {
-    if (snapshot.started_inside[idx(d)]) out.add_started_inside(static_cast<std::uint32_t>(d));
+    const DigitOpening& opening = snapshot.opening[idx(d)];
+    if (opening.phase != OpeningPhase::kNone) put_opening(d, opening, view.running, *out.add_opening());
   }
   put_measured(snapshot.measured_torque, *out.mutable_measured_torque());
   put_measured(snapshot.measured_force, *out.mutable_measured_force());

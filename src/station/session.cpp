@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/station/session.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "phalanx/mesh/import_cache.h"
@@ -44,6 +49,33 @@ void Session::reset() noexcept {
     queue_->ask(MakeStation{}, {});
   } catch (const std::exception&) {  // without memory, or after shut_down() has begun: no other try
   }
+}
+
+void Session::open_digit(int digit, double way, std::uint64_t running) {
+  if (digit < 0 || digit >= kDigits)
+    throw std::invalid_argument(fmt::format("digit {}: there are 0 to {}", digit, kDigits - 1));
+  const std::string_view name = digit_name(digit);
+  const auto now = state_->current();
+  const StationView seen = view();
+  const DigitOpening& opening = seen.snapshot.opening[static_cast<std::size_t>(digit)];
+  if (!now || seen.state != SafetyState::kRunning)
+    throw std::invalid_argument(
+        fmt::format("{}: forces are not on; let them start, then open the digit", name));
+  if (!info()->device.renders_torque)
+    throw std::invalid_argument(
+        fmt::format("{}: the device has no motors that could open a digit; the person opens the hand", name));
+  if (opening.phase == OpeningPhase::kNone)
+    throw std::invalid_argument(fmt::format("{}: the digit is not inside the object, or has left it", name));
+  if (opening.phase == OpeningPhase::kConfirmed)
+    throw std::invalid_argument(fmt::format("{}: the digit is being opened; wait, or stop the torque", name));
+  if (running != seen.running)
+    throw std::invalid_argument(
+        fmt::format("{}: forces have been off since you looked; look, then confirm again", name));
+  if (!(std::abs(opening.way - way) <= OpeningState::kSameWay))
+    throw std::invalid_argument(
+        fmt::format("{}: the way out was {:.0f} mm and is {:.0f} mm now; look, then confirm again", name,
+                    1e3 * way, 1e3 * opening.way));
+  now->station->open_digit(digit, running);
 }
 
 void Session::set(Overrides changes, Done done) {

@@ -5,6 +5,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cmath>
@@ -56,7 +57,7 @@ DigitArray digit_forces(const Snapshot& snapshot) noexcept {
 
 /// The loop's functions and state, and the data that it shares with other threads.
 struct Station::Loop {
-  enum Request : unsigned { kStop = 1, kResume = 2, kReset = 4, kEnd = 8 };
+  enum Request : unsigned { kStop = 1, kResume = 2, kReset = 4, kEnd = 8, kWithdraw = 16 };
 
   /// A model, its parameters and its state, which are exchanged together.
   struct Rendering {
@@ -81,6 +82,9 @@ struct Station::Loop {
   void run() noexcept;
   void serve_requests(double now) noexcept;
   void reset_now(double now) noexcept;
+  void serve_openings() noexcept;
+  void number_running() noexcept;
+  void end_running() noexcept;
   void exchange_rendering() noexcept;
   void one_step(const Wake& wake) noexcept;
   void write_down(const Wake& wake, std::size_t count, double sent_at) noexcept;
@@ -113,10 +117,12 @@ struct Station::Loop {
   History<StepRecord> step_history;
   bool reported = false;  ///< this fault's history has been frozen
   bool resume_after_exchange = false;
+  std::uint64_t running = 0;      ///< number of this period of SafetyState::kRunning; 0: another state
   bool wants_parameters = false;  ///< `wanted` has a value for which no ramp has begun
 
   // Shared between threads.
   std::atomic<unsigned> requests{0};
+  std::array<std::atomic<std::uint64_t>, kDigits> openings{};  ///< `running` of a confirmation; 0: none
   std::atomic<bool> finish{false};
   FaultEvent frozen_event;          ///< fault of the frozen history
   LinkStatistics frozen_link;       ///< link statistics at that time
@@ -176,6 +182,7 @@ void Station::Loop::run() noexcept {
 
 void Station::Loop::one_step(const Wake& wake) noexcept {
   serve_requests(wake.now);
+  serve_openings();
   const std::size_t count = device.receive(wake.now, inbox);
   const std::span<const DeviceSample> samples(inbox.data(), count);
   safety.observe(samples, device.connection_fault(), late, wake.now);
@@ -189,12 +196,14 @@ void Station::Loop::one_step(const Wake& wake) noexcept {
     status = step(*rendering->model, rendering->ramp.parameters(), sample, rendering->state);
   }
   safety.command(rendering->state.snapshot(), newest_sample, wake.now, command);
+  number_running();
   if (heard) device.send(command);
   write_down(wake, count, clock.now());
 }
 
 void Station::Loop::serve_requests(double now) noexcept {
   const unsigned asked = requests.exchange(0, std::memory_order_acq_rel);
+  if ((asked & kWithdraw) != 0) end_running();
   ending = ending || (asked & kEnd) != 0;
   if ((asked & kStop) != 0 || ending) {
     safety.stop();
@@ -209,6 +218,28 @@ void Station::Loop::serve_requests(double now) noexcept {
     rendering->ramp.go_to(wanted.value().parameters);
     wants_parameters = false;
   }
+}
+
+/// Confirms openings that belong to this period of kRunning.
+void Station::Loop::serve_openings() noexcept {
+  if (safety.state() != SafetyState::kRunning) end_running();
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const std::uint64_t asked =
+        openings[static_cast<std::size_t>(digit)].exchange(0, std::memory_order_acq_rel);
+    if (asked != 0 && asked == running) rendering->state.confirm_opening(digit);
+  }
+}
+
+/// Numbers the periods of kRunning, over all stations.
+void Station::Loop::number_running() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  if (safety.state() != SafetyState::kRunning) return end_running();
+  if (running == 0) running = last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+void Station::Loop::end_running() noexcept {
+  running = 0;
+  rendering->state.withdraw_openings();
 }
 
 void Station::Loop::reset_now(double now) noexcept {
@@ -272,6 +303,7 @@ void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_
   view.factor = safety.factor();
   view.at_rest = safety.at_rest();
   view.degraded = statistics.degraded(wake.now);
+  view.running = running;
   view.changing = rendering->ramp.moving() || incoming.load(std::memory_order_relaxed) != nullptr;
   view.device = newest_sample.state;
   view.estop = newest_sample.estop;
@@ -324,9 +356,14 @@ bool Station::next_record(StepRecord& record) { return loop_->records.pop(record
 
 std::size_t Station::records_waiting() const { return loop_->records.read_available(); }
 
-void Station::stop_torque() noexcept { loop_->ask(Loop::kStop, Loop::kResume); }
+void Station::stop_torque() noexcept { loop_->ask(Loop::kStop | Loop::kWithdraw, Loop::kResume); }
 void Station::resume_torque() noexcept { loop_->ask(Loop::kResume, Loop::kStop); }
 void Station::reset() noexcept { loop_->ask(Loop::kReset, 0); }
+
+void Station::open_digit(int digit, std::uint64_t running) noexcept {
+  if (digit >= 0 && digit < kDigits)
+    loop_->openings[static_cast<std::size_t>(digit)].store(running, std::memory_order_release);
+}
 
 /// Hands over parameters for the model of the last replace(); for an earlier model, the loop drops them.
 void Station::change_to(const HapticParameters& parameters) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "phalanx/contact/gdp.h"
+#include "phalanx/core/index.h"
 #include "phalanx/force/force_stage.h"
 #include "step/check_parameters.h"
 #include "step/contact_points.h"
@@ -34,7 +35,7 @@ void record(const HapticModel& model, const HapticParameters& parameters, double
   out.status = status;
   out.hcp_angle = gdp.hcp_angle;
   out.gdp_angle = gdp.angle;
-  out.started_inside = gdp.inside;
+  for (std::size_t d = 0; d < kDigits; ++d) out.opening[d] = force.opening[d].now();
   out.torque = force.torque;
   out.stiffness_factor = force.stiffness_factor.value();
   if (stabiliser.method == Stabiliser::kLocalWall) {
@@ -105,6 +106,14 @@ HapticState::HapticState(const HapticModel& model, const HapticParameters& param
 HapticState::HapticState(HapticState&&) noexcept = default;
 HapticState& HapticState::operator=(HapticState&&) noexcept = default;
 HapticState::~HapticState() = default;
+
+bool HapticState::confirm_opening(int digit) noexcept {
+  return digit >= 0 && digit < kDigits && stages_->force.opening[idx(digit)].confirm();
+}
+
+void HapticState::withdraw_openings() noexcept {
+  for (OpeningState& opening : stages_->force.opening) opening.withdraw();
+}
 
 Status step(const HapticModel& model, const HapticParameters& parameters, const Sample& sample,
             HapticState& state) noexcept {

@@ -231,13 +231,14 @@ TEST(Gdp, ADigitThatStartsInsideGivesNoForceUntilItHasBeenClear) {
   Runner hand(model);
   const Snapshot& first = hand.tick(index_angles(0.5));
   EXPECT_TRUE(has(first.status, Status::kStartInside));
-  EXPECT_EQ(first.started_inside, (std::array<bool, kDigits>{false, true, false, false, false}));
+  for (std::size_t d = 0; d < kDigits; ++d)
+    EXPECT_EQ(first.opening[d].phase, d == 1 ? OpeningPhase::kUnconfirmed : OpeningPhase::kNone) << d;
   EXPECT_TRUE(index_segment(first, 2).contact);
   EXPECT_EQ(index_segment(first, 2).force, 0.0);
   EXPECT_EQ(index_segment(hand.move(index_angles(0.6), 20), 2).force, 0.0);
   hand.move(index_angles(0.0), 20);
   EXPECT_FALSE(has(hand.now().status, Status::kStartInside));
-  EXPECT_EQ(hand.now().started_inside, (std::array<bool, kDigits>{}));
+  for (const DigitOpening& opening : hand.now().opening) EXPECT_EQ(opening.phase, OpeningPhase::kNone);
   const Snapshot& again = hand.move(index_angles(0.5), 50);
   EXPECT_FALSE(has(again.status, Status::kStartInside));
   EXPECT_GT(index_segment(again, 2).force, 0.5);

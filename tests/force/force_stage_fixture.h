@@ -37,6 +37,8 @@ class ForceStageFixture {
     record.p_gdp = contacts_.poses.digit[idx(digit)].segment[idx(k)] * record.p_S;
     return record;
   }
+  /// The digit started inside the object, and has not been clear since.
+  void start_inside(int digit = kIndex) { contacts_.inside[idx(digit)] = true; }
   void leave(int k, int digit = kIndex) { contacts_.record[idx(segment_index(digit, k))].active = false; }
   /// The measured finger moves by so much, all segments alike.
   void move_hcp(const Vec3& by) {

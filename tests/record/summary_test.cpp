@@ -108,7 +108,8 @@ TEST(Summary, NamesEachDigitThatGivesNoForceSinceItStartedInside) {
   for (int tick = 0; tick < 3; ++tick) {
     Snapshot snapshot;
     snapshot.status = Status::kStartInside;
-    snapshot.started_inside = {false, true, false, tick == 0, false};
+    snapshot.opening[1].phase = OpeningPhase::kUnconfirmed;
+    if (tick == 0) snapshot.opening[3].phase = OpeningPhase::kConfirmed;
     add_tick(summary, snapshot);
   }
   EXPECT_EQ(summary.inside_ticks, (std::array<std::uint64_t, kDigits>{0, 3, 0, 1, 0}));

@@ -112,6 +112,16 @@ TEST_F(PageRequestsTest, ASetOverridesTheSceneAndIsShown) {
   EXPECT_EQ(applied(dragged).keys, asked.keys);
 }
 
+TEST_F(PageRequestsTest, AnOpeningIsRefusedInTheSessionsWords) {
+  ASSERT_TRUE(until_running());
+  wire::ToHost message;
+  message.mutable_open()->set_digit(2);
+  message.mutable_open()->set_way(0.014F);
+  EXPECT_EQ(why_not(message), "middle: the digit is not inside the object, or has left it");
+  message.mutable_open()->set_digit(4294967295U);
+  EXPECT_THAT(why_not(message), HasSubstr("there are 0 to 4"));
+}
+
 TEST_F(PageRequestsTest, TooMuchAndForeignFilesAreRefusedAtOnce) {
   EXPECT_FALSE(why_not(set("rate_hz", "250", 0)).empty());
   EXPECT_THAT(why_not(set("rate_hz", "250", 65)), HasSubstr("65"));

@@ -75,12 +75,20 @@ TEST(TickMessage, NamesTheDigitsThatStartedInsideTheObject) {
   StationView view = a_view();
   wire::Tick tick;
   write_tick(view, tick);
-  EXPECT_EQ(tick.started_inside_size(), 0);
-  view.snapshot.started_inside = {false, true, false, true, false};
+  EXPECT_EQ(tick.opening_size(), 0);
+  view.snapshot.opening[1] = {.phase = OpeningPhase::kUnconfirmed, .way = 0.014};
+  view.snapshot.opening[3] = {.phase = OpeningPhase::kConfirmed, .way = 0.002, .force = 0.5};
+  view.snapshot.opening[4].phase = OpeningPhase::kNotFollowed;
+  view.running = 6;
   write_tick(view, tick);
-  ASSERT_EQ(tick.started_inside_size(), 2);
-  EXPECT_EQ(tick.started_inside(0), 1U);
-  EXPECT_EQ(tick.started_inside(1), 3U);
+  ASSERT_EQ(tick.opening_size(), 3);
+  EXPECT_EQ(tick.opening(0).digit(), 1U);
+  EXPECT_EQ(tick.opening(0).phase(), wire::Opening::UNCONFIRMED);
+  EXPECT_EQ(tick.opening(0).way(), 0.014F);
+  EXPECT_EQ(tick.opening(0).running(), 6U);
+  EXPECT_EQ(tick.opening(1).digit(), 3U);
+  EXPECT_EQ(tick.opening(1).phase(), wire::Opening::CONFIRMED);
+  EXPECT_EQ(tick.opening(2).phase(), wire::Opening::NOT_FOLLOWED);
 }
 
 TEST(TickMessage, OnlySegmentsThatTouchOrStillPushOrSwingAreContacts) {

@@ -388,6 +388,95 @@ TEST_F(SessionTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) {
   EXPECT_TRUE(session->info()->device.simulated);
 }
 
+// The sliders close the hand on a ball, which then grows: the shown hand begins at the open hand again.
+TEST_F(SessionTest, ADigitThatStartedInsideIsOpenedByAConfirmationOfWhatWasSeen) {
+  start(with("sliders", "squeeze_ball"));
+  ASSERT_TRUE(until_running());
+  JointArray fist = session->sliders();
+  for (int digit = 1; digit < kDigits; ++digit)
+    for (const int i : {0, 2, 3})
+      fist[static_cast<std::size_t>(joint_index(digit, i))] =
+          0.7 * session->info()->geometry->hand.max_angle[static_cast<std::size_t>(joint_index(digit, i))];
+  ASSERT_TRUE(session->set_sliders(fist));
+  pass(2.0);
+  auto [answer, done] = awaited();
+  session->set({{"objects.0.diameter_mm", "72"}}, std::move(done));
+  const auto got = answer;
+  ASSERT_TRUE(until([&] { return got->refused.has_value(); }));
+  ASSERT_EQ(got->refused, "");
+  const auto opening = [&](int digit) {
+    return session->view().snapshot.opening[static_cast<std::size_t>(digit)];
+  };
+  int digit = kDigits - 1;
+  ASSERT_TRUE(until([&] {
+    for (digit = kDigits - 1; digit > 0; --digit)
+      if (opening(digit).phase == OpeningPhase::kUnconfirmed && opening(digit).way > 2e-3) return true;
+    return false;
+  }));
+  ASSERT_TRUE(until_running());
+  // Of the digit's contacts, as the step has computed it.
+  const auto force = [&] {
+    const StationView view = session->view();
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const SegmentSnapshot& segment =
+          view.snapshot.segment[static_cast<std::size_t>(segment_index(digit, k))];
+      sum += segment.force * segment.normal;
+    }
+    return sum.norm();
+  };
+  std::uint64_t running = session->view().running;
+  const auto refusal = [&](int of, double way) -> std::string {
+    try {
+      session->open_digit(of, way, running);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  pass(0.5);
+  EXPECT_EQ(force(), 0.0);
+  const double way = opening(digit).way;
+  EXPECT_THAT(refusal(kDigits, way), HasSubstr("0 to 4"));
+  EXPECT_THAT(refusal(-1, way), HasSubstr("0 to 4"));
+  EXPECT_THAT(refusal(digit, way + 6e-3), HasSubstr("look, then confirm again"));
+  EXPECT_THAT(refusal(digit, std::numeric_limits<double>::quiet_NaN()), HasSubstr("look"));
+  session->stop();
+  ASSERT_TRUE(until([&] { return session->view().state == SafetyState::kStopped; }));
+  EXPECT_THAT(refusal(digit, way), HasSubstr("forces are not on"));
+  session->resume();
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(opening(digit).phase, OpeningPhase::kUnconfirmed);
+  EXPECT_THAT(refusal(digit, way), HasSubstr("forces have been off")) << "what was seen before the stop";
+  running = session->view().running;
+
+  EXPECT_EQ(refusal(digit, way + 3e-3), "");
+  ASSERT_TRUE(until([&] { return opening(digit).phase == OpeningPhase::kConfirmed; }));
+  EXPECT_THAT(refusal(digit, way), HasSubstr("is being opened"));
+  ASSERT_TRUE(until([&] { return force() > 0.2; }));
+  session->stop();  // also takes the confirmation back, though no step sees the station stopped
+  session->resume();
+  pass(1.5);
+  ASSERT_TRUE(until_running());
+  EXPECT_NE(session->view().running, running);
+  running = session->view().running;
+  EXPECT_EQ(opening(digit).phase, OpeningPhase::kUnconfirmed);
+  EXPECT_EQ(force(), 0.0);
+
+  EXPECT_EQ(refusal(digit, opening(digit).way), "");
+  double largest = 0.0;
+  ASSERT_TRUE(until([&] {  // sliders do not follow
+    largest = std::max(largest, force());
+    return opening(digit).phase == OpeningPhase::kNotFollowed;
+  }));
+  EXPECT_GT(largest, 0.5);
+  EXPECT_LE(largest, 1.0 + 1e-9);
+  for (double& angle : fist) angle = 0.0;
+  ASSERT_TRUE(session->set_sliders(fist));
+  ASSERT_TRUE(until([&] { return opening(digit).phase == OpeningPhase::kNone; }));
+  EXPECT_THAT(refusal(digit, way), HasSubstr("is not inside"));
+}
+
 TEST_F(SessionTest, AnotherSceneLeavesWhatWasLaidOverTheLast) {
   start(with("sliders"));
   ASSERT_TRUE(until_running());

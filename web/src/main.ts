@@ -89,7 +89,7 @@ const app: App = {
 
 let plots: PlotPanel | undefined;
 const band = lostBand(store);
-const numbers = readouts(store);
+const numbers = readouts(app);
 const frame = viewFrame(store, [band.element, faultCard(app), troubleCard(app)]);
 const look = new Look((theme) => {
   frame.setTheme(theme);

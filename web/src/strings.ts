@@ -57,10 +57,24 @@ const en = {
   },
 
   digits: ["Thumb", "Index", "Middle", "Ring", "Little"],
-  silent: {
+  openings: {
     digits: ["thumb", "index finger", "middle finger", "ring finger", "little finger"],
-    one: (digit: string) => `The ${digit} began inside the object and feels nothing. Open the hand, or move the object away.`,
-    several: (digits: string) => `The ${digits} began inside the object and feel nothing. Open the hand, or move the object away.`,
+    unconfirmed: {
+      one: (digit: string) => `The ${digit} began inside the object and feels nothing. Open the hand, or move the object away.`,
+      several: (digits: string) => `The ${digits} began inside the object and feel nothing. Open the hand, or move the object away.`,
+    },
+    confirmed: {
+      one: (digit: string) => `The ${digit} is pushed out of the object.`,
+      several: (digits: string) => `The ${digits} are pushed out of the object.`,
+    },
+    notFollowed: {
+      one: (digit: string) => `The ${digit} did not follow for 3 s and feels nothing. Open the hand, or move the object away.`,
+      several: (digits: string) => `The ${digits} did not follow for 3 s and feel nothing. Open the hand, or move the object away.`,
+    },
+    open: "Push out …",
+    title: "Push a finger out of the object?",
+    ask: "The motors push the finger from where it is to where the hand is shown. The force rises to 1 N within a second. If the finger does not follow for 3 s, the force ends. Stop ends it at once.",
+    choice: (digit: string, way: string) => `Push the ${digit} out, ${way} mm`,
   },
   forcePerDigit: "Force of each digit",
   follows: "(follows)",

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "commands.h"
@@ -81,8 +85,8 @@ class Run {
           Emphasis::kWarning);
     if (holds_without_host(info->device)) console_.complain(kHoldsWithoutHost, Emphasis::kWarning);
     console_.say(
-        "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, set KEY=VALUE or "
-        "quit.");
+        "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, open DIGIT, set "
+        "KEY=VALUE or quit.");
   }
 
   void watch() {
@@ -136,6 +140,7 @@ class Run {
       if (page_) page_->tell("oscillation", what, true);
     }
     oscillates_ = oscillates;
+    say_openings();
     const std::uint64_t refused = session_->view().resets_refused;
     if (std::exchange(resets_refused_, refused) < refused) {
       const std::string why =
@@ -143,6 +148,67 @@ class Run {
       console_.say(why, Emphasis::kError);
       if (page_) page_->tell("reset_refused", why, false);
     }
+  }
+
+  /// A digit's way out as the user at the terminal was told of it.
+  struct ToldOpening {
+    OpeningPhase phase = OpeningPhase::kNone;
+    double way = 0.0;           ///< [m]
+    std::uint64_t running = 0;  ///< StationView::running
+  };
+
+  /// Reports digits that started inside the object, and what came of their opening. What waits for a confirmation is
+  /// reported again whenever forces have been off.
+  void say_openings() {
+    const StationView now = session_->view();
+    if (now.state != SafetyState::kRunning) return;
+    for (int digit = 0; digit < kDigits; ++digit) {
+      const auto d = static_cast<std::size_t>(digit);
+      const DigitOpening& opening = now.snapshot.opening[d];
+      ToldOpening& told = openings_[d];
+      const bool waits =
+          opening.phase == OpeningPhase::kUnconfirmed || opening.phase == OpeningPhase::kNotFollowed;
+      if (opening.phase == told.phase && (!waits || now.running == told.running)) continue;
+      const bool was_inside = told.phase != OpeningPhase::kNone;
+      told = {.phase = opening.phase, .way = opening.way, .running = now.running};
+      const std::string_view name = digit_name(digit);
+      if (waits && !session_->info()->device.renders_torque) {
+        console_.say(fmt::format("{} started inside the object and has no force until it has left it", name),
+                     Emphasis::kWarning);
+      } else if (waits) {
+        console_.say(
+            fmt::format(
+                "{} {}; to where it is shown it is {:.0f} mm. Open the hand or, to push the digit there "
+                "with at most 1 N, type: open {}",
+                name,
+                opening.phase == OpeningPhase::kNotFollowed
+                    ? "did not follow for 3 s and has no force"
+                    : "started inside the object and has no force until it has left it",
+                1e3 * opening.way, name),
+            Emphasis::kWarning);
+      } else if (opening.phase == OpeningPhase::kNone && was_inside) {
+        console_.say(fmt::format("{} has left the object", name));
+      }
+    }
+  }
+
+  /// Asks to open a digit by the way that was told last.
+  void open_typed(const std::string& name) {
+    int digit = 0;
+    while (digit < kDigits && digit_name(digit) != name) ++digit;
+    if (digit == kDigits)
+      throw std::invalid_argument(
+          fmt::format("'{}' is no digit; type open thumb, index, middle, ring or little", name));
+    ToldOpening& told = openings_[static_cast<std::size_t>(digit)];
+    const double way = session_->view().snapshot.opening[static_cast<std::size_t>(digit)].way;
+    if (told.phase != OpeningPhase::kNone && std::abs(way - told.way) > OpeningState::kSameWay) {
+      const double before = std::exchange(told.way, way);
+      throw std::invalid_argument(fmt::format(
+          "the way of {} was {:.0f} mm and is {:.0f} mm now; if that is meant, type open {} again", name,
+          1e3 * before, 1e3 * way, name));
+    }
+    session_->open_digit(digit, told.way, told.running);
+    tell_typed("opened", fmt::format("asked to open the digit {}, {:.0f} mm", name, 1e3 * told.way));
   }
 
   void tell_fault(FaultReport report) {
@@ -200,6 +266,8 @@ class Run {
         look_after(reset);
         if (!reset) throw std::invalid_argument("another fault has come since; look, then reset again");
         tell_typed("reset", "asked for a reset");
+      } else if (line.starts_with("open ")) {
+        open_typed(line.substr(5));
       } else if (line == "quit") {
         quit_ = true;
         tell_typed("quit", "ends the station");
@@ -214,7 +282,8 @@ class Run {
         });
       } else if (!line.empty()) {
         throw std::invalid_argument(fmt::format(
-            "'{}' is not understood; type stop, resume, reset, set KEY=VALUE, scene NAME or quit", line));
+            "'{}' is not understood; type stop, resume, reset, open DIGIT, set KEY=VALUE, scene NAME or quit",
+            line));
       }
     } catch (const std::exception& error) {  // a refusal ends nothing
       console_.complain(reason(error));
@@ -291,6 +360,7 @@ class Run {
   bool quit_ = false;
   std::uint64_t resets_refused_ = 0;
   bool oscillates_ = false;
+  std::array<ToldOpening, kDigits> openings_{};
   Seen seen_;
   double seconds_ = 0.0;
 };

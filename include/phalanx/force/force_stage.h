@@ -7,6 +7,7 @@
 //    and finger stable.
 // 4. The forces become joint torques, which are limited in magnitude, rate and to finite values.
 // 5. oscillation.h watches the force sent; local_wall.h describes contacts for the device's own controller.
+// A digit that started inside an object has no force, or the small one of opening.h.
 // Every torque command passes this stage. docs/stabilisers.md compares the stabilisers. S1 and S2 are the
 // papers listed in docs/architecture.md; GDP and HCP are explained in contact/gdp.h.
 #pragma once
@@ -17,6 +18,7 @@
 #include "phalanx/core/status.h"
 #include "phalanx/force/haptic_parameters.h"
 #include "phalanx/force/local_wall.h"
+#include "phalanx/force/opening.h"
 #include "phalanx/force/oscillation.h"
 #include "phalanx/force/stabiliser.h"
 #include "phalanx/hand/hand_model.h"
@@ -53,7 +55,8 @@ struct ForceState {
   HandPoses hcp_before;  ///< poses of the HCP at the last tick, for closing speeds
   std::array<OscillationObserver, kSegments> observer;  ///< watches `sent`; survives a contact that bounces
   StiffnessFactor stiffness_factor;
-  std::array<LocalWall, kSegments> wall{};  ///< filled only by Stabiliser::kLocalWall
+  std::array<OpeningState, kDigits> opening;  ///< of digits that started inside the object
+  std::array<LocalWall, kSegments> wall{};    ///< filled only by Stabiliser::kLocalWall
   std::array<RememberedWall, kSegments> remembered{};
   std::array<bool, kDigits> resting{};  ///< the digit has nothing left to forget or to watch
   bool started = false;
@@ -61,7 +64,8 @@ struct ForceState {
 
 /// Computes the torque command of one tick, in this order: law -> fingertip cap -> stabiliser -> fingertip
 /// cap -> joint torques -> finite check -> torque limit -> torque-rate limit.
-/// The cap holds for each contact and for the vector sum of a digit's contacts. The second cap acts on the
+/// The cap holds for each contact and for the vector sum of a digit's contacts. For a digit that started inside
+/// the object it is the smaller one of OpeningState, also where the scene's limit is off. The second cap acts on the
 /// sum, because some forces may fall slowly while others rise. It acts on each contact where the stabiliser
 /// adds to the law's force. The force sent is then watched for oscillation (kOscillating).
 /// @param contacts  the GDP after this tick, with its records

@@ -36,7 +36,7 @@ struct CockpitSettings {
 /// Not real-time: all functions allocate, lock, or both.
 class Cockpit final : public WebApplication {
  public:
-  static constexpr std::uint32_t kProtocol = 2;                     ///< of proto/phalanx/cockpit.proto
+  static constexpr std::uint32_t kProtocol = 3;                     ///< of proto/phalanx/cockpit.proto
   static constexpr std::size_t kUploadLimit = 64U * 1024U * 1024U;  ///< [bytes]
 
   /// @param session  outlives the cockpit

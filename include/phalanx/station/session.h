@@ -137,6 +137,12 @@ class Session {
   /// @param fault_time  FaultEvent::time of the fault seen [s]; 0: there was none
   /// @returns true if a reset was asked for
   bool reset(double fault_time) noexcept;
+  /// Asks to open a digit that started inside the object. A person has seen its way out and has confirmed it.
+  /// @param way      DigitOpening::way that the person saw [m]
+  /// @param running  StationView::running of the view that the person saw
+  /// @throws std::invalid_argument, with the remedy, if forces are not on, or have been off since; if the device has
+  /// no motors; if the digit needs no opening; or if its way has changed by more than OpeningState::kSameWay
+  void open_digit(int digit, double way, std::uint64_t running);
   /// Replaces values of the scene's keys: in contact, at zero torque or with a new station, as the keys need.
   /// An empty value removes an override.
   void set(Overrides changes, Done done);

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -60,6 +61,10 @@ class Station {
   void stop_torque() noexcept;    ///< ramps to zero; zero until resume_torque()
   void resume_torque() noexcept;  ///< ends stop_torque(); the later call of the two counts
   void reset() noexcept;          ///< asks to leave a fault; the safety gate decides
+  /// Opens a digit that started inside the object, after a person's confirmation: HapticState::confirm_opening().
+  /// @param running  StationView::running that the person saw. In any other period of SafetyState::kRunning the
+  /// confirmation has no effect, and at the end of this one it is withdrawn
+  void open_digit(int digit, std::uint64_t running) noexcept;
 
   /// Changes what may change in contact within 0.2 s: stiffness, damping, the bounds on the force's change,
   /// and the method among `none`, `smoothing` and `rise_only`. All other parameters stay as they are,

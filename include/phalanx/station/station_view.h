@@ -20,6 +20,9 @@ struct StationView {
   double duration = 0.0;   ///< from the start of the step until the command was handed to the device [s]
   JointArray sent{};       ///< torques after the safety gate [Nm]
   SafetyState state = SafetyState::kWaiting;
+  /// Number of this period of SafetyState::kRunning, unique in the process; 0 in other states. A stop, a fault or an
+  /// exchange ends it.
+  std::uint64_t running = 0;
   FaultEvent fault;                  ///< the present fault; kNone: no fault
   double factor = 0.0;               ///< factor of the ramps on the step's torques, 0 .. 1 [-]
   bool at_rest = true;               ///< the torque sent is zero for every joint

@@ -53,6 +53,13 @@ class HapticState {
   /// Returns the result of the last step.
   [[nodiscard]] const Snapshot& snapshot() const noexcept { return snapshot_; }
 
+  /// Lets the next steps open a digit that started inside the object: OpeningState. For the caller who has shown
+  /// a person which digit it is, its way and where to, and got a confirmation.
+  /// @returns false, with no effect, unless the digit has no force for this reason. Real-time.
+  bool confirm_opening(int digit) noexcept;
+  /// Takes all confirmations back: the digits have no force from the next step on. Real-time.
+  void withdraw_openings() noexcept;
+
  private:
   friend Status step(const HapticModel&, const HapticParameters&, const Sample&, HapticState&) noexcept;
 

@@ -10,6 +10,7 @@
 #include "phalanx/core/math.h"
 #include "phalanx/core/status.h"
 #include "phalanx/force/local_wall.h"
+#include "phalanx/force/opening.h"
 #include "phalanx/hand/angle_origin.h"
 #include "phalanx/hand/joints.h"
 
@@ -95,8 +96,8 @@ struct Snapshot {
   JointArray hcp_angle{};  ///< [rad]; also q_ref of the walls
   /// Origin of each `hcp_angle`, from the last sample. Only measured angles may be scored.
   AngleOrigins angle_origin{};
-  /// Digits with Status::kStartInside: they give no force until clear.
-  std::array<bool, kDigits> started_inside{};
+  /// Digits with Status::kStartInside: their phase is not kNone until they have been clear.
+  std::array<DigitOpening, kDigits> opening{};
   JointArray gdp_angle{};  ///< [rad]
   JointArray torque{};     ///< commanded torque of the contacts on the finger's joints, axis . (r x f) [Nm]
   std::array<SegmentSnapshot, kSegments> segment{};

@@ -16,6 +16,7 @@ namespace phalanx {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::Pair;
 
 /// @returns the lines of the log of changes
@@ -42,6 +43,22 @@ TEST(Typed, EveryCommandIsLoggedAsTheTerminals) {
   }
   EXPECT_THAT(told, ElementsAre(Pair("stopped", "stopped"), Pair("resumed", "resumed"),
                                 Pair("reset", "asked for a reset"), Pair("quit", "ends the station")));
+}
+
+TEST(Typed, AnOpeningOfADigitThatNeedsNoneIsRefusedWithTheReason) {
+  const testing::TemporaryFolder folder;
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && printf 'open finger\nopen index\nquit\n' | "
+                              "PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM
+                              "' run --device sliders --port 0 --no-realtime --quiet --slow-motion 4 "
+                              "--audit changes.jsonl >out 2>err";
+  ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c)
+      << testing::read_file(folder / "err");
+  const std::string err = testing::read_file(folder / "err");
+  EXPECT_THAT(err, HasSubstr("'finger' is no digit; type open thumb, index, middle, ring or little"));
+  EXPECT_THAT(err, HasSubstr("index: ")) << "forces are not on yet, or nothing is inside";
+  ASSERT_EQ(changes_in(folder).size(), 1U);
+  EXPECT_EQ(changes_in(folder)[0]["code"], "quit");
 }
 
 // A busy terminal passes typed words on late. They refer to what the person had seen when typing them.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Above the view: the stability verdict as a light, the force of each digit, and which digits cannot have one.
 import type { State } from "../gen/phalanx/cockpit_pb";
-import type { Store } from "../state/store";
 import { digitForces, followers, kDigits } from "../state/channels";
 import type { Verdict } from "../state/verdict";
 import { strings } from "../strings";
+import type { App } from "./app";
 import { el, setAttribute, setShown, setText } from "./dom";
+import { openings } from "./openings";
 
 const kFullBar = 5; // [N]
 
@@ -23,22 +24,13 @@ function asFelt(verdict: Verdict, state: State | undefined): Verdict {
   return verdict.kind === "steady" && state?.rendersTorque === false ? { kind: "off" } : verdict;
 }
 
-const joined = new Intl.ListFormat(strings.locale);
-
-/// Which digits began inside the object, and what to do; empty: all digits feel.
-export function silentText(digits: readonly number[]): string {
-  const words = strings.silent;
-  const names = digits.flatMap((digit) => words.digits[digit] ?? []);
-  if (names.length === 0) return "";
-  return (names.length === 1 ? words.one : words.several)(joined.format(names));
-}
-
 export interface Readouts {
   readonly element: HTMLElement;
   update(): void; // called at a rate at which figures can be read
 }
 
-export function readouts(store: Store): Readouts {
+export function readouts(app: App): Readouts {
+  const store = app.store;
   const text = el("strong");
   const spoken = el("span", { class: "visually-hidden", role: "status" });
   const alarm = el("span", { class: "visually-hidden", role: "alert" });
@@ -56,13 +48,13 @@ export function readouts(store: Store): Readouts {
     );
     return { box, value, bar, follows };
   });
-  const silent = el("p", { class: "silent-digits", role: "status" });
+  const inside = openings(app);
   const element = el(
     "div",
     { class: "readouts" },
     light,
     el("div", { class: "digit-forces", role: "group", "aria-label": strings.forcePerDigit }, ...digits.map((digit) => digit.box)),
-    silent,
+    inside.element,
   );
   store.on(["state"], () => {
     const all = followers(store.state?.sensedJoint ?? []);
@@ -76,7 +68,7 @@ export function readouts(store: Store): Readouts {
     const shakes = verdict?.kind === "shakes";
     setText(spoken, shakes ? "" : verdictText(verdict));
     setText(alarm, shakes ? strings.verdict.shakes : "");
-    setText(silent, silentText(store.lost ? [] : (store.tick?.startedInside ?? [])));
+    inside.update();
     const forces = digitForces(store.lost ? undefined : store.tick);
     digits.forEach((digit, i) => {
       const force = forces[i] ?? 0;

@@ -3,7 +3,7 @@
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 import { HelloSchema, SeenSchema, ToHostSchema, ToPageSchema, type ToHost, type ToPage } from "../gen/phalanx/cockpit_pb";
 
-export const kProtocol = 2; // Cockpit::kProtocol
+export const kProtocol = 3; // Cockpit::kProtocol
 
 /// connecting: no Welcome yet; open: it has arrived; waiting: until the next try; mismatch: the station has another protocol; expired: the
 /// station refuses this page's link (further tries follow, but are not shown).

@@ -4,6 +4,7 @@ import { create } from "@bufbuild/protobuf";
 import {
   CalibrateSchema,
   LoadSceneSchema,
+  OpenDigitSchema,
   ReleaseControlSchema,
   ResetSchema,
   ResumeSchema,
@@ -17,6 +18,7 @@ import {
   type Calibrate_Step,
   type HandSource,
 } from "../gen/phalanx/cockpit_pb";
+import type { Opening } from "../gen/phalanx/tick_pb";
 import type { Answer, Connection } from "./connection";
 
 /// A key and its value as in a scene file. An empty value restores the scene's own.
@@ -60,6 +62,12 @@ export class Host {
   /// @param faultTime  of the displayed fault; 0: none, a new try of a station is requested
   reset(faultTime: number): Promise<Answer> {
     return this.connection.ask({ case: "reset", value: create(ResetSchema, { faultTime }) });
+  }
+
+  /// Asks to open a digit that began inside the object. @param seen  as the person saw it
+  openDigit(seen: Opening): Promise<Answer> {
+    const { digit, way, running } = seen;
+    return this.connection.ask({ case: "open", value: create(OpenDigitSchema, { digit, way, running }) });
   }
 
   loadScene(name: string): Promise<Answer> {

@@ -22,7 +22,7 @@ import {
   type ToHost,
 } from "../../src/gen/phalanx/cockpit_pb";
 import { GeometrySchema, type Geometry } from "../../src/gen/phalanx/geometry_pb";
-import { SafetyState, TickSchema, type Tick } from "../../src/gen/phalanx/tick_pb";
+import { OpeningSchema, SafetyState, TickSchema, type Tick } from "../../src/gen/phalanx/tick_pb";
 import { strings } from "../../src/strings";
 import { kProtocol } from "../../src/wire/connection";
 import { recording } from "./view3d_page/server";
@@ -256,7 +256,7 @@ export class FakeHost {
       case: "tick",
       value: create(TickSchema, {
         ...source,
-        tick: BigInt(this.step), time, factor: stopped ? 0 : 1, atRest: stopped, state: this.state.safety, startedInside: [...this.silent],
+        tick: BigInt(this.step), time, factor: stopped ? 0 : 1, atRest: stopped, state: this.state.safety, opening: this.silent.map((digit) => create(OpeningSchema, { digit, way: 0.014 })),
         hcpAngle: Array.from({ length: 20 }, (_, i) => (i % 4 === 1 ? 0.05 : flexion * (1 - 0.02 * i)) + 0.05),
         gdpAngle: Array.from({ length: 20 }, (_, i) => (i % 4 === 1 ? 0.05 : Math.min(flexion * (1 - 0.02 * i), 0.6))),
         torque: Array.from({ length: 20 }, (_, i) => (stopped ? 0 : 0.02 * Math.sin(time + i))),

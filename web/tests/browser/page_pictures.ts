@@ -53,6 +53,7 @@ const shots: readonly Shot[] = [
   { name: "stopped", act: async (page) => page.keyboard.press("Escape") },
   { name: "fault", before: (host) => Object.assign(host.state, { fault, safety: SafetyState.SAFETY_FAULT }), act: async (_, host) => host.notice(3, "", "fault", "sensor_jump: a sensor's angle jumped.") },
   { name: "silent", before: (host) => (host.silent = [3]) },
+  { name: "silent_dialog", size: [1024, 768], before: (host) => (host.silent = [1, 4]), act: async (page) => page.click(".silent-digits button") },
   { name: "silent_projector", size: [1920, 1080], before: (host) => (host.silent = [3]) },
   { name: "silent_laptop", size: [1280, 720], before: (host) => (host.silent = [1, 2, 3, 4]) },
   { name: "silent_tablet_light", size: [1024, 768], light: true, before: (host) => (host.silent = [0, 3]) },

@@ -2,7 +2,8 @@
 // Without a patient: every slider moves its joint, the object is met and felt, and the patient comes back.
 import { beforeAll, describe, expect, it } from "vitest";
 import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
-import { silentText } from "../../src/panels/readouts";
+import { Opening_Phase } from "../../src/gen/phalanx/tick_pb";
+import { openingsText } from "../../src/panels/openings";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { faultsOfLayout, kSizes } from "./support/layout";
@@ -107,24 +108,34 @@ describe("the sliders", () => {
 
   it("close on an object that then changes: the page says which digits feel nothing of it, until the hand is opened", async () => {
     const { page, stream } = cockpit;
-    const line = page.locator(".silent-digits");
+    const line = page.locator(".silent-digits p");
     expect(await line.textContent()).toBe("");
     await cockpit.button(strings.hand.fist).click();
     await cockpit.untilTouching();
     await cockpit.tab("touch");
     await cockpit.fieldLike(strings.object.sizes["diameter_mm"]!).fill("68"); // the shown hand begins at the open hand again
     await cockpit.button(strings.object.use).click();
-    const digits = await until("digits that began inside", () => stream.newest!.startedInside.length > 0 && stream.newest!.startedInside, () => cockpit.brief());
-    await until("the line names them", async () => (await line.textContent()) === silentText(digits), async () => `it says "${await line.textContent()}"`);
+    const digits = await until("digits that began inside", () => stream.newest!.opening.length > 0 && stream.newest!.opening, () => cockpit.brief());
+    await until("the line names them", async () => (await line.textContent()) === openingsText(digits), async () => `it says "${await line.textContent()}"`);
     for (const [width, height] of kSizes) {
       await page.setViewportSize({ width, height });
       expect.soft(await page.evaluate(faultsOfLayout), `${width} x ${height}`).toEqual([]);
       await shoot(page, `silent_digits_${width}`);
     }
     await page.setViewportSize(small.viewport!);
+    // The operator confirms that one of them is pushed out. Sliders do not follow a force.
+    const phase = (wanted: Opening_Phase) => () => stream.newest!.opening.some((opening) => opening.phase === wanted);
+    await until("forces are on", () => page.locator(".silent-digits button").isVisible(), () => cockpit.brief());
+    await page.locator(".silent-digits button").click();
+    expect(stream.newest!.opening.every((opening) => opening.phase === Opening_Phase.UNCONFIRMED)).toBe(true);
+    await shoot(page, "push_out");
+    await page.locator(".opening-choices button").first().click();
+    await until("it is pushed", phase(Opening_Phase.CONFIRMED), () => cockpit.brief());
+    await until("it has not followed", phase(Opening_Phase.NOT_FOLLOWED), () => cockpit.brief());
+    await until("the line says so", async () => (await line.textContent())!.includes("did not follow"));
     await cockpit.tab("hand");
     await cockpit.button(strings.hand.open).click();
-    await until("the line is gone", async () => (await line.textContent()) === "" && stream.newest!.startedInside.length === 0, () => cockpit.brief());
+    await until("the line is gone", async () => (await line.textContent()) === "" && stream.newest!.opening.length === 0, () => cockpit.brief());
   });
 
   it("give the hand back to the patient", async () => {

@@ -53,7 +53,7 @@ export function faultsOfLayout(): string[] {
     const box = over.getBoundingClientRect();
     if (shown(over) && box.left < view.right && box.right > view.left && box.top < view.bottom - kSlack && box.bottom > view.top + kSlack) say(`.${over.className} lies over the hand`);
   }
-  const note = document.querySelector(".silent-digits:not(:empty)");
+  const note = document.querySelector(".silent-digits:has(p:not(:empty))");
   if (note) {
     note.scrollIntoView({ block: "nearest" });
     if (!within(note.getBoundingClientRect(), screen) || (!question && !uncovered(note))) say("which digits are silent is not wholly in sight");

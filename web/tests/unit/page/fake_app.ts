@@ -2,6 +2,7 @@
 // A page without a station: what it was told, and what it asked for.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { KeyType, StateSchema, ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import type { Opening } from "../../../src/gen/phalanx/tick_pb";
 import type { App } from "../../../src/panels/app";
 import { Store } from "../../../src/state/store";
 import { kProtocol } from "../../../src/wire/connection";
@@ -16,6 +17,7 @@ export interface FakeApp {
   readonly asked: (readonly Change[])[];
   readonly dragging: boolean[]; // of each of `asked`
   readonly resets: number[]; // times of the faults that were to be reset
+  readonly opened: Opening[]; // that were to be opened
   refuse: string; // what the station answers; empty: it does it
   state(state: MessageInitShape<typeof StateSchema>): void;
   /// The page that has control, and the values of keys.
@@ -44,6 +46,10 @@ export function fakeApp(): FakeApp {
       made.resets.push(faultTime);
       return answer();
     },
+    openDigit: (seen: Opening) => {
+      made.opened.push(seen);
+      return answer();
+    },
   } as unknown as Host;
   const state = (value: MessageInitShape<typeof StateSchema>) => store.receive(create(ToPageSchema, { what: { case: "state", value } }));
   const made: FakeApp = {
@@ -52,6 +58,7 @@ export function fakeApp(): FakeApp {
     asked: [],
     dragging: [],
     resets: [],
+    opened: [],
     refuse: "",
     state,
     operate: (page, values = []) => state({ operatorPage: page, value: values.map(([name, value]) => ({ key: name, value })) }),

@@ -2,15 +2,16 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, it } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import { readouts, silentText } from "../../../src/panels/readouts";
+import { readouts } from "../../../src/panels/readouts";
 import { Store } from "../../../src/state/store";
 import { strings } from "../../../src/strings";
+import { fakeApp } from "./fake_app";
 
 it("a screen reader is interrupted by shaking alone; contact and its end are said when there is time", () => {
   let now = 0;
   const store = new Store(() => now);
   store.setPhase("open");
-  const { element, update } = readouts(store);
+  const { element, update } = readouts({ ...fakeApp().app, store });
   let step = 0n;
   const said = (contact: { touching: boolean; oscillating?: boolean }[]) => {
     now += 2000; // a shake is held for a while
@@ -26,27 +27,3 @@ it("a screen reader is interrupted by shaking alone; contact and its end are sai
   expect(said([{ touching: true, oscillating: true }])).toEqual({ polite: "", assertive: words.shakes });
   expect(said([{ touching: true }])).toEqual({ polite: words.steady, assertive: "" });
 });
-
-it("which digits began inside the object is said while it lasts, and not of a tick that is old", () => {
-  let now = 0;
-  const store = new Store(() => now);
-  store.setPhase("open");
-  const { element, update } = readouts(store);
-  let step = 0n;
-  const said = (startedInside: number[]) => {
-    now += 20;
-    store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: ++step, time: now / 1000, startedInside } } }));
-    update();
-    return element.querySelector(".silent-digits")!.textContent;
-  };
-  expect(said([])).toBe("");
-  expect(said([3])).toBe("The ring finger began inside the object and feels nothing. Open the hand, or move the object away.");
-  expect(said([0, 1, 4])).toBe("The thumb, index finger and little finger began inside the object and feel nothing. Open the hand, or move the object away.");
-  expect(said([])).toBe("");
-  said([3]);
-  now += 10_000;
-  update();
-  expect(element.querySelector(".silent-digits")!.textContent).toBe("");
-});
-
-it("a digit that no hand has is not named", () => expect(silentText([17])).toBe(""));
