@@ -36,8 +36,9 @@ bool parse_options(int argc, char** argv, Options& options, int& exit_code) {
                  "How the recordings' columns become joint angles (default cyberglove)")
       ->needs(recordings);
   CLI::Option* sliding =
-      app.add_flag("--sliding", options.sliding, "The recordings' contacts slide: contact.mode = \"sliding\"")
-          ->needs(recordings);
+      app.add_flag("--sliding", options.sliding,
+                   "Contacts slide: contact.mode = \"sliding\"; without the peers, whose contacts do not")
+          ->excludes(record);
   app.add_option("--friction", options.friction,
                  "Coefficient of the friction of contacts that slide (default 0.6)")
       ->needs(sliding)

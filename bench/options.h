@@ -19,7 +19,7 @@ struct Options {
   std::string recordings;              ///< folder of recorded motions; empty: the scenes are run
   std::string meshes;                  ///< folder of the objects before them
   std::string mapping = "cyberglove";  ///< of the recordings' columns to joint angles
-  bool sliding = false;                ///< the recordings' contacts slide
+  bool sliding = false;                ///< contacts slide; no peers then
   double friction = 0.6;               ///< of contacts that slide [-]
   double seconds = 0.0;                ///< greatest length of a recording [s]; 0: all of it
   std::string json;                    ///< file to write; empty: none

@@ -7,7 +7,17 @@
 
 namespace phalanx::bench {
 
-std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValues>& states) {
+namespace {
+
+Phase phase_of_touch(int segments, bool deep, ContactMode mode) {
+  if (mode == ContactMode::kStatic) return deep ? Phase::kDeep : Phase::kTouching;
+  return segments == 1 ? Phase::kOneSegment : segments <= 5 ? Phase::kFewSegments : Phase::kAllSegments;
+}
+
+}  // namespace
+
+std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValues>& states,
+                             ContactMode mode) {
   FclEngine engine(model.hand, model.object.mesh());
   Clearance clearance(model.hand, model.object.mesh(), engine, Pruning::kLikeOurs);
   const auto is_free = [&](const GdpValues& state) {
@@ -22,15 +32,14 @@ std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValu
   };
   std::vector<Phase> phases;
   for (std::size_t tick = 1; tick < states.size(); ++tick) {
-    bool touches = false;
+    int touching = 0;
     bool deep = false;
     for (int s = 0; s < kPalm; ++s) {
       const ContactRecord& record = states[tick].record[idx(s)];
-      touches = touches || record.active;
+      touching += record.active ? 1 : 0;
       deep = deep || (record.active && record.depth > kDeepDepth);
     }
-    phases.push_back(deep                    ? Phase::kDeep
-                     : touches               ? Phase::kTouching
+    phases.push_back(touching > 0            ? phase_of_touch(touching, deep, mode)
                      : is_free(states[tick]) ? Phase::kFree
                                              : Phase::kNear);
   }

@@ -16,14 +16,21 @@ enum class Phase {
   kNear,      ///< some segment is nearer, none has a contact
   kTouching,  ///< some segment has a contact record, none is more than 3 mm deep
   kDeep,      ///< some segment is more than 3 mm deep
+  // Of contacts that slide, in place of the last two:
+  kOneSegment,   ///< one segment has a contact
+  kFewSegments,  ///< two to five
+  kAllSegments,  ///< six to fifteen
 };
-inline constexpr std::size_t kPhases = 4;
-inline constexpr std::array<std::string_view, kPhases> kPhaseName = {"free", "near", "touching", "deep"};
+inline constexpr std::size_t kPhases = 7;
+inline constexpr std::array<std::string_view, kPhases> kPhaseName = {
+    "free", "near", "touching", "deep", "1 segment", "2 to 5", "6 to 15"};
 inline constexpr double kFreeDistance = 20e-3;  ///< [m]
 inline constexpr double kDeepDepth = 3e-3;      ///< [m]
 
 /// One phase a tick of a motion. Set-up only.
 /// @param states  replay()'s
-[[nodiscard]] std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValues>& states);
+/// @param mode    of the replay: contacts that slide are counted
+[[nodiscard]] std::vector<Phase> phases_of(const HapticModel& model, const std::vector<GdpValues>& states,
+                                           ContactMode mode);
 
 }  // namespace phalanx::bench

@@ -38,7 +38,7 @@ std::vector<Phase> all_phases(const HapticModel& model, const HapticParameters& 
   for (const BenchMotion& motion : motions) {
     const std::vector<GdpValues> states = replay(model, parameters, motion.angle);
     check_replay(model, parameters, motion.angle, states);
-    const std::vector<Phase> of_motion = phases_of(model, states);
+    const std::vector<Phase> of_motion = phases_of(model, states, parameters.contact.mode);
     phases.insert(phases.end(), of_motion.begin(), of_motion.end());
   }
   return phases;
@@ -126,8 +126,13 @@ std::vector<TimesRow> other_instruction_sets(const std::string& scene, const Hap
   return rows;
 }
 
-SceneReport run_scene(const std::string& scene, const Options& options, ExpectedHashes& expected) {
-  const SceneDescription description = load_scene(scene);
+SceneReport run_scene(const std::string& name, const Options& options, ExpectedHashes& expected) {
+  Overrides overrides;
+  if (options.sliding)
+    overrides = {{"contact.mode", "\"sliding\""}, {"contact.friction", fmt::format("{}", options.friction)}};
+  const std::string scene =
+      options.sliding ? fmt::format("{}, contacts slide, friction {}", name, options.friction) : name;
+  const SceneDescription description = load_scene(name, overrides);
   const HapticModel model = build_model(description);
   const HapticParameters& parameters = description.parameters;
   const std::vector<BenchMotion> motions = make_motions(model, parameters, options.grasps);
@@ -149,7 +154,7 @@ SceneReport run_scene(const std::string& scene, const Options& options, Expected
     report.warm.push_back(row);
   if (options.cold)
     report.cold = cold_rows(phases, time_cold(model, parameters, motions, options.cold_every));
-  if (options.peers) report.peers = run_peers(model, parameters, motions, times, options);
+  if (options.peers && !options.sliding) report.peers = run_peers(model, parameters, motions, times, options);
   return report;
 }
 

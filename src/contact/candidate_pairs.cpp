@@ -33,7 +33,7 @@ void CandidatePairs::list(const PlacedSegment& segment, const ObjectTree& object
     return;
   }
   clear();
-  if (reach > kMostReach || segment.tree.empty() || object.empty()) return;
+  if (pair_.empty() || reach > kMostReach || segment.tree.empty() || object.empty()) return;
   const auto sink = [](void* self, const search::PairIndex& pair, double bound) {
     auto& list = *static_cast<CandidatePairs*>(self);
     if (list.count_ < kMost) list.pair_[list.count_] = {pair.triangle, pair.slot, bound};

@@ -147,9 +147,10 @@ class Newton {
       const ProblemContact& contact = problem_.contact[i];
       const RowProducts product(contact, held_);
       if (!product.moves_normal()) continue;
-      compliance_[i] = {(contact.softness > 0.0 ? contact.softness : share) * product.normal,
-                        share * product.sliding,
-                        product.spin > kLeastSpin ? ContactProblem::kSpinSoftness * product.spin : 0.0};
+      compliance_[i] = {
+          (contact.softness > 0.0 ? contact.softness : share) * product.normal,
+          contact.tangent_compliance > 0.0 ? contact.tangent_compliance : share * product.sliding,
+          product.spin > kLeastSpin ? ContactProblem::kSpinSoftness * product.spin : 0.0};
     }
   }
 
@@ -216,7 +217,9 @@ class Newton {
       ContactRows u = {contact.room, contact.anchor[0], contact.anchor[1], contact.spin_anchor};
       for (std::size_t r = 0; r < kContactRows; ++r) u[r] += dot(contact.row[r], x);
       ContactRows offset = offset_[i];
-      if (contact.softness > 0.0) offset[kNormalRow] = 0.0;  // its compliance is part of the problem
+      // Compliances that are part of the problem are at rest without a force.
+      if (contact.softness > 0.0) offset[kNormalRow] = 0.0;
+      if (contact.tangent_compliance > 0.0) offset[kTangentRow] = offset[kSecondTangentRow] = 0.0;
       const RegularisedLaw law(contact, compliance_[i], u, offset);
       multiplier_[i] = law.multiplier;
       slope_[i] = law.slope;
@@ -294,8 +297,9 @@ double contact_residual(const ContactProblem& problem, const HeldJoints& held) n
     add(std::abs(u < n ? u : n));
 
     const double bound = contact.friction * std::min(p[kNormalRow], contact.most_friction_normal);
-    const double t1 = product.sliding * p[1] - dot(contact.row[1], x) - contact.anchor[0];
-    const double t2 = product.sliding * p[2] - dot(contact.row[2], x) - contact.anchor[1];
+    const double stays = product.sliding - contact.tangent_compliance;
+    const double t1 = stays * p[1] - dot(contact.row[1], x) - contact.anchor[0];
+    const double t2 = stays * p[2] - dot(contact.row[2], x) - contact.anchor[1];
     const double size = length_of(t1, t2);
     const double share = size > product.sliding * bound ? product.sliding * bound / size : 1.0;
     add(length_of(product.sliding * p[1] - share * t1, product.sliding * p[2] - share * t2));

@@ -128,7 +128,7 @@ struct Rows {
 struct Block {
   Rows alone;
   Rows with_spin;
-  Square A{};         ///< products of normal and tangents
+  Square A{};         ///< products of normal and tangents, without the tangents' compliance
   Triple beside{};    ///< products of the spin row with normal and tangents
   double spin = 0.0;  ///< product of the spin row with itself, and a little more; 0: not solved
   bool used = false;  ///< the joints can move the contact along its normal
@@ -142,6 +142,8 @@ Block block_of(const ProblemContact& contact) noexcept {
     block.beside[i] = dot(contact.row[i], contact.row[kSpinRow]);
   }
   block.A = A;
+  A[1][1] += contact.tangent_compliance;
+  A[2][2] += contact.tangent_compliance;
   block.used = A[0][0] > kLeastArm * kLeastArm;
   if (!block.used) return block;
   block.alone = Rows::of(A);

@@ -26,6 +26,8 @@ struct ProblemContact {
   double softness = 0.0;
   /// Displacement along the tangents that friction aims at, negated [m]: 0 keeps the point where it is.
   std::array<double, 2> anchor{};
+  /// Compliance of friction that holds: the tangents give way by it times their multipliers [m^2].
+  double tangent_compliance = 0.0;
   double spin_anchor = 0.0;  ///< the same for the rotation about the normal [rad]
   double friction = 0.0;     ///< Coulomb coefficient mu [-], >= 0
   /// r_c: friction resists a rotation up to mu r_c times the normal multiplier [m].
@@ -41,8 +43,8 @@ struct ProblemContact {
 /// Contact problem of one digit. With the joints' displacement x and each contact's multipliers p:
 ///   x = free + sum row^T p                                          (quasi-static, massless, unit stiffness)
 ///   normal    0 <= row_n . x + room   complementary to   p_n >= 0
-///   tangent   row_t . x + anchor = 0  if |p_t| <= mu min(p_n, most_friction_normal), else p_t is on that
-///             bound and opposes row_t . x + anchor
+///   tangent   s = row_t . x + anchor + compliance p_t = 0  if |p_t| <= mu min(p_n, most_friction_normal), else p_t
+///             is on that bound and opposes s
 ///   spin      row_s . x + anchor_s = -0.02 |row_s|^2 p_s  if |p_s| <= mu r_c min(p_n, most_friction_normal), else
 ///             p_s is on that bound and opposes it. The anchor takes the small rotation back.
 ///   limits    lowest <= x <= highest

@@ -49,6 +49,8 @@ SegmentTrees make_segment_trees(const HandModel& hand) {
 GdpState::GdpState(const ContactModel& model)
     : angle(model.hand.parameters().open_angle), hcp_angle(angle), scratch(model.trees) {
   model.hand.poses(angle, poses);
+  if (model.parameters.mode == ContactMode::kSliding)
+    for (NearPairs& of_segment : near) of_segment.candidates().allocate();
   const double margin = model.parameters.margin;
   const Containment& containment = model.object.containment();
   for (int s = 0; s < kSegments; ++s) {

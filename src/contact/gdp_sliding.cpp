@@ -13,10 +13,10 @@
 namespace phalanx {
 namespace {
 
-constexpr double kClearance = 10e-6;        // h1 - h0: working clearance above the margin [m]
-constexpr double kMostReach = 50e-6;        // beyond it the continuous search finds contacts [m]
-constexpr double kSlack = 20e-6;            // of the reach, above the way of this tick [m]
-constexpr double kAnchorGain = 0.2;         // share of the anchor's displacement taken back in a substep
+constexpr double kClearance = 10e-6;  // h1 - h0: working clearance above the margin [m]
+constexpr double kMostReach = 50e-6;  // beyond it the continuous search finds contacts [m]
+constexpr double kSlack = 20e-6;      // of the reach, above the way of this tick [m]
+constexpr double kAnchorGain = 0.2;   // share of the rotation since spin was held, taken back in a substep
 constexpr double kFrictionDepth = 40e-6;    // friction at zero depth counts this much [m]
 constexpr double kMostRecovery = 2e-6;      // way back to the working clearance in a substep [m]
 constexpr double kLeastRecovery = 1e-9;     // [m]
@@ -111,13 +111,20 @@ class Substep {
     for (int b = 0; b < blocks_; ++b) {
       const Block& block = block_[idx(b)];
       ContactPlace place;
-      place.triangle = place.slot = -1;
+      place.triangle = -1;
+      place.slot = block.slot;
       place.on_segment = tick_.pose.segment[idx(block.k)] * block.p_S;
       place.gap = block.direction.dot(place.on_segment - block.on_object);
       place.direction = block.direction;
       if (place.gap > 0.0 && !is_listed(block.k, place)) add(block.k, place, last, taken);
     }
     gathered_ = true;
+  }
+
+  /// Without friction a digit that started inside is shown by the shortest way out, in joint space.
+  [[nodiscard]] double friction_of(int slot) const noexcept {
+    if (state_.inside[idx(tick_.digit)] || !state_.started[idx(tick_.digit)]) return 0.0;
+    return model_.object.friction(model_.object.tree().source(slot), model_.parameters.friction);
   }
 
   [[nodiscard]] double working_clearance() const noexcept { return model_.parameters.margin + kClearance; }
@@ -144,6 +151,7 @@ class Substep {
     contact.tangent[0] = place.direction.unitOrthogonal();
     contact.tangent[1] = place.direction.cross(contact.tangent[0]);
     contact.gap = place.gap;
+    contact.friction = friction_of(place.slot);
 
     int best = -1;
     double nearest = kSamePlace * kSamePlace;
@@ -157,7 +165,10 @@ class Substep {
         best = i;
       }
     }
-    if (best < 0) return;
+    if (best < 0) {
+      contact.anchor = anchor_beside(contact, last);
+      return;
+    }
     taken[idx(best)] = true;
     const SlidingContact& before = last.contact[idx(best)];
     const Vec3 friction = before.multiplier[1] * before.tangent[0] + before.multiplier[2] * before.tangent[1];
@@ -167,9 +178,30 @@ class Substep {
       contact.multiplier = {before.multiplier[0], friction.dot(contact.tangent[0]),
                             friction.dot(contact.tangent[1]), before.multiplier[3]};
     }
-    contact.anchor = before.anchor - before.anchor.dot(contact.normal) * contact.normal;
+    contact.anchor = along_surface(before.anchor, contact.normal);
     contact.turned = before.turned;
     contact.slips = before.slips;
+  }
+
+  [[nodiscard]] static Vec3 along_surface(const Vec3& v, const Vec3& normal) noexcept {
+    return v - v.dot(normal) * normal;
+  }
+
+  /// Returns the anchor of a contact that has none: that of the nearest one of the segment that presses the same way.
+  /// Contact points come and go under a segment that rolls; its displacement along the surface is one.
+  [[nodiscard]] static Vec3 anchor_beside(const SlidingContact& contact,
+                                          const DigitContacts& contacts) noexcept {
+    const SlidingContact* nearest = nullptr;
+    for (int i = 0; i < contacts.count; ++i) {
+      const SlidingContact& other = contacts.contact[idx(i)];
+      if (other.k != contact.k || !(other.multiplier[0] > 0.0) ||
+          other.normal.dot(contact.normal) < kCos30Deg)
+        continue;
+      if (nearest == nullptr ||
+          (other.p_S - contact.p_S).squaredNorm() < (nearest->p_S - contact.p_S).squaredNorm())
+        nearest = &other;
+    }
+    return nearest != nullptr ? along_surface(nearest->anchor, contact.normal) : Vec3(Vec3::Zero());
   }
 
   /// Stores the pair that stopped a motion x of segment k, so that it is a contact for the rest of the substep.
@@ -179,7 +211,7 @@ class Substep {
     const ContactPatch patch = contact_patch(placed(k), model_.object, cap, &motion, near(k));
     if (patch.pairs == 0 || patch.lead_direction.isZero(0.0)) return;
     const Pose& X_WS = tick_.pose.segment[idx(k)];
-    block_[idx(blocks_++)] = {k, X_WS.R.transpose() * (patch.lead - X_WS.p),
+    block_[idx(blocks_++)] = {k, patch.lead_slot, X_WS.R.transpose() * (patch.lead - X_WS.p),
                               patch.lead - patch.distance * patch.lead_direction, patch.lead_direction};
   }
 
@@ -220,13 +252,13 @@ class Substep {
     return x;
   }
 
-  void set_up(const DigitAngles& free, ContactProblem& problem) const noexcept {
+  void set_up(const DigitAngles& free, ContactProblem& problem) noexcept {
     const double h1 = working_clearance();
     problem.free = free;
     problem.count = contacts_.count;
     set_limits(problem);
     for (int c = 0; c < contacts_.count; ++c) {
-      const SlidingContact& contact = contacts_.contact[idx(c)];
+      SlidingContact& contact = contacts_.contact[idx(c)];
       ProblemContact& out = problem.contact[idx(c)];
       const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
       for (std::size_t i = 0; i < free.size(); ++i) {
@@ -236,10 +268,9 @@ class Substep {
         out.row[kSpinRow][i] = contact.normal.dot(J.angular[i]);
       }
       out.room = std::max(0.0, contact.gap - h1);
-      out.anchor = {kAnchorGain * contact.anchor.dot(contact.tangent[0]),
-                    kAnchorGain * contact.anchor.dot(contact.tangent[1])};
+      out.anchor = {contact.anchor.dot(contact.tangent[0]), contact.anchor.dot(contact.tangent[1])};
       out.spin_anchor = kAnchorGain * contact.turned;
-      out.friction = model_.parameters.friction;
+      out.friction = contact.friction;
       out.spin_radius = model_.parameters.spin_radius;
       const Vec3 apart = contact.p_W - goal_pose_.segment[idx(contact.k)] * contact.p_S;
       const double depth = std::max(0.0, apart.dot(contact.normal));
@@ -248,6 +279,7 @@ class Substep {
         for (const double arm : out.row[kNormalRow]) factor += arm * arm;
       }
       out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / std::max(factor, kLeastFactor);
+      out.tangent_compliance = contact.tangent_compliance = std::max(factor, kLeastFactor);
       out.multiplier = contact.multiplier;
     }
   }
@@ -313,24 +345,31 @@ class Substep {
     return first_contact(model_, path, 0.0, evaluations_, tick_, state_);
   }
 
-  /// Adds the motion to the anchors of contacts that stick.
+  /// Moves the anchors with the digit: of a contact that holds by its motion, of one that slips to the length of the
+  /// spring at its bound.
   void follow_anchors(const DigitAngles& from) noexcept {
     for (int c = 0; c < contacts_.count; ++c) {
       SlidingContact& contact = contacts_.contact[idx(c)];
-      if (contact.spins || !(contact.multiplier[0] > 0.0)) {
+      const bool presses = contact.multiplier[0] > 0.0;
+      if (contact.spins || !presses) {
         contact.turned = 0.0;
       } else {
         const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
         for (std::size_t i = 0; i < from.size(); ++i)
           contact.turned += contact.normal.dot(J.angular[i]) * (tick_.angle[i] - from[i]);
       }
-      if (contact.slips || !(contact.multiplier[0] > 0.0)) {
-        contact.anchor = Vec3::Zero();
-        continue;
+      if (!presses) continue;
+      if (contact.slips) {
+        contact.anchor = -contact.tangent_compliance * (contact.multiplier[1] * contact.tangent[0] +
+                                                        contact.multiplier[2] * contact.tangent[1]);
+      } else {
+        const Vec3 now = tick_.pose.segment[idx(contact.k)] * contact.p_S;
+        contact.anchor += along_surface(now - contact.p_W, contact.normal);
       }
-      const Vec3 now = tick_.pose.segment[idx(contact.k)] * contact.p_S;
-      const Vec3 moved = now - contact.p_W;
-      contact.anchor += moved - moved.dot(contact.normal) * contact.normal;
+    }
+    for (int c = 0; c < contacts_.count; ++c) {
+      SlidingContact& contact = contacts_.contact[idx(c)];
+      if (!(contact.multiplier[0] > 0.0)) contact.anchor = anchor_beside(contact, contacts_);
     }
   }
 
@@ -347,6 +386,7 @@ class Substep {
   /// Pair that has stopped a motion in this substep.
   struct Block {
     int k = 0;
+    int slot = -1;
     Vec3 p_S = Vec3::Zero();
     Vec3 on_object = Vec3::Zero();
     Vec3 direction = Vec3::Zero();
@@ -428,12 +468,14 @@ void set_record(const ContactModel& model, const DigitTick& tick, int k, const D
   record.p_hcp = tick.hcp_pose.segment[idx(k)] * record.p_S;
   Vec3 moment = Vec3::Zero();
   double longest = 0.0;
+  double friction = 0.0;
   for_each([&](const SlidingContact& contact, const Vec3& f) {
     const Vec3 arm = tick.pose.segment[idx(k)] * contact.p_S - record.p_gdp;
     moment += arm.cross(f) + contact.spin_depth * contact.normal;
     longest = std::max(longest, arm.norm());
+    friction = std::max(friction, contact.friction);
   });
-  const double most = longest + model.parameters.friction * model.parameters.spin_radius;
+  const double most = longest + friction * model.parameters.spin_radius;
   const double length = moment.norm() / depth;
   record.couple = (length > most ? most / length : 1.0) / depth * moment;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/contact/object_model.h"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,6 +18,7 @@ struct ObjectModel::Parts {
   ObjectTree tree;
   CompactNormals normals;
   Containment containment;  ///< refers to `mesh`
+  std::vector<ObjectFriction> friction;
 };
 
 namespace {
@@ -40,8 +43,14 @@ TriangleMesh checked(TriangleMesh mesh) {
 
 ObjectModel::ObjectModel() : parts_(std::make_shared<const Parts>()) {}
 
-ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle) {
+ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle, std::vector<ObjectFriction> friction) {
+  for (const ObjectFriction& object : friction) {
+    if (object.coefficient && !(*object.coefficient >= 0.0 && *object.coefficient <= 2.0))
+      throw std::invalid_argument("object: a coefficient of friction is " +
+                                  std::to_string(*object.coefficient) + "; it is 0 to 2");
+  }
   auto parts = std::make_shared<Parts>();
+  parts->friction = std::move(friction);
   parts->mesh = checked(std::move(mesh));
   parts->tree = ObjectTree(parts->mesh);
   parts->normals = CompactNormals(surface_normals(parts->mesh, crease_angle));
@@ -64,6 +73,14 @@ Vec3 ObjectModel::normal_at(int triangle, const Vec3& weight) const noexcept {
       weight[0] * first + weight[1] * normals.normal(triangle, 1) + weight[2] * normals.normal(triangle, 2);
   const double length = sum.norm();
   return length > 1e-9 ? Vec3(sum / length) : first;
+}
+
+double ObjectModel::friction(int triangle, double otherwise) const noexcept {
+  const std::vector<ObjectFriction>& objects = parts_->friction;
+  const auto next =
+      std::upper_bound(objects.begin(), objects.end(), triangle,
+                       [](int index, const ObjectFriction& object) { return index < object.first_triangle; });
+  return next == objects.begin() ? otherwise : std::prev(next)->coefficient.value_or(otherwise);
 }
 
 int ObjectModel::open_edges(int triangle) const noexcept { return parts_->normals.open_edges(triangle); }

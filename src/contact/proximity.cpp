@@ -46,7 +46,8 @@ struct Lead {
   const SegmentMotion* motion = nullptr;
   Vec3 direction = Vec3::Zero();
   Vec3 at = Vec3::Zero();  ///< on the segment
-  double speed = 0.0;      ///< 0: no pair closes, every pair counts
+  int slot = 0;
+  double speed = 0.0;  ///< 0: no pair closes, every pair counts
 
   [[nodiscard]] double closing_speed(const Vec3& n, const Vec3& x) const noexcept {
     return -n.dot(motion->velocity(x));
@@ -86,7 +87,7 @@ struct PairsInReach {
 /// Returns the pair nearer than the cap that closes fastest.
 Lead find_lead(const PairsInReach& pairs, double cap, const SegmentMotion& motion) noexcept {
   Lead lead{.motion = &motion};
-  pairs.for_each([&](int, int, const TriangleDistance& closest) {
+  pairs.for_each([&](int, int slot, const TriangleDistance& closest) {
     if (closest.squared >= squared(cap)) return;
     const Vec3 n = direction_of(closest);
     const double speed = lead.closing_speed(n, closest.on_a);
@@ -94,6 +95,7 @@ Lead find_lead(const PairsInReach& pairs, double cap, const SegmentMotion& motio
     lead.speed = speed;
     lead.direction = n;
     lead.at = closest.on_a;
+    lead.slot = slot;
   });
   return lead;
 }
@@ -110,7 +112,8 @@ double distance_of_admitted(const PairsInReach& pairs, double cap, const Lead& l
 /// Returns the contact of the pairs that count and are within kPatchBand of `least`.
 ContactPatch patch_of(const PlacedSegment& segment, const ObjectModel& object, const PairsInReach& pairs,
                       const Lead& lead, double least) noexcept {
-  ContactPatch patch{.distance = least, .lead = lead.at, .lead_direction = lead.direction};
+  ContactPatch patch{
+      .distance = least, .lead = lead.at, .lead_direction = lead.direction, .lead_slot = lead.slot};
   const ObjectTree& tree = object.tree();
   const double limit = least + kPatchBand;
   MeanDirection direction(std::sqrt(squared(limit) - squared(least)));
@@ -162,10 +165,10 @@ void NearPairs::add(const Pair& pair) noexcept {
 
 void NearPairs::find_among_candidates(const PlacedSegment& segment, const ObjectTree& object,
                                       double reach) noexcept {
-  constexpr int kBatch = 64;
-  std::array<CandidatePairs::Pair*, kBatch> candidate;
-  std::array<search::PairIndex, kBatch> pair;
-  std::array<search::PairDistance, kBatch> found;
+  constexpr int kTogether = 64;
+  std::array<CandidatePairs::Pair*, kTogether> candidate;
+  std::array<search::PairIndex, kTogether> pair;
+  std::array<search::PairDistance, kTogether> found;
   const search::SegmentView segment_view = search::view_of(segment, object);
   int n = 0;
   const auto measure = [&] {
@@ -180,7 +183,7 @@ void NearPairs::find_among_candidates(const PlacedSegment& segment, const Object
   candidates_.for_each(reach, [&](CandidatePairs::Pair& near) {
     candidate[idx(n)] = &near;
     pair[idx(n++)] = {near.triangle, near.slot};
-    if (n == kBatch) measure();
+    if (n == kTogether) measure();
   });
   measure();
 }

@@ -45,7 +45,9 @@ bool is_mirrored(const SceneDescription& scene, Handedness of_hand) {
   return scene.hand.profile.empty() ? scene.mirror : of_hand == Handedness::kLeft;
 }
 
-TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCache* imports) {
+/// @param friction  receives the friction of each object; may be null
+TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCache* imports,
+                        std::vector<ObjectFriction>* friction) {
   TriangleCount count;
   // The number of triangles of generated objects is known, and checked before they are made.
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -55,6 +57,8 @@ TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCach
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const TriangleMesh mesh = make_object(scene.objects[i], {.index = i, .imports = imports});
     if (scene.objects[i].kind == "file") count.add(i, mesh.triangles.size());
+    if (friction != nullptr)
+      friction->push_back({static_cast<int>(world.triangles.size()), scene.objects[i].friction});
     append(world, mesh, scene.objects[i].pose);
   }
   if (mirrored) mirror(world);
@@ -76,7 +80,7 @@ TriangleMesh make_object_mesh(const ObjectDescription& object) { return make_obj
 TriangleMesh make_world_mesh(const SceneDescription& scene) {
   const bool profile = !scene.hand.profile.empty();
   const Handedness of_hand = profile ? load_hand_numbers(scene.hand).handedness : scene.hand.handedness;
-  return world_mesh(scene, is_mirrored(scene, of_hand), nullptr);
+  return world_mesh(scene, is_mirrored(scene, of_hand), nullptr, nullptr);
 }
 
 ResolvedScene resolve(const SceneDescription& description, const ResolveOptions& options) {
@@ -89,7 +93,7 @@ ResolvedScene resolve(const SceneDescription& description, const ResolveOptions&
   scene.hand = load_hand(description.hand, options.hand, options.imports);
   const bool mirror = is_mirrored(description, scene.hand.handedness);
   scene.X_WH = mirror ? mirrored(description.hand.pose) : description.hand.pose;
-  scene.world = world_mesh(description, mirror, options.imports);
+  scene.world = world_mesh(description, mirror, options.imports, &scene.friction);
   if (options.motion) scene.motion = motion_of(description.motion, scene.hand.parameters);
   return scene;
 }
@@ -100,7 +104,9 @@ HapticModel build_model(ResolvedScene scene) {
   const bool empty = scene.world.triangles.empty();
   return {HandModel(std::move(scene.hand.parameters), scene.hand.handedness, scene.X_WH,
                     std::move(scene.hand.meshes.collision)),
-          empty ? ObjectModel() : ObjectModel(std::move(scene.world))};
+          empty ? ObjectModel()
+                : ObjectModel(std::move(scene.world), ObjectModel::kDefaultCreaseAngle,
+                              std::move(scene.friction))};
 }
 
 Motion build_motion(const SceneDescription& scene) {

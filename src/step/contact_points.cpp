@@ -51,7 +51,7 @@ void record_contact_points(const HapticParameters& parameters, const GdpState& g
     at.friction = sent * (contact.depth[1] / resultant * contact.tangent[0] +
                           contact.depth[2] / resultant * contact.tangent[1]);
     at.spin = sent * (contact.spin_depth / resultant);
-    at.coefficient = parameters.contact.friction;
+    at.coefficient = contact.friction;
     at.slips = contact.slips &&
                slip_speed(last, out, s, contact.p_S, contact.normal, parameters.period()) > kLeastSlipSpeed;
 

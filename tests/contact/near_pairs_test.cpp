@@ -119,6 +119,7 @@ TEST(CandidatePairs, AreThoseThatASearchFinds) {
     const SegmentTree segment(shapes.segment);
     SearchScratch scratch(segment);
     NearPairs listed;
+    listed.candidates().allocate();
     NearPairs searched;
     for (int start = 0; start < 6; ++start) {
       Pose X = shapes.pose(random);
@@ -155,6 +156,7 @@ TEST(CandidatePairs, LastForTheWayThatTheyWereListedFor) {
   const ObjectModel object(make_box(Vec3(0.2, 0.2, 0.2), 1200));
   SearchScratch scratch(segment);
   CandidatePairs candidates;
+  candidates.allocate();
   Pose X{Mat3::Identity(), Vec3(0.003, -0.002, 0.11 + 50e-6)};
   const PlacedSegment placed{segment, X, scratch};
   EXPECT_FALSE(candidates.cover(placed, 0.0)) << "nothing is listed";
@@ -194,6 +196,9 @@ TEST(CandidatePairs, AreNotListedForAFastSegmentOrBesideTooFineAMesh) {
   CandidatePairs candidates;
   {
     SearchScratch scratch(coarse);
+    candidates.list({coarse, X, scratch}, object.tree(), 60e-6);
+    EXPECT_FALSE(candidates.cover({coarse, X, scratch}, 0.0)) << "no memory";
+    candidates.allocate();
     candidates.list({coarse, X, scratch}, object.tree(), 1.001e-3);
     EXPECT_FALSE(candidates.cover({coarse, X, scratch}, 0.0));
     candidates.list({coarse, X, scratch}, object.tree(), 0.999e-3);
@@ -205,6 +210,7 @@ TEST(CandidatePairs, AreNotListedForAFastSegmentOrBesideTooFineAMesh) {
   EXPECT_TRUE(candidates.empty());
   EXPECT_FALSE(candidates.cover({fine, X, scratch}, 0.0));
   NearPairs near;
+  near.candidates().allocate();
   near.candidates().list({fine, X, scratch}, object.tree(), 60e-6);
   near.find({fine, X, scratch}, object.tree(), 60e-6);
   EXPECT_TRUE(near.overflows()) << "a search found them";
@@ -219,7 +225,9 @@ class Twice {
         parameters_{.mode = mode},
         contact_{model_.hand, model_.trees(), model_.object, parameters_},
         stores_(contact_),
-        lists_(contact_) {}
+        lists_(contact_) {
+    for (NearPairs& near : lists_.near) near = NearPairs();  // without candidates: it searches the trees
+  }
 
   void tick(const JointArray& hcp) {
     std::array<bool, kDigits> measured{};
@@ -247,6 +255,7 @@ class Twice {
                 std::max(lists_.clearance[idx(s)].bound(), parameters_.margin))
           << segment_name(s);
     }
+    for (NearPairs& near : stores_.near) candidates += near.candidates().empty() ? 0 : 1;
     const std::uint64_t stores = queries(stores_, stores_before_);
     shortened += stores < queries(lists_, lists_before_) ? 1 : 0;
     longest_list = std::max(longest_list, lists_.pairs.count);
@@ -254,6 +263,7 @@ class Twice {
   [[nodiscard]] const HandParameters& hand_parameters() const { return model_.hand.parameters(); }
 
   int shortened = 0;     ///< ticks in which stored pairs saved a search
+  int candidates = 0;    ///< segments with candidates, summed over the ticks
   int longest_list = 0;  ///< of the digit that was last in a tick [pairs]
 
  private:
@@ -300,13 +310,17 @@ TriangleMesh rod(int triangles) {
   return test::moved(make_cylinder(0.012, 0.12, triangles), across);
 }
 
+// One hand keeps candidates over its ticks, the other searches the trees in each.
 TEST(NearPairsOfTheHand, ChangeNoBitWhereFingersSlide) {
+  int candidates = 0;
   for (const TriangleMesh& object : {bar(300), ball(2000)}) {
     for (std::uint64_t seed = 4; seed <= 6; ++seed) {
       Twice hands(object, 800, ContactMode::kSliding);
       play(hands, seed, test::kSanitized ? 300 : 3000);
+      candidates += hands.candidates;
     }
   }
+  EXPECT_GT(candidates, test::kSanitized ? 10 : 1000);
 }
 
 TEST(NearPairsOfTheHand, ChangeNoBit) {

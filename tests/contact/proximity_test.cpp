@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <numbers>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -332,6 +333,76 @@ TEST(Gather, AsksForRoomBeforeABlockThatMightNotFit) {
     EXPECT_EQ(room.taken, 8 * (capacity == 24 ? 0 : 2));
     EXPECT_EQ(room.taken + room.store.count, 24);
   }
+}
+
+// Of all pairs within 3 mm, those that come within the margin anywhere on a path of up to 2 mm are kept, for segments
+// and objects of all kinds. The path has a constant acceleration; 25 of its poses are looked at.
+TEST(Sift, KeepsEveryPairThatTheMotionMayBringWithinTheMargin) {
+  constexpr std::uint64_t kSeed = 11;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  constexpr double kMargin = 50e-6;
+  test::Random random(kSeed);
+  int met = 0;
+  int left_out = 0;
+  for (const test::SearchCase& shapes : test::search_cases(random)) {
+    SCOPED_TRACE(shapes.name);
+    const ObjectModel object(shapes.object);
+    const SegmentTree segment(shapes.segment);
+    SearchScratch scratch(segment);
+    for (int n = 0; n < 12; ++n) {
+      Pose X = shapes.pose(random);
+      const ContactPatch patch = contact_patch({segment, X, scratch}, object, 1.0);
+      if (patch.pairs == 0) continue;
+      X.p += (test::between(random, 60e-6, 500e-6) - patch.distance) * patch.direction;
+      const PlacedSegment placed{segment, X, scratch};
+      const search::ObjectView tree = search::view_of(object.tree());
+      std::vector<search::PairIndex> pairs;
+      search::functions().list(
+          search::view_of(placed, object.tree()), tree, 3e-3,
+          [](void* list, const search::PairIndex& pair, double) {
+            static_cast<std::vector<search::PairIndex>*>(list)->push_back(pair);
+            return true;
+          },
+          &pairs);
+      if (pairs.size() > 1000) pairs.resize(1000);
+      // x(h) = x + h v(x) + h^2 / 2 a(x) about the middle of the segment, h in [0, 1].
+      const Vec3 middle = X * segment.centre();
+      SegmentMotion motion;
+      motion.angular = test::in_cube(random, 0.03);
+      motion.linear = test::in_cube(random, 1e-3) - 0.5e-3 * patch.direction - motion.angular.cross(middle);
+      motion.angular_rate = test::in_cube(random, 0.03);
+      motion.linear_rate = test::in_cube(random, 0.5e-3) - motion.angular_rate.cross(middle);
+      std::vector<search::PairIndex> kept = pairs;
+      kept.resize(static_cast<std::size_t>(
+          search::functions().sift(search::view_of(placed, object.tree()), tree, search::view_of(motion), 1.0,
+                                   kMargin, kept.data(), static_cast<int>(kept.size()))));
+      left_out += static_cast<int>(pairs.size() - kept.size());
+      std::size_t next = 0;
+      for (const search::PairIndex& pair : pairs) {
+        if (next < kept.size() && kept[next].triangle == pair.triangle && kept[next].slot == pair.slot) {
+          ++next;  // kept, in order
+          continue;
+        }
+        Corners mine = segment.corners(pair.triangle);
+        for (Vec3& x : mine) x = X * x;
+        for (int i = 0; i <= 24; ++i) {
+          const double h = i / 24.0;
+          Corners moved = mine;
+          for (Vec3& x : moved) {
+            const Vec3 v = motion.velocity(x);
+            const Vec3 a = motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(v);
+            x += h * v + 0.5 * h * h * a;
+          }
+          ASSERT_GT(triangle_distance(moved, object.tree().corners(pair.slot)).squared, kMargin * kMargin)
+              << "triangle " << pair.triangle << ", slot " << pair.slot << ", at " << h;
+        }
+      }
+      ASSERT_EQ(next, kept.size());
+      met += static_cast<int>(kept.size());
+    }
+  }
+  EXPECT_GT(met, 500);
+  EXPECT_GT(left_out, 5000);
 }
 
 TEST(ObjectModel, RefusesAVertexThatIsMoreThanTenKilometresAwayAlongAnyAxis) {

@@ -45,6 +45,21 @@ TEST(BuildModel, MakesEveryKindInItsSize) {
   EXPECT_NEAR(size("kind = \"mug\"\nlength_mm = 95").z(), 0.095, 1e-9);
 }
 
+TEST(BuildModel, GivesEachObjectItsFriction) {
+  const std::string box = "[[objects]]\nkind = \"box\"\ntriangles = 12\nposition_mm = [0, -300, 0]\n";
+  const HapticModel model =
+      build_model(parse_objects(box + "friction = 0.2\n" + box + box + "friction = 0\n"));
+  const int triangles = model.object.triangle_count() / 3;
+  ASSERT_EQ(3 * triangles, model.object.triangle_count());
+  for (int i = 0; i < triangles; ++i) {
+    EXPECT_EQ(model.object.friction(i, 0.7), 0.2);
+    EXPECT_EQ(model.object.friction(triangles + i, 0.7), 0.7) << "not stated";
+    EXPECT_EQ(model.object.friction(2 * triangles + i, 0.7), 0.0);
+  }
+  expect_scene_error([&] { static_cast<void>(parse_objects(box + "friction = 2.1\n")); },
+                     {"objects.0.friction", "2.1", "2"});
+}
+
 TEST(BuildModel, RefusesMoreTrianglesThanOneSceneMayHave) {
   const std::string large = "[[objects]]\nkind = \"sphere\"\ntriangles = 2000000\n";
   expect_scene_error([&] { static_cast<void>(make_world_mesh(parse_objects(large + large + large))); },

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "phalanx/contact/proximity.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/force/force_stage.h"
+#include "phalanx/force/local_wall.h"
 #include "phalanx/mesh/primitives.h"
 #include "support/lone_finger.h"
 
@@ -185,6 +188,89 @@ TEST_P(SlidingMu, ADraggedFingerSlipsAtMu) {
 
 INSTANTIATE_TEST_SUITE_P(Mu, SlidingMu, testing::Values(0.1, 0.3, 0.6, 1.0));
 
+// Two blocks side by side, of 0.2 and 0.9; the coefficient of the parameters is that of neither. The finger is dragged
+// from the first, which ends 4 mm beside it, to the second.
+TEST(Sliding, EachObjectMayHaveItsFriction) {
+  TriangleMesh mesh = test::moved(block(0.1, 0.02), test::at(-0.046, 0.0, 0.0));
+  const int second = static_cast<int>(mesh.triangles.size());
+  append(mesh, block(0.1, 0.02), test::at(0.054, 0.0, 0.0));
+  LoneFinger finger(ObjectModel(mesh, ObjectModel::kDefaultCreaseAngle, {{0, 0.2}, {second, 0.9}}));
+  finger.model().parameters.contact.mode = ContactMode::kSliding;
+  finger.model().parameters.contact.friction = 0.5;
+  finger.model().parameters.force.stiffness = 500.0;
+  Pressed press(finger, 3e-3);
+  const double way = press.tip().point.x();
+  const auto tip = static_cast<std::size_t>(segment_index(test::kIndex, 2));
+  const double before = press.hand.now().hcp_pose[tip].p.x();
+  press.hand.tick(LoneFinger::pose(press.goal, 1e-3));
+  const double sign = press.hand.now().hcp_pose[tip].p.x() > before ? 1.0 : -1.0;
+  const auto ratio = [&] {
+    const Vec3 f = press.tip().force * press.tip().normal;
+    return std::hypot(f.x(), f.y()) / f.z();
+  };
+  int on_first = 0;
+  for (int i = 1; i <= 900; ++i) {
+    press.hand.tick(LoneFinger::pose(press.goal, sign * 0.4e-3 * i));
+    const double x = press.tip().point.x() - way;
+    if (i > 20 && press.tip().slips && x < 3.5e-3) {
+      ASSERT_NEAR(ratio(), 0.2, 1e-5) << i << " " << x;
+      ++on_first;
+    }
+  }
+  EXPECT_GT(on_first, 20);
+  EXPECT_GT(press.tip().point.x() - way, 5e-3);
+  EXPECT_NEAR(ratio(), 0.9, 1e-5);
+  ASSERT_GT(press.hand.now().contact_points.count, 0);
+  EXPECT_EQ(press.hand.now().contact_points.point[0].coefficient, 0.9);
+  EXPECT_THROW(ObjectModel(mesh, ObjectModel::kDefaultCreaseAngle, {{0, 2.5}}), std::invalid_argument);
+  EXPECT_THROW(ObjectModel(mesh, ObjectModel::kDefaultCreaseAngle, {{0, -0.1}}), std::invalid_argument);
+}
+
+// A finger that begins inside a slab. Of all angles at which it is clear, tried one by one around, none is nearer to
+// the measured ones by more than the grid tells. Friction would hold it where it first touched.
+TEST(Sliding, ADigitThatStartsInsideIsShownByTheShortestWay) {
+  test::Setup model(test::simple_hand(),
+                    ObjectModel(test::moved(make_box({0.06, 0.02, 0.3}, 12), test::at(0.0, -0.030, 0.0))));
+  model.parameters.contact.mode = ContactMode::kSliding;
+  model.parameters.rate_hz = 1000.0;
+  const JointArray measured = test::index_angles(0.5, 0.3, 0.2);
+  Runner hand(model);
+  for (int i = 0; i < 500; ++i) hand.tick(measured);
+  ASSERT_EQ(hand.now().opening[test::kIndex].phase, OpeningPhase::kUnconfirmed);
+  const DigitAngles from = digit_angles(measured, test::kIndex);
+  const DigitAngles shown = digit_angles(hand.now().gdp_angle, test::kIndex);
+  const auto way = [&](const DigitAngles& q) {
+    double squared = 0.0;
+    for (std::size_t i = 0; i < q.size(); ++i) squared += (q[i] - from[i]) * (q[i] - from[i]);
+    return std::sqrt(squared);
+  };
+  SearchScratch scratch(model.trees());
+  const auto is_clear = [&](const DigitAngles& q) {
+    DigitPose pose;
+    model.hand.digit_pose(test::kIndex, q, pose);
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const PlacedSegment placed{model.trees()[static_cast<std::size_t>(segment_index(test::kIndex, k))],
+                                 pose.segment[static_cast<std::size_t>(k)], scratch};
+      if (!(distance(placed, model.object.tree(), 1e-3) > model.parameters.contact.margin)) return false;
+    }
+    return true;
+  };
+  double nearest = way(shown);
+  EXPECT_GT(nearest, 0.1);
+  for (double mcp = -0.3; mcp <= 0.3; mcp += 0.03) {
+    for (double pip = -0.3; pip <= 0.3; pip += 0.03) {
+      for (double dip = -0.3; dip <= 0.3; dip += 0.06) {
+        DigitAngles q = shown;
+        q[0] += mcp;
+        q[2] += pip;
+        q[3] += dip;
+        if (way(q) < nearest && is_clear(q)) nearest = way(q);
+      }
+    }
+  }
+  EXPECT_GT(nearest, 0.98 * way(shown)) << "a grid of 0.03 rad found a way of " << nearest << " rad";
+}
+
 TEST(Sliding, AtRestNothingChanges) {
   LoneFinger finger = sliding_finger(block(0.2, 0.02), 0.6);
   Pressed press(finger, 3e-3);
@@ -239,23 +325,33 @@ TEST(Sliding, AFinerMeshOfTheSameFaceGivesTheSameForce) {
   Pressed on_coarse(coarse, 3e-3);
   Pressed on_fine(fine, 3e-3);
   const auto force = [](const Pressed& p) { return Vec3(p.tip().force * p.tip().normal); };
-  std::vector<Vec3> coarsely = {force(on_coarse)};
-  std::vector<Vec3> finely = {force(on_fine)};
-  EXPECT_LT((coarsely[0] - finely[0]).norm(), 1e-3) << "[N]";
+  // Where the finger rolls from one corner of its facets to the next, the two meshes list different contact points,
+  // and each has a spring of its own.
+  for (int i = 0; i <= 200; ++i) {
+    if (i > 0)
+      for (Pressed* press : {&on_coarse, &on_fine})
+        press->hand.tick(LoneFinger::pose(press->goal, 0.4e-3 * i));
+    const Vec3 coarsely = force(on_coarse);
+    const Vec3 finely = force(on_fine);
+    ASSERT_NEAR(coarsely.z(), finely.z(), 0.003 * finely.z()) << i;
+    ASSERT_LT((coarsely - finely).norm(), 0.04 * finely.norm()) << i;
+  }
+}
+
+TEST(Sliding, AFinerMeshOfTheSameFaceGivesTheSameForceWithoutFriction) {
+  LoneFinger coarse = sliding_finger(block(0.2, 0.02), 0.0);
+  LoneFinger fine = sliding_finger(block(0.2, 0.02, 20000), 0.0);
+  Pressed on_coarse(coarse, 3e-3);
+  Pressed on_fine(fine, 3e-3);
+  int beyond = 0;
   for (int i = 1; i <= 200; ++i) {
     for (Pressed* press : {&on_coarse, &on_fine}) press->hand.tick(LoneFinger::pose(press->goal, 0.4e-3 * i));
-    coarsely.push_back(force(on_coarse));
-    finely.push_back(force(on_fine));
+    const Vec3 apart =
+        on_coarse.tip().force * on_coarse.tip().normal - on_fine.tip().force * on_fine.tip().normal;
+    beyond += apart.norm() >= 1e-3 ? 1 : 0;
+    ASSERT_LT(apart.norm(), 0.02 * on_fine.tip().force) << i;
   }
-  // Where the finger rolls from one corner of its facets to the next, the two meshes list different pairs, and the
-  // load goes over in different ticks.
-  int beyond = 0;
-  for (std::size_t i = 0; i < coarsely.size(); ++i) {
-    const double apart = (coarsely[i] - finely[i]).norm();
-    beyond += apart >= 1e-3 ? 1 : 0;
-    ASSERT_LT(apart, 0.025 * finely[i].norm()) << i;
-  }
-  EXPECT_LE(beyond, 40) << "of 201 ticks";
+  EXPECT_LE(beyond, 2) << "of 200 ticks: where the finger rolls onto another facet";
 }
 
 /// Two faces that meet below the origin along the finger, and that the tip touches together when its centre is at the
@@ -467,7 +563,7 @@ TEST(Sliding, ContactPointsShareTheForceSent) {
     Pressed press(finger, 3e-3);
     const ContactParameters& parameters = finger.model().parameters.contact;
     const int at_rest = check_points(press.hand.now(), parameters);
-    EXPECT_EQ(at_rest, in_groove ? 2 : 1);
+    EXPECT_GE(at_rest, in_groove ? 2 : 1);
     double spin = 0.0;
     for (int i = 1; i <= 300; ++i) {
       press.hand.tick(LoneFinger::pose(press.goal, 0.4e-3 * i));
@@ -537,6 +633,62 @@ TEST(Sliding, TheLocalWallReplacesTheTorqueOfItsContact) {
   const Snapshot& off = press.hand.now();
   EXPECT_FALSE(off.wall[static_cast<std::size_t>(segment_index(test::kIndex, 2))].active)
       << "the wall ends with its contact";
+}
+
+// Between two of the host's steps a segment's contacts and their friction are one spring along their whole force:
+// around any closed path of the joints the controller's walls take and give the same work. The middle segment lies
+// flat on the block and is dragged, so that the force is aslant and has a couple.
+TEST(Sliding, TheLocalWallsOfOneStepAreConservative) {
+  test::Setup model(test::simple_hand(),
+                    ObjectModel(test::moved(make_box({0.3, 0.02, 0.03}, 12), test::at(0.0, -0.031, -0.055))));
+  test::turn_limits_off(model);
+  model.parameters.contact.mode = ContactMode::kSliding;
+  model.parameters.stabiliser.method = Stabiliser::kLocalWall;
+  model.parameters.rate_hz = 1000.0;
+  Runner hand(model);
+  constexpr std::uint64_t kSeed = 5;
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> apart(-0.02, 0.02);  // [rad]: some walls are left on the way
+  double turned_over = 0.0;
+  for (int i = 0; i <= 600; ++i) {
+    const double close = std::min(1.0, i / 300.0);
+    const double flexion = 0.45 * close;
+    hand.tick(test::index_angles(flexion, 0.04 * close - flexion, 0.0, 0.3e-3 * std::max(0, i - 300)));
+    if (i % 50 != 0) continue;
+    const DigitAngles reference = digit_angles(hand.now().hcp_angle, test::kIndex);
+    const auto torque = [&](const DigitAngles& q) {
+      DigitAngles sum{};
+      for (int k = 0; k < kSegmentsPerDigit; ++k) {
+        const LocalWall& wall = hand.now().wall[static_cast<std::size_t>(segment_index(test::kIndex, k))];
+        const double force = local_wall_force(wall, q, reference);
+        for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += wall.g[j] * force;
+      }
+      return sum;
+    };
+    std::array<DigitAngles, 5> corner;
+    for (DigitAngles& at : corner)
+      for (std::size_t j = 0; j < at.size(); ++j) at[j] = reference[j] + apart(random);
+    double work = 0.0;
+    double passed = 0.0;
+    constexpr int kPieces = 2000;
+    for (std::size_t c = 0; c < corner.size(); ++c) {
+      const DigitAngles& from = corner[c];
+      const DigitAngles& to = corner[(c + 1) % corner.size()];
+      for (int piece = 0; piece < kPieces; ++piece) {
+        DigitAngles middle{};
+        for (std::size_t j = 0; j < middle.size(); ++j)
+          middle[j] = from[j] + (to[j] - from[j]) * (piece + 0.5) / kPieces;
+        const DigitAngles t = torque(middle);
+        double done = 0.0;
+        for (std::size_t j = 0; j < t.size(); ++j) done += t[j] * (to[j] - from[j]) / kPieces;
+        work += done;
+        passed += std::abs(done);
+      }
+    }
+    EXPECT_LE(std::abs(work), 1e-5 * passed + 1e-12) << "tick " << i << ", seed " << kSeed;
+    turned_over += passed;
+  }
+  EXPECT_GT(turned_over, 1e-3) << "[J]";
 }
 
 TEST(Sliding, OneContactPointASegmentSufficesInAGroove) {

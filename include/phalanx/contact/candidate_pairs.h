@@ -13,10 +13,10 @@ namespace phalanx {
 class ObjectTree;
 struct PlacedSegment;
 
-/// Pairs of triangles that a moving segment may come near to, of one segment and one object, in the trees' fixed
-/// order. One search lists them for many poses. Each has a lower bound on its distance, and the way adds up bounds
-/// on how far any point of the segment has moved: a pair at distance d stays farther than r until the way has
-/// grown by d - r. Allocated once. See docs/contact.md "Pairs of a segment that slides". Real-time: no allocation,
+/// Pairs of triangles that a moving segment may come near to. They belong to one segment and one object, and keep the
+/// order of a search in the trees. One search lists them for many poses, each with a lower bound on its distance. The
+/// way adds up bounds on the motion of the segment's points: a pair at distance d stays farther than r until the way
+/// has grown by d - r. See docs/contact.md "A segment that slides". Real-time except for allocate(): no allocation,
 /// lock, throw or I/O.
 class CandidatePairs {
  public:
@@ -31,8 +31,11 @@ class CandidatePairs {
   /// Way for which a new list lasts [m].
   static constexpr double kAhead = 0.3e-3;
 
-  /// Lists the pairs within `reach` [m] at this pose, and for the next kAhead of the way, unless they are listed.
-  /// Lists none if the reach exceeds kMostReach or the pairs kMost; after too many, not for the next few calls.
+  /// Allocates the memory. Without it nothing is listed. Set-up only.
+  void allocate() { pair_.resize(kMost); }
+  /// Lists the pairs within `reach` [m] at this pose, and those of the next kAhead of the way. Does nothing if the list
+  /// covers the reach. Lists none if the reach exceeds kMostReach or the pairs kMost; after too many, not for the
+  /// next few calls.
   /// @pre since the last clear(), the segment and the object are the same
   void list(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept;
   /// Adds the way to this pose.
@@ -66,7 +69,7 @@ class CandidatePairs {
   double complete_ = -1.0;  ///< way before which no other pair touches [m]; negative: nothing is listed
   int pause_ = 0;
   std::size_t count_ = 0;
-  std::vector<Pair> pair_ = std::vector<Pair>(kMost);
+  std::vector<Pair> pair_;  ///< of kMost pairs, or empty
 };
 
 }  // namespace phalanx

@@ -85,7 +85,8 @@ struct ContactModel {
 
 /// State of the GDP between ticks, and the search's scratch memory.
 struct GdpState {
-  /// Starts at the open hand, which must be clear of the object. Set-up only.
+  /// Starts at the open hand, which must be clear of the object. A state that is made in static mode may slide later,
+  /// with longer searches. Set-up only.
   /// @throws std::invalid_argument if a digit of the open hand is within the margin of the object, or a
   /// segment goes through it
   explicit GdpState(const ContactModel& model);

@@ -54,7 +54,7 @@ class NearPairs {
     stop_at({Mat3::Zero(), Vec3::Zero()});
     candidates_.clear();
   }
-  /// Returns the pairs that the segment may come near to next. Static mode lists none.
+  /// Returns the pairs that the segment may come near to next. Static mode has none.
   [[nodiscard]] CandidatePairs& candidates() noexcept { return candidates_; }
   /// @returns true if the pose of the last find(), stop_at() or carry() is this one, to the last bit
   [[nodiscard]] bool is_at(const Pose& X_WS) const noexcept { return X_WS_.p == X_WS.p && X_WS_.R == X_WS.R; }

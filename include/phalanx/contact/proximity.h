@@ -45,6 +45,7 @@ struct ContactPatch {
   Vec3 lead = Vec3::Zero();  ///< closest point on the segment of the pair that closes fastest, W [m]
   /// Direction of the pair that closes fastest, in W. Zero if none closes, or if no motion was given.
   Vec3 lead_direction = Vec3::Zero();
+  int lead_slot = 0;  ///< of that pair's triangle of the object
 };
 
 /// Band above the least distance within which pairs count [m]. They are summed in the trees' fixed order, so

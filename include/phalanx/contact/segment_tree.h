@@ -29,11 +29,13 @@ class SegmentTree {
   [[nodiscard]] Corners corners(int i) const noexcept;
   [[nodiscard]] const LensNode* nodes() const noexcept { return nodes_.data(); }
   [[nodiscard]] const SegmentTriangle* triangles() const noexcept { return triangles_.data(); }
-  /// Return a sphere that holds the segment, in its frame [m]. @pre !empty(). Real-time.
+  /// Returns the centre of a sphere that holds the segment, in its frame [m]. @pre !empty(). Real-time.
   [[nodiscard]] Vec3 centre() const noexcept {
-    return {nodes_[0].centre[0][0], nodes_[0].centre[1][0], nodes_[0].centre[2][0]};
+    const auto axis = [&](int k) { return static_cast<double>(nodes_[0].centre[k][0]); };
+    return {axis(0), axis(1), axis(2)};
   }
-  [[nodiscard]] double radius() const noexcept { return nodes_[0].radius[0]; }
+  /// Returns that sphere's radius [m]. @pre !empty(). Real-time.
+  [[nodiscard]] double radius() const noexcept { return static_cast<double>(nodes_[0].radius[0]); }
   /// Returns the distance of the farthest vertex from the segment's origin [m].
   [[nodiscard]] double extent() const noexcept { return extent_; }
 

@@ -17,6 +17,7 @@ struct SlidingContact {
   Vec3 p_W = Vec3::Zero();        ///< the same in W, at the pose of the last solution [m]
   Vec3 normal = Vec3::UnitZ();    ///< unit vector from the object to the segment at closest approach, in W
   std::array<Vec3, 2> tangent{};  ///< unit vectors that complete the normal to a right-handed frame, in W
+  double friction = 0.0;          ///< Coulomb coefficient mu [-]
   double gap = 0.0;               ///< distance of segment and object at that pose [m]
   /// Depths whose forces the law gives: along the normal (>= 0), and friction's along both tangents [m].
   /// Friction is within the cone |depth_t| <= mu depth_n.
@@ -24,10 +25,13 @@ struct SlidingContact {
   double spin_depth = 0.0;  ///< the same about the normal: moment per stiffness [m^2]
   /// Multipliers of the contact problem: normal, tangents [1/m], spin [-].
   std::array<double, 4> multiplier{};
-  Vec3 anchor = Vec3::Zero();  ///< displacement along the surface since the contact last slipped, in W [m]
-  double turned = 0.0;         ///< rotation about the normal while spin is held [rad]
-  bool slips = false;          ///< friction along the surface is at its bound
-  bool spins = true;           ///< friction about the normal is at its bound
+  /// Displacement along the surface that friction springs back from, in W [m]: while it holds, the way since the
+  /// contact began or last slipped; while it slips, the spring's length at the bound.
+  Vec3 anchor = Vec3::Zero();
+  double tangent_compliance = 0.0;  ///< of friction that holds: displacement per multiplier [m^2]
+  double turned = 0.0;              ///< rotation about the normal while spin is held [rad]
+  bool slips = false;               ///< friction along the surface is at its bound
+  bool spins = true;                ///< friction about the normal is at its bound
 
   [[nodiscard]] bool presses() const noexcept { return depth[0] > 0.0; }
   /// Returns the sum of the depths along normal and tangents, in W [m].

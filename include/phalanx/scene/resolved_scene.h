@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "phalanx/contact/object_model.h"
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/device/motion.h"
 #include "phalanx/mesh/triangle_mesh.h"
@@ -29,6 +31,7 @@ struct ResolvedScene {
   LoadedHand hand;                         ///< as much of it as ResolveOptions::hand asks for
   Pose X_WH;                               ///< pose of the palm, mirrored if the scene is
   TriangleMesh world;                      ///< mesh of all objects, as make_world_mesh() [m]
+  std::vector<ObjectFriction> friction;    ///< of the objects in it
   std::optional<Exoskeleton> exoskeleton;  ///< with ResolveOptions::device, as `patient`
   std::optional<PatientParameters> patient;
   std::optional<Motion> motion;  ///< with ResolveOptions::motion

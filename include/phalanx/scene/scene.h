@@ -50,6 +50,7 @@ struct ObjectDescription {
   double ring_diameter = 0.08;  ///< torus: of the tube's centre line [m]
   double tube_diameter = 0.02;  ///< torus [m]
   Vec3 extent = Vec3::Constant(0.05);  ///< box, putty_bar: full edge lengths [m]
+  std::optional<double> friction;      ///< Coulomb coefficient [-]; empty: contact.friction
   int triangles = 1000;                ///< approximate number for objects that the program makes
   Pose pose;                           ///< X_WO
 };

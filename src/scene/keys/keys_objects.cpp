@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "phalanx/force/parameter_ranges.h"
 #include "phalanx/mesh/length_units.h"
 #include "scene/keys/key_rows.h"
 #include "scene/object_kinds.h"
@@ -59,6 +60,9 @@ void add_object_keys(std::vector<SceneKey>& keys) {
                       [](T t, V v) { t.object.extent = v.vector * kMm; });
   other_object.integer("objects[].triangles", between(8, 2000000), 1000, "approximate number of triangles",
                        [](T t, V v) { t.object.triangles = static_cast<int>(v.integer); });
+  other_object.number("objects[].friction", "", ranges::kFriction, std::nullopt,
+                      "sliding: Coulomb friction coefficient of this object; not stated: contact.friction",
+                      [](T t, V v) { t.object.friction = v.number; });
   other_object.vector("objects[].position_mm", "mm", between(-10000, 10000), 0,
                       "the object's centre in the world", [](T t, V v) { t.object.pose.p = v.vector * kMm; });
   other_object.vector("objects[].rotation_deg", "deg", between(-360, 360), 0,

@@ -39,10 +39,12 @@ inline std::optional<DigitAngles> solve_with_siconos(const ContactProblem& probl
   std::vector<double> mu;
   for (int i = 0; i < rows; ++i) {
     const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i / 3)];
-    q[static_cast<std::size_t>(i)] = kScale * (dot(row(i), problem.free) + (i % 3 == 0 ? contact.room : 0.0));
+    const double offset = i % 3 == 0 ? contact.room : contact.anchor[static_cast<std::size_t>(i % 3 - 1)];
+    q[static_cast<std::size_t>(i)] = kScale * (dot(row(i), problem.free) + offset);
     if (i % 3 == 0) mu.push_back(contact.friction);
     for (int j = 0; j < rows; ++j)
       W[static_cast<std::size_t>(i + rows * j)] = kScale * kScale * dot(row(i), row(j));
+    if (i % 3 != 0) W[static_cast<std::size_t>(i + rows * i)] += kScale * kScale * contact.tangent_compliance;
   }
   std::vector<double> reaction(q.size());
   std::vector<double> velocity(q.size());
