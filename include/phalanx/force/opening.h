@@ -21,7 +21,8 @@ struct DigitOpening {
   OpeningPhase phase = OpeningPhase::kNone;
   /// Greatest distance of a contact's point between the measured and the shown digit, while there is a contact [m].
   double way = 0.0;
-  double force = 0.0;  ///< upper bound of each of the digit's forces and of their sum; 0 unless kConfirmed [N]
+  double force =
+      0.0;  ///< upper bound of each of the digit's forces and of their sum; 0 unless kConfirmed [N]
 };
 
 /// State machine of one digit's opening. In phase kConfirmed the bound of the force is kForceRate times the tick's
@@ -34,7 +35,7 @@ class OpeningState {
   static constexpr double kForceRate = 1.0;         ///< [N/s]
   static constexpr double kPatience = 3.0;          ///< [s]
   static constexpr double kLeastProgress = 1.0e-3;  ///< [m]
-  static constexpr double kSameWay = 5.0e-3;        ///< change of the way that a confirmation still covers [m]
+  static constexpr double kSameWay = 5.0e-3;  ///< change of the way that a confirmation still covers [m]
 
   /// Advances by one tick.
   /// @param inside  the digit started inside and has not been clear since
