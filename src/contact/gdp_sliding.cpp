@@ -158,7 +158,7 @@ class Substep {
     for (int i = 0; i < last.count; ++i) {
       const SlidingContact& before = last.contact[idx(i)];
       if (taken[idx(i)] || before.k != k || before.normal.dot(contact.normal) < kCos30Deg) continue;
-      const bool same = before.triangle == place.triangle && before.slot == place.slot;
+      const bool same = place.triangle >= 0 && before.triangle == place.triangle && before.slot == place.slot;
       const double apart = same ? -1.0 : (before.p_S - contact.p_S).squaredNorm();
       if (apart < nearest) {
         nearest = apart;
@@ -323,6 +323,7 @@ class Substep {
       const Vec3 before = contact.p_W;
       contact.p_W = tick_.pose.segment[idx(contact.k)] * contact.p_S;
       contact.gap += contact.normal.dot(contact.p_W - before);
+      if (contact.multiplier[0] > 0.0) contact.anchor += along_surface(contact.p_W - before, contact.normal);
     }
   }
 
@@ -345,8 +346,7 @@ class Substep {
     return first_contact(model_, path, 0.0, evaluations_, tick_, state_);
   }
 
-  /// Moves the anchors with the digit: of a contact that holds by its motion, of one that slips to the length of the
-  /// spring at its bound.
+  /// Moves the anchors with the digit. That of a contact that slips is at most as long as its spring at the bound.
   void follow_anchors(const DigitAngles& from) noexcept {
     for (int c = 0; c < contacts_.count; ++c) {
       SlidingContact& contact = contacts_.contact[idx(c)];
@@ -359,13 +359,14 @@ class Substep {
           contact.turned += contact.normal.dot(J.angular[i]) * (tick_.angle[i] - from[i]);
       }
       if (!presses) continue;
-      if (contact.slips) {
-        contact.anchor = -contact.tangent_compliance * (contact.multiplier[1] * contact.tangent[0] +
-                                                        contact.multiplier[2] * contact.tangent[1]);
-      } else {
-        const Vec3 now = tick_.pose.segment[idx(contact.k)] * contact.p_S;
-        contact.anchor += along_surface(now - contact.p_W, contact.normal);
-      }
+      const Vec3 now = tick_.pose.segment[idx(contact.k)] * contact.p_S;
+      contact.anchor += along_surface(now - contact.p_W, contact.normal);
+      if (!contact.slips) continue;
+      // Not the bound itself: the motion may have been stopped on its way.
+      const double longest =
+          contact.tangent_compliance * std::hypot(contact.multiplier[1], contact.multiplier[2]);
+      const double length = contact.anchor.norm();
+      if (length > longest) contact.anchor *= longest / length;
     }
     for (int c = 0; c < contacts_.count; ++c) {
       SlidingContact& contact = contacts_.contact[idx(c)];

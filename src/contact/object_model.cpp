@@ -49,6 +49,10 @@ ObjectModel::ObjectModel(TriangleMesh mesh, double crease_angle, std::vector<Obj
       throw std::invalid_argument("object: a coefficient of friction is " +
                                   std::to_string(*object.coefficient) + "; it is 0 to 2");
   }
+  if (!std::is_sorted(friction.begin(), friction.end(), [](const ObjectFriction& a, const ObjectFriction& b) {
+        return a.first_triangle < b.first_triangle;
+      }))
+    throw std::invalid_argument("object: the objects' frictions are not in the order of their triangles");
   auto parts = std::make_shared<Parts>();
   parts->friction = std::move(friction);
   parts->mesh = checked(std::move(mesh));

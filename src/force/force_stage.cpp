@@ -66,7 +66,8 @@ void advance_opening(const GdpState& contacts, int digit, double period, ForceSt
   Vec3 sum = Vec3::Zero();
   for (int k = 0; k < kSegmentsPerDigit; ++k) {
     const ContactRecord& record = contacts.record[idx(segment_index(digit, k))];
-    if (record.active) way = std::max(way.value_or(0.0), (record.p_gdp - record.p_hcp).norm());
+    const double apart = (record.p_gdp - record.p_hcp).norm();
+    if (record.active && std::isfinite(apart)) way = std::max(way.value_or(0.0), apart);
     const SegmentForce& force = force_of(state, digit, k);
     sent = std::max(sent, force.sent);
     sum += force.sent * force.normal;

@@ -150,11 +150,14 @@ class Run {
     }
   }
 
+  static constexpr double kReadWithin = 1.0;  ///< a line that is younger has not been read [s]
+
   /// A digit's way out as the user at the terminal was told of it.
   struct ToldOpening {
     OpeningPhase phase = OpeningPhase::kNone;
     double way = 0.0;           ///< [m]
     std::uint64_t running = 0;  ///< StationView::running
+    double time = 0.0;          ///< of the line [s]
   };
 
   /// Reports digits that started inside the object, and what came of their opening. What waits for a confirmation is
@@ -170,7 +173,7 @@ class Run {
           opening.phase == OpeningPhase::kUnconfirmed || opening.phase == OpeningPhase::kNotFollowed;
       if (opening.phase == told.phase && (!waits || now.running == told.running)) continue;
       const bool was_inside = told.phase != OpeningPhase::kNone;
-      told = {.phase = opening.phase, .way = opening.way, .running = now.running};
+      told = {.phase = opening.phase, .way = opening.way, .running = now.running, .time = clock_.now()};
       const std::string_view name = digit_name(digit);
       if (waits && !session_->info()->device.renders_torque) {
         console_.say(fmt::format("{} started inside the object and has no force until it has left it", name),
@@ -201,11 +204,18 @@ class Run {
           fmt::format("'{}' is no digit; type open thumb, index, middle, ring or little", name));
     ToldOpening& told = openings_[static_cast<std::size_t>(digit)];
     const double way = session_->view().snapshot.opening[static_cast<std::size_t>(digit)].way;
-    if (told.phase != OpeningPhase::kNone && std::abs(way - told.way) > OpeningState::kSameWay) {
-      const double before = std::exchange(told.way, way);
-      throw std::invalid_argument(fmt::format(
-          "the way of {} was {:.0f} mm and is {:.0f} mm now; if that is meant, type open {} again", name,
-          1e3 * before, 1e3 * way, name));
+    if (told.phase != OpeningPhase::kNone) {
+      // A line may have been typed before the way was told, or be the second of two.
+      if (clock_.now() - told.time < kReadWithin)
+        throw std::invalid_argument(
+            fmt::format("the way of {} has just been told; read it, then type open {} again", name, name));
+      if (std::abs(way - told.way) > OpeningState::kSameWay) {
+        const double before = told.way;
+        told = {};  // it is told again
+        throw std::invalid_argument(fmt::format(
+            "the way of {} was {:.0f} mm and is {:.0f} mm now; wait for its line, then type open {} again",
+            name, 1e3 * before, 1e3 * way, name));
+      }
     }
     session_->open_digit(digit, told.way, told.running);
     tell_typed("opened", fmt::format("asked to open the digit {}, {:.0f} mm", name, 1e3 * told.way));
