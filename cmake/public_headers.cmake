@@ -18,6 +18,7 @@ set(PHALANX_PUBLIC_HEADERS # of phalanx::phalanx
     force/force_parameters.h
     force/haptic_parameters.h
     force/local_wall.h
+    force/opening.h
     force/oscillation.h
     force/stabiliser.h
     step/haptic_step.h

@@ -12,15 +12,15 @@ const joined = new Intl.ListFormat(strings.locale);
 
 /// The sentences about these digits; empty: all digits feel.
 export function openingsText(openings: readonly Opening[]): string {
-  const sentence = (phase: Opening_Phase, text: { one: (digit: string) => string; several: (digits: string) => string }) => {
+  const sentence = (phase: Opening_Phase, one: (digit: string) => string, several: (digits: string) => string) => {
     const names = openings.filter((opening) => opening.phase === phase).flatMap((opening) => words.digits[opening.digit] ?? []);
     if (names.length === 0) return [];
-    return [(names.length === 1 ? text.one : text.several)(joined.format(names))];
+    return [(names.length === 1 ? one : several)(joined.format(names))];
   };
   return [
-    ...sentence(Opening_Phase.CONFIRMED, words.confirmed),
-    ...sentence(Opening_Phase.NOT_FOLLOWED, words.notFollowed),
-    ...sentence(Opening_Phase.UNCONFIRMED, words.unconfirmed),
+    ...sentence(Opening_Phase.CONFIRMED, words.confirmed.one, words.confirmed.several),
+    ...sentence(Opening_Phase.NOT_FOLLOWED, words.notFollowed.one, words.notFollowed.several),
+    ...sentence(Opening_Phase.UNCONFIRMED, words.unconfirmed.one, words.unconfirmed.several),
   ].join(" ");
 }
 
