@@ -323,7 +323,6 @@ class Substep {
       const Vec3 before = contact.p_W;
       contact.p_W = tick_.pose.segment[idx(contact.k)] * contact.p_S;
       contact.gap += contact.normal.dot(contact.p_W - before);
-      if (contact.multiplier[0] > 0.0) contact.anchor += along_surface(contact.p_W - before, contact.normal);
     }
   }
 
