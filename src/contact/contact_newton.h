@@ -60,8 +60,8 @@ using HeldJoints = std::array<Held, kJointsPerDigit>;
 /// joints of `held` fixed at their bounds. The law is made a function of the displacement by small compliances
 /// e, whose offsets q an augmented Lagrangian moves until nothing of them is left:
 ///   p_n = max(0, q_n - (row_n . x + room) / e),   p_t = q_t - (row_t . x + anchor) / e, within its disc
-/// A soft contact's normal, tangents with a compliance, and spin have the compliance of the problem, and no offset. Newton's method solves
-/// x = free + sum row^T p(x), four equations whatever the number of contacts is. Not every problem is solved:
+/// Rows with a compliance of their own (soft normals, tangents, spin) keep it, and have no offset. Newton's method
+/// solves x = free + sum row^T p(x), four equations whatever the number of contacts is. Not every problem is solved:
 /// the multipliers with the least residual stay, those at the start included.
 /// @param tolerance  ends at this residual [m]
 /// @param budget     greatest number of Newton's steps, lowered by those taken

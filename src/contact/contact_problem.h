@@ -24,7 +24,7 @@ struct ProblemContact {
   double room = 0.0;
   /// Of a contact without friction: the normal row gives way by softness |row_n|^2 p_n [-].
   double softness = 0.0;
-  /// Displacement along the tangents that friction aims at, negated [m]: 0 keeps the point where it is.
+  /// Displacement along the tangents that friction springs back from [m].
   std::array<double, 2> anchor{};
   /// Compliance of friction that holds: the tangents give way by it times their multipliers [m^2].
   double tangent_compliance = 0.0;

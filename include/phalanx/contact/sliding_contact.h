@@ -25,8 +25,8 @@ struct SlidingContact {
   double spin_depth = 0.0;  ///< the same about the normal: moment per stiffness [m^2]
   /// Multipliers of the contact problem: normal, tangents [1/m], spin [-].
   std::array<double, 4> multiplier{};
-  /// Displacement along the surface that friction springs back from, in W [m]: while it holds, the way since the
-  /// contact began or last slipped; while it slips, the spring's length at the bound.
+  /// Length of friction's spring along the surface, in W [m]: it grows with the motion of the contact point, and is
+  /// at most that of the bound while the contact slips.
   Vec3 anchor = Vec3::Zero();
   double tangent_compliance = 0.0;  ///< of friction that holds: displacement per multiplier [m^2]
   double turned = 0.0;              ///< rotation about the normal while spin is held [rad]

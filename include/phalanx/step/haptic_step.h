@@ -55,7 +55,7 @@ class HapticState {
 
   /// Lets the next steps open a digit that started inside the object: OpeningState. For the caller who has shown
   /// a person which digit it is, its way and where to, and got a confirmation.
-  /// @returns false, with no effect, unless the digit has no force for this reason. Real-time.
+  /// @returns false, with no effect, unless the digit has no force for this reason and has a contact. Real-time.
   bool confirm_opening(int digit) noexcept;
   /// Takes all confirmations back: the digits have no force from the next step on. Real-time.
   void withdraw_openings() noexcept;

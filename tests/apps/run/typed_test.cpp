@@ -27,14 +27,19 @@ std::vector<nlohmann::json> changes_in(const testing::TemporaryFolder& folder) {
   return changes;
 }
 
-TEST(Typed, EveryCommandIsLoggedAsTheTerminals) {
-  const testing::TemporaryFolder folder;
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && printf 'stop\\nnonsense\\nresume\\nreset\\nquit\\n' | "
+/// Runs the station with lines typed at its terminal. @returns the shell's exit status
+int run_with(const testing::TemporaryFolder& folder, const std::string& lines) {
+  const std::string command = "cd '" + folder.path().string() + "' && printf '" + lines +
+                              "' | "
                               "PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM
                               "' run --device sliders --port 0 --no-realtime --quiet --slow-motion 4 "
                               "--audit changes.jsonl >out 2>err";
-  ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c): the shell is the user's side here
+  return std::system(command.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
+}
+
+TEST(Typed, EveryCommandIsLoggedAsTheTerminals) {
+  const testing::TemporaryFolder folder;
+  ASSERT_EQ(run_with(folder, "stop\\nnonsense\\nresume\\nreset\\nquit\\n"), 0)
       << testing::read_file(folder / "err");
   std::vector<std::pair<std::string, std::string>> told;
   for (const nlohmann::json& change : changes_in(folder)) {
@@ -47,13 +52,7 @@ TEST(Typed, EveryCommandIsLoggedAsTheTerminals) {
 
 TEST(Typed, AnOpeningOfADigitThatNeedsNoneIsRefusedWithTheReason) {
   const testing::TemporaryFolder folder;
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && printf 'open finger\nopen index\nquit\n' | "
-                              "PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM
-                              "' run --device sliders --port 0 --no-realtime --quiet --slow-motion 4 "
-                              "--audit changes.jsonl >out 2>err";
-  ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c)
-      << testing::read_file(folder / "err");
+  ASSERT_EQ(run_with(folder, "open finger\\nopen index\\nquit\\n"), 0) << testing::read_file(folder / "err");
   const std::string err = testing::read_file(folder / "err");
   EXPECT_THAT(err, HasSubstr("'finger' is no digit; type open thumb, index, middle, ring or little"));
   EXPECT_THAT(err, HasSubstr("index: ")) << "forces are not on yet, or nothing is inside";

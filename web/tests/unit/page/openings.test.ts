@@ -85,7 +85,7 @@ it("nothing is asked of the station before the person has read which digit and h
   expect(page.fake.opened).toEqual([]);
   const choices = [...page.dialog()!.querySelectorAll<HTMLButtonElement>(".opening-choices button")];
   expect(choices.map((choice) => choice.textContent)).toEqual([words.choice("index finger", "14"), words.choice("little finger", "2")]);
-  expect(document.activeElement?.textContent).toBe(strings.role.cancel); // Enter twice pushes nobody
+  expect(document.activeElement?.textContent).toBe(strings.role.cancel); // a second Enter confirms nothing
   page.tick([{ digit: 1, way: 0.03, running: 8n }]);
   page.fake.refuse = "index: forces have been off since you looked; look, then confirm again";
   choices[0]!.click();
