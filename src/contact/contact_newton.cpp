@@ -11,11 +11,15 @@
 namespace phalanx {
 namespace {
 
-using JointMatrix = std::array<DigitAngles, kJointsPerDigit>;
+/// Displacements of the joints [rad], then those of the springs of the segments that have contacts, three for each,
+/// times 1 / sqrt(C) [rad].
+constexpr std::size_t kMostUnknowns = kJointsPerDigit + 3 * kSegmentsPerDigit;
+using Unknowns = std::array<double, kMostUnknowns>;
+constexpr std::size_t kColumns = kJointsPerDigit + 3;  // of one contact: the joints and its segment's spring
+using UnknownsMatrix = std::array<Unknowns, kMostUnknowns>;
 
-/// Solves A x = b by elimination with row pivots. @returns false if A is singular
-bool solve_linear(JointMatrix A, DigitAngles b, DigitAngles& x) noexcept {
-  constexpr std::size_t n = kJointsPerDigit;
+/// Solves A x = b of n unknowns by elimination with row pivots. @returns false if A is singular
+bool solve_linear(UnknownsMatrix& A, Unknowns b, std::size_t n, Unknowns& x) noexcept {
   for (std::size_t c = 0; c < n; ++c) {
     std::size_t pivot = c;
     for (std::size_t r = c + 1; r < n; ++r)
@@ -78,7 +82,7 @@ struct RegularisedLaw {
   bool slips = false;
   bool spins = true;
 
-  /// @param u       displacements of the rows, with room and anchors
+  /// @param u       displacements of the rows, with room, spring and anchor
   /// @param offset  multipliers at which the compliances are at rest
   RegularisedLaw(const ProblemContact& contact, const RowCompliance& e, const ContactRows& u,
                  const ContactRows& offset) noexcept {
@@ -132,14 +136,44 @@ class Newton {
   static constexpr double kStiff = 1e-5;  // after the soft rounds
 
   Newton(ContactProblem& problem, const HeldJoints& held) noexcept
-      : problem_(problem), held_(held), count_(static_cast<std::size_t>(problem.count)) {
+      : problem_(problem),
+        held_(held),
+        count_(static_cast<std::size_t>(problem.count)),
+        root_(std::sqrt(problem.spring_compliance)) {
+    std::array<std::size_t, kSegmentsPerDigit> spring{};  // where its unknowns begin
+    for (std::size_t i = 0; i < count_; ++i) {
+      const ProblemContact& contact = problem.contact[i];
+      for (std::size_t r = 0; r < kContactRows; ++r)
+        std::copy(contact.row[r].begin(), contact.row[r].end(), row_[i][r].begin());
+      columns_[i] = kJointsPerDigit;
+      if (!(root_ > 0.0)) continue;
+      std::size_t& begin = spring[idx(contact.segment)];
+      if (begin == 0) {
+        begin = unknowns_;
+        unknowns_ += 3;
+      }
+      spring_[i] = begin;
+      columns_[i] = kColumns;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t t = 0; t < 2; ++t)
+          row_[i][kTangentRow + t][kJointsPerDigit + axis] =
+              root_ * contact.tangent[t][static_cast<Eigen::Index>(axis)];
+      }
+    }
     restart();
   }
 
   /// Goes back to the multipliers of the problem.
   void restart() noexcept {
-    for (std::size_t i = 0; i < count_; ++i) offset_[i] = problem_.contact[i].multiplier;
-    x_ = displacement_of(problem_, held_);
+    const DigitAngles x = displacement_of(problem_, held_);
+    x_ = {};
+    std::copy(x.begin(), x.end(), x_.begin());
+    for (std::size_t i = 0; i < count_; ++i) {
+      const ProblemContact& contact = problem_.contact[i];
+      offset_[i] = contact.multiplier;
+      for (std::size_t c = kJointsPerDigit; c < columns_[i]; ++c)
+        x_[unknown(i, c)] += row_[i][1][c] * contact.multiplier[1] + row_[i][2][c] * contact.multiplier[2];
+    }
   }
 
   void set_compliance(double share) noexcept {
@@ -157,20 +191,25 @@ class Newton {
   /// Solves for the displacement, and moves the offsets to the multipliers, which it stores in the problem.
   /// @param budget  steps that are left; lowered by those taken
   void round(int& budget) noexcept {
-    DigitAngles F{};
+    Unknowns F{};
     double size = evaluate(x_, F);
     bool still = false;
     for (int step = 0; step < kSteps && budget > 0 && size > 0.0 && !still; ++step, --budget) {
-      DigitAngles change{};
-      if (!solve_linear(slopes(), F, change)) break;
+      Unknowns change{};
+      UnknownsMatrix K = slopes();
+      if (!solve_linear(K, F, unknowns_, change)) break;
       double greatest = 0.0;
-      for (const double c : change) greatest = std::max(greatest, std::abs(c));
-      if (!(greatest <= kLongest)) {  // also not a number: the law has no slope there
-        if (!std::isfinite(greatest)) break;
-        for (double& c : change) c *= kLongest / greatest;
+      double of_joints = 0.0;
+      for (std::size_t j = 0; j < unknowns_; ++j) {
+        if (!(std::abs(change[j]) <= greatest)) greatest = std::abs(change[j]);
+        if (j < kJointsPerDigit) of_joints = std::max(of_joints, std::abs(change[j]));
+      }
+      if (!std::isfinite(greatest)) break;  // the law has no slope there
+      if (of_joints > kLongest) {
+        for (double& c : change) c *= kLongest / of_joints;
       }
       still = greatest <= kStill;
-      DigitAngles next{};
+      Unknowns next{};
       double next_size = 2.0 * size;
       double along = 1.0;
       for (int halving = 0; halving <= kHalvings && !(next_size < size); ++halving, along *= 0.5) {
@@ -197,25 +236,40 @@ class Newton {
   static constexpr int kSteps = 8;         // of Newton's method in a round
   static constexpr int kHalvings = 5;      // of a step that does not improve
   static constexpr double kStill = 1e-13;  // step that is the last [rad]
-  static constexpr double kLongest = 0.5;  // step [rad]
+  static constexpr double kLongest = 0.5;  // step of a joint [rad]
   static constexpr std::size_t kMost = ContactProblem::kMostContacts;
 
-  [[nodiscard]] bool is_free(std::size_t joint) const noexcept { return held_[joint] == Held::kNo; }
+  /// Returns the unknown that column c of contact i's rows moves.
+  [[nodiscard]] std::size_t unknown(std::size_t i, std::size_t c) const noexcept {
+    return c < kJointsPerDigit ? c : spring_[i] + (c - kJointsPerDigit);
+  }
 
-  [[nodiscard]] DigitAngles less(const DigitAngles& change, double along) const noexcept {
-    DigitAngles x = x_;
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] -= along * change[j];
+  /// @returns true for a joint that is not held, and for a spring
+  [[nodiscard]] bool is_free(std::size_t unknown) const noexcept {
+    return unknown >= held_.size() || held_[unknown] == Held::kNo;
+  }
+
+  [[nodiscard]] Unknowns less(const Unknowns& change, double along) const noexcept {
+    Unknowns x = x_;
+    for (std::size_t j = 0; j < unknowns_; ++j) x[j] -= along * change[j];
     return x;
   }
 
-  /// Sets F = x - free - sum row^T p(x) for the joints that are free. @returns |F|^2 [rad^2]
-  double evaluate(const DigitAngles& x, DigitAngles& F) noexcept {
-    for (std::size_t j = 0; j < x.size(); ++j) F[j] = is_free(j) ? x[j] - problem_.free[j] : 0.0;
+  /// Sets F = x - free - sum row^T p(x) for what is free. @returns |F|^2 [rad^2]
+  double evaluate(const Unknowns& x, Unknowns& F) noexcept {
+    for (std::size_t j = 0; j < unknowns_; ++j) {
+      const double goal = j < problem_.free.size() ? problem_.free[j] : 0.0;
+      F[j] = is_free(j) ? x[j] - goal : 0.0;
+    }
     for (std::size_t i = 0; i < count_; ++i) {
       if (!(compliance_[i].normal > 0.0)) continue;
       const ProblemContact& contact = problem_.contact[i];
-      ContactRows u = {contact.room, contact.anchor[0], contact.anchor[1], contact.spin_anchor};
-      for (std::size_t r = 0; r < kContactRows; ++r) u[r] += dot(contact.row[r], x);
+      const Vec3& elongation = problem_.elongation[idx(contact.segment)];
+      ContactRows u = {contact.room, contact.tangent[0].dot(elongation), contact.tangent[1].dot(elongation),
+                       contact.spin_anchor};
+      for (std::size_t r = 0; r < kContactRows; ++r) {
+        for (std::size_t c = 0; c < columns_[i]; ++c) u[r] += row_[i][r][c] * x[unknown(i, c)];
+      }
       ContactRows offset = offset_[i];
       // Compliances that are part of the problem are at rest without a force.
       if (contact.softness > 0.0) offset[kNormalRow] = 0.0;
@@ -225,33 +279,37 @@ class Newton {
       slope_[i] = law.slope;
       slips_[i] = law.slips;
       spins_[i] = law.spins;
-      for (std::size_t j = 0; j < x.size(); ++j) {
+      for (std::size_t c = 0; c < columns_[i]; ++c) {
+        const std::size_t j = unknown(i, c);
         if (!is_free(j)) continue;
-        for (std::size_t r = 0; r < kContactRows; ++r) F[j] -= contact.row[r][j] * law.multiplier[r];
+        for (std::size_t r = 0; r < kContactRows; ++r) F[j] -= row_[i][r][c] * law.multiplier[r];
       }
     }
-    return dot(F, F);
+    double squared = 0.0;
+    for (std::size_t j = 0; j < unknowns_; ++j) squared += F[j] * F[j];
+    return squared;
   }
 
   /// Returns dF/dx where it was evaluated last.
-  [[nodiscard]] JointMatrix slopes() const noexcept {
-    JointMatrix K{};
-    for (std::size_t j = 0; j < K.size(); ++j) K[j][j] = 1.0;
+  [[nodiscard]] UnknownsMatrix slopes() const noexcept {
+    UnknownsMatrix K{};
+    for (std::size_t j = 0; j < unknowns_; ++j) K[j][j] = 1.0;
     for (std::size_t i = 0; i < count_; ++i) {
       if (!(multiplier_[i][kNormalRow] > 0.0)) continue;
-      const auto& row = problem_.contact[i].row;
+      const auto& row = row_[i];
       const LawSlopes& s = slope_[i];
-      for (std::size_t k = 0; k < K.size(); ++k) {
-        if (!is_free(k)) continue;
+      for (std::size_t k = 0; k < columns_[i]; ++k) {
+        if (!is_free(unknown(i, k))) continue;
         const double n = row[kNormalRow][k];
         const double gradient[kContactRows] = {
             s.normal * n,
             s.tangents[0] * row[1][k] + s.tangents[1] * row[2][k] + s.tangent_over_normal[0] * n,
             s.tangents[1] * row[1][k] + s.tangents[2] * row[2][k] + s.tangent_over_normal[1] * n,
             s.spin * row[kSpinRow][k] + s.spin_over_normal * n};
-        for (std::size_t j = 0; j < K.size(); ++j) {
-          if (!is_free(j)) continue;
-          for (std::size_t r = 0; r < kContactRows; ++r) K[j][k] += row[r][j] * gradient[r];
+        for (std::size_t j = 0; j < columns_[i]; ++j) {
+          if (!is_free(unknown(i, j))) continue;
+          double& slope = K[unknown(i, j)][unknown(i, k)];
+          for (std::size_t r = 0; r < kContactRows; ++r) slope += row[r][j] * gradient[r];
         }
       }
     }
@@ -261,7 +319,14 @@ class Newton {
   ContactProblem& problem_;
   const HeldJoints& held_;
   std::size_t count_;
-  DigitAngles x_{};
+  double root_;  ///< of the springs' compliance [m]
+  std::size_t unknowns_ = kJointsPerDigit;
+  /// Rows of each contact over the joints and its own spring, the number of these, and where the spring's unknowns
+  /// begin.
+  std::array<std::array<std::array<double, kColumns>, kContactRows>, kMost> row_{};
+  std::array<std::size_t, kMost> columns_{};
+  std::array<std::size_t, kMost> spring_{};
+  Unknowns x_{};
   std::array<RowCompliance, kMost> compliance_{};
   std::array<ContactRows, kMost> offset_{};
   std::array<ContactRows, kMost> multiplier_{};
@@ -286,6 +351,7 @@ double contact_residual(const ContactProblem& problem, const HeldJoints& held) n
   const auto add = [&](double violated) {
     if (!(violated <= worst)) worst = std::isnan(violated) ? kInfinity : violated;
   };
+  const SegmentVectors friction = tangential_multipliers(problem);
   for (int i = 0; i < problem.count; ++i) {
     const ProblemContact& contact = problem.contact[idx(i)];
     const ContactRows& p = contact.multiplier;
@@ -298,8 +364,10 @@ double contact_residual(const ContactProblem& problem, const HeldJoints& held) n
 
     const double bound = contact.friction * std::min(p[kNormalRow], contact.most_friction_normal);
     const double stays = product.sliding - contact.tangent_compliance;
-    const double t1 = stays * p[1] - dot(contact.row[1], x) - contact.anchor[0];
-    const double t2 = stays * p[2] - dot(contact.row[2], x) - contact.anchor[1];
+    const Vec3 spring =
+        problem.elongation[idx(contact.segment)] + problem.spring_compliance * friction[idx(contact.segment)];
+    const double t1 = stays * p[1] - dot(contact.row[1], x) - contact.tangent[0].dot(spring);
+    const double t2 = stays * p[2] - dot(contact.row[2], x) - contact.tangent[1].dot(spring);
     const double size = length_of(t1, t2);
     const double share = size > product.sliding * bound ? product.sliding * bound / size : 1.0;
     add(length_of(product.sliding * p[1] - share * t1, product.sliding * p[2] - share * t2));

@@ -59,10 +59,11 @@ using HeldJoints = std::array<Held, kJointsPerDigit>;
 /// Brings the multipliers nearer to a solution, from those of an iteration that has not converged, with the
 /// joints of `held` fixed at their bounds. The law is made a function of the displacement by small compliances
 /// e, whose offsets q an augmented Lagrangian moves until nothing of them is left:
-///   p_n = max(0, q_n - (row_n . x + room) / e),   p_t = q_t - (row_t . x + anchor) / e, within its disc
+///   p_n = max(0, q_n - (row_n . x + room) / e),   p_t = q_t - (row_t . x + t . spring) / e, within its disc
 /// Rows with a compliance of their own (soft normals, tangents, spin) keep it, and have no offset. Newton's method
-/// solves x = free + sum row^T p(x), four equations whatever the number of contacts is. Not every problem is solved:
-/// the multipliers with the least residual stay, those at the start included.
+/// solves x = free + sum row^T p(x), four equations whatever the number of contacts is, and three for the spring of
+/// each segment that has contacts: springs are joints without a goal, whose rows are sqrt(C) t. Not every problem is
+/// solved: the multipliers with the least residual stay, those at the start included.
 /// @param tolerance  ends at this residual [m]
 /// @param budget     greatest number of Newton's steps, lowered by those taken
 /// @returns the residual of the multipliers that stay [m]

@@ -128,13 +128,13 @@ struct Rows {
 struct Block {
   Rows alone;
   Rows with_spin;
-  Square A{};         ///< products of normal and tangents, without the tangents' compliance
+  Square A{};         ///< products of normal and tangents, without compliances
   Triple beside{};    ///< products of the spin row with normal and tangents
   double spin = 0.0;  ///< product of the spin row with itself, and a little more; 0: not solved
   bool used = false;  ///< the joints can move the contact along its normal
 };
 
-Block block_of(const ProblemContact& contact) noexcept {
+Block block_of(const ProblemContact& contact, double spring_compliance) noexcept {
   Block block;
   Square A{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -142,8 +142,8 @@ Block block_of(const ProblemContact& contact) noexcept {
     block.beside[i] = dot(contact.row[i], contact.row[kSpinRow]);
   }
   block.A = A;
-  A[1][1] += contact.tangent_compliance;
-  A[2][2] += contact.tangent_compliance;
+  A[1][1] += contact.tangent_compliance + spring_compliance;
+  A[2][2] += contact.tangent_compliance + spring_compliance;
   block.used = A[0][0] > kLeastArm * kLeastArm;
   if (!block.used) return block;
   block.alone = Rows::of(A);
@@ -293,7 +293,7 @@ class SlipDirection {
 };
 
 /// Solves normal and tangents of one contact.
-/// @param c       displacements of the rows without this contact, with room and anchor [m]
+/// @param c       displacements of the rows without this contact, with room and spring [m]
 /// @param before  multipliers of the last iteration, from which the slip direction is taken
 /// @param slips   set to true if friction is at its bound
 Triple solve_rows(const Rows& rows, const ProblemContact& contact, const Triple& c, const Triple& before,
@@ -346,7 +346,7 @@ Triple solve_rows(const Rows& rows, const ProblemContact& contact, const Triple&
 }
 
 /// Solves one contact.
-/// @param c  displacements of all rows without this contact, with room and anchor
+/// @param c  displacements of all rows without this contact, with room, spring and anchor
 ContactRows solve_block(const Block& block, const ContactRows& c, ProblemContact& contact) noexcept {
   const Triple before = {contact.multiplier[0], contact.multiplier[1], contact.multiplier[2]};
   const auto with = [&](double spin) {
@@ -398,6 +398,7 @@ void open_contacts(ContactProblem& problem, const HeldJoints& held, double toler
       const double closes = dot(contact.row[kNormalRow], problem.displacement) + contact.room;
       const double step = std::max(-added[i], -closes / ((1.0 + contact.softness) * A));
       added[i] += step;
+      if (!(contact.multiplier[kNormalRow] > 0.0)) contact.slips = true;  // it has no friction
       contact.multiplier[kNormalRow] += step;
       add(problem.displacement, moves, step);
       change = std::max(change, std::abs(step) * A);
@@ -412,6 +413,7 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
                     int& newton_budget) noexcept {
   const auto count = static_cast<std::size_t>(problem.count);
   DigitAngles& x = problem.displacement;
+  SegmentVectors friction = tangential_multipliers(problem);
   std::array<Block, ContactProblem::kMostContacts> block;
   std::array<ProblemContact, ContactProblem::kMostContacts> contact;
   for (std::size_t j = 0; j < x.size(); ++j)
@@ -419,8 +421,11 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
   for (std::size_t i = 0; i < count; ++i) {
     contact[i] = problem.contact[i];
     for (DigitAngles& row : contact[i].row) row = free_part(row, held);
-    block[i] = block_of(contact[i]);
-    if (!block[i].used) contact[i].multiplier = {};
+    block[i] = block_of(contact[i], problem.spring_compliance);
+    if (!block[i].used) {
+      friction[idx(contact[i].segment)] -= tangential_multiplier(contact[i]);
+      contact[i].multiplier = {};
+    }
     for (std::size_t r = 0; r < kContactRows; ++r) add(x, contact[i].row[r], contact[i].multiplier[r]);
   }
   double change = 2.0 * tolerance;
@@ -437,15 +442,22 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
       ContactRows c{};
       for (std::size_t r = 0; r < 3; ++r) c[r] = dot(full[r], x) - own[r] - beside[r] * before[kSpinRow];
       c[0] += at.room;
-      c[1] += at.anchor[0];
-      c[2] += at.anchor[1];
+      Vec3& pulls = friction[idx(at.segment)];
+      pulls -= tangential_multiplier(at);
+      const Vec3 spring = problem.elongation[idx(at.segment)] + problem.spring_compliance * pulls;
+      c[1] += at.tangent[0].dot(spring);
+      c[2] += at.tangent[1].dot(spring);
       c[kSpinRow] = at.spin_anchor + dot(full[kSpinRow], x) - beside[0] * before[0] - beside[1] * before[1] -
                     beside[2] * before[2] - dot(at.row[kSpinRow], at.row[kSpinRow]) * before[kSpinRow];
       at.multiplier = solve_block(block[i], c, at);
+      pulls += tangential_multiplier(at);
       for (std::size_t r = 0; r < kContactRows; ++r) {
         const double step = at.multiplier[r] - before[r];
         add(x, at.row[r], step);
-        const double scale = r < 3 ? block[i].A[r][r] : block[i].spin * kArm;
+        const double gives_way = r == kTangentRow || r == kSecondTangentRow
+                                     ? at.tangent_compliance + problem.spring_compliance
+                                     : 0.0;
+        const double scale = r < 3 ? block[i].A[r][r] + gives_way : block[i].spin * kArm;
         change = std::max(change, std::abs(step) * scale);
       }
     }
@@ -465,6 +477,13 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
 }
 
 }  // namespace
+
+SegmentVectors tangential_multipliers(const ContactProblem& problem) noexcept {
+  SegmentVectors sum{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (int i = 0; i < problem.count; ++i)
+    sum[idx(problem.contact[idx(i)].segment)] += tangential_multiplier(problem.contact[idx(i)]);
+  return sum;
+}
 
 void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
   // Joints at their limits are an active set, from the last solution on. After some rounds no joint is released

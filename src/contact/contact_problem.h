@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "phalanx/core/math.h"
 #include "phalanx/hand/joints.h"
 
 namespace phalanx {
@@ -14,6 +15,9 @@ namespace phalanx {
 enum ContactRow { kNormalRow, kTangentRow, kSecondTangentRow, kSpinRow };
 inline constexpr std::size_t kContactRows = 4;
 using ContactRows = std::array<double, kContactRows>;
+
+/// A vector in W for each segment of a digit.
+using SegmentVectors = std::array<Vec3, kSegmentsPerDigit>;
 
 /// One contact of the problem, and its solution.
 struct ProblemContact {
@@ -24,11 +28,12 @@ struct ProblemContact {
   double room = 0.0;
   /// Of a contact without friction: the normal row gives way by softness |row_n|^2 p_n [-].
   double softness = 0.0;
-  /// Displacement along the tangents that friction springs back from [m].
-  std::array<double, 2> anchor{};
-  /// Compliance of friction that holds: the tangents give way by it times their multipliers [m^2].
+  int segment = 0;                                          ///< of the digit, whose spring friction pulls at
+  std::array<Vec3, 2> tangent{Vec3::Zero(), Vec3::Zero()};  ///< directions of the tangents, in W
+  /// Compliance of this contact's friction alone: its tangents give way by it times their multipliers [m^2]. It has no
+  /// elongation that is kept: it damps what the contacts of a segment do against each other.
   double tangent_compliance = 0.0;
-  double spin_anchor = 0.0;  ///< the same for the rotation about the normal [rad]
+  double spin_anchor = 0.0;  ///< rotation about the normal that friction turns back [rad]
   double friction = 0.0;     ///< Coulomb coefficient mu [-], >= 0
   /// r_c: friction resists a rotation up to mu r_c times the normal multiplier [m].
   double spin_radius = 0.0;
@@ -43,8 +48,9 @@ struct ProblemContact {
 /// Contact problem of one digit. With the joints' displacement x and each contact's multipliers p:
 ///   x = free + sum row^T p                                          (quasi-static, massless, unit stiffness)
 ///   normal    0 <= row_n . x + room   complementary to   p_n >= 0
-///   tangent   s = row_t . x + anchor + compliance p_t = 0  if |p_t| <= mu min(p_n, most_friction_normal), else p_t
-///             is on that bound and opposes s
+///   tangent   s = row_t . x + t . (e + C P) + c p_t = 0  if |p_t| <= mu min(p_n, most_friction_normal), else p_t is
+///             on that bound and opposes s. P is the sum of t p_t over the contacts of the segment, e the
+///             spring's elongation, C its compliance, c the contact's own.
 ///   spin      row_s . x + anchor_s = -0.02 |row_s|^2 p_s  if |p_s| <= mu r_c min(p_n, most_friction_normal), else
 ///             p_s is on that bound and opposes it. The anchor takes the small rotation back.
 ///   limits    lowest <= x <= highest
@@ -57,12 +63,22 @@ struct ContactProblem {
   DigitAngles free{};  ///< displacement without contact [rad]
   DigitAngles lowest{};
   DigitAngles highest{};  ///< bounds of x, of both signs or zero [rad]
+  /// Elongation of each segment's spring, in W [m], and their compliance [m^2].
+  SegmentVectors elongation{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  double spring_compliance = 0.0;
   int count = 0;
   std::array<ProblemContact, kMostContacts> contact;
 
   DigitAngles limit{};         ///< solution: multipliers of the limits [rad]
   DigitAngles displacement{};  ///< solution: x [rad]
 };
+
+/// Returns the sum of the tangents' multipliers, in W [1/m]: of a contact, and of the contacts of each segment.
+[[nodiscard]] inline Vec3 tangential_multiplier(const ProblemContact& contact) noexcept {
+  return contact.multiplier[kTangentRow] * contact.tangent[0] +
+         contact.multiplier[kSecondTangentRow] * contact.tangent[1];
+}
+[[nodiscard]] SegmentVectors tangential_multipliers(const ContactProblem& problem) noexcept;
 
 /// Solves the problem by block Gauss-Seidel, a block for each contact. Where that has not converged for several
 /// contacts, Newton's method goes on (contact_newton.h). Contacts are in the order of `contact`.

@@ -20,6 +20,7 @@ constexpr double kAnchorGain = 0.2;   // share of the rotation since spin was he
 constexpr double kFrictionDepth = 40e-6;    // friction at zero depth counts this much [m]
 constexpr double kMostRecovery = 2e-6;      // way back to the working clearance in a substep [m]
 constexpr double kLeastRecovery = 1e-9;     // [m]
+constexpr double kRecoveryAlong = 2.0;      // springs follow it by at most this times its way off the surface
 constexpr double kRounding = 1e-12;         // [m]
 constexpr double kMostSlide = 1e-3;         // of a touching segment in a substep [m]
 constexpr double kTolerance = 1e-12;        // of the contact problem [m]
@@ -30,6 +31,8 @@ constexpr double kSameDirection = 0.99995;  // cosine: a contact that opposes a 
 constexpr double kSameBlock = 50e-6;        // [m]
 constexpr double kDepthRise = 0.02;         // greatest relative rise of depth_per_multiplier in a substep
 constexpr double kLeastFactor = 1e-12;      // of depth_per_multiplier [m^2]
+constexpr double kOwnCompliance = 0.05;     // share of friction's compliance that is each contact's own
+constexpr double kLeastLoadShare = 0.25;    // of a contact in its segment's load
 constexpr double kLongestSubstep = 1e-3;    // [s]
 constexpr double kMostSubsteps = 20.0;
 constexpr double kLeastBeyond = 1e-3;  // depth below which the measured finger is not looked for beyond [m]
@@ -73,7 +76,7 @@ class Substep {
       const DigitAngles from = tick_.angle;
       const DigitAngles x = displacement();
       const Stop stop = move(x);
-      if (touching) follow_anchors(from);
+      if (touching) follow_springs(from);
       if (stop.segment < 0) return;
       if (event == kMostEvents || has(tick_.status, Status::kSearchExhausted)) {
         tick_.status |= Status::kSearchExhausted;
@@ -90,8 +93,8 @@ class Substep {
 
   [[nodiscard]] NearPairs& near(int k) noexcept { return state_.near[idx(segment_index(tick_.digit, k))]; }
 
-  /// Lists the contacts at the digit's pose, and the pairs that have stopped it in this substep. Multipliers and
-  /// anchors go from the last contacts to these.
+  /// Lists the contacts at the digit's pose, and the pairs that have stopped it in this substep. Multipliers go from
+  /// the last contacts to these.
   void gather() noexcept {
     const DigitContacts last = contacts_;
     contacts_.count = 0;
@@ -165,43 +168,22 @@ class Substep {
         best = i;
       }
     }
-    if (best < 0) {
-      contact.anchor = anchor_beside(contact, last);
-      return;
-    }
+    if (best < 0) return;
     taken[idx(best)] = true;
     const SlidingContact& before = last.contact[idx(best)];
-    const Vec3 friction = before.multiplier[1] * before.tangent[0] + before.multiplier[2] * before.tangent[1];
+    const Vec3 friction = before.tangential_multiplier();
     // A contact that has opened seldom pushes again at once. Of two contacts of one segment, the iteration would
     // take many sweeps to hand its load over.
     if (place.gap <= working_clearance() + kTouching) {
       contact.multiplier = {before.multiplier[0], friction.dot(contact.tangent[0]),
                             friction.dot(contact.tangent[1]), before.multiplier[3]};
     }
-    contact.anchor = along_surface(before.anchor, contact.normal);
     contact.turned = before.turned;
     contact.slips = before.slips;
   }
 
   [[nodiscard]] static Vec3 along_surface(const Vec3& v, const Vec3& normal) noexcept {
     return v - v.dot(normal) * normal;
-  }
-
-  /// Returns the anchor of a contact that has none: that of the nearest one of the segment that presses the same way.
-  /// Contact points come and go under a segment that rolls; its displacement along the surface is one.
-  [[nodiscard]] static Vec3 anchor_beside(const SlidingContact& contact,
-                                          const DigitContacts& contacts) noexcept {
-    const SlidingContact* nearest = nullptr;
-    for (int i = 0; i < contacts.count; ++i) {
-      const SlidingContact& other = contacts.contact[idx(i)];
-      if (other.k != contact.k || !(other.multiplier[0] > 0.0) ||
-          other.normal.dot(contact.normal) < kCos30Deg)
-        continue;
-      if (nearest == nullptr ||
-          (other.p_S - contact.p_S).squaredNorm() < (nearest->p_S - contact.p_S).squaredNorm())
-        nearest = &other;
-    }
-    return nearest != nullptr ? along_surface(nearest->anchor, contact.normal) : Vec3(Vec3::Zero());
   }
 
   /// Stores the pair that stopped a motion x of segment k, so that it is a contact for the rest of the substep.
@@ -229,12 +211,14 @@ class Substep {
     for (std::size_t i = 0; i < free.size(); ++i) free[i] = goal_[i] - tick_.angle[i];
     if (contacts_.count == 0) {
       contacts_.limit = {};
+      solved_ = free;
       return free;
     }
     ContactProblem problem;
     set_up(free, problem);
     problem.limit = contacts_.limit;
     solve_contacts(problem, contacts_.count > 1 ? kSweeps : kSweepsOfOne, kTolerance);
+    solved_ = problem.displacement;
     contacts_.limit = problem.limit;
     for (int i = 0; i < problem.count; ++i) {
       contacts_.contact[idx(i)].multiplier = problem.contact[idx(i)].multiplier;
@@ -257,8 +241,14 @@ class Substep {
     problem.free = free;
     problem.count = contacts_.count;
     set_limits(problem);
+    problem.elongation = contacts_.elongation;
+    const std::array<double, kSegmentsPerDigit> load = segment_load();
+    const double factor = depth_per_multiplier();
+    // A segment's contacts together give way by this, however many they are and whatever each bears.
+    compliance_ = factor / model_.parameters.tangential_stiffness_ratio;
+    problem.spring_compliance = (1.0 - kOwnCompliance) * compliance_;
     for (int c = 0; c < contacts_.count; ++c) {
-      SlidingContact& contact = contacts_.contact[idx(c)];
+      const SlidingContact& contact = contacts_.contact[idx(c)];
       ProblemContact& out = problem.contact[idx(c)];
       const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
       for (std::size_t i = 0; i < free.size(); ++i) {
@@ -268,20 +258,38 @@ class Substep {
         out.row[kSpinRow][i] = contact.normal.dot(J.angular[i]);
       }
       out.room = std::max(0.0, contact.gap - h1);
-      out.anchor = {contact.anchor.dot(contact.tangent[0]), contact.anchor.dot(contact.tangent[1])};
+      out.segment = contact.k;
+      out.tangent = contact.tangent;
       out.spin_anchor = kAnchorGain * contact.turned;
       out.friction = contact.friction;
       out.spin_radius = model_.parameters.spin_radius;
       const Vec3 apart = contact.p_W - goal_pose_.segment[idx(contact.k)] * contact.p_S;
       const double depth = std::max(0.0, apart.dot(contact.normal));
-      double factor = contacts_.depth_per_multiplier;
-      if (!(factor > 0.0)) {  // the digit begins to press: the contact alone
-        for (const double arm : out.row[kNormalRow]) factor += arm * arm;
-      }
-      out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / std::max(factor, kLeastFactor);
-      out.tangent_compliance = contact.tangent_compliance = std::max(factor, kLeastFactor);
+      out.most_friction_normal = 2.0 * (depth + kFrictionDepth) / factor;
+      const double all = load[idx(contact.k)];
+      const double share = all > 0.0 ? std::max(kLeastLoadShare, contact.multiplier[0] / all) : 1.0;
+      out.tangent_compliance = kOwnCompliance * compliance_ / share;
       out.multiplier = contact.multiplier;
     }
+  }
+
+  /// Returns DigitContacts::depth_per_multiplier. A digit that begins to press has none; it will be about the mean
+  /// product of the contacts' normal rows [m^2].
+  [[nodiscard]] double depth_per_multiplier() const noexcept {
+    double factor = contacts_.depth_per_multiplier;
+    if (!(factor > 0.0)) {
+      for (int c = 0; c < contacts_.count; ++c)
+        for (const double arm : normal_row(contacts_.contact[idx(c)])) factor += arm * arm / contacts_.count;
+    }
+    return std::max(factor, kLeastFactor);
+  }
+
+  /// Returns the sum of the normal multipliers of each segment's contacts [1/m].
+  [[nodiscard]] std::array<double, kSegmentsPerDigit> segment_load() const noexcept {
+    std::array<double, kSegmentsPerDigit> load{};
+    for (int c = 0; c < contacts_.count; ++c)
+      load[idx(contacts_.contact[idx(c)].k)] += contacts_.contact[idx(c)].multiplier[0];
+    return load;
   }
 
   void set_limits(ContactProblem& problem) const noexcept {
@@ -292,7 +300,8 @@ class Substep {
   }
 
   /// Moves the digit away from what is nearer than the working clearance, at most by `most` [m]. Where that is
-  /// not possible, as between two walls, it moves less. The motion carries no force.
+  /// not possible, as between two walls, it moves less. The motion carries no force. Springs of contacts that hold
+  /// move along, or a finger that rests would creep by a little in every substep.
   void recover(double most) noexcept {
     const double h1 = working_clearance();
     ContactProblem problem;
@@ -318,12 +327,32 @@ class Substep {
       near(k).carry(tick_.pose.segment[idx(k)], segment_speed(model_.hand, tick_.digit, away, k) + kRounding);
     }
     gathered_ = true;
+    const std::array<double, kSegmentsPerDigit> load = segment_load();
+    std::array<double, kSegmentsPerDigit> opened{};  // greatest way off the surface
+    std::array<Vec3, DigitContacts::kMost> along;    // and of each contact along it
     for (int c = 0; c < contacts_.count; ++c) {
       SlidingContact& contact = contacts_.contact[idx(c)];
-      const Vec3 before = contact.p_W;
-      contact.p_W = tick_.pose.segment[idx(contact.k)] * contact.p_S;
-      contact.gap += contact.normal.dot(contact.p_W - before);
+      const Vec3 way = tick_.pose.segment[idx(contact.k)] * contact.p_S - contact.p_W;
+      const double off = contact.normal.dot(way);
+      contact.p_W += way;
+      contact.gap += off;
+      opened[idx(contact.k)] = std::max(opened[idx(contact.k)], std::abs(off));
+      along[idx(c)] = along_surface(way, contact.normal);
     }
+    for (int c = 0; c < contacts_.count; ++c) {
+      const SlidingContact& contact = contacts_.contact[idx(c)];
+      if (!holds(contact)) continue;
+      // Out of a wedge the way along the surface is long; its spring would pull the finger back in.
+      const double longest = kRecoveryAlong * opened[idx(contact.k)];
+      const double length = along[idx(c)].norm();
+      const double share = contact.multiplier[0] / load[idx(contact.k)];
+      contacts_.elongation[idx(contact.k)] +=
+          share * (length > longest ? longest / length : 1.0) * along[idx(c)];
+    }
+  }
+
+  [[nodiscard]] static bool holds(const SlidingContact& contact) noexcept {
+    return contact.multiplier[0] > 0.0 && !contact.slips;
   }
 
   /// Moves the digit along a straight line in joint space up to the first stop.
@@ -345,32 +374,45 @@ class Substep {
     return first_contact(model_, path, 0.0, evaluations_, tick_, state_);
   }
 
-  /// Moves the anchors with the digit. That of a contact that slips is at most as long as its spring at the bound.
-  void follow_anchors(const DigitAngles& from) noexcept {
+  /// Moves the springs with the digit: to where the solution has them, by the share of it that was done. Contacts that
+  /// hold say instead, by their share of the load, what has really moved; else its difference would add up.
+  void follow_springs(const DigitAngles& from) noexcept {
+    double done = 0.0;
+    double wanted = 0.0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      done += solved_[i] * (tick_.angle[i] - from[i]);
+      wanted += solved_[i] * solved_[i];
+    }
+    const double share = wanted > kStill * kStill ? std::clamp(done / wanted, 0.0, 1.0) : 1.0;
+    const std::array<double, kSegmentsPerDigit> load = segment_load();
+    auto solution = contacts_.elongation;
+    for (Vec3& e : solution) e *= 1.0 - share;
+    for (int c = 0; c < contacts_.count; ++c) {
+      const SlidingContact& contact = contacts_.contact[idx(c)];
+      solution[idx(contact.k)] -= share * compliance_ * contact.tangential_multiplier();
+    }
+    auto next = solution;
     for (int c = 0; c < contacts_.count; ++c) {
       SlidingContact& contact = contacts_.contact[idx(c)];
-      const bool presses = contact.multiplier[0] > 0.0;
-      if (contact.spins || !presses) {
-        contact.turned = 0.0;
-      } else {
-        const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
-        for (std::size_t i = 0; i < from.size(); ++i)
-          contact.turned += contact.normal.dot(J.angular[i]) * (tick_.angle[i] - from[i]);
-      }
-      if (!presses) continue;
-      const Vec3 now = tick_.pose.segment[idx(contact.k)] * contact.p_S;
-      contact.anchor += along_surface(now - contact.p_W, contact.normal);
-      if (!contact.slips) continue;
-      // Not the bound itself: the motion may have been stopped on its way.
-      const double longest =
-          contact.tangent_compliance * std::hypot(contact.multiplier[1], contact.multiplier[2]);
-      const double length = contact.anchor.norm();
-      if (length > longest) contact.anchor *= longest / length;
+      follow_spin(contact, from);
+      if (!holds(contact)) continue;
+      const Vec3 moved = tick_.pose.segment[idx(contact.k)] * contact.p_S - contact.p_W;
+      const Vec3 difference = contacts_.elongation[idx(contact.k)] + moved - solution[idx(contact.k)];
+      next[idx(contact.k)] +=
+          contact.multiplier[0] / load[idx(contact.k)] * along_surface(difference, contact.normal);
     }
-    for (int c = 0; c < contacts_.count; ++c) {
-      SlidingContact& contact = contacts_.contact[idx(c)];
-      if (!(contact.multiplier[0] > 0.0)) contact.anchor = anchor_beside(contact, contacts_);
+    contacts_.elongation = next;
+  }
+
+  /// Adds the digit's motion to the rotation about the normal that spin has held.
+  void follow_spin(SlidingContact& contact, const DigitAngles& from) const noexcept {
+    if (contact.spins || !(contact.multiplier[0] > 0.0)) {
+      contact.turned = 0.0;
+      return;
     }
+    const PointJacobian J = point_jacobian(tick_.pose, contact.k, contact.p_W);
+    for (std::size_t i = 0; i < from.size(); ++i)
+      contact.turned += contact.normal.dot(J.angular[i]) * (tick_.angle[i] - from[i]);
   }
 
   const ContactModel& model_;
@@ -382,7 +424,9 @@ class Substep {
   int& evaluations_;
   DigitAngles lowest_{};
   DigitAngles highest_{};
-  bool gathered_ = false;  ///< the near pairs are those of the digit's pose
+  DigitAngles solved_{};     ///< displacement that the contact problem gave [rad]
+  double compliance_ = 0.0;  ///< of the friction of a segment in that problem [m^2]
+  bool gathered_ = false;    ///< the near pairs are those of the digit's pose
   /// Pair that has stopped a motion in this substep.
   struct Block {
     int k = 0;
@@ -394,6 +438,15 @@ class Substep {
   int blocks_ = 0;
   std::array<Block, kMostEvents> block_;
 };
+
+/// Forgets the springs of segments that do not press: of a motion that was cut short, a part of them is left.
+void release_springs(DigitContacts& contacts) noexcept {
+  std::array<bool, kSegmentsPerDigit> presses{};
+  for (int c = 0; c < contacts.count; ++c)
+    if (contacts.contact[idx(c)].multiplier[0] > 0.0) presses[idx(contacts.contact[idx(c)].k)] = true;
+  for (std::size_t k = 0; k < presses.size(); ++k)
+    if (!presses[k]) contacts.elongation[k].setZero();
+}
 
 /// Sets the depths of the contacts from their multipliers, and the digit's factor between them.
 void set_depths(const ContactModel& model, const DigitTick& tick, const DigitAngles& goal,
@@ -498,8 +551,11 @@ bool is_beyond(const ContactModel& model, const DigitTick& tick, GdpState& state
     const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], tick.hcp_pose.segment[idx(k)],
                                state.scratch};
     const double margin = model.parameters.margin;
-    clear =
-        !crosses(placed, model.object.tree()) && distance(placed, model.object.tree(), 2.0 * margin) > margin;
+    const ObjectTree& object = model.object.tree();
+    // The bound finds most fingers that are clear, crosses() most that are not. Where crosses() is undecided, it is
+    // true.
+    clear = distance_bound(placed, object, 2.0 * margin) > margin ||
+            (!crosses(placed, object) && distance(placed, object, 2.0 * margin) > margin);
   }
   contacts.beyond_for = clear ? contacts.beyond_for + contacts.unchecked_for : 0.0;
   contacts.unchecked_for = 0.0;
@@ -538,6 +594,7 @@ void advance_sliding(const ContactModel& model, DigitTick& tick, GdpState& state
       model.hand.digit_pose(tick.digit, goal, goal_pose);
     }
     Substep(model, goal, goal_pose, tick, state, evaluations).run();
+    release_springs(contacts);
     set_depths(model, tick, goal, contacts);
   }
   for (int k = 0; k < kSegmentsPerDigit; ++k) set_record(model, tick, k, contacts, record_of(state, tick, k));

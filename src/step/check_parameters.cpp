@@ -65,6 +65,8 @@ void check_parameters(const HapticParameters& parameters) {
   check("contact.slid_distance [m]", parameters.contact.slid_distance, ranges::kSlidDistance);
   check_choice("contact.mode", parameters.contact.mode, ContactMode::kSliding);
   check("contact.friction", parameters.contact.friction, ranges::kFriction);
+  check("contact.tangential_stiffness_ratio", parameters.contact.tangential_stiffness_ratio,
+        ranges::kTangentialStiffnessRatio);
   check("contact.spin_radius [m]", parameters.contact.spin_radius, ranges::kSpinRadius);
   check("contact.max_contacts", parameters.contact.max_contacts, ranges::kMaxContacts);
   check_law(parameters.force);

@@ -110,12 +110,38 @@ TEST(ContactProblem, FrictionResistsSpinUpToItsBound) {
   EXPECT_NEAR(problem.contact[0].multiplier[kSpinRow], -0.00048, 1e-12);
 }
 
-TEST(ContactProblem, AnAnchorIsTakenBack) {
+TEST(ContactProblem, ASpringWithoutComplianceIsTakenBack) {
   ContactProblem problem = with_one_contact({-0.02, 0.0, 0.0, 0.0}, 0.6);
-  problem.contact[0].anchor = {1e-6, -2e-6};
+  problem.contact[0].tangent = {Vec3::UnitY(), Vec3::UnitZ()};
+  problem.elongation[0] = {0.0, 1e-6, -2e-6};
   solve_contacts(problem, 20, kTight);
   EXPECT_NEAR(0.05 * problem.displacement[1], -1e-6, 1e-12);
   EXPECT_NEAR(0.02 * problem.displacement[2], 2e-6, 1e-12);
+}
+
+// A segment's friction has one spring, however many contacts there are: two that hold give way as one does.
+TEST(ContactProblem, TheContactsOfASegmentShareItsSpring) {
+  const auto solved = [](int count, int segment_of_second) {
+    ContactProblem problem = with_one_contact({-0.02, -0.004, 0.001, -0.02}, 0.6);
+    problem.contact[0].tangent = {Vec3::UnitY(), Vec3::UnitZ()};
+    problem.count = count;
+    problem.contact[1] = problem.contact[0];
+    problem.contact[1].row[kNormalRow] = {0.0, 0.0, 0.0, 0.1};  // so that both bear load
+    problem.contact[1].segment = segment_of_second;
+    problem.spring_compliance = 0.05 * 0.05;
+    solve_contacts(problem, 20, kTight);
+    return problem;
+  };
+  const ContactProblem one = solved(1, 0);
+  // The joint moves the contact by 0.05 m/rad against a spring that is as stiff: half of the goal.
+  EXPECT_NEAR(one.displacement[1], -0.002, 1e-9);
+  EXPECT_NEAR(one.contact[0].multiplier[kTangentRow], 0.002 / 0.05, 1e-9);
+  const ContactProblem two = solved(2, 0);
+  EXPECT_NEAR(two.displacement[1], -0.002, 1e-9);
+  EXPECT_NEAR(two.contact[0].multiplier[1] + two.contact[1].multiplier[1], 0.002 / 0.05, 1e-7);
+  const ContactProblem apart = solved(2, 1);  // two springs
+  EXPECT_NEAR(apart.displacement[1], -0.004 / 3.0, 1e-9);
+  EXPECT_NEAR(apart.contact[0].multiplier[kTangentRow], apart.contact[1].multiplier[kTangentRow], 1e-7);
 }
 
 TEST(ContactProblem, AJointStopsAtItsLimitAndTheOthersGiveWay) {
@@ -189,53 +215,28 @@ ContactProblem random_problem(std::mt19937_64& random, int most) {
       contact.row[kSecondTangentRow][j] = other.dot(J.linear[j]);
       contact.row[kSpinRow][j] = normal.dot(J.angular[j]);
     }
+    contact.segment = k;
+    contact.tangent = {tangent, other};
     contact.room = std::max(0.0, 1e-4 * u(random));
     contact.friction = mu;
   }
   return problem;
 }
 
-/// Returns by how much the solution violates the conditions of the problem without spin and limits [m].
-double violation(const ContactProblem& problem) {
-  double worst = 0.0;
-  for (int i = 0; i < problem.count; ++i) {
-    const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
-    std::array<double, 3> v{};
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t j = 0; j < problem.free.size(); ++j)
-        v[r] += contact.row[r][j] * problem.displacement[j];
-    }
-    for (std::size_t r = 1; r < 3; ++r)
-      v[r] += contact.anchor[r - 1] + contact.tangent_compliance * contact.multiplier[r];
-    const double gap = v[0] + contact.room;
-    const double normal = contact.multiplier[0];
-    const double tangent = std::hypot(contact.multiplier[1], contact.multiplier[2]);
-    const double slip = std::hypot(v[1], v[2]);
-    const double bound = contact.friction * normal;
-    worst = std::max({worst, -gap, -normal, tangent - bound * (1.0 + 1e-9)});
-    if (normal > 0.0) worst = std::max(worst, std::abs(gap));
-    if (normal > 0.0 && tangent < bound * (1.0 - 1e-6)) worst = std::max(worst, slip);
-    if (normal > 0.0 && tangent >= bound * (1.0 - 1e-6) && slip > 0.0 && tangent > 0.0) {
-      worst = std::max(worst, std::hypot(v[1] + contact.multiplier[1] / tangent * slip,
-                                         v[2] + contact.multiplier[2] / tangent * slip));
-    }
-  }
-  return worst;
-}
-
-/// Gives friction that holds a compliance, of 0.3 to 3 times the normal row's, and a displacement to spring back from.
+/// Gives each segment's friction a spring, whose compliance is 0.3 to 3 times the product of a normal row with
+/// itself, and each contact a tenth of it, and more where it bears little.
 void give_way(ContactProblem& problem, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  for (int i = 0; i < problem.count; ++i) {
-    ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
-    double product = 0.0;
-    for (const double arm : contact.row[kNormalRow]) product += arm * arm;
-    contact.tangent_compliance = product * std::pow(10.0, 0.5 * u(random));
-    contact.anchor = {1e-3 * u(random), 1e-3 * u(random)};
-  }
+  double product = 0.0;
+  for (const double arm : problem.contact[0].row[kNormalRow]) product += arm * arm;
+  problem.spring_compliance = product * std::pow(10.0, 0.5 * u(random));
+  for (int i = 0; i < problem.count; ++i)
+    problem.contact[static_cast<std::size_t>(i)].tangent_compliance =
+        0.1 * problem.spring_compliance / (0.55 + 0.45 * u(random));
+  for (Vec3& elongation : problem.elongation) elongation = 1e-3 * Vec3(u(random), u(random), u(random));
 }
 
-// With springs, as every contact of a finger has them: by the sweeps and the steps of one tick.
+// With springs, as every segment of a finger has them: by the sweeps and the steps of one tick.
 TEST(ContactProblem, FrictionThatGivesWayIsSolvedInATick) {
   constexpr std::uint64_t kSeed = 13;
   std::mt19937_64 random(kSeed);
@@ -245,39 +246,23 @@ TEST(ContactProblem, FrictionThatGivesWayIsSolvedInATick) {
     ContactProblem problem = random_problem(random, 5);
     give_way(problem, random);
     solve_contacts(problem, problem.count > 1 ? 6 : 20, kTight);
-    solved += violation(problem) <= 1e-9 ? 1 : 0;
+    solved += test::violation(problem) <= 1e-9 ? 1 : 0;
   }
   std::printf("seed %llu: %d of %d solved\n", static_cast<unsigned long long>(kSeed), solved, kProblems);
   EXPECT_GE(solved, 900);
 }
 
-/// Compares the joints' displacement at full convergence. A problem may have several solutions: where the two
-/// differ, ours must fulfil the conditions, and such problems must be few.
 void expect_siconos_agrees(std::uint64_t seed, int problems) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937_64 random(seed);
-  int compared = 0;
-  int other_solutions = 0;
-  int unfinished = 0;
+  test::SiconosComparison comparison;
   for (int n = 0; n < problems; ++n) {
     ContactProblem problem = random_problem(random, 5);
     if (n % 2 == 1) give_way(problem, random);
-    const auto reference = test::solve_with_siconos(problem);
-    if (!reference) continue;
-    ++compared;
-    solve_contacts(problem, 5000, kTight);
-    double apart = 0.0;
-    for (std::size_t j = 0; j < reference->size(); ++j)
-      apart = std::max(apart, std::abs((*reference)[j] - problem.displacement[j]));
-    if (apart <= 1e-9) continue;
-    const double violated = violation(problem);
-    ++(violated <= 1e-9 ? other_solutions : unfinished);
+    comparison.add(problem);
   }
-  std::printf("seed %llu: %d compared, %d with another solution, %d not converged\n",
-              static_cast<unsigned long long>(seed), compared, other_solutions, unfinished);
-  EXPECT_GE(compared, problems * 9 / 10) << "Siconos solves the others to less than 1e-11";
-  EXPECT_LE(other_solutions, compared / 100);
-  EXPECT_LE(unfinished, compared / 100) << "some problems in which contacts jam are not solved";
+  std::printf("seed %llu: ", static_cast<unsigned long long>(seed));
+  comparison.expect_agreement(problems, 0.01);
 }
 
 TEST(ContactProblem, SiconosAgrees) { expect_siconos_agrees(20, 200); }
@@ -319,6 +304,7 @@ TEST(ContactProblem, NewtonAloneSolvesProblemsWithoutFriction) {
       contact.friction = 0.0;
       contact.softness = n % 3 == 0 ? 0.05 : 0.0;
     }
+    if (n % 2 == 1) give_way(problem, random);  // changes nothing without friction
     HeldJoints held{};
     const int fixed = std::array{-1, 2, 3}[static_cast<std::size_t>(n / 3 % 3)];
     problem.lowest.fill(-0.01);
@@ -352,6 +338,7 @@ TEST(ContactProblem, NewtonAloneSolvesMostProblemsWithFrictionAndSpin) {
       contact.spin_radius = 0.004;
       if (n % 3 == 0) contact.most_friction_normal = 0.3;
     }
+    if (n % 2 == 1) give_way(problem, random);
     int budget = kManySteps;
     const double residual = newton_contacts(problem, {}, 1e-12, budget);
     ASSERT_GE(budget, 0) << n;
@@ -367,7 +354,7 @@ TEST(ContactProblem, NewtonAloneSolvesMostProblemsWithFrictionAndSpin) {
     if (residual > 1e-9) continue;
     problem.displacement = displacement_of(problem, {});
     if (n % 3 != 0) {
-      ASSERT_LE(violation(problem), 1e-8) << n;
+      ASSERT_LE(test::violation(problem), 1e-8) << n;
     }
     for (int i = 0; i < problem.count; ++i) {
       const ProblemContact& contact = problem.contact[static_cast<std::size_t>(i)];
@@ -398,7 +385,7 @@ TEST(ContactProblem, FewSweepsAndNewtonSolveMostProblems) {
   for (int n = 0; n < kProblems; ++n) {
     ContactProblem problem = random_problem(random, 5);
     solve_contacts(problem, 6, 1e-12);
-    solved += violation(problem) <= 1e-9 ? 1 : 0;
+    solved += test::violation(problem) <= 1e-9 ? 1 : 0;
   }
   EXPECT_GE(solved, kProblems * 9 / 10) << "of " << kProblems << ", seed 11";
 }
@@ -416,6 +403,7 @@ TEST(ContactProblem, WhateverTheRowsAreTheSolutionIsFiniteAndBounded) {
       if (n % 5 == 0) contact.row[kTangentRow] = contact.row[kNormalRow];
       if (n % 3 == 0) contact.most_friction_normal = 0.1;
     }
+    if (n % 2 == 1) give_way(problem, random);
     for (std::size_t j = 0; j < problem.lowest.size(); ++j) {
       problem.lowest[j] = -0.05 * (1.0 + u(random));
       problem.highest[j] = 0.05 * (1.0 + u(random));

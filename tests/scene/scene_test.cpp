@@ -127,6 +127,7 @@ TEST(Scene, KeepsEachNumberInItsOwnPlace) {
     contact.slid_mm = 7
     contact.mode = "sliding"
     contact.friction = 0.35
+    contact.tangential_stiffness_ratio = 0.25
     contact.spin_radius_mm = 3
     contact.max_contacts = 2
     [motion]
@@ -160,6 +161,7 @@ TEST(Scene, KeepsEachNumberInItsOwnPlace) {
   EXPECT_DOUBLE_EQ(scene.parameters.contact.slid_distance, 7e-3);
   EXPECT_EQ(scene.parameters.contact.mode, ContactMode::kSliding);
   EXPECT_EQ(scene.parameters.contact.friction, 0.35);
+  EXPECT_EQ(scene.parameters.contact.tangential_stiffness_ratio, 0.25);
   EXPECT_DOUBLE_EQ(scene.parameters.contact.spin_radius, 3e-3);
   EXPECT_EQ(scene.parameters.contact.max_contacts, 2);
   EXPECT_EQ(scene.motion.script.start_s, 0.125);

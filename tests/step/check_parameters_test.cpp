@@ -37,6 +37,8 @@ const Range kRanges[] = {
     {"contact.slid_distance", [](HapticParameters& p) -> double& { return p.contact.slid_distance; },
      kSmallest, 0.1},
     {"contact.friction", [](HapticParameters& p) -> double& { return p.contact.friction; }, 0.0, 2.0},
+    {"contact.tangential_stiffness_ratio",
+     [](HapticParameters& p) -> double& { return p.contact.tangential_stiffness_ratio; }, 0.05, 1.0},
     {"contact.spin_radius", [](HapticParameters& p) -> double& { return p.contact.spin_radius; }, 0.0, 0.02},
     {"force.stiffness", [](HapticParameters& p) -> double& { return p.force.stiffness; }, 0.0, 1e5},
     {"force.damping", [](HapticParameters& p) -> double& { return p.force.damping; }, 0.0, 1000.0},

@@ -57,6 +57,7 @@ TEST(Defaults, OfContact) {
   EXPECT_EQ(contact.slid_distance, 5e-3);
   EXPECT_EQ(contact.mode, ContactMode::kStatic);
   EXPECT_EQ(contact.friction, 0.6);
+  EXPECT_EQ(contact.tangential_stiffness_ratio, 0.5);
   EXPECT_EQ(contact.spin_radius, 4e-3);
   EXPECT_EQ(contact.max_contacts, 4);
   EXPECT_EQ(contact.method, GdpMethod::kContinuous);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "phalanx/core/constants.h"
+#include "phalanx/mesh/primitives.h"
 #include "support/simple_hand.h"
 
 namespace phalanx::test {
@@ -136,5 +138,21 @@ class LoneFinger {
   SegmentMeshes meshes_;
   Setup model_;
 };
+
+/// Two faces that meet below the origin along the finger, and that the tip touches together when its centre is at the
+/// origin. The groove ends 5 mm above these places.
+inline TriangleMesh groove(double opening) {
+  const double half = 0.5 * opening;
+  const double length = LoneFinger::kTipRadius / std::tan(half) + 5e-3;
+  const double depth = LoneFinger::kTipRadius / std::sin(half);
+  TriangleMesh mesh;
+  for (const double side : {-1.0, 1.0}) {
+    Pose X;
+    X.R = Eigen::AngleAxisd(side * (half - kPi / 2.0), Vec3::UnitY()).toRotationMatrix();
+    X.p = X.R * Vec3(side * 0.5 * length, 0.0, -0.01) + Vec3(0.0, 0.009, -depth);
+    append(mesh, make_box({length, 0.03, 0.02}, 12), X);
+  }
+  return mesh;
+}
 
 }  // namespace phalanx::test

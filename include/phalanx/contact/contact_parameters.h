@@ -34,7 +34,9 @@ struct ContactParameters {
   double slid_distance = 5e-3;  ///< tangential offset beyond which a contact reports `slid` [m]
   ContactMode mode = ContactMode::kStatic;
   // Of sliding mode:
-  double friction = 0.6;      ///< Coulomb coefficient mu [-]
+  double friction = 0.6;  ///< Coulomb coefficient mu [-]
+  /// Stiffness along the surface of friction that holds, over that of the law [-], > 0.
+  double tangential_stiffness_ratio = 0.5;
   double spin_radius = 4e-3;  ///< r_c: friction resists rotation about the normal by up to mu r_c f_n [m]
   int max_contacts = 4;       ///< greatest number of contact points of a segment, 1 to 4
   // Of static mode:

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "phalanx/core/math.h"
+#include "phalanx/hand/joints.h"
 
 namespace phalanx {
 
@@ -25,18 +26,18 @@ struct SlidingContact {
   double spin_depth = 0.0;  ///< the same about the normal: moment per stiffness [m^2]
   /// Multipliers of the contact problem: normal, tangents [1/m], spin [-].
   std::array<double, 4> multiplier{};
-  /// Length of friction's spring along the surface, in W [m]: it grows with the motion of the contact point, and is
-  /// at most that of the bound while the contact slips.
-  Vec3 anchor = Vec3::Zero();
-  double tangent_compliance = 0.0;  ///< of friction that holds: displacement per multiplier [m^2]
-  double turned = 0.0;              ///< rotation about the normal while spin is held [rad]
-  bool slips = false;               ///< friction along the surface is at its bound
-  bool spins = true;                ///< friction about the normal is at its bound
+  double turned = 0.0;  ///< rotation about the normal while spin is held [rad]
+  bool slips = false;   ///< friction along the surface is at its bound
+  bool spins = true;    ///< friction about the normal is at its bound
 
   [[nodiscard]] bool presses() const noexcept { return depth[0] > 0.0; }
   /// Returns the sum of the depths along normal and tangents, in W [m].
   [[nodiscard]] Vec3 resultant() const noexcept {
     return depth[0] * normal + depth[1] * tangent[0] + depth[2] * tangent[1];
+  }
+  /// Returns the sum of the multipliers along the tangents, in W [1/m].
+  [[nodiscard]] Vec3 tangential_multiplier() const noexcept {
+    return multiplier[1] * tangent[0] + multiplier[2] * tangent[1];
   }
 };
 
@@ -45,6 +46,9 @@ struct DigitContacts {
   static constexpr int kMost = 16;
   int count = 0;
   std::array<SlidingContact, kMost> contact;
+  /// Elongation of the springs through which friction acts on each segment, in W [m]: the motion of its contact points
+  /// along the surface while friction holds.
+  std::array<Vec3, kSegmentsPerDigit> elongation{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   std::array<double, 4> limit{};      ///< multipliers of the joints' limits [rad]
   double depth_per_multiplier = 0.0;  ///< kappa over stiffness: turns multipliers into depths [m^2]
   double unchecked_for = 0.0;         ///< time since the HCP was last looked for beyond the object [s]

@@ -11,11 +11,12 @@ namespace phalanx::ranges {
 inline constexpr NumberRange kRate = between(1, 4000);  ///< HapticParameters::rate_hz [Hz]
 
 // ContactParameters
-inline constexpr NumberRange kMargin = between(1e-6, 1e-3);   ///< [m]
-inline constexpr NumberRange kSlidDistance = above(0, 0.1);   ///< [m]
-inline constexpr NumberRange kFriction = between(0, 2);       ///< mu [-]
-inline constexpr NumberRange kSpinRadius = between(0, 0.02);  ///< [m]
-inline constexpr NumberRange kMaxContacts = between(1, 4);    ///< of a segment [-]
+inline constexpr NumberRange kMargin = between(1e-6, 1e-3);                 ///< [m]
+inline constexpr NumberRange kSlidDistance = above(0, 0.1);                 ///< [m]
+inline constexpr NumberRange kFriction = between(0, 2);                     ///< mu [-]
+inline constexpr NumberRange kTangentialStiffnessRatio = between(0.05, 1);  ///< [-]
+inline constexpr NumberRange kSpinRadius = between(0, 0.02);                ///< [m]
+inline constexpr NumberRange kMaxContacts = between(1, 4);                  ///< of a segment [-]
 
 // ForceLawParameters
 inline constexpr NumberRange kStiffness = between(0, 1e5);            ///< [N/m]

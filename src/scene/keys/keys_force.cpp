@@ -25,6 +25,9 @@ void add_contact_and_law(std::vector<SceneKey>& keys) {
   at_zero_torque.number("contact.friction", "", ranges::kFriction, 0.6,
                         "sliding: Coulomb friction coefficient",
                         [](T t, V v) { t.scene.parameters.contact.friction = v.number; });
+  at_zero_torque.number("contact.tangential_stiffness_ratio", "", ranges::kTangentialStiffnessRatio, 0.5,
+                        "sliding: stiffness along the surface of friction that holds, over that across it",
+                        [](T t, V v) { t.scene.parameters.contact.tangential_stiffness_ratio = v.number; });
   at_zero_torque.number("contact.spin_radius_mm", "mm", in_unit(ranges::kSpinRadius, kMm), 4,
                         "sliding: radius of the area whose friction resists rotation about the normal",
                         [](T t, V v) { t.scene.parameters.contact.spin_radius = v.number * kMm; });
