@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rounds.h"
+#include "../../bench/rounds.h"
 
 #include <gtest/gtest.h>
 
