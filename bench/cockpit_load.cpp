@@ -20,6 +20,8 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/serve/cockpit.h"
+
 namespace phalanx::bench {
 namespace {
 
@@ -91,8 +93,10 @@ std::string masked_head(unsigned first, std::uint64_t length) {
   return head.append(4, '\0');
 }
 
-/// ToHost{hello {protocol: 2}} of proto/phalanx/cockpit.proto: before it, a page gets nothing.
-constexpr std::string_view kHello = "\x12\x02\x08\x02";
+/// ToHost{hello {protocol: kProtocol}} of proto/phalanx/cockpit.proto: before it, a page gets nothing.
+static_assert(Cockpit::kProtocol < 0x80U, "a number of one byte");
+constexpr std::array<char, 4> kHelloBytes = {'\x12', '\x02', '\x08', static_cast<char>(Cockpit::kProtocol)};
+constexpr std::string_view kHello(kHelloBytes.data(), kHelloBytes.size());
 
 /// ToHost{seen {ticks: N}}: without it, ticks stop soon. Other messages are counted, too, which makes no
 /// difference: a page cannot have seen more than was sent.

@@ -4,13 +4,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
+#include "peer_fcl.h"
+#include "phalanx/contact/gdp.h"
 #include "phalanx/contact/proximity.h"
+#include "phalanx/contact/segment_motion.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/scene/build_model.h"
@@ -160,6 +165,121 @@ double offset_along(const Snapshot& snapshot, int segment) {
   return 1e3 * (offset - offset.dot(normal) * normal).norm();
 }
 
+/// Torques of a digit before stabiliser and limits, and the hands that they belong to.
+struct DigitState {
+  Eigen::Vector4d measured, shown, torque;
+  bool touches = false;
+
+  DigitState(const Snapshot& snapshot, int digit) {
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const std::size_t joint = idx(joint_index(digit, i));
+      measured[i] = snapshot.hcp_angle[joint];
+      shown[i] = snapshot.gdp_angle[joint];
+      torque[i] = snapshot.torque[joint];
+    }
+    for (int k = 0; k < kSegmentsPerDigit; ++k)
+      touches = touches || snapshot.segment[idx(segment_index(digit, k))].contact;
+  }
+  /// Returns the ratio of the torque to the difference of the hands [Nm/rad].
+  [[nodiscard]] double kappa() const {
+    const double apart = (measured - shown).norm();
+    return apart > 0.0 ? torque.norm() / apart : 0.0;
+  }
+};
+
+/// Finds jumps of a digit's torque from tick to tick: kJump.
+class JumpFinder {
+ public:
+  explicit JumpFinder(const DigitState& first) : last_(first) { recent_.fill(first.torque.norm()); }
+  /// @returns true if the torque has jumped since the last tick
+  bool see(const DigitState& now) {
+    recent_[next_] = now.torque.norm();
+    next_ = (next_ + 1) % recent_.size();
+    const double way = (now.measured - last_.measured).norm() + (now.shown - last_.shown).norm();
+    const double explained =
+        std::max(now.kappa(), last_.kappa()) * way + kJumpShare * *std::ranges::max_element(recent_);
+    const bool jumps = (now.torque - last_.torque).norm() > explained + kJump;
+    last_ = now;
+    return jumps;
+  }
+  [[nodiscard]] const DigitState& last() const { return last_; }
+
+ private:
+  DigitState last_;
+  std::array<double, 30> recent_{};  ///< sizes of the torque at the last ticks [Nm]
+  std::size_t next_ = 0;
+};
+
+constexpr double kSlowly = 0.5e-3;  // way of a shown finger in a tick [m]
+
+/// Returns how far the points of a shown digit have moved at most [m].
+double way_of(const HandModel& hand, int digit, const DigitState& from, const DigitState& to) {
+  DigitAngles change{};
+  for (int i = 0; i < kJointsPerDigit; ++i) change[idx(i)] = to.shown[i] - from.shown[i];
+  return segment_speed(hand, digit, change, kSegmentsPerDigit - 1);
+}
+
+constexpr double kTolerance = 10e-9;  // of the margin [m]
+
+/// @throws std::runtime_error if FCL finds a shown segment nearer to the object than the margin
+void expect_clear(FclEngine& fcl, const Placed& placed, const Snapshot& snapshot, const std::string& motion) {
+  const double margin = placed.scene.parameters.contact.margin;
+  for (int s = 0; s < kPalm; ++s) {
+    const double distance = fcl.nearest(s, snapshot.gdp_pose[idx(s)], margin).distance;
+    if (!(distance >= margin - kTolerance))
+      throw std::runtime_error(fmt::format("{}: tick {}: {} is {} mm from the object; the margin is {} mm",
+                                           motion, snapshot.tick, segment_name(s), 1e3 * distance,
+                                           1e3 * margin));
+  }
+}
+
+/// What the torques do over the motion, before stabiliser and limits, and the contact problems of sliding mode.
+void describe_forces(const Placed& placed, const BenchMotion& motion, RecordingReport& report) {
+  HapticParameters parameters = placed.scene.parameters;
+  parameters.stabiliser.method = Stabiliser::kNone;
+  parameters.limits.fingertip_force_enabled = false;
+  parameters.limits.joint_torque_enabled = false;
+  parameters.limits.torque_rate_enabled = false;
+  HapticState state(*placed.model, parameters);
+  const ContactModel contact{placed.model->hand, placed.model->trees(), placed.model->object,
+                             parameters.contact, parameters.period()};
+  GdpState gdp(contact);  // of the same steps, to be looked into
+  HandPoses hcp;
+  std::array<bool, kDigits> all_measured{};
+  all_measured.fill(true);
+  FclEngine fcl(placed.model->hand, placed.model->object.mesh());
+  std::size_t touching = 0;
+  std::size_t jumps = 0;
+  std::size_t slow_jumps = 0;
+  std::size_t unsolved = 0;
+  std::vector<JumpFinder> finder;
+  for (int d = 0; d < kDigits; ++d) finder.emplace_back(DigitState(state.snapshot(), d));
+  for (std::size_t t = 0; t < motion.angle.size(); ++t) {
+    (void)step(*placed.model, parameters, {static_cast<double>(t) / parameters.rate_hz, motion.angle[t]},
+               state);
+    const Snapshot& snapshot = state.snapshot();
+    placed.model->hand.poses(snapshot.hcp_angle, hcp);
+    (void)advance_gdp(contact, snapshot.hcp_angle, hcp, all_measured, gdp);
+    if (gdp.angle != snapshot.gdp_angle)
+      throw std::runtime_error(
+          fmt::format("{}: tick {}: two runs of the same motion show different hands", motion.name, t));
+    expect_clear(fcl, placed, snapshot, motion.name);
+    for (int d = 0; d < kDigits; ++d) {
+      const DigitState now(snapshot, d);
+      const DigitState before = finder[idx(d)].last();
+      touching += now.touches || before.touches ? 1U : 0U;
+      unsolved += gdp.sliding[idx(d)].residual > kUnsolved ? 1U : 0U;
+      if (!finder[idx(d)].see(now)) continue;
+      ++jumps;
+      slow_jumps += way_of(placed.model->hand, d, before, now) <= kSlowly ? 1U : 0U;
+    }
+  }
+  if (touching == 0) return;
+  report.jumps = static_cast<double>(jumps) / static_cast<double>(touching);
+  report.slow_jumps = static_cast<double>(slow_jumps) / static_cast<double>(touching);
+  report.unsolved = static_cast<double>(unsolved) / static_cast<double>(touching);
+}
+
 /// What the hand does over the motion.
 void describe(const Placed& placed, const BenchMotion& motion, RecordingReport& report) {
   HapticState state(*placed.model, placed.scene.parameters);
@@ -203,6 +323,7 @@ RecordingReport measure(const Placed& placed, const BenchMotion& motion) {
   report.triangles = placed.model->object.triangle_count();
   report.lowered_mm = 1e3 * placed.lowered;
   describe(placed, motion, report);
+  describe_forces(placed, motion, report);
   const OurTimes times = time_ours(*placed.model, placed.scene.parameters, {motion});
   if (!times.same_hash)
     throw std::runtime_error(fmt::format(

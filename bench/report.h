@@ -54,6 +54,14 @@ struct SceneReport {
 };
 
 /// One recording of human motion before one object.
+/// A digit's torque before stabiliser and limits jumps if it changes by this much more than what explains it: kappa
+/// times the way of measured and shown angles, where kappa is the ratio of torque to their difference, and kJumpShare
+/// of the greatest torque of the last 30 ticks [Nm].
+inline constexpr double kJump = 0.02;
+inline constexpr double kJumpShare = 0.05;
+/// Residual of a contact problem that is not solved [m].
+inline constexpr double kUnsolved = 10e-9;
+
 struct RecordingReport {
   std::string recording;  ///< the file's name
   std::string object;     ///< the mesh file's name
@@ -68,6 +76,9 @@ struct RecordingReport {
   double exhausted = 0.0;   ///< share of the ticks in which the search ran out of iterations [-]
   double offset_mm = 0.0;  ///< median over the ticks with contact of the greatest offset_along() of a segment
   double farthest_mm = 0.0;  ///< the greatest of them
+  double jumps = 0.0;        ///< share of a digit's ticks with contact in which its torque jumps: kJump
+  double slow_jumps = 0.0;   ///< those of them in which no point of the shown digit moves by more than 0.5 mm
+  double unsolved = 0.0;     ///< the same for a contact problem whose residual is above kUnsolved
   std::uint64_t hash = 0;    ///< of the forces
   TimesRow times;            ///< warm, all ticks
 };

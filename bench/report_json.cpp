@@ -85,6 +85,9 @@ Json json_of(const RecordingReport& recording) {
               {"search_exhausted", recording.exhausted},
               {"offset_along_mm", recording.offset_mm},
               {"farthest_offset_along_mm", recording.farthest_mm},
+              {"jumps", recording.jumps},
+              {"slow_jumps", recording.slow_jumps},
+              {"unsolved", recording.unsolved},
               {"hash", fmt::format("{:016x}", recording.hash)}});
   return out;
 }

@@ -33,15 +33,15 @@ std::string recordings_markdown(const std::vector<RecordingReport>& recordings) 
                                  recordings.front().sliding ? "sliding" : "static");
   text +=
       "| recording | object | mm | triangles | ticks | contact | offset | "
-      "farthest | p50 | p99 | p99.9 | max | raw max "
-      "|\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+      "farthest | jumps | slow | unsolved | p50 | p99 | p99.9 | max | raw max "
+      "|\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
   for (const RecordingReport& r : recordings) {
     text += fmt::format(
-        "| {} | {} | {:.0f} | {} | {} | {:.0f} % | {:.1f} mm | {:.1f} mm | {:.2f} | {:.2f} | {:.2f} | {:.2f} "
-        "| "
-        "{:.2f} |\n",
+        "| {} | {} | {:.0f} | {} | {} | {:.0f} % | {:.1f} mm | {:.1f} mm | {:.2f} % | {:.2f} % | {:.2f} % | "
+        "{:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
         r.recording, r.object, r.size_mm, r.triangles, r.times.ticks, 100.0 * r.in_contact, r.offset_mm,
-        r.farthest_mm, r.times.us.p50, r.times.us.p99, r.times.us.p999, r.times.us.max, r.times.raw_max);
+        r.farthest_mm, 100.0 * r.jumps, 100.0 * r.slow_jumps, 100.0 * r.unsolved, r.times.us.p50,
+        r.times.us.p99, r.times.us.p999, r.times.us.max, r.times.raw_max);
   }
   return text;
 }
@@ -111,17 +111,19 @@ std::string scene_markdown(const SceneReport& scene) {
 
 std::string recordings_heading(bool sliding) {
   return fmt::format(
-      "\n{} contacts\n{:<44}{:<12}{:>5}{:>10}{:>8}{:>9}{:>9}{:>10}{:>9}{:>9}{:>9}{:>9}{:>10}\n",
+      "\n{} "
+      "contacts\n{:<44}{:<12}{:>5}{:>10}{:>8}{:>9}{:>9}{:>10}{:>8}{:>8}{:>10}{:>9}{:>9}{:>9}{:>9}{:>10}\n",
       sliding ? "sliding" : "static", "recording", "object", "mm", "triangles", "ticks", "contact", "offset",
-      "farthest", "p50", "p99", "p99.9", "max", "raw max");
+      "farthest", "jumps", "slow", "unsolved", "p50", "p99", "p99.9", "max", "raw max");
 }
 
 std::string recording_text(const RecordingReport& recording) {
   return fmt::format(
-      "{:<44}{:<12}{:>5.0f}{:>10}{:>8}{:>8.0f}%{:>7.1f}mm{:>8.1f}mm{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>10.2f}"
-      "\n",
+      "{:<44}{:<12}{:>5.0f}{:>10}{:>8}{:>8.0f}%{:>7.1f}mm{:>8.1f}mm{:>7.2f}%{:>7.2f}%{:>9.2f}%"
+      "{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>10.2f}\n",
       recording.recording, recording.object, recording.size_mm, recording.triangles, recording.times.ticks,
-      100.0 * recording.in_contact, recording.offset_mm, recording.farthest_mm, recording.times.us.p50,
+      100.0 * recording.in_contact, recording.offset_mm, recording.farthest_mm, 100.0 * recording.jumps,
+      100.0 * recording.slow_jumps, 100.0 * recording.unsolved, recording.times.us.p50,
       recording.times.us.p99, recording.times.us.p999, recording.times.us.max, recording.times.raw_max);
 }
 

@@ -409,7 +409,8 @@ void open_contacts(ContactProblem& problem, const HeldJoints& held, double toler
 constexpr double kNearlySolved = 1e-9;  // residual [m]
 
 /// Sweeps over the contacts with the joints of `held` fixed at their bounds, and goes on with Newton's method.
-void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance,
+/// @returns true if the sweeps have converged
+bool sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps, double tolerance,
                     int& newton_budget) noexcept {
   const auto count = static_cast<std::size_t>(problem.count);
   DigitAngles& x = problem.displacement;
@@ -467,13 +468,14 @@ void sweep_contacts(ContactProblem& problem, const HeldJoints& held, int sweeps,
     problem.contact[i].slips = contact[i].slips;
     problem.contact[i].spins = contact[i].spins;
   }
-  if (change <= tolerance) return;
+  if (change <= tolerance) return true;
   // A single contact that the sweeps do not solve jams: Newton's method finds nothing better. It may find another of
   // several solutions, and the force would jump: it is left out where several contacts are nearly solved, too.
   const bool solved = count > 1 && contact_residual(problem, held) > kNearlySolved &&
                       newton_contacts(problem, held, tolerance, newton_budget) <= tolerance;
   x = displacement_of(problem, held);
   if (!solved) open_contacts(problem, held, tolerance);
+  return false;
 }
 
 }  // namespace
@@ -485,7 +487,7 @@ SegmentVectors tangential_multipliers(const ContactProblem& problem) noexcept {
   return sum;
 }
 
-void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
+double solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexcept {
   // Joints at their limits are an active set, from the last solution on. After some rounds no joint is released
   // any more, so that the set settles.
   constexpr int kNewtonSteps = 60;  // of all rounds
@@ -497,8 +499,11 @@ void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexc
     if (problem.limit[j] != 0.0) held[j] = problem.limit[j] < 0.0 ? Held::kHighest : Held::kLowest;
   }
   bool changed = true;
+  bool converged = false;
+  HeldJoints solved_with = held;
   for (int round = 0; round < kRounds && changed; ++round) {
-    sweep_contacts(problem, held, sweeps, tolerance, newton_budget);
+    solved_with = held;
+    converged = sweep_contacts(problem, held, sweeps, tolerance, newton_budget);
     changed = false;
     for (std::size_t j = 0; j < held.size(); ++j) {
       // Computed from the multipliers alone, so that a contact that has let go leaves no rounding.
@@ -514,6 +519,7 @@ void solve_contacts(ContactProblem& problem, int sweeps, double tolerance) noexc
       problem.limit[j] = problem.displacement[j] - without;
     }
   }
+  return converged && !changed ? tolerance : contact_residual(problem, solved_with);
 }
 
 }  // namespace phalanx

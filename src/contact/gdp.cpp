@@ -9,22 +9,11 @@
 
 #include "contact/containment.h"
 #include "contact/gdp_digit.h"
+#include "contact/normal_fan.h"
 #include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {
-
-/// Returns n, turned towards n_c until it is within 30 degrees of it. See docs/architecture.md "The GDP,
-/// exactly", Direction of the force.
-Vec3 within_cone(const Vec3& n, const Vec3& n_c) noexcept {
-  constexpr double kSin30Deg = 0.5;
-  const double along = n.dot(n_c);
-  if (along >= kCos30Deg) return n;
-  const Vec3 across = n - along * n_c;
-  const double length = across.norm();
-  if (!(length > 1e-12)) return n_c;
-  return kCos30Deg * n_c + (kSin30Deg / length) * across;
-}
 
 std::string millimetres(double metres) { return std::to_string(metres * 1e3) + " mm"; }
 

@@ -8,6 +8,7 @@
 #include "contact/first_contact.h"
 #include "contact/gdp_digit.h"
 #include "contact/manifold.h"
+#include "contact/object_end.h"
 #include "phalanx/core/constants.h"
 
 namespace phalanx {
@@ -35,11 +36,8 @@ constexpr double kOwnCompliance = 0.05;     // share of friction's compliance th
 constexpr double kLeastLoadShare = 0.25;    // of a contact in its segment's load
 constexpr double kLongestSubstep = 1e-3;    // [s]
 constexpr double kMostSubsteps = 20.0;
-constexpr double kLeastBeyond = 1e-3;  // depth below which the measured finger is not looked for beyond [m]
-constexpr double kCheckBeyond = 4e-3;  // [s]
-constexpr double kBeyondFor = 30e-3;   // [s]
-constexpr int kSweeps = 6;             // then Newton's method goes on
-constexpr int kSweepsOfOne = 20;       // of a single contact
+constexpr int kSweeps = 6;        // then Newton's method goes on
+constexpr int kSweepsOfOne = 20;  // of a single contact
 constexpr int kRecoverySweeps = 8;
 constexpr double kSoftness = 0.05;  // of the recovery, so that it converges between opposed contacts
 constexpr int kMostEvents = 4;
@@ -117,6 +115,7 @@ class Substep {
       place.triangle = -1;
       place.slot = block.slot;
       place.on_segment = tick_.pose.segment[idx(block.k)] * block.p_S;
+      place.on_object = block.on_object;
       place.gap = block.direction.dot(place.on_segment - block.on_object);
       place.direction = block.direction;
       if (place.gap > 0.0 && !is_listed(block.k, place)) add(block.k, place, last, taken);
@@ -153,6 +152,9 @@ class Substep {
     contact.normal = place.direction;
     contact.tangent[0] = place.direction.unitOrthogonal();
     contact.tangent[1] = place.direction.cross(contact.tangent[0]);
+    contact.force_normal = model_.parameters.normal == ForceNormal::kContact
+                               ? place.direction
+                               : normal_at_place(model_.object, near(k), place);
     contact.gap = place.gap;
     contact.friction = friction_of(place.slot);
 
@@ -217,7 +219,8 @@ class Substep {
     ContactProblem problem;
     set_up(free, problem);
     problem.limit = contacts_.limit;
-    solve_contacts(problem, contacts_.count > 1 ? kSweeps : kSweepsOfOne, kTolerance);
+    const double residual = solve_contacts(problem, contacts_.count > 1 ? kSweeps : kSweepsOfOne, kTolerance);
+    contacts_.residual = std::max(contacts_.residual, residual);
     solved_ = problem.displacement;
     contacts_.limit = problem.limit;
     for (int i = 0; i < problem.count; ++i) {
@@ -317,7 +320,7 @@ class Substep {
       any = any || out.room < -kLeastRecovery;
     }
     if (!any) return;
-    solve_contacts(problem, kRecoverySweeps, kLeastRecovery);
+    (void)solve_contacts(problem, kRecoverySweeps, kLeastRecovery);
     const DigitAngles& away = problem.displacement;
     std::array<bool, kSegmentsPerDigit> known{};
     for (int k = 0; k < kSegmentsPerDigit; ++k) known[idx(k)] = near(k).is_at(tick_.pose.segment[idx(k)]);
@@ -480,10 +483,11 @@ void set_depths(const ContactModel& model, const DigitTick& tick, const DigitAng
   } else {
     factor = 0.0;
   }
+  const double share = factor * contacts.force_share();
   for (int c = 0; c < contacts.count; ++c) {
     SlidingContact& contact = contacts.contact[idx(c)];
-    for (std::size_t r = 0; r < contact.depth.size(); ++r) contact.depth[r] = factor * contact.multiplier[r];
-    contact.spin_depth = factor * contact.multiplier[3];
+    for (std::size_t r = 0; r < contact.depth.size(); ++r) contact.depth[r] = share * contact.multiplier[r];
+    contact.spin_depth = share * contact.multiplier[3];
   }
 }
 
@@ -505,7 +509,7 @@ void set_record(const ContactModel& model, const DigitTick& tick, int k, const D
   };
   for_each([&](const SlidingContact& contact, const Vec3& f) {
     force += f;
-    normal += contact.depth[0] * contact.normal;
+    normal += contact.depth[0] * contact.force_normal;
     centre += contact.depth[0] * contact.p_S;
     weight += contact.depth[0];
   });
@@ -524,7 +528,7 @@ void set_record(const ContactModel& model, const DigitTick& tick, int k, const D
   double friction = 0.0;
   for_each([&](const SlidingContact& contact, const Vec3& f) {
     const Vec3 arm = tick.pose.segment[idx(k)] * contact.p_S - record.p_gdp;
-    moment += arm.cross(f) + contact.spin_depth * contact.normal;
+    moment += arm.cross(f) + contact.spin_depth * contact.force_normal;
     longest = std::max(longest, arm.norm());
     friction = std::max(friction, contact.friction);
   });
@@ -533,52 +537,15 @@ void set_record(const ContactModel& model, const DigitTick& tick, int k, const D
   record.couple = (length > most ? most / length : 1.0) / depth * moment;
 }
 
-/// @returns true if the measured digit has been clear of the object for a while, though the shown one is held by
-/// a contact: it has passed the object's end, or gone through it. All segments are clear of the surface, and the
-/// chain begins outside, so that none is inside.
-bool is_beyond(const ContactModel& model, const DigitTick& tick, GdpState& state) noexcept {
-  DigitContacts& contacts = state.sliding[idx(tick.digit)];
-  double deepest = 0.0;
-  for (int c = 0; c < contacts.count; ++c) deepest = std::max(deepest, contacts.contact[idx(c)].depth[0]);
-  if (!(deepest > kLeastBeyond)) {
-    contacts.unchecked_for = contacts.beyond_for = 0.0;
-    return false;
-  }
-  contacts.unchecked_for += model.period;
-  if (contacts.unchecked_for < kCheckBeyond) return false;
-  bool clear = true;
-  for (int k = kSegmentsPerDigit - 1; k >= 0 && clear; --k) {  // the fingertip is the likeliest to be inside
-    const PlacedSegment placed{model.trees[idx(segment_index(tick.digit, k))], tick.hcp_pose.segment[idx(k)],
-                               state.scratch};
-    const double margin = model.parameters.margin;
-    const ObjectTree& object = model.object.tree();
-    // The bound finds most fingers that are clear, crosses() most that are not. Where crosses() is undecided, it is
-    // true.
-    clear = distance_bound(placed, object, 2.0 * margin) > margin ||
-            (!crosses(placed, object) && distance(placed, object, 2.0 * margin) > margin);
-  }
-  contacts.beyond_for = clear ? contacts.beyond_for + contacts.unchecked_for : 0.0;
-  contacts.unchecked_for = 0.0;
-  return contacts.beyond_for >= kBeyondFor;
-}
-
-/// Shows the digit where it is measured, without contacts.
-void rejoin(DigitTick& tick, GdpState& state) noexcept {
-  tick.angle = tick.hcp;
-  tick.pose = tick.hcp_pose;
-  state.sliding[idx(tick.digit)] = {};
-  for (int k = 0; k < kSegmentsPerDigit; ++k) {
-    const std::size_t s = idx(segment_index(tick.digit, k));
-    state.clearance[s] = {};
-    state.near[s].clear();
-  }
-}
-
 }  // namespace
 
 void advance_sliding(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
   DigitContacts& contacts = state.sliding[idx(tick.digit)];
-  if (is_beyond(model, tick, state)) rejoin(tick, state);
+  contacts.residual = 0.0;
+  if (goes_round(model, tick, state)) {
+    for (int k = 0; k < kSegmentsPerDigit; ++k) record_of(state, tick, k) = {};
+    return;
+  }
   const int substeps =
       contacts.count > 0
           ? static_cast<int>(std::clamp(std::ceil(model.period / kLongestSubstep - 1e-9), 1.0, kMostSubsteps))

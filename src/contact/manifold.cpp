@@ -33,36 +33,10 @@ void add_face(const Corners& t, const Vec3& direction, NormalFan& fan) noexcept 
   fan.add((normal.dot(direction) < 0.0 ? -1.0 / size : 1.0 / size) * normal);
 }
 
-/// @returns true if the triangle contains the point, to kTie
-bool contains(const Corners& t, const Vec3& point) noexcept {
+/// @returns true if the triangle contains the point, to `tolerance` [m]
+bool contains(const Corners& t, const Vec3& point, double tolerance = kTie) noexcept {
   const Vec3 w = barycentric(t, point);
-  return (w[0] * t[0] + w[1] * t[1] + w[2] * t[2] - point).squaredNorm() <= kTie * kTie;
-}
-
-/// @returns true if the pair is nearer than its neighbours on both meshes: its direction lies between the normals
-/// of the faces that meet at its point, on the object and on the segment. The faces that meet at a point are as
-/// near to the other triangle as the pair, and so are among the near pairs.
-bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const NearPairs& near,
-                const NearPairs::Pair& pair, const Vec3& direction) noexcept {
-  NormalFan on_object;
-  NormalFan on_segment;
-  const double reach = std::sqrt(pair.closest.squared) + kTie;
-  const double limit = reach * reach;
-  for (std::size_t i = 0; i < near.count(); ++i) {
-    const NearPairs::Pair& other = near[i];
-    if (other.closest.squared > limit) continue;
-    if (other.triangle == pair.triangle) {
-      const Corners t = object.corners(other.slot);
-      if (contains(t, pair.closest.on_b)) add_face(t, direction, on_object);
-    }
-    if (other.slot == pair.slot) {
-      Corners t = segment.tree.corners(other.triangle);
-      for (Vec3& x : t) x = segment.X_WS * x;
-      if (contains(t, pair.closest.on_a)) add_face(t, -direction, on_segment);
-    }
-  }
-  return on_object.nearest(direction).dot(direction) >= kCosInside &&
-         on_segment.nearest(-direction).dot(-direction) >= kCosInside;
+  return (w[0] * t[0] + w[1] * t[1] + w[2] * t[2] - point).squaredNorm() <= tolerance * tolerance;
 }
 
 /// Returns the place of a pair at two of its points.
@@ -75,6 +49,32 @@ ContactPlace place_of(const NearPairs::Pair& pair, const Vec3& on_segment, const
           .on_segment = on_segment,
           .on_object = on_object,
           .direction = gap > 0.0 ? Vec3(apart / gap) : Vec3(Vec3::Zero())};
+}
+
+/// @returns true if the place is nearer than its neighbours on both meshes: its direction lies between the normals
+/// of the faces that meet at its point, on the object and on the segment. The faces that meet at a point are as
+/// near to the other triangle as the place, and so are among the near pairs.
+bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const NearPairs& near,
+                const ContactPlace& place) noexcept {
+  NormalFan on_object;
+  NormalFan on_segment;
+  const double reach = place.gap + kTie;
+  const double limit = reach * reach;
+  for (std::size_t i = 0; i < near.count(); ++i) {
+    const NearPairs::Pair& other = near[i];
+    if (other.closest.squared > limit) continue;
+    if (other.triangle == place.triangle) {
+      const Corners t = object.corners(other.slot);
+      if (contains(t, place.on_object)) add_face(t, place.direction, on_object);
+    }
+    if (other.slot == place.slot) {
+      Corners t = segment.tree.corners(other.triangle);
+      for (Vec3& x : t) x = segment.X_WS * x;
+      if (contains(t, place.on_segment)) add_face(t, -place.direction, on_segment);
+    }
+  }
+  return on_object.nearest(place.direction).dot(place.direction) >= kCosInside &&
+         on_segment.nearest(-place.direction).dot(-place.direction) >= kCosInside;
 }
 
 bool belongs_to(const ContactPlace& chosen, const ContactPlace& place) noexcept {
@@ -128,6 +128,12 @@ class Ends {
     farthest_.fill(nearest);
     for (std::size_t e = 0; e < along_.size(); ++e) value_[e] = along_[e].dot(nearest.on_segment);
   }
+  /// @returns true if the place is farther along one of the directions
+  [[nodiscard]] bool is_farther(const ContactPlace& place) const noexcept {
+    for (std::size_t e = 0; e < along_.size(); ++e)
+      if (along_[e].dot(place.on_segment) > value_[e]) return true;
+    return false;
+  }
   void add(const ContactPlace& place) noexcept {
     for (std::size_t e = 0; e < along_.size(); ++e) {
       const double value = along_[e].dot(place.on_segment);
@@ -161,26 +167,41 @@ class Ends {
 
 /// Ends of a line or face that lies flat: of the places equally near, and of those about as near as the nearest.
 /// Without ties all are the nearest place.
-struct FlatContact {
-  explicit FlatContact(const ContactPlace& place) noexcept : nearest(place), equal(place), tied(place) {}
+class FlatContact {
+ public:
+  FlatContact(const ContactPlace& nearest, const PlacedSegment& segment, const ObjectTree& object,
+              const NearPairs& near) noexcept
+      : equal(nearest), tied(nearest), nearest_(nearest), segment_(segment), object_(object), near_(near) {}
 
   /// Adds all points of a tied pair that are about as near. Points of parallel edges and faces are.
-  /// @param corners  of the segment's triangle, in W
-  void add(const NearPairs::Pair& pair, const Corners& corners, const Corners& object) noexcept {
+  void add(const NearPairs::Pair& pair) noexcept {
+    Corners corners = segment_.tree.corners(pair.triangle);
+    for (Vec3& x : corners) x = segment_.X_WS * x;
+    const Corners object = object_.corners(pair.slot);
     if (!equal.may_be_farther(corners, object) && !tied.may_be_farther(corners, object)) return;
     for_each_feature_pair(corners, object, [&](const Vec3& on_a, const Vec3& on_b) {
-      const double limit = nearest.gap + kTier;
+      const double limit = nearest_.gap + kTier;
       if ((on_a - on_b).squaredNorm() > limit * limit) return;
       const ContactPlace place = place_of(pair, on_a, on_b);
-      if (!is_tied(nearest, place)) return;
+      if (!is_tied(nearest_, place)) return;
+      const bool equally = place.gap <= nearest_.gap + kEqual;
+      if (!tied.is_farther(place) && !(equally && equal.is_farther(place))) return;
+      // On a finely cut face a point of the segment is about as near to an edge beside it: that is no place.
+      const bool parallel = place.direction.dot(nearest_.direction) >= kCosInside;
+      if (!parallel && !is_nearest(segment_, object_, near_, place)) return;
       tied.add(place);
-      if (place.gap <= nearest.gap + kEqual) equal.add(place);
+      if (equally) equal.add(place);
     });
   }
 
-  ContactPlace nearest;
   Ends equal;
   Ends tied;
+
+ private:
+  ContactPlace nearest_;
+  const PlacedSegment& segment_;
+  const ObjectTree& object_;
+  const NearPairs& near_;
 };
 
 /// Chooses places: the ends of what is nearest; then, of those about as near as the nearest one left, the farthest
@@ -243,20 +264,18 @@ void find_manifold(const PlacedSegment& segment, const ObjectTree& object, doubl
   const NearPairs::Pair& first = near[order[0]];
   const ContactPlace nearest = place_of(first, first.closest.on_a, first.closest.on_b);
   candidates.add(nearest);
-  FlatContact flat(nearest);
+  FlatContact flat(nearest, segment, object, near);
   int tests = 0;
   for (std::size_t n = 0; n < count && tests < kMostTests; ++n) {
     const NearPairs::Pair& pair = near[order[n]];
     const ContactPlace place = place_of(pair, pair.closest.on_a, pair.closest.on_b);
     if (is_tied(nearest, place)) {
-      Corners corners = segment.tree.corners(pair.triangle);
-      for (Vec3& x : corners) x = segment.X_WS * x;
-      flat.add(pair, corners, object.corners(pair.slot));
+      flat.add(pair);
       continue;
     }
     if (candidates.has(place)) continue;
     ++tests;
-    if (is_nearest(segment, object, near, pair, place.direction)) candidates.add(place);
+    if (is_nearest(segment, object, near, place)) candidates.add(place);
   }
   choose(flat, candidates, std::min(most, Manifold::kMost), out);
   // The nearest first. Places that are equally near keep their order, so that rounding does not decide.
@@ -264,6 +283,18 @@ void find_manifold(const PlacedSegment& segment, const ObjectTree& object, doubl
     for (int i = n; i > 0 && out.place[idx(i)].gap < out.place[idx(i - 1)].gap - kEqual; --i)
       std::swap(out.place[idx(i)], out.place[idx(i - 1)]);
   }
+}
+
+Vec3 normal_at_place(const ObjectModel& object, const NearPairs& near, const ContactPlace& place) noexcept {
+  TiedTriangles meet;
+  meet.add(place.slot);
+  const double limit = place.gap * place.gap + kEdgeBand * kEdgeBand;
+  for (std::size_t i = 0; !near.overflows() && i < near.count(); ++i) {
+    const NearPairs::Pair& pair = near[i];
+    if (pair.triangle != place.triangle || pair.closest.squared > limit) continue;
+    if (contains(object.tree().corners(pair.slot), place.on_object, kEdgeBand)) meet.add(pair.slot);
+  }
+  return within_cone(normal_at_contact(object, meet, place.on_object, place.direction), place.direction);
 }
 
 }  // namespace phalanx

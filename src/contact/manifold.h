@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "phalanx/contact/near_pairs.h"
+#include "phalanx/contact/object_model.h"
 #include "phalanx/contact/object_tree.h"
 #include "phalanx/contact/proximity.h"
 
@@ -37,5 +38,12 @@ struct Manifold {
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 void find_manifold(const PlacedSegment& segment, const ObjectTree& object, double reach, double least,
                    int most, NearPairs& near, Manifold& out) noexcept;
+
+/// Returns the object's normal at a place, within 30 degrees of its direction: normal_at_contact() of the triangles
+/// that meet there.
+/// @param near  the pairs among which find_manifold() has found the place
+/// Real-time: bounded, no allocation, lock, throw or I/O.
+[[nodiscard]] Vec3 normal_at_place(const ObjectModel& object, const NearPairs& near,
+                                   const ContactPlace& place) noexcept;
 
 }  // namespace phalanx

@@ -6,13 +6,10 @@
 #include "contact/feature_pairs.h"
 #include "phalanx/contact/object_tree.h"
 #include "phalanx/contact/triangle_distance.h"
+#include "phalanx/core/constants.h"
 
 namespace phalanx {
 namespace {
-
-/// Distance from an edge below which a contact counts as partly on it [m]. Where n_c leans out over an edge,
-/// the contact is on it to rounding.
-constexpr double kEdgeBand = 10e-6;
 
 Vec3 unit_or(const Vec3& v, const Vec3& fallback) noexcept {
   const double length = v.norm();
@@ -156,6 +153,16 @@ Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied, con
     }
   }
   return fan.nearest(n_c);
+}
+
+Vec3 within_cone(const Vec3& n, const Vec3& n_c) noexcept {
+  constexpr double kSin30Deg = 0.5;
+  const double along = n.dot(n_c);
+  if (along >= kCos30Deg) return n;
+  const Vec3 across = n - along * n_c;
+  const double length = across.norm();
+  if (!(length > 1e-12)) return n_c;
+  return kCos30Deg * n_c + (kSin30Deg / length) * across;
 }
 
 }  // namespace phalanx

@@ -10,6 +10,10 @@
 
 namespace phalanx {
 
+/// Distance from an edge below which a contact counts as partly on it [m]. Where n_c leans out over an edge,
+/// the contact is on it to rounding.
+inline constexpr double kEdgeBand = 10e-6;
+
 /// Triangles of the object that tie for a contact, in order of arrival. Triangles beyond the capacity are
 /// dropped: so many tie only on a finely cut flat face, where all have the same normal.
 class TiedTriangles {
@@ -79,5 +83,9 @@ class NormalFan {
 /// Real-time: no allocation, lock, throw or I/O.
 [[nodiscard]] Vec3 normal_at_contact(const ObjectModel& object, const TiedTriangles& tied,
                                      const Vec3& contact, const Vec3& n_c) noexcept;
+
+/// Returns n, turned towards n_c until it is within 30 degrees of it. See docs/architecture.md "The GDP,
+/// exactly", Direction of the force.
+[[nodiscard]] Vec3 within_cone(const Vec3& n, const Vec3& n_c) noexcept;
 
 }  // namespace phalanx

@@ -46,10 +46,9 @@ void record_contact_points(const HapticParameters& parameters, const GdpState& g
     ContactPoint& at = out.contact_points.point[idx(out.contact_points.count++)];
     at.segment = s;
     at.point = out.gdp_pose[idx(s)] * contact.p_S;
-    at.normal = contact.normal;
+    at.normal = contact.force_normal;
     at.force = sent * (contact.depth[0] / resultant);
-    at.friction = sent * (contact.depth[1] / resultant * contact.tangent[0] +
-                          contact.depth[2] / resultant * contact.tangent[1]);
+    at.friction = sent / resultant * contact.friction_depth();
     at.spin = sent * (contact.spin_depth / resultant);
     at.coefficient = contact.friction;
     at.slips = contact.slips &&

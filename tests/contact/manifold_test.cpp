@@ -12,6 +12,7 @@
 
 #include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
+#include "support/reference/surface_bound.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -133,6 +134,60 @@ TEST(Manifold, ABallInAGrooveTouchesBothSides) {
   }
   EXPECT_GT(left, 0.99);
   EXPECT_GT(right, 0.99);
+}
+
+TEST(Manifold, AFinelyCutFaceHasNoPlaceAtItsInnerEdges) {
+  Placed placed(bar(), face(20000));
+  int places = 0;
+  for (int tilt = 1; tilt <= 20; ++tilt) {
+    for (int shift = 0; shift < 20; ++shift) {
+      // The bar's lower long edge is parallel to edges of the face.
+      Pose X = turned(Vec3::UnitX(), 4e-3 * tilt, 0.0);
+      X.p.y() = 0.031e-3 * shift;
+      double lowest = 0.0;
+      for (const Vec3& corner : bar().vertices) lowest = std::min(lowest, (X.R * corner).z());
+      X.p.z() = kGap - lowest;
+      const Manifold manifold = placed.at(X);
+      for (int i = 0; i < manifold.count; ++i, ++places)
+        ASSERT_GT(manifold.place[static_cast<std::size_t>(i)].direction.z(), 1.0 - 1e-8)
+            << tilt << " " << shift;
+    }
+  }
+  EXPECT_GE(places, 800);
+}
+
+TEST(Manifold, TheNormalAtAPlaceIsInterpolatedOverASmoothSurface) {
+  Placed placed(make_sphere(0.01, 500), make_sphere(0.06, 1000));
+  double features = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 radial = Vec3(std::cos(0.13 * i), std::sin(0.13 * i), 0.8 - 0.03 * i).normalized();
+    Manifold manifold;
+    for (double height = 0.0352; manifold.count == 0 && height > 0.034; height -= 5e-6)
+      manifold = placed.at({Mat3::Identity(), height * radial});
+    ASSERT_GT(manifold.count, 0) << i;
+    const ContactPlace& place = manifold.place[0];
+    const Vec3 normal = normal_at_place(placed.object(), placed.near(), place);
+    EXPECT_NEAR(normal.norm(), 1.0, 1e-12);
+    EXPECT_LT(test::angle_of(normal, place.on_object), 0.5 * kDeg) << i;
+    features = std::max(features, test::angle_of(place.direction, place.on_object));
+  }
+  EXPECT_GT(features, 2.0 * kDeg) << "the directions themselves must fail";
+}
+
+TEST(Manifold, TheNormalAtACreaseIsTheDirectionBetweenItsFaces) {
+  Placed placed(make_sphere(0.01, 2000), face(5000));
+  for (const double degrees : {10.0, 30.0, 45.0, 70.0}) {
+    const Vec3 out(std::sin(degrees * kDeg), 0.0, std::cos(degrees * kDeg));
+    Manifold manifold;
+    for (double away = 0.0052; manifold.count == 0 && away > 0.0048; away -= 5e-6)
+      manifold = placed.at({Mat3::Identity(), Vec3(0.02, 0.0003, 0.0) + away * out});
+    ASSERT_GT(manifold.count, 0) << degrees;
+    const ContactPlace& place = manifold.place[0];
+    EXPECT_GT(place.direction.x(), 0.1) << degrees;
+    EXPECT_GT(place.direction.z(), 0.1) << degrees;
+    EXPECT_LT((normal_at_place(placed.object(), placed.near(), place) - place.direction).norm(), 1e-9)
+        << degrees;
+  }
 }
 
 TEST(Manifold, NothingIsFoundBeyondTheReach) {

@@ -21,16 +21,16 @@ namespace phalanx {
 
 std::vector<ContactProblem>* seen_problems = nullptr;  // null: they are not kept
 
-void solve_contacts_itself(ContactProblem& problem, int sweeps, double tolerance) noexcept
+double solve_contacts_itself(ContactProblem& problem, int sweeps, double tolerance) noexcept
     __asm__("__real__ZN7phalanx14solve_contactsERNS_14ContactProblemEid");
-void solve_contacts_seen(ContactProblem& problem, int sweeps, double tolerance) noexcept
+double solve_contacts_seen(ContactProblem& problem, int sweeps, double tolerance) noexcept
     __asm__("__wrap__ZN7phalanx14solve_contactsERNS_14ContactProblemEid");
 
 static_assert(std::is_same_v<decltype(&solve_contacts), decltype(&solve_contacts_seen)>);
 
-void solve_contacts_seen(ContactProblem& problem, int sweeps, double tolerance) noexcept {
+double solve_contacts_seen(ContactProblem& problem, int sweeps, double tolerance) noexcept {
   if (seen_problems != nullptr) seen_problems->push_back(problem);
-  solve_contacts_itself(problem, sweeps, tolerance);
+  return solve_contacts_itself(problem, sweeps, tolerance);
 }
 
 namespace {

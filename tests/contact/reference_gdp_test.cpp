@@ -28,6 +28,7 @@
 #include "phalanx/mesh/primitives.h"
 #include "phalanx/step/haptic_step.h"
 #include "support/human_motion.h"
+#include "support/reference/surface_bound.h"
 #include "support/sanitized.h"
 #include "support/search_cases.h"
 #include "support/simple_hand.h"
@@ -104,8 +105,6 @@ struct Compared {
         between, displacement, point, direction, normal, depth, force, torque);
   }
 };
-
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 enum class From { kOwnState, kProgramsState };
 
@@ -362,13 +361,13 @@ class Beside {
       expected.normal_doubt = 0.0;
     }
     const double point = (reference_.pose(d, k, gdp) * ours.p_S - expected.on_segment).norm();
-    const double direction = angle_between(ours.n_c, expected.n_c);
-    const double normal = angle_between(ours.force_normal, expected.force_normal);
+    const double direction = test::angle_of(ours.n_c, expected.n_c);
+    const double normal = test::angle_of(ours.force_normal, expected.force_normal);
     // Both have the same poses to 1e-13 m. A weight is a share of the band of 5 um, known to 2e-8 then; it
     // moves the point by that share of the extent of what ties, and turns a direction by that.
     EXPECT_LE(point, 1e-10 + (ours.along ? expected.lead_extent : 1e-7 * expected.extent));
     EXPECT_LE(direction, 1e-7 + expected.doubt);
-    EXPECT_LE(angle_between(ours.force_normal, ours.n_c), std::numbers::pi / 6.0 + 1e-9);
+    EXPECT_LE(test::angle_of(ours.force_normal, ours.n_c), std::numbers::pi / 6.0 + 1e-9);
     // The mean of places apart may hover beside all triangles. What is nearest to it on each is then not
     // defined to the last: the program clamps weights, the reference goes to the nearest edge. Only 30
     // degrees are sure.

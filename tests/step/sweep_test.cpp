@@ -231,8 +231,10 @@ struct Turning {
   double off_radial = 0.0;  ///< [rad]
 };
 
-Turning turning_over(const Sweep& s, double crease_angle, int hand_triangles) {
+Turning turning_over(const Sweep& s, double crease_angle, int hand_triangles,
+                     const ContactParameters& contact = {}) {
   LoneFinger finger(ObjectModel(s.mesh, crease_angle), hand_triangles);
+  finger.model().parameters.contact = contact;
   std::vector<Press> presses;
   for (int i = 0; i < s.places; ++i) {
     Approach approach = s.first;
@@ -295,6 +297,20 @@ TEST_P(SweepOverSphere, TheForceTurnsByAtMostATwentiethMorePerMillimetreThanOnAn
   std::printf("%s, flat: %.4f of 1/r at most %.3f off\n", line().name, flat.most * kRadius,
               flat.off_radial / kDegree);
   EXPECT_GE(flat.most * kRadius, 4.0) << "the facets' own normals must fail by far";
+}
+
+TEST_P(SweepOverSphere, TheForceOfSlidingContactsTurnsWithTheSphere) {
+  ContactParameters contact;
+  contact.mode = ContactMode::kSliding;
+  contact.friction = 0.0;
+  const Turning turning = turning_over(line(), kCrease, 20000, contact);
+  contact.normal = ForceNormal::kContact;
+  const Turning features = turning_over(line(), kCrease, 20000, contact);
+  std::printf("%s, sliding: %.4f of 1/r at most, of the features' normals %.2f\n", line().name,
+              turning.most * kRadius, features.most * kRadius);
+  EXPECT_LE(turning.most * kRadius, 1.15);
+  if (test::kSanitized) return;
+  EXPECT_GE(features.most * kRadius, 4.0) << "the features' own normals must fail by far";
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, SweepOverSphere, ::testing::Values(0, 1, 2));
