@@ -53,7 +53,6 @@ struct SceneReport {
   ObjectCost cost;
 };
 
-/// One recording of human motion before one object.
 /// A digit's torque before stabiliser and limits jumps if it changes by this much more than what explains it: kappa
 /// times the way of measured and shown angles, where kappa is the ratio of torque to their difference, and kJumpShare
 /// of the greatest torque of the last 30 ticks [Nm].
@@ -62,6 +61,7 @@ inline constexpr double kJumpShare = 0.05;
 /// Residual of a contact problem that is not solved [m].
 inline constexpr double kUnsolved = 10e-9;
 
+/// One recording of human motion before one object.
 struct RecordingReport {
   std::string recording;  ///< the file's name
   std::string object;     ///< the mesh file's name

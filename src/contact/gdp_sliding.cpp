@@ -152,9 +152,8 @@ class Substep {
     contact.normal = place.direction;
     contact.tangent[0] = place.direction.unitOrthogonal();
     contact.tangent[1] = place.direction.cross(contact.tangent[0]);
-    contact.force_normal = model_.parameters.normal == ForceNormal::kContact
-                               ? place.direction
-                               : normal_at_place(model_.object, near(k), place);
+    const bool interpolated = model_.parameters.normal == ForceNormal::kInterpolated && near(k).is_at(X_WS);
+    contact.force_normal = interpolated ? normal_at_place(model_.object, near(k), place) : place.direction;
     contact.gap = place.gap;
     contact.friction = friction_of(place.slot);
 

@@ -33,10 +33,15 @@ void add_face(const Corners& t, const Vec3& direction, NormalFan& fan) noexcept 
   fan.add((normal.dot(direction) < 0.0 ? -1.0 / size : 1.0 / size) * normal);
 }
 
+/// Returns the point of the triangle that is nearest to a point.
+Vec3 closest_in(const Corners& t, const Vec3& point) noexcept {
+  const Vec3 w = barycentric(t, point);
+  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+}
+
 /// @returns true if the triangle contains the point, to `tolerance` [m]
 bool contains(const Corners& t, const Vec3& point, double tolerance = kTie) noexcept {
-  const Vec3 w = barycentric(t, point);
-  return (w[0] * t[0] + w[1] * t[1] + w[2] * t[2] - point).squaredNorm() <= tolerance * tolerance;
+  return (closest_in(t, point) - point).squaredNorm() <= tolerance * tolerance;
 }
 
 /// Returns the place of a pair at two of its points.
@@ -169,9 +174,16 @@ class Ends {
 /// Without ties all are the nearest place.
 class FlatContact {
  public:
+  /// @param tests  number of places that were tested by is_nearest()
   FlatContact(const ContactPlace& nearest, const PlacedSegment& segment, const ObjectTree& object,
-              const NearPairs& near) noexcept
-      : equal(nearest), tied(nearest), nearest_(nearest), segment_(segment), object_(object), near_(near) {}
+              const NearPairs& near, int& tests) noexcept
+      : equal(nearest),
+        tied(nearest),
+        nearest_(nearest),
+        segment_(segment),
+        object_(object),
+        near_(near),
+        tests_(tests) {}
 
   /// Adds all points of a tied pair that are about as near. Points of parallel edges and faces are.
   void add(const NearPairs::Pair& pair) noexcept {
@@ -188,7 +200,7 @@ class FlatContact {
       if (!tied.is_farther(place) && !(equally && equal.is_farther(place))) return;
       // On a finely cut face a point of the segment is about as near to an edge beside it: that is no place.
       const bool parallel = place.direction.dot(nearest_.direction) >= kCosInside;
-      if (!parallel && !is_nearest(segment_, object_, near_, place)) return;
+      if (!parallel && !is_place(place, corners, object)) return;
       tied.add(place);
       if (equally) equal.add(place);
     });
@@ -198,10 +210,26 @@ class FlatContact {
   Ends tied;
 
  private:
+  /// Asks is_nearest(), unless the two triangles alone, or an earlier answer, say no.
+  bool is_place(const ContactPlace& place, const Corners& corners, const Corners& object) noexcept {
+    const double nearer = (place.gap - kNoise) * (place.gap - kNoise);
+    if ((closest_in(object, place.on_segment) - place.on_segment).squaredNorm() < nearer ||
+        (closest_in(corners, place.on_object) - place.on_object).squaredNorm() < nearer ||
+        rejected_.has(place))
+      return false;
+    if (++tests_ > kMostTests) return false;
+    if (is_nearest(segment_, object_, near_, place)) return true;
+    rejected_.add(place);
+    return false;
+  }
+
+  static constexpr double kNoise = 1e-9;  // [m]
   ContactPlace nearest_;
+  Candidates rejected_;
   const PlacedSegment& segment_;
   const ObjectTree& object_;
   const NearPairs& near_;
+  int& tests_;
 };
 
 /// Chooses places: the ends of what is nearest; then, of those about as near as the nearest one left, the farthest
@@ -264,17 +292,16 @@ void find_manifold(const PlacedSegment& segment, const ObjectTree& object, doubl
   const NearPairs::Pair& first = near[order[0]];
   const ContactPlace nearest = place_of(first, first.closest.on_a, first.closest.on_b);
   candidates.add(nearest);
-  FlatContact flat(nearest, segment, object, near);
   int tests = 0;
-  for (std::size_t n = 0; n < count && tests < kMostTests; ++n) {
+  FlatContact flat(nearest, segment, object, near, tests);
+  for (std::size_t n = 0; n < count; ++n) {
     const NearPairs::Pair& pair = near[order[n]];
     const ContactPlace place = place_of(pair, pair.closest.on_a, pair.closest.on_b);
     if (is_tied(nearest, place)) {
       flat.add(pair);
       continue;
     }
-    if (candidates.has(place)) continue;
-    ++tests;
+    if (candidates.has(place) || ++tests > kMostTests) continue;
     if (is_nearest(segment, object, near, place)) candidates.add(place);
   }
   choose(flat, candidates, std::min(most, Manifold::kMost), out);
@@ -288,10 +315,11 @@ void find_manifold(const PlacedSegment& segment, const ObjectTree& object, doubl
 Vec3 normal_at_place(const ObjectModel& object, const NearPairs& near, const ContactPlace& place) noexcept {
   TiedTriangles meet;
   meet.add(place.slot);
-  const double limit = place.gap * place.gap + kEdgeBand * kEdgeBand;
+  const double limit = (place.gap + kEdgeBand) * (place.gap + kEdgeBand);
   for (std::size_t i = 0; !near.overflows() && i < near.count(); ++i) {
     const NearPairs::Pair& pair = near[i];
-    if (pair.triangle != place.triangle || pair.closest.squared > limit) continue;
+    if (place.triangle >= 0 && pair.triangle != place.triangle) continue;
+    if (pair.closest.squared > limit) continue;
     if (contains(object.tree().corners(pair.slot), place.on_object, kEdgeBand)) meet.add(pair.slot);
   }
   return within_cone(normal_at_contact(object, meet, place.on_object, place.direction), place.direction);

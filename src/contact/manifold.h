@@ -41,7 +41,8 @@ void find_manifold(const PlacedSegment& segment, const ObjectTree& object, doubl
 
 /// Returns the object's normal at a place, within 30 degrees of its direction: normal_at_contact() of the triangles
 /// that meet there.
-/// @param near  the pairs among which find_manifold() has found the place
+/// @param place  its triangle may be -1: of any that is near
+/// @param near   pairs of the segment's pose, within the place's gap and 10 um
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 [[nodiscard]] Vec3 normal_at_place(const ObjectModel& object, const NearPairs& near,
                                    const ContactPlace& place) noexcept;

@@ -12,6 +12,7 @@ constexpr double kLeastDepth = 1e-3;  // below it the measured finger is not loo
 constexpr double kLookEvery = 4e-3;   // [s]
 constexpr double kSpeed = 1.0;        // of the shown finger on its way round, of any of its points [m/s]
 constexpr double kLongest = 0.5;      // of the search and the way round [s]
+constexpr int kMostPoses = 200;       // that the search of one leg evaluates
 /// Way round: out from where the digit is held, across to beside the measured posture, and back to that.
 struct Way {
   double open;   ///< share of the way to the open hand, on the way out
@@ -52,8 +53,8 @@ bool has_passed_the_end(const ContactModel& model, const DigitTick& tick, GdpSta
     contacts.beyond = is_clear(model, tick, state);
   }
   contacts.beyond_for = std::clamp(contacts.beyond_for + (contacts.beyond ? model.period : -model.period),
-                                   0.0, DigitContacts::kFade);
-  return contacts.beyond_for >= DigitContacts::kFade;
+                                   0.0, DigitContacts::kFadeTime);
+  return contacts.beyond_for >= DigitContacts::kFadeTime;
 }
 
 void forget_bounds(const DigitTick& tick, GdpState& state) noexcept {
@@ -64,22 +65,28 @@ void forget_bounds(const DigitTick& tick, GdpState& state) noexcept {
   }
 }
 
-/// Ends the way round. Shows the digit where it is measured, unless that is not clear of the object any more.
+/// Ends the way round. Shows the digit where it is measured, unless that is not clear of the object any more. Then the
+/// digit stays, touches what it meets from the next tick on, and its forces rise as they have faded.
 void end_detour(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
-  if (is_clear(model, tick, state)) {
+  DigitContacts& contacts = state.sliding[idx(tick.digit)];
+  const bool clear = is_clear(model, tick, state);
+  contacts = {};
+  if (clear) {
     tick.angle = tick.hcp;
     tick.pose = tick.hcp_pose;
+  } else {
+    contacts.beyond_for = DigitContacts::kFadeTime;
   }
-  state.sliding[idx(tick.digit)] = {};
   forget_bounds(tick, state);
 }
 
 /// Moves the digit along a straight line in joint space up to the first stop.
-Stop move_straight(const ContactModel& model, const DigitAngles& to, DigitTick& tick,
+/// @param poses  greatest number of poses that are evaluated
+Stop move_straight(const ContactModel& model, const DigitAngles& to, int poses, DigitTick& tick,
                    GdpState& state) noexcept {
   Path path{tick.angle, {}, to};
   for (std::size_t i = 0; i < to.size(); ++i) path.rate[i] = to[i] - tick.angle[i];
-  int evaluations = 0;
+  int evaluations = kMaxEvaluations - poses;
   return tick.angle == to ? Stop{} : first_contact(model, path, 0.0, evaluations, tick, state);
 }
 
@@ -90,7 +97,7 @@ bool is_free(const ContactModel& model, const DigitAngles& from, const DigitAngl
   probe.angle = from;
   model.hand.digit_pose(tick.digit, from, probe.pose);
   forget_bounds(tick, state);
-  const Stop stop = move_straight(model, to, probe, state);
+  const Stop stop = move_straight(model, to, kMostPoses, probe, state);
   forget_bounds(tick, state);
   return stop.segment < 0 && probe.angle == to;
 }
@@ -121,7 +128,8 @@ bool look_at_next_leg(const ContactModel& model, const DigitTick& tick, GdpState
   DigitContacts::Detour& detour = state.sliding[idx(tick.digit)].detour;
   const Way& way = kWays[idx(detour.way)];
   const std::array<DigitAngles, 4> stations = {tick.angle, way_out(model, tick, way),
-                                               turned_aside(model, tick, way, tick.hcp), tick.hcp};
+                                               turned_aside(model, tick, way, detour.measured),
+                                               detour.measured};
   const std::size_t leg = idx(detour.free_legs);
   if (is_free(model, stations[leg], stations[leg + 1], tick, state)) {
     if (++detour.free_legs < 3) return true;
@@ -146,40 +154,43 @@ DigitAngles next_posture(const ContactModel& model, const DigitAngles& to, const
   return next;
 }
 
+/// Goes on with the way round. @returns false if it ends here
+bool go_on(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
+  using Detour = DigitContacts::Detour;
+  DigitContacts& contacts = state.sliding[idx(tick.digit)];
+  Detour& detour = contacts.detour;
+  if ((detour.lasts += model.period) > kLongest) return false;
+  if ((contacts.unchecked_for += model.period) >= kLookEvery) {
+    contacts.unchecked_for = 0.0;
+    if (!is_clear(model, tick, state)) return false;
+  }
+  if (detour.phase == Detour::kLooking) return look_at_next_leg(model, tick, state);
+  const DigitAngles goal = detour.phase == Detour::kOut ? detour.out
+                           : detour.phase == Detour::kAcross
+                               ? turned_aside(model, tick, kWays[idx(detour.way)], tick.hcp)
+                               : tick.hcp;
+  if (move_straight(model, next_posture(model, goal, tick), kMaxEvaluations, tick, state).segment >= 0)
+    return false;
+  if (tick.angle == tick.hcp) {
+    detour = {};
+  } else if (tick.angle == goal) {
+    detour.phase = detour.phase == Detour::kOut ? Detour::kAcross : Detour::kBack;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool goes_round(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept {
   using Detour = DigitContacts::Detour;
   DigitContacts& contacts = state.sliding[idx(tick.digit)];
-  Detour& detour = contacts.detour;
-  if (detour.phase == Detour::kNone) {
+  if (contacts.detour.phase == Detour::kNone) {
     if (!has_passed_the_end(model, tick, state)) return false;
     contacts = {};
-    detour.phase = Detour::kLooking;
+    contacts.detour.phase = Detour::kLooking;
+    contacts.detour.measured = tick.hcp;
   }
-  detour.lasts += model.period;
-  if (detour.lasts > kLongest) {
-    end_detour(model, tick, state);
-  } else if (detour.phase == Detour::kLooking) {
-    if (!look_at_next_leg(model, tick, state)) end_detour(model, tick, state);
-  } else if (detour.phase == Detour::kOut) {
-    const Stop stop = move_straight(model, next_posture(model, detour.out, tick), tick, state);
-    if (stop.segment >= 0) {
-      end_detour(model, tick, state);
-    } else if (tick.angle == detour.out) {
-      detour.phase = Detour::kAcross;
-    }
-  } else {
-    const bool back = detour.phase == Detour::kBack;
-    const DigitAngles goal = back ? tick.hcp : turned_aside(model, tick, kWays[idx(detour.way)], tick.hcp);
-    // What it meets there it touches as any other digit does.
-    const Stop stop = move_straight(model, next_posture(model, goal, tick), tick, state);
-    if (stop.segment >= 0 || tick.angle == tick.hcp) {
-      detour = {};
-    } else if (tick.angle == goal) {
-      detour.phase = Detour::kBack;
-    }
-  }
+  if (!go_on(model, tick, state)) end_detour(model, tick, state);
   return true;
 }
 

@@ -9,8 +9,9 @@ namespace phalanx {
 
 /// Brings a digit that is held though its measured one is clear of the object to where that is. Until then its forces
 /// fade: DigitContacts::force_share(). Then it goes round the object, without contacts, if one of a few ways is free,
-/// in the ticks that a millimetre in each millisecond needs; else it is shown where it is measured at once.
-/// @returns true if the digit is on its way in this tick, and has been moved
+/// in the ticks that a millimetre in each millisecond needs; else it is shown where it is measured at once. A measured
+/// digit that is not clear any more ends this.
+/// @returns true if the digit has been dealt with for this tick, and has no contacts
 /// Real-time: bounded, no allocation, lock, throw or I/O.
 bool goes_round(const ContactModel& model, DigitTick& tick, GdpState& state) noexcept;
 

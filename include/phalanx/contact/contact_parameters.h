@@ -42,6 +42,7 @@ struct ContactParameters {
   // Of static mode:
   GdpMethod method = GdpMethod::kContinuous;
   DepthOrigin depth = DepthOrigin::kContinuous;
+  // Of both:
   ForceNormal normal = ForceNormal::kInterpolated;
 };
 

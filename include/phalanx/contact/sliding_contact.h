@@ -62,13 +62,14 @@ struct DigitContacts {
   std::array<Vec3, kSegmentsPerDigit> elongation{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   std::array<double, 4> limit{};      ///< multipliers of the joints' limits [rad]
   double depth_per_multiplier = 0.0;  ///< kappa over stiffness: turns multipliers into depths [m^2]
-  double residual = 0.0;              ///< greatest of the tick's contact problems [m]; 0 for a solution
-  double unchecked_for = 0.0;         ///< time since the HCP was last looked for beyond the object [s]
-  bool beyond = false;                ///< it was clear of the object then
-  double beyond_for = 0.0;  ///< time for which it has been, less that since it is no longer, 0 to kFade [s]
-  static constexpr double kFade = 30e-3;
+  double residual = 0.0;       ///< greatest of the substeps' contact problems [m]; 0 if there were none
+  double unchecked_for = 0.0;  ///< time since the HCP was last looked for beyond the object [s]
+  bool beyond = false;         ///< it was clear of the object then
+  double beyond_for =
+      0.0;  ///< time for which it has been, less that since it is no longer, 0 to kFadeTime [s]
+  static constexpr double kFadeTime = 30e-3;
   /// Returns the share of the forces that is left.
-  [[nodiscard]] double force_share() const noexcept { return 1.0 - beyond_for / kFade; }
+  [[nodiscard]] double force_share() const noexcept { return 1.0 - beyond_for / kFadeTime; }
 
   /// Way of the shown digit round the object, to where it is measured. It touches nothing on it.
   struct Detour {
@@ -80,10 +81,11 @@ struct DigitContacts {
       kBack,     ///< to the measured posture
     };
     Phase phase = kNone;
-    int way = 0;         ///< the way that is looked at or gone
-    int free_legs = 0;   ///< of it
-    DigitAngles out{};   ///< [rad]
-    double lasts = 0.0;  ///< time since the search began [s]
+    int way = 0;             ///< the way that is looked at or gone
+    int free_legs = 0;       ///< of it
+    DigitAngles out{};       ///< [rad]
+    DigitAngles measured{};  ///< the posture for which the ways are looked at [rad]
+    double lasts = 0.0;      ///< time since the search began [s]
   };
   Detour detour;
 };
