@@ -158,8 +158,8 @@ TEST_P(OracleOnScene, NothingPenetratesOverTheWholeMotion) {
 }
 
 TEST_P(OracleOnScene, NothingPenetratesOverASeededMotion) {
-  expect_clear_over_seeded_motion(2026, test::kSanitized ? 300 : 1000);
-  EXPECT_GT(contacts_, test::kSanitized ? 10 : 100);
+  expect_clear_over_seeded_motion(2026, 1000);
+  EXPECT_GT(contacts_, 100);
 }
 
 TEST_P(OracleOnScene, NothingPenetratesAtAThousandSeededPoses) {

@@ -314,14 +314,12 @@ TEST(TerminatedRun, LetsGoWhileStandardErrorTakesNothing) {
   EXPECT_EQ(steps.back().largest_torque, 0.0);
 }
 
-/// The whole, in parts that run side by side.
-class EveryInjectedFailure : public ::testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
- public:
-  static constexpr std::size_t kParts = 4;
-};
+/// Parts that run side by side: those failures whose call stack's hash leaves this remainder.
+constexpr std::size_t kParts = 4;
+using Part = std::tuple<std::size_t, std::size_t>;  // number of the command, remainder
 
-TEST_P(EveryInjectedFailure, LosesNothingThatWasPromised) {
-  const auto [number, part] = GetParam();
+void check_part(const Part& of) {
+  const auto [number, part] = of;
   std::set<std::uint64_t> known;  // of the commands before it, such as their arguments' parser
   for (std::size_t i = 0; i < number; ++i)
     for (const Failure& failure : make(kCommands[i])->record()) known.insert(failure.stack);
@@ -332,9 +330,18 @@ TEST_P(EveryInjectedFailure, LosesNothingThatWasPromised) {
   }
   check_all(*command, mine);
 }
-INSTANTIATE_TEST_SUITE_P(Of, EveryInjectedFailure,
-                         ::testing::Combine(::testing::Range<std::size_t>(0, 4),
-                                            ::testing::Range<std::size_t>(0, EveryInjectedFailure::kParts)));
+
+class EveryFourthInjectedFailure : public ::testing::TestWithParam<Part> {};
+TEST_P(EveryFourthInjectedFailure, LosesNothingThatWasPromised) { check_part(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Of, EveryFourthInjectedFailure,
+                         ::testing::Combine(::testing::Range<std::size_t>(0, kCommands.size()),
+                                            ::testing::Values<std::size_t>(0)));
+
+class SoakInjectedFailures : public ::testing::TestWithParam<Part> {};
+TEST_P(SoakInjectedFailures, LoseNothingThatWasPromised) { check_part(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Of, SoakInjectedFailures,
+                         ::testing::Combine(::testing::Range<std::size_t>(0, kCommands.size()),
+                                            ::testing::Range<std::size_t>(1, kParts)));
 
 }  // namespace
 }  // namespace phalanx::testing
