@@ -16,6 +16,9 @@ constexpr double kLightDepth = 0.5e-3;  ///< where a squeeze begins to let go [m
 /// contact.
 constexpr double kRelease = 1.5;
 constexpr int kSearchSteps = 600;  ///< from open to closed, while looking for the depth
+constexpr int kSwayTicks = 2000;
+constexpr double kSway = 0.05;    ///< amplitude of a joint [rad]
+constexpr double kWrapped = 0.7;  ///< of all flexion, at the end of a wrap
 constexpr int kSqueezeTicks = 4000;
 constexpr int kSqueezePeriods = 2;
 
@@ -84,6 +87,37 @@ Posture draw_posture(const HandParameters& hand, std::uint64_t seed) {
   }
   return posture;
 }
+
+/// Slow waves of the joints, so that what presses slides.
+class Sway {
+ public:
+  explicit Sway(std::uint64_t seed) {
+    Random random(~seed);
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      hertz_[j] = random.between(0.3, 1.2);
+      phase_[j] = random.between(0.0, 2.0 * std::numbers::pi);
+    }
+  }
+  /// Adds kSwayTicks ticks about the motion's end to it; `share` of the amplitude for each digit.
+  void append_to(const HandParameters& hand, const Closure& share, BenchMotion& motion) const {
+    const JointArray from = motion.angle.back();
+    for (int tick = 0; tick < kSwayTicks; ++tick) {
+      const double swell = std::min(1.0, tick / 200.0);
+      JointArray angle = from;
+      for (int joint = 0; joint < kJoints; ++joint) {
+        const std::size_t j = idx(joint);
+        const double wave = std::sin(2.0 * std::numbers::pi * hertz_[j] * tick * 1e-3 + phase_[j]);
+        angle[j] = std::clamp(from[j] + share[idx(digit_of_joint(joint))] * swell * kSway * wave,
+                              hand.min_angle[j], hand.max_angle[j]);
+      }
+      motion.angle.push_back(angle);
+    }
+  }
+
+ private:
+  std::array<double, kJoints> hertz_{};
+  std::array<double, kJoints> phase_{};
+};
 
 /// Where each digit's deepest segment is this deep.
 struct Depths {
@@ -177,6 +211,36 @@ BenchMotion make_restless(const HapticModel& model, const HapticParameters& para
     }
     motion.angle.push_back(angle);
   }
+  return motion;
+}
+
+BenchMotion make_slide(const HapticModel& model, const HapticParameters& parameters, std::uint64_t seed,
+                       int digit) {
+  const Posture posture = draw_posture(model.hand.parameters(), seed);
+  Closure pressed = find_depths(model, parameters, posture).pressed;
+  Closure share;
+  share.fill(1.0);
+  for (int d = 0; d < kDigits; ++d) {
+    if (digit == kAllDigits || d == digit) continue;
+    pressed[idx(d)] = share[idx(d)] = 0.0;
+  }
+  BenchMotion motion{"slide " + std::to_string(seed), grasp_angles(posture, pressed)};
+  Sway(seed).append_to(model.hand.parameters(), share, motion);
+  return motion;
+}
+
+BenchMotion make_wrap(const HapticModel& model, std::uint64_t seed) {
+  const HandParameters& hand = model.hand.parameters();
+  Posture posture = draw_posture(hand, seed);
+  for (int joint = 0; joint < kJoints; ++joint) {
+    const std::size_t j = idx(joint);
+    if (joint % kJointsPerDigit != 1)
+      posture.closed[j] = posture.open[j] + kWrapped * (hand.max_angle[j] - posture.open[j]);
+  }
+  Closure all;
+  all.fill(1.0);
+  BenchMotion motion{"wrap " + std::to_string(seed), grasp_angles(posture, all)};
+  Sway(seed).append_to(hand, all, motion);
   return motion;
 }
 

@@ -34,6 +34,17 @@ inline constexpr double kPressDepth = 5e-3;  ///< of the deepest segment of ever
 [[nodiscard]] BenchMotion make_restless(const HapticModel& model, const HapticParameters& parameters,
                                         std::uint64_t seed);
 
+inline constexpr int kAllDigits = -1;
+/// The grasp of that seed by one digit or all of them, then 2 s in which its joints sway by up to 0.05 rad at 0.3 to 1.2
+/// Hz, so that what presses slides. Set-up only.
+/// @param digit  the others stay open
+[[nodiscard]] BenchMotion make_slide(const HapticModel& model, const HapticParameters& parameters,
+                                     std::uint64_t seed, int digit);
+
+/// All flexion of all digits goes to 0.7 of its range, however deep they are then, and sways as in make_slide(). So
+/// many segments touch as the object's shape admits. Set-up only.
+[[nodiscard]] BenchMotion make_wrap(const HapticModel& model, std::uint64_t seed);
+
 /// The grasp of that seed, then 4 s in which every digit twice lets go until it is up to 2 mm off the object
 /// and presses again, one after another, so that the hand stays in contact all the time. Set-up only.
 [[nodiscard]] BenchMotion make_squeeze(const HapticModel& model, const HapticParameters& parameters,

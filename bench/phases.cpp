@@ -11,7 +11,9 @@ namespace {
 
 Phase phase_of_touch(int segments, bool deep, ContactMode mode) {
   if (mode == ContactMode::kStatic) return deep ? Phase::kDeep : Phase::kTouching;
-  return segments == 1 ? Phase::kOneSegment : segments <= 5 ? Phase::kFewSegments : Phase::kAllSegments;
+  if (segments == 1) return Phase::kOneSegment;
+  if (segments <= 5) return Phase::kFewSegments;
+  return segments <= 10 ? Phase::kManySegments : Phase::kAllSegments;
 }
 
 }  // namespace

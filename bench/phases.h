@@ -17,13 +17,14 @@ enum class Phase {
   kTouching,  ///< some segment has a contact record, none is more than 3 mm deep
   kDeep,      ///< some segment is more than 3 mm deep
   // Of contacts that slide, in place of the last two:
-  kOneSegment,   ///< one segment has a contact
-  kFewSegments,  ///< two to five
-  kAllSegments,  ///< six to fifteen
+  kOneSegment,    ///< one segment has a contact
+  kFewSegments,   ///< two to five
+  kManySegments,  ///< six to ten
+  kAllSegments,   ///< eleven to fifteen
 };
-inline constexpr std::size_t kPhases = 7;
+inline constexpr std::size_t kPhases = 8;
 inline constexpr std::array<std::string_view, kPhases> kPhaseName = {
-    "free", "near", "touching", "deep", "1 segment", "2 to 5", "6 to 15"};
+    "free", "near", "touching", "deep", "1 segment", "2 to 5", "6 to 10", "11 to 15"};
 inline constexpr double kFreeDistance = 20e-3;  ///< [m]
 inline constexpr double kDeepDepth = 3e-3;      ///< [m]
 

@@ -20,6 +20,8 @@ namespace phalanx::bench {
 namespace {
 
 constexpr std::uint64_t kSqueezeSeed = 1001;
+constexpr std::uint64_t kSlides = 3;  ///< motions of each kind, of contacts that slide
+constexpr int kIndex = 1;
 constexpr int kBruteMost = 2000;  ///< object triangles up to which brute force is run
 
 std::vector<BenchMotion> make_motions(const HapticModel& model, const HapticParameters& parameters,
@@ -28,6 +30,11 @@ std::vector<BenchMotion> make_motions(const HapticModel& model, const HapticPara
   for (int i = 1; i <= grasps; ++i)
     motions.push_back(make_grasp(model, parameters, static_cast<std::uint64_t>(i)));
   motions.push_back(make_squeeze(model, parameters, kSqueezeSeed));
+  if (parameters.contact.mode == ContactMode::kStatic) return motions;
+  for (std::uint64_t seed = 1; seed <= kSlides; ++seed) {
+    motions.push_back(make_slide(model, parameters, seed, kIndex));
+    motions.push_back(make_slide(model, parameters, seed, kAllDigits));
+  }
   return motions;
 }
 
@@ -92,14 +99,21 @@ std::vector<PeerRow> run_peers(const HapticModel& model, const HapticParameters&
   return rows;
 }
 
-/// Of the restless motions: fingers that slip off and catch up with the HCP, which takes the longest search.
-TimesRow restless_row(const HapticModel& model, const HapticParameters& parameters, const Options& options) {
-  const OurTimes times =
-      time_ours(model, parameters, make_restless_motions(model, parameters, options.grasps));
+/// All ticks of these motions.
+TimesRow row_of(const std::string& name, const HapticModel& model, const HapticParameters& parameters,
+                const std::vector<BenchMotion>& motions) {
+  const OurTimes times = time_ours(model, parameters, motions);
   const std::vector<Phase> any(times.repeat_us.front().size(), Phase::kNear);
   TimesRow row = warm_rows(any, times).back();
-  row.phase = "restless";
+  row.phase = name;
   return row;
+}
+
+/// Hands that close all the way, however deep the object is then in them: many contacts, far from where they are shown.
+std::vector<BenchMotion> make_wraps(const HapticModel& model) {
+  std::vector<BenchMotion> motions;
+  for (std::uint64_t seed = 1; seed <= kSlides; ++seed) motions.push_back(make_wrap(model, seed));
+  return motions;
 }
 
 /// Of all ticks, in those instruction sets that this processor has beside its best one: the same forces, to
@@ -149,7 +163,10 @@ SceneReport run_scene(const std::string& name, const Options& options, ExpectedH
                      .cold = {},
                      .peers = {},
                      .cost = object_cost(model.object.mesh())};
-  report.warm.push_back(restless_row(model, parameters, options));
+  // Fingers that slip off and catch up with the HCP, which takes the longest search.
+  report.warm.push_back(
+      row_of("restless", model, parameters, make_restless_motions(model, parameters, options.grasps)));
+  if (options.sliding) report.warm.push_back(row_of("wrap", model, parameters, make_wraps(model)));
   for (const TimesRow& row : other_instruction_sets(scene, model, parameters, motions, phases, times.hash))
     report.warm.push_back(row);
   if (options.cold)

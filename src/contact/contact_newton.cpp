@@ -130,8 +130,9 @@ struct RegularisedLaw {
 
 class Newton {
  public:
-  static constexpr int kRounds = 7;       // of the augmented Lagrangian
-  static constexpr int kSoftRounds = 4;   // of them with the greater compliance
+  static constexpr int kRounds = 9;     // of the augmented Lagrangian
+  static constexpr int kBeginSoft = 2;  // from this one on with the greater compliance
+  static constexpr int kEndSoft = 6;
   static constexpr double kSoft = 1e-3;   // compliance, of the product of a row with itself
   static constexpr double kStiff = 1e-5;  // after the soft rounds
 
@@ -388,10 +389,9 @@ double newton_contacts(ContactProblem& problem, const HeldJoints& held, double t
   auto best = problem.contact;
   double residual = least;
   Newton newton(problem, held);
-  newton.set_compliance(Newton::kSoft);
   for (int round = 0; round < Newton::kRounds && budget > 0 && !(least <= tolerance); ++round) {
-    if (round == Newton::kSoftRounds) {
-      newton.set_compliance(Newton::kStiff);
+    if (round == 0 || round == Newton::kBeginSoft || round == Newton::kEndSoft) {
+      newton.set_compliance(round == Newton::kBeginSoft ? Newton::kSoft : Newton::kStiff);
       if (residual > least) {
         problem.contact = best;
         newton.restart();

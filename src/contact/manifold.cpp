@@ -39,8 +39,16 @@ Vec3 closest_in(const Corners& t, const Vec3& point) noexcept {
   return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
 }
 
+/// @returns true if the point is outside the triangle's box by more than `tolerance` [m]
+bool is_outside_box(const Corners& t, const Vec3& point, double tolerance) noexcept {
+  const Vec3 lowest = t[0].cwiseMin(t[1]).cwiseMin(t[2]);
+  const Vec3 highest = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+  return ((lowest - point).array() > tolerance).any() || ((point - highest).array() > tolerance).any();
+}
+
 /// @returns true if the triangle contains the point, to `tolerance` [m]
 bool contains(const Corners& t, const Vec3& point, double tolerance = kTie) noexcept {
+  if (is_outside_box(t, point, tolerance)) return false;
   return (closest_in(t, point) - point).squaredNorm() <= tolerance * tolerance;
 }
 
@@ -61,25 +69,28 @@ ContactPlace place_of(const NearPairs::Pair& pair, const Vec3& on_segment, const
 /// near to the other triangle as the place, and so are among the near pairs.
 bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const NearPairs& near,
                 const ContactPlace& place) noexcept {
-  NormalFan on_object;
-  NormalFan on_segment;
   const double reach = place.gap + kTie;
   const double limit = reach * reach;
+  const auto holds = [](const NormalFan& fan, const Vec3& n) { return fan.nearest(n).dot(n) >= kCosInside; };
+  NormalFan on_object;
   for (std::size_t i = 0; i < near.count(); ++i) {
     const NearPairs::Pair& other = near[i];
-    if (other.closest.squared > limit) continue;
-    if (other.triangle == place.triangle) {
-      const Corners t = object.corners(other.slot);
-      if (contains(t, place.on_object)) add_face(t, place.direction, on_object);
-    }
-    if (other.slot == place.slot) {
-      Corners t = segment.tree.corners(other.triangle);
-      for (Vec3& x : t) x = segment.X_WS * x;
-      if (contains(t, place.on_segment)) add_face(t, -place.direction, on_segment);
-    }
+    if (other.triangle != place.triangle || other.closest.squared > limit) continue;
+    const Corners& t = object.corners(other.slot);
+    if (contains(t, place.on_object)) add_face(t, place.direction, on_object);
   }
-  return on_object.nearest(place.direction).dot(place.direction) >= kCosInside &&
-         on_segment.nearest(-place.direction).dot(-place.direction) >= kCosInside;
+  if (!holds(on_object, place.direction)) return false;
+  NormalFan on_segment;
+  const Vec3 in_segment = segment.X_WS.R.transpose() * (place.on_segment - segment.X_WS.p);
+  for (std::size_t i = 0; i < near.count(); ++i) {
+    const NearPairs::Pair& other = near[i];
+    if (other.slot != place.slot || other.closest.squared > limit) continue;
+    Corners t = segment.tree.corners(other.triangle);
+    if (is_outside_box(t, in_segment, 2.0 * kTie)) continue;
+    for (Vec3& x : t) x = segment.X_WS * x;
+    if (contains(t, place.on_segment)) add_face(t, -place.direction, on_segment);
+  }
+  return holds(on_segment, -place.direction);
 }
 
 bool belongs_to(const ContactPlace& chosen, const ContactPlace& place) noexcept {
