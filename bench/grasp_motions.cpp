@@ -18,7 +18,7 @@ constexpr double kRelease = 1.5;
 constexpr int kSearchSteps = 600;  ///< from open to closed, while looking for the depth
 constexpr int kSwayTicks = 2000;
 constexpr double kSway = 0.05;    ///< amplitude of a joint [rad]
-constexpr double kWrapped = 0.7;  ///< of all flexion, at the end of a wrap
+constexpr double kWrapped = 0.7;  ///< of the way from the open angle to the greatest, at the end of a wrap
 constexpr int kSqueezeTicks = 4000;
 constexpr int kSqueezePeriods = 2;
 
@@ -224,7 +224,8 @@ BenchMotion make_slide(const HapticModel& model, const HapticParameters& paramet
     if (digit == kAllDigits || d == digit) continue;
     pressed[idx(d)] = share[idx(d)] = 0.0;
   }
-  BenchMotion motion{"slide " + std::to_string(seed), grasp_angles(posture, pressed)};
+  const std::string who = digit == kAllDigits ? "all" : std::to_string(digit);
+  BenchMotion motion{"slide " + who + ", " + std::to_string(seed), grasp_angles(posture, pressed)};
   Sway(seed).append_to(model.hand.parameters(), share, motion);
   return motion;
 }
@@ -234,7 +235,7 @@ BenchMotion make_wrap(const HapticModel& model, std::uint64_t seed) {
   Posture posture = draw_posture(hand, seed);
   for (int joint = 0; joint < kJoints; ++joint) {
     const std::size_t j = idx(joint);
-    if (joint % kJointsPerDigit != 1)
+    if (joint % kJointsPerDigit != kAbductionJoint)
       posture.closed[j] = posture.open[j] + kWrapped * (hand.max_angle[j] - posture.open[j]);
   }
   Closure all;

@@ -41,8 +41,8 @@ inline constexpr int kAllDigits = -1;
 [[nodiscard]] BenchMotion make_slide(const HapticModel& model, const HapticParameters& parameters,
                                      std::uint64_t seed, int digit);
 
-/// All flexion of all digits goes to 0.7 of its range, however deep they are then, and sways as in make_slide(). So
-/// many segments touch as the object's shape admits. Set-up only.
+/// All flexion of all digits goes 0.7 of the way from the open angle to the greatest, however deep they are then, and
+/// sways as in make_slide(). Set-up only.
 [[nodiscard]] BenchMotion make_wrap(const HapticModel& model, std::uint64_t seed);
 
 /// The grasp of that seed, then 4 s in which every digit twice lets go until it is up to 2 mm off the object

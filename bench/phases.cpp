@@ -13,7 +13,7 @@ Phase phase_of_touch(int segments, bool deep, ContactMode mode) {
   if (mode == ContactMode::kStatic) return deep ? Phase::kDeep : Phase::kTouching;
   if (segments == 1) return Phase::kOneSegment;
   if (segments <= 5) return Phase::kFewSegments;
-  return segments <= 10 ? Phase::kManySegments : Phase::kAllSegments;
+  return segments <= 10 ? Phase::kManySegments : Phase::kMostSegments;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ enum class Phase {
   kOneSegment,    ///< one segment has a contact
   kFewSegments,   ///< two to five
   kManySegments,  ///< six to ten
-  kAllSegments,   ///< eleven to fifteen
+  kMostSegments,  ///< eleven to fifteen
 };
 inline constexpr std::size_t kPhases = 8;
 inline constexpr std::array<std::string_view, kPhases> kPhaseName = {

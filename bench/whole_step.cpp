@@ -21,8 +21,7 @@ namespace {
 
 constexpr std::uint64_t kSqueezeSeed = 1001;
 constexpr std::uint64_t kSlides = 3;  ///< motions of each kind, of contacts that slide
-constexpr int kIndex = 1;
-constexpr int kBruteMost = 2000;  ///< object triangles up to which brute force is run
+constexpr int kBruteMost = 2000;      ///< object triangles up to which brute force is run
 
 std::vector<BenchMotion> make_motions(const HapticModel& model, const HapticParameters& parameters,
                                       int grasps) {
@@ -32,7 +31,7 @@ std::vector<BenchMotion> make_motions(const HapticModel& model, const HapticPara
   motions.push_back(make_squeeze(model, parameters, kSqueezeSeed));
   if (parameters.contact.mode == ContactMode::kStatic) return motions;
   for (std::uint64_t seed = 1; seed <= kSlides; ++seed) {
-    motions.push_back(make_slide(model, parameters, seed, kIndex));
+    motions.push_back(make_slide(model, parameters, seed, static_cast<int>(Digit::kIndex)));
     motions.push_back(make_slide(model, parameters, seed, kAllDigits));
   }
   return motions;
@@ -103,13 +102,15 @@ std::vector<PeerRow> run_peers(const HapticModel& model, const HapticParameters&
 TimesRow row_of(const std::string& name, const HapticModel& model, const HapticParameters& parameters,
                 const std::vector<BenchMotion>& motions) {
   const OurTimes times = time_ours(model, parameters, motions);
+  if (!times.same_hash)
+    throw std::runtime_error(fmt::format("{}: two runs of the same motions gave different forces", name));
   const std::vector<Phase> any(times.repeat_us.front().size(), Phase::kNear);
   TimesRow row = warm_rows(any, times).back();
   row.phase = name;
   return row;
 }
 
-/// Hands that close all the way, however deep the object is then in them: many contacts, far from where they are shown.
+/// Hands that close far, however deep the object is then in them: contacts far from where the fingers are measured.
 std::vector<BenchMotion> make_wraps(const HapticModel& model) {
   std::vector<BenchMotion> motions;
   for (std::uint64_t seed = 1; seed <= kSlides; ++seed) motions.push_back(make_wrap(model, seed));

@@ -130,11 +130,13 @@ struct RegularisedLaw {
 
 class Newton {
  public:
-  static constexpr int kRounds = 9;     // of the augmented Lagrangian
-  static constexpr int kBeginSoft = 2;  // from this one on with the greater compliance
+  // Rounds of the augmented Lagrangian: with the small compliance, which solves most problems; if it does not, with
+  // the greater one, which converges from farther away; and with the small one again.
+  static constexpr int kBeginSoft = 2;
   static constexpr int kEndSoft = 6;
-  static constexpr double kSoft = 1e-3;   // compliance, of the product of a row with itself
-  static constexpr double kStiff = 1e-5;  // after the soft rounds
+  static constexpr int kRounds = 9;
+  static constexpr double kSoft = 1e-3;  // compliance, of the product of a row with itself
+  static constexpr double kStiff = 1e-5;
 
   Newton(ContactProblem& problem, const HeldJoints& held) noexcept
       : problem_(problem),

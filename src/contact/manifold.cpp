@@ -76,7 +76,7 @@ bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const Ne
   for (std::size_t i = 0; i < near.count(); ++i) {
     const NearPairs::Pair& other = near[i];
     if (other.triangle != place.triangle || other.closest.squared > limit) continue;
-    const Corners& t = object.corners(other.slot);
+    const Corners t = object.corners(other.slot);
     if (contains(t, place.on_object)) add_face(t, place.direction, on_object);
   }
   if (!holds(on_object, place.direction)) return false;
@@ -86,7 +86,7 @@ bool is_nearest(const PlacedSegment& segment, const ObjectTree& object, const Ne
     const NearPairs::Pair& other = near[i];
     if (other.slot != place.slot || other.closest.squared > limit) continue;
     Corners t = segment.tree.corners(other.triangle);
-    if (is_outside_box(t, in_segment, 2.0 * kTie)) continue;
+    if (is_outside_box(t, in_segment, 2.0 * kTie)) continue;  // twice, for the rounding of the frame's change
     for (Vec3& x : t) x = segment.X_WS * x;
     if (contains(t, place.on_segment)) add_face(t, -place.direction, on_segment);
   }

@@ -64,24 +64,27 @@ void NormalFan::add(const Vec3& unit) noexcept {
   if (count_ < kMost) unit_[count_++] = unit;
 }
 
-bool NormalFan::is_nearest(const Vec3& v, const Vec3& n) const noexcept {
-  const double along = v.dot(n);
+bool NormalFan::is_nearest_vector(std::size_t i, const Vec3& n) const noexcept {
+  const double along = unit_[i].dot(n);
   if (!(along > 0.0)) return false;
-  const Vec3 across = n - along * v;
+  const Vec3 across = n - along * unit_[i];
   const double size = across.norm();
   if (!(size > 1e-9)) return false;  // n may lie in the cone
-  return std::all_of(unit_.begin(), unit_.begin() + static_cast<std::ptrdiff_t>(count_),
-                     [&](const Vec3& u) { return across.dot(u) <= 1e-15 * size; });
+  for (std::size_t j = 0; j < count_; ++j)
+    if (j != i && !(across.dot(unit_[j]) < -1e-15 * size)) return false;
+  return true;
 }
 
 Vec3 NormalFan::nearest(const Vec3& n) const noexcept {
   if (count_ == 0) return n;
-  Vec3 best = unit_[0];
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < count_; ++i)
+    if (unit_[i].dot(n) > unit_[nearest].dot(n)) nearest = i;
+  Vec3 best = unit_[nearest];
+  if (is_nearest_vector(nearest, n)) return best;
   const auto offer = [&](const Vec3& v) {
     if (v.dot(n) > best.dot(n)) best = v;
   };
-  for (std::size_t i = 1; i < count_; ++i) offer(unit_[i]);
-  if (is_nearest(best, n)) return best;
   for (std::size_t i = 0; i < count_; ++i) {
     for (std::size_t j = i + 1; j < count_; ++j) {
       // n's projection a u + b v on the plane of two of them, if it lies between them

@@ -67,8 +67,9 @@ class NormalFan {
   [[nodiscard]] Vec3 nearest(const Vec3& n) const noexcept;
 
  private:
-  /// @returns true if v, a vector of the cone, is the nearest one to n, which lies outside: a plane separates them
-  [[nodiscard]] bool is_nearest(const Vec3& v, const Vec3& n) const noexcept;
+  /// @returns true if vector i is clearly the cone's nearest to n: the plane across n's way from it separates the other
+  /// vectors from n
+  [[nodiscard]] bool is_nearest_vector(std::size_t i, const Vec3& n) const noexcept;
 
   static constexpr std::size_t kMost = 12;
   std::array<Vec3, kMost> unit_;

@@ -31,7 +31,7 @@ bool is_clear(const ContactModel& model, const DigitTick& tick, GdpState& state)
     const double margin = model.parameters.margin;
     const ObjectTree& object = model.object.tree();
     // In a segment that crosses the object distance_bound() may look at hundreds of pairs. Where crosses() is undecided,
-    // it is true.
+    // as near many slivers, it is true: the digit is held on.
     clear = !crosses(placed, object) && (distance_bound(placed, object, 2.0 * margin) > margin ||
                                          distance(placed, object, 2.0 * margin) > margin);
   }

@@ -268,7 +268,7 @@ void expect_siconos_agrees(std::uint64_t seed, int problems) {
 
 TEST(ContactProblem, SiconosAgrees) { expect_siconos_agrees(20, 200); }
 
-/// The long version, for ./test --full.
+/// The long version, for ./test --full; a tenth of it with sanitizers.
 TEST(ManyContactProblems, SiconosAgrees) {
   for (std::uint64_t seed = 1; seed <= (test::kSanitized ? 1 : 10); ++seed) expect_siconos_agrees(seed, 1000);
 }

@@ -328,6 +328,7 @@ void check_part(const Part& of) {
   for (const Failure& failure : command->record()) {
     if (!known.contains(failure.stack) && failure.stack % kParts == part) mine.push_back(failure);
   }
+  ASSERT_FALSE(mine.empty());
   check_all(*command, mine);
 }
 
@@ -341,7 +342,7 @@ class SoakInjectedFailures : public ::testing::TestWithParam<Part> {};
 TEST_P(SoakInjectedFailures, LoseNothingThatWasPromised) { check_part(GetParam()); }
 INSTANTIATE_TEST_SUITE_P(Of, SoakInjectedFailures,
                          ::testing::Combine(::testing::Range<std::size_t>(0, kCommands.size()),
-                                            ::testing::Range<std::size_t>(1, kParts)));
+                                            ::testing::Range<std::size_t>(0, kParts)));
 
 }  // namespace
 }  // namespace phalanx::testing

@@ -61,12 +61,15 @@ it("brings a device on a wire to zero torque within the stop ramp and the age of
     expect(again, `${what} and its Resume in the host's log`).toBeLessThan(host.rows.length);
     const before = controller.first(row, (at) => controller.number(at, "acted_tick") >= host.number(step, "tick"));
     const peak = Math.max(...Array.from({ length: 50 }, (_, back) => torqueAt(Math.max(0, before - 1 - back))));
-    const zero = controller.first(before, (at) => torqueAt(at) === 0);
-    const up = controller.first(zero, (at) => torqueAt(at) !== 0);
-    const resumed = controller.first(zero, (at) => controller.number(at, "acted_tick") >= host.number(again, "tick"));
+    // A motor at rest may be given a torque again while the ramp lasts, if the patient takes hold just then.
+    const settled = before + kStopRampTicks + kOldestStepTicks;
+    let zero = settled;
+    while (zero > before && torqueAt(zero - 1) === 0) --zero;
+    expect(torqueAt(settled), `${what}: torque after the ramp`).toBe(0);
+    const up = controller.first(settled, (at) => torqueAt(at) !== 0);
+    const resumed = controller.first(before, (at) => controller.number(at, "acted_tick") >= host.number(again, "tick"));
     console.log(`${what}: from ${(1000 * peak).toFixed(0)} mNm to zero in ${zero - before} ticks of the controller; zero for ${up - zero} ticks`);
     if (atWork) expect(peak, `${what}: torque before it`).toBeGreaterThan(kAtWork);
-    expect(zero - before, `${what}: ticks to zero torque`).toBeLessThanOrEqual(kStopRampTicks + kOldestStepTicks);
     expect(up, `${what}: torque before Resume`).toBeGreaterThanOrEqual(resumed);
     expect(up, `${what}: no torque came back`).toBeLessThan(controller.rows.length);
     [step, row] = [again, zero];
