@@ -101,7 +101,11 @@ void expect_no_fault(ChildProcess& host, const TemporaryFolder& folder, double s
   const auto json = nlohmann::json::parse(summary);
   const std::string fault = json.at("fault");
   double longest = 0.0;
-  for (const StallWatch::Stall& stall : watch.stalls()) longest = std::max(longest, stall.seconds);
+  double taken = 0.0;  // by what else runs on the machine [s]
+  for (const StallWatch::Stall& stall : watch.stalls()) {
+    longest = std::max(longest, stall.seconds);
+    taken += stall.seconds;
+  }
   fmt::print("the processors were late by 2 ms or more {} times, at most by {:.1f} ms\n",
              watch.stalls().size(), 1e3 * longest);
   // Without a sample for 10 ms at 1 kHz, or with ten late steps in a row, the station is right to stop.
@@ -111,7 +115,8 @@ void expect_no_fault(ChildProcess& host, const TemporaryFolder& folder, double s
                  << ": repeat this on a machine that is not shared";
   EXPECT_EQ(exit, 0) << host.output() << host.errors();
   EXPECT_EQ(fault, "none");
-  EXPECT_GE(json.at("steps").get<double>(), 990.0 * seconds - 100.0 - json.at("skipped").get<double>());
+  EXPECT_GE(json.at("steps").get<double>(),
+            990.0 * (seconds - taken) - 100.0 - json.at("skipped").get<double>());
   const auto& late = json.at("lateness");
   const auto& step = json.at("step");
   fmt::print(
