@@ -70,15 +70,7 @@ struct Scene {
 
 std::vector<Scene> scenes() {
   Scene groove{.name = "groove of 90 degrees", .touches_at = 0.0};
-  const double half = kPi / 4.0;
-  const double length = LoneFinger::kTipRadius / std::tan(half) + 5e-3;
-  for (const double side : {-1.0, 1.0}) {
-    Pose X;
-    X.R = Eigen::AngleAxisd(side * (half - kPi / 2.0), Vec3::UnitY()).toRotationMatrix();
-    X.p = X.R * Vec3(side * 0.5 * length, 0.0, -0.01) +
-          Vec3(0.0, 0.009, -LoneFinger::kTipRadius / std::sin(half));
-    groove.boxes.emplace_back(Vec3(length, 0.03, 0.02), X);
-  }
+  for (const auto& [size, X] : test::groove_boxes(kPi / 2.0)) groove.boxes.emplace_back(size, X);
   return {{.name = "face of a block",
            .boxes = {{Vec3(0.2, 0.03, 0.02), test::at(0.0, 0.009, -0.01)}},
            .has_face = true},

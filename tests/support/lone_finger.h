@@ -3,8 +3,10 @@
 // points at the object and is pressed along a straight line, so that one surface can be felt place by place.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "phalanx/core/constants.h"
 #include "phalanx/mesh/primitives.h"
@@ -139,19 +141,27 @@ class LoneFinger {
   Setup model_;
 };
 
-/// Two faces that meet below the origin along the finger, and that the tip touches together when its centre is at the
-/// origin. The groove ends 5 mm above these places.
-inline TriangleMesh groove(double opening) {
+/// Returns the sizes and poses of two boxes whose faces meet below the origin along the finger, and that the tip touches
+/// together when its centre is at the origin. The groove ends 5 mm above these places.
+/// @param opening  angle between the faces [rad]
+inline std::array<std::pair<Vec3, Pose>, 2> groove_boxes(double opening) {
   const double half = 0.5 * opening;
   const double length = LoneFinger::kTipRadius / std::tan(half) + 5e-3;
   const double depth = LoneFinger::kTipRadius / std::sin(half);
-  TriangleMesh mesh;
+  std::array<std::pair<Vec3, Pose>, 2> boxes;
   for (const double side : {-1.0, 1.0}) {
     Pose X;
     X.R = Eigen::AngleAxisd(side * (half - kPi / 2.0), Vec3::UnitY()).toRotationMatrix();
     X.p = X.R * Vec3(side * 0.5 * length, 0.0, -0.01) + Vec3(0.0, 0.009, -depth);
-    append(mesh, make_box({length, 0.03, 0.02}, 12), X);
+    boxes[side < 0.0 ? 0 : 1] = {Vec3(length, 0.03, 0.02), X};
   }
+  return boxes;
+}
+
+/// Returns them as one mesh.
+inline TriangleMesh groove(double opening) {
+  TriangleMesh mesh;
+  for (const auto& [size, X] : groove_boxes(opening)) append(mesh, make_box(size, 12), X);
   return mesh;
 }
 

@@ -24,17 +24,20 @@ class CandidatePairs {
     std::int32_t slot;      ///< slot in the object's tree
     double touches;         ///< way before which the pair does not touch [m]
   };
-  static constexpr std::size_t kMost = 2048;
+  static constexpr std::size_t kMost = 4096;
   /// A segment that needs pairs within more than this is better searched directly [m].
   static constexpr double kMostReach = 1e-3;
-  /// Way for which a new list lasts [m].
+  /// Way for which a new list lasts, less where more than kMost pairs are within it [m].
   static constexpr double kAhead = 0.3e-3;
 
   /// Allocates the memory. Without it nothing is listed. Set-up only.
-  void allocate() { pair_.resize(kMost); }
-  /// Lists the pairs within `reach` [m] at this pose, and those of the next kAhead of the way. Does nothing if the list
-  /// covers the reach. Lists none if the reach exceeds kMostReach or the pairs kMost; after too many, not for the
-  /// next few calls.
+  void allocate() {
+    pair_.resize(kMost);
+    bound_.resize(kMost);
+  }
+  /// Lists the pairs within `reach` [m] at this pose, and those of the next kAhead of the way, or less: those that are
+  /// met last are left out where the pairs exceed kMost. Does nothing if the list covers the reach. Lists none if the
+  /// reach exceeds kMostReach or about kMost / 2 pairs are within it; after too many, not for the next few calls.
   /// @pre since the last clear(), the segment and the object are the same
   void list(const PlacedSegment& segment, const ObjectTree& object, double reach) noexcept;
   /// Adds the way to this pose.
@@ -56,19 +59,26 @@ class CandidatePairs {
   void clear() noexcept {
     count_ = 0;
     complete_ = -1.0;
+    ahead_ = kAhead;
     pause_ = 0;
   }
 
  private:
+  /// Drops the half of the pairs that are met last.
+  /// @returns the least bound of those [m]
+  double drop_half() noexcept;
+
   static constexpr double kRounding = 1e-12;  ///< of a bound [m]
   static constexpr int kPause = 16;           ///< calls of list() that do nothing after too many pairs
 
   Pose X_WS_ = {Mat3::Zero(), Vec3::Zero()};  ///< where the way has been added up to
   double way_ = 0.0;                          ///< since the pairs were listed [m]
   double complete_ = -1.0;  ///< way before which no other pair touches [m]; negative: nothing is listed
+  double ahead_ = kAhead;   ///< way for which the next list should last [m]
   int pause_ = 0;
   std::size_t count_ = 0;
-  std::vector<Pair> pair_;  ///< of kMost pairs, or empty
+  std::vector<Pair> pair_;     ///< of kMost pairs, or empty
+  std::vector<double> bound_;  ///< memory of drop_half(), as large
 };
 
 }  // namespace phalanx

@@ -27,7 +27,7 @@ class NearPairs {
     std::int32_t slot;      ///< slot in the object's tree
     TriangleDistance closest;
   };
-  static constexpr std::size_t kMost = 512;
+  static constexpr std::size_t kMost = 2048;
 
   /// Finds all pairs whose distance is at most `reach` [m]: among the candidates if these cover it, else in the
   /// trees, with the same bits. Does nothing if they are stored.

@@ -19,7 +19,7 @@ struct PairList {
     bool near;              ///< may be within the margin when the horizon is reached
   };
 
-  static constexpr int kMostOfASegment = 2048;
+  static constexpr int kMostOfASegment = 4096;
   std::vector<Pair> pair = std::vector<Pair>(std::size_t{kSegmentsPerDigit} * kMostOfASegment);
   int count = 0;
   /// Segment k of the digit has the pairs [begin[k], begin[k + 1]).

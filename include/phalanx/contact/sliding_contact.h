@@ -66,7 +66,7 @@ struct DigitContacts {
   double unchecked_for = 0.0;  ///< time since the HCP was last looked for beyond the object [s]
   bool beyond = false;         ///< it was clear of the object then
   double beyond_for =
-      0.0;  ///< time for which it has been, less that since it is no longer, 0 to kFadeTime [s]
+      0.0;  ///< time for which it has been, less that since it no longer is, 0 to kFadeTime [s]
   static constexpr double kFadeTime = 30e-3;
   /// Returns the share of the forces that is left.
   [[nodiscard]] double force_share() const noexcept { return 1.0 - beyond_for / kFadeTime; }

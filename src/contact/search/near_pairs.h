@@ -126,13 +126,19 @@ inline void visit(const SegmentView& segment, const ObjectView& object, double c
 inline void list(const SegmentView& segment, const ObjectView& object, double cap, BoundSink sink,
                  void* context) noexcept {
   const Sweep still{nullptr, 0.0, 0.0};
-  const double limit = cap * 1.000000001;
-  const float box_cap = single_cap(limit);
+  double limit = 0.0;
+  float box_cap = 0.0F;
   bool wanted = true;
+  const auto look_no_farther = [&] {
+    limit = cap * 1.000000001;
+    box_cap = single_cap(limit);
+    wanted = cap >= 0.0;
+  };
+  look_no_farther();
   const LensMotion no_motion{};
   Walk<false> walk(segment, object, no_motion);
   walk.run<false>(
-      box_cap, [&](float) { return wanted; },
+      box_cap, [&](float bound) { return wanted && bound <= box_cap; },
       [&](std::int32_t triangle, std::int32_t block, float) {
         const PlacedTriangle& s = placed_triangle(segment, triangle, still);
         for (int i = 0; i < kWide && wanted; i += kDoubles) {
@@ -141,7 +147,9 @@ inline void list(const SegmentView& segment, const ObjectView& object, double ca
             const int l = __builtin_ctz(left);
             const std::int32_t slot = block * kWide + i + l;
             if (slot >= object.size) break;
-            wanted = sink(context, {triangle, slot}, apart[l]);
+            if (apart[l] > limit) continue;
+            cap = sink(context, {triangle, slot}, apart[l]);
+            look_no_farther();
           }
         }
       });

@@ -62,8 +62,8 @@ struct PairDistance {
 using PairSink = void (*)(void* context, const PairDistance& pair, double& cap_squared);
 
 /// Callback that receives pairs in a fixed order, each with a lower bound on its distance [m], which may be
-/// negative. It returns false to end the search.
-using BoundSink = bool (*)(void* context, const PairIndex& pair, double bound);
+/// negative. It returns the cap from there on [m], at most the one before. A negative cap ends the search.
+using BoundSink = double (*)(void* context, const PairIndex& pair, double bound);
 
 /// Buffer for pairs. If a gather has too little room for a block, it calls make_room, which must make enough.
 struct PairStore {
