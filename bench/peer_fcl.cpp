@@ -12,7 +12,13 @@ namespace {
 using Transform = fcl::Transform3<double>;
 using Traversal = fcl::detail::MeshDistanceTraversalNodeOBBRSS<double>;
 
+/// FCL works in millimetres here. It takes a triangle whose doubled area, squared, is below 1e-15 for a line, which in
+/// metres edges of 0.18 mm are, and may then find a distance of 0 that is none.
+constexpr double kScale = 1e3;
+
 std::shared_ptr<FclEngine::Model> model_of(const TriangleMesh& mesh) {
+  std::vector<Vec3> vertices = mesh.vertices;
+  for (Vec3& x : vertices) x *= kScale;
   std::vector<fcl::Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
@@ -21,7 +27,7 @@ std::shared_ptr<FclEngine::Model> model_of(const TriangleMesh& mesh) {
   }
   auto model = std::make_shared<FclEngine::Model>();
   model->beginModel();
-  model->addSubModel(mesh.vertices, triangles);
+  model->addSubModel(vertices, triangles);
   model->endModel();
   return model;
 }
@@ -29,7 +35,7 @@ std::shared_ptr<FclEngine::Model> model_of(const TriangleMesh& mesh) {
 Transform transform_of(const Pose& X) {
   Transform T = Transform::Identity();
   T.linear() = X.R;
-  T.translation() = X.p;
+  T.translation() = kScale * X.p;
   return T;
 }
 
@@ -39,7 +45,7 @@ class PairCollector : public Traversal {
   PairCollector(double limit, const Pose& X_WS, std::vector<ClosePair>& pairs)
       : limit_(limit), X_WS_(X_WS), pairs_(pairs) {}
 
-  [[nodiscard]] bool canStop(double bound) const override { return bound > limit_; }
+  [[nodiscard]] bool canStop(double bound) const override { return bound > kScale * limit_; }
 
   void leafTesting(int b1, int b2) const override {
     const int i = this->model1->getBV(b1).primitiveId();
@@ -48,11 +54,13 @@ class PairCollector : public Traversal {
     const fcl::Triangle& t = this->tri_indices2[j];
     Vec3 on_segment;
     Vec3 on_object;
-    const double distance = fcl::detail::TriangleDistance<double>::triDistance(
-        this->vertices1[s[0]], this->vertices1[s[1]], this->vertices1[s[2]], this->vertices2[t[0]],
-        this->vertices2[t[1]], this->vertices2[t[2]], this->tf, on_segment, on_object);
+    const double distance =
+        fcl::detail::TriangleDistance<double>::triDistance(
+            this->vertices1[s[0]], this->vertices1[s[1]], this->vertices1[s[2]], this->vertices2[t[0]],
+            this->vertices2[t[1]], this->vertices2[t[2]], this->tf, on_segment, on_object) /
+        kScale;
     if (distance > limit_) return;
-    pairs_.push_back({distance, X_WS_ * on_segment, X_WS_ * on_object, i, j});
+    pairs_.push_back({distance, X_WS_ * (on_segment / kScale), X_WS_ * (on_object / kScale), i, j});
   }
 
  private:
@@ -69,11 +77,11 @@ FclEngine::FclEngine(const HandModel& hand, const TriangleMesh& object) : object
 
 Nearest FclEngine::nearest(int segment, const Pose& X_WS, double cap) {
   const fcl::DistanceRequest<double> request(true);
-  fcl::DistanceResult<double> result(cap);  // the bound that FCL's traversal begins with
+  fcl::DistanceResult<double> result(kScale * cap);  // the bound that FCL's traversal begins with
   fcl::distance<double>(segment_[static_cast<std::size_t>(segment)].get(), transform_of(X_WS), object_.get(),
                         Transform::Identity(), request, result);
-  if (!(result.min_distance < cap)) return {.distance = cap};
-  return {result.min_distance, result.nearest_points[0], result.nearest_points[1]};
+  if (!(result.min_distance < kScale * cap)) return {.distance = cap};
+  return {result.min_distance / kScale, result.nearest_points[0] / kScale, result.nearest_points[1] / kScale};
 }
 
 void FclEngine::pairs_within(int segment, const Pose& X_WS, double limit, std::vector<ClosePair>& pairs) {

@@ -73,14 +73,16 @@ void add_candidates(const PlacedSegment& placed, const ObjectModel& object, doub
   struct Candidates {
     std::vector<search::PairIndex> pair;
     ResultBits& out;
-  } candidates{{}, out};
+    double cap;
+  } candidates{{}, out, found + 1e-3};
   search::functions().list(
-      segment, tree, found + 1e-3,
+      segment, tree, candidates.cap,
       [](void* self, const search::PairIndex& pair, double bound) {
         auto& list = *static_cast<Candidates*>(self);
         list.pair.push_back(pair);
         list.out.add(bound);
-        return list.pair.size() < 300;
+        if (list.pair.size() % 50 == 0) list.cap *= 0.9;
+        return list.pair.size() < 300 ? list.cap : -1.0;
       },
       &candidates);
   std::vector<search::PairDistance> distances(candidates.pair.size());

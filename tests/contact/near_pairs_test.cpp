@@ -77,7 +77,7 @@ TEST_F(NearPairsTest, HoldForOnePoseUpToOneReach) {
 }
 
 TEST_F(NearPairsTest, TooManyAreNotHeld) {
-  const SegmentTree fine(make_box(Vec3(0.02, 0.02, 0.02), 10800));
+  const SegmentTree fine(make_box(Vec3(0.02, 0.02, 0.02), 30'000));
   SearchScratch scratch(fine);
   const Pose X = above(50e-6);
   near_.find({fine, X, scratch}, object_.tree(), 60e-6);
@@ -214,6 +214,41 @@ TEST(CandidatePairs, AreNotListedForAFastSegmentOrBesideTooFineAMesh) {
   near.candidates().list({fine, X, scratch}, object.tree(), 60e-6);
   near.find({fine, X, scratch}, object.tree(), 60e-6);
   EXPECT_TRUE(near.overflows()) << "a search found them";
+}
+
+// A ball of 14 mm wanders over one of 60 mm. The list holds all pairs within 60 um, but not those of 0.3 mm of way.
+TEST(CandidatePairs, BesideAFineMeshTheyLastForLessOfTheWay) {
+  constexpr std::uint64_t kSeed = 5;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  test::Random random(kSeed);
+  const SegmentTree segment(make_sphere(0.014, 20'000));
+  const ObjectModel object(make_sphere(0.06, 200'000));
+  SearchScratch scratch(segment);
+  NearPairs listed;
+  CandidatePairs& candidates = listed.candidates();
+  candidates.allocate();
+  NearPairs searched;
+  Pose X{Mat3::Identity(), Vec3(0.037 + 50e-6, 0.0, 0.001)};
+  int lists = 0;
+  int covered = 0;
+  for (int i = 0; i < 200; ++i) {
+    X.p += test::in_cube(random, 5e-6);
+    X.p *= (0.037 + 50e-6) / X.p.norm();
+    const PlacedSegment placed{segment, X, scratch};
+    const bool was_covered = candidates.cover(placed, 60e-6);
+    candidates.list(placed, object.tree(), 60e-6);
+    ASSERT_TRUE(candidates.cover(placed, 60e-6)) << "step " << i;
+    EXPECT_FALSE(candidates.cover(placed, 359e-6)) << "step " << i;
+    lists += was_covered ? 0 : 1;
+    listed.find(placed, object.tree(), 60e-6);
+    searched.clear();
+    searched.find(placed, object.tree(), 60e-6);
+    ASSERT_FALSE(searched.overflows());
+    ASSERT_GT(searched.count(), 20U);
+    ASSERT_TRUE(same_pairs(listed, searched)) << "step " << i;
+    covered += was_covered ? 1 : 0;
+  }
+  EXPECT_LT(lists, 50) << "of " << covered + lists;
 }
 
 /// Two hands in the same motion. The stored pairs of one are removed before each tick, so that it lists what

@@ -90,11 +90,11 @@ TEST(Proximity, AFlatTouchPicksTheMiddle) {
   }
 }
 
-// As above with a lower face of 1800 triangles: more pairs tie than are kept, and they are sought again for
+// As above with a lower face of 5000 triangles: more pairs tie than are kept, and they are sought again for
 // each question.
 TEST(Proximity, ATouchOfMorePairsThanAreKeptIsTheSame) {
   const ObjectModel table(make_box(Vec3(0.2, 0.2, 0.2), 12));
-  const SegmentTree box(make_box(Vec3(0.02, 0.02, 0.02), 10800));
+  const SegmentTree box(make_box(Vec3(0.02, 0.02, 0.02), 30'000));
   SearchScratch scratch(box);
   const Pose X{Mat3::Identity(), Vec3(0.013, -0.007, 0.11 + 50e-6)};
   SegmentMotion down;
@@ -361,7 +361,7 @@ TEST(Sift, KeepsEveryPairThatTheMotionMayBringWithinTheMargin) {
           search::view_of(placed, object.tree()), tree, 3e-3,
           [](void* list, const search::PairIndex& pair, double) {
             static_cast<std::vector<search::PairIndex>*>(list)->push_back(pair);
-            return true;
+            return 3e-3;
           },
           &pairs);
       if (pairs.size() > 1000) pairs.resize(1000);
