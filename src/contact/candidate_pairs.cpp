@@ -72,7 +72,7 @@ void CandidatePairs::list(const PlacedSegment& segment, const ObjectTree& object
   X_WS_ = segment.X_WS;
   way_ = 0.0;
   complete_ = listing.cap;
-  ahead_ = std::min(kAhead, 2.0 * (complete_ - reach));
+  ahead_ = std::clamp(2.0 * (complete_ - reach), kAhead / 64.0, kAhead);
 }
 
 }  // namespace phalanx

@@ -25,6 +25,7 @@
 #include "phalanx/cockpit.pb.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/serve/cockpit.h"
+#include "phalanx/step/displayed_hand.h"
 #include "serve/audit_log.h"
 #include "serve/geometry_message.h"
 #include "serve/page_requests.h"
@@ -75,6 +76,8 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   void request_state() { state_requested = true; }
   void send_state_if_due();
   void send_tick();
+  /// Replaces the GDP's poses by those of the hand that is drawn.
+  void draw(StationView& view);
   void disconnect_pages_without_hello();
 
   // ---- messages from pages: cockpit_incoming.cpp
@@ -121,7 +124,11 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   std::uint64_t sent_revision = 0;
   SafetyState sent_safety = SafetyState::kWaiting;
   const std::shared_ptr<GeometryCache> geometry_cache = std::make_shared<GeometryCache>();
-  std::shared_ptr<UploadJob> upload;  ///< the newest
+  std::shared_ptr<UploadJob> upload;                      ///< the newest
+  std::shared_ptr<const SessionGeometry> drawn_geometry;  ///< of `drawn`
+  double drawn_margin = 0.0;                              ///< of `drawn` [m]
+  std::optional<DisplayedHand> drawn;
+  double drawn_at = 0.0;  ///< time of the step that it followed last [s]
 
  private:
   void hello(PageId page, const wire::Hello& hello);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <utility>
 
+#include "phalanx/core/index.h"
+#include "phalanx/step/haptic_step.h"
 #include "serve/cockpit_impl.h"
 #include "serve/plain_text.h"
 #include "serve/state_message.h"
@@ -151,14 +155,32 @@ void Cockpit::Impl::send_state_if_due() {
   send_to_all(encoded_state());
 }
 
+void Cockpit::Impl::draw(StationView& view) {
+  const std::shared_ptr<const SessionInfo> info = session.info();
+  if (info->geometry != drawn_geometry || info->margin != drawn_margin) {
+    drawn.reset();
+    drawn_geometry = info->geometry;
+    drawn_margin = info->margin;
+    drawn_at = view.time;
+    if (drawn_geometry && drawn_geometry->model) drawn.emplace(*drawn_geometry->model, drawn_margin);
+  }
+  if (!drawn) return;
+  drawn->follow(view.snapshot.gdp_angle, std::max(0.0, view.time - drawn_at));
+  drawn_at = view.time;
+  std::array<Pose, kSegments> poses;
+  for (int s = 0; s < kSegments; ++s) poses[idx(s)] = drawn->pose(s);
+  draw_at(poses, view.snapshot);
+}
+
 void Cockpit::Impl::send_tick() {
-  const StationView view = session.view();
+  StationView view = session.view();
   // Before the first step there is no hand to show.
   if (view.snapshot.tick == 0) return;
   Bytes bytes;
   for (auto& [page, window] : greeted) {
     if (window.newest == view.time || !window.open()) continue;
     if (!bytes) {
+      draw(view);
       wire::ToPage message;
       write_tick(view, *message.mutable_tick());
       bytes = encoded(message);

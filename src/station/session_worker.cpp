@@ -148,6 +148,7 @@ void SessionWorker::apply(const SetValues& set) {
   info->overrides = next.overrides;
   info->values = std::move(read.values);
   info->description = read.scene.description;
+  info->margin = read.scene.parameters.contact.margin;
   if (kind == ChangeKind::kInContact)
     now->station->change_to(read.scene.parameters);
   else
@@ -167,6 +168,7 @@ void SessionWorker::exchange_object(Station& station, StationBuild build) {
   info->overrides = build.plan.overrides;
   info->values = std::move(build.values);
   info->description = build.scene.description;
+  info->margin = build.made.parameters.contact.margin;
   build.geometry->revision = info->geometry->revision + 1;
   info->geometry = build.geometry;
   run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters); });
@@ -258,6 +260,7 @@ void SessionWorker::take_over(StationBuild& build) {
     info.source = build.plan.source;
     info.calibration = build.plan.calibration;
     info.fingertip_force = build.made.safety.fingertip_force;
+    info.margin = build.made.parameters.contact.margin;
     info.patient = build.made.safety.patient;
     build.geometry->revision = info.geometry ? info.geometry->revision + 1 : 1;
     info.geometry = build.geometry;

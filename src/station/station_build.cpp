@@ -159,6 +159,7 @@ StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithVal
   static_cast<void>(HapticState(*build.made.model, build.made.parameters));
   if (presses) build.patient = patient_of(scene, *build.made.model);
   build.geometry = geometry_of(std::move(scene));
+  build.geometry->model = build.made.model;
   return build;
 }
 

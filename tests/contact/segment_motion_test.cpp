@@ -216,5 +216,86 @@ TEST(SegmentMotion, SpeedAndJerkBoundEveryPointAllAlongTheWay) {
   EXPECT_GT(most_jerk, 0.3);
 }
 
+/// A segment of one digit as seen from a segment of another one, both on straight ways, or from a body that is fixed.
+struct RelativeWay {
+  const Way& way;
+  const Way* carrier;
+  Pose fixed;
+
+  [[nodiscard]] Pose frame(double s) const {
+    return carrier != nullptr ? carrier->pose(s).segment[static_cast<std::size_t>(carrier->k)] : fixed;
+  }
+  [[nodiscard]] Vec3 place(double s) const { return frame(s).inverse() * way.place(s); }
+  [[nodiscard]] SegmentMotion motion(double s) const {
+    const auto moving = [s](const Way& of, const DigitPose& pose) {
+      return MovingSegment{of.digit, of.k, pose, of.rate};
+    };
+    const DigitPose pose = way.pose(s);
+    const Vec3 origin = pose.segment[static_cast<std::size_t>(way.k)].p;
+    Sphere around{origin, 0.0};
+    for (const Vec3& v : way.hand.mesh(segment_index(way.digit, way.k)).vertices)
+      around.radius = std::max(around.radius, v.norm());
+    if (carrier == nullptr) return relative_motion(way.hand, moving(way, pose), around, fixed, nullptr, 0.0);
+    const DigitPose other = carrier->pose(s);
+    const MovingSegment from = moving(*carrier, other);
+    const double bound = segment_speed(way.hand, way.digit, way.rate, way.k) +
+                         segment_speed(way.hand, carrier->digit, carrier->rate, carrier->k);
+    return relative_motion(way.hand, moving(way, pose), around, frame(s), &from, bound);
+  }
+  [[nodiscard]] double turned() const {
+    return way.turned() + (carrier != nullptr ? carrier->turned() : 0.0);
+  }
+};
+
+template <class Check>
+void for_each_relative_way(std::uint64_t seed, Check&& check) {
+  for_each_way(seed, [&](Random& random, const Way& way) {
+    Way carrier = any_way(random, way.hand);
+    if (carrier.digit == way.digit) carrier.digit = (way.digit + 1) % kDigits;
+    check(random, RelativeWay{way, &carrier, {}});
+    check(random, RelativeWay{way, nullptr, test::any_pose(random, 0.5)});
+  });
+}
+
+// As VelocityAndAccelerationAreTheDifferencesOfThePoses.
+TEST(RelativeMotion, VelocityAndAccelerationAreTheDifferencesOfThePoses) {
+  for_each_relative_way(14, [](Random&, const RelativeWay& way) {
+    const SegmentMotion motion = way.motion(0.0);
+    const Vec3 x = way.place(0.0);
+    const double turned = way.turned();
+    const double h = 1e-4;
+    const Vec3 v = (way.place(h) - way.place(-h)) / (2.0 * h);
+    ASSERT_LE((v - motion.velocity(x)).norm(), motion.jerk * h * h / 6.0 + 1e-11);
+    const double g = 1e-3;
+    const Vec3 a = (way.place(g) - 2.0 * x + way.place(-g)) / (g * g);
+    const Vec3 expected =
+        motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(motion.velocity(x));
+    ASSERT_LE((a - expected).norm(), motion.jerk * turned * g * g / 12.0 + 4e-9);
+  });
+}
+
+TEST(RelativeMotion, SpeedBendAndJerkBoundEveryPointOnTheWay) {
+  double most_speed = 0.0;
+  for_each_relative_way(15, [&](Random& random, const RelativeWay& way) {
+    const SegmentMotion motion = way.motion(0.0);
+    const double s = between(random, 0.0, 1.0);
+    const SegmentMotion there = way.motion(s);
+    const Vec3 x = way.place(s);
+    const double speed = there.velocity(x).norm();
+    ASSERT_LE(speed, motion.speed * (1.0 + 1e-12));
+    if (motion.speed > 0.0) most_speed = std::max(most_speed, speed / motion.speed);
+    const auto acceleration = [&](double at) {
+      const SegmentMotion m = way.motion(at);
+      const Vec3 y = way.place(at);
+      return Vec3(m.angular_rate.cross(y) + m.linear_rate + m.angular.cross(m.velocity(y)));
+    };
+    ASSERT_LE(acceleration(s).norm(), motion.bend * (1.0 + 1e-12));
+    const double h = 1e-4;
+    const double jerk = (acceleration(s + h) - acceleration(s - h)).norm() / (2.0 * h);
+    ASSERT_LE(jerk, motion.jerk * (1.0 + 1e-6) + 1e-10);
+  });
+  EXPECT_GT(most_speed, 0.5) << "a bound, not a wall far away";
+}
+
 }  // namespace
 }  // namespace phalanx

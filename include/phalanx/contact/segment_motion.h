@@ -33,6 +33,29 @@ struct SegmentMotion {
 [[nodiscard]] SegmentMotion segment_motion(const HandModel& hand, int digit, const DigitPose& pose,
                                            const DigitAngles& rate, int k) noexcept;
 
+/// Segment k of a digit whose joints follow a straight line in joint space.
+struct MovingSegment {
+  int digit = 0;
+  int k = 0;
+  const DigitPose& pose;    ///< of the digit at this s
+  const DigitAngles& rate;  ///< of its joints, dq/ds [rad per unit of s]
+};
+struct Sphere {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;  ///< [m]
+};
+
+/// Returns the motion of a segment in another body's frame. The chain begins at that body, goes along its axes to the
+/// palm, each with its rate reversed, and on along the axes of the segment; the formulas are those of segment_motion().
+/// @param around   a sphere around the segment, in W [m]
+/// @param frame    pose of the other body, in W
+/// @param carrier  the other body, or null: it does not move
+/// @param way      no point of the segment, and no axis of the carrier, moves farther along the line, both added [m]
+/// Real-time: O(1), no allocation, lock, throw or I/O.
+[[nodiscard]] SegmentMotion relative_motion(const HandModel& hand, const MovingSegment& segment,
+                                            const Sphere& around, const Pose& frame,
+                                            const MovingSegment* carrier, double way) noexcept;
+
 /// Returns SegmentMotion::speed alone. Real-time.
 [[nodiscard]] double segment_speed(const HandModel& hand, int digit, const DigitAngles& rate, int k) noexcept;
 

@@ -25,6 +25,7 @@ namespace phalanx {
 
 class CommandQueue;
 class ImportCache;
+struct HapticModel;
 class SessionState;
 class SessionWorker;
 
@@ -58,6 +59,7 @@ struct SessionGeometry {
   std::optional<HandSkin> skin;
   TriangleMesh object;  ///< in W
   double rate_hz = 0.0;
+  std::shared_ptr<const HapticModel> model;  ///< of the same hand and object
 };
 
 /// State of a session that seldom changes. Each change publishes a new SessionInfo; a reader keeps the one
@@ -73,6 +75,7 @@ struct SessionInfo {
   std::string calibration;  ///< calibration file; empty: the device's own values
   DeviceInfo device;
   double fingertip_force = 0.0;  ///< limit of a digit's force [N]
+  double margin = 0.0;           ///< ContactParameters::margin [m]
   std::string patient;           ///< SafetySettings::patient of the station
   std::vector<int> sensed_joints;
   std::string realtime;  ///< granted scheduling; empty: not asked for, or not known yet

@@ -15,6 +15,7 @@
 
 namespace phalanx::test {
 
+/// In millimetres: in metres FCL takes triangles with edges of 0.2 mm for lines, and may find a collision that is none.
 class FclMesh {
  public:
   explicit FclMesh(const TriangleMesh& mesh) : model_(std::make_shared<Model>()) {
@@ -25,7 +26,9 @@ class FclMesh {
                              static_cast<std::size_t>(t[2]));
     }
     model_->beginModel();
-    model_->addSubModel(mesh.vertices, triangles);
+    std::vector<Vec3> vertices = mesh.vertices;
+    for (Vec3& x : vertices) x *= kScale;
+    model_->addSubModel(vertices, triangles);
     model_->endModel();
   }
 
@@ -44,16 +47,17 @@ class FclMesh {
     const fcl::CollisionObject<double> b = other.object(Pose{});
     fcl::DistanceRequest<double> request;
     fcl::DistanceResult<double> result;
-    return fcl::distance(&a, &b, request, result);
+    return fcl::distance(&a, &b, request, result) / kScale;
   }
 
  private:
   using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
+  static constexpr double kScale = 1e3;
 
   [[nodiscard]] fcl::CollisionObject<double> object(const Pose& X) const {
     fcl::Transform3<double> T = fcl::Transform3<double>::Identity();
     T.linear() = X.R;
-    T.translation() = X.p;
+    T.translation() = kScale * X.p;
     return fcl::CollisionObject<double>(model_, T);
   }
 
