@@ -12,8 +12,8 @@ namespace {
 using Transform = fcl::Transform3<double>;
 using Traversal = fcl::detail::MeshDistanceTraversalNodeOBBRSS<double>;
 
-/// FCL works in millimetres here. It takes a triangle whose doubled area, squared, is below 1e-15 for a line, which in
-/// metres edges of 0.18 mm are, and may then find a distance of 0 that is none.
+/// FCL computes in millimetres here. It treats a triangle as degenerate if the square of its doubled area is below 1e-15.
+/// In metres that is so for edges of 0.18 mm, and FCL may then report the distance 0 for triangles that are apart.
 constexpr double kScale = 1e3;
 
 std::shared_ptr<FclEngine::Model> model_of(const TriangleMesh& mesh) {

@@ -86,21 +86,25 @@ void for_each_way(std::uint64_t seed, Check&& check) {
   }
 }
 
-// The differences' own error: h^2 / 6 of the third derivative, h^2 / 12 of the fourth, and an ulp of 1 m / h.
+/// Expects the velocity and acceleration of the motion to be the differences of its places. Their own error is h^2 / 6 of
+/// the third derivative, h^2 / 12 of the fourth, and an ulp of 1 m / h.
+template <class AnyWay>
+void expect_differences(const AnyWay& way) {
+  const SegmentMotion motion = way.motion(0.0);
+  const Vec3 x = way.place(0.0);
+  const double turned = way.turned();
+  const double h = 1e-4;
+  const Vec3 v = (way.place(h) - way.place(-h)) / (2.0 * h);
+  ASSERT_LE((v - motion.velocity(x)).norm(), motion.jerk * h * h / 6.0 + 1e-11);
+  const double g = 1e-3;
+  const Vec3 a = (way.place(g) - 2.0 * x + way.place(-g)) / (g * g);
+  const Vec3 expected =
+      motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(motion.velocity(x));
+  ASSERT_LE((a - expected).norm(), motion.jerk * turned * g * g / 12.0 + 4e-9);
+}
+
 TEST(SegmentMotion, VelocityAndAccelerationAreTheDifferencesOfThePoses) {
-  for_each_way(11, [](Random&, const Way& way) {
-    const SegmentMotion motion = way.motion(0.0);
-    const Vec3 x = way.place(0.0);
-    const double turned = way.turned();
-    const double h = 1e-4;
-    const Vec3 v = (way.place(h) - way.place(-h)) / (2.0 * h);
-    ASSERT_LE((v - motion.velocity(x)).norm(), motion.jerk * h * h / 6.0 + 1e-11);
-    const double g = 1e-3;
-    const Vec3 a = (way.place(g) - 2.0 * x + way.place(-g)) / (g * g);
-    const Vec3 expected =
-        motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(motion.velocity(x));
-    ASSERT_LE((a - expected).norm(), motion.jerk * turned * g * g / 12.0 + 4e-9);
-  });
+  for_each_way(11, [](Random&, const Way& way) { expect_differences(way); });
 }
 
 // The bend by differences of poses alone, so that no formula of the program is trusted. Their error is the
@@ -257,21 +261,8 @@ void for_each_relative_way(std::uint64_t seed, Check&& check) {
   });
 }
 
-// As VelocityAndAccelerationAreTheDifferencesOfThePoses.
 TEST(RelativeMotion, VelocityAndAccelerationAreTheDifferencesOfThePoses) {
-  for_each_relative_way(14, [](Random&, const RelativeWay& way) {
-    const SegmentMotion motion = way.motion(0.0);
-    const Vec3 x = way.place(0.0);
-    const double turned = way.turned();
-    const double h = 1e-4;
-    const Vec3 v = (way.place(h) - way.place(-h)) / (2.0 * h);
-    ASSERT_LE((v - motion.velocity(x)).norm(), motion.jerk * h * h / 6.0 + 1e-11);
-    const double g = 1e-3;
-    const Vec3 a = (way.place(g) - 2.0 * x + way.place(-g)) / (g * g);
-    const Vec3 expected =
-        motion.angular_rate.cross(x) + motion.linear_rate + motion.angular.cross(motion.velocity(x));
-    ASSERT_LE((a - expected).norm(), motion.jerk * turned * g * g / 12.0 + 4e-9);
-  });
+  for_each_relative_way(14, [](Random&, const RelativeWay& way) { expect_differences(way); });
 }
 
 TEST(RelativeMotion, SpeedBendAndJerkBoundEveryPointOnTheWay) {

@@ -8,10 +8,10 @@
 namespace phalanx {
 
 /// The hand that is drawn. The GDP never penetrates the object, but its digits may go through each other and the palm,
-/// because forces must not depend on that. The displayed hand follows the GDP, and its digits do neither: on its way
-/// no pair of triangles of bodies that are kept apart comes nearer than the margin less 10 nm. These are the segments of
-/// different digits, the palm and the object, but for roots of digits: keeps_apart(). All digits move together, so that none has precedence. No force depends on it.
-/// See docs/contact.md "The displayed hand".
+/// because forces must not depend on that. The displayed hand follows the GDP. On its way no pair of triangles of two
+/// bodies that are kept apart comes nearer than the margin less 10 nm. Kept apart are the segments of different digits,
+/// the palm and the object, except the roots of digits: keeps_apart(). All digits move together, so that none has
+/// precedence. No force depends on this hand. See docs/contact.md "The displayed hand".
 class DisplayedHand {
  public:
   /// Begins at the open hand. Set-up only.

@@ -15,7 +15,8 @@
 
 namespace phalanx::test {
 
-/// In millimetres: in metres FCL takes triangles with edges of 0.2 mm for lines, and may find a collision that is none.
+/// FCL computes in millimetres: in metres it treats triangles with edges below 0.2 mm as degenerate, and may report that
+/// they collide though they are apart.
 class FclMesh {
  public:
   explicit FclMesh(const TriangleMesh& mesh) : model_(std::make_shared<Model>()) {
