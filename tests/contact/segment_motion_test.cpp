@@ -231,7 +231,7 @@ struct RelativeWay {
   }
   [[nodiscard]] Vec3 place(double s) const { return frame(s).inverse() * way.place(s); }
   [[nodiscard]] SegmentMotion motion(double s) const {
-    const auto moving = [s](const Way& of, const DigitPose& pose) {
+    const auto moving = [](const Way& of, const DigitPose& pose) {
       return MovingSegment{of.digit, of.k, pose, of.rate};
     };
     const DigitPose pose = way.pose(s);
