@@ -31,6 +31,13 @@ constexpr double kReached = 50e-6;  // way to the GDP that is left where the han
 /// @returns the body's digit, or -1: it does not move
 int moving_digit(int body) noexcept { return body < kPalm ? digit_of_segment(body) : -1; }
 
+/// @returns true if both are the first segments of digits. Their meshes reach into the palm, and meet there when the
+/// thumb opposes.
+bool are_roots(int segment, int other) {
+  return segment != kPalm && other != kPalm && segment % kSegmentsPerDigit == 0 &&
+         other % kSegmentsPerDigit == 0;
+}
+
 }  // namespace
 
 class DisplayedHand::Impl {
@@ -400,6 +407,7 @@ DisplayedHand::Impl::Impl(const HapticModel& model, double margin)
   for (int segment = 0; segment < kPalm; ++segment) {
     for (int other = segment + 1; other <= kPalm; ++other) {
       if (moving_digit(other) == moving_digit(segment)) continue;
+      if (are_roots(segment, other)) continue;
       const Pose X = pose(other).inverse() * pose(segment);
       const PlacedSegment at{trees_[idx(segment)], X, scratch_};
       const double least = std::max(kLeastGap, margin_ + kRoom);

@@ -35,8 +35,8 @@ class DisplayedHand {
   [[nodiscard]] const JointArray& angle() const noexcept;  ///< [rad]
   /// Returns the pose X_WS of a segment.
   [[nodiscard]] const Pose& pose(int segment) const noexcept;
-  /// @returns true if two segments are kept apart. Segments of one digit are not, nor are those that touch or overlap
-  /// at the open hand: fingers at their roots, and the thumb's root and the palm.
+  /// @returns true if two segments are kept apart. Segments of one digit are not, nor the first segments of two
+  /// digits, nor those that touch or overlap at the open hand: roots of digits and the palm.
   [[nodiscard]] bool keeps_apart(int segment, int other) const noexcept;
 
   static constexpr double kMostWay = 2e-3;     ///< of a point in a motion [m]
