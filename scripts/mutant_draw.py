@@ -31,6 +31,7 @@ FOLDERS: dict[str, tuple[int, str, list[str]]] = {
 FURTHER: dict[str, tuple[int, str, list[str]]] = {
     "core": (90, "core hand contact force step scene", ["*/core/*"]),
     "device": (90, "device simulation scene study papers figures station faults apps", ["src/device/*.*", "include/phalanx/device/*.h"]),
+    "grasp": (90, "grasp apps", ["*/grasp/*"]),
     "gloves": (90, "device/opengloves device simulation faults apps", ["*/device/opengloves/*"]),
     "simulation": (90, "simulation device scene study papers figures station faults apps", ["*/simulation/*"]),
     "mesh": (90, "mesh scene step study papers figures", ["*/mesh/*"]),

@@ -24,6 +24,7 @@ void add_simulate_command(CLI::App& app, Job& job);
 void add_experiment_command(CLI::App& app, Job& job);
 void add_study_command(CLI::App& app, Job& job);
 void add_scene_command(CLI::App& app, Job& job);
+void add_grasp_command(CLI::App& app, Job& job);
 void add_hand_command(CLI::App& app, Job& job);
 void add_mesh_command(CLI::App& app, Job& job);
 void add_device_command(CLI::App& app, Job& job);

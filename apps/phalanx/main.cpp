@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   add_simulate_command(app, job);
   add_experiment_command(app, job);
   add_study_command(app, job);
+  add_grasp_command(app, job);
   add_scene_command(app, job);
   add_hand_command(app, job);
   add_mesh_command(app, job);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/nearest_name.h"
 #include "phalanx/core/random.h"
 #include "phalanx/device/motion.h"
@@ -32,10 +33,13 @@ constexpr Grip kPress = {{kStill, kFingerCloses, kStill, kStill, kStill}, false}
 constexpr Grip kPinch = {{kThumbOpposes, kFingerCloses, kStill, kStill, kStill}, false};
 constexpr Grip kTripod = {{kThumbOpposes, kFingerCloses, kFingerCloses, kStill, kStill}, false};
 constexpr Grip kPower = {{kThumbWraps, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, false};
+constexpr DigitWeights kMoves = {1.0, 1.0, 1.0, 1.0};
+constexpr Grip kPosture = {{kMoves, kMoves, kMoves, kMoves, kMoves}, false};
 constexpr Grip kWave = {{kStill, kFingerCloses, kFingerCloses, kFingerCloses, kFingerCloses}, true};
 
 const Grip& grip_of(const std::string& name) {
-  static constexpr std::array<const Grip*, 5> kGrips = {&kPress, &kPinch, &kTripod, &kPower, &kWave};
+  static constexpr std::array<const Grip*, 6> kGrips = {&kPress, &kPinch, &kTripod,
+                                                        &kPower, &kWave,  &kPosture};
   const auto& names = scripted_motion_names();
   const auto it = std::find(names.begin(), names.end(), name);
   if (it == names.end()) {
@@ -112,6 +116,8 @@ void check(const ScriptedMotion& script, double total) {
           "between 0 (open) and 1 (closed)");
   for (const double share : script.digit_closure)
     require(not_negative(share), "digit_closure", share, "finite and not negative");
+  for (const std::optional<double>& angle : script.posture)
+    require(!angle || std::isfinite(*angle), "angle_deg", angle.value_or(0.0) * kRadToDeg, "finite");
   require(not_negative(script.tremor_rad), "tremor_rad", script.tremor_rad, "finite and not negative");
   require(not_negative(script.key_rate_hz) && script.key_rate_hz > 0.0, "key_rate_hz", script.key_rate_hz,
           "finite and above 0");
@@ -120,10 +126,18 @@ void check(const ScriptedMotion& script, double total) {
       "small enough that the motion has at most two million keys; shorten the motion or lower its key rate");
 }
 
+/// @returns the angle that a joint has at closure 1 [rad].
+double closed_angle(const ScriptedMotion& script, const Grip& grip, const HandParameters& hand,
+                    std::size_t j) {
+  if (&grip == &kPosture) return script.posture[j].value_or(hand.open_angle[j]);
+  return hand.closed_angle[j].value_or(hand.max_angle[j]);
+}
+
 }  // namespace
 
 const std::vector<std::string>& scripted_motion_names() {
-  static const std::vector<std::string> kNames = {"press", "pinch", "tripod", "power_grasp", "wave"};
+  static const std::vector<std::string> kNames = {"press",       "pinch", "tripod",
+                                                  "power_grasp", "wave",  "posture"};
   return kNames;
 }
 
@@ -152,7 +166,7 @@ Motion make_motion(const ScriptedMotion& script, const HandParameters& hand) {
       const double weight = grip.weight[static_cast<std::size_t>(digit)][j % kJointsPerDigit];
       if (weight == 0.0) continue;
       const double reach = weight * script.closure * script.digit_closure[static_cast<std::size_t>(digit)] *
-                           (hand.closed_angle[j].value_or(hand.max_angle[j]) - hand.open_angle[j]);
+                           (closed_angle(script, grip, hand, j) - hand.open_angle[j]);
       angle[j] += reach * closed_at(script, grip.ripple, digit, t_cycle) + fade * tremor.at(joint, t);
       angle[j] = std::clamp(angle[j], hand.min_angle[j], hand.max_angle[j]);
     }

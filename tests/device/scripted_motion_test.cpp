@@ -93,6 +93,21 @@ TEST(ScriptedMotion, MovesTheDigitsOfItsKindAndNoOthers) {
   }
 }
 
+TEST(ScriptedMotion, TakesJointsToAPostureOfOnesOwn) {
+  ScriptedMotion posture = script("posture");
+  posture.closure = 1.0;
+  posture.posture[kIndexFlexion] = 0.7;
+  posture.posture[kMiddleFlexion] = 100.0;
+  const JointArray held = make_motion(posture, simple_hand()).at(1.7);
+  EXPECT_NEAR(held[kIndexFlexion], 0.7, 1e-12);
+  EXPECT_EQ(held[kMiddleFlexion], simple_hand().max_angle[kMiddleFlexion]) << "the range of motion ends it";
+  EXPECT_EQ(held[kLittleFlexion], 0.1) << "without an angle it stays open";
+  posture.closure = 0.5;
+  EXPECT_NEAR(make_motion(posture, simple_hand()).at(1.7)[kIndexFlexion], 0.5 * (0.1 + 0.7), 1e-12);
+  posture.posture[kIndexFlexion] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(static_cast<void>(make_motion(posture, simple_hand())), std::invalid_argument);
+}
+
 // Half way through the closing each digit that moves is half closed: 0.1 + 0.84 / 2.
 TEST(ScriptedMotion, ClosesAllDigitsAtOnceUnlessItWaves) {
   for (const std::string name : {"press", "pinch", "tripod", "power_grasp"}) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ void check_motion(const Motion& motion);
 /// minimum_jerk() in `close_s`, holds for `hold_s`, and opens in `open_s`. The whole repeats `repeat` times.
 struct ScriptedMotion {
   /// "press" (index), "pinch" (thumb and index), "tripod" (and middle), "power_grasp" (all digits), "wave"
-  /// (finger after finger, from the little finger to the index).
+  /// (finger after finger, from the little finger to the index), "posture" (to angles of one's own).
   std::string name = "power_grasp";
   double start_s = 0.2;  ///< wait at the open hand [s] >= 0
   double close_s = 1.0;  ///< duration of closing [s] > 0
@@ -58,6 +59,8 @@ struct ScriptedMotion {
   /// Closure of each digit relative to `closure` [-] >= 0, thumb first, so that all digits meet
   /// an object alike.
   std::array<double, kDigits> digit_closure = {1.0, 1.0, 1.0, 1.0, 1.0};
+  /// Angles to which "posture" takes the joints at closure 1 [rad]; a joint without one stays.
+  std::array<std::optional<double>, kJoints> posture{};
   double tremor_rad = 0.0;  ///< bound of a seeded sum of sines at 5-12 Hz on every moving joint [rad] >= 0
   std::uint64_t seed = 1;   ///< seed of the tremor
   double key_rate_hz = 1000.0;  ///< rate of the keys [Hz] > 0

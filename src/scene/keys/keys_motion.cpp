@@ -36,6 +36,14 @@ void add_motion_keys(std::vector<SceneKey>& keys) {
                          t.scene.motion.script.digit_closure[static_cast<std::size_t>(digit)] = v.number;
                        });
   }
+  for (int joint = 0; joint < kJoints; ++joint) {
+    const std::string name(joint_name(joint));
+    new_station.number("motion.angle_deg." + name, "deg", between(-180, 180), std::nullopt,
+                       "posture: this joint's angle at closure 1; without it the joint stays open",
+                       [joint](T t, V v) {
+                         t.scene.motion.script.posture[static_cast<std::size_t>(joint)] = v.number * kDeg;
+                       });
+  }
   new_station.number("motion.tremor_deg", "deg", between(0, 20), 0,
                      "amplitude bound of a 5-12 Hz tremor on every moving joint",
                      [](T t, V v) { t.scene.motion.script.tremor_rad = v.number * kDeg; });

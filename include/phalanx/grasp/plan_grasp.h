@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Planning of a grasp: where the wrist is and how the digits close, for one hand and one object.
+//
+// 1. Candidates are drawn from a seed: poses of the wrist about the object, and ratios in which the joints close.
+// 2. Of each, the digits close along straight lines in joint space until they touch; contacts are found there.
+// 3. What does not fulfil the type's conditions is dropped. The rest is ranked by wrench ball and comfort.
+// 4. The best are played through step(), as a scene will play them. The first one that holds is the plan.
+// See docs/grasps.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "phalanx/contact/object_model.h"
+#include "phalanx/core/math.h"
+#include "phalanx/force/haptic_parameters.h"
+#include "phalanx/grasp/grasp_type.h"
+#include "phalanx/hand/hand_model.h"
+
+namespace phalanx {
+
+/// Contact of a planned grasp, in the world W.
+struct PlannedContact {
+  int segment = 0;
+  Vec3 point = Vec3::Zero();   ///< on the object [m]
+  Vec3 normal = Vec3::Zero();  ///< unit vector from the object to the segment
+  bool pad = false;            ///< the palmar side of the segment touches
+};
+
+/// A grasp that fulfils the conditions of its type.
+struct PlannedGrasp {
+  Pose X_WH;           ///< of the wrist
+  JointArray touch{};  ///< angles at which the digits touch [rad]
+  JointArray press{};  ///< angles that the measured hand goes to, beyond the touch [rad]
+  std::vector<PlannedContact> contact;
+  /// Radius of the largest ball around zero in the convex hull of the wrenches that the contacts can exert with normal
+  /// forces that add up to 1 [-]. Torques are about the object's centre, over its greatest radius. 0: no force closure.
+  /// Ferrari C., Canny J., "Planning optimal grasps", IEEE ICRA 1992.
+  double wrench_ball = 0.0;
+  /// Mean distance of the joints of the digits that take part from the nearer end of their range, over half of it: 0 at
+  /// a limit, 1 in the middle [-].
+  double comfort = 0.0;
+
+  static constexpr double kPalmGap = 1e-3;  ///< [m]
+};
+
+/// Conditions of a grasp in the order in which candidates are checked.
+enum class GraspCondition {
+  kOpenHand,     ///< the open hand is clear of the object
+  kPalmTouches,  ///< the palm touches
+  kReach,        ///< thumb and enough fingers touch
+  kPads,         ///< they touch with their pads
+  kOpposition,   ///< the thumb opposes the fingers
+  kClosure,      ///< force closure; a hook: two fingers hold a distal pull
+  kMotion,       ///< played through step(), the digits touch as planned
+};
+inline constexpr int kGraspConditions = 7;
+/// Returns a condition as a part of a sentence: "the open hand is clear of the object".
+[[nodiscard]] std::string_view grasp_condition_text(GraspCondition condition) noexcept;
+
+/// Result of a search.
+struct GraspSearch {
+  std::optional<PlannedGrasp> grasp;
+  std::array<int, kGraspConditions> failed{};  ///< candidates by the first condition that they failed
+  int candidates = 0;
+
+  /// Returns the condition at which the candidates that went farthest failed.
+  /// @pre there is no grasp
+  [[nodiscard]] GraspCondition obstacle() const noexcept;
+};
+
+/// Options of plan_grasp().
+struct GraspOptions {
+  GraspType type = GraspType::kCylinder;
+  std::uint64_t seed = 1;
+  HapticParameters
+      parameters;  ///< of the scene: margin, friction, spin radius, stiffness, rate. An object's own
+                   ///< friction, that of its first triangle, replaces contact.friction
+  /// Called from time to time, with the part of the work that is done, 0 to 1; false ends the search. May be empty.
+  std::function<bool(double)> progress;
+};
+
+/// Plans a grasp. The number of candidates is fixed; equal arguments give equal bits.
+/// @param hand    its pose in the world does not matter
+/// @param object  in the world [m]; at least one triangle
+/// @throws std::invalid_argument if the object has no triangles or a parameter is out of range. Set-up only.
+[[nodiscard]] GraspSearch plan_grasp(const HandModel& hand, const ObjectModel& object,
+                                     const GraspOptions& options);
+
+}  // namespace phalanx
