@@ -32,7 +32,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kHoldSeconds = 2.0;  // of the scene's motion
+constexpr double kHoldSeconds = 2.0;   // of the scene's motion
+constexpr double kLeastSize_mm = 0.1;  // of an object
+constexpr double kMostSize = 2.0;      // [m]
 
 struct GraspCommand {
   std::string object;
@@ -71,6 +73,9 @@ Overrides scene_overrides(const GraspCommand& command) {
   Overrides out;
   if (!command.profile.empty())
     out.emplace_back("hand.profile", option_as_toml("--profile", command.profile));
+  if (command.object_size_mm && !(*command.object_size_mm >= kLeastSize_mm))
+    throw std::invalid_argument(
+        fmt::format("--object-size-mm {}: must be at least {}", *command.object_size_mm, kLeastSize_mm));
   if (is_made_kind(command.object)) {
     if (command.object_size_mm)
       throw std::invalid_argument(
@@ -83,7 +88,14 @@ Overrides scene_overrides(const GraspCommand& command) {
                                             command.object_size_mm.value_or(0.0)));
     out.emplace_back("objects.0.file", option_as_toml("--object", fs::absolute(command.object).string()));
   }
-  for (const std::string& pair : command.set) out.push_back(parse_override(pair));
+  for (const std::string& pair : command.set) {
+    out.push_back(parse_override(pair));
+    const std::string& key = out.back().first;
+    if (key.starts_with("motion") || key == "hand.position_mm" || key == "hand.rotation_deg")
+      throw std::invalid_argument(
+          fmt::format("--set {}: wrist and motion are what is searched for; leave {} out, and edit the scene",
+                      pair, key));
+  }
   return out;
 }
 
@@ -91,10 +103,15 @@ std::string vector_text(const Vec3& v, int digits) {
   return fmt::format("[{:.{}f}, {:.{}f}, {:.{}f}]", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
-/// Roll, pitch and yaw of a rotation in degrees: R = Rz(yaw) Ry(pitch) Rx(roll).
+/// Roll, pitch and yaw of a rotation in degrees: R = Rz(yaw) Ry(pitch) Rx(roll). At a pitch of +-90 degrees, where only
+/// their sum or difference counts, the roll is what rounding leaves and the yaw is chosen for it.
 Vec3 roll_pitch_yaw_deg(const Mat3& R) {
-  const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
-  return kRadToDeg * Vec3(std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0)));
+  const double pitch = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2)));
+  const double roll = std::hypot(R(2, 1), R(2, 2)) > 1e-9 ? std::atan2(R(2, 1), R(2, 2)) : 0.0;
+  const double sine = std::sin(roll);
+  const double cosine = std::cos(roll);
+  const double yaw = std::atan2(sine * R(0, 2) - cosine * R(0, 1), cosine * R(1, 1) - sine * R(1, 2));
+  return kRadToDeg * Vec3(roll, pitch, yaw);
 }
 
 /// Appends wrist and motion of a planned grasp.
@@ -110,6 +127,7 @@ void add_grasp(const PlannedGrasp& grasp, bool mirrored, Overrides& out) {
   out.emplace_back("hand.rotation_deg", vector_text(roll_pitch_yaw_deg(X_WH.R), 5));
   out.emplace_back("motion.name", toml_string("posture"));
   out.emplace_back("motion.closure", "1.0");
+  out.emplace_back("motion.close_s", fmt::format("{:.1f}", PlannedGrasp::kCloseSeconds));
   out.emplace_back("motion.hold_s", fmt::format("{:.1f}", kHoldSeconds));
   for (int j = 0; j < kJoints; ++j)
     out.emplace_back(fmt::format("motion.angle_deg.{}", joint_name(j)),
@@ -182,6 +200,13 @@ int plan_and_write(const GraspCommand& command) {
   const SceneFile base("", "--object", fs::current_path());
   const SceneDescription scene = base.scene(overrides);
   const HapticModel model = build_model(scene);
+  const Bounds box = bounds(model.object.mesh());
+  if (model.object.triangle_count() > 0 && (box.max - box.min).maxCoeff() > kMostSize)
+    throw std::invalid_argument(
+        fmt::format("--object {}: {:.4g} m large, too large for a hand; state --object-size-mm, or the unit "
+                    "of the file's "
+                    "numbers with --set objects.0.unit=mm",
+                    command.object, (box.max - box.min).maxCoeff()));
   const GraspRule& rule = grasp_rule(*type);
   GraspSearch search;
   {

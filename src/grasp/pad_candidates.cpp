@@ -122,6 +122,10 @@ class PadCandidates : public GraspCandidates {
     for (double mcp = lateral ? 20.0 : 10.0; mcp <= 80.0; mcp += 5.0) {
       for (double pip = lateral ? 40.0 : 10.0; pip <= 85.0; pip += 6.0) {
         const DigitAngles q = {mcp * kDeg, 0.0, pip * kDeg, (lateral ? 0.4 : 0.7) * pip * kDeg};
+        const int last_finger = lateral ? kDigits - 1 : type_ == GraspType::kTripod ? 2 : 1;
+        bool possible = true;
+        for (int digit = 1; digit <= last_finger; ++digit) possible = possible && within_range(digit, q);
+        if (!possible) continue;
         SurfacePoint other;
         if (lateral) {
           other =
@@ -145,8 +149,7 @@ class PadCandidates : public GraspCandidates {
           OpposedPads pads{width, 0.5 * (other.point + thumb.pad.point), along,
                            hand_.parameters().open_angle};
           set_digit(pads.angle, 0, thumb.angle);
-          const int last = lateral ? kDigits - 1 : type_ == GraspType::kTripod ? 2 : 1;
-          for (int digit = 1; digit <= last; ++digit) set_digit(pads.angle, digit, q);
+          for (int digit = 1; digit <= last_finger; ++digit) set_digit(pads.angle, digit, q);
           postures_.push_back(pads);
         }
       }

@@ -81,7 +81,7 @@ ClosedDigit PlacedHand::close(int digit, const DigitAngles& from, const DigitAng
     int touching = -1;
     for (int k = 0; k < kSegmentsPerDigit; ++k) {
       if (joints_that_move(k) <= fixed) continue;
-      const double gap = distance_of(segment_index(digit, k), pose[idx(k)], kFar) - touching_;
+      const double gap = distance_of(segment_index(digit, k), pose[idx(k)], touching_ + kFar) - touching_;
       if (gap < kTolerance) {
         touching = k;
         out.touches[idx(k)] = true;

@@ -33,12 +33,10 @@ constexpr std::size_t kAtOnce = 4;      // of them, side by side
 constexpr double kOpenGap = 0.3e-3;     // of the open hand above the margin [m]
 constexpr double kPressDepth = 2.5e-3;  // of a contact while the hand presses [m]
 constexpr double kPressWay = 12e-3;     // greatest way of a fingertip beyond the touch [m]
-constexpr double kLeastBall = 5e-3;     // of force closure [-]
 constexpr double kMostAlong = 0.65;     // of a contact's normal along the axis of a cylinder or disk [-]
 constexpr double kHookPull = 0.5;       // least part of a contact's normal that holds a distal pull [-]
 constexpr double kApproach = 5e-3;      // greatest motion of the wrist at once [m]
 constexpr double kHandReach = 0.1;      // of the hand out of the palm's plane [m]
-constexpr double kPlaySeconds = 0.6;    // of closing and pressing
 constexpr double kHoldSeconds = 0.2;
 constexpr double kFrame = 16e-3;           // of the hand that is drawn [s]
 constexpr double kMostApart = 3.0 * kDeg;  // of it and the GDP
@@ -103,6 +101,7 @@ class Planner {
                      [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
     auto exact = beside(object_);
     const auto finalists = static_cast<std::size_t>(std::min<std::ptrdiff_t>(kFinalists, std::ssize(ranked)));
+    out.untried = static_cast<int>(ranked.size() - finalists);
     for (std::size_t first = 0; first < finalists && !out.grasp; first += kAtOnce) {
       const std::size_t last = std::min(finalists, first + kAtOnce);
       tbb::parallel_for(first, last, [&](std::size_t i) { compute_exactly(exact.local(), ranked[i]); });
@@ -140,9 +139,10 @@ class Planner {
   void compute_exactly(PlacedHand& placed, Ranked& one) const {
     if (coarse_) one.failed = check(placed, one);
     if (one.failed) return;
-    one.grasp.wrench_ball = wrench_ball(one.wrenches);
+    one.grasp.wrench_ball = rule_.closure ? wrench_ball(one.wrenches) : 0.0;
     one.score = score_of(one.grasp, one.grasp.wrench_ball);
-    if (rule_.closure && one.grasp.wrench_ball < kLeastBall) one.failed = GraspCondition::kClosure;
+    if (rule_.closure && one.grasp.wrench_ball < PlannedGrasp::kLeastBall)
+      one.failed = GraspCondition::kClosure;
   }
 
   /// Checks a candidate up to force closure. @returns the first condition that it fails
@@ -158,9 +158,11 @@ class Planner {
     grasp = {};
     grasp.X_WH = placed.wrist();
     const double touching = placed.touching_distance();
-    if (rule_.palm && !(placed.palm_distance(2.0 * PlannedGrasp::kPalmGap) <= PlannedGrasp::kPalmGap))
+    const double palm_gap =
+        std::max(PlannedGrasp::kPalmGap, options_.parameters.contact.margin + 2.0 * kOpenGap);
+    if (rule_.palm && !(placed.palm_distance(2.0 * palm_gap) <= palm_gap))
       return GraspCondition::kPalmTouches;
-    if (const auto palm = placed.contact(kPalm, open, PlannedGrasp::kPalmGap); palm && rule_.palm)
+    if (const auto palm = placed.contact(kPalm, open, palm_gap); palm && rule_.palm)
       grasp.contact.push_back(*palm);
 
     // Digits that do not take part stay where the candidate has them; they close but do not count.
@@ -170,6 +172,7 @@ class Planner {
     Vec3 fingers = Vec3::Zero();
     int fingers_touch = 0;
     bool pads = true;
+    bool around = true;
     for (int digit = 0; digit < kDigits; ++digit) {
       const DigitAngles to = digit_angles(candidate.close, digit);
       const DigitAngles from = digit_angles(open, digit);
@@ -192,7 +195,8 @@ class Planner {
         const auto contact = placed.contact(segment, grasp.touch, touching + 2.0 * PlacedHand::kTolerance);
         if (!contact) continue;
         const bool aside = options_.type == GraspType::kLateral && digit > 0;
-        pads = pads && (aside || contact->pad) && std::abs(contact->normal.dot(candidate.axis)) <= kMostAlong;
+        pads = pads && (aside || contact->pad);
+        around = around && std::abs(contact->normal.dot(candidate.axis)) <= kMostAlong;
         with_pad = with_pad || (k == kSegmentsPerDigit - 1 && contact->pad);
         (digit == 0 ? thumb : fingers) += contact->normal;
         grasp.contact.push_back(*contact);
@@ -202,13 +206,15 @@ class Planner {
     }
     if (fingers_touch < rule_.least_fingers) return GraspCondition::kReach;
     if (!pads) return GraspCondition::kPads;
+    if (!around) return GraspCondition::kAround;
     if (rule_.digit[0] && cosine(thumb, fingers) > rule_.most_cosine) return GraspCondition::kOpposition;
     std::vector<WrenchContact> contacts;
     for (const PlannedContact& contact : grasp.contact) contacts.push_back({contact.point, -contact.normal});
     out.wrenches = contact_wrenches(contacts, friction_, options_.parameters.contact.spin_radius,
                                     shape_.centre, shape_.radius);
     const double bound = wrench_ball_bound(out.wrenches);
-    if (rule_.closure ? bound < kLeastBall : !holds_pull(grasp)) return GraspCondition::kClosure;
+    if (rule_.closure && bound < PlannedGrasp::kLeastBall) return GraspCondition::kClosure;
+    if (!rule_.closure && !holds_pull(grasp)) return GraspCondition::kPull;
     grasp.comfort = comfort(grasp.touch);
     out.score = score_of(grasp, bound);
     return std::nullopt;
@@ -219,10 +225,11 @@ class Planner {
     const JointArray& open = hand_.parameters().open_angle;
     const double stop = options_.parameters.contact.margin + kOpenGap + candidate.standoff;
     const double most = 2.0 * (shape_.radius + kHandReach);
-    double moved = 0.0;
-    while (moved < most) {
-      const double gap = placed.distance_without_thumb(open, stop + kApproach) - stop;
+    double cap = kApproach;  // a search is quick if it need not find a greater distance
+    for (double moved = 0.0; moved < most;) {
+      const double gap = placed.distance_without_thumb(open, stop + cap) - stop;
       if (gap < PlacedHand::kTolerance) return true;
+      cap = gap < cap ? kApproach : 2.0 * cap;
       moved += gap;
       Pose X_WH = placed.wrist();
       X_WH.p += gap * candidate.approach;
@@ -310,14 +317,14 @@ class Planner {
       return false;
     }
     const double period = options_.parameters.period();
-    const int ticks = static_cast<int>((kPlaySeconds + kHoldSeconds) / period);
+    const int ticks = static_cast<int>(std::ceil((PlannedGrasp::kCloseSeconds + kHoldSeconds) / period));
     const int every = std::max(1, static_cast<int>(kFrame / period));
     const JointArray& open = hand_.parameters().open_angle;
     DisplayedHand shown(model, options_.parameters.contact.margin);
     for (int i = 0; i <= ticks; ++i) {
       Sample sample;
       sample.time_s = i * period;
-      const double share = minimum_jerk(sample.time_s / kPlaySeconds);
+      const double share = minimum_jerk(sample.time_s / PlannedGrasp::kCloseSeconds);
       for (std::size_t j = 0; j < open.size(); ++j)
         sample.angle[j] = open[j] + share * (grasp.press[j] - open[j]);
       const Status status = step(model, options_.parameters, sample, *state);
@@ -376,10 +383,14 @@ std::string_view grasp_condition_text(GraspCondition condition) noexcept {
       return "the digits reach the object";
     case GraspCondition::kPads:
       return "the digits touch with their pads";
+    case GraspCondition::kAround:
+      return "the digits touch around the object's axis, not at its ends";
     case GraspCondition::kOpposition:
       return "the thumb opposes the fingers";
     case GraspCondition::kClosure:
       return "the contacts have force closure";
+    case GraspCondition::kPull:
+      return "two fingers hold a pull towards the fingertips";
     case GraspCondition::kMotion:
       return "the digits touch as planned when the motion is played";
   }

@@ -89,6 +89,7 @@ double wrench_ball(const std::vector<Wrench>& wrenches) {
 }
 
 double wrench_ball_bound(const std::vector<Wrench>& wrenches) {
+  if (wrenches.empty()) return 0.0;
   Wrench mean = Wrench::Zero();
   for (const Wrench& w : wrenches) mean += w;
   Random random(1);

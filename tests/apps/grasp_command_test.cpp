@@ -58,6 +58,18 @@ TEST(CliGrasp, TakesAMeshFileAndALeftHand) {
   EXPECT_THAT(played.out, AllOf(HasSubstr("thumb distal"), HasSubstr("index distal")));
 }
 
+// The handle of a hook is across the palm: around an upright one the wrist's pitch is 90 degrees.
+TEST(CliGrasp, WritesAWristOfAnyOrientation) {
+  const TemporaryFolder folder;
+  const auto planned = run_program(folder,
+                                   "grasp --object cylinder --type hook --set objects.0.diameter_mm=30 --set "
+                                   "objects.0.length_mm=140 --out hook.toml");
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const auto played = run_program(folder, "simulate hook.toml");
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_THAT(played.out, AllOf(HasSubstr("index "), HasSubstr("middle ")));
+}
+
 TEST(CliGrasp, NamesTheConditionIfThereIsNoGrasp) {
   const TemporaryFolder folder;
   const auto result = run_program(
@@ -80,6 +92,11 @@ TEST(CliGrasp, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(error("--object none.obj --type pinch"), HasSubstr("none.obj"));
   EXPECT_THAT(error("--object sphere --type pinch --object-size-mm 40"), HasSubstr("objects.0.diameter_mm"));
   EXPECT_THAT(error("--object sphere --type pinch --profile nobody"), HasSubstr("nobody"));
+  EXPECT_THAT(error("--object sphere --type pinch --set motion.name=wave"), HasSubstr("motion.name"));
+  EXPECT_THAT(error("--object sphere --type pinch --set hand.position_mm=[0,0,0]"), HasSubstr("wrist"));
+  write_obj(make_sphere(80.0, 400), folder / "in_mm.obj", "in_mm");
+  EXPECT_THAT(error("--object in_mm.obj --type pinch"), HasSubstr("objects.0.unit=mm"));
+  EXPECT_THAT(error("--object in_mm.obj --type pinch --object-size-mm 0"), HasSubstr("--object-size-mm 0"));
   EXPECT_THAT(error("--type pinch"), HasSubstr("--object"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planned grasps: each condition of a type is checked again from the hand and the object alone.
+// Planned grasps: their contacts are checked against the conditions of the type.
 #include "phalanx/grasp/plan_grasp.h"
 
 #include <gtest/gtest.h>
@@ -39,6 +39,8 @@ void expect_grasp(GraspType type, const PlannedGrasp& grasp, const HandModel& ha
   Vec3 thumb = Vec3::Zero();
   Vec3 fingers = Vec3::Zero();
   std::array<bool, kDigits> touches{};
+  std::array<bool, kDigits> with_distal_pad{};
+  std::array<bool, kDigits> holds_pull{};
   bool palm = false;
   for (const PlannedContact& contact : grasp.contact) {
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
@@ -50,19 +52,25 @@ void expect_grasp(GraspType type, const PlannedGrasp& grasp, const HandModel& ha
     touches[idx(digit)] = true;
     EXPECT_TRUE(rule.digit[idx(digit)]) << digit_name(digit);
     (digit == 0 ? thumb : fingers) += contact.normal;
+    if (contact.segment % kSegmentsPerDigit == 2 && contact.pad) with_distal_pad[idx(digit)] = true;
+    // The hand's +Z looks from the fingertips to the wrist; the object is pushed against the normal.
+    if (-contact.normal.dot(grasp.X_WH.R.col(2)) >= 0.5) holds_pull[idx(digit)] = true;
     const bool aside = type == GraspType::kLateral && digit > 0;
     const Mat3& R = poses.digit[idx(digit)].segment[idx(contact.segment % kSegmentsPerDigit)].R;
     if (!aside) {
       EXPECT_GT(R.col(1).dot(contact.normal), 0.25) << segment_name(contact.segment);
     }
   }
+  EXPECT_TRUE(!rule.pads || with_distal_pad == touches);
+  EXPECT_TRUE(type != GraspType::kLateral || with_distal_pad[0]);
+  EXPECT_TRUE(type != GraspType::kHook || std::count(holds_pull.begin(), holds_pull.end(), true) >= 2);
   EXPECT_EQ(palm, rule.palm);
   if (rule.digit[0]) {
     EXPECT_TRUE(touches[0]);
     EXPECT_LE(thumb.normalized().dot(fingers.normalized()), rule.most_cosine);
   }
   EXPECT_GE(std::count(touches.begin() + 1, touches.end(), true), rule.least_fingers);
-  EXPECT_TRUE(!rule.closure || grasp.wrench_ball > 0.0);
+  EXPECT_TRUE(!rule.closure || grasp.wrench_ball >= PlannedGrasp::kLeastBall);
   for (int j = 0; j < kJoints; ++j) {
     for (const double angle : {grasp.touch[idx(j)], grasp.press[idx(j)]}) {
       EXPECT_GE(angle, hand.parameters().min_angle[idx(j)]) << joint_name(j);
@@ -93,6 +101,12 @@ TEST(PlanGrasp, FindsEachTypeOnAnObjectOfItsKind) {
     ASSERT_TRUE(search.grasp.has_value())
         << grasp_rule(type).name << ": " << grasp_condition_text(search.obstacle());
     expect_grasp(type, *search.grasp);
+    // The open hand, with which a scene begins, is clear of the object.
+    const PlannedGrasp& grasp = *search.grasp;
+    const HapticModel model(
+        HandModel(adult().parameters(), adult().handedness(), grasp.X_WH, adult().meshes()),
+        ObjectModel(mesh));
+    EXPECT_NO_THROW(HapticState(model, HapticParameters())) << grasp_rule(type).name;
   }
 }
 
@@ -176,6 +190,12 @@ TEST(PlanGrasp, NamesTheConditionThatFails) {
                  {.type = GraspType::kCylinder, .seed = 1, .parameters = slippery, .progress = {}});
   EXPECT_FALSE(smooth.grasp.has_value());
   EXPECT_EQ(smooth.obstacle(), GraspCondition::kClosure);
+}
+
+// A wrist that approaches from far away is there after a few steps, however large the object is.
+TEST(PlanGrasp, EndsForAHugeObject) {
+  const GraspSearch search = planned(GraspType::kSphere, make_sphere(900.0, 400));
+  EXPECT_FALSE(search.grasp.has_value());
 }
 
 TEST(PlanGrasp, RefusesAnObjectWithoutTriangles) {

@@ -38,14 +38,16 @@ struct PlannedGrasp {
   JointArray press{};  ///< angles that the measured hand goes to, beyond the touch [rad]
   std::vector<PlannedContact> contact;
   /// Radius of the largest ball around zero in the convex hull of the wrenches that the contacts can exert with normal
-  /// forces that add up to 1 [-]. Torques are about the object's centre, over its greatest radius. 0: no force closure.
+  /// forces that add up to 1 [-]. Torques are about the object's centre, over its greatest radius. 0: no force closure, or a type that needs none.
   /// Ferrari C., Canny J., "Planning optimal grasps", IEEE ICRA 1992.
   double wrench_ball = 0.0;
   /// Mean distance of the joints of the digits that take part from the nearer end of their range, over half of it: 0 at
   /// a limit, 1 in the middle [-].
   double comfort = 0.0;
 
-  static constexpr double kPalmGap = 1e-3;  ///< [m]
+  static constexpr double kPalmGap = 1e-3;      ///< of the palm, or the margin and 0.6 mm if that is more [m]
+  static constexpr double kLeastBall = 5e-3;    ///< of a grasp with force closure [-]
+  static constexpr double kCloseSeconds = 1.0;  ///< in which the hand goes to `press` when it is played [s]
 };
 
 /// Conditions of a grasp in the order in which candidates are checked.
@@ -54,11 +56,13 @@ enum class GraspCondition {
   kPalmTouches,  ///< the palm touches
   kReach,        ///< thumb and enough fingers touch
   kPads,         ///< they touch with their pads
+  kAround,       ///< they touch around the axis of a cylinder or disk, not at its ends
   kOpposition,   ///< the thumb opposes the fingers
-  kClosure,      ///< force closure; a hook: two fingers hold a distal pull
+  kClosure,      ///< force closure: the wrench ball is at least kLeastBall
+  kPull,         ///< a hook: two fingers hold a pull towards the fingertips
   kMotion,       ///< played through step(), the digits touch as planned
 };
-inline constexpr int kGraspConditions = 7;
+inline constexpr int kGraspConditions = 9;
 /// Returns a condition as a part of a sentence: "the open hand is clear of the object".
 [[nodiscard]] std::string_view grasp_condition_text(GraspCondition condition) noexcept;
 
@@ -67,6 +71,7 @@ struct GraspSearch {
   std::optional<PlannedGrasp> grasp;
   std::array<int, kGraspConditions> failed{};  ///< candidates by the first condition that they failed
   int candidates = 0;
+  int untried = 0;  ///< candidates that fulfil all conditions but the last, which was not tried
 
   /// Returns the condition at which the candidates that went farthest failed.
   /// @pre there is no grasp
@@ -87,7 +92,7 @@ struct GraspOptions {
 /// Plans a grasp. The number of candidates is fixed; equal arguments give equal bits.
 /// @param hand    its pose in the world does not matter
 /// @param object  in the world [m]; at least one triangle
-/// @throws std::invalid_argument if the object has no triangles or a parameter is out of range. Set-up only.
+/// @throws std::invalid_argument if the object has no triangles. Set-up only.
 [[nodiscard]] GraspSearch plan_grasp(const HandModel& hand, const ObjectModel& object,
                                      const GraspOptions& options);
 
