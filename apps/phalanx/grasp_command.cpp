@@ -104,7 +104,7 @@ std::string vector_text(const Vec3& v, int digits) {
 }
 
 /// Roll, pitch and yaw of a rotation in degrees: R = Rz(yaw) Ry(pitch) Rx(roll). At a pitch of +-90 degrees, where only
-/// their sum or difference counts, the roll is what rounding leaves and the yaw is chosen for it.
+/// the sum or difference of roll and yaw counts, the roll is 0.
 Vec3 roll_pitch_yaw_deg(const Mat3& R) {
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2)));
   const double roll = std::hypot(R(2, 1), R(2, 2)) > 1e-9 ? std::atan2(R(2, 1), R(2, 2)) : 0.0;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "grasp/object_shape.h"
+#include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
 #include "phalanx/grasp/grasp_type.h"
 #include "phalanx/hand/hand_model.h"
@@ -15,12 +16,17 @@ namespace phalanx {
 struct GraspCandidate {
   Pose X_WH;
   JointArray close{};  ///< beyond the object [rad]
-  /// The wrist moves along it until palm or fingers touch; zero: it stays [-]
+  /// Direction in which the wrist moves until palm or fingers touch; zero: it stays [-]
   Vec3 approach = Vec3::Zero();
   /// The contacts of the digits must look across it, not at the ends of the object; zero: in any direction [-]
   Vec3 axis = Vec3::Zero();
-  double standoff = 0.0;  ///< distance at which it stops, above touching distance [m]
+  double standoff = 0.0;  ///< distance from the object at which the wrist stops, above touching distance [m]
 };
+
+/// Stores the angles of one digit among those of the hand [rad].
+inline void set_digit(JointArray& angle, int digit, const DigitAngles& q) noexcept {
+  for (int i = 0; i < kJointsPerDigit; ++i) angle[idx(joint_index(digit, i))] = q[idx(i)];
+}
 
 /// Draws candidates for one type, hand and object.
 class GraspCandidates {

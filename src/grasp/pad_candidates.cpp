@@ -131,12 +131,11 @@ class PadCandidates : public GraspCandidates {
           other =
               placed_pad(1, q, 1, pad_of(hand_.mesh(segment_index(1, 1)), side * Vec3::UnitX(), kPadAlong));
         } else {
-          const int last = type_ == GraspType::kTripod ? 2 : 1;
-          for (int digit = 1; digit <= last; ++digit) {
+          for (int digit = 1; digit <= last_finger; ++digit) {
             const SurfacePoint pad = placed_pad(
                 digit, q, 2, pad_of(hand_.mesh(segment_index(digit, 2)), -Vec3::UnitY(), kPadAlong));
-            other.point += pad.point / last;
-            other.normal += pad.normal / last;
+            other.point += pad.point / last_finger;
+            other.normal += pad.normal / last_finger;
           }
           other.normal.normalize();
         }
@@ -165,14 +164,6 @@ class PadCandidates : public GraspCandidates {
       if (q[idx(i)] < limits.min_angle[j] || q[idx(i)] > limits.max_angle[j]) return false;
     }
     return true;
-  }
-
-  void set_digit(JointArray& angle, int digit, const DigitAngles& q) const {
-    const HandParameters& limits = hand_.parameters();
-    for (int i = 0; i < kJointsPerDigit; ++i) {
-      const std::size_t j = idx(joint_index(digit, i));
-      angle[j] = std::clamp(q[idx(i)], limits.min_angle[j], limits.max_angle[j]);
-    }
   }
 
   /// Lists pairs of places whose normals are within the friction cone about the line between them, as far from each

@@ -35,7 +35,7 @@ constexpr double kPressDepth = 2.5e-3;  // of a contact while the hand presses [
 constexpr double kPressWay = 12e-3;     // greatest way of a fingertip beyond the touch [m]
 constexpr double kMostAlong = 0.65;     // of a contact's normal along the axis of a cylinder or disk [-]
 constexpr double kHookPull = 0.5;       // least part of a contact's normal that holds a distal pull [-]
-constexpr double kApproach = 5e-3;      // greatest motion of the wrist at once [m]
+constexpr double kApproach = 5e-3;      // motion of the wrist at once; it doubles while nothing is near [m]
 constexpr double kHandReach = 0.1;      // of the hand out of the palm's plane [m]
 constexpr double kHoldSeconds = 0.2;
 constexpr double kFrame = 16e-3;           // of the hand that is drawn [s]
@@ -165,7 +165,7 @@ class Planner {
     if (const auto palm = placed.contact(kPalm, open, palm_gap); palm && rule_.palm)
       grasp.contact.push_back(*palm);
 
-    // Digits that do not take part stay where the candidate has them; they close but do not count.
+    // Digits that do not take part close too, up to the object, but their contacts do not count.
     grasp.touch = open;
     grasp.press = open;
     Vec3 thumb = Vec3::Zero();
@@ -178,8 +178,8 @@ class Planner {
       const DigitAngles from = digit_angles(open, digit);
       if (to == from) continue;
       const ClosedDigit closed = placed.close(digit, from, to, rule_.wraps);
-      set(grasp.touch, digit, closed.angle);
-      set(grasp.press, digit, closed.angle);
+      set_digit(grasp.touch, digit, closed.angle);
+      set_digit(grasp.press, digit, closed.angle);
       if (!rule_.digit[idx(digit)]) continue;
       if (!closed.any()) {
         if (digit == 0) return GraspCondition::kReach;
@@ -200,7 +200,7 @@ class Planner {
         with_pad = with_pad || (k == kSegmentsPerDigit - 1 && contact->pad);
         (digit == 0 ? thumb : fingers) += contact->normal;
         grasp.contact.push_back(*contact);
-        set(grasp.press, digit, pressed(*contact, closed, rate, grasp.X_WH));
+        set_digit(grasp.press, digit, pressed(*contact, closed, rate, grasp.X_WH));
       }
       if (rule_.pads || (options_.type == GraspType::kLateral && digit == 0)) pads = pads && with_pad;
     }
@@ -236,10 +236,6 @@ class Planner {
       placed.put_wrist(X_WH);
     }
     return false;
-  }
-
-  static void set(JointArray& angle, int digit, const DigitAngles& q) {
-    for (int i = 0; i < kJointsPerDigit; ++i) angle[idx(joint_index(digit, i))] = q[idx(i)];
   }
 
   /// Returns the angles of a digit that presses: its joints go on in the direction in which they closed, until its most

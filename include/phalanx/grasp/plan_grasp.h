@@ -38,8 +38,8 @@ struct PlannedGrasp {
   JointArray press{};  ///< angles that the measured hand goes to, beyond the touch [rad]
   std::vector<PlannedContact> contact;
   /// Radius of the largest ball around zero in the convex hull of the wrenches that the contacts can exert with normal
-  /// forces that add up to 1 [-]. Torques are about the object's centre, over its greatest radius. 0: no force closure, or a type that needs none.
-  /// Ferrari C., Canny J., "Planning optimal grasps", IEEE ICRA 1992.
+  /// forces that add up to 1 [-]. Torques are about the object's centre, over its greatest radius. 0 for a type that
+  /// needs no force closure. Ferrari C., Canny J., "Planning optimal grasps", IEEE ICRA 1992.
   double wrench_ball = 0.0;
   /// Mean distance of the joints of the digits that take part from the nearer end of their range, over half of it: 0 at
   /// a limit, 1 in the middle [-].
@@ -82,9 +82,9 @@ struct GraspSearch {
 struct GraspOptions {
   GraspType type = GraspType::kCylinder;
   std::uint64_t seed = 1;
-  HapticParameters
-      parameters;  ///< of the scene: margin, friction, spin radius, stiffness, rate. An object's own
-                   ///< friction, that of its first triangle, replaces contact.friction
+  /// Of the scene: margin, friction, spin radius, stiffness, rate. Friction that an object has of its own, that of its
+  /// first triangle, replaces contact.friction.
+  HapticParameters parameters;
   /// Called from time to time, with the part of the work that is done, 0 to 1; false ends the search. May be empty.
   std::function<bool(double)> progress;
 };
