@@ -37,6 +37,7 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     device/link/phalanx_link.h
     device/motion.h
     device/sample_queue.h
+    grasp/grasp_type.h
     scene/calibration_file.h
     scene/scene.h
     station/deadline_statistics.h

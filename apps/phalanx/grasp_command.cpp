@@ -23,6 +23,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene_file.h"
+#include "phalanx/scene/scene_grasp.h"
 #include "phalanx/scene/scene_keys.h"
 #include "terminal/error_line.h"
 #include "terminal/progress.h"
@@ -91,47 +92,14 @@ Overrides scene_overrides(const GraspCommand& command) {
   for (const std::string& pair : command.set) {
     out.push_back(parse_override(pair));
     const std::string& key = out.back().first;
-    if (key.starts_with("motion") || key == "hand.position_mm" || key == "hand.rotation_deg")
-      throw std::invalid_argument(
-          fmt::format("--set {}: wrist and motion are what is searched for; leave {} out, and edit the scene",
-                      pair, key));
+    if (key.starts_with("motion") ||
+        (key.starts_with("grasp") && key != "grasp.forearm" && key != "grasp.palm") ||
+        key == "hand.position_mm" || key == "hand.rotation_deg")
+      throw std::invalid_argument(fmt::format(
+          "--set {}: wrist, motion and grasp are what is searched for; leave {} out, and edit the scene",
+          pair, key));
   }
   return out;
-}
-
-std::string vector_text(const Vec3& v, int digits) {
-  return fmt::format("[{:.{}f}, {:.{}f}, {:.{}f}]", v.x(), digits, v.y(), digits, v.z(), digits);
-}
-
-/// Roll, pitch and yaw of a rotation in degrees: R = Rz(yaw) Ry(pitch) Rx(roll). At a pitch of +-90 degrees, where only
-/// the sum or difference of roll and yaw counts, the roll is 0.
-Vec3 roll_pitch_yaw_deg(const Mat3& R) {
-  const double pitch = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2)));
-  const double roll = std::hypot(R(2, 1), R(2, 2)) > 1e-9 ? std::atan2(R(2, 1), R(2, 2)) : 0.0;
-  const double sine = std::sin(roll);
-  const double cosine = std::cos(roll);
-  const double yaw = std::atan2(sine * R(0, 2) - cosine * R(0, 1), cosine * R(1, 1) - sine * R(1, 2));
-  return kRadToDeg * Vec3(roll, pitch, yaw);
-}
-
-/// Appends wrist and motion of a planned grasp.
-void add_grasp(const PlannedGrasp& grasp, bool mirrored, Overrides& out) {
-  // A mirrored scene is written as its mirror image in x = 0.
-  Pose X_WH = grasp.X_WH;
-  if (mirrored) {
-    const Mat3 mirror = Vec3(-1.0, 1.0, 1.0).asDiagonal();
-    X_WH.p = mirror * X_WH.p;
-    X_WH.R = mirror * X_WH.R * mirror;
-  }
-  out.emplace_back("hand.position_mm", vector_text(X_WH.p / kMm, 4));
-  out.emplace_back("hand.rotation_deg", vector_text(roll_pitch_yaw_deg(X_WH.R), 5));
-  out.emplace_back("motion.name", toml_string("posture"));
-  out.emplace_back("motion.closure", "1.0");
-  out.emplace_back("motion.close_s", fmt::format("{:.1f}", PlannedGrasp::kCloseSeconds));
-  out.emplace_back("motion.hold_s", fmt::format("{:.1f}", kHoldSeconds));
-  for (int j = 0; j < kJoints; ++j)
-    out.emplace_back(fmt::format("motion.angle_deg.{}", joint_name(j)),
-                     fmt::format("{:.3f}", grasp.press[static_cast<std::size_t>(j)] * kRadToDeg));
 }
 
 /// Writes a scene file: one table for each first part of the keys, `objects` as an array of tables.
@@ -160,8 +128,8 @@ std::string scene_text(const Overrides& values) {
   return top;
 }
 
-void print_grasp(const PlannedGrasp& grasp, const GraspRule& rule, const HandModel& hand) {
-  fmt::print("{} grasp by {}\n", rule.name, hand.parameters().name);
+void print_grasp(const PlannedGrasp& grasp, const GraspRule& rule, const std::string& hand) {
+  fmt::print("{} grasp by {}\n", rule.name, hand);
   fmt::print("  wrench ball  {:.3f}{}\n", grasp.wrench_ball,
              rule.closure ? "" : ": a hook needs no force closure, it holds a pull towards the fingertips");
   fmt::print("  comfort      {:.2f} (0: all joints at the end of their range, 1: all in its middle)\n",
@@ -171,18 +139,6 @@ void print_grasp(const PlannedGrasp& grasp, const GraspRule& rule, const HandMod
                contact.segment == kPalm ? "palm"
                : contact.pad            ? "palmar side"
                                         : "side");
-}
-
-/// @returns what a user can do about a condition.
-std::string_view remedy(GraspCondition condition) {
-  switch (condition) {
-    case GraspCondition::kReach:
-      return "choose a smaller or larger object, or another type";
-    case GraspCondition::kClosure:
-      return "raise contact.friction, or choose another type";
-    default:
-      return "choose another type, size or --seed";
-  }
 }
 
 int plan_and_write(const GraspCommand& command) {
@@ -198,43 +154,36 @@ int plan_and_write(const GraspCommand& command) {
       overrides.begin(), "description",
       option_as_toml("--object", fmt::format("{} grasp of {}, seed {}", command.type, object, command.seed)));
   const SceneFile base("", "--object", fs::current_path());
-  const SceneDescription scene = base.scene(overrides);
-  const HapticModel model = build_model(scene);
-  const Bounds box = bounds(model.object.mesh());
-  if (model.object.triangle_count() > 0 && (box.max - box.min).maxCoeff() > kMostSize)
+  ResolvedScene scene = resolve(base.scene(overrides), {});
+  scene.description.grasp.type = type;
+  scene.description.grasp.seed = command.seed;
+  const Bounds box = bounds(scene.world);
+  if (!scene.world.triangles.empty() && (box.max - box.min).maxCoeff() > kMostSize)
     throw std::invalid_argument(
         fmt::format("--object {}: {:.4g} m large, too large for a hand; state --object-size-mm, or the unit "
                     "of the file's "
                     "numbers with --set objects.0.unit=mm",
                     command.object, (box.max - box.min).maxCoeff()));
-  const GraspRule& rule = grasp_rule(*type);
   GraspSearch search;
   {
     ProgressBar bar("planning", !command.quiet);
-    search = plan_grasp(
-        model.hand, model.object,
-        {.type = *type, .seed = command.seed, .parameters = scene.parameters, .progress = [&](double done) {
-           bar.show(static_cast<std::uint64_t>(1000.0 * done), 1000);
-           return true;
-         }});
+    search = search_grasp(scene, [&](double done) {
+      bar.show(static_cast<std::uint64_t>(1000.0 * done), 1000);
+      return true;
+    });
   }
-  if (!search.grasp) {
-    const GraspCondition obstacle = search.obstacle();
-    std::string counts;
-    for (int i = 0; i < kGraspConditions; ++i)
-      if (search.failed[static_cast<std::size_t>(i)] > 0)
-        counts += fmt::format("{}{}: {}", counts.empty() ? "" : "; ",
-                              grasp_condition_text(static_cast<GraspCondition>(i)),
-                              search.failed[static_cast<std::size_t>(i)]);
+  if (!search.grasp)
     throw std::runtime_error(
-        fmt::format("no {} grasp of {} by {}: of {} candidates none fulfils \"{}\"; {}. Candidates by the "
-                    "condition that failed: {}",
-                    command.type, object, model.hand.parameters().name, search.candidates,
-                    grasp_condition_text(obstacle), remedy(obstacle), counts));
-  }
-  const bool mirrored =
-      scene.hand.profile.empty() ? scene.mirror : model.hand.handedness() == Handedness::kLeft;
-  add_grasp(*search.grasp, mirrored, overrides);
+        fmt::format("{}: {}", command.object, no_grasp_text(search, *type, scene.hand.parameters.name)));
+  for (auto& value : grasp_values(*search.grasp, scene.mirrored,
+                                  grasp_checksum(scene.description.grasp, scene.hand, scene.world)))
+    overrides.push_back(std::move(value));
+  overrides.emplace_back("grasp.type", toml_string(command.type));
+  overrides.emplace_back("grasp.seed", std::to_string(command.seed));
+  overrides.emplace_back("motion.name", toml_string("posture"));
+  overrides.emplace_back("motion.closure", "1.0");
+  overrides.emplace_back("motion.close_s", fmt::format("{:.1f}", PlannedGrasp::kCloseSeconds));
+  overrides.emplace_back("motion.hold_s", fmt::format("{:.1f}", kHoldSeconds));
   const SceneWithValues written = base.with_values(overrides);
   const fs::path out = command.out.empty()
                            ? fs::path("out/grasps") / fmt::format("{}_{}.toml", object, command.type)
@@ -244,7 +193,7 @@ int plan_and_write(const GraspCommand& command) {
   file.text(scene_text(written.values));
   file.commit();
   if (command.quiet) return kDone;
-  print_grasp(*search.grasp, rule, model.hand);
+  print_grasp(*search.grasp, grasp_rule(*type), scene.hand.parameters.name);
   fmt::print("wrote    {}: try phalanx simulate {} --picture out/grasp.png, or phalanx run {}\n",
              out.string(), out.string(), out.string());
   return kDone;

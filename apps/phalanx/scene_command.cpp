@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx scene list|check|keys|pictures
+// phalanx scene list|check|keys|grasps|pictures
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/scene/scene_keys.h"
+#include "scene_grasps.h"
 #include "scene_pictures.h"
 #include "terminal/error_line.h"
 #include "usage.h"
@@ -93,6 +94,25 @@ void add_scene_command(CLI::App& app, Job& job) {
   keys->add_flag("--markdown", *markdown, "as the table of docs/scenes.md");
   keys->callback([markdown, &job] { job = [markdown] { return print_keys(*markdown); }; });
 
+  auto grasps = std::make_shared<SceneGraspsOptions>();
+  CLI::App* held = scene->add_subcommand(
+      "grasps", "Plan and play the grasps of scenes with hands of several profiles, and print a table");
+  held->footer(
+      "Cells: T thumb, I M R L fingers that press with a palmar side (small: another side), P palm; closure "
+      "margin.\n"
+      "Exit codes: 0 all hands hold all objects, 1 some do not, 2 wrong usage or input.");
+  held->add_option("SCENE", grasps->scenes,
+                   "names in scenes/ or .toml files [all in scenes/ with grasp.type]");
+  held->add_option("--profile", grasps->profiles,
+                   "a name in assets/profiles or a file; repeatable [the scene's own hand]")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  held->add_option("--out", grasps->out, "the table as CSV too")->type_name("FILE.csv");
+  held->callback([grasps, held, &job] {
+    refuse_empty_values(*held);
+    job = [grasps] { return tabulate_grasps(*grasps); };
+  });
+
   auto pictures = std::make_shared<ScenePicturesOptions>();
   CLI::App* draw = scene->add_subcommand(
       "pictures", "Draw scenes at the moment of their largest force, one by one and on one sheet");
@@ -101,6 +121,9 @@ void add_scene_command(CLI::App& app, Job& job) {
                    "writes NAME.png for each scene and scenes.png into this folder")
       ->required()
       ->type_name("DIR");
+  draw->add_option("--profile", pictures->profile,
+                   "the hand of all scenes: a name in assets/profiles or a file")
+      ->type_name("NAME");
   draw->add_option("--width", pictures->width, "of one picture in pixels; its height is 3/4 of it")
       ->check(CLI::Range(64, 4096))
       ->capture_default_str();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "option_text.h"
 #include "phalanx/figures/contact_sheet.h"
 #include "phalanx/figures/picture_moment.h"
 #include "phalanx/record/output_file.h"
@@ -31,8 +32,10 @@ struct Sitting {
   double largest_force = 0.0;  ///< largest force of a segment [N]
 };
 
-Sitting sit(const std::string& name) {
-  const SceneDescription scene = load_scene(name);
+Sitting sit(const std::string& name, const std::string& profile) {
+  Overrides overrides;
+  if (!profile.empty()) overrides.emplace_back("hand.profile", option_as_toml("--profile", profile));
+  const SceneDescription scene = load_scene(name, overrides);
   ResolvedScene resolved = resolve(scene, {.hand = HandDetail::kDrawn, .motion = true});
   const Motion motion = resolved.motion.value();
   DrawnHand hand = drawn_hand(resolved.hand);
@@ -62,7 +65,7 @@ int draw_scenes(const ScenePicturesOptions& options) {
   std::vector<Sitting> sittings;
   double full_force = 0.0;
   for (const std::string& name : names) {
-    sittings.push_back(sit(name));
+    sittings.push_back(sit(name, options.profile));
     full_force = std::max(full_force, sittings.back().largest_force);
   }
   prepare_output_folder(options.folder);

@@ -12,6 +12,7 @@ namespace phalanx {
 /// Options of `phalanx scene pictures`.
 struct ScenePicturesOptions {
   std::vector<std::string> scenes;  ///< empty: all in scenes/
+  std::string profile;              ///< of the hand; empty: the scene's own
   std::filesystem::path folder;
   int width = 320;  ///< width of one picture [pixels]; its height is 3/4 of it
   int columns = 4;

@@ -30,9 +30,11 @@ constexpr std::size_t kMostPlaces = 4000;
 constexpr double kFacing = 0.8;           // least cosine between a pad and the line to the other one
 constexpr double kLeastWidth = 1e-3;      // [m]
 constexpr double kWidthTolerance = 3e-3;  // between object and posture [m]
-constexpr double kPadAlong = 0.5;         // place of the pad along the distal bone
-constexpr double kPadBand = 3e-3;         // half width of the band in which its surface is looked for [m]
-constexpr double kThrough = 1.3;          // the digits close to this part of the way from the open hand
+constexpr double kMostNarrowing = 12e-3;  // of the narrowest postures on a thin object [m]
+constexpr std::ptrdiff_t kNarrowest = 200;
+constexpr double kPadAlong = 0.5;  // place of the pad along the distal bone
+constexpr double kPadBand = 3e-3;  // half width of the band in which its surface is looked for [m]
+constexpr double kThrough = 1.3;   // the digits close to this part of the way from the open hand
 
 /// Returns the surface point of a segment that is farthest in a direction of its frame, at a share of its length.
 SurfacePoint pad_of(const TriangleMesh& mesh, const Vec3& direction, double share) {
@@ -64,7 +66,12 @@ class PadCandidates : public GraspCandidates {
     const auto by_width = [](const OpposedPads& pads, double width) { return pads.width < width; };
     const auto first =
         std::lower_bound(postures_.begin(), postures_.end(), places.width - kWidthTolerance, by_width);
-    const auto last = std::lower_bound(first, postures_.end(), places.width + kWidthTolerance, by_width);
+    auto last = std::lower_bound(first, postures_.end(), places.width + kWidthTolerance, by_width);
+    if (first == postures_.begin() &&
+        first == last) {  // thinner than any posture: the narrowest ones close on it
+      last += std::min(kNarrowest, std::ssize(postures_));
+      if (first->width > places.width + kMostNarrowing) return std::nullopt;
+    }
     if (first == last) return std::nullopt;
     const OpposedPads& pads =
         first[static_cast<std::ptrdiff_t>(index(random, static_cast<std::size_t>(last - first)))];
@@ -82,6 +89,7 @@ class PadCandidates : public GraspCandidates {
     out.close = pads.angle;
     const HandParameters& limits = hand_.parameters();
     for (int j = 0; j < kJoints; ++j) {
+      if (!grasp_rule(type_).digit[idx(digit_of_joint(j))]) continue;  // beside the object, not through it
       const double open = limits.open_angle[idx(j)];
       out.close[idx(j)] = std::clamp(open + kThrough * (out.close[idx(j)] - open), limits.min_angle[idx(j)],
                                      limits.max_angle[idx(j)]);
@@ -120,7 +128,7 @@ class PadCandidates : public GraspCandidates {
             if (within_range(0, q)) thumbs.push_back({q, placed_pad(0, q, 2, thumb_pad)});
           }
     for (double mcp = lateral ? 20.0 : 10.0; mcp <= 80.0; mcp += 5.0) {
-      for (double pip = lateral ? 40.0 : 10.0; pip <= 85.0; pip += 6.0) {
+      for (double pip = lateral ? 55.0 : 10.0; pip <= (lateral ? 100.0 : 85.0); pip += 6.0) {
         const DigitAngles q = {mcp * kDeg, 0.0, pip * kDeg, (lateral ? 0.4 : 0.7) * pip * kDeg};
         const int last_finger = lateral ? kDigits - 1 : type_ == GraspType::kTripod ? 2 : 1;
         bool possible = true;

@@ -15,7 +15,8 @@ struct PalmRanges {
   bool along_axis;     ///< the object's axis lies across the palm; else the palm looks along a direction
   double least_reach;  ///< of the object's centre from the wrist, over that of the knuckles [-]
   double most_reach;
-  double most_oblique;   ///< of the axis across the palm, its end on the thumb's side distal [rad]
+  double least_oblique;  ///< of the axis across the palm, its end on the thumb's side distal [rad]
+  double most_oblique;
   double most_standoff;  ///< [m]
   double least_knuckle;  ///< share of its range of flexion that the MCP joint goes [-]
   double most_knuckle;
@@ -25,13 +26,13 @@ struct PalmRanges {
 PalmRanges ranges_of(GraspType type) {
   switch (type) {
     case GraspType::kHook:
-      return {true, 1.2, 1.7, 0.0, 0.0, 0.05, 0.5, 0.0};
+      return {true, 1.2, 1.7, 0.0, 0.0, 0.0, 0.05, 0.5, 0.0};
     case GraspType::kSphere:
-      return {false, 0.75, 1.3, 0.0, 0.0, 0.5, 1.0, 12.0 * kDeg};
+      return {false, 0.75, 1.3, 0.0, 0.0, 0.0, 0.5, 1.0, 12.0 * kDeg};
     case GraspType::kDisk:
-      return {false, 0.85, 1.45, 0.0, 40e-3, 0.4, 1.0, 15.0 * kDeg};
+      return {false, 0.85, 1.45, 0.0, 0.0, 40e-3, 0.4, 1.0, 15.0 * kDeg};
     default:
-      return {true, 0.7, 1.2, 40.0 * kDeg, 0.0, 0.4, 1.0, 0.0};
+      return {true, 0.8, 1.2, 18.0 * kDeg, 48.0 * kDeg, 0.0, 0.4, 1.0, 0.0};
   }
 }
 
@@ -59,7 +60,7 @@ class PalmCandidates : public GraspCandidates {
     GraspCandidate out;
     const double knuckles = -hand_.digits[2].base.z();
     const double reach = knuckles * random.between(ranges_.least_reach, ranges_.most_reach);
-    const double oblique = random.between(0.0, ranges_.most_oblique);
+    const double oblique = random.between(ranges_.least_oblique, ranges_.most_oblique);
     // In the hand's frame: the direction out of the palm, and the axis across it towards the little finger.
     const Vec3 palmar = -Vec3::UnitY();
     const Vec3 across(side_ * std::cos(oblique), 0.0, std::sin(oblique));

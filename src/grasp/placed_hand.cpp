@@ -7,19 +7,59 @@
 #include "phalanx/contact/proximity.h"
 #include "phalanx/contact/segment_motion.h"
 #include "phalanx/core/index.h"
+#include "phalanx/step/displayed_hand.h"
+#include "phalanx/step/haptic_step.h"
 
 namespace phalanx {
 namespace {
 
-constexpr double kFar = 3e-3;          // a search is faster if it need not find a greater distance [m]
-constexpr int kMostAdvances = 100;     // of a digit that closes
-constexpr double kPalmarCosine = 0.3;  // least cosine between a contact and the palmar direction
+constexpr double kFar = 3e-3;            // a search is faster if it need not find a greater distance [m]
+constexpr int kMostAdvances = 100;       // of a digit that closes
+constexpr double kPalmarCosine = 0.3;    // least cosine between a contact and the palmar direction
+constexpr double kAboveMargin = 0.6e-3;  // of a palm that touches [m]
+
+/// @returns the contact of a segment at X_WS; empty if nothing is within `within`
+std::optional<PlannedContact> contact_of(int segment, const PlacedSegment& placed, const ObjectModel& object,
+                                         double within) {
+  if (placed.tree.empty()) return std::nullopt;
+  const ContactPatch patch = contact_patch(placed, object, within);
+  if (patch.pairs == 0) return std::nullopt;
+  return PlannedContact{.segment = segment,
+                        .point = patch.on_object,
+                        .normal = patch.direction,
+                        .pad = is_palmar(placed.X_WS, patch.direction)};
+}
 
 }  // namespace
 
-PlacedHand::PlacedHand(const HandModel& hand, const SegmentTrees& trees, const ObjectModel& object,
-                       double margin)
-    : hand_(hand), trees_(trees), object_(object), touching_(margin + kTouch), scratch_(trees) {}
+bool is_palmar(const Pose& X_WS, const Vec3& normal) { return X_WS.R.col(1).dot(normal) >= kPalmarCosine; }
+
+double palm_gap(double margin) { return std::max(PlannedGrasp::kPalmGap, margin + kAboveMargin); }
+
+std::optional<PlannedContact> palm_contact(const HandModel& hand, const SegmentTrees& trees,
+                                           const ObjectModel& object, double margin) {
+  SearchScratch scratch(trees);
+  return contact_of(kPalm, {trees[kPalm], hand.palm_pose(), scratch}, object, palm_gap(margin));
+}
+
+SegmentPairs::SegmentPairs(const HandModel& hand, double margin) {
+  const HapticModel model(hand, ObjectModel());
+  const DisplayedHand shown(model, margin);
+  for (int segment = 0; segment < kSegments; ++segment) {
+    as_object_[idx(segment)] = ObjectTree(hand.mesh(segment));
+    for (int other = segment + 1; other < kSegments; ++other)
+      if (shown.keeps_apart(segment, other)) pairs_.emplace_back(segment, other);
+  }
+}
+
+PlacedHand::PlacedHand(const HandModel& hand, const SegmentTrees& trees, const SegmentPairs& pairs,
+                       const ObjectModel& object, double margin)
+    : hand_(hand),
+      trees_(trees),
+      pairs_(pairs),
+      object_(object),
+      touching_(margin + kTouch),
+      scratch_(trees) {}
 
 std::array<Pose, kSegmentsPerDigit> PlacedHand::digit_poses(int digit, const DigitAngles& angle) const {
   DigitPose pose;
@@ -64,6 +104,16 @@ bool PlacedHand::is_clear(const JointArray& angle, double least) {
   return true;
 }
 
+bool PlacedHand::digits_are_apart(const JointArray& angle, double least) {
+  std::array<Pose, kSegments> pose;
+  for (int segment = 0; segment < kSegments; ++segment) pose[idx(segment)] = pose_of(segment, angle);
+  return std::all_of(pairs_.pairs().begin(), pairs_.pairs().end(), [&](const auto& pair) {
+    const auto [segment, other] = pair;
+    const Pose X_OS = pose[idx(other)].inverse() * pose[idx(segment)];
+    return distance({trees_[idx(segment)], X_OS, scratch_}, pairs_.as_object(other), 2.0 * least) >= least;
+  });
+}
+
 ClosedDigit PlacedHand::close(int digit, const DigitAngles& from, const DigitAngles& to, bool wraps) {
   ClosedDigit out;
   out.angle = from;
@@ -101,17 +151,7 @@ ClosedDigit PlacedHand::close(int digit, const DigitAngles& from, const DigitAng
 }
 
 std::optional<PlannedContact> PlacedHand::contact(int segment, const JointArray& angle, double within) {
-  const SegmentTree& tree = trees_[idx(segment)];
-  if (tree.empty()) return std::nullopt;
-  const Pose X_WS = pose_of(segment, angle);
-  const ContactPatch patch = contact_patch({tree, X_WS, scratch_}, object_, within);
-  if (patch.pairs == 0) return std::nullopt;
-  PlannedContact out;
-  out.segment = segment;
-  out.point = patch.on_object;
-  out.normal = patch.direction;
-  out.pad = X_WS.R.col(1).dot(patch.direction) >= kPalmarCosine;
-  return out;
+  return contact_of(segment, {trees_[idx(segment)], pose_of(segment, angle), scratch_}, object_, within);
 }
 
 }  // namespace phalanx

@@ -3,13 +3,24 @@
 
 #include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "phalanx/contact/object_model.h"
+#include "phalanx/contact/object_tree.h"
 #include "phalanx/contact/segment_tree.h"
 #include "phalanx/grasp/plan_grasp.h"
 #include "phalanx/hand/hand_model.h"
 
 namespace phalanx {
+
+/// @returns true if the palmar side of a segment at X_WS looks against the normal of a contact, from object to segment
+[[nodiscard]] bool is_palmar(const Pose& X_WS, const Vec3& normal);
+/// Returns the distance up to which the palm counts as touching [m]: PlannedGrasp::kPalmGap, or the margin and 0.6 mm.
+[[nodiscard]] double palm_gap(double margin);
+/// Returns the contact of the palm where it is; empty if it is farther than palm_gap().
+[[nodiscard]] std::optional<PlannedContact> palm_contact(const HandModel& hand, const SegmentTrees& trees,
+                                                         const ObjectModel& object, double margin);
 
 /// Where a digit that closes comes to rest.
 struct ClosedDigit {
@@ -20,13 +31,31 @@ struct ClosedDigit {
   [[nodiscard]] bool any() const noexcept { return touches[0] || touches[1] || touches[2]; }
 };
 
+/// Segments of a hand that must not meet: those that the displayed hand keeps apart.
+class SegmentPairs {
+ public:
+  SegmentPairs(const HandModel& hand, double margin);
+
+  /// Pairs of a segment of a digit, and a segment of another one or the palm.
+  [[nodiscard]] const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
+  /// Returns a segment as an object for others, in its own frame.
+  [[nodiscard]] const ObjectTree& as_object(int segment) const {
+    return as_object_[static_cast<std::size_t>(segment)];
+  }
+
+ private:
+  std::array<ObjectTree, kSegments> as_object_;
+  std::vector<std::pair<int, int>> pairs_;
+};
+
 /// A hand whose wrist can be anywhere beside an object: distances, and digits that close until they touch. One search at
 /// a time.
 class PlacedHand {
  public:
   /// @param hand    with its wrist at the world's origin; must outlive the object, as the others
   /// @param margin  of the contact search [m]
-  PlacedHand(const HandModel& hand, const SegmentTrees& trees, const ObjectModel& object, double margin);
+  PlacedHand(const HandModel& hand, const SegmentTrees& trees, const SegmentPairs& pairs,
+             const ObjectModel& object, double margin);
 
   void put_wrist(const Pose& X_WH) { X_WH_ = X_WH; }
   [[nodiscard]] const Pose& wrist() const { return X_WH_; }
@@ -39,6 +68,9 @@ class PlacedHand {
   [[nodiscard]] double distance_without_thumb(const JointArray& angle, double cap);
   /// @returns true if all segments are farther than `least` from the object, and none is inside it
   [[nodiscard]] bool is_clear(const JointArray& angle, double least);
+
+  /// @returns true if no segments of `pairs` are nearer to each other than `least`. It does not notice one inside another.
+  [[nodiscard]] bool digits_are_apart(const JointArray& angle, double least);
 
   /// Closes a digit along the straight line in joint space, until a segment is at touching distance.
   /// @param from  clear of the object
@@ -60,6 +92,7 @@ class PlacedHand {
 
   const HandModel& hand_;
   const SegmentTrees& trees_;
+  const SegmentPairs& pairs_;
   const ObjectModel& object_;
   double touching_;
   SearchScratch scratch_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/grasp/plan_grasp.h"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -18,6 +19,7 @@
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/device/motion.h"
+#include "phalanx/grasp/held_grasp.h"
 #include "phalanx/step/displayed_hand.h"
 #include "phalanx/step/haptic_step.h"
 
@@ -25,7 +27,8 @@ namespace phalanx {
 namespace {
 
 constexpr int kCandidates = 1000;
-constexpr int kBatch = 50;  // candidates between two calls of GraspOptions::progress
+constexpr int kDrawsAgain = 200;  // of a candidate whose forearm or palm has another direction than stated
+constexpr int kBatch = 50;        // candidates between two calls of GraspOptions::progress
 static_assert(kCandidates % kBatch == 0);
 constexpr int kCoarseTriangles = 3000;  // of the object that candidates are tried on
 constexpr int kFinalists = 16;          // whose wrench ball is computed exactly, and that are played
@@ -34,6 +37,7 @@ constexpr double kOpenGap = 0.3e-3;     // of the open hand above the margin [m]
 constexpr double kPressDepth = 2.5e-3;  // of a contact while the hand presses [m]
 constexpr double kPressWay = 12e-3;     // greatest way of a fingertip beyond the touch [m]
 constexpr double kMostAlong = 0.65;     // of a contact's normal along the axis of a cylinder or disk [-]
+constexpr double kLeastAside = 0.5;     // of a contact's normal out of the side of the finger [-]
 constexpr double kHookPull = 0.5;       // least part of a contact's normal that holds a distal pull [-]
 constexpr double kApproach = 5e-3;      // motion of the wrist at once; it doubles while nothing is near [m]
 constexpr double kHandReach = 0.1;      // of the hand out of the palm's plane [m]
@@ -59,6 +63,7 @@ class Planner {
         given_(hand),
         hand_(hand.parameters(), hand.handedness(), Pose{}, hand.meshes()),
         trees_(make_segment_trees(hand_)),
+        pairs_(hand_, options.parameters.contact.margin),
         object_(object),
         friction_(object.friction(0, options.parameters.contact.friction)),
         shape_(shape_of(object.mesh())),
@@ -74,7 +79,7 @@ class Planner {
     GraspSearch out;
     const auto beside = [this](const ObjectModel& object) {
       return tbb::enumerable_thread_specific<PlacedHand>(
-          [&] { return PlacedHand(hand_, trees_, object, options_.parameters.contact.margin); });
+          [&] { return PlacedHand(hand_, trees_, pairs_, object, options_.parameters.contact.margin); });
     };
     auto placed = beside(coarse_ ? *coarse_ : object_);
     std::vector<Ranked> ranked;
@@ -85,7 +90,11 @@ class Planner {
         Random own(options_.seed * std::uint64_t{0x9e3779b97f4a7c15U} + index + 1);
         Ranked& one = batch[idx(i)];
         one.candidate = candidates->draw(own);
-        one.failed = one.candidate ? check(placed.local(), one) : GraspCondition::kReach;
+        for (int again = 0; again < kDrawsAgain && one.candidate && !comes_as_stated(*one.candidate); ++again)
+          one.candidate = candidates->draw(own);
+        one.failed = !one.candidate                     ? GraspCondition::kReach
+                     : !comes_as_stated(*one.candidate) ? GraspCondition::kDirection
+                                                        : check(placed.local(), one);
       });
       out.candidates += kBatch;
       for (Ranked& one : batch) {
@@ -135,6 +144,15 @@ class Planner {
     }
   }
 
+  /// @returns true if forearm and palm have the stated directions
+  [[nodiscard]] bool comes_as_stated(const GraspCandidate& candidate) const {
+    const auto near = [](const Vec3& direction, const Vec3& stated) {
+      return stated.isZero(0.0) || direction.dot(stated) >= std::cos(kDirectionCone) * stated.norm();
+    };
+    const Mat3& R = candidate.X_WH.R;
+    return near(R.col(2), options_.forearm) && near(-R.col(1), options_.palm);
+  }
+
   /// Closes the digits on the object itself, and computes the wrench ball.
   void compute_exactly(PlacedHand& placed, Ranked& one) const {
     if (coarse_) one.failed = check(placed, one);
@@ -158,11 +176,9 @@ class Planner {
     grasp = {};
     grasp.X_WH = placed.wrist();
     const double touching = placed.touching_distance();
-    const double palm_gap =
-        std::max(PlannedGrasp::kPalmGap, options_.parameters.contact.margin + 2.0 * kOpenGap);
-    if (rule_.palm && !(placed.palm_distance(2.0 * palm_gap) <= palm_gap))
-      return GraspCondition::kPalmTouches;
-    if (const auto palm = placed.contact(kPalm, open, palm_gap); palm && rule_.palm)
+    const double gap = palm_gap(options_.parameters.contact.margin);
+    if (rule_.palm && !(placed.palm_distance(2.0 * gap) <= gap)) return GraspCondition::kPalmTouches;
+    if (const auto palm = placed.contact(kPalm, open, gap); palm && rule_.palm)
       grasp.contact.push_back(*palm);
 
     // Digits that do not take part close too, up to the object, but their contacts do not count.
@@ -195,7 +211,7 @@ class Planner {
         const auto contact = placed.contact(segment, grasp.touch, touching + 2.0 * PlacedHand::kTolerance);
         if (!contact) continue;
         const bool aside = options_.type == GraspType::kLateral && digit > 0;
-        pads = pads && (aside || contact->pad);
+        pads = pads && (aside ? on_thumbs_side(placed, digit, k, closed.angle, *contact) : contact->pad);
         around = around && std::abs(contact->normal.dot(candidate.axis)) <= kMostAlong;
         with_pad = with_pad || (k == kSegmentsPerDigit - 1 && contact->pad);
         (digit == 0 ? thumb : fingers) += contact->normal;
@@ -215,9 +231,18 @@ class Planner {
     const double bound = wrench_ball_bound(out.wrenches);
     if (rule_.closure && bound < PlannedGrasp::kLeastBall) return GraspCondition::kClosure;
     if (!rule_.closure && !holds_pull(grasp)) return GraspCondition::kPull;
+    if (!placed.digits_are_apart(grasp.touch, options_.parameters.contact.margin))
+      return GraspCondition::kApart;
     grasp.comfort = comfort(grasp.touch);
     out.score = score_of(grasp, bound);
     return std::nullopt;
+  }
+
+  /// @returns true if segment k of a finger touches with the side that looks to the thumb
+  [[nodiscard]] bool on_thumbs_side(const PlacedHand& placed, int digit, int k, const DigitAngles& angle,
+                                    const PlannedContact& contact) const {
+    const double side = hand_.handedness() == Handedness::kRight ? 1.0 : -1.0;
+    return side * placed.digit_poses(digit, angle)[idx(k)].R.col(0).dot(contact.normal) >= kLeastAside;
   }
 
   /// Moves the wrist along the candidate's direction until palm or fingers touch. @returns false if none does
@@ -344,7 +369,8 @@ class Planner {
     }
     for (std::size_t digit = 0; digit < planned.size(); ++digit)
       if (planned[digit] && !touches[digit]) return false;
-    return pads;
+    return pads && (!rule_.closure ||
+                    held_grasp(model, options_.parameters, end).closure_margin >= PlannedGrasp::kLeastBall);
   }
 
   /// @returns true if the hand that is drawn could not follow the GDP, because digits are in each other's way
@@ -361,6 +387,7 @@ class Planner {
   const HandModel& given_;
   HandModel hand_;
   SegmentTrees trees_;
+  SegmentPairs pairs_;
   const ObjectModel& object_;
   double friction_;
   ObjectShape shape_;
@@ -371,6 +398,8 @@ class Planner {
 
 std::string_view grasp_condition_text(GraspCondition condition) noexcept {
   switch (condition) {
+    case GraspCondition::kDirection:
+      return "forearm and palm have the stated directions";
     case GraspCondition::kOpenHand:
       return "the open hand is clear of the object";
     case GraspCondition::kPalmTouches:
@@ -387,6 +416,8 @@ std::string_view grasp_condition_text(GraspCondition condition) noexcept {
       return "the contacts have force closure";
     case GraspCondition::kPull:
       return "two fingers hold a pull towards the fingertips";
+    case GraspCondition::kApart:
+      return "the digits do not meet each other";
     case GraspCondition::kMotion:
       return "the digits touch as planned when the motion is played";
   }
@@ -396,13 +427,30 @@ std::string_view grasp_condition_text(GraspCondition condition) noexcept {
 GraspCondition GraspSearch::obstacle() const noexcept {
   for (int i = kGraspConditions - 1; i > 0; --i)
     if (failed[idx(i)] > 0) return static_cast<GraspCondition>(i);
-  return GraspCondition::kOpenHand;
+  return GraspCondition::kDirection;
 }
 
 GraspSearch plan_grasp(const HandModel& hand, const ObjectModel& object, const GraspOptions& options) {
   if (object.triangle_count() == 0)
     throw std::invalid_argument("plan_grasp: the object has no triangles; name one");
   return Planner(hand, object, options).search();
+}
+
+std::string no_grasp_text(const GraspSearch& search, GraspType type, const std::string& hand) {
+  const GraspCondition obstacle = search.obstacle();
+  const std::string_view remedy =
+      obstacle == GraspCondition::kReach     ? "choose a smaller or larger object, or another type"
+      : obstacle == GraspCondition::kClosure ? "raise contact.friction, or choose another type"
+                                             : "choose another type, size or seed";
+  std::string counts;
+  for (int i = 0; i < kGraspConditions; ++i)
+    if (search.failed[idx(i)] > 0)
+      counts += fmt::format("{}{}: {}", counts.empty() ? "" : "; ",
+                            grasp_condition_text(static_cast<GraspCondition>(i)), search.failed[idx(i)]);
+  return fmt::format(
+      "no {} grasp by {}: of {} candidates none fulfils \"{}\"; {}. Candidates by the condition that failed: "
+      "{}",
+      grasp_rule(type).name, hand, search.candidates, grasp_condition_text(obstacle), remedy, counts);
 }
 
 }  // namespace phalanx

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "phalanx/scene/device_file.h"
@@ -10,6 +11,8 @@
 #include "phalanx/scene/motion_file.h"
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/resolved_scene.h"
+#include "phalanx/scene/scene_file.h"
+#include "phalanx/scene/scene_grasp.h"
 #include "scene/object_kinds.h"
 
 namespace phalanx {
@@ -65,6 +68,32 @@ TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCach
   return world;
 }
 
+/// Plans the scene's grasp and stores it in the description, unless that states it.
+void plan_scene_grasp(ResolvedScene& scene, const Overrides* planned) {
+  SceneDescription& description = scene.description;
+  const GraspDescription& grasp = description.grasp;
+  const std::string checksum = grasp_checksum(grasp, scene.hand, scene.world);
+  if (checksum == grasp.planned_for) return;
+  if (scene.world.triangles.empty())
+    throw SceneError(fmt::format("{}: the scene has no object to hold; add one to objects, or state \"none\"",
+                                 grasp.stated_at));
+  const std::pair<std::string, std::string> fits("grasp.planned_for", toml_string(checksum));
+  if (planned != nullptr && std::find(planned->begin(), planned->end(), fits) != planned->end()) {
+    scene.planned = *planned;
+  } else {
+    const GraspSearch search = search_grasp(scene, {});
+    if (!search.grasp)
+      throw SceneError(fmt::format("{}: {}", grasp.stated_at,
+                                   no_grasp_text(search, *grasp.type, scene.hand.parameters.name)));
+    scene.planned = grasp_values(*search.grasp, scene.mirrored, checksum);
+  }
+  // What a scene would read that states these values, to the last bit.
+  const SceneDescription stated = SceneFile("", "planned grasp", {}).scene(scene.planned);
+  description.hand.pose = stated.hand.pose;
+  description.motion.script.posture = stated.motion.script.posture;
+  description.grasp.planned_for = checksum;
+}
+
 Motion motion_of(const MotionDescription& motion, const HandParameters& hand) {
   if (motion.file.empty()) return make_motion(motion.script, hand);
   std::optional<SensorMapping> mapping;
@@ -91,10 +120,12 @@ ResolvedScene resolve(const SceneDescription& description, const ResolveOptions&
     scene.patient = load_patient(description);
   }
   scene.hand = load_hand(description.hand, options.hand, options.imports);
-  const bool mirror = is_mirrored(description, scene.hand.handedness);
-  scene.X_WH = mirror ? mirrored(description.hand.pose) : description.hand.pose;
-  scene.world = world_mesh(description, mirror, options.imports, &scene.friction);
-  if (options.motion) scene.motion = motion_of(description.motion, scene.hand.parameters);
+  scene.mirrored = is_mirrored(description, scene.hand.handedness);
+  scene.world = world_mesh(description, scene.mirrored, options.imports, &scene.friction);
+  if (description.grasp.type) plan_scene_grasp(scene, options.planned);
+  const Pose& X_WH = scene.description.hand.pose;
+  scene.X_WH = scene.mirrored ? mirrored(X_WH) : X_WH;
+  if (options.motion) scene.motion = motion_of(scene.description.motion, scene.hand.parameters);
   return scene;
 }
 
@@ -110,6 +141,7 @@ HapticModel build_model(ResolvedScene scene) {
 }
 
 Motion build_motion(const SceneDescription& scene) {
+  if (scene.grasp.type) return *resolve(scene, {.motion = true}).motion;
   return motion_of(scene.motion, load_hand_numbers(scene.hand).parameters);
 }
 

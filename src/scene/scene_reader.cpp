@@ -191,9 +191,27 @@ void refuse_what_the_profile_states(const SceneTree& tree) {
   }
 }
 
+/// @returns true if the scene has its grasp planned
+bool has_grasp_type(const SceneTree& tree) {
+  const toml::node* type = tree.find("grasp.type");
+  return type != nullptr && type->is_string() && *type->value<std::string>() != "none";
+}
+
+void refuse_another_motion_than_the_grasp(const SceneTree& tree) {
+  const toml::node* name = tree.find("motion.name");
+  if (!has_grasp_type(tree) || name == nullptr || !name->is_string() ||
+      *name->value<std::string>() == "posture")
+    return;
+  tree.fail(
+      "motion.name",
+      fmt::format("the motion of a planned grasp is \"posture\" ({}); state that, or grasp.type = \"none\"",
+                  tree.statement("grasp.type")));
+}
+
 void check_tree(const SceneTree& tree, SceneProblems& problems) {
   refuse_unknown_keys(tree, problems);
-  for (const auto& check : {refuse_both_smoothing_forms, refuse_what_the_profile_states})
+  for (const auto& check :
+       {refuse_both_smoothing_forms, refuse_what_the_profile_states, refuse_another_motion_than_the_grasp})
     problems.run([&] { check(tree); });
 }
 
@@ -230,6 +248,11 @@ SceneDescription read_scene(const SceneTree& tree, const std::string& origin, co
   }
   if (tree.find("hand.triangles") != nullptr)
     scene.hand.triangles_stated_at = tree.statement("hand.triangles");
+  if (scene.grasp.type) {
+    scene.grasp.stated_at = tree.statement("grasp.type");
+    scene.motion.script.name = "posture";
+    if (tree.find("motion.closure") == nullptr) scene.motion.script.closure = 1.0;
+  }
   if (scene.mirror) {
     Handedness& side = scene.hand.handedness;
     side = side == Handedness::kRight ? Handedness::kLeft : Handedness::kRight;

@@ -139,14 +139,14 @@ void SessionWorker::apply(const SetValues& set) {
   const auto now = state_.current();
   if (now == nullptr) return switch_to(built(next, SceneFile(next.scene)));
   SceneWithValues read = file_->with_values(next.overrides);
-  const ChangeKind kind = change_kind(set.changes, plan_.source, scene_.parameters, read.scene.parameters);
+  const ChangeKind kind = change_kind(set.changes, plan_.source, scene_, read.scene);
   if (kind == ChangeKind::kNewStation) return switch_to(built(next, *file_, std::move(read)));
   if (kind == ChangeKind::kOtherObject)
     return exchange_object(*now->station, built(next, *file_, std::move(read)));
   // The parameters of the same model, without opening a file. What needs memory comes before the change.
   const auto info = std::make_shared<SessionInfo>(*state_.info());
   info->overrides = next.overrides;
-  info->values = std::move(read.values);
+  info->values = with_planned(std::move(read.values), planned_);
   info->description = read.scene.description;
   info->margin = read.scene.parameters.contact.margin;
   if (kind == ChangeKind::kInContact)
@@ -173,6 +173,7 @@ void SessionWorker::exchange_object(Station& station, StationBuild build) {
   info->geometry = build.geometry;
   run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters); });
   plan_ = std::move(build.plan);
+  planned_ = std::move(build.planned);
   scene_ = std::move(build.scene);
   model_ = build.made.model;
   state_.publish(info);
@@ -215,8 +216,9 @@ StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file) const
 }
 
 StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file, SceneWithValues read) const {
-  StationBuild build = run_at_low_priority(
-      [&] { return build_station(plan, std::move(file), std::move(read), settings_.clinician, imports_); });
+  StationBuild build = run_at_low_priority([&] {
+    return build_station(plan, std::move(file), std::move(read), settings_.clinician, planned_, imports_);
+  });
   if (build.made.safety.patient.empty()) build.made.safety.patient = patient_;
   // The device stays the same: refuse what it cannot do while the last station still runs.
   const auto info = state_.info();
@@ -272,6 +274,7 @@ void SessionWorker::take_over(StationBuild& build) {
                 std::is_nothrow_move_assignable_v<SceneDescription>);
   plan_ = std::move(build.plan);
   file_ = std::move(build.file);
+  planned_ = std::move(build.planned);
   scene_ = std::move(build.scene);
   model_ = build.made.model;
   patient_ = std::move(build.made.safety.patient);

@@ -74,6 +74,7 @@ class SessionWorker {
   ImportCache& imports_;
   StationPlan plan_;
   std::optional<SceneFile> file_;  ///< the scene's file, as read for the newest station; none before
+  Overrides planned_;              ///< StationBuild::planned of the last build
   SceneDescription scene_;         ///< of the running station, after changes on their way
   std::shared_ptr<const HapticModel> model_;  ///< of the running station, after changes on their way
   std::string patient_;  ///< SafetySettings::patient; once stated, it holds for every later station

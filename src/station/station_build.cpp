@@ -130,29 +130,45 @@ Overrides laid_over(Overrides before, const Overrides& changes) {
   return before;
 }
 
-ChangeKind change_kind(const Overrides& changes, HandSource source, const HapticParameters& in_force,
-                       const HapticParameters& wanted) {
+Overrides with_planned(Overrides values, const Overrides& planned) {
+  for (const auto& [key, value] : planned) {
+    std::erase_if(values, [&key](const auto& stated) { return stated.first == key; });
+    values.emplace_back(key, value);
+  }
+  return values;
+}
+
+ChangeKind change_kind(const Overrides& changes, HandSource source, const SceneDescription& in_force,
+                       const SceneDescription& wanted) {
   ChangeKind needs = ChangeKind::kInContact;
   for (const auto& [key, value] : changes) {
     ChangeKind kind = change_kind(key);
     if (key == "stabiliser.method" &&
-        goes_over_in_contact(in_force.stabiliser.method, wanted.stabiliser.method))
+        goes_over_in_contact(in_force.parameters.stabiliser.method, wanted.parameters.stabiliser.method))
       kind = ChangeKind::kInContact;
-    if (kind == ChangeKind::kOtherObject && source == HandSource::kPatient) kind = ChangeKind::kNewStation;
+    // The patient's press and the wrist of a planned grasp depend on the object.
+    if (kind == ChangeKind::kOtherObject && (source == HandSource::kPatient || wanted.grasp.type))
+      kind = ChangeKind::kNewStation;
     needs = std::max(needs, kind);
   }
   return needs;
 }
 
 StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithValues read,
-                           const std::string& clinician, ImportCache& imports) {
+                           const std::string& clinician, const Overrides& planned, ImportCache& imports) {
   StationBuild build{.plan = plan,
                      .file = std::move(file),
                      .scene = std::move(read.scene),
                      .values = std::move(read.values)};
   const bool presses = plan.source == HandSource::kPatient;
-  ResolvedScene scene = resolve(
-      build.scene, {.hand = HandDetail::kAll, .device = true, .motion = presses, .imports = &imports});
+  ResolvedScene scene = resolve(build.scene, {.hand = HandDetail::kAll,
+                                              .device = true,
+                                              .motion = presses,
+                                              .planned = &planned,
+                                              .imports = &imports});
+  build.scene = scene.description;
+  build.values = with_planned(std::move(build.values), scene.planned);
+  build.planned = scene.planned;
   build.exoskeleton = scene.exoskeleton.value();
   build.made = make_station_model(scene, clinician);
   // Finds what a station would refuse now, while the last one still runs.

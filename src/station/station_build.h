@@ -34,6 +34,7 @@ struct StationBuild {
   SceneDescription scene = {};
   Overrides values = {};
   Exoskeleton exoskeleton = {};
+  Overrides planned = {};  ///< ResolvedScene::planned
   StationModel made = {};
   std::shared_ptr<SessionGeometry> geometry = nullptr;
   std::optional<SimulatedDeviceSettings> patient = {};  ///< for HandSource::kPatient
@@ -48,18 +49,24 @@ struct StationBuild {
 /// @returns the common requirement of the changes: the largest of those in the table (scene_keys()), with two
 /// exceptions. The stabiliser's method may change in contact among `none`, `smoothing` and `rise_only`. If a
 /// simulated patient moves the hand, another object needs a new station: the press is planned for the object.
-/// @param in_force, wanted  parameters before and after the changes
+/// With a planned grasp it needs one too, since the wrist has another place.
+/// @param in_force, wanted  scene before and after the changes
 [[nodiscard]] ChangeKind change_kind(const Overrides& changes, HandSource source,
-                                     const HapticParameters& in_force, const HapticParameters& wanted);
+                                     const SceneDescription& in_force, const SceneDescription& wanted);
+
+/// @returns values of a scene, with those of the grasp that was planned for it
+[[nodiscard]] Overrides with_planned(Overrides values, const Overrides& planned);
 
 /// Reads the files that the scene names, each once, and makes the parts.
 /// @param file  of the plan's scene
 /// @param read  its scene with the plan's overrides
+/// @param planned  of the last build: taken where it fits
 /// @param imports  cache of imported meshes
 /// @throws SceneError or std::invalid_argument: the scene, a limit that a station does not allow, an open
 /// hand that touches the object, a patient who meets nothing. Set-up only.
 [[nodiscard]] StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithValues read,
-                                         const std::string& clinician, ImportCache& imports);
+                                         const std::string& clinician, const Overrides& planned,
+                                         ImportCache& imports);
 
 /// A station and its open device.
 struct RunningStation {

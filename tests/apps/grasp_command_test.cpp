@@ -75,7 +75,7 @@ TEST(CliGrasp, NamesTheConditionIfThereIsNoGrasp) {
   const auto result = run_program(
       folder, "grasp --object sphere --type pinch --set objects.0.diameter_mm=400 --out none.toml");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, AllOf(HasSubstr("no pinch grasp of sphere"),
+  EXPECT_THAT(result.err, AllOf(HasSubstr("sphere: no pinch grasp by adult"),
                                 HasSubstr("the digits reach the object"), HasSubstr("smaller")));
   EXPECT_FALSE(std::filesystem::exists(folder / "none.toml"));
 }

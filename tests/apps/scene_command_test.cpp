@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `phalanx scene list`, `phalanx scene check` and `phalanx scene pictures`.
+// `phalanx scene list`, `phalanx scene check`, `phalanx scene grasps` and `phalanx scene pictures`.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 namespace phalanx {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::read_file;
 using testing::run_program;
@@ -61,6 +62,32 @@ TEST(CliSceneCheck, SaysEverythingThatIsWrongALineEach) {
                   HasSubstr("broken.toml:1: not valid TOML"), HasSubstr("flat.toml:1: objects = 3"),
                   HasSubstr("flat.toml:2: force = 1"), HasSubstr("there is no file")));
   for (const std::string& line : lines) EXPECT_THAT(line, StartsWith("phalanx: "));
+}
+
+TEST(CliSceneGrasps, TabulatesScenesAndHands) {
+  const TemporaryFolder folder;
+  const auto result =
+      run_program(folder, "scene grasps pinch_ball tripod_ball --profile small-woman --out tables/held.csv");
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("| small woman, right |"), HasSubstr("| `pinch_ball` | pinch | TI 0."),
+                    HasSubstr("| `tripod_ball` | tripod | TIM 0.")));
+  EXPECT_THAT(read_file(folder / "tables/held.csv"),
+              AllOf(StartsWith("scene,hand,type,digits,palm,closure_margin,holds,problem\n"),
+                    HasSubstr("pinch_ball,\"small woman, right\",pinch,TI,0,0.")));
+}
+
+TEST(CliSceneGrasps, SaysWhyThereIsNoGrasp) {
+  const TemporaryFolder folder;
+  write_file(folder / "huge.toml",
+             "[grasp]\ntype = 'pinch'\n[[objects]]\nkind = 'sphere'\ndiameter_mm = 400\n");
+  const auto result = run_program(folder, "scene grasps ./huge.toml");
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("| no grasp |"), HasSubstr("the digits reach the object")));
+  EXPECT_EQ(run_program(folder, "scene grasps nope").exit_code, 2);
+  const auto nobody = run_program(folder, "scene grasps --profile nobody pinch_ball");
+  EXPECT_EQ(nobody.exit_code, 2);
+  EXPECT_THAT(nobody.err, HasSubstr("profile \"nobody\""));
 }
 
 TEST(CliScenePictures, DrawsEachSceneAndTheSheet) {

@@ -238,7 +238,8 @@ TEST(BuildModel, MirrorsTheHandsPose) {
 }
 
 TEST(BuildModel, MirrorsTheSceneForTheProfileOfALeftHand) {
-  const SceneDescription scene = load_scene("grasp_mug", {{"hand.profile", "large-man"}});
+  const SceneDescription scene =
+      load_scene("grasp_mug", {{"hand.profile", "large-man"}, {"grasp.type", "none"}});
   const HapticModel model = build_model(scene);
   EXPECT_EQ(model.hand.handedness(), Handedness::kLeft);
   EXPECT_EQ(model.hand.palm_pose().p.x(), -scene.hand.pose.p.x());

@@ -388,9 +388,51 @@ TEST_F(SessionTest, SlidersMoveTheHandWithinItsRangeAndThePatientComesBack) {
   EXPECT_TRUE(session->info()->device.simulated);
 }
 
+TEST_F(SessionTest, PlansTheGraspOfAnotherTypeAndObjectAndKeepsItThrough) {
+  start(with("simulated", "pinch_ball"));
+  ASSERT_TRUE(until_running());
+  const auto value = [&](const char* key) {
+    const Overrides values = session->info()->values;
+    const auto it =
+        std::find_if(values.begin(), values.end(), [&](const auto& one) { return one.first == key; });
+    return it == values.end() ? std::string() : it->second;
+  };
+  const auto set = [&](const Overrides& changes) {
+    auto [answer, done] = awaited();
+    session->set(changes, std::move(done));
+    const auto got = answer;
+    EXPECT_TRUE(until([&] { return got->refused.has_value(); }));
+    return got->refused.value_or("no answer");
+  };
+  const Vec3 stated = session->info()->geometry->X_WH.p;
+  ASSERT_EQ(set({{"grasp.type", "tripod"}, {"objects.0.diameter_mm", "50"}}), "");
+  ASSERT_TRUE(until_running());
+  const Vec3 planned = session->info()->geometry->X_WH.p;
+  EXPECT_NE(planned, stated);
+  EXPECT_EQ(value("grasp.type"), "\"tripod\"");
+  const std::string checksum = value("grasp.planned_for");
+  // A change that the grasp does not depend on, in contact and with a new station.
+  ASSERT_EQ(set({{"force.stiffness_n_per_mm", "0.3"}}), "");
+  EXPECT_EQ(value("grasp.planned_for"), checksum);
+  ASSERT_EQ(set({{"limits.fingertip_force_n", "4"}}), "");
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(session->info()->geometry->X_WH.p, planned);
+  EXPECT_EQ(value("grasp.planned_for"), checksum);
+  // What no hand can hold is refused, and the station goes on.
+  EXPECT_THAT(set({{"objects.0.diameter_mm", "400"}}), HasSubstr("no tripod grasp"));
+  EXPECT_EQ(session->info()->geometry->X_WH.p, planned);
+  ASSERT_EQ(set({{"grasp.type", ""}, {"objects.0.diameter_mm", ""}}), "");
+  ASSERT_TRUE(until_running());
+  EXPECT_EQ(session->info()->geometry->X_WH.p, stated);
+}
+
 // The sliders close the hand on a ball, which then grows: the shown hand begins at the open hand again.
 TEST_F(SessionTest, ADigitThatStartedInsideIsOpenedByAConfirmationOfWhatWasSeen) {
-  start(with("sliders", "squeeze_ball"));
+  SessionSettings settings = with("sliders", "squeeze_ball");
+  // With a planned grasp the wrist would move to the larger ball.
+  settings.overrides = {
+      {"grasp.type", "none"}, {"hand.position_mm", "[0, -86, 74]"}, {"hand.rotation_deg", "[90, 0, 0]"}};
+  start(settings);
   ASSERT_TRUE(until_running());
   JointArray fist = session->sliders();
   for (int digit = 1; digit < kDigits; ++digit)
@@ -854,12 +896,20 @@ TEST(ChangeKindOf, APatientHasToBeToldOfAnotherObject) {
   EXPECT_EQ(kind("rate_hz", HandSource::kSliders), ChangeKind::kNewStation);
 }
 
+TEST(ChangeKindOf, ThePlannedWristDependsOnTheObject) {
+  SceneDescription held;
+  held.grasp.type = GraspType::kSphere;
+  const Overrides size = {{"objects.0.size_mm", "90"}};
+  EXPECT_EQ(change_kind(size, HandSource::kSliders, held, held), ChangeKind::kNewStation);
+  EXPECT_EQ(change_kind(size, HandSource::kSliders, held, {}), ChangeKind::kOtherObject);
+}
+
 TEST(ChangeKindOf, AMethodGoesOverInContactWhereBothBoundTheForcesChange) {
   const auto kind = [](const Overrides& changes, Stabiliser from, Stabiliser to) {
-    HapticParameters in_force;
-    HapticParameters wanted;
-    in_force.stabiliser.method = from;
-    wanted.stabiliser.method = to;
+    SceneDescription in_force;
+    SceneDescription wanted;
+    in_force.parameters.stabiliser.method = from;
+    wanted.parameters.stabiliser.method = to;
     return change_kind(changes, HandSource::kSliders, in_force, wanted);
   };
   const Overrides method = {{"stabiliser.method", "as wanted"}};

@@ -12,10 +12,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "phalanx/contact/object_model.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/core/math.h"
 #include "phalanx/force/haptic_parameters.h"
 #include "phalanx/grasp/grasp_type.h"
@@ -52,6 +54,7 @@ struct PlannedGrasp {
 
 /// Conditions of a grasp in the order in which candidates are checked.
 enum class GraspCondition {
+  kDirection,    ///< forearm and palm have the stated directions
   kOpenHand,     ///< the open hand is clear of the object
   kPalmTouches,  ///< the palm touches
   kReach,        ///< thumb and enough fingers touch
@@ -60,9 +63,10 @@ enum class GraspCondition {
   kOpposition,   ///< the thumb opposes the fingers
   kClosure,      ///< force closure: the wrench ball is at least kLeastBall
   kPull,         ///< a hook: two fingers hold a pull towards the fingertips
+  kApart,        ///< digits and palm do not meet each other
   kMotion,       ///< played through step(), the digits touch as planned
 };
-inline constexpr int kGraspConditions = 9;
+inline constexpr int kGraspConditions = 11;
 /// Returns a condition as a part of a sentence: "the open hand is clear of the object".
 [[nodiscard]] std::string_view grasp_condition_text(GraspCondition condition) noexcept;
 
@@ -78,10 +82,17 @@ struct GraspSearch {
   [[nodiscard]] GraspCondition obstacle() const noexcept;
 };
 
+/// Greatest angle between forearm or palm and what GraspOptions states [rad].
+inline constexpr double kDirectionCone = 45.0 * kDeg;
+
 /// Options of plan_grasp().
 struct GraspOptions {
   GraspType type = GraspType::kCylinder;
   std::uint64_t seed = 1;
+  /// Directions in the world from the object to the elbow, and out of the palm. Those of the grasp are at most
+  /// kDirectionCone off. Zero: any [-]
+  Vec3 forearm = Vec3::Zero();
+  Vec3 palm = Vec3::Zero();
   /// Of the scene: margin, friction, spin radius, stiffness, rate. Friction that an object has of its own, that of its
   /// first triangle, replaces contact.friction.
   HapticParameters parameters;
@@ -95,5 +106,10 @@ struct GraspOptions {
 /// @throws std::invalid_argument if the object has no triangles. Set-up only.
 [[nodiscard]] GraspSearch plan_grasp(const HandModel& hand, const ObjectModel& object,
                                      const GraspOptions& options);
+
+/// Returns the message about a search without a grasp: the condition that failed, a remedy, and the candidates by the
+/// condition that they failed.
+/// @pre there is no grasp
+[[nodiscard]] std::string no_grasp_text(const GraspSearch& search, GraspType type, const std::string& hand);
 
 }  // namespace phalanx

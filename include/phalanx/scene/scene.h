@@ -19,6 +19,7 @@
 #include "phalanx/core/math.h"
 #include "phalanx/device/motion.h"
 #include "phalanx/force/haptic_parameters.h"
+#include "phalanx/grasp/grasp_type.h"
 #include "phalanx/hand/joints.h"
 
 namespace phalanx {
@@ -91,6 +92,18 @@ struct MotionDescription {
   double lead_in_s = 0.0;    ///< lead-in from the open hand to the file's first sample [s] >= 0
 };
 
+/// The grasp of a scene.
+struct GraspDescription {
+  /// With a type, resolve() plans wrist and motion for the scene's hand and objects, unless they are those that the scene
+  /// states them for. Empty: the scene states them.
+  std::optional<GraspType> type;
+  std::uint64_t seed = 1;       ///< of the search
+  Vec3 forearm = Vec3::Zero();  ///< GraspOptions::forearm, of the scene before it is mirrored
+  Vec3 palm = Vec3::Zero();     ///< GraspOptions::palm, likewise
+  std::string planned_for;      ///< grasp_checksum() for which the scene states wrist and motion; empty: none
+  std::string stated_at;        ///< place that states the type, "FILE:LINE: KEY = VALUE"; empty: none
+};
+
 /// A value with which a scene overrides a key of another file.
 struct OverlaidValue {
   std::string path;   ///< key of that file: "motors.index_pip.friction_n"
@@ -115,6 +128,7 @@ struct SceneDescription {
   HandDescription hand;
   std::vector<ObjectDescription> objects;
   HapticParameters parameters;  ///< "off" clears a limit's flag; for joint_speed it means infinity
+  GraspDescription grasp;
   MotionDescription motion;
   /// The simulated device (docs/device-file.md)
   FileWithOverlay device = {.file = "beihang", .overlay = {}, .stated_at = {}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys of the motion that a simulation plays.
+// Keys of the grasp, and of the motion that a simulation plays.
+#include "phalanx/grasp/grasp_type.h"
 #include "scene/keys/key_rows.h"
 
 namespace phalanx {
@@ -14,6 +15,29 @@ void add_motion_keys(std::vector<SceneKey>& keys) {
   const KeyRows new_station(keys, ChangeKind::kNewStation);
   constexpr NumberRange kPause = between(0, 600);
   constexpr NumberRange kMove = between(0.01, 600);
+  std::vector<std::string> types = grasp_type_names();
+  types.insert(types.begin(), "none");
+  new_station.choice(
+      "grasp.type", std::move(types), "none",
+      "type of the grasp that is planned for hand and objects, with the wrist's pose and the motion; none: "
+      "the scene states them",
+      [](T t, V v) {
+        if (v.integer > 0) t.scene.grasp.type = static_cast<GraspType>(v.integer - 1);
+      });
+  new_station.integer("grasp.seed", between(0, 9007199254740992.0), 1, "seed of the search for a grasp",
+                      [](T t, V v) { t.scene.grasp.seed = static_cast<std::uint64_t>(v.integer); });
+  new_station.vector(
+      "grasp.forearm", "", between(-1, 1), 0,
+      "direction from the object to the elbow, in the world; the planned one is at most 45 degrees off; "
+      "[0, 0, 0]: any",
+      [](T t, V v) { t.scene.grasp.forearm = v.vector; });
+  new_station.vector("grasp.palm", "", between(-1, 1), 0, "direction out of the palm, likewise",
+                     [](T t, V v) { t.scene.grasp.palm = v.vector; });
+  new_station.word(
+      KeyType::kText, "grasp.planned_for", "",
+      "checksum of the hand and the objects for which the scene states wrist and motion; for all others the "
+      "grasp is planned when the scene is loaded",
+      [](T t, V v) { t.scene.grasp.planned_for = v.text; });
   new_station.choice("motion.name", scripted_motion_names(), "power_grasp", "the scripted motion",
                      [](T t, V v) { t.scene.motion.script.name = v.text; });
   new_station.number("motion.start_s", "s", kPause, 0.2, "time with the open hand before it closes",
