@@ -88,12 +88,29 @@ void check_followers(const JointFollowers& followers) {
   }
   for (std::size_t d = 0; d < followers.copy.size(); ++d) {
     const DigitCopy& copy = followers.copy[d];
+    const auto finite = [](double x) { return std::isfinite(x); };
+    if (!std::all_of(copy.way.begin(), copy.way.end(), finite) ||
+        !std::all_of(copy.way_of.begin(), copy.way_of.end(), finite))
+      throw std::invalid_argument(fmt::format("copy of the {}: its way is not finite; correct the motion",
+                                              digit_name(static_cast<int>(d))));
     if (copy.of >= kDigits || !std::isfinite(copy.gain))
       throw std::invalid_argument(
           fmt::format("copy of the {}: digit {} must be below {} and the gain {} finite; correct the device "
                       "file",
                       digit_name(static_cast<int>(d)), copy.of, kDigits, copy.gain));
   }
+}
+
+/// Returns how far the digit that is copied has gone along its way: 0 at the open hand, 1 at its end.
+double share_of_way(const DigitCopy& copy, const JointArray& open, const JointArray& angle) noexcept {
+  double along = 0.0;
+  double square = 0.0;
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    const auto from = idx(joint_index(copy.of, i));
+    along += copy.way_of[idx(i)] * (angle[from] - open[from]);
+    square += copy.way_of[idx(i)] * copy.way_of[idx(i)];
+  }
+  return square > 0.0 ? along / square : 0.0;
 }
 
 /// Sets the joints that are not measured from those that they follow: coupled joints, then copied digits.
@@ -105,12 +122,26 @@ void follow(std::span<const CoupledJoint> coupled, const std::array<DigitCopy, k
   for (int digit = 0; digit < kDigits; ++digit) {
     const DigitCopy& copy = copies[idx(digit)];
     if (copy.of < 0) continue;
+    const double along = copy.has_way() ? copy.gain * share_of_way(copy, open, angle) : 0.0;
     for (int i = 0; i < kJointsPerDigit; ++i) {
       const auto from = idx(joint_index(copy.of, i));
       const auto to = idx(joint_index(digit, i));
-      if (!measured[to]) angle[to] = open[to] + copy.gain * (angle[from] - open[from]);
+      if (measured[to]) continue;
+      if (copy.has_way())
+        angle[to] = open[to] + along * copy.way[idx(i)];
+      else
+        angle[to] = open[to] + copy.gain * (angle[from] - open[from]);
     }
   }
+}
+
+/// Returns the origin of a joint that follows a whole digit: fixed if all joints of its way are.
+AngleOrigin origin_along(const DigitCopy& copy, const AngleOrigins& origin) noexcept {
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    const AngleOrigin of = origin[idx(joint_index(copy.of, i))];
+    if (copy.way_of[idx(i)] != 0.0 && of != AngleOrigin::kFixed) return of;
+  }
+  return AngleOrigin::kFixed;
 }
 
 /// Sets the origins of the joints that follow() sets. A joint that follows a fixed one is fixed.
@@ -125,7 +156,8 @@ void follow_origins(std::span<const CoupledJoint> coupled, const std::array<Digi
     const DigitCopy& copy = copies[idx(digit)];
     if (copy.of < 0) continue;
     for (int i = 0; i < kJointsPerDigit; ++i) {
-      const AngleOrigin of = origin[idx(joint_index(copy.of, i))];
+      AngleOrigin of = origin[idx(joint_index(copy.of, i))];
+      if (copy.has_way()) of = copy.way[idx(i)] == 0.0 ? AngleOrigin::kFixed : origin_along(copy, origin);
       follow_one(idx(joint_index(digit, i)), copy.gain == 0.0 ? AngleOrigin::kFixed : of);
     }
   }

@@ -17,6 +17,8 @@ Corners3 corners_of(const TriangleMesh& mesh, const Triangle& t) {
   return {at(0), at(1), at(2)};
 }
 
+constexpr int kNormals = 24;  // as axes
+
 }  // namespace
 
 ObjectShape shape_of(const TriangleMesh& mesh) {
@@ -73,6 +75,19 @@ ObjectShape shape_of(const TriangleMesh& mesh) {
     for (const std::int32_t v : t)
       shape.radius =
           std::max(shape.radius, (mesh.vertices[static_cast<std::size_t>(v)] - shape.centre).norm());
+  Random random(kNormals);
+  for (const SurfacePoint& point : surface_points(mesh, kNormals, random)) {
+    double low_along = kInfinity;
+    double high_along = -kInfinity;
+    for (const Triangle& t : mesh.triangles)
+      for (const std::int32_t v : t) {
+        const double along = point.normal.dot(mesh.vertices[static_cast<std::size_t>(v)]);
+        low_along = std::min(low_along, along);
+        high_along = std::max(high_along, along);
+      }
+    if (point.normal.allFinite() && point.normal.norm() > 0.5)
+      shape.normal.push_back({point.normal, 0.5 * (high_along - low_along)});
+  }
   return shape;
 }
 

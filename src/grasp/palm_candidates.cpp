@@ -67,19 +67,19 @@ class PalmCandidates : public GraspCandidates {
     Mat3 in_hand;
     in_hand << across, palmar, across.cross(palmar);
 
-    const std::size_t axis = drawn_axis(random);
+    const ShapeAxis axis = drawn_axis(random);
     Vec3 first;
     Vec3 second;
     Vec3 target = shape_.centre;
     if (ranges_.along_axis) {
-      first = (random.uniform() < 0.5 ? 1.0 : -1.0) * shape_.axis[axis];
-      const double free = std::max(5e-3, shape_.half[axis] - 0.5 * kHandBreadth);
-      target += random.between(-free, free) * shape_.axis[axis];
+      first = (random.uniform() < 0.5 ? 1.0 : -1.0) * axis.axis;
+      const double free = std::max(5e-3, axis.half - 0.5 * kHandBreadth);
+      target += random.between(-free, free) * axis.axis;
       const double roll = random.between(0.0, 2.0 * std::numbers::pi);
       const Vec3 u = first.unitOrthogonal();
       second = std::cos(roll) * u + std::sin(roll) * first.cross(u);
     } else {
-      second = type_ == GraspType::kDisk ? Vec3((random.uniform() < 0.5 ? 1.0 : -1.0) * shape_.axis[axis])
+      second = type_ == GraspType::kDisk ? Vec3((random.uniform() < 0.5 ? 1.0 : -1.0) * axis.axis)
                                          : direction(random);
       const double roll = random.between(0.0, 2.0 * std::numbers::pi);
       const Vec3 u = second.unitOrthogonal();
@@ -98,11 +98,17 @@ class PalmCandidates : public GraspCandidates {
   }
 
  private:
-  std::size_t drawn_axis(Random& random) const {
+  /// Draws the main axis of the type in half of all cases, another principal axis or a normal of the surface in the rest.
+  ShapeAxis drawn_axis(Random& random) const {
     const double drawn = random.uniform();
     const std::size_t main = type_ == GraspType::kDisk ? 2 : 0;
-    if (drawn < 0.5) return main;
-    return drawn < 0.75 ? 1 : 2 - main;
+    if (drawn >= 0.7 && !shape_.normal.empty()) {
+      const double share = (drawn - 0.7) / 0.3;
+      const auto count = shape_.normal.size();
+      return shape_.normal[std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)))];
+    }
+    const std::size_t axis = drawn < 0.5 ? main : drawn < 0.6 ? 1 : 2 - main;
+    return {shape_.axis[axis], shape_.half[axis]};
   }
 
   JointArray closed(Random& random) const {

@@ -349,7 +349,7 @@ class Planner {
       for (std::size_t j = 0; j < open.size(); ++j)
         sample.angle[j] = open[j] + share * (grasp.press[j] - open[j]);
       const Status status = step(model, options_.parameters, sample, *state);
-      if (has(status, Status::kStartInside)) return false;
+      if (has(status, Status::kStartInside) || has(status, Status::kSlid)) return false;
       if (i % every == 0 || i == ticks) shown.follow(state->snapshot().gdp_angle, every * period);
     }
     const Snapshot& end = state->snapshot();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "phalanx/core/index.h"
 #include "phalanx/scene/device_file.h"
 #include "phalanx/scene/mapping_file.h"
 #include "phalanx/scene/motion_file.h"
@@ -94,6 +95,26 @@ void plan_scene_grasp(ResolvedScene& scene, const Overrides* planned) {
   description.grasp.planned_for = checksum;
 }
 
+/// Lets the digits that the device does not have go along their way in the planned grasp, as the digits that they copy.
+void copy_along_grasp(const SceneDescription& description, const HandParameters& hand,
+                      Exoskeleton& exoskeleton) {
+  const auto way_of = [&](int digit) {
+    DigitAngles way{};
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const std::size_t j = idx(joint_index(digit, i));
+      const auto& angle = description.motion.script.posture[j];
+      if (angle) way[idx(i)] = std::clamp(*angle, hand.min_angle[j], hand.max_angle[j]) - hand.open_angle[j];
+    }
+    return way;
+  };
+  for (int digit = 0; digit < kDigits; ++digit) {
+    DigitCopy& copy = exoskeleton.controller.copy[idx(digit)];
+    if (copy.of < 0) continue;
+    copy.way = way_of(digit);
+    copy.way_of = way_of(copy.of);
+  }
+}
+
 Motion motion_of(const MotionDescription& motion, const HandParameters& hand) {
   if (motion.file.empty()) return make_motion(motion.script, hand);
   std::optional<SensorMapping> mapping;
@@ -122,7 +143,10 @@ ResolvedScene resolve(const SceneDescription& description, const ResolveOptions&
   scene.hand = load_hand(description.hand, options.hand, options.imports);
   scene.mirrored = is_mirrored(description, scene.hand.handedness);
   scene.world = world_mesh(description, scene.mirrored, options.imports, &scene.friction);
-  if (description.grasp.type) plan_scene_grasp(scene, options.planned);
+  if (description.grasp.type) {
+    plan_scene_grasp(scene, options.planned);
+    if (scene.exoskeleton) copy_along_grasp(scene.description, scene.hand.parameters, *scene.exoskeleton);
+  }
   const Pose& X_WH = scene.description.hand.pose;
   scene.X_WH = scene.mirrored ? mirrored(X_WH) : X_WH;
   if (options.motion) scene.motion = motion_of(scene.description.motion, scene.hand.parameters);

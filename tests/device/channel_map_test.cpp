@@ -108,6 +108,28 @@ TEST(ChannelMap, CoupledJointsAndCopiedDigitsFollow) {
   EXPECT_EQ(sample.angle[12], 0.1) << "the ring finger stays open";
 }
 
+TEST(ChannelMap, ACopiedDigitGoesAsFarAlongItsWayAsTheOther) {
+  JointFollowers followers;
+  followers.copy[kMiddle] = {
+      .of = kIndex, .gain = 1.0, .way = {0.2, 0.0, 0.6, 0.1}, .way_of = {0.4, 0.0, 0.8, 0.0}};
+  const ChannelMap map({channel(ChannelKind::kAngle, 4, 0.001), channel(ChannelKind::kAngle, 6, 0.001)},
+                       followers, hand());
+  const auto expect_share = [](const Sample& sample, double share) {
+    EXPECT_NEAR(sample.angle[8], 0.1 + share * 0.2, 1e-12);
+    EXPECT_NEAR(sample.angle[9], 0.1, 1e-12);
+    EXPECT_NEAR(sample.angle[10], 0.1 + share * 0.6, 1e-12);
+    EXPECT_NEAR(sample.angle[11], 0.1 + share * 0.1, 1e-12);
+  };
+  expect_share(converted(map, {100, 100}), 0.0);
+  expect_share(converted(map, {300, 500}), 0.5);
+  expect_share(converted(map, {500, 400}), 0.5);  // as much along the way, and some aside
+  expect_share(converted(map, {700, 1300}), 1.5);
+  EXPECT_EQ(map.angle_origins()[8], AngleOrigin::kCompleted);
+  EXPECT_EQ(map.angle_origins()[9], AngleOrigin::kFixed);
+  followers.copy[kMiddle].way[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal({channel(ChannelKind::kAngle, 4, 0.001)}, followers), "");
+}
+
 TEST(ChannelMap, AJointThatIsMeasuredDoesNotFollow) {
   JointFollowers followers;
   followers.coupled = {{.joint = 7, .of = 6, .ratio = 0.5, .offset = 0.0}};

@@ -17,5 +17,5 @@ phalanx_test(
   fuzz_replay_test
   IN_ASAN
   SOURCES ${sources}
-  MODULES scene opengloves simulation device step force contact hand mesh_import mesh
+  MODULES scene opengloves grasp simulation device step force contact hand mesh_import mesh
   LIBRARIES assimp::assimp fmt::fmt nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus Threads::Threads)

@@ -57,7 +57,10 @@ void expect_grasp(GraspType type, const PlannedGrasp& grasp, const HandModel& ha
     if (-contact.normal.dot(grasp.X_WH.R.col(2)) >= 0.5) holds_pull[idx(digit)] = true;
     const bool aside = type == GraspType::kLateral && digit > 0;
     const Mat3& R = poses.digit[idx(digit)].segment[idx(contact.segment % kSegmentsPerDigit)].R;
-    if (!aside) {
+    if (aside) {
+      const double side = hand.handedness() == Handedness::kRight ? 1.0 : -1.0;
+      EXPECT_GE(side * R.col(0).dot(contact.normal), 0.5) << "not the side that looks to the thumb";
+    } else {
       EXPECT_GT(R.col(1).dot(contact.normal), 0.25) << segment_name(contact.segment);
     }
   }
@@ -223,6 +226,23 @@ TEST(PlanGrasp, ProgressRisesToOne) {
                       return true;
                     }});
   EXPECT_EQ(last, 1.0);
+}
+
+// The principal axes of a cube are any; its faces are where a hand holds it.
+TEST(PlanGrasp, HoldsACubeFromAStatedSide) {
+  for (const GraspType type : {GraspType::kDisk, GraspType::kCylinder}) {
+    const GraspSearch search = plan_grasp(adult(), ObjectModel(make_box(Vec3::Constant(0.06), 1000)),
+                                          {.type = type,
+                                           .forearm = Vec3(0.0, -1.0, 0.3),
+                                           .palm = Vec3(0.0, 0.0, -1.0),
+                                           .parameters = {},
+                                           .progress = {}});
+    ASSERT_TRUE(search.grasp.has_value()) << grasp_rule(type).name;
+    expect_grasp(type, *search.grasp);
+    EXPECT_GE(search.grasp->X_WH.R(2, 1), std::cos(kDirectionCone) - 1e-12) << "the back of the hand is up";
+    EXPECT_GE(search.grasp->X_WH.R.col(2).dot(Vec3(0.0, -1.0, 0.3).normalized()),
+              std::cos(kDirectionCone) - 1e-12);
+  }
 }
 
 /// Other hands: the shipped profiles, and a left hand. The stiff hand's ranges do not suffice for every type.

@@ -157,6 +157,23 @@ const en = {
     reset: "Back to the scene’s values",
   },
 
+  grasp: {
+    title: "Grasp",
+    type: "Type",
+    own: "The scene’s own",
+    types: {
+      cylinder: "Whole hand around a handle",
+      sphere: "Whole hand around a ball",
+      tripod: "Thumb and two fingertips",
+      pinch: "Thumb and index fingertip",
+      lateral: "Key grip",
+      hook: "Hooked fingers",
+      disk: "All fingertips around a lid",
+    } as Readonly<Record<string, string>>,
+    another: "Another grasp",
+    planning: "Looking for a grasp …",
+    hint: "The hand goes to the object and holds it so, whatever its shape.",
+  },
   object: {
     title: "Object",
     kind: "Shape",
@@ -305,6 +322,7 @@ const en = {
     slidersHint: "Choose “Sliders” above to move the joints yourself.",
     open: "Open hand",
     fist: "Fist",
+    grasp: "Planned grasp",
     degrees: "°",
     joints: ["Flexion", "Spread", "Middle joint", "End joint"],
   },

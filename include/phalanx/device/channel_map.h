@@ -23,11 +23,19 @@ struct CoupledJoint {
   double offset = 0.0;  ///< [rad]
 };
 
-/// Rule for a digit that the device does not have. It shows the angles of another digit, joint by joint:
-///   q = q_open + gain (q_of - q_of,open).
+/// Rule for a digit that the device does not have. It shows the angles of another digit, joint by joint,
+///   q = q_open + gain (q_of - q_of,open),
+/// or goes along a way of its own.
 struct DigitCopy {
   int of = -1;        ///< digit that is copied; -1: none, this digit stays at the open hand
   double gain = 1.0;  ///< [-] >= 0; 0: this digit stays at the open hand
+  /// Displacements of this digit and of the other one in a planned grasp [rad]. If `way_of` is not zero, this digit goes
+  /// as far along its way as the other one along its own:
+  ///   q = q_open + gain way ((q_of - q_of,open) . way_of) / |way_of|^2.
+  DigitAngles way{};
+  DigitAngles way_of{};
+
+  [[nodiscard]] bool has_way() const noexcept { return way_of != DigitAngles{}; }
 };
 
 /// Rules for all joints that a device does not sense.

@@ -3,6 +3,7 @@
 import { HandSource } from "../gen/phalanx/cockpit_pb";
 import { kDigits, kJoints, kJointsPerDigit } from "../state/channels";
 import { Throttle } from "../state/throttle";
+import { number, unquote } from "../state/toml";
 import { strings } from "../strings";
 import type { App } from "./app";
 import { button, el, newId, section, setAttribute, setShown, setText } from "./dom";
@@ -115,14 +116,20 @@ export function jointSliders(app: App): HTMLElement {
   );
   const go = (to: readonly number[]) => {
     held.clear();
-    to.forEach((angle, number) => wanted.want(number, angle));
+    to.forEach((angle, joint) => !Number.isNaN(angle) && wanted.want(joint, angle));
     place();
     throttle.push(null);
     throttle.flush();
   };
+  /// Angles at which the planned grasp presses [rad]; none: the scene has no planned grasp. NaN: the joint stays as it is.
+  const plannedAngles = () => {
+    const planned = unquote(app.store.value("grasp.type")) !== "none";
+    return (app.store.geometry?.jointName ?? []).map((name) => (planned ? number(app.store.value(`motion.angle_deg.${name}`)) / kDegrees : NaN));
+  };
   const open = button(words.open, () => app.store.geometry && go(app.store.geometry.jointOpen));
   const closed = button(words.fist, () => app.store.geometry && go(fist(app.store.geometry.jointOpen, app.store.geometry.jointMax)));
-  const box = el("div", { class: "sliders" }, el("div", { class: "buttons" }, open, closed), ...digits);
+  const grasp = button(words.grasp, () => go(plannedAngles()));
+  const box = el("div", { class: "sliders" }, el("div", { class: "buttons" }, open, closed, grasp), ...digits);
   const hint = el("p", { class: "hint" }, words.slidersHint);
 
   const ranges = () => {
@@ -138,6 +145,7 @@ export function jointSliders(app: App): HTMLElement {
   };
   const update = () => {
     const { state, role } = app.store;
+    setShown(grasp, plannedAngles().some(Number.isFinite));
     const on = state?.source === HandSource.HAND_SLIDERS;
     setShown(box, on);
     setShown(hint, !on && state?.source !== HandSource.HAND_DEVICE);

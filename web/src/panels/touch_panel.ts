@@ -7,6 +7,7 @@ import type { Change } from "../wire/host";
 import { refusal, change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
 import { button, el, section, setShown, setText } from "./dom";
+import { graspSection } from "./grasp_section";
 import { objectSection } from "./object_section";
 import { choiceRow, guarded, logSliderRow, numberRow, row, shownNumber, switchRow } from "./setting_controls";
 import { openSettings } from "./settings_list";
@@ -144,7 +145,7 @@ export function touchPanel(app: App): HTMLElement {
   return el(
     "div",
     {},
-    guarded(app, forceSection(app), calmSection(app), sceneSection(app), objectSection(app)),
+    guarded(app, forceSection(app), calmSection(app), sceneSection(app), objectSection(app), graspSection(app)),
     limitsSection(app),
     el("div", { class: "buttons" }, button(strings.settings.open, () => openSettings(app))),
   );

@@ -17,7 +17,14 @@ const play = stage();
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station("squeeze_ball")).url, small);
+  // Without a planned grasp, whose wrist would move when the ball changes.
+  const values = {
+    "grasp.type": '"none"',
+    "hand.position_mm": "[0, -86, 74]",
+    "hand.rotation_deg": "[90, 0, 0]",
+    motion: '{ name = "power_grasp", closure = 0.4, thumb = 0.87, index = 1.18, middle = 1.09, ring = 0.96, little = 1.08 }',
+  };
+  cockpit = await play.open((await play.station("squeeze_ball", values)).url, small);
   await cockpit.untilRunning();
   await cockpit.tab("hand");
 });

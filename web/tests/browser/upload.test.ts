@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh of one's own: a good one becomes the object, a broken one is refused in words that help, and nothing changes.
 import { beforeAll, describe, expect, it } from "vitest";
+import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, cube, noise } from "./support/meshes";
+import { shoot } from "./support/pictures";
 import { valueOf } from "./support/settings";
 import { stage, unseen } from "./support/stage";
 import { until } from "./support/until";
@@ -85,5 +87,36 @@ describe("an uploaded mesh", () => {
     await cockpit.untilRunning();
     await cockpit.untilTouching();
     await until("an arrow", async () => (await cockpit.probe())!.arrows.length > 0);
+  });
+
+  it("is held by a grasp that is planned for it", async () => {
+    const { geometry } = cockpit.stream.state!;
+    await cockpit.choose(strings.grasp.type, "tripod");
+    await cockpit.untilState("another wrist", (state) => state.geometry !== geometry && valueOf(state, "grasp.type") === '"tripod"' && !state.stationGone && state.busy === "");
+    await cockpit.untilRunning();
+    // The end joints of thumb, index and middle finger.
+    await until(
+      "three fingertips press",
+      () => [2, 5, 8].every((segment) => cockpit.stream.newest?.contact.some((one) => one.segment === segment && one.touching && one.force > 0.2)),
+      () => cockpit.brief(),
+    );
+    await until("the page shows the type", async () => (await cockpit.page.getByRole("combobox", { name: strings.grasp.type, exact: true }).innerText()) === strings.grasp.types["tripod"]);
+    await cockpit.page.getByRole("combobox", { name: strings.grasp.type, exact: true }).scrollIntoViewIfNeeded();
+    await shoot(cockpit.page, "planned_grasp");
+  });
+
+  it("is held by the sliders' hand, too, which closes as planned", async () => {
+    await cockpit.tab("hand");
+    await cockpit.button(strings.hand.sources[HandSource.HAND_SLIDERS]!).click();
+    await cockpit.untilState("the sliders move the hand", (state) => state.source === HandSource.HAND_SLIDERS && state.slider.length > 0 && !state.stationGone);
+    await cockpit.button(strings.hand.grasp).click();
+    const { value } = cockpit.stream.state!;
+    const { jointName } = await cockpit.geometry();
+    for (const [joint, name] of jointName.entries()) {
+      const wanted = (Number(value.find((one) => one.key === `motion.angle_deg.${name}`)!.value) * Math.PI) / 180;
+      const angle = () => cockpit.stream.newest?.hcpAngle[joint] ?? NaN;
+      await until(`${name} at ${wanted.toFixed(2)} rad`, () => Math.abs(angle() - wanted) < 0.01, () => `it is at ${angle().toFixed(3)}`);
+    }
+    await cockpit.untilTouching();
   });
 });

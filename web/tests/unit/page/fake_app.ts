@@ -30,6 +30,8 @@ export function fakeApp(): FakeApp {
   const key = [
     { path: stiffness, type: KeyType.KEY_NUMBER, range: { min: 0, max: 100 }, defaultValue: "0.5" },
     { path: "stabiliser.method", type: KeyType.KEY_CHOICE, choice: ["none", "smoothing", "rise_only", "low_pass"], defaultValue: '"rise_only"' },
+    { path: "grasp.type", type: KeyType.KEY_CHOICE, choice: ["none", "cylinder", "sphere", "tripod", "pinch", "lateral", "hook", "disk"], defaultValue: '"none"' },
+    { path: "grasp.seed", type: KeyType.KEY_INTEGER, defaultValue: "1" },
     { path: "hand.side", type: KeyType.KEY_CHOICE, choice: ["right", "left"], defaultValue: '"right"' },
     { path: "contact.mode", type: KeyType.KEY_CHOICE, choice: ["static", "sliding"], defaultValue: '"static"' },
     { path: "mirror", type: KeyType.KEY_FLAG, defaultValue: "false" },

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The grasp: a type that the station plans for the hand and the object, whatever they are.
+import { keyOf } from "../state/keys";
+import { number, quote, table, unquote } from "../state/toml";
+import { strings } from "../strings";
+import type { Change } from "../wire/host";
+import { change, type App } from "./app";
+import { ChoiceBox } from "./choice_box";
+import { button, el, section, setShown, setText } from "./dom";
+import { row } from "./setting_controls";
+
+const words = strings.grasp;
+const kNone = "none";
+const kOwn = ""; // the scene's own wrist and motion, or its own planned grasp
+const kDirections = ["forearm", "palm"];
+
+/// @returns the changes that have a grasp planned. The tables are replaced as a whole: the scene's own wrist and motion, and the directions
+/// that it states for another type, do not fit.
+export function plannedGrasp(type: string, seed: number, directions: readonly (readonly [string, string])[] = []): readonly Change[] {
+  return [
+    ["grasp", table([["type", quote(type)], ["seed", String(seed)], ...directions])],
+    ["motion", table([["name", quote("posture")]])],
+  ];
+}
+
+export function graspSection(app: App): HTMLElement {
+  const choice = new ChoiceBox(() => void choose());
+  const made = row(words.type, choice);
+  const status = el("p", { class: "hint", role: "status" });
+  const another = button(words.another, () => void next());
+  let planning = false;
+
+  const inForce = () => unquote(app.store.value("grasp.type")) || kNone;
+  const chosenHere = () => app.store.state?.changed.some((one) => one.key === "grasp" || one.key.startsWith("grasp.")) ?? false;
+  const shown = () => (chosenHere() && inForce() !== kNone ? inForce() : kOwn);
+
+  async function plan(changes: readonly Change[]): Promise<void> {
+    made.refuse("");
+    planning = true;
+    update();
+    const refused = await change(app, changes);
+    planning = false;
+    made.refuse(refused);
+    update();
+  }
+
+  async function choose(): Promise<void> {
+    if (choice.value === shown()) return;
+    await plan(choice.value === kOwn ? [["grasp", ""], ["motion", ""]] : plannedGrasp(choice.value, 1));
+  }
+
+  /// The same type with the next seed, from the same sides.
+  async function next(): Promise<void> {
+    const seed = number(app.store.value("grasp.seed"));
+    const stated = kDirections
+      .map((name) => [name, app.store.state?.value.find((one) => one.key === `grasp.${name}`)?.value ?? ""] as const)
+      .filter(([, value]) => value !== "");
+    await plan(plannedGrasp(inForce(), Number.isFinite(seed) ? seed + 1 : 1, stated));
+  }
+
+  function update(): void {
+    const types = (keyOf(app.store.welcome, "grasp.type")?.choice ?? []).filter((value) => value !== kNone);
+    choice.setChoices([{ value: kOwn, text: words.own }, ...types.map((value) => ({ value, text: words.types[value] ?? value }))]);
+    if (!planning) choice.value = shown();
+    setText(status, planning ? words.planning : words.hint);
+    setShown(another, inForce() !== kNone);
+    another.disabled = planning;
+  }
+  app.store.on(["state", "connection"], update);
+  update();
+  return section(words.title, made.element, status, el("div", { class: "buttons" }, another));
+}
