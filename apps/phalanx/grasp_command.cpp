@@ -175,12 +175,12 @@ int plan_and_write(const GraspCommand& command) {
   if (!search.grasp)
     throw std::runtime_error(
         fmt::format("{}: {}", command.object, no_grasp_text(search, *type, scene.hand.parameters.name)));
-  for (auto& value : grasp_values(*search.grasp, scene.mirrored,
-                                  grasp_checksum(scene.description.grasp, scene.hand, scene.world)))
+  for (auto& value :
+       grasp_values(*search.grasp, scene.mirrored,
+                    grasp_checksum(scene.description.grasp, scene.hand, scene.world, scene.mirrored)))
     overrides.push_back(std::move(value));
   overrides.emplace_back("grasp.type", toml_string(command.type));
   overrides.emplace_back("grasp.seed", std::to_string(command.seed));
-  overrides.emplace_back("motion.name", toml_string("posture"));
   overrides.emplace_back("motion.closure", "1.0");
   overrides.emplace_back("motion.close_s", fmt::format("{:.1f}", PlannedGrasp::kCloseSeconds));
   overrides.emplace_back("motion.hold_s", fmt::format("{:.1f}", kHoldSeconds));

@@ -39,17 +39,26 @@ struct Row {
   std::string problem;  ///< why there is no grasp; empty: there is one
 };
 
-/// @returns true if the thumb and enough fingers press, where the type has them
-bool holds(const GraspRule& rule, const std::string& digits) {
-  const auto fingers =
-      std::count_if(digits.begin(), digits.end(), [](char c) { return c != 'T' && c != 't'; });
-  return (!rule.digit[0] || digits.find_first_of("Tt") != std::string::npos) && fingers >= rule.least_fingers;
+/// @returns true if thumb, enough fingers and the palm press, where the type has them, with force closure where it asks for it
+bool holds(const GraspRule& rule, const Row& row) {
+  const auto is_thumb = [](char c) { return c == 'T' || c == 't'; };
+  const auto thumbs = std::count_if(row.digits.begin(), row.digits.end(), is_thumb);
+  const auto fingers = std::ssize(row.digits) - thumbs;
+  return (!rule.digit[0] || thumbs > 0) && fingers >= rule.least_fingers && (!rule.palm || row.palm) &&
+         (!rule.closure || row.margin >= PlannedGrasp::kLeastBall);
 }
 
 HandDescription hand_of(const std::string& profile) {
   HandDescription hand;
   hand.profile = profile;
   return hand;
+}
+
+/// @returns the hand of a profile, for the table's head
+std::string heading(const std::string& profile) {
+  if (profile.empty()) return "the scene's own hand";
+  const HandNumbers hand = load_hand_numbers(hand_of(profile));
+  return fmt::format("{}, {}", hand.parameters.name, hand.handedness == Handedness::kLeft ? "left" : "right");
 }
 
 /// Plays a scene up to the end of its hold.
@@ -67,13 +76,12 @@ HeldGrasp play(const HapticModel& model, const SceneDescription& scene, const Mo
 Row row_of(const SceneFile& file, const std::string& name, const std::string& profile) {
   Row row;
   row.scene = name;
-  row.hand = profile.empty() ? "scene's own" : profile;
+  row.hand = heading(profile);
+  Overrides overrides;
+  if (!profile.empty()) overrides.emplace_back("hand.profile", option_as_toml("--profile", profile));
+  const SceneDescription stated = file.scene(overrides);
   try {
-    Overrides overrides;
-    if (!profile.empty()) overrides.emplace_back("hand.profile", option_as_toml("--profile", profile));
-    ResolvedScene resolved = resolve(file.scene(overrides), {.motion = true});
-    row.hand = fmt::format("{}, {}", resolved.hand.parameters.name,
-                           resolved.hand.handedness == Handedness::kLeft ? "left" : "right");
+    ResolvedScene resolved = resolve(stated, {.motion = true});
     const SceneDescription scene = resolved.description;
     const Motion motion = resolved.motion.value();
     const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
@@ -95,7 +103,7 @@ Row row_of(const SceneFile& file, const std::string& name, const std::string& pr
     row.margin = held.closure_margin;
     if (scene.grasp.type) {
       row.type = grasp_rule(*scene.grasp.type).name;
-      row.holds = holds(grasp_rule(*scene.grasp.type), row.digits);
+      row.holds = holds(grasp_rule(*scene.grasp.type), row);
     } else {
       row.holds = !row.digits.empty();
     }
@@ -133,7 +141,7 @@ int tabulate_grasps(const SceneGraspsOptions& options) {
       if (info.readable && load_scene(info.name).grasp.type) scenes.push_back(info.name);
   std::vector<std::string> profiles = options.profiles;
   for (const std::string& profile : profiles)  // a mistyped one is no missing grasp
-    static_cast<void>(load_hand_numbers(hand_of(profile)));
+    static_cast<void>(heading(profile));
   if (profiles.empty()) profiles.emplace_back();
   std::vector<Row> rows;
   {
@@ -149,8 +157,8 @@ int tabulate_grasps(const SceneGraspsOptions& options) {
   }
   std::string head = "| scene | type |";
   std::string line = "| --- | --- |";
-  for (std::size_t i = 0; i < profiles.size(); ++i) {
-    head += fmt::format(" {} |", rows[i].hand);
+  for (const std::string& profile : profiles) {
+    head += fmt::format(" {} |", heading(profile));
     line += " --- |";
   }
   fmt::print("{}\n{}\n", head, line);

@@ -90,9 +90,11 @@ void check_followers(const JointFollowers& followers) {
     const DigitCopy& copy = followers.copy[d];
     const auto finite = [](double x) { return std::isfinite(x); };
     if (!std::all_of(copy.way.begin(), copy.way.end(), finite) ||
-        !std::all_of(copy.way_of.begin(), copy.way_of.end(), finite))
-      throw std::invalid_argument(fmt::format("copy of the {}: its way is not finite; correct the motion",
-                                              digit_name(static_cast<int>(d))));
+        !std::all_of(copy.way_of.begin(), copy.way_of.end(), finite) ||
+        !(copy.least_share <= copy.most_share))
+      throw std::invalid_argument(
+          fmt::format("copy of the {}: its way is not finite or has no range; correct the motion",
+                      digit_name(static_cast<int>(d))));
     if (copy.of >= kDigits || !std::isfinite(copy.gain))
       throw std::invalid_argument(
           fmt::format("copy of the {}: digit {} must be below {} and the gain {} finite; correct the device "
@@ -101,16 +103,25 @@ void check_followers(const JointFollowers& followers) {
   }
 }
 
-/// Returns how far the digit that is copied has gone along its way: 0 at the open hand, 1 at its end.
-double share_of_way(const DigitCopy& copy, const JointArray& open, const JointArray& angle) noexcept {
-  double along = 0.0;
+constexpr double kLeastWay = 0.05;  // of the joints that are measured [rad]
+
+/// Returns the square of the way of the measured joints of the digit that is copied [rad^2]; 0: too little to follow it.
+double measured_square(const DigitCopy& copy, const std::array<bool, kJoints>& measured) noexcept {
   double square = 0.0;
+  for (int i = 0; i < kJointsPerDigit; ++i)
+    if (measured[idx(joint_index(copy.of, i))]) square += copy.way_of[idx(i)] * copy.way_of[idx(i)];
+  return square >= kLeastWay * kLeastWay ? square : 0.0;
+}
+
+/// Returns how far along its way a digit is that copies another: 0 at the open hand, 1 at its end.
+double share_of_way(const DigitCopy& copy, const std::array<bool, kJoints>& measured, double square,
+                    const JointArray& open, const JointArray& angle) noexcept {
+  double along = 0.0;
   for (int i = 0; i < kJointsPerDigit; ++i) {
     const auto from = idx(joint_index(copy.of, i));
-    along += copy.way_of[idx(i)] * (angle[from] - open[from]);
-    square += copy.way_of[idx(i)] * copy.way_of[idx(i)];
+    if (measured[from]) along += copy.way_of[idx(i)] * (angle[from] - open[from]);
   }
-  return square > 0.0 ? along / square : 0.0;
+  return std::clamp(copy.gain * along / square, copy.least_share, copy.most_share);
 }
 
 /// Sets the joints that are not measured from those that they follow: coupled joints, then copied digits.
@@ -122,26 +133,18 @@ void follow(std::span<const CoupledJoint> coupled, const std::array<DigitCopy, k
   for (int digit = 0; digit < kDigits; ++digit) {
     const DigitCopy& copy = copies[idx(digit)];
     if (copy.of < 0) continue;
-    const double along = copy.has_way() ? copy.gain * share_of_way(copy, open, angle) : 0.0;
+    const double square = measured_square(copy, measured);
+    const double share = square > 0.0 ? share_of_way(copy, measured, square, open, angle) : 0.0;
     for (int i = 0; i < kJointsPerDigit; ++i) {
       const auto from = idx(joint_index(copy.of, i));
       const auto to = idx(joint_index(digit, i));
       if (measured[to]) continue;
-      if (copy.has_way())
-        angle[to] = open[to] + along * copy.way[idx(i)];
+      if (square > 0.0)
+        angle[to] = open[to] + share * copy.way[idx(i)];
       else
         angle[to] = open[to] + copy.gain * (angle[from] - open[from]);
     }
   }
-}
-
-/// Returns the origin of a joint that follows a whole digit: fixed if all joints of its way are.
-AngleOrigin origin_along(const DigitCopy& copy, const AngleOrigins& origin) noexcept {
-  for (int i = 0; i < kJointsPerDigit; ++i) {
-    const AngleOrigin of = origin[idx(joint_index(copy.of, i))];
-    if (copy.way_of[idx(i)] != 0.0 && of != AngleOrigin::kFixed) return of;
-  }
-  return AngleOrigin::kFixed;
 }
 
 /// Sets the origins of the joints that follow() sets. A joint that follows a fixed one is fixed.
@@ -157,7 +160,8 @@ void follow_origins(std::span<const CoupledJoint> coupled, const std::array<Digi
     if (copy.of < 0) continue;
     for (int i = 0; i < kJointsPerDigit; ++i) {
       AngleOrigin of = origin[idx(joint_index(copy.of, i))];
-      if (copy.has_way()) of = copy.way[idx(i)] == 0.0 ? AngleOrigin::kFixed : origin_along(copy, origin);
+      if (measured_square(copy, measured) > 0.0)
+        of = copy.way[idx(i)] == 0.0 ? AngleOrigin::kFixed : AngleOrigin::kCompleted;
       follow_one(idx(joint_index(digit, i)), copy.gain == 0.0 ? AngleOrigin::kFixed : of);
     }
   }

@@ -438,8 +438,11 @@ GraspSearch plan_grasp(const HandModel& hand, const ObjectModel& object, const G
 
 std::string no_grasp_text(const GraspSearch& search, GraspType type, const std::string& hand) {
   const GraspCondition obstacle = search.obstacle();
+  const int outside = search.failed[idx(static_cast<int>(GraspCondition::kDirection))];
   const std::string_view remedy =
-      obstacle == GraspCondition::kReach     ? "choose a smaller or larger object, or another type"
+      2 * outside > search.candidates
+          ? "leave out or change the directions of forearm and palm (grasp.forearm, grasp.palm)"
+      : obstacle == GraspCondition::kReach   ? "choose a smaller or larger object, or another type"
       : obstacle == GraspCondition::kClosure ? "raise contact.friction, or choose another type"
                                              : "choose another type, size or seed";
   std::string counts;

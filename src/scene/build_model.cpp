@@ -73,7 +73,7 @@ TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCach
 void plan_scene_grasp(ResolvedScene& scene, const Overrides* planned) {
   SceneDescription& description = scene.description;
   const GraspDescription& grasp = description.grasp;
-  const std::string checksum = grasp_checksum(grasp, scene.hand, scene.world);
+  const std::string checksum = grasp_checksum(grasp, scene.hand, scene.world, scene.mirrored);
   if (checksum == grasp.planned_for) return;
   if (scene.world.triangles.empty())
     throw SceneError(fmt::format("{}: the scene has no object to hold; add one to objects, or state \"none\"",
@@ -95,15 +95,21 @@ void plan_scene_grasp(ResolvedScene& scene, const Overrides* planned) {
   description.grasp.planned_for = checksum;
 }
 
+constexpr double kMostShare = 2.0;  // of its way that a copied digit goes
+
 /// Lets the digits that the device does not have go along their way in the planned grasp, as the digits that they copy.
 void copy_along_grasp(const SceneDescription& description, const HandParameters& hand,
                       Exoskeleton& exoskeleton) {
+  const ScriptedMotion& script = description.motion.script;
   const auto way_of = [&](int digit) {
     DigitAngles way{};
     for (int i = 0; i < kJointsPerDigit; ++i) {
       const std::size_t j = idx(joint_index(digit, i));
-      const auto& angle = description.motion.script.posture[j];
-      if (angle) way[idx(i)] = std::clamp(*angle, hand.min_angle[j], hand.max_angle[j]) - hand.open_angle[j];
+      const double part = script.closure * script.digit_closure[idx(digit)];
+      if (const auto& angle = script.posture[j])
+        way[idx(i)] = std::clamp(hand.open_angle[j] + part * (*angle - hand.open_angle[j]), hand.min_angle[j],
+                                 hand.max_angle[j]) -
+                      hand.open_angle[j];
     }
     return way;
   };
@@ -112,6 +118,17 @@ void copy_along_grasp(const SceneDescription& description, const HandParameters&
     if (copy.of < 0) continue;
     copy.way = way_of(digit);
     copy.way_of = way_of(copy.of);
+    copy.least_share = -kMostShare;
+    copy.most_share = kMostShare;
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const std::size_t j = idx(joint_index(digit, i));
+      const double way = copy.way[idx(i)];
+      if (way == 0.0) continue;
+      const double to_min = (hand.min_angle[j] - hand.open_angle[j]) / way;
+      const double to_max = (hand.max_angle[j] - hand.open_angle[j]) / way;
+      copy.least_share = std::max(copy.least_share, std::min(to_min, to_max));
+      copy.most_share = std::min(copy.most_share, std::max(to_min, to_max));
+    }
   }
 }
 
@@ -165,7 +182,7 @@ HapticModel build_model(ResolvedScene scene) {
 }
 
 Motion build_motion(const SceneDescription& scene) {
-  if (scene.grasp.type) return *resolve(scene, {.motion = true}).motion;
+  if (scene.grasp.type && scene.motion.file.empty()) return *resolve(scene, {.motion = true}).motion;
   return motion_of(scene.motion, load_hand_numbers(scene.hand).parameters);
 }
 

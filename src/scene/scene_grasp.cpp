@@ -56,12 +56,14 @@ Vec3 roll_pitch_yaw_deg(const Mat3& R) {
 
 }  // namespace
 
-std::string grasp_checksum(const GraspDescription& grasp, const LoadedHand& hand, const TriangleMesh& world) {
+std::string grasp_checksum(const GraspDescription& grasp, const LoadedHand& hand, const TriangleMesh& world,
+                           bool mirrored) {
   StepHash hash;
   hash.add(static_cast<std::int64_t>(grasp.type.value()));
   hash.add(static_cast<std::int64_t>(grasp.seed));
-  hash.add_mirrored(grasp.forearm);
-  hash.add_mirrored(grasp.palm);
+  hash.add((hand.handedness == Handedness::kLeft) != mirrored ? 1 : 0);
+  for (const Vec3& direction : {grasp.forearm, grasp.palm})
+    for (const double number : {direction.x(), direction.y(), direction.z()}) hash.add_number(number);
   const HandParameters& numbers = hand.parameters;
   for (const DigitParameters& digit : numbers.digits) {
     for (const Vec3& v :
@@ -89,6 +91,7 @@ Overrides grasp_values(const PlannedGrasp& grasp, bool mirrored, const std::stri
   }
   Overrides values;
   values.emplace_back("grasp.planned_for", toml_string(checksum));
+  values.emplace_back("motion.name", toml_string("posture"));
   values.emplace_back("hand.position_mm", vector_text(X_WH.p / kMm, 4));
   values.emplace_back("hand.rotation_deg", vector_text(roll_pitch_yaw_deg(X_WH.R), 5));
   for (int j = 0; j < kJoints; ++j)

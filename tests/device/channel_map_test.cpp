@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "phalanx/device/exoskeleton.h"
 #include "support/count_allocations.h"
@@ -111,9 +112,15 @@ TEST(ChannelMap, CoupledJointsAndCopiedDigitsFollow) {
 TEST(ChannelMap, ACopiedDigitGoesAsFarAlongItsWayAsTheOther) {
   JointFollowers followers;
   followers.copy[kMiddle] = {
-      .of = kIndex, .gain = 1.0, .way = {0.2, 0.0, 0.6, 0.1}, .way_of = {0.4, 0.0, 0.8, 0.0}};
-  const ChannelMap map({channel(ChannelKind::kAngle, 4, 0.001), channel(ChannelKind::kAngle, 6, 0.001)},
-                       followers, hand());
+      .of = kIndex,
+      .gain = 1.0,
+      .way = {0.2, 0.0, 0.6, 0.1},
+      .way_of = {0.4, 0.0, 0.8, 0.9},  // the last joint is not measured, and does not count
+      .least_share = -0.5,
+      .most_share = 1.25};
+  const std::vector<DeviceChannel> channels = {channel(ChannelKind::kAngle, 4, 0.001),
+                                               channel(ChannelKind::kAngle, 6, 0.001)};
+  const ChannelMap map(channels, followers, hand());
   const auto expect_share = [](const Sample& sample, double share) {
     EXPECT_NEAR(sample.angle[8], 0.1 + share * 0.2, 1e-12);
     EXPECT_NEAR(sample.angle[9], 0.1, 1e-12);
@@ -123,9 +130,14 @@ TEST(ChannelMap, ACopiedDigitGoesAsFarAlongItsWayAsTheOther) {
   expect_share(converted(map, {100, 100}), 0.0);
   expect_share(converted(map, {300, 500}), 0.5);
   expect_share(converted(map, {500, 400}), 0.5);  // as much along the way, and some aside
-  expect_share(converted(map, {700, 1300}), 1.5);
+  expect_share(converted(map, {500, 900}), 1.0);
+  expect_share(converted(map, {900, 1800}), 1.25);
+  expect_share(converted(map, {-900, -1800}), -0.5);
   EXPECT_EQ(map.angle_origins()[8], AngleOrigin::kCompleted);
   EXPECT_EQ(map.angle_origins()[9], AngleOrigin::kFixed);
+  // Joint by joint where the measured joints have no way.
+  followers.copy[kMiddle].way_of = {0.0, 0.0, 0.01, 0.9};
+  EXPECT_NEAR(converted(ChannelMap(channels, followers, hand()), {300, 500}).angle[10], 0.5, 1e-12);
   followers.copy[kMiddle].way[2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(refusal({channel(ChannelKind::kAngle, 4, 0.001)}, followers), "");
 }

@@ -4,6 +4,11 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/scene/build_model.h"
@@ -78,12 +83,20 @@ TEST(SceneGrasp, IsPlannedAgainForAnotherHandObjectTypeSeedOrDirection) {
                                             {"objects.0.diameter_mm", "46"},
                                             {"grasp.type", "\"pinch\""},
                                             {"grasp.seed", "2"},
+                                            {"hand.side", "\"left\""},
                                             {"grasp.forearm", "[0, -1, 0]"},
                                             {"grasp.palm", "[0, 0, -1]"}}) {
     Overrides changed = planned;
     changed.emplace_back(key, value);
     EXPECT_NE(resolve(file.scene(changed), {}).planned, Overrides{}) << key;
   }
+  // The other side is another direction.
+  Overrides to_left = {{"grasp.palm", "[-1, 0, 0]"}};
+  const Overrides from_right = resolve(file.scene(to_left), {}).planned;
+  to_left.insert(to_left.end(), from_right.begin(), from_right.end());
+  EXPECT_EQ(resolve(file.scene(to_left), {}).planned, Overrides{});
+  to_left.emplace_back("grasp.palm", "[1, 0, 0]");
+  EXPECT_NE(resolve(file.scene(to_left), {}).planned, Overrides{});
 }
 
 TEST(SceneGrasp, PlannedBeforeIsTakenWhereItFits) {
@@ -114,6 +127,25 @@ TEST(SceneGrasp, ComesFromTheStatedSides) {
     EXPECT_GE(R.col(2).dot(Vec3(0.6, -1.0, 0.0).normalized()), std::cos(45.1 * kDeg)) << mirror;
     EXPECT_GE(R(2, 1), std::cos(45.1 * kDeg)) << mirror;
   }
+}
+
+TEST(SceneGrasp, DigitsThatTheDeviceLacksGoAlongTheirWay) {
+  const ResolvedScene resolved = resolve(ball_file().scene({}), {.device = true, .motion = true});
+  const JointArray& open = resolved.hand.parameters.open_angle;
+  const Motion& motion = resolved.motion.value();
+  const JointArray held =
+      motion.at(resolved.description.motion.script.start_s + resolved.description.motion.script.close_s);
+  const std::array<DigitCopy, kDigits>& copy = resolved.exoskeleton->controller.copy;
+  ASSERT_EQ(copy[2].of, 1);
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    for (const auto& [digit, way] : {std::pair{2, copy[2].way}, {1, copy[2].way_of}}) {
+      const std::size_t j = idx(joint_index(digit, i));
+      EXPECT_NEAR(way[idx(i)], held[j] - open[j], 1e-9) << joint_name(static_cast<int>(j));
+    }
+  }
+  EXPECT_FALSE(copy[0].has_way()) << "the thumb has joints of its own";
+  const SceneDescription scripted = load_scene("grasp_teapot");
+  EXPECT_FALSE(resolve(scripted, {.device = true}).exoskeleton->controller.copy[2].has_way());
 }
 
 TEST(SceneGrasp, ThatIsNotFoundIsRefusedWithTheCondition) {

@@ -250,7 +250,7 @@ constexpr std::array<const char*, 4> kScenes = {"grasp_teapot", "grasp_mug", "gr
 TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverTheScenesMotionsAndAGlove) {
   Felt all;
   for (const char* name : kScenes) {
-    SceneDescription scene = load_scene(name, {{"objects.0.triangles", "1000"}});
+    SceneDescription scene = load_scene(name, {{"objects.0.triangles", "1000"}, {"grasp.type", "none"}});
     const HapticModel model = build_model(scene);
     all.add(play(model, scene, name));
     scene.motion.file = data_folder() / "assets/motions/glove_two_trials.csv";
@@ -266,7 +266,8 @@ TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverTheScenesMotionsAndAGlove) 
 TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverHumanMotions) {
   Felt all;
   for (const char* name : kScenes) {
-    const SceneDescription scene = load_scene(name, {{"objects.0.triangles", "1000"}});
+    const SceneDescription scene =
+        load_scene(name, {{"objects.0.triangles", "1000"}, {"grasp.type", "none"}});
     const HapticModel model = build_model(scene);
     for (int seed = 1; seed <= 4; ++seed) {
       SCOPED_TRACE(::testing::Message() << name << " seed " << seed);

@@ -134,7 +134,8 @@ class OracleOnScene : public ::testing::TestWithParam<OracleCase> {
     EXPECT_LE(exhausted_, 10 + ticks_ / 200) << "of " << ticks_ << " ticks";
   }
 
-  SceneDescription scene_ = load_scene(std::get<0>(GetParam()), {{"objects.0.triangles", "1000"}});
+  SceneDescription scene_ =
+      load_scene(std::get<0>(GetParam()), {{"objects.0.triangles", "1000"}, {"grasp.type", "none"}});
   const HapticModel model_ = build_model(scene_);
   test::FclMesh object_{model_.object.mesh()};
   std::vector<test::FclMesh> segment_;

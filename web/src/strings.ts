@@ -172,6 +172,7 @@ const en = {
     } as Readonly<Record<string, string>>,
     another: "Another grasp",
     planning: "Looking for a grasp …",
+    next: "This object is not held so. The next object will be tried with this grasp.",
     hint: "The hand goes to the object and holds it so, whatever its shape.",
   },
   object: {

@@ -31,9 +31,12 @@ struct DigitCopy {
   double gain = 1.0;  ///< [-] >= 0; 0: this digit stays at the open hand
   /// Displacements of this digit and of the other one in a planned grasp [rad]. If `way_of` is not zero, this digit goes
   /// as far along its way as the other one along its own:
-  ///   q = q_open + gain way ((q_of - q_of,open) . way_of) / |way_of|^2.
+  ///   q = q_open + s way,  s = gain ((q_of - q_of,open) . way_of) / |way_of|^2  within `least_share` and `most_share`.
+  /// Only joints count that the device measures; where these have no way, the digit is copied joint by joint.
   DigitAngles way{};
   DigitAngles way_of{};
+  double least_share = 0.0;  ///< from here ..
+  double most_share = 1.0;   ///< .. to here all joints of this digit are within their range of motion
 
   [[nodiscard]] bool has_way() const noexcept { return way_of != DigitAngles{}; }
 };

@@ -28,10 +28,11 @@ inline constexpr std::size_t kMostSceneTriangles = 4'000'000;
 /// Builds the model: the scene's hand at its pose, and its objects merged into one, both mirrored as in
 /// make_world_mesh(). Its parameters are SceneDescription::parameters.
 /// @throws SceneError or std::invalid_argument: hand file, mesh file, sizes. HapticState's constructor checks
-/// that the open hand does not touch the object. Set-up only.
+/// that the open hand does not touch the object. Set-up only; where resolve() plans a grasp it takes seconds.
 [[nodiscard]] HapticModel build_model(const SceneDescription& scene);
 
 /// Builds the scene's motion: its file, through its mapping if it names one, else the script.
+/// Where the scene has its grasp planned, it plans it as resolve() does; to have model and motion, resolve once.
 /// @throws SceneError or std::invalid_argument. Set-up only.
 [[nodiscard]] Motion build_motion(const SceneDescription& scene);
 

@@ -17,8 +17,9 @@ namespace phalanx {
 /// hand's chains, ranges of motion and meshes, and the objects' vertices, in steps of 1 um and 1 urad. A hand and objects
 /// have the same as their mirror images in x = 0. Set-up only.
 /// @pre grasp.type
+/// @param mirrored  hand and world are the mirror image of the scene
 [[nodiscard]] std::string grasp_checksum(const GraspDescription& grasp, const LoadedHand& hand,
-                                         const TriangleMesh& world);
+                                         const TriangleMesh& world, bool mirrored);
 
 /// Returns a planned grasp as a scene states it: the wrist's pose, the angles of the motion "posture", and the checksum.
 /// @param mirrored  the grasp is of a mirrored scene, which is written as its mirror image

@@ -14,12 +14,16 @@ const kNone = "none";
 const kOwn = ""; // the scene's own wrist and motion, or its own planned grasp
 const kDirections = ["forearm", "palm"];
 
+/// The grasp that was refused for the object in force: it is asked for with the next object.
+const wantedNext = new WeakMap<App, readonly Change[]>();
+export const graspOfNextObject = (app: App): readonly Change[] => wantedNext.get(app) ?? [];
+
 /// @returns the changes that have a grasp planned. The tables are replaced as a whole: the scene's own wrist and motion, and the directions
 /// that it states for another type, do not fit.
 export function plannedGrasp(type: string, seed: number, directions: readonly (readonly [string, string])[] = []): readonly Change[] {
   return [
     ["grasp", table([["type", quote(type)], ["seed", String(seed)], ...directions])],
-    ["motion", table([["name", quote("posture")]])],
+    ["motion", table([["name", quote("posture")], ["closure", "1.0"]])],
   ];
 }
 
@@ -38,10 +42,15 @@ export function graspSection(app: App): HTMLElement {
     made.refuse("");
     planning = true;
     update();
-    const refused = await change(app, changes);
-    planning = false;
-    made.refuse(refused);
-    update();
+    wantedNext.delete(app);
+    try {
+      const refused = await change(app, changes);
+      if (refused !== "" && changes.some(([, value]) => value !== "")) wantedNext.set(app, changes);
+      made.refuse(refused);
+    } finally {
+      planning = false;
+      update();
+    }
   }
 
   async function choose(): Promise<void> {
@@ -62,7 +71,9 @@ export function graspSection(app: App): HTMLElement {
     const types = (keyOf(app.store.welcome, "grasp.type")?.choice ?? []).filter((value) => value !== kNone);
     choice.setChoices([{ value: kOwn, text: words.own }, ...types.map((value) => ({ value, text: words.types[value] ?? value }))]);
     if (!planning) choice.value = shown();
-    setText(status, planning ? words.planning : words.hint);
+    if (chosenHere() && inForce() !== kNone && wantedNext.delete(app)) made.refuse(""); // with the new object
+    setText(status, planning ? words.planning : wantedNext.has(app) ? words.next : words.hint);
+    choice.button.disabled = planning;
     setShown(another, inForce() !== kNone);
     another.disabled = planning;
   }

@@ -7,6 +7,7 @@ import { strings } from "../strings";
 import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
 import { button, el, section, setShown } from "./dom";
+import { graspOfNextObject } from "./grasp_section";
 import { replaceObject } from "./object_change";
 import { row, shownNumber } from "./setting_controls";
 import { uploadBox } from "./upload_box";
@@ -90,7 +91,7 @@ export function objectSection(app: App): HTMLElement {
     }
     kindRow.refuse("");
     use.disabled = true;
-    const refused = await change(app, replaceObject(app.store.state, entries));
+    const refused = await change(app, [...replaceObject(app.store.state, entries), ...graspOfNextObject(app)]);
     kindRow.refuse(refused);
     chosen = "";
     built = "";

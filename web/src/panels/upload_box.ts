@@ -7,6 +7,7 @@ import type { ImportReport } from "../wire/http";
 import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
 import { button, el, setShown, setText } from "./dom";
+import { graspOfNextObject } from "./grasp_section";
 import { replaceObject } from "./object_change";
 import { row } from "./setting_controls";
 
@@ -111,7 +112,7 @@ export function uploadBox(app: App): UploadBox {
     ];
     if (number() === 0) entries.push(["unit", quote(unit.value)]);
     use.disabled = true;
-    const refused = await change(app, replaceObject(app.store.state, entries));
+    const refused = await change(app, [...replaceObject(app.store.state, entries), ...graspOfNextObject(app)]);
     use.disabled = false;
     setText(error, refused);
     setShown(error, refused !== "");

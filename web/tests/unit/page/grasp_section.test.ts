@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { beforeEach, describe, expect, it, vi } from "vitest";
-import { graspSection } from "../../../src/panels/grasp_section";
+import { graspOfNextObject, graspSection, plannedGrasp } from "../../../src/panels/grasp_section";
 import { strings } from "../../../src/strings";
 import { fakeApp, kMe, type FakeApp } from "./fake_app";
 
@@ -37,7 +37,7 @@ describe("the grasp", () => {
     expect(box().textContent).toBe(words.own);
     expect(isShown(another())).toBe(false);
     choose("tripod");
-    await vi.waitFor(() => expect(fake.asked).toEqual([[["grasp", '{type = "tripod", seed = 1}'], ["motion", '{name = "posture"}']]]));
+    await vi.waitFor(() => expect(fake.asked).toEqual([[["grasp", '{type = "tripod", seed = 1}'], ["motion", '{name = "posture", closure = 1.0}']]]));
     fake.state(planned("tripod", "1"));
     expect(box().textContent).toBe(words.types["tripod"]);
   });
@@ -48,7 +48,7 @@ describe("the grasp", () => {
     another().click();
     expect(panel.textContent).toContain(words.planning);
     await vi.waitFor(() =>
-      expect(fake.asked).toEqual([[["grasp", '{type = "hook", seed = 5, palm = [0, 0, -1]}'], ["motion", '{name = "posture"}']]]),
+      expect(fake.asked).toEqual([[["grasp", '{type = "hook", seed = 5, palm = [0, 0, -1]}'], ["motion", '{name = "posture", closure = 1.0}']]]),
     );
     await vi.waitFor(() => expect(panel.textContent).toContain(words.hint));
   });
@@ -64,6 +64,12 @@ describe("the grasp", () => {
     choose("pinch");
     await vi.waitFor(() => expect(panel.querySelector("[role=alert]")!.textContent).toBe("no pinch grasp"));
     expect(box().textContent).toBe(words.own);
+    // It is asked for with the next object, until it is in force.
+    expect(panel.textContent).toContain(words.next);
+    expect(graspOfNextObject(fake.app)).toEqual(plannedGrasp("pinch", 1));
+    fake.state(planned("pinch", "1"));
+    expect(graspOfNextObject(fake.app)).toEqual([]);
+    expect(panel.textContent).toContain(words.hint);
   });
 
   it("has a text for each type", () => {
