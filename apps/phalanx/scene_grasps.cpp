@@ -35,7 +35,7 @@ struct Row {
   std::string digits;  ///< letters of the digits that press with a palmar side; small: with another side
   bool palm = false;
   double margin = 0.0;
-  bool holds = false;   ///< the digits that the type asks for press
+  bool holds = false;   ///< as holds(); of a scene without a type: a digit presses
   std::string problem;  ///< why there is no grasp; empty: there is one
 };
 
