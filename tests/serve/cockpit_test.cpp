@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "device/opengloves/glove_firmware.h"
+#include "phalanx/core/index.h"
+#include "phalanx/hand/hand_model.h"
 #include "phalanx/scene/data_paths.h"
 #include "serve/cockpit_fixture.h"
 #include "serve/full_disk.h"
@@ -61,6 +65,52 @@ TEST_F(CockpitTest, APageGetsAWelcomeAndSeesTheHandMove) {
 }
 
 // In slow motion frames come more often than steps.
+// The GDP of a fist goes through itself, and the angles say so; the poses are those of the displayed hand.
+TEST_F(CockpitTest, APageGetsAHandWhoseDigitsDoNotGoThroughEachOther) {
+  Page page(port());
+  ASSERT_TRUE(page.set("objects.0.position_mm", "[0, 0, -400]").ok());
+  const auto geometry = session_->info()->geometry;
+  const HandModel hand(geometry->hand, geometry->handedness, geometry->X_WH, geometry->segment);
+  /// @returns the greatest distance between a segment that was sent and where the GDP's angles have it [m]
+  const auto apart = [&](const wire::Tick& tick) {
+    JointArray angle{};
+    for (int j = 0; j < kJoints; ++j) angle[idx(j)] = static_cast<double>(tick.gdp_angle(j));
+    HandPoses poses;
+    hand.poses(angle, poses);
+    double most = 0.0;
+    for (int segment = 0; segment < kPalm; ++segment) {
+      const Vec3& p = poses.digit[idx(digit_of_segment(segment))].segment[idx(segment % kSegmentsPerDigit)].p;
+      Vec3 sent;
+      for (int i = 0; i < 3; ++i) sent[i] = static_cast<double>(tick.gdp_pose(7 * segment + i));
+      most = std::max(most, (sent - p).norm());
+    }
+    return most;
+  };
+  const auto next = [&] {
+    const wire::Tick tick = page.receive(wire::ToPage::kTick).tick();
+    page.send(to_see(static_cast<std::uint64_t>(page.ticks)));
+    return tick;
+  };
+  EXPECT_LT(apart(next()), 1e-4) << "the open hand is clear of itself";
+  wire::ToHost fist;
+  for (int j = 0; j < kJoints; ++j) {
+    const double open = geometry->hand.open_angle[idx(j)];
+    const bool flexes = j % kJointsPerDigit != kAbductionJoint;
+    const double wanted = flexes ? open + 0.8 * (geometry->hand.max_angle[idx(j)] - open) : open;
+    fist.mutable_sliders()->add_angle(static_cast<float>(wanted));
+  }
+  ASSERT_TRUE(page.ask(fist).ok());
+  const auto closed = [&](const wire::Tick& tick) {
+    for (int j = 0; j < kJoints; ++j)
+      if (std::abs(tick.gdp_angle(j) - fist.sliders().angle(j)) > 0.01F) return false;
+    return true;
+  };
+  wire::Tick tick;
+  do tick = next();
+  while (!closed(tick));
+  EXPECT_GT(apart(tick), 2e-3);
+}
+
 TEST_F(CockpitTest, AStepIsSentOnceHoweverManyFramesComeInBetween) {
   Page page(port());
   double last = -1.0;
