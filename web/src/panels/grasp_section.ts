@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The grasp: a type that the station plans for the hand and the object, whatever they are.
-import { keyOf } from "../state/keys";
-import { number, quote, table, unquote } from "../state/toml";
+import { find, keyOf } from "../state/keys";
+import { number, quote, same, table, unquote } from "../state/toml";
 import { strings } from "../strings";
 import type { Change } from "../wire/host";
 import { change, type App } from "./app";
@@ -14,9 +14,13 @@ const kNone = "none";
 const kOwn = ""; // the scene's own wrist and motion, or its own planned grasp
 const kDirections = ["forearm", "palm"];
 
-/// The grasp that was refused for the object in force: it is asked for with the next object.
-const wantedNext = new WeakMap<App, readonly Change[]>();
-export const graspOfNextObject = (app: App): readonly Change[] => wantedNext.get(app) ?? [];
+/// The grasp that was refused for the object in force: it is asked for with the next object of the same scene.
+const wantedNext = new WeakMap<App, { readonly scene: string; readonly changes: readonly Change[] }>();
+const sceneOf = (app: App): string => app.store.state?.scene ?? "";
+export function graspOfNextObject(app: App): readonly Change[] {
+  const wanted = wantedNext.get(app);
+  return wanted?.scene === sceneOf(app) ? wanted.changes : [];
+}
 
 /// @returns the changes that have a grasp planned. The tables are replaced as a whole: the scene's own wrist and motion, and the directions
 /// that it states for another type, do not fit.
@@ -45,7 +49,7 @@ export function graspSection(app: App): HTMLElement {
     wantedNext.delete(app);
     try {
       const refused = await change(app, changes);
-      if (refused !== "" && changes.some(([, value]) => value !== "")) wantedNext.set(app, changes);
+      if (refused !== "" && changes.some(([, value]) => value !== "")) wantedNext.set(app, { scene: sceneOf(app), changes });
       made.refuse(refused);
     } finally {
       planning = false;
@@ -71,8 +75,14 @@ export function graspSection(app: App): HTMLElement {
     const types = (keyOf(app.store.welcome, "grasp.type")?.choice ?? []).filter((value) => value !== kNone);
     choice.setChoices([{ value: kOwn, text: words.own }, ...types.map((value) => ({ value, text: words.types[value] ?? value }))]);
     if (!planning) choice.value = shown();
-    if (chosenHere() && inForce() !== kNone && wantedNext.delete(app)) made.refuse(""); // with the new object
-    setText(status, planning ? words.planning : wantedNext.has(app) ? words.next : words.hint);
+    const wanted = graspOfNextObject(app);
+    const asked = wanted.find(([key]) => key === "grasp")?.[1];
+    const isInForce = asked !== undefined && same(find(app.store.state?.changed, "grasp") ?? "", asked);
+    if (isInForce) {
+      wantedNext.delete(app); // since the new object
+      made.refuse("");
+    }
+    setText(status, planning ? words.planning : wanted.length > 0 && !isInForce ? words.next : words.hint);
     choice.button.disabled = planning;
     setShown(another, inForce() !== kNone);
     another.disabled = planning;

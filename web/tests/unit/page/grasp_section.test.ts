@@ -72,6 +72,20 @@ describe("the grasp", () => {
     expect(panel.textContent).toContain(words.hint);
   });
 
+  it("keeps the reason where another type is in force, and asks for nothing in another scene", async () => {
+    fake.state({ ...planned("hook", "1"), scene: "one" });
+    fake.refuse = "no pinch grasp";
+    choose("pinch");
+    await vi.waitFor(() => expect(panel.querySelector("[role=alert]")!.textContent).toBe("no pinch grasp"));
+    fake.state({ ...planned("hook", "1"), scene: "one" });
+    expect(panel.querySelector("[role=alert]")!.textContent).toBe("no pinch grasp");
+    expect(box().textContent).toBe(words.types["hook"]);
+    expect(graspOfNextObject(fake.app)).toEqual(plannedGrasp("pinch", 1));
+    fake.state({ ...planned("hook", "1"), scene: "two" });
+    expect(graspOfNextObject(fake.app)).toEqual([]);
+    expect(panel.textContent).toContain(words.hint);
+  });
+
   it("has a text for each type", () => {
     const types = fake.store.welcome!.key.find((key) => key.path === "grasp.type")!.choice.filter((type) => type !== "none");
     for (const type of types) expect(words.types[type], type).toBeTruthy();
