@@ -21,13 +21,27 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
+#include "phalanx/scene/scene_file.h"
 
 namespace phalanx::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScene = "grasp_teapot";  // its hand, and the place of its object
+// The hand above the object; `place` puts a mesh in the object's place.
+constexpr const char* kScene = R"(
+[hand]
+position_mm = [14, -114, 98]
+rotation_deg = [75, 0, 0]
+[[objects]]
+kind = "sphere"
+rotation_deg = [0, 0, -42]
+)";
+
+SceneDescription recordings_scene(const Overrides& overrides) {
+  return SceneFile(kScene, "bench/recordings.cpp", fs::current_path()).scene(overrides);
+}
+
 constexpr double kSizesMm[] = {70.0, 110.0};
 constexpr double kFineSizeMm = 70.0;
 constexpr std::size_t kFineTriangles = 1'000'000;
@@ -109,14 +123,13 @@ struct Placed {
 };
 
 Placed place(const fs::path& object, double size_mm, bool fine, const Options& options) {
-  const Pose pose = load_scene(kScene).objects.front().pose;
-  SceneDescription scene =
-      load_scene(kScene, {{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
-                          {"objects.0.file", quoted(object)},
-                          {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
-                          {"contact.mode", options.sliding ? "\"sliding\"" : "\"static\""},
-                          {"contact.friction", fmt::format("{}", options.friction)},
-                          {"rate_hz", "1000.0"}});
+  const Pose pose = recordings_scene({}).objects.front().pose;
+  SceneDescription scene = recordings_scene({{"objects", "[{ kind = \"file\", size_mm = 0 }]"},
+                                             {"objects.0.file", quoted(object)},
+                                             {"objects.0.size_mm", fmt::format("{:.1f}", size_mm)},
+                                             {"contact.mode", options.sliding ? "\"sliding\"" : "\"static\""},
+                                             {"contact.friction", fmt::format("{}", options.friction)},
+                                             {"rate_hz", "1000.0"}});
   scene.objects.front().pose = pose;
   ResolvedScene resolved = resolve(scene, {});
   Placed placed{.scene = scene, .model = nullptr, .lowered = 0.0};
@@ -133,10 +146,10 @@ Placed place(const fs::path& object, double size_mm, bool fine, const Options& o
 }
 
 BenchMotion recorded(const SceneDescription& of_scene, const fs::path& file, const Options& options) {
-  SceneDescription scene = load_scene(kScene, {{"motion.file", quoted(file)},
-                                               {"motion.mapping", fmt::format("\"{}\"", options.mapping)},
-                                               {"motion.trial", "1"},
-                                               {"motion.lead_in_s", fmt::format("{:.1f}", kLeadInS)}});
+  SceneDescription scene = recordings_scene({{"motion.file", quoted(file)},
+                                             {"motion.mapping", fmt::format("\"{}\"", options.mapping)},
+                                             {"motion.trial", "1"},
+                                             {"motion.lead_in_s", fmt::format("{:.1f}", kLeadInS)}});
   const Motion motion = build_motion(scene);
   const double rate = of_scene.parameters.rate_hz;
   const double length = simulation_seconds(scene, motion);

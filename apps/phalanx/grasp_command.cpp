@@ -167,7 +167,7 @@ int plan_and_write(const GraspCommand& command) {
   GraspSearch search;
   {
     ProgressBar bar("planning", !command.quiet);
-    search = search_grasp(scene, [&](double done) {
+    search = search_grasp(scene, *type, [&](double done) {
       bar.show(static_cast<std::uint64_t>(1000.0 * done), 1000);
       return true;
     });

@@ -100,14 +100,7 @@ TimingResult run_s1_timing() {
 }
 
 TimingResult run_s2_timing() {
-  // The closures are those that this hand's digits meet the teapot with.
-  SceneDescription scene = load_scene("grasp_teapot", {{"motion.repeat", "5"},
-                                                       {"motion.thumb", "0.77"},
-                                                       {"motion.ring", "0.58"},
-                                                       {"motion.little", "1.09"},
-                                                       {"hand.file", "papers"},
-                                                       {"hand.meshes", "capsules"},
-                                                       {"hand.coupling", "none"}});
+  SceneDescription scene = load_scene("timing_grasp", {});
   scene.hand.triangles = best_request(2248, hand_triangles, scene);
   scene.objects.front().triangles = best_request(992, object_triangles, scene);
   TimingResult result{.name = "s2-timing",

@@ -69,6 +69,25 @@ TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCach
   return world;
 }
 
+/// Plans the scene's grasp, of its type or, if it allows them, of the first other type of which there is one.
+PlannedGrasp find_scene_grasp(const ResolvedScene& scene) {
+  const GraspDescription& grasp = scene.description.grasp;
+  const GraspType stated = grasp.type.value();
+  GraspSearch search = search_grasp(scene, stated, {});
+  if (search.grasp) return *std::move(search.grasp);
+  std::string problem = no_grasp_text(search, stated, scene.hand.parameters.name);
+  std::string others;
+  for (std::size_t i = 0; grasp.other_types && i < grasp_type_names().size(); ++i) {
+    const auto type = static_cast<GraspType>(i);
+    if (type == stated) continue;
+    search = search_grasp(scene, type, {});
+    if (search.grasp) return *std::move(search.grasp);
+    others += fmt::format("{}{}: none fulfils \"{}\"", others.empty() ? ". Other types: " : "; ",
+                          grasp_rule(type).name, grasp_condition_text(search.obstacle()));
+  }
+  throw SceneError(fmt::format("{}: {}{}", grasp.stated_at, problem, others));
+}
+
 /// Plans the scene's grasp and stores it in the description, unless that states it.
 void plan_scene_grasp(ResolvedScene& scene, const Overrides* planned) {
   SceneDescription& description = scene.description;
@@ -82,11 +101,7 @@ void plan_scene_grasp(ResolvedScene& scene, const Overrides* planned) {
   if (planned != nullptr && std::find(planned->begin(), planned->end(), fits) != planned->end()) {
     scene.planned = *planned;
   } else {
-    const GraspSearch search = search_grasp(scene, {});
-    if (!search.grasp)
-      throw SceneError(fmt::format("{}: {}", grasp.stated_at,
-                                   no_grasp_text(search, *grasp.type, scene.hand.parameters.name)));
-    scene.planned = grasp_values(*search.grasp, scene.mirrored, checksum);
+    scene.planned = grasp_values(find_scene_grasp(scene), scene.mirrored, checksum);
   }
   // What a scene would read that states these values, to the last bit.
   const SceneDescription stated = SceneFile("", "planned grasp", {}).scene(scene.planned);

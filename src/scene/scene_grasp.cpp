@@ -60,6 +60,7 @@ std::string grasp_checksum(const GraspDescription& grasp, const LoadedHand& hand
                            bool mirrored) {
   StepHash hash;
   hash.add(static_cast<std::int64_t>(grasp.type.value()));
+  if (grasp.other_types) hash.add(1);
   hash.add(static_cast<std::int64_t>(grasp.seed));
   hash.add((hand.handedness == Handedness::kLeft) != mirrored ? 1 : 0);
   for (const Vec3& direction : {grasp.forearm, grasp.palm})
@@ -100,13 +101,13 @@ Overrides grasp_values(const PlannedGrasp& grasp, bool mirrored, const std::stri
   return values;
 }
 
-GraspSearch search_grasp(const ResolvedScene& scene, std::function<bool(double)> progress) {
+GraspSearch search_grasp(const ResolvedScene& scene, GraspType type, std::function<bool(double)> progress) {
   const GraspDescription& grasp = scene.description.grasp;
   const HandModel hand(scene.hand.parameters, scene.hand.handedness, Pose{}, scene.hand.meshes.collision);
   const ObjectModel object(scene.world, ObjectModel::kDefaultCreaseAngle, scene.friction);
   const Vec3 side(scene.mirrored ? -1.0 : 1.0, 1.0, 1.0);
   return plan_grasp(hand, object,
-                    {.type = grasp.type.value(),
+                    {.type = type,
                      .seed = grasp.seed,
                      .forearm = side.cwiseProduct(grasp.forearm),
                      .palm = side.cwiseProduct(grasp.palm),

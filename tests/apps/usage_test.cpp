@@ -139,12 +139,16 @@ TEST(CliUsage, RunPutsAFileInTheObjectsPlace) {
   EXPECT_THAT(as_ball.err, HasSubstr("a file has no such key"));
 }
 
-// first_touch copies the index finger with gains of its own.
+// The scene copies the index finger with a gain of its own.
 TEST(CliUsage, RunWarnsOfCopiesOfAnOwnDeviceThatTheSceneReplaces) {
   const TemporaryFolder folder;
   testing::write_file(folder / "mine.toml",
                       "base = \"beihang\"\n[copy]\nmiddle = { of = \"index\", gain = 0.9 }\n");
-  const std::string command = "run first_touch --headless --no-realtime --seconds 0.1 --set device.file=";
+  std::ifstream shipped(PHALANX_SOURCE_DIR "/scenes/index_ball.toml");
+  const std::string text(std::istreambuf_iterator<char>(shipped), {});
+  testing::write_file(folder / "copies.toml",
+                      text + "\n[device.copy]\nmiddle = { of = \"index\", gain = 1.32 }\n");
+  const std::string command = "run copies.toml --headless --no-realtime --seconds 0.1 --set device.file=";
   EXPECT_THAT(run_program(folder, command + "mine.toml").err,
               HasSubstr("mine.toml; to keep the file's, type --set device.copy.middle.of=index --set "
                         "device.copy.middle.gain=0.9"));

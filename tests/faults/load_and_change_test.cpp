@@ -94,7 +94,7 @@ TEST(Faults, StiffnessChangesInContactWithoutAStep) {
 // the second time it stays away.
 const Registered kOscillation(
     "AnOscillationFadesTheForceAndTheNextOneStopsTheHost", "",
-    {.both = {"--set", "stabiliser.method=none", "--set", "force.stiffness_n_per_mm=1.6"}, .seconds = 8.0});
+    {.both = {"--set", "stabiliser.method=none", "--set", "force.stiffness_n_per_mm=2.2"}, .seconds = 8.0});
 TEST(Faults, AnOscillationFadesTheForceAndTheNextOneStopsTheHost) {
   const Outcome& o = outcome("AnOscillationFadesTheForceAndTheNextOneStopsTheHost");
   expect_sane(o);
@@ -127,7 +127,7 @@ TEST(Faults, AnOscillationFadesTheForceAndTheNextOneStopsTheHost) {
   EXPECT_EQ(o.faults, std::vector<std::string>{"oscillation"});
   EXPECT_EQ(o.host_exit, 1);
   print_row(
-      "oscillation: 1.6 N/mm without smoothing",
+      "oscillation: 2.2 N/mm without smoothing",
       "the force fades within 200 ms; fault if it comes back within 10 s",
       fmt::format(
           "from {:.0f} mNm to zero {:.0f} ms after the observer fired, no fault; back after {:.1f} s, "

@@ -175,6 +175,7 @@ const Registered kDead("ADeadMotorIsAFault", "",
                        {.controller = {"--fault", at("dead-motor=" + kMotorOfIndexMcp)},
                         .both = {"--set", "device.joints.index_mcp_flexion.torque_sensor=true", "--set",
                                  "patient.press_n=8"},
+                        .scene = "press_teapot",
                         .seconds = 4.2});
 TEST(Faults, ADeadMotorIsAFault) {
   const Outcome& o = outcome("ADeadMotorIsAFault");
@@ -187,7 +188,7 @@ TEST(Faults, ADeadMotorIsAFault) {
   EXPECT_EQ(o.host_exit, 1);
   print_row(
       "commanded and measured torque disagree (dead motor of the index finger's MCP joint, torque sensor, "
-      "pressed with 8 N)",
+      "`press_teapot` pressed with 8 N)",
       "fault; bound: 150 mNm + 50 % of the command for 200 ms",
       fmt::format("`{}` {} ticks after the motor died at {:.0f} mNm; zero after {} ticks", found.fault,
                   found.seen, 1e3 * found.before, found.to_zero));

@@ -68,8 +68,8 @@ std::optional<int> TwoProcesses::wait_for(ChildProcess& process) {
 std::vector<std::string> TwoProcesses::device_command() const {
   if (!scenario_.glove_watchdog_ms.empty())
     return {PHALANX_GLOVE_PROGRAM, path("glove.csv").string(), scenario_.glove_watchdog_ms};
-  std::vector<std::string> command{program(),      "device", "simulate",
-                                   "grasp_teapot", "--log",  path("controller.csv").string()};
+  std::vector<std::string> command{program(),       "device", "simulate",
+                                   scenario_.scene, "--log",  path("controller.csv").string()};
   append(command, scenario_.pty ? std::vector<std::string>{"--pty"}
                                 : std::vector<std::string>{"--udp", "127.0.0.1:0"});
   append(command, scenario_.controller);
@@ -102,7 +102,7 @@ void TwoProcesses::start_controller() {
 void TwoProcesses::start_host() {
   std::vector<std::string> command{program(),
                                    "run",
-                                   "grasp_teapot",
+                                   scenario_.scene,
                                    "--device",
                                    address_,
                                    "--headless",

@@ -143,9 +143,9 @@ TEST(SceneGrasp, DigitsThatTheDeviceLacksGoAlongTheirWay) {
       EXPECT_NEAR(way[idx(i)], held[j] - open[j], 1e-9) << joint_name(static_cast<int>(j));
     }
   }
-  EXPECT_FALSE(copy[0].has_way()) << "the thumb has joints of its own";
-  const SceneDescription scripted = load_scene("grasp_teapot");
-  EXPECT_FALSE(resolve(scripted, {.device = true}).exoskeleton->controller.copy[2].has_way());
+  EXPECT_EQ(copy[0].way_of, DigitAngles{}) << "the thumb has joints of its own";
+  const SceneDescription scripted = load_scene("timing_grasp");
+  EXPECT_EQ(resolve(scripted, {.device = true}).exoskeleton->controller.copy[2].way_of, DigitAngles{});
 }
 
 TEST(SceneGrasp, ThatIsNotFoundIsRefusedWithTheCondition) {
@@ -153,6 +153,20 @@ TEST(SceneGrasp, ThatIsNotFoundIsRefusedWithTheCondition) {
   expect_scene_error(
       [&] { static_cast<void>(resolve(scene, {})); },
       {"ball.toml:3: grasp.type", "no tripod grasp by adult", "the digits reach the object", "smaller"});
+}
+
+TEST(SceneGrasp, OfAnotherTypeIsTakenWhereTheSceneAllowsIt) {
+  const Overrides small = {{"objects.0.diameter_mm", "20"}, {"grasp.type", "\"sphere\""}};
+  expect_scene_error([&] { static_cast<void>(resolve(ball_file().scene(small), {})); },
+                     {"no sphere grasp by adult"});
+  Overrides any = small;
+  any.emplace_back("grasp.other_types", "true");
+  const ResolvedScene resolved = resolve(ball_file().scene(any), {});
+  EXPECT_FALSE(resolved.planned.empty());
+  EXPECT_THAT(touching_digits(resolved.description), ::testing::Not(IsEmpty()));
+  any.emplace_back("objects.0.diameter_mm", "400");
+  expect_scene_error([&] { static_cast<void>(resolve(ball_file().scene(any), {})); },
+                     {"no sphere grasp by adult", "Other types: cylinder: none fulfils ", "; disk: none"});
 }
 
 TEST(SceneGrasp, NeedsAnObjectAndItsOwnMotion) {

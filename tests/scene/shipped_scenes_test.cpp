@@ -79,6 +79,7 @@ const std::map<std::string, std::set<int>>& expected_digits() {
                                                                  {"squeeze_putty", {0, 1, 2, 3, 4}},
                                                                  {"stability_grasp", {0, 1, 2, 3, 4}},
                                                                  {"stability_press", {1}},
+                                                                 {"timing_grasp", {0, 1, 2, 3, 4}},
                                                                  {"tripod_ball", {0, 1, 2}},
                                                                  {"tripod_pen", {0, 1, 2}},
                                                                  {"turn_tap", {0, 1, 2, 3, 4}},

@@ -136,7 +136,8 @@ class CockpitTest : public ::testing::Test {
     SessionSettings station;
     station.scene = "first_touch";
     station.device = device;
-    station.overrides = {{"hand.meshes", "\"capsules\""}};  // no files to read for each test
+    // No files to read and no grasp to plan for each test.
+    station.overrides = {{"hand.meshes", "\"capsules\""}, {"grasp.type", "\"none\""}};
     station.ask_for_realtime = false;
     session_ = std::make_unique<Session>(station, clock_);
     cockpit_ = std::make_unique<Cockpit>(

@@ -404,8 +404,7 @@ TEST(Choices, HoldOnlyScenesThatTheSimulatedPatientMeets) {
   write_choices(welcome);
   std::vector<std::string> refused;
   for (const SceneInfo& info : list_scenes()) {
-    const ResolvedScene scene =
-        resolve(load_scene(info.name, {{"hand.meshes", "\"capsules\""}}), {.device = true, .motion = true});
+    const ResolvedScene scene = resolve(load_scene(info.name), {.device = true, .motion = true});
     const auto model = std::make_unique<HapticModel>(build_model(scene));
     try {
       static_cast<void>(simulated_settings(scene, *model));

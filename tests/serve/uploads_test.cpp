@@ -193,6 +193,7 @@ TEST(Uploads, ASceneWithTheMeshNeedsNoOtherImport) {
   const TemporaryFolder folder;
   const auto scene_with = [](const std::string& file, const std::string& keys) {
     return load_scene("first_touch", {{"hand.meshes", "\"capsules\""},
+                                      {"grasp.type", "\"none\""},
                                       {"objects.0", "{kind = 'file', file = '" + file + "', " + keys + "}"}});
   };
   for (const auto& [query, keys] : std::vector<std::pair<std::string, std::string>>{

@@ -27,8 +27,9 @@
 namespace phalanx {
 namespace {
 
-constexpr double kFrame = 1.0 / 60.0;                                  // [s]
-const Overrides kAlone = {{"objects.0.position_mm", "[2000, 0, 0]"}};  // the object is far away
+constexpr double kFrame = 1.0 / 60.0;  // [s]
+// The object is far away, and the wrist does not go there.
+const Overrides kAlone = {{"objects.0.position_mm", "[2000, 0, 0]"}, {"grasp.type", "\"none\""}};
 
 /// A scene's hand that is drawn at 60 Hz, and FCL's meshes of it.
 class Drawn {

@@ -60,6 +60,8 @@ inline std::string write_first_touch(const std::filesystem::path& folder) {
   std::stringstream text;
   text << in.rdbuf();
   std::string scene = text.str();
+  const std::string planned = "type = \"sphere\"";  // this hand's meshes would need another plan
+  scene.replace(scene.find(planned), planned.size(), "type = \"none\"");
   const auto add = [&](const std::string& table, const std::string& lines) {
     const std::size_t at = scene.find("\n" + table);
     EXPECT_NE(at, std::string::npos) << table;

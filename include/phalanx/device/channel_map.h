@@ -37,8 +37,6 @@ struct DigitCopy {
   DigitAngles way_of{};
   double least_share = 0.0;  ///< from here ..
   double most_share = 1.0;   ///< .. to here all joints of this digit are within their range of motion
-
-  [[nodiscard]] bool has_way() const noexcept { return way_of != DigitAngles{}; }
 };
 
 /// Rules for all joints that a device does not sense.

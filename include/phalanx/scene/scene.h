@@ -97,7 +97,8 @@ struct GraspDescription {
   /// With a type, resolve() plans wrist and motion for the scene's hand and objects, unless they are those that the scene
   /// states them for. Empty: the scene states them.
   std::optional<GraspType> type;
-  std::uint64_t seed = 1;       ///< of the search
+  bool other_types = false;  ///< without a grasp of this type the others are tried, in the order of GraspType
+  std::uint64_t seed = 1;    ///< of the search
   Vec3 forearm = Vec3::Zero();  ///< GraspOptions::forearm, of the scene before it is mirrored
   Vec3 palm = Vec3::Zero();     ///< GraspOptions::palm, likewise
   std::string planned_for;      ///< grasp_checksum() for which the scene states wrist and motion; empty: none

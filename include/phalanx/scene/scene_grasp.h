@@ -13,9 +13,9 @@
 
 namespace phalanx {
 
-/// Returns 16 hexadecimal digits that tell one planned grasp from another: a 64-bit FNV-1a hash of the type, the seed, the directions, the
-/// hand's chains, ranges of motion and meshes, and the objects' vertices, in steps of 1 um and 1 urad. A hand and objects
-/// have the same as their mirror images in x = 0. Set-up only.
+/// Returns 16 hexadecimal digits that tell one planned grasp from another: a 64-bit FNV-1a hash of the type, whether
+/// others are tried, the seed, the directions, the hand's chains, ranges of motion and meshes, and the objects' vertices,
+/// in steps of 1 um and 1 urad. A hand and objects have the same as their mirror images in x = 0. Set-up only.
 /// @pre grasp.type
 /// @param mirrored  hand and world are the mirror image of the scene
 [[nodiscard]] std::string grasp_checksum(const GraspDescription& grasp, const LoadedHand& hand,
@@ -25,10 +25,10 @@ namespace phalanx {
 /// @param mirrored  the grasp is of a mirrored scene, which is written as its mirror image
 [[nodiscard]] Overrides grasp_values(const PlannedGrasp& grasp, bool mirrored, const std::string& checksum);
 
-/// Plans the grasp of a resolved scene, whatever wrist and motion it states.
+/// Plans a grasp of a resolved scene, whatever type, wrist and motion it states; seed and directions are the scene's.
 /// @param progress  GraspOptions::progress; may be empty
-/// @pre scene.description.grasp.type
 /// @throws std::invalid_argument if there is no object. Set-up only.
-[[nodiscard]] GraspSearch search_grasp(const ResolvedScene& scene, std::function<bool(double)> progress);
+[[nodiscard]] GraspSearch search_grasp(const ResolvedScene& scene, GraspType type,
+                                       std::function<bool(double)> progress);
 
 }  // namespace phalanx

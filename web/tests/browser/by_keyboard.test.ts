@@ -55,9 +55,9 @@ describe("by keyboard", () => {
   it("makes the wall stiff until the hand shakes", async () => {
     await tabTo(strings.force.stiffnessField, "input");
     await cockpit.page.keyboard.press("Control+A");
-    await cockpit.page.keyboard.type("1.6");
+    await cockpit.page.keyboard.type("2.2");
     await cockpit.page.keyboard.press("Enter");
-    await until("the stiffness", () => cockpit.stream.newest!.stiffness === 1600, () => cockpit.brief());
+    await until("the stiffness", () => cockpit.stream.newest!.stiffness === 2200, () => cockpit.brief());
     await until("the light says shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
   });
 

@@ -39,7 +39,7 @@ describe("the page looks right", () => {
   });
 
   it("while it shakes", async () => {
-    await cockpit.setStiffness(1.6);
+    await cockpit.setStiffness(2.2);
     await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());
     await cockpit.untilLater(kInPlots);
     await until("shaking", async () => (await cockpit.verdict()) === "shakes", () => cockpit.brief());

@@ -14,7 +14,7 @@ const play = stage();
 let station: Station;
 
 beforeAll(async () => {
-  station = await play.station("first_touch", { [stiffnessKey]: "1.6" });
+  station = await play.station("first_touch", { [stiffnessKey]: "2.2" });
 });
 
 const looks: readonly { name: string; options: BrowserContextOptions; act?: (cockpit: CockpitPage) => Promise<void> }[] = [
