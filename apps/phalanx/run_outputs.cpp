@@ -28,8 +28,15 @@ void prepare_folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, DrawnHand drawn, std::uint64_t ticks)
-    : plan_(std::move(plan)), model_(model), drawn_(std::move(drawn)), moment_(ticks, plan_.picture_at) {
+RunOutputs::RunOutputs(OutputPlan plan, const HapticModel& model, double margin, DrawnHand drawn,
+                       std::uint64_t ticks)
+    : plan_(std::move(plan)),
+      model_(model),
+      drawn_(std::move(drawn)),
+      moment_(
+          ticks,
+          plan_.picture.empty() ? std::nullopt : std::optional<DisplayedHand>(std::in_place, model, margin),
+          plan_.picture_at) {
   prepare_folder_of(plan_.plot);
   prepare_folder_of(plan_.picture);
   if (!plan_.folder.empty()) {

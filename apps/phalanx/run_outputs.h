@@ -33,10 +33,11 @@ class RunOutputs {
  public:
   /// Opens the files.
   /// @param drawn  the hand in the picture; unused without a picture
+  /// @param margin  of the scene [m]
   /// @param ticks  number of ticks that will be added
   /// @throws std::invalid_argument if a folder cannot be used; std::runtime_error if a file
   /// cannot be written.
-  RunOutputs(OutputPlan plan, const HapticModel& model, DrawnHand drawn, std::uint64_t ticks);
+  RunOutputs(OutputPlan plan, const HapticModel& model, double margin, DrawnHand drawn, std::uint64_t ticks);
   void add(const Snapshot& snapshot);
   /// Writes the remaining files. @param text  the plot's heading
   void finish(const Summary& summary, const PlotText& text);

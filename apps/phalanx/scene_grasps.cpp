@@ -83,6 +83,7 @@ Row row_of(const SceneFile& file, const std::string& name, const std::string& pr
   try {
     ResolvedScene resolved = resolve(stated, {.motion = true});
     const SceneDescription scene = resolved.description;
+    const std::optional<GraspType> type = resolved.planned_type ? resolved.planned_type : scene.grasp.type;
     const Motion motion = resolved.motion.value();
     const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
     const HeldGrasp held = play(*model, scene, motion);
@@ -101,9 +102,9 @@ Row row_of(const SceneFile& file, const std::string& name, const std::string& pr
     row.palm = std::any_of(held.contact.begin(), held.contact.end(),
                            [](const PlannedContact& contact) { return contact.segment == kPalm; });
     row.margin = held.closure_margin;
-    if (scene.grasp.type) {
-      row.type = grasp_rule(*scene.grasp.type).name;
-      row.holds = holds(grasp_rule(*scene.grasp.type), row);
+    if (type) {
+      row.type = grasp_rule(*type).name;
+      row.holds = holds(grasp_rule(*type), row);
     } else {
       row.holds = !row.digits.empty();
     }

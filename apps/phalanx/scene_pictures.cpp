@@ -46,7 +46,7 @@ Sitting sit(const std::string& name, const std::string& profile) {
                   .object = model->object.mesh(),
                   .snapshot = {},
                   .largest_force = 0.0};
-  PictureMoment moment(ticks);
+  PictureMoment moment(ticks, DisplayedHand(*model, scene.parameters.contact.margin));
   simulate(*model, scene.parameters, motion, ticks,
            {.tick = [&](const Snapshot& snapshot) { moment.see(snapshot); }, .progress = {}});
   sitting.snapshot = moment.snapshot();

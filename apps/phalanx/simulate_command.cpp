@@ -219,6 +219,9 @@ int simulate_scene(const SimulateOptions& options) {
   DrawnHand drawn = draws ? drawn_hand(resolved.hand) : DrawnHand();
   std::vector<std::string> notes = notes_on_overrides(options.set);
   for (std::string& note : notes_on_meshes(scene, resolved.world)) notes.push_back(std::move(note));
+  if (resolved.planned_type && resolved.planned_type != scene.grasp.type)
+    notes.push_back(fmt::format("no {} grasp was found: a {} grasp holds the object",
+                                grasp_rule(*scene.grasp.type).name, grasp_rule(*resolved.planned_type).name));
   const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
   const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.parameters.rate_hz);
   if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.parameters.rate_hz);
@@ -233,7 +236,7 @@ int simulate_scene(const SimulateOptions& options) {
   {
     const HapticState checked(*model, scene.parameters);
   }  // a hand that starts inside is reported before any file is written
-  RunOutputs outputs(output_plan, *model, std::move(drawn), ticks);
+  RunOutputs outputs(output_plan, *model, scene.parameters.contact.margin, std::move(drawn), ticks);
   NearestApproach approach(ticks);
   if (draws && !options.quiet)
     print_aside(fmt::format("the picture takes about {}\n", duration_text(on_all_cores(kPictureSeconds))));

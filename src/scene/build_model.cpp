@@ -70,21 +70,29 @@ TriangleMesh world_mesh(const SceneDescription& scene, bool mirrored, ImportCach
 }
 
 /// Plans the scene's grasp, of its type or, if it allows them, of the first other type of which there is one.
-PlannedGrasp find_scene_grasp(const ResolvedScene& scene) {
+PlannedGrasp find_scene_grasp(ResolvedScene& scene) {
   const GraspDescription& grasp = scene.description.grasp;
   const GraspType stated = grasp.type.value();
-  GraspSearch search = search_grasp(scene, stated, {});
+  const auto find = [&](GraspType type) {
+    scene.planned_type = type;
+    return search_grasp(scene, type, {});
+  };
+  GraspSearch search = find(stated);
   if (search.grasp) return *std::move(search.grasp);
   std::string problem = no_grasp_text(search, stated, scene.hand.parameters.name);
   std::string others;
   for (std::size_t i = 0; grasp.other_types && i < grasp_type_names().size(); ++i) {
     const auto type = static_cast<GraspType>(i);
     if (type == stated) continue;
-    search = search_grasp(scene, type, {});
+    search = find(type);
     if (search.grasp) return *std::move(search.grasp);
     others += fmt::format("{}{}: none fulfils \"{}\"", others.empty() ? ". Other types: " : "; ",
                           grasp_rule(type).name, grasp_condition_text(search.obstacle()));
   }
+  if (!others.empty())
+    others +=
+        "; choose another size, other directions, or grasp.type = \"none\" with a wrist and motion of your "
+        "own";
   throw SceneError(fmt::format("{}: {}{}", grasp.stated_at, problem, others));
 }
 

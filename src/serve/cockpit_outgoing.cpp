@@ -167,9 +167,7 @@ void Cockpit::Impl::draw(StationView& view) {
   if (!drawn) return;
   drawn->follow(view.snapshot.gdp_angle, std::max(0.0, view.time - drawn_at));
   drawn_at = view.time;
-  std::array<Pose, kSegments> poses;
-  for (int s = 0; s < kSegments; ++s) poses[idx(s)] = drawn->pose(s);
-  draw_at(poses, view.snapshot);
+  drawn->draw(view.snapshot);
 }
 
 void Cockpit::Impl::send_tick() {

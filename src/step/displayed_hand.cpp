@@ -490,4 +490,32 @@ bool DisplayedHand::keeps_apart(int segment, int other) const noexcept {
   return impl_->keeps_apart(segment, other);
 }
 
+void DisplayedHand::draw(Snapshot& snapshot) const noexcept {
+  std::array<Pose, kSegments> poses;
+  for (int s = 0; s < kSegments; ++s) poses[idx(s)] = pose(s);
+  draw_at(poses, snapshot);
+}
+
+void draw_at(const std::array<Pose, kSegments>& displayed, Snapshot& snapshot) noexcept {
+  const auto move = [&](int segment, Vec3& point) {
+    point = displayed[idx(segment)] * (snapshot.gdp_pose[idx(segment)].inverse() * point);
+  };
+  for (int s = 0; s < kSegments; ++s) move(s, snapshot.segment[idx(s)].point);
+  for (int i = 0; i < snapshot.contact_points.count; ++i) {
+    ContactPoint& at = snapshot.contact_points.point[idx(i)];
+    move(at.segment, at.point);
+  }
+  for (int d = 0; d < kDigits; ++d) {
+    bool held = false;
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const std::size_t s = idx(segment_index(d, k));
+      held = held || snapshot.hcp_pose[s].p != snapshot.gdp_pose[s].p ||
+             snapshot.hcp_pose[s].R != snapshot.gdp_pose[s].R;
+    }
+    for (int k = 0; k < kSegmentsPerDigit && !held; ++k)
+      snapshot.hcp_pose[idx(segment_index(d, k))] = displayed[idx(segment_index(d, k))];
+  }
+  snapshot.gdp_pose = displayed;
+}
+
 }  // namespace phalanx

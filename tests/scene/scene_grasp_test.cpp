@@ -83,6 +83,7 @@ TEST(SceneGrasp, IsPlannedAgainForAnotherHandObjectTypeSeedOrDirection) {
                                             {"objects.0.diameter_mm", "46"},
                                             {"grasp.type", "\"pinch\""},
                                             {"grasp.seed", "2"},
+                                            {"grasp.other_types", "true"},
                                             {"hand.side", "\"left\""},
                                             {"grasp.forearm", "[0, -1, 0]"},
                                             {"grasp.palm", "[0, 0, -1]"}}) {
@@ -162,8 +163,10 @@ TEST(SceneGrasp, OfAnotherTypeIsTakenWhereTheSceneAllowsIt) {
   Overrides any = small;
   any.emplace_back("grasp.other_types", "true");
   const ResolvedScene resolved = resolve(ball_file().scene(any), {});
-  EXPECT_FALSE(resolved.planned.empty());
-  EXPECT_THAT(touching_digits(resolved.description), ::testing::Not(IsEmpty()));
+  EXPECT_EQ(resolved.planned_type, GraspType::kTripod) << "after kCylinder, of which there is none either";
+  EXPECT_EQ(touching_digits(resolved.description), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(resolve(ball_file().scene({{"grasp.other_types", "true"}}), {}).planned_type, GraspType::kTripod)
+      << "the stated type goes first, before kCylinder";
   any.emplace_back("objects.0.diameter_mm", "400");
   expect_scene_error([&] { static_cast<void>(resolve(ball_file().scene(any), {})); },
                      {"no sphere grasp by adult", "Other types: cylinder: none fulfils ", "; disk: none"});

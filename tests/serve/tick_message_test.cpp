@@ -29,36 +29,6 @@ StationView a_view() {
   return view;
 }
 
-TEST(DrawAt, MovesPosesAndPointsButNeitherForcesNorWhatIsMeasured) {
-  Snapshot snapshot;
-  snapshot.gdp_pose[3].p = snapshot.hcp_pose[3].p = Vec3(0.1, 0.0, 0.0);  // free
-  snapshot.gdp_pose[7].p = Vec3(0.2, 0.0, 0.0);                           // held by an object
-  snapshot.hcp_pose[7].p = Vec3(0.2, 0.0, -0.01);
-  snapshot.segment[7].contact = true;
-  snapshot.segment[7].force = 2.0;
-  snapshot.segment[7].normal = Vec3::UnitZ();
-  snapshot.segment[7].point = Vec3(0.21, 0.02, 0.0);
-  snapshot.contact_points.count = 1;
-  snapshot.contact_points.point[0] = {
-      .segment = 7, .point = Vec3(0.21, -0.02, 0.0), .normal = Vec3::UnitZ(), .force = 2.0};
-  std::array<Pose, kSegments> displayed = snapshot.gdp_pose;
-  displayed[3].p.z() = displayed[6].p.z() = 0.005;
-  // A quarter turn about z, and 3 mm up.
-  displayed[7].R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  displayed[7].p.z() = 0.003;
-  draw_at(displayed, snapshot);
-  EXPECT_EQ(snapshot.gdp_pose[3].p, displayed[3].p);
-  EXPECT_EQ(snapshot.hcp_pose[3].p, displayed[3].p) << "nothing keeps it from where it is measured";
-  EXPECT_EQ(snapshot.hcp_pose[7].p, Vec3(0.2, 0.0, -0.01));
-  EXPECT_EQ(snapshot.hcp_pose[6].p, Vec3(0.0, 0.0, 0.0))
-      << "of the same digit: all of it is drawn as measured";
-  EXPECT_LT((snapshot.segment[7].point - Vec3(0.18, 0.01, 0.003)).norm(), 1e-15);
-  EXPECT_LT((snapshot.contact_points.point[0].point - Vec3(0.22, 0.01, 0.003)).norm(), 1e-15);
-  EXPECT_EQ(snapshot.segment[7].normal, Vec3::UnitZ());
-  EXPECT_EQ(snapshot.contact_points.point[0].normal, Vec3::UnitZ());
-  EXPECT_EQ(snapshot.segment[7].force, 2.0);
-}
-
 TEST(TickMessage, HasTheOrderAndUnitsOfTheSchema) {
   StationView view = a_view();
   view.snapshot.hcp_pose[3].p = Vec3(1.0, 2.0, 3.0);

@@ -266,7 +266,7 @@ TEST_F(SessionTest, AParameterIsRefusedInTheWordsOfTheScenesReader) {
                                             {"force.stiffness_n_per_mm", "100.1"},
                                             {"force.stiffness_n_per_mm", "many"},
                                             {"smoothing.max_n_per_s", "0"},
-                                            {"smoothing.max_n", "0"},
+                                            {"smoothing.max_n", "0.1"},
                                             {"smoothing.min_n_per_s", "nan"},
                                             {"force.law", "hook"},
                                             {"stabiliser.method", "3"},

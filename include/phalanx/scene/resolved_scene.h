@@ -31,6 +31,7 @@ struct ResolveOptions {
 struct ResolvedScene {
   SceneDescription description;            ///< with wrist and motion of the planned grasp
   Overrides planned;                       ///< values of the grasp that resolve() has planned; empty: none
+  std::optional<GraspType> planned_type;   ///< of the grasp that was searched for here; empty: it was stated
   LoadedHand hand;                         ///< as much of it as ResolveOptions::hand asks for
   bool mirrored = false;                   ///< hand and world are the mirror image of the description
   Pose X_WH;                               ///< pose of the palm, mirrored if the scene is
@@ -43,8 +44,8 @@ struct ResolvedScene {
 
 /// Reads the files that the scene names and `options` asks for, each once.
 /// @throws SceneError or std::invalid_argument as load_hand(), make_world_mesh(), load_device(),
-/// load_patient() and build_motion(), or SceneError naming the condition that no grasp of grasp.type fulfils. Set-up only; where it plans a
-/// grasp it takes seconds, on all cores.
+/// load_patient() and build_motion(), or SceneError naming the condition that no grasp of grasp.type fulfils. Set-up
+/// only; where it plans a grasp it takes seconds, on all cores.
 [[nodiscard]] ResolvedScene resolve(const SceneDescription& description, const ResolveOptions& options);
 
 /// Builds the model of a resolved scene, whose meshes it takes. It opens no file.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "phalanx/step/haptic_step.h"
@@ -35,6 +36,8 @@ class DisplayedHand {
   [[nodiscard]] const JointArray& angle() const noexcept;  ///< [rad]
   /// Returns the pose X_WS of a segment.
   [[nodiscard]] const Pose& pose(int segment) const noexcept;
+  /// draw_at() with this hand's poses. Real-time safe.
+  void draw(Snapshot& snapshot) const noexcept;
   /// @returns true if two segments are kept apart. Segments of one digit are not, nor the first segments of two
   /// digits, nor those that touch or overlap at the open hand: roots of digits and the palm.
   [[nodiscard]] bool keeps_apart(int segment, int other) const noexcept;
@@ -48,5 +51,11 @@ class DisplayedHand {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Replaces the poses of the GDP by those of the hand that is drawn, and moves the points of contacts and forces along
+/// with their segments. Directions and sizes stay. Where no object keeps a digit from where it is measured, its measured
+/// poses are replaced, too: the measured hand is drawn only where an object is in its way. Real-time safe.
+/// @param displayed  DisplayedHand::pose() of each segment
+void draw_at(const std::array<Pose, kSegments>& displayed, Snapshot& snapshot) noexcept;
 
 }  // namespace phalanx

@@ -24,10 +24,10 @@ void add_motion_keys(std::vector<SceneKey>& keys) {
       [](T t, V v) {
         if (v.integer > 0) t.scene.grasp.type = static_cast<GraspType>(v.integer - 1);
       });
-  new_station.flag(
-      "grasp.other_types", false,
-      "where hand and objects allow no grasp of this type, the other types are tried in the order above",
-      [](T t, V v) { t.scene.grasp.other_types = v.flag; });
+  new_station.flag("grasp.other_types", false,
+                   "where hand and objects allow no grasp of grasp.type, the other types are tried in the "
+                   "order of its choices",
+                   [](T t, V v) { t.scene.grasp.other_types = v.flag; });
   new_station.integer("grasp.seed", between(0, 9007199254740992.0), 1, "seed of the search for a grasp",
                       [](T t, V v) { t.scene.grasp.seed = static_cast<std::uint64_t>(v.integer); });
   new_station.vector(

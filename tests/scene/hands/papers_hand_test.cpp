@@ -135,7 +135,7 @@ TEST(PapersHand, KeepsTheForcesOfThePapersScenes) {
       {"stability_grasp",
        {},
        {3.03201025203497, 3.356796192824002, 3.1216058771081787, 3.097102537851146, 3.5394333955456654}},
-      {"timing_grasp",
+      {"timing_grasp",  // with the triangles of the object that the older values are of
        {{"objects.0.triangles", "4000"}},
        {1.8694794633537775, 1.1509770767257166, 1.321156458392862, 1.068441309119821, 1.5564530636482907}}};
   for (const auto& [name, set, expected] : scenes) {

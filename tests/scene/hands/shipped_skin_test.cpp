@@ -264,7 +264,7 @@ class ShippedSkin : public ::testing::TestWithParam<std::string> {};
 
 // What is shown touches where it is felt, and does not reach into the object: at the end of the hold of
 // shipped grasps. Measured over the 19 scenes with a contact that are neither benchmarks nor the papers': no
-// point in the object; from a contact to the skin at most 0.34 mm, at proximal phalanges, where the skin of the webs
+// point in the object; from a contact to the skin at most 0.34 mm (thumb of squeeze_putty: 0.52), at the fingers' proximal phalanges, where the skin of the webs
 // stands back from the segments, at most 0.94 mm.
 TEST_P(ShippedSkin, TouchesTheObjectAndDoesNotReachIntoIt) {
   const SceneDescription scene = load_scene(GetParam());
@@ -289,7 +289,7 @@ TEST_P(ShippedSkin, TouchesTheObjectAndDoesNotReachIntoIt) {
     const SegmentSnapshot& contact = now.segment[idx(segment)];
     if (!contact.contact) continue;
     ++contacts;
-    const bool at_web = segment % kSegmentsPerDigit == 0;
+    const bool at_web = digit_of_segment(segment) > 0 && segment % kSegmentsPerDigit == 0;
     EXPECT_LT(Solid(shown).to_surface(contact.point), at_web ? 1.0e-3 : 0.4e-3) << segment_name(segment);
   }
   EXPECT_GT(contacts, 0);

@@ -12,7 +12,7 @@ import { row } from "./setting_controls";
 const words = strings.grasp;
 const kNone = "none";
 const kOwn = ""; // the scene's own wrist and motion, or its own planned grasp
-const kDirections = ["forearm", "palm"];
+const kKept = ["forearm", "palm", "other_types"]; // by another seed
 
 /// The grasp that was refused for the object in force: it is asked for with the next object of the same scene.
 const wantedNext = new WeakMap<App, { readonly scene: string; readonly changes: readonly Change[] }>();
@@ -24,9 +24,10 @@ export function graspOfNextObject(app: App): readonly Change[] {
 
 /// @returns the changes that have a grasp planned. The tables are replaced as a whole: the scene's own wrist and motion, and the directions
 /// that it states for another type, do not fit.
-export function plannedGrasp(type: string, seed: number, directions: readonly (readonly [string, string])[] = []): readonly Change[] {
+/// @param others  further keys of the table grasp, and their values
+export function plannedGrasp(type: string, seed: number, others: readonly (readonly [string, string])[] = []): readonly Change[] {
   return [
-    ["grasp", table([["type", quote(type)], ["seed", String(seed)], ...directions])],
+    ["grasp", table([["type", quote(type)], ["seed", String(seed)], ...others])],
     ["motion", table([["name", quote("posture")], ["closure", "1.0"]])],
   ];
 }
@@ -62,10 +63,10 @@ export function graspSection(app: App): HTMLElement {
     await plan(choice.value === kOwn ? [["grasp", ""], ["motion", ""]] : plannedGrasp(choice.value, 1));
   }
 
-  /// The same type with the next seed, from the same sides.
+  /// The same type with the next seed, from the same sides, with other types where the scene allows them.
   async function next(): Promise<void> {
     const seed = number(app.store.value("grasp.seed"));
-    const stated = kDirections
+    const stated = kKept
       .map((name) => [name, app.store.state?.value.find((one) => one.key === `grasp.${name}`)?.value ?? ""] as const)
       .filter(([, value]) => value !== "");
     await plan(plannedGrasp(inForce(), Number.isFinite(seed) ? seed + 1 : 1, stated));

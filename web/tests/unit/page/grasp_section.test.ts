@@ -53,6 +53,13 @@ describe("the grasp", () => {
     await vi.waitFor(() => expect(panel.textContent).toContain(words.hint));
   });
 
+  it("is of another type with the next seed, too, where the scene allows that", async () => {
+    const now = planned("sphere", "1");
+    fake.state({ ...now, value: [...now.value, { key: "grasp.other_types", value: "true" }] });
+    another().click();
+    await vi.waitFor(() => expect(fake.asked[0]![0]![1]).toBe('{type = "sphere", seed = 2, palm = [0, 0, -1], other_types = true}'));
+  });
+
   it("goes back to the scene's own", async () => {
     fake.state(planned("hook", "1"));
     choose("");
