@@ -225,7 +225,8 @@ TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverRecordingsGivenByHand) {
                                                           {"objects.0.file", "\"" + mesh + "\""},
                                                           {"objects.0.size_mm", std::to_string(size)},
                                                           {"objects.0.rotation_deg", turned},
-                                                          {"motion.mapping", "\"cyberglove\""}});
+                                                          {"motion.mapping", "\"cyberglove\""},
+                                                          {"grasp.type", "\"none\""}});
         const std::optional<HapticModel> model = clear_of_the_open_hand(scene);
         if (!model) continue;
         for (const std::string& file : motions) {
