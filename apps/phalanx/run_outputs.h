@@ -32,8 +32,8 @@ struct OutputPlan {
 class RunOutputs {
  public:
   /// Opens the files.
-  /// @param drawn  the hand in the picture; unused without a picture
   /// @param margin  of the scene [m]
+  /// @param drawn  the hand in the picture; unused without a picture
   /// @param ticks  number of ticks that will be added
   /// @throws std::invalid_argument if a folder cannot be used; std::runtime_error if a file
   /// cannot be written.

@@ -39,7 +39,8 @@ struct Row {
   std::string problem;  ///< why there is no grasp; empty: there is one
 };
 
-/// @returns true if thumb, enough fingers and the palm press, where the type has them, with force closure where it asks for it
+/// @returns true if thumb, enough fingers and the palm press, where the type has them, with force closure where it asks
+/// for it
 bool holds(const GraspRule& rule, const Row& row) {
   const auto is_thumb = [](char c) { return c == 'T' || c == 't'; };
   const auto thumbs = std::count_if(row.digits.begin(), row.digits.end(), is_thumb);

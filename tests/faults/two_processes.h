@@ -35,8 +35,8 @@ struct Scenario {
   std::string glove_watchdog_ms = {};        ///< glove_program stands in the controller's place; empty: no
   bool middle = false;                       ///< UDP with the test in the middle
   std::vector<Event> events = {};            ///< in order
-  std::string scene = "grasp_teapot";
-  double seconds = 4.2;  ///< then the host is asked to end, then the controller
+  std::string scene = "grasp_teapot";        ///< of both processes
+  double seconds = 4.2;                      ///< then the host is asked to end, then the controller
 };
 
 /// Everything that a scenario leaves.

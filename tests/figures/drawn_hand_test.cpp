@@ -63,14 +63,14 @@ Vec3f turned(const Eigen::Vector4f& q, const Vec3f& v) {
 }
 
 /// A segment's motion X_WS X_BS^-1 as the page gives it to the graphics card.
-struct PlayedMotion {
+struct RigidMotion {
   Eigen::Vector4f rotation;
   Vec3f translation;
 };
 
-std::array<PlayedMotion, kSegments> motions_on_the_page(const HandSkin& skin, const SegmentPoses& X_WS) {
+std::array<RigidMotion, kSegments> motions_on_the_page(const HandSkin& skin, const SegmentPoses& X_WS) {
   std::array<Eigen::Vector4d, kSegments> q;
-  std::array<PlayedMotion, kSegments> motions;
+  std::array<RigidMotion, kSegments> motions;
   for (int n = 0; n < kSegments; ++n) {
     const int s = n == 0 ? kPalm : n - 1;  // the palm first
     const Pose bone = X_WS[idx(s)] * skin.X_BS[idx(s)].inverse();
@@ -101,7 +101,7 @@ Vec3f on_the_page(const HandSkin& skin, const SegmentPoses& X_WS, std::size_t ve
   Eigen::Vector4f rotation = Eigen::Vector4f::Zero();
   Vec3f moved = Vec3f::Zero();
   for (std::size_t k = 0; k < HandSkin::kInfluences; ++k) {
-    const PlayedMotion& motion = motions[skin.segment[vertex][k]];
+    const RigidMotion& motion = motions[skin.segment[vertex][k]];
     rotation += skin.weight[vertex][k] * motion.rotation;
     moved += skin.weight[vertex][k] * (turned(motion.rotation, centre) + motion.translation);
   }

@@ -24,9 +24,9 @@ class PictureMoment {
   void see(const Snapshot& snapshot);
   [[nodiscard]] const Snapshot& snapshot() const noexcept { return shown_; }
 
-  static constexpr double kFrame = 1.0 / 60.0;  ///< least often that the hand follows [s]
-
  private:
+  static constexpr double kFrame = 1.0 / 60.0;  ///< longest time between two ticks that the hand follows [s]
+
   std::uint64_t middle_;
   std::optional<DisplayedHand> hand_;
   double followed_ = 0.0;  ///< time of the tick that the hand followed last [s]

@@ -264,8 +264,8 @@ class ShippedSkin : public ::testing::TestWithParam<std::string> {};
 
 // What is shown touches where it is felt, and does not reach into the object: at the end of the hold of
 // shipped grasps. Measured over the 19 scenes with a contact that are neither benchmarks nor the papers': no
-// point in the object; from a contact to the skin at most 0.34 mm (thumb of squeeze_putty: 0.52), at the fingers' proximal phalanges, where the skin of the webs
-// stands back from the segments, at most 0.94 mm.
+// point in the object; from a contact to the skin at most 0.34 mm (thumb of squeeze_putty: 0.52), at the fingers'
+// proximal phalanges, where the skin of the webs stands back from the segments, at most 0.94 mm.
 TEST_P(ShippedSkin, TouchesTheObjectAndDoesNotReachIntoIt) {
   const SceneDescription scene = load_scene(GetParam());
   const HapticModel model = build_model(scene);
