@@ -133,7 +133,7 @@ describe("what is drawn", () => {
     await show(pressing);
     const arrows = await page.evaluate(() => [...window.viewPage.view.probe().arrows]);
     const contacts = recording(name).ticks[pressing]!.contact.filter((contact) => contact.force > 0);
-    expect(contacts.length).toBe(5);
+    for (const digit of [0, 1, 2, 3, 4]) expect(contacts.some((contact) => Math.floor(contact.segment / 3) === digit)).toBe(true);
     expect(arrows.map((arrow) => arrow.segment)).toEqual(contacts.map((contact) => contact.segment));
     arrows.forEach((arrow, i) => expect(arrow.length).toBeCloseTo(arrowLength(contacts[i]!.force), 5));
     await show(free);
