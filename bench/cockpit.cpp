@@ -87,11 +87,12 @@ class Bench {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       session_.poll();
       StepRecord record;
-      while (session_.next_record(record)) {
+      std::vector<DeviceSample> samples;
+      while (session_.next_record(record, samples)) {
         if (phase == nullptr) continue;
         phase->step.back().push_back(record.duration * 1e6);
         phase->lateness.back().push_back(record.lateness * 1e6);
-        if (record.overrun) ++phase->overruns;
+        if (record.input.late) ++phase->overruns;
       }
     }
   }

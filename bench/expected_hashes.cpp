@@ -9,18 +9,9 @@
 #include <stdexcept>
 
 #include "force_hash.h"
+#include "phalanx/record/made.h"
 
 namespace phalanx::bench {
-
-std::uint64_t libm_fingerprint() {
-  Hash hash;
-  for (int i = 0; i < 10000; ++i) {
-    const double angle = (i - 5000) * 0.000628318530717;
-    hash.add(std::sin(angle));
-    hash.add(std::cos(angle));
-  }
-  return hash.value();
-}
 
 ExpectedHashes::ExpectedHashes(std::filesystem::path file)
     : file_(std::move(file)), libm_(libm_fingerprint()) {

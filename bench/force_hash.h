@@ -3,22 +3,16 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
+#include "phalanx/core/bit_hash.h"
 #include "phalanx/step/snapshot.h"
 
 namespace phalanx::bench {
 
-/// FNV-1a (Fowler, Noll & Vo), 64 bits, over words of 64 bits.
+/// Hash of the forces and torques of a run.
 class Hash {
  public:
-  void add(double value) {
-    std::uint64_t bits = 0;
-    static_assert(sizeof bits == sizeof value);
-    std::memcpy(&bits, &value, sizeof bits);
-    value_ = (value_ ^ bits) * 0x100000001b3ULL;
-    value_ ^= value_ >> 29U;  // words, not bytes: bring the upper bits down
-  }
+  void add(double value) { hash_.add(value); }
   /// Torques, and each segment's forces with where and in which direction they act.
   void add(const Snapshot& snapshot) {
     for (const double torque : snapshot.torque) add(torque);
@@ -32,14 +26,10 @@ class Hash {
       }
     }
   }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
+  [[nodiscard]] std::uint64_t value() const { return hash_.value(); }
 
  private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+  BitHash hash_;
 };
-
-/// Of this machine's sine and cosine at ten thousand angles: libm may choose other code, and round otherwise,
-/// on another CPU, and then forces differ in their last bits.
-[[nodiscard]] std::uint64_t libm_fingerprint();
 
 }  // namespace phalanx::bench

@@ -44,6 +44,7 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     station/realtime.h
     station/safety_settings.h
     station/session.h
+    station/session_change.h
     station/session_statistics.h
     station/station.h
     station/station_model.h

@@ -28,6 +28,8 @@ void add_grasp_command(CLI::App& app, Job& job);
 void add_hand_command(CLI::App& app, Job& job);
 void add_mesh_command(CLI::App& app, Job& job);
 void add_device_command(CLI::App& app, Job& job);
+void add_session_command(CLI::App& app, Job& job);
+void add_replay_command(CLI::App& app, Job& job);
 void add_completion_command(CLI::App& app, Job& job);
 
 // The commands of `phalanx device`.

@@ -41,6 +41,8 @@ int run(int argc, char** argv) {
   add_hand_command(app, job);
   add_mesh_command(app, job);
   add_device_command(app, job);
+  add_session_command(app, job);
+  add_replay_command(app, job);
   add_completion_command(app, job);
   try {
     app.parse(argc, argv);

@@ -15,6 +15,8 @@
 #include "nearest_approach.h"
 #include "option_text.h"
 #include "parameters_text.h"
+#include "phalanx/device/motion.h"
+#include "phalanx/record/recordings.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
@@ -68,13 +70,18 @@ KeyOption integer_option(const std::string& option, const std::string& key, std:
   return {fmt::format("{} {}", option, number), key, std::to_string(number)};
 }
 
+/// @returns true for a recording of `phalanx run`, whose samples are played as the motion
+bool is_recording(const std::string& motion) { return motion.ends_with(".mcap"); }
+
 std::vector<KeyOption> key_options(const SimulateOptions& o) {
   std::vector<KeyOption> result;
   if (!o.profile.empty()) result.push_back(text_option("--profile", "hand.profile", o.profile));
-  if (!o.motion.empty()) result.push_back(text_option("--motion", "motion.file", o.motion));
+  if (!o.motion.empty() && !is_recording(o.motion))
+    result.push_back(text_option("--motion", "motion.file", o.motion));
   if (!o.mapping.empty()) result.push_back(text_option("--mapping", "motion.mapping", o.mapping));
   if (o.trial) result.push_back(integer_option("--trial", "motion.trial", *o.trial));
-  if (o.lead_in) result.push_back(number_option("--lead-in", "motion.lead_in_s", *o.lead_in));
+  if (o.lead_in && !is_recording(o.motion))
+    result.push_back(number_option("--lead-in", "motion.lead_in_s", *o.lead_in));
   if (o.seconds) result.push_back(number_option("--seconds", "seconds", *o.seconds));
   if (o.rate_hz) result.push_back(number_option("--rate-hz", "rate_hz", *o.rate_hz));
   if (o.seed) result.push_back(integer_option("--seed", "seed", *o.seed));
@@ -131,13 +138,14 @@ SceneDescription described(const SimulateOptions& options) {
                                : read_with(set, key_options(options), [&](const Overrides& all) {
                                    return load_scene(options.scene, all);
                                  });
-  if (scene.motion.file.empty()) {
+  if (scene.motion.file.empty() || is_recording(options.motion)) {
     const auto refuse = [](const std::string& option) {
       throw std::invalid_argument(
           fmt::format("{}: the scene plays no motion file; add --motion FILE or leave it out", option));
     };
     if (options.trial) refuse(fmt::format("--trial {}", *options.trial));
-    if (options.lead_in) refuse(fmt::format("--lead-in {}", *options.lead_in));
+    if (options.lead_in && !is_recording(options.motion))
+      refuse(fmt::format("--lead-in {}", *options.lead_in));
     if (!options.mapping.empty()) refuse(fmt::format("--mapping {}", options.mapping));
   }
   return scene;
@@ -215,7 +223,10 @@ int simulate_scene(const SimulateOptions& options) {
   const bool draws = !output_plan.picture.empty();
   ResolvedScene resolved =
       resolve(scene, {.hand = draws ? HandDetail::kDrawn : HandDetail::kCollision, .motion = true});
-  const Motion motion = resolved.motion.value();
+  const JointArray& open = resolved.hand.parameters.open_angle;
+  const Motion motion = is_recording(options.motion)
+                            ? led_in(recorded_motion(options.motion), open, options.lead_in.value_or(0.0))
+                            : resolved.motion.value();
   DrawnHand drawn = draws ? drawn_hand(resolved.hand) : DrawnHand();
   std::vector<std::string> notes = notes_on_overrides(options.set);
   for (std::string& note : notes_on_meshes(scene, resolved.world)) notes.push_back(std::move(note));
@@ -223,7 +234,9 @@ int simulate_scene(const SimulateOptions& options) {
     notes.push_back(fmt::format("no {} grasp was found: a {} grasp holds the object",
                                 grasp_rule(*scene.grasp.type).name, grasp_rule(*resolved.planned_type).name));
   const auto model = std::make_unique<HapticModel>(build_model(std::move(resolved)));
-  const std::uint64_t ticks = tick_count(simulation_seconds(scene, motion), scene.parameters.rate_hz);
+  const double seconds = is_recording(options.motion) ? options.seconds.value_or(motion.duration())
+                                                      : simulation_seconds(scene, motion);
+  const std::uint64_t ticks = tick_count(seconds, scene.parameters.rate_hz);
   if (options.at) output_plan.picture_at = tick_at(*options.at, ticks, scene.parameters.rate_hz);
 
   Summary summary;
@@ -316,7 +329,9 @@ void add_simulate_command(CLI::App& app, Job& job) {
       ->add_option("--profile", options->profile,
                    "the patient's profile: a name in assets/profiles or a file")
       ->type_name("NAME");
-  command->add_option("--motion", options->motion, "a CSV of joint angles in place of the scene's motion")
+  command
+      ->add_option("--motion", options->motion,
+                   "a CSV of joint angles, or a recording (.mcap), in place of the scene's motion")
       ->type_name("FILE");
   command
       ->add_option("--mapping", options->mapping,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/papers/experiments.h"
 
-#include "study/report/html.h"
+#include "figures/html.h"
 
 namespace phalanx {
 namespace {

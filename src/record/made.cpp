@@ -2,9 +2,11 @@
 #include "phalanx/record/made.h"
 
 #include <array>
+#include <cmath>
 #include <ctime>
 #include <fstream>
 
+#include "phalanx/core/bit_hash.h"
 #include "phalanx_commit.h"
 
 namespace phalanx {
@@ -52,6 +54,16 @@ Made made_here() {
           .compiler = compiler_name(),
           .build_type = build_type(),
           .date = utc_now()};
+}
+
+std::uint64_t libm_fingerprint() noexcept {
+  BitHash hash;
+  for (int i = 0; i < 10000; ++i) {
+    const double angle = (i - 5000) * 0.000628318530717;
+    hash.add(std::sin(angle));
+    hash.add(std::cos(angle));
+  }
+  return hash.value();
 }
 
 const char* built_from_commit() noexcept { return PHALANX_COMMIT; }

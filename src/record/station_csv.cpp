@@ -94,14 +94,14 @@ void write_step_header(OutputFile& file) {
 
 /// Writes the whole row or, if memory runs out, none of it.
 void write_step(OutputFile& file, const StepRecord& record) {
-  std::string row = fmt::format("{},{},{:.1f},{:.1f},{},{},{},{},{},{},{},{},{}", record.tick, record.time,
-                                1e6 * record.lateness, 1e6 * record.duration, record.overrun ? 1 : 0,
-                                record.samples, record.sample_sequence, record.sample_time_us,
-                                safety_state_name(record.state), fault_name(record.fault), record.factor,
-                                static_cast<std::uint32_t>(record.status), record.stiffness);
+  std::string row = fmt::format(
+      "{},{},{:.1f},{:.1f},{},{},{},{},{},{},{},{},{}", record.command.tick, record.input.time,
+      1e6 * record.lateness, 1e6 * record.duration, record.input.late ? 1 : 0, record.samples,
+      record.sample_sequence, record.sample_time_us, safety_state_name(record.state),
+      fault_name(record.fault), record.factor, static_cast<std::uint32_t>(record.status), record.stiffness);
   const auto add = [&](double value) { fmt::format_to(std::back_inserter(row), ",{}", value); };
   for (const double force : record.force) add(force);
-  for (const double torque : record.torque) add(torque);
+  for (const double torque : record.command.torque) add(torque);
   for (const double angle : record.angle) add(angle);
   row += '\n';
   file.text(row);

@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "phalanx/core/nice_thread.h"
-#include "serve/plain_text.h"
+#include "record/plain_text.h"
 
 namespace phalanx {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "phalanx/serve/reach.h"
+#include "record/plain_text.h"
 #include "serve/cockpit_impl.h"
-#include "serve/plain_text.h"
 #include "serve/state_message.h"
 #include "serve/uploads.h"
 

@@ -9,7 +9,7 @@
 // Way of a message: the bytes of a page arrive in Cockpit::received(), are decoded, and go to handle(). A
 // stop calls Session::stop() right there: no queue and no other thread stand between the page and the
 // station. Requests of the operator go through page_requests.h to the Session; their outcome becomes a
-// Reply and a Notice. Each frame sends the newest tick (tick_message.h), and the state (state_message.h) if
+// Reply and a Notice. Each frame sends the newest tick (record/recording/view_message.h), and the state (state_message.h) if
 // it has changed or is due.
 //
 // Further files: participants.h has the roles, plain_text.h and settings_text.h the texts for people.

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "record/plain_text.h"
 #include "serve/cockpit_impl.h"
-#include "serve/plain_text.h"
 
 namespace phalanx {
 namespace {

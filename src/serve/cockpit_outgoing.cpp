@@ -8,10 +8,10 @@
 
 #include "phalanx/core/index.h"
 #include "phalanx/step/haptic_step.h"
+#include "record/plain_text.h"
+#include "record/recording/view_message.h"
 #include "serve/cockpit_impl.h"
-#include "serve/plain_text.h"
 #include "serve/state_message.h"
-#include "serve/tick_message.h"
 
 namespace phalanx {
 namespace {
@@ -28,6 +28,15 @@ double unix_now() {
 
 Bytes encoded(const wire::ToPage& message) {
   return std::make_shared<const std::string>(message.SerializeAsString());
+}
+
+void write_recording(const RecordingStatus& recording, wire::Recording& out) {
+  out.set_file(as_utf8(recording.file.string()));
+  out.set_bytes(recording.bytes);
+  out.set_free_bytes(recording.free_bytes);
+  out.set_unsaved(recording.unsaved);
+  out.set_lost_steps(recording.lost_steps);
+  out.set_trouble(as_utf8(recording.trouble));
 }
 
 }  // namespace
@@ -51,6 +60,7 @@ void Cockpit::Impl::notify(wire::Notice::Level level, const std::string& who, co
                            const std::string& text) {
   notify_drag();
   log.add(make_notice(level, who, code, text));
+  if (settings.on_notice) settings.on_notice(code, who, text);
   wire::ToPage message;
   *message.mutable_notice() = log.newest().back();
   send_to_all(encoded(message));
@@ -138,6 +148,8 @@ Bytes Cockpit::Impl::encoded_state() {
   if (state.has_fault() && state.fault().time() == reported)
     state.mutable_fault()->set_report(as_utf8(report));
   write_participants(participants, now(), state);
+  if (settings.recording)
+    if (const auto recording = settings.recording()) write_recording(*recording, *state.mutable_recording());
   return encoded(message);
 }
 

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "phalanx/scene/scene_keys.h"
+#include "record/plain_text.h"
 #include "scene/toml/toml_reader.h"
-#include "serve/plain_text.h"
 #include "serve/settings_text.h"
 
 namespace phalanx {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "serve/plain_text.h"
+#include "record/plain_text.h"
 
 namespace phalanx {
 

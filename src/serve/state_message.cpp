@@ -9,8 +9,8 @@
 
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/scene_keys.h"
-#include "serve/plain_text.h"
-#include "serve/tick_message.h"
+#include "record/plain_text.h"
+#include "record/recording/view_message.h"
 
 namespace phalanx {
 namespace {
@@ -42,23 +42,6 @@ void put(const FaultEvent& event, wire::Fault& out) {
   out.set_from_device(event.from_device);
 }
 
-void put(const Histogram& histogram, wire::Durations& out) {
-  out.set_p50_us(static_cast<float>(histogram.percentile_us(50.0)));
-  out.set_p99_us(static_cast<float>(histogram.percentile_us(99.0)));
-  out.set_p999_us(static_cast<float>(histogram.percentile_us(99.9)));
-  out.set_max_us(static_cast<float>(histogram.max_us()));
-  for (std::size_t k = 0; k < Histogram::kOctaves; ++k) out.add_octave(histogram.in_octave(k));
-}
-
-void put(const DeadlineStatistics& deadlines, wire::Loop& out) {
-  out.set_period(deadlines.period);
-  out.set_steps(deadlines.steps);
-  out.set_overruns(deadlines.overruns);
-  out.set_skipped(deadlines.skipped);
-  put(deadlines.lateness, *out.mutable_lateness());
-  put(deadlines.step, *out.mutable_step());
-}
-
 void put(const CalibrationSession::View& view, wire::Wizard& out) {
   out.set_pose(static_cast<std::uint32_t>(view.pose));
   for (const std::string& name : view.names) out.add_name(name);
@@ -70,11 +53,6 @@ void put(const CalibrationSession::View& view, wire::Wizard& out) {
   for (const std::string& problem : view.problems) out.add_problem(as_utf8(problem));
   for (const std::string& result : view.results) out.add_result(result);
   out.set_finished(view.finished);
-}
-
-wire::HandSource wire_source(HandSource source) noexcept {
-  if (source == HandSource::kDevice) return wire::HAND_DEVICE;
-  return source == HandSource::kPatient ? wire::HAND_PATIENT : wire::HAND_SLIDERS;
 }
 
 void put_info(const SessionInfo& info, wire::State& out) {
@@ -199,7 +177,7 @@ void write_state(const Session& session, wire::State& out) {
   out.set_device_state(device_state_name(view.device));
   out.set_estop(view.estop);
   write_link(view.link, *out.mutable_link());
-  put(session.deadlines(), *out.mutable_loop());
+  write_loop(session.deadlines(), *out.mutable_loop());
   if (info->source == HandSource::kSliders)
     for (const double angle : session.sliders()) out.add_slider(static_cast<float>(angle));
 }

@@ -18,7 +18,7 @@
 #include "phalanx/mesh/length_units.h"
 #include "phalanx/record/mesh_report_json.h"
 #include "phalanx/record/output_file.h"
-#include "serve/plain_text.h"
+#include "record/plain_text.h"
 
 namespace phalanx {
 namespace {

@@ -110,7 +110,11 @@ std::shared_ptr<const SessionInfo> Session::info() const { return state_->info()
 
 // ---- one thread at a time ----
 
-bool Session::next_record(StepRecord& record) { return state_->next_record(record); }
+bool Session::next_change(SessionChange& change) { return state_->next_change(change); }
+
+bool Session::next_record(StepRecord& record, std::vector<DeviceSample>& samples) {
+  return state_->next_record(record, samples);
+}
 
 // ---- the owner's thread ----
 

@@ -205,10 +205,10 @@ SessionStatistics SessionState::statistics() const {
   return sum;
 }
 
-bool SessionState::next_record(StepRecord& record) {
+bool SessionState::next_record(StepRecord& record, std::vector<DeviceSample>& samples) {
   for (bool any = true; any;) {
     std::unique_lock lock(mutex_);
-    if (!retired_.empty() && retired_.front()->station->next_record(record)) return true;
+    if (!retired_.empty() && retired_.front()->station->next_record(record, samples)) return true;
     any = !retired_.empty();
     if (!any) continue;
     const std::shared_ptr<RunningStation> read = std::move(retired_.front());
@@ -217,7 +217,20 @@ bool SessionState::next_record(StepRecord& record) {
     keep_report(*read->station);
   }
   const auto now = current();
-  return now && now->station->next_record(record);
+  return now && now->station->next_record(record, samples);
+}
+
+void SessionState::keep_change(SessionChange change) {
+  const std::lock_guard lock(changes_mutex_);
+  changes_.push_back(std::move(change));
+}
+
+bool SessionState::next_change(SessionChange& change) {
+  const std::lock_guard lock(changes_mutex_);
+  if (changes_.empty()) return false;
+  change = std::move(changes_.front());
+  changes_.pop_front();
+  return true;
 }
 
 std::optional<FaultReport> SessionState::take_fault_report() {

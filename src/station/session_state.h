@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -55,6 +56,8 @@ class SessionState {
   [[nodiscard]] JointArray sliders() const;
 
   // ---- for the worker's thread
+  /// Keeps a change for next_change(). @throws std::bad_alloc
+  void keep_change(SessionChange change);
   /// Starts the station. If held() is true, its torque is stopped before its first step.
   /// @throws std::system_error if no thread can be made
   void begin(std::shared_ptr<RunningStation> next);
@@ -71,7 +74,9 @@ class SessionState {
   /// @returns sums over all stations so far, the running one included.
   [[nodiscard]] SessionStatistics statistics() const;
   /// Fetches the next step's record. For one thread.
-  [[nodiscard]] bool next_record(StepRecord& record);
+  [[nodiscard]] bool next_record(StepRecord& record, std::vector<DeviceSample>& samples);
+  /// Fetches the next change that was kept. @returns true if there was one
+  [[nodiscard]] bool next_change(SessionChange& change);
   [[nodiscard]] std::optional<FaultReport> take_fault_report();
 
  private:
@@ -89,6 +94,9 @@ class SessionState {
   std::atomic<bool> held_{false};
   std::uint64_t stops_ = 0;
   bool ending_ = false;
+
+  std::mutex changes_mutex_;
+  std::deque<SessionChange> changes_;
 
   std::mutex reports_mutex_;          ///< also held while a station's report is taken
   std::vector<FaultReport> reports_;  ///< of stations that have ended

@@ -149,10 +149,11 @@ void SessionWorker::apply(const SetValues& set) {
   info->values = with_planned(std::move(read.values), planned_);
   info->description = read.scene.description;
   info->margin = read.scene.parameters.contact.margin;
+  const std::uint64_t change = keep_change(info->scene, info->values, nullptr);
   if (kind == ChangeKind::kInContact)
-    now->station->change_to(read.scene.parameters);
+    now->station->change_to(read.scene.parameters, change);
   else
-    run_at_low_priority([&] { now->station->replace(model_, read.scene.parameters); });
+    run_at_low_priority([&] { now->station->replace(model_, read.scene.parameters, change); });
   plan_ = std::move(next);
   scene_ = std::move(read.scene);
   state_.publish(info);
@@ -171,7 +172,8 @@ void SessionWorker::exchange_object(Station& station, StationBuild build) {
   info->margin = build.made.parameters.contact.margin;
   build.geometry->revision = info->geometry->revision + 1;
   info->geometry = build.geometry;
-  run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters); });
+  const std::uint64_t change = keep_change(info->scene, info->values, info->geometry);
+  run_at_low_priority([&] { station.replace(build.made.model, build.made.parameters, change); });
   plan_ = std::move(build.plan);
   planned_ = std::move(build.planned);
   scene_ = std::move(build.scene);
@@ -253,7 +255,7 @@ void SessionWorker::go_back() {
 
 void SessionWorker::take_over(StationBuild& build) {
   // Nothing is published before the device is open.
-  auto next = std::make_shared<RunningStation>(make_station(build, settings_, clock_));
+  auto next = std::make_shared<RunningStation>(make_station(build, settings_, clock_, ++stations_));
   state_.change_info([&](SessionInfo& info) {
     info.scene = build.plan.scene;
     info.description = build.scene.description;
@@ -267,6 +269,13 @@ void SessionWorker::take_over(StationBuild& build) {
     build.geometry->revision = info.geometry ? info.geometry->revision + 1 : 1;
     info.geometry = build.geometry;
   });
+  if (settings_.keep_changes)
+    state_.keep_change({.station = stations_,
+                        .number = 0,
+                        .scene = build.plan.scene,
+                        .values = build.values,
+                        .geometry = build.geometry,
+                        .setup = next->setup});
   state_.begin(std::move(next));
   // The station runs. Nothing below throws: an exception would bring back the old station beside it.
   static_assert(std::is_nothrow_move_assignable_v<StationPlan> &&
@@ -278,6 +287,19 @@ void SessionWorker::take_over(StationBuild& build) {
   scene_ = std::move(build.scene);
   model_ = build.made.model;
   patient_ = std::move(build.made.safety.patient);
+}
+
+std::uint64_t SessionWorker::keep_change(const std::string& scene, const Overrides& values,
+                                         std::shared_ptr<const SessionGeometry> geometry) {
+  const std::uint64_t number = ++changes_;
+  if (settings_.keep_changes)
+    state_.keep_change({.station = stations_,
+                        .number = number,
+                        .scene = scene,
+                        .values = values,
+                        .geometry = std::move(geometry),
+                        .setup = std::nullopt});
+  return number;
 }
 
 // ---- calibration ----

@@ -60,6 +60,10 @@ class SessionWorker {
   /// then still kept
   void take_over(StationBuild& build);
 
+  /// Keeps a change for recordings, before it is made. @returns its number
+  std::uint64_t keep_change(const std::string& scene, const Overrides& values,
+                            std::shared_ptr<const SessionGeometry> geometry);
+
   void refuse_while_calibrating() const;
   void begin_wizard();
   void write_wizard();
@@ -77,7 +81,9 @@ class SessionWorker {
   Overrides planned_;              ///< StationBuild::planned of the last build
   SceneDescription scene_;         ///< of the running station, after changes on their way
   std::shared_ptr<const HapticModel> model_;  ///< of the running station, after changes on their way
-  std::string patient_;  ///< SafetySettings::patient; once stated, it holds for every later station
+  std::string patient_;         ///< SafetySettings::patient; once stated, it holds for every later station
+  std::uint64_t stations_ = 0;  ///< StationOptions::number of the newest station
+  std::uint64_t changes_ = 0;   ///< SessionChange::number of the newest change
   CalibrationWizard wizard_;
   std::thread thread_;
 };

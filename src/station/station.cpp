@@ -17,8 +17,7 @@
 #include "phalanx/device/latest.h"
 #include "station/history.h"
 #include "station/pacer.h"
-#include "station/parameter_ramp.h"
-#include "station/safety.h"
+#include "station/station_step.h"
 #include "step/check_parameters.h"
 
 namespace phalanx {
@@ -26,6 +25,7 @@ namespace {
 
 constexpr double kReportSeconds = 2.0;  ///< length of samples and steps in a fault report
 constexpr std::size_t kRecords = 8192;  ///< steps that may wait to be fetched: 4 s at 2 kHz
+constexpr double kRecordSeconds = 8.2;  ///< for which their samples may wait [s]
 constexpr std::size_t kInbox = 512;     ///< capacity for the samples between two steps
 constexpr double kLook = 0.005;         ///< interval of checking whether the ramp at the end is over [s]
 
@@ -57,22 +57,10 @@ DigitArray digit_forces(const Snapshot& snapshot) noexcept {
 
 /// The loop's functions and state, and the data that it shares with other threads.
 struct Station::Loop {
-  enum Request : unsigned { kStop = 1, kResume = 2, kReset = 4, kEnd = 8, kWithdraw = 16 };
-
-  /// A model, its parameters and its state, which are exchanged together.
-  struct Rendering {
-    Rendering(std::shared_ptr<const HapticModel> of_model, const HapticParameters& parameters)
-        : model(std::move(of_model)), ramp(parameters), state(*model, parameters) {}
-
-    const std::shared_ptr<const HapticModel> model;
-    ParameterRamp ramp;
-    HapticState state;
-    std::uint64_t replacement = 0;  ///< 0 for the first, then counted by replace()
-  };
-
   struct WantedParameters {
     HapticParameters parameters;
-    std::uint64_t replacement = 0;  ///< number of their Rendering
+    std::uint64_t replacement = 0;  ///< number of the rendering that they are for
+    std::uint64_t change = 0;       ///< as Station::change_to()
   };
 
   Loop(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters, Device& of_device,
@@ -80,44 +68,40 @@ struct Station::Loop {
 
   // The loop's thread only.
   void run() noexcept;
-  void serve_requests(double now) noexcept;
-  void reset_now(double now) noexcept;
-  void serve_openings() noexcept;
-  void number_running() noexcept;
-  void end_running() noexcept;
-  void exchange_rendering() noexcept;
   void one_step(const Wake& wake) noexcept;
+  void serve_requests(double now) noexcept;
+  [[nodiscard]] unsigned confirmed_openings() noexcept;
+  void exchange_rendering() noexcept;
   void write_down(const Wake& wake, std::size_t count, double sent_at) noexcept;
+  void append(std::size_t count) noexcept;
   void freeze_history() noexcept;
 
   // Other threads.
   void ask(unsigned set, unsigned clear) noexcept;
   void check_rate(const HapticParameters& parameters) const;
 
+  /// A rendering and the number of its replace().
+  struct Incoming {
+    std::unique_ptr<Rendering> rendering;
+    std::uint64_t replacement = 0;
+  };
+
   Device& device;
-  const ChannelMap channels;
   const StationOptions options;
   const Clock& clock;
   const double period;
 
   // The loop's thread only.
-  std::unique_ptr<Rendering> rendering;
-  Safety safety;
+  StationStep step;
+  std::uint64_t replacement =
+      0;  ///< number of the rendering in force: 0 for the first, then counted by replace()
   std::vector<DeviceSample> inbox;
-  DeviceSample newest_sample;
-  bool heard = false;  ///< a sample has come since the beginning or the last reset
   bool late = false;
-  bool ending = false;
-  std::uint64_t resets_refused = 0;
-  Sample sample;
-  Status status = Status::kOk;
-  DeviceCommand command;
+  StepRecord record;  ///< of this step
   DeadlineStatistics statistics;
   History<DeviceSample> sample_history;
   History<StepRecord> step_history;
-  bool reported = false;  ///< this fault's history has been frozen
-  bool resume_after_exchange = false;
-  std::uint64_t running = 0;      ///< number of this period of SafetyState::kRunning; 0: another state
+  bool reported = false;          ///< this fault's history has been frozen
   bool wants_parameters = false;  ///< `wanted` has a value for which no ramp has begun
 
   // Shared between threads.
@@ -127,13 +111,15 @@ struct Station::Loop {
   FaultEvent frozen_event;          ///< fault of the frozen history
   LinkStatistics frozen_link;       ///< link statistics at that time
   std::atomic<bool> frozen{false};  ///< true: the history belongs to take_fault_report(), which clears it
-  std::atomic<Rendering*> incoming{nullptr};
-  std::atomic<Rendering*> outgoing{nullptr};  ///< exchanged; another thread deletes it
-  std::mutex readers;                         ///< excludes the other threads from each other
-  std::uint64_t replacements = 0;             ///< calls of replace(); guarded by `readers`
-  Latest<WantedParameters> wanted;            ///< written under `readers`
+  std::atomic<Incoming*> incoming{nullptr};
+  std::atomic<Incoming*> outgoing{nullptr};  ///< exchanged; another thread deletes it
+  std::mutex readers;                        ///< excludes the other threads from each other
+  std::uint64_t replacements = 0;            ///< calls of replace(); guarded by `readers`
+  Latest<WantedParameters> wanted;           ///< written under `readers`
   Latest<StationView> newest_view;
   Latest<DeadlineStatistics> newest_deadlines;
+  boost::lockfree::spsc_queue<DeviceSample>
+      record_samples;  ///< of the records; those of a record come before it
   boost::lockfree::spsc_queue<StepRecord> records{kRecords};
   std::uint64_t records_lost = 0;  ///< the loop's thread only
   std::optional<RealtimeGrant> grant;
@@ -149,16 +135,15 @@ void check_station_rate(double rate_hz) {
 Station::Loop::Loop(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters,
                     Device& of_device, ChannelMap map, StationOptions given, const Clock& process_clock)
     : device(of_device),
-      channels(std::move(map)),
       options(std::move(given)),
       clock(process_clock),
       period(checked_period(parameters)),
-      rendering(std::make_unique<Rendering>(std::move(model), parameters)),
-      safety(options.safety, channels, device.info(), rendering->model->hand.parameters(), options.witnesses,
-             period),
+      step(std::make_unique<Rendering>(std::move(model), parameters), std::move(map), device.info(),
+           options.safety, options.witnesses, period),
       inbox(kInbox),
       sample_history(count_of(kReportSeconds, device.info().rate_hz)),
-      step_history(count_of(kReportSeconds, parameters.rate_hz)) {
+      step_history(count_of(kReportSeconds, parameters.rate_hz)),
+      record_samples(kInbox + count_of(kRecordSeconds, device.info().rate_hz)) {
   check_watchdog(options.safety, device.info());
   statistics.period = period;
 }
@@ -181,112 +166,78 @@ void Station::Loop::run() noexcept {
 }
 
 void Station::Loop::one_step(const Wake& wake) noexcept {
+  record = {};
+  record.station = options.number;
   serve_requests(wake.now);
-  serve_openings();
+  record.input.openings = confirmed_openings();
+  step.confirm_openings(record.input.openings);
   const std::size_t count = device.receive(wake.now, inbox);
-  const std::span<const DeviceSample> samples(inbox.data(), count);
-  safety.observe(samples, device.connection_fault(), late, wake.now);
-  if (count > 0) {
-    newest_sample = samples.back();
-    heard = true;
-  }
-  if (heard) {
-    channels.convert(newest_sample, sample);
-    rendering->ramp.advance();
-    status = step(*rendering->model, rendering->ramp.parameters(), sample, rendering->state);
-  }
-  safety.command(rendering->state.snapshot(), newest_sample, wake.now, command);
-  number_running();
-  if (heard) device.send(command);
+  record.input.connection = device.connection_fault();
+  record.command =
+      step.step(std::span<const DeviceSample>(inbox.data(), count), record.input.connection, late, wake.now);
+  if (step.heard()) device.send(record.command);
   write_down(wake, count, clock.now());
 }
 
 void Station::Loop::serve_requests(double now) noexcept {
   const unsigned asked = requests.exchange(0, std::memory_order_acq_rel);
-  if ((asked & kWithdraw) != 0) end_running();
-  ending = ending || (asked & kEnd) != 0;
-  if ((asked & kStop) != 0 || ending) {
-    safety.stop();
-    resume_after_exchange = false;
+  record.input.requests = asked;
+  if (asked != 0) record.input.connection_at_requests = device.connection_fault();
+  if (step.serve(asked, record.input.connection_at_requests, now)) {
+    device.reset();
+    reported = false;
   }
-  if (ending) return;
-  if ((asked & kResume) != 0) safety.start();
-  if ((asked & kReset) != 0) reset_now(now);
+  if (step.ending()) return;
   if (incoming.load(std::memory_order_acquire) != nullptr) exchange_rendering();
   wants_parameters = wanted.update() || wants_parameters;
-  if (wants_parameters && wanted.value().replacement == rendering->replacement) {
-    rendering->ramp.go_to(wanted.value().parameters);
+  if (wants_parameters && wanted.value().replacement == replacement) {
+    step.change_to(wanted.value().parameters);
+    record.input.changed = wanted.value().change;
     wants_parameters = false;
   }
 }
 
-/// Confirms openings that belong to this period of kRunning.
-void Station::Loop::serve_openings() noexcept {
-  if (safety.state() != SafetyState::kRunning) end_running();
-  for (int digit = 0; digit < kDigits; ++digit) {
-    const std::uint64_t asked =
-        openings[static_cast<std::size_t>(digit)].exchange(0, std::memory_order_acq_rel);
-    if (asked != 0 && asked == running) rendering->state.confirm_opening(digit);
+/// @returns the digits whose opening was confirmed in this period of kRunning
+unsigned Station::Loop::confirmed_openings() noexcept {
+  unsigned digits = 0;
+  for (std::size_t digit = 0; digit < openings.size(); ++digit) {
+    const std::uint64_t asked = openings[digit].exchange(0, std::memory_order_acq_rel);
+    if (asked != 0 && asked == step.running()) digits |= 1U << digit;
   }
-}
-
-/// Numbers the periods of kRunning, over all stations.
-void Station::Loop::number_running() noexcept {
-  static std::atomic<std::uint64_t> last{0};
-  if (safety.state() != SafetyState::kRunning) return end_running();
-  if (running == 0) running = last.fetch_add(1, std::memory_order_relaxed) + 1;
-}
-
-void Station::Loop::end_running() noexcept {
-  running = 0;
-  rendering->state.withdraw_openings();
-}
-
-void Station::Loop::reset_now(double now) noexcept {
-  if (safety.state() != SafetyState::kFault) return;
-  if (!safety.reset(device.connection_fault(), now)) {
-    ++resets_refused;
-    return;
-  }
-  device.reset();
-  heard = false;
-  reported = false;
+  return digits;
 }
 
 /// Exchanges the model where there is no force: the ramp down first, then the exchange, then the start ramp.
 void Station::Loop::exchange_rendering() noexcept {
-  const SafetyState state = safety.state();
-  if (state == SafetyState::kStarting || state == SafetyState::kRunning) {
-    safety.stop();
-    resume_after_exchange = true;
-  }
-  if (!safety.at_rest() || safety.state() == SafetyState::kStopping || outgoing.load() != nullptr) return;
-  Rendering* next = incoming.exchange(nullptr, std::memory_order_acq_rel);
+  record.input.waits = true;
+  if (!step.wait_for_exchange() || outgoing.load() != nullptr) return;
+  Incoming* next = incoming.exchange(nullptr, std::memory_order_acq_rel);
   if (next == nullptr) return;
-  outgoing.store(rendering.release(), std::memory_order_release);
-  rendering.reset(next);  // frees nothing, since it is empty
-  if (std::exchange(resume_after_exchange, false)) safety.start();
+  record.input.exchanged = next->rendering->change;
+  next->rendering = step.exchange(std::move(next->rendering));
+  std::swap(next->replacement, replacement);
+  outgoing.store(next, std::memory_order_release);
 }
 
 void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_at) noexcept {
-  const Snapshot& snapshot = rendering->state.snapshot();
-  const StepRecord record{.tick = command.tick,
-                          .time = wake.now,
-                          .lateness = wake.lateness,
-                          .duration = sent_at - wake.now,
-                          .overrun = late,
-                          .samples = static_cast<std::uint32_t>(count),
-                          .sample_sequence = newest_sample.sequence,
-                          .sample_time_us = newest_sample.time_us,
-                          .state = safety.state(),
-                          .fault = safety.fault().fault,
-                          .factor = safety.factor(),
-                          .status = status,
-                          .stiffness = rendering->ramp.parameters().force.stiffness,
-                          .angle = snapshot.hcp_angle,
-                          .torque = command.torque,
-                          .force = digit_forces(snapshot)};
-  if (!records.push(record)) ++records_lost;
+  const Snapshot& snapshot = step.snapshot();
+  const Safety& safety = step.safety();
+  record.input.time = wake.now;
+  record.input.late = late;
+  record.lateness = wake.lateness;
+  record.duration = sent_at - wake.now;
+  record.samples = static_cast<std::uint32_t>(count);
+  record.sample_sequence = step.newest_sample().sequence;
+  record.sample_time_us = step.newest_sample().time_us;
+  record.state = safety.state();
+  record.fault = safety.fault().fault;
+  record.factor = safety.factor();
+  record.status = step.status();
+  record.stiffness = step.rendering().ramp.parameters().force.stiffness;
+  record.angle = snapshot.hcp_angle;
+  record.force = digit_forces(snapshot);
+  record.hash = step.hash();
+  append(count);
   if (!frozen.load(std::memory_order_acquire)) {
     for (std::size_t i = 0; i < count; ++i) sample_history.push(inbox[i]);
     step_history.push(record);
@@ -297,26 +248,38 @@ void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_
   view.snapshot = snapshot;
   view.stiffness = record.stiffness;
   view.duration = record.duration;
-  view.sent = command.torque;
+  view.sent = record.command.torque;
   view.state = safety.state();
   view.fault = safety.fault();
   view.factor = safety.factor();
   view.at_rest = safety.at_rest();
   view.degraded = statistics.degraded(wake.now);
-  view.running = running;
-  view.changing = rendering->ramp.moving() || incoming.load(std::memory_order_relaxed) != nullptr;
-  view.device = newest_sample.state;
-  view.estop = newest_sample.estop;
+  view.running = step.running();
+  view.changing = step.rendering().ramp.moving() || incoming.load(std::memory_order_relaxed) != nullptr;
+  view.device = step.newest_sample().state;
+  view.estop = step.newest_sample().estop;
   view.oscillates = safety.oscillates();
-  view.ending = ending;
-  view.resets_refused = resets_refused;
+  view.ending = step.ending();
+  view.resets_refused = step.resets_refused();
   view.link = device.statistics();
   view.records_lost = records_lost;
   newest_view.write(view);
 }
 
+/// Appends the step's record with its samples, or neither. The samples come first, so that a reader of the record finds
+/// them.
+void Station::Loop::append(std::size_t count) noexcept {
+  if (records.write_available() == 0 || record_samples.write_available() < count) {
+    ++records_lost;
+    return;
+  }
+  record_samples.push(inbox.data(), count);
+  records.push(record);
+}
+
 /// Freezes the history once the torque of a fault has come to rest, until take_fault_report().
 void Station::Loop::freeze_history() noexcept {
+  const Safety& safety = step.safety();
   if (safety.state() != SafetyState::kFault || reported || !safety.at_rest()) return;
   reported = true;
   frozen_event = safety.fault();
@@ -352,13 +315,21 @@ void Station::start() {
   loop_->thread = std::thread([loop = loop_.get()] { loop->run(); });
 }
 
-bool Station::next_record(StepRecord& record) { return loop_->records.pop(record); }
+bool Station::next_record(StepRecord& record, std::vector<DeviceSample>& samples) {
+  samples.clear();
+  if (!loop_->records.pop(record)) return false;
+  DeviceSample sample;
+  while (samples.size() < record.samples && loop_->record_samples.pop(sample)) samples.push_back(sample);
+  return true;
+}
 
 std::size_t Station::records_waiting() const { return loop_->records.read_available(); }
 
-void Station::stop_torque() noexcept { loop_->ask(Loop::kStop | Loop::kWithdraw, Loop::kResume); }
-void Station::resume_torque() noexcept { loop_->ask(Loop::kResume, Loop::kStop); }
-void Station::reset() noexcept { loop_->ask(Loop::kReset, 0); }
+void Station::stop_torque() noexcept {
+  loop_->ask(StepRequest::kStop | StepRequest::kWithdraw, StepRequest::kResume);
+}
+void Station::resume_torque() noexcept { loop_->ask(StepRequest::kResume, StepRequest::kStop); }
+void Station::reset() noexcept { loop_->ask(StepRequest::kReset, 0); }
 
 void Station::open_digit(int digit, std::uint64_t running) noexcept {
   if (digit >= 0 && digit < kDigits)
@@ -366,16 +337,18 @@ void Station::open_digit(int digit, std::uint64_t running) noexcept {
 }
 
 /// Hands over parameters for the model of the last replace(); for an earlier model, the loop drops them.
-void Station::change_to(const HapticParameters& parameters) {
+void Station::change_to(const HapticParameters& parameters, std::uint64_t change) {
   loop_->check_rate(parameters);
   check_parameters(parameters);
   const std::lock_guard lock(loop_->readers);
-  loop_->wanted.write({.parameters = parameters, .replacement = loop_->replacements});
+  loop_->wanted.write({.parameters = parameters, .replacement = loop_->replacements, .change = change});
 }
 
-void Station::replace(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters) {
+void Station::replace(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters,
+                      std::uint64_t change) {
   loop_->check_rate(parameters);
-  auto replacement = std::make_unique<Loop::Rendering>(std::move(model), parameters);
+  auto replacement = std::make_unique<Loop::Incoming>();
+  replacement->rendering = std::make_unique<Rendering>(std::move(model), parameters, change);
   const std::lock_guard lock(loop_->readers);
   replacement->replacement = ++loop_->replacements;
   delete loop_->outgoing.exchange(nullptr, std::memory_order_acq_rel);
@@ -407,7 +380,7 @@ std::optional<FaultReport> Station::take_fault_report() {
   report.steps = loop_->step_history.all();
   report.device = loop_->device.info();
   report.link = loop_->frozen_link;
-  report.angle_origin = loop_->channels.angle_origins();
+  report.angle_origin = loop_->step.channels().angle_origins();
   report.event = loop_->frozen_event;
   loop_->sample_history.clear();
   loop_->step_history.clear();
@@ -417,7 +390,7 @@ std::optional<FaultReport> Station::take_fault_report() {
 
 void Station::shut_down() noexcept {
   if (loop_->thread.joinable()) {
-    loop_->ask(Loop::kEnd, Loop::kResume | Loop::kReset);
+    loop_->ask(StepRequest::kEnd, StepRequest::kResume | StepRequest::kReset);
     // Counted, not timed: while the machine stands still, the ramp does not advance either.
     for (double waited = 0.0; waited < shut_down_within(loop_->options.safety); waited += kLook) {
       const StationView now = view();

@@ -35,6 +35,7 @@ std::shared_ptr<SessionGeometry> geometry_of(ResolvedScene scene) {
   geometry->display = std::move(scene.hand.meshes.display);
   geometry->skin = std::move(scene.hand.skin);
   geometry->object = std::move(scene.world);
+  geometry->friction = std::move(scene.friction);
   geometry->rate_hz = scene.description.parameters.rate_hz;
   return geometry;
 }
@@ -179,16 +180,27 @@ StationBuild build_station(const StationPlan& plan, SceneFile file, SceneWithVal
   return build;
 }
 
-RunningStation make_station(const StationBuild& build, const SessionSettings& settings, const Clock& clock) {
+RunningStation make_station(const StationBuild& build, const SessionSettings& settings, const Clock& clock,
+                            std::uint64_t number) {
   RunningStation running;
   const std::vector<DeviceChannel> channels = open_for(build, settings, clock, running);
   StationOptions options;
+  options.number = number;
   options.realtime = settings.realtime;
   options.ask_for_realtime = settings.ask_for_realtime;
   options.safety = build.made.safety;
   if (build.plan.source != HandSource::kSliders)
     options.witnesses = motor_witnesses(build.exoskeleton, channels, build.made.safety.joint_torque);
-  ChannelMap map(channels, followers_of(build.exoskeleton), build.made.model->hand.parameters());
+  const JointFollowers followers = followers_of(build.exoskeleton);
+  running.setup = {.source = build.plan.source,
+                   .device = running.device->info(),
+                   .channels = channels,
+                   .followers = followers,
+                   .witnesses = options.witnesses,
+                   .calibration = build.plan.calibration,
+                   .clinician = settings.clinician,
+                   .patient = build.made.safety.patient};
+  ChannelMap map(channels, followers, build.made.model->hand.parameters());
   running.station = std::make_unique<Station>(build.made.model, build.made.parameters, *running.device,
                                               std::move(map), std::move(options), clock);
   return running;

@@ -71,16 +71,18 @@ struct StationBuild {
 /// A station and its open device.
 struct RunningStation {
   std::unique_ptr<Device> device;
-  PosedDevice* sliders = nullptr;    ///< the same device if sliders move the hand, else nullptr
+  PosedDevice* sliders = nullptr;  ///< the same device if sliders move the hand, else nullptr
+  StationSetup setup;
   std::unique_ptr<Station> station;  ///< declared after the device, so that it ends before it
 };
 
 /// Opens the device, gives it the limits and the calibration, and makes the station, which shares the build's
 /// model; the caller starts it.
-/// @param clock  the process's clock; outlives the station
+/// @param clock   the process's clock; outlives the station
+/// @param number  StationOptions::number
 /// @throws DeviceError, CalibrationError, SceneError or std::invalid_argument; each names the remedy. Set-up
 /// only.
 [[nodiscard]] RunningStation make_station(const StationBuild& build, const SessionSettings& settings,
-                                          const Clock& clock);
+                                          const Clock& clock, std::uint64_t number);
 
 }  // namespace phalanx

@@ -56,7 +56,7 @@ Words options_in(const std::string& help) {
 
 TEST_F(CliCompletion, OffersEveryCommand) {
   EXPECT_THAT(offered("''"), ElementsAre("run", "simulate", "experiment", "study", "grasp", "scene", "hand",
-                                         "mesh", "device", "completion"));
+                                         "mesh", "device", "session", "replay", "completion"));
   EXPECT_THAT(offered("scene ''"), ElementsAre("list", "check", "keys", "grasps", "pictures"));
 }
 

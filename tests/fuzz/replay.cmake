@@ -6,6 +6,7 @@ set(targets
     fuzz_mesh
     fuzz_motion
     fuzz_opengloves
+    fuzz_recording
     fuzz_scene)
 set(sources ${CMAKE_CURRENT_LIST_DIR}/replay_test.cpp)
 foreach(target ${targets})
@@ -17,5 +18,5 @@ phalanx_test(
   fuzz_replay_test
   IN_ASAN
   SOURCES ${sources}
-  MODULES scene opengloves grasp simulation device step force contact hand mesh_import mesh
-  LIBRARIES assimp::assimp fmt::fmt nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus Threads::Threads)
+  MODULES mcap scene opengloves grasp simulation device step force contact hand mesh_import mesh
+  LIBRARIES phalanx_wire assimp::assimp fmt::fmt nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus Threads::Threads)

@@ -7,6 +7,7 @@ int fuzz_link(const std::uint8_t* data, std::size_t size);
 int fuzz_mesh(const std::uint8_t* data, std::size_t size);
 int fuzz_motion(const std::uint8_t* data, std::size_t size);
 int fuzz_opengloves(const std::uint8_t* data, std::size_t size);
+int fuzz_recording(const std::uint8_t* data, std::size_t size);
 int fuzz_scene(const std::uint8_t* data, std::size_t size);
 }
 
@@ -18,6 +19,7 @@ TEST(FuzzReplay, LinkFrames) { test::replay("fuzz_link", fuzz_link); }
 TEST(FuzzReplay, MeshFiles) { test::replay("fuzz_mesh", fuzz_mesh); }
 TEST(FuzzReplay, MotionFiles) { test::replay("fuzz_motion", fuzz_motion); }
 TEST(FuzzReplay, GloveMessages) { test::replay("fuzz_opengloves", fuzz_opengloves); }
+TEST(FuzzReplay, Recordings) { test::replay("fuzz_recording", fuzz_recording); }
 TEST(FuzzReplay, SceneFiles) { test::replay("fuzz_scene", fuzz_scene); }
 
 }  // namespace

@@ -34,7 +34,7 @@ FaultReport report_of_three_samples() {
   report.samples.resize(3);
   report.samples[2].raw[3] = -17;
   report.steps.resize(2);
-  report.steps[1].torque[5] = 0.25;
+  report.steps[1].command.torque[5] = 0.25;
   return report;
 }
 
@@ -65,11 +65,10 @@ std::map<std::string, std::string> first_row(const std::string& text) {
 
 /// A step that woke up 12.5 us late and took 340 us; every field has a number of its own.
 StepRecord numbered_step() {
-  StepRecord record{.tick = 300,
-                    .time = 1.25,
+  StepRecord record{.input = {.time = 1.25, .late = true},
+                    .command = {.tick = 300},
                     .lateness = 12.5e-6,
                     .duration = 340e-6,
-                    .overrun = true,
                     .samples = 2,
                     .sample_sequence = 4001,
                     .sample_time_us = 1'249'750,
@@ -79,7 +78,7 @@ StepRecord numbered_step() {
                     .status = static_cast<Status>(6),
                     .stiffness = 1400.0};
   for (std::size_t j = 0; j < kJoints; ++j) {
-    record.torque[j] = 0.25 + static_cast<double>(j);
+    record.command.torque[j] = 0.25 + static_cast<double>(j);
     record.angle[j] = -0.125 - static_cast<double>(j);
   }
   for (std::size_t d = 0; d < kDigits; ++d) record.force[d] = 100.5 + static_cast<double>(d);
@@ -120,7 +119,7 @@ TEST(StationCsv, EveryColumnOfAStepIsInTheUnitOfItsName) {
   write_step_header(file);
   write_step(file, numbered_step());
   StepRecord in_time = numbered_step();
-  in_time.overrun = false;
+  in_time.input.late = false;
   write_step(file, in_time);
   file.commit();
   const std::string text = read_file(folder / "steps.csv");
@@ -269,7 +268,7 @@ TEST(StationCsv, EveryStepHasAsManyColumnsAsTheHeader) {
   OutputFile file(folder / "steps.csv");
   write_step_header(file);
   StepRecord record;
-  record.torque[19] = 1.0 / 3.0;
+  record.command.torque[19] = 1.0 / 3.0;
   write_step(file, record);
   file.commit();
   std::istringstream lines(read_file(folder / "steps.csv"));

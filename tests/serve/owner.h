@@ -18,9 +18,10 @@ class Owner {
   explicit Owner(Session& session)
       : thread_([this, &session] {
           StepRecord record;
+          std::vector<DeviceSample> samples;
           while (!ended_) {
             session.poll();
-            while (session.next_record(record)) {
+            while (session.next_record(record, samples)) {
             }
             static_cast<void>(session.take_fault_report());
             std::this_thread::sleep_for(std::chrono::milliseconds(5));

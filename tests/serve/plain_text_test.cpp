@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/plain_text.h"
+#include "record/plain_text.h"
 
 #include <gtest/gtest.h>
 

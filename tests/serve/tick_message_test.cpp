@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/tick_message.h"
+#include "record/recording/view_message.h"
 
 #include <gtest/gtest.h>
 

@@ -44,10 +44,11 @@ class SessionFixture : public ::testing::Test {
     }
     return false;
   }
-  void own() {
+  virtual void own() {
     session->poll();
     StepRecord record;
-    while (session->next_record(record)) records.push_back(record);
+    std::vector<DeviceSample> samples;
+    while (session->next_record(record, samples)) records.push_back(record);
     if (auto report = session->take_fault_report()) reports.push_back(std::move(*report));
   }
   void sleep(double seconds) const { clock.sleep_until(clock.now() + seconds); }

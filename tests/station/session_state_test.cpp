@@ -69,7 +69,8 @@ TEST_F(SessionStateTest, TheRecordsOfTheLastFourStationsThatEndedAreKept) {
   int stations = 0;
   std::uint64_t fetched = 0;
   StepRecord record;
-  for (; state.next_record(record); ++fetched) stations += record.tick == 1 ? 1 : 0;
+  std::vector<DeviceSample> samples;
+  for (; state.next_record(record, samples); ++fetched) stations += record.command.tick == 1 ? 1 : 0;
   EXPECT_EQ(stations, 4);
   EXPECT_GE(state.statistics().records_lost, 2U) << "of the first two stations";
   EXPECT_EQ(fetched + state.statistics().records_lost, state.statistics().deadlines.steps);

@@ -546,11 +546,11 @@ TEST_F(SessionTest, AStopIsObeyedByTheNextStepWhileASceneIsBuilt) {
   pass(1.5);
   std::size_t after = 0;
   for (const StepRecord& record : records) {
-    if (record.time <= stopped) continue;
+    if (record.input.time <= stopped) continue;
     ++after;
     EXPECT_TRUE(record.state == SafetyState::kStopping || record.state == SafetyState::kStopped ||
                 (record.state == SafetyState::kWaiting && record.factor == 0.0))
-        << safety_state_name(record.state) << " " << record.time - stopped << " s after the stop";
+        << safety_state_name(record.state) << " " << record.input.time - stopped << " s after the stop";
   }
   EXPECT_GT(after, 20U);
   EXPECT_TRUE(session->held_stopped());
@@ -577,7 +577,7 @@ TEST_F(SessionTest, AStopHoldsOverEveryKindOfChange) {
   pass(1.0);
   for (const StepRecord& record : records) {
     EXPECT_EQ(record.factor, 0.0);
-    for (const double torque : record.torque) EXPECT_EQ(torque, 0.0);
+    for (const double torque : record.command.torque) EXPECT_EQ(torque, 0.0);
   }
   EXPECT_TRUE(session->held_stopped());
   EXPECT_EQ(session->view().state, SafetyState::kStopped);
@@ -611,9 +611,10 @@ TEST_F(SessionTest, AFaultIsReportedOverASwitchAndTorqueComesBackOnlyByWord) {
   session->load_scene("pinch_ball", done);
   const auto got = answer;
   StepRecord record;
+  std::vector<DeviceSample> samples;
   while (!got->refused.has_value()) {  // an owner who fetches records first, and reports late
     session->poll();
-    while (session->next_record(record)) {
+    while (session->next_record(record, samples)) {
     }
     sleep(0.005);
   }

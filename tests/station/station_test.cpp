@@ -300,7 +300,8 @@ TEST_F(StationTest, ARecordSaysWhatTheViewOfItsStepShows) {
   const StationView shown = station_->view();
   StepRecord record;
   bool found = false;
-  while (!found && station_->next_record(record)) found = record.time == shown.time;
+  std::vector<DeviceSample> samples;
+  while (!found && station_->next_record(record, samples)) found = record.input.time == shown.time;
   ASSERT_TRUE(found);
   for (int digit = 0; digit < kDigits; ++digit) {
     double force = 0.0;
@@ -309,7 +310,7 @@ TEST_F(StationTest, ARecordSaysWhatTheViewOfItsStepShows) {
     EXPECT_NEAR(record.force[static_cast<std::size_t>(digit)], force, 1e-12) << digit;
   }
   EXPECT_EQ(record.angle, shown.snapshot.hcp_angle);
-  EXPECT_EQ(record.torque, shown.sent);
+  EXPECT_EQ(record.command.torque, shown.sent);
   EXPECT_EQ(record.state, shown.state);
   EXPECT_EQ(record.factor, shown.factor);
   EXPECT_EQ(record.stiffness, shown.stiffness);

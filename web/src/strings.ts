@@ -384,6 +384,24 @@ const en = {
       s: (value: string) => `${value} s`,
     },
     histogram: (name: string, from: string, to: string) => `${name}: how often, from ${from} to ${to}`,
+    recording: "Recording",
+    notRecorded: "Nothing is recorded: the station was started with --record off.",
+    recordingFile: "File",
+    recordingSize: "Saved",
+    recordingRoom: "Room left",
+    recordingMissing: "Missing steps",
+    megabytes: (value: string) => `${value} MB`,
+    gigabytes: (value: string) => `${value} GB`,
+    unsaved: (trouble: string, seconds: string) =>
+      trouble
+        ? `The disk refuses the recording (${trouble}). The last ${seconds} s are not saved; they are written as soon as it takes them.`
+        : `The disk is slow: the last ${seconds} s are not saved yet.`,
+  },
+
+  recording: {
+    on: "Recording",
+    off: "Not recorded",
+    behind: "Recording not saved",
   },
 
   fault: {

@@ -66,10 +66,10 @@ class Run {
  private:
   void serve() {
     typed_.emplace(*session_);
-    recorder_.begin(*session_);
+    recorder_.begin(*session_, clock_, recorder_settings(options_));
     seen_ = look();
     introduce();
-    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, console_);
+    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_);
     watch();
   }
 
@@ -79,6 +79,9 @@ class Run {
         fmt::format("scene {} at {} Hz, device {} (serial {}), at most {} N a digit{}", info->scene,
                     info->geometry->rate_hz, info->device.name, info->device.serial, info->fingertip_force,
                     options_.clinician.empty() ? "" : fmt::format(" (set by {})", options_.clinician)));
+    if (const auto recording = recorder_.recording())
+      console_.say(fmt::format("recording: {} ({:.1f} GB of room)", recording->file.string(),
+                               1e-9 * static_cast<double>(recording->free_bytes)));
     if (info->source == HandSource::kDevice && options_.calibration.empty())
       console_.complain(
           "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`",
@@ -140,6 +143,7 @@ class Run {
       if (page_) page_->tell("oscillation", what, true);
     }
     oscillates_ = oscillates;
+    say_recording();
     say_openings();
     const std::uint64_t refused = session_->view().resets_refused;
     if (std::exchange(resets_refused_, refused) < refused) {
@@ -148,6 +152,46 @@ class Run {
       console_.say(why, Emphasis::kError);
       if (page_) page_->tell("reset_refused", why, false);
     }
+  }
+
+  static constexpr double kLongUnsaved =
+      0.7;  ///< age of a step that is still not on the disk, of which a person is told [s]
+
+  /// Reports a disk that refuses the recording or is slow, and its return; lost steps, once more as they grow.
+  void say_recording() {
+    const auto recording = recorder_.recording();
+    if (!recording) return;
+    const bool refused = !recording->trouble.empty();
+    const bool behind = refused || recording->unsaved > kLongUnsaved;
+    if (behind != recording_behind_) {
+      recording_behind_ = behind;
+      if (!behind) {
+        tell_recording("recording: the disk takes the data again", false);
+      } else if (refused) {
+        tell_recording(
+            fmt::format(
+                "recording: the disk refuses the data ({}); the last {:.1f} s are not saved, and are "
+                "written as soon as it takes them. Make room, or connect the disk; the station goes on",
+                recording->trouble, recording->unsaved),
+            true);
+      } else {
+        tell_recording(
+            fmt::format(
+                "recording: the disk is slow; the last {:.1f} s are not saved yet. They are lost if the "
+                "power fails now",
+                recording->unsaved),
+            true);
+      }
+    }
+    if (recording->lost_steps <= 2 * recording_lost_) return;
+    recording_lost_ = recording->lost_steps;
+    tell_recording(fmt::format("recording: {} steps are missing in it; it names them", recording_lost_),
+                   true);
+  }
+
+  void tell_recording(const std::string& text, bool bad) {
+    console_.say(text, bad ? Emphasis::kError : Emphasis::kStrong);
+    if (page_) page_->tell("recording", text, false);
   }
 
   static constexpr double kReadWithin = 1.0;  ///< a line that is younger has not been read [s]
@@ -227,6 +271,7 @@ class Run {
                                          fault_remedy(event.fault));
     seen_.fault = event.time;
     console_.say("FAULT " + text, Emphasis::kError);
+    if (!page_) recorder_.event("fault", "", text);
     if (page_) page_->tell("fault", text, true);
     recorder_.write_report(std::move(report));
   }
@@ -308,8 +353,9 @@ class Run {
     tell_typed(code, text);
   }
 
-  /// Reports a typed command to the pages and the log of changes, as a page's change.
+  /// Reports a typed command to the pages and the log of changes, as a page's change, and to the recording.
   void tell_typed(const std::string& code, const std::string& text) {
+    if (!page_) recorder_.event(code, "the terminal", text);
     if (page_) page_->typed(code, text);
   }
 
@@ -370,6 +416,8 @@ class Run {
   bool quit_ = false;
   std::uint64_t resets_refused_ = 0;
   bool oscillates_ = false;
+  bool recording_behind_ = false;     ///< the user was told that steps are not saved
+  std::uint64_t recording_lost_ = 0;  ///< steps of whose loss the user was told
   std::array<ToldOpening, kDigits> openings_{};
   Seen seen_;
   double seconds_ = 0.0;
@@ -408,6 +456,9 @@ void add_run_command(CLI::App& app, Job& job) {
   run->add_flag("--no-force-feedback", options->no_force_feedback,
                 "the glove only senses: it is never told to hold a finger")
       ->excludes(watchdog);
+  run->add_option("--record", options->recordings,
+                  "folder of the recordings, a file each run (docs/recording.md); off: none")
+      ->capture_default_str();
   run->add_option("--log", options->log, "write every step to this CSV file");
   run->add_option("--summary", options->summary, "write percentiles and counts to this JSON file at the end");
   run->add_option("--fault-reports", options->faults, "folder of the fault reports")->capture_default_str();

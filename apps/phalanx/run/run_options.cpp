@@ -109,9 +109,18 @@ SessionSettings session_settings(const RunOptions& o) {
   settings.force_feedback = !o.no_force_feedback;
   settings.realtime = {.priority = o.priority, .cpu = o.cpu, .lock_memory = true};
   settings.ask_for_realtime = !o.no_realtime;
+  settings.keep_changes = o.recordings != "off";
   settings.write_calibration = [folder = o.calibrations](const Calibration& found) {
     return write_calibration(folder, found);
   };
+  return settings;
+}
+
+std::optional<RecorderSettings> recorder_settings(const RunOptions& o) {
+  if (o.recordings == "off") return std::nullopt;
+  RecorderSettings settings;
+  settings.folder = o.recordings;
+  settings.metadata = recording_metadata(PHALANX_VERSION);
   return settings;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "phalanx/record/session_recorder.h"
 #include "phalanx/station/session.h"
 
 namespace phalanx {
@@ -26,6 +27,7 @@ struct RunOptions {
   std::string object;                 ///< mesh file in place of the scene's objects
   std::optional<double> object_size_mm;
   std::string profile;
+  std::string recordings = "out/recordings";  ///< folder; "off": nothing is recorded
   std::string log;
   std::string summary;
   std::string faults = "out/faults";
@@ -51,6 +53,9 @@ struct RunOptions {
 /// Makes the station's settings from the command line of `phalanx run`.
 /// @throws SceneError or std::invalid_argument if options contradict each other
 [[nodiscard]] SessionSettings session_settings(const RunOptions& options);
+
+/// @returns the settings of the recording; none with `--record off`
+[[nodiscard]] std::optional<RecorderSettings> recorder_settings(const RunOptions& options);
 
 /// @returns a warning if the scene replaces copies that the user's own device file states, with the options
 /// that keep the file's; empty if it replaces none

@@ -63,8 +63,12 @@ WebServerSettings server_settings(const RunOptions& o) {
   return settings;
 }
 
-CockpitSettings cockpit_settings(const RunOptions& o) {
+CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder) {
   CockpitSettings settings;
+  settings.recording = [&recorder] { return recorder.recording(); };
+  settings.on_notice = [&recorder](const std::string& code, const std::string& who, const std::string& text) {
+    recorder.event(code, who, text);
+  };
   settings.log = o.audit;
   settings.uploads = o.uploads;
   settings.version = PHALANX_VERSION;
@@ -74,10 +78,10 @@ CockpitSettings cockpit_settings(const RunOptions& o) {
 }  // namespace
 
 struct RunPage::Parts {
-  Parts(const RunOptions& o, Session& session)
+  Parts(const RunOptions& o, Session& session, RunRecorder& recorder)
       : options(o),
         settings(server_settings(o)),
-        cockpit(session, cockpit_settings(o)),
+        cockpit(session, cockpit_settings(o, recorder)),
         server(settings, cockpit) {
     cockpit.attach(server, is_loopback(o.listen)
                                ? std::vector<std::string>()
@@ -148,8 +152,8 @@ void check_page_options(const RunOptions& o) {
   }
 }
 
-RunPage::RunPage(const RunOptions& options, Session& session, RunConsole& console)
-    : parts_(std::make_unique<Parts>(options, session)) {
+RunPage::RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console)
+    : parts_(std::make_unique<Parts>(options, session, recorder)) {
   parts_->server.start();
   parts_->introduce(console);
 }

@@ -7,6 +7,7 @@
 #include "phalanx/station/session.h"
 #include "run/run_console.h"
 #include "run/run_options.h"
+#include "run/run_recorder.h"
 
 namespace phalanx {
 
@@ -20,7 +21,7 @@ class RunPage {
   /// Binds the server, shows the page's addresses on the console, and serves.
   /// @param session, console  outlive the page
   /// @throws WebServerError or std::runtime_error, naming the remedy
-  RunPage(const RunOptions& options, Session& session, RunConsole& console);
+  RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console);
   ~RunPage();
 
   /// Writes a line for each address. Addresses with a token are written to a terminal only.

@@ -15,8 +15,10 @@
 namespace phalanx {
 namespace {
 
-/// Interval of fetching steps. The station holds 4 s of unfetched steps at 2 kHz.
-constexpr std::chrono::milliseconds kBetweenFetches{50};
+/// Interval of fetching steps, and of recording the hand. The station holds 4 s of unfetched steps at 2 kHz.
+constexpr std::chrono::microseconds kBetweenFetches{16'667};
+
+constexpr int kTries = 3;  ///< to end a recording
 
 }  // namespace
 
@@ -33,9 +35,19 @@ std::filesystem::path RunRecorder::finished_earlier() const {
   return log_ ? log_->finished_earlier() : std::filesystem::path();
 }
 
-void RunRecorder::begin(Session& session) {
+void RunRecorder::begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings) {
   session_ = &session;
+  if (settings) recording_ = std::make_unique<SessionRecorder>(*std::move(settings), session, clock);
   thread_ = start_nice_thread("phalanx-record", [this] { work(); });
+}
+
+void RunRecorder::event(const std::string& code, const std::string& who, const std::string& text) {
+  if (recording_) recording_->event(code, who, text);
+}
+
+std::optional<RecordingStatus> RunRecorder::recording() const {
+  if (!recording_) return std::nullopt;
+  return recording_->status();
 }
 
 void RunRecorder::write_report(FaultReport report) {
@@ -57,6 +69,19 @@ void RunRecorder::finish(bool in_good_order) noexcept {
   thread_.join();
   if (in_good_order) commit();
   log_.reset();
+  if (recording_) finish_recording();
+}
+
+void RunRecorder::finish_recording() noexcept {
+  for (int tries = 0; tries < kTries; ++tries)
+    if (recording_->finish()) return;
+  lost_ = true;
+  complain([&] {
+    const RecordingStatus status = recording_->status();
+    return fmt::format(
+        "the recording has no end: {}; what {} holds is kept, and `phalanx session repair` ends it",
+        status.trouble, status.file.string());
+  });
 }
 
 template <class Text>
@@ -87,12 +112,36 @@ void RunRecorder::work() noexcept {
 /// Fetches and writes all steps. Without a log, too: the station must not keep a fetched record.
 void RunRecorder::write_steps() noexcept {
   StepRecord record;
+  while (session_->next_record(record, samples_)) {
+    record_step(record);
+    log_step(record);
+  }
   try {
-    while (session_->next_record(record))
-      if (log_) write_step(*log_, record);
+    if (recording_) recording_->update();
+  } catch (const std::exception& error) {
+    complain([&] { return "the recording lacks something of the hand or an event: " + reason(error); });
+  }
+  try {
     if (log_) log_->write_through();
   } catch (const std::exception& error) {
-    if (log_) give_up_log(error);
+    give_up_log(error);
+  }
+}
+
+/// Without memory for it, the step is missing, and the recording names it with the next one.
+void RunRecorder::record_step(const StepRecord& record) noexcept {
+  try {
+    if (recording_) recording_->add(record, samples_);
+  } catch (const std::exception& error) {
+    complain([&] { return "a step could not be recorded: " + reason(error); });
+  }
+}
+
+void RunRecorder::log_step(const StepRecord& record) noexcept {
+  try {
+    if (log_) write_step(*log_, record);
+  } catch (const std::exception& error) {
+    give_up_log(error);
   }
 }
 

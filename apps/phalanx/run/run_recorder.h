@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that `phalanx run` writes while it runs: its log, and the reports of its faults.
+// The files that `phalanx run` writes while it runs: its recording, its log, and the reports of its faults.
 #pragma once
 
 #include <atomic>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "phalanx/record/output_file.h"
+#include "phalanx/record/session_recorder.h"
 #include "phalanx/station/session.h"
 
 namespace phalanx {
@@ -39,10 +42,15 @@ class RunRecorder {
 
   /// @returns OutputFile::finished_earlier() of the log.
   [[nodiscard]] std::filesystem::path finished_earlier() const;
-  /// Starts the thread.
-  /// @param session  outlives the recorder
-  /// @throws std::system_error if no thread can be made
-  void begin(Session& session);
+  /// Begins the recording, and starts the thread.
+  /// @param session   outlives the recorder, as does `clock`
+  /// @param settings  none: nothing is recorded
+  /// @throws std::system_error if no thread can be made; as SessionRecorder
+  void begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings);
+  /// Adds something that happened to the recording, if there is one. Any thread.
+  void event(const std::string& code, const std::string& who, const std::string& text);
+  /// @returns the state of the recording; empty: nothing is recorded. Any thread.
+  [[nodiscard]] std::optional<RecordingStatus> recording() const;
   void write_report(FaultReport report);
   [[nodiscard]] std::optional<Note> next_note();
   /// Writes the steps that the station still holds, and ends the thread. Call
@@ -50,14 +58,17 @@ class RunRecorder {
   /// @param in_good_order  false: the log keeps the name FILE.partial, so that it does not replace
   /// a finished log
   void finish(bool in_good_order) noexcept;
-  /// @returns true if a log could not be written to its end
+  /// @returns true if a log or the recording could not be written to its end
   [[nodiscard]] bool lost() const noexcept { return lost_; }
 
  private:
   void work() noexcept;
   void write_steps() noexcept;
+  void record_step(const StepRecord& record) noexcept;
+  void log_step(const StepRecord& record) noexcept;
   void write_reports() noexcept;
   void commit() noexcept;
+  void finish_recording() noexcept;
   void give_up_log(const std::exception& error) noexcept;
   // Both leave the note out if there is no memory for it. `text` returns the text, and `make` the note.
   template <class Text>
@@ -67,7 +78,9 @@ class RunRecorder {
 
   const std::filesystem::path reports_;
   Session* session_ = nullptr;
-  std::optional<OutputFile> log_;  ///< the thread uses it while there is one
+  std::unique_ptr<SessionRecorder> recording_;  ///< null: nothing is recorded
+  std::optional<OutputFile> log_;               ///< the thread uses it while there is one
+  std::vector<DeviceSample> samples_;           ///< of the step being written
   std::atomic<bool> lost_{false};
   std::atomic<bool> ending_{false};
 

@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "phalanx/record/session_recorder.h"
 #include "phalanx/serve/web_server.h"
 #include "phalanx/station/session.h"
 
@@ -20,6 +22,11 @@ struct CockpitSettings {
   std::filesystem::path uploads;  ///< folder for meshes that pages send; created with the first
   std::string version;            ///< of the program, for people
   std::function<double()> clock;  ///< monotonic [s]; empty: the system's. For tests
+  std::function<std::optional<RecordingStatus>()> recording =
+      {};  ///< state of the recording; empty: nothing is recorded
+  /// Gets each notice with its code, who made the change, and its text; on the server's thread.
+  std::function<void(const std::string& code, const std::string& who, const std::string& text)> on_notice =
+      {};
 };
 
 /// Application behind the web server: connects the pages with a Session.

@@ -18,6 +18,7 @@
 #include "phalanx/hand/hand_model.h"
 #include "phalanx/hand/hand_skin.h"
 #include "phalanx/scene/scene.h"
+#include "phalanx/station/session_change.h"
 #include "phalanx/station/session_statistics.h"
 #include "phalanx/station/station.h"
 
@@ -28,9 +29,6 @@ class ImportCache;
 struct HapticModel;
 class SessionState;
 class SessionWorker;
-
-/// Source of the hand's motion.
-enum class HandSource { kDevice, kPatient, kSliders };
 
 /// Settings of a Session.
 struct SessionSettings {
@@ -43,6 +41,7 @@ struct SessionSettings {
   bool force_feedback = true;           ///< false: a glove that only senses (DeviceInfo::actuated)
   RealtimeRequest realtime;             ///< for the loop's thread
   bool ask_for_realtime = true;         ///< false: the loop and the link are ordinary threads
+  bool keep_changes = false;            ///< for next_change()
   /// Writes the calibration wizard's result, on the worker's thread.
   /// @returns the file's path. @throws if it cannot
   std::function<std::string(const Calibration&)> write_calibration;
@@ -57,7 +56,8 @@ struct SessionGeometry {
   SegmentMeshes segment;  ///< meshes of the contact search
   SegmentMeshes display;  ///< meshes that are shown without a skin
   std::optional<HandSkin> skin;
-  TriangleMesh object;  ///< in W
+  TriangleMesh object;                   ///< in W
+  std::vector<ObjectFriction> friction;  ///< of the objects in it
   double rate_hz = 0.0;
   std::shared_ptr<const HapticModel> model;  ///< of the same hand and object
 };
@@ -173,8 +173,13 @@ class Session {
 
   // ---- for one thread at a time
   /// Fetches the next step's record, station by station, also after shut_down().
+  /// @param samples  receives the samples of the step
   /// @returns true if there was one
-  [[nodiscard]] bool next_record(StepRecord& record);
+  [[nodiscard]] bool next_record(StepRecord& record, std::vector<DeviceSample>& samples);
+  /// Fetches the next change, with SessionSettings::keep_changes. A change comes before the first record of a step that
+  /// names it: fetch records first, then all changes, and look for those of the records.
+  /// @returns true if there was one
+  [[nodiscard]] bool next_change(SessionChange& change);
 
   // ---- the owner's thread
   /// Answers the changes that are done. Returns at once; call it every 20 ms or so.

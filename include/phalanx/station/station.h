@@ -32,6 +32,7 @@ struct StationOptions {
   bool ask_for_realtime = true;         ///< false: the loop is an ordinary thread
   SafetySettings safety;                ///< of the safety gate
   std::vector<MotorWitness> witnesses;  ///< motors of the device; empty: no sensor is compared with a motor
+  std::uint64_t number = 0;             ///< repeated in each StepRecord
 };
 
 /// Checks that a station can run at this rate.
@@ -70,19 +71,23 @@ class Station {
   /// and the method among `none`, `smoothing` and `rise_only`. All other parameters stay as they are,
   /// whatever `parameters` has. An exchange on its way comes first.
   /// @throws std::invalid_argument if a parameter is out of its range, or the rate differs
-  void change_to(const HapticParameters& parameters);
+  /// @param change  number for StepInput::changed
+  void change_to(const HapticParameters& parameters, std::uint64_t change = 0);
   /// Exchanges the model, or the parameters of the same model: the torque ramps to zero, the exchange
   /// follows, then the start ramp. If an earlier exchange still waits, this one takes its place. It makes the
   /// state beside the loop.
   /// @throws as HapticState, or std::invalid_argument if the rate differs: that needs a new station
-  void replace(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters);
+  /// @param change  number for StepInput::exchanged
+  void replace(std::shared_ptr<const HapticModel> model, const HapticParameters& parameters,
+               std::uint64_t change = 0);
 
   [[nodiscard]] StationView view() const;
   [[nodiscard]] DeadlineStatistics deadlines() const;
   /// @returns the scheduling that the system granted to the loop; empty until the loop has begun.
   [[nodiscard]] std::optional<RealtimeGrant> grant() const;
   /// Fetches the next step's record, in order. @returns true if there was one
-  [[nodiscard]] bool next_record(StepRecord& record);
+  /// @param samples  receives the samples of the step
+  [[nodiscard]] bool next_record(StepRecord& record, std::vector<DeviceSample>& samples);
   /// @returns how many records are left for next_record(). Call it after shut_down(), and not
   /// beside that one.
   [[nodiscard]] std::size_t records_waiting() const;

@@ -37,13 +37,40 @@ struct StationView {
   std::uint64_t records_lost = 0;  ///< StepRecords that were not fetched in time
 };
 
-/// One step, for logs and fault reports.
+/// Requests of other threads that a step serves, as bits.
+struct StepRequest {
+  enum : unsigned {
+    kStop = 1,
+    kResume = 2,
+    kReset = 4,
+    kEnd = 8,       ///< ramps to zero for good
+    kWithdraw = 16  ///< ends the present period of SafetyState::kRunning
+  };
+};
+
+/// All that a step depends on, besides its samples, the station's set-up and the steps before. With these a replay makes
+/// the step again, to the last bit.
+struct StepInput {
+  double time = 0.0;                            ///< the host's clock at the start of the step [s]
+  bool late = false;                            ///< the step before ended after this one was due
+  unsigned requests = 0;                        ///< bits of StepRequest
+  Fault connection_at_requests = Fault::kNone;  ///< Device::connection_fault() when they were served
+  unsigned openings = 0;                        ///< digits whose opening was confirmed: bit d for digit d
+  bool waits = false;                           ///< another rendering waited for the torque to come to rest
+  std::uint64_t exchanged =
+      0;                      ///< number of the change whose rendering is in force from this step on; 0: none
+  std::uint64_t changed = 0;  ///< number of the change whose parameters it begins to go over to; 0: none
+  Fault connection = Fault::kNone;  ///< Device::connection_fault() after the samples had been fetched
+};
+
+/// One step, for recordings, logs and fault reports.
 struct StepRecord {
-  std::uint64_t tick = 0;
-  double time = 0.0;                  ///< the host's clock at the start of the step [s]
+  std::uint64_t station = 0;  ///< StationOptions::number
+  StepInput input;
+  DeviceCommand command;              ///< that left for the device; it is sent once a sample has come
+  std::uint64_t hash = 0;             ///< of angles, forces and command (StationStep::hash())
   double lateness = 0.0;              ///< lateness of the waking-up [s]
   double duration = 0.0;              ///< from the start until the command was handed to the device [s]
-  bool overrun = false;               ///< the step before ended after this one was due
   std::uint32_t samples = 0;          ///< number of new samples at this step
   std::uint32_t sample_sequence = 0;  ///< sequence number of the newest sample
   std::uint64_t sample_time_us = 0;   ///< time of the newest sample, the device's clock [us]
@@ -53,7 +80,6 @@ struct StepRecord {
   Status status = Status::kOk;
   double stiffness = 0.0;  ///< stiffness of the force law at this step [N/m]
   JointArray angle{};      ///< HCP [rad]
-  JointArray torque{};     ///< sent [Nm]
   DigitArray force{};      ///< sum of the magnitudes on each digit [N]
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/report/html.h"
+#include "figures/html.h"
 #include "study/report/study_view.h"
 
 namespace phalanx {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "figures/chart/svg.h"
+#include "figures/html.h"
 #include "phalanx/simulation/closed_loop/stability_criterion.h"
 #include "phalanx/study/laboratory/report.h"
-#include "study/report/html.h"
 #include "study/report/study_pictures.h"
 #include "study/report/study_view.h"
 #include "study/report/study_warnings.h"

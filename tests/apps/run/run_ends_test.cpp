@@ -321,7 +321,7 @@ TEST_F(RunEnds, ALogOfWhichNothingCouldBeWrittenIsNotNamed) {
   const Descriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
   Ends output = pipe_from_program();
   RunningStation station(folder, {nothing.number(), output.theirs.number(), output.theirs.number()},
-                         {"--headless", "--no-realtime"}, R"(ulimit -f 0; exec "$@")");
+                         {"--headless", "--no-realtime", "--record", "off"}, R"(ulimit -f 0; exec "$@")");
   station.pass(1.0);
   ASSERT_TRUE(station.runs());
   station.signal(SIGTERM);

@@ -33,7 +33,7 @@ int run_with(const testing::TemporaryFolder& folder, const std::string& lines) {
                               "' | "
                               "PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM
                               "' run --device sliders --port 0 --no-realtime --quiet --slow-motion 4 "
-                              "--audit changes.jsonl >out 2>err";
+                              "--record recordings --audit changes.jsonl >out 2>err";
   return std::system(command.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
 }
 
@@ -66,7 +66,7 @@ TEST(Typed, AResumeDoesNotUndoAStopThatThePersonHadNotSeen) {
   const std::string script = R"(
     until_there() { echo "waits for $1 in $2" >&2; grep -qm1 -- "$1" <(tail --pid=$$ -n +1 -F "$2" 2>/dev/null); }
     mkfifo typed
-    "$PROGRAM" run --device sliders --port 0 --no-realtime --quiet --audit changes.jsonl <typed >out 2>err &
+    "$PROGRAM" run --device sliders --port 0 --no-realtime --quiet --record recordings --audit changes.jsonl <typed >out 2>err &
     station=$!
     exec 4>typed
     until_there http: out

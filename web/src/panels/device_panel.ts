@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device and the loop that drives it.
-import type { Link, Loop, State } from "../gen/phalanx/cockpit_pb";
+import type { Link, Loop, Recording, State } from "../gen/phalanx/cockpit_pb";
 import { strings } from "../strings";
 import type { App } from "./app";
-import { el, section, setShown } from "./dom";
+import { el, section, setShown, setText } from "./dom";
+import { isBehind } from "./recording";
 import { faultSection } from "./fault_card";
 import { histogram } from "./histogram";
 import { wizardSection } from "./wizard";
@@ -50,6 +51,21 @@ function linkFacts(link: Link): readonly Fact[] {
   ];
 }
 
+function size(bytes: bigint): string {
+  const megabytes = Number(bytes) / 1e6;
+  const rounded = (value: number) => value.toLocaleString(strings.locale, { maximumFractionDigits: 1 });
+  return megabytes < 1000 ? words.megabytes(rounded(megabytes)) : words.gigabytes(rounded(megabytes / 1000));
+}
+
+function recordingFacts(recording: Recording): readonly Fact[] {
+  return [
+    [words.recordingFile, recording.file],
+    [words.recordingSize, size(recording.bytes)],
+    [words.recordingRoom, size(recording.freeBytes)],
+    [words.recordingMissing, count(recording.lostSteps), recording.lostSteps > 0n],
+  ];
+}
+
 /// The same rows, without what is no longer known.
 const unknown = (facts: readonly Fact[]): readonly Fact[] => facts.map(([label]) => [label, strings.dash]);
 
@@ -66,6 +82,9 @@ export function devicePanel(app: App): HTMLElement {
   const device = el("dl", { class: "facts" });
   const link = el("dl", { class: "facts facts-narrow" });
   const loop = el("dl", { class: "facts facts-narrow" });
+  const recording = el("dl", { class: "facts" });
+  const unsaved = el("p", { class: "warning", role: "status" });
+  const notRecorded = el("p", {}, words.notRecorded);
   const holds = el("p", { class: "warning", role: "status" }, words.holdsWithoutHost);
   const degraded = el("p", { class: "warning", role: "status" }, words.degraded);
   const lateness = histogram(words.lateness);
@@ -79,6 +98,10 @@ export function devicePanel(app: App): HTMLElement {
     showFacts(device, said(deviceFacts(state)));
     showFacts(link, state.link ? said(linkFacts(state.link)) : []);
     showFacts(loop, numbers ? said(loopFacts(numbers)) : []);
+    showFacts(recording, state.recording ? said(recordingFacts(state.recording)) : []);
+    setShown(notRecorded, !state.recording);
+    setText(unsaved, state.recording ? words.unsaved(state.recording.trouble, state.recording.unsaved.toFixed(1)) : "");
+    setShown(unsaved, live && state.recording !== undefined && isBehind(state.recording));
     setShown(holds, state.holdsWithoutHost);
     setShown(degraded, state.degraded && live);
     lateness.show(live ? numbers?.lateness : undefined);
@@ -94,5 +117,6 @@ export function devicePanel(app: App): HTMLElement {
     wizardSection(app),
     section(words.loop, degraded, loop, lateness.element, step.element),
     section(words.link, link),
+    section(words.recording, unsaved, notRecorded, recording),
   );
 }

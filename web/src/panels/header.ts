@@ -5,6 +5,7 @@ import type { App } from "./app";
 import { button, el, setShown, setSwitch, setText, switchButton } from "./dom";
 import { helpDialog } from "./dialog";
 import type { Look } from "./look";
+import { recordingChip } from "./recording";
 import { operatorName } from "./role_strip";
 
 export function header(app: App, look: Look): HTMLElement {
@@ -40,6 +41,7 @@ export function header(app: App, look: Look): HTMLElement {
     scene,
     source,
     who,
+    recordingChip(app),
     el("div", { class: "header-tools" }, light, large, button("?", () => helpDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
   );
 }

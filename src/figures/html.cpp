@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/html.h"
+#include "figures/html.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/tick_message.h"
+#include "record/recording/view_message.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,6 +76,14 @@ wire::Opening::Phase wire_phase(OpeningPhase phase) noexcept {
   return wire::Opening::UNCONFIRMED;
 }
 
+void put_durations(const Histogram& histogram, wire::Durations& out) {
+  out.set_p50_us(static_cast<float>(histogram.percentile_us(50.0)));
+  out.set_p99_us(static_cast<float>(histogram.percentile_us(99.0)));
+  out.set_p999_us(static_cast<float>(histogram.percentile_us(99.9)));
+  out.set_max_us(static_cast<float>(histogram.max_us()));
+  for (std::size_t k = 0; k < Histogram::kOctaves; ++k) out.add_octave(histogram.in_octave(k));
+}
+
 void put_opening(int digit, const DigitOpening& opening, std::uint64_t running, wire::Opening& out) {
   out.set_digit(static_cast<std::uint32_t>(digit));
   out.set_phase(wire_phase(opening.phase));
@@ -101,6 +109,20 @@ wire::SafetyState wire_state(SafetyState state) noexcept {
       return wire::SAFETY_FAULT;
   }
   return wire::SAFETY_FAULT;
+}
+
+wire::HandSource wire_source(HandSource source) noexcept {
+  if (source == HandSource::kDevice) return wire::HAND_DEVICE;
+  return source == HandSource::kPatient ? wire::HAND_PATIENT : wire::HAND_SLIDERS;
+}
+
+void write_loop(const DeadlineStatistics& deadlines, wire::Loop& out) {
+  out.set_period(deadlines.period);
+  out.set_steps(deadlines.steps);
+  out.set_overruns(deadlines.overruns);
+  out.set_skipped(deadlines.skipped);
+  put_durations(deadlines.lateness, *out.mutable_lateness());
+  put_durations(deadlines.step, *out.mutable_step());
 }
 
 void write_tick(const StationView& view, wire::Tick& out) {

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// phalanx session: the recordings of `phalanx run`. phalanx replay: one of them, played again.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "commands.h"
+#include "phalanx/figures/recording_page.h"
+#include "phalanx/record/output_file.h"
+#include "phalanx/record/recordings.h"
+#include "phalanx/record/replay.h"
+#include "terminal/progress.h"
+#include "usage.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFolder = "out/recordings";
+
+/// Options of the commands.
+struct SessionOptions {
+  std::string folder = kFolder;
+  std::string file;
+  std::string out;
+  bool confirmed = false;
+  bool quiet = false;
+};
+
+/// Finds a recording by its path, by its name in the folder, or as "last".
+fs::path found(const SessionOptions& o) {
+  std::error_code ignored;
+  if (o.file == "last") {
+    const std::vector<RecordingSummary> all = list_recordings(o.folder);
+    if (all.empty())
+      throw std::invalid_argument(fmt::format(
+          "there is no recording in {}; `phalanx run` makes one, and --folder names another folder",
+          o.folder));
+    return all.back().file;
+  }
+  for (const fs::path& name :
+       {fs::path(o.file), fs::path(o.folder) / o.file, fs::path(o.folder) / (o.file + ".mcap")})
+    if (fs::is_regular_file(name, ignored)) return name;
+  throw std::invalid_argument(
+      fmt::format("there is no recording {}, and none of that name in {}; `phalanx session list` shows them",
+                  o.file, o.folder));
+}
+
+void say_repaired(const fs::path& file, const RepairedRecording& repaired) {
+  fmt::print(stderr, "{} had no end or was damaged; it is whole again, with {} chunks. The original is {}\n",
+             file.string(), repaired.chunks, repaired.original.string());
+  for (const std::string& loss : repaired.losses) fmt::print(stderr, "  lost: {}\n", loss);
+}
+
+/// Finds a recording, and repairs it if it has no end.
+fs::path opened(const SessionOptions& o) {
+  const fs::path file = found(o);
+  const RecordingSummary summary = summarise_recording(file);
+  if (summary.written)
+    throw std::invalid_argument(fmt::format("{} is being written; end that run first", file.string()));
+  if (summary.has_end) return file;
+  const RepairedRecording repaired = repair_recording(file);
+  if (repaired.changed) say_repaired(file, repaired);
+  return file;
+}
+
+std::string date_text(double utc) {
+  return utc <= 0.0 ? "unknown"
+                    : fmt::format("{:%Y-%m-%d %H:%M:%S}Z", fmt::gmtime(static_cast<std::time_t>(utc)));
+}
+
+std::string state_text(const RecordingSummary& recording) {
+  if (recording.written) return "being written";
+  if (!recording.has_end) return "no end: repair";
+  if (!recording.trouble.empty()) return recording.trouble;
+  return recording.gaps > 0 ? fmt::format("{} gaps", recording.gaps) : "whole";
+}
+
+int list(const SessionOptions& o) {
+  const std::vector<RecordingSummary> all = list_recordings(o.folder);
+  if (all.empty()) {
+    fmt::print("no recordings in {}\n", o.folder);
+    return kDone;
+  }
+  fmt::print("{:<26} {:<20} {:>9} {:>9} {:>8}  {:<16} {}\n", "file", "begin", "duration", "steps", "MB",
+             "scene", "state");
+  for (const RecordingSummary& recording : all)
+    fmt::print("{:<26} {:<20} {:>9} {:>9} {:>8.1f}  {:<16} {}\n", recording.file.filename().string(),
+               date_text(recording.begin),
+               recording.has_end ? fmt::format("{:.1f} s", recording.seconds) : "-",
+               recording.has_end ? std::to_string(recording.steps) : "-",
+               1e-6 * static_cast<double>(recording.bytes), recording.scene.empty() ? "-" : recording.scene,
+               state_text(recording));
+  return kDone;
+}
+
+int show(const SessionOptions& o) {
+  const fs::path file = opened(o);
+  const RecordingSummary summary = summarise_recording(file);
+  ProgressBar bar("reading", !o.quiet);
+  const RecordingContent content =
+      read_recording(file, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
+  const fs::path out = o.out.empty() ? fs::path(file).replace_extension(".html") : fs::path(o.out);
+  write_text_file(out, recording_page_html(summary, content));
+  fmt::print(
+      "{}\n  {}, {:.1f} s, {} steps, {} events, {} gaps\n  scene {}, device {}, recorded by Phalanx {}\n  "
+      "page: {}\n",
+      file.string(), date_text(summary.begin), summary.seconds, summary.steps, summary.events, summary.gaps,
+      summary.scene, summary.device, summary.version, out.string());
+  return kDone;
+}
+
+int repair(const SessionOptions& o) {
+  const fs::path file = found(o);
+  const RepairedRecording repaired = repair_recording(file);
+  if (repaired.changed)
+    say_repaired(file, repaired);
+  else
+    fmt::print("{} is whole: {} chunks, all with the right checksum\n", file.string(), repaired.chunks);
+  return kDone;
+}
+
+int remove(const SessionOptions& o) {
+  const fs::path file = found(o);
+  const RecordingSummary summary = summarise_recording(file);
+  if (summary.written)
+    throw std::invalid_argument(fmt::format("{} is being written; end that run first", file.string()));
+  if (!o.confirmed)
+    throw std::invalid_argument(
+        fmt::format("{} ({}, {:.1f} MB) would be gone for good; type the same with --yes", file.string(),
+                    date_text(summary.begin), 1e-6 * static_cast<double>(summary.bytes)));
+  fs::remove(file);
+  fmt::print("deleted {}\n", file.string());
+  return kDone;
+}
+
+int play_again(const SessionOptions& o) {
+  const fs::path file = opened(o);
+  ReplayResult result;
+  {
+    ProgressBar bar("replaying", !o.quiet);
+    result = replay(file, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
+  }
+  fmt::print("{}: {} stations, {} steps in {:.1f} s; {} made again, {} different\n", file.string(),
+             result.stations, result.steps, result.seconds, result.compared, result.different);
+  if (result.missing > 0)
+    fmt::print(
+        "  {} steps are missing in the file; {} after them, up to the next station, cannot be made again\n",
+        result.missing, result.not_compared);
+  if (!result.exact)
+    fmt::print(
+        "  recorded on another kind of processor ({}): compared to {} Nm and rad, not to the last bit\n",
+        result.recorded_on, ReplayResult::kTolerance);
+  if (result.other_version) fmt::print("  computed by another version: {}\n", result.recorded_by);
+  if (result.first)
+    fmt::print(
+        "  first difference: station {}, step {} at {:.3f} s: {}\n  largest difference of a torque: {} Nm\n",
+        result.first->station, result.first->tick, result.first->time, result.first->what,
+        result.largest_torque);
+  else if (result.exact)
+    fmt::print("  every force, angle and command has the same bits\n");
+  return result.different == 0 ? kDone : kFailed;
+}
+
+CLI::Option* add_file(CLI::App& command, SessionOptions& options) {
+  command.add_option("--folder", options.folder, "folder of the recordings")
+      ->capture_default_str()
+      ->type_name("DIR");
+  return command.add_option("FILE", options.file, "a recording: its path, its name in the folder, or last")
+      ->required();
+}
+
+}  // namespace
+
+void add_session_command(CLI::App& app, Job& job) {
+  CLI::App* session =
+      app.add_subcommand("session", "The recordings of `phalanx run`: list, show, repair, delete");
+  session->require_subcommand(1);
+  auto options = std::make_shared<SessionOptions>();
+  const auto add = [&](const char* name, const char* help, int (*work)(const SessionOptions&), bool file) {
+    CLI::App* command = session->add_subcommand(name, help);
+    if (file)
+      add_file(*command, *options);
+    else
+      command->add_option("--folder", options->folder, "folder of the recordings")
+          ->capture_default_str()
+          ->type_name("DIR");
+    command->callback([options, command, work, &job] {
+      refuse_empty_values(*command);
+      job = [options, work] { return work(*options); };
+    });
+    return command;
+  };
+  add("list", "List the recordings of a folder", list, false);
+  CLI::App* shown = add("show", "Draw forces and events of a recording on one page", show, true);
+  shown->add_option("--out", options->out, "the page [beside the recording]")->type_name("FILE.html");
+  shown->add_flag("--quiet", options->quiet, "no progress bar");
+  add("repair", "Keep what is whole of a recording that has no end or is damaged", repair, true);
+  add("delete", "Delete a recording", remove, true)
+      ->add_flag("--yes", options->confirmed, "delete without asking");
+}
+
+void add_replay_command(CLI::App& app, Job& job) {
+  auto options = std::make_shared<SessionOptions>();
+  CLI::App* command = app.add_subcommand(
+      "replay",
+      "Make every step of a recording again, through the code that the station runs, and compare its bits");
+  command->footer("Exit codes: 0 all steps are the same, 1 some differ, 2 wrong usage or input.");
+  add_file(*command, *options);
+  command->add_flag("--quiet", options->quiet, "no progress bar");
+  command->callback([options, command, &job] {
+    refuse_empty_values(*command);
+    job = [options] { return play_again(*options); };
+  });
+}
+
+}  // namespace phalanx

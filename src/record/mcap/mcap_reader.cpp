@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "record/mcap/mcap_reader.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <new>
+#include <system_error>
+
+namespace phalanx::mcap {
+namespace {
+
+constexpr std::uint64_t kFooterBytes = kRecordHead + 20;
+
+ChunkEntry parse_chunk_index(std::string_view content) {
+  Cursor fields(content);
+  ChunkEntry chunk;
+  chunk.first = fields.u64();
+  chunk.last = fields.u64();
+  chunk.place = fields.u64();
+  chunk.length = fields.u64();
+  Cursor places(fields.raw(fields.u32()));
+  while (!places.empty()) {
+    const std::uint16_t channel = places.u16();
+    chunk.index[channel] = places.u64();
+  }
+  chunk.index_length = fields.u64();
+  chunk.compression = fields.text();
+  chunk.compressed = fields.u64();
+  chunk.uncompressed = fields.u64();
+  return chunk;
+}
+
+/// @returns the numbers of messages by channel of a Statistics record
+std::map<std::uint16_t, std::uint64_t> parse_message_counts(std::string_view content) {
+  Cursor fields(content);
+  static_cast<void>(fields.raw(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8));
+  Cursor counts(fields.raw(fields.u32()));
+  std::map<std::uint16_t, std::uint64_t> messages;
+  while (!counts.empty()) {
+    const std::uint16_t channel = counts.u16();
+    messages[channel] = counts.u64();
+  }
+  return messages;
+}
+
+}  // namespace
+
+ReadableFile::ReadableFile(const std::filesystem::path& file)
+    : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), file.string());
+  struct stat status{};
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    throw McapError(fmt::format("{} is no regular file; name a recording", file.string()));
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+ReadableFile::~ReadableFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void ReadableFile::read(std::uint64_t place, std::uint64_t length, std::string& out) const {
+  out.clear();
+  if (place >= size_) return;
+  length = std::min(length, size_ - place);
+  if (descriptor_ < 0) {
+    out.assign(bytes_.substr(static_cast<std::size_t>(place), static_cast<std::size_t>(length)));
+    return;
+  }
+  out.resize(static_cast<std::size_t>(length));
+  std::size_t done = 0;
+  while (done < out.size()) {
+    const ssize_t count =
+        ::pread(descriptor_, out.data() + done, out.size() - done, static_cast<off_t>(place + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw std::system_error(errno, std::generic_category(), "read");
+    if (count == 0) break;  // it was cut meanwhile
+    done += static_cast<std::size_t>(count);
+  }
+  out.resize(done);
+}
+
+void read_record(const ReadableFile& file, std::uint64_t place, Record& record) {
+  std::string head;
+  file.read(place, kRecordHead, head);
+  if (head.size() < kRecordHead) throw McapError("the file ends in the head of a record");
+  Cursor fields(head);
+  record.op = static_cast<Op>(fields.u8());
+  record.place = place;
+  const std::uint64_t length = fields.u64();
+  if (length > file.size() - place - kRecordHead)
+    throw McapError("a record is longer than the rest of the file");
+  if (length > kMostBytes)
+    throw McapError(fmt::format("a record has {} bytes; at most {} are read", length, kMostBytes));
+  file.read(place + kRecordHead, length, record.content);
+  if (record.content.size() != length) throw McapError("the file ends in a record");
+}
+
+Schema parse_schema(std::string_view content) {
+  Cursor fields(content);
+  Schema schema;
+  schema.id = fields.u16();
+  schema.name = fields.text();
+  schema.encoding = fields.text();
+  schema.data = fields.text();
+  if (schema.id == 0) throw McapError("a schema has the number 0");
+  return schema;
+}
+
+Channel parse_channel(std::string_view content) {
+  Cursor fields(content);
+  Channel channel;
+  channel.id = fields.u16();
+  channel.schema = fields.u16();
+  channel.topic = fields.text();
+  channel.message_encoding = fields.text();
+  static_cast<void>(fields.map());
+  return channel;
+}
+
+ChunkReader::ChunkReader() : context_(::ZSTD_createDCtx()) {
+  if (context_ == nullptr) throw std::bad_alloc();
+}
+
+ChunkReader::~ChunkReader() { ::ZSTD_freeDCtx(context_); }
+
+void ChunkReader::read(std::string_view content, Chunk& chunk) {
+  Cursor fields(content);
+  chunk.first = fields.u64();
+  chunk.last = fields.u64();
+  const std::uint64_t size = fields.u64();
+  const std::uint32_t crc = fields.u32();
+  chunk.compression = fields.text();
+  const std::string_view packed = fields.raw(fields.u64());
+  chunk.compressed = packed.size();
+  if (size > kMostBytes)
+    throw McapError(fmt::format("a chunk has {} bytes; at most {} are read", size, kMostBytes));
+  if (chunk.compression.empty()) {
+    chunk.records = packed;
+  } else if (chunk.compression == "zstd") {
+    // The frame's own word on its size comes first: it must not be trusted, but it saves the memory of a chunk that lies.
+    if (::ZSTD_getFrameContentSize(packed.data(), packed.size()) != size)
+      throw McapError("a chunk does not have the size that it states");
+    chunk.records.resize(static_cast<std::size_t>(size));
+    const std::size_t got = ::ZSTD_decompressDCtx(context_, chunk.records.data(), chunk.records.size(),
+                                                  packed.data(), packed.size());
+    if (::ZSTD_isError(got) != 0 || got != size) throw McapError("a chunk cannot be decompressed");
+  } else {
+    throw McapError(
+        fmt::format("a chunk is compressed by '{}'; only zstd is known", chunk.compression.substr(0, 40)));
+  }
+  if (chunk.records.size() != size) throw McapError("a chunk does not have the size that it states");
+  if (crc != 0 && crc32_of(chunk.records) != crc) throw McapError("a chunk's checksum is wrong");
+}
+
+McapReader::McapReader(const ReadableFile& file) : file_(file) {
+  std::string magic;
+  file.read(0, kMagic.size(), magic);
+  if (magic != kMagic) throw McapError("it does not begin as an MCAP file");
+  place_ = kMagic.size();
+}
+
+std::string_view McapReader::schema_of(std::uint16_t channel) const noexcept {
+  const auto found = channels_.find(channel);
+  if (found == channels_.end()) return {};
+  const auto schema = schemas_.find(found->second.schema);
+  return schema == schemas_.end() ? std::string_view() : schema->second.name;
+}
+
+void McapReader::read_other(Op op, std::string_view content) {
+  if (op == Op::kSchema) {
+    Schema schema = parse_schema(content);
+    schemas_.insert_or_assign(schema.id, std::move(schema));
+  } else if (op == Op::kChannel) {
+    Channel channel = parse_channel(content);
+    channels_.insert_or_assign(channel.id, std::move(channel));
+  } else if (op == Op::kMetadata) {
+    Cursor fields(content);
+    const std::string name(fields.text());
+    metadata_.insert_or_assign(name, fields.map());
+  }
+}
+
+/// @returns false at the end of the data
+bool McapReader::next_chunk() {
+  for (;;) {
+    if (place_ >= file_.size())
+      throw McapError("it has no end: the program or the machine stopped while it was written");
+    read_record(file_, place_, record_);
+    place_ = record_.end();
+    if (record_.op == Op::kDataEnd || record_.op == Op::kFooter) return false;
+    if (record_.op != Op::kChunk) {
+      read_other(record_.op, record_.content);
+      continue;
+    }
+    chunk_place_ = record_.place;
+    chunks_.read(record_.content, chunk_);
+    rest_ = chunk_.records;
+    return true;
+  }
+}
+
+bool McapReader::next(Message& message) {
+  try {
+    for (;;) {
+      while (rest_.empty()) {
+        if (!next_chunk()) {
+          place_ = file_.size();
+          rest_ = {};
+          return false;
+        }
+      }
+      Cursor rest(rest_);
+      const auto op = static_cast<Op>(rest.u8());
+      const std::string_view content = rest.raw(rest.u64());
+      rest_ = rest.rest();
+      if (op != Op::kMessage) {
+        read_other(op, content);
+        continue;
+      }
+      Cursor fields(content);
+      message.channel = fields.u16();
+      message.sequence = fields.u32();
+      message.time = fields.u64();
+      static_cast<void>(fields.u64());
+      message.data = fields.rest();
+      if (!channels_.contains(message.channel))
+        throw McapError("a message is of a channel that was not declared");
+      return true;
+    }
+  } catch (const McapError& error) {
+    throw McapError(fmt::format("at byte {}: {}", rest_.empty() ? place_ : chunk_place_, error.what()));
+  }
+}
+
+Summary read_summary(const ReadableFile& file) {
+  if (!has_end(file)) throw McapError("it has no end");
+  const std::uint64_t footer_at = file.size() - kMagic.size() - kFooterBytes;
+  Record record;
+  read_record(file, footer_at, record);
+  Cursor footer(record.content);
+  const std::uint64_t begin = footer.u64();
+  static_cast<void>(footer.u64());
+  const std::uint32_t crc = footer.u32();
+  if (begin < kMagic.size() || begin > footer_at || footer_at - begin > kMostBytes)
+    throw McapError("its footer names no summary");
+  std::string section;
+  file.read(begin, footer_at - begin + kFooterBytes - 4, section);
+  if (crc != 0 && crc32_of(section) != crc) throw McapError("its summary's checksum is wrong");
+  Summary summary;
+  Cursor rest(std::string_view(section).substr(0, static_cast<std::size_t>(footer_at - begin)));
+  while (!rest.empty()) {
+    const auto op = static_cast<Op>(rest.u8());
+    const std::string_view content = rest.raw(rest.u64());
+    if (op == Op::kSchema) summary.schemas.push_back(parse_schema(content));
+    if (op == Op::kChannel) summary.channels.push_back(parse_channel(content));
+    if (op == Op::kChunkIndex) summary.chunks.push_back(parse_chunk_index(content));
+    if (op == Op::kStatistics) summary.messages = parse_message_counts(content);
+  }
+  return summary;
+}
+
+bool has_end(const ReadableFile& file) {
+  std::string tail;
+  const std::uint64_t length = kFooterBytes + kMagic.size();
+  if (file.size() < kMagic.size() + length) return false;
+  file.read(file.size() - length, length, tail);
+  return tail.size() == length && tail[0] == static_cast<char>(Op::kFooter) && tail.ends_with(kMagic);
+}
+
+}  // namespace phalanx::mcap

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "record/mcap/mcap_repair.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace phalanx::mcap {
+namespace {
+
+constexpr std::uint64_t kBlock = 1U << 20U;  ///< read at once while a chunk is searched for [bytes]
+
+/// The repair of one file: reads one after the other, writes one after the other.
+class Repair {
+ public:
+  Repair(const ReadableFile& from, WritableFile& to) : from_(from), to_(to) {}
+
+  Repaired run() {
+    std::string magic;
+    from_.read(0, kMagic.size(), magic);
+    if (magic != kMagic) throw McapError("it does not begin as an MCAP file");
+    write(begin_of_file());
+    std::uint64_t place = kMagic.size();
+    while (place < from_.size()) {
+      try {
+        read_record(from_, place, record_);
+        if (record_.op == Op::kDataEnd || record_.op == Op::kFooter) {
+          result_.had_end = has_end(from_);
+          if (!result_.had_end) damaged(place, from_.size() - place, "the end of the file is not whole");
+          break;
+        }
+        keep();
+        place = record_.end();
+      } catch (const McapError& error) {
+        const std::uint64_t next = next_chunk(place + 1);
+        damaged(place, next - place, error.what());
+        place = next;
+      }
+    }
+    end_chunk();
+    write(end_of_file(result_.summary, place_));
+    to_.truncate(place_);
+    to_.synchronise();
+    return std::move(result_);
+  }
+
+ private:
+  void write(const Bytes& bytes) {
+    to_.write(place_, view_of(bytes));
+    place_ += bytes.size();
+  }
+
+  /// Writes the record as it is.
+  void copy() {
+    Bytes out;
+    const std::size_t record = begin_record(out, record_.op);
+    put_raw(out, record_.content);
+    end_record(out, record);
+    write(out);
+  }
+
+  /// Checks the record and writes it. @throws McapError; nothing has been written then
+  void keep() {
+    switch (record_.op) {
+      case Op::kHeader:
+        return;  // it is written already
+      case Op::kSchema:
+        result_.summary.schemas.push_back(parse_schema(record_.content));
+        return copy();
+      case Op::kChannel: {
+        Channel channel = parse_channel(record_.content);
+        result_.summary.messages.emplace(channel.id, 0);
+        result_.summary.channels.push_back(std::move(channel));
+        return copy();
+      }
+      case Op::kMetadata: {
+        Cursor fields(record_.content);
+        std::string name(fields.text());
+        static_cast<void>(fields.map());
+        result_.summary.metadata.push_back(
+            {.place = place_, .length = kRecordHead + record_.content.size(), .name = std::move(name)});
+        return copy();
+      }
+      case Op::kChunk:
+        return keep_chunk();
+      case Op::kMessageIndex:
+        return keep_index();
+      case Op::kChunkIndex:
+      case Op::kStatistics:
+      case Op::kMetadataIndex:
+      case Op::kSummaryOffset:
+        return;  // of a summary whose beginning was lost
+      default:
+        throw McapError("a record of an unknown kind");
+    }
+  }
+
+  void keep_chunk() {
+    ChunkEntry entry;
+    Cursor fields(record_.content);
+    entry.first = fields.u64();
+    entry.last = fields.u64();
+    entry.uncompressed = fields.u64();
+    static_cast<void>(fields.u32());
+    entry.compression = fields.text();
+    entry.compressed = fields.u64();
+    if (fields.rest().size() != entry.compressed || entry.last < entry.first)
+      throw McapError("a chunk whose lengths or times contradict each other");
+    const bool known = entry.compression.empty() || entry.compression == "zstd";
+    std::map<std::uint16_t, Bytes> indexes;
+    if (known) {
+      reader_.read(record_.content, chunk_);
+      for_each_message(
+          chunk_.records,
+          [&](const Message& message, std::uint64_t offset) {
+            Bytes& index = indexes[message.channel];
+            put(index, message.time);
+            put(index, offset);
+          },
+          [](Op, std::string_view) {});
+    }
+    end_chunk();
+    entry.place = place_;
+    entry.length = kRecordHead + record_.content.size();
+    copy();
+    open_ = std::move(entry);
+    own_index_ = known;
+    for (const auto& [channel, places] : indexes) put_index(channel, view_of(places));
+  }
+
+  /// Takes over the index of a chunk that cannot be read; that of others has been made anew.
+  void keep_index() {
+    if (!open_ || own_index_) return;
+    Cursor fields(record_.content);
+    const std::uint16_t channel = fields.u16();
+    const std::string_view places = fields.text();
+    if (places.size() % 16 != 0) throw McapError("an index whose length is wrong");
+    put_index(channel, places);
+  }
+
+  void put_index(std::uint16_t channel, std::string_view places) {
+    Bytes out;
+    const std::size_t record = begin_record(out, Op::kMessageIndex);
+    put(out, channel);
+    put(out, places);
+    end_record(out, record);
+    open_->index[channel] = place_;
+    open_->index_length += out.size();
+    result_.summary.messages[channel] += places.size() / 16;
+    write(out);
+  }
+
+  void end_chunk() {
+    if (open_) result_.summary.chunks.push_back(std::move(*open_));
+    open_.reset();
+  }
+
+  void damaged(std::uint64_t place, std::uint64_t length, std::string what) {
+    end_chunk();
+    result_.damages.push_back({.place = place, .length = length, .what = std::move(what)});
+  }
+
+  /// Searches for a chunk whose checksum is right. @returns its place, or the file's end
+  [[nodiscard]] std::uint64_t next_chunk(std::uint64_t place) {
+    std::string block;
+    Record candidate;
+    while (place < from_.size()) {
+      from_.read(place, kBlock, block);
+      if (block.empty()) break;
+      for (std::size_t i = block.find(static_cast<char>(Op::kChunk)); i != std::string::npos;
+           i = block.find(static_cast<char>(Op::kChunk), i + 1))
+        if (is_chunk(place + i, candidate)) return place + i;
+      place += block.size();
+    }
+    return from_.size();
+  }
+
+  [[nodiscard]] bool is_chunk(std::uint64_t place, Record& candidate) {
+    // The fields before the compressed bytes show most of the places that are none, without reading on.
+    constexpr std::uint64_t kFields = 8 + 8 + 8 + 4 + 4;
+    std::string head;
+    from_.read(place, kRecordHead + kFields, head);
+    if (head.size() < kRecordHead + kFields) return false;
+    Cursor fields(head);
+    static_cast<void>(fields.u8());
+    const std::uint64_t length = fields.u64();
+    const std::uint64_t first = fields.u64();
+    const std::uint64_t last = fields.u64();
+    const std::uint64_t size = fields.u64();
+    static_cast<void>(fields.u32());
+    if (length > from_.size() - place - kRecordHead || last < first || size > kMostBytes || fields.u32() > 64)
+      return false;
+    try {
+      read_record(from_, place, candidate);
+      reader_.read(candidate.content, chunk_);
+      return true;
+    } catch (const McapError&) {
+      return false;
+    }
+  }
+
+  const ReadableFile& from_;
+  WritableFile& to_;
+  std::uint64_t place_ = 0;  ///< in `to_`
+  Record record_;
+  ChunkReader reader_;
+  Chunk chunk_;
+  std::optional<ChunkEntry> open_;  ///< the newest chunk, whose indexes follow
+  bool own_index_ = false;
+  Repaired result_;
+};
+
+}  // namespace
+
+Repaired repair(const ReadableFile& from, WritableFile& to) { return Repair(from, to).run(); }
+
+}  // namespace phalanx::mcap

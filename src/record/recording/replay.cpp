@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "phalanx/core/index.h"
+#include "phalanx/device/channel_map.h"
+#include "phalanx/record/made.h"
+#include "record/mcap/mcap_reader.h"
+#include "record/recording/setup_message.h"
+#include "record/recording/step_message.h"
+#include "record/recording/topics.h"
+
+namespace phalanx {
+namespace {
+
+std::string channel_name(const DeviceChannel& channel) {
+  const auto joint = [&] { return std::string(joint_name(channel.index)); };
+  const auto digit = [&] { return std::string(digit_name(channel.index)); };
+  switch (channel.kind) {
+    case ChannelKind::kAngle:
+      return "angle of " + joint();
+    case ChannelKind::kTorque:
+      return "torque of " + joint();
+    case ChannelKind::kForce:
+      return "force of " + digit();
+    case ChannelKind::kMotor:
+      return fmt::format("motor {}", channel.index);
+    case ChannelKind::kCurl:
+      return "curl of " + digit();
+    case ChannelKind::kSplay:
+      return "splay of " + digit();
+  }
+  return "unknown";
+}
+
+class Replay {
+ public:
+  explicit Replay(const std::filesystem::path& file) : name_(file), file_(file), reader_(file_) {}
+
+  ReplayResult run(const std::function<void(double)>& on_progress) {
+    mcap::Message message;
+    std::uint64_t told = 0;
+    while (reader_.next(message)) {
+      const std::string_view schema = reader_.schema_of(message.channel);
+      if (schema == "phalanx.wire.Step")
+        step(parsed(step_, message));
+      else if (schema == "phalanx.wire.Setup")
+        begin(parsed(setup_, message));
+      else if (schema == "phalanx.wire.Change")
+        changes_[parsed(change_, message).number()] = change_;
+      else if (schema == "phalanx.wire.Gap")
+        gap(parsed(gap_, message));
+      if (on_progress && reader_.place() >= told) {
+        on_progress(static_cast<double>(reader_.place()) /
+                    static_cast<double>(std::max<std::uint64_t>(1, file_.size())));
+        told = reader_.place() + file_.size() / 200;
+      }
+    }
+    if (result_.stations == 0)
+      throw std::runtime_error(
+          fmt::format("{}: it holds no station; it is no recording of `phalanx run`", name_.string()));
+    origin();
+    return std::move(result_);
+  }
+
+ private:
+  template <class Wire>
+  const Wire& parsed(Wire& into, const mcap::Message& message) {
+    if (!into.ParseFromArray(message.data.data(), static_cast<int>(message.data.size())))
+      throw std::runtime_error(fmt::format("{}: message {} of channel {} does not match its schema",
+                                           name_.string(), message.sequence, message.channel));
+    return into;
+  }
+
+  /// Runs what makes something of recorded numbers. @throws std::runtime_error naming the place
+  template <class Make>
+  auto made(const std::string& place, const Make& make) {
+    try {
+      return make();
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("{}, {}: {}; replay it with the version that recorded it, {}",
+                                           name_.string(), place, error.what(), metadata("version")));
+    }
+  }
+
+  [[nodiscard]] std::string metadata(const std::string& key) const {
+    const auto phalanx = reader_.metadata().find("phalanx");
+    if (phalanx == reader_.metadata().end()) return "unknown";
+    const auto value = phalanx->second.find(key);
+    return value == phalanx->second.end() ? "unknown" : value->second;
+  }
+
+  void origin() {
+    const Made here = made_here();
+    result_.recorded_by = fmt::format("{} ({})", metadata("version"), metadata("commit"));
+    result_.recorded_on = metadata("cpu");
+    result_.other_version = metadata("commit") != here.commit;
+    result_.other_machine = !same_machine_;
+    result_.exact = same_machine_;
+  }
+
+  void begin(const wire::Setup& setup) {
+    const std::string place = fmt::format("station {}", setup.station());
+    model_ = made(place, [&] { return read_model(setup.start().model()); });
+    station_ = made(place, [&] { return read_station(setup, model_); });
+    device_ = read_device(setup);
+    same_machine_ = metadata("libm") == fmt::format("{:016x}", libm_fingerprint());
+    number_ = setup.station();
+    tick_ = 0;
+    lost_ = false;
+    ++result_.stations;
+  }
+
+  void gap(const wire::Gap& gap) {
+    if (gap.last_tick() < gap.first_tick()) return;
+    result_.missing += gap.last_tick() - gap.first_tick() + 1;
+    if (gap.station() == number_) lost_ = true;
+  }
+
+  /// @returns the rendering of a change; its parameters go with the newest model up to it
+  std::unique_ptr<Rendering> rendering_of(std::uint64_t number) {
+    return made(fmt::format("change {}", number), [&] {
+      const auto change = changes_.find(number);
+      if (change == changes_.end()) throw std::runtime_error("it is not in the file");
+      for (auto other = changes_.begin(); other != std::next(change); ++other)
+        if (other->second.has_model() && other->first > model_of_) {
+          model_ = read_model(other->second.model());
+          model_of_ = other->first;
+        }
+      return std::make_unique<Rendering>(model_, read_parameters(change->second), number);
+    });
+  }
+
+  void step(const wire::Step& recorded) {
+    ++result_.steps;
+    if (result_.steps == 1) begin_time_ = recorded.time();
+    result_.seconds = recorded.time() - begin_time_;
+    if (!station_)
+      throw std::runtime_error(fmt::format("{}: a step comes before the first station", name_.string()));
+    if (recorded.tick() != tick_ + 1) lost_ = true;
+    tick_ = recorded.tick();
+    if (lost_) {
+      ++result_.not_compared;
+      return;
+    }
+    make(recorded);
+    compare(recorded);
+  }
+
+  void make(const wire::Step& recorded) {
+    const StepInput input = read_input(recorded);
+    read_samples(recorded, samples_);
+    static_cast<void>(station_->serve(input.requests, input.connection_at_requests, input.time));
+    if (!station_->ending()) {
+      if (input.waits) static_cast<void>(station_->wait_for_exchange());
+      if (input.exchanged != 0) static_cast<void>(station_->exchange(rendering_of(input.exchanged)));
+      if (input.changed != 0) {
+        const auto change = changes_.find(input.changed);
+        station_->change_to(made(fmt::format("change {}", input.changed), [&] {
+          if (change == changes_.end()) throw std::runtime_error("it is not in the file");
+          return read_parameters(change->second);
+        }));
+      }
+    }
+    station_->confirm_openings(input.openings);
+    static_cast<void>(station_->step(samples_, input.connection, input.late, input.time));
+  }
+
+  void compare(const wire::Step& recorded) {
+    ++result_.compared;
+    const double torque = torque_difference(recorded);
+    result_.largest_torque = std::max(result_.largest_torque, torque);
+    const std::string check = channel_check(samples_, device_.channels.size());
+    const bool same_input = check == recorded.channel_check();
+    const bool same = same_machine_ ? station_->hash() == recorded.hash() : close(recorded, torque);
+    if (same && same_input) return;
+    ++result_.different;
+    if (result_.first) return;
+    result_.first = {
+        .station = number_,
+        .tick = recorded.tick(),
+        .time = recorded.time() - begin_time_,
+        .what = same_input ? output_difference(recorded) : input_difference(check, recorded.channel_check())};
+  }
+
+  [[nodiscard]] static double recorded_torque(const wire::Step& recorded, std::size_t joint) {
+    return recorded.torque_size() == kJoints ? recorded.torque(static_cast<int>(joint)) : 0.0;
+  }
+
+  [[nodiscard]] double torque_difference(const wire::Step& recorded) const {
+    double largest = 0.0;
+    for (std::size_t j = 0; j < kJoints; ++j)
+      largest = std::max(largest, std::abs(station_->command().torque[j] - recorded_torque(recorded, j)));
+    return largest;
+  }
+
+  [[nodiscard]] bool close(const wire::Step& recorded, double torque) const {
+    if (!(torque <= ReplayResult::kTolerance)) return false;
+    if (static_cast<int>(station_->safety().state()) != static_cast<int>(recorded.state())) return false;
+    for (int j = 0; j < recorded.gdp_angle_size() && j < kJoints; ++j)
+      if (!(std::abs(station_->snapshot().gdp_angle[idx(j)] - recorded.gdp_angle(j)) <=
+            ReplayResult::kTolerance))
+        return false;
+    return true;
+  }
+
+  /// Names the first channel whose raw values are not those that the station got.
+  [[nodiscard]] std::string input_difference(const std::string& check, const std::string& recorded) const {
+    for (std::size_t c = 0;
+         c < device_.channels.size() && 2 * c + 1 < std::min(check.size(), recorded.size()); ++c)
+      if (check.compare(2 * c, 2, recorded, 2 * c, 2) != 0)
+        return fmt::format("channel {} ({}): the sample in the file is not the one that the station got", c,
+                           channel_name(device_.channels[c]));
+    return "the samples in the file are not those that the station got";
+  }
+
+  [[nodiscard]] std::string output_difference(const wire::Step& recorded) const {
+    const SafetyState state = station_->safety().state();
+    if (static_cast<int>(state) != static_cast<int>(recorded.state()))
+      return fmt::format(
+          "state: recorded {}, now {}",
+          safety_state_name(static_cast<SafetyState>(std::min(recorded.state(), wire::SAFETY_FAULT))),
+          safety_state_name(state));
+    for (std::size_t j = 0; j < kJoints; ++j)
+      if (station_->command().torque[j] != recorded_torque(recorded, j))
+        return fmt::format("torque of {}: recorded {} Nm, now {} Nm", joint_name(static_cast<int>(j)),
+                           recorded_torque(recorded, j), station_->command().torque[j]);
+    if (recorded.gdp_angle_size() == kJoints)
+      for (std::size_t j = 0; j < kJoints; ++j)
+        if (station_->snapshot().gdp_angle[j] != recorded.gdp_angle(static_cast<int>(j)))
+          return fmt::format("shown angle of {}: recorded {} rad, now {} rad",
+                             joint_name(static_cast<int>(j)), recorded.gdp_angle(static_cast<int>(j)),
+                             station_->snapshot().gdp_angle[j]);
+    return "forces or angles (their hash differs; the torques that were sent are the same)";
+  }
+
+  const std::filesystem::path name_;
+  const mcap::ReadableFile file_;
+  mcap::McapReader reader_;
+  ReplayResult result_;
+  wire::Step step_;
+  wire::Setup setup_;
+  wire::Change change_;
+  wire::Gap gap_;
+  std::map<std::uint64_t, wire::Change> changes_;
+  std::uint64_t model_of_ = 0;  ///< number of the change that model_ is of
+  std::shared_ptr<const HapticModel> model_;
+  std::unique_ptr<StationStep> station_;
+  DeviceInfo device_;
+  std::vector<DeviceSample> samples_;
+  std::uint64_t number_ = 0;  ///< of the station
+  std::uint64_t tick_ = 0;
+  bool same_machine_ = true;
+  bool lost_ = false;  ///< steps of this station are missing
+  double begin_time_ = 0.0;
+};
+
+}  // namespace
+
+ReplayResult replay(const std::filesystem::path& file, const std::function<void(double)>& on_progress) {
+  try {
+    return Replay(file).run(on_progress);
+  } catch (const mcap::McapError& error) {
+    throw std::runtime_error(
+        fmt::format("{}: {}; phalanx session repair FILE keeps what is whole", file.string(), error.what()));
+  }
+}
+
+}  // namespace phalanx

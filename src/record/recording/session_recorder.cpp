@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/session_recorder.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <ctime>
+#include <deque>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "phalanx/record/made.h"
+#include "phalanx/record/output_file.h"
+#include "record/mcap/mcap_writer.h"
+#include "record/recording/setup_message.h"
+#include "record/recording/step_message.h"
+#include "record/recording/topics.h"
+#include "record/recording/view_message.h"
+
+namespace phalanx {
+namespace {
+
+constexpr double kBetweenPoses = 1.0 / 60.0;  // [s]
+constexpr double kBetweenLoops = 1.0;         // statistics of deadlines [s]
+constexpr double kBetweenClocks = 10.0;       // pairs of clocks [s]
+constexpr double kBetweenTries = 0.2;         // of a disk that refuses [s]
+constexpr const char* kTooFast = "they came faster than they were fetched";
+constexpr const char* kRefused = "the disk did not take them";
+constexpr const char* kNoMemory = "there was no memory for them";
+
+std::int64_t utc_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+
+std::uint64_t free_bytes(const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, error);
+  return error ? 0 : space.available;
+}
+
+/// Makes a file whose name is free. Two programs that start within a second get two files.
+std::unique_ptr<mcap::WritableFile> new_file(const RecorderSettings& settings, std::filesystem::path& name) {
+  prepare_output_folder(settings.folder);
+  const std::uint64_t room = free_bytes(settings.folder);
+  if (room < settings.least_room)
+    throw std::invalid_argument(fmt::format(
+        "the folder of recordings, {}, has {} MB of room left, and a recording needs at least {} MB to "
+        "begin; make room, name another folder with --record DIR, or record nothing with --record off",
+        settings.folder.string(), room >> 20U, settings.least_room >> 20U));
+  const std::string date = fmt::format("{:%Y-%m-%dT%H-%M-%SZ}", fmt::gmtime(std::time(nullptr)));
+  for (int i = 1;; ++i) {
+    name = settings.folder / (i == 1 ? date + ".mcap" : fmt::format("{}-{}.mcap", date, i));
+    try {
+      return std::make_unique<mcap::DiskFile>(name);
+    } catch (const std::system_error& error) {
+      if (error.code() != std::errc::file_exists) throw;
+    }
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> recording_metadata(const std::string& version) {
+  const Made made = made_here();
+  return {
+      {"version", version},
+      {"commit", made.commit},
+      {"cpu", made.cpu},
+      {"compiler", made.compiler},
+      {"build_type", made.build_type},
+      {"libm", fmt::format("{:016x}", libm_fingerprint())},
+      {"exact", "/setup /change /step: from these every step can be computed again, to the last bit"},
+      {"derived", "/pose, hcp_angle and gdp_angle of /step: about 60 a second, computed from the samples"}};
+}
+
+struct SessionRecorder::Impl {
+  Impl(RecorderSettings given, Session& of_session, const Clock& process_clock,
+       std::filesystem::path given_name, std::unique_ptr<mcap::WritableFile> given_file)
+      : settings(std::move(given)),
+        session(of_session),
+        clock(process_clock),
+        name(std::move(given_name)),
+        file(std::move(given_file)),
+        writer(*file, recording_schemas(), recording_channels(), {{"phalanx", settings.metadata}}),
+        begin_mono(clock.now()),
+        begin_utc(utc_ns()) {
+    now_bytes = writer.size();
+    now_free = free_bytes(name.parent_path());
+    put_clock(begin_mono);
+  }
+
+  // ---- the recorder's thread
+  void add(const StepRecord& record, std::span<const DeviceSample> samples);
+  void put_step(const StepRecord& record, std::span<const DeviceSample> samples, double now);
+  void update();
+  void put_clock(double now);
+  void put_events();
+  void put_change(const SessionChange& change, double now);
+  void fetch_station(const StepRecord& record);
+  void fetch_change(std::uint64_t number, double now);
+  void end_station(std::uint64_t of_next, double now);
+  [[nodiscard]] bool next_change();
+  void lost(std::uint64_t first, std::uint64_t last, const char* why) noexcept;
+  void put_gap(double now);
+  bool write(double now) noexcept;
+  void say_trouble(const std::exception& error) noexcept;
+  [[nodiscard]] std::uint64_t time_of(double mono) const noexcept {
+    return static_cast<std::uint64_t>(begin_utc + std::llround((mono - begin_mono) * 1e9));
+  }
+  void put(Topic topic, double now, const google::protobuf::MessageLite& message) {
+    bytes.clear();
+    message.SerializeToString(&bytes);
+    writer.add(static_cast<std::uint16_t>(topic), time_of(now), bytes);
+    if (oldest.load() == 0.0) oldest = now;
+  }
+
+  const RecorderSettings settings;
+  Session& session;
+  const Clock& clock;
+  std::filesystem::path name;
+  std::unique_ptr<mcap::WritableFile> file;
+  mcap::McapWriter writer;
+  const double begin_mono;
+  const std::int64_t begin_utc;
+
+  std::uint64_t station = 0;  ///< of the newest step
+  std::uint64_t tick = 0;     ///< of the newest step in the file, or in its gap
+  std::uint64_t change = 0;   ///< newest that was fetched
+  std::size_t channels = 0;   ///< of the device
+  double steps_to_angles = 0.0;
+  double period = 1e-3;
+  std::uint64_t ring_lost = 0;  ///< steps that the station could not hand over, as far as a gap names them
+  /// Steps that are missing, and of which the file does not say so yet.
+  struct Missing {
+    std::uint64_t station = 0;
+    std::uint64_t first = 0;
+    std::uint64_t last = 0;  ///< 0: none
+    const char* why = "";
+  };
+  Missing missing;
+  std::optional<SessionChange> waiting;  ///< fetched, and not written yet
+  double next_pose = 0.0;
+  double next_loop = 0.0;
+  double next_clock = 0.0;
+  double next_try = 0.0;
+  std::uint64_t posed = 0;  ///< tick of the newest pose
+  std::string bytes;
+  wire::Step step;
+  wire::Tick pose;
+  wire::Setup setup;
+  wire::Change changed;
+
+  // ---- shared
+  struct Happening {
+    std::string code, who, text;
+    double time = 0.0;
+  };
+  mutable std::mutex mutex;
+  std::deque<Happening> events;
+  std::string trouble;
+  std::atomic<double> oldest{0.0};  ///< time of the oldest message that is not on the disk [s]; 0: none
+  std::atomic<std::uint64_t> now_bytes{0};
+  std::atomic<std::uint64_t> now_free{0};
+  std::atomic<std::uint64_t> lost_steps{0};
+};
+
+void SessionRecorder::Impl::add(const StepRecord& record, std::span<const DeviceSample> samples) {
+  const double now = record.input.time;
+  if (record.station != station) fetch_station(record);
+  if (record.command.tick > tick + 1) {
+    ring_lost += record.command.tick - 1 - tick;
+    lost(tick + 1, record.command.tick - 1, kTooFast);
+  }
+  tick = record.command.tick;
+  if (writer.open_bytes() > kMostWaitingBytes) return lost(tick, tick, kRefused);
+  try {
+    put_step(record, samples, now);
+  } catch (...) {
+    lost(tick, tick, kNoMemory);
+    throw;
+  }
+}
+
+void SessionRecorder::Impl::put_step(const StepRecord& record, std::span<const DeviceSample> samples,
+                                     double now) {
+  put_gap(now);
+  if (record.input.exchanged > change) fetch_change(record.input.exchanged, now);
+  if (record.input.changed > change) fetch_change(record.input.changed, now);
+  steps_to_angles -= 1.0;
+  const bool with_angles = steps_to_angles <= 0.0;
+  if (with_angles) steps_to_angles += kBetweenPoses / period;
+  write_step(record, samples, channels, with_angles, step);
+  put(Topic::kStep, now, step);
+}
+
+/// Writes the setup of the station whose first step this is.
+void SessionRecorder::Impl::fetch_station(const StepRecord& record) {
+  const double now = record.input.time;
+  end_station(record.command.tick - 1, now);
+  for (bool begun = false; !begun && next_change(); waiting.reset()) {
+    put_change(*waiting, now);
+    begun = waiting->station == record.station && waiting->number == 0;
+  }
+  station = record.station;
+  tick = 0;
+  steps_to_angles = 0.0;
+}
+
+/// Names the steps that are missing at the end of a station.
+/// @param of_next  steps that are missing at the beginning of the next one
+void SessionRecorder::Impl::end_station(std::uint64_t of_next, double now) {
+  const std::uint64_t all = session.statistics().records_lost;
+  if (station != 0 && all > ring_lost + of_next) {
+    const std::uint64_t at_end = all - ring_lost - of_next;
+    ring_lost += at_end;
+    lost(tick + 1, tick + at_end, kTooFast);
+  }
+  put_gap(now);
+}
+
+void SessionRecorder::Impl::fetch_change(std::uint64_t number, double now) {
+  for (; change < number && next_change(); waiting.reset()) put_change(*waiting, now);
+}
+
+/// Fetches the next change, unless one waits already because there was no memory to write it. @returns false: there is none
+bool SessionRecorder::Impl::next_change() {
+  if (waiting) return true;
+  SessionChange next;
+  if (!session.next_change(next)) return false;
+  waiting = std::move(next);
+  return true;
+}
+
+void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
+  if (next.number != 0) {
+    write_change(next, changed);
+    put(Topic::kChange, now, changed);
+    change = next.number;
+    return;
+  }
+  channels = next.setup->channels.size();
+  period = 1.0 / next.geometry->rate_hz;
+  write_change(next, session.settings().device, setup);
+  put(Topic::kSetup, now, setup);
+}
+
+/// Notes steps that are lost; the gap is written before the next step.
+void SessionRecorder::Impl::lost(std::uint64_t first, std::uint64_t last, const char* why) noexcept {
+  if (missing.last == 0) missing = {.station = station, .first = first, .last = last, .why = why};
+  missing.last = last;
+  lost_steps += last - first + 1;
+}
+
+void SessionRecorder::Impl::put_gap(double now) {
+  if (missing.last == 0) return;
+  wire::Gap gap;
+  gap.set_station(missing.station);
+  gap.set_first_tick(missing.first);
+  gap.set_last_tick(missing.last);
+  gap.set_why(missing.why);
+  put(Topic::kGap, now, gap);
+  missing = {};
+}
+
+void SessionRecorder::Impl::put_clock(double now) {
+  wire::ClockPair pair;
+  pair.set_monotonic(clock.now());
+  pair.set_utc_ns(utc_ns());
+  put(Topic::kClock, now, pair);
+}
+
+void SessionRecorder::Impl::put_events() {
+  for (;;) {
+    std::unique_lock lock(mutex);
+    if (events.empty()) return;
+    const Happening next = std::move(events.front());
+    events.pop_front();
+    lock.unlock();
+    wire::Event event;
+    event.set_code(next.code);
+    event.set_who(next.who);
+    event.set_text(next.text);
+    put(Topic::kEvent, next.time, event);
+  }
+}
+
+void SessionRecorder::Impl::update() {
+  const double now = clock.now();
+  if (writer.open_bytes() <= kMostWaitingBytes) {
+    put_events();
+    if (now >= next_pose) {
+      next_pose = std::max(next_pose + kBetweenPoses, now);
+      const StationView view = session.view();
+      if (view.time > 0.0 && view.snapshot.tick != posed) {
+        posed = view.snapshot.tick;
+        write_tick(view, pose);
+        put(Topic::kPose, view.time, pose);
+      }
+    }
+    if (now >= next_loop) {
+      next_loop = now + kBetweenLoops;
+      wire::Loop loop;
+      write_loop(session.deadlines(), loop);
+      put(Topic::kLoop, now, loop);
+      now_free = free_bytes(name.parent_path());
+    }
+    if (now >= next_clock) {
+      next_clock = now + kBetweenClocks;
+      put_clock(now);
+    }
+  }
+  const double since = oldest.load();
+  if (since != 0.0 && now - since >= kChunkSeconds && now >= next_try) write(now);
+}
+
+/// Writes the chunk. @returns false if the disk refuses
+bool SessionRecorder::Impl::write(double now) noexcept {
+  try {
+    writer.write_chunk();
+    oldest = 0.0;
+    now_bytes = writer.size();
+    const std::lock_guard lock(mutex);
+    trouble.clear();
+    return true;
+  } catch (const std::exception& error) {
+    next_try = now + kBetweenTries;
+    say_trouble(error);
+    return false;
+  }
+}
+
+void SessionRecorder::Impl::say_trouble(const std::exception& error) noexcept {
+  const std::lock_guard lock(mutex);
+  try {
+    trouble = error.what();
+  } catch (const std::bad_alloc&) {
+    trouble = "no memory";  // short: needs none
+  }
+}
+
+std::unique_ptr<SessionRecorder::Impl> SessionRecorder::begun(RecorderSettings settings, Session& session,
+                                                              const Clock& clock) {
+  std::filesystem::path name;
+  try {
+    auto file = new_file(settings, name);
+    return std::make_unique<Impl>(settings, session, clock, name, std::move(file));
+  } catch (const std::system_error& error) {
+    std::error_code ignored;
+    std::filesystem::remove(name, ignored);  // it holds nothing
+    throw std::runtime_error(fmt::format(
+        "the recording {} cannot be written ({}); name another folder with --record DIR, or record nothing "
+        "with --record off",
+        name.string(), error.code().message()));
+  }
+}
+
+SessionRecorder::SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock)
+    : impl_(begun(std::move(settings), session, clock)) {}
+
+SessionRecorder::SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock,
+                                 std::filesystem::path name, std::unique_ptr<mcap::WritableFile> file)
+    : impl_(std::make_unique<Impl>(std::move(settings), session, clock, std::move(name), std::move(file))) {}
+
+SessionRecorder::~SessionRecorder() = default;
+
+void SessionRecorder::add(const StepRecord& record, std::span<const DeviceSample> samples) {
+  impl_->add(record, samples);
+}
+
+void SessionRecorder::update() { impl_->update(); }
+
+bool SessionRecorder::finish() noexcept {
+  Impl& impl = *impl_;
+  const double now = impl.clock.now();
+  try {
+    impl.end_station(0, now);
+    for (; impl.next_change(); impl.waiting.reset()) impl.put_change(*impl.waiting, now);
+    impl.put_events();
+    impl.put_clock(now);
+    impl.writer.finish();
+    impl.oldest = 0.0;
+    impl.now_bytes = impl.writer.size();
+    return true;
+  } catch (const std::exception& error) {
+    impl.say_trouble(error);
+    return false;
+  }
+}
+
+void SessionRecorder::event(const std::string& code, const std::string& who, const std::string& text) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->events.push_back({.code = code, .who = who, .text = text, .time = impl_->clock.now()});
+}
+
+RecordingStatus SessionRecorder::status() const {
+  const double since = impl_->oldest.load();
+  RecordingStatus status{.file = impl_->name,
+                         .bytes = impl_->now_bytes,
+                         .free_bytes = impl_->now_free,
+                         .unsaved = since == 0.0 ? 0.0 : std::max(0.0, impl_->clock.now() - since),
+                         .lost_steps = impl_->lost_steps,
+                         .trouble = {}};
+  const std::lock_guard lock(impl_->mutex);
+  status.trouble = impl_->trouble;
+  return status;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The channels of a recording.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "record/mcap/mcap_writer.h"
+
+namespace phalanx {
+
+/// Numbers of the channels, and of their schemas.
+enum class Topic : std::uint16_t { kSetup = 1, kChange, kStep, kPose, kEvent, kGap, kClock, kLoop };
+
+struct TopicName {
+  Topic topic;
+  std::string_view name;
+  std::string_view schema;
+};
+inline constexpr std::array<TopicName, 8> kTopics = {{
+    {Topic::kSetup, "/setup", "phalanx.wire.Setup"},
+    {Topic::kChange, "/change", "phalanx.wire.Change"},
+    {Topic::kStep, "/step", "phalanx.wire.Step"},
+    {Topic::kPose, "/pose", "phalanx.wire.Tick"},
+    {Topic::kEvent, "/event", "phalanx.wire.Event"},
+    {Topic::kGap, "/gap", "phalanx.wire.Gap"},
+    {Topic::kClock, "/clock", "phalanx.wire.ClockPair"},
+    {Topic::kLoop, "/loop", "phalanx.wire.Loop"},
+}};
+
+/// @returns the schemas of all channels; each holds the FileDescriptorSet of its message with all that it imports
+[[nodiscard]] std::vector<mcap::Schema> recording_schemas();
+[[nodiscard]] std::vector<mcap::Channel> recording_channels();
+
+}  // namespace phalanx

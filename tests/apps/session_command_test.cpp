@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "apps/run_program.h"
+#include "record/temporary_folder.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::TemporaryFolder;
+
+/// A folder with one recording of a second.
+class CliSession : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto run = run_program(folder, "run index_ball --headless --no-realtime --quiet --seconds 1");
+    ASSERT_THAT(run.out, HasSubstr("recording: out/recordings/"));
+    for (const auto& entry : fs::directory_iterator(folder / "out/recordings")) file = entry.path();
+    ASSERT_TRUE(fs::exists(file));
+  }
+  /// @returns what a command says, with its exit code before it
+  std::string said(const std::string& command) {
+    const auto result = run_program(folder, command);
+    return std::to_string(result.exit_code) + " " + result.out + result.err;
+  }
+  void cut_end() const { fs::resize_file(file, fs::file_size(file) - 300); }
+
+  const TemporaryFolder folder;
+  fs::path file;
+};
+
+TEST_F(CliSession, ListsShowsReplaysAndDeletes) {
+  const std::string name = file.filename().string();
+  EXPECT_THAT(said("session list"), HasSubstr(name));
+  EXPECT_THAT(said("session list"), HasSubstr("index_ball       whole"));
+  EXPECT_THAT(said("session show last --quiet"), HasSubstr("scene index_ball"));
+  const std::string page = testing::read_file(fs::path(file).replace_extension(".html"));
+  EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_THAT(page, HasSubstr("scene index_ball, device beihang"));
+  EXPECT_THAT(said("replay " + name + " --quiet"),
+              HasSubstr("every force, angle and command has the same bits"));
+  EXPECT_THAT(
+      said("simulate pinch_ball --quiet --seconds 0.2 --motion out/recordings/" + name + " --out played"),
+      HasSubstr("0 "));
+  EXPECT_TRUE(fs::exists(folder / "played/ticks.csv"));
+  EXPECT_THAT(said("session delete last"), HasSubstr("type the same with --yes"));
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_THAT(said("session delete " + name + " --yes"), HasSubstr("deleted"));
+  EXPECT_FALSE(fs::exists(file));
+  EXPECT_THAT(said("session show last"), HasSubstr("there is no recording in out/recordings"));
+}
+
+TEST_F(CliSession, WhatHasNoEndIsRepairedWhenItIsOpened) {
+  cut_end();
+  EXPECT_THAT(said("session list"), HasSubstr("no end: repair"));
+  const std::string shown = said("replay last --quiet");
+  EXPECT_THAT(shown, HasSubstr("it is whole again"));
+  EXPECT_THAT(shown, HasSubstr(" 0 different"));
+  EXPECT_TRUE(fs::exists(file.string() + ".torn"));
+  EXPECT_THAT(said("session repair last"), HasSubstr("is whole"));
+}
+
+TEST_F(CliSession, RefusesInWords) {
+  EXPECT_THAT(said("replay nope"),
+              HasSubstr("2 phalanx: there is no recording nope, and none of that name in out/recordings"));
+  std::ofstream(folder / "text.mcap") << "a text";
+  EXPECT_THAT(said("replay text.mcap"), HasSubstr("2 phalanx: text.mcap: it does not begin as an MCAP file"));
+  EXPECT_THAT(said("session repair text.mcap"), HasSubstr("there is nothing to repair"));
+  EXPECT_THAT(said("session list --folder nowhere"), HasSubstr("no recordings in nowhere"));
+  std::ofstream(folder / "taken") << "a file";
+  EXPECT_THAT(said("run index_ball --headless --no-realtime --seconds 1 --record taken"),
+              HasSubstr("output folder 'taken' is a file"));
+  EXPECT_THAT(said("run index_ball --headless --no-realtime --quiet --seconds 0.2 --record off"),
+              Not(HasSubstr("recording:")));
+}
+
+}  // namespace
+}  // namespace phalanx

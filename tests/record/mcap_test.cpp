@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "record/mcap/mcap_reader.h"
+#include "record/mcap/mcap_repair.h"
+#include "record/mcap/mcap_writer.h"
+#include "record/memory_file.h"
+#include "record/temporary_folder.h"
+
+namespace phalanx::mcap {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr std::uint64_t kSecond = 1'000'000'000;
+
+std::vector<Schema> schemas() {
+  return {{.id = 1, .name = "one", .encoding = "protobuf", .data = "descriptor"}};
+}
+std::vector<Channel> channels() {
+  return {{.id = 1, .schema = 1, .topic = "/a", .message_encoding = "protobuf"},
+          {.id = 2, .schema = 1, .topic = "/b", .message_encoding = "protobuf"}};
+}
+
+/// Writes `count` messages on two channels, `per_chunk` a chunk.
+void write_messages(WritableFile& file, int count, int per_chunk, bool finish) {
+  McapWriter writer(file, schemas(), channels(), {{"made", {{"by", "test"}}}});
+  std::mt19937_64 random(7);
+  for (int i = 0; i < count; ++i) {
+    std::string data = std::to_string(i) + " ";
+    for (int k = 0; k < 40; ++k) data.push_back(static_cast<char>(random()));
+    writer.add(i % 3 == 0 ? 2 : 1, kSecond + static_cast<std::uint64_t>(i) * 1'000'000, data);
+    if (i % per_chunk == per_chunk - 1) writer.write_chunk();
+  }
+  if (finish) writer.finish();
+}
+
+/// @returns the number before the first space of each message, in their order
+std::vector<int> numbers_in(std::string_view bytes) {
+  const ReadableFile file(InMemory{bytes});
+  McapReader reader(file);
+  std::vector<int> numbers;
+  Message message;
+  while (reader.next(message)) numbers.push_back(std::stoi(std::string(message.data)));
+  return numbers;
+}
+
+std::vector<int> up_to(int count) {
+  std::vector<int> numbers(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) numbers[static_cast<std::size_t>(i)] = i;
+  return numbers;
+}
+
+Repaired repaired(std::string_view bytes, std::string& out) {
+  const ReadableFile file(InMemory{bytes});
+  test::MemoryFile to;
+  Repaired result = repair(file, to);
+  out = to.content;
+  return result;
+}
+
+/// The places at which the chunks of a file end, with the indexes that follow them, and how many messages come before.
+std::vector<std::pair<std::uint64_t, int>> chunk_ends(std::string_view bytes, int per_chunk) {
+  std::string whole;
+  std::vector<std::pair<std::uint64_t, int>> ends;
+  const Repaired result = repaired(bytes, whole);
+  for (std::size_t i = 0; i < result.summary.chunks.size(); ++i)
+    ends.emplace_back(result.summary.chunks[i].place + result.summary.chunks[i].length,
+                      per_chunk * static_cast<int>(i + 1));
+  return ends;
+}
+
+TEST(Mcap, WhatIsWrittenIsReadInItsOrder) {
+  test::MemoryFile file;
+  write_messages(file, 250, 50, true);
+  EXPECT_EQ(numbers_in(file.content), up_to(250));
+  const ReadableFile readable(InMemory{file.content});
+  EXPECT_TRUE(has_end(readable));
+  McapReader reader(readable);
+  Message message;
+  ASSERT_TRUE(reader.next(message));
+  EXPECT_EQ(message.channel, 2);
+  EXPECT_EQ(message.time, kSecond);
+  EXPECT_EQ(reader.channels().at(1).topic, "/a");
+  EXPECT_EQ(reader.schema_of(2), "one");
+  EXPECT_EQ(reader.metadata().at("made").at("by"), "test");
+}
+
+TEST(Mcap, AFileWithoutAnEndIsRefusedWhereItEnds) {
+  test::MemoryFile file;
+  write_messages(file, 100, 50, false);
+  EXPECT_THAT([&] { static_cast<void>(numbers_in(file.content)); },
+              ThrowsMessage<McapError>(HasSubstr("has no end")));
+  EXPECT_THAT([] { static_cast<void>(numbers_in("a text")); },
+              ThrowsMessage<McapError>(HasSubstr("does not begin as an MCAP file")));
+}
+
+TEST(Mcap, AChunkWithAFlippedBitIsRefused) {
+  test::MemoryFile file;
+  write_messages(file, 100, 50, true);
+  std::string bytes = file.content;
+  const auto ends = chunk_ends(bytes, 50);
+  bytes[static_cast<std::size_t>(ends[0].first) - 200] ^= 4;
+  EXPECT_THROW(static_cast<void>(numbers_in(bytes)), McapError);
+}
+
+TEST(Mcap, ARepairedWholeFileIsTheSameFile) {
+  test::MemoryFile file;
+  write_messages(file, 250, 50, true);
+  std::string out;
+  const Repaired result = repaired(file.content, out);
+  EXPECT_TRUE(result.had_end);
+  EXPECT_TRUE(result.damages.empty());
+  EXPECT_EQ(out, file.content);
+}
+
+TEST(Mcap, OfAThousandTruncationsEveryCompleteChunkIsKept) {
+  test::MemoryFile file;
+  write_messages(file, 2000, 50, true);
+  const auto ends = chunk_ends(file.content, 50);
+  const std::uint64_t begin = file.operations.front().bytes.size();
+  constexpr std::uint64_t kSeed = 20261127;
+  std::mt19937_64 random(kSeed);
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint64_t length = begin + random() % (file.content.size() - begin);
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", case " + std::to_string(i) + ", length " +
+                 std::to_string(length));
+    int complete = 0;
+    for (const auto& [end, messages] : ends)
+      if (end <= length) complete = messages;
+    std::string out;
+    static_cast<void>(repaired(std::string_view(file.content).substr(0, length), out));
+    ASSERT_EQ(numbers_in(out), up_to(complete));
+    ASSERT_TRUE(has_end(ReadableFile(InMemory{out})));
+  }
+}
+
+TEST(Mcap, AfterADamagedPartTheNextChunksAreKept) {
+  test::MemoryFile file;
+  write_messages(file, 500, 50, true);
+  const auto ends = chunk_ends(file.content, 50);
+  constexpr std::uint64_t kSeed = 3;
+  std::mt19937_64 random(kSeed);
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", case " + std::to_string(i));
+    std::string bytes = file.content;
+    const std::size_t begin = static_cast<std::size_t>(ends[2].first) + random() % 100;
+    const std::size_t length = 1 + random() % 300;
+    for (std::size_t k = begin; k < begin + length; ++k) bytes[k] = static_cast<char>(random());
+    std::string out;
+    const Repaired result = repaired(bytes, out);
+    const std::vector<int> kept = numbers_in(out);
+    // The damage is in the indexes of the third chunk, which are made again, in the fourth chunk, or in both.
+    ASSERT_GE(kept.size(), 450U);
+    for (const int number : kept) ASSERT_TRUE(number < 500);
+    for (int number = 0; number < 500; ++number)
+      if (number < 150 || number >= 200) {
+        ASSERT_THAT(kept, ::testing::Contains(number));
+      }
+  }
+}
+
+TEST(Mcap, AChunkThatTheDiskRefusedIsWrittenAtItsPlace) {
+  test::MemoryFile file;
+  McapWriter writer(file, schemas(), channels(), {});
+  writer.add(1, kSecond, "0 ");
+  writer.write_chunk();
+  const std::uint64_t size = writer.size();
+  writer.add(1, 2 * kSecond, "1 ");
+  file.refuses = ENOSPC;
+  EXPECT_THROW(writer.write_chunk(), std::system_error);
+  EXPECT_TRUE(writer.pending());
+  writer.add(1, 3 * kSecond, "2 ");
+  EXPECT_THROW(writer.write_chunk(), std::system_error);
+  EXPECT_EQ(writer.size(), size);
+  file.refuses = 0;
+  writer.write_chunk();
+  EXPECT_FALSE(writer.pending());
+  writer.finish();
+  EXPECT_EQ(numbers_in(file.content), up_to(3));
+}
+
+TEST(Mcap, NoLengthInTheFileIsBelieved) {
+  test::MemoryFile file;
+  write_messages(file, 100, 50, true);
+  constexpr std::uint64_t kSeed = 11;
+  std::mt19937_64 random(kSeed);
+  for (int i = 0; i < 2000; ++i) {
+    std::string bytes = file.content;
+    for (int k = 0; k < 4; ++k)
+      bytes[8 + random() % (bytes.size() - 8)] = static_cast<char>(random() % 3 == 0 ? 0xff : random());
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", case " + std::to_string(i));
+    try {
+      static_cast<void>(numbers_in(bytes));
+    } catch (const McapError&) {
+    } catch (const std::invalid_argument&) {  // stoi: a message that is none of ours
+    }
+    std::string out;
+    try {
+      static_cast<void>(repaired(bytes, out));
+    } catch (const McapError&) {
+    }
+  }
+}
+
+TEST(Mcap, AnUnknownCompressionIsKeptByARepair) {
+  test::MemoryFile file;
+  write_messages(file, 150, 50, true);
+  std::string bytes = file.content;
+  std::size_t changed = 0;
+  for (std::size_t at = bytes.find("\x04\0\0\0zstd", 0, 8); at != std::string::npos;
+       at = bytes.find("\x04\0\0\0zstd", at + 1, 8)) {
+    bytes.replace(at + 4, 4, "none");
+    ++changed;
+  }
+  ASSERT_EQ(changed, 6U) << "three chunks, three indexes of them";
+  std::string out;
+  const Repaired result = repaired(bytes.substr(0, bytes.size() - 100), out);
+  EXPECT_EQ(result.summary.chunks.size(), 3U);
+  EXPECT_EQ(result.summary.messages.at(1) + result.summary.messages.at(2), 150U);
+  EXPECT_THAT([&] { static_cast<void>(numbers_in(out)); },
+              ThrowsMessage<McapError>(HasSubstr("compressed by 'none'")));
+}
+
+TEST(Mcap, AFileIsLockedWhileItIsWritten) {
+  const testing::TemporaryFolder folder;
+  const auto name = folder / "a.mcap";
+  {
+    DiskFile file(name);
+    write_messages(file, 100, 50, true);
+    EXPECT_TRUE(is_being_written(name));
+    EXPECT_THROW(DiskFile{name}, std::system_error);
+  }
+  EXPECT_FALSE(is_being_written(name));
+  EXPECT_EQ(numbers_in(testing::read_file(name)), up_to(100));
+}
+
+}  // namespace
+}  // namespace phalanx::mcap

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recording of a run: what the page says of it, and whether an independent reader accepts it, also after the program was killed.
+import { execFileSync } from "node:child_process";
+import { existsSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { McapIndexedReader, McapStreamReader, type McapTypes } from "@mcap/core";
+import { decompress } from "fzstd";
+import { describe, expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import { programPath } from "./support/program";
+import { stage, unseen } from "./support/stage";
+
+const play = stage();
+const decompressHandlers: McapTypes.DecompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
+
+const recordings = (folder: string) => readdirSync(join(folder, "out/recordings")).map((name) => join(folder, "out/recordings", name));
+
+/// All messages by topic, read from the beginning to the end, with all checksums.
+function streamed(file: string): Map<string, number> {
+  const reader = new McapStreamReader({ decompressHandlers, validateCrcs: true });
+  reader.append(readFileSync(file));
+  const topics = new Map<number, string>();
+  const counts = new Map<string, number>();
+  for (let record; (record = reader.nextRecord()); ) {
+    if (record.type === "Channel") topics.set(record.id, record.topic);
+    if (record.type !== "Message") continue;
+    const topic = topics.get(record.channelId)!;
+    counts.set(topic, (counts.get(topic) ?? 0) + 1);
+  }
+  expect(reader.done()).toBe(true);
+  return counts;
+}
+
+/// The same through the index at its end.
+async function indexed(file: string): Promise<{ counts: Map<string, number>; reader: McapIndexedReader }> {
+  const bytes = readFileSync(file);
+  const readable = {
+    size: () => Promise.resolve(BigInt(bytes.length)),
+    read: (offset: bigint, size: bigint) => Promise.resolve(new Uint8Array(bytes.subarray(Number(offset), Number(offset + size)))),
+  };
+  const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
+  const counts = new Map<string, number>();
+  for await (const message of reader.readMessages({ validateCrcs: true })) {
+    const topic = reader.channelsById.get(message.channelId)!.topic;
+    counts.set(topic, (counts.get(topic) ?? 0) + 1);
+  }
+  return { counts, reader };
+}
+
+describe("the recording", () => {
+  it("is shown in the page, and an independent reader accepts it", async () => {
+    const station = await play.ownStation(["first_touch"]);
+    const page = await play.open(station.url, unseen);
+    await page.untilRunning();
+    await page.untilState("a recording with something in it", (state) => (state.recording?.bytes ?? 0n) > 400_000n);
+    expect(page.stream.state!.recording!.file).toMatch(/^out\/recordings\/.*\.mcap$/);
+    expect(page.stream.state!.recording!.freeBytes).toBeGreaterThan(0n);
+    expect(await page.page.locator(".chip-recording").textContent()).toBe(strings.recording.on);
+    await page.stopButton.click();
+    await page.untilStopped();
+    await station.program.end();
+    const [file] = recordings(station.folder);
+    const counts = streamed(file!);
+    expect(counts.get("/setup")).toBe(1);
+    expect(counts.get("/step")).toBeGreaterThan(100);
+    expect(counts.get("/pose")).toBeGreaterThan(10);
+    expect(counts.get("/event"), "the stop").toBeGreaterThan(0);
+    const { counts: byIndex, reader } = await indexed(file!);
+    expect(byIndex).toEqual(counts);
+    expect(Number(reader.statistics!.messageCount)).toBe([...counts.values()].reduce((sum, count) => sum + count, 0));
+    expect([...reader.schemasById.values()].map((schema) => schema.encoding)).toEqual(Array(8).fill("protobuf"));
+    const said = execFileSync(programPath(), ["replay", file!], { encoding: "utf8" });
+    expect(said).toContain("every force, angle and command has the same bits");
+  });
+
+  it("of a killed program is repaired, and is accepted then", async () => {
+    const station = await play.ownStation(["first_touch"]);
+    const page = await play.open(station.url, unseen);
+    await page.untilState("a recording with something in it", (state) => (state.recording?.bytes ?? 0n) > 400_000n);
+    await station.program.kill();
+    const [file] = recordings(station.folder);
+    const said = execFileSync(programPath(), ["session", "repair", file!], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+    expect(said).toBe("");
+    expect(existsSync(`${file}.torn`)).toBe(true);
+    expect((await indexed(file!)).counts).toEqual(streamed(file!));
+    expect(execFileSync(programPath(), ["replay", file!], { encoding: "utf8" })).toContain("0 different");
+
+    // The same file, cut anywhere behind its beginning.
+    const whole = readFileSync(file!);
+    let seed = 22;
+    for (let i = 0; i < 25; ++i) {
+      seed = (seed * 48271) % 2147483647;
+      const length = 60_000 + (seed % (whole.length - 60_000));
+      const cut = join(station.folder, "cut.mcap");
+      writeFileSync(cut, whole.subarray(0, length));
+      execFileSync(programPath(), ["session", "repair", cut], { stdio: "ignore" });
+      const { counts } = await indexed(cut);
+      expect(counts, `case ${i}, length ${length}`).toEqual(streamed(cut));
+    }
+  });
+});
