@@ -80,6 +80,7 @@ std::string date_text(double utc) {
 
 std::string state_text(const RecordingSummary& recording) {
   if (recording.written) return "being written";
+  if (!recording.begins) return recording.trouble;
   if (!recording.has_end) return "no end: repair";
   if (!recording.trouble.empty()) return recording.trouble;
   return recording.gaps > 0 ? fmt::format("{} gaps", recording.gaps) : "whole";
@@ -129,6 +130,19 @@ int repair(const SessionOptions& o) {
   return kDone;
 }
 
+/// @returns a recording, its page, and the originals of its repairs
+std::vector<fs::path> with_companions(const fs::path& file) {
+  std::vector<fs::path> all{file};
+  const fs::path page = fs::path(file).replace_extension(".html");
+  std::error_code ignored;
+  if (fs::exists(page, ignored)) all.push_back(page);
+  const std::string torn = file.filename().string() + ".torn";
+  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().starts_with(torn)) all.push_back(entry.path());
+  return all;
+}
+
 int remove(const SessionOptions& o) {
   const fs::path file = found(o);
   const RecordingSummary summary = summarise_recording(file);
@@ -138,8 +152,10 @@ int remove(const SessionOptions& o) {
     throw std::invalid_argument(
         fmt::format("{} ({}, {:.1f} MB) would be gone for good; type the same with --yes", file.string(),
                     date_text(summary.begin), 1e-6 * static_cast<double>(summary.bytes)));
-  fs::remove(file);
-  fmt::print("deleted {}\n", file.string());
+  for (const fs::path& each : with_companions(file)) {
+    fs::remove(each);
+    fmt::print("deleted {}\n", each.string());
+  }
   return kDone;
 }
 
@@ -152,13 +168,15 @@ int play_again(const SessionOptions& o) {
   }
   fmt::print("{}: {} stations, {} steps in {:.1f} s; {} made again, {} different\n", file.string(),
              result.stations, result.steps, result.seconds, result.compared, result.different);
-  if (result.missing > 0)
+  if (result.missing + result.not_compared > 0)
     fmt::print(
-        "  {} steps are missing in the file; {} after them, up to the next station, cannot be made again\n",
+        "  {} steps are missing in the file; {} cannot be made again, since what they depend on is missing\n",
         result.missing, result.not_compared);
   if (!result.exact)
     fmt::print(
-        "  recorded on another kind of processor ({}): compared to {} Nm and rad, not to the last bit\n",
+        "  recorded on {}, whose mathematical functions round otherwise than this machine's: compared to "
+        "within {} Nm "
+        "and rad, not to the last bit\n",
         result.recorded_on, ReplayResult::kTolerance);
   if (result.other_version) fmt::print("  computed by another version: {}\n", result.recorded_by);
   if (result.first)
@@ -166,8 +184,8 @@ int play_again(const SessionOptions& o) {
         "  first difference: station {}, step {} at {:.3f} s: {}\n  largest difference of a torque: {} Nm\n",
         result.first->station, result.first->tick, result.first->time, result.first->what,
         result.largest_torque);
-  else if (result.exact)
-    fmt::print("  every force, angle and command has the same bits\n");
+  else if (result.exact && result.compared > 0)
+    fmt::print("  of those made again, every force, angle and command has the same bits\n");
   return result.different == 0 ? kDone : kFailed;
 }
 

@@ -60,8 +60,9 @@ std::uint64_t libm_fingerprint() noexcept {
   BitHash hash;
   for (int i = 0; i < 10000; ++i) {
     const double angle = (i - 5000) * 0.000628318530717;
-    hash.add(std::sin(angle));
-    hash.add(std::cos(angle));
+    for (const double value : {std::sin(angle), std::cos(angle), std::atan2(angle, 1.3), std::exp(angle),
+                               std::pow(1.0 + angle * angle, 0.7), std::hypot(angle, 0.9)})
+      hash.add(value);
   }
   return hash.value();
 }

@@ -150,17 +150,19 @@ void Cockpit::requested(const WebRequest& request, std::function<void(WebRespons
   }
   if (request.method == "POST" && request.path == "/mesh")
     return impl_->begin_upload(request, std::move(respond));
+  if (request.method == "POST" && request.path == "/marker") return impl_->mark(request, respond);
   if (request.method != "POST" && request.path.starts_with(kGeometry))
     return impl_->respond_with_geometry(request.path.substr(kGeometry.size()), std::move(respond));
-  const bool known =
-      request.path == "/stop" || request.path == "/mesh" || request.path.starts_with(kGeometry);
+  const bool known = request.path == "/stop" || request.path == "/mesh" || request.path == "/marker" ||
+                     request.path.starts_with(kGeometry);
   respond(known ? text_response(405, "this address does not allow this method\n")
                 : text_response(404, "there is nothing at this address; the cockpit is at /\n"));
 }
 
 std::size_t Cockpit::body_limit(const WebRequest& head) {
-  const bool upload = head.method == "POST" && head.path == "/mesh" && impl_->operator_of(head) != nullptr;
-  return upload ? kUploadLimit : 0;
+  if (head.method != "POST") return 0;
+  if (head.path == "/marker" && head.client.may_operate) return kMarkerLimit;
+  return head.path == "/mesh" && impl_->operator_of(head) != nullptr ? kUploadLimit : 0;
 }
 
 // ---- HTTP requests ----
@@ -171,6 +173,16 @@ void Cockpit::Impl::respond_with_geometry(const std::string& revision,
   if (!geometry || revision != std::to_string(geometry->revision))
     return respond(text_response(404, "this geometry is no longer shown; pages are told the new revision\n"));
   geometry_cache->request(std::move(geometry), std::move(respond));
+}
+
+/// Writes a marker of another program, such as one that gives a stimulus, to the recording and the log, and tells all pages.
+void Cockpit::Impl::mark(const WebRequest& request, const std::function<void(WebResponse)>& respond) {
+  if (!request.client.may_operate)
+    return respond(text_response(403, "only who may operate may set markers; use the operator's token\n"));
+  const std::string text = one_line(request.body);
+  if (text.empty()) return respond(text_response(400, "a marker is a text: send it as the request's body\n"));
+  notify(wire::Notice::CHANGE, request.client.address, "marker", text);
+  respond(text_response(200, "marked\n"));
 }
 
 const Participant* Cockpit::Impl::operator_of(const WebRequest& request) const {

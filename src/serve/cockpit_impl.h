@@ -93,6 +93,7 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   void respond_with_geometry(const std::string& revision, std::function<void(WebResponse)> respond);
   /// @returns the operator if the request is the operator's; else null
   [[nodiscard]] const Participant* operator_of(const WebRequest& request) const;
+  void mark(const WebRequest& request, const std::function<void(WebResponse)>& respond);
   void begin_upload(const WebRequest& request, std::function<void(WebResponse)> respond);
 
   Session& session;

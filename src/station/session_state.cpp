@@ -206,18 +206,20 @@ SessionStatistics SessionState::statistics() const {
 }
 
 bool SessionState::next_record(StepRecord& record, std::vector<DeviceSample>& samples) {
-  for (bool any = true; any;) {
+  for (;;) {
     std::unique_lock lock(mutex_);
-    if (!retired_.empty() && retired_.front()->station->next_record(record, samples)) return true;
-    any = !retired_.empty();
-    if (!any) continue;
+    if (retired_.empty()) {
+      // Under the same lock: this station's records come after those of all that were retired.
+      const std::shared_ptr<RunningStation> now = running_;
+      lock.unlock();
+      return now && now->station->next_record(record, samples);
+    }
+    if (retired_.front()->station->next_record(record, samples)) return true;
     const std::shared_ptr<RunningStation> read = std::move(retired_.front());
     retired_.erase(retired_.begin());
     lock.unlock();
     keep_report(*read->station);
   }
-  const auto now = current();
-  return now && now->station->next_record(record, samples);
 }
 
 void SessionState::keep_change(SessionChange change) {

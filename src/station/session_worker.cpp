@@ -178,6 +178,7 @@ void SessionWorker::exchange_object(Station& station, StationBuild build) {
   planned_ = std::move(build.planned);
   scene_ = std::move(build.scene);
   model_ = build.made.model;
+  model_change_ = change;
   state_.publish(info);
 }
 
@@ -272,6 +273,8 @@ void SessionWorker::take_over(StationBuild& build) {
   if (settings_.keep_changes)
     state_.keep_change({.station = stations_,
                         .number = 0,
+                        .model_of = 0,
+                        .last_tick = state_.view().tick,
                         .scene = build.plan.scene,
                         .values = build.values,
                         .geometry = build.geometry,
@@ -286,6 +289,7 @@ void SessionWorker::take_over(StationBuild& build) {
   planned_ = std::move(build.planned);
   scene_ = std::move(build.scene);
   model_ = build.made.model;
+  model_change_ = 0;
   patient_ = std::move(build.made.safety.patient);
 }
 
@@ -295,6 +299,8 @@ std::uint64_t SessionWorker::keep_change(const std::string& scene, const Overrid
   if (settings_.keep_changes)
     state_.keep_change({.station = stations_,
                         .number = number,
+                        .model_of = geometry ? number : model_change_,
+                        .last_tick = 0,
                         .scene = scene,
                         .values = values,
                         .geometry = std::move(geometry),

@@ -84,6 +84,7 @@ class SessionWorker {
   std::string patient_;         ///< SafetySettings::patient; once stated, it holds for every later station
   std::uint64_t stations_ = 0;  ///< StationOptions::number of the newest station
   std::uint64_t changes_ = 0;   ///< SessionChange::number of the newest change
+  std::uint64_t model_change_ = 0;  ///< number of the change that model_ came with; 0: with the station
   CalibrationWizard wizard_;
   std::thread thread_;
 };

@@ -245,6 +245,7 @@ void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_
   }
   StationView view;
   view.time = wake.now;
+  view.tick = record.command.tick;
   view.snapshot = snapshot;
   view.stiffness = record.stiffness;
   view.duration = record.duration;
@@ -317,6 +318,7 @@ void Station::start() {
 
 bool Station::next_record(StepRecord& record, std::vector<DeviceSample>& samples) {
   samples.clear();
+  samples.reserve(kInbox);  // no step has more; without memory, nothing has been fetched
   if (!loop_->records.pop(record)) return false;
   DeviceSample sample;
   while (samples.size() < record.samples && loop_->record_samples.pop(sample)) samples.push_back(sample);

@@ -106,10 +106,17 @@ std::uint64_t StationStep::hash() const noexcept {
   hash.add(static_cast<std::uint64_t>(status_));
   hash.add(static_cast<std::uint64_t>(safety_.state()) << 16U |
            static_cast<std::uint64_t>(safety_.fault().fault));
-  hash.add(static_cast<std::uint64_t>(command_.enable) << 1U | static_cast<std::uint64_t>(command_.fault));
+  hash.add(command_.tick);
+  hash.add(command_.sample_time_us);
+  std::uint64_t bits =
+      static_cast<std::uint64_t>(command_.enable) << 1U | static_cast<std::uint64_t>(command_.fault);
+  for (const bool stopped : command_.stopped) bits = bits << 1U | static_cast<std::uint64_t>(stopped);
+  hash.add(bits);
   for (const double torque : command_.torque) hash.add(torque);
-  for (const LocalWall& wall : command_.wall) {
+  for (std::size_t s = 0; s < command_.wall.size(); ++s) {
+    const LocalWall& wall = command_.wall[s];
     if (!wall.active) continue;
+    hash.add(std::uint64_t{s});
     for (const double g : wall.g) hash.add(g);
     for (const double value : {wall.d_ref, wall.stiffness, wall.force_max, wall.host_force}) hash.add(value);
   }

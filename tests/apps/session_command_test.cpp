@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -66,6 +67,20 @@ TEST_F(CliSession, WhatHasNoEndIsRepairedWhenItIsOpened) {
   EXPECT_THAT(shown, HasSubstr(" 0 different"));
   EXPECT_TRUE(fs::exists(file.string() + ".torn"));
   EXPECT_THAT(said("session repair last"), HasSubstr("is whole"));
+}
+
+TEST_F(CliSession, HasMarkersThatComeByUdp) {
+  const std::string port = std::to_string(20000 + ::getpid() % 30000);
+  const auto run = run_program(
+      folder, "run index_ball --headless --no-realtime --quiet --seconds 1 --record marked --marker-port " +
+                  port +
+                  " & while kill -0 $! 2>/dev/null; do sleep 0.1; bash -c 'printf \"stimulus 3\" "
+                  ">/dev/udp/127.0.0.1/" +
+                  port + "' 2>/dev/null; done");
+  EXPECT_THAT(said("session show last --folder marked --quiet --out marked.html"), HasSubstr(" events"));
+  const std::string page = testing::read_file(folder / "marked.html");
+  EXPECT_THAT(page, HasSubstr("stimulus 3"));
+  EXPECT_THAT(page, HasSubstr("127.0.0.1:"));
 }
 
 TEST_F(CliSession, RefusesInWords) {

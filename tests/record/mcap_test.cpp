@@ -166,6 +166,47 @@ TEST(Mcap, AfterADamagedPartTheNextChunksAreKept) {
   }
 }
 
+TEST(Mcap, AFlippedBitOfAnOperationCodeHidesNothing) {
+  test::MemoryFile file;
+  write_messages(file, 250, 50, true);
+  const ReadableFile whole(InMemory{file.content});
+  std::size_t flipped = 0;
+  Record record;
+  for (std::uint64_t place = kMagic.size(); place + kMagic.size() < file.content.size();
+       place = record.end()) {
+    read_record(whole, place, record);
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      SCOPED_TRACE("place " + std::to_string(place) + ", bit " + std::to_string(bit));
+      std::string bytes = file.content;
+      bytes[static_cast<std::size_t>(place)] =
+          static_cast<char>(static_cast<unsigned>(bytes[static_cast<std::size_t>(place)]) ^ 1U << bit);
+      ++flipped;
+      try {
+        EXPECT_EQ(numbers_in(bytes), up_to(250)) << "less is read, and nothing is said";
+      } catch (const McapError&) {
+      }
+      std::string out;
+      const Repaired result = repaired(bytes, out);
+      const std::vector<int> kept = numbers_in(out);
+      EXPECT_GE(kept.size(), 200U) << "one chunk is lost at most";
+      if (kept.size() < 250) {
+        EXPECT_FALSE(result.damages.empty());
+      }
+    }
+  }
+  EXPECT_GT(flipped, 100U);
+}
+
+TEST(Mcap, DamageAtTheBeginningLeavesTheMessagesReadable) {
+  test::MemoryFile file;
+  write_messages(file, 250, 50, true);
+  std::string bytes = file.content;
+  bytes[33] ^= 0x7f;  // in the length of the first schema, behind magic and header
+  std::string out;
+  EXPECT_FALSE(repaired(bytes, out).damages.empty());
+  EXPECT_EQ(numbers_in(out), up_to(250));
+}
+
 TEST(Mcap, AChunkThatTheDiskRefusedIsWrittenAtItsPlace) {
   test::MemoryFile file;
   McapWriter writer(file, schemas(), channels(), {});

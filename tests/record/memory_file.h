@@ -62,7 +62,8 @@ class MemoryFile final : public mcap::WritableFile {
 
   std::string content;
   std::vector<Operation> operations;
-  int refuses = 0;  ///< error number that writes fail with; 0: none
+  int refuses = 0;              ///< error number that writes fail with; 0: none
+  std::function<void()> delay;  ///< called before each write and each synchronisation; may be empty
 
  private:
   static void apply(std::string& to, const Operation& operation, std::size_t part, std::size_t length) {
@@ -75,6 +76,7 @@ class MemoryFile final : public mcap::WritableFile {
         {.kind = kind, .place = place, .bytes = std::move(bytes), .time = now_ ? now_() : 0.0});
   }
   void refuse_if_full(const char* what) const {
+    if (delay) delay();
     if (refuses != 0) throw std::system_error(refuses, std::generic_category(), what);
   }
 

@@ -243,6 +243,26 @@ TEST_F(Recorded, OfTwoHundredPowerLossesAtMostHalfASecondIsMissing) {
   }
 }
 
+TEST_F(Recorded, ADiskThatTakes200MsForEachWriteFor30SecondsLosesNothing) {
+  record(with("simulated"));
+  ASSERT_TRUE(until_running());
+  double longest = 0.0;
+  file->delay = [&] {
+    longest = std::max(longest, recorder->status().unsaved);
+    sleep(0.2);
+  };
+  pass(30.0);
+  file->delay = {};
+  EXPECT_GT(longest, 0.4) << "a chunk waits for the write and the synchronisation of the one before";
+  EXPECT_LT(longest, 1.2);
+  EXPECT_EQ(session->view().state, SafetyState::kRunning);
+  pass(1.0);
+  EXPECT_EQ(recorder->status().lost_steps, 0U);
+  const ReplayResult result = replay(on_disk(finished()));
+  EXPECT_EQ(result.compared, records.size());
+  EXPECT_EQ(result.different, 0U);
+}
+
 TEST_F(Recorded, WhileTheDiskIsFullTheStationRunsOnAndEverythingIsWrittenLater) {
   record(with("simulated"));
   ASSERT_TRUE(until_running());

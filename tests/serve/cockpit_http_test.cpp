@@ -43,6 +43,20 @@ TEST_F(CockpitHttp, AStopMayAlsoBeAPost) {
   EXPECT_TRUE(session_->held_stopped());
 }
 
+TEST_F(CockpitHttp, AMarkerIsToldAndLoggedUnlessAViewerSendsIt) {
+  Page page(port());
+  EXPECT_EQ(status_of(post("/marker", "stimulus 3\n")), 200);
+  const wire::Notice notice = page.notice("marker");
+  EXPECT_EQ(notice.who(), "127.0.0.1");
+  EXPECT_THAT(notice.text(), HasSubstr("stimulus 3"));
+  EXPECT_EQ(status_of(post("/marker", "")), 400);
+  EXPECT_EQ(status_of(post("/marker", std::string(Cockpit::kMarkerLimit + 1, 'a'))), 413);
+  EXPECT_EQ(status_of(ask(port(), get("/marker"))), 405);
+  serve("operators-own-token", "viewers-own-token");
+  EXPECT_EQ(status_of(post("/marker?token=viewers-own-token", "stimulus 4")) / 100, 4);
+  EXPECT_EQ(status_of(post("/marker?token=operators-own-token", "stimulus 4")), 200);
+}
+
 TEST_F(CockpitHttp, TheGeometryIsFetchedByItsRevision) {
   Page page(port());
   const std::string answer = ask(port(), get("/geometry/1"));

@@ -19,6 +19,7 @@
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/session.h"
+#include "run/marker_port.h"
 #include "run/run_console.h"
 #include "run/run_options.h"
 #include "run/run_page.h"
@@ -45,6 +46,7 @@ class Run {
       console_.say(
           fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
     const SessionSettings settings = session_settings(options_);
+    if (const auto recording = recorder_settings(options_)) check_recordings_folder(*recording);
     if (const std::string warning = replaced_copies(settings); !warning.empty())
       console_.complain(warning, Emphasis::kWarning);
     session_ = std::make_unique<Session>(settings, clock_);
@@ -68,6 +70,12 @@ class Run {
     typed_.emplace(*session_);
     recorder_.begin(*session_, clock_, recorder_settings(options_));
     seen_ = look();
+    if (options_.marker_port)
+      markers_ = std::make_unique<MarkerPort>(options_.marker_address,
+                                              static_cast<std::uint16_t>(*options_.marker_port),
+                                              [this](const std::string& from, const std::string& text) {
+                                                recorder_.event("marker", from, text);
+                                              });
     introduce();
     if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_);
     watch();
@@ -140,7 +148,7 @@ class Run {
     if (oscillates && !oscillates_) {
       const std::string what = "the force oscillates: it fades, and returns by itself once it is quiet";
       console_.say(what, Emphasis::kWarning);
-      if (page_) page_->tell("oscillation", what, true);
+      tell_notice("oscillation", what, true);
     }
     oscillates_ = oscillates;
     say_recording();
@@ -150,48 +158,59 @@ class Run {
       const std::string why =
           "reset refused: the cause is still there, no sample comes, or the torque is not at rest yet";
       console_.say(why, Emphasis::kError);
-      if (page_) page_->tell("reset_refused", why, false);
+      tell_notice("reset_refused", why);
     }
   }
 
   static constexpr double kLongUnsaved =
-      0.7;  ///< age of a step that is still not on the disk, of which a person is told [s]
+      0.7;                               ///< age of a step that is not saved, of which a person is told [s]
+  static constexpr double kQuiet = 2.0;  ///< for which a disk has to take the data before that is told [s]
+
+  /// What the user was told of the disk.
+  enum class Disk { kTakes, kSlow, kRefuses };
 
   /// Reports a disk that refuses the recording or is slow, and its return; lost steps, once more as they grow.
   void say_recording() {
     const auto recording = recorder_.recording();
     if (!recording) return;
-    const bool refused = !recording->trouble.empty();
-    const bool behind = refused || recording->unsaved > kLongUnsaved;
-    if (behind != recording_behind_) {
-      recording_behind_ = behind;
-      if (!behind) {
-        tell_recording("recording: the disk takes the data again", false);
-      } else if (refused) {
-        tell_recording(
-            fmt::format(
-                "recording: the disk refuses the data ({}); the last {:.1f} s are not saved, and are "
-                "written as soon as it takes them. Make room, or connect the disk; the station goes on",
-                recording->trouble, recording->unsaved),
-            true);
-      } else {
-        tell_recording(
-            fmt::format(
-                "recording: the disk is slow; the last {:.1f} s are not saved yet. They are lost if the "
-                "power fails now",
-                recording->unsaved),
-            true);
+    const Disk disk = !recording->trouble.empty()         ? Disk::kRefuses
+                      : recording->unsaved > kLongUnsaved ? Disk::kSlow
+                                                          : Disk::kTakes;
+    if (disk != Disk::kTakes) disk_took_since_ = clock_.now();
+    const bool lasting = disk != Disk::kTakes || clock_.now() - disk_took_since_ > kQuiet;
+    if (lasting && disk != disk_) {
+      const Disk before = std::exchange(disk_, disk);
+      if (disk == Disk::kRefuses) {
+        tell_recording(fmt::format(
+            "recording: the disk refuses the data ({}); the last {:.1f} s are not saved, and are "
+            "written as soon as it takes them. Make room, or connect the disk; the station goes on",
+            recording->trouble, recording->unsaved));
+      } else if (disk == Disk::kTakes) {
+        tell_recording("recording: the disk takes the data again");
+      } else if (before == Disk::kTakes) {
+        tell_recording(fmt::format(
+            "recording: the disk is slow; the last {:.1f} s are not saved yet. They are lost if the "
+            "power fails now",
+            recording->unsaved));
       }
     }
     if (recording->lost_steps <= 2 * recording_lost_) return;
     recording_lost_ = recording->lost_steps;
-    tell_recording(fmt::format("recording: {} steps are missing in it; it names them", recording_lost_),
-                   true);
+    tell_recording(fmt::format("recording: {} steps are missing in it; it names them", recording_lost_));
   }
 
-  void tell_recording(const std::string& text, bool bad) {
-    console_.say(text, bad ? Emphasis::kError : Emphasis::kStrong);
-    if (page_) page_->tell("recording", text, false);
+  void tell_recording(const std::string& text) {
+    console_.say(text, Emphasis::kWarning);
+    tell_notice("recording", text);
+  }
+
+  /// Reports a notice of the station to the pages with their log, and so to the recording; without pages to the recording
+  /// alone.
+  void tell_notice(const std::string& code, const std::string& text, bool fault = false) {
+    if (page_)
+      page_->tell(code, text, fault);
+    else
+      recorder_.event(code, "", text);
   }
 
   static constexpr double kReadWithin = 1.0;  ///< a line that is younger has not been read [s]
@@ -271,8 +290,7 @@ class Run {
                                          fault_remedy(event.fault));
     seen_.fault = event.time;
     console_.say("FAULT " + text, Emphasis::kError);
-    if (!page_) recorder_.event("fault", "", text);
-    if (page_) page_->tell("fault", text, true);
+    tell_notice("fault", text, true);
     recorder_.write_report(std::move(report));
   }
 
@@ -362,7 +380,15 @@ class Run {
   /// Writes log, summary and reports; the torque is zero. @returns false if log or summary is not complete
   [[nodiscard]] bool save(bool in_good_order) {
     while (auto report = session_->take_fault_report()) tell_fault(std::move(*report));
-    recorder_.finish(in_good_order);
+    markers_.reset();
+    recorder_.event("ended", "",
+                    in_good_order ? "the station has ended" : "the station has ended with an error");
+    recorder_.finish(in_good_order, [this](const RecordingStatus& recording) {
+      console_.complain(fmt::format(
+          "the recording cannot be ended: the disk refuses the data ({}); {:.1f} s are not saved. Make "
+          "room now: it is tried again for {} s",
+          recording.trouble, recording.unsaved, RunRecorder::kPatience));
+    });
     const bool summarised = in_good_order && write_summary();
     drain();
     page_.reset();
@@ -410,13 +436,15 @@ class Run {
   RunConsole console_;
   std::unique_ptr<Session> session_;
   RunRecorder recorder_;
+  std::unique_ptr<MarkerPort> markers_;
   std::unique_ptr<RunPage> page_;
   std::optional<TypedLines> typed_;
   std::optional<RealtimeGrant> granted_;
   bool quit_ = false;
   std::uint64_t resets_refused_ = 0;
   bool oscillates_ = false;
-  bool recording_behind_ = false;     ///< the user was told that steps are not saved
+  Disk disk_ = Disk::kTakes;
+  double disk_took_since_ = 0.0;      ///< time since which the disk takes the data [s]
   std::uint64_t recording_lost_ = 0;  ///< steps of whose loss the user was told
   std::array<ToldOpening, kDigits> openings_{};
   Seen seen_;
@@ -458,6 +486,14 @@ void add_run_command(CLI::App& app, Job& job) {
       ->excludes(watchdog);
   run->add_option("--record", options->recordings,
                   "folder of the recordings, a file each run (docs/recording.md); off: none")
+      ->capture_default_str();
+  CLI::Option* markers =
+      run->add_option("--marker-port", options->marker_port,
+                      "UDP port for markers of other programs: each datagram is a text in the recording")
+          ->check(CLI::Range(1, 65535));
+  run->add_option("--marker-listen", options->marker_address,
+                  "address of the marker port; any but 127.0.0.1 lets other computers reach it")
+      ->needs(markers)
       ->capture_default_str();
   run->add_option("--log", options->log, "write every step to this CSV file");
   run->add_option("--summary", options->summary, "write percentiles and counts to this JSON file at the end");

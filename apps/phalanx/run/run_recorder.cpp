@@ -18,7 +18,7 @@ namespace {
 /// Interval of fetching steps, and of recording the hand. The station holds 4 s of unfetched steps at 2 kHz.
 constexpr std::chrono::microseconds kBetweenFetches{16'667};
 
-constexpr int kTries = 3;  ///< to end a recording
+constexpr int kTries = 3;  ///< to end a recording at once
 
 }  // namespace
 
@@ -63,24 +63,42 @@ std::optional<RunRecorder::Note> RunRecorder::next_note() {
   return next;
 }
 
-void RunRecorder::finish(bool in_good_order) noexcept {
+void RunRecorder::finish(bool in_good_order,
+                         const std::function<void(const RecordingStatus&)>& on_refused) noexcept {
   if (!thread_.joinable()) return;
   ending_ = true;
   thread_.join();
   if (in_good_order) commit();
   log_.reset();
-  if (recording_) finish_recording();
+  if (recording_) finish_recording(on_refused);
 }
 
-void RunRecorder::finish_recording() noexcept {
+/// @returns false if the disk does not take the end of the recording
+bool RunRecorder::ended_recording(const std::function<void(const RecordingStatus&)>& on_refused) {
   for (int tries = 0; tries < kTries; ++tries)
-    if (recording_->finish()) return;
+    if (recording_->finish()) return true;
+  if (!on_refused) return false;
+  on_refused(recording_->status());
+  for (int tries = 0; tries < 2 * kPatience; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    if (recording_->finish()) return true;
+  }
+  return false;
+}
+
+void RunRecorder::finish_recording(const std::function<void(const RecordingStatus&)>& on_refused) noexcept {
+  try {
+    if (ended_recording(on_refused)) return;
+  } catch (const std::exception&) {  // no memory to tell it
+  }
   lost_ = true;
   complain([&] {
     const RecordingStatus status = recording_->status();
     return fmt::format(
-        "the recording has no end: {}; what {} holds is kept, and `phalanx session repair` ends it",
-        status.trouble, status.file.string());
+        "the recording has no end, and its last {:.1f} s are lost: {}; what {} holds is kept, and `phalanx "
+        "session "
+        "repair` ends it",
+        status.unsaved, status.trouble, status.file.string());
   });
 }
 
@@ -111,10 +129,13 @@ void RunRecorder::work() noexcept {
 
 /// Fetches and writes all steps. Without a log, too: the station must not keep a fetched record.
 void RunRecorder::write_steps() noexcept {
-  StepRecord record;
-  while (session_->next_record(record, samples_)) {
-    record_step(record);
-    log_step(record);
+  try {
+    StepRecord record;
+    while (session_->next_record(record, samples_)) {
+      record_step(record);
+      log_step(record);
+    }
+  } catch (const std::exception&) {  // no memory: the steps wait in the station
   }
   try {
     if (recording_) recording_->update();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -24,6 +25,8 @@ namespace phalanx {
 /// the station continues.
 class RunRecorder {
  public:
+  static constexpr int kPatience = 10;  ///< for a disk that refuses the end of a recording [s]
+
   /// A message for the user about a log or report.
   struct Note {
     std::string complaint;    ///< empty: a fault's report was written
@@ -57,7 +60,10 @@ class RunRecorder {
   /// it after Session::shut_down().
   /// @param in_good_order  false: the log keeps the name FILE.partial, so that it does not replace
   /// a finished log
-  void finish(bool in_good_order) noexcept;
+  /// @param on_refused  called once if the disk does not take the end of the recording; it is then tried for kPatience.
+  /// Empty: it is not
+  void finish(bool in_good_order,
+              const std::function<void(const RecordingStatus&)>& on_refused = {}) noexcept;
   /// @returns true if a log or the recording could not be written to its end
   [[nodiscard]] bool lost() const noexcept { return lost_; }
 
@@ -68,7 +74,8 @@ class RunRecorder {
   void log_step(const StepRecord& record) noexcept;
   void write_reports() noexcept;
   void commit() noexcept;
-  void finish_recording() noexcept;
+  void finish_recording(const std::function<void(const RecordingStatus&)>& on_refused) noexcept;
+  bool ended_recording(const std::function<void(const RecordingStatus&)>& on_refused);
   void give_up_log(const std::exception& error) noexcept;
   // Both leave the note out if there is no memory for it. `text` returns the text, and `make` the note.
   template <class Text>

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRamp = 5.0;     ///< longest wait for zero torque [s]
 constexpr double kLook = 0.01;    ///< interval of checking it [s]
-constexpr double kWritten = 0.2;  ///< time for the recorder to write the steps until then [s]
+constexpr double kWritten = 0.6;  ///< time for the recorder to write the steps until then [s]
 constexpr unsigned kGiveUp = 30;  ///< [s]; the ending thread may hold a lock that is needed
 
 std::atomic<LetsGoAtTerminate*> holding{nullptr};

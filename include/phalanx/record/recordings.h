@@ -18,6 +18,7 @@ struct RecordingSummary {
   std::filesystem::path file;
   std::uint64_t bytes = 0;
   bool written = false;  ///< a program is writing it
+  bool begins = false;   ///< it begins as an MCAP file
   bool has_end = false;  ///< false: repair_recording() keeps what is whole
   std::string trouble;   ///< why nothing more is known; empty: all below is
   double begin = 0.0;    ///< UTC [s since 1970]
@@ -34,7 +35,8 @@ struct RecordingSummary {
 /// @throws std::invalid_argument if there is no such file
 [[nodiscard]] RecordingSummary summarise_recording(const std::filesystem::path& file);
 
-/// @returns the recordings of a folder (*.mcap), oldest first; none if it does not exist
+/// @returns the recordings of a folder (*.mcap), by their begin, oldest first; none if it does not exist
+/// @throws std::invalid_argument if the folder cannot be read
 [[nodiscard]] std::vector<RecordingSummary> list_recordings(const std::filesystem::path& folder);
 
 /// Result of repair_recording().
@@ -47,7 +49,8 @@ struct RepairedRecording {
 };
 
 /// Puts a whole file in the place of one that has no end or is damaged: every chunk whose checksum is right is kept. The
-/// original is kept as FILE.torn. At every moment one of the two has the file's name, also if the power fails.
+/// original is kept as FILE.torn. FILE exists at every moment, also if the power fails: first the damaged file, then the
+/// whole one.
 /// @throws std::invalid_argument for a file that is being written, or is no recording; std::system_error if the disk fails
 [[nodiscard]] RepairedRecording repair_recording(const std::filesystem::path& file);
 

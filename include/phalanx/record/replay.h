@@ -24,7 +24,7 @@ struct ReplayResult {
   std::uint64_t steps = 0;      ///< in the file
   std::uint64_t compared = 0;   ///< made again and compared
   std::uint64_t different = 0;  ///< of those compared
-  std::uint64_t missing = 0;    ///< in gaps of the file
+  std::uint64_t missing = 0;    ///< that the file does not have
   std::uint64_t not_compared =
       0;                 ///< after a gap, until the next station begins: what they depended on is missing
   double seconds = 0.0;  ///< from the first to the last step of the file

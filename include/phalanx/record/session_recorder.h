@@ -27,6 +27,10 @@ struct RecorderSettings {
   std::map<std::string, std::string> metadata;
 };
 
+/// Makes the folder of recordings if it does not exist, and checks that a recording can begin there.
+/// @throws std::invalid_argument for a folder that cannot be written, or too little room, with the remedy
+void check_recordings_folder(const RecorderSettings& settings);
+
 /// @returns the origin of a recording for RecorderSettings::metadata: program, machine, and what is exact in the file
 [[nodiscard]] std::map<std::string, std::string> recording_metadata(const std::string& version);
 

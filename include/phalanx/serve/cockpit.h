@@ -45,6 +45,7 @@ class Cockpit final : public WebApplication {
  public:
   static constexpr std::uint32_t kProtocol = 3;                     ///< of proto/phalanx/cockpit.proto
   static constexpr std::size_t kUploadLimit = 64U * 1024U * 1024U;  ///< [bytes]
+  static constexpr std::size_t kMarkerLimit = 1000;                 ///< text of a marker [bytes]
 
   /// @param session  outlives the cockpit
   /// @throws std::runtime_error if the log cannot be written

@@ -18,7 +18,9 @@ namespace {
 DiskFile::DiskFile(const std::filesystem::path& file)
     : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600)) {
   if (descriptor_ < 0) fail(file.c_str());
-  static_cast<void>(::flock(descriptor_, LOCK_EX | LOCK_NB));  // a file system without locks is accepted
+  // Waits for a program that looks whether the file is being written. A file system without locks is accepted.
+  while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+  }
   try {
     synchronise_folder(file.parent_path());
   } catch (...) {
@@ -42,7 +44,7 @@ void DiskFile::write(std::uint64_t place, std::string_view bytes) {
 }
 
 void DiskFile::synchronise() {
-  if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail("synchronise");
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL) fail("synchronise");
 }
 
 void DiskFile::truncate(std::uint64_t size) {

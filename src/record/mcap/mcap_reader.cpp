@@ -161,10 +161,9 @@ void ChunkReader::read(std::string_view content, Chunk& chunk) {
 }
 
 McapReader::McapReader(const ReadableFile& file) : file_(file) {
-  std::string magic;
-  file.read(0, kMagic.size(), magic);
-  if (magic != kMagic) throw McapError("it does not begin as an MCAP file");
+  if (!begins_as_mcap(file_)) throw McapError("it does not begin as an MCAP file");
   place_ = kMagic.size();
+  if (has_end(file_)) summary_ = read_summary(file_);
 }
 
 std::string_view McapReader::schema_of(std::uint16_t channel) const noexcept {
@@ -174,7 +173,19 @@ std::string_view McapReader::schema_of(std::uint16_t channel) const noexcept {
   return schema == schemas_.end() ? std::string_view() : schema->second.name;
 }
 
-void McapReader::read_other(Op op, std::string_view content) {
+/// The end is where the summary says that it is, and no chunk is missing: a damaged operation code hides nothing.
+void McapReader::check_end() const {
+  if (!summary_ || record_.end() != summary_->begin) throw McapError("the data end before the file does");
+  if (chunks_read_ != summary_->chunks.size())
+    throw McapError(
+        fmt::format("{} chunks are there, and its index has {}", chunks_read_, summary_->chunks.size()));
+}
+
+void McapReader::read_other(Op op, std::string_view content, bool in_chunk) {
+  if (op != Op::kSchema && op != Op::kChannel && (op != Op::kMetadata || in_chunk)) return;
+  described_ += content.size();
+  if (described_ > kMostDescription)
+    throw McapError(fmt::format("schemas, channels and metadata have more than {} bytes", kMostDescription));
   if (op == Op::kSchema) {
     Schema schema = parse_schema(content);
     schemas_.insert_or_assign(schema.id, std::move(schema));
@@ -195,12 +206,16 @@ bool McapReader::next_chunk() {
       throw McapError("it has no end: the program or the machine stopped while it was written");
     read_record(file_, place_, record_);
     place_ = record_.end();
-    if (record_.op == Op::kDataEnd || record_.op == Op::kFooter) return false;
+    if (record_.op == Op::kDataEnd || record_.op == Op::kFooter) {
+      check_end();
+      return false;
+    }
     if (record_.op != Op::kChunk) {
-      read_other(record_.op, record_.content);
+      read_other(record_.op, record_.content, false);
       continue;
     }
     chunk_place_ = record_.place;
+    ++chunks_read_;
     chunks_.read(record_.content, chunk_);
     rest_ = chunk_.records;
     return true;
@@ -222,7 +237,7 @@ bool McapReader::next(Message& message) {
       const std::string_view content = rest.raw(rest.u64());
       rest_ = rest.rest();
       if (op != Op::kMessage) {
-        read_other(op, content);
+        read_other(op, content, true);
         continue;
       }
       Cursor fields(content);
@@ -255,6 +270,7 @@ Summary read_summary(const ReadableFile& file) {
   file.read(begin, footer_at - begin + kFooterBytes - 4, section);
   if (crc != 0 && crc32_of(section) != crc) throw McapError("its summary's checksum is wrong");
   Summary summary;
+  summary.begin = begin;
   Cursor rest(std::string_view(section).substr(0, static_cast<std::size_t>(footer_at - begin)));
   while (!rest.empty()) {
     const auto op = static_cast<Op>(rest.u8());
@@ -265,6 +281,12 @@ Summary read_summary(const ReadableFile& file) {
     if (op == Op::kStatistics) summary.messages = parse_message_counts(content);
   }
   return summary;
+}
+
+bool begins_as_mcap(const ReadableFile& file) {
+  std::string magic;
+  file.read(0, kMagic.size(), magic);
+  return magic == kMagic;
 }
 
 bool has_end(const ReadableFile& file) {

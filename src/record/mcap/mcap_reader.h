@@ -18,6 +18,8 @@ namespace phalanx::mcap {
 /// Largest content of a record, and of a chunk once it is decompressed [bytes]. A larger one is refused: a file cannot make
 /// the program use more memory.
 inline constexpr std::uint64_t kMostBytes = 256U << 20U;
+/// Largest sum of all schemas, channels and metadata of a file [bytes].
+inline constexpr std::uint64_t kMostDescription = 16U << 20U;
 
 /// Bytes that are read as a file.
 struct InMemory {
@@ -131,7 +133,8 @@ class McapReader {
   [[nodiscard]] std::uint64_t place() const noexcept { return place_; }  ///< read so far [bytes]
 
  private:
-  void read_other(Op op, std::string_view content);
+  void read_other(Op op, std::string_view content, bool in_chunk);
+  void check_end() const;
   [[nodiscard]] bool next_chunk();
 
   const ReadableFile& file_;
@@ -140,7 +143,10 @@ class McapReader {
   ChunkReader chunks_;
   Chunk chunk_;
   std::uint64_t chunk_place_ = 0;
-  std::string_view rest_;  ///< of the chunk
+  std::string_view rest_;           ///< of the chunk
+  std::optional<Summary> summary_;  ///< none: the file has no end
+  std::size_t chunks_read_ = 0;
+  std::uint64_t described_ = 0;  ///< bytes of schemas, channels and metadata
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
   std::map<std::string, Map> metadata_;
@@ -149,6 +155,9 @@ class McapReader {
 /// Reads the summary at the file's end, without its chunks.
 /// @throws McapError if the file has no end, or its summary's checksum is wrong
 [[nodiscard]] Summary read_summary(const ReadableFile& file);
+
+/// @returns true if the file begins as an MCAP file does
+[[nodiscard]] bool begins_as_mcap(const ReadableFile& file);
 
 /// @returns true if the file ends as a finished MCAP file does: with a footer and the magic
 [[nodiscard]] bool has_end(const ReadableFile& file);

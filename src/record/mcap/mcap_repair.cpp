@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace phalanx::mcap {
@@ -20,13 +21,13 @@ class Repair {
     from_.read(0, kMagic.size(), magic);
     if (magic != kMagic) throw McapError("it does not begin as an MCAP file");
     write(begin_of_file());
+    describe_from_summary();
     std::uint64_t place = kMagic.size();
     while (place < from_.size()) {
       try {
         read_record(from_, place, record_);
-        if (record_.op == Op::kDataEnd || record_.op == Op::kFooter) {
-          result_.had_end = has_end(from_);
-          if (!result_.had_end) damaged(place, from_.size() - place, "the end of the file is not whole");
+        if (is_end()) {
+          result_.had_end = true;
           break;
         }
         keep();
@@ -38,6 +39,7 @@ class Repair {
       }
     }
     end_chunk();
+    name_missing_chunks();
     write(end_of_file(result_.summary, place_));
     to_.truncate(place_);
     to_.synchronise();
@@ -45,6 +47,53 @@ class Repair {
   }
 
  private:
+  /// Takes schemas and channels from the file's summary: those at its beginning may be damaged.
+  void describe_from_summary() {
+    try {
+      old_ = read_summary(from_);
+    } catch (const McapError&) {
+      return;  // it has none
+    }
+    Bytes out;
+    for (const Schema& schema : old_->schemas)
+      if (add(schema)) put_schema(out, schema);
+    for (const Channel& channel : old_->channels)
+      if (add(channel)) put_channel(out, channel);
+    write(out);
+  }
+
+  /// @returns false if the summary has the schema already
+  bool add(const Schema& schema) {
+    const auto same = [&](const Schema& other) { return other.id == schema.id; };
+    if (std::any_of(result_.summary.schemas.begin(), result_.summary.schemas.end(), same)) return false;
+    result_.summary.schemas.push_back(schema);
+    return true;
+  }
+  bool add(const Channel& channel) {
+    const auto same = [&](const Channel& other) { return other.id == channel.id; };
+    if (std::any_of(result_.summary.channels.begin(), result_.summary.channels.end(), same)) return false;
+    result_.summary.channels.push_back(channel);
+    result_.summary.messages.emplace(channel.id, 0);
+    return true;
+  }
+
+  /// @returns true at the end of the data, which is where the file's summary says that it is
+  [[nodiscard]] bool is_end() const {
+    if (record_.op != Op::kDataEnd && record_.op != Op::kFooter) return false;
+    if (old_ && record_.op == Op::kDataEnd && record_.end() == old_->begin) return true;
+    throw McapError("the data end before the file does");
+  }
+
+  /// Names the chunks that the old file's index has, and that were not found: their records are damaged.
+  void name_missing_chunks() {
+    if (!old_) return;
+    for (const ChunkEntry& chunk : old_->chunks)
+      if (!found_.contains(chunk.place))
+        result_.damages.push_back({.place = chunk.place,
+                                   .length = chunk.length,
+                                   .what = "the index has a chunk here, and there is none"});
+  }
+
   void write(const Bytes& bytes) {
     to_.write(place_, view_of(bytes));
     place_ += bytes.size();
@@ -65,14 +114,11 @@ class Repair {
       case Op::kHeader:
         return;  // it is written already
       case Op::kSchema:
-        result_.summary.schemas.push_back(parse_schema(record_.content));
-        return copy();
-      case Op::kChannel: {
-        Channel channel = parse_channel(record_.content);
-        result_.summary.messages.emplace(channel.id, 0);
-        result_.summary.channels.push_back(std::move(channel));
-        return copy();
-      }
+        if (add(parse_schema(record_.content))) copy();
+        return;
+      case Op::kChannel:
+        if (add(parse_channel(record_.content))) copy();
+        return;
       case Op::kMetadata: {
         Cursor fields(record_.content);
         std::string name(fields.text());
@@ -91,7 +137,7 @@ class Repair {
       case Op::kSummaryOffset:
         return;  // of a summary whose beginning was lost
       default:
-        throw McapError("a record of an unknown kind");
+        throw McapError("a record of a kind that is not known");
     }
   }
 
@@ -117,9 +163,13 @@ class Repair {
             put(index, message.time);
             put(index, offset);
           },
-          [](Op, std::string_view) {});
+          [&](Op op, std::string_view content) {
+            if (op == Op::kSchema) add(parse_schema(content));
+            if (op == Op::kChannel) add(parse_channel(content));
+          });
     }
     end_chunk();
+    found_.insert(record_.place);
     entry.place = place_;
     entry.length = kRecordHead + record_.content.size();
     copy();
@@ -165,22 +215,19 @@ class Repair {
     std::string block;
     Record candidate;
     while (place < from_.size()) {
-      from_.read(place, kBlock, block);
-      if (block.empty()) break;
-      for (std::size_t i = block.find(static_cast<char>(Op::kChunk)); i != std::string::npos;
+      from_.read(place, kBlock + kHead, block);
+      const std::size_t heads =
+          block.size() < kHead ? 0 : std::min<std::size_t>(kBlock, block.size() - kHead + 1);
+      for (std::size_t i = block.find(static_cast<char>(Op::kChunk)); i < heads;
            i = block.find(static_cast<char>(Op::kChunk), i + 1))
-        if (is_chunk(place + i, candidate)) return place + i;
-      place += block.size();
+        if (is_chunk(place + i, std::string_view(block).substr(i, kHead), candidate)) return place + i;
+      place += kBlock;
     }
     return from_.size();
   }
 
-  [[nodiscard]] bool is_chunk(std::uint64_t place, Record& candidate) {
-    // The fields before the compressed bytes show most of the places that are none, without reading on.
-    constexpr std::uint64_t kFields = 8 + 8 + 8 + 4 + 4;
-    std::string head;
-    from_.read(place, kRecordHead + kFields, head);
-    if (head.size() < kRecordHead + kFields) return false;
+  /// @param head  the first bytes of what may be a chunk; they show most of the places that are none
+  [[nodiscard]] bool is_chunk(std::uint64_t place, std::string_view head, Record& candidate) {
     Cursor fields(head);
     static_cast<void>(fields.u8());
     const std::uint64_t length = fields.u64();
@@ -188,8 +235,12 @@ class Repair {
     const std::uint64_t last = fields.u64();
     const std::uint64_t size = fields.u64();
     static_cast<void>(fields.u32());
-    if (length > from_.size() - place - kRecordHead || last < first || size > kMostBytes || fields.u32() > 64)
+    if (length > from_.size() - place - kRecordHead || last < first || size > kMostBytes || size == 0)
       return false;
+    const std::uint32_t name = fields.u32();
+    if (name != 0 && (name != 4 || fields.raw(4) != "zstd")) return false;
+    if (length > budget_) return false;  // a file that is made to be slow
+    budget_ -= length;
     try {
       read_record(from_, place, candidate);
       reader_.read(candidate.content, chunk_);
@@ -199,9 +250,15 @@ class Repair {
     }
   }
 
+  /// Bytes of a chunk's record that are looked at first: its head, times, size, checksum, and the compression's name.
+  static constexpr std::size_t kHead = kRecordHead + 8 + 8 + 8 + 4 + 4 + 4;
+
   const ReadableFile& from_;
   WritableFile& to_;
-  std::uint64_t place_ = 0;  ///< in `to_`
+  std::optional<Summary> old_;                            ///< of `from_`; none: it has no end
+  std::set<std::uint64_t> found_;                         ///< places of chunks in `from_`
+  std::uint64_t budget_ = 2 * from_.size() + kMostBytes;  ///< bytes of records that may be tried in a search
+  std::uint64_t place_ = 0;                               ///< in `to_`
   Record record_;
   ChunkReader reader_;
   Chunk chunk_;

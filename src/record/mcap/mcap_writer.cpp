@@ -232,7 +232,8 @@ void McapWriter::compress() {
     messages[channel] = places.size();
   }
   entry.index_length = block.size() - entry.length;
-  summary_.chunks.reserve(summary_.chunks.size() + 1);  // write_block() needs no memory
+  if (summary_.chunks.size() == summary_.chunks.capacity())  // write_block() needs no memory
+    summary_.chunks.reserve(std::max<std::size_t>(1024, 2 * summary_.chunks.size()));
   block_ = std::move(block);
   entry_ = std::move(entry);
   block_messages_ = std::move(messages);

@@ -54,6 +54,7 @@ struct ChunkEntry {
 
 /// Contents of the summary at a file's end, collected while the file is written.
 struct Summary {
+  std::uint64_t begin = 0;  ///< its place in the file that it was read from
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
   std::vector<ChunkEntry> chunks;

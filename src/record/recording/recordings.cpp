@@ -2,13 +2,16 @@
 #include "phalanx/record/recordings.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "phalanx/core/index.h"
@@ -16,13 +19,18 @@
 #include "record/mcap/mcap_file.h"
 #include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_repair.h"
+#include "record/plain_text.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
+#include "record/recording/topics.h"
 
 namespace phalanx {
 namespace {
 
 namespace fs = std::filesystem;
+
+template <class Wire>
+bool parsed(const mcap::Message& message, Wire& into);
 
 /// Fills in what the file's beginning says: program, scene and device.
 void read_begin(const mcap::ReadableFile& file, RecordingSummary& out) {
@@ -32,15 +40,14 @@ void read_begin(const mcap::ReadableFile& file, RecordingSummary& out) {
     if (out.begin == 0.0) out.begin = 1e-9 * static_cast<double>(message.time);
     if (reader.schema_of(message.channel) != "phalanx.wire.Setup") continue;
     wire::Setup setup;
-    if (!setup.ParseFromArray(message.data.data(), static_cast<int>(message.data.size())))
-      throw mcap::McapError("its first station does not match its schema");
-    out.scene = setup.start().scene();
-    out.device = setup.device_name();
+    if (!parsed(message, setup)) throw mcap::McapError("its first station does not match its schema");
+    out.scene = one_line(setup.start().scene());
+    out.device = one_line(setup.device_name());
     break;
   }
   if (const auto phalanx = reader.metadata().find("phalanx"); phalanx != reader.metadata().end())
     if (const auto version = phalanx->second.find("version"); version != phalanx->second.end())
-      out.version = version->second;
+      out.version = one_line(version->second);
 }
 
 void read_end(const mcap::ReadableFile& file, RecordingSummary& out) {
@@ -70,9 +77,32 @@ fs::path free_name(const fs::path& file, const std::string& ending) {
   return name;
 }
 
+void remove_quietly(const fs::path& file) noexcept {
+  std::error_code ignored;
+  fs::remove(file, ignored);
+}
+
+/// Gives the file a second name; on a file system without links, copies it to the disk itself.
+void keep_original(const fs::path& file, const fs::path& original) {
+  std::error_code linked;
+  fs::create_hard_link(file, original, linked);
+  if (!linked) return mcap::synchronise_folder(original.parent_path());
+  const mcap::ReadableFile from(file);
+  mcap::DiskFile to(original);
+  constexpr std::uint64_t kPart = 1U << 20U;
+  std::string part;
+  for (std::uint64_t place = 0; place < from.size(); place += part.size()) {
+    from.read(place, kPart, part);
+    if (part.empty()) throw std::system_error(EIO, std::generic_category(), file.string());
+    to.write(place, part);
+  }
+  to.synchronise();
+}
+
 template <class Wire>
 bool parsed(const mcap::Message& message, Wire& into) {
-  return into.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()));
+  return message.data.size() <= largest_message(into) &&
+         into.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()));
 }
 
 /// Calls `on_message(schema, message, time)` for each message of a recording; the time is that since its beginning [s].
@@ -127,6 +157,7 @@ RecordingSummary summarise_recording(const fs::path& file) {
     const mcap::ReadableFile readable(file);
     out.bytes = readable.size();
     out.has_end = mcap::has_end(readable);
+    out.begins = mcap::begins_as_mcap(readable);
     if (out.has_end) read_end(readable, out);
     read_begin(readable, out);
   } catch (const std::exception& trouble) {
@@ -136,14 +167,19 @@ RecordingSummary summarise_recording(const fs::path& file) {
 }
 
 std::vector<RecordingSummary> list_recordings(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
   std::vector<RecordingSummary> all;
-  for (const fs::path& file : files)
-    if (fs::is_regular_file(file, error)) all.push_back(summarise_recording(file));
+  std::error_code error;
+  if (!fs::exists(folder, error)) return all;
+  fs::directory_iterator entries(folder, error);
+  if (error)
+    throw std::invalid_argument(fmt::format("the folder {} cannot be read ({}); name another with --folder",
+                                            folder.string(), error.message()));
+  for (const fs::directory_entry& entry : entries)
+    if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.path(), error))
+      all.push_back(summarise_recording(entry.path()));
+  std::sort(all.begin(), all.end(), [](const RecordingSummary& a, const RecordingSummary& b) {
+    return std::tie(a.begin, a.file) < std::tie(b.begin, b.file);
+  });
   return all;
 }
 
@@ -151,9 +187,7 @@ RepairedRecording repair_recording(const fs::path& file) {
   static_cast<void>(summarise_recording(file));
   if (mcap::is_being_written(file))
     throw std::invalid_argument(fmt::format("{} is being written; end that run first", file.string()));
-  const fs::path made = file.string() + ".repairing";
-  std::error_code ignored;
-  fs::remove(made, ignored);  // of a repair that was interrupted
+  const fs::path made = free_name(file, fmt::format(".repairing-{}", ::getpid()));
   RepairedRecording out;
   try {
     const mcap::ReadableFile from(file);
@@ -166,24 +200,21 @@ RepairedRecording repair_recording(const fs::path& file) {
           fmt::format("{} bytes from byte {} on: {}", damage.length, damage.place, damage.what));
     }
     out.changed = !repaired.had_end || !repaired.damages.empty();
+    if (out.changed) {
+      out.original = free_name(file, ".torn");
+      keep_original(file, out.original);
+      fs::rename(made, file);
+      mcap::synchronise_folder(file.parent_path());
+    }
   } catch (const mcap::McapError& error) {
-    fs::remove(made, ignored);
+    remove_quietly(made);
     throw std::invalid_argument(
         fmt::format("{}: {}; there is nothing to repair", file.string(), error.what()));
   } catch (...) {
-    fs::remove(made, ignored);
+    remove_quietly(made);
     throw;
   }
-  if (!out.changed) {
-    fs::remove(made, ignored);
-    return out;
-  }
-  out.original = free_name(file, ".torn");
-  std::error_code linked;
-  fs::create_hard_link(file, out.original, linked);
-  if (linked) fs::copy_file(file, out.original);  // a file system without links
-  fs::rename(made, file);
-  mcap::synchronise_folder(file.parent_path());
+  remove_quietly(made);
   return out;
 }
 
@@ -214,32 +245,63 @@ RecordingContent read_recording(const fs::path& name, const std::function<void(d
   return out;
 }
 
+namespace {
+
+/// Collects the samples of each station. One whose device's clock goes back, as after a restart of its controller, counts as
+/// two.
+class MotionReader {
+ public:
+  void add(std::string_view schema, const mcap::Message& message) {
+    if (schema == "phalanx.wire.Setup" && parsed(message, setup_)) {
+      keep_longest();
+      map_.emplace(read_channel_map(setup_));
+    }
+    if (schema != "phalanx.wire.Step" || !map_ || !parsed(message, step_)) return;
+    if (step_.station() != setup_.station()) return;  // its setup is lost
+    read_samples(step_, samples_);
+    for (const DeviceSample& raw : samples_) add(raw);
+  }
+  [[nodiscard]] Motion longest() {
+    keep_longest();
+    return std::move(longest_);
+  }
+
+ private:
+  void add(const DeviceSample& raw) {
+    map_->convert(raw, sample_);
+    if (!motion_.time_s.empty() && sample_.time_s == motion_.time_s.back()) return;
+    if (!motion_.time_s.empty() && sample_.time_s < motion_.time_s.back()) keep_longest();
+    motion_.angle_origin = map_->angle_origins();
+    motion_.time_s.push_back(sample_.time_s);
+    motion_.angle.push_back(sample_.angle);
+  }
+  void keep_longest() {
+    if (motion_.time_s.size() > longest_.time_s.size()) longest_ = std::move(motion_);
+    motion_ = {};
+  }
+
+  Motion motion_;
+  Motion longest_;
+  std::optional<ChannelMap> map_;
+  wire::Setup setup_;
+  wire::Step step_;
+  std::vector<DeviceSample> samples_;
+  Sample sample_;
+};
+
+}  // namespace
+
 Motion recorded_motion(const fs::path& name) {
-  Motion longest;
-  Motion motion;
-  const auto keep_longest = [&] {
-    if (motion.time_s.size() > longest.time_s.size()) longest = std::move(motion);
-    motion = {};
-  };
-  for_each_message_of(name, {},
-                      [&, map = std::optional<ChannelMap>(), step = wire::Step(), setup = wire::Setup(),
-                       samples = std::vector<DeviceSample>(), sample = Sample()](
-                          std::string_view schema, const mcap::Message& message, double) mutable {
-                        if (schema == "phalanx.wire.Setup" && parsed(message, setup)) {
-                          keep_longest();
-                          map.emplace(read_channel_map(setup));
-                          motion.angle_origin = map->angle_origins();
-                        }
-                        if (schema != "phalanx.wire.Step" || !map || !parsed(message, step)) return;
-                        read_samples(step, samples);
-                        for (const DeviceSample& raw : samples) {
-                          map->convert(raw, sample);
-                          if (!motion.time_s.empty() && sample.time_s <= motion.time_s.back()) continue;
-                          motion.time_s.push_back(sample.time_s);
-                          motion.angle.push_back(sample.angle);
-                        }
-                      });
-  keep_longest();
+  MotionReader reader;
+  try {
+    for_each_message_of(name, {},
+                        [&](std::string_view schema, const mcap::Message& message, double /*time*/) {
+                          reader.add(schema, message);
+                        });
+  } catch (const std::invalid_argument& error) {  // numbers of the device that this version does not take
+    throw std::runtime_error(fmt::format("{}: {}", name.string(), error.what()));
+  }
+  Motion longest = reader.longest();
   if (longest.time_s.size() < 2)
     throw std::runtime_error(
         fmt::format("{}: it holds no motion: fewer than two samples of a device", name.string()));

@@ -75,6 +75,10 @@ class Replay {
  private:
   template <class Wire>
   const Wire& parsed(Wire& into, const mcap::Message& message) {
+    if (message.data.size() > largest_message(into))
+      throw std::runtime_error(fmt::format("{}: message {} of channel {} has {} bytes; at most {} are read",
+                                           name_.string(), message.sequence, message.channel,
+                                           message.data.size(), largest_message(into)));
     if (!into.ParseFromArray(message.data.data(), static_cast<int>(message.data.size())))
       throw std::runtime_error(fmt::format("{}: message {} of channel {} does not match its schema",
                                            name_.string(), message.sequence, message.channel));
@@ -101,9 +105,11 @@ class Replay {
 
   void origin() {
     const Made here = made_here();
-    result_.recorded_by = fmt::format("{} ({})", metadata("version"), metadata("commit"));
+    result_.recorded_by = fmt::format("{} ({}, {}, {})", metadata("version"), metadata("commit"),
+                                      metadata("compiler"), metadata("build_type"));
     result_.recorded_on = metadata("cpu");
-    result_.other_version = metadata("commit") != here.commit;
+    result_.other_version = metadata("commit") != here.commit || metadata("compiler") != here.compiler ||
+                            metadata("build_type") != here.build_type;
     result_.other_machine = !same_machine_;
     result_.exact = same_machine_;
   }
@@ -112,7 +118,10 @@ class Replay {
     const std::string place = fmt::format("station {}", setup.station());
     model_ = made(place, [&] { return read_model(setup.start().model()); });
     station_ = made(place, [&] { return read_station(setup, model_); });
-    device_ = read_device(setup);
+    first_model_ = model_;
+    model_of_ = 0;
+    changes_.clear();
+    channels_ = station_->channels().channels();
     same_machine_ = metadata("libm") == fmt::format("{:016x}", libm_fingerprint());
     number_ = setup.station();
     tick_ = 0;
@@ -121,22 +130,29 @@ class Replay {
   }
 
   void gap(const wire::Gap& gap) {
-    if (gap.last_tick() < gap.first_tick()) return;
-    result_.missing += gap.last_tick() - gap.first_tick() + 1;
-    if (gap.station() == number_) lost_ = true;
+    if (gap.station() != number_ || gap.last_tick() < gap.first_tick() || gap.last_tick() <= tick_) return;
+    result_.missing += gap.last_tick() - std::max(tick_, gap.first_tick() - 1);
+    tick_ = gap.last_tick();
+    lost_ = true;
   }
 
-  /// @returns the rendering of a change; its parameters go with the newest model up to it
+  const wire::Change& change_of(std::uint64_t number) {
+    const auto change = changes_.find(number);
+    if (change == changes_.end()) throw std::runtime_error("it is not in the file");
+    return change->second;
+  }
+
   std::unique_ptr<Rendering> rendering_of(std::uint64_t number) {
     return made(fmt::format("change {}", number), [&] {
-      const auto change = changes_.find(number);
-      if (change == changes_.end()) throw std::runtime_error("it is not in the file");
-      for (auto other = changes_.begin(); other != std::next(change); ++other)
-        if (other->second.has_model() && other->first > model_of_) {
-          model_ = read_model(other->second.model());
-          model_of_ = other->first;
-        }
-      return std::make_unique<Rendering>(model_, read_parameters(change->second), number);
+      const wire::Change& change = change_of(number);
+      if (change.model_of() != model_of_) {
+        model_ = change.model_of() == 0 ? first_model_ : read_model(change_of(change.model_of()).model());
+        model_of_ = change.model_of();
+      }
+      auto rendering = std::make_unique<Rendering>(model_, read_parameters(change), number);
+      changes_.erase(changes_.begin(),
+                     changes_.lower_bound(std::min(number, model_of_)));  // no step names them any more
+      return rendering;
     });
   }
 
@@ -144,8 +160,12 @@ class Replay {
     ++result_.steps;
     if (result_.steps == 1) begin_time_ = recorded.time();
     result_.seconds = recorded.time() - begin_time_;
-    if (!station_)
-      throw std::runtime_error(fmt::format("{}: a step comes before the first station", name_.string()));
+    // A station's beginning, or steps of it, may be lost with a damaged part of the file.
+    if (!station_ || recorded.station() != number_) {
+      ++result_.not_compared;
+      return;
+    }
+    if (recorded.tick() > tick_ + 1) result_.missing += recorded.tick() - tick_ - 1;
     if (recorded.tick() != tick_ + 1) lost_ = true;
     tick_ = recorded.tick();
     if (lost_) {
@@ -163,13 +183,9 @@ class Replay {
     if (!station_->ending()) {
       if (input.waits) static_cast<void>(station_->wait_for_exchange());
       if (input.exchanged != 0) static_cast<void>(station_->exchange(rendering_of(input.exchanged)));
-      if (input.changed != 0) {
-        const auto change = changes_.find(input.changed);
-        station_->change_to(made(fmt::format("change {}", input.changed), [&] {
-          if (change == changes_.end()) throw std::runtime_error("it is not in the file");
-          return read_parameters(change->second);
-        }));
-      }
+      if (input.changed != 0)
+        station_->change_to(made(fmt::format("change {}", input.changed),
+                                 [&] { return read_parameters(change_of(input.changed)); }));
     }
     station_->confirm_openings(input.openings);
     static_cast<void>(station_->step(samples_, input.connection, input.late, input.time));
@@ -179,7 +195,7 @@ class Replay {
     ++result_.compared;
     const double torque = torque_difference(recorded);
     result_.largest_torque = std::max(result_.largest_torque, torque);
-    const std::string check = channel_check(samples_, device_.channels.size());
+    const std::string check = channel_check(samples_, channels_.size());
     const bool same_input = check == recorded.channel_check();
     const bool same = same_machine_ ? station_->hash() == recorded.hash() : close(recorded, torque);
     if (same && same_input) return;
@@ -206,6 +222,8 @@ class Replay {
   [[nodiscard]] bool close(const wire::Step& recorded, double torque) const {
     if (!(torque <= ReplayResult::kTolerance)) return false;
     if (static_cast<int>(station_->safety().state()) != static_cast<int>(recorded.state())) return false;
+    for (std::size_t d = 0; d < station_->command().stopped.size(); ++d)
+      if (station_->command().stopped[d] != ((recorded.stopped() >> d & 1U) != 0)) return false;
     for (int j = 0; j < recorded.gdp_angle_size() && j < kJoints; ++j)
       if (!(std::abs(station_->snapshot().gdp_angle[idx(j)] - recorded.gdp_angle(j)) <=
             ReplayResult::kTolerance))
@@ -215,21 +233,20 @@ class Replay {
 
   /// Names the first channel whose raw values are not those that the station got.
   [[nodiscard]] std::string input_difference(const std::string& check, const std::string& recorded) const {
-    for (std::size_t c = 0;
-         c < device_.channels.size() && 2 * c + 1 < std::min(check.size(), recorded.size()); ++c)
+    for (std::size_t c = 0; c < channels_.size() && 2 * c + 1 < std::min(check.size(), recorded.size()); ++c)
       if (check.compare(2 * c, 2, recorded, 2 * c, 2) != 0)
         return fmt::format("channel {} ({}): the sample in the file is not the one that the station got", c,
-                           channel_name(device_.channels[c]));
+                           channel_name(channels_[c]));
     return "the samples in the file are not those that the station got";
   }
 
   [[nodiscard]] std::string output_difference(const wire::Step& recorded) const {
     const SafetyState state = station_->safety().state();
     if (static_cast<int>(state) != static_cast<int>(recorded.state()))
-      return fmt::format(
-          "state: recorded {}, now {}",
-          safety_state_name(static_cast<SafetyState>(std::min(recorded.state(), wire::SAFETY_FAULT))),
-          safety_state_name(state));
+      return fmt::format("state: recorded {}, now {}",
+                         safety_state_name(static_cast<SafetyState>(
+                             std::clamp(recorded.state(), wire::SAFETY_WAITING, wire::SAFETY_FAULT))),
+                         safety_state_name(state));
     for (std::size_t j = 0; j < kJoints; ++j)
       if (station_->command().torque[j] != recorded_torque(recorded, j))
         return fmt::format("torque of {}: recorded {} Nm, now {} Nm", joint_name(static_cast<int>(j)),
@@ -254,8 +271,9 @@ class Replay {
   std::map<std::uint64_t, wire::Change> changes_;
   std::uint64_t model_of_ = 0;  ///< number of the change that model_ is of
   std::shared_ptr<const HapticModel> model_;
+  std::shared_ptr<const HapticModel> first_model_;  ///< of the station's setup
   std::unique_ptr<StationStep> station_;
-  DeviceInfo device_;
+  std::vector<DeviceChannel> channels_;
   std::vector<DeviceSample> samples_;
   std::uint64_t number_ = 0;  ///< of the station
   std::uint64_t tick_ = 0;

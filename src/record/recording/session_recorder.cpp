@@ -18,6 +18,7 @@
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "record/mcap/mcap_writer.h"
+#include "record/plain_text.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
 #include "record/recording/topics.h"
@@ -29,7 +30,9 @@ namespace {
 constexpr double kBetweenPoses = 1.0 / 60.0;  // [s]
 constexpr double kBetweenLoops = 1.0;         // statistics of deadlines [s]
 constexpr double kBetweenClocks = 10.0;       // pairs of clocks [s]
-constexpr double kBetweenTries = 0.2;         // of a disk that refuses [s]
+constexpr std::size_t kEventLength = 4000;    // [bytes]
+constexpr std::size_t kMostWaitingEvents = 1000;
+constexpr double kBetweenTries = 0.2;  // of a disk that refuses [s]
 constexpr const char* kTooFast = "they came faster than they were fetched";
 constexpr const char* kRefused = "the disk did not take them";
 constexpr const char* kNoMemory = "there was no memory for them";
@@ -48,13 +51,7 @@ std::uint64_t free_bytes(const std::filesystem::path& folder) {
 
 /// Makes a file whose name is free. Two programs that start within a second get two files.
 std::unique_ptr<mcap::WritableFile> new_file(const RecorderSettings& settings, std::filesystem::path& name) {
-  prepare_output_folder(settings.folder);
-  const std::uint64_t room = free_bytes(settings.folder);
-  if (room < settings.least_room)
-    throw std::invalid_argument(fmt::format(
-        "the folder of recordings, {}, has {} MB of room left, and a recording needs at least {} MB to "
-        "begin; make room, name another folder with --record DIR, or record nothing with --record off",
-        settings.folder.string(), room >> 20U, settings.least_room >> 20U));
+  check_recordings_folder(settings);
   const std::string date = fmt::format("{:%Y-%m-%dT%H-%M-%SZ}", fmt::gmtime(std::time(nullptr)));
   for (int i = 1;; ++i) {
     name = settings.folder / (i == 1 ? date + ".mcap" : fmt::format("{}-{}.mcap", date, i));
@@ -67,6 +64,16 @@ std::unique_ptr<mcap::WritableFile> new_file(const RecorderSettings& settings, s
 }
 
 }  // namespace
+
+void check_recordings_folder(const RecorderSettings& settings) {
+  prepare_output_folder(settings.folder);
+  const std::uint64_t room = free_bytes(settings.folder);
+  if (room < settings.least_room)
+    throw std::invalid_argument(fmt::format(
+        "the folder of recordings, {}, has {} MB of room left, and a recording needs at least {} MB to "
+        "begin; make room, name another folder with --record DIR, or record nothing with --record off",
+        settings.folder.string(), room >> 20U, settings.least_room >> 20U));
+}
 
 std::map<std::string, std::string> recording_metadata(const std::string& version) {
   const Made made = made_here();
@@ -106,7 +113,7 @@ struct SessionRecorder::Impl {
   void put_change(const SessionChange& change, double now);
   void fetch_station(const StepRecord& record);
   void fetch_change(std::uint64_t number, double now);
-  void end_station(std::uint64_t of_next, double now);
+  void end_station(std::uint64_t last, double now);
   [[nodiscard]] bool next_change();
   void lost(std::uint64_t first, std::uint64_t last, const char* why) noexcept;
   void put_gap(double now);
@@ -137,7 +144,6 @@ struct SessionRecorder::Impl {
   std::size_t channels = 0;   ///< of the device
   double steps_to_angles = 0.0;
   double period = 1e-3;
-  std::uint64_t ring_lost = 0;  ///< steps that the station could not hand over, as far as a gap names them
   /// Steps that are missing, and of which the file does not say so yet.
   struct Missing {
     std::uint64_t station = 0;
@@ -159,12 +165,13 @@ struct SessionRecorder::Impl {
   wire::Change changed;
 
   // ---- shared
-  struct Happening {
+  struct TimedEvent {
     std::string code, who, text;
     double time = 0.0;
   };
   mutable std::mutex mutex;
-  std::deque<Happening> events;
+  std::deque<TimedEvent> events;
+  std::uint64_t events_lost = 0;  ///< that came while too many waited
   std::string trouble;
   std::atomic<double> oldest{0.0};  ///< time of the oldest message that is not on the disk [s]; 0: none
   std::atomic<std::uint64_t> now_bytes{0};
@@ -175,10 +182,7 @@ struct SessionRecorder::Impl {
 void SessionRecorder::Impl::add(const StepRecord& record, std::span<const DeviceSample> samples) {
   const double now = record.input.time;
   if (record.station != station) fetch_station(record);
-  if (record.command.tick > tick + 1) {
-    ring_lost += record.command.tick - 1 - tick;
-    lost(tick + 1, record.command.tick - 1, kTooFast);
-  }
+  if (record.command.tick > tick + 1) lost(tick + 1, record.command.tick - 1, kTooFast);
   tick = record.command.tick;
   if (writer.open_bytes() > kMostWaitingBytes) return lost(tick, tick, kRefused);
   try {
@@ -201,28 +205,15 @@ void SessionRecorder::Impl::put_step(const StepRecord& record, std::span<const D
   put(Topic::kStep, now, step);
 }
 
-/// Writes the setup of the station whose first step this is.
+/// Writes the setups up to that of the station whose first step this is.
 void SessionRecorder::Impl::fetch_station(const StepRecord& record) {
-  const double now = record.input.time;
-  end_station(record.command.tick - 1, now);
-  for (bool begun = false; !begun && next_change(); waiting.reset()) {
-    put_change(*waiting, now);
-    begun = waiting->station == record.station && waiting->number == 0;
-  }
-  station = record.station;
-  tick = 0;
-  steps_to_angles = 0.0;
+  for (; station != record.station && next_change(); waiting.reset()) put_change(*waiting, record.input.time);
 }
 
-/// Names the steps that are missing at the end of a station.
-/// @param of_next  steps that are missing at the beginning of the next one
-void SessionRecorder::Impl::end_station(std::uint64_t of_next, double now) {
-  const std::uint64_t all = session.statistics().records_lost;
-  if (station != 0 && all > ring_lost + of_next) {
-    const std::uint64_t at_end = all - ring_lost - of_next;
-    ring_lost += at_end;
-    lost(tick + 1, tick + at_end, kTooFast);
-  }
+/// Names the steps that are missing at a station's end. @param last  number of its last step
+void SessionRecorder::Impl::end_station(std::uint64_t last, double now) {
+  if (station != 0 && last > tick) lost(tick + 1, last, kTooFast);
+  tick = std::max(tick, last);
   put_gap(now);
 }
 
@@ -246,10 +237,14 @@ void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
     change = next.number;
     return;
   }
+  end_station(next.last_tick, now);
   channels = next.setup->channels.size();
   period = 1.0 / next.geometry->rate_hz;
   write_change(next, session.settings().device, setup);
   put(Topic::kSetup, now, setup);
+  station = next.station;
+  tick = 0;
+  steps_to_angles = 0.0;
 }
 
 /// Notes steps that are lost; the gap is written before the next step.
@@ -280,14 +275,21 @@ void SessionRecorder::Impl::put_clock(double now) {
 void SessionRecorder::Impl::put_events() {
   for (;;) {
     std::unique_lock lock(mutex);
+    if (events.empty() && events_lost > 0) {
+      const std::uint64_t lost = std::exchange(events_lost, 0);
+      events.push_back({.code = "events_lost",
+                        .who = {},
+                        .text = fmt::format("{} events came faster than they could be written", lost),
+                        .time = clock.now()});
+    }
     if (events.empty()) return;
-    const Happening next = std::move(events.front());
+    const TimedEvent next = std::move(events.front());
     events.pop_front();
     lock.unlock();
     wire::Event event;
-    event.set_code(next.code);
-    event.set_who(next.who);
-    event.set_text(next.text);
+    event.set_code(as_utf8(next.code));
+    event.set_who(as_utf8(next.who));
+    event.set_text(shortened(as_utf8(next.text), kEventLength));
     put(Topic::kEvent, next.time, event);
   }
 }
@@ -381,8 +383,8 @@ bool SessionRecorder::finish() noexcept {
   Impl& impl = *impl_;
   const double now = impl.clock.now();
   try {
-    impl.end_station(0, now);
     for (; impl.next_change(); impl.waiting.reset()) impl.put_change(*impl.waiting, now);
+    impl.end_station(impl.session.view().tick, now);
     impl.put_events();
     impl.put_clock(now);
     impl.writer.finish();
@@ -397,6 +399,10 @@ bool SessionRecorder::finish() noexcept {
 
 void SessionRecorder::event(const std::string& code, const std::string& who, const std::string& text) {
   const std::lock_guard lock(impl_->mutex);
+  if (impl_->events.size() >= kMostWaitingEvents) {
+    ++impl_->events_lost;
+    return;
+  }
   impl_->events.push_back({.code = code, .who = who, .text = text, .time = impl_->clock.now()});
 }
 

@@ -208,6 +208,7 @@ void write_followers(const JointFollowers& followers, wire::Setup& out) {
 void write_change(const SessionChange& change, wire::Change& out) {
   out.Clear();
   out.set_number(change.number);
+  out.set_model_of(change.model_of);
   out.set_scene(as_utf8(change.scene));
   for (const auto& [key, value] : change.values) {
     wire::Setting& setting = *out.add_value();
@@ -230,7 +231,8 @@ void write_change(const SessionChange& change, const std::string& device_spec, w
   out.set_actuated(setup.device.actuated);
   out.set_simulated(setup.device.simulated);
   if (setup.device.watchdog) out.set_watchdog(*setup.device.watchdog);
-  for (const DeviceChannel& channel : setup.device.channels) write_channel(channel, *out.add_maker_channel());
+  for (const DeviceChannel& channel : setup.device.channels)
+    write_channel(channel, *out.add_factory_channel());
   for (const DeviceChannel& channel : setup.channels) write_channel(channel, *out.add_channel());
   out.set_calibration(as_utf8(setup.calibration));
   write_followers(setup.followers, out);
@@ -281,7 +283,7 @@ DeviceInfo read_device(const wire::Setup& setup) {
   device.name = setup.device_name();
   device.serial = setup.device_serial();
   device.rate_hz = setup.device_rate_hz();
-  device.channels = read_channels(setup.maker_channel());
+  device.channels = read_channels(setup.factory_channel());
   device.renders_torque = setup.renders_torque();
   device.actuated = setup.actuated();
   device.simulated = setup.simulated();

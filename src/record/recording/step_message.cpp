@@ -41,6 +41,7 @@ void write_step(const StepRecord& record, std::span<const DeviceSample> samples,
   const StepInput& input = record.input;
   const DeviceCommand& command = record.command;
   out.set_tick(command.tick);
+  out.set_station(record.station);
   out.set_time(input.time);
   out.set_late(input.late);
   for (const DeviceSample& sample : samples) write_sample(sample, channels, *out.add_sample());

@@ -30,6 +30,15 @@ inline constexpr std::array<TopicName, 8> kTopics = {{
     {Topic::kLoop, "/loop", "phalanx.wire.Loop"},
 }};
 
+/// @returns the largest message of a type that is read [bytes]: a small message may become large once it is parsed. Only a
+/// model is large by itself.
+template <class Wire>
+[[nodiscard]] constexpr std::size_t largest_message(const Wire& /*message*/) noexcept {
+  return requires(const Wire& wire) { wire.model(); } || requires(const Wire& wire) {
+    wire.start();
+  } ? 256U << 20U : 256U << 10U;
+}
+
 /// @returns the schemas of all channels; each holds the FileDescriptorSet of its message with all that it imports
 [[nodiscard]] std::vector<mcap::Schema> recording_schemas();
 [[nodiscard]] std::vector<mcap::Channel> recording_channels();
