@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -14,6 +15,7 @@
 
 #include "commands.h"
 #include "phalanx/figures/recording_page.h"
+#include "phalanx/record/export_csv.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/record/recordings.h"
 #include "phalanx/record/replay.h"
@@ -32,6 +34,9 @@ struct SessionOptions {
   std::string folder = kFolder;
   std::string file;
   std::string out;
+  std::vector<std::string> tables;
+  double from = 0.0;
+  std::optional<double> to;
   bool confirmed = false;
   bool quiet = false;
 };
@@ -120,6 +125,23 @@ int show(const SessionOptions& o) {
   return kDone;
 }
 
+int export_tables_of(const SessionOptions& o) {
+  const fs::path file = opened(o);
+  ExportOptions options;
+  options.tables = o.tables;
+  options.from = o.from;
+  if (o.to) options.to = *o.to;
+  const fs::path out = o.out.empty() ? fs::path(file).replace_extension("") : fs::path(o.out);
+  std::vector<ExportedFile> written;
+  {
+    ProgressBar bar("exporting", !o.quiet);
+    written = export_csv(file, out, options,
+                         [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
+  }
+  for (const ExportedFile& each : written) fmt::print("{}: {} rows\n", each.file.string(), each.rows);
+  return kDone;
+}
+
 int repair(const SessionOptions& o) {
   const fs::path file = found(o);
   const RepairedRecording repaired = repair_recording(file);
@@ -201,7 +223,7 @@ CLI::Option* add_file(CLI::App& command, SessionOptions& options) {
 
 void add_session_command(CLI::App& app, Job& job) {
   CLI::App* session =
-      app.add_subcommand("session", "The recordings of `phalanx run`: list, show, repair, delete");
+      app.add_subcommand("session", "The recordings of `phalanx run`: list, show, export, repair, delete");
   session->require_subcommand(1);
   auto options = std::make_shared<SessionOptions>();
   const auto add = [&](const char* name, const char* help, int (*work)(const SessionOptions&), bool file) {
@@ -222,6 +244,20 @@ void add_session_command(CLI::App& app, Job& job) {
   CLI::App* shown = add("show", "Draw forces and events of a recording on one page", show, true);
   shown->add_option("--out", options->out, "the page [beside the recording]")->type_name("FILE.html");
   shown->add_flag("--quiet", options->quiet, "no progress bar");
+  CLI::App* exported = add("export", "Write a recording as CSV tables", export_tables_of, true);
+  exported
+      ->add_option("--out", options->out,
+                   "a folder that does not exist yet [beside the recording, named as it]")
+      ->type_name("DIR");
+  std::string tables = "tables, separated by commas [all]:";
+  for (const ExportTable& table : export_tables())
+    tables += fmt::format("\n{}: {}", table.name, table.meaning);
+  exported->add_option("--tables", options->tables, tables)->delimiter(',')->type_name("NAME,...");
+  exported->add_option("--from", options->from, "begin, since the recording's begin")
+      ->capture_default_str()
+      ->type_name("S");
+  exported->add_option("--to", options->to, "end [the recording's]")->type_name("S");
+  exported->add_flag("--quiet", options->quiet, "no progress bar");
   add("repair", "Keep what is whole of a recording that has no end or is damaged", repair, true);
   add("delete", "Delete a recording", remove, true)
       ->add_flag("--yes", options->confirmed, "delete without asking");

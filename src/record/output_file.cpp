@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "record/partial_file.h"
+#include "record/synchronise_folder.h"
 
 namespace phalanx {
 namespace {
@@ -108,7 +109,13 @@ void write_then_rename(const std::filesystem::path& file,
 void write_text_file(const std::filesystem::path& file, std::string_view content) {
   OutputFile out(file);
   out.text(content);
+  out.synchronise();
   out.commit();
+  try {
+    synchronise_folder(file.parent_path());
+  } catch (const std::system_error& error) {
+    fail_to("write", file, error.code().value());
+  }
 }
 
 void prepare_output_folder(const std::filesystem::path& folder) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -57,6 +58,27 @@ TEST_F(CliSession, ListsShowsReplaysAndDeletes) {
   EXPECT_THAT(said("session delete " + name + " --yes"), HasSubstr("deleted"));
   EXPECT_FALSE(fs::exists(file));
   EXPECT_THAT(said("session show last"), HasSubstr("there is no recording in out/recordings"));
+}
+
+TEST_F(CliSession, ExportsTablesWithUnits) {
+  const std::string all = said("session export last --out tables --quiet");
+  EXPECT_THAT(all, HasSubstr("0 tables/steps.csv: "));
+  EXPECT_THAT(testing::read_file(folder / "tables/steps.csv"), HasSubstr("time_s,station,tick,host_time_s,"));
+  EXPECT_THAT(testing::read_file(folder / "tables/steps.csv"), HasSubstr(",torque_nm_index_mcp_flexion"));
+  EXPECT_THAT(testing::read_file(folder / "tables/events.csv"),
+              HasSubstr("\"ended\",\"\",\"the station has ended\""));
+  const std::string samples = testing::read_file(folder / "tables/samples.csv");
+  EXPECT_GT(std::count(samples.begin(), samples.end(), '\n'), 100);
+  EXPECT_THAT(said("session export last --out tables"),
+              HasSubstr("2 phalanx: 'tables' exists; name a folder that does not"));
+  EXPECT_THAT(said("session export last --out part --tables steps,nope"),
+              HasSubstr("there is no table 'nope'; known: steps, samples"));
+  EXPECT_THAT(said("session export last --out part --from 3 --to 2"),
+              HasSubstr("from 3 s to 2 s there is no time"));
+  EXPECT_FALSE(fs::exists(folder / "part"));
+  EXPECT_THAT(said("session export last --out part --tables steps --from 0.2 --to 0.4 --quiet"),
+              HasSubstr("part/steps.csv: "));
+  EXPECT_FALSE(fs::exists(folder / "part/hand.csv"));
 }
 
 TEST_F(CliSession, WhatHasNoEndIsRepairedWhenItIsOpened) {

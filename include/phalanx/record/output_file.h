@@ -76,7 +76,7 @@ class OutputFile {
 void write_then_rename(const std::filesystem::path& file,
                        const std::function<void(const std::filesystem::path&)>& write);
 
-/// Writes `content` as a whole.
+/// Writes `content` as a whole, to the disk itself: file, new name and folder outlive a power failure.
 /// @throws as OutputFile.
 void write_text_file(const std::filesystem::path& file, std::string_view content);
 

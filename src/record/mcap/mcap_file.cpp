@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "record/synchronise_folder.h"
+
 namespace phalanx::mcap {
 namespace {
 
@@ -49,16 +51,6 @@ void DiskFile::synchronise() {
 
 void DiskFile::truncate(std::uint64_t size) {
   if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("truncate");
-}
-
-void synchronise_folder(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) fail(folder.c_str());
-  const int result = ::fsync(descriptor);
-  const int reason = errno;
-  ::close(descriptor);
-  if (result != 0 && (reason == EIO || reason == ENOSPC))
-    throw std::system_error(reason, std::generic_category(), folder.c_str());
 }
 
 bool is_being_written(const std::filesystem::path& file) {

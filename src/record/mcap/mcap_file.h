@@ -41,10 +41,6 @@ class DiskFile final : public WritableFile {
   int descriptor_;
 };
 
-/// Synchronises a folder: names that were made, renamed or removed in it outlive a power failure. A file system that cannot
-/// do it is accepted. @throws std::system_error if the disk fails
-void synchronise_folder(const std::filesystem::path& folder);
-
 /// @returns true if a DiskFile, of this or of another program, has the file open
 [[nodiscard]] bool is_being_written(const std::filesystem::path& file);
 

@@ -20,17 +20,17 @@
 #include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_repair.h"
 #include "record/plain_text.h"
+#include "record/recording/recording_messages.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
 #include "record/recording/topics.h"
+#include "record/recording/view_message.h"
+#include "record/synchronise_folder.h"
 
 namespace phalanx {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Wire>
-bool parsed(const mcap::Message& message, Wire& into);
 
 /// Fills in what the file's beginning says: program, scene and device.
 void read_begin(const mcap::ReadableFile& file, RecordingSummary& out) {
@@ -86,7 +86,7 @@ void remove_quietly(const fs::path& file) noexcept {
 void keep_original(const fs::path& file, const fs::path& original) {
   std::error_code linked;
   fs::create_hard_link(file, original, linked);
-  if (!linked) return mcap::synchronise_folder(original.parent_path());
+  if (!linked) return synchronise_folder(original.parent_path());
   const mcap::ReadableFile from(file);
   mcap::DiskFile to(original);
   constexpr std::uint64_t kPart = 1U << 20U;
@@ -97,50 +97,6 @@ void keep_original(const fs::path& file, const fs::path& original) {
     to.write(place, part);
   }
   to.synchronise();
-}
-
-template <class Wire>
-bool parsed(const mcap::Message& message, Wire& into) {
-  return message.data.size() <= largest_message(into) &&
-         into.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()));
-}
-
-/// Calls `on_message(schema, message, time)` for each message of a recording; the time is that since its beginning [s].
-/// @throws std::runtime_error naming the place and the remedy if the file is not whole
-template <class OnMessage>
-void for_each_message_of(const fs::path& name, const std::function<void(double)>& on_progress,
-                         OnMessage on_message) {
-  try {
-    const mcap::ReadableFile file(name);
-    mcap::McapReader reader(file);
-    mcap::Message message;
-    std::optional<std::uint64_t> begin;
-    std::uint64_t told = 0;
-    while (reader.next(message)) {
-      if (!begin) begin = message.time;
-      const double time = 1e-9 * (static_cast<double>(message.time) - static_cast<double>(*begin));
-      on_message(reader.schema_of(message.channel), message, std::max(0.0, time));
-      if (on_progress && reader.place() >= told) {
-        on_progress(static_cast<double>(reader.place()) /
-                    static_cast<double>(std::max<std::uint64_t>(1, file.size())));
-        told = reader.place() + file.size() / 200;
-      }
-    }
-  } catch (const mcap::McapError& error) {
-    throw std::runtime_error(
-        fmt::format("{}: {}; phalanx session repair FILE keeps what is whole", name.string(), error.what()));
-  } catch (const std::system_error& error) {
-    throw std::runtime_error(fmt::format("{}: cannot be read ({})", name.string(), error.code().message()));
-  }
-}
-
-/// @returns the sum of the magnitudes on each digit, as asked of the motors [N]
-DigitArray digit_forces(const wire::Tick& tick) {
-  DigitArray force{};
-  for (const wire::Contact& contact : tick.contact())
-    if (const std::uint32_t digit = contact.segment() / kSegmentsPerDigit; digit < kDigits)
-      force[digit] += static_cast<double>(tick.factor() * contact.force());
-  return force;
 }
 
 }  // namespace
@@ -204,7 +160,7 @@ RepairedRecording repair_recording(const fs::path& file) {
       out.original = free_name(file, ".torn");
       keep_original(file, out.original);
       fs::rename(made, file);
-      mcap::synchronise_folder(file.parent_path());
+      synchronise_folder(file.parent_path());
     }
   } catch (const mcap::McapError& error) {
     remove_quietly(made);

@@ -156,4 +156,12 @@ void write_tick(const StationView& view, wire::Tick& out) {
   out.set_step_us(static_cast<float>(1e6 * view.duration));
 }
 
+DigitArray digit_forces(const wire::Tick& tick) noexcept {
+  DigitArray force{};
+  for (const wire::Contact& contact : tick.contact())
+    if (const std::uint32_t digit = contact.segment() / kSegmentsPerDigit; digit < kDigits)
+      force[digit] += static_cast<double>(tick.factor() * contact.force());
+  return force;
+}
+
 }  // namespace phalanx

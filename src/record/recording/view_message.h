@@ -10,6 +10,9 @@ namespace phalanx {
 /// Writes one step in the form of proto/phalanx/tick.proto. `out` is cleared first.
 void write_tick(const StationView& view, wire::Tick& out);
 
+/// @returns the sum of the magnitudes on each digit, as asked of the motors [N]
+[[nodiscard]] DigitArray digit_forces(const wire::Tick& tick) noexcept;
+
 /// Writes the statistics of the loop's deadlines in the form of proto/phalanx/cockpit.proto.
 void write_loop(const DeadlineStatistics& deadlines, wire::Loop& out);
 
