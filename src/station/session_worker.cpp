@@ -270,11 +270,13 @@ void SessionWorker::take_over(StationBuild& build) {
     build.geometry->revision = info.geometry ? info.geometry->revision + 1 : 1;
     info.geometry = build.geometry;
   });
+  const StationView last = state_.view();
   if (settings_.keep_changes)
     state_.keep_change({.station = stations_,
                         .number = 0,
                         .model_of = 0,
-                        .last_tick = state_.view().tick,
+                        .last_station = last.station,
+                        .last_tick = last.tick,
                         .scene = build.plan.scene,
                         .values = build.values,
                         .geometry = build.geometry,
@@ -300,6 +302,7 @@ std::uint64_t SessionWorker::keep_change(const std::string& scene, const Overrid
     state_.keep_change({.station = stations_,
                         .number = number,
                         .model_of = geometry ? number : model_change_,
+                        .last_station = 0,
                         .last_tick = 0,
                         .scene = scene,
                         .values = values,

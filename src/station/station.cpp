@@ -246,6 +246,7 @@ void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_
   StationView view;
   view.time = wake.now;
   view.tick = record.command.tick;
+  view.station = options.number;
   view.snapshot = snapshot;
   view.stiffness = record.stiffness;
   view.duration = record.duration;

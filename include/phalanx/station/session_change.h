@@ -37,8 +37,9 @@ struct SessionChange {
   std::uint64_t station = 0;   ///< StepRecord::station of the steps that it is for
   std::uint64_t number = 0;    ///< StepInput::changed or exchanged; 0: a station begins
   std::uint64_t model_of = 0;  ///< number of the change whose geometry it is with; 0: the station's first
-  std::uint64_t last_tick =
-      0;  ///< of a station that begins: StationView::tick of the one before it, at its end
+  /// Of a station that begins: StationView::station and tick at the end of the one before it; 0: there was none.
+  std::uint64_t last_station = 0;
+  std::uint64_t last_tick = 0;
   std::string scene;
   Overrides values;                                 ///< SessionInfo::values
   std::shared_ptr<const SessionGeometry> geometry;  ///< null: that of the change before

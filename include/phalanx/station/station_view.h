@@ -14,8 +14,9 @@ namespace phalanx {
 
 /// State after the newest step.
 struct StationView {
-  double time = 0.0;       ///< the host's clock [s]
-  std::uint64_t tick = 0;  ///< number of the step, as in StepRecord::command
+  double time = 0.0;          ///< the host's clock [s]
+  std::uint64_t tick = 0;     ///< number of the step, as in StepRecord::command
+  std::uint64_t station = 0;  ///< StationOptions::number
   Snapshot snapshot;
   double stiffness = 0.0;  ///< stiffness of the force law at this step [N/m]
   double duration = 0.0;   ///< from the start of the step until the command was handed to the device [s]

@@ -251,6 +251,10 @@ class Replay {
       if (station_->command().torque[j] != recorded_torque(recorded, j))
         return fmt::format("torque of {}: recorded {} Nm, now {} Nm", joint_name(static_cast<int>(j)),
                            recorded_torque(recorded, j), station_->command().torque[j]);
+    for (std::size_t d = 0; d < station_->command().stopped.size(); ++d)
+      if (station_->command().stopped[d] != ((recorded.stopped() >> d & 1U) != 0))
+        return fmt::format("{} {}: recorded otherwise", digit_name(static_cast<int>(d)),
+                           station_->command().stopped[d] ? "is stopped" : "is not stopped");
     if (recorded.gdp_angle_size() == kJoints)
       for (std::size_t j = 0; j < kJoints; ++j)
         if (station_->snapshot().gdp_angle[j] != recorded.gdp_angle(static_cast<int>(j)))

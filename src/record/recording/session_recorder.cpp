@@ -27,10 +27,11 @@
 namespace phalanx {
 namespace {
 
-constexpr double kBetweenPoses = 1.0 / 60.0;  // [s]
-constexpr double kBetweenLoops = 1.0;         // statistics of deadlines [s]
-constexpr double kBetweenClocks = 10.0;       // pairs of clocks [s]
-constexpr std::size_t kEventLength = 4000;    // [bytes]
+constexpr double kBetweenPoses = 1.0 / 60.0;    // [s]
+constexpr double kBetweenLoops = 1.0;           // statistics of deadlines [s]
+constexpr double kBetweenClocks = 10.0;         // pairs of clocks [s]
+constexpr std::size_t kLargeChunk = 8U << 20U;  // is written before its time [bytes]
+constexpr std::size_t kEventLength = 4000;      // [bytes]
 constexpr std::size_t kMostWaitingEvents = 1000;
 constexpr double kBetweenTries = 0.2;  // of a disk that refuses [s]
 constexpr const char* kTooFast = "they came faster than they were fetched";
@@ -113,12 +114,16 @@ struct SessionRecorder::Impl {
   void put_change(const SessionChange& change, double now);
   void fetch_station(const StepRecord& record);
   void fetch_change(std::uint64_t number, double now);
-  void end_station(std::uint64_t last, double now);
+  void end_station(std::uint64_t of, std::uint64_t last, double now);
   [[nodiscard]] bool next_change();
   void lost(std::uint64_t first, std::uint64_t last, const char* why) noexcept;
   void put_gap(double now);
   bool write(double now) noexcept;
   void say_trouble(const std::exception& error) noexcept;
+  /// @returns true if the disk refuses, and no more may wait. (A large model alone is written with the next update().)
+  [[nodiscard]] bool is_full() const noexcept {
+    return writer.pending() && writer.open_bytes() > kMostWaitingBytes;
+  }
   [[nodiscard]] std::uint64_t time_of(double mono) const noexcept {
     return static_cast<std::uint64_t>(begin_utc + std::llround((mono - begin_mono) * 1e9));
   }
@@ -184,7 +189,7 @@ void SessionRecorder::Impl::add(const StepRecord& record, std::span<const Device
   if (record.station != station) fetch_station(record);
   if (record.command.tick > tick + 1) lost(tick + 1, record.command.tick - 1, kTooFast);
   tick = record.command.tick;
-  if (writer.open_bytes() > kMostWaitingBytes) return lost(tick, tick, kRefused);
+  if (is_full()) return lost(tick, tick, kRefused);
   try {
     put_step(record, samples, now);
   } catch (...) {
@@ -211,9 +216,11 @@ void SessionRecorder::Impl::fetch_station(const StepRecord& record) {
 }
 
 /// Names the steps that are missing at a station's end. @param last  number of its last step
-void SessionRecorder::Impl::end_station(std::uint64_t last, double now) {
-  if (station != 0 && last > tick) lost(tick + 1, last, kTooFast);
-  tick = std::max(tick, last);
+void SessionRecorder::Impl::end_station(std::uint64_t of, std::uint64_t last, double now) {
+  if (of == station && station != 0 && last > tick) {
+    lost(tick + 1, last, kTooFast);
+    tick = last;
+  }
   put_gap(now);
 }
 
@@ -237,7 +244,7 @@ void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
     change = next.number;
     return;
   }
-  end_station(next.last_tick, now);
+  end_station(next.last_station, next.last_tick, now);
   channels = next.setup->channels.size();
   period = 1.0 / next.geometry->rate_hz;
   write_change(next, session.settings().device, setup);
@@ -296,7 +303,7 @@ void SessionRecorder::Impl::put_events() {
 
 void SessionRecorder::Impl::update() {
   const double now = clock.now();
-  if (writer.open_bytes() <= kMostWaitingBytes) {
+  if (!is_full()) {
     put_events();
     if (now >= next_pose) {
       next_pose = std::max(next_pose + kBetweenPoses, now);
@@ -320,7 +327,8 @@ void SessionRecorder::Impl::update() {
     }
   }
   const double since = oldest.load();
-  if (since != 0.0 && now - since >= kChunkSeconds && now >= next_try) write(now);
+  const bool due = since != 0.0 && now - since >= kChunkSeconds;
+  if ((due || writer.open_bytes() > kLargeChunk) && now >= next_try) write(now);
 }
 
 /// Writes the chunk. @returns false if the disk refuses
@@ -384,7 +392,8 @@ bool SessionRecorder::finish() noexcept {
   const double now = impl.clock.now();
   try {
     for (; impl.next_change(); impl.waiting.reset()) impl.put_change(*impl.waiting, now);
-    impl.end_station(impl.session.view().tick, now);
+    const StationView last = impl.session.view();
+    impl.end_station(last.station, last.tick, now);
     impl.put_events();
     impl.put_clock(now);
     impl.writer.finish();
