@@ -87,8 +87,13 @@ class Repair {
   /// Names the chunks that the old file's index has, and that were not found: their records are damaged.
   void name_missing_chunks() {
     if (!old_) return;
+    const auto is_named = [&](std::uint64_t place) {
+      return std::any_of(result_.damages.begin(), result_.damages.end(), [&](const Damage& damage) {
+        return damage.place <= place && place < damage.place + damage.length;
+      });
+    };
     for (const ChunkEntry& chunk : old_->chunks)
-      if (!found_.contains(chunk.place))
+      if (!found_.contains(chunk.place) && !is_named(chunk.place))
         result_.damages.push_back({.place = chunk.place,
                                    .length = chunk.length,
                                    .what = "the index has a chunk here, and there is none"});
