@@ -197,8 +197,7 @@ int play_again(const SessionOptions& o) {
   if (!result.exact)
     fmt::print(
         "  recorded on {}, whose mathematical functions round otherwise than this machine's: compared to "
-        "within {} Nm "
-        "and rad, not to the last bit\n",
+        "within {} Nm and rad, not to the last bit\n",
         result.recorded_on, ReplayResult::kTolerance);
   if (result.other_version) fmt::print("  computed by another version: {}\n", result.recorded_by);
   if (result.first)

@@ -240,7 +240,7 @@ TEST(Mcap, NoLengthInTheFileIsBelieved) {
     try {
       static_cast<void>(numbers_in(bytes));
     } catch (const McapError&) {
-    } catch (const std::invalid_argument&) {  // stoi: a message that is none of ours
+    } catch (const std::invalid_argument&) {  // of std::stoi: the bytes of a damaged message
     }
     std::string out;
     try {

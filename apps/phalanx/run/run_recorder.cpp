@@ -95,9 +95,8 @@ void RunRecorder::finish_recording(const std::function<void(const RecordingStatu
   complain([&] {
     const RecordingStatus status = recording_->status();
     return fmt::format(
-        "the recording has no end, and its last {:.1f} s are lost: {}; what {} holds is kept, and `phalanx "
-        "session "
-        "repair` ends it",
+        "the recording has no end, and its last {:.1f} s are lost: {}; what {} holds is kept, and "
+        "`phalanx session repair` ends it",
         status.unsaved, status.trouble, status.file.string());
   });
 }

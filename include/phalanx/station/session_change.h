@@ -42,7 +42,7 @@ struct SessionChange {
   std::uint64_t last_tick = 0;
   std::string scene;
   Overrides values;                                 ///< SessionInfo::values
-  std::shared_ptr<const SessionGeometry> geometry;  ///< null: that of the change before
+  std::shared_ptr<const SessionGeometry> geometry;  ///< null: that of `model_of`
   std::optional<StationSetup> setup;                ///< of a station that begins
 };
 

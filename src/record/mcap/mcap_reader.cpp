@@ -240,12 +240,7 @@ bool McapReader::next(Message& message) {
         read_other(op, content, true);
         continue;
       }
-      Cursor fields(content);
-      message.channel = fields.u16();
-      message.sequence = fields.u32();
-      message.time = fields.u64();
-      static_cast<void>(fields.u64());
-      message.data = fields.rest();
+      message = parse_message(content);
       if (!channels_.contains(message.channel))
         throw McapError("a message is of a channel that was not declared");
       return true;

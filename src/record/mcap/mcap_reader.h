@@ -86,6 +86,17 @@ class ChunkReader {
   ZSTD_DCtx_s* context_;
 };
 
+[[nodiscard]] inline Message parse_message(std::string_view content) {
+  Cursor fields(content);
+  Message message;
+  message.channel = fields.u16();
+  message.sequence = fields.u32();
+  message.time = fields.u64();
+  static_cast<void>(fields.u64());  // publish_time, the same
+  message.data = fields.rest();
+  return message;
+}
+
 /// Calls `on_message(message, offset)` for each message of a chunk, and `on_other(op, content)` for its other records.
 /// @throws McapError if a record does not fit
 template <class OnMessage, class OnOther>
@@ -96,14 +107,7 @@ void for_each_message(std::string_view records, const OnMessage& on_message, con
     const auto op = static_cast<Op>(rest.u8());
     const std::string_view content = rest.raw(rest.u64());
     if (op == Op::kMessage) {
-      Cursor fields(content);
-      Message message;
-      message.channel = fields.u16();
-      message.sequence = fields.u32();
-      message.time = fields.u64();
-      static_cast<void>(fields.u64());
-      message.data = fields.rest();
-      on_message(message, offset);
+      on_message(parse_message(content), offset);
     } else {
       on_other(op, content);
     }

@@ -183,7 +183,7 @@ class Repair {
     for (const auto& [channel, places] : indexes) put_index(channel, view_of(places));
   }
 
-  /// Takes over the index of a chunk that cannot be read; that of others has been made anew.
+  /// Copies the index of a chunk that cannot be read. Other chunks get a new index.
   void keep_index() {
     if (!open_ || own_index_) return;
     Cursor fields(record_.content);
