@@ -3,7 +3,7 @@
 //
 // Threads: all of Cockpit::Impl runs on the server's thread, whose functions must return soon. Three further
 // threads do what takes long: the log of changes (audit_log.h), the encoding of a geometry
-// (geometry_message.h), and one upload at a time (uploads.h). The station's owner reports the outcome of a
+// (geometry_cache.h), and one upload at a time (uploads.h). The station's owner reports the outcome of a
 // change in Session::poll(); the report is posted to the server's thread.
 //
 // Way of a message: the bytes of a page arrive in Cockpit::received(), are decoded, and go to handle(). A
@@ -27,7 +27,7 @@
 #include "phalanx/serve/cockpit.h"
 #include "phalanx/step/displayed_hand.h"
 #include "serve/audit_log.h"
-#include "serve/geometry_message.h"
+#include "serve/geometry_cache.h"
 #include "serve/page_requests.h"
 #include "serve/participants.h"
 #include "serve/uploads.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/geometry_message.h"
+#include "record/recording/geometry_message.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -13,6 +13,7 @@
 
 #include "phalanx/core/index.h"
 #include "phalanx/geometry.pb.h"
+#include "serve/geometry_cache.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -47,7 +48,7 @@ HandSkin simple_skin() {
 
 wire::Geometry sent(const SessionGeometry& geometry) {
   wire::Geometry message;
-  EXPECT_TRUE(message.ParseFromString(geometry_message(geometry)));
+  write_geometry(geometry, message);
   return message;
 }
 

@@ -19,6 +19,7 @@
 #include "phalanx/record/output_file.h"
 #include "record/mcap/mcap_writer.h"
 #include "record/plain_text.h"
+#include "record/recording/geometry_message.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
 #include "record/recording/topics.h"
@@ -86,7 +87,8 @@ std::map<std::string, std::string> recording_metadata(const std::string& version
       {"build_type", made.build_type},
       {"libm", fmt::format("{:016x}", libm_fingerprint())},
       {"exact", "/setup /change /step: from these every step can be computed again, to the last bit"},
-      {"derived", "/pose, hcp_angle and gdp_angle of /step: about 60 a second, computed from the samples"}};
+      {"derived",
+       "/geometry, /pose, hcp_angle and gdp_angle of /step: about 60 a second, computed from the samples"}};
 }
 
 struct SessionRecorder::Impl {
@@ -112,6 +114,7 @@ struct SessionRecorder::Impl {
   void put_clock(double now);
   void put_events();
   void put_change(const SessionChange& change, double now);
+  void put_geometry(const SessionGeometry& next, double now);
   void fetch_station(const StepRecord& record);
   void fetch_change(std::uint64_t number, double now);
   void end_station(std::uint64_t of, std::uint64_t last, double now);
@@ -239,6 +242,7 @@ bool SessionRecorder::Impl::next_change() {
 
 void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
   if (next.number != 0) {
+    if (next.geometry) put_geometry(*next.geometry, now);
     write_change(next, changed);
     put(Topic::kChange, now, changed);
     change = next.number;
@@ -247,11 +251,20 @@ void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
   end_station(next.last_station, next.last_tick, now);
   channels = next.setup->channels.size();
   period = 1.0 / next.geometry->rate_hz;
+  put_geometry(*next.geometry, now);
   write_change(next, session.settings().device, setup);
   put(Topic::kSetup, now, setup);
   station = next.station;
   tick = 0;
   steps_to_angles = 0.0;
+}
+
+/// Writes what pages show from now on. It comes before what else is written of a change: without memory, the change is tried
+/// again, and a second copy of this does no harm.
+void SessionRecorder::Impl::put_geometry(const SessionGeometry& next, double now) {
+  wire::Geometry geometry;  // not kept: an object may have millions of triangles
+  write_geometry(next, geometry);
+  put(Topic::kGeometry, now, geometry);
 }
 
 /// Notes steps that are lost; the gap is written before the next step.

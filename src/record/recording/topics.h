@@ -12,14 +12,24 @@
 namespace phalanx {
 
 /// Numbers of the channels, and of their schemas.
-enum class Topic : std::uint16_t { kSetup = 1, kChange, kStep, kPose, kEvent, kGap, kClock, kLoop };
+enum class Topic : std::uint16_t {
+  kSetup = 1,
+  kChange,
+  kStep,
+  kPose,
+  kEvent,
+  kGap,
+  kClock,
+  kLoop,
+  kGeometry
+};
 
 struct TopicName {
   Topic topic;
   std::string_view name;
   std::string_view schema;
 };
-inline constexpr std::array<TopicName, 8> kTopics = {{
+inline constexpr std::array<TopicName, 9> kTopics = {{
     {Topic::kSetup, "/setup", "phalanx.wire.Setup"},
     {Topic::kChange, "/change", "phalanx.wire.Change"},
     {Topic::kStep, "/step", "phalanx.wire.Step"},
@@ -28,6 +38,7 @@ inline constexpr std::array<TopicName, 8> kTopics = {{
     {Topic::kGap, "/gap", "phalanx.wire.Gap"},
     {Topic::kClock, "/clock", "phalanx.wire.ClockPair"},
     {Topic::kLoop, "/loop", "phalanx.wire.Loop"},
+    {Topic::kGeometry, "/geometry", "phalanx.wire.Geometry"},
 }};
 
 /// @returns the largest message of a type that is read [bytes]: a small message may become large once it is parsed. Only a

@@ -62,13 +62,14 @@ describe("the recording", () => {
     const [file] = recordings(station.folder);
     const counts = streamed(file!);
     expect(counts.get("/setup")).toBe(1);
+    expect(counts.get("/geometry")).toBe(1);
     expect(counts.get("/step")).toBeGreaterThan(100);
     expect(counts.get("/pose")).toBeGreaterThan(10);
     expect(counts.get("/event"), "the stop").toBeGreaterThan(0);
     const { counts: byIndex, reader } = await indexed(file!);
     expect(byIndex).toEqual(counts);
     expect(Number(reader.statistics!.messageCount)).toBe([...counts.values()].reduce((sum, count) => sum + count, 0));
-    expect([...reader.schemasById.values()].map((schema) => schema.encoding)).toEqual(Array(8).fill("protobuf"));
+    expect([...reader.schemasById.values()].map((schema) => schema.encoding)).toEqual(Array(9).fill("protobuf"));
     const said = execFileSync(programPath(), ["replay", file!], { encoding: "utf8" });
     expect(said).toContain("every force, angle and command has the same bits");
   });

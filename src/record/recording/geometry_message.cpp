@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/geometry_message.h"
+#include "record/recording/geometry_message.h"
 
-#include <new>
-#include <system_error>
-#include <thread>
-#include <utility>
-
-#include "phalanx/geometry.pb.h"
+#include "phalanx/station/session.h"
 
 namespace phalanx {
 namespace {
@@ -61,16 +56,10 @@ void put_joints(const HandParameters& hand, wire::Geometry& out) {
   }
 }
 
-/// @param bytes  null: there was no memory
-WebResponse response_with(const Bytes& bytes) {
-  if (!bytes) return {.status = 500, .type = "text/plain", .body = nullptr, .immutable = false};
-  return {.status = 200, .type = "application/x-protobuf", .body = bytes, .immutable = false};
-}
-
 }  // namespace
 
-std::string geometry_message(const SessionGeometry& geometry) {
-  wire::Geometry out;
+void write_geometry(const SessionGeometry& geometry, wire::Geometry& out) {
+  out.Clear();
   out.set_revision(geometry.revision);
   out.set_left(geometry.handedness == Handedness::kLeft);
   for (const TriangleMesh& mesh : geometry.segment) put(mesh, *out.add_segment());
@@ -82,51 +71,6 @@ std::string geometry_message(const SessionGeometry& geometry) {
   out.set_rate_hz(static_cast<float>(geometry.rate_hz));
   for (int s = 0; s < kSegments; ++s) out.add_segment_name(std::string(segment_name(s)));
   put_joints(geometry.hand, out);
-  return out.SerializeAsString();
-}
-
-Bytes GeometryCache::encode(const SessionGeometry& geometry) noexcept {
-  try {
-    return std::make_shared<const std::string>(geometry_message(geometry));
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-
-void GeometryCache::request(std::shared_ptr<const SessionGeometry> geometry, Respond respond) {
-  std::unique_lock lock(mutex_);
-  if (bytes_ && revision_ == geometry->revision) {
-    const Bytes bytes = bytes_;
-    lock.unlock();
-    return respond(response_with(bytes));
-  }
-  requests_.push_back({std::move(geometry), std::move(respond)});
-  if (working_) return;
-  try {
-    std::thread([self = shared_from_this()] { self->work(); }).detach();
-    working_ = true;
-  } catch (const std::system_error&) {  // no thread: the page requests it again
-    const Request refused = std::move(requests_.back());
-    requests_.pop_back();
-    lock.unlock();
-    refused.respond(response_with(nullptr));
-  }
-}
-
-void GeometryCache::work() {
-  std::unique_lock lock(mutex_);
-  while (!requests_.empty()) {
-    const Request next = std::move(requests_.front());
-    requests_.pop_front();
-    Bytes bytes = revision_ == next.geometry->revision ? bytes_ : nullptr;
-    lock.unlock();
-    if (!bytes) bytes = encode(*next.geometry);
-    next.respond(response_with(bytes));
-    lock.lock();
-    bytes_ = std::move(bytes);
-    revision_ = next.geometry->revision;
-  }
-  working_ = false;
 }
 
 }  // namespace phalanx

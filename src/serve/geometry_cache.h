@@ -6,17 +6,13 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <string>
 
 #include "phalanx/serve/web_server.h"
 #include "phalanx/station/session.h"
 
 namespace phalanx {
 
-/// @returns the encoded wire::Geometry, which a page fetches once for each revision. Set-up only.
-[[nodiscard]] std::string geometry_message(const SessionGeometry& geometry);
-
-/// Cache of the newest encoded geometry. Two million triangles are tens of megabytes to encode. A
+/// Cache of the newest encoded wire::Geometry, which a page fetches once for each revision. Two million triangles are tens of megabytes to encode. A
 /// thread of its own does that once for each revision, so that neither a stop nor a tick waits for it
 /// on the server's thread.
 class GeometryCache : public std::enable_shared_from_this<GeometryCache> {
