@@ -15,7 +15,7 @@
 
 #include "commands.h"
 #include "phalanx/figures/recording_page.h"
-#include "phalanx/record/export_csv.h"
+#include "phalanx/record/export_recording.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/record/recordings.h"
 #include "phalanx/record/replay.h"
@@ -34,7 +34,11 @@ struct SessionOptions {
   std::string folder = kFolder;
   std::string file;
   std::string out;
-  std::vector<std::string> tables;
+  std::string format = "csv";
+  std::vector<std::string> parts;
+  std::vector<std::string> columns;
+  std::string subject = "01";
+  std::string task;
   double from = 0.0;
   std::optional<double> to;
   bool confirmed = false;
@@ -83,14 +87,6 @@ std::string date_text(double utc) {
                     : fmt::format("{:%Y-%m-%d %H:%M:%S}Z", fmt::gmtime(static_cast<std::time_t>(utc)));
 }
 
-std::string state_text(const RecordingSummary& recording) {
-  if (recording.written) return "being written";
-  if (!recording.begins) return recording.trouble;
-  if (!recording.has_end) return "no end: repair";
-  if (!recording.trouble.empty()) return recording.trouble;
-  return recording.gaps > 0 ? fmt::format("{} gaps", recording.gaps) : "whole";
-}
-
 int list(const SessionOptions& o) {
   const std::vector<RecordingSummary> all = list_recordings(o.folder);
   if (all.empty()) {
@@ -105,7 +101,7 @@ int list(const SessionOptions& o) {
                recording.has_end ? fmt::format("{:.1f} s", recording.seconds) : "-",
                recording.has_end ? std::to_string(recording.steps) : "-",
                1e-6 * static_cast<double>(recording.bytes), recording.scene.empty() ? "-" : recording.scene,
-               state_text(recording));
+               recording_state(recording));
   return kDone;
 }
 
@@ -125,20 +121,27 @@ int show(const SessionOptions& o) {
   return kDone;
 }
 
-int export_tables_of(const SessionOptions& o) {
+int export_as(const SessionOptions& o) {
+  const ExportFormatName& format = export_format(o.format);
   const fs::path file = opened(o);
   ExportOptions options;
-  options.tables = o.tables;
+  options.format = format.format;
+  options.parts = o.parts;
+  options.columns = o.columns;
+  options.subject = o.subject;
+  options.task = o.task;
   options.from = o.from;
   if (o.to) options.to = *o.to;
-  const fs::path out = o.out.empty() ? fs::path(file).replace_extension("") : fs::path(o.out);
-  std::vector<ExportedFile> written;
+  const fs::path out = o.out.empty() ? fs::path(file).replace_extension(format.ending) : fs::path(o.out);
+  std::vector<ExportedPart> written;
   {
     ProgressBar bar("exporting", !o.quiet);
-    written = export_csv(file, out, options,
-                         [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
+    written = export_recording(
+        file, out, options, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
   }
-  for (const ExportedFile& each : written) fmt::print("{}: {} rows\n", each.file.string(), each.rows);
+  const char* what = format.format == ExportFormat::kRos2 ? "messages" : "rows";
+  for (const ExportedPart& each : written)
+    fmt::print("{}: {}, {} {}\n", each.file.string(), each.part, each.rows, what);
   return kDone;
 }
 
@@ -210,6 +213,18 @@ int play_again(const SessionOptions& o) {
   return result.different == 0 ? kDone : kFailed;
 }
 
+/// @returns the help on the parts of all formats
+std::string parts_text() {
+  std::string text = "parts to write, separated by commas [all]; of csv, hdf5 and matlab the tables:";
+  for (const ExportFormat format : {ExportFormat::kCsv, ExportFormat::kRos2, ExportFormat::kBids}) {
+    if (format == ExportFormat::kRos2) text += "\nof ros2 the topics:";
+    if (format == ExportFormat::kBids) text += "\nof bids the tables:";
+    for (const ExportPart& part : export_parts(format))
+      text += fmt::format("\n- {}: {}", part.name, part.meaning);
+  }
+  return text;
+}
+
 CLI::Option* add_file(CLI::App& command, SessionOptions& options) {
   command.add_option("--folder", options.folder, "folder of the recordings")
       ->capture_default_str()
@@ -243,15 +258,26 @@ void add_session_command(CLI::App& app, Job& job) {
   CLI::App* shown = add("show", "Draw forces and events of a recording on one page", show, true);
   shown->add_option("--out", options->out, "the page [beside the recording]")->type_name("FILE.html");
   shown->add_flag("--quiet", options->quiet, "no progress bar");
-  CLI::App* exported = add("export", "Write a recording as CSV tables", export_tables_of, true);
+  CLI::App* exported = add("export", "Write a recording in the format of other programs", export_as, true);
   exported
       ->add_option("--out", options->out,
-                   "a folder that does not exist yet [beside the recording, named as it]")
-      ->type_name("DIR");
-  std::string tables = "tables, separated by commas [all]:";
-  for (const ExportTable& table : export_tables())
-    tables += fmt::format("\n{}: {}", table.name, table.meaning);
-  exported->add_option("--tables", options->tables, tables)->delimiter(',')->type_name("NAME,...");
+                   "a folder or file that does not exist yet [beside the recording, named as it]")
+      ->type_name("PATH");
+  std::string formats = "format:";
+  for (const ExportFormatName& format : export_formats())
+    formats += fmt::format("\n{}: {}", format.name, format.meaning);
+  exported->add_option("--format", options->format, formats)->capture_default_str()->type_name("NAME");
+  exported->add_option("--parts", options->parts, parts_text())->delimiter(',')->type_name("NAME,...");
+  exported
+      ->add_option("--columns", options->columns,
+                   "columns of csv, hdf5 and matlab, separated by commas [all]: torque is all joints', "
+                   "torque_nm_index_pip_flexion is one")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  exported->add_option("--subject", options->subject, "label of the person in a BIDS data set")
+      ->capture_default_str()
+      ->type_name("LABEL");
+  exported->add_option("--task", options->task, "label of the task there [the scene]")->type_name("LABEL");
   exported->add_option("--from", options->from, "begin, since the recording's begin")
       ->capture_default_str()
       ->type_name("S");

@@ -29,6 +29,15 @@ inline ProgramResult run_program(const TemporaryFolder& folder, const std::strin
           read_file(folder / ".err")};
 }
 
+/// Runs a command of the shell in a folder.
+inline ProgramResult run_command(const TemporaryFolder& folder, const std::string& command) {
+  const std::string whole =
+      "cd '" + folder.path().string() + "' && (" + command + ") >.out 2>.err </dev/null";
+  const int status = std::system(whole.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / ".out"),
+          read_file(folder / ".err")};
+}
+
 inline void write_file(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file) << text;
 }

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 using testing::TemporaryFolder;
 
 /// A folder with one recording of a second.
@@ -62,7 +63,7 @@ TEST_F(CliSession, ListsShowsReplaysAndDeletes) {
 
 TEST_F(CliSession, ExportsTablesWithUnits) {
   const std::string all = said("session export last --out tables --quiet");
-  EXPECT_THAT(all, HasSubstr("0 tables/steps.csv: "));
+  EXPECT_THAT(all, HasSubstr("0 tables/steps.csv: steps, "));
   EXPECT_THAT(testing::read_file(folder / "tables/steps.csv"), HasSubstr("time_s,station,tick,host_time_s,"));
   EXPECT_THAT(testing::read_file(folder / "tables/steps.csv"), HasSubstr(",torque_nm_index_mcp_flexion"));
   EXPECT_THAT(testing::read_file(folder / "tables/events.csv"),
@@ -70,14 +71,27 @@ TEST_F(CliSession, ExportsTablesWithUnits) {
   const std::string samples = testing::read_file(folder / "tables/samples.csv");
   EXPECT_GT(std::count(samples.begin(), samples.end(), '\n'), 100);
   EXPECT_THAT(said("session export last --out tables"),
-              HasSubstr("2 phalanx: 'tables' exists; name a folder that does not"));
-  EXPECT_THAT(said("session export last --out part --tables steps,nope"),
-              HasSubstr("there is no table 'nope'; known: steps, samples"));
+              HasSubstr("2 phalanx: 'tables' exists; name a target that does not"));
+  EXPECT_THAT(said("session export last --out part --parts steps,nope"),
+              HasSubstr("there is no part 'nope' in this format; known: steps, samples"));
+  EXPECT_THAT(said("session export last --out part --format xls"),
+              HasSubstr("there is no format 'xls'; known: csv, hdf5, matlab, ros2, bids"));
+  EXPECT_THAT(said("session export last --out part --columns nope"),
+              HasSubstr("there is no column 'nope'; those of the tables are: steps: time station tick"));
+  EXPECT_THAT(said("session export last --out part --format ros2 --columns torque"),
+              HasSubstr("columns can be chosen for csv, hdf5 and matlab"));
+  EXPECT_THAT(said("session export last --out part --format bids --subject \"A. B.\""),
+              HasSubstr("'A. B.' is no label"));
+  EXPECT_THAT(said("session export last --out part --parts events --columns torque"),
+              HasSubstr("none of the chosen tables has any of the chosen columns"));
   EXPECT_THAT(said("session export last --out part --from 3 --to 2"),
               HasSubstr("from 3 s to 2 s there is no time"));
   EXPECT_FALSE(fs::exists(folder / "part"));
-  EXPECT_THAT(said("session export last --out part --tables steps --from 0.2 --to 0.4 --quiet"),
+  EXPECT_THAT(said("session export last --out part --from 0.2 --to 0.4 --quiet "
+                   "--columns torque_nm_index_pip_flexion,stiffness"),
               HasSubstr("part/steps.csv: "));
+  const std::string part = testing::read_file(folder / "part/steps.csv");
+  EXPECT_THAT(part, StartsWith("time_s,station,tick,stiffness_n_per_m,torque_nm_index_pip_flexion\n0.2"));
   EXPECT_FALSE(fs::exists(folder / "part/hand.csv"));
 }
 
@@ -91,18 +105,30 @@ TEST_F(CliSession, WhatHasNoEndIsRepairedWhenItIsOpened) {
   EXPECT_THAT(said("session repair last"), HasSubstr("is whole"));
 }
 
-TEST_F(CliSession, HasMarkersThatComeByUdp) {
+TEST_F(CliSession, HasMarkersThatComeByUdpAndExportsThatOtherProgramsRead) {
   const std::string port = std::to_string(20000 + ::getpid() % 30000);
   const auto run = run_program(
-      folder, "run index_ball --headless --no-realtime --quiet --seconds 1 --record marked --marker-port " +
-                  port +
-                  " & while kill -0 $! 2>/dev/null; do sleep 0.1; bash -c 'printf \"stimulus 3\" "
-                  ">/dev/udp/127.0.0.1/" +
-                  port + "' 2>/dev/null; done");
+      folder,
+      "run index_ball --headless --no-realtime --quiet --seconds 1 --record marked --marker-port " + port +
+          " & while kill -0 $! 2>/dev/null; do sleep 0.1; bash -c 'printf \"Ton größer 3 \U0001F642\" "
+          ">/dev/udp/127.0.0.1/" +
+          port + "' 2>/dev/null; done");
   EXPECT_THAT(said("session show last --folder marked --quiet --out marked.html"), HasSubstr(" events"));
   const std::string page = testing::read_file(folder / "marked.html");
-  EXPECT_THAT(page, HasSubstr("stimulus 3"));
+  EXPECT_THAT(page, HasSubstr("Ton größer 3 \U0001F642"));
   EXPECT_THAT(page, HasSubstr("127.0.0.1:"));
+  std::string files;
+  for (const std::string format : {"csv", "hdf5", "matlab", "bids"}) {
+    EXPECT_THAT(
+        said("session export last --folder marked --quiet --format " + format + " --out as_" + format),
+        StartsWith("0 "));
+    files += " as_" + format;
+  }
+  // h5py and scipy find the same numbers and texts as the CSV files have.
+  const auto read =
+      run_command(folder, "/usr/bin/python3 " PHALANX_SOURCE_DIR "/tests/record/read_exports.py" + files);
+  EXPECT_EQ(read.exit_code, 0) << read.out << read.err;
+  EXPECT_THAT(read.out, HasSubstr("BIDS is right"));
 }
 
 TEST_F(CliSession, RefusesInWords) {

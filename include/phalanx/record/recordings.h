@@ -31,6 +31,9 @@ struct RecordingSummary {
   std::string version;  ///< of the program
 };
 
+/// @returns in words what may be done with it: "whole", "2 gaps", "being written", "no end: repair", or its trouble
+[[nodiscard]] std::string recording_state(const RecordingSummary& recording);
+
 /// Reads the end of a file, and its beginning up to the first station. It changes nothing. Not real-time.
 /// @throws std::invalid_argument if there is no such file
 [[nodiscard]] RecordingSummary summarise_recording(const std::filesystem::path& file);

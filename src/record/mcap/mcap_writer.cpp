@@ -88,11 +88,11 @@ void put_channel(Bytes& out, const Channel& channel) {
   end_record(out, record);
 }
 
-Bytes begin_of_file() {
+Bytes begin_of_file(std::string_view profile) {
   Bytes out;
   put_raw(out, kMagic);
   const std::size_t header = begin_record(out, Op::kHeader);
-  put(out, std::string_view());  // profile
+  put(out, profile);
   put(out, std::string_view("phalanx"));
   end_record(out, header);
   return out;
@@ -135,13 +135,13 @@ Bytes end_of_file(const Summary& summary, std::uint64_t place) {
 }
 
 McapWriter::McapWriter(WritableFile& file, std::vector<Schema> schemas, std::vector<Channel> channels,
-                       const std::map<std::string, Map>& metadata)
+                       const std::map<std::string, Map>& metadata, std::string_view profile)
     : file_(file), context_(::ZSTD_createCCtx()) {
   if (context_ == nullptr) throw std::bad_alloc();
   ::ZSTD_CCtx_setParameter(context_, ZSTD_c_compressionLevel, kLevel);
   summary_.schemas = std::move(schemas);
   summary_.channels = std::move(channels);
-  Bytes out = begin_of_file();
+  Bytes out = begin_of_file(profile);
   for (const Schema& schema : summary_.schemas) put_schema(out, schema);
   for (const Channel& channel : summary_.channels) {
     put_channel(out, channel);

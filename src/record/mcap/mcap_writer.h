@@ -67,8 +67,8 @@ struct Summary {
   std::map<std::uint16_t, std::uint64_t> messages;  ///< numbers of messages, by channel
 };
 
-/// @returns the beginning of a file: magic and header.
-[[nodiscard]] Bytes begin_of_file();
+/// @returns the beginning of a file: magic and header. @param profile  "ros2": a bag of ROS 2; empty: none
+[[nodiscard]] Bytes begin_of_file(std::string_view profile = {});
 
 /// @returns the end of a file: DataEnd, summary, summary offsets, footer and magic.
 /// @param place  where it begins in the file
@@ -86,9 +86,10 @@ class McapWriter {
  public:
   /// Writes the beginning: header, schemas, channels, metadata; and synchronises it.
   /// @param metadata  one Metadata record each, by name. They are not compressed, and are not in a chunk
+  /// @param profile   as begin_of_file()
   /// @throws std::system_error
   McapWriter(WritableFile& file, std::vector<Schema> schemas, std::vector<Channel> channels,
-             const std::map<std::string, Map>& metadata);
+             const std::map<std::string, Map>& metadata, std::string_view profile = {});
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
   ~McapWriter();

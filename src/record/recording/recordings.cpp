@@ -101,6 +101,14 @@ void keep_original(const fs::path& file, const fs::path& original) {
 
 }  // namespace
 
+std::string recording_state(const RecordingSummary& recording) {
+  if (recording.written) return "being written";
+  if (!recording.begins) return recording.trouble;
+  if (!recording.has_end) return "no end: repair";
+  if (!recording.trouble.empty()) return recording.trouble;
+  return recording.gaps > 0 ? fmt::format("{} gaps", recording.gaps) : "whole";
+}
+
 RecordingSummary summarise_recording(const fs::path& file) {
   RecordingSummary out;
   out.file = file;

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/export_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "phalanx/device/channel_map.h"
+#include "phalanx/record/output_file.h"
+#include "phalanx/recording.pb.h"
+#include "record/export/bids_format.h"
+#include "record/export/export_sink.h"
+#include "record/export/export_table.h"
+#include "record/recording/recording_messages.h"
+#include "record/recording/setup_message.h"
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_part(const ExportOptions& options) {
+  const std::vector<ExportPart> parts = export_parts(options.format);
+  for (const std::string& wanted : options.parts) {
+    std::string known;
+    bool found = false;
+    for (const ExportPart& part : parts) {
+      found = found || wanted == part.name;
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", part.name);
+    }
+    if (!found)
+      throw std::invalid_argument(
+          fmt::format("there is no part '{}' in this format; known: {}", wanted, known));
+  }
+}
+
+void check(const fs::path& target, const ExportOptions& options) {
+  check_part(options);
+  const bool tables = options.format == ExportFormat::kCsv || options.format == ExportFormat::kHdf5 ||
+                      options.format == ExportFormat::kMatlab;
+  if (!options.columns.empty() && !tables)
+    throw std::invalid_argument(
+        "columns can be chosen for csv, hdf5 and matlab; of the other formats, choose parts");
+  if (!(options.from >= 0.0 && options.from < options.to))
+    throw std::invalid_argument(fmt::format("from {} s to {} s there is no time; the recording begins at 0",
+                                            options.from, options.to));
+  std::error_code ignored;
+  if (fs::exists(target, ignored))
+    throw std::invalid_argument(fmt::format("'{}' exists; name a target that does not", target.string()));
+}
+
+/// What is read of a recording before its messages are exported.
+struct Beginning {
+  ExportOrigin origin;
+  BidsLabels labels;
+};
+
+Beginning read_beginning(const fs::path& recording) {
+  Beginning out;
+  out.origin.name = recording.filename().string();
+  try {
+    const mcap::ReadableFile file(recording);
+    mcap::McapReader reader(file);
+    mcap::Message message;
+    wire::Setup setup;
+    while (reader.next(message)) {
+      if (out.origin.begin_utc == 0) out.origin.begin_utc = message.time;
+      if (reader.schema_of(message.channel) != "phalanx.wire.Setup" || !parsed(message, setup)) continue;
+      out.labels.task = bids_label(fs::path(setup.start().scene()).stem().string());
+      out.labels.device = setup.device_name();
+      out.labels.serial = setup.device_serial();
+      out.labels.rate_hz = setup.device_rate_hz();
+      out.labels.origin = read_channel_map(setup).angle_origins();
+      break;
+    }
+    if (const auto phalanx = reader.metadata().find("phalanx"); phalanx != reader.metadata().end())
+      if (const auto version = phalanx->second.find("version"); version != phalanx->second.end())
+        out.origin.version = version->second;
+  } catch (const mcap::McapError&) {  // for_each_message_of() says what is wrong
+  } catch (const std::system_error&) {
+  }
+  return out;
+}
+
+std::unique_ptr<ExportSink> sink_for(const fs::path& target, const Beginning& beginning,
+                                     const ExportOptions& options) {
+  switch (options.format) {
+    case ExportFormat::kCsv:
+      return table_sink(csv_format(target), options);
+    case ExportFormat::kHdf5:
+      return table_sink(hdf5_format(target, beginning.origin), options);
+    case ExportFormat::kMatlab:
+      return table_sink(matlab_format(target, beginning.origin), options);
+    case ExportFormat::kRos2:
+      return ros2_sink(target, options);
+    case ExportFormat::kBids:
+      break;
+  }
+  BidsLabels labels = beginning.labels;
+  labels.subject = options.subject;
+  if (!options.task.empty()) labels.task = options.task;
+  ExportOptions parts = options;
+  if (parts.parts.empty())
+    for (const ExportPart& part : bids_parts()) parts.parts.push_back(part.name);
+  return table_sink(bids_format(target, beginning.origin, labels), parts);
+}
+
+std::vector<ExportedPart> write(const fs::path& recording, const fs::path& target,
+                                const ExportOptions& options,
+                                const std::function<void(double)>& on_progress) {
+  const std::unique_ptr<ExportSink> sink = sink_for(target, read_beginning(recording), options);
+  for_each_message_of(recording, on_progress,
+                      [&](std::string_view schema, const mcap::Message& message, double time) {
+                        sink->add(schema, message, time, time >= options.from && time < options.to);
+                      });
+  return sink->finish();
+}
+
+}  // namespace
+
+const std::vector<ExportFormatName>& export_formats() {
+  static const std::vector<ExportFormatName> kFormats = {
+      {ExportFormat::kCsv, "csv", "", "a folder of CSV files"},
+      {ExportFormat::kHdf5, "hdf5", ".h5", "an HDF5 file"},
+      {ExportFormat::kMatlab, "matlab", ".mat", "a MATLAB file of version 7"},
+      {ExportFormat::kRos2, "ros2", "", "a folder with a ROS 2 bag"},
+      {ExportFormat::kBids, "bids", "", "a data set of the Brain Imaging Data Structure: motion"}};
+  return kFormats;
+}
+
+const ExportFormatName& export_format(std::string_view name) {
+  std::string known;
+  for (const ExportFormatName& format : export_formats()) {
+    if (name == format.name) return format;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", format.name);
+  }
+  throw std::invalid_argument(fmt::format("there is no format '{}'; known: {}", name, known));
+}
+
+std::vector<ExportPart> export_parts(ExportFormat format) {
+  if (format == ExportFormat::kRos2) return ros2_parts();
+  if (format == ExportFormat::kBids) return bids_parts();
+  std::vector<ExportPart> parts;
+  for (const ExportTable& table : export_tables()) parts.push_back({table.name, table.meaning});
+  return parts;
+}
+
+std::vector<ExportedPart> export_recording(const fs::path& recording, const fs::path& target,
+                                           const ExportOptions& options,
+                                           const std::function<void(double)>& on_progress) {
+  check(target, options);
+  const bool is_file = options.format == ExportFormat::kHdf5 || options.format == ExportFormat::kMatlab;
+  std::vector<ExportedPart> parts;
+  if (is_file) {
+    if (target.has_parent_path()) prepare_output_folder(target.parent_path());
+    write_then_rename(
+        target, [&](const fs::path& partial) { parts = write(recording, partial, options, on_progress); });
+    for (ExportedPart& part : parts) part.file = target;
+    return parts;
+  }
+  prepare_output_folder(target);
+  try {
+    return write(recording, target, options, on_progress);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(target, ignored);  // it did not exist before
+    throw;
+  }
+}
+
+}  // namespace phalanx

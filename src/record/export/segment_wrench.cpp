@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "record/export/segment_wrench.h"
+
+#include "phalanx/core/index.h"
+
+namespace phalanx {
+
+std::optional<SegmentPoses> shown_poses(const wire::Tick& tick) {
+  constexpr int kNumbers = 7;  // position x y z, quaternion x y z w
+  if (tick.gdp_pose_size() != kNumbers * kSegments) return std::nullopt;
+  SegmentPoses X_WS;
+  for (int s = 0; s < kSegments; ++s) {
+    const auto number = [&](int i) { return static_cast<double>(tick.gdp_pose(kNumbers * s + i)); };
+    const Eigen::Quaterniond q(number(6), number(3), number(4), number(5));
+    X_WS[idx(s)].p = Vec3(number(0), number(1), number(2));
+    X_WS[idx(s)].R = q.normalized().toRotationMatrix();
+  }
+  return X_WS;
+}
+
+SegmentWrenches segment_wrenches(const wire::Tick& tick, const SegmentPoses& X_WS) {
+  SegmentWrenches wrenches;
+  for (const wire::Contact& contact : tick.contact()) {
+    if (contact.segment() >= kSegments || contact.normal_size() != 3 || contact.point_size() != 3) continue;
+    const Vec3 normal(contact.normal(0), contact.normal(1), contact.normal(2));
+    const Vec3 point(contact.point(0), contact.point(1), contact.point(2));
+    SegmentWrench& wrench = wrenches[contact.segment()];
+    wrench.force = static_cast<double>(tick.factor()) * static_cast<double>(contact.force()) * normal;
+    wrench.moment = (point - X_WS[contact.segment()].p).cross(wrench.force);
+  }
+  return wrenches;
+}
+
+}  // namespace phalanx
