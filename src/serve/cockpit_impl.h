@@ -30,6 +30,7 @@
 #include "serve/geometry_cache.h"
 #include "serve/page_requests.h"
 #include "serve/participants.h"
+#include "serve/recording_files.h"
 #include "serve/uploads.h"
 
 namespace phalanx {
@@ -125,6 +126,8 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   std::uint64_t sent_revision = 0;
   SafetyState sent_safety = SafetyState::kWaiting;
   const std::shared_ptr<GeometryCache> geometry_cache = std::make_shared<GeometryCache>();
+  const std::shared_ptr<RecordingFiles> recording_files =
+      std::make_shared<RecordingFiles>(settings.recordings);
   std::shared_ptr<UploadJob> upload;                      ///< the newest
   std::shared_ptr<const SessionGeometry> drawn_geometry;  ///< of `drawn`
   double drawn_margin = 0.0;                              ///< of `drawn` [m]

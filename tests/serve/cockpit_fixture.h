@@ -143,6 +143,7 @@ class CockpitTest : public ::testing::Test {
     cockpit_ = std::make_unique<Cockpit>(
         *session_, CockpitSettings{.log = folder_ / "audit.jsonl",
                                    .uploads = folder_ / "up",
+                                   .recordings = folder_ / "recordings",
                                    .version = "1.2.3",
                                    .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); }});
     serve();

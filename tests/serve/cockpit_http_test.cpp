@@ -21,6 +21,8 @@
 
 #include "phalanx/geometry.pb.h"
 #include "phalanx/mesh/import_cache.h"
+#include "record/mcap/mcap_writer.h"
+#include "record/recording/topics.h"
 #include "serve/cockpit_fixture.h"
 
 namespace phalanx {
@@ -55,6 +57,55 @@ TEST_F(CockpitHttp, AMarkerIsToldAndLoggedUnlessAViewerSendsIt) {
   serve("operators-own-token", "viewers-own-token");
   EXPECT_EQ(status_of(post("/marker?token=viewers-own-token", "stimulus 4")) / 100, 4);
   EXPECT_EQ(status_of(post("/marker?token=operators-own-token", "stimulus 4")), 200);
+}
+
+TEST_F(CockpitHttp, RecordingsAreListedAndReadInPartsByWhoMayOperate) {
+  std::filesystem::create_directory(folder_ / "recordings");
+  const std::filesystem::path file = folder_ / "recordings/2026-11-27T14-03-11Z.mcap";
+  {
+    mcap::DiskFile disk(file);
+    mcap::McapWriter writer(disk, recording_schemas(), recording_channels(),
+                            {{"phalanx", {{"version", "9"}}}});
+    writer.add(static_cast<std::uint16_t>(Topic::kEvent), 5'000'000'000, "");
+    writer.add(static_cast<std::uint16_t>(Topic::kEvent), 7'500'000'000, "");
+    writer.finish();
+  }
+  std::ofstream(folder_ / "recordings/cut.mcap") << read_file(file).substr(0, 200);
+  std::ofstream(folder_ / "secret.mcap") << "outside";
+  const auto all = nlohmann::json::parse(body_of(ask(port(), get("/recordings"))))["recordings"];
+  ASSERT_EQ(all.size(), 2U);
+  const auto& whole = all[0]["name"] == "cut.mcap" ? all[1] : all[0];
+  EXPECT_EQ(whole["name"], "2026-11-27T14-03-11Z.mcap");
+  EXPECT_EQ(whole["state"], "whole");
+  EXPECT_EQ(whole["begin"], 5.0);
+  EXPECT_EQ(whole["seconds"], 2.5);
+  EXPECT_EQ(whole["events"], 2);
+  const std::string bytes = read_file(file);
+  const std::string path = "/recordings/2026-11-27T14-03-11Z.mcap";
+  const auto part = [&](const std::string& range) {
+    return ask(port(), get(path, "Range: " + range + "\r\n"));
+  };
+  EXPECT_EQ(status_of(part("bytes=10-29")), 206);
+  EXPECT_EQ(body_of(part("bytes=10-29")), bytes.substr(10, 20));
+  EXPECT_EQ(field_of(part("bytes=10-29"), "Content-Range"), "bytes 10-29/" + std::to_string(bytes.size()));
+  EXPECT_EQ(body_of(part("bytes=10-999999")), bytes.substr(10));
+  EXPECT_EQ(status_of(part("bytes=999999-1000000")), 416);
+  for (const char* bad : {"", "bytes=9-", "bytes=-5", "bytes=9-3", "bytes=1-2,5-6", "bytes=0-16777216",
+                          "lines=1-2", "bytes=99999999999999999999-1"})
+    EXPECT_EQ(status_of(part(bad)), 400) << bad;
+  EXPECT_EQ(status_of(ask(port(), get("/recordings/none.mcap", "Range: bytes=0-9\r\n"))), 404);
+  EXPECT_EQ(status_of(ask(port(), get("/recordings/../secret.mcap", "Range: bytes=0-3\r\n"))) / 100, 4);
+  EXPECT_EQ(status_of(ask(port(), get("/recordings/%2e%2e/secret.mcap", "Range: bytes=0-3\r\n"))) / 100, 4);
+  EXPECT_EQ(status_of(post("/recordings", "")) / 100, 4);
+  serve("operators-own-token", "viewers-own-token");
+  const auto asked_as = [&](const std::string& token, const std::string& path_asked) {
+    const std::string cookie = "Cookie: phalanx-" + std::to_string(port()) + "=" + token + "\r\n";
+    return status_of(ask(port(), get(path_asked, cookie + "Range: bytes=0-9\r\n")));
+  };
+  EXPECT_EQ(asked_as("viewers-own-token", "/recordings"), 403);
+  EXPECT_EQ(asked_as("viewers-own-token", path), 403);
+  EXPECT_EQ(asked_as("operators-own-token", "/recordings"), 200);
+  EXPECT_EQ(asked_as("operators-own-token", path), 206);
 }
 
 TEST_F(CockpitHttp, TheGeometryIsFetchedByItsRevision) {

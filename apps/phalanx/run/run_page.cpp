@@ -66,6 +66,7 @@ WebServerSettings server_settings(const RunOptions& o) {
 CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder) {
   CockpitSettings settings;
   settings.recording = [&recorder] { return recorder.recording(); };
+  if (o.recordings != "off") settings.recordings = o.recordings;
   settings.on_notice = [&recorder](const std::string& code, const std::string& who, const std::string& text) {
     recorder.event(code, who, text);
   };

@@ -18,10 +18,11 @@ namespace phalanx {
 
 /// Settings that stay constant from the start on.
 struct CockpitSettings {
-  std::filesystem::path log;      ///< file for the log of changes, one JSON line each; empty: none
-  std::filesystem::path uploads;  ///< folder for meshes that pages send; created with the first
-  std::string version;            ///< of the program, for people
-  std::function<double()> clock;  ///< monotonic [s]; empty: the system's. For tests
+  std::filesystem::path log;              ///< file for the log of changes, one JSON line each; empty: none
+  std::filesystem::path uploads;          ///< folder for meshes that pages send; created with the first
+  std::filesystem::path recordings = {};  ///< folder that pages may list and read; empty: none
+  std::string version;                    ///< of the program, for people
+  std::function<double()> clock;          ///< monotonic [s]; empty: the system's. For tests
   std::function<std::optional<RecordingStatus>()> recording =
       {};  ///< state of the recording; empty: nothing is recorded
   /// Gets each notice with its code, who made the change, and its text; on the server's thread.

@@ -31,6 +31,7 @@ struct WebRequest {
   std::string path;         ///< decoded, without the query; begins with '/'
   std::string query;        ///< after '?', not decoded, without the token
   std::string page_secret;  ///< value of the field X-Phalanx-Page; empty if there is none
+  std::string range;        ///< value of the field Range; empty if there is none
   std::string body;
   ClientInfo client;
 };
@@ -39,7 +40,8 @@ struct WebResponse {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";
   Bytes body;
-  bool immutable = false;  ///< the content at this path never changes: browsers may keep it
+  bool immutable = false;          ///< the content at this path never changes: browsers may keep it
+  std::string content_range = {};  ///< value of the field Content-Range, with status 206 or 416; empty: none
 };
 
 /// Application behind a WebServer. The server calls all functions on its thread. They must return soon and

@@ -104,6 +104,7 @@ void HttpSession::on_head(error_code error, std::size_t /*bytes*/) {
   response_context_.head_only = head.method() == http::verb::head;
   request_.method = std::string(head.method_string());
   request_.page_secret = std::string(head["X-Phalanx-Page"]);
+  request_.range = field(http::field::range);
   request_.body.clear();
   if (!check_head()) return;
   if (upgrade_) return upgrade_to_page();
@@ -175,6 +176,8 @@ void HttpSession::on_application_response(WebResponse given) {
   reply.status = given.status >= 200 && given.status <= 599 ? given.status : 500;
   reply.type = std::move(given.type);
   reply.body = std::move(given.body);
+  if (!given.content_range.empty())
+    reply.fields.emplace_back(http::field::content_range, std::move(given.content_range));
   if (given.immutable) reply.cache = "private, max-age=31536000, immutable";
   respond(reply);
 }

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/recording_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "phalanx/record/recordings.h"
+#include "record/mcap/mcap_reader.h"
+#include "record/plain_text.h"
+
+namespace phalanx {
+namespace {
+
+constexpr std::string_view kFiles = "/recordings/";
+
+WebResponse words(int status, const std::string& text) {
+  WebResponse response;
+  response.status = status;
+  response.body = std::make_shared<const std::string>(text + "\n");
+  return response;
+}
+
+struct ByteRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;  ///< inclusive
+};
+
+/// @returns the range of "bytes=FIRST-LAST"; none for any other form
+std::optional<ByteRange> read_range(std::string_view field) {
+  constexpr std::string_view kUnit = "bytes=";
+  if (!field.starts_with(kUnit)) return std::nullopt;
+  field.remove_prefix(kUnit.size());
+  ByteRange range;
+  const char* end = field.data() + field.size();
+  const auto first = std::from_chars(field.data(), end, range.first);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != '-') return std::nullopt;
+  const auto last = std::from_chars(first.ptr + 1, end, range.last);
+  if (last.ec != std::errc() || last.ptr != end || range.last < range.first) return std::nullopt;
+  return range;
+}
+
+}  // namespace
+
+void RecordingFiles::request(const WebRequest& request, Respond respond) {
+  if (!request.client.may_operate)
+    return respond(words(403, "only who may operate may see recordings; use the operator's address"));
+  if (request.method == "POST")
+    return respond(words(405, "this address does not allow this method: recordings can only be read"));
+  if (folder_.empty())
+    return respond(words(404, "this run records nothing (--record off), so it has no folder of recordings"));
+  std::unique_lock lock(mutex_);
+  if (requests_.size() >= kMostWaiting) {
+    lock.unlock();
+    return respond(words(503, "too many parts of recordings are being read; ask again"));
+  }
+  requests_.push_back({request, std::move(respond)});
+  if (working_) return;
+  try {
+    std::thread([self = shared_from_this()] { self->work(); }).detach();
+    working_ = true;
+  } catch (const std::system_error&) {
+    const Request refused = std::move(requests_.back());
+    requests_.pop_back();
+    lock.unlock();
+    refused.respond(words(503, "there is no thread to read recordings; ask again"));
+  }
+}
+
+void RecordingFiles::work() {
+  std::unique_lock lock(mutex_);
+  while (!requests_.empty()) {
+    const Request next = std::move(requests_.front());
+    requests_.pop_front();
+    lock.unlock();
+    try {
+      next.respond(response_to(next.request));
+    } catch (const std::exception&) {  // no memory: without an answer, the server gives 500
+    }
+    lock.lock();
+  }
+  working_ = false;
+}
+
+WebResponse RecordingFiles::response_to(const WebRequest& request) const {
+  try {
+    if (!request.path.starts_with(kFiles)) return list();
+    return part_of(request.path.substr(kFiles.size()), request.range);
+  } catch (const std::system_error& error) {
+    return words(500, fmt::format("the disk refuses ({})", error.code().message()));
+  } catch (const std::invalid_argument& refused) {
+    return words(404, as_utf8(refused.what()));
+  }
+}
+
+WebResponse RecordingFiles::list() const {
+  nlohmann::json files = nlohmann::json::array();
+  for (const RecordingSummary& recording : list_recordings(folder_))
+    files.push_back({{"name", as_utf8(recording.file.filename().string())},
+                     {"bytes", recording.bytes},
+                     {"begin", recording.begin},
+                     {"seconds", recording.seconds},
+                     {"steps", recording.steps},
+                     {"events", recording.events},
+                     {"gaps", recording.gaps},
+                     {"scene", as_utf8(recording.scene)},
+                     {"device", as_utf8(recording.device)},
+                     {"state", as_utf8(recording_state(recording))}});
+  const nlohmann::json all = {{"folder", as_utf8(folder_.string())}, {"recordings", std::move(files)}};
+  WebResponse response;
+  response.type = "application/json";
+  response.body = std::make_shared<const std::string>(all.dump());
+  return response;
+}
+
+WebResponse RecordingFiles::part_of(const std::string& name, const std::string& range_field) const {
+  const std::filesystem::path file = folder_ / name;
+  if (name.find('/') != std::string::npos || file.extension() != ".mcap" ||
+      !std::filesystem::is_regular_file(file))
+    return words(404, "there is no recording of this name; /recordings lists them");
+  const auto range = read_range(range_field);
+  if (!range || range->last - range->first >= kLargestPart)
+    return words(400, fmt::format("a recording is read in parts of at most {} bytes: ask with the header "
+                                  "'Range: bytes=FIRST-LAST'",
+                                  kLargestPart));
+  const mcap::ReadableFile readable(file);
+  WebResponse response;
+  if (range->first >= readable.size()) {
+    response = words(416, fmt::format("the recording has {} bytes", readable.size()));
+    response.content_range = fmt::format("bytes */{}", readable.size());
+    return response;
+  }
+  const std::uint64_t last = std::min(range->last, readable.size() - 1);
+  std::string bytes;
+  readable.read(range->first, last - range->first + 1, bytes);
+  response.status = 206;
+  response.type = "application/octet-stream";
+  response.content_range = fmt::format("bytes {}-{}/{}", range->first, last, readable.size());
+  if (bytes.size() != last - range->first + 1) return words(500, "the recording became shorter meanwhile");
+  response.body = std::make_shared<const std::string>(std::move(bytes));
+  return response;
+}
+
+}  // namespace phalanx

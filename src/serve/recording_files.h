@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "phalanx/serve/web_server.h"
+
+namespace phalanx {
+
+/// The recordings of a folder, for the page that replays them: /recordings is their list as JSON, /recordings/NAME a part of
+/// a file (HTTP Range). They hold what happened to people, so only who may operate gets them. A thread of its own reads the
+/// disk, so that neither a stop nor a tick waits for it on the server's thread.
+class RecordingFiles : public std::enable_shared_from_this<RecordingFiles> {
+ public:
+  using Respond = std::function<void(WebResponse)>;
+  static constexpr std::size_t kLargestPart = 16U << 20U;  ///< of a file in one response [bytes]
+  static constexpr std::size_t kMostWaiting = 64;          ///< requests
+
+  /// @param folder  empty: there are none
+  explicit RecordingFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// @returns true if the path is of these files
+  [[nodiscard]] static bool is_one(const std::string& path) noexcept {
+    return path == "/recordings" || path.starts_with("/recordings/");
+  }
+  /// Responds from the reading thread, or at once with a refusal in words. Any thread; allocates.
+  void request(const WebRequest& request, Respond respond);
+
+ private:
+  struct Request {
+    WebRequest request;
+    Respond respond;
+  };
+  void work();
+  [[nodiscard]] WebResponse response_to(const WebRequest& request) const;
+  [[nodiscard]] WebResponse part_of(const std::string& name, const std::string& range) const;
+  [[nodiscard]] WebResponse list() const;
+
+  const std::filesystem::path folder_;
+  std::mutex mutex_;  ///< of all members below
+  std::deque<Request> requests_;
+  bool working_ = false;  ///< the thread runs
+};
+
+}  // namespace phalanx
