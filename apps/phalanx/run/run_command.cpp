@@ -487,6 +487,8 @@ void add_run_command(CLI::App& app, Job& job) {
   run->add_option("--record", options->recordings,
                   "folder of the recordings, a file each run (docs/recording.md); off: none")
       ->capture_default_str();
+  run->add_flag("--no-foxglove", options->no_foxglove,
+                "recordings without the 3D scene for tools that read Foxglove's schemas");
   CLI::Option* markers =
       run->add_option("--marker-port", options->marker_port,
                       "UDP port for markers of other programs: each datagram is a text in the recording")

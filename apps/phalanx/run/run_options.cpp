@@ -120,6 +120,7 @@ std::optional<RecorderSettings> recorder_settings(const RunOptions& o) {
   if (o.recordings == "off") return std::nullopt;
   RecorderSettings settings;
   settings.folder = o.recordings;
+  settings.foxglove = !o.no_foxglove;
   settings.metadata = recording_metadata(PHALANX_VERSION);
   return settings;
 }

@@ -28,7 +28,8 @@ struct RunOptions {
   std::optional<double> object_size_mm;
   std::string profile;
   std::string recordings = "out/recordings";  ///< folder; "off": nothing is recorded
-  std::optional<int> marker_port;             ///< UDP port of markers; none: closed
+  bool no_foxglove = false;
+  std::optional<int> marker_port;  ///< UDP port of markers; none: closed
   std::string marker_address = "127.0.0.1";
   std::string log;
   std::string summary;

@@ -23,6 +23,7 @@ class WritableFile;
 struct RecorderSettings {
   std::filesystem::path folder;          ///< is made if it does not exist
   std::uint64_t least_room = 1U << 30U;  ///< free bytes below which no recording begins
+  bool foxglove = true;  ///< with frames, meshes and forces for tools that read Foxglove's schemas
   /// Stated in the file outside its chunks: version, commit, machine. Nothing about a person may stand here.
   std::map<std::string, std::string> metadata;
 };

@@ -19,6 +19,7 @@
 #include "phalanx/record/output_file.h"
 #include "record/mcap/mcap_writer.h"
 #include "record/plain_text.h"
+#include "record/recording/foxglove_message.h"
 #include "record/recording/geometry_message.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
@@ -79,16 +80,16 @@ void check_recordings_folder(const RecorderSettings& settings) {
 
 std::map<std::string, std::string> recording_metadata(const std::string& version) {
   const Made made = made_here();
-  return {
-      {"version", version},
-      {"commit", made.commit},
-      {"cpu", made.cpu},
-      {"compiler", made.compiler},
-      {"build_type", made.build_type},
-      {"libm", fmt::format("{:016x}", libm_fingerprint())},
-      {"exact", "/setup /change /step: from these every step can be computed again, to the last bit"},
-      {"derived",
-       "/geometry, /pose, hcp_angle and gdp_angle of /step: about 60 a second, computed from the samples"}};
+  return {{"version", version},
+          {"commit", made.commit},
+          {"cpu", made.cpu},
+          {"compiler", made.compiler},
+          {"build_type", made.build_type},
+          {"libm", fmt::format("{:016x}", libm_fingerprint())},
+          {"exact", "/setup /change /step: from these every step can be computed again, to the last bit"},
+          {"derived",
+           "/geometry, /pose, /foxglove/*, hcp_angle and gdp_angle of /step: about 60 a second, computed "
+           "from the samples"}};
 }
 
 struct SessionRecorder::Impl {
@@ -99,7 +100,8 @@ struct SessionRecorder::Impl {
         clock(process_clock),
         name(std::move(given_name)),
         file(std::move(given_file)),
-        writer(*file, recording_schemas(), recording_channels(), {{"phalanx", settings.metadata}}),
+        writer(*file, recording_schemas(settings.foxglove), recording_channels(settings.foxglove),
+               {{"phalanx", settings.metadata}}),
         begin_mono(clock.now()),
         begin_utc(utc_ns()) {
     now_bytes = writer.size();
@@ -115,6 +117,7 @@ struct SessionRecorder::Impl {
   void put_events();
   void put_change(const SessionChange& change, double now);
   void put_geometry(const SessionGeometry& next, double now);
+  void put_scene(const StationView& view);
   void fetch_station(const StepRecord& record);
   void fetch_change(std::uint64_t number, double now);
   void end_station(std::uint64_t of, std::uint64_t last, double now);
@@ -171,6 +174,9 @@ struct SessionRecorder::Impl {
   wire::Tick pose;
   wire::Setup setup;
   wire::Change changed;
+  foxglove::FrameTransforms frames;
+  foxglove::SceneUpdate forces;
+  bool arrows_shown = false;  ///< by the newest of Topic::kForces
 
   // ---- shared
   struct TimedEvent {
@@ -265,6 +271,18 @@ void SessionRecorder::Impl::put_geometry(const SessionGeometry& next, double now
   wire::Geometry geometry;  // not kept: an object may have millions of triangles
   write_geometry(next, geometry);
   put(Topic::kGeometry, now, geometry);
+  if (!settings.foxglove) return;
+  foxglove::SceneUpdate meshes;
+  write_meshes(next, time_of(now), meshes);
+  put(Topic::kMeshes, now, meshes);
+}
+
+void SessionRecorder::Impl::put_scene(const StationView& view) {
+  write_frames(view, time_of(view.time), frames);
+  put(Topic::kFrames, view.time, frames);
+  const bool any = write_forces(view, time_of(view.time), forces) > 0;
+  if (any || arrows_shown) put(Topic::kForces, view.time, forces);
+  arrows_shown = any;
 }
 
 /// Notes steps that are lost; the gap is written before the next step.
@@ -325,6 +343,7 @@ void SessionRecorder::Impl::update() {
         posed = view.snapshot.tick;
         write_tick(view, pose);
         put(Topic::kPose, view.time, pose);
+        if (settings.foxglove) put_scene(view);
       }
     }
     if (now >= next_loop) {

@@ -24,12 +24,13 @@ void add_file(const FileDescriptor& file, std::set<std::string>& added,
 
 }  // namespace
 
-std::vector<mcap::Schema> recording_schemas() {
+std::vector<mcap::Schema> recording_schemas(bool foxglove) {
   std::vector<mcap::Schema> schemas;
   for (const TopicName& topic : kTopics) {
+    if (!foxglove && topic.topic >= Topic::kFrames) continue;
     const std::string name(topic.schema);
     // All are of the schemas that this program was compiled with.
-    const auto* message = wire::Setup::descriptor()->file()->pool()->FindMessageTypeByName(name);
+    const auto* message = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(name);
     google::protobuf::FileDescriptorSet files;
     std::set<std::string> added;
     add_file(*message->file(), added, files);
@@ -41,13 +42,15 @@ std::vector<mcap::Schema> recording_schemas() {
   return schemas;
 }
 
-std::vector<mcap::Channel> recording_channels() {
+std::vector<mcap::Channel> recording_channels(bool foxglove) {
   std::vector<mcap::Channel> channels;
-  for (const TopicName& topic : kTopics)
+  for (const TopicName& topic : kTopics) {
+    if (!foxglove && topic.topic >= Topic::kFrames) continue;
     channels.push_back({.id = static_cast<std::uint16_t>(topic.topic),
                         .schema = static_cast<std::uint16_t>(topic.topic),
                         .topic = std::string(topic.name),
                         .message_encoding = "protobuf"});
+  }
   return channels;
 }
 

@@ -21,7 +21,10 @@ enum class Topic : std::uint16_t {
   kGap,
   kClock,
   kLoop,
-  kGeometry
+  kGeometry,
+  kFrames,  ///< this and those that follow are for tools that read Foxglove's schemas
+  kMeshes,
+  kForces
 };
 
 struct TopicName {
@@ -29,7 +32,7 @@ struct TopicName {
   std::string_view name;
   std::string_view schema;
 };
-inline constexpr std::array<TopicName, 9> kTopics = {{
+inline constexpr std::array<TopicName, 12> kTopics = {{
     {Topic::kSetup, "/setup", "phalanx.wire.Setup"},
     {Topic::kChange, "/change", "phalanx.wire.Change"},
     {Topic::kStep, "/step", "phalanx.wire.Step"},
@@ -39,6 +42,9 @@ inline constexpr std::array<TopicName, 9> kTopics = {{
     {Topic::kClock, "/clock", "phalanx.wire.ClockPair"},
     {Topic::kLoop, "/loop", "phalanx.wire.Loop"},
     {Topic::kGeometry, "/geometry", "phalanx.wire.Geometry"},
+    {Topic::kFrames, "/foxglove/frames", "foxglove.FrameTransforms"},
+    {Topic::kMeshes, "/foxglove/meshes", "foxglove.SceneUpdate"},
+    {Topic::kForces, "/foxglove/forces", "foxglove.SceneUpdate"},
 }};
 
 /// @returns the largest message of a type that is read [bytes]: a small message may become large once it is parsed. Only a
@@ -51,7 +57,8 @@ template <class Wire>
 }
 
 /// @returns the schemas of all channels; each holds the FileDescriptorSet of its message with all that it imports
-[[nodiscard]] std::vector<mcap::Schema> recording_schemas();
-[[nodiscard]] std::vector<mcap::Channel> recording_channels();
+/// @param foxglove  with Topic::kFrames and those that follow
+[[nodiscard]] std::vector<mcap::Schema> recording_schemas(bool foxglove = true);
+[[nodiscard]] std::vector<mcap::Channel> recording_channels(bool foxglove = true);
 
 }  // namespace phalanx
