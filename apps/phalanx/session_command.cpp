@@ -19,6 +19,8 @@
 #include "phalanx/record/output_file.h"
 #include "phalanx/record/recordings.h"
 #include "phalanx/record/replay.h"
+#include "phalanx/record/retention.h"
+#include "retention_options.h"
 #include "terminal/progress.h"
 #include "usage.h"
 
@@ -41,6 +43,8 @@ struct SessionOptions {
   std::string task;
   double from = 0.0;
   std::optional<double> to;
+  std::optional<double> keep_days;
+  std::optional<double> keep_gb;
   bool confirmed = false;
   bool quiet = false;
 };
@@ -155,19 +159,6 @@ int repair(const SessionOptions& o) {
   return kDone;
 }
 
-/// @returns a recording, its page, and the originals of its repairs
-std::vector<fs::path> with_companions(const fs::path& file) {
-  std::vector<fs::path> all{file};
-  const fs::path page = fs::path(file).replace_extension(".html");
-  std::error_code ignored;
-  if (fs::exists(page, ignored)) all.push_back(page);
-  const std::string torn = file.filename().string() + ".torn";
-  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-    if (entry.path().filename().string().starts_with(torn)) all.push_back(entry.path());
-  return all;
-}
-
 int remove(const SessionOptions& o) {
   const fs::path file = found(o);
   const RecordingSummary summary = summarise_recording(file);
@@ -177,10 +168,24 @@ int remove(const SessionOptions& o) {
     throw std::invalid_argument(
         fmt::format("{} ({}, {:.1f} MB) would be gone for good; type the same with --yes", file.string(),
                     date_text(summary.begin), 1e-6 * static_cast<double>(summary.bytes)));
-  for (const fs::path& each : with_companions(file)) {
-    fs::remove(each);
-    fmt::print("deleted {}\n", each.string());
+  for (const fs::path& each : delete_recording(file)) fmt::print("deleted {}\n", each.string());
+  return kDone;
+}
+
+int prune(const SessionOptions& o) {
+  const RetentionRule rule = retention_rule(o.keep_days, o.keep_gb);
+  if (!rule.deletes()) throw std::invalid_argument("state what to keep: --keep-days D, --keep-gb G, or both");
+  const std::vector<RecordingSummary> expired =
+      expired_recordings(list_recordings(o.folder), rule, static_cast<double>(std::time(nullptr)));
+  double bytes = 0.0;
+  for (const RecordingSummary& recording : expired) {
+    bytes += static_cast<double>(recording.bytes);
+    if (o.confirmed) delete_recording(recording.file);
+    fmt::print("{} {} ({}, {:.1f} MB)\n", o.confirmed ? "deleted" : "would delete", recording.file.string(),
+               date_text(recording.begin), 1e-6 * static_cast<double>(recording.bytes));
   }
+  fmt::print("{} recordings, {:.1f} MB{}\n", expired.size(), 1e-6 * bytes,
+             o.confirmed || expired.empty() ? "" : "; type the same with --yes to delete them for good");
   return kDone;
 }
 
@@ -236,8 +241,8 @@ CLI::Option* add_file(CLI::App& command, SessionOptions& options) {
 }  // namespace
 
 void add_session_command(CLI::App& app, Job& job) {
-  CLI::App* session =
-      app.add_subcommand("session", "The recordings of `phalanx run`: list, show, export, repair, delete");
+  CLI::App* session = app.add_subcommand(
+      "session", "The recordings of `phalanx run`: list, show, export, repair, delete, prune");
   session->require_subcommand(1);
   auto options = std::make_shared<SessionOptions>();
   const auto add = [&](const char* name, const char* help, int (*work)(const SessionOptions&), bool file) {
@@ -286,6 +291,9 @@ void add_session_command(CLI::App& app, Job& job) {
   add("repair", "Keep what is whole of a recording that has no end or is damaged", repair, true);
   add("delete", "Delete a recording", remove, true)
       ->add_flag("--yes", options->confirmed, "delete without asking");
+  CLI::App* pruned = add("prune", "Delete old recordings", prune, false);
+  add_retention(*pruned, options->keep_days, options->keep_gb, "--keep-");
+  pruned->add_flag("--yes", options->confirmed, "delete; else they are only listed");
 }
 
 void add_replay_command(CLI::App& app, Job& job) {

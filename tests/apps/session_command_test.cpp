@@ -15,6 +15,7 @@ namespace phalanx {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -129,6 +130,25 @@ TEST_F(CliSession, HasMarkersThatComeByUdpAndExportsThatOtherProgramsRead) {
       run_command(folder, "/usr/bin/python3 " PHALANX_SOURCE_DIR "/tests/record/read_exports.py" + files);
   EXPECT_EQ(read.exit_code, 0) << read.out << read.err;
   EXPECT_THAT(read.out, HasSubstr("BIDS is right"));
+}
+
+TEST_F(CliSession, IsDeletedByARuleAndRefusedByAQuota) {
+  const std::string name = file.filename().string();
+  EXPECT_THAT(said("session prune"),
+              HasSubstr("2 phalanx: state what to keep: --keep-days D, --keep-gb G, or both"));
+  EXPECT_THAT(said("session prune --keep-days 1"), HasSubstr("0 0 recordings, 0.0 MB\n"));
+  EXPECT_THAT(said("session prune --keep-gb 0"), HasSubstr("would delete out/recordings/" + name));
+  EXPECT_TRUE(fs::exists(file));
+  const std::string run = "run index_ball --headless --no-realtime --quiet --seconds 0.3 ";
+  EXPECT_THAT(said(run + "--record-quota-gb 0.00001"),
+              AllOf(StartsWith("2 phalanx: "), HasSubstr("--record-quota-gb allows 0.0 GB; delete some")));
+  EXPECT_THAT(said(run + "--record-keep-days 1"), Not(HasSubstr("deleted")));
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_THAT(said(run + "--record-keep-gb 0 --record-quota-gb 5"),
+              AllOf(HasSubstr("deleted out/recordings/" + name), HasSubstr("(5.0 GB of room)")));
+  EXPECT_FALSE(fs::exists(file));
+  EXPECT_THAT(said("session prune --keep-gb 0 --yes"), HasSubstr("deleted out/recordings/"));
+  EXPECT_THAT(said("session list"), HasSubstr("no recordings"));
 }
 
 TEST_F(CliSession, RefusesInWords) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -16,9 +17,11 @@
 
 #include "commands.h"
 #include "phalanx/mesh/isolation/isolation_helper.h"
+#include "phalanx/record/retention.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/session.h"
+#include "retention_options.h"
 #include "run/marker_port.h"
 #include "run/run_console.h"
 #include "run/run_options.h"
@@ -46,7 +49,10 @@ class Run {
       console_.say(
           fmt::format("the log of a run that did not end in good order is now {}", earlier.string()));
     const SessionSettings settings = session_settings(options_);
-    if (const auto recording = recorder_settings(options_)) check_recordings_folder(*recording);
+    if (const auto recording = recorder_settings(options_)) {
+      delete_expired(*recording);
+      check_recordings_folder(*recording);
+    }
     if (const std::string warning = replaced_copies(settings); !warning.empty())
       console_.complain(warning, Emphasis::kWarning);
     session_ = std::make_unique<Session>(settings, clock_);
@@ -79,6 +85,17 @@ class Run {
     introduce();
     if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_);
     watch();
+  }
+
+  /// Deletes the recordings that the rule on them no longer keeps, and says which.
+  void delete_expired(const RecorderSettings& recording) {
+    const RetentionRule rule = retention_rule(options_.record_keep_days, options_.record_keep_gb);
+    if (!rule.deletes()) return;
+    const auto now = static_cast<double>(std::time(nullptr));
+    for (const RecordingSummary& old : expired_recordings(list_recordings(recording.folder), rule, now)) {
+      delete_recording(old.file);
+      console_.say(fmt::format("deleted {}: --record-keep-... does not keep it", old.file.string()));
+    }
   }
 
   void introduce() {
@@ -489,6 +506,10 @@ void add_run_command(CLI::App& app, Job& job) {
       ->capture_default_str();
   run->add_flag("--no-foxglove", options->no_foxglove,
                 "recordings without the 3D scene for tools that read Foxglove's schemas");
+  run->add_option("--record-quota-gb", options->record_quota_gb,
+                  "room for all recordings of the folder: above it, no run begins [none]")
+      ->check(CLI::Range(0.0, 1e6));
+  add_retention(*run, options->record_keep_days, options->record_keep_gb, "--record-keep-");
   CLI::Option* markers =
       run->add_option("--marker-port", options->marker_port,
                       "UDP port for markers of other programs: each datagram is a text in the recording")

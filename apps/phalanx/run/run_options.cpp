@@ -121,6 +121,7 @@ std::optional<RecorderSettings> recorder_settings(const RunOptions& o) {
   RecorderSettings settings;
   settings.folder = o.recordings;
   settings.foxglove = !o.no_foxglove;
+  if (o.record_quota_gb) settings.quota = static_cast<std::uint64_t>(1e9 * *o.record_quota_gb);
   settings.metadata = recording_metadata(PHALANX_VERSION);
   return settings;
 }

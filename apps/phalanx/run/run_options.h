@@ -29,6 +29,9 @@ struct RunOptions {
   std::string profile;
   std::string recordings = "out/recordings";  ///< folder; "off": nothing is recorded
   bool no_foxglove = false;
+  std::optional<double> record_quota_gb;
+  std::optional<double> record_keep_days;
+  std::optional<double> record_keep_gb;
   std::optional<int> marker_port;  ///< UDP port of markers; none: closed
   std::string marker_address = "127.0.0.1";
   std::string log;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,8 +22,9 @@ class WritableFile;
 
 /// Settings of a SessionRecorder.
 struct RecorderSettings {
-  std::filesystem::path folder;          ///< is made if it does not exist
-  std::uint64_t least_room = 1U << 30U;  ///< free bytes below which no recording begins
+  std::filesystem::path folder;             ///< is made if it does not exist
+  std::uint64_t least_room = 1U << 30U;     ///< free bytes below which no recording begins
+  std::optional<std::uint64_t> quota = {};  ///< bytes of all recordings of the folder at which none begins
   bool foxglove = true;  ///< with frames, meshes and forces for tools that read Foxglove's schemas
   /// Stated in the file outside its chunks: version, commit, machine. Nothing about a person may stand here.
   std::map<std::string, std::string> metadata;
@@ -39,7 +41,7 @@ void check_recordings_folder(const RecorderSettings& settings);
 struct RecordingStatus {
   std::filesystem::path file;
   std::uint64_t bytes = 0;       ///< on the disk for good
-  std::uint64_t free_bytes = 0;  ///< of the file system
+  std::uint64_t free_bytes = 0;  ///< of the file system, or of the quota if that is less
   double unsaved = 0.0;          ///< age of the oldest step that is not on the disk for good [s]
   std::uint64_t lost_steps = 0;  ///< that are not in the file: Gap
   std::string trouble;           ///< why the disk refuses; empty: it does not

@@ -17,6 +17,7 @@
 
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
+#include "phalanx/record/retention.h"
 #include "record/mcap/mcap_writer.h"
 #include "record/plain_text.h"
 #include "record/recording/foxglove_message.h"
@@ -76,7 +77,29 @@ void check_recordings_folder(const RecorderSettings& settings) {
         "the folder of recordings, {}, has {} MB of room left, and a recording needs at least {} MB to "
         "begin; make room, name another folder with --record DIR, or record nothing with --record off",
         settings.folder.string(), room >> 20U, settings.least_room >> 20U));
+  if (!settings.quota) return;
+  const std::uint64_t used = recorded_bytes(settings.folder);
+  if (used >= *settings.quota)
+    throw std::invalid_argument(
+        fmt::format("the recordings of {} have {:.1f} GB, and --record-quota-gb allows {:.1f} GB; delete "
+                    "some with `phalanx session "
+                    "delete` or `phalanx session prune`, allow more, or record nothing with --record off",
+                    settings.folder.string(), 1e-9 * static_cast<double>(used),
+                    1e-9 * static_cast<double>(*settings.quota)));
 }
+
+namespace {
+
+/// @returns the room that is left for recordings. @param others  bytes of the folder's other recordings
+std::uint64_t room_left(const RecorderSettings& settings, const std::filesystem::path& folder,
+                        std::uint64_t others, std::uint64_t own) {
+  const std::uint64_t disk = free_bytes(folder);
+  if (!settings.quota) return disk;
+  const std::uint64_t used = others + own;
+  return std::min(disk, *settings.quota > used ? *settings.quota - used : 0);
+}
+
+}  // namespace
 
 std::map<std::string, std::string> recording_metadata(const std::string& version) {
   const Made made = made_here();
@@ -105,7 +128,8 @@ struct SessionRecorder::Impl {
         begin_mono(clock.now()),
         begin_utc(utc_ns()) {
     now_bytes = writer.size();
-    now_free = free_bytes(name.parent_path());
+    others = settings.quota ? recorded_bytes(name.parent_path()) : 0;
+    now_free = room_left(settings, name.parent_path(), others, 0);
     put_clock(begin_mono);
   }
 
@@ -149,6 +173,7 @@ struct SessionRecorder::Impl {
   const double begin_mono;
   const std::int64_t begin_utc;
 
+  std::uint64_t others = 0;   ///< bytes of the folder's recordings at the beginning
   std::uint64_t station = 0;  ///< of the newest step
   std::uint64_t tick = 0;     ///< of the newest step in the file, or in its gap
   std::uint64_t change = 0;   ///< newest that was fetched
@@ -351,7 +376,7 @@ void SessionRecorder::Impl::update() {
       wire::Loop loop;
       write_loop(session.deadlines(), loop);
       put(Topic::kLoop, now, loop);
-      now_free = free_bytes(name.parent_path());
+      now_free = room_left(settings, name.parent_path(), others, writer.size());
     }
     if (now >= next_clock) {
       next_clock = now + kBetweenClocks;

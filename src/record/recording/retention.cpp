@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phalanx/record/retention.h"
+
+#include <string>
+#include <system_error>
+
+namespace phalanx {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDay = 24.0 * 3600.0;  // [s]
+
+fs::path folder_of(const fs::path& file) {
+  return file.parent_path().empty() ? fs::path(".") : file.parent_path();
+}
+
+bool may_be_deleted(const RecordingSummary& recording) {
+  return !recording.written && recording.has_end && recording.trouble.empty() && !recording.version.empty();
+}
+
+}  // namespace
+
+std::vector<RecordingSummary> expired_recordings(const std::vector<RecordingSummary>& all,
+                                                 const RetentionRule& rule, double now) {
+  std::uint64_t bytes = 0;
+  for (const RecordingSummary& recording : all) bytes += recording.bytes;
+  std::vector<RecordingSummary> expired;
+  for (const RecordingSummary& recording : all) {
+    const bool old = rule.days && now - recording.begin > kDay * *rule.days;
+    const bool too_many = rule.bytes && bytes > *rule.bytes;
+    if (!may_be_deleted(recording) || !(old || too_many)) continue;
+    bytes -= recording.bytes;
+    expired.push_back(recording);
+  }
+  return expired;
+}
+
+std::vector<fs::path> delete_recording(const fs::path& file) {
+  std::vector<fs::path> all{file};
+  const fs::path page = fs::path(file).replace_extension(".html");
+  std::error_code ignored;
+  if (fs::exists(page, ignored)) all.push_back(page);
+  const std::string torn = file.filename().string() + ".torn";
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(file), ignored))
+    if (entry.path().filename().string().starts_with(torn)) all.push_back(entry.path());
+  for (const fs::path& each : all) fs::remove(each);
+  return all;
+}
+
+std::uint64_t recorded_bytes(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename().string().find(".mcap") == std::string::npos) continue;
+    const std::uintmax_t size = entry.is_regular_file(error) ? entry.file_size(error) : 0;
+    if (!error) bytes += size;
+  }
+  return bytes;
+}
+
+}  // namespace phalanx
