@@ -22,6 +22,7 @@
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/session.h"
 #include "retention_options.h"
+#include "run/disk_messages.h"
 #include "run/marker_port.h"
 #include "run/run_console.h"
 #include "run/run_options.h"
@@ -179,46 +180,13 @@ class Run {
     }
   }
 
-  static constexpr double kLongUnsaved =
-      0.7;                               ///< age of a step that is not saved, of which a person is told [s]
-  static constexpr double kQuiet = 2.0;  ///< for which a disk has to take the data before that is told [s]
-
-  /// What the user was told of the disk.
-  enum class Disk { kTakes, kSlow, kRefuses };
-
-  /// Reports a disk that refuses the recording or is slow, and its return; lost steps, once more as they grow.
   void say_recording() {
     const auto recording = recorder_.recording();
     if (!recording) return;
-    const Disk disk = !recording->trouble.empty()         ? Disk::kRefuses
-                      : recording->unsaved > kLongUnsaved ? Disk::kSlow
-                                                          : Disk::kTakes;
-    if (disk != Disk::kTakes) disk_took_since_ = clock_.now();
-    const bool lasting = disk != Disk::kTakes || clock_.now() - disk_took_since_ > kQuiet;
-    if (lasting && disk != disk_) {
-      const Disk before = std::exchange(disk_, disk);
-      if (disk == Disk::kRefuses) {
-        tell_recording(fmt::format(
-            "recording: the disk refuses the data ({}); the last {:.1f} s are not saved, and are "
-            "written as soon as it takes them. Make room, or connect the disk; the station goes on",
-            recording->trouble, recording->unsaved));
-      } else if (disk == Disk::kTakes) {
-        tell_recording("recording: the disk takes the data again");
-      } else if (before == Disk::kTakes) {
-        tell_recording(fmt::format(
-            "recording: the disk is slow; the last {:.1f} s are not saved yet. They are lost if the "
-            "power fails now",
-            recording->unsaved));
-      }
+    for (const std::string& text : disk_messages_.next(*recording, clock_.now())) {
+      console_.say(text, Emphasis::kWarning);
+      tell_notice("recording", text);
     }
-    if (recording->lost_steps <= 2 * recording_lost_) return;
-    recording_lost_ = recording->lost_steps;
-    tell_recording(fmt::format("recording: {} steps are missing in it; it names them", recording_lost_));
-  }
-
-  void tell_recording(const std::string& text) {
-    console_.say(text, Emphasis::kWarning);
-    tell_notice("recording", text);
   }
 
   /// Reports a notice of the station to the pages with their log, and so to the recording; without pages to the recording
@@ -460,9 +428,7 @@ class Run {
   bool quit_ = false;
   std::uint64_t resets_refused_ = 0;
   bool oscillates_ = false;
-  Disk disk_ = Disk::kTakes;
-  double disk_took_since_ = 0.0;      ///< time since which the disk takes the data [s]
-  std::uint64_t recording_lost_ = 0;  ///< steps of whose loss the user was told
+  DiskMessages disk_messages_;
   std::array<ToldOpening, kDigits> openings_{};
   Seen seen_;
   double seconds_ = 0.0;
