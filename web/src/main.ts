@@ -3,15 +3,16 @@
 import type { State } from "./gen/phalanx/cockpit_pb";
 import type { Tick } from "./gen/phalanx/tick_pb";
 import type { App } from "./panels/app";
-import { confirmDialog, helpDialog } from "./panels/dialog";
+import { confirmDialog } from "./panels/dialog";
 import { devicePanel } from "./panels/device_panel";
 import { el } from "./panels/dom";
 import { faultCard } from "./panels/fault_card";
 import { handPanel } from "./panels/hand_panel";
-import { header } from "./panels/header";
+import { header, keysDialog } from "./panels/header";
 import { listenToKeys } from "./panels/keyboard";
 import { Look } from "./panels/look";
 import { lostBand } from "./panels/lost_band";
+import { openings } from "./panels/openings";
 import { kNameKey, peoplePanel } from "./panels/people_panel";
 import { readouts } from "./panels/readouts";
 import { operatorName, roleStrip } from "./panels/role_strip";
@@ -89,7 +90,7 @@ const app: App = {
 
 let plots: PlotPanel | undefined;
 const band = lostBand(store);
-const numbers = readouts(app);
+const numbers = readouts(store, openings(app));
 const frame = viewFrame(store, [band.element, faultCard(app), troubleCard(app)]);
 const look = new Look((theme) => {
   frame.setTheme(theme);
@@ -122,7 +123,7 @@ document.getElementById("page")?.append(
 listenToKeys(window, {
   stop: () => stop.stop(),
   pause: () => store.setPaused(!store.paused),
-  help: () => helpDialog(app),
+  help: () => keysDialog(app),
   camera: (preset) => frame.camera(preset),
   zoom: (factor) => frame.zoom(factor),
 });
@@ -205,7 +206,7 @@ async function bringIn(): Promise<void> {
   await painted();
   const view = frame.load(look.theme);
   const { plotPanel } = await import("./plots/plot_panel");
-  plots = plotPanel(store, look.theme);
+  plots = plotPanel(store, look.theme, store);
   plotPlace.append(plots.element);
   await view;
   wasDead = undefined; // the view has not heard yet

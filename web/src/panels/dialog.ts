@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dialogs that leave the rest of the page alive: Stop is never behind one.
 import { strings } from "../strings";
-import type { App } from "./app";
 import { button, el, newId } from "./dom";
+
+/// The place of dialogs.
+export interface DialogHost {
+  readonly dialogs: HTMLElement; // never over Stop
+}
 
 export interface OpenDialog {
   readonly element: HTMLElement;
@@ -10,7 +14,7 @@ export interface OpenDialog {
 }
 
 /// Opens over the view. The focus goes in, and back when it closes.
-export function openDialog(app: App, title: string, content: readonly Node[], kind: "small" | "large" = "small", onClose: () => void = () => {}): OpenDialog {
+export function openDialog(app: DialogHost, title: string, content: readonly Node[], kind: "small" | "large" = "small", onClose: () => void = () => {}): OpenDialog {
   for (const open of app.dialogs.querySelectorAll<HTMLElement>(".dialog")) open.dispatchEvent(new Event("phalanx-close"));
   const before = document.activeElement;
   const id = newId("dialog");
@@ -35,7 +39,7 @@ export function openDialog(app: App, title: string, content: readonly Node[], ki
 }
 
 /// Opens a dialog; `yes` runs when it is confirmed.
-export function confirmDialog(app: App, title: string, text: string, confirm: string, yes: () => void): void {
+export function confirmDialog(app: DialogHost, title: string, text: string, confirm: string, yes: () => void): void {
   const sure = button(confirm, () => {
     dialog.close();
     yes();
@@ -45,8 +49,9 @@ export function confirmDialog(app: App, title: string, text: string, confirm: st
   sure.focus();
 }
 
-export function helpDialog(app: App): void {
+/// Lists the keys of a page and what they do.
+export function helpDialog(app: DialogHost, title: string, rows: readonly (readonly [string, string])[], note: string): void {
   const list = el("dl", { class: "keys" });
-  for (const [key, meaning] of strings.help.rows) list.append(el("dt", {}, el("kbd", {}, key)), el("dd", {}, meaning));
-  openDialog(app, strings.help.title, [list, el("p", { class: "hint" }, strings.help.note)]);
+  for (const [key, meaning] of rows) list.append(el("dt", {}, el("kbd", {}, key)), el("dd", {}, meaning));
+  openDialog(app, title, [list, el("p", { class: "hint" }, note)]);
 }

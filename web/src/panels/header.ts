@@ -8,6 +8,11 @@ import type { Look } from "./look";
 import { recordingChip } from "./recording";
 import { operatorName } from "./role_strip";
 
+/// Lists the keys of the cockpit.
+export function keysDialog(app: App): void {
+  helpDialog(app, strings.help.title, strings.help.rows, strings.help.note);
+}
+
 export function header(app: App, look: Look): HTMLElement {
   const scene = el("span", { class: "header-scene" });
   const source = el("span", { class: "chip" });
@@ -42,6 +47,6 @@ export function header(app: App, look: Look): HTMLElement {
     source,
     who,
     recordingChip(app),
-    el("div", { class: "header-tools" }, light, large, button("?", () => helpDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
+    el("div", { class: "header-tools" }, light, large, button("?", () => keysDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
   );
 }

@@ -6,6 +6,7 @@ import { strings } from "../strings";
 import { refusal, type App } from "./app";
 import { openDialog } from "./dialog";
 import { button, el, setShown, setText } from "./dom";
+import type { Readouts } from "./readouts";
 
 const words = strings.openings;
 const joined = new Intl.ListFormat(strings.locale);
@@ -24,13 +25,8 @@ export function openingsText(openings: readonly Opening[]): string {
   ].join(" ");
 }
 
-export interface Openings {
-  readonly element: HTMLElement;
-  update(): void;
-}
-
 /// While forces are on, the operator has a button. It asks with the digits that wait and with their ways, which the person then reads.
-export function openings(app: App): Openings {
+export function openings(app: App): Readouts {
   const line = el("p", { role: "status" });
   const error = el("p", { class: "refused", role: "alert", hidden: true });
   const say = (text: string) => {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Above the view: the stability verdict as a light, the force of each digit, and which digits cannot have one.
-import type { State } from "../gen/phalanx/cockpit_pb";
 import { digitForces, followers, kDigits } from "../state/channels";
+import type { Shown } from "../state/shown";
 import type { Verdict } from "../state/verdict";
 import { strings } from "../strings";
-import type { App } from "./app";
 import { el, setAttribute, setShown, setText } from "./dom";
-import { openings } from "./openings";
 
 const kFullBar = 5; // [N]
 
@@ -20,17 +18,18 @@ export function verdictText(verdict: Verdict | null): string {
 }
 
 /// On a device that renders no torque, such as a glove that only stops a digit, the force cannot be felt.
-function asFelt(verdict: Verdict, state: State | undefined): Verdict {
-  return verdict.kind === "steady" && state?.rendersTorque === false ? { kind: "off" } : verdict;
+function asFelt(verdict: Verdict, rendersTorque: boolean): Verdict {
+  return verdict.kind === "steady" && !rendersTorque ? { kind: "off" } : verdict;
 }
 
+/// A part of the page that is updated at a rate at which figures can be read.
 export interface Readouts {
   readonly element: HTMLElement;
-  update(): void; // called at a rate at which figures can be read
+  update(): void;
 }
 
-export function readouts(app: App): Readouts {
-  const store = app.store;
+/// @param below  which digits cannot have a force
+export function readouts(shown: Shown, below: Readouts): Readouts {
   const text = el("strong");
   const spoken = el("span", { class: "visually-hidden", role: "status" });
   const alarm = el("span", { class: "visually-hidden", role: "alert" });
@@ -48,31 +47,30 @@ export function readouts(app: App): Readouts {
     );
     return { box, value, bar, follows };
   });
-  const inside = openings(app);
   const element = el(
     "div",
     { class: "readouts" },
     light,
     el("div", { class: "digit-forces", role: "group", "aria-label": strings.forcePerDigit }, ...digits.map((digit) => digit.box)),
-    inside.element,
+    below.element,
   );
-  store.on(["state"], () => {
-    const all = followers(store.state?.sensedJoint ?? []);
+  shown.on(["state"], () => {
+    const all = followers(shown.sensedJoint);
     digits.forEach((digit, i) => setShown(digit.follows, all[i] ?? false));
   });
   const update = () => {
-    const verdict = store.lost || !store.tick ? null : asFelt(store.light.shown, store.state);
+    const verdict = shown.lost || !shown.tick ? null : asFelt(shown.light.shown, shown.rendersTorque);
     setAttribute(light, "data-verdict", verdict?.kind ?? "unknown");
     setText(text, verdictText(verdict));
     // The figures change all the time; only the verdict itself is spoken, and only shaking into the middle of something.
     const shakes = verdict?.kind === "shakes";
     setText(spoken, shakes ? "" : verdictText(verdict));
     setText(alarm, shakes ? strings.verdict.shakes : "");
-    inside.update();
-    const forces = digitForces(store.lost ? undefined : store.tick);
+    below.update();
+    const forces = digitForces(shown.lost ? undefined : shown.tick);
     digits.forEach((digit, i) => {
       const force = forces[i] ?? 0;
-      setText(digit.value, store.lost || !store.tick ? strings.dash : force.toFixed(1));
+      setText(digit.value, shown.lost || !shown.tick ? strings.dash : force.toFixed(1));
       digit.bar.style.transform = `scaleX(${Math.min(1, force / kFullBar).toFixed(3)})`;
     });
   };

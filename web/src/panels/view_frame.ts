@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The place of the 3D view: its buttons, its keys, and the text that replaces it if it cannot be shown.
-import { slides } from "../state/keys";
-import type { Store } from "../state/store";
+import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
 import type { CameraPreset, HandView, ShownParts } from "../view3d/hand_view";
@@ -23,7 +22,7 @@ export interface ViewFrame {
   zoom(factor: number): void;
 }
 
-export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame {
+export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFrame {
   let view: HandView | undefined;
   let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   const host = el("div", { class: "view-host", tabindex: 0, role: "application", "aria-label": words.label });
@@ -45,8 +44,8 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
   }
   const cones = partSwitch("cones");
   const switches = [...(["skin", "ghost", "arrows", "object"] as const).map(partSwitch), cones];
-  const showCones = () => setShown(cones, slides(store.state, store.welcome));
-  store.on(["state", "connection"], showCones);
+  const showCones = () => setShown(cones, source.slides);
+  source.on(["state", "connection"], showCones);
   showCones();
   const picture = button(words.picture, () => view && saveFile(`phalanx-${stamp()}.png`, view.picture()));
   const cameras = el(
@@ -89,14 +88,14 @@ export function viewFrame(store: Store, over: readonly HTMLElement[]): ViewFrame
     if (wait.textContent === words.loading) setShown(wait, false);
     view.setTheme(theme);
     view.setParts(parts);
-    view.setLost(store.viewDead);
-    if (store.geometry) view.setGeometry(store.geometry);
-    if (store.tick) view.show(store.tick);
-    store.on(["geometry"], () => store.geometry && view?.setGeometry(store.geometry));
-    store.on(["tick"], () => store.tick && view?.show(store.tick));
+    view.setLost(source.viewDead);
+    if (source.geometry) view.setGeometry(source.geometry);
+    if (source.tick) view.show(source.tick);
+    source.on(["geometry"], () => source.geometry && view?.setGeometry(source.geometry));
+    source.on(["tick"], () => source.tick && view?.show(source.tick));
   }
   return {
-    element: el("div", { class: "view-frame" }, host, wait, viewKey(store), el("div", { class: "view-tools" }, cameras, menu), ...over),
+    element: el("div", { class: "view-frame" }, host, wait, viewKey(source), el("div", { class: "view-tools" }, cameras, menu), ...over),
     view: () => view,
     load,
     setTheme: (theme) => view?.setTheme(theme),

@@ -2,14 +2,15 @@
 // Export of a plot as a file.
 import { channels } from "../state/channels";
 import { toCsv } from "../state/csv";
-import { kHistorySeconds, type Store } from "../state/store";
+import type { Shown } from "../state/shown";
+import { kHistorySeconds } from "../state/store";
 import { strings } from "../strings";
 import { digitColours, themes, type ThemeName } from "../theme";
 import { saveBlob, stamp } from "../panels/dom";
 import { columnName } from "./plot_kinds";
 
-export function csvOf(store: Store): string {
-  const { geometry, history } = store;
+export function csvOf(shown: Shown): string {
+  const { geometry, history } = shown;
   const columns = channels.map((channel) => ({
     name: columnName(channel, geometry?.segmentName ?? [], geometry?.jointName ?? []),
     unit: channel.unit,
@@ -17,8 +18,8 @@ export function csvOf(store: Store): string {
   return toCsv(history, kHistorySeconds, columns);
 }
 
-export function saveCsv(store: Store): void {
-  saveBlob(`phalanx-${stamp()}.csv`, new Blob([csvOf(store)], { type: "text/csv" }));
+export function saveCsv(shown: Shown): void {
+  saveBlob(`phalanx-${stamp()}.csv`, new Blob([csvOf(shown)], { type: "text/csv" }));
 }
 
 /// One plot of the picture.

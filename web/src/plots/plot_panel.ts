@@ -3,7 +3,7 @@
 import "uplot/dist/uPlot.min.css";
 import { button, el, setShown, setSwitch, setText, switchButton } from "../panels/dom";
 import { kDigits } from "../state/channels";
-import type { Store } from "../state/store";
+import type { Pausing, Shown } from "../state/shown";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
 import { lasting } from "../wire/memory";
@@ -29,7 +29,8 @@ function firstKinds(): Set<PlotKind> {
   return new Set(window.innerWidth >= kWide ? plotKinds : ["force"]);
 }
 
-export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
+/// @param pausing  absent: the curves cannot be held
+export function plotPanel(source: Shown, theme: ThemeName, pausing?: Pausing): PlotPanel {
   let colours = theme;
   let digits: readonly boolean[] = new Array<boolean>(kDigits).fill(true);
   const kinds = firstKinds();
@@ -46,7 +47,7 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
       box.append(el("figcaption", {}, el("strong", {}, titleOf(kind)), el("small", { title: legendOf(kind) }, legendOf(kind))));
       const place = el("div", { class: "plot-place" });
       box.append(place);
-      const made = chart(kind, store.history, colours, digits);
+      const made = chart(kind, source.history, colours, digits);
       place.append(made.element);
       charts.set(kind, made);
       made.resize();
@@ -73,38 +74,33 @@ export function plotPanel(store: Store, theme: ThemeName): PlotPanel {
     setSwitch(control, true);
     return control;
   });
-  const pause = button(words.pause, () => store.setPaused(!store.paused), { "aria-keyshortcuts": "p", class: "pause" });
+  const pause = button(words.pause, () => pausing?.setPaused(!pausing.paused), { "aria-keyshortcuts": "p", class: "pause", hidden: !pausing });
   const paused = el("span", { class: "paused", role: "status" }, words.paused);
   const update = () => {
-    setText(pause, store.paused ? words.resume : words.pause);
-    setShown(paused, store.paused);
+    setText(pause, pausing?.paused ? words.resume : words.pause);
+    setShown(paused, pausing?.paused ?? false);
   };
-  store.on(["own"], update);
+  source.on(["own"], update);
   update();
   const png = button(words.png, () =>
     savePng([...charts].map(([kind, one]) => ({ title: titleOf(kind), legend: legendOf(kind), canvas: one.canvas() })), digits, colours),
     { title: words.pngLong, "aria-label": words.pngLong },
   );
   const dead = el("p", { class: "plot-offline", role: "status" });
-  const whyDead = () => {
-    if (!store.connected) return words.offline;
-    if (!store.lost || store.busyWithItself) return "";
-    return store.unmeasured ? words.unmeasured : words.silent;
-  };
   const live = () => {
-    const why = whyDead();
-    setText(dead, why);
+    const why = source.oldCurves;
+    setText(dead, why === "" ? "" : words.old[why]);
     setShown(dead, why !== "");
-    area.classList.toggle("plot-dead", !store.connected || store.lost);
+    area.classList.toggle("plot-dead", source.lost);
   };
-  store.on(["connection", "tick"], live);
+  source.on(["connection", "tick"], live);
   live();
   const tools = el(
     "div",
     { class: "plot-tools" },
     el("div", { class: "switches", role: "group", "aria-label": words.which }, ...kindSwitches),
     el("div", { class: "switches", role: "group", "aria-label": words.digits }, ...digitSwitches),
-    el("div", { class: "switches" }, paused, pause, button(words.csv, () => saveCsv(store), { title: words.csvLong, "aria-label": words.csvLong }), png),
+    el("div", { class: "switches" }, paused, pause, button(words.csv, () => saveCsv(source), { title: words.csvLong, "aria-label": words.csvLong }), png),
   );
   const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, dead));
   new ResizeObserver(() => {

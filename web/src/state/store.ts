@@ -7,8 +7,10 @@ import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
 import { Freshness } from "./freshness";
 import { History } from "./history";
-import { isChanged, valueOf } from "./keys";
+import { isChanged, slides, valueOf } from "./keys";
+import { Listeners } from "./listeners";
 import { roleOf, type Role } from "./roles";
+import type { OldCurves, Pausing, Shown, Topic } from "./shown";
 import { same } from "./toml";
 import { VerdictLight } from "./verdict";
 
@@ -19,14 +21,12 @@ const kPendingMs = 1500;
 /// The station sends its State twice a second; an older one does not count as the present state [ms].
 export const kStateStaleMs = 1500;
 
-export type Topic = "state" | "tick" | "notice" | "geometry" | "connection" | "own";
-
 interface Pending {
   readonly value: string;
   until: number; // forgotten then [ms]; Infinity: its answer is awaited
 }
 
-export class Store {
+export class Store extends Listeners<Topic> implements Shown, Pausing {
   phase: Phase = "connecting";
   welcome: Welcome | undefined;
   state: State | undefined;
@@ -39,31 +39,12 @@ export class Store {
   readonly light = new VerdictLight();
   readonly history = new History(channels.length, Math.ceil(1.1 * kHistorySeconds * kFramesPerSecond));
   readonly freshness: Freshness;
-  private readonly listeners = new Map<Topic, ((store: Store) => void)[]>();
   private readonly pending = new Map<string, Pending>();
   private readonly row = new Float64Array(channels.length);
 
   constructor(private readonly now: () => number = () => performance.now()) {
+    super();
     this.freshness = new Freshness(now());
-  }
-
-  on(topics: readonly Topic[], listener: (store: Store) => void): void {
-    for (const topic of topics) {
-      const list = this.listeners.get(topic) ?? [];
-      list.push(listener);
-      this.listeners.set(topic, list);
-    }
-  }
-
-  /// A listener that throws is reported; the others are still called.
-  tell(topic: Topic): void {
-    for (const listener of this.listeners.get(topic) ?? []) {
-      try {
-        listener(this);
-      } catch (reason) {
-        console.error(reason);
-      }
-    }
   }
 
   get connected(): boolean {
@@ -102,6 +83,24 @@ export class Store {
   /// The picture is old.
   get viewDead(): boolean {
     return this.lost || this.shapeMissing;
+  }
+
+  get oldCurves(): OldCurves {
+    if (!this.connected) return "offline";
+    if (!this.lost || this.busyWithItself) return "";
+    return this.unmeasured ? "unmeasured" : "silent";
+  }
+
+  get slides(): boolean {
+    return slides(this.state, this.welcome);
+  }
+
+  get sensedJoint(): readonly number[] {
+    return this.state?.sensedJoint ?? [];
+  }
+
+  get rendersTorque(): boolean {
+    return this.state?.rendersTorque !== false;
   }
 
   get role(): Role {

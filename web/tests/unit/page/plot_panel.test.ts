@@ -23,7 +23,7 @@ beforeEach(async () => {
   localStorage.clear();
   store = new Store();
   store.setPhase("open");
-  panel = plotPanel(store, "dark");
+  panel = plotPanel(store, "dark", store);
   document.body.replaceChildren(panel.element);
   await Promise.resolve(); // it is built when it has its place
 });
@@ -49,7 +49,7 @@ describe("the plots", () => {
     press(words.titles.angle);
     const chosen = [titleOf("force"), titleOf("angle")];
     expect(plots()).toEqual(chosen);
-    panel = plotPanel(store, "dark");
+    panel = plotPanel(store, "dark", store);
     await Promise.resolve();
     expect(plots()).toEqual(chosen);
   });
@@ -83,14 +83,14 @@ describe("the plots", () => {
     expect(said.hidden).toBe(true);
     store.setPhase("waiting");
     expect(said.hidden).toBe(false);
-    expect(said.textContent).toBe(words.offline);
+    expect(said.textContent).toBe(words.old.offline);
   });
 
   it("say that nothing comes, or that nothing is measured", () => {
     let now = 0;
     store = new Store(() => now);
     store.setPhase("open");
-    panel = plotPanel(store, "dark");
+    panel = plotPanel(store, "dark", store);
     const said = panel.element.querySelector<HTMLElement>(".plot-offline")!;
     const area = panel.element.querySelector(".plot-area")!;
     tick(1);
@@ -102,10 +102,10 @@ describe("the plots", () => {
     expect(area.classList.contains("plot-dead"), "old all the same").toBe(true);
     for (let frame = 0; frame < 40; ++frame) store.freshness.beat((now += 16));
     panel.update();
-    expect(said.textContent).toBe(words.silent);
+    expect(said.textContent).toBe(words.old.silent);
     expect(area.classList.contains("plot-dead")).toBe(true);
     store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: 2000n, time: 2, factor: 1, status: 1 << 12 } } }));
-    expect(said.textContent).toBe(words.unmeasured);
+    expect(said.textContent).toBe(words.old.unmeasured);
     tick(3);
     expect(said.hidden).toBe(true);
     expect(area.classList.contains("plot-dead")).toBe(false);

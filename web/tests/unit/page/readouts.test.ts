@@ -2,6 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, it } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { openings } from "../../../src/panels/openings";
 import { readouts } from "../../../src/panels/readouts";
 import { Store } from "../../../src/state/store";
 import { strings } from "../../../src/strings";
@@ -11,7 +12,7 @@ it("a screen reader is interrupted by shaking alone; contact and its end are sai
   let now = 0;
   const store = new Store(() => now);
   store.setPhase("open");
-  const { element, update } = readouts({ ...fakeApp().app, store });
+  const { element, update } = readouts(store, openings({ ...fakeApp().app, store }));
   let step = 0n;
   const said = (contact: { touching: boolean; oscillating?: boolean }[]) => {
     now += 2000; // a shake is held for a while
