@@ -4,7 +4,7 @@ import type { Link, Loop, Recording, State } from "../gen/phalanx/cockpit_pb";
 import { strings } from "../strings";
 import type { App } from "./app";
 import { el, section, setShown, setText } from "./dom";
-import { isBehind } from "./recording";
+import { isBehind, recordingsLink } from "./recording";
 import { faultSection } from "./fault_card";
 import { histogram } from "./histogram";
 import { wizardSection } from "./wizard";
@@ -117,6 +117,6 @@ export function devicePanel(app: App): HTMLElement {
     wizardSection(app),
     section(words.loop, degraded, loop, lateness.element, step.element),
     section(words.link, link),
-    section(words.recording, unsaved, notRecorded, recording),
+    section(words.recording, unsaved, notRecorded, recording, recordingsLink()),
   );
 }

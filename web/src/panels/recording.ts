@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The recording that the station writes: whether it goes on, as a word in the top line.
+// The recording that the station writes: whether it goes on, as a word in the top line, and the way to the page of recordings.
 import type { Recording } from "../gen/phalanx/cockpit_pb";
 import { strings } from "../strings";
 import type { App } from "./app";
@@ -28,4 +28,9 @@ export function recordingChip(app: App): HTMLElement {
   app.store.on(["state", "connection"], update);
   update();
   return chip;
+}
+
+/// Opens recordings in a page of their own: this one, with Stop, stays.
+export function recordingsLink(): HTMLElement {
+  return el("p", {}, el("a", { href: "recording.html", target: "_blank", rel: "noopener" }, strings.replay.link), el("small", { class: "link-hint" }, strings.replay.linkHint));
 }

@@ -16,6 +16,7 @@ import { VerdictLight } from "./verdict";
 
 export const kHistorySeconds = 10;
 const kFramesPerSecond = 60;
+export const kHistoryCapacity = Math.ceil(1.1 * kHistorySeconds * kFramesPerSecond); // samples
 const kNoticesKept = 200;
 const kPendingMs = 1500;
 /// The station sends its State twice a second; an older one does not count as the present state [ms].
@@ -37,7 +38,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
   notices: Notice[] = [];
   paused = false;
   readonly light = new VerdictLight();
-  readonly history = new History(channels.length, Math.ceil(1.1 * kHistorySeconds * kFramesPerSecond));
+  readonly history = new History(channels.length, kHistoryCapacity);
   readonly freshness: Freshness;
   private readonly pending = new Map<string, Pending>();
   private readonly row = new Float64Array(channels.length);

@@ -4,7 +4,8 @@ import { resolve } from "node:path";
 import { afterEach, expect, it, vi } from "vitest";
 import { strings } from "../../../src/strings";
 
-const page = readFileSync(resolve(__dirname, "../../../index.html"), "utf8");
+const html = (name: string) => readFileSync(resolve(__dirname, `../../../${name}`), "utf8");
+const page = html("index.html");
 const brought = vi.fn();
 afterEach(() => {
   vi.unstubAllGlobals();
@@ -34,6 +35,18 @@ it("the page's frame stands in index.html itself, in the words of strings.ts, wi
   expect(parsed.querySelector("#page > #opening p")!.textContent).toBe(strings.opening);
   expect(/<noscript>(.*)<\/noscript>/.exec(page)![1]).toBe(strings.noScript);
   expect(page).not.toMatch(/<style|style=|<script(?![^>]* src=)/);
+});
+
+it("so does the frame of the page of recordings, which looks like a recording from its first moment", () => {
+  const recording = html("recording.html");
+  const parsed = new DOMParser().parseFromString(recording.replace(/<(script|link)[^>]*>/g, ""), "text/html");
+  expect(parsed.documentElement.lang).toBe(strings.locale);
+  expect(parsed.documentElement.dataset["page"]).toBe("recording");
+  expect(parsed.title).toBe(strings.replay.titleNone);
+  expect(parsed.querySelector("#page > #opening.band p")!.textContent).toBe(strings.opening);
+  expect(/<noscript>(.*)<\/noscript>/.exec(recording)![1]).toBe(strings.replay.noScript);
+  expect(recording).not.toMatch(/<style|style=|<script(?![^>]* src=)/);
+  expect(recording).not.toContain("icon.svg"); // the cockpit's
 });
 
 it("the page itself comes after the first frame, not before", async () => {

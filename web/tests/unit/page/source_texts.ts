@@ -10,7 +10,7 @@ const texts = resolve(source, "strings.ts");
 function program(): ts.Program {
   const read = ts.readConfigFile(resolve(root, "tsconfig.json"), (name) => ts.sys.readFile(name));
   const { options } = ts.parseJsonConfigFileContent(read.config, ts.sys, root);
-  return ts.createProgram([resolve(source, "main.ts"), resolve(source, "opening.ts")], options);
+  return ts.createProgram(["main.ts", "opening.ts", "recording.ts"].map((entry) => resolve(source, entry)), options);
 }
 
 const made = program();

@@ -60,12 +60,13 @@ describe("strings", () => {
   });
 
   it("hold all the text: the sources have none of their own", () => {
-    const keys = /^(Enter|Escape|Arrow\w+|Home|End|Space|Process)$/; // of the keyboard
+    const keys = /^(Enter|Escape|Arrow\w+|Home|End|Space|Process|Page(Up|Down))$/; // of the keyboard
+    const terms = /^(Message|Files)$/; // kinds of an MCAP record and of what is dropped
     const all = literals();
     expect(all.length).toBeGreaterThan(500);
-    for (const folder of ["panels", "plots", "state", "view3d", "wire", "main.ts"]) expect(all.some(({ place }) => place.startsWith(folder)), folder).toBe(true);
+    for (const folder of ["panels", "plots", "state", "view3d", "wire", "replay", "main.ts", "recording.ts"]) expect(all.some(({ place }) => place.startsWith(folder)), folder).toBe(true);
     for (const { text, place } of all) {
-      if (/[;{}=<>#]/.test(text) || keys.test(text)) continue; // shaders and the like
+      if (/[;{}=<>#]/.test(text) || keys.test(text) || terms.test(text)) continue; // shaders and the like
       expect(text, place).not.toMatch(/(^|\s)[A-Za-z]{2,} [a-z]{2,}(\s|[.,:!?…]|$)/); // a sentence
       expect(text, place).not.toMatch(/(^|\s)[A-Z][a-z]{2,}(\s|[.,:!?…]|$)/); // a label
       expect(text.trim(), place).not.toMatch(/^(N|Nm|rad|mm|cm|N\/s|Nm\/s|rad\/s|N\/mm|ms|µs|s|°|HTTP|–)$/);
@@ -74,7 +75,7 @@ describe("strings", () => {
   });
 
   it("are all used", () => {
-    const inIndexHtml = ["opening", "noScript"]; // opening.test.ts
-    expect(unusedTexts().filter((path) => !inIndexHtml.includes(path))).toEqual([]);
+    const inHtml = ["opening", "noScript", "replay.noScript"]; // opening.test.ts
+    expect(unusedTexts().filter((path) => !inHtml.includes(path))).toEqual([]);
   });
 });

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happened in a recording: markers, faults, stops, changes, gaps. A press goes there.
+import { button, el, setAttribute, setShown, setSwitch, switchButton } from "../panels/dom";
+import { strings } from "../strings";
+import type { Overview } from "./overview";
+import { durationText } from "./times";
+
+const words = strings.replay;
+const kMostShown = 1000; // of the list; a longer one would hold up the page
+
+/// What is drawn, by shape and colour.
+export type MarkKind = "marker" | "bad" | "gap" | "other";
+
+export interface Happening {
+  readonly time: number; // [s]
+  readonly code: string;
+  readonly kind: MarkKind;
+  readonly label: string;
+  readonly text: string;
+}
+
+const badCodes = new Set(["fault", "stopped"]);
+
+function markKind(code: string): MarkKind {
+  if (code === "marker") return "marker";
+  return badCodes.has(code) ? "bad" : "other";
+}
+
+/// Everything of the overview that a person may look for, in the order of time.
+export function happenings({ events, stations, holes }: Pick<Overview, "events" | "stations" | "holes">): Happening[] {
+  const label = (code: string) => words.kinds[code] ?? words.otherKind;
+  const list: Happening[] = [
+    ...stations.map(({ time, value: { scene, device } }) => ({
+      time, code: "station", kind: "other" as const, label: label("station"), text: words.stationBegins(scene, device),
+    })),
+    ...events.map(({ time, value: { code, who, text } }) => ({
+      time, code, kind: markKind(code), label: label(code), text: who && code !== "marker" ? `${text} (${who})` : text,
+    })),
+    ...holes.map(({ begin, gap }) => ({
+      time: begin, code: "gap", kind: "gap" as const, label: label("gap"), text: words.missing(gap.steps.toLocaleString(strings.locale), gap.why),
+    })),
+  ];
+  return list.sort((a, b) => a.time - b.time);
+}
+
+export interface EventList {
+  readonly element: HTMLElement;
+  show(list: readonly Happening[]): void;
+  update(position: number): void; // marks the newest event at that time
+}
+
+export function eventList(goTo: (time: number) => void): EventList {
+  let all: readonly Happening[] = [];
+  let rows: { readonly time: number; readonly button: HTMLElement }[] = [];
+  let current: HTMLElement | undefined;
+  let markersOnly = false;
+  const list = el("ol", { class: "happenings" });
+  const none = el("p", { class: "hint" }, words.noEvents);
+  const only = switchButton(words.onlyMarkers, (on) => {
+    markersOnly = on;
+    setSwitch(only, on);
+    build();
+  });
+  function row(one: Happening): HTMLElement {
+    const made = button("", () => goTo(one.time), { class: "happening", "data-kind": one.kind });
+    made.append(
+      el("span", { class: "happening-time" }, durationText(one.time)),
+      el("span", { class: "happening-mark", "aria-hidden": "true" }),
+      el("span", { class: "happening-label" }, one.label),
+      el("span", { class: "happening-text" }, one.text),
+    );
+    rows.push({ time: one.time, button: made });
+    return el("li", {}, made);
+  }
+  function build(): void {
+    rows = [];
+    current = undefined;
+    const shown = all.filter(({ kind }) => !markersOnly || kind === "marker");
+    list.replaceChildren(...shown.slice(0, kMostShown).map(row));
+    setShown(none, shown.length === 0);
+    setShown(only, all.some(({ kind }) => kind === "marker"));
+  }
+  build();
+  return {
+    element: el("div", { class: "event-list" }, only, none, list),
+    show(next) {
+      all = next;
+      build();
+    },
+    update(position) {
+      let newest: HTMLElement | undefined;
+      for (const { time, button: made } of rows) if (time <= position + 1e-6) newest = made;
+      if (newest === current) return;
+      if (current) setAttribute(current, "aria-current", null);
+      if (newest) setAttribute(newest, "aria-current", "true");
+      current = newest;
+    },
+  };
+}

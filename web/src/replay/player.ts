@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording that is shown: feeds view, plots and figures with what was measured at the displayed moment. It has no connection to a
+// station and no way to send anything.
+import { fromBinary } from "@bufbuild/protobuf";
+import { TickSchema, type Tick } from "../gen/phalanx/tick_pb";
+import { channels, fillRow, isMeasured } from "../state/channels";
+import { History } from "../state/history";
+import { Listeners } from "../state/listeners";
+import type { OldCurves, Shown, Topic } from "../state/shown";
+import { kHistoryCapacity, kHistorySeconds } from "../state/store";
+import { VerdictLight } from "../state/verdict";
+import type { Shapes } from "../view3d/shapes";
+import type { Timed } from "./chunk";
+import { ChunkCache } from "./chunk_cache";
+import type { Decoder } from "./decoder";
+import { Lookup } from "./lookup";
+import { Playhead } from "./playhead";
+import type { Recording } from "./recording";
+import type { StationFacts } from "./station_facts";
+
+const kOldPose = 0.5; // [s]: a pose that is older than the displayed moment does not show it
+const kFrame = 0.3; // [s] that a frame may move on, at speed 1
+const kAhead = 4; // [s] that are loaded ahead, at speed 1
+const kShapes = 3; // geometries that are kept
+const kJustBefore = 1e-7; // [s], much less than a step
+
+export class Player extends Listeners<Topic> implements Shown {
+  tick: Tick | undefined;
+  geometry: Shapes | undefined;
+  light = new VerdictLight();
+  station: StationFacts | undefined; // in force at the displayed moment
+  slides = false;
+  trouble: unknown; // why nothing more can be read
+  shapesTrouble = false; // the geometry cannot be made into shapes
+  readonly history = new History(channels.length, kHistoryCapacity);
+  readonly playhead: Playhead;
+  private readonly lookup: Lookup;
+  private readonly cache: ChunkCache;
+  private readonly row = new Float64Array(channels.length);
+  private readonly shapes = new Map<string, Shapes>(); // by place in the recording, the oldest first
+  private shape = ""; // of these the one that is shown
+  private shownAt = NaN; // time of `tick`
+  private fed = NaN; // time up to which the history is filled; NaN: it has to be filled anew
+  private until = -Infinity; // time at which another station or geometry comes
+  private settling: Promise<void> | undefined;
+  private ahead: Promise<void> | undefined;
+  private steps: Promise<void> = Promise.resolve();
+
+  /// @param makeShapes  of the bytes of a Geometry
+  constructor(
+    readonly recording: Recording,
+    decoder: Decoder,
+    private readonly makeShapes: (bytes: ArrayBuffer) => Promise<Shapes>,
+  ) {
+    super();
+    this.cache = new ChunkCache(recording, decoder);
+    this.lookup = new Lookup(recording, this.cache);
+    this.playhead = new Playhead(recording.seconds, () => this.tell("own"));
+  }
+
+  get sensedJoint(): readonly number[] {
+    return this.station?.sensedJoint ?? [];
+  }
+
+  get rendersTorque(): boolean {
+    return this.station?.rendersTorque ?? true;
+  }
+
+  /// The recording has no pose of the displayed moment: steps are missing, or there was no station.
+  get hole(): boolean {
+    return !this.loading && !(Math.abs(this.playhead.position - this.shownAt) <= kOldPose);
+  }
+
+  get lost(): boolean {
+    return !this.tick || !isMeasured(this.tick) || this.hole;
+  }
+
+  get viewDead(): boolean {
+    return this.lost;
+  }
+
+  get oldCurves(): OldCurves {
+    return this.tick && !isMeasured(this.tick) ? "unmeasured" : "";
+  }
+
+  /// What is to be shown has not been read yet.
+  get loading(): boolean {
+    return this.settling !== undefined;
+  }
+
+  get damagedChunks(): number {
+    return this.cache.damaged;
+  }
+
+  /// Shows another moment, as soon as it is read.
+  seek(time: number): void {
+    this.playhead.seek(time);
+    this.fed = NaN;
+    this.tell("own");
+    void this.settle();
+  }
+
+  /// Goes by whole poses. @param direction  1: to the next one, -1: to the one before
+  step(direction: 1 | -1): Promise<void> {
+    this.playhead.pause();
+    this.steps = this.steps.then(async () => {
+      const from = Number.isNaN(this.shownAt) ? this.playhead.position : this.shownAt;
+      try {
+        const next = await (direction > 0 ? this.lookup.poseAfter(from) : this.lookup.last("/pose", from - kJustBefore));
+        if (next) this.seek(next.time);
+        await this.settling;
+      } catch (reason) {
+        this.fail(reason);
+      }
+    });
+    return this.steps;
+  }
+
+  /// Tries again what could not be read.
+  retry(): void {
+    this.trouble = undefined;
+    this.seek(this.playhead.position);
+  }
+
+  /// Called once a frame. @param now  [ms]
+  frame(now: number): void {
+    const { playhead } = this;
+    const soon = Math.min(playhead.length, playhead.position + kFrame * playhead.speed);
+    const ready = !this.settling && !Number.isNaN(this.fed) && this.lookup.ready(this.fed, soon);
+    playhead.frame(now, !ready);
+    if (ready && playhead.position < this.fed) this.seek(playhead.position); // from the end to the beginning
+    else if (ready && playhead.position > this.fed) this.feed(playhead.position);
+    if (playhead.playing && !this.settling) this.loadAhead();
+  }
+
+  /// Resolves when the displayed moment is shown.
+  settle(): Promise<void> {
+    this.settling ??= this.goThere()
+      .catch((reason: unknown) => this.fail(reason))
+      .finally(() => {
+        this.settling = undefined;
+        this.tell("own");
+      });
+    return this.settling;
+  }
+
+  private async goThere(): Promise<void> {
+    await Promise.resolve(); // `settling` is set
+    while (Number.isNaN(this.fed)) {
+      const at = this.playhead.position;
+      const pose = (await this.lookup.last("/pose", at)) ?? (await this.firstPose(at));
+      await this.useStation(Math.max(at, pose?.time ?? at));
+      this.show(pose);
+      if (this.playhead.position !== at) continue; // another moment was chosen meanwhile
+      await this.lookup.load(at - kHistorySeconds, at);
+      if (this.playhead.position !== at) continue;
+      this.history.clear();
+      this.light = new VerdictLight();
+      for (const { value } of this.lookup.poses(at - kHistorySeconds, at)) this.record(fromBinary(TickSchema, value));
+      this.fed = at;
+      if (this.tick && this.history.length === 0) this.record(this.tick);
+      this.tell("tick");
+    }
+  }
+
+  /// The recording begins a moment before its first pose.
+  private async firstPose(at: number): Promise<Timed<Uint8Array> | undefined> {
+    const first = await this.lookup.poseAfter(at);
+    return first && first.time - at < kOldPose ? first : undefined;
+  }
+
+  /// Goes on to a time whose chunks are at hand.
+  private feed(to: number): void {
+    if (to >= this.until) {
+      this.seek(to); // another station or object
+      return;
+    }
+    const poses = this.lookup.poses(this.fed, to);
+    this.fed = to;
+    const ticks = poses.map(({ value }) => fromBinary(TickSchema, value));
+    ticks.forEach((tick) => this.record(tick));
+    const last = poses.at(-1);
+    if (last) this.shownAt = last.time;
+    this.tick = ticks.at(-1) ?? this.tick;
+    this.tell("tick");
+  }
+
+  private record(tick: Tick): void {
+    fillRow(tick, this.row);
+    this.history.push(tick.time, this.row);
+    this.light.feed(tick, tick.time);
+  }
+
+  private show(pose: Timed<Uint8Array> | undefined): void {
+    this.tick = pose && fromBinary(TickSchema, pose.value);
+    this.shownAt = pose?.time ?? NaN;
+    this.tell("tick");
+  }
+
+  /// The station and the geometry in force.
+  private async useStation(at: number): Promise<void> {
+    const [setup, change] = [await this.lookup.last("/setup", at), await this.lookup.last("/change", at)];
+    this.station = setup?.value;
+    this.slides = (change && change.time > (setup?.time ?? -Infinity) ? change.value.slides : setup?.value.slides) ?? false;
+    this.tell("state");
+    const geometry = await this.lookup.last("/geometry", at);
+    const place = geometry ? `${geometry.chunk} ${geometry.time}` : "";
+    if (geometry && place !== this.shape) {
+      const made = this.shapes.get(place) ?? (await this.makeShapes(geometry.value.slice().buffer).catch(() => undefined));
+      this.shapesTrouble = made === undefined;
+      this.shape = place;
+      if (made) {
+        this.shapes.delete(place);
+        this.shapes.set(place, made);
+        for (const oldest of this.shapes.keys()) if (this.shapes.size > kShapes) this.shapes.delete(oldest);
+        this.geometry = made;
+        this.tell("geometry");
+      }
+    }
+    this.until = this.lookup.next(["/geometry", "/setup", "/change"], at);
+  }
+
+  private loadAhead(): void {
+    const { position, speed, length } = this.playhead;
+    const to = Math.min(length, position + kAhead * Math.max(1, speed));
+    if (this.ahead || this.lookup.ready(position, to)) return;
+    this.ahead = this.lookup
+      .load(position, to)
+      .catch((reason: unknown) => this.fail(reason))
+      .finally(() => (this.ahead = undefined));
+  }
+
+  private fail(reason: unknown): void {
+    this.trouble = reason;
+    this.playhead.pause();
+    this.tell("own");
+  }
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording as its index describes it: its length, and which chunk holds which times and topics.
+import { McapIndexedReader } from "@mcap/core";
+import { decompressHandlers, type Layout, type Topic } from "./chunk";
+import type { Source } from "./source";
+
+/// noMcap: another kind of file; noIndex: the file has no end or is damaged; noPoses: it is no recording of this program; empty: no step.
+export type FileTrouble = "noMcap" | "noIndex" | "noPoses" | "empty";
+
+export class FileError extends Error {
+  constructor(
+    readonly trouble: FileTrouble,
+    detail = "",
+  ) {
+    super(`${trouble} ${detail}`);
+  }
+}
+
+/// A chunk's place in the file and in time.
+export interface ChunkPlace {
+  readonly offset: number;
+  readonly length: number; // [bytes]
+  readonly begin: number; // of its first message [s]
+  readonly end: number; // of its last
+  readonly topics: ReadonlySet<string>;
+}
+
+export interface Recording {
+  readonly source: Source;
+  readonly layout: Layout;
+  readonly chunks: readonly ChunkPlace[]; // in the file's order
+  readonly seconds: number; // length
+  readonly bytes: number;
+  readonly version: string; // of the program that wrote it; empty: not stated
+  count(topic: Topic): number; // of messages
+}
+
+const kMagic = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a]; // "\x89MCAP0\r\n"
+const kMagicLength = BigInt(kMagic.length);
+const isMagic = (bytes: Uint8Array) => kMagic.every((byte, i) => bytes[i] === byte);
+
+async function readIndex(source: Source): Promise<McapIndexedReader> {
+  const size = await source.size();
+  if (size < kMagicLength || !isMagic(await source.read(0n, kMagicLength))) throw new FileError("noMcap");
+  if (size < 2n * kMagicLength || !isMagic(await source.read(size - kMagicLength, kMagicLength))) throw new FileError("noIndex");
+  let failed: unknown; // of the source, which is not the file's fault
+  const read = (offset: bigint, length: bigint) =>
+    source.read(offset, length).catch((reason: unknown) => {
+      failed = reason;
+      throw reason;
+    });
+  try {
+    return await McapIndexedReader.Initialize({ readable: { size: () => Promise.resolve(size), read }, decompressHandlers });
+  } catch (reason) {
+    if (failed) throw failed;
+    throw new FileError("noIndex", String(reason));
+  }
+}
+
+async function versionOf(reader: McapIndexedReader): Promise<string> {
+  for await (const { metadata } of reader.readMetadata({ name: "phalanx" })) return metadata.get("version") ?? "";
+  return "";
+}
+
+/// @throws FileError, SourceError
+export async function openRecording(source: Source): Promise<Recording> {
+  const reader = await readIndex(source);
+  const topics = [...reader.channelsById.values()].map(({ id, topic }) => [id, topic] as const);
+  const count = (wanted: Topic) => {
+    const id = topics.find(([, topic]) => topic === wanted)?.[0];
+    return id === undefined ? 0 : Number(reader.statistics?.channelMessageCounts.get(id) ?? 0n);
+  };
+  if (!topics.some(([, topic]) => topic === "/pose")) throw new FileError("noPoses");
+  if (count("/pose") === 0 || !reader.statistics) throw new FileError("empty");
+  const begin = reader.statistics.messageStartTime;
+  const since = (time: bigint) => Number(time - begin) / 1e9;
+  const names = new Map(topics);
+  const chunks = [...reader.chunkIndexes]
+    .sort((a, b) => Number(a.chunkStartOffset - b.chunkStartOffset))
+    .map((chunk) => ({
+      offset: Number(chunk.chunkStartOffset),
+      length: Number(chunk.chunkLength),
+      begin: since(chunk.messageStartTime),
+      end: since(chunk.messageEndTime),
+      topics: new Set([...chunk.messageIndexOffsets.keys()].map((id) => names.get(id) ?? "")),
+    }));
+  return {
+    source,
+    layout: { begin, topics },
+    chunks,
+    seconds: since(reader.statistics.messageEndTime),
+    bytes: Number(await source.size()),
+    version: await versionOf(reader).catch(() => ""),
+    count,
+  };
+}

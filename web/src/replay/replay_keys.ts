@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of a recording's page. Space plays and pauses; buttons are pressed with Enter, as in the cockpit.
+import { isTextField } from "../panels/keyboard";
+import type { CameraPreset } from "../view3d/hand_view";
+
+export interface ReplayActions {
+  toggle(): void;
+  skip(seconds: number): void;
+  pose(direction: 1 | -1): void;
+  event(direction: 1 | -1): void;
+  goTo(end: "begin" | "end"): void;
+  faster(steps: number): void;
+  help(): void;
+  camera(preset: CameraPreset): void;
+  zoom(factor: number): void;
+}
+
+const kZoomStep = 1.15;
+const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
+
+function action(key: string, shift: boolean, actions: ReplayActions): (() => void) | undefined {
+  const preset = presets[key];
+  if (preset) return () => actions.camera(preset);
+  switch (key) {
+    case "ArrowLeft":
+      return () => (shift ? actions.pose(-1) : actions.skip(-1));
+    case "ArrowRight":
+      return () => (shift ? actions.pose(1) : actions.skip(1));
+    case ",":
+      return () => actions.pose(-1);
+    case ".":
+      return () => actions.pose(1);
+    case "PageUp":
+      return () => actions.event(-1);
+    case "PageDown":
+      return () => actions.event(1);
+    case "Home":
+      return () => actions.goTo("begin");
+    case "End":
+      return () => actions.goTo("end");
+    case "<":
+      return () => actions.faster(-1);
+    case ">":
+      return () => actions.faster(1);
+    case "+":
+    case "=":
+      return () => actions.zoom(kZoomStep);
+    case "-":
+      return () => actions.zoom(1 / kZoomStep);
+    case "?":
+      return () => actions.help();
+    default:
+      return undefined;
+  }
+}
+
+export function listenToReplayKeys(source: Window, actions: ReplayActions): void {
+  const isPlay = (event: KeyboardEvent) => event.key === " " && !isTextField(event.target);
+  const swallow = (event: Event) => {
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  };
+  source.addEventListener(
+    "keydown",
+    (event) => {
+      if (!isPlay(event)) return;
+      swallow(event);
+      if (!event.repeat) actions.toggle();
+    },
+    { capture: true },
+  );
+  source.addEventListener("keyup", (event) => isPlay(event) && swallow(event), { capture: true }); // some browsers press a button then
+  // What has the focus takes its keys first: the view turns, a plot reads its values.
+  source.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || isTextField(event.target) || event.ctrlKey || event.altKey || event.metaKey) return;
+    const act = action(event.key, event.shiftKey, actions);
+    if (!act) return;
+    act();
+    event.preventDefault();
+  });
+}

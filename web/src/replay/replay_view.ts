@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of one recording that is open: view, plots, figures, scrubber, events.
+import { el, section, setText } from "../panels/dom";
+import { openingsText } from "../panels/openings";
+import { readouts, type Readouts } from "../panels/readouts";
+import { viewFrame, type ViewFrame } from "../panels/view_frame";
+import type { PlotPanel } from "../plots/plot_panel";
+import { strings } from "../strings";
+import type { ThemeName } from "../theme";
+import { makeShapes } from "../view3d/shape_maker";
+import { about } from "./about";
+import { threadDecoder } from "./decoder";
+import { eventList, happenings, type Happening } from "./event_list";
+import { note } from "./note";
+import { Overview } from "./overview";
+import { Player } from "./player";
+import type { Recording } from "./recording";
+import { scrubber } from "./scrubber";
+import { transport } from "./transport";
+
+const kReadoutMs = 80; // as in the cockpit
+const kPlotMs = 33;
+const kPlotRest = 4;
+const kOverviewMs = 200; // at most so often the overview is drawn
+
+export interface ReplayView {
+  readonly player: Player;
+  readonly frame: ViewFrame;
+  readonly overview: Overview;
+  readonly elements: readonly HTMLElement[]; // for the page's grid
+  draw(now: number): void; // once a frame
+  skip(seconds: number): void;
+  toggle(): void;
+  event(direction: 1 | -1): void;
+  setTheme(theme: ThemeName): void;
+  close(): void;
+}
+
+/// Which digits had no force, without the cockpit's button.
+function silentDigits(player: Player): Readouts {
+  const line = el("p", { role: "status" });
+  return {
+    element: el("div", { class: "openings" }, el("div", { class: "silent-digits" }, line)),
+    update: () => setText(line, openingsText(player.lost ? [] : (player.tick?.opening ?? []))),
+  };
+}
+
+export function replayView(recording: Recording, theme: ThemeName): ReplayView {
+  const decoder = threadDecoder(recording.layout);
+  const surveyor = threadDecoder(recording.layout); // of the overview: playing does not wait for it
+  const player = new Player(recording, decoder, makeShapes);
+  const overview = new Overview(recording);
+  const ended = new AbortController();
+  let list: Happening[] = [];
+  let colours = theme;
+  let plots: PlotPanel | undefined;
+
+  const seek = (time: number) => player.seek(time);
+  const toggle = () => {
+    if (player.playhead.playing) player.playhead.pause();
+    else player.playhead.play();
+  };
+  const event = (direction: 1 | -1) => {
+    const { position } = player.playhead;
+    const kHere = 0.05; // [s]: an event so near is the displayed one
+    const next = direction > 0 ? list.find(({ time }) => time > position + kHere) : [...list].reverse().find(({ time }) => time < position - kHere);
+    if (next) seek(next.time);
+  };
+  const over = note(player);
+  const watermark = el("span", { class: "watermark", "aria-hidden": "true" }, strings.replay.watermark);
+  const numbers = readouts(player, silentDigits(player));
+  const frame = viewFrame(player, [watermark, over.element]);
+  const plotPlace = el("div", { class: "plot-slot" });
+  const bar = transport(player.playhead, Number(recording.layout.begin) / 1e9, { toggle, pose: (direction) => void player.step(direction), event });
+  const track = scrubber(overview, recording.seconds, theme, seek);
+  const events = eventList(seek);
+  const facts = about(player, overview);
+
+  let drawnAt = -Infinity;
+  let stale = true; // the overview has grown since it was drawn
+  let dead: boolean | undefined; // the view
+  void overview
+    .fill(surveyor, () => (stale = true), ended.signal)
+    .catch((reason: unknown) => (player.trouble ??= reason))
+    .finally(() => surveyor.close());
+  void (async () => {
+    const view = frame.load(theme);
+    const { plotPanel } = await import("../plots/plot_panel");
+    plots = plotPanel(player, colours);
+    plotPlace.append(plots.element);
+    await view;
+    dead = undefined; // the view has not heard yet
+  })();
+
+  let readAt = -Infinity;
+  let plotAt = 0;
+  return {
+    player,
+    frame,
+    overview,
+    elements: [
+      el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
+      el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels" }, el("div", { class: "tab-panel" }, el("div", {}, section(strings.replay.events, events.element), facts.element))))),
+      el("div", { class: "replay-dock" }, bar.element, track.element),
+    ],
+    draw(now) {
+      player.frame(now);
+      if (dead !== player.viewDead) {
+        dead = player.viewDead;
+        document.documentElement.dataset["view"] = dead ? "dead" : "live";
+        frame.view()?.setLost(dead);
+      }
+      bar.update();
+      track.update(player.playhead.position);
+      over.update(now);
+      if (stale && now - drawnAt > kOverviewMs) {
+        stale = false;
+        drawnAt = now;
+        list = happenings(overview);
+        events.show(list);
+        track.show(list);
+      }
+      events.update(player.playhead.position);
+      if (now - readAt >= kReadoutMs) {
+        readAt = now;
+        numbers.update();
+        facts.update();
+        plots?.update();
+      }
+      if (plots && now >= plotAt) {
+        const began = performance.now();
+        plots.draw();
+        plotAt = now + Math.max(kPlotMs, kPlotRest * (performance.now() - began));
+      }
+    },
+    skip: (seconds) => seek(player.playhead.position + seconds),
+    toggle,
+    event,
+    setTheme(next) {
+      colours = next;
+      frame.setTheme(next);
+      plots?.setTheme(next);
+      track.setTheme(next);
+    },
+    close() {
+      ended.abort();
+      decoder.close();
+      frame.view()?.dispose();
+      delete document.documentElement.dataset["view"];
+    },
+  };
+}

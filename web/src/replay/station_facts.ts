@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a replay needs of Setup and Change. Their meshes, which take most of the bytes, are skipped.
+import { BinaryReader, WireType } from "@bufbuild/protobuf/wire";
+import { fromBinary } from "@bufbuild/protobuf";
+import { SettingSchema, type Setting } from "../gen/phalanx/cockpit_pb";
+import { ChangeSchema, DeviceChannelSchema, SetupSchema, type DeviceChannel } from "../gen/phalanx/recording_pb";
+import { kJointsPerDigit } from "../state/channels";
+import { find } from "../state/keys";
+import { unquote } from "../state/toml";
+
+export interface ChangeFacts {
+  readonly scene: string;
+  readonly slides: boolean; // contacts slide, with friction
+}
+
+export interface StationFacts extends ChangeFacts {
+  readonly device: string;
+  readonly rateHz: number;
+  readonly rendersTorque: boolean;
+  readonly sensedJoint: readonly number[];
+}
+
+/// Calls `see` with each field that is one of `wanted`.
+function eachField(bytes: Uint8Array, see: (field: number, reader: BinaryReader) => boolean): void {
+  const reader = new BinaryReader(bytes);
+  while (reader.pos < reader.len) {
+    const [field, type] = reader.tag();
+    const before = reader.pos;
+    if (!see(field, reader)) {
+      reader.pos = before;
+      reader.skip(type as WireType, field);
+    }
+  }
+}
+
+const change = ChangeSchema.field;
+const setup = SetupSchema.field;
+
+export function changeFacts(bytes: Uint8Array): ChangeFacts {
+  let scene = "";
+  const values: Setting[] = [];
+  eachField(bytes, (field, reader) => {
+    if (field === change.scene.number) scene = reader.string();
+    else if (field === change.value.number) values.push(fromBinary(SettingSchema, reader.bytes()));
+    else return false;
+    return true;
+  });
+  return { scene, slides: unquote(find(values, "contact.mode") ?? "") === "sliding" };
+}
+
+/// Joints that the channels set, without those that follow other joints: as in src/station/session_state.cpp.
+function sensedJoints(channels: readonly DeviceChannel[]): number[] {
+  const [kAngle, kCurl, kSplay] = [0, 4, 5];
+  return channels.flatMap(({ kind, index }) => {
+    const joint = (place: number) => kJointsPerDigit * index + place;
+    if (kind === kAngle) return [index];
+    if (kind === kSplay) return [joint(1)];
+    return kind === kCurl ? [joint(0), joint(2), joint(3)] : [];
+  });
+}
+
+export function stationFacts(bytes: Uint8Array): StationFacts {
+  let facts: StationFacts = { scene: "", slides: false, device: "", rateHz: 0, rendersTorque: false, sensedJoint: [] };
+  const channels: DeviceChannel[] = [];
+  eachField(bytes, (field, reader) => {
+    if (field === setup.start.number) facts = { ...facts, ...changeFacts(reader.bytes()) };
+    else if (field === setup.deviceName.number) facts = { ...facts, device: reader.string() };
+    else if (field === setup.deviceRateHz.number) facts = { ...facts, rateHz: reader.double() };
+    else if (field === setup.rendersTorque.number) facts = { ...facts, rendersTorque: reader.bool() };
+    else if (field === setup.channel.number) channels.push(fromBinary(DeviceChannelSchema, reader.bytes()));
+    else return false;
+    return true;
+  });
+  return { ...facts, sensedJoint: sensedJoints(channels) };
+}
