@@ -54,7 +54,7 @@ const look = new Look((theme) => {
 });
 setSwitch(light, look.theme === "light");
 setSwitch(large, look.large);
-const others = button(words.others, () => leave());
+const others = button(words.link, () => leave());
 const help = () => helpDialog({ dialogs }, words.keys.title, words.keys.rows, words.keys.note);
 const band = el(
   "header",
@@ -112,7 +112,8 @@ async function open(source: Source, time: number, name?: string): Promise<void> 
     listed = name;
     history.replaceState(null, "", address(name, time));
     view = replayView(recording, look.theme);
-    content.replaceChildren(...view.elements);
+    content.replaceChildren(...view.content);
+    content.after(view.dock);
     show(recording);
     view.player.seek(time);
   } catch (reason) {

@@ -518,7 +518,6 @@ const en = {
     notLive: "Not live. This page moves no device and stops none.",
     watermark: "Recording",
     open: "Open a recording",
-    others: "Other recordings",
     station: "Recordings of this station",
     stationFolder: (folder: string) => `Folder: ${folder}`,
     none: "The station has no recording yet.",

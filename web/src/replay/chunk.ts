@@ -10,10 +10,10 @@ import { changeFacts, stationFacts, type ChangeFacts, type StationFacts } from "
 
 export type Topic = "/pose" | "/geometry" | "/event" | "/gap" | "/setup" | "/change";
 
-/// What decompresses and parses: in the page itself or in another thread.
+/// What is needed to read a chunk by itself.
 export interface Layout {
   readonly begin: bigint; // of the recording, UTC [ns]
-  readonly topics: readonly (readonly [channel: number, topic: string])[];
+  readonly channels: readonly McapTypes.TypedMcapRecords["Channel"][];
 }
 
 export interface Timed<Value> {
@@ -61,14 +61,14 @@ const secondsSince = (begin: bigint, time: bigint) => Number(time - begin) / 1e9
 /// Channel records stand at the file's beginning, and its reader wants them before the messages.
 function channelRecords(layout: Layout): Uint8Array {
   const builder = new McapRecordBuilder();
-  for (const [id, topic] of layout.topics) builder.writeChannel({ id, schemaId: 0, topic, messageEncoding: "", metadata: new Map() });
+  for (const channel of layout.channels) builder.writeChannel(channel);
   return builder.buffer.slice();
 }
 
 /// @param bytes  of the chunk's record
 /// @throws Error if they are damaged or encrypted
 export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
-  const topics = new Map(layout.topics);
+  const topics = new Map(layout.channels.map(({ id, topic }) => [id, topic]));
   const reader = new McapStreamReader({ noMagicPrefix: true, decompressHandlers, validateCrcs: true });
   reader.append(channelRecords(layout));
   reader.append(bytes);

@@ -65,16 +65,16 @@ async function versionOf(reader: McapIndexedReader): Promise<string> {
 /// @throws FileError, SourceError
 export async function openRecording(source: Source): Promise<Recording> {
   const reader = await readIndex(source);
-  const topics = [...reader.channelsById.values()].map(({ id, topic }) => [id, topic] as const);
+  const channels = [...reader.channelsById.values()];
   const count = (wanted: Topic) => {
-    const id = topics.find(([, topic]) => topic === wanted)?.[0];
+    const id = channels.find(({ topic }) => topic === wanted)?.id;
     return id === undefined ? 0 : Number(reader.statistics?.channelMessageCounts.get(id) ?? 0n);
   };
-  if (!topics.some(([, topic]) => topic === "/pose")) throw new FileError("noPoses");
+  if (!channels.some(({ topic }) => topic === "/pose")) throw new FileError("noPoses");
   if (count("/pose") === 0 || !reader.statistics) throw new FileError("empty");
   const begin = reader.statistics.messageStartTime;
   const since = (time: bigint) => Number(time - begin) / 1e9;
-  const names = new Map(topics);
+  const names = new Map(channels.map(({ id, topic }) => [id, topic]));
   const chunks = [...reader.chunkIndexes]
     .sort((a, b) => Number(a.chunkStartOffset - b.chunkStartOffset))
     .map((chunk) => ({
@@ -86,7 +86,7 @@ export async function openRecording(source: Source): Promise<Recording> {
     }));
   return {
     source,
-    layout: { begin, topics },
+    layout: { begin, channels },
     chunks,
     seconds: since(reader.statistics.messageEndTime),
     bytes: Number(await source.size()),

@@ -27,7 +27,8 @@ export interface ReplayView {
   readonly player: Player;
   readonly frame: ViewFrame;
   readonly overview: Overview;
-  readonly elements: readonly HTMLElement[]; // for the page's grid
+  readonly content: readonly HTMLElement[]; // what scrolls on a small screen
+  readonly dock: HTMLElement; // playback and scrubber, always in sight
   draw(now: number): void; // once a frame
   skip(seconds: number): void;
   toggle(): void;
@@ -75,6 +76,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
   const track = scrubber(overview, recording.seconds, theme, seek);
   const events = eventList(seek);
   const facts = about(player, overview);
+  const dock = el("div", { class: "replay-dock" }, bar.element, track.element);
 
   let drawnAt = -Infinity;
   let stale = true; // the overview has grown since it was drawn
@@ -98,11 +100,11 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
     player,
     frame,
     overview,
-    elements: [
+    content: [
       el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
       el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels" }, el("div", { class: "tab-panel" }, el("div", {}, section(strings.replay.events, events.element), facts.element))))),
-      el("div", { class: "replay-dock" }, bar.element, track.element),
     ],
+    dock,
     draw(now) {
       player.frame(now);
       if (dead !== player.viewDead) {
@@ -146,6 +148,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
       ended.abort();
       decoder.close();
       frame.view()?.dispose();
+      dock.remove();
       delete document.documentElement.dataset["view"];
     },
   };
