@@ -158,6 +158,7 @@ export class Player extends Listeners<Topic> implements Shown {
       this.light = new VerdictLight();
       for (const { value } of this.lookup.poses(at - kHistorySeconds, at)) this.record(fromBinary(TickSchema, value));
       this.fed = at;
+      this.trouble = undefined;
       if (this.tick && this.history.length === 0) this.record(this.tick);
       this.tell("tick");
     }

@@ -3,11 +3,12 @@
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { chromium, type Browser, type BrowserContextOptions } from "playwright-core";
+import { chromium, type Browser, type BrowserContextOptions, type Page } from "playwright-core";
 import { afterAll, afterEach, expect, inject } from "vitest";
 import { CockpitPage } from "./cockpit_page";
 import { bringToKnownState, freeControl, type Values } from "./known_state";
 import { addressOf, runDevice, runStation, slowMotion, type Program } from "./program";
+import { RecordingPage } from "./recording_page";
 import { paintNothing, slowScreen } from "./slow_screen";
 import type {} from "./setup"; // what it provides
 
@@ -45,7 +46,7 @@ const kLastWords = 600; // characters
 export class Stage {
   private readonly programs: Program[] = [];
   private readonly folders: string[] = [];
-  private readonly pages: CockpitPage[] = [];
+  private readonly pages: (CockpitPage | RecordingPage)[] = [];
   private browser: Promise<Browser> | undefined;
   private shared = "";
 
@@ -64,9 +65,8 @@ export class Stage {
     return freeControl(station.url);
   }
 
-  /// A station of the story's own, which it may kill.
-  async ownStation(args: readonly string[] = [], port = 0): Promise<OwnStation> {
-    const folder = this.folder();
+  /// A station of the story's own, which it may kill. @param folder  where it runs; absent: a new one
+  async ownStation(args: readonly string[] = [], port = 0, folder = this.folder()): Promise<OwnStation> {
     const program = this.add(runStation(folder, this.clock(), slowMotion.alone, [...args, "--port", String(port)]));
     return { program, ...(await addressOf(program)), folder };
   }
@@ -85,16 +85,28 @@ export class Stage {
   }
 
   /// The page of a station in a browser profile of its own.
-  async open(url: string, { hertz, unseen: blind = false, ...options }: PageWishes = {}): Promise<CockpitPage> {
+  async open(url: string, wishes: PageWishes = {}): Promise<CockpitPage> {
+    const page = new CockpitPage(await this.blank(wishes));
+    this.pages.push(page);
+    await page.go(url);
+    return page;
+  }
+
+  /// The page of a station that shows recordings. @param query  of its address
+  async openRecordings(url: string, wishes: PageWishes = {}, query = ""): Promise<RecordingPage> {
+    const page = new RecordingPage(await this.blank(wishes));
+    this.pages.push(page);
+    await page.page.goto(`${url}recording.html${query}`);
+    return page;
+  }
+
+  private async blank({ hertz, unseen: blind = false, ...options }: PageWishes): Promise<Page> {
     this.browser ??= chromium.connect(inject("browser"));
     const browser = await this.browser;
     const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", reducedMotion: "reduce", ...options });
     if (hertz !== undefined) await context.addInitScript(slowScreen, hertz);
     if (blind) await context.addInitScript(paintNothing);
-    const page = new CockpitPage(await context.newPage());
-    this.pages.push(page);
-    await page.go(url);
-    return page;
+    return context.newPage();
   }
 
   /// What every page knew last, and the last words of every program.

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of recordings: what it shows is what was recorded, and it cannot be mistaken for the cockpit.
+import { readdirSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { beforeAll, describe, expect, it } from "vitest";
+import { strings } from "../../src/strings";
+import { origins } from "./support/geometry";
+import { readRecording, type RecordingPage } from "./support/recording_page";
+import { stage, unseen, type OwnStation } from "./support/stage";
+import { until } from "./support/until";
+
+const words = strings.replay;
+const kRecorded = 700_000; // bytes of a recording in which the hand touches
+const kMicrometre = 1e-6;
+const play = stage();
+let file = "";
+let recorded: Awaited<ReturnType<typeof readRecording>>;
+let station: OwnStation; // lists the recording
+let page: RecordingPage;
+
+/// Sets a marker, as another program does.
+async function mark({ url }: OwnStation, text: string): Promise<void> {
+  const { status } = await fetch(`${url}marker`, { method: "POST", body: text, headers: { Origin: new URL(url).origin } });
+  expect(status, "of the marker").toBe(200);
+}
+
+beforeAll(async () => {
+  const first = await play.ownStation(["first_touch"]);
+  const folder = join(first.folder, "out/recordings");
+  file = join(folder, await until("a recording", () => readdirSync(folder)[0]));
+  await until("steps before the marker", () => statSync(file).size > kRecorded / 2);
+  await mark(first, "stimulus 1");
+  [station] = await Promise.all([play.ownStation(["first_touch"], 0, first.folder), until("steps after it", () => statSync(file).size > kRecorded)]);
+  await first.program.end();
+  recorded = await readRecording(file);
+  page = await play.openRecordings(station.url, unseen);
+});
+
+/// The displayed moment is the recorded one: its step, and the hand as it is drawn.
+async function expectRecorded(what: string, near?: number): Promise<number> {
+  const { tick, position, view, samples } = await page.settled(what, (shown) => near === undefined || Math.abs(shown.position - near) < 0.02);
+  const last = recorded.poses.filter(({ time }) => time <= position + 1e-7).at(-1) ?? recorded.poses[0]!;
+  expect(tick!.tick, `${what}: at ${position} s`).toBe(last.tick.tick);
+  expect(tick!.gdpAngle).toEqual(last.tick.gdpAngle);
+  origins(last.tick.gdpPose).forEach((point, segment) => point.forEach((value, axis) => expect(Math.abs(view!.shown[segment]![axis]! - value)).toBeLessThan(kMicrometre)));
+  expect(samples).toBe(Math.max(1, recorded.poses.filter(({ time }) => time <= position + 1e-7 && time > position - 10).length));
+  return position;
+}
+
+async function expectNoCockpit(): Promise<void> {
+  expect(await page.page.getByRole("button", { name: strings.stop.button }).count()).toBe(0);
+  expect(await page.page.getByRole("region", { name: strings.stop.region }).count()).toBe(0);
+  expect(await page.page.getByText(words.notLive).isVisible()).toBe(true);
+  expect(await page.page.locator("link[rel=icon]").getAttribute("href")).toContain("recording");
+  expect(page.sent, "messages to the station").toEqual([]);
+}
+
+describe("a recording", () => {
+  it("is opened from the station's list, and looks like nothing but a recording", async () => {
+    expect(await page.page.title()).toBe(words.titleNone);
+    await expectNoCockpit();
+    const rows = page.page.getByRole("row");
+    await rows.nth(2).waitFor(); // the names of the columns, the recording that is being written, and ours
+    expect(await rows.filter({ has: page.page.getByRole("button") }).count(), "one is whole").toBe(1);
+    await rows.getByRole("button").click();
+    await expectRecorded("the first moment");
+    expect(await page.page.title()).toMatch(/^Recording of /);
+    expect(await page.page.getByRole("banner").innerText()).toMatch(/^Recording of \d/);
+    expect(await page.page.locator(".watermark").isVisible()).toBe(true);
+    await expectNoCockpit();
+  });
+
+  it("shows the recorded hand wherever the keys lead", async () => {
+    const { keyboard } = page.page;
+    const middle = Math.floor(recorded.seconds / 2);
+    for (let i = 0; i < middle; ++i) await keyboard.press("ArrowRight");
+    await expectRecorded("some seconds on", middle);
+    const from = await expectRecorded("the same");
+    await keyboard.press(".");
+    expect(await expectRecorded("a pose on", from + 1 / 60)).toBeGreaterThan(from);
+    await keyboard.press("Shift+ArrowLeft");
+    await keyboard.press(",");
+    expect(await expectRecorded("a pose back", from - 1 / 60)).toBeLessThan(from);
+    await keyboard.press("End");
+    await expectRecorded("the end", recorded.seconds);
+    await keyboard.press("Home");
+    await expectRecorded("the beginning", 0);
+  });
+
+  it("plays, and stands where it is paused", async () => {
+    const { keyboard } = page.page;
+    const position = () => page.page.evaluate(() => window.phalanxReplay.position());
+    await keyboard.press("Space");
+    await page.page.getByRole("button", { name: words.pause, exact: true }).waitFor();
+    await until("a second later", async () => (await position()) > 1, () => page.brief());
+    await keyboard.press("Space");
+    const paused = await expectRecorded("paused");
+    expect(paused).toBeGreaterThan(1);
+    expect(await position()).toBe(paused);
+    const slider = page.page.getByRole("slider", { name: words.position });
+    expect(Number(await slider.getAttribute("aria-valuenow"))).toBeCloseTo(paused, 1);
+    await slider.click({ position: { x: 2, y: 40 } });
+    expect(await expectRecorded("the scrubber's left end")).toBeLessThan(paused);
+  });
+
+  it("goes to a marker, by its entry and by keys", async () => {
+    const marker = recorded.events.find(({ code }) => code === "marker")!;
+    await page.page.getByRole("button", { name: marker.text }).click();
+    await expectRecorded("the marker", marker.time);
+    await page.page.keyboard.press("End");
+    await expectRecorded("the end", recorded.seconds);
+    const earlier = [...recorded.events].reverse().find(({ time }) => time < recorded.seconds - 0.05)!;
+    await page.page.keyboard.press("PageUp");
+    await expectRecorded("the event before", earlier.time);
+    const moment = await expectRecorded("the same");
+    await until("the moment in the address", () => Math.abs(Number(new URL(page.page.url()).searchParams.get("t")) - moment) < 0.01, () => page.page.url());
+    await page.page.reload();
+    await expectRecorded("the same after a reload", moment);
+  });
+
+  it("of this computer is opened as well, and of another file it is said why it is none", async () => {
+    await page.page.getByRole("button", { name: words.link }).click();
+    const choose = async (path: string) => {
+      const chooser = page.page.waitForEvent("filechooser");
+      await page.page.getByRole("button", { name: words.choose }).click();
+      await (await chooser).setFiles(path);
+    };
+    const other = join(station.folder, "cut.mcap");
+    writeFileSync(other, "no recording");
+    await choose(other);
+    await page.page.getByRole("alert").filter({ hasText: words.trouble.noMcap }).waitFor();
+    await choose(file);
+    const tick = () => page.page.evaluate(() => String(window.phalanxReplay.tick()?.tick));
+    await until("the file's first step", async () => (await tick()) === String(recorded.poses[0]!.tick.tick), tick);
+    expect(await page.page.title()).toMatch(/^Recording of /);
+    await expectNoCockpit();
+  });
+});

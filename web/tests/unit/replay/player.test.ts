@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+import { fromBinary } from "@bufbuild/protobuf";
+import { describe, expect, it } from "vitest";
+import { GeometrySchema } from "../../../src/gen/phalanx/geometry_pb";
+import { Player } from "../../../src/replay/player";
+import type { Shapes } from "../../../src/view3d/shapes";
+import { kHistorySeconds } from "../../../src/state/store";
+import { change, forceAt, forceOf, geometry, kRate, madeRecording, pose, poses, setup } from "./made_recording";
+
+type Message = Parameters<typeof madeRecording>[0][number];
+const kFrameMs = 20;
+const revisionOf = (shapes: Shapes | undefined) => Number(shapes?.jointName[0] ?? 0);
+
+async function playerOf(messages: readonly Message[]) {
+  const { recording, source, decoder } = await madeRecording(messages);
+  const made = { shapes: 0 };
+  const player = new Player(recording, decoder, (bytes) => {
+    ++made.shapes;
+    return Promise.resolve({ jointName: [String(fromBinary(GeometrySchema, new Uint8Array(bytes)).revision)] } as unknown as Shapes);
+  });
+  let now = 0;
+  const seen: bigint[] = [];
+  player.on(["tick"], () => player.tick && seen.push(player.tick.tick));
+  return {
+    player, source, made, seen,
+    at: async (time: number) => {
+      player.seek(time);
+      await player.settle();
+    },
+    /// Frames of the page for so long by its clock; between them, what was asked for arrives.
+    run: async (seconds: number) => {
+      for (const end = now + 1000 * seconds; now < end; ) {
+        player.frame((now += kFrameMs));
+        await new Promise((resolve) => setTimeout(resolve));
+      }
+    },
+    rows: () => Array.from(player.history.time(), (time) => time - 1000),
+  };
+}
+
+const simple = () => playerOf([geometry(0, 1), setup(0.001), ...poses(0.02, 30)]);
+const poseTime = (number: number) => 0.02 + (number - 1) / kRate;
+
+describe("a recording that is shown", () => {
+  it("shows the pose of the moment, and the curves up to it, wherever one goes", async () => {
+    const { player, at, rows } = await simple();
+    for (const moment of [15, 3, 29.9, 3.001, 22]) {
+      await at(moment);
+      const number = Math.floor((moment - 0.02) * kRate + 1e-6) + 1;
+      expect(player.tick!.tick, `at ${moment}`).toBe(BigInt(number));
+      expect(forceOf(player.tick)).toBeCloseTo(forceAt(poseTime(number)), 5);
+      expect(rows().at(-1)).toBeCloseTo(poseTime(number), 6);
+      const first = Math.max(0.02, moment - kHistorySeconds);
+      expect(rows()[0]! - first).toBeLessThan(1.01 / kRate);
+      expect(rows().length).toBe(Math.round((rows().at(-1)! - rows()[0]!) * kRate) + 1);
+      expect(player.lost).toBe(false);
+      expect(revisionOf(player.geometry)).toBe(1);
+    }
+  });
+
+  it("begins with its first pose, which comes a moment after its begin", async () => {
+    const { player, at } = await simple();
+    await at(0);
+    expect(player.tick!.tick).toBe(1n);
+    expect(player.viewDead).toBe(false);
+  });
+
+  it("plays every pose once and in order, at any speed", async () => {
+    for (const speed of [1, 4]) {
+      const { player, at, run, rows } = await simple();
+      await at(5);
+      player.playhead.setSpeed(speed);
+      player.playhead.play();
+      await run(2);
+      expect(player.playhead.position).toBeGreaterThan(5 + 1.5 * speed);
+      expect(player.playhead.position).toBeLessThan(5 + 2.1 * speed);
+      expect(rows().length).toBeGreaterThan(kRate * 5);
+      rows().slice(1).forEach((time, i) => expect(time - rows()[i]!).toBeCloseTo(1 / kRate, 6));
+      expect(player.playhead.position - rows().at(-1)!).toBeLessThan(1.01 / kRate);
+    }
+  });
+
+  it("of many moments that are asked for at once shows the last one", async () => {
+    const { player, seen } = await simple();
+    for (let i = 0; i < 40; ++i) player.seek(i / 2);
+    player.seek(12.5);
+    await player.settle();
+    expect(player.tick!.tick).toBe(BigInt(Math.floor((12.5 - 0.02) * kRate) + 1));
+    expect(seen.length).toBeLessThan(10);
+  });
+
+  it("goes by single poses, forward and back, and no farther than the ends", async () => {
+    const { player, at } = await simple();
+    await at(10);
+    const number = player.tick!.tick;
+    await player.step(1);
+    expect(player.tick!.tick).toBe(number + 1n);
+    void player.step(-1);
+    void player.step(-1);
+    await player.step(-1);
+    expect(player.tick!.tick).toBe(number - 2n);
+    await at(0);
+    await player.step(-1);
+    expect(player.tick!.tick).toBe(1n);
+    await at(30);
+    const last = player.tick!.tick;
+    await player.step(1);
+    expect(player.tick!.tick).toBe(last);
+  });
+
+  it("has the object and the station of the moment, also when it plays across their change, and makes each shape once", async () => {
+    const sliding = { scene: "slide", value: [{ key: "contact.mode", value: '"sliding"' }] };
+    const { player, at, run, made } = await playerOf([
+      geometry(0, 1), setup(0.001, { deviceName: "one", rendersTorque: true, channel: [{ kind: 0, index: 3 }, { kind: 4, index: 1 }] }), ...poses(0.02, 3),
+      geometry(3, 2), change(3.001, sliding), ...poses(3.01, 6, 200),
+      geometry(7, 3), setup(7.001, { deviceName: "two", start: { scene: "x" } }), ...poses(7.02, 9),
+    ]);
+    await at(2);
+    expect([revisionOf(player.geometry), player.station!.device, player.slides]).toEqual([1, "one", false]);
+    expect(player.sensedJoint).toEqual([3, 4, 6, 7]);
+    player.playhead.play();
+    await run(2);
+    expect([revisionOf(player.geometry), player.station!.device, player.slides]).toEqual([2, "one", true]);
+    await run(4.5);
+    expect([revisionOf(player.geometry), player.station!.device, player.slides, player.rendersTorque]).toEqual([3, "two", false, false]);
+    await at(1);
+    expect([revisionOf(player.geometry), player.station!.device]).toEqual([1, "one"]);
+    expect(made.shapes).toBe(3);
+  });
+
+  it("shows no hand as that of a moment without steps", async () => {
+    const { player, at, run } = await playerOf([geometry(0, 1), setup(0.001), ...poses(0.02, 3), ...poses(8, 10, 400)]);
+    await at(2);
+    expect([player.hole, player.viewDead]).toEqual([false, false]);
+    await at(5);
+    expect([player.hole, player.viewDead]).toEqual([true, true]);
+    await at(9);
+    expect([player.hole, player.viewDead]).toEqual([false, false]);
+    await at(2);
+    player.playhead.play();
+    await run(3);
+    expect([player.hole, player.viewDead]).toEqual([true, true]);
+    await run(4);
+    expect([player.hole, player.viewDead]).toEqual([false, false]);
+  });
+
+  it("shows a step that was not measured as such", async () => {
+    const kSampleStale = 1 << 12;
+    const { player, at } = await playerOf([geometry(0, 1), setup(0.001), ...poses(0.02, 1), pose(1, { tick: 100n, status: kSampleStale })]);
+    await at(0.9);
+    expect(player.oldCurves).toBe("");
+    await at(1);
+    expect([player.oldCurves, player.lost, player.hole]).toEqual(["unmeasured", true, false]);
+  });
+
+  it("keeps what is there when its source is gone, says so, and goes on when it is back", async () => {
+    const { player, source, at, run } = await simple();
+    await at(5);
+    source.gone = true;
+    player.playhead.play();
+    await run(1);
+    expect(player.trouble).toBeDefined();
+    expect(player.playhead.playing).toBe(false);
+    expect(player.tick!.tick).toBeGreaterThan(290n);
+    expect(player.history.length).toBeGreaterThan(290);
+    await at(4);
+    expect(player.tick!.tick).toBe(BigInt(Math.floor((4 - 0.02) * kRate) + 1)); // it was read before
+    await at(25);
+    expect(player.trouble).toBeDefined();
+    source.gone = false;
+    player.retry();
+    await player.settle();
+    expect(player.trouble).toBe(undefined);
+    expect(player.tick!.tick).toBe(BigInt(Math.floor((25 - 0.02) * kRate) + 1));
+  });
+
+  it("without shapes shows all but the hand", async () => {
+    const { player, at } = await playerOf([setup(0.001), ...poses(0.02, 3)]);
+    await at(2);
+    expect(player.geometry).toBe(undefined);
+    expect(player.tick).toBeDefined();
+    expect(player.history.length).toBeGreaterThan(100);
+  });
+});
