@@ -160,6 +160,7 @@ export class Player extends Listeners<Topic> implements Shown {
       this.fed = at;
       this.trouble = undefined;
       if (this.tick && this.history.length === 0) this.record(this.tick);
+      this.recordHole(at);
       this.tell("tick");
     }
   }
@@ -183,6 +184,7 @@ export class Player extends Listeners<Topic> implements Shown {
     const last = poses.at(-1);
     if (last) this.shownAt = last.time;
     this.tick = ticks.at(-1) ?? this.tick;
+    this.recordHole(to);
     this.tell("tick");
   }
 
@@ -190,6 +192,13 @@ export class Player extends Listeners<Topic> implements Shown {
     fillRow(tick, this.row);
     this.history.push(tick.time, this.row);
     this.light.feed(tick, tick.time);
+  }
+
+  /// The curves end where the steps do, not at the displayed moment.
+  private recordHole(at: number): void {
+    if (!this.tick || !(at - this.shownAt > kOldPose)) return;
+    this.row.fill(NaN);
+    this.history.push(this.tick.time + at - this.shownAt, this.row);
   }
 
   private show(pose: Timed<Uint8Array> | undefined): void {

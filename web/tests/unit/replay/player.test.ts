@@ -129,19 +129,24 @@ describe("a recording that is shown", () => {
   });
 
   it("shows no hand as that of a moment without steps", async () => {
-    const { player, at, run } = await playerOf([geometry(0, 1), setup(0.001), ...poses(0.02, 3), ...poses(8, 10, 400)]);
+    const { player, at, run, rows } = await playerOf([geometry(0, 1), setup(0.001), ...poses(0.02, 3), ...poses(8, 10, 400)]);
     await at(2);
     expect([player.hole, player.viewDead]).toEqual([false, false]);
     await at(5);
     expect([player.hole, player.viewDead]).toEqual([true, true]);
+    expect(rows().at(-1)).toBeCloseTo(5, 6); // the curves end 2 s before
+    expect(player.history.channel(0).at(-1)).toBeNaN();
+    expect(rows().at(-2)).toBeLessThan(3);
     await at(9);
     expect([player.hole, player.viewDead]).toEqual([false, false]);
     await at(2);
     player.playhead.play();
     await run(3);
     expect([player.hole, player.viewDead]).toEqual([true, true]);
+    expect(player.history.channel(0).at(-1)).toBeNaN();
     await run(4);
     expect([player.hole, player.viewDead]).toEqual([false, false]);
+    expect(rows()[0]).toBeLessThan(3); // what was before is kept
   });
 
   it("shows a step that was not measured as such", async () => {
