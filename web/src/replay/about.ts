@@ -21,6 +21,7 @@ export function about(player: Player, overview: Overview): About {
     element: section(words.about, damaged, list),
     update() {
       const station = player.station;
+      const rate = overview.rateAt(player.playhead.position);
       const missing = overview.holes.reduce((sum, { gap }) => sum + gap.steps, 0);
       const facts = [
         [words.facts.file, recording.source.name],
@@ -28,7 +29,7 @@ export function about(player: Player, overview: Overview): About {
         [words.facts.length, durationText(recording.seconds)],
         [words.facts.scene, station?.scene ?? ""],
         [words.facts.device, station?.device ?? ""],
-        [words.facts.rate, station && station.rateHz > 0 ? words.rate(String(station.rateHz)) : ""],
+        [words.facts.rate, rate > 0 ? words.rate(String(rate)) : ""],
         [words.facts.gaps, missing.toLocaleString(strings.locale)],
         [words.facts.size, sizeText(recording.bytes)],
         [words.facts.version, recording.version],

@@ -6,7 +6,7 @@ import { decompress } from "fzstd";
 import { EventSchema, GapSchema } from "../gen/phalanx/recording_pb";
 import { TickSchema } from "../gen/phalanx/tick_pb";
 import { digitForces, kDigits } from "../state/channels";
-import { changeFacts, stationFacts, type ChangeFacts, type StationFacts } from "./station_facts";
+import { changeFacts, rateOf, stationFacts, type ChangeFacts, type StationFacts } from "./station_facts";
 
 export type Topic = "/pose" | "/geometry" | "/event" | "/gap" | "/setup" | "/change";
 
@@ -50,6 +50,7 @@ export interface ChunkContent {
 
 /// The content without poses and meshes, and the force on each digit.
 export interface ChunkSurvey extends Pick<ChunkContent, "events" | "gaps" | "stations"> {
+  readonly rates: readonly Timed<number>[]; // steps a second, from these times on
   readonly forces: Float64Array; // kSurveyRow numbers for each pose: its time, then the force on each digit [N]
 }
 export const kSurveyRow = 1 + kDigits;
@@ -114,8 +115,9 @@ export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
 
 /// @throws as decodeChunk
 export function surveyChunk(bytes: Uint8Array, layout: Layout): ChunkSurvey {
-  const { poses, events, gaps, stations } = decodeChunk(bytes, layout);
+  const { poses, events, gaps, stations, geometries } = decodeChunk(bytes, layout);
   const forces = new Float64Array(kSurveyRow * poses.length);
   poses.forEach(({ time, value }, i) => forces.set([time, ...digitForces(fromBinary(TickSchema, value))], kSurveyRow * i));
-  return { forces, events, gaps, stations };
+  const rates = geometries.map(({ time, value }) => ({ time, value: rateOf(value) }));
+  return { forces, events, gaps, stations, rates };
 }

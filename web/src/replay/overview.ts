@@ -10,7 +10,7 @@ import type { StationFacts } from "./station_facts";
 const kBins = 1200; // at most
 const kBinsPerSecond = 30; // two poses in each
 const kCoarse = 240; // chunks of the first pass over the whole length
-const kTopics = ["/event", "/gap", "/setup"];
+const kTopics = ["/event", "/gap", "/setup", "/geometry"];
 
 /// The order in which chunks are surveyed: those with events, then every n-th, then the others.
 export function surveyOrder(recording: Pick<Recording, "chunks">): number[][] {
@@ -36,6 +36,7 @@ export class Overview {
   largest = 0; // of them [N]
   events: Timed<EventFacts>[] = []; // in the order of time
   stations: Timed<StationFacts>[] = [];
+  private rates: Timed<number>[] = [];
   private readonly gaps: Timed<GapFacts>[] = [];
   private surveyed = 0; // chunks
   damaged = 0;
@@ -61,10 +62,15 @@ export class Overview {
     return forces.some(Number.isNaN) ? undefined : forces;
   }
 
+  /// Steps a second; 0: not known.
+  rateAt(time: number): number {
+    return lastAt(this.rates, time)?.value ?? 0;
+  }
+
   /// A gap is written before the first step behind it.
   get holes(): Hole[] {
     return this.gaps.map(({ time, value }) => {
-      const rate = lastAt(this.stations, time)?.value.rateHz ?? 0;
+      const rate = this.rateAt(time);
       return { begin: Math.max(0, time - (rate > 0 ? value.steps / rate : 0)), end: time, gap: value };
     });
   }
@@ -83,6 +89,7 @@ export class Overview {
     const byTime = (a: Timed<unknown>, b: Timed<unknown>) => a.time - b.time;
     if (survey.events.length > 0) this.events = [...this.events, ...survey.events].sort(byTime);
     if (survey.stations.length > 0) this.stations = [...this.stations, ...survey.stations].sort(byTime);
+    if (survey.rates.length > 0) this.rates = [...this.rates, ...survey.rates].sort(byTime);
     this.gaps.push(...survey.gaps);
     ++this.surveyed;
   }
@@ -98,7 +105,7 @@ export class Overview {
           const survey = await decoder.survey(bytes).catch(() => undefined);
           if (signal.aborted) return;
           if (!survey) ++this.damaged;
-          this.add(survey ?? { forces: new Float64Array(), events: [], gaps: [], stations: [] });
+          this.add(survey ?? { forces: new Float64Array(), events: [], gaps: [], stations: [], rates: [] });
         }
         changed();
         await new Promise((resolve) => setTimeout(resolve));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a replay needs of Setup and Change. Their meshes, which take most of the bytes, are skipped.
+// What a replay needs of Setup, Change and Geometry at once. Their meshes, which take most of the bytes, are skipped.
 import { BinaryReader, WireType } from "@bufbuild/protobuf/wire";
 import { fromBinary } from "@bufbuild/protobuf";
 import { SettingSchema, type Setting } from "../gen/phalanx/cockpit_pb";
+import { GeometrySchema } from "../gen/phalanx/geometry_pb";
 import { ChangeSchema, DeviceChannelSchema, SetupSchema, type DeviceChannel } from "../gen/phalanx/recording_pb";
 import { kJointsPerDigit } from "../state/channels";
 import { find } from "../state/keys";
@@ -15,7 +16,6 @@ export interface ChangeFacts {
 
 export interface StationFacts extends ChangeFacts {
   readonly device: string;
-  readonly rateHz: number;
   readonly rendersTorque: boolean;
   readonly sensedJoint: readonly number[];
 }
@@ -35,6 +35,7 @@ function eachField(bytes: Uint8Array, see: (field: number, reader: BinaryReader)
 
 const change = ChangeSchema.field;
 const setup = SetupSchema.field;
+const geometry = GeometrySchema.field;
 
 export function changeFacts(bytes: Uint8Array): ChangeFacts {
   let scene = "";
@@ -46,6 +47,17 @@ export function changeFacts(bytes: Uint8Array): ChangeFacts {
     return true;
   });
   return { scene, slides: unquote(find(values, "contact.mode") ?? "") === "sliding" };
+}
+
+/// Steps a second of the station whose Geometry this is.
+export function rateOf(bytes: Uint8Array): number {
+  let rate = 0;
+  eachField(bytes, (field, reader) => {
+    if (field !== geometry.rateHz.number) return false;
+    rate = reader.float();
+    return true;
+  });
+  return rate;
 }
 
 /// Joints that the channels set, without those that follow other joints: as in src/station/session_state.cpp.
@@ -60,12 +72,11 @@ function sensedJoints(channels: readonly DeviceChannel[]): number[] {
 }
 
 export function stationFacts(bytes: Uint8Array): StationFacts {
-  let facts: StationFacts = { scene: "", slides: false, device: "", rateHz: 0, rendersTorque: false, sensedJoint: [] };
+  let facts: StationFacts = { scene: "", slides: false, device: "", rendersTorque: false, sensedJoint: [] };
   const channels: DeviceChannel[] = [];
   eachField(bytes, (field, reader) => {
     if (field === setup.start.number) facts = { ...facts, ...changeFacts(reader.bytes()) };
     else if (field === setup.deviceName.number) facts = { ...facts, device: reader.string() };
-    else if (field === setup.deviceRateHz.number) facts = { ...facts, rateHz: reader.double() };
     else if (field === setup.rendersTorque.number) facts = { ...facts, rendersTorque: reader.bool() };
     else if (field === setup.channel.number) channels.push(fromBinary(DeviceChannelSchema, reader.bytes()));
     else return false;

@@ -16,7 +16,7 @@ it("answers of the thread go to those who asked, in whatever order they come", a
   const { worker, tasks } = fakeWorker();
   const decoder = threadDecoder(layout, () => worker);
   const [first, second] = [decoder.survey(new Uint8Array([1])), decoder.survey(new Uint8Array([2]))];
-  const survey = (value: number) => ({ forces: Float64Array.of(value), events: [], gaps: [], stations: [] });
+  const survey = (value: number) => ({ forces: Float64Array.of(value), events: [], gaps: [], stations: [], rates: [] });
   worker.onmessage!({ data: { id: tasks[1]!.id, result: survey(2) } });
   worker.onmessage!({ data: { id: tasks[0]!.id, error: "damaged" } });
   expect((await second).forces[0]).toBe(2);
@@ -40,7 +40,7 @@ it("a chunk holds what was written, with times since the begin; its survey has t
   const contents = parts.map((part) => decodeChunk(part, recording.layout));
   expect(contents.flatMap((content) => content.poses.map(({ time }) => time)).length).toBe(60);
   expect(contents.flatMap((content) => content.stations)).toEqual([
-    { time: 0.001, value: { scene: "s", slides: false, device: "beihang", rateHz: 200, rendersTorque: false, sensedJoint: [] } },
+    { time: 0.001, value: { scene: "s", slides: false, device: "beihang", rendersTorque: false, sensedJoint: [] } },
   ]);
   expect(contents.flatMap((content) => content.events)).toEqual([{ time: 0.9, value: { code: "marker", who: "127.0.0.1", text: "one" } }]);
   expect(contents.flatMap((content) => content.gaps)).toEqual([{ time: 0.95, value: { steps: 5, why: "late" } }]);

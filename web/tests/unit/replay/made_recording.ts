@@ -24,7 +24,9 @@ export const pose = (time: number, tick: MessageInitShape<typeof TickSchema> = {
 });
 export const setup = (time: number, value: MessageInitShape<typeof SetupSchema> = {}): Message => ({ topic: "/setup", time, data: toBinary(SetupSchema, create(SetupSchema, value)) });
 export const change = (time: number, value: MessageInitShape<typeof ChangeSchema>): Message => ({ topic: "/change", time, data: toBinary(ChangeSchema, create(ChangeSchema, value)) });
-export const geometry = (time: number, revision: number): Message => ({ topic: "/geometry", time, data: toBinary(GeometrySchema, create(GeometrySchema, { revision })) });
+export const geometry = (time: number, revision: number, rateHz = kRate): Message => ({
+  topic: "/geometry", time, data: toBinary(GeometrySchema, create(GeometrySchema, { revision, rateHz, object: { position: [1, 2, 3] } })),
+});
 export const event = (time: number, code: string, text: string, who = ""): Message => ({ topic: "/event", time, data: toBinary(EventSchema, create(EventSchema, { code, text, who })) });
 export const gap = (time: number, firstTick: bigint, lastTick: bigint, why: string): Message => ({
   topic: "/gap", time, data: toBinary(GapSchema, create(GapSchema, { firstTick, lastTick, why })),

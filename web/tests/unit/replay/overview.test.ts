@@ -43,11 +43,12 @@ describe("the overview", () => {
 
   it("lists events, stations and missing steps with the time that they cover", async () => {
     const { recording, decoder } = await madeRecording([
-      geometry(0, 1), setup(0, { deviceName: "beihang", deviceRateHz: 200, start: { scene: "grasp_teapot" } }), ...poses(0.01, 4),
+      geometry(0, 1, 200), setup(0, { deviceName: "beihang", deviceRateHz: 1000, start: { scene: "grasp_teapot" } }), ...poses(0.01, 4),
       gap(6, 801n, 1200n, "the ring was full"), ...poses(6.01, 8), event(7, "marker", "stimulus 1", "127.0.0.1"), event(7.5, "fault", "no_sample"),
     ]);
     const overview = new Overview(recording);
     await overview.fill(decoder, () => {}, never);
+    expect(overview.rateAt(5)).toBe(200); // of the loop, not of the device
     expect(overview.holes).toEqual([{ begin: 4, end: 6, gap: { steps: 400, why: "the ring was full" } }]);
     const list = happenings(overview);
     expect(list.map(({ code, kind }) => [code, kind])).toEqual([["station", "other"], ["gap", "gap"], ["marker", "marker"], ["fault", "bad"]]);
