@@ -63,7 +63,11 @@ const band = el(
   el("span", { class: "band-note" }, words.notLive),
   el("div", { class: "header-tools" }, others, light, large, button("?", help, { "aria-label": strings.look.help, title: strings.look.help })),
 );
-const start = startPanel({ list: () => fetchList(), openListed: (name) => void open(stationSource(name), 0, name), openFile: (file) => void open(fileSource(file), 0) });
+const start = startPanel({
+  list: () => fetchList(),
+  openListed: (name) => void open(stationSource(name), 0, name),
+  openFile: (file) => void open(fileSource(file), 0),
+});
 document.getElementById("opening")?.remove(); // what was painted until now
 document.getElementById("page")?.append(band, content, dialogs);
 

@@ -76,6 +76,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
   const track = scrubber(overview, recording.seconds, theme, seek);
   const events = eventList(seek);
   const facts = about(player, overview);
+  const panel = el("div", { class: "tab-panel" }, el("div", {}, section(strings.replay.events, events.element), facts.element));
   const dock = el("div", { class: "replay-dock" }, bar.element, track.element);
 
   let drawnAt = -Infinity;
@@ -102,7 +103,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
     overview,
     content: [
       el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
-      el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels" }, el("div", { class: "tab-panel" }, el("div", {}, section(strings.replay.events, events.element), facts.element))))),
+      el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels" }, panel))),
     ],
     dock,
     draw(now) {

@@ -26,13 +26,17 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
   const tip = el("div", { class: "strip-tip", hidden: true, "aria-hidden": "true" });
   const track = el(
     "div",
-    { class: "track", role: "slider", tabindex: 0, "aria-label": words.position, "aria-valuemin": 0, "aria-valuemax": seconds.toFixed(1), "aria-orientation": "horizontal" },
+    {
+      class: "track", role: "slider", tabindex: 0, "aria-label": words.position,
+      "aria-valuemin": 0, "aria-valuemax": seconds.toFixed(1), "aria-orientation": "horizontal",
+    },
     canvas,
     head,
     tip,
   );
   const scale = el("span", { class: "lane-scale" });
-  const names = el("div", { class: "lane-names", "aria-hidden": "true", title: words.laneHint }, scale, ...strings.digits.map((name, digit) => el("span", { "data-digit": digit }, name)));
+  const digits = strings.digits.map((name, digit) => el("span", { "data-digit": digit }, name));
+  const names = el("div", { class: "lane-names", "aria-hidden": "true", title: words.laneHint }, scale, ...digits);
   const progress = el("p", { class: "hint strip-progress", role: "status" });
 
   const timeAt = (x: number) => {
@@ -43,6 +47,8 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
     const reach = (kNear / Math.max(1, track.clientWidth)) * seconds;
     return happenings.filter((one) => Math.abs(one.time - time) <= reach).sort((a, b) => Math.abs(a.time - time) - Math.abs(b.time - time))[0];
   };
+  const forceLine = (force: number, digit: number) =>
+    el("div", {}, el("span", { class: "swatch", "data-digit": digit }), words.forceOf(strings.digits[digit] ?? "", force.toFixed(1)));
   function hover(event: PointerEvent): void {
     const time = timeAt(event.clientX);
     const forces = overview.forcesAt(time);
@@ -52,7 +58,7 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
       el("b", {}, durationText(time)),
       ...(on ? [el("div", {}, `${on.label}: ${on.text}`)] : []),
       ...(forces
-        ? forces.map((force, digit) => el("div", {}, el("span", { class: "swatch", "data-digit": digit }), words.forceOf(strings.digits[digit] ?? "", force.toFixed(1))))
+        ? forces.map(forceLine)
         : [el("div", {}, words.unknownForce)]),
     );
     setShown(tip, true);

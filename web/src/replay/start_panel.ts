@@ -24,10 +24,13 @@ function row(one: Listed, open: (name: string) => void): HTMLElement {
   const when = momentText(one.begin);
   const whole = isWhole(one);
   const cell = (name: keyof typeof words.columns, text: string) => el("td", { "data-column": words.columns[name], class: `column-${name}` }, text);
+  const name = whole
+    ? button(when, () => open(one.name), { class: "primary", "aria-label": words.openOne(when, one.scene) })
+    : el("span", { class: "not-whole" }, when, el("small", {}, one.state));
   return el(
     "tr",
     {},
-    el("td", {}, whole ? button(when, () => open(one.name), { class: "primary", "aria-label": words.openOne(when, one.scene) }) : el("span", { class: "not-whole" }, when, el("small", {}, one.state))),
+    el("td", {}, name),
     cell("length", whole ? durationText(one.seconds, 0) : strings.dash),
     cell("scene", one.scene || strings.dash),
     cell("device", one.device || strings.dash),
@@ -69,8 +72,21 @@ export function startPanel(actions: StartActions): StartPanel {
       "main",
       { class: "start" },
       trouble,
-      el("section", { class: "start-box", "aria-labelledby": titles[0] }, el("header", {}, el("h2", { id: titles[0] }, words.station), again), said, el("div", { class: "recordings-scroll" }, table)),
-      el("section", { class: "start-box", "aria-labelledby": titles[1] }, el("h2", { id: titles[1] }, words.file), el("p", { class: "hint" }, words.fileHint), file, el("div", { class: "buttons" }, button(words.choose, () => file.click()))),
+      el(
+        "section",
+        { class: "start-box", "aria-labelledby": titles[0] },
+        el("header", {}, el("h2", { id: titles[0] }, words.station), again),
+        said,
+        el("div", { class: "recordings-scroll" }, table),
+      ),
+      el(
+        "section",
+        { class: "start-box", "aria-labelledby": titles[1] },
+        el("h2", { id: titles[1] }, words.file),
+        el("p", { class: "hint" }, words.fileHint),
+        file,
+        el("div", { class: "buttons" }, button(words.choose, () => file.click())),
+      ),
     ),
     look,
     say(text) {
