@@ -106,7 +106,8 @@ WebResponse RecordingFiles::response_to(const WebRequest& request) const {
 
 WebResponse RecordingFiles::list() const {
   nlohmann::json files = nlohmann::json::array();
-  for (const RecordingSummary& recording : list_recordings(folder_))
+  for (const RecordingSummary& recording : list_recordings(folder_)) {
+    const bool opens = recording.has_end && recording.trouble.empty() && !recording.written;
     files.push_back({{"name", as_utf8(recording.file.filename().string())},
                      {"bytes", recording.bytes},
                      {"begin", recording.begin},
@@ -116,7 +117,9 @@ WebResponse RecordingFiles::list() const {
                      {"gaps", recording.gaps},
                      {"scene", as_utf8(recording.scene)},
                      {"device", as_utf8(recording.device)},
+                     {"opens", opens},
                      {"state", as_utf8(recording_state(recording))}});
+  }
   const nlohmann::json all = {{"folder", as_utf8(folder_.string())}, {"recordings", std::move(files)}};
   WebResponse response;
   response.type = "application/json";

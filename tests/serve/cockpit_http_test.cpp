@@ -77,6 +77,8 @@ TEST_F(CockpitHttp, RecordingsAreListedAndReadInPartsByWhoMayOperate) {
   const auto& whole = all[0]["name"] == "cut.mcap" ? all[1] : all[0];
   EXPECT_EQ(whole["name"], "2026-11-27T14-03-11Z.mcap");
   EXPECT_EQ(whole["state"], "whole");
+  EXPECT_EQ(whole["opens"], true);
+  EXPECT_EQ(all[all[0]["name"] == "cut.mcap" ? 0 : 1]["opens"], false);
   EXPECT_EQ(whole["begin"], 5.0);
   EXPECT_EQ(whole["seconds"], 2.5);
   EXPECT_EQ(whole["events"], 2);

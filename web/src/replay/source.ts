@@ -37,6 +37,7 @@ export function fileSource(file: File): Source {
 }
 
 const kReadMs = 20_000;
+const kLargestPart = 1n << 24n; // [bytes], as in src/serve/recording_files.h
 const kForbidden = 403;
 const kNotFound = 404;
 const kPartial = 206;
@@ -74,9 +75,19 @@ export function stationSource(name: string, get: Fetch = (address, options) => f
     if (BigInt(bytes.length) !== length) throw new SourceError("other", `${address}: ${bytes.length} of ${length} bytes`);
     return { bytes, size: BigInt(size) };
   }
+  /// Reads in parts that the station gives in one answer.
+  async function parts(offset: bigint, length: bigint): Promise<Uint8Array> {
+    if (length <= kLargestPart) return length === 0n ? new Uint8Array() : (await part(offset, length)).bytes;
+    const all = new Uint8Array(Number(length));
+    for (let at = 0n; at < length; at += kLargestPart) {
+      const rest = length - at;
+      all.set((await part(offset + at, rest < kLargestPart ? rest : kLargestPart)).bytes, Number(at));
+    }
+    return all;
+  }
   return {
     name,
     size: async () => (await part(0n, 1n)).size,
-    read: async (offset, length) => (length === 0n ? new Uint8Array() : (await part(offset, length)).bytes),
+    read: parts,
   };
 }

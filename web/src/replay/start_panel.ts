@@ -2,7 +2,7 @@
 // The choice of a recording: those of the station, or a file of this computer.
 import { button, el, newId, setShown, setText } from "../panels/dom";
 import { strings } from "../strings";
-import { isWhole, type Listed, type StationList } from "./station_list";
+import type { Listed, StationList } from "./station_list";
 import { durationText, momentText, sizeText } from "./times";
 import { listTroubleText } from "./trouble";
 
@@ -22,20 +22,19 @@ export interface StartActions {
 
 function row(one: Listed, open: (name: string) => void): HTMLElement {
   const when = momentText(one.begin);
-  const whole = isWhole(one);
   const cell = (name: keyof typeof words.columns, text: string) => el("td", { "data-column": words.columns[name], class: `column-${name}` }, text);
-  const name = whole
+  const name = one.opens
     ? button(when, () => open(one.name), { class: "primary", "aria-label": words.openOne(when, one.scene) })
     : el("span", { class: "not-whole" }, when, el("small", {}, one.state));
   return el(
     "tr",
     {},
     el("td", {}, name),
-    cell("length", whole ? durationText(one.seconds, 0) : strings.dash),
+    cell("length", one.opens ? durationText(one.seconds, 0) : strings.dash),
     cell("scene", one.scene || strings.dash),
     cell("device", one.device || strings.dash),
-    cell("events", whole ? String(one.events) : strings.dash),
-    cell("gaps", whole ? String(one.gaps) : strings.dash),
+    cell("events", one.opens ? String(one.events) : strings.dash),
+    cell("gaps", one.opens ? String(one.gaps) : strings.dash),
     cell("size", sizeText(one.bytes)),
   );
 }

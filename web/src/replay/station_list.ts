@@ -11,15 +11,14 @@ export interface Listed {
   readonly gaps: number;
   readonly scene: string;
   readonly device: string;
-  readonly state: string; // "whole", or why it cannot be opened
+  readonly opens: boolean;
+  readonly state: string; // in words, also why it cannot be opened
 }
 
 export interface StationList {
   readonly folder: string;
   readonly recordings: readonly Listed[]; // newest first
 }
-
-export const isWhole = (one: Listed) => one.state === "whole";
 
 const asText = (value: unknown) => (typeof value === "string" ? value : "");
 const asNumber = (value: unknown) => (typeof value === "number" && Number.isFinite(value) ? value : 0);
@@ -39,6 +38,7 @@ export function readList(parsed: unknown): StationList {
       gaps: asNumber(one["gaps"]),
       scene: asText(one["scene"]),
       device: asText(one["device"]),
+      opens: one["opens"] === true,
       state: asText(one["state"]),
     };
   });

@@ -12,7 +12,7 @@ const words = strings.replay;
 beforeEach(() => document.body.replaceChildren());
 
 describe("the choice of a recording", () => {
-  const listed = (name: string, state = "whole"): Listed => ({ name, bytes: 2e6, begin: 1000, seconds: 75, events: 2, gaps: 1, scene: "first_touch", device: "beihang", state });
+  const listed = (name: string, state = "whole"): Listed => ({ name, bytes: 2e6, begin: 1000, seconds: 75, events: 2, gaps: 1, scene: "first_touch", device: "beihang", opens: state === "whole", state });
 
   it("opens those that are whole, and names the reason for the others", async () => {
     const opened: string[] = [];

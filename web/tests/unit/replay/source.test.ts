@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { fileSource, SourceError, stationSource, type Fetch } from "../../../src/replay/source";
-import { fetchList, isWhole } from "../../../src/replay/station_list";
+import { fetchList } from "../../../src/replay/station_list";
 import { listTroubleText, troubleText } from "../../../src/replay/trouble";
 import { strings } from "../../../src/strings";
 
@@ -39,12 +39,27 @@ describe("the bytes of a recording", () => {
   });
 });
 
+it("a large part of a file is read in several answers", async () => {
+  const whole = Uint8Array.from({ length: 40_000_000 }, (_, i) => i % 251);
+  const asked: string[] = [];
+  const get: Fetch = (_address, options) => {
+    const range = (options.headers as Record<string, string>)["Range"]!;
+    asked.push(range);
+    const [first, last] = /(\d+)-(\d+)/.exec(range)!.slice(1).map(Number) as [number, number];
+    const headers = { "Content-Range": `bytes ${first}-${last}/${whole.length}` };
+    return Promise.resolve(new Response(whole.slice(first, last + 1), { status: 206, headers }));
+  };
+  const read = await stationSource("a.mcap", get).read(5n, 39_999_990n);
+  expect(asked).toEqual(["bytes=5-16777220", "bytes=16777221-33554436", "bytes=33554437-39999994"]);
+  expect(Buffer.compare(read, whole.subarray(5, 39_999_995))).toBe(0);
+});
+
 describe("the station's list", () => {
   it("has the newest first, and leaves out what it cannot name", async () => {
     const answer = {
       folder: "out/recordings",
       recordings: [
-        { name: "old.mcap", bytes: 5, begin: 100, seconds: 20, events: 2, gaps: 0, scene: "s", device: "d", state: "whole" },
+        { name: "old.mcap", bytes: 5, begin: 100, seconds: 20, events: 2, gaps: 0, scene: "s", device: "d", opens: true, state: "2 gaps" },
         { bytes: 7 },
         null,
         { name: "new.mcap", begin: 200, state: "being written", seconds: "x" },
@@ -53,7 +68,7 @@ describe("the station's list", () => {
     const list = await fetchList(answers(200, JSON.stringify(answer)));
     expect(list.folder).toBe("out/recordings");
     expect(list.recordings.map(({ name }) => name)).toEqual(["new.mcap", "old.mcap"]);
-    expect(list.recordings.map(isWhole)).toEqual([false, true]);
+    expect(list.recordings.map(({ opens }) => opens)).toEqual([false, true]);
     expect(list.recordings[0]!.seconds).toBe(0);
     expect(list.recordings[1]).toMatchObject({ seconds: 20, scene: "s", device: "d" });
   });
