@@ -11,6 +11,9 @@
 
 namespace phalanx {
 
+/// @returns a check that a value is a number from 0 to `most`; CLI::Range takes "nan", too
+[[nodiscard]] CLI::Validator number_up_to(double most);
+
 /// Adds the options `<prefix>days` and `<prefix>gb` to a command.
 void add_retention(CLI::App& command, std::optional<double>& days, std::optional<double>& gigabytes,
                    const std::string& prefix);

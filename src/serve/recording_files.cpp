@@ -55,7 +55,7 @@ std::optional<ByteRange> read_range(std::string_view field) {
 
 void RecordingFiles::request(const WebRequest& request, Respond respond) {
   if (!request.client.may_operate)
-    return respond(words(403, "only who may operate may see recordings; use the operator's address"));
+    return respond(words(403, "recordings are for those who may operate: use the operator's address"));
   if (request.method == "POST")
     return respond(words(405, "this address does not allow this method: recordings can only be read"));
   if (folder_.empty())
@@ -93,7 +93,7 @@ void RecordingFiles::work() {
   working_ = false;
 }
 
-WebResponse RecordingFiles::response_to(const WebRequest& request) const {
+WebResponse RecordingFiles::response_to(const WebRequest& request) {
   try {
     if (!request.path.starts_with(kFiles)) return list();
     return part_of(request.path.substr(kFiles.size()), request.range);
@@ -104,9 +104,10 @@ WebResponse RecordingFiles::response_to(const WebRequest& request) const {
   }
 }
 
-WebResponse RecordingFiles::list() const {
+WebResponse RecordingFiles::list() {
   nlohmann::json files = nlohmann::json::array();
-  for (const RecordingSummary& recording : list_recordings(folder_)) {
+  known_ = list_recordings(folder_, known_);
+  for (const RecordingSummary& recording : known_) {
     const bool opens = recording.has_end && recording.trouble.empty() && !recording.written;
     files.push_back({{"name", as_utf8(recording.file.filename().string())},
                      {"bytes", recording.bytes},

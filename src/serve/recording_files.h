@@ -9,13 +9,15 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "phalanx/record/recordings.h"
 #include "phalanx/serve/web_server.h"
 
 namespace phalanx {
 
 /// The recordings of a folder, for the page that replays them: /recordings is their list as JSON, /recordings/NAME a part of
-/// a file (HTTP Range). They hold what happened to people, so only who may operate gets them. A thread of its own reads the
+/// a file (HTTP Range). Only those who may operate get them, since they hold what happened to people. A thread of its own reads the
 /// disk, so that neither a stop nor a tick waits for it on the server's thread.
 class RecordingFiles : public std::enable_shared_from_this<RecordingFiles> {
  public:
@@ -39,12 +41,13 @@ class RecordingFiles : public std::enable_shared_from_this<RecordingFiles> {
     Respond respond;
   };
   void work();
-  [[nodiscard]] WebResponse response_to(const WebRequest& request) const;
+  [[nodiscard]] WebResponse response_to(const WebRequest& request);
   [[nodiscard]] WebResponse part_of(const std::string& name, const std::string& range) const;
-  [[nodiscard]] WebResponse list() const;
+  [[nodiscard]] WebResponse list();
 
   const std::filesystem::path folder_;
-  std::mutex mutex_;  ///< of all members below
+  std::vector<RecordingSummary> known_;  ///< the newest list; of the reading thread
+  std::mutex mutex_;                     ///< of all members below
   std::deque<Request> requests_;
   bool working_ = false;  ///< the thread runs
 };

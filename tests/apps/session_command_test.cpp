@@ -136,19 +136,30 @@ TEST_F(CliSession, IsDeletedByARuleAndRefusedByAQuota) {
   const std::string name = file.filename().string();
   EXPECT_THAT(said("session prune"),
               HasSubstr("2 phalanx: state what to keep: --keep-days D, --keep-gb G, or both"));
-  EXPECT_THAT(said("session prune --keep-days 1"), HasSubstr("0 0 recordings, 0.0 MB\n"));
-  EXPECT_THAT(said("session prune --keep-gb 0"), HasSubstr("would delete out/recordings/" + name));
-  EXPECT_TRUE(fs::exists(file));
+  EXPECT_THAT(said("session prune --keep-days nan"), HasSubstr("nan is no number from 0 to 36525"));
+  EXPECT_THAT(said("session prune --keep-gb 0"), HasSubstr("0 0 recordings, 0.0 MB\n")) << "the newest stays";
   const std::string run = "run index_ball --headless --no-realtime --quiet --seconds 0.3 ";
   EXPECT_THAT(said(run + "--record-quota-gb 0.00001"),
               AllOf(StartsWith("2 phalanx: "), HasSubstr("--record-quota-gb allows 0.0 GB; delete some")));
-  EXPECT_THAT(said(run + "--record-keep-days 1"), Not(HasSubstr("deleted")));
+  EXPECT_THAT(said(run + "--record-keep-days 1 --record-quota-gb 0.4"),
+              AllOf(Not(HasSubstr("deleted")), HasSubstr("(0.4 GB of room)")));
   EXPECT_TRUE(fs::exists(file));
-  EXPECT_THAT(said(run + "--record-keep-gb 0 --record-quota-gb 5"),
-              AllOf(HasSubstr("deleted out/recordings/" + name), HasSubstr("(5.0 GB of room)")));
+  EXPECT_THAT(said("session prune --keep-gb 0"), HasSubstr("would delete out/recordings/" + name));
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_THAT(said(run + "--record-keep-gb 0"), HasSubstr("deleted out/recordings/" + name));
   EXPECT_FALSE(fs::exists(file));
   EXPECT_THAT(said("session prune --keep-gb 0 --yes"), HasSubstr("deleted out/recordings/"));
-  EXPECT_THAT(said("session list"), HasSubstr("no recordings"));
+}
+
+TEST_F(CliSession, AFullDiskLeavesNothingOfAnExport) {
+  for (const std::string format : {"csv", "hdf5", "matlab", "ros2", "bids"}) {
+    const auto full = run_program(folder, "session export last --quiet --out taken --format " + format,
+                                  ".out", "trap '' XFSZ && ulimit -f 8");
+    EXPECT_EQ(full.exit_code, 1) << format << ": " << full.err;
+    EXPECT_THAT(full.err, AllOf(HasSubstr("taken"), HasSubstr("cannot"))) << format;
+    for (const auto& entry : fs::directory_iterator(folder.path()))
+      EXPECT_THAT(entry.path().filename().string(), Not(StartsWith("taken"))) << format;
+  }
 }
 
 TEST_F(CliSession, RefusesInWords) {

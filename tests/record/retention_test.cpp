@@ -47,19 +47,31 @@ TEST(Retention, DeletesByAgeAndTheOldestBySize) {
   EXPECT_THAT(expired(all, {.days = 95.0, .bytes = {}}), IsEmpty());
   EXPECT_THAT(expired(all, {.days = 80.0, .bytes = 89}), ElementsAre("a", "b"))
       << "a by its age, then b for room";
-  EXPECT_THAT(expired(all, {.days = {}, .bytes = 0}), ElementsAre("a", "b", "c", "d"));
 }
 
-TEST(Retention, KeepsWhatIsBeingWrittenDamagedOrOfOthers) {
-  std::vector<RecordingSummary> all = {recording("written", 1, 10), recording("torn", 2, 10),
-                                       recording("others", 3, 10), recording("whole", 4, 10),
-                                       recording("strange", 5, 10)};
+TEST(Retention, AlwaysKeepsTheNewest) {
+  const std::vector<RecordingSummary> all = {recording("a", 1, 50), recording("b", 2, 40)};
+  EXPECT_THAT(expired(all, {.days = {}, .bytes = 0}), ElementsAre("a"));
+  EXPECT_THAT(expired(all, {.days = 1.0, .bytes = {}}), ElementsAre("a"));
+}
+
+TEST(Retention, DoesNotTrustTheClockOfARecordingAlone) {
+  std::vector<RecordingSummary> all = {recording("in 1970", 0, 50), recording("newest", 99, 40)};
+  all[0].changed = 99.5 * kDay;  // written after the clock had been set
+  EXPECT_THAT(expired(all, {.days = 30.0, .bytes = {}}), IsEmpty());
+}
+
+TEST(Retention, KeepsWhatIsBeingWrittenDamagedOrOfOthersAndDoesNotCountIt) {
+  std::vector<RecordingSummary> all = {recording("written", 1, 90), recording("torn", 2, 90),
+                                       recording("others", 3, 90),  recording("whole", 4, 10),
+                                       recording("strange", 5, 90), recording("newest", 6, 10)};
   all[0].written = true;
   all[1].has_end = false;
   all[2].version.clear();
   all[4].trouble = "its first station does not match its schema";
   EXPECT_THAT(expired(all, {.days = 1.0, .bytes = {}}), ElementsAre("whole"));
-  EXPECT_THAT(expired(all, {.days = {}, .bytes = 5}), ElementsAre("whole"));
+  EXPECT_THAT(expired(all, {.days = {}, .bytes = 19}), ElementsAre("whole"));
+  EXPECT_THAT(expired(all, {.days = {}, .bytes = 20}), IsEmpty());
 }
 
 TEST(Retention, DeletesARecordingWithWhatBelongsToIt) {

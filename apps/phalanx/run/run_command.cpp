@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -94,8 +95,15 @@ class Run {
     if (!rule.deletes()) return;
     const auto now = static_cast<double>(std::time(nullptr));
     for (const RecordingSummary& old : expired_recordings(list_recordings(recording.folder), rule, now)) {
-      delete_recording(old.file);
-      console_.say(fmt::format("deleted {}: --record-keep-... does not keep it", old.file.string()));
+      try {
+        delete_recording(old.file);
+        console_.say(fmt::format("deleted {}, by the rule of --record-keep-days and --record-keep-gb",
+                                 old.file.string()));
+      } catch (const std::filesystem::filesystem_error& error) {
+        console_.complain(fmt::format("{} is older than is to be kept, and cannot be deleted ({})",
+                                      old.file.string(), error.code().message()),
+                          Emphasis::kWarning);
+      }
     }
   }
 
@@ -474,7 +482,7 @@ void add_run_command(CLI::App& app, Job& job) {
                 "recordings without the 3D scene for tools that read Foxglove's schemas");
   run->add_option("--record-quota-gb", options->record_quota_gb,
                   "room for all recordings of the folder: above it, no run begins [none]")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_up_to(1e6));
   add_retention(*run, options->record_keep_days, options->record_keep_gb, "--record-keep-");
   CLI::Option* markers =
       run->add_option("--marker-port", options->marker_port,

@@ -45,7 +45,7 @@ struct ExportOptions {
   ExportFormat format = ExportFormat::kCsv;
   std::vector<std::string> parts;  ///< names of export_parts(); empty: all
   /// Columns of tables, for kCsv, kHdf5 and kMatlab: "torque" is all joints', "torque_nm_index_pip_flexion" is one, as in the
-  /// head of a CSV file. Time, station and tick are always there, and tables without any of the columns are left out. Empty:
+  /// head of a CSV file. A table keeps its time, station and tick; tables without any of the columns are left out. Empty:
   /// all.
   std::vector<std::string> columns;
   double from = 0.0;                                    ///< since the beginning of the recording [s]

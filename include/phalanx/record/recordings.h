@@ -22,6 +22,7 @@ struct RecordingSummary {
   bool has_end = false;  ///< false: repair_recording() keeps what is whole
   std::string trouble;   ///< why nothing more is known; empty: all below is
   double begin = 0.0;    ///< UTC [s since 1970]
+  double changed = 0.0;  ///< the file's last change, likewise
   double seconds = 0.0;  ///< from the first to the last message
   std::uint64_t steps = 0;
   std::uint64_t events = 0;
@@ -39,8 +40,10 @@ struct RecordingSummary {
 [[nodiscard]] RecordingSummary summarise_recording(const std::filesystem::path& file);
 
 /// @returns the recordings of a folder (*.mcap), by their begin, oldest first; none if it does not exist
+/// @param known  an earlier result: whole files of it that have not changed since are not read again
 /// @throws std::invalid_argument if the folder cannot be read
-[[nodiscard]] std::vector<RecordingSummary> list_recordings(const std::filesystem::path& folder);
+[[nodiscard]] std::vector<RecordingSummary> list_recordings(const std::filesystem::path& folder,
+                                                            const std::vector<RecordingSummary>& known = {});
 
 /// Result of repair_recording().
 struct RepairedRecording {

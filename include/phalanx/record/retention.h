@@ -13,14 +13,14 @@ namespace phalanx {
 
 /// Which recordings of a folder are deleted. The default deletes none.
 struct RetentionRule {
-  std::optional<double> days;          ///< those that began longer ago
-  std::optional<std::uint64_t> bytes;  ///< the oldest, until the others have at most so many
+  std::optional<double> days;          ///< those whose begin and last change are longer ago
+  std::optional<std::uint64_t> bytes;  ///< the oldest, until those that remain have at most so many
 
   [[nodiscard]] bool deletes() const noexcept { return days || bytes; }
 };
 
-/// @returns the recordings that the rule deletes, oldest first. A file that is being written, has no end, or was not recorded
-/// by this program stays, and counts for the bytes
+/// @returns the recordings that the rule deletes, oldest first. The newest whole one always stays, whatever the clock says. A file
+/// that is being written, has no end, or was not recorded by this program stays, too, and does not count
 /// @param all  of a folder, as list_recordings()
 /// @param now  UTC [s since 1970]
 [[nodiscard]] std::vector<RecordingSummary> expired_recordings(const std::vector<RecordingSummary>& all,

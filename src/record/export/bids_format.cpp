@@ -24,6 +24,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kVersion = "1.9.0";       ///< of the specification
 constexpr const char* kDevice = "exoskeleton";  ///< tracking system of the device's samples
+constexpr double kPosesPerSecond = 60.0;
+constexpr double kBetweenClocks =
+    1e-6;  ///< least time between samples of two clocks: one more in the last decimal [s]
+constexpr double kLongest = 5.0;  ///< time between rows of a continuous recording, in samples
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 bool is_label(const std::string& text) { return !text.empty() && bids_label(text) == text; }
@@ -90,7 +94,8 @@ class Layout {
 /// One tracking system, as its files are written.
 class MotionTable final : public TableWriter {
  public:
-  /// @param first  number of the row's first value that is a channel; `channels` after the latency's are of it and those after
+  /// @param first     number of the row's value that is the second channel; those of the others follow it
+  /// @param channels  the first is the latency
   MotionTable(const Layout& layout, std::string part, std::string system, std::size_t first,
               std::vector<Channel> channels, const BidsLabels& labels, const ExportOrigin& origin)
       : layout_(layout),
@@ -103,7 +108,7 @@ class MotionTable final : public TableWriter {
         out_(layout.of_system(system_, "motion.tsv")) {}
 
   void add(const ExportRow& row) override {
-    const double time = system_ == kDevice ? device_time(row) : row.numbers[0];
+    const double time = (system_ == kDevice ? device_time(row) : row.numbers[0]) - labels_.from;
     std::string line = fmt::format("{:.6f}", time);
     for (std::size_t c = 1; c < channels_.size(); ++c) {
       const double value = row.numbers[first_ + c - 1];
@@ -112,6 +117,7 @@ class MotionTable final : public TableWriter {
     }
     out_.text(line + "\n");
     if (rows_ == 0) begin_ = time;
+    if (rows_ > 0) longest_ = std::max(longest_, time - end_);
     end_ = time;
     ++rows_;
   }
@@ -124,12 +130,13 @@ class MotionTable final : public TableWriter {
   }
 
  private:
-  /// @returns the sample's time by the device's clock. Several samples may belong to one step. The first sample of a station, or
-  /// of a clock that was set back, has the time of its step [s]
+  /// @returns a sample's time since the beginning of the recording, by the device's clock, since several samples may belong to one
+  /// step. The first sample of a station has the time of its step; so has the first one after the clock went back [s]
   [[nodiscard]] double device_time(const ExportRow& row) {
     const double station = row.numbers[1];
     const double clock = 1e-6 * row.numbers[3];
-    if (station != station_ || clock < clock_) offset_ = std::max(row.numbers[0], end_) - clock;
+    if (station != station_ || clock < clock_)
+      offset_ = std::max(row.numbers[0], end_ + labels_.from + kBetweenClocks) - clock;
     station_ = station;
     clock_ = clock;
     return clock + offset_;
@@ -152,8 +159,10 @@ class MotionTable final : public TableWriter {
   }
   void write_description() const {
     const bool of_device = system_ == kDevice;
+    const double rate = of_device ? labels_.rate_hz : kPosesPerSecond;
+    const double nominal = rate > 0.0 ? 1.0 / rate : 0.0;
     Json json = {{"TaskName", labels_.task},
-                 {"SamplingFrequency", of_device ? labels_.rate_hz : 60.0},
+                 {"SamplingFrequency", rate},
                  {"SamplingFrequencyEffective", effective_rate()},
                  {"TrackingSystemName", system_},
                  {"MotionChannelCount", channels_.size()},
@@ -162,7 +171,7 @@ class MotionTable final : public TableWriter {
                  {"MISCChannelCount", count("MISC")},
                  {"MissingValues", "n/a"},
                  {"RecordingDuration", end_ - begin_},
-                 {"RecordingType", "continuous"},
+                 {"RecordingType", longest_ > kLongest * nominal ? "discontinuous" : "continuous"},
                  {"SoftwareVersions", "phalanx " + origin_.version}};
     if (of_device) {
       json["ManufacturersModelName"] = field(labels_.device);
@@ -184,17 +193,18 @@ class MotionTable final : public TableWriter {
   double offset_ = 0.0;    ///< from the device's clock to the time since the beginning of the recording [s]
   double begin_ = 0.0;
   double end_ = 0.0;
+  double longest_ = 0.0;  ///< time between two rows [s]
   std::uint64_t rows_ = 0;
 };
 
 /// The events: their onset, what happened, and who did it.
 class EventTable final : public TableWriter {
  public:
-  explicit EventTable(const Layout& layout) : layout_(layout), out_(layout.events("tsv")) {
+  EventTable(const Layout& layout, double from) : layout_(layout), from_(from), out_(layout.events("tsv")) {
     out_.text("onset\tduration\ttrial_type\tvalue\tactor\n");
   }
   void add(const ExportRow& row) override {
-    out_.text(fmt::format("{:.6f}\tn/a\t{}\t{}\t{}\n", row.numbers[0], field(row.texts[0]),
+    out_.text(fmt::format("{:.6f}\tn/a\t{}\t{}\t{}\n", row.numbers[0] - from_, field(row.texts[0]),
                           field(row.texts[2]), field(row.texts[1])));
     ++rows_;
   }
@@ -210,6 +220,7 @@ class EventTable final : public TableWriter {
 
  private:
   const Layout& layout_;
+  const double from_;  ///< [s]
   OutputFile out_;
   std::uint64_t rows_ = 0;
 };
@@ -222,9 +233,8 @@ class BidsFormat final : public TableFormat {
   }
 
   std::unique_ptr<TableWriter> begin(const ExportTable& table) override {
-    if (table.name == "events") return std::make_unique<EventTable>(layout_);
-    std::vector<Channel> channels = {
-        {"latency", "LATENCY", "n/a", "s", "time since the beginning of the recording"}};
+    if (table.name == "events") return std::make_unique<EventTable>(layout_, labels_.from);
+    std::vector<Channel> channels = {{"latency", "LATENCY", "n/a", "s", "time since acq_time"}};
     const bool of_device = table.name == "angles";
     for (int j = 0; j < kJoints; ++j)
       channels.push_back({std::string(joint_name(j)), "JNTANG", std::string(joint_name(j)), "deg",
@@ -255,11 +265,14 @@ class BidsFormat final : public TableFormat {
                     "`exoskeleton` holds the angles that the device measured, `shown` those of the hand that "
                     "was shown, with the force on each digit.\n");
     write_text_file(folder / "participants.tsv", fmt::format("participant_id\nsub-{}\n", labels_.subject));
-    const auto seconds = static_cast<std::time_t>(origin_.begin_utc / 1'000'000'000U);
+    const auto begin =
+        static_cast<std::int64_t>(origin_.begin_utc / 1000) + std::llround(1e6 * labels_.from);  // [us]
+    const auto seconds = static_cast<std::time_t>(begin / 1'000'000);
     std::string scans = "filename\tacq_time\n";
     for (const std::string& system : systems_)
-      scans += fmt::format("{}\t{:%Y-%m-%dT%H:%M:%S}Z\n",
-                           layout_.in_subject(layout_.of_system(system, "motion.tsv")), fmt::gmtime(seconds));
+      scans += fmt::format("{}\t{:%Y-%m-%dT%H:%M:%S}.{:06}Z\n",
+                           layout_.in_subject(layout_.of_system(system, "motion.tsv")), fmt::gmtime(seconds),
+                           begin % 1'000'000);
     write_text_file(layout_.scans(), scans);
   }
 

@@ -19,6 +19,7 @@ struct BidsLabels {
   std::string serial;
   double rate_hz = 0.0;  ///< of the device
   AngleOrigins origin{};
+  double from = 0.0;  ///< where the export begins: latencies and onsets count from there [s]
 };
 
 /// @returns the tables that become recordings of motion

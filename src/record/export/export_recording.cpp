@@ -2,6 +2,7 @@
 #include "phalanx/record/export_recording.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "record/export/bids_format.h"
 #include "record/export/export_sink.h"
 #include "record/export/export_table.h"
+#include "record/plain_text.h"
 #include "record/recording/recording_messages.h"
 #include "record/recording/setup_message.h"
 
@@ -61,7 +63,8 @@ struct Beginning {
 
 Beginning read_beginning(const fs::path& recording) {
   Beginning out;
-  out.origin.name = recording.filename().string();
+  out.origin.name = as_utf8(recording.filename().string());
+  out.labels.task = bids_label("");
   try {
     const mcap::ReadableFile file(recording);
     mcap::McapReader reader(file);
@@ -71,15 +74,15 @@ Beginning read_beginning(const fs::path& recording) {
       if (out.origin.begin_utc == 0) out.origin.begin_utc = message.time;
       if (reader.schema_of(message.channel) != "phalanx.wire.Setup" || !parsed(message, setup)) continue;
       out.labels.task = bids_label(fs::path(setup.start().scene()).stem().string());
-      out.labels.device = setup.device_name();
-      out.labels.serial = setup.device_serial();
+      out.labels.device = one_line(setup.device_name());
+      out.labels.serial = one_line(setup.device_serial());
       out.labels.rate_hz = setup.device_rate_hz();
-      out.labels.origin = read_channel_map(setup).angle_origins();
+      if (const auto map = channel_map_of(setup)) out.labels.origin = map->angle_origins();
       break;
     }
     if (const auto phalanx = reader.metadata().find("phalanx"); phalanx != reader.metadata().end())
       if (const auto version = phalanx->second.find("version"); version != phalanx->second.end())
-        out.origin.version = version->second;
+        out.origin.version = one_line(version->second);
   } catch (const mcap::McapError&) {  // for_each_message_of() says what is wrong
   } catch (const std::system_error&) {
   }
@@ -102,6 +105,7 @@ std::unique_ptr<ExportSink> sink_for(const fs::path& target, const Beginning& be
   }
   BidsLabels labels = beginning.labels;
   labels.subject = options.subject;
+  labels.from = options.from;
   if (!options.task.empty()) labels.task = options.task;
   ExportOptions parts = options;
   if (parts.parts.empty())
@@ -120,7 +124,20 @@ std::vector<ExportedPart> write(const fs::path& recording, const fs::path& targe
   return sink->finish();
 }
 
+void remove_folder(const fs::path& folder) noexcept {
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
+}
+
 }  // namespace
+
+std::optional<ChannelMap> channel_map_of(const wire::Setup& setup) {
+  try {
+    return read_channel_map(setup);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
 
 const std::vector<ExportFormatName>& export_formats() {
   static const std::vector<ExportFormatName> kFormats = {
@@ -162,14 +179,21 @@ std::vector<ExportedPart> export_recording(const fs::path& recording, const fs::
     for (ExportedPart& part : parts) part.file = target;
     return parts;
   }
-  prepare_output_folder(target);
+  const fs::path partial = target.string() + fmt::format(".partial-{}", ::getpid());
+  prepare_output_folder(partial);
   try {
-    return write(recording, target, options, on_progress);
+    parts = write(recording, partial, options, on_progress);
+    fs::rename(partial, target);
+  } catch (const fs::filesystem_error& error) {
+    remove_folder(partial);
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written ({})", target.string(), error.code().message()));
   } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(target, ignored);  // it did not exist before
+    remove_folder(partial);
     throw;
   }
+  for (ExportedPart& part : parts) part.file = target / part.file.lexically_relative(partial);
+  return parts;
 }
 
 }  // namespace phalanx

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "phalanx/device/channel_map.h"
 #include "phalanx/record/export_recording.h"
+#include "phalanx/recording.pb.h"
 #include "record/export/export_table.h"
 #include "record/mcap/mcap_writer.h"
 
@@ -31,6 +34,10 @@ class ExportSink {
 /// @throws std::invalid_argument for an unknown column
 [[nodiscard]] std::unique_ptr<ExportSink> table_sink(std::unique_ptr<TableFormat> format,
                                                      const ExportOptions& options);
+
+/// @returns how the samples of a station become angles; none if this version does not take its channels: angles are then left
+/// out of an export
+[[nodiscard]] std::optional<ChannelMap> channel_map_of(const wire::Setup& setup);
 
 /// @returns the parts of a ROS 2 bag: its topics
 [[nodiscard]] const std::vector<ExportPart>& ros2_parts();

@@ -34,7 +34,7 @@ struct ExportTable {
 /// @returns the name of a segment with underscores: "index_finger_tip"
 [[nodiscard]] std::string segment_label(int segment);
 
-/// @returns all tables. Their rows are written by TablesOfRecording, in this order of columns
+/// @returns all tables. A row has its values in this order of columns
 [[nodiscard]] const std::vector<ExportTable>& export_tables();
 
 /// One row. Numbers that do not exist are NaN.
@@ -57,7 +57,7 @@ class TableWriter {
   virtual ~TableWriter() = default;
 
   virtual void add(const ExportRow& row) = 0;
-  /// Writes what is left; no rows come any more. @returns the number of rows
+  /// Writes what is left; no rows come any more
   virtual ExportedPart finish() = 0;
 };
 
@@ -79,7 +79,6 @@ class TableFormat {
 struct ExportOrigin {
   std::string name;             ///< of the recording's file
   std::string version;          ///< of the program that recorded it
-  std::string commit;           ///< likewise
   std::uint64_t begin_utc = 0;  ///< of its first message [ns since 1970]
 };
 

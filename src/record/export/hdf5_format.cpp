@@ -40,6 +40,8 @@ class Handle {
     if (id_ >= 0) close_(id_);
   }
   [[nodiscard]] hid_t id() const noexcept { return id_; }
+  /// @returns false if the library could not write what it still held
+  [[nodiscard]] bool closed() noexcept { return close_(std::exchange(id_, -1)) >= 0; }
 
  private:
   hid_t id_;
@@ -196,10 +198,12 @@ class Hdf5Format final : public TableFormat {
   void finish() override {
     errno = 0;
     check(::H5Fflush(hdf5_.id(), H5F_SCOPE_GLOBAL), file_);
+    if (!hdf5_.closed()) refused(file_);
   }
 
  private:
   static hid_t create(const std::filesystem::path& file) {
+    ::H5dont_atexit();  // after a failed write, the library's own end would crash the program
     ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // no messages of the library on the terminal
     const Handle access(::H5Pcreate(H5P_FILE_ACCESS), ::H5Pclose, file);
     check(::H5Pset_file_locking(access.id(), false, true), file);  // write_then_rename() holds the lock

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <boost/locale/encoding_utf.hpp>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -18,8 +20,9 @@ namespace {
 
 using Variable = std::unique_ptr<matvar_t, decltype(&::Mat_VarFree)>;
 
-/// A variable of version 7 is smaller than 2 GiB; the rest is for its head.
-constexpr std::uint64_t kLargestTable = 2'000'000'000;  ///< [bytes]
+/// A variable of version 7 is smaller than 2 GiB, and all are in memory: this is for all tables together.
+constexpr std::uint64_t kLargestFile = 2'000'000'000;  ///< [bytes]
+constexpr std::uint64_t kCell = 500;                   ///< what a text takes besides its characters [bytes]
 
 Variable checked(matvar_t* variable) {
   if (variable == nullptr) throw std::bad_alloc();
@@ -66,17 +69,45 @@ class MatFile {
         mat_(::Mat_CreateVer(file.c_str(), fmt::format("Phalanx recording {}", origin.name).c_str(),
                              MAT_FT_MAT5),
              ::Mat_Close) {
-    if (!mat_) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+    if (!mat_) refused();
   }
   void write(const Variable& variable) {
-    if (::Mat_VarWrite(mat_.get(), variable.get(), MAT_COMPRESSION_ZLIB) != 0)
-      throw std::runtime_error(fmt::format("{}: cannot be written; is the disk full?", file_.string()));
+    if (::Mat_VarWrite(mat_.get(), variable.get(), MAT_COMPRESSION_ZLIB) != 0) refused();
+    ++variables_;
+  }
+  /// Counts what waits in memory. @throws std::invalid_argument if it is more than a file may have
+  void reserve(std::uint64_t bytes) {
+    bytes_ += bytes;
+    if (bytes_ > kLargestFile)
+      throw std::invalid_argument(
+          "the tables are larger than the 2 GB that are written to a MATLAB file; choose fewer --parts or "
+          "--columns, or a shorter time with --from and --to, or --format hdf5, which MATLAB reads with "
+          "h5read");
+  }
+  /// Closes the file. The library does not tell that a disk is full: so the elements that are in the file are counted.
+  void close() {
+    mat_.reset();
+    std::ifstream in(file_, std::ios::binary);
+    const std::uint64_t size = std::filesystem::file_size(file_);
+    std::uint64_t place = 128;  // behind the head
+    std::uint64_t elements = 0;
+    for (std::array<std::uint32_t, 2> tag{}; place < size; place += sizeof tag + tag[1], ++elements) {
+      in.seekg(static_cast<std::streamoff>(place));
+      if (!in.read(reinterpret_cast<char*>(tag.data()), sizeof tag)) refused();
+    }
+    if (place != size || elements != variables_) refused();
   }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
  private:
+  [[noreturn]] void refused() const {
+    throw std::runtime_error(fmt::format("{}: cannot be written; is the disk full?", file_.string()));
+  }
+
   const std::filesystem::path file_;
-  const std::unique_ptr<mat_t, decltype(&::Mat_Close)> mat_;
+  std::unique_ptr<mat_t, decltype(&::Mat_Close)> mat_;
+  std::uint64_t variables_ = 0;
+  std::uint64_t bytes_ = 0;
 };
 
 /// A table as a struct: a field for each column with a row for each row, and `units` and `columns` with the same fields. It
@@ -95,12 +126,9 @@ class MatlabTable final : public TableWriter {
     std::size_t t = 0;
     for (auto& column : texts_) column.texts.push_back(row.texts[t++]);
     ++rows_;
-    if (rows_ * row.numbers.size() * sizeof(double) > kLargestTable)
-      throw std::invalid_argument(
-          fmt::format("the table {} is larger than the 2 GiB that a MATLAB file of version 7 holds; choose "
-                      "fewer --columns or a "
-                      "shorter time with --from and --to, or --format hdf5, which MATLAB reads with h5read",
-                      table_.name));
+    std::uint64_t bytes = row.numbers.size() * sizeof(double);
+    for (const std::string& text : row.texts) bytes += kCell + text.size();
+    mat_.reserve(bytes);
   }
   ExportedPart finish() override {
     std::vector<const char*> fields;
@@ -164,6 +192,7 @@ class MatlabFormat final : public TableFormat {
   std::unique_ptr<TableWriter> begin(const ExportTable& table) override {
     return std::make_unique<MatlabTable>(mat_, table);
   }
+  void finish() override { mat_.close(); }
 
  private:
   MatFile mat_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "phalanx/device/channel_map.h"
@@ -98,17 +100,17 @@ class Ros2Sink final : public ExportSink {
   }
 
   void add(std::string_view schema, const mcap::Message& message, double /*time*/, bool in_range) override {
-    if (schema == "phalanx.wire.Setup" && parsed(message, setup_)) map_.emplace(read_channel_map(setup_));
+    if (schema == "phalanx.wire.Setup" && parsed(message, setup_)) map_ = channel_map_of(setup_);
     if (!in_range) return;
     time_ = message.time;
     if (schema == "phalanx.wire.Step" && wants(Part::kJointStates) && parsed(message, step_)) put_step();
     if (schema == "phalanx.wire.Tick" && parsed(message, tick_)) put_tick();
     if (schema == "phalanx.wire.Event" && wants(Part::kEvents) && parsed(message, event_)) put_event();
-    if (writer_.open_bytes() > kChunk) writer_.write_chunk();
+    if (writer_.open_bytes() > kChunk) to_disk([&] { writer_.write_chunk(); });
   }
 
   std::vector<ExportedPart> finish() override {
-    writer_.finish();
+    to_disk([&] { writer_.finish(); });
     write_text_file(folder_ / "metadata.yaml", description());
     std::map<Part, std::uint64_t> messages;
     for (std::size_t i = 0; i < topics_.size(); ++i)
@@ -122,6 +124,16 @@ class Ros2Sink final : public ExportSink {
   }
 
  private:
+  /// Runs what writes. @throws std::runtime_error naming the file if the disk refuses
+  template <class Write>
+  void to_disk(const Write& write) const {
+    try {
+      write();
+    } catch (const std::system_error& error) {
+      throw std::runtime_error(
+          fmt::format("{}: cannot be written ({})", (folder_ / kFile).string(), error.code().message()));
+    }
+  }
   static std::uint16_t channel_of(std::size_t topic) { return static_cast<std::uint16_t>(topic + 1); }
   static std::vector<mcap::Schema> schemas() {
     std::vector<mcap::Schema> all;

@@ -25,8 +25,9 @@ SegmentWrenches segment_wrenches(const wire::Tick& tick, const SegmentPoses& X_W
     const Vec3 normal(contact.normal(0), contact.normal(1), contact.normal(2));
     const Vec3 point(contact.point(0), contact.point(1), contact.point(2));
     SegmentWrench& wrench = wrenches[contact.segment()];
-    wrench.force = static_cast<double>(tick.factor()) * static_cast<double>(contact.force()) * normal;
-    wrench.moment = (point - X_WS[contact.segment()].p).cross(wrench.force);
+    const Vec3 force = static_cast<double>(tick.factor()) * static_cast<double>(contact.force()) * normal;
+    wrench.force += force;
+    wrench.moment += (point - X_WS[contact.segment()].p).cross(force);
   }
   return wrenches;
 }

@@ -60,7 +60,11 @@ class ChosenTable {
       if (take_text_.at(i)) kept_.texts.push_back(row.texts[i]);
     writer_->add(kept_);
   }
-  [[nodiscard]] ExportedPart finish() { return writer_->finish(); }
+  [[nodiscard]] ExportedPart finish() {
+    ExportedPart part = writer_->finish();
+    writer_.reset();
+    return part;
+  }
 
  private:
   static bool is_chosen(const ExportColumn& column, std::size_t i, const std::vector<std::string>& columns,
@@ -152,7 +156,7 @@ class TableSink final : public ExportSink {
   }
 
   void add_setup() {
-    map_.emplace(read_channel_map(setup_));
+    map_ = channel_map_of(setup_);
     ChosenTable* table = written("channels");
     if (table == nullptr) return;
     for (int c = 0; c < setup_.channel_size(); ++c) {

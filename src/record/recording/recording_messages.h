@@ -39,8 +39,8 @@ void for_each_message_of(const std::filesystem::path& name, const std::function<
     std::uint64_t told = 0;
     while (reader.next(message)) {
       if (!begin) begin = message.time;
-      const double time = 1e-9 * (static_cast<double>(message.time) - static_cast<double>(*begin));
-      on_message(reader.schema_of(message.channel), message, std::max(0.0, time));
+      const std::uint64_t since = message.time > *begin ? message.time - *begin : 0;
+      on_message(reader.schema_of(message.channel), message, 1e-9 * static_cast<double>(since));
       if (on_progress && reader.place() >= told) {
         on_progress(static_cast<double>(reader.place()) /
                     static_cast<double>(std::max<std::uint64_t>(1, file.size())));

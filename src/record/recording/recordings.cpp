@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -69,6 +70,23 @@ void read_end(const mcap::ReadableFile& file, RecordingSummary& out) {
   }
 }
 
+/// @returns the time of the last change of a file: UTC [s since 1970]
+double changed_at(const fs::path& file) {
+  const auto time = std::chrono::file_clock::to_sys(fs::last_write_time(file));
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+/// @returns the summary of a whole file that has not changed since; null: there is none
+const RecordingSummary* unchanged(const fs::path& file, const std::vector<RecordingSummary>& known) {
+  const auto found = std::find_if(known.begin(), known.end(),
+                                  [&](const RecordingSummary& each) { return each.file == file; });
+  if (found == known.end() || !found->has_end || !found->trouble.empty() || found->written) return nullptr;
+  std::error_code error;
+  const bool same =
+      fs::file_size(file, error) == found->bytes && !error && changed_at(file) == found->changed;
+  return same ? &*found : nullptr;
+}
+
 /// @returns a name beside the file that is free
 fs::path free_name(const fs::path& file, const std::string& ending) {
   fs::path name = file.string() + ending;
@@ -120,6 +138,7 @@ RecordingSummary summarise_recording(const fs::path& file) {
     out.written = mcap::is_being_written(file);
     const mcap::ReadableFile readable(file);
     out.bytes = readable.size();
+    out.changed = changed_at(file);
     out.has_end = mcap::has_end(readable);
     out.begins = mcap::begins_as_mcap(readable);
     if (out.has_end) read_end(readable, out);
@@ -130,7 +149,8 @@ RecordingSummary summarise_recording(const fs::path& file) {
   return out;
 }
 
-std::vector<RecordingSummary> list_recordings(const fs::path& folder) {
+std::vector<RecordingSummary> list_recordings(const fs::path& folder,
+                                              const std::vector<RecordingSummary>& known) {
   std::vector<RecordingSummary> all;
   std::error_code error;
   if (!fs::exists(folder, error)) return all;
@@ -139,8 +159,10 @@ std::vector<RecordingSummary> list_recordings(const fs::path& folder) {
     throw std::invalid_argument(fmt::format("the folder {} cannot be read ({}); name another with --folder",
                                             folder.string(), error.message()));
   for (const fs::directory_entry& entry : entries)
-    if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.path(), error))
-      all.push_back(summarise_recording(entry.path()));
+    if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.path(), error)) {
+      const RecordingSummary* same = unchanged(entry.path(), known);
+      all.push_back(same != nullptr ? *same : summarise_recording(entry.path()));
+    }
   std::sort(all.begin(), all.end(), [](const RecordingSummary& a, const RecordingSummary& b) {
     return std::tie(a.begin, a.file) < std::tie(b.begin, b.file);
   });

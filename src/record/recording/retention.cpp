@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/record/retention.h"
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <system_error>
 
@@ -23,15 +25,20 @@ bool may_be_deleted(const RecordingSummary& recording) {
 
 std::vector<RecordingSummary> expired_recordings(const std::vector<RecordingSummary>& all,
                                                  const RetentionRule& rule, double now) {
+  std::vector<RecordingSummary> whole;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(whole), may_be_deleted);
+  if (whole.empty()) return {};
   std::uint64_t bytes = 0;
-  for (const RecordingSummary& recording : all) bytes += recording.bytes;
+  for (const RecordingSummary& recording : whole) bytes += recording.bytes;
   std::vector<RecordingSummary> expired;
-  for (const RecordingSummary& recording : all) {
-    const bool old = rule.days && now - recording.begin > kDay * *rule.days;
+  for (std::size_t i = 0; i + 1 < whole.size(); ++i) {
+    // The clock may have been wrong while it was recorded.
+    const double age = now - std::max(whole[i].begin, whole[i].changed);
+    const bool old = rule.days && age > kDay * *rule.days;
     const bool too_many = rule.bytes && bytes > *rule.bytes;
-    if (!may_be_deleted(recording) || !(old || too_many)) continue;
-    bytes -= recording.bytes;
-    expired.push_back(recording);
+    if (!old && !too_many) continue;
+    bytes -= whole[i].bytes;
+    expired.push_back(whole[i]);
   }
   return expired;
 }

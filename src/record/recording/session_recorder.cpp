@@ -18,6 +18,7 @@
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/record/retention.h"
+#include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_writer.h"
 #include "record/plain_text.h"
 #include "record/recording/foxglove_message.h"
@@ -141,6 +142,7 @@ struct SessionRecorder::Impl {
   void put_events();
   void put_change(const SessionChange& change, double now);
   void put_geometry(const SessionGeometry& next, double now);
+  void put_large(Topic topic, double now, const google::protobuf::MessageLite& message);
   void put_scene(const StationView& view);
   void fetch_station(const StepRecord& record);
   void fetch_change(std::uint64_t number, double now);
@@ -290,16 +292,29 @@ void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
   steps_to_angles = 0.0;
 }
 
-/// Writes what pages show from now on. It comes before what else is written of a change: without memory, the change is tried
-/// again, and a second copy of this does no harm.
+/// Writes what pages and other tools show from now on. It comes before what else is written of a change: without memory, the
+/// change is tried again, and a second copy of this does no harm.
 void SessionRecorder::Impl::put_geometry(const SessionGeometry& next, double now) {
-  wire::Geometry geometry;  // not kept: an object may have millions of triangles
-  write_geometry(next, geometry);
-  put(Topic::kGeometry, now, geometry);
+  {
+    wire::Geometry geometry;  // not kept: an object may have millions of triangles
+    write_geometry(next, geometry);
+    put_large(Topic::kGeometry, now, geometry);
+  }
   if (!settings.foxglove) return;
   foxglove::SceneUpdate meshes;
   write_meshes(next, time_of(now), meshes);
-  put(Topic::kMeshes, now, meshes);
+  put_large(Topic::kMeshes, now, meshes);
+}
+
+/// Writes a derived message that may be large, in a chunk of its own then: readers take chunks of a limited size. While the disk
+/// refuses, it is left out.
+void SessionRecorder::Impl::put_large(Topic topic, double now, const google::protobuf::MessageLite& message) {
+  const std::size_t size = message.ByteSizeLong();
+  if (size <= kLargeChunk) return put(topic, now, message);
+  if (size > mcap::kMostBytes / 2) return;
+  if (!write(now)) return;
+  put(topic, now, message);
+  write(now);
 }
 
 void SessionRecorder::Impl::put_scene(const StationView& view) {

@@ -7,6 +7,7 @@ import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
 import { parse as parseDefinition } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { foxgloveMessageSchemas } from "@foxglove/schemas/internal";
+import { Quaternion, Vector3 } from "three";
 import { expect } from "vitest";
 import { StepSchema } from "../../../src/gen/phalanx/recording_pb";
 import { TickSchema } from "../../../src/gen/phalanx/tick_pb";
@@ -75,9 +76,19 @@ export async function compareBag(bag: string, file: string): Promise<void> {
       expect(`/wrench/${message.header.frame_id}`).toBe(topic);
       const segment = wrenches.indexOf(topic);
       const tick = ticks.get(logTime)!;
-      const force = tick.factor * (tick.contact.find((contact) => contact.segment === segment)?.force ?? 0);
+      const contact = tick.contact.find((one) => one.segment === segment);
+      const force = tick.factor * (contact?.force ?? 0);
       expect(size(message.wrench.force)).toBeCloseTo(force, 5);
-      if (force > 0.1) ++felt;
+      if (!contact || force < 0.1) continue;
+      // In the world frame, the force has the contact's direction, and its moment is that of the contact's point.
+      const [x, y, z, qx, qy, qz, qw] = tick.gdpPose.slice(7 * segment, 7 * segment + 7) as [number, number, number, number, number, number, number];
+      const q = new Quaternion(qx, qy, qz, qw);
+      const asked = new Vector3(...(contact.normal as [number, number, number])).multiplyScalar(force);
+      const moment = new Vector3(...(contact.point as [number, number, number])).sub(new Vector3(x, y, z)).cross(asked);
+      const inWorld = ({ x: a, y: b, z: c }: Xyz) => new Vector3(a, b, c).applyQuaternion(q);
+      expect(inWorld(message.wrench.force).distanceTo(asked)).toBeLessThan(1e-5);
+      expect(inWorld(message.wrench.torque).distanceTo(moment)).toBeLessThan(1e-6);
+      ++felt;
     }
   }
   expect(counts.get("/tf")).toBe(ticks.size);
