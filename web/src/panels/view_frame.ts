@@ -5,7 +5,8 @@ import { strings } from "../strings";
 import type { ThemeName } from "../theme";
 import type { CameraPreset, HandView, ShownParts } from "../view3d/hand_view";
 import type { ViewTrouble } from "../view3d/view";
-import { button, el, saveFile, setShown, setSwitch, setText, stamp, switchButton } from "./dom";
+import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from "./dom";
+import { savedMark, savedName } from "./saved_as";
 import { viewKey } from "./view_key";
 
 const kZoomStep = 1.15;
@@ -47,7 +48,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
   const showCones = () => setShown(cones, source.slides);
   source.on(["state", "connection"], showCones);
   showCones();
-  const picture = button(words.picture, () => view && saveFile(`phalanx-${stamp()}.png`, view.picture()));
+  const picture = button(words.picture, () => view && saveFile(`${savedName(source)}.png`, view.picture(savedMark(source))));
   const cameras = el(
     "div",
     { class: "view-cameras", role: "toolbar", "aria-label": words.camera },

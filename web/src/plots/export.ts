@@ -6,7 +6,8 @@ import type { Shown } from "../state/shown";
 import { kHistorySeconds } from "../state/store";
 import { strings } from "../strings";
 import { digitColours, themes, type ThemeName } from "../theme";
-import { saveBlob, stamp } from "../panels/dom";
+import { saveBlob } from "../panels/dom";
+import { savedMark, savedName } from "../panels/saved_as";
 import { columnName } from "./plot_kinds";
 
 export function csvOf(shown: Shown): string {
@@ -19,7 +20,7 @@ export function csvOf(shown: Shown): string {
 }
 
 export function saveCsv(shown: Shown): void {
-  saveBlob(`phalanx-${stamp()}.csv`, new Blob([csvOf(shown)], { type: "text/csv" }));
+  saveBlob(`${savedName(shown)}.csv`, new Blob([csvOf(shown)], { type: "text/csv" }));
 }
 
 /// One plot of the picture.
@@ -40,7 +41,8 @@ const kSwatch = 12;
 /// The plots one under the other, with all that is needed to read them alone: which colour is which digit, each plot's title, and what
 /// its lines mean. As wide as the widest of these.
 /// @param digits  that are shown
-export function drawPicture(parts: readonly Part[], digits: readonly boolean[], theme: ThemeName): HTMLCanvasElement | null {
+/// @param mark  stands beside the digits; empty: nothing
+export function drawPicture(parts: readonly Part[], digits: readonly boolean[], theme: ThemeName, mark = ""): HTMLCanvasElement | null {
   const out = document.createElement("canvas");
   const context = out.getContext("2d");
   if (!context || parts.length === 0) return null;
@@ -56,7 +58,7 @@ export function drawPicture(parts: readonly Part[], digits: readonly boolean[], 
   out.width = Math.ceil(
     Math.max(
       ...parts.map((part) => Math.max(part.canvas.width, 2 * px(kMargin) + Math.max(width(fonts.title, part.title), width(fonts.small, part.legend)))),
-      px(kMargin) + names.reduce((sum, { name }) => sum + keyWidth(name), 0),
+      px(kMargin) + names.reduce((sum, { name }) => sum + keyWidth(name), 0) + (mark ? width(fonts.title, mark) + px(kMargin) : 0),
     ),
   );
   out.height = parts.reduce((sum, part) => sum + part.canvas.height + px(kHead), px(kKeyHeight));
@@ -76,6 +78,7 @@ export function drawPicture(parts: readonly Part[], digits: readonly boolean[], 
     write(fonts.small, colours.text, name, left + px(kSwatch) + px(kMargin), px(kTitleLine));
     left += keyWidth(name);
   }
+  if (mark) write(fonts.title, colours.text, mark, left, px(kTitleLine));
   let top = px(kKeyHeight);
   for (const part of parts) {
     write(fonts.title, colours.text, part.title, px(kMargin), top + px(kTitleLine));
@@ -86,6 +89,6 @@ export function drawPicture(parts: readonly Part[], digits: readonly boolean[], 
   return out;
 }
 
-export function savePng(parts: readonly Part[], digits: readonly boolean[], theme: ThemeName): void {
-  drawPicture(parts, digits, theme)?.toBlob((blob) => blob && saveBlob(`phalanx-${stamp()}.png`, blob));
+export function savePng(shown: Shown, parts: readonly Part[], digits: readonly boolean[], theme: ThemeName): void {
+  drawPicture(parts, digits, theme, savedMark(shown))?.toBlob((blob) => blob && saveBlob(`${savedName(shown)}.png`, blob));
 }

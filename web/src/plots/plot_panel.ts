@@ -83,7 +83,7 @@ export function plotPanel(source: Shown, theme: ThemeName, pausing?: Pausing): P
   source.on(["own"], update);
   update();
   const png = button(words.png, () =>
-    savePng([...charts].map(([kind, one]) => ({ title: titleOf(kind), legend: legendOf(kind), canvas: one.canvas() })), digits, colours),
+    savePng(source, [...charts].map(([kind, one]) => ({ title: titleOf(kind), legend: legendOf(kind), canvas: one.canvas() })), digits, colours),
     { title: words.pngLong, "aria-label": words.pngLong },
   );
   const dead = el("p", { class: "plot-offline", role: "status" });

@@ -40,6 +40,6 @@ export interface HandView {
   zoom(factor: number): void; // > 1: nearer
   orbit(right: number, up: number): void; // [rad], for keys
   probe(): ViewProbe;
-  picture(): string; // data URL of a PNG of what is seen now
+  picture(mark?: string): string; // data URL of a PNG of what is seen now, with these words in it
   dispose(): void;
 }

@@ -4,7 +4,7 @@ import type { WebGLRenderer } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
 import type { ThemeName } from "../theme";
 import { CameraRig } from "./camera_rig";
-import { Canvas, isSoftware } from "./canvas";
+import { Canvas, isSoftware, marked } from "./canvas";
 import type { ViewTrouble } from "./canvas";
 import { HandScene } from "./hand_scene";
 import type { CameraPreset, HandView, ShownParts, ViewProbe } from "./hand_view";
@@ -117,10 +117,10 @@ class View implements HandView {
     };
   }
 
-  picture(): string {
+  picture(mark = ""): string {
     if (!this.renderer) return "";
     this.draw(now()); // the canvas keeps nothing between frames
-    return this.renderer.domElement.toDataURL("image/png");
+    return marked(this.renderer.domElement, mark).toDataURL("image/png");
   }
 
   dispose(): void {

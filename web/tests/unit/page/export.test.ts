@@ -68,6 +68,13 @@ describe("the picture", () => {
     expect(images.map((one) => Number(one.values[2]) + 100).at(-1)).toBe(picture.height);
   });
 
+  it("says that it is of a recording, and is as wide as the word needs", () => {
+    const mark = strings.replay.watermark;
+    const picture = drawPicture(parts(120), [true, false, false, false, false], "dark", mark)!;
+    const text = drawnOn(picture).find((one) => one.what === "fillText" && one.values[0] === mark)!;
+    expect(Number(text.values[1]) + textWidth(mark, Number(/([\d.]+)px/.exec(text.font)![1]))).toBeLessThanOrEqual(picture.width);
+  });
+
   it("is none where nothing is plotted", () => {
     expect(drawPicture([], [true, true, true, true, true], "dark")).toBeNull();
   });

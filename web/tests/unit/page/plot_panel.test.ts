@@ -63,6 +63,20 @@ describe("the plots", () => {
     expect(await blob.text()).toBe(csvOf(store));
   });
 
+  it("of a recording are saved under the recorded moment, in a picture that says so", () => {
+    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    let picture: HTMLCanvasElement | undefined;
+    vi.spyOn(HTMLCanvasElement.prototype, "toBlob").mockImplementation(function (this: HTMLCanvasElement, done: BlobCallback) {
+      picture = this;
+      done(new Blob());
+    });
+    Object.defineProperty(store, "recordedAt", { value: new Date(2026, 10, 27, 14, 3, 5).getTime() / 1000 });
+    press(words.csvLong);
+    press(words.pngLong);
+    expect(save.mock.calls.map(([name]) => name)).toEqual(["phalanx-recording-20261127-140305.csv", "phalanx-recording-20261127-140305.png"]);
+    expect(textsOn(picture!)).toContain(strings.replay.watermark);
+  });
+
   it("are saved as a picture by their button: those that are shown, of the digits that are shown", () => {
     const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
     let picture: HTMLCanvasElement | undefined;
