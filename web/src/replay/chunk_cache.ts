@@ -38,6 +38,11 @@ export class ChunkCache {
     return content;
   }
 
+  /// Likewise, but does not count as a use.
+  peek(chunk: number): ChunkContent | undefined {
+    return this.kept.get(chunk);
+  }
+
   /// @param from, to  chunks, both included
   has(from: number, to: number): boolean {
     for (let i = from; i <= to; ++i) if (!this.kept.has(i)) return false;

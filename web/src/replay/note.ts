@@ -3,11 +3,10 @@
 import { button, el, setShown, setText } from "../panels/dom";
 import { isMeasured } from "../state/channels";
 import { strings } from "../strings";
-import type { Player } from "./player";
+import { kLongRead, type Player } from "./player";
 import { troubleText } from "./trouble";
 
 const words = strings.replay;
-const kLongRead = 300; // a shorter wait is not told [ms]
 
 export interface Note {
   readonly element: HTMLElement;

@@ -16,9 +16,11 @@ import type { Decoder } from "./decoder";
 import { Lookup } from "./lookup";
 import { Playhead } from "./playhead";
 import type { Recording } from "./recording";
-import type { StationFacts } from "./station_facts";
+import { rateOf, type StationFacts } from "./station_facts";
 
-const kOldPose = 0.5; // [s]: a pose that is older than the displayed moment does not show it
+export const kOldPose = 0.25; // [s]: a pose that is older than the displayed moment does not show it; as a gap in the curves
+export const kLongRead = 300; // a shorter wait is not displayed [ms]
+const kPoseInterval = 1 / 60; // [s]
 const kFrame = 0.3; // [s] that a frame may move on, at speed 1
 const kAhead = 4; // [s] that are loaded ahead, at speed 1
 const kShapes = 3; // geometries that are kept
@@ -39,12 +41,17 @@ export class Player extends Listeners<Topic> implements Shown {
   private readonly row = new Float64Array(channels.length);
   private readonly shapes = new Map<string, Shapes>(); // by place in the recording, the oldest first
   private shape = ""; // of these the one that is shown
+  private rate = 0; // of its station, steps a second; 0: not known
   private shownAt = NaN; // time of `tick`
   private fed = NaN; // time up to which the history is filled; NaN: it has to be filled anew
   private until = -Infinity; // time at which another station or geometry comes
   private settling: Promise<void> | undefined;
   private ahead: Promise<void> | undefined;
   private steps: Promise<void> = Promise.resolve();
+  private stepping = 0; // steps that are not done yet
+  private chosen = 0; // moments that were chosen so far, other than by steps
+  private waitsSince: number | undefined; // the shown pose is not that of the displayed moment since [ms]
+  private waitsLong = false;
 
   /// @param makeShapes  of the bytes of a Geometry
   constructor(
@@ -66,17 +73,29 @@ export class Player extends Listeners<Topic> implements Shown {
     return this.station?.rendersTorque ?? true;
   }
 
+  get recordedAt(): number {
+    return Number(this.recording.layout.begin) / 1e9 + this.playhead.position;
+  }
+
+  /// The shown pose is not that of the displayed moment.
+  private get away(): boolean {
+    const { position } = this.playhead;
+    return !(Math.abs(position - this.shownAt) <= kOldPose) || this.lookup.missing(position, this.rate);
+  }
+
   /// The recording has no pose of the displayed moment: steps are missing, or there was no station.
   get hole(): boolean {
-    return !this.loading && !(Math.abs(this.playhead.position - this.shownAt) <= kOldPose);
+    return !this.loading && this.away;
   }
 
+  /// While a moment is read, the one before stays for a short time, so that nothing flickers.
   get lost(): boolean {
-    return !this.tick || !isMeasured(this.tick) || this.hole;
+    return !this.tick || !isMeasured(this.tick) || (this.away && (!this.loading || this.waitsLong));
   }
 
+  /// Likewise if the object in the picture is not that of the displayed moment.
   get viewDead(): boolean {
-    return this.lost;
+    return this.lost || this.geometry === undefined;
   }
 
   get oldCurves(): OldCurves {
@@ -94,26 +113,52 @@ export class Player extends Listeners<Topic> implements Shown {
 
   /// Shows another moment, as soon as it is read.
   seek(time: number): void {
+    ++this.chosen;
+    this.go(time);
+  }
+
+  /// Shows the first pose. It may come long after the begin.
+  async seekFirst(): Promise<void> {
+    this.seek(0);
+    const { chosen } = this;
+    try {
+      const first = await this.lookup.poseAfter(-kJustBefore);
+      if (first && first.time > kOldPose && chosen === this.chosen) this.seek(first.time);
+    } catch (reason) {
+      this.fail(reason);
+    }
+  }
+
+  private go(time: number): void {
     this.playhead.seek(time);
     this.fed = NaN;
     this.tell("own");
     void this.settle();
   }
 
-  /// Goes by whole poses. @param direction  1: to the next one, -1: to the one before
+  /// Goes by whole poses. One step waits at most: a key that is held down asks for more than can be read.
+  /// @param direction  1: to the next one, -1: to the one before
   step(direction: 1 | -1): Promise<void> {
     this.playhead.pause();
-    this.steps = this.steps.then(async () => {
-      const from = Number.isNaN(this.shownAt) ? this.playhead.position : this.shownAt;
-      try {
-        const next = await (direction > 0 ? this.lookup.poseAfter(from) : this.lookup.last("/pose", from - kJustBefore));
-        if (next) this.seek(next.time);
-        await this.settling;
-      } catch (reason) {
-        this.fail(reason);
-      }
-    });
+    if (this.stepping >= 2) return this.steps;
+    ++this.stepping;
+    const { chosen } = this;
+    this.steps = this.steps.then(() => this.goStep(direction, chosen)).finally(() => --this.stepping);
     return this.steps;
+  }
+
+  /// @param chosen  `chosen` when the step was asked for: a moment that was chosen later has precedence
+  private async goStep(direction: 1 | -1, chosen: number): Promise<void> {
+    await this.settling;
+    const from = Number.isNaN(this.shownAt) ? this.playhead.position : this.shownAt;
+    try {
+      const next = await (direction > 0 ? this.lookup.poseAfter(from) : this.lookup.last("/pose", from - kJustBefore));
+      if (chosen !== this.chosen || this.playhead.playing) return;
+      if (next) this.go(next.time);
+      await this.settling;
+    } catch (reason) {
+      this.fail(reason);
+    }
   }
 
   /// Tries again what could not be read.
@@ -128,7 +173,9 @@ export class Player extends Listeners<Topic> implements Shown {
     const soon = Math.min(playhead.length, playhead.position + kFrame * playhead.speed);
     const ready = !this.settling && !Number.isNaN(this.fed) && this.lookup.ready(this.fed, soon);
     playhead.frame(now, !ready);
-    if (ready && playhead.position < this.fed) this.seek(playhead.position); // from the end to the beginning
+    this.waitsSince = this.loading && this.away ? (this.waitsSince ?? now) : undefined;
+    this.waitsLong = this.waitsSince !== undefined && now - this.waitsSince > kLongRead;
+    if (ready && playhead.position < this.fed) this.go(playhead.position); // from the end to the beginning
     else if (ready && playhead.position > this.fed) this.feed(playhead.position);
     if (playhead.playing && !this.settling) this.loadAhead();
   }
@@ -152,7 +199,7 @@ export class Player extends Listeners<Topic> implements Shown {
       await this.useStation(Math.max(at, pose?.time ?? at));
       this.show(pose);
       if (this.playhead.position !== at) continue; // another moment was chosen meanwhile
-      await this.lookup.load(at - kHistorySeconds, at);
+      await this.lookup.load(at - kHistorySeconds, at + kOldPose); // a gap is written behind the missing steps
       if (this.playhead.position !== at) continue;
       this.history.clear();
       this.light = new VerdictLight();
@@ -174,7 +221,7 @@ export class Player extends Listeners<Topic> implements Shown {
   /// Goes on to a time whose chunks are at hand.
   private feed(to: number): void {
     if (to >= this.until) {
-      this.seek(to); // another station or object
+      this.go(to); // another station or object
       return;
     }
     const poses = this.lookup.poses(this.fed, to);
@@ -194,16 +241,20 @@ export class Player extends Listeners<Topic> implements Shown {
     this.light.feed(tick, tick.time);
   }
 
-  /// The curves end where the steps do, not at the displayed moment.
+  /// The curves end where the steps do, not at the displayed moment. A hole takes no more of the history than poses would.
   private recordHole(at: number): void {
     if (!this.tick || !(at - this.shownAt > kOldPose)) return;
+    const time = this.tick.time + at - this.shownAt;
+    if (time - this.history.end < kPoseInterval) return;
     this.row.fill(NaN);
-    this.history.push(this.tick.time + at - this.shownAt, this.row);
+    this.history.push(time, this.row);
   }
 
   private show(pose: Timed<Uint8Array> | undefined): void {
     this.tick = pose && fromBinary(TickSchema, pose.value);
     this.shownAt = pose?.time ?? NaN;
+    this.waitsSince = undefined;
+    this.waitsLong = false;
     this.tell("tick");
   }
 
@@ -215,17 +266,18 @@ export class Player extends Listeners<Topic> implements Shown {
     this.tell("state");
     const geometry = await this.lookup.last("/geometry", at);
     const place = geometry ? `${geometry.chunk} ${geometry.time}` : "";
-    if (geometry && place !== this.shape) {
-      const made = this.shapes.get(place) ?? (await this.makeShapes(geometry.value.slice().buffer).catch(() => undefined));
-      this.shapesTrouble = made === undefined;
+    if (place !== this.shape) {
+      const made = geometry && (this.shapes.get(place) ?? (await this.makeShapes(geometry.value.slice().buffer).catch(() => undefined)));
+      this.shapesTrouble = geometry !== undefined && made === undefined;
       this.shape = place;
+      this.rate = geometry ? rateOf(geometry.value) : 0;
       if (made) {
         this.shapes.delete(place);
         this.shapes.set(place, made);
         for (const oldest of this.shapes.keys()) if (this.shapes.size > kShapes) this.shapes.delete(oldest);
-        this.geometry = made;
-        this.tell("geometry");
       }
+      this.geometry = made;
+      this.tell("geometry");
     }
     this.until = this.lookup.next(["/geometry", "/setup", "/change"], at);
   }

@@ -74,6 +74,25 @@ describe("the place of a moment", () => {
     expect(lookup.next(["/change"], 0)).toBeCloseTo(4.002, 6);
   });
 
+  it("is found where chunks overlap in time", async () => {
+    // An event is written late, so that the chunk before ends after geometry, station and poses of the chunk behind it.
+    const messages = [
+      geometry(0, 1), setup(0.001, { deviceName: "one" }), ...poses(0.02, 4), event(4.003, "ended", "late".repeat(300)),
+      geometry(4.001, 2), setup(4.001, { deviceName: "two" }), ...poses(4.0015, 6, 300),
+    ];
+    const { recording, decoder } = await madeRecording(messages);
+    const late = recording.chunks.findIndex(({ topics }) => topics.has("/event"));
+    expect(recording.chunks[late]!.end).toBeGreaterThan(recording.chunks[late + 1]!.begin);
+    const lookup = new Lookup(recording, new ChunkCache(recording, decoder));
+    expect(fromBinary(GeometrySchema, (await lookup.last("/geometry", 4.002))!.value).revision).toBe(2);
+    expect((await lookup.last("/setup", 4.002))!.value.device).toBe("two");
+    expect((await lookup.last("/setup", 4.0005))!.value.device).toBe("one");
+    expect(fromBinary(TickSchema, (await lookup.last("/pose", 4.002))!.value).tick).toBe(300n);
+    await lookup.load(0, 6);
+    expect(lookup.next(["/geometry"], 3)).toBeCloseTo(4.001, 6);
+    expect(lookup.poses(3.99, 4.002).map(({ value }) => fromBinary(TickSchema, value).tick)).toEqual([300n]);
+  });
+
   it("has all poses of a stretch, each once and in order", async () => {
     const { lookup, times } = await twoStations();
     await lookup.load(3.5, 9.5);

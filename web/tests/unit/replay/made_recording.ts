@@ -78,6 +78,7 @@ export async function bytesOf(messages: readonly Message[], { topics = ["/setup"
 export interface MadeSource extends Source {
   reads: number;
   gone: boolean; // answers nothing any more
+  held: Promise<void> | undefined; // answers only then
 }
 
 export function sourceOf(bytes: Uint8Array): MadeSource {
@@ -85,11 +86,13 @@ export function sourceOf(bytes: Uint8Array): MadeSource {
     name: "made.mcap",
     reads: 0,
     gone: false,
+    held: undefined,
     size: () => Promise.resolve(BigInt(bytes.length)),
-    read: (offset, length) => {
-      if (made.gone) return Promise.reject(new SourceError("gone", "made.mcap"));
+    read: async (offset, length) => {
+      await made.held;
+      if (made.gone) throw new SourceError("gone", "made.mcap");
       ++made.reads;
-      return Promise.resolve(bytes.slice(Number(offset), Number(offset + length)));
+      return bytes.slice(Number(offset), Number(offset + length));
     },
   };
   return made;

@@ -5,7 +5,7 @@ import { GeometrySchema } from "../../../src/gen/phalanx/geometry_pb";
 import { Player } from "../../../src/replay/player";
 import type { Shapes } from "../../../src/view3d/shapes";
 import { kHistorySeconds } from "../../../src/state/store";
-import { change, forceAt, forceOf, geometry, kRate, madeRecording, pose, poses, setup } from "./made_recording";
+import { change, forceAt, forceOf, gap, geometry, kRate, madeRecording, pose, poses, setup } from "./made_recording";
 
 type Message = Parameters<typeof madeRecording>[0][number];
 const kFrameMs = 20;
@@ -14,15 +14,17 @@ const revisionOf = (shapes: Shapes | undefined) => Number(shapes?.jointName[0] ?
 async function playerOf(messages: readonly Message[]) {
   const { recording, source, decoder } = await madeRecording(messages);
   const made = { shapes: 0 };
+  const broken = new Set<number>(); // revisions that cannot be made into shapes
   const player = new Player(recording, decoder, (bytes) => {
     ++made.shapes;
-    return Promise.resolve({ jointName: [String(fromBinary(GeometrySchema, new Uint8Array(bytes)).revision)] } as unknown as Shapes);
+    const { revision } = fromBinary(GeometrySchema, new Uint8Array(bytes));
+    return broken.has(revision) ? Promise.reject(new Error("no shapes")) : Promise.resolve({ jointName: [String(revision)] } as unknown as Shapes);
   });
   let now = 0;
   const seen: bigint[] = [];
   player.on(["tick"], () => player.tick && seen.push(player.tick.tick));
   return {
-    player, source, made, seen,
+    player, source, made, broken, seen,
     at: async (time: number) => {
       player.seek(time);
       await player.settle();
@@ -96,9 +98,8 @@ describe("a recording that is shown", () => {
     await player.step(1);
     expect(player.tick!.tick).toBe(number + 1n);
     void player.step(-1);
-    void player.step(-1);
     await player.step(-1);
-    expect(player.tick!.tick).toBe(number - 2n);
+    expect(player.tick!.tick).toBe(number - 1n);
     await at(0);
     await player.step(-1);
     expect(player.tick!.tick).toBe(1n);
@@ -106,6 +107,81 @@ describe("a recording that is shown", () => {
     const last = player.tick!.tick;
     await player.step(1);
     expect(player.tick!.tick).toBe(last);
+  });
+
+  it("goes from the moment that was chosen last, and not back to a step that was asked for before it", async () => {
+    const { player, at } = await simple();
+    await at(10);
+    player.seek(0);
+    await player.step(1);
+    expect(player.tick!.tick).toBe(2n);
+    const step = player.step(1);
+    player.seek(20);
+    await step;
+    await player.settle();
+    expect(player.playhead.position).toBe(20);
+  });
+
+  it("lets one step wait, not all those that a held key asks for", async () => {
+    const { player, at } = await simple();
+    await at(10);
+    const number = player.tick!.tick;
+    let last = Promise.resolve();
+    for (let i = 0; i < 50; ++i) last = player.step(1);
+    await last;
+    expect(player.tick!.tick).toBe(number + 2n);
+  });
+
+  it("does not show the hand and the forces of one moment as those of another while that is read", async () => {
+    const { player, source, at, run } = await simple();
+    await at(2);
+    let answer = () => {};
+    source.held = new Promise((resolve) => (answer = resolve));
+    player.seek(25);
+    await run(0.1);
+    expect([player.loading, player.viewDead]).toEqual([true, false]); // nothing flickers
+    await run(0.4);
+    expect([player.loading, player.lost, player.viewDead, player.hole]).toEqual([true, true, true, false]);
+    answer();
+    await player.settle();
+    expect([player.lost, player.viewDead]).toEqual([false, false]);
+  });
+
+  it("has no hand where a gap says that steps are missing, however short, and curves as far back as elsewhere", async () => {
+    const { player, at, run, rows } = await playerOf([
+      geometry(0, 1, 200), setup(0.001), ...poses(0.02, 3), gap(3.2, 600n, 639n, "late"), ...poses(3.2, 4, 400), ...poses(12, 13, 500),
+    ]);
+    for (const [moment, missing] of [[2.99, false], [3.1, true], [3.19, true], [3.21, false], [3.9, false]] as const) {
+      await at(moment);
+      expect([player.hole, player.viewDead], `at ${moment}`).toEqual([missing, missing]);
+    }
+    player.playhead.setSpeed(0.25);
+    player.playhead.play();
+    await run(30);
+    expect(player.playhead.position).toBeGreaterThan(10);
+    expect(rows()[0]).toBeLessThan(player.playhead.position - kHistorySeconds + 0.5);
+  });
+
+  it("has no object where none is recorded yet, or where it cannot be made into shapes", async () => {
+    const { player, at, broken } = await playerOf([setup(0), ...poses(0.02, 3), geometry(3, 1), ...poses(3.01, 6, 200), geometry(6, 2), ...poses(6.01, 9, 400)]);
+    broken.add(2);
+    const shown = () => [revisionOf(player.geometry), player.viewDead, player.shapesTrouble];
+    for (const [moment, is] of [[4, [1, false, false]], [2, [0, true, false]], [4, [1, false, false]], [7, [0, true, true]], [5, [1, false, false]]] as const) {
+      await at(moment);
+      expect(shown(), `at ${moment}`).toEqual(is);
+      expect(player.lost).toBe(false); // forces and angles are those of the moment
+    }
+  });
+
+  it("opens at the first pose, also where it comes long after the begin", async () => {
+    const { player } = await playerOf([setup(0), geometry(0.5, 1), ...poses(3, 5)]);
+    await player.seekFirst();
+    await player.settle();
+    expect([player.playhead.position, player.tick!.tick]).toEqual([3, 1n]);
+    const { player: other } = await simple();
+    await other.seekFirst();
+    await other.settle();
+    expect([other.playhead.position, other.tick!.tick]).toEqual([0, 1n]);
   });
 
   it("has the object and the station of the moment, also when it plays across their change, and makes each shape once", async () => {
