@@ -20,6 +20,7 @@ export interface PlotPanel {
   draw(): void;
   update(): void; // what follows the clock: whether the curves are of now
   setTheme(theme: ThemeName): void;
+  dispose(): void;
 }
 
 function firstKinds(): Set<PlotKind> {
@@ -103,10 +104,12 @@ export function plotPanel(source: Shown, theme: ThemeName, pausing?: Pausing): P
     el("div", { class: "switches" }, paused, pause, button(words.csv, () => saveCsv(source), { title: words.csvLong, "aria-label": words.csvLong }), png),
   );
   const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, dead));
-  new ResizeObserver(() => {
+  const resizing = new ResizeObserver(() => {
     for (const one of charts.values()) one.resize();
-  }).observe(area);
-  queueMicrotask(rebuild);
+  });
+  resizing.observe(area);
+  let disposed = false;
+  queueMicrotask(() => disposed || rebuild());
   return {
     element,
     draw: () => {
@@ -116,6 +119,12 @@ export function plotPanel(source: Shown, theme: ThemeName, pausing?: Pausing): P
     setTheme: (next) => {
       colours = next;
       for (const one of charts.values()) one.setTheme(next);
+    },
+    dispose: () => {
+      disposed = true;
+      resizing.disconnect();
+      for (const one of charts.values()) one.dispose();
+      charts.clear();
     },
   };
 }

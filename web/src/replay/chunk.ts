@@ -13,6 +13,7 @@ export type Topic = "/pose" | "/geometry" | "/event" | "/gap" | "/setup" | "/cha
 /// What is needed to read a chunk by itself.
 export interface Layout {
   readonly begin: bigint; // of the recording, UTC [ns]
+  readonly topics: ReadonlyMap<number, Topic>; // by channel, of those that this program wrote
   readonly channels: readonly McapTypes.TypedMcapRecords["Channel"][];
 }
 
@@ -55,7 +56,14 @@ export interface ChunkSurvey extends Pick<ChunkContent, "events" | "gaps" | "sta
 }
 export const kSurveyRow = 1 + kDigits;
 
-export const decompressHandlers: McapTypes.DecompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
+export const kLargestChunk = 1 << 28; // [bytes], as stored and as decompressed: a damaged length may be anything
+
+function decompressed(bytes: Uint8Array, size: bigint): Uint8Array {
+  if (size > kLargestChunk) throw new Error(`a chunk of ${size} bytes`);
+  return decompress(bytes, new Uint8Array(Number(size)));
+}
+
+export const decompressHandlers: McapTypes.DecompressHandlers = { zstd: decompressed };
 
 const secondsSince = (begin: bigint, time: bigint) => Number(time - begin) / 1e9;
 
@@ -67,10 +75,9 @@ function channelRecords(layout: Layout): Uint8Array {
 }
 
 /// @param bytes  of the chunk's record
-/// @throws Error if they are damaged or encrypted
+/// @throws Error if they are damaged, incomplete or encrypted
 export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
-  const topics = new Map(layout.channels.map(({ id, topic }) => [id, topic]));
-  const reader = new McapStreamReader({ noMagicPrefix: true, decompressHandlers, validateCrcs: true });
+  const reader = new McapStreamReader({ noMagicPrefix: true, includeChunks: true, decompressHandlers, validateCrcs: true });
   reader.append(channelRecords(layout));
   reader.append(bytes);
   const poses: Timed<Uint8Array>[] = [];
@@ -79,11 +86,13 @@ export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
   const gaps: Timed<GapFacts>[] = [];
   const stations: Timed<StationFacts>[] = [];
   const changes: Timed<ChangeFacts>[] = [];
+  let whole = false; // a chunk was read
   for (let record; (record = reader.nextRecord()); ) {
+    whole ||= record.type === "Chunk";
     if (record.type !== "Message") continue;
     const { data } = record;
     const time = secondsSince(layout.begin, record.logTime);
-    switch (topics.get(record.channelId) as Topic | undefined) {
+    switch (layout.topics.get(record.channelId)) {
       case "/pose":
         poses.push({ time, value: data.slice() }); // a view would keep the whole chunk
         break;
@@ -110,6 +119,7 @@ export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
         break;
     }
   }
+  if (!whole || reader.bytesRemaining() > 0) throw new Error("no whole chunk");
   return { poses, geometries, events, gaps, stations, changes };
 }
 

@@ -2,15 +2,22 @@
 // The decoded chunks around the displayed moment. The oldest ones are dropped.
 import type { ChunkContent } from "./chunk";
 import { readRun, runsOf } from "./chunk_reader";
-import type { Decoder } from "./decoder";
+import { DecoderError, type Decoder } from "./decoder";
 import type { Recording } from "./recording";
 
 const kKept = 600; // chunks; one has 0.2 s, its poses take 20 kB
+const kKeptBytes = 1 << 28; // a geometry may take megabytes
+const kLeastKept = 16; // chunks, however large: playing needs the next ones
 
 const unreadable: ChunkContent = { poses: [], geometries: [], events: [], gaps: [], stations: [], changes: [] };
 
+function bytesOf({ poses, geometries }: ChunkContent): number {
+  return [...poses, ...geometries].reduce((sum, { value }) => sum + value.length, 0);
+}
+
 export class ChunkCache {
   private readonly kept = new Map<number, ChunkContent>(); // the least recently used first
+  private bytes = 0; // of those
   private readonly loading = new Map<number, Promise<void>>();
   private readonly broken = new Set<number>();
 
@@ -18,11 +25,16 @@ export class ChunkCache {
     private readonly recording: Recording,
     private readonly decoder: Decoder,
     private readonly most = kKept,
+    private readonly mostBytes = kKeptBytes,
   ) {}
 
   /// Chunks that could not be decoded.
   get damaged(): number {
     return this.broken.size;
+  }
+
+  isDamaged(chunk: number): boolean {
+    return this.broken.has(chunk);
   }
 
   get size(): number {
@@ -81,7 +93,8 @@ export class ChunkCache {
   private async decode(chunk: number, bytes: Uint8Array): Promise<ChunkContent> {
     try {
       return await this.decoder.decode(bytes);
-    } catch {
+    } catch (reason) {
+      if (reason instanceof DecoderError) throw reason;
       this.broken.add(chunk);
       return unreadable;
     }
@@ -89,9 +102,12 @@ export class ChunkCache {
 
   private keep(chunk: number, content: ChunkContent): void {
     this.kept.set(chunk, content);
-    for (const oldest of this.kept.keys()) {
-      if (this.kept.size <= this.most) break;
+    this.bytes += bytesOf(content);
+    for (const [oldest, dropped] of this.kept) {
+      const large = this.bytes > this.mostBytes && this.kept.size > kLeastKept;
+      if (this.kept.size <= this.most && !large) break;
       this.kept.delete(oldest);
+      this.bytes -= bytesOf(dropped);
     }
   }
 }

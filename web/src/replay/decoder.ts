@@ -2,8 +2,12 @@
 // Chunks are decompressed in another thread, so that neither view nor controls wait for it.
 import type { ChunkContent, ChunkSurvey, Layout } from "./chunk";
 
+/// The thread has failed: nothing more can be decoded.
+export class DecoderError extends Error {}
+
 export interface Decoder {
   /// @throws Error if the chunk is damaged or encrypted
+  /// @throws DecoderError
   decode(bytes: Uint8Array): Promise<ChunkContent>;
   survey(bytes: Uint8Array): Promise<ChunkSurvey>;
   close(): void;
@@ -47,11 +51,14 @@ export function threadDecoder(layout: Layout, open: () => ChunkWorker = ownThrea
     if (result) one?.done(result);
     else one?.failed(new Error(error));
   };
+  let broken = false;
   worker.onerror = () => {
-    for (const { failed } of waiting.values()) failed(new Error("the thread that reads chunks has failed"));
+    broken = true;
+    for (const { failed } of waiting.values()) failed(new DecoderError());
     waiting.clear();
   };
   function give<Result>(what: Task["what"], bytes: Uint8Array): Promise<Result> {
+    if (broken) return Promise.reject(new DecoderError());
     const id = ++tasks;
     const own = bytes.slice();
     return new Promise<Result>((done, failed) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What happened in a recording: markers, faults, stops, changes, gaps. A press goes there.
-import { button, el, setAttribute, setShown, setSwitch, switchButton } from "../panels/dom";
+import { button, el, setAttribute, setShown, setSwitch, setText, switchButton } from "../panels/dom";
 import { strings } from "../strings";
 import type { Overview } from "./overview";
 import { durationText } from "./times";
@@ -45,7 +45,8 @@ export function happenings({ events, stations, holes }: Pick<Overview, "events" 
 
 export interface EventList {
   readonly element: HTMLElement;
-  show(list: readonly Happening[]): void;
+  /// @param complete  there will be no more
+  show(list: readonly Happening[], complete: boolean): void;
   update(position: number): void; // marks the newest event at that time
 }
 
@@ -55,7 +56,9 @@ export function eventList(goTo: (time: number) => void): EventList {
   let current: HTMLElement | undefined;
   let markersOnly = false;
   const list = el("ol", { class: "happenings" });
-  const none = el("p", { class: "hint" }, words.noEvents);
+  let known = ""; // what `list` was built of
+  const none = el("p", { class: "hint" }, words.reading);
+  const more = el("p", { class: "hint", hidden: true });
   const only = switchButton(words.onlyMarkers, (on) => {
     markersOnly = on;
     setSwitch(only, on);
@@ -77,13 +80,19 @@ export function eventList(goTo: (time: number) => void): EventList {
     current = undefined;
     const shown = all.filter(({ kind }) => !markersOnly || kind === "marker");
     list.replaceChildren(...shown.slice(0, kMostShown).map(row));
+    setText(more, words.moreEvents(kMostShown.toLocaleString(strings.locale), shown.length.toLocaleString(strings.locale)));
+    setShown(more, shown.length > kMostShown);
     setShown(none, shown.length === 0);
     setShown(only, all.some(({ kind }) => kind === "marker"));
   }
   build();
   return {
-    element: el("div", { class: "event-list" }, only, none, list),
-    show(next) {
+    element: el("div", { class: "event-list" }, only, none, list, more),
+    show(next, complete) {
+      setText(none, complete ? words.noEvents : words.reading);
+      const content = JSON.stringify(next);
+      if (content === known) return; // a press and the focus outlast what does not change
+      known = content;
       all = next;
       build();
     },

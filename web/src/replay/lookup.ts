@@ -14,6 +14,7 @@ const lists = {
   "/setup": (content: ChunkContent) => content.stations,
   "/change": (content: ChunkContent) => content.changes,
 };
+const kMostUnreadable = 50; // chunks, about 10 s: behind them a lookup goes no farther back
 const kGapAhead = 0.25; // [s]: a gap whose end is farther away is seen by the age of the shown pose
 
 type Listed = keyof typeof lists;
@@ -64,11 +65,13 @@ export class Lookup {
   /// The last message of a topic at this time or before. @throws SourceError
   async last<Wanted extends Listed>(topic: Wanted, time: number): Promise<Placed<ValueOf<Wanted>> | undefined> {
     let newest: Placed<ValueOf<Wanted>> | undefined;
+    let unreadable = 0;
     for (let chunk = this.lastChunkAt(time); chunk >= 0; --chunk) {
       if (newest && this.ends[chunk]! < newest.time) break;
       const place = this.recording.chunks[chunk]!;
       if (place.begin > time || !place.topics.has(topic)) continue;
       const found = lastAt<ValueOf<Wanted>>(lists[topic](await this.cache.need(chunk)), time);
+      if (this.cache.isDamaged(chunk) && ++unreadable >= kMostUnreadable) break;
       if (found && !(newest && newest.time >= found.time)) newest = { ...found, chunk };
     }
     return newest;

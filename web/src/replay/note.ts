@@ -3,6 +3,7 @@
 import { button, el, setShown, setText } from "../panels/dom";
 import { isMeasured } from "../state/channels";
 import { strings } from "../strings";
+import type { Overview } from "./overview";
 import { kLongRead, type Player } from "./player";
 import { troubleText } from "./trouble";
 
@@ -13,27 +14,31 @@ export interface Note {
   update(now: number): void; // [ms]
 }
 
-export function note(player: Player): Note {
+/// @param again  tries again what could not be read
+export function note(player: Player, overview: Pick<Overview, "trouble">, again: () => void): Note {
   const text = el("p", { role: "status" });
   const alarm = el("p", { role: "alert" });
-  const retry = button(words.retry, () => player.retry());
+  const retry = button(words.retry, again);
   const element = el("div", { class: "replay-note", hidden: true }, text, alarm, retry);
+  const trouble = () => player.trouble ?? overview.trouble;
   let readingSince: number | undefined;
   function what(now: number): string {
     readingSince = player.loading ? (readingSince ?? now) : undefined;
-    if (player.trouble !== undefined) return "";
+    if (trouble() !== undefined) return "";
     if (readingSince !== undefined && now - readingSince > kLongRead) return words.reading;
     if (player.hole) return words.hole;
     if (player.tick && !isMeasured(player.tick)) return words.unmeasured;
     if (player.recording.count("/geometry") === 0) return words.noGeometry;
-    return player.shapesTrouble ? words.badShapes : "";
+    if (player.shapesTrouble) return words.badShapes;
+    return player.geometry ? "" : words.noGeometryYet;
   }
   return {
     element,
     update(now) {
       setText(text, what(now));
-      setText(alarm, player.trouble === undefined ? "" : `${words.cut} ${troubleText(player.trouble, player.recording.source.name)}`);
-      setShown(retry, player.trouble !== undefined);
+      const why = trouble();
+      setText(alarm, why === undefined ? "" : `${words.cut} ${troubleText(why, player.recording.source.name)}`);
+      setShown(retry, why !== undefined);
       setShown(element, text.textContent !== "" || alarm.textContent !== "");
     },
   };

@@ -3,7 +3,7 @@
 import { kDigits } from "../state/channels";
 import { kSurveyRow, lastAt, type ChunkSurvey, type EventFacts, type GapFacts, type Timed } from "./chunk";
 import { readRun, runsOf } from "./chunk_reader";
-import type { Decoder } from "./decoder";
+import { DecoderError, type Decoder } from "./decoder";
 import type { Recording } from "./recording";
 import type { StationFacts } from "./station_facts";
 
@@ -38,8 +38,10 @@ export class Overview {
   stations: Timed<StationFacts>[] = [];
   private rates: Timed<number>[] = [];
   private readonly gaps: Timed<GapFacts>[] = [];
-  private surveyed = 0; // chunks
+  private known: Hole[] | undefined; // `holes`, unless something was added since
+  private readonly surveyed = new Set<number>(); // chunks
   damaged = 0;
+  trouble: unknown; // why the survey has stopped before the end
 
   constructor(private readonly recording: Recording) {
     this.bins = Math.max(1, Math.min(kBins, Math.ceil(recording.seconds * kBinsPerSecond)));
@@ -48,11 +50,12 @@ export class Overview {
 
   /// Share of the recording that has been surveyed, 0 .. 1.
   get progress(): number {
-    return this.recording.chunks.length === 0 ? 1 : this.surveyed / this.recording.chunks.length;
+    return this.recording.chunks.length === 0 ? 1 : this.surveyed.size / this.recording.chunks.length;
   }
 
   binAt(time: number): number {
-    return Math.min(this.bins - 1, Math.max(0, Math.floor((time / this.recording.seconds) * this.bins)));
+    const { seconds } = this.recording;
+    return seconds > 0 ? Math.min(this.bins - 1, Math.max(0, Math.floor((time / seconds) * this.bins))) : 0;
   }
 
   /// Force on each digit around a time; undefined: not known yet, or no step.
@@ -68,14 +71,15 @@ export class Overview {
   }
 
   /// A gap is written before the first step behind it.
-  get holes(): Hole[] {
-    return this.gaps.map(({ time, value }) => {
+  get holes(): readonly Hole[] {
+    this.known ??= this.gaps.map(({ time, value }) => {
       const rate = this.rateAt(time);
       return { begin: Math.max(0, time - (rate > 0 ? value.steps / rate : 0)), end: time, gap: value };
     });
+    return this.known;
   }
 
-  add(survey: ChunkSurvey): void {
+  private add(chunk: number, survey: ChunkSurvey): void {
     const { forces } = survey;
     for (let row = 0; row + kSurveyRow <= forces.length; row += kSurveyRow) {
       const bin = kDigits * this.binAt(forces[row]!);
@@ -91,21 +95,34 @@ export class Overview {
     if (survey.stations.length > 0) this.stations = [...this.stations, ...survey.stations].sort(byTime);
     if (survey.rates.length > 0) this.rates = [...this.rates, ...survey.rates].sort(byTime);
     this.gaps.push(...survey.gaps);
-    ++this.surveyed;
+    if (survey.rates.length > 0 || survey.gaps.length > 0) this.known = undefined;
+    this.surveyed.add(chunk);
   }
 
-  /// Surveys the whole recording. Between two reads it lets others work.
-  /// @throws SourceError
+  /// Surveys what is not surveyed yet, in the best case the whole recording; `trouble` says why it ends earlier. Between two reads it
+  /// lets others work.
   async fill(decoder: Decoder, changed: () => void, signal: AbortSignal): Promise<void> {
+    this.trouble = undefined;
+    try {
+      await this.fillRest(decoder, changed, signal);
+    } catch (reason) {
+      this.trouble = reason;
+    }
+  }
+
+  private async fillRest(decoder: Decoder, changed: () => void, signal: AbortSignal): Promise<void> {
     const { chunks, source } = this.recording;
     for (const pass of surveyOrder(this.recording)) {
-      for (const run of runsOf(chunks, pass)) {
+      for (const run of runsOf(chunks, pass.filter((chunk) => !this.surveyed.has(chunk)))) {
         if (signal.aborted) return;
-        for (const bytes of await readRun(source, chunks, run)) {
-          const survey = await decoder.survey(bytes).catch(() => undefined);
+        for (const [i, bytes] of (await readRun(source, chunks, run)).entries()) {
+          const survey = await decoder.survey(bytes).catch((reason: unknown) => {
+            if (reason instanceof DecoderError) throw reason;
+            return undefined;
+          });
           if (signal.aborted) return;
           if (!survey) ++this.damaged;
-          this.add(survey ?? { forces: new Float64Array(), events: [], gaps: [], stations: [], rates: [] });
+          this.add(run[i]!, survey ?? { forces: new Float64Array(), events: [], gaps: [], stations: [], rates: [] });
         }
         changed();
         await new Promise((resolve) => setTimeout(resolve));

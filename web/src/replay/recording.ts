@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording as its index describes it: its length, and which chunk holds which times and topics.
 import { McapIndexedReader } from "@mcap/core";
-import { decompressHandlers, type Layout, type Topic } from "./chunk";
+import { decompressHandlers, kLargestChunk, type Layout, type Topic } from "./chunk";
 import type { Source } from "./source";
 
 /// noMcap: another kind of file; noIndex: the file has no end or is damaged; noPoses: it is no recording of this program; empty: no step.
@@ -57,6 +57,26 @@ async function readIndex(source: Source): Promise<McapIndexedReader> {
   }
 }
 
+/// As in src/record/recording/topics.h.
+const schemas: Readonly<Record<Topic, string>> = {
+  "/pose": "phalanx.wire.Tick",
+  "/geometry": "phalanx.wire.Geometry",
+  "/event": "phalanx.wire.Event",
+  "/gap": "phalanx.wire.Gap",
+  "/setup": "phalanx.wire.Setup",
+  "/change": "phalanx.wire.Change",
+};
+
+/// The channels of this program. Other programs use the same topics with other messages.
+function topicsOf({ channelsById, schemasById }: McapIndexedReader): Map<number, Topic> {
+  const found = new Map<number, Topic>();
+  for (const { id, topic, schemaId, messageEncoding } of channelsById.values()) {
+    const schema = schemas[topic as Topic] as string | undefined;
+    if (schema !== undefined && messageEncoding === "protobuf" && schemasById.get(schemaId)?.name === schema) found.set(id, topic as Topic);
+  }
+  return found;
+}
+
 async function versionOf(reader: McapIndexedReader): Promise<string> {
   for await (const { metadata } of reader.readMetadata({ name: "phalanx" })) return metadata.get("version") ?? "";
   return "";
@@ -66,15 +86,22 @@ async function versionOf(reader: McapIndexedReader): Promise<string> {
 export async function openRecording(source: Source): Promise<Recording> {
   const reader = await readIndex(source);
   const channels = [...reader.channelsById.values()];
-  const count = (wanted: Topic) => {
-    const id = channels.find(({ topic }) => topic === wanted)?.id;
-    return id === undefined ? 0 : Number(reader.statistics?.channelMessageCounts.get(id) ?? 0n);
-  };
-  if (!channels.some(({ topic }) => topic === "/pose")) throw new FileError("noPoses");
-  if (count("/pose") === 0 || !reader.statistics) throw new FileError("empty");
-  const begin = reader.statistics.messageStartTime;
+  const topics = topicsOf(reader);
+  const { statistics } = reader;
+  if (![...topics.values()].includes("/pose")) throw new FileError("noPoses");
+  if (!statistics) throw new FileError("noIndex", "no statistics");
+  const messages = (id: number) => Number(statistics.channelMessageCounts.get(id) ?? 0n);
+  const count = (wanted: Topic) => [...topics].reduce((sum, [id, topic]) => sum + (topic === wanted ? messages(id) : 0), 0);
+  if (count("/pose") === 0) throw new FileError("empty");
+  const begin = statistics.messageStartTime;
   const since = (time: bigint) => Number(time - begin) / 1e9;
-  const names = new Map(channels.map(({ id, topic }) => [id, topic]));
+  const bytes = await source.size();
+  const all = new Set(topics.values());
+  /// A chunk without an index of its messages may hold every topic.
+  const topicsIn = (ids: readonly number[]) => (ids.length === 0 ? all : new Set(ids.flatMap((id) => topics.get(id) ?? [])));
+  for (const { chunkStartOffset, chunkLength } of reader.chunkIndexes) {
+    if (chunkLength > kLargestChunk || chunkStartOffset + chunkLength > bytes) throw new FileError("noIndex", "a chunk outside the file");
+  }
   const chunks = [...reader.chunkIndexes]
     .sort((a, b) => Number(a.chunkStartOffset - b.chunkStartOffset))
     .map((chunk) => ({
@@ -82,14 +109,14 @@ export async function openRecording(source: Source): Promise<Recording> {
       length: Number(chunk.chunkLength),
       begin: since(chunk.messageStartTime),
       end: since(chunk.messageEndTime),
-      topics: new Set([...chunk.messageIndexOffsets.keys()].map((id) => names.get(id) ?? "")),
+      topics: topicsIn([...chunk.messageIndexOffsets.keys()]),
     }));
   return {
     source,
-    layout: { begin, channels },
+    layout: { begin, topics, channels },
     chunks,
-    seconds: since(reader.statistics.messageEndTime),
-    bytes: Number(await source.size()),
+    seconds: since(statistics.messageEndTime),
+    bytes: Number(bytes),
     version: await versionOf(reader).catch(() => ""),
     count,
   };

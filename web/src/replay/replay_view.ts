@@ -63,11 +63,14 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
   };
   const event = (direction: 1 | -1) => {
     const { position } = player.playhead;
-    const kHere = 0.05; // [s]: an event so near is the displayed one
+    const kHere = 1e-6; // [s]: an event so near is the displayed one
     const next = direction > 0 ? list.find(({ time }) => time > position + kHere) : [...list].reverse().find(({ time }) => time < position - kHere);
     if (next) seek(next.time);
   };
-  const over = note(player);
+  const over = note(player, overview, () => {
+    player.retry();
+    if (overview.trouble !== undefined) survey();
+  });
   const watermark = el("span", { class: "watermark", "aria-hidden": "true" }, strings.replay.watermark);
   const numbers = readouts(player, silentDigits(player));
   const frame = viewFrame(player, [watermark, over.element]);
@@ -82,17 +85,18 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
   let drawnAt = -Infinity;
   let stale = true; // the overview has grown since it was drawn
   let dead: boolean | undefined; // the view
-  void overview
-    .fill(surveyor, () => (stale = true), ended.signal)
-    .catch((reason: unknown) => (player.trouble ??= reason))
-    .finally(() => surveyor.close());
+  const survey = () => void overview.fill(surveyor, () => (stale = true), ended.signal);
+  survey();
   void (async () => {
     const view = frame.load(theme);
     const { plotPanel } = await import("../plots/plot_panel");
-    plots = plotPanel(player, colours);
-    plotPlace.append(plots.element);
+    if (!ended.signal.aborted) {
+      plots = plotPanel(player, colours);
+      plotPlace.append(plots.element);
+    }
     await view;
-    dead = undefined; // the view has not heard yet
+    if (ended.signal.aborted) frame.view()?.dispose();
+    dead = undefined; // the next frame tells the view
   })();
 
   let readAt = -Infinity;
@@ -120,7 +124,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
         stale = false;
         drawnAt = now;
         list = happenings(overview);
-        events.show(list);
+        events.show(list, overview.progress === 1);
         track.show(list);
       }
       events.update(player.playhead.position);
@@ -148,6 +152,8 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
     close() {
       ended.abort();
       decoder.close();
+      surveyor.close();
+      plots?.dispose();
       frame.view()?.dispose();
       dock.remove();
       delete document.documentElement.dataset["view"];

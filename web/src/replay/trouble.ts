@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why a recording cannot be opened, in words.
 import { strings } from "../strings";
+import { DecoderError } from "./decoder";
 import { FileError } from "./recording";
 import { SourceError } from "./source";
 
@@ -16,6 +17,7 @@ export function troubleText(reason: unknown, name: string): string {
     const texts = { noMcap: words.noMcap, noIndex: words.noIndex(name), noPoses: words.noPoses, empty: words.empty };
     return texts[reason.trouble];
   }
+  if (reason instanceof DecoderError) return words.thread;
   return words.unknown(reason instanceof Error ? reason.message : String(reason));
 }
 

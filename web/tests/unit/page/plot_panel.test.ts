@@ -92,6 +92,17 @@ describe("the plots", () => {
     for (const title of plots()) expect(textsOn(picture!)).toContain(title);
   });
 
+  it("leave nothing behind when they are disposed of", async () => {
+    const drawn = () => panel.element.querySelectorAll(".uplot").length;
+    expect(drawn()).toBe(1);
+    panel.dispose();
+    expect(drawn()).toBe(0);
+    panel = plotPanel(store, "dark", store);
+    panel.dispose(); // before they are built
+    await Promise.resolve();
+    expect(drawn()).toBe(0);
+  });
+
   it("say that they are old where there is no connection", () => {
     const said = panel.element.querySelector<HTMLElement>(".plot-offline")!;
     expect(said.hidden).toBe(true);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { ChunkCache } from "../../../src/replay/chunk_cache";
+import { decodeChunk } from "../../../src/replay/chunk";
+import { DecoderError } from "../../../src/replay/decoder";
 import { bytesOf, madeRecording, plainDecoder, poses, sourceOf } from "./made_recording";
 import { openRecording } from "../../../src/replay/recording";
 
@@ -39,6 +41,31 @@ describe("the cache of chunks", () => {
     expect(cache.damaged).toBe(1);
     expect(cache.get(2)!.poses).toEqual([]);
     expect(cache.get(3)!.poses.length).toBeGreaterThan(0);
+  });
+
+  it("takes a torn chunk, and bytes that are no chunk, for damaged, not for empty", async () => {
+    const { recording, source } = await madeRecording(poses(0, 1));
+    const { offset, length } = recording.chunks[1]!;
+    const bytes = await source.read(BigInt(offset), BigInt(length));
+    expect(decodeChunk(bytes, recording.layout).poses.length).toBeGreaterThan(0);
+    for (const part of [bytes.subarray(0, length - 1), bytes.subarray(0, 20), new Uint8Array(length), new Uint8Array()]) {
+      expect(() => decodeChunk(part, recording.layout), `${part.length} of ${length} bytes`).toThrow();
+    }
+  });
+
+  it("is bounded in bytes, too, but keeps what playing needs", async () => {
+    const { recording, decoder } = await madeRecording(poses(0, 5));
+    expect(recording.chunks.length).toBeGreaterThan(20);
+    const cache = new ChunkCache(recording, decoder, 600, 1);
+    await cache.load(0, recording.chunks.length);
+    expect(cache.size).toBe(16);
+  });
+
+  it("does not call chunks damaged that a failed thread did not decode", async () => {
+    const { recording } = await madeRecording(poses(0, 1));
+    const cache = new ChunkCache(recording, { decode: () => Promise.reject(new DecoderError()), survey: () => Promise.reject(new DecoderError()), close: () => {} });
+    await expect(cache.load(0, 1)).rejects.toThrow(DecoderError);
+    expect(cache.damaged).toBe(0);
   });
 
   it("tries again what the source refused", async () => {

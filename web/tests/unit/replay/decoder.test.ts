@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, it } from "vitest";
 import { decodeChunk, surveyChunk } from "../../../src/replay/chunk";
-import { threadDecoder, type ChunkWorker, type Task } from "../../../src/replay/decoder";
+import { DecoderError, threadDecoder, type ChunkWorker, type Task } from "../../../src/replay/decoder";
 import { event, forceAt, gap, geometry, madeRecording, poses, setup } from "./made_recording";
 
 /// A worker whose answers the test gives.
@@ -10,7 +10,7 @@ function fakeWorker(): { worker: ChunkWorker; tasks: Task[] } {
   return { tasks, worker: { onmessage: null, onerror: null, postMessage: (task) => tasks.push(task), terminate: () => {} } };
 }
 
-const layout = { begin: 0n, channels: [] };
+const layout = { begin: 0n, topics: new Map(), channels: [] };
 
 it("answers of the thread go to those who asked, in whatever order they come", async () => {
   const { worker, tasks } = fakeWorker();
@@ -23,12 +23,13 @@ it("answers of the thread go to those who asked, in whatever order they come", a
   await expect(first).rejects.toThrow("damaged");
 });
 
-it("what the thread owes when it fails is refused, not awaited for ever", async () => {
+it("tasks of a thread that has failed are refused, not awaited for ever", async () => {
   const { worker } = fakeWorker();
   const decoder = threadDecoder(layout, () => worker);
   const asked = decoder.decode(new Uint8Array([1]));
   worker.onerror!(new Event("error"));
-  await expect(asked).rejects.toThrow();
+  await expect(asked).rejects.toThrow(DecoderError);
+  await expect(decoder.survey(new Uint8Array([2]))).rejects.toThrow(DecoderError); // and what is asked for later
 });
 
 it("a chunk holds what was written, with times since the begin; its survey has the forces", async () => {

@@ -3,7 +3,7 @@
 import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 import { McapWriter } from "@mcap/core";
 import { GeometrySchema } from "../../../src/gen/phalanx/geometry_pb";
-import { ChangeSchema, EventSchema, GapSchema, SetupSchema } from "../../../src/gen/phalanx/recording_pb";
+import { ChangeSchema, EventSchema, GapSchema, SetupSchema, StepSchema } from "../../../src/gen/phalanx/recording_pb";
 import { TickSchema, type Tick } from "../../../src/gen/phalanx/tick_pb";
 import { decodeChunk, surveyChunk, type Layout } from "../../../src/replay/chunk";
 import type { Decoder } from "../../../src/replay/decoder";
@@ -45,7 +45,21 @@ export function poses(from: number, to: number, first = 1): Message[] {
   return made;
 }
 
-export async function bytesOf(messages: readonly Message[], { topics = ["/setup", "/change", "/step", "/pose", "/event", "/gap", "/geometry"], chunkSize = 900 } = {}): Promise<Uint8Array> {
+const kSchemas: Readonly<Record<string, string>> = {
+  "/setup": SetupSchema.typeName, "/change": ChangeSchema.typeName, "/step": StepSchema.typeName, "/pose": TickSchema.typeName,
+  "/event": EventSchema.typeName, "/gap": GapSchema.typeName, "/geometry": GeometrySchema.typeName,
+};
+
+const kWriting = {
+  topics: Object.keys(kSchemas) as readonly string[],
+  chunkSize: 900,
+  schemas: kSchemas,
+  encoding: "protobuf",
+  index: {} as { readonly useMessageIndex?: boolean; readonly useStatistics?: boolean },
+};
+
+export async function bytesOf(messages: readonly Message[], options: Partial<typeof kWriting> = {}): Promise<Uint8Array> {
+  const { topics, chunkSize, schemas, encoding, index } = { ...kWriting, ...options };
   const parts: Uint8Array[] = [];
   let size = 0;
   const writable = {
@@ -56,10 +70,13 @@ export async function bytesOf(messages: readonly Message[], { topics = ["/setup"
       return Promise.resolve();
     },
   };
-  const writer = new McapWriter({ writable, chunkSize });
+  const writer = new McapWriter({ writable, chunkSize, ...index });
   await writer.start({ profile: "", library: "phalanx" });
   const ids = new Map<string, number>();
-  for (const topic of topics) ids.set(topic, await writer.registerChannel({ topic, schemaId: 0, messageEncoding: "protobuf", metadata: new Map() }));
+  for (const topic of topics) {
+    const schemaId = await writer.registerSchema({ name: schemas[topic] ?? "", encoding: "protobuf", data: new Uint8Array() });
+    ids.set(topic, await writer.registerChannel({ topic, schemaId, messageEncoding: encoding, metadata: new Map() }));
+  }
   await writer.addMetadata({ name: "phalanx", metadata: new Map([["version", "0.1.0"]]) });
   let sequence = 0;
   for (const { topic, time, data } of messages) {

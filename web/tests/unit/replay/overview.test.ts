@@ -4,6 +4,7 @@ import { happenings } from "../../../src/replay/event_list";
 import { Overview, surveyOrder } from "../../../src/replay/overview";
 import type { ChunkPlace } from "../../../src/replay/recording";
 import { openRecording } from "../../../src/replay/recording";
+import { SourceError } from "../../../src/replay/source";
 import { bytesOf, event, forceAt, gap, geometry, kRate, madeRecording, plainDecoder, poses, setup, sourceOf } from "./made_recording";
 
 const never = new AbortController().signal;
@@ -55,6 +56,27 @@ describe("the overview", () => {
     expect(list[0]!.text).toContain("grasp_teapot");
     expect(list[2]).toMatchObject({ time: 7, text: "stimulus 1" });
     expect(overview.forcesAt(5)).toBe(undefined); // no step
+  });
+
+  it("goes on where it was when its source is back, and counts nothing twice", async () => {
+    const { recording, source, decoder } = await madeRecording([geometry(0, 1), setup(0), ...poses(0.01, 20), gap(21, 5n, 9n, "late"), event(22, "marker", "one")]);
+    const overview = new Overview(recording);
+    await overview.fill(decoder, () => (source.gone = overview.progress > 0), never);
+    expect(overview.trouble).toBeInstanceOf(SourceError);
+    expect(overview.progress).toBeLessThan(1);
+    const read = overview.progress;
+    source.gone = false;
+    await overview.fill(decoder, () => expect(overview.progress).toBeGreaterThanOrEqual(read), never);
+    expect([overview.trouble, overview.progress]).toEqual([undefined, 1]);
+    expect([overview.events.length, overview.holes.length, overview.stations.length]).toEqual([1, 1, 1]);
+  });
+
+  it("of a single step is one bin", async () => {
+    const { recording, decoder } = await madeRecording(poses(0, 0.01));
+    const overview = new Overview(recording);
+    await overview.fill(decoder, () => {}, never);
+    expect(recording.seconds).toBe(0);
+    expect(overview.forcesAt(0)![1]).toBeCloseTo(1, 5);
   });
 
   it("counts damaged chunks and reads the others; it ends when it is told to", async () => {

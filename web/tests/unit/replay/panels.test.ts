@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { beforeEach, describe, expect, it, vi } from "vitest";
+import { beforeEach, describe, expect, it } from "vitest";
 import { eventList, type Happening } from "../../../src/replay/event_list";
 import { listenToReplayKeys, type ReplayActions } from "../../../src/replay/replay_keys";
 import { SourceError } from "../../../src/replay/source";
@@ -49,7 +49,7 @@ describe("what happened", () => {
   it("is listed by time; a press goes there, and the newest one at the displayed moment is marked", () => {
     const gone: number[] = [];
     const events = eventList((time) => gone.push(time));
-    events.show(list);
+    events.show(list, true);
     const rows = () => [...events.element.querySelectorAll<HTMLButtonElement>(".happening")];
     rows()[1]!.click();
     expect(gone).toEqual([5]);
@@ -58,16 +58,40 @@ describe("what happened", () => {
       events.update(position);
       expect(marked(), `at ${position}`).toEqual(is);
     }
-    events.show(list.slice(0, 2));
+    events.show(list.slice(0, 2), true);
     events.update(100);
     expect(marked()).toEqual([1]);
+  });
+
+  it("keeps its entries, and the focus on one, while nothing is added", () => {
+    const events = eventList(() => {});
+    document.body.append(events.element);
+    events.show(list, false);
+    const entry = events.element.querySelectorAll<HTMLButtonElement>(".happening")[1]!;
+    entry.focus();
+    events.show(list.map((one) => ({ ...one })), true);
+    expect(entry.isConnected).toBe(true);
+    expect(document.activeElement).toBe(entry);
+    events.show([...list, { ...list[2]!, time: 11 }], true);
+    expect(events.element.querySelectorAll(".happening").length).toBe(4);
+  });
+
+  it("has no event only once all is read, and says how many are listed of very many", () => {
+    const events = eventList(() => {});
+    const hints = () => [...events.element.querySelectorAll<HTMLElement>(".hint")].filter(({ hidden }) => !hidden).map((hint) => hint.textContent);
+    events.show([], false);
+    expect(hints()).toEqual([words.reading]);
+    events.show([], true);
+    expect(hints()).toEqual([words.noEvents]);
+    events.show(Array.from({ length: 1200 }, (_, i) => ({ ...list[1]!, time: i })), true);
+    expect(hints()).toEqual([words.moreEvents("1,000", "1,200")]);
   });
 
   it("shows markers alone if that is wanted, and offers it where there are some", () => {
     const events = eventList(() => {});
     const only = events.element.querySelector<HTMLButtonElement>("[role=switch]")!;
     expect(only.hidden).toBe(true);
-    events.show(list);
+    events.show(list, true);
     expect(only.hidden).toBe(false);
     only.click();
     expect([...events.element.querySelectorAll(".happening-text")].map((row) => row.textContent)).toEqual(["stimulus 1"]);
@@ -119,5 +143,4 @@ it("a length is a clock's time, with hours where it has some", () => {
   expect(durationText(75.26)).toBe("01:15.2");
   expect(durationText(3599.99, 0)).toBe("59:59");
   expect(durationText(3727.3)).toBe("1:02:07.3");
-  vi.restoreAllMocks();
 });

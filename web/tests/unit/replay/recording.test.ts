@@ -36,6 +36,40 @@ describe("a recording", () => {
     expect(await said(await bytesOf([setup(0)]))).toBe(words.empty);
   });
 
+  it("of another program is refused, also where its topics have the same names", async () => {
+    const messages = poses(0, 1);
+    expect(await said(await bytesOf(messages, { topics: ["/pose"], schemas: { "/pose": "geometry_msgs/msg/Pose" } }))).toBe(words.noPoses);
+    expect(await said(await bytesOf(messages, { topics: ["/pose"], encoding: "cdr" }))).toBe(words.noPoses);
+  });
+
+  it("without an index of messages is read all the same; without statistics it is called damaged, not empty", async () => {
+    const messages = [geometry(0, 1), setup(0.001), ...poses(0.01, 1)];
+    const recording = await openRecording(sourceOf(await bytesOf(messages, { index: { useMessageIndex: false } })));
+    expect(recording.chunks.every(({ topics }) => topics.has("/pose") && topics.has("/setup"))).toBe(true);
+    expect(await said(await bytesOf(messages, { index: { useStatistics: false } }))).toBe(words.noIndex("x.mcap"));
+  });
+
+  it("whose index leads out of the file is refused before anything of that length is read", async () => {
+    const source = sourceOf(await whole());
+    const size = await source.size();
+    const { chunks } = await openRecording(source);
+    const last = chunks.at(-1)!;
+    const bytes = await whole();
+    const view = new DataView(bytes.buffer);
+    for (let at = bytes.length - 8; at > last.offset + last.length; --at) { // the chunk's length in its index
+      if (view.getBigUint64(at, true) === BigInt(last.offset) && view.getBigUint64(at + 8, true) === BigInt(last.length)) view.setBigUint64(at + 8, 2n ** 60n, true);
+    }
+    let longest = 0n;
+    const bad = sourceOf(bytes);
+    const read = bad.read.bind(bad);
+    bad.read = (offset, length) => {
+      longest = length > longest ? length : longest;
+      return read(offset, length);
+    };
+    expect(troubleText(await openRecording(bad).catch((reason: unknown) => reason), "x.mcap")).toBe(words.noIndex("x.mcap"));
+    expect(longest).toBeLessThanOrEqual(size);
+  });
+
   it("whose index is damaged is not opened, whatever byte of it is", async () => {
     const bytes = await whole();
     let refused = 0;
