@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The start of the page that shows recordings. It has no connection to a station's device: it reads files and sends nothing.
 import type { Tick } from "./gen/phalanx/tick_pb";
-import { helpDialog } from "./panels/dialog";
+import { helpDialog, openDialog } from "./panels/dialog";
 import { button, el, setShown, setSwitch, setText, switchButton } from "./panels/dom";
 import { Look } from "./panels/look";
 import { openRecording, type Recording } from "./replay/recording";
@@ -30,6 +30,7 @@ declare global {
 }
 
 const words = strings.replay;
+const kNoStopMs = 8000; // so long the words on Stop can be read
 const kRemember = 400; // the address follows the displayed moment, at most so often [ms]
 
 let view: ReplayView | undefined;
@@ -56,17 +57,28 @@ setSwitch(light, look.theme === "light");
 setSwitch(large, look.large);
 const others = button(words.link, () => leave());
 const help = () => helpDialog({ dialogs }, words.keys.title, words.keys.rows, words.keys.note);
+const noStop = el("strong", { role: "alert" });
+let noStopTimer: ReturnType<typeof setTimeout> | undefined;
+
+/// A person who presses Esc may mean Stop, which is on another page.
+function escape(): void {
+  dialogs.querySelector(".dialog")?.dispatchEvent(new Event("phalanx-close"));
+  clearTimeout(noStopTimer);
+  setText(noStop, words.noStop);
+  noStopTimer = setTimeout(() => setText(noStop, ""), kNoStopMs);
+}
+
 const band = el(
   "header",
   { class: "header band" },
   what,
-  el("span", { class: "band-note" }, words.notLive),
+  el("span", { class: "band-note" }, words.notLive, " ", noStop),
   el("div", { class: "header-tools" }, others, light, large, button("?", help, { "aria-label": strings.look.help, title: strings.look.help })),
 );
 const start = startPanel({
   list: () => fetchList(),
-  openListed: (name) => void open(stationSource(name), 0, name),
-  openFile: (file) => void open(fileSource(file), 0),
+  openListed: (name) => void open(stationSource(name), undefined, name),
+  openFile: (file) => void open(fileSource(file)),
 });
 document.getElementById("opening")?.remove(); // what was painted until now
 document.getElementById("page")?.append(band, content, dialogs);
@@ -105,8 +117,9 @@ function leave(trouble = ""): void {
 
 let listed: string | undefined; // name of the open recording, if the station lists it
 
+/// @param time  the displayed moment; absent: that of the first pose
 /// @param name  as the station lists it; absent: a file of this computer
-async function open(source: Source, time: number, name?: string): Promise<void> {
+async function open(source: Source, time?: number, name?: string): Promise<void> {
   const mine = ++opening;
   start.say("");
   try {
@@ -119,9 +132,13 @@ async function open(source: Source, time: number, name?: string): Promise<void> 
     content.replaceChildren(...view.content);
     content.after(view.dock);
     show(recording);
-    view.player.seek(time);
+    if (time === undefined) void view.player.seekFirst();
+    else view.player.seek(time);
   } catch (reason) {
-    if (mine === opening) leave(troubleText(reason, source.name));
+    if (mine !== opening) return;
+    const why = troubleText(reason, source.name);
+    if (view) openDialog({ dialogs }, words.refused(source.name), [el("p", { role: "alert" }, why)]); // the open recording stays
+    else leave(why);
   }
 }
 
@@ -138,10 +155,12 @@ window.addEventListener("drop", (event) => {
   event.preventDefault();
   setShown(drop, false);
   const file = event.dataTransfer?.files[0];
-  if (file) void open(fileSource(file), 0);
+  if (file) void open(fileSource(file));
 });
 
 listenToReplayKeys(window, {
+  isOpen: () => view !== undefined,
+  escape,
   toggle: () => view?.toggle(),
   skip: (seconds) => view?.skip(seconds),
   pose: (direction) => void view?.player.step(direction),
@@ -182,7 +201,8 @@ const wanted = query.get("file");
 if (wanted !== null) {
   show(undefined);
   content.replaceChildren(start.element);
-  void open(stationSource(wanted), Number(query.get("t") ?? 0), wanted);
+  const time = query.get("t");
+  void open(stationSource(wanted), time === null ? undefined : Number(time), wanted);
 } else {
   leave();
 }

@@ -510,12 +510,14 @@ const en = {
 
   replay: {
     link: "Recordings",
-    linkHint: "Opens a page of its own. This page, with its Stop, stays.",
+    linkHint: "Opens a tab of its own, which covers this page and its Stop. The device goes on meanwhile.",
     title: (when: string) => `Recording of ${when} – Phalanx`,
     titleNone: "Recordings – Phalanx",
     noScript: "Recordings need JavaScript.",
     band: (when: string) => `Recording of ${when}`,
     notLive: "Not live. This page moves no device and stops none.",
+    noStop: "Nothing here stops a device. Stop is on the cockpit’s page.",
+    refused: (name: string) => `${name} is not opened`,
     watermark: "Recording",
     open: "Open a recording",
     station: "Recordings of this station",
@@ -531,6 +533,8 @@ const en = {
     drop: "Drop the recording here",
     trouble: {
       gone: "The station does not answer. Start it again, or open a file of this computer.",
+      changed: "This file was changed, moved or deleted after it was chosen. Choose it again.",
+      busy: "The station is busy with other requests. Try again.",
       refused: "This link may not read recordings: a recording is for the operator. Open the operator’s link.",
       missing: "The station does not have this recording.",
       noList: "This station offers no recordings. Open a file of this computer.",
@@ -612,6 +616,7 @@ const en = {
         ["+ −", "Nearer, farther"],
         ["Tab", "To the next control"],
         ["Enter", "Press a button or switch"],
+        ["Esc", "Close this list. It stops no device: Stop is on the cockpit’s page"],
         ["?", "This list"],
       ] as readonly (readonly [string, string])[],
     },

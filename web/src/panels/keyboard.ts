@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of the page. Space and Esc mean Stop and nothing else.
 import type { CameraPreset } from "../view3d/hand_view";
+import { kZoomStep } from "./view_frame";
 
 export interface KeyActions {
   stop(): void;
@@ -10,10 +11,10 @@ export interface KeyActions {
   zoom(factor: number): void;
 }
 
-const kZoomStep = 1.15;
 /// Least interval at which a key that is held down repeats Stop [ms].
 const kStopAgainMs = 200;
-const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
+/// Views of the camera by key.
+export const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
 const typed = new Set(["text", "search", "number", "email", "url", "tel", "password"]);
 
 /// Whether letters and figures go into it.

@@ -30,7 +30,7 @@ export function recordingChip(app: App): HTMLElement {
   return chip;
 }
 
-/// Opens recordings in a page of their own: this one, with Stop, stays.
+/// Opens recordings in a tab of their own: this page goes on, and is a tab away.
 export function recordingsLink(): HTMLElement {
   return el("p", {}, el("a", { href: "recording.html", target: "_blank", rel: "noopener" }, strings.replay.link), el("small", { class: "link-hint" }, strings.replay.linkHint));
 }

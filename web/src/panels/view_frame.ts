@@ -9,7 +9,7 @@ import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from
 import { savedMark, savedName } from "./saved_as";
 import { viewKey } from "./view_key";
 
-const kZoomStep = 1.15;
+export const kZoomStep = 1.15;
 const kOrbitStep = 0.08; // [rad] for a key
 const words = strings.view;
 type Part = keyof ShownParts;

@@ -56,6 +56,7 @@ export interface ChunkSurvey extends Pick<ChunkContent, "events" | "gaps" | "sta
 }
 export const kSurveyRow = 1 + kDigits;
 
+const kChunkRecord = 6; // the first byte of a chunk's record
 export const kLargestChunk = 1 << 28; // [bytes], as stored and as decompressed: a damaged length may be anything
 
 function decompressed(bytes: Uint8Array, size: bigint): Uint8Array {
@@ -77,7 +78,7 @@ function channelRecords(layout: Layout): Uint8Array {
 /// @param bytes  of the chunk's record
 /// @throws Error if they are damaged, incomplete or encrypted
 export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
-  const reader = new McapStreamReader({ noMagicPrefix: true, includeChunks: true, decompressHandlers, validateCrcs: true });
+  const reader = new McapStreamReader({ noMagicPrefix: true, decompressHandlers, validateCrcs: true });
   reader.append(channelRecords(layout));
   reader.append(bytes);
   const poses: Timed<Uint8Array>[] = [];
@@ -86,9 +87,7 @@ export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
   const gaps: Timed<GapFacts>[] = [];
   const stations: Timed<StationFacts>[] = [];
   const changes: Timed<ChangeFacts>[] = [];
-  let whole = false; // a chunk was read
   for (let record; (record = reader.nextRecord()); ) {
-    whole ||= record.type === "Chunk";
     if (record.type !== "Message") continue;
     const { data } = record;
     const time = secondsSince(layout.begin, record.logTime);
@@ -119,7 +118,7 @@ export function decodeChunk(bytes: Uint8Array, layout: Layout): ChunkContent {
         break;
     }
   }
-  if (!whole || reader.bytesRemaining() > 0) throw new Error("no whole chunk");
+  if (bytes[0] !== kChunkRecord || reader.bytesRemaining() > 0) throw new Error("no whole chunk");
   return { poses, geometries, events, gaps, stations, changes };
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of a recording's page. Space plays and pauses; buttons are pressed with Enter, as in the cockpit.
-import { isTextField } from "../panels/keyboard";
+import { isTextField, presets } from "../panels/keyboard";
+import { kZoomStep } from "../panels/view_frame";
 import type { CameraPreset } from "../view3d/hand_view";
 
 export interface ReplayActions {
+  isOpen(): boolean; // a recording is open
+  escape(): void;
   toggle(): void;
   skip(seconds: number): void;
   pose(direction: 1 | -1): void;
@@ -14,9 +17,6 @@ export interface ReplayActions {
   camera(preset: CameraPreset): void;
   zoom(factor: number): void;
 }
-
-const kZoomStep = 1.15;
-const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
 
 function action(key: string, shift: boolean, actions: ReplayActions): (() => void) | undefined {
   const preset = presets[key];
@@ -47,15 +47,16 @@ function action(key: string, shift: boolean, actions: ReplayActions): (() => voi
       return () => actions.zoom(kZoomStep);
     case "-":
       return () => actions.zoom(1 / kZoomStep);
-    case "?":
-      return () => actions.help();
     default:
       return undefined;
   }
 }
 
 export function listenToReplayKeys(source: Window, actions: ReplayActions): void {
-  const isPlay = (event: KeyboardEvent) => event.key === " " && !isTextField(event.target);
+  /// Dialogs, and the page on which a recording is chosen, keep their keys.
+  const isForRecording = ({ target }: KeyboardEvent) =>
+    actions.isOpen() && !isTextField(target) && !(target instanceof Element && target.closest("[role=dialog]"));
+  const isPlay = (event: KeyboardEvent) => event.key === " " && isForRecording(event);
   const swallow = (event: Event) => {
     event.preventDefault();
     event.stopImmediatePropagation();
@@ -73,7 +74,8 @@ export function listenToReplayKeys(source: Window, actions: ReplayActions): void
   // What has the focus takes its keys first: the view turns, a plot reads its values.
   source.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || isTextField(event.target) || event.ctrlKey || event.altKey || event.metaKey) return;
-    const act = action(event.key, event.shiftKey, actions);
+    const always = { Escape: actions.escape, "?": actions.help }[event.key];
+    const act = always ?? (isForRecording(event) ? action(event.key, event.shiftKey, actions) : undefined);
     if (!act) return;
     act();
     event.preventDefault();

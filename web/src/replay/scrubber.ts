@@ -9,6 +9,7 @@ import { drawStrip } from "./strip";
 import { durationText } from "./times";
 
 const words = strings.replay;
+const kArrowStep = 1; // [s] for ArrowUp and ArrowDown; the page's keys do the others
 const kNear = 6; // a pointer so near to an event is on it [px]
 
 export interface Scrubber {
@@ -37,7 +38,7 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
   const scale = el("span", { class: "lane-scale" });
   const digits = strings.digits.map((name, digit) => el("span", { "data-digit": digit }, name));
   const names = el("div", { class: "lane-names", "aria-hidden": "true", title: words.laneHint }, scale, ...digits);
-  const progress = el("p", { class: "hint strip-progress", role: "status" });
+  const progress = el("p", { class: "hint strip-progress" });
 
   const timeAt = (x: number) => {
     const box = track.getBoundingClientRect();
@@ -66,6 +67,13 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
     tip.style.left = share < 0.5 ? `${100 * share}%` : "auto";
     tip.style.right = share < 0.5 ? "auto" : `${100 * (1 - share)}%`;
   }
+  let displayed = 0; // moment
+  track.addEventListener("keydown", (event) => {
+    const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (direction === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+    seek(displayed + direction * kArrowStep);
+    event.preventDefault();
+  });
   let dragging = false;
   track.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
@@ -94,6 +102,7 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
       draw();
     },
     update(position) {
+      displayed = position;
       head.style.left = `${seconds > 0 ? (100 * position) / seconds : 0}%`;
       setAttribute(track, "aria-valuenow", position.toFixed(1));
       setAttribute(track, "aria-valuetext", words.positionText(durationText(position), durationText(seconds)));

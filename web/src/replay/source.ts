@@ -8,9 +8,9 @@ export interface Source {
   read(offset: bigint, length: bigint): Promise<Uint8Array>;
 }
 
-/// gone: there is no answer; refused: this page may not read it; missing: there is no such file; other: another answer, such as a file
-/// that has changed.
-export type SourceTrouble = "gone" | "refused" | "missing" | "other";
+/// gone: there is no answer; busy: ask again; refused: this page may not read it; missing: there is no such file; changed: a file of this
+/// computer is not what it was; other: another answer, such as that of another version.
+export type SourceTrouble = "gone" | "busy" | "refused" | "missing" | "changed" | "other";
 
 export class SourceError extends Error {
   constructor(
@@ -30,7 +30,7 @@ export function fileSource(file: File): Source {
       try {
         return new Uint8Array(await part.arrayBuffer());
       } catch (reason) {
-        throw new SourceError("gone", String(reason)); // it was deleted or changed meanwhile
+        throw new SourceError("changed", String(reason));
       }
     },
   };
@@ -41,6 +41,7 @@ const kLargestPart = 1n << 24n; // [bytes], as in src/serve/recording_files.h
 const kForbidden = 403;
 const kNotFound = 404;
 const kPartial = 206;
+const kUnavailable = 503;
 
 export type Fetch = (address: string, options: RequestInit) => Promise<Response>;
 
@@ -55,6 +56,7 @@ export async function ask(get: Fetch, address: string, options: RequestInit): Pr
   const detail = `${address}: ${response.status}`;
   if (response.status === kForbidden) throw new SourceError("refused", detail);
   if (response.status === kNotFound) throw new SourceError("missing", detail);
+  if (response.status === kUnavailable) throw new SourceError("busy", detail);
   if (!response.ok) throw new SourceError("other", detail);
   return response;
 }

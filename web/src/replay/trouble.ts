@@ -10,8 +10,7 @@ const words = strings.replay.trouble;
 /// @param name  of the file
 export function troubleText(reason: unknown, name: string): string {
   if (reason instanceof SourceError) {
-    const texts = { gone: words.gone, refused: words.refused, missing: words.missing, other: words.other };
-    return texts[reason.trouble];
+    return words[reason.trouble];
   }
   if (reason instanceof FileError) {
     const texts = { noMcap: words.noMcap, noIndex: words.noIndex(name), noPoses: words.noPoses, empty: words.empty };

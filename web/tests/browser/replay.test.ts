@@ -3,6 +3,7 @@
 import { readdirSync, statSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { beforeAll, describe, expect, it } from "vitest";
+import { kOldPose } from "../../src/replay/player";
 import { strings } from "../../src/strings";
 import { origins } from "./support/geometry";
 import { readRecording, type RecordingPage } from "./support/recording_page";
@@ -45,7 +46,9 @@ async function expectRecorded(what: string, near?: number): Promise<number> {
   expect(tick!.tick, `${what}: at ${position} s`).toBe(last.tick.tick);
   expect(tick!.gdpAngle).toEqual(last.tick.gdpAngle);
   origins(last.tick.gdpPose).forEach((point, segment) => point.forEach((value, axis) => expect(Math.abs(view!.shown[segment]![axis]! - value)).toBeLessThan(kMicrometre)));
-  expect(samples).toBe(Math.max(1, recorded.poses.filter(({ time }) => time <= position + 1e-7 && time > position - 10).length));
+  const curve = recorded.poses.filter(({ time }) => time <= position + 1e-7 && time > position - 10).length;
+  const hole = position - last.time > kOldPose ? 1 : 0; // its sample ends the curves
+  expect(samples).toBe(Math.max(1, curve) + hole);
   return position;
 }
 
@@ -69,7 +72,8 @@ describe("a recording", () => {
   it("shows the recorded hand wherever the keys lead", async () => {
     const { keyboard } = page.page;
     await keyboard.press("Home");
-    await expectRecorded("the beginning", 0);
+    // On a busy machine the first pose may come later: then no hand is that of the beginning.
+    if (recorded.poses[0]!.time < kOldPose) await expectRecorded("the beginning", 0);
     await keyboard.press("ArrowRight");
     await expectRecorded("a second on", 1);
     const from = await expectRecorded("the same");
@@ -105,7 +109,7 @@ describe("a recording", () => {
     await expectRecorded("the marker", marker.time);
     await page.page.keyboard.press("End");
     await expectRecorded("the end", recorded.seconds);
-    const earlier = [...recorded.events].reverse().find(({ time }) => time < recorded.seconds - 0.05)!;
+    const earlier = [...recorded.events].reverse().find(({ time }) => time < recorded.seconds - 1e-5)!;
     await page.page.keyboard.press("PageUp");
     await expectRecorded("the event before", earlier.time);
     const moment = await expectRecorded("the same");

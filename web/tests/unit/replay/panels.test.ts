@@ -100,7 +100,10 @@ describe("what happened", () => {
 
 describe("the keys of a recording", () => {
   const done: string[] = [];
+  let isOpen = true;
   const actions: ReplayActions = {
+    isOpen: () => isOpen,
+    escape: () => done.push("escape"),
     toggle: () => done.push("toggle"),
     skip: (seconds) => done.push(`skip ${seconds}`),
     pose: (direction) => done.push(`pose ${direction}`),
@@ -127,6 +130,13 @@ describe("the keys of a recording", () => {
     ]);
     expect(press("ArrowLeft", { shiftKey: true })).toEqual(["pose -1"]);
     expect(press("ArrowRight", { shiftKey: true })).toEqual(["pose 1"]);
+  });
+
+  it("belong to the browser while no recording is open; Esc and the list of keys are there always", () => {
+    isOpen = false;
+    expect([" ", "Home", "End", "PageDown", "ArrowLeft", "?", "Escape"].flatMap((key) => press(key))).toEqual(["help", "escape"]);
+    isOpen = true;
+    expect(press("Escape")).toEqual(["escape"]);
   });
 
   it("leave alone what the focus has taken, and the browser's own", () => {

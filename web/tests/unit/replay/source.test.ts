@@ -32,11 +32,19 @@ describe("the bytes of a recording", () => {
   it("that do not come are told apart: refused, missing, gone, or not what was asked for", async () => {
     expect(await trouble(stationSource("other", station).size())).toBe("missing");
     expect(await trouble(stationSource("x", answers(403)).size())).toBe("refused");
+    expect(await trouble(stationSource("x", answers(503)).size())).toBe("busy");
     expect(await trouble(stationSource("x", answers(500)).size())).toBe("other");
     expect(await trouble(stationSource("x", answers(200, bytes)).size())).toBe("other"); // the whole file: not what was asked for
     expect(await trouble(stationSource("x", () => Promise.reject(new TypeError("no connection"))).size())).toBe("gone");
     expect(await trouble(stationSource("a b.mcap", station).read(995n, 10n))).toBe("other"); // the file is shorter now
   });
+});
+
+it("a file of this computer that was changed is not taken for a station that does not answer", async () => {
+  const file = new File([bytes], "a.mcap");
+  file.slice = () => Object.assign(new Blob(), { arrayBuffer: () => Promise.reject(new Error("NotReadableError")) });
+  expect(await trouble(fileSource(file).read(0n, 8n))).toBe("changed");
+  expect(troubleText(new SourceError("changed", ""), "a.mcap")).toBe(words.changed);
 });
 
 it("a large part of a file is read in several answers", async () => {
