@@ -2,8 +2,8 @@
 // The start of the page that shows recordings. It has no connection to a station's device: it reads files and sends nothing.
 import type { Tick } from "./gen/phalanx/tick_pb";
 import { helpDialog, openDialog } from "./panels/dialog";
-import { button, el, setShown, setSwitch, setText, switchButton } from "./panels/dom";
-import { Look } from "./panels/look";
+import { button, el, setShown, setText } from "./panels/dom";
+import { Look, lookSwitches } from "./panels/look";
 import { openRecording, type Recording } from "./replay/recording";
 import { listenToReplayKeys } from "./replay/replay_keys";
 import { replayView, type ReplayView } from "./replay/replay_view";
@@ -41,20 +41,10 @@ document.documentElement.dataset["page"] = "recording";
 const dialogs = el("div", { class: "dialogs", hidden: true });
 const content = el("div", { class: "content" });
 const what = el("strong", { class: "band-what" });
-const light = switchButton(strings.look.light, (on) => {
-  look.setTheme(on ? "light" : "dark");
-  setSwitch(light, on);
-});
-const large = switchButton(strings.look.large, (on) => {
-  look.setLarge(on);
-  setSwitch(large, on);
-});
 const look = new Look((theme) => {
   view?.setTheme(theme);
   window.dispatchEvent(new Event("resize"));
 });
-setSwitch(light, look.theme === "light");
-setSwitch(large, look.large);
 const others = button(words.link, () => leave());
 const help = () => helpDialog({ dialogs }, words.keys.title, words.keys.rows, words.keys.note);
 const noStop = el("strong", { role: "alert" });
@@ -73,7 +63,7 @@ const band = el(
   { class: "header band" },
   what,
   el("span", { class: "band-note" }, words.notLive, " ", noStop),
-  el("div", { class: "header-tools" }, others, light, large, button("?", help, { "aria-label": strings.look.help, title: strings.look.help })),
+  el("div", { class: "header-tools" }, others, ...lookSwitches(look).elements, button("?", help, { "aria-label": strings.look.help, title: strings.look.help })),
 );
 const start = startPanel({
   list: () => fetchList(),

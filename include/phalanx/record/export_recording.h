@@ -61,8 +61,8 @@ struct ExportedPart {
   std::uint64_t rows = 0;  ///< or messages
 };
 
-/// Writes a recording in another format. All numbers have double precision; text formats have the shortest decimals that read
-/// back to the same bits. If it fails, nothing is left of the target.
+/// Writes a recording in another format. Numbers have double precision: in CSV files, the shortest decimals that read back to the
+/// same bits; in BIDS tables, six decimals. If it fails, nothing is left of the target.
 /// @param target  a folder or file (ExportFormatName::ending) that does not exist yet
 /// @param on_progress  as replay()
 /// @throws std::invalid_argument for an unknown part or column, a range without any time, a target that exists, or a table that

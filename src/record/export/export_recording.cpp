@@ -26,18 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 
 void check_part(const ExportOptions& options) {
-  const std::vector<ExportPart> parts = export_parts(options.format);
-  for (const std::string& wanted : options.parts) {
-    std::string known;
-    bool found = false;
-    for (const ExportPart& part : parts) {
-      found = found || wanted == part.name;
-      known += fmt::format("{}{}", known.empty() ? "" : ", ", part.name);
-    }
-    if (!found)
+  std::vector<std::string> known;
+  for (const ExportPart& part : export_parts(options.format)) known.push_back(part.name);
+  for (const std::string& wanted : options.parts)
+    if (std::find(known.begin(), known.end(), wanted) == known.end())
       throw std::invalid_argument(
-          fmt::format("there is no part '{}' in this format; known: {}", wanted, known));
-  }
+          fmt::format("there is no part '{}' in this format; known: {}", wanted, fmt::join(known, ", ")));
 }
 
 void check(const fs::path& target, const ExportOptions& options) {
@@ -80,9 +74,7 @@ Beginning read_beginning(const fs::path& recording) {
       if (const auto map = channel_map_of(setup)) out.labels.origin = map->angle_origins();
       break;
     }
-    if (const auto phalanx = reader.metadata().find("phalanx"); phalanx != reader.metadata().end())
-      if (const auto version = phalanx->second.find("version"); version != phalanx->second.end())
-        out.origin.version = one_line(version->second);
+    out.origin.version = one_line(metadata_of(reader, "version"));
   } catch (const mcap::McapError&) {  // for_each_message_of() says what is wrong
   } catch (const std::system_error&) {
   }
@@ -150,12 +142,13 @@ const std::vector<ExportFormatName>& export_formats() {
 }
 
 const ExportFormatName& export_format(std::string_view name) {
-  std::string known;
+  std::vector<const char*> known;
   for (const ExportFormatName& format : export_formats()) {
     if (name == format.name) return format;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", format.name);
+    known.push_back(format.name);
   }
-  throw std::invalid_argument(fmt::format("there is no format '{}'; known: {}", name, known));
+  throw std::invalid_argument(
+      fmt::format("there is no format '{}'; known: {}", name, fmt::join(known, ", ")));
 }
 
 std::vector<ExportPart> export_parts(ExportFormat format) {

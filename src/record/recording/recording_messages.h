@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -23,6 +24,14 @@ template <class Wire>
 [[nodiscard]] bool parsed(const mcap::Message& message, Wire& into) {
   return message.data.size() <= largest_message(into) &&
          into.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()));
+}
+
+/// @returns a value of the file's metadata, such as "version"; empty: it is not there, or not read yet
+[[nodiscard]] inline std::string metadata_of(const mcap::McapReader& reader, const std::string& key) {
+  const auto phalanx = reader.metadata().find("phalanx");
+  if (phalanx == reader.metadata().end()) return {};
+  const auto value = phalanx->second.find(key);
+  return value == phalanx->second.end() ? std::string() : value->second;
 }
 
 /// Calls `on_message(schema, message, time)` for each message of a recording; the time is that since its beginning [s].

@@ -46,9 +46,7 @@ void read_begin(const mcap::ReadableFile& file, RecordingSummary& out) {
     out.device = one_line(setup.device_name());
     break;
   }
-  if (const auto phalanx = reader.metadata().find("phalanx"); phalanx != reader.metadata().end())
-    if (const auto version = phalanx->second.find("version"); version != phalanx->second.end())
-      out.version = one_line(version->second);
+  out.version = one_line(metadata_of(reader, "version"));
 }
 
 void read_end(const mcap::ReadableFile& file, RecordingSummary& out) {

@@ -97,10 +97,8 @@ class Replay {
   }
 
   [[nodiscard]] std::string metadata(const std::string& key) const {
-    const auto phalanx = reader_.metadata().find("phalanx");
-    if (phalanx == reader_.metadata().end()) return "unknown";
-    const auto value = phalanx->second.find(key);
-    return value == phalanx->second.end() ? "unknown" : value->second;
+    const std::string value = metadata_of(reader_, key);
+    return value.empty() ? "unknown" : value;
   }
 
   void origin() {

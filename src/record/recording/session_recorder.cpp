@@ -306,8 +306,8 @@ void SessionRecorder::Impl::put_geometry(const SessionGeometry& next, double now
   put_large(Topic::kMeshes, now, meshes);
 }
 
-/// Writes a derived message that may be large, in a chunk of its own then: readers take chunks of a limited size. While the disk
-/// refuses, it is left out.
+/// Writes a derived message. A large one gets a chunk of its own, since readers take chunks of a limited size. It is left out
+/// while the disk refuses, and above half of that size.
 void SessionRecorder::Impl::put_large(Topic topic, double now, const google::protobuf::MessageLite& message) {
   const std::size_t size = message.ByteSizeLong();
   if (size <= kLargeChunk) return put(topic, now, message);

@@ -2,9 +2,9 @@
 // The top line: what is shown, what moves it, who has control, and how the page looks.
 import { strings } from "../strings";
 import type { App } from "./app";
-import { button, el, setShown, setSwitch, setText, switchButton } from "./dom";
+import { button, el, setShown, setText } from "./dom";
 import { helpDialog } from "./dialog";
-import type { Look } from "./look";
+import { lookSwitches, type Look } from "./look";
 import { recordingChip } from "./recording";
 import { operatorName } from "./role_strip";
 
@@ -17,16 +17,7 @@ export function header(app: App, look: Look): HTMLElement {
   const scene = el("span", { class: "header-scene" });
   const source = el("span", { class: "chip" });
   const who = el("span", { class: "chip" });
-  const light = switchButton(strings.look.light, (on) => {
-    look.setTheme(on ? "light" : "dark");
-    setSwitch(light, on);
-  });
-  const large = switchButton(strings.look.large, (on) => {
-    look.setLarge(on);
-    setSwitch(large, on);
-  });
-  setSwitch(light, look.theme === "light");
-  setSwitch(large, look.large);
+  const switches = lookSwitches(look);
   const update = () => {
     const { state, role, connected } = app.store;
     setText(scene, state?.sceneDescription || state?.scene || "");
@@ -35,7 +26,7 @@ export function header(app: App, look: Look): HTMLElement {
     setShown(source, state !== undefined);
     setText(who, `${strings.people.operator}: ${connected ? (role === "mine" ? strings.me : operatorName(app)) : strings.dash}`);
     setShown(who, state !== undefined);
-    setSwitch(light, look.theme === "light");
+    switches.update();
   };
   app.store.on(["state", "connection"], update);
   update();
@@ -47,6 +38,6 @@ export function header(app: App, look: Look): HTMLElement {
     source,
     who,
     recordingChip(app),
-    el("div", { class: "header-tools" }, light, large, button("?", () => keysDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
+    el("div", { class: "header-tools" }, ...switches.elements, button("?", () => keysDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
   );
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dark or light, and the size of type. The system's wish until the person has chosen.
 import { digitColours, themes, type ThemeName } from "../theme";
+import { strings } from "../strings";
 import { lasting } from "../wire/memory";
+import { setSwitch, switchButton } from "./dom";
 
 const kTheme = "phalanx.theme";
 const kLarge = "phalanx.large";
@@ -48,4 +50,20 @@ export class Look {
     digitColours[theme].forEach((colour, digit) => root.style.setProperty(`--digit-${digit}`, colour));
     this.changed(theme);
   }
+}
+
+/// The switches of a page's header. `update` shows a theme that was changed elsewhere.
+export function lookSwitches(look: Look): { readonly elements: readonly HTMLElement[]; update(): void } {
+  const light = switchButton(strings.look.light, (on) => {
+    look.setTheme(on ? "light" : "dark");
+    setSwitch(light, on);
+  });
+  const large = switchButton(strings.look.large, (on) => {
+    look.setLarge(on);
+    setSwitch(large, on);
+  });
+  setSwitch(large, look.large);
+  const update = () => setSwitch(light, look.theme === "light");
+  update();
+  return { elements: [light, large], update };
 }

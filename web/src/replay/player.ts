@@ -43,7 +43,7 @@ export class Player extends Listeners<Topic> implements Shown {
   private shape = ""; // of these the one that is shown
   private rate = 0; // of its station, steps a second; 0: not known
   private shownAt = NaN; // time of `tick`
-  private fed = NaN; // time up to which the history is filled; NaN: it has to be filled anew
+  private fed = NaN; // time up to which the history is filled; NaN: it is empty
   private until = -Infinity; // time at which another station or geometry comes
   private settling: Promise<void> | undefined;
   private ahead: Promise<void> | undefined;
