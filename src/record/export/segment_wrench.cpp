@@ -18,12 +18,22 @@ std::optional<SegmentPoses> shown_poses(const wire::Tick& tick) {
   return X_WS;
 }
 
+namespace {
+
+/// @param numbers  three, as a message of cockpit.proto has them
+Vec3 vector3(const google::protobuf::RepeatedField<float>& numbers) {
+  return {static_cast<double>(numbers.Get(0)), static_cast<double>(numbers.Get(1)),
+          static_cast<double>(numbers.Get(2))};
+}
+
+}  // namespace
+
 SegmentWrenches segment_wrenches(const wire::Tick& tick, const SegmentPoses& X_WS) {
   SegmentWrenches wrenches;
   for (const wire::Contact& contact : tick.contact()) {
     if (contact.segment() >= kSegments || contact.normal_size() != 3 || contact.point_size() != 3) continue;
-    const Vec3 normal(contact.normal(0), contact.normal(1), contact.normal(2));
-    const Vec3 point(contact.point(0), contact.point(1), contact.point(2));
+    const Vec3 normal = vector3(contact.normal());
+    const Vec3 point = vector3(contact.point());
     SegmentWrench& wrench = wrenches[contact.segment()];
     const Vec3 force = static_cast<double>(tick.factor()) * static_cast<double>(contact.force()) * normal;
     wrench.force += force;
