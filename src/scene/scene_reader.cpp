@@ -313,9 +313,22 @@ std::vector<SceneInfo> list_scenes() {
     try {
       const SceneDescription scene = load_scene(name);
       const bool in_free_air = scene.motion.file.empty() && scene.motion.script.name == "wave";
-      scenes.push_back({name, scene.description, true, !in_free_air});
+      const bool has_object = !scene.objects.empty();
+      scenes.push_back({.name = name,
+                        .description = scene.description,
+                        .readable = true,
+                        .touches = !in_free_air,
+                        .purpose = scene.purpose,
+                        .object_kind = has_object ? scene.objects.front().kind : "",
+                        .grasp = scene.grasp.type});
     } catch (const SceneError& error) {
-      scenes.push_back({name, error.what(), false, false});
+      scenes.push_back({.name = name,
+                        .description = error.what(),
+                        .readable = false,
+                        .touches = false,
+                        .purpose = ScenePurpose::kExercise,
+                        .object_kind = "",
+                        .grasp = std::nullopt});
     }
   }
   return scenes;

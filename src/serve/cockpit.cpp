@@ -151,8 +151,7 @@ void Cockpit::requested(const WebRequest& request, std::function<void(WebRespons
   if (request.method == "POST" && request.path == "/mesh")
     return impl_->begin_upload(request, std::move(respond));
   if (request.method == "POST" && request.path == "/marker") return impl_->mark(request, respond);
-  if (RecordingFiles::is_one(request.path))
-    return impl_->recording_files->request(request, std::move(respond));
+  if (StationFiles::is_one(request.path)) return impl_->station_files->request(request, std::move(respond));
   if (request.method != "POST" && request.path.starts_with(kGeometry))
     return impl_->respond_with_geometry(request.path.substr(kGeometry.size()), std::move(respond));
   const bool known = request.path == "/stop" || request.path == "/mesh" || request.path == "/marker" ||

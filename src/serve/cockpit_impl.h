@@ -30,7 +30,7 @@
 #include "serve/geometry_cache.h"
 #include "serve/page_requests.h"
 #include "serve/participants.h"
-#include "serve/recording_files.h"
+#include "serve/station_files.h"
 #include "serve/uploads.h"
 
 namespace phalanx {
@@ -126,8 +126,7 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   std::uint64_t sent_revision = 0;
   SafetyState sent_safety = SafetyState::kWaiting;
   const std::shared_ptr<GeometryCache> geometry_cache = std::make_shared<GeometryCache>();
-  const std::shared_ptr<RecordingFiles> recording_files =
-      std::make_shared<RecordingFiles>(settings.recordings);
+  const std::shared_ptr<StationFiles> station_files = std::make_shared<StationFiles>(settings.recordings);
   std::shared_ptr<UploadJob> upload;                      ///< the newest
   std::shared_ptr<const SessionGeometry> drawn_geometry;  ///< of `drawn`
   double drawn_margin = 0.0;                              ///< of `drawn` [m]

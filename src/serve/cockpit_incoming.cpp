@@ -172,6 +172,7 @@ bool Cockpit::Impl::notice_is_due(PageId page, const PageRequest& request) {
 void Cockpit::Impl::fault_reported(const std::string& file, double fault_time) {
   report = file;
   reported = fault_time;
+  station_files->set_report(file);
   request_state();
 }
 

@@ -194,9 +194,12 @@ void write_choices(wire::Welcome& out) {
   for (const SceneKey& key : scene_keys()) put(key, *out.add_key());
   for (const SceneInfo& scene : list_scenes()) {
     if (!scene.readable || !scene.touches) continue;
-    wire::Choice& choice = *out.add_scene();
+    wire::SceneChoice& choice = *out.add_scene();
     choice.set_name(scene.name);
     choice.set_meaning(scene.description);
+    choice.set_purpose(scene_purpose_names()[static_cast<std::size_t>(scene.purpose)]);
+    choice.set_object_kind(scene.object_kind);
+    if (scene.grasp) choice.set_grasp(std::string(grasp_rule(*scene.grasp).name));
   }
   put_names(data_folder() / "assets/profiles", *out.mutable_profile());
 }

@@ -59,6 +59,22 @@ TEST_F(CockpitHttp, AMarkerIsToldAndLoggedUnlessAViewerSendsIt) {
   EXPECT_EQ(status_of(post("/marker?token=operators-own-token", "stimulus 4")), 200);
 }
 
+TEST_F(CockpitHttp, TheReportOfTheNewestFaultIsReadByWhoMayOperate) {
+  EXPECT_EQ(status_of(ask(port(), get("/report"))), 404);  // no fault
+  const std::filesystem::path report = folder_ / "report.json";
+  std::ofstream(report) << R"({"fault": "sensor_jump"})";
+  cockpit_->fault_reported(report.string(), 12.5);
+  const std::string answer = ask(port(), get("/report"));
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_EQ(body_of(answer), R"({"fault": "sensor_jump"})");
+  EXPECT_THAT(field_of(answer, "Content-Type"), HasSubstr("application/json"));
+  EXPECT_EQ(status_of(post("/report", "")), 405);
+  std::filesystem::remove(report);
+  EXPECT_EQ(status_of(ask(port(), get("/report"))), 500);
+  serve("operators-own-token", "viewers-own-token");
+  EXPECT_EQ(status_of(ask(port(), get("/report?token=viewers-own-token"))) / 100, 4);
+}
+
 TEST_F(CockpitHttp, RecordingsAreListedAndReadInPartsByWhoMayOperate) {
   std::filesystem::create_directory(folder_ / "recordings");
   const std::filesystem::path file = folder_ / "recordings/2026-11-27T14-03-11Z.mcap";

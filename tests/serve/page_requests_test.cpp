@@ -412,7 +412,7 @@ TEST(Choices, HoldOnlyScenesThatTheSimulatedPatientMeets) {
       refused.push_back(info.name);
     }
   }
-  for (const wire::Choice& choice : welcome.scene())
+  for (const wire::SceneChoice& choice : welcome.scene())
     EXPECT_EQ(std::count(refused.begin(), refused.end(), choice.name()), 0) << choice.name();
   EXPECT_EQ(idx(welcome.scene_size()) + refused.size(), list_scenes().size());
 }
@@ -462,6 +462,16 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
   for (int i = 0; i < welcome.scene_size(); ++i) {
     EXPECT_EQ(welcome.scene(i).name(), scenes[idx(i)].name);
     EXPECT_EQ(welcome.scene(i).meaning(), scenes[idx(i)].description);
+    EXPECT_EQ(welcome.scene(i).object_kind(), scenes[idx(i)].object_kind);
+    const bool measures =
+        scenes[idx(i)].name.starts_with("bench_") || scenes[idx(i)].name.starts_with("timing_");
+    const bool studies = scenes[idx(i)].name.starts_with("stability_");
+    EXPECT_EQ(welcome.scene(i).purpose(), measures  ? "benchmark"
+                                          : studies ? "study"
+                                                    : "exercise")
+        << scenes[idx(i)].name;
+    if (welcome.scene(i).name() == "tripod_pen") EXPECT_EQ(welcome.scene(i).grasp(), "tripod");
+    if (welcome.scene(i).name() == "index_ball") EXPECT_EQ(welcome.scene(i).grasp(), "");
   }
   ASSERT_GT(welcome.scene_size(), 10);
   ASSERT_GT(welcome.profile_size(), 1);

@@ -6,17 +6,19 @@ import type { App } from "./panels/app";
 import { confirmDialog } from "./panels/dialog";
 import { devicePanel } from "./panels/device_panel";
 import { el } from "./panels/dom";
+import { expertPanel } from "./panels/expert_panel";
 import { faultCard } from "./panels/fault_card";
-import { handPanel } from "./panels/hand_panel";
 import { header, keysDialog } from "./panels/header";
 import { listenToKeys } from "./panels/keyboard";
 import { Look } from "./panels/look";
 import { lostBand } from "./panels/lost_band";
 import { openings } from "./panels/openings";
+import { dropPlace, ownObject } from "./panels/own_object";
 import { kNameKey, peoplePanel } from "./panels/people_panel";
 import { readouts } from "./panels/readouts";
 import { operatorName, roleStrip } from "./panels/role_strip";
 import { stopBox } from "./panels/stop_box";
+import { storyRibbon } from "./panels/story_ribbon";
 import { tabs } from "./panels/tabs";
 import { toasts } from "./panels/toasts";
 import { touchPanel } from "./panels/touch_panel";
@@ -98,10 +100,13 @@ const look = new Look((theme) => {
   window.dispatchEvent(new Event("resize"));
 });
 const stop = stopBox(app);
+const own = ownObject(app);
+numbers.element.append(storyRibbon(app));
+frame.element.append(dropPlace(app, frame.element, own));
 const panels = tabs([
-  { name: "touch", text: strings.tabs.touch, panel: touchPanel(app) },
-  { name: "hand", text: strings.tabs.hand, panel: handPanel(app) },
-  { name: "device", text: strings.tabs.device, panel: devicePanel(app) },
+  { name: "touch", text: strings.tabs.touch, panel: touchPanel(app, own) },
+  { name: "expert", text: strings.tabs.expert, panel: expertPanel(app, own) },
+  { name: "device", text: strings.tabs.device, panel: devicePanel(app, () => frame.view()?.probe().framesPerSecond) },
   { name: "people", text: strings.tabs.people, panel: peoplePanel(app) },
 ]);
 const plotPlace = el("div", { class: "plot-slot" });

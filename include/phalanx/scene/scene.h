@@ -119,11 +119,22 @@ struct FileWithOverlay {
   std::string stated_at;  ///< place that names the file, "FILE:LINE: KEY = VALUE"; empty: none
 };
 
+/// Purpose of a scene: where it is offered.
+enum class ScenePurpose {
+  kExercise,   ///< for a hand: the cockpit shows it as a picture
+  kStudy,      ///< for studies of stability
+  kBenchmark,  ///< for measurements of speed
+};
+
+/// @returns the values of the key `purpose`, in the order of ScenePurpose.
+[[nodiscard]] const std::vector<std::string>& scene_purpose_names();
+
 /// Content of a scene file, with defaults for keys that it does not state.
 struct SceneDescription {
   std::string name;
   std::string description;  ///< one line
-  double seconds = 0.0;     ///< length of a simulation [s]; 0: the motion's
+  ScenePurpose purpose = ScenePurpose::kExercise;
+  double seconds = 0.0;  ///< length of a simulation [s]; 0: the motion's
   std::uint64_t seed = 1;
   bool mirror = false;  ///< the world is mirrored in x = 0; hand.handedness is already the mirrored one
   HandDescription hand;
@@ -170,6 +181,9 @@ struct SceneInfo {
   std::string description;  ///< the scene's own line; if it is not readable, the problem
   bool readable = true;
   bool touches = true;  ///< false: a motion in free air, in which the simulated patient cannot press
+  ScenePurpose purpose = ScenePurpose::kExercise;
+  std::string object_kind;         ///< of the first object; empty: none
+  std::optional<GraspType> grasp;  ///< that the scene plans; empty: it states wrist and motion itself
 };
 
 /// @returns the scenes in scenes/, by name.

@@ -11,6 +11,11 @@ using V = const KeyValue&;
 
 }  // namespace
 
+const std::vector<std::string>& scene_purpose_names() {
+  static const std::vector<std::string> kNames = {"exercise", "study", "benchmark"};
+  return kNames;
+}
+
 void add_general_keys(std::vector<SceneKey>& keys) {
   const KeyRows at_zero_torque(keys, ChangeKind::kAtZeroTorque);
   const KeyRows new_station(keys, ChangeKind::kNewStation);
@@ -18,6 +23,9 @@ void add_general_keys(std::vector<SceneKey>& keys) {
   constexpr NumberRange kTurn = between(-360, 360);
   at_zero_torque.word(KeyType::kText, "description", "", "one line about the scene",
                       [](T t, V v) { t.scene.description = v.text; });
+  at_zero_torque.choice("purpose", scene_purpose_names(), "exercise",
+                        "the cockpit shows the scenes of exercises as pictures",
+                        [](T t, V v) { t.scene.purpose = static_cast<ScenePurpose>(v.integer); });
   new_station.number("rate_hz", "Hz", ranges::kRate, 200, "ticks per second",
                      [](T t, V v) { t.scene.parameters.rate_hz = v.number; });
   new_station.number("seconds", "s", between(0, 86400), 0, "length of a simulation; 0: the motion's",

@@ -5,6 +5,7 @@ import { strings } from "../strings";
 import type { Answer } from "../wire/connection";
 import type { Change, Host } from "../wire/host";
 import type { ImportReport } from "../wire/http";
+import { plainWords } from "./plain_words";
 
 export interface App {
   readonly store: Store;
@@ -16,7 +17,7 @@ export interface App {
 
 /// @returns the text beside the control; empty: done
 export function refusal(answer: Answer): string {
-  return answer.ok ? "" : answer.error || strings.notSent;
+  return answer.ok ? "" : plainWords(answer.error) || strings.notSent;
 }
 
 /// Requests several changes as one. @param dragging  as Host's. @returns the refusal in the host's words; empty: done

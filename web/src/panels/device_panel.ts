@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device and the loop that drives it.
 import type { Link, Loop, Recording, State } from "../gen/phalanx/cockpit_pb";
+import type { DeliveryFigures } from "../state/delivery";
 import { strings } from "../strings";
 import type { App } from "./app";
 import { el, section, setShown, setText } from "./dom";
 import { isBehind, recordingsLink } from "./recording";
-import { faultSection } from "./fault_card";
 import { histogram } from "./histogram";
 import { wizardSection } from "./wizard";
 
@@ -78,10 +78,24 @@ function loopFacts(loop: Loop): readonly Fact[] {
   ];
 }
 
-export function devicePanel(app: App): HTMLElement {
+/// @param figures  of pictures that arrived  @param drawn  frames that the view draws in a second; undefined: there is no view
+function pageFacts(figures: DeliveryFigures, drawn: number | undefined): readonly Fact[] {
+  const { durations } = words;
+  const delay = (seconds: number) => (Number.isFinite(seconds) ? durations.ms((1000 * seconds).toFixed(0)) : strings.dash);
+  return [
+    [words.drawn, drawn === undefined ? strings.dash : words.perSecond(drawn.toFixed(0))],
+    [words.received, words.perSecond(figures.perSecond.toFixed(0))],
+    [words.missingPictures, String(figures.missing), figures.missing > 0],
+    [words.delay, words.delays(delay(figures.delay.p50), delay(figures.delay.p99))],
+  ];
+}
+
+/// @param framesDrawn  in a second; undefined: there is no view
+export function devicePanel(app: App, framesDrawn: () => number | undefined = () => undefined): HTMLElement {
   const device = el("dl", { class: "facts" });
   const link = el("dl", { class: "facts facts-narrow" });
   const loop = el("dl", { class: "facts facts-narrow" });
+  const page = el("dl", { class: "facts facts-narrow" });
   const recording = el("dl", { class: "facts" });
   const unsaved = el("p", { class: "warning", role: "status" });
   const notRecorded = el("p", {}, words.notRecorded);
@@ -98,6 +112,7 @@ export function devicePanel(app: App): HTMLElement {
     showFacts(device, said(deviceFacts(state)));
     showFacts(link, state.link ? said(linkFacts(state.link)) : []);
     showFacts(loop, numbers ? said(loopFacts(numbers)) : []);
+    showFacts(page, said(pageFacts(app.store.delivery.figures(performance.now() / 1000), framesDrawn())));
     showFacts(recording, state.recording ? said(recordingFacts(state.recording)) : []);
     setShown(notRecorded, !state.recording);
     setText(unsaved, state.recording ? words.unsaved(state.recording.trouble, state.recording.unsaved.toFixed(1)) : "");
@@ -113,10 +128,10 @@ export function devicePanel(app: App): HTMLElement {
     "div",
     {},
     section(words.title, holds, device),
-    faultSection(app),
     wizardSection(app),
+    section(words.recording, unsaved, notRecorded, recording, recordingsLink()),
     section(words.loop, degraded, loop, lateness.element, step.element),
     section(words.link, link),
-    section(words.recording, unsaved, notRecorded, recording, recordingsLink()),
+    section(words.page, page, el("p", { class: "hint" }, words.pageHint)),
   );
 }

@@ -7,6 +7,7 @@ import { helpDialog } from "./dialog";
 import { lookSwitches, type Look } from "./look";
 import { recordingChip } from "./recording";
 import { operatorName } from "./role_strip";
+import { sceneName } from "./scene_cards";
 
 /// Lists the keys of the cockpit.
 export function keysDialog(app: App): void {
@@ -20,8 +21,8 @@ export function header(app: App, look: Look): HTMLElement {
   const switches = lookSwitches(look);
   const update = () => {
     const { state, role, connected } = app.store;
-    setText(scene, state?.sceneDescription || state?.scene || "");
-    scene.title = scene.textContent ?? "";
+    setText(scene, state ? sceneName(state.scene) : "");
+    scene.title = state?.sceneDescription ?? "";
     setText(source, state && connected ? (strings.hand.sources[state.source] ?? "") : strings.dash);
     setShown(source, state !== undefined);
     setText(who, `${strings.people.operator}: ${connected ? (role === "mine" ? strings.me : operatorName(app)) : strings.dash}`);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slider for each joint, where the sliders move the hand.
+// Postures and a slider for each joint, where the user moves the hand.
 import { HandSource } from "../gen/phalanx/cockpit_pb";
 import { kDigits, kJoints, kJointsPerDigit } from "../state/channels";
 import { Throttle } from "../state/throttle";
 import { number, unquote } from "../state/toml";
 import { strings } from "../strings";
 import type { App } from "./app";
-import { button, el, newId, section, setAttribute, setShown, setText } from "./dom";
+import { button, el, newId, setAttribute, setShown, setText } from "./dom";
 import { onLetGo } from "./drag";
 
 const words = strings.hand;
@@ -129,8 +129,8 @@ export function jointSliders(app: App): HTMLElement {
   const open = button(words.open, () => app.store.geometry && go(app.store.geometry.jointOpen));
   const closed = button(words.fist, () => app.store.geometry && go(fist(app.store.geometry.jointOpen, app.store.geometry.jointMax)));
   const grasp = button(words.grasp, () => go(plannedAngles()));
-  const box = el("div", { class: "sliders" }, el("div", { class: "buttons" }, open, closed, grasp), ...digits);
-  const hint = el("p", { class: "hint" }, words.slidersHint);
+  const single = el("details", {}, el("summary", {}, words.single), el("div", { class: "sliders" }, ...digits));
+  const box = el("div", { class: "postures" }, el("div", { class: "buttons" }, open, closed, grasp), single);
 
   const ranges = () => {
     const geometry = app.store.geometry;
@@ -148,7 +148,6 @@ export function jointSliders(app: App): HTMLElement {
     setShown(grasp, plannedAngles().some(Number.isFinite));
     const on = state?.source === HandSource.HAND_SLIDERS;
     setShown(box, on);
-    setShown(hint, !on && state?.source !== HandSource.HAND_DEVICE);
     if (role !== "mine" || !on) {
       throttle.clear(); // it is no longer this page's to say
       wanted.forget();
@@ -162,5 +161,5 @@ export function jointSliders(app: App): HTMLElement {
   });
   app.store.on(["state", "connection"], update);
   update();
-  return section(words.slidersTitle, hint, box);
+  return box;
 }

@@ -6,11 +6,10 @@ import { fromTyped, quote, unquote } from "../state/toml";
 import { strings } from "../strings";
 import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
-import { button, el, section, setShown } from "./dom";
+import { button, el, section, setShown, setText } from "./dom";
 import { graspOfNextObject } from "./grasp_section";
 import { replaceObject } from "./object_change";
 import { row, shownNumber } from "./setting_controls";
-import { uploadBox } from "./upload_box";
 
 const words = strings.object;
 const kNotHere = new Set(["kind", "file", "unit", "decimate_to", "position_mm", "rotation_deg"]);
@@ -26,12 +25,13 @@ export function sizesOf(app: App, kind: string): KeyInfo[] {
   return objectKeys(app).filter((key) => !kNotHere.has(nameOf(key)) && belongsTo(key, kind));
 }
 
-export function objectSection(app: App): HTMLElement {
+/// @param own  opens the dialog of an object of the user's own
+export function objectSection(app: App, own: () => void): HTMLElement {
   const kind = new ChoiceBox(() => choose());
   const kindRow = row(words.kind, kind);
   const sizes = el("div", { class: "sizes" });
+  const file = el("p", { class: "hint" });
   const use = button(words.use, () => void apply(), { class: "primary" });
-  const upload = uploadBox(app);
   let chosen = ""; // by the person and not yet used; empty: what is in force
   let built = "";
 
@@ -75,10 +75,10 @@ export function objectSection(app: App): HTMLElement {
     for (const [name, field] of fields) {
       if (field.dataset["touched"] !== "yes") field.value = shownNumber(truth(name));
     }
-    setShown(upload.element, shown === "file");
+    setShown(file, current() === "file" && shown === "file");
+    setText(file, unquote(app.store.value("objects.0.file")).split("/").pop() ?? "");
     setShown(use, shown !== "file");
     use.disabled = chosen === "";
-    if (current() === "file") upload.inForce(unquote(app.store.value("objects.0.file")));
   }
 
   async function apply(): Promise<void> {
@@ -100,12 +100,15 @@ export function objectSection(app: App): HTMLElement {
 
   function choose(): void {
     chosen = kind.value === current() ? "" : kind.value;
-    if (chosen === "file" && current() === "file") chosen = "";
+    if (kind.value === "file") {
+      chosen = "";
+      own();
+    }
     built = "";
     kindRow.refuse("");
     update();
   }
   app.store.on(["state", "connection"], update);
   update();
-  return section(words.title, kindRow.element, sizes, el("div", { class: "buttons" }, use), upload.element);
+  return section(words.title, kindRow.element, sizes, file, el("div", { class: "buttons" }, use));
 }

@@ -6,6 +6,7 @@ import { lasting } from "../wire/memory";
 import { refusal, type App } from "./app";
 import { clockTime } from "./clock";
 import { button, el, section, setShown, setText } from "./dom";
+import { plainWords } from "./plain_words";
 import { operatorName } from "./role_strip";
 import { row } from "./setting_controls";
 
@@ -19,7 +20,7 @@ export function noticeItem(notice: Notice): HTMLElement {
     el("time", {}, clockTime(notice.unixTime)),
     el("span", { class: "notice-level" }, level),
     el("span", { class: "notice-who" }, notice.who || words.station),
-    el("span", { class: "notice-text" }, notice.text),
+    el("span", { class: "notice-text" }, plainWords(notice.text)),
   );
 }
 

@@ -146,20 +146,21 @@ export const toScale = (value: number, min: number, max: number) =>
 export const fromScale = (place: number, min: number, max: number) => min * (max / min) ** place;
 
 /// Makes a logarithmic slider with a number field. It sends while it is dragged, and always sends the last value.
+/// @param scale  below the slider
 export function logSliderRow(
   app: App,
   setting: string,
-  texts: { readonly label: string; readonly field: string; readonly unit: string; readonly low: string; readonly high: string },
+  texts: { readonly label: string; readonly field: string; readonly unit: string },
   min: number,
   max: number,
+  scale: HTMLElement,
 ): HTMLElement {
   const slider = el("input", { type: "range", min: 0, max: kSliderSteps, step: 1 });
   const field = el("input", { type: "text", inputmode: "decimal", class: "number", "aria-label": texts.field, autocomplete: "off" });
   const made = row(texts.label, slider);
-  const ends = el("div", { class: "slider-ends", "aria-hidden": "true" }, el("span", {}, texts.low), el("span", {}, texts.high));
   made.element.classList.add("row-slider");
   made.element.querySelector("label")?.after(el("div", { class: "number-unit" }, field, el("span", { class: "unit" }, texts.unit)));
-  made.element.querySelector(".row-control")?.append(ends);
+  made.element.querySelector(".row-control")?.append(scale);
   let dragged = false;
   const rounded = (value: number) => fromNumber(Number(value.toPrecision(2)));
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every key that a scene may hold, as the station lists them.
+// Every key that a scene may hold, as the station lists them, by group; searched by name and meaning.
 import { KeyType, type KeyInfo } from "../gen/phalanx/cockpit_pb";
 import { belongsTo, defaultOf, objectKind, settingOf } from "../state/keys";
 import { fromTyped, unquote } from "../state/toml";
 import { strings } from "../strings";
 import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
-import { button, el, newId, setShown, setSwitch, setText, switchButton } from "./dom";
-import { openDialog } from "./dialog";
+import { button, el, newId, section, setShown, setSwitch, setText, switchButton } from "./dom";
+import { guarded } from "./setting_controls";
+import { settingLabel } from "./plain_words";
 
 const words = strings.settings;
 
@@ -55,7 +56,7 @@ function valueField(key: KeyInfo, id: string, touched: () => void, done: () => v
     const box = new ChoiceBox(touched);
     box.setChoices([...empty, ...options.map((value) => ({ value, text: text(value) }))]);
     box.button.id = id;
-    box.name(settingOf(key.path));
+    box.name(settingLabel(key.path));
     return {
       control: box.button,
       below: box.list,
@@ -118,58 +119,107 @@ function entry(app: App, key: KeyInfo): Entry {
   const element = el(
     "li",
     { class: "setting" },
-    el("label", { for: id }, el("code", {}, setting), el("span", { class: "meaning" }, key.meaning)),
+    el("label", { for: id }, el("strong", {}, settingLabel(key.path)), " ", el("span", { class: "meaning" }, key.meaning)),
     el("div", { class: "setting-control" }, field.control, el("span", { class: "unit" }, key.unit), set, reset),
     field.below,
     facts,
+    el("code", { class: "setting-key" }, setting),
     error,
   );
   update();
   return { key, element, update };
 }
 
-let follow: () => void = () => {};
-let listening = false;
+/// "force.law": "force"; "objects[].kind": "objects"; "rate_hz": "general".
+export function groupOf(path: string): string {
+  const dot = path.indexOf(".");
+  return dot < 0 ? "general" : path.slice(0, dot).replace("[]", "");
+}
 
-export function openSettings(app: App): void {
+export interface SettingsList {
+  readonly head: HTMLElement; // search and filter
+  readonly element: HTMLElement; // the list, a part that opens for each group
+}
+
+/// @param onSearch  called with true while only settings that match are shown
+export function settingsList(app: App, onSearch: (searching: boolean) => void): SettingsList {
   const search = el("input", { type: "search", id: newId("search"), placeholder: words.searchHint, autocomplete: "off" });
   const count = el("span", { class: "hint", role: "status" });
+  const none = el("p", { class: "hint" }, words.none);
   const only = switchButton(words.onlyChanged, (on) => {
     setSwitch(only, on);
     filter();
   });
-  const none = el("p", { class: "hint" }, words.none);
-  const entries = (app.store.welcome?.key ?? []).map((key) => entry(app, key));
-  const list = el("ul", { class: "settings" }, ...entries.map((one) => one.element));
-  const fieldset = el("fieldset", { class: "guarded" }, list);
+  const group = new ChoiceBox(() => filter());
+  group.name(words.group);
+  const list = el("div", { class: "settings" });
+  let entries: readonly Entry[] = [];
+  let groups = new Map<string, { readonly element: HTMLDetailsElement; readonly entries: Entry[] }>();
+  let built: readonly KeyInfo[] | undefined;
 
+  function build(): void {
+    const keys = app.store.welcome?.key ?? [];
+    if (keys === built) return;
+    built = keys;
+    entries = keys.map((key) => entry(app, key));
+    groups = new Map();
+    for (const one of entries) {
+      const name = groupOf(one.key.path);
+      if (!groups.has(name)) groups.set(name, { element: el("details", { class: "settings-group" }, el("summary", {}, words.groups[name] ?? name), el("ul")), entries: [] });
+      groups.get(name)!.entries.push(one);
+      groups.get(name)!.element.lastElementChild!.append(one.element);
+    }
+    list.replaceChildren(...[...groups.values()].map((one) => one.element));
+    group.setChoices([{ value: "", text: words.allGroups }, ...[...groups.keys()].map((value) => ({ value, text: words.groups[value] ?? value }))]);
+    group.value = group.value; // its text
+  }
   function filter(): void {
     const wanted = search.value.toLowerCase().split(/\s+/).filter((word) => word !== "");
     const kind = objectKind(app.store.state, app.store.welcome); // in force
     const onlyChanged = only.getAttribute("aria-checked") === "true";
+    const searching = wanted.length > 0 || onlyChanged || group.value !== "";
     let shown = 0;
-    for (const one of entries) {
-      const text = `${one.key.path} ${one.key.meaning}`.toLowerCase();
-      const fits =
-        wanted.every((word) => text.includes(word)) &&
-        belongsTo(one.key, kind) &&
-        (!onlyChanged || app.store.changed(settingOf(one.key.path)));
-      setShown(one.element, fits);
-      if (fits) ++shown;
+    for (const [name, { element, entries: members }] of groups) {
+      let here = 0;
+      for (const one of members) {
+        const text = `${settingLabel(one.key.path)} ${one.key.path} ${one.key.meaning}`.toLowerCase();
+        const fits =
+          (group.value === "" || group.value === name) &&
+          wanted.every((word) => text.includes(word)) &&
+          belongsTo(one.key, kind) &&
+          (!onlyChanged || app.store.changed(settingOf(one.key.path)));
+        setShown(one.element, fits);
+        if (fits) ++here;
+      }
+      setShown(element, here > 0);
+      if (searching) element.open = true;
+      shown += here;
     }
+    if (!searching && wasSearching) for (const { element } of groups.values()) element.open = false;
+    wasSearching = searching;
     setText(count, words.count(shown, entries.length));
+    setShown(count, searching);
     setShown(none, shown === 0);
+    onSearch(searching);
   }
-  follow = () => {
-    fieldset.disabled = app.store.role !== "mine";
+  let wasSearching = false;
+  const update = () => {
+    build();
     for (const one of entries) one.update();
     filter();
   };
-  if (!listening) app.store.on(["state", "connection", "own"], () => follow());
-  listening = true;
+  app.store.on(["state", "connection", "own"], update);
   search.addEventListener("input", filter);
-  follow();
-  const head = el("div", { class: "settings-head" }, el("label", { for: search.id }, words.search), search, only, count);
-  openDialog(app, words.title, [head, fieldset, none], "large", () => (follow = () => {}));
-  search.focus();
+  update();
+  const head = el(
+    "div",
+    { class: "settings-head", role: "search" },
+    el("label", { for: search.id, class: "visually-hidden" }, words.search),
+    search,
+    group.button,
+    only,
+    group.list,
+    count,
+  );
+  return { head, element: guarded(app, section(words.title, list, none)) };
 }

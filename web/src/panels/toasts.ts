@@ -5,6 +5,7 @@ import type { Store } from "../state/store";
 import { strings } from "../strings";
 import { clockTime } from "./clock";
 import { button, el } from "./dom";
+import { plainWords } from "./plain_words";
 
 const kShownMs = 6000;
 const kAtOnce = 3;
@@ -15,13 +16,16 @@ export function toasts(store: Store): HTMLElement {
   const loud = el("div", { class: "toast-list", role: "alert" });
   let seen: Notice | undefined;
 
+  /// A change that this page has made is seen in its control.
+  const isOwn = (notice: Notice) => notice.level === Notice_Level.CHANGE && new RegExp(`^page ${store.welcome?.page ?? -1}\\b`).test(notice.who);
+
   function show(notice: Notice): void {
     const fault = notice.level === Notice_Level.FAULT;
     const when = el("small", {}, `${clockTime(notice.unixTime)} ${notice.who || strings.people.station}`);
     const toast = el(
       "div",
       { class: "toast", "data-level": Notice_Level[notice.level]?.toLowerCase() },
-      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, notice.text)),
+      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, plainWords(notice.text))),
     );
     toast.append(button(strings.notice.dismiss, () => toast.remove(), { class: "quiet" }));
     const list = fault ? loud : quiet;
@@ -32,7 +36,7 @@ export function toasts(store: Store): HTMLElement {
   store.on(["notice"], () => {
     const last = store.notices.at(-1);
     // Events from before this page was opened are in the list; only new ones are shown as toasts.
-    const now = last && last !== seen && !kShownElsewhere.has(last.code) && !store.welcome?.past.includes(last);
+    const now = last && last !== seen && !kShownElsewhere.has(last.code) && !store.welcome?.past.includes(last) && !isOwn(last);
     if (now) show(last);
     seen = last;
   });

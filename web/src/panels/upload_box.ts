@@ -32,10 +32,12 @@ export const kUploadPatienceMs = 600_000;
 
 export interface UploadBox {
   readonly element: HTMLElement;
-  inForce(file: string): void;
+  /// Takes a file that was dropped, and uploads it.
+  take(file: File): void;
 }
 
-export function uploadBox(app: App): UploadBox {
+/// @param used  called when the station has taken the mesh
+export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   const picker = el("input", { type: "file", accept: ".obj,.3ds,.stl,.ply,.glb", class: "visually-hidden", tabindex: -1, "aria-label": words.file });
   const choose = button(words.choose, () => picker.click());
   const chosen = el("p", { class: "hint" }, words.accepted);
@@ -52,9 +54,11 @@ export function uploadBox(app: App): UploadBox {
   const report = el("pre", { class: "report", tabindex: 0, "aria-label": words.report });
   const use = button(words.useMesh, () => void apply(), { class: "primary" });
   const outcome = el("div", { class: "import" }, verdict, error, findingsBox, report, use);
+  let dropped: File | undefined; // in place of a chosen one
   let done: ImportReport | null = null; // of the file, size and unit that are shown
   let running: AbortController | null = null; // the upload whose answer is awaited
 
+  const wanted = () => dropped ?? picker.files?.[0];
   const number = () => Math.max(0, Number(fromTyped(size.value, KeyType.KEY_NUMBER)) || 0);
 
   function show(report_: ImportReport | null): void {
@@ -81,13 +85,13 @@ export function uploadBox(app: App): UploadBox {
     running?.abort();
     running = null;
     send.disabled = false;
-    const file = picker.files?.[0];
+    const file = wanted();
     if (file) setText(chosen, file.name);
     show(null);
   }
 
   async function upload(): Promise<void> {
-    const file = picker.files?.[0];
+    const file = wanted();
     if (!file) return picker.click();
     outdated();
     if (file.size > kLimitBytes) return show(failed(words.tooLarge));
@@ -116,9 +120,11 @@ export function uploadBox(app: App): UploadBox {
     use.disabled = false;
     setText(error, refused);
     setShown(error, refused !== "");
+    if (refused === "") used();
   }
 
   picker.addEventListener("change", () => {
+    dropped = undefined;
     setText(chosen, words.accepted);
     outdated();
   });
@@ -139,8 +145,9 @@ export function uploadBox(app: App): UploadBox {
     el("div", { class: "buttons" }, send),
     outcome,
   );
-  const inForce = (file: string) => {
-    if (!picker.files?.length && file !== "") setText(chosen, file.split("/").pop() ?? file);
+  const take = (file: File) => {
+    dropped = file;
+    void upload();
   };
-  return { element, inForce };
+  return { element, take };
 }

@@ -5,6 +5,7 @@ import { SafetyState, type Tick } from "../gen/phalanx/tick_pb";
 import type { Shapes } from "../view3d/shapes";
 import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
+import { Delivery } from "./delivery";
 import { Freshness } from "./freshness";
 import { History } from "./history";
 import { isChanged, slides, valueOf } from "./keys";
@@ -38,6 +39,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
   notices: Notice[] = [];
   paused = false;
   readonly light = new VerdictLight();
+  readonly delivery = new Delivery();
   readonly history = new History(channels.length, kHistoryCapacity);
   readonly freshness: Freshness;
   private readonly pending = new Map<string, Pending>();
@@ -162,6 +164,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
 
   private step(tick: Tick): void {
     if (!this.freshness.take(tick, this.now())) return;
+    this.delivery.feed(tick, this.now() / 1000);
     this.tick = tick;
     this.light.feed(tick, this.now() / 1000);
     if (!this.paused) {

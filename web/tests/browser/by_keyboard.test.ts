@@ -134,7 +134,7 @@ describe("by keyboard", () => {
 
   it("goes from tab to tab by arrow keys", async () => {
     await tabTo(strings.tabs.touch, "button");
-    for (const name of [strings.tabs.hand, strings.tabs.device, strings.tabs.people, strings.tabs.touch]) {
+    for (const name of [strings.tabs.expert, strings.tabs.device, strings.tabs.people, strings.tabs.touch]) {
       await cockpit.page.keyboard.press("ArrowRight");
       expect((await focused()).name).toBe(name);
       expect(await cockpit.page.getByRole("tab", { name, exact: true }).getAttribute("aria-selected")).toBe("true");
@@ -143,10 +143,10 @@ describe("by keyboard", () => {
 
   it("finds a setting in the list of all and sets it", async () => {
     const { keyboard } = cockpit.page;
-    await tabTo(strings.settings.open, "button");
-    await keyboard.press("Enter");
-    await cockpit.page.getByRole("dialog", { name: strings.settings.title }).waitFor();
-    await keyboard.type(stiffnessKey); // the search has the focus
+    await tabTo(strings.tabs.touch, "button");
+    await keyboard.press("ArrowRight");
+    await tabTo(strings.settings.search, "input");
+    await keyboard.type(stiffnessKey);
     await tabUntil(`the field of ${stiffnessKey}`, () =>
       cockpit.page.evaluate((key) => {
         const focus = document.activeElement;
@@ -157,8 +157,8 @@ describe("by keyboard", () => {
     await keyboard.type("0.7");
     await keyboard.press("Enter");
     await until("the stiffness", () => cockpit.stream.newest!.stiffness === 700, () => cockpit.brief());
-    await tabTo(strings.look.close, "button");
-    await keyboard.press("Enter");
+    await tabTo(strings.tabs.expert, "button");
+    await keyboard.press("ArrowLeft");
   });
 
   it("saves the curves", async () => {
@@ -172,13 +172,13 @@ describe("by keyboard", () => {
 
   it("moves a joint by its slider", async () => {
     const { keyboard } = cockpit.page;
-    await tabTo(strings.tabs.touch, "button");
-    await keyboard.press("ArrowRight");
-    await tabTo(strings.hand.sources[HandSource.HAND_SLIDERS]!, "button");
+    await tabTo(strings.hand.patient, "button");
     await keyboard.press("Enter");
     await cockpit.untilState("the sliders", (state) => state.source === HandSource.HAND_SLIDERS && state.slider.length > 0 && !state.stationGone);
     const smallest = (await cockpit.geometry()).jointMin[0]!;
     const angle = () => cockpit.stream.newest!.hcpAngle[0]!;
+    await tabTo(strings.hand.single, "summary");
+    await keyboard.press("Enter");
     await tabTo(strings.hand.joints[0]!, "input"); // the thumb's
     await keyboard.press("Home");
     await until("the joint at the end of its range", () => Math.abs(angle() - smallest) < 0.02, () => `${angle()} rad`);
@@ -189,13 +189,7 @@ describe("by keyboard", () => {
   it("uploads a mesh and uses it", async () => {
     const { keyboard } = cockpit.page;
     const words = strings.object;
-    await tabTo(strings.tabs.hand, "button");
-    await keyboard.press("ArrowLeft");
-    await tabTo(words.kind, "button");
-    await keyboard.press("Enter");
-    await keyboard.press("Home");
-    const marked = () => cockpit.page.evaluate(() => document.getElementById(document.activeElement?.getAttribute("aria-activedescendant") ?? "")?.dataset["value"]);
-    for (let i = 0; i < kMostTabs && (await marked()) !== "file"; ++i) await keyboard.press("ArrowDown");
+    await tabUntil("the card of the user's own object", (now) => now.name.startsWith(words.own) && now.tag === "button");
     await keyboard.press("Enter");
     await tabTo(words.choose, "button");
     const chooser = cockpit.page.waitForEvent("filechooser");

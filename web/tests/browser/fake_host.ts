@@ -228,7 +228,7 @@ export class FakeHost {
       case: "welcome",
       value: create(WelcomeSchema, {
         protocol: kProtocol, version: "0.7.0", page: this.page, secret: "s3cret", mayOperate: this.mayOperate, key: keysOfDocs(),
-        scene: scenes.map((name) => ({ name, meaning: `${name.replaceAll("_", " ")}, as shipped` })),
+        scene: scenes.map((name) => ({ name, meaning: `${name.replaceAll("_", " ")}, as shipped`, purpose: /^(bench|timing|stability)_|^wave$/.test(name) ? "benchmark" : "exercise" })),
         profile: ["large-man", "small-woman", "stiff-hand"].map((name) => ({ name, meaning: name })),
         past: [
           { level: 0, unixTime: Date.now() / 1000 - 60, who: "", code: "began", text: "The station began: grasp_teapot, simulated patient." },

@@ -7,6 +7,7 @@ import { faultsOfLayout, kSizes } from "./support/layout";
 import { asFile, cube } from "./support/meshes";
 import { stage, unseen } from "./support/stage";
 
+const kScenes = 19; // of exercises, that are shipped
 const play = stage();
 let cockpit: CockpitPage;
 
@@ -21,7 +22,7 @@ describe.each(kSizes)("at %i x %i", (width, height) => {
   it("everything is inside its place and uncovered, and Stop is in sight whatever is open", async () => {
     const { page } = cockpit;
     await page.setViewportSize({ width, height });
-    for (const tab of ["hand", "device", "people", "touch"] as const) {
+    for (const tab of ["expert", "device", "people", "touch"] as const) {
       await cockpit.tab(tab);
       await expectNoFaults(tab);
     }
@@ -30,12 +31,15 @@ describe.each(kSizes)("at %i x %i", (width, height) => {
     await expectNoFaults("with the menu of what is shown");
     await summary.click();
     // A mesh file is chosen by a field that only a screen reader sees.
-    await cockpit.choose(strings.object.kind, "file");
+    await cockpit.openOwnObject();
     const file = page.getByLabel(strings.object.file, { exact: true });
     await file.setInputFiles(asFile("cube.stl", cube(40)));
     await file.focus();
     await expectNoFaults("with the upload");
-    await cockpit.choose(strings.object.kind, "box");
+    await cockpit.button(strings.look.close).click();
+    await cockpit.button(strings.scene.all(kScenes)).click();
+    await expectNoFaults("with all scenes");
+    await cockpit.button(strings.scene.fewer).click();
     // A notice: this page gives control back and takes it again.
     await cockpit.tab("people");
     await cockpit.button(strings.role.release).click();

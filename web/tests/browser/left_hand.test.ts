@@ -18,7 +18,6 @@ let rightHand = 0; // handedness() of what is drawn
 
 beforeAll(async () => {
   cockpit = await play.open((await play.station("squeeze_ball")).url, full);
-  await cockpit.tab("hand");
 });
 
 /// On which side of the plane through palm, index finger and little finger the thumb's tip lies [m^3]; it changes sign in a mirror, whatever
@@ -89,7 +88,6 @@ it("draws it as a left hand from the beginning in a page that finds one", async 
 });
 
 it("makes it a right hand again", async () => {
-  await cockpit.tab("hand");
   await choose("right");
   expect(Math.sign(await seen(false))).toBe(Math.sign(rightHand));
 });

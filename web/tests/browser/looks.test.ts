@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of the page's states, for looking at; and that all of their text can be read.
 import { beforeAll, describe, it } from "vitest";
-import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, cube, noise } from "./support/meshes";
@@ -21,7 +20,7 @@ beforeAll(async () => {
 
 async function upload(name: string, bytes: Buffer): Promise<void> {
   const { page } = cockpit;
-  await cockpit.choose(strings.object.kind, "file");
+  if (!(await page.getByRole("dialog").isVisible())) await cockpit.openOwnObject();
   await page.getByLabel(strings.object.file, { exact: true }).setInputFiles(asFile(name, bytes));
   await cockpit.button(strings.object.upload).click();
   const verdict = page.getByText(new RegExp(`^(${strings.object.good}|${strings.object.bad})$`));
@@ -69,10 +68,13 @@ describe("the page looks right", () => {
     await cockpit.button(strings.stop.resume).click();
   });
 
-  it("with the list of all settings", async () => {
-    await cockpit.button(strings.settings.open).click();
+  it("with the settings of experts, and with one that was searched", async () => {
+    await cockpit.tab("expert");
+    await shootReadable(cockpit, "07_expert");
+    await cockpit.page.getByRole("searchbox").fill("force");
     await shootReadable(cockpit, "07_settings");
-    await cockpit.button(strings.look.close).click();
+    await cockpit.page.getByRole("searchbox").fill("");
+    await cockpit.tab("touch");
   });
 
   it("with the keys", async () => {
@@ -86,13 +88,12 @@ describe("the page looks right", () => {
     await shootReadable(cockpit, "09_upload_good");
     await upload("noise.stl", noise(5000, 20261122));
     await shootReadable(cockpit, "10_upload_bad");
+    await cockpit.button(strings.look.close).click();
   });
 
   it("with the sliders", async () => {
-    await cockpit.tab("hand");
-    await shootReadable(cockpit, "11_hand");
-    await cockpit.button(strings.hand.sources[HandSource.HAND_SLIDERS]!).click();
-    await cockpit.untilState("the sliders", (state) => state.source === HandSource.HAND_SLIDERS && !state.stationGone);
+    await cockpit.setPatient(false);
+    await cockpit.openSingleJoints();
     await cockpit.button(strings.hand.fist).click();
     await cockpit.untilAtRest();
     await shootReadable(cockpit, "12_sliders");

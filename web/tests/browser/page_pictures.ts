@@ -22,9 +22,7 @@ const cube = { name: "knob.stl", mimeType: "model/stl", buffer: Buffer.from("sol
 
 async function upload(page: Page, host: FakeHost, answer: unknown): Promise<void> {
   host.import_ = answer;
-  const box = page.locator(".row:has([data-value=tap_handle])");
-  await box.locator(".choice").click();
-  await box.locator("[data-value=file]").click();
+  await page.click(".card-own");
   await page.setInputFiles("input[type=file]", cube);
   await page.click("button:text-is(\"Upload\")");
   await page.waitForSelector(".upload .import:not([hidden])");
@@ -65,14 +63,15 @@ const shots: readonly Shot[] = [
   { name: "take", before: (host) => { host.page = 4; }, act: async (page) => page.click(".role-why button") },
   { name: "busy", before: (host) => (host.state.busy = "a new object: the torque goes to zero, the station begins anew") },
   { name: "refused", before: (host) => (host.refuse = "force.stiffness_n_per_mm = 900: beyond its range, >= 0, <= 100 N/mm; write a number within it"), act: async (page) => { await page.fill(".row-slider input.number", "900"); await page.keyboard.press("Enter"); await wait(300); } },
-  { name: "sliders", act: async (page) => { await tab(page, "hand"); await page.click("[data-source='2']"); await wait(400); await page.click("text=Fist"); } },
+  { name: "sliders", act: async (page) => { await page.click("[aria-label='Simulated patient']"); await wait(400); await page.click("text=Fist"); } },
   { name: "device", act: async (page) => tab(page, "device") },
   { name: "wizard", before: (host) => { onWire(host); host.state.wizard = wizard; }, act: async (page) => { await tab(page, "device"); await page.locator(".wizard").scrollIntoViewIfNeeded(); } },
   { name: "wizard_end", before: (host) => { onWire(host); host.state.wizard = { ...wizard, pose: 5, done: [true, true, true, true, true], problem: ["channel 3 (index pip): moved 40 counts between flat and fist, at least 200 are needed"], result: ["channel 0  thumb cmc flexion   0.00153 rad/count", "channel 1  thumb ip flexion    0.00148 rad/count"] }; }, act: async (page) => { await tab(page, "device"); await page.locator(".wizard").scrollIntoViewIfNeeded(); } },
   { name: "people", act: async (page, host) => { await tab(page, "people"); host.notice(1, "page 2 (127.0.0.1), Anna", "set", "force.stiffness_n_per_mm = 3"); await wait(200); } },
   { name: "upload_good", act: async (page, host) => upload(page, host, { ok: true, error: "", report: ["knob.stl: 1,204 vertices, 2,404 triangles", "closed, one piece, 61 x 40 x 38 mm", "simplified: no"], findings: ["2 degenerate triangles were removed"], file: "/var/phalanx/uploads/knob.stl" }) },
   { name: "upload_bad", act: async (page, host) => upload(page, host, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },
-  { name: "settings", act: async (page) => { await page.click("button:has-text(\"All settings\")"); await page.fill("input[type=search]", "force"); await wait(200); } },
+  { name: "expert", act: async (page) => tab(page, "expert") },
+  { name: "settings", act: async (page) => { await tab(page, "expert"); await page.fill("input[type=search]", "force"); await wait(200); } },
   { name: "help", act: async (page) => page.keyboard.press("?") },
   { name: "light", light: true },
   { name: "light_shaking", light: true, before: (host) => (host.shaking = true) },

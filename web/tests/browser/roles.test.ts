@@ -22,8 +22,8 @@ beforeAll(async () => {
 });
 
 const controls = (cockpit: CockpitPage) => [
-  cockpit.stiffnessField, cockpit.slider(strings.force.stiffness), cockpit.switch(strings.calm.smoothing), cockpit.choice(strings.scene.label),
-  cockpit.choice(strings.object.kind),
+  cockpit.stiffnessField, cockpit.slider(strings.force.stiffness), cockpit.switch(strings.calm.smoothing), cockpit.choice(strings.hand.side),
+  cockpit.switch(strings.hand.patient),
 ];
 
 async function untilMayOperate(cockpit: CockpitPage, may: boolean): Promise<void> {
@@ -78,11 +78,11 @@ describe("roles", () => {
   it("tells everybody what the operator changes", async () => {
     await anna.setStiffness(0.7);
     for (const page of [anna, bert, cleo]) {
-      await untilTold(page, "set", "Anna", stiffnessKey, "0.7");
+      await untilTold(page, "set", "Anna", stiffnessKey, "0.7"); // as sent
       await until("the number in the field", async () => (await page.stiffnessField.inputValue()) === "0.7");
     }
     await cleo.tab("people");
-    expect(await cleo.page.getByRole("listitem").filter({ hasText: stiffnessKey }).filter({ hasText: "Anna" }).count()).toBeGreaterThan(0);
+    expect(await cleo.page.getByRole("listitem").filter({ hasText: strings.settings.labels[stiffnessKey]! }).filter({ hasText: "Anna" }).count()).toBeGreaterThan(0);
     await cleo.tab("touch");
   });
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Without a patient: every slider moves its joint, the object is met and felt, and the patient comes back.
 import { beforeAll, describe, expect, it } from "vitest";
-import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
 import { Opening_Phase } from "../../src/gen/phalanx/tick_pb";
 import { openingsText } from "../../src/panels/openings";
 import { strings } from "../../src/strings";
@@ -26,10 +25,8 @@ beforeAll(async () => {
   };
   cockpit = await play.open((await play.station("squeeze_ball", values)).url, small);
   await cockpit.untilRunning();
-  await cockpit.tab("hand");
 });
 
-const source = (which: HandSource) => cockpit.button(strings.hand.sources[which]!);
 const joints = () => cockpit.page.getByRole("group", { name: /./ }).getByRole("slider");
 const angle = (joint: number) => cockpit.stream.newest?.hcpAngle[joint] ?? NaN;
 
@@ -52,9 +49,10 @@ async function moveTo(joint: number, wanted: number): Promise<void> {
 
 describe("the sliders", () => {
   it("take the hand over from the patient", async () => {
-    await source(HandSource.HAND_SLIDERS).click();
-    await cockpit.untilState("the sliders move the hand", (state) => state.source === HandSource.HAND_SLIDERS && state.slider.length === kJoints && !state.stationGone);
-    await until("the button is pressed", async () => (await source(HandSource.HAND_SLIDERS).getAttribute("aria-pressed")) === "true");
+    await cockpit.setPatient(false);
+    expect(cockpit.stream.state!.slider.length).toBe(kJoints);
+    await until("the switch is off", async () => (await cockpit.switch(strings.hand.patient).getAttribute("aria-checked")) === "false");
+    await cockpit.openSingleJoints();
     await until("20 sliders", async () => (await joints().count()) === kJoints, async () => `${await joints().count()} are there`);
   });
 
@@ -119,7 +117,7 @@ describe("the sliders", () => {
     expect(await line.textContent()).toBe("");
     await cockpit.button(strings.hand.fist).click();
     await cockpit.untilTouching();
-    await cockpit.tab("touch");
+    await cockpit.tab("expert");
     await cockpit.fieldLike(strings.object.sizes["diameter_mm"]!).fill("68"); // the shown hand begins at the open hand again
     await cockpit.button(strings.object.use).click();
     const digits = await until("digits that began inside", () => stream.newest!.opening.length > 0 && stream.newest!.opening, () => cockpit.brief());
@@ -140,14 +138,13 @@ describe("the sliders", () => {
     await until("it is pushed", phase(Opening_Phase.CONFIRMED), () => cockpit.brief());
     await until("it has not followed", phase(Opening_Phase.NOT_FOLLOWED), () => cockpit.brief());
     await until("the line says so", async () => (await line.textContent())!.includes("did not follow"));
-    await cockpit.tab("hand");
+    await cockpit.tab("touch");
     await cockpit.button(strings.hand.open).click();
     await until("the line is gone", async () => (await line.textContent()) === "" && stream.newest!.opening.length === 0, () => cockpit.brief());
   });
 
   it("give the hand back to the patient", async () => {
-    await source(HandSource.HAND_PATIENT).click();
-    await cockpit.untilState("the patient moves the hand", (state) => state.source === HandSource.HAND_PATIENT && !state.stationGone);
+    await cockpit.setPatient(true);
     await until("no sliders", async () => (await joints().count()) === 0);
     await cockpit.untilRunning();
     const still = cockpit.stream.newest!.hcpAngle;

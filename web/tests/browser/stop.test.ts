@@ -40,7 +40,7 @@ describe("stop", () => {
 
   it("stops by Space, wherever the focus is, and presses nothing", () =>
     stopAndResume(async () => {
-      await operator.button(strings.settings.open).focus();
+      await operator.button(strings.look.help).focus();
       await operator.page.keyboard.press("Space");
       expect(await operator.page.getByRole("dialog").count(), "Space pressed the button, too").toBe(0);
     }));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh of one's own: a good one becomes the object, a broken one is refused in words that help, and nothing changes.
 import { beforeAll, describe, expect, it } from "vitest";
-import { HandSource } from "../../src/gen/phalanx/cockpit_pb";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, cube, noise } from "./support/meshes";
@@ -20,7 +19,7 @@ let cockpit: CockpitPage;
 beforeAll(async () => {
   cockpit = await play.open((await play.station("grasp_box")).url, unseen);
   await cockpit.untilRunning();
-  await cockpit.choose(words.kind, "file");
+  await cockpit.openOwnObject();
 });
 
 /// What the page says of a file that was sent.
@@ -91,6 +90,7 @@ describe("an uploaded mesh", () => {
 
   it("is held by a grasp that is planned for it", async () => {
     const { geometry } = cockpit.stream.state!;
+    await cockpit.tab("expert");
     await cockpit.choose(strings.grasp.type, "tripod");
     await cockpit.untilState("another wrist", (state) => state.geometry !== geometry && valueOf(state, "grasp.type") === '"tripod"' && !state.stationGone && state.busy === "");
     await cockpit.untilRunning();
@@ -106,9 +106,7 @@ describe("an uploaded mesh", () => {
   });
 
   it("is held by the sliders' hand, too, which closes as planned", async () => {
-    await cockpit.tab("hand");
-    await cockpit.button(strings.hand.sources[HandSource.HAND_SLIDERS]!).click();
-    await cockpit.untilState("the sliders move the hand", (state) => state.source === HandSource.HAND_SLIDERS && state.slider.length > 0 && !state.stationGone);
+    await cockpit.setPatient(false);
     await cockpit.button(strings.hand.grasp).click();
     const { value } = cockpit.stream.state!;
     const { jointName } = await cockpit.geometry();

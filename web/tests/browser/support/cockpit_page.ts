@@ -2,7 +2,7 @@
 // One browser page with the cockpit: what a person finds on it, by the names that a screen reader says.
 import { fromBinary } from "@bufbuild/protobuf";
 import type { Locator, Page } from "playwright-core";
-import type { State } from "../../../src/gen/phalanx/cockpit_pb";
+import { HandSource, type State } from "../../../src/gen/phalanx/cockpit_pb";
 import { GeometrySchema, type Geometry } from "../../../src/gen/phalanx/geometry_pb";
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import { strings } from "../../../src/strings";
@@ -109,6 +109,26 @@ export class CockpitPage {
     const box = this.choice(name);
     await box.click();
     await this.page.locator(`[id="${await box.getAttribute("aria-controls")}"] [data-value="${value}"]`).click();
+  }
+
+  /// Switches the simulated patient on, or off: the sliders then move the hand.
+  async setPatient(on: boolean): Promise<void> {
+    await this.tab("touch");
+    if ((await this.switch(strings.hand.patient).getAttribute("aria-checked")) !== String(on)) await this.switch(strings.hand.patient).click();
+    const source = on ? HandSource.HAND_PATIENT : HandSource.HAND_SLIDERS;
+    await this.untilState(`the source ${HandSource[source]}`, (state) => state.source === source && (on || state.slider.length > 0) && !state.stationGone);
+  }
+
+  /// Opens the sliders of single joints.
+  async openSingleJoints(): Promise<void> {
+    await this.page.getByText(strings.hand.single, { exact: true }).click();
+  }
+
+  /// Opens the dialog of the user's own object by its card.
+  async openOwnObject(): Promise<void> {
+    await this.tab("touch");
+    await this.page.locator(".card-own").click();
+    await this.page.getByRole("dialog", { name: strings.object.own }).waitFor();
   }
 
   async setStiffness(newtonPerMm: number): Promise<void> {

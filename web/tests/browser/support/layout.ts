@@ -2,7 +2,7 @@
 // What is wrong with the places of things on a page, and the sizes of screens that people have.
 
 export const kSizes: readonly (readonly [width: number, height: number])[] = [
-  [1920, 1080], [1440, 900], [1366, 768], [1150, 760], [1024, 768], [390, 844],
+  [1920, 1080], [1440, 900], [1366, 768], [1280, 720], [1150, 760], [1024, 768], [768, 1024], [390, 844],
   [720, 450], [960, 540], // 1440 x 900 and 1920 x 1080 at 200 %
 ];
 
@@ -41,7 +41,7 @@ export function faultsOfLayout(): string[] {
     if (!shown(control) || control.closest("fieldset:disabled") || (question && !control.closest(".dialog, .dock"))) continue;
     control.scrollIntoView({ block: "nearest", inline: "nearest" });
     const box = control.getBoundingClientRect();
-    const around = control.closest(".view-parts-list, .view-frame, .tab-panels, .stop-box, .plots, .toasts, .header, .tabs, .dialog, .role-strip, .openings");
+    const around = control.closest(".view-parts-list, .view-frame, .tab-panels, .stop-box, .plots, .toasts, .header, .tabs, .dialog, .role-strip, .openings, .story");
     if (!around || !within(box, around.getBoundingClientRect())) say(`${nameOf(control)} is not inside .${around?.className}`);
     if (!within(box, screen)) say(`${nameOf(control)} is not on the screen`);
     if (!uncovered(control)) say(`${nameOf(control)} is covered`);

@@ -1,57 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 import { beforeEach, describe, expect, it } from "vitest";
-import { devicePanel } from "../../../src/panels/device_panel";
-import { faultCard, faultSection } from "../../../src/panels/fault_card";
+import { create } from "@bufbuild/protobuf";
+import { ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { faultCard } from "../../../src/panels/fault_card";
 import { strings } from "../../../src/strings";
+import { kProtocol } from "../../../src/wire/connection";
 import { fakeApp, kMe, type FakeApp } from "./fake_app";
 
 const words = strings.fault;
 const fault = { name: "sensor_jump", meaning: "A sensor's angle jumped.", remedy: "Check its cable.", channel: 7, time: 12.5, report: "out/faults/1.json" };
 let fake: FakeApp;
-const resetOf = (element: HTMLElement) => [...element.querySelectorAll("button")].find((one) => one.textContent === words.reset)!;
+let card: HTMLElement;
+const reset = () => [...card.querySelectorAll("button")].find((one) => one.textContent === words.reset)!;
+const report = () => card.querySelector("a")!;
 
-beforeEach(() => (fake = fakeApp()));
+beforeEach(() => {
+  fake = fakeApp();
+  card = faultCard(fake.app);
+});
 
 describe("a fault", () => {
-  it("is told over the view and in the device panel, with what to do", () => {
-    const places = [faultCard(fake.app), faultSection(fake.app)];
+  it("is told over the view, with what to do, and without the path of a file", () => {
     fake.state({ operatorPage: kMe, fault });
-    for (const place of places) {
-      for (const text of [fault.meaning, fault.remedy, fault.report, words.channel(7), "sensor jump"]) expect(place.textContent).toContain(text);
-    }
-    expect(devicePanel(fake.app).textContent).toContain(fault.meaning);
+    expect(card.hidden).toBe(false);
+    for (const text of [fault.meaning, fault.remedy, words.channel(7), "sensor jump"]) expect(card.textContent).toContain(text);
+    expect(card.textContent).not.toContain("out/faults");
   });
 
-  it("is reset from either place, and what is refused is said there", async () => {
-    for (const place of [faultCard(fake.app), faultSection(fake.app)]) {
-      fake.state({ operatorPage: kMe, fault });
-      fake.refuse = "the cause is still there";
-      resetOf(place).click();
-      await Promise.resolve().then(() => {});
-      expect(fake.resets.at(-1)).toBe(fault.time);
-      expect(place.querySelector(".refused")!.textContent).toBe(fake.refuse);
-    }
-    expect(fake.resets.length).toBe(2);
-  });
-
-  it("is reset by nobody who only watches", () => {
-    const place = faultSection(fake.app);
+  it("has a report that can be saved as soon as it is written, where the page may operate", () => {
+    fake.state({ operatorPage: kMe, fault: { ...fault, report: "" } });
+    expect(report().hidden).toBe(true);
+    expect(card.textContent).toContain(words.reportPending);
+    fake.state({ operatorPage: kMe, fault });
+    expect(report().hidden).toBe(false);
+    expect([report().getAttribute("href"), report().download]).toEqual(["report", words.reportFile("sensor_jump")]);
+    const viewer = create(WelcomeSchema, { protocol: kProtocol, page: kMe, mayOperate: false });
+    fake.store.receive(create(ToPageSchema, { what: { case: "welcome", value: viewer } }));
     fake.state({ operatorPage: kMe + 1, fault });
-    expect(resetOf(place).disabled).toBe(true);
-    expect(resetOf(place).title).toBe(words.resetViewer);
+    expect(report().hidden).toBe(true);
   });
 
-  it("that is none takes the card away; the panel says so, as far as it is known", () => {
-    const card = faultCard(fake.app);
-    const panel = faultSection(fake.app);
-    const said = () => panel.querySelector<HTMLElement>(".hint:not([hidden])")?.textContent;
-    const body = panel.querySelector<HTMLElement>(".fault")!;
-    expect(said()).toBe(strings.dash);
-    fake.state({ operatorPage: kMe });
-    expect([card.hidden, body.hidden, said()]).toEqual([true, true, words.none]);
+  it("is reset, and what is refused is said", async () => {
     fake.state({ operatorPage: kMe, fault });
-    expect([card.hidden, body.hidden]).toEqual([false, false]);
+    fake.refuse = "the cause is still there";
+    reset().click();
+    await Promise.resolve().then(() => {});
+    expect(fake.resets).toEqual([fault.time]);
+    expect(card.querySelector(".refused")!.textContent).toBe(fake.refuse);
+  });
+
+  it("cannot be reset while the emergency stop is pressed, and says why", () => {
+    const why = () => [...card.querySelectorAll<HTMLElement>(".warning")].some((one) => !one.hidden && one.textContent === words.pressed);
+    fake.state({ operatorPage: kMe, fault, estop: true });
+    expect([reset().disabled, why()]).toEqual([true, true]);
+    fake.state({ operatorPage: kMe, fault, estop: false });
+    expect([reset().disabled, why()]).toEqual([false, false]);
+  });
+
+  it("is not reset by a page that only watches", () => {
+    fake.state({ operatorPage: kMe + 1, fault });
+    expect([reset().disabled, reset().title]).toEqual([true, words.resetViewer]);
+  });
+
+  it("that is over takes the card away, and so does a lost connection", () => {
+    fake.state({ operatorPage: kMe, fault });
+    fake.state({ operatorPage: kMe });
+    expect(card.hidden).toBe(true);
+    fake.state({ operatorPage: kMe, fault });
+    expect(card.hidden).toBe(false);
     fake.store.setPhase("waiting");
-    expect([card.hidden, body.hidden, said()]).toEqual([true, true, strings.dash]);
+    expect(card.hidden).toBe(true);
   });
 });

@@ -10,7 +10,7 @@ beforeEach(() => {
 });
 afterEach(() => vi.useRealTimers());
 
-const slider = () => logSliderRow(fake.app, stiffness, { label: "Stiffness", field: "Number", unit: "N/mm", low: "soft", high: "stiff" }, 0.1, 5);
+const slider = () => logSliderRow(fake.app, stiffness, { label: "Stiffness", field: "Number", unit: "N/mm" }, 0.1, 5, document.createElement("div"));
 function enter(row: HTMLElement, text: string): void {
   const field = row.querySelector<HTMLInputElement>("input[type=text]")!;
   field.value = text;

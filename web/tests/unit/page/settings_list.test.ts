@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the list of all settings says of each key.
 import { create } from "@bufbuild/protobuf";
-import { describe, expect, it } from "vitest";
-import { ChangeKind, KeyInfoSchema, KeyType } from "../../../src/gen/phalanx/cockpit_pb";
-import { allowedText, factsText } from "../../../src/panels/settings_list";
+import { beforeEach, describe, expect, it } from "vitest";
+import { ChangeKind, KeyInfoSchema, KeyType, ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
+import { allowedText, factsText, settingsList, type SettingsList } from "../../../src/panels/settings_list";
+import { strings } from "../../../src/strings";
+import { kProtocol } from "../../../src/wire/connection";
+import { fakeApp, kMe, type FakeApp } from "./fake_app";
 
 describe("allowedText", () => {
   it("writes bounds, open and closed, and what may stand in a number's place", () => {
@@ -47,5 +50,70 @@ describe("factsText", () => {
   it("leaves out a default that is no text", () => {
     const key = create(KeyInfoSchema, { type: KeyType.KEY_TEXT, defaultValue: '""', change: ChangeKind.CHANGE_IN_CONTACT });
     expect(factsText(key, "")).toBe("text · changes at once, within 0.2 s");
+  });
+});
+
+describe("the list of all settings", () => {
+  const keys = [
+    { path: "rate_hz", meaning: "ticks per second", type: KeyType.KEY_NUMBER, defaultValue: "200" },
+    { path: "force.law", meaning: "force over depth", type: KeyType.KEY_CHOICE, choice: ["hooke", "duffing"], defaultValue: '"hooke"' },
+    { path: "force.exponent", meaning: "exponent n of the depth", type: KeyType.KEY_NUMBER, defaultValue: "1.5" },
+    { path: "limits.joint_torque_nm", meaning: "largest torque of a joint", type: KeyType.KEY_NUMBER_OR_OFF, defaultValue: "0.3" },
+  ];
+  let fake: FakeApp;
+  let list: SettingsList;
+  let searching: boolean;
+
+  beforeEach(() => {
+    fake = fakeApp();
+    const welcome = create(WelcomeSchema, { protocol: kProtocol, page: kMe, mayOperate: true, key: keys });
+    list = settingsList(fake.app, (now) => (searching = now));
+    fake.store.receive(create(ToPageSchema, { what: { case: "welcome", value: welcome } }));
+    fake.operate(kMe);
+  });
+  const shown = () =>
+    [...list.element.querySelectorAll<HTMLDetailsElement>("details")]
+      .filter((group) => !group.hidden)
+      .map((group) => [group.querySelector("summary")!.textContent, group.open, [...group.querySelectorAll<HTMLElement>("li")].filter((one) => !one.hidden).map((one) => one.querySelector("strong")!.textContent)]);
+  const search = (text: string) => {
+    const field = list.head.querySelector<HTMLInputElement>("input[type=search]")!;
+    field.value = text;
+    field.dispatchEvent(new Event("input"));
+  };
+  const words = strings.settings;
+
+  it("groups the keys under headings that open, with labels first", () => {
+    expect(shown()).toEqual([
+      [words.groups["general"], false, ["Update rate"]],
+      [words.groups["force"], false, ["Force law", "Exponent"]],
+      [words.groups["limits"], false, ["Torque of a joint, at most"]],
+    ]);
+    expect(searching).toBe(false);
+  });
+
+  it("finds by label, key and meaning, every word of them", () => {
+    search("depth expo");
+    expect(shown()).toEqual([[words.groups["force"], true, ["Exponent"]]]);
+    expect(searching).toBe(true);
+    search("joint_torque");
+    expect(shown()).toEqual([[words.groups["limits"], true, ["Torque of a joint, at most"]]]);
+    search("TICKS");
+    expect(shown().map(([name]) => name)).toEqual([words.groups["general"]]);
+    search("");
+    expect(shown().map(([, open]) => open)).toEqual([false, false, false]);
+    expect(searching).toBe(false);
+  });
+
+  it("filters by group, and what differs from the scene", () => {
+    const [box] = list.head.querySelectorAll<HTMLButtonElement>("[role=combobox]");
+    document.body.replaceChildren(list.head);
+    box!.click();
+    list.head.querySelector<HTMLElement>("[data-value=limits]")!.click();
+    expect(shown().map(([name]) => name)).toEqual([words.groups["limits"]]);
+    box!.click();
+    list.head.querySelector<HTMLElement>('[data-value=""]')!.click();
+    fake.state({ operatorPage: kMe, changed: [{ key: "force.law", value: '"duffing"' }], value: [{ key: "force.law", value: '"duffing"' }] });
+    list.head.querySelector<HTMLElement>("[role=switch]")!.click();
+    expect(shown()).toEqual([[words.groups["force"], true, ["Force law"]]]);
   });
 });

@@ -3,6 +3,7 @@ import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
 import { ChangeKind, HandSource, KeyType, Notice_Level } from "../../../src/gen/phalanx/cockpit_pb";
+import { groupOf } from "../../../src/panels/settings_list";
 import { strings } from "../../../src/strings";
 import { literals, unusedTexts } from "./source_texts";
 
@@ -51,6 +52,16 @@ describe("strings", () => {
       expect(choices(key).length, key).toBeGreaterThan(3);
       for (const choice of choices(key)) expect(texts[choice], `${key} = ${choice}`).toBeTruthy();
     }
+  });
+
+  it("name every key of a scene and its group", () => {
+    const keys = [...keysOfDocs.matchAll(/^\| `([a-z0-9_.[\]]+)` \| (?:number|integer|flag|text|choice|vector|file|name)/gm)].map((match) => match[1]!);
+    expect(keys.length).toBeGreaterThan(80);
+    for (const key of keys) {
+      expect(strings.settings.labels[key], key).toBeTruthy();
+      expect(strings.settings.groups[groupOf(key)], key).toBeTruthy();
+    }
+    expect(Object.keys(strings.settings.labels).filter((key) => !keys.includes(key)), "labels of keys that are gone").toEqual([]);
   });
 
   it("name every size that an object may have", () => {

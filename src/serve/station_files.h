@@ -16,22 +16,24 @@
 
 namespace phalanx {
 
-/// The recordings of a folder, for the page that replays them: /recordings is their list as JSON, /recordings/NAME a part of
-/// a file (HTTP Range). Only those who may operate get them, since they hold what happened to people. A thread of its own reads the
-/// disk, so that neither a stop nor a tick waits for it on the server's thread.
-class RecordingFiles : public std::enable_shared_from_this<RecordingFiles> {
+/// Files of the station for its pages: /recordings is the list of the recordings of a folder as JSON, /recordings/NAME a part of one
+/// (HTTP Range), /report the report of the newest fault. Only those who may operate get them, since they hold what happened to people.
+/// A thread of its own reads the disk, so that neither a stop nor a tick waits for it on the server's thread.
+class StationFiles : public std::enable_shared_from_this<StationFiles> {
  public:
   using Respond = std::function<void(WebResponse)>;
   static constexpr std::size_t kLargestPart = 16U << 20U;  ///< of a file in one response [bytes]
   static constexpr std::size_t kMostWaiting = 64;          ///< requests
 
   /// @param folder  empty: there are none
-  explicit RecordingFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit StationFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// @returns true if the path is of these files
   [[nodiscard]] static bool is_one(const std::string& path) noexcept {
-    return path == "/recordings" || path.starts_with("/recordings/");
+    return path == "/recordings" || path.starts_with("/recordings/") || path == "/report";
   }
+  /// Sets the file of /report. Any thread.
+  void set_report(std::filesystem::path file);
   /// Responds from the reading thread, or at once with a refusal in words. Any thread; allocates.
   void request(const WebRequest& request, Respond respond);
 
@@ -44,12 +46,14 @@ class RecordingFiles : public std::enable_shared_from_this<RecordingFiles> {
   [[nodiscard]] WebResponse response_to(const WebRequest& request);
   [[nodiscard]] WebResponse part_of(const std::string& name, const std::string& range) const;
   [[nodiscard]] WebResponse list();
+  [[nodiscard]] WebResponse whole_report();
 
   const std::filesystem::path folder_;
   std::vector<RecordingSummary> known_;  ///< the newest list; of the reading thread
   std::mutex mutex_;                     ///< of all members below
   std::deque<Request> requests_;
-  bool working_ = false;  ///< the thread runs
+  std::filesystem::path report_;  ///< empty: no fault has been reported
+  bool working_ = false;          ///< the thread runs
 };
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/recording_files.h"
+#include "serve/station_files.h"
 
 #include <fmt/format.h>
 
@@ -24,6 +24,7 @@ namespace phalanx {
 namespace {
 
 constexpr std::string_view kFiles = "/recordings/";
+constexpr std::string_view kReport = "/report";
 
 WebResponse words(int status, const std::string& text) {
   WebResponse response;
@@ -53,17 +54,18 @@ std::optional<ByteRange> read_range(std::string_view field) {
 
 }  // namespace
 
-void RecordingFiles::request(const WebRequest& request, Respond respond) {
+void StationFiles::request(const WebRequest& request, Respond respond) {
   if (!request.client.may_operate)
-    return respond(words(403, "recordings are for those who may operate: use the operator's address"));
+    return respond(
+        words(403, "recordings and reports are for those who may operate: use the operator's address"));
   if (request.method == "POST")
-    return respond(words(405, "this address does not allow this method: recordings can only be read"));
-  if (folder_.empty())
+    return respond(words(405, "this address does not allow this method: files can only be read"));
+  if (folder_.empty() && request.path != kReport)
     return respond(words(404, "this run records nothing (--record off), so it has no folder of recordings"));
   std::unique_lock lock(mutex_);
   if (requests_.size() >= kMostWaiting) {
     lock.unlock();
-    return respond(words(503, "too many parts of recordings are being read; ask again"));
+    return respond(words(503, "too many files are being read; ask again"));
   }
   requests_.push_back({request, std::move(respond)});
   if (working_) return;
@@ -74,11 +76,16 @@ void RecordingFiles::request(const WebRequest& request, Respond respond) {
     const Request refused = std::move(requests_.back());
     requests_.pop_back();
     lock.unlock();
-    refused.respond(words(503, "there is no thread to read recordings; ask again"));
+    refused.respond(words(503, "there is no thread to read files; ask again"));
   }
 }
 
-void RecordingFiles::work() {
+void StationFiles::set_report(std::filesystem::path file) {
+  const std::scoped_lock lock(mutex_);
+  report_ = std::move(file);
+}
+
+void StationFiles::work() {
   std::unique_lock lock(mutex_);
   while (!requests_.empty()) {
     const Request next = std::move(requests_.front());
@@ -93,8 +100,9 @@ void RecordingFiles::work() {
   working_ = false;
 }
 
-WebResponse RecordingFiles::response_to(const WebRequest& request) {
+WebResponse StationFiles::response_to(const WebRequest& request) {
   try {
+    if (request.path == kReport) return whole_report();
     if (!request.path.starts_with(kFiles)) return list();
     return part_of(request.path.substr(kFiles.size()), request.range);
   } catch (const std::system_error& error) {
@@ -104,7 +112,22 @@ WebResponse RecordingFiles::response_to(const WebRequest& request) {
   }
 }
 
-WebResponse RecordingFiles::list() {
+WebResponse StationFiles::whole_report() {
+  std::unique_lock lock(mutex_);
+  const std::filesystem::path file = report_;
+  lock.unlock();
+  if (file.empty()) return words(404, "no fault has been reported since the program began");
+  const mcap::ReadableFile readable(file);
+  if (readable.size() > kLargestPart) return words(500, "the report is too large");
+  std::string bytes;
+  readable.read(0, readable.size(), bytes);
+  WebResponse response;
+  response.type = "application/json";
+  response.body = std::make_shared<const std::string>(std::move(bytes));
+  return response;
+}
+
+WebResponse StationFiles::list() {
   nlohmann::json files = nlohmann::json::array();
   known_ = list_recordings(folder_, known_);
   for (const RecordingSummary& recording : known_) {
@@ -128,7 +151,7 @@ WebResponse RecordingFiles::list() {
   return response;
 }
 
-WebResponse RecordingFiles::part_of(const std::string& name, const std::string& range_field) const {
+WebResponse StationFiles::part_of(const std::string& name, const std::string& range_field) const {
   const std::filesystem::path file = folder_ / name;
   if (name.find('/') != std::string::npos || file.extension() != ".mcap" ||
       !std::filesystem::is_regular_file(file))

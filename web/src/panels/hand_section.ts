@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hand: side, profile, and what moves it.
+// The hand: size, side, and what moves it.
 import { HandSource } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
 import { quote, unquote } from "../state/toml";
@@ -7,33 +7,33 @@ import { strings } from "../strings";
 import type { Change } from "../wire/host";
 import { change, refusal, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
-import { button, el, section, setAttribute, setShown, setText } from "./dom";
+import { el, section, setShown, setSwitch, setText, switchButton } from "./dom";
 import { jointSliders } from "./joint_sliders";
-import { choiceRow, guarded, row } from "./setting_controls";
+import { choiceRow, row } from "./setting_controls";
 
 const words = strings.hand;
 
-function sourceSection(app: App): HTMLElement {
+/// The simulated patient, and without it what the user moves the hand with. A device moves the hand itself.
+function patientRow(app: App): HTMLElement {
   const error = el("p", { class: "refused", role: "alert", hidden: true });
   const hint = el("p", { class: "hint" }, words.deviceHint);
-  const choices = [HandSource.HAND_PATIENT, HandSource.HAND_SLIDERS].map((source) =>
-    button(words.sources[source] ?? "", () => void choose(source), { "aria-pressed": "false", "data-source": source }),
-  );
+  const patient = switchButton(words.patient, (on) => void choose(on ? HandSource.HAND_PATIENT : HandSource.HAND_SLIDERS), { "aria-label": words.patient });
+  const made = row(words.patientHint, patient);
+  made.element.classList.add("row-switch");
   async function choose(source: HandSource): Promise<void> {
     setText(error, refusal(await app.host.setSource(source)));
     setShown(error, error.textContent !== "");
+    update();
   }
-  const group = el("div", { class: "segmented", role: "group", "aria-label": words.source }, ...choices);
   const update = () => {
     const source = app.store.state?.source;
-    for (const choice of choices) setAttribute(choice, "aria-pressed", String(Number(choice.dataset["source"]) === source));
-    const device = source === HandSource.HAND_DEVICE;
-    setShown(group, !device);
-    setShown(hint, device);
+    setSwitch(patient, source === HandSource.HAND_PATIENT);
+    setShown(made.element, source !== HandSource.HAND_DEVICE);
+    setShown(hint, source === HandSource.HAND_DEVICE);
   };
   app.store.on(["state"], update);
   update();
-  return section(words.source, group, hint, error);
+  return el("div", {}, made.element, hint, error);
 }
 
 const statedSide = (store: Store) => unquote(store.value("hand.side")) || "right";
@@ -51,7 +51,7 @@ function sideChanges(store: Store, wanted: string): readonly Change[] {
   return [...takenBack(store, ["hand.side"]), ["mirror", String(wanted !== own)]];
 }
 
-function handSection(app: App): HTMLElement {
+export function handSection(app: App): HTMLElement {
   const box = new ChoiceBox(() => choose());
   const made = row(words.profile, box);
   const profile = "hand.profile";
@@ -69,7 +69,7 @@ function handSection(app: App): HTMLElement {
   }
   const update = () => {
     const profiles = app.store.welcome?.profile ?? [];
-    box.setChoices([{ value: "", text: words.noProfile }, ...profiles.map((one) => ({ value: one.name, text: one.name, title: one.meaning }))]);
+    box.setChoices([{ value: "", text: words.noProfile }, ...profiles.map((one) => ({ value: one.name, text: words.profiles[one.name] ?? one.name, title: one.meaning }))]);
     box.value = unquote(app.store.value(profile));
     setShown(side, box.value === "");
     setShown(profileSide, box.value !== "" && app.store.geometry !== undefined);
@@ -77,10 +77,5 @@ function handSection(app: App): HTMLElement {
   };
   app.store.on(["state", "own", "connection", "geometry"], update);
   update();
-  return section(words.title, made.element, side, profileSide);
+  return section(words.title, made.element, side, profileSide, patientRow(app), jointSliders(app));
 }
-
-export function handPanel(app: App): HTMLElement {
-  return el("div", {}, guarded(app, sourceSection(app), handSection(app), jointSliders(app)));
-}
-

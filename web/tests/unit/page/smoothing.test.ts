@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { stabiliserInForce, touchPanel } from "../../../src/panels/touch_panel";
+import { expertPanel } from "../../../src/panels/expert_panel";
+import { smoothingSwitch, stabiliserInForce } from "../../../src/panels/smoothing";
+import { el } from "../../../src/panels/dom";
 import { strings } from "../../../src/strings";
 import { fakeApp, type FakeApp } from "./fake_app";
 
@@ -12,10 +14,10 @@ beforeEach(() => {
 afterEach(() => vi.useRealTimers());
 
 describe("smoothing", () => {
-  it("off is no stabiliser; the switch and the list set the method alone", async () => {
+  it("off is no stabiliser; the switch and the list of experts set the method alone", async () => {
     fake.operate(2, [["stabiliser.method", '"none"']]);
     expect(stabiliserInForce(fake.app)).toBe("none");
-    const panel = touchPanel(fake.app);
+    const panel = el("div", {}, expertPanel(fake.app, { open: () => {} }), smoothingSwitch(fake.app));
     document.body.replaceChildren(panel);
     const box = panel.querySelector<HTMLButtonElement>(`[role=combobox][aria-label="${strings.calm.method}"]`)!;
     expect(box.textContent).toBe(strings.calm.methods["none"]);
@@ -38,7 +40,7 @@ describe("smoothing", () => {
   it("is the papers' where the scene bounds the fall", async () => {
     for (const bound of ["smoothing.min_n_per_s", "smoothing.min_n"]) {
       fake = fakeApp();
-      const panel = touchPanel(fake.app);
+      const panel = smoothingSwitch(fake.app);
       fake.operate(2, [["stabiliser.method", '"none"'], [bound, "-10"]]);
       panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!.click();
       await vi.advanceTimersByTimeAsync(10);
@@ -47,7 +49,7 @@ describe("smoothing", () => {
   });
 
   it("shows the bound on the fall only where the method has one", () => {
-    const panel = touchPanel(fake.app);
+    const panel = expertPanel(fake.app, { open: () => {} });
     const shown = () => {
       const labels = [...panel.querySelectorAll<HTMLElement>("label")].filter((one) => one.textContent === strings.calm.fall);
       expect(labels.length).toBe(1);
@@ -64,7 +66,7 @@ describe("smoothing", () => {
       const control = panel.querySelector<HTMLButtonElement>(`[role=switch][aria-label="${strings.calm.smoothing}"]`)!;
       return [control.getAttribute("aria-checked"), control.disabled, panel.textContent!.includes(strings.calm.smoothingOther)];
     };
-    const panel = touchPanel(fake.app);
+    const panel = smoothingSwitch(fake.app);
     const stabiliser = (method: string) => fake.operate(2, [["stabiliser.method", `"${method}"`]]);
     stabiliser("smoothing");
     expect(shown()).toEqual(["true", false, false]);

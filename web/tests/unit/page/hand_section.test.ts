@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, it } from "vitest";
 import { ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import { handPanel } from "../../../src/panels/hand_panel";
+import { handSection } from "../../../src/panels/hand_section";
 import { strings } from "../../../src/strings";
 import { kProtocol } from "../../../src/wire/connection";
 import type { Change } from "../../../src/wire/host";
@@ -17,7 +17,7 @@ beforeEach(() => {
   const profile = [{ name: "large-man", meaning: "a large man's left hand" }];
   const welcome = create(WelcomeSchema, { protocol: kProtocol, page: kMe, mayOperate: true, key: fake.store.welcome!.key, profile });
   fake.store.receive(create(ToPageSchema, { what: { case: "welcome", value: welcome } }));
-  panel = handPanel(fake.app);
+  panel = handSection(fake.app);
   document.body.replaceChildren(panel);
 });
 
