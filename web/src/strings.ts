@@ -164,7 +164,7 @@ const en = {
     load: "Load",
     all: (count: number) => `All ${count} scenes`,
     fewer: "Fewer scenes",
-    ownHow: "from a mesh file",
+    ownHow: "mesh file",
     names: {
       first_touch: "First touch",
       grasp_bottle: "Bottle",
@@ -330,7 +330,7 @@ const en = {
   settings: {
     title: "All settings",
     search: "Search the settings",
-    searchHint: "name or meaning",
+    searchHint: "Search: name or meaning",
     onlyChanged: "Changed only",
     group: "Group",
     allGroups: "All groups",

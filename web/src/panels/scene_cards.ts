@@ -58,6 +58,8 @@ export function sceneCards(app: App, own: () => void): HTMLElement {
     setShown(refused, false);
     setText(refused, refusal(await app.host.loadScene(name)));
     setShown(refused, refused.textContent !== "");
+    if (refused.textContent === "") all = false; // stiffness and smoothing are near again
+    update();
   }
   function update(): void {
     const scenes = offeredScenes(app);

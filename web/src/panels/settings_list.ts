@@ -12,6 +12,15 @@ import { settingLabel } from "./plain_words";
 
 const words = strings.settings;
 
+/// Words for the choices of some keys.
+const choices: Readonly<Record<string, Readonly<Record<string, string>>>> = {
+  "force.law": strings.force.laws,
+  "stabiliser.method": strings.calm.methods,
+  "grasp.type": strings.grasp.types,
+  "objects[].kind": strings.object.kinds,
+  "hand.side": { right: strings.hand.right, left: strings.hand.left },
+};
+
 interface Entry {
   readonly key: KeyInfo;
   readonly element: HTMLElement;
@@ -51,7 +60,7 @@ interface ValueField {
 function valueField(key: KeyInfo, id: string, touched: () => void, done: () => void): ValueField {
   if (key.type === KeyType.KEY_FLAG || key.type === KeyType.KEY_CHOICE) {
     const options = key.type === KeyType.KEY_FLAG ? ["true", "false"] : key.choice;
-    const text = (value: string) => (value === "true" ? words.on : value === "false" ? words.off : value);
+    const text = (value: string) => (value === "true" ? words.on : value === "false" ? words.off : (choices[key.path]?.[value] ?? value));
     const empty = key.defaultValue === "" ? [{ value: "", text: words.notStated }] : [];
     const box = new ChoiceBox(touched);
     box.setChoices([...empty, ...options.map((value) => ({ value, text: text(value) }))]);

@@ -45,10 +45,10 @@ const more = () => element.querySelector<HTMLButtonElement>("[aria-expanded]")!;
 describe("the cards of scenes", () => {
   it("show first what a new user tries, then all exercises, in plain words; no benchmark and no study", () => {
     state("first_touch");
-    expect(texts()).toEqual(["First touch, Whole hand", "Therapy ball, Whole hand", "Mug, Whole hand", "Door key, Key grip", "Pen, Three fingers", "Own object, from a mesh file"]);
+    expect(texts()).toEqual(["First touch, Whole hand", "Therapy ball, Whole hand", "Mug, Whole hand", "Door key, Key grip", "Pen, Three fingers", "Own object, mesh file"]);
     expect(more().textContent).toBe(words.all(8));
     more().click();
-    expect(texts().slice(5)).toEqual(["Ball, Index finger", "my scene", "Jar lid, All fingertips", "Own object, from a mesh file"]);
+    expect(texts().slice(5)).toEqual(["Ball, Index finger", "my scene", "Jar lid, All fingertips", "Own object, mesh file"]);
     more().click();
     expect(shown().length).toBe(6);
     expect(shown().map((card) => card.dataset["optional"])).toEqual(["false", "false", "true", "true", "true", undefined]); // on low screens
