@@ -3,7 +3,7 @@
 
 export const kSizes: readonly (readonly [width: number, height: number])[] = [
   [1920, 1080], [1440, 900], [1366, 768], [1280, 720], [1150, 760], [1024, 768], [768, 1024], [390, 844],
-  [720, 450], [960, 540], // 1440 x 900 and 1920 x 1080 at 200 %
+  [720, 450], [960, 540], [683, 384], // 1440 x 900, 1920 x 1080 and 1366 x 768 at 200 %
 ];
 
 /// Runs in the page. @returns what is wrong there, in words; nothing: all is well
@@ -62,4 +62,51 @@ export function faultsOfLayout(): string[] {
   const stop = document.querySelector(".stop")!;
   if (!within(stop.getBoundingClientRect(), screen) || !uncovered(stop)) say("STOP is not wholly in sight");
   return faults;
+}
+
+/// Runs in the page. @returns the place of Stop, rounded [px]
+export function placeOfStop(): readonly number[] {
+  const box = document.querySelector(".stop")!.getBoundingClientRect();
+  return [box.left, box.top, box.right, box.bottom].map(Math.round);
+}
+
+/// Runs in the page. @returns pairs of texts in sight that lie over each other
+export function overlappingTexts(): string[] {
+  const kSlack = 2; // [px] of glyphs' boxes
+  interface Seen {
+    readonly text: string;
+    readonly element: Element;
+    readonly box: { left: number; right: number; top: number; bottom: number };
+  }
+  const seen: Seen[] = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const text = (node.textContent ?? "").trim();
+    const element = node.parentElement;
+    if (text === "" || !element?.checkVisibility({ opacityProperty: true, visibilityProperty: true }) || element.closest(".visually-hidden, noscript, script, style")) continue;
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    for (const rect of range.getClientRects()) {
+      let box = { left: rect.left, right: rect.right, top: rect.top, bottom: rect.bottom };
+      for (let at: Element | null = element; at; at = at.parentElement) {
+        const style = getComputedStyle(at);
+        if (style.overflowX === "visible" && style.overflowY === "visible") continue;
+        const frame = at.getBoundingClientRect();
+        box = { left: Math.max(box.left, frame.left), right: Math.min(box.right, frame.right), top: Math.max(box.top, frame.top), bottom: Math.min(box.bottom, frame.bottom) };
+      }
+      if (box.right - box.left <= kSlack || box.bottom - box.top <= kSlack) continue;
+      const hit = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+      if (hit && (element.contains(hit) || hit.contains(element))) seen.push({ text: text.slice(0, 40), element, box });
+    }
+  }
+  const found = new Set<string>();
+  seen.forEach((one, i) => {
+    for (const other of seen.slice(i + 1)) {
+      if (one.element === other.element) continue;
+      const wide = Math.min(one.box.right, other.box.right) - Math.max(one.box.left, other.box.left);
+      const high = Math.min(one.box.bottom, other.box.bottom) - Math.max(one.box.top, other.box.top);
+      if (wide > kSlack && high > kSlack) found.add(`"${one.text}" and "${other.text}"`);
+    }
+  });
+  return [...found];
 }

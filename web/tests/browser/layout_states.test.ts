@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every state of the page at every size of screen: nothing lies over anything, nothing is cut off, and Stop stands still.
+import type { Server } from "node:http";
+import { chromium, type Browser } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, inject, it } from "vitest";
+import { FakeHost, serveSite } from "./fake_host";
+import { faultsOfLayout, kSizes, overlappingTexts, placeOfStop } from "./support/layout";
+import { pageStates } from "./support/page_states";
+import { paintNothing } from "./support/slow_screen";
+import { until } from "./support/until";
+
+let browser: Browser;
+let site: { readonly server: Server; readonly url: string };
+const places = new Map<string, readonly number[]>(); // of Stop, by size, in the first state
+
+beforeAll(async () => {
+  site = await serveSite();
+  browser = await chromium.connect(inject("browser"));
+});
+afterAll(async () => {
+  await browser?.close();
+  site?.server.close();
+});
+
+// A state that is there for another size or theme has the layout of one that is listed as well.
+const states = pageStates.filter(({ size, light }) => size === undefined && light === undefined);
+
+describe.each(states)("$name", ({ name, before, act }) => {
+  it("is whole at every size", async () => {
+    const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 0.5 });
+    const page = await context.newPage();
+    await page.addInitScript(paintNothing);
+    const errors: string[] = [];
+    page.on("pageerror", (error) => errors.push(String(error)));
+    const host = new FakeHost();
+    before?.(host);
+    await host.attach(page);
+    await page.goto(site.url);
+    await until("a picture", () => page.evaluate(() => (window.phalanx?.view()?.frames ?? 0) > 2 && document.querySelector(".plots") !== null));
+    await act?.(page, host);
+    for (const [width, height] of kSizes) {
+      await page.setViewportSize({ width, height });
+      const what = `${name} at ${width} x ${height}`;
+      expect.soft(await page.evaluate(faultsOfLayout), what).toEqual([]);
+      expect.soft(await page.evaluate(overlappingTexts), what).toEqual([]);
+      const place = await page.evaluate(placeOfStop);
+      const size = `${width} x ${height}`;
+      if (!places.has(size)) places.set(size, place);
+      expect.soft(place, `${what}: Stop moved`).toEqual(places.get(size));
+    }
+    expect(errors).toEqual([]);
+    host.hush();
+    await context.close();
+  });
+});
