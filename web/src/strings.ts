@@ -89,6 +89,8 @@ const en = {
     presets: { home: "Home", palm: "Palm", thumb: "Thumb side", follow: "Follow" },
     nearer: "Nearer",
     farther: "Farther",
+    skinTone: "Skin tone",
+    skinTones: { porcelain: "Very light", light: "Light", tan: "Light brown", olive: "Medium brown", brown: "Brown", deep: "Dark brown" },
     parts: { skin: "Skin", ghost: "Where the hand is", arrows: "Force arrows", object: "Object", cones: "Friction cones" },
     partsMenu: "Show",
     camera: "View",

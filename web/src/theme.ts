@@ -21,10 +21,9 @@ export interface Theme {
   readonly ok: string; // steady
   readonly bad: string; // shaking, fault
   readonly warn: string;
-  readonly skin: string;
   readonly ghost: string;
-  readonly object: string;
-  readonly floor: string;
+  readonly table: string;
+  readonly sky: string; // as shiny objects mirror it
   readonly arrow: string;
   readonly slip: string; // an arrow, where the finger slips
   readonly lost: string; // the hand of a page without connection
@@ -41,10 +40,9 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     ok: "#009E73",
     bad: "#D55E00",
     warn: "#F0E442",
-    skin: "#d9b8a0",
     ghost: "#8fd0ff",
-    object: "#8d99a6",
-    floor: "#1a2027",
+    table: "#4a3a2e",
+    sky: "#9fb2c4",
     arrow: "#F0E442",
     slip: "#CC79A7",
     lost: "#6b7076",
@@ -59,10 +57,9 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     ok: "#007a58",
     bad: "#b34700",
     warn: "#8a6d00",
-    skin: "#d9b8a0",
     ghost: "#0072B2",
-    object: "#9aa5b1",
-    floor: "#e6ebf0",
+    table: "#d9c4a4",
+    sky: "#f2f6fa",
     arrow: "#8a4b00",
     slip: "#a8477f",
     lost: "#9a9fa5",

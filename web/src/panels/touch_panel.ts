@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panel of the contact: scene, object, force, stabiliser, limits.
-import { keyOf } from "../state/keys";
+import { kDigitLimit, keyOf } from "../state/keys";
 import { number, quote, unquote } from "../state/toml";
 import { strings } from "../strings";
 import type { Change } from "../wire/host";
@@ -120,7 +120,7 @@ function calmSection(app: App): HTMLElement {
 function limitsSection(app: App): HTMLElement {
   const words = strings.limits;
   const shown: readonly (readonly [string, string, string])[] = [
-    ["limits.fingertip_force_n", words.force, strings.units.newton],
+    [kDigitLimit, words.force, strings.units.newton],
     ["limits.joint_torque_nm", words.torque, strings.units.torque],
     ["limits.torque_rate_nm_per_s", words.torqueRate, strings.units.torqueRate],
     ["limits.joint_speed_rad_per_s", words.speed, strings.units.radianPerSecond],

@@ -7,6 +7,7 @@ import type { CameraPreset, HandView, ShownParts } from "../view3d/hand_view";
 import type { ViewTrouble } from "../view3d/view";
 import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from "./dom";
 import { savedMark, savedName } from "./saved_as";
+import { skinToneChoice } from "./skin_tone_choice";
 import { viewKey } from "./view_key";
 
 export const kZoomStep = 1.15;
@@ -56,7 +57,8 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     button("+", () => zoom(kZoomStep), { class: "view-zoom", "aria-label": words.nearer, title: words.nearer }),
     button("−", () => zoom(1 / kZoomStep), { class: "view-zoom", "aria-label": words.farther, title: words.farther }),
   );
-  const shown = el("div", { class: "view-parts-list" }, ...switches, picture);
+  const tones = skinToneChoice((tone) => view?.setSkinTone(tone));
+  const shown = el("div", { class: "view-parts-list" }, ...switches, tones.element, picture);
   const menu = el("details", { class: "view-parts" }, el("summary", {}, words.partsMenu), shown);
 
   host.addEventListener("keydown", (event) => {
@@ -89,9 +91,12 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     if (wait.textContent === words.loading) setShown(wait, false);
     view.setTheme(theme);
     view.setParts(parts);
+    view.setSkinTone(tones.tone);
+    view.setObjectKind(source.objectKind);
     view.setLost(source.viewDead);
     if (source.geometry) view.setGeometry(source.geometry);
     if (source.tick) view.show(source.tick);
+    source.on(["state", "connection"], () => view?.setObjectKind(source.objectKind));
     source.on(["geometry"], () => source.geometry && view?.setGeometry(source.geometry));
     source.on(["tick"], () => source.tick && view?.show(source.tick));
   }

@@ -7,7 +7,7 @@ import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
 import { Freshness } from "./freshness";
 import { History } from "./history";
-import { isChanged, slides, valueOf } from "./keys";
+import { isChanged, kDigitLimit, limitOf, objectKind, slides, valueOf } from "./keys";
 import { Listeners } from "./listeners";
 import { roleOf, type Role } from "./roles";
 import type { OldCurves, Pausing, Shown, Topic } from "./shown";
@@ -102,6 +102,14 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
 
   get rendersTorque(): boolean {
     return this.state?.rendersTorque !== false;
+  }
+
+  get objectKind(): string {
+    return objectKind(this.state, this.welcome);
+  }
+
+  get digitLimit(): number {
+    return limitOf(valueOf(this.state, this.welcome, kDigitLimit));
   }
 
   get role(): Role {

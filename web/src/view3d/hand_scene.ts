@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The content of the picture: hand, ghost, object, contacts, floor and lights. It does not use the canvas.
+// The content of the picture: hand, ghost, object, contacts, table and lights. It does not use the canvas.
 import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
+import type { WebGLRenderer } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { themes } from "../theme";
 import type { ThemeName } from "../theme";
 import type { Sight } from "./camera_presets";
 import { ContactMarks, marksOf, pointsOf } from "./contact_marks";
 import type { Mark, PointMark } from "./contact_marks";
-import { Floor } from "./floor";
 import { HandPair } from "./hand_pair";
 import { objectShape } from "./hand_shape";
 import type { ShownParts } from "./hand_view";
 import { Lights } from "./lights";
 import { ObjectMaterial } from "./object_material";
 import type { QualitySettings } from "./quality";
+import { kSegments } from "./segments";
 import type { Shapes } from "./shapes";
+import { kUsualTone, skinTones, type SkinToneName } from "./skin_tones";
+import { Surroundings } from "./surroundings";
+import { Table } from "./table";
 
 const kTouchRadius = 0.011; // of the colour on the object around a contact [m]
 
@@ -24,10 +28,14 @@ export class HandScene {
   readonly lights = new Lights();
   readonly hands = new HandPair();
   readonly marks = new ContactMarks();
-  private readonly floor = new Floor();
+  private readonly table = new Table();
+  private readonly surroundings = new Surroundings();
   private readonly background = new Color();
   private readonly objectMaterial = new ObjectMaterial();
   private object: Mesh<BufferGeometry, ObjectMaterial> | null = null;
+  private surfaces: { touched: BufferGeometry; smooth: BufferGeometry } | null = null; // of the object
+  private smooth = true;
+  private tone: SkinToneName = kUsualTone;
   private parts: ShownParts = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   private theme: ThemeName = "dark";
   private lost = false;
@@ -35,11 +43,12 @@ export class HandScene {
   private left = false;
   private contacts: readonly Mark[] = [];
   private points: readonly PointMark[] = [];
-  private covered = new Box3();
+  private covered = new Box3(); // by the shadow
+  private reached = new Box3(); // by the hand so far
 
   constructor() {
     this.scene.background = this.background;
-    this.scene.add(this.lights.group, this.floor.group, this.hands.shownGroup, this.marks.solid);
+    this.scene.add(this.lights.group, this.table.group, this.hands.shownGroup, this.marks.solid);
     this.over.add(this.hands.ghostGroup, this.marks.cones, this.marks.faint);
     this.setTheme(this.theme);
   }
@@ -48,14 +57,17 @@ export class HandScene {
     this.left = shapes.left;
     this.hands.setGeometry(shapes);
     this.dropObject();
-    const shape = objectShape(shapes.object);
-    if (shape) {
-      this.object = new Mesh(shape, this.objectMaterial);
+    const touched = objectShape(shapes.object);
+    if (touched) {
+      this.surfaces = { touched, smooth: objectShape(shapes.objectDisplay) ?? touched };
+      this.object = new Mesh(this.smooth ? this.surfaces.smooth : touched, this.objectMaterial);
       this.object.castShadow = this.object.receiveShadow = true;
       this.scene.add(this.object);
+      this.objectMaterial.setGrain(touched.boundingBox!);
     }
-    this.floor.standUnder(shape, new Box3());
     this.covered.makeEmpty();
+    this.reached.makeEmpty();
+    this.table.standUnder(touched, this.reached);
     this.contacts = [];
     this.points = [];
     this.paint();
@@ -89,28 +101,46 @@ export class HandScene {
     this.paint();
   }
 
+  /// Kind of the object, as scenes name it; empty: not known.
+  setObjectKind(kind: string): void {
+    this.objectMaterial.setKind(kind);
+  }
+
+  setSkinTone(tone: SkinToneName): void {
+    this.tone = tone;
+    this.paint();
+  }
+
   setTheme(name: ThemeName): void {
     this.theme = name;
     const theme = themes[name];
     this.background.set(theme.background);
-    this.floor.setTheme(theme, name === "dark");
+    this.table.setTheme(theme, name === "dark");
     this.lights.setTheme(name === "dark");
+    this.scene.environmentIntensity = this.lights.intensity;
     this.marks.setColours({ arrow: theme.arrow, slip: theme.slip, around: theme.background });
     this.hands.setGhostColour(theme.ghost);
-    this.objectMaterial.color.set(theme.object);
+    this.objectMaterial.setSky(theme.sky, theme.table);
     this.paint();
   }
 
-  setQuality(settings: QualitySettings): void {
+  /// @param renderer  which draws it; null: no surroundings
+  setQuality(settings: QualitySettings, renderer: WebGLRenderer | null): void {
     this.lights.setShadow(settings.shadow);
-    this.objectMaterial.setOcclusion(settings.occlusion);
+    this.objectMaterial.setRich(settings.rich);
+    this.hands.setDetail(settings.rich);
     this.hands.setGhostDetail(settings.ghost);
+    this.table.setGrain(settings.grain);
+    this.smooth = settings.smooth;
+    if (this.object && this.surfaces) this.object.geometry = this.smooth ? this.surfaces.smooth : this.surfaces.touched;
+    this.scene.environment = settings.rich && renderer ? this.surroundings.texture(renderer) : null;
+    this.lights.setSurrounded(this.scene.environment !== null);
   }
 
   sight(): Sight {
     return {
       hand: this.hands.corners(),
-      object: cornersOf(this.object?.geometry.boundingBox ?? null),
+      object: cornersOf(this.surfaces?.touched.boundingBox ?? null),
       palm: this.hands.palm(),
       left: this.left,
       grip: this.grip(),
@@ -130,10 +160,13 @@ export class HandScene {
 
   /// Releases the renderer's resources of the scene, so that the renderer can be deleted. Later drawing creates them again.
   release(): void {
-    this.object?.geometry.dispose();
+    this.surfaces?.touched.dispose();
+    this.surfaces?.smooth.dispose();
     this.hands.release();
     this.marks.dispose();
-    this.floor.dispose();
+    this.table.dispose();
+    this.scene.environment = null;
+    this.surroundings.release();
     this.lights.dispose();
     this.objectMaterial.dispose();
   }
@@ -149,7 +182,8 @@ export class HandScene {
     const theme = themes[this.theme];
     const { dead } = this;
     const contacts = dead ? [] : this.contacts;
-    this.hands.paint(dead ? theme.lost : theme.skin, !dead, contacts);
+    if (dead) this.hands.paintLost(theme.lost);
+    else this.hands.paint(skinTones[this.tone], contacts);
     this.hands.ghostGroup.visible = this.parts.ghost && !dead;
     this.marks.show(contacts, dead ? [] : this.points);
     this.marks.visible = this.parts.arrows && !dead;
@@ -159,24 +193,28 @@ export class HandScene {
     this.objectMaterial.setFingers(this.hands.capsules());
   }
 
-  /// The shadow's box grows with the hand, and does not shrink: a map that changes its scale with every tick would flicker.
+  /// The shadow's box and what the hand has reached grow with the hand, and do not shrink: a map that changes its scale with every tick
+  /// would flicker, and a table that follows the hand would be none.
   private coverHand(): void {
     const hand = new Box3().setFromPoints(this.hands.corners());
-    if (this.covered.isEmpty()) {
-      const object = this.object?.geometry.boundingBox;
-      if (object) this.covered.copy(object);
-      else this.floor.standUnder(null, hand);
-    } else if (this.covered.containsBox(hand)) {
-      return;
+    const object = this.surfaces?.touched ?? null;
+    if (!this.reached.containsBox(hand)) {
+      this.reached.union(hand.clone().expandByScalar(0.01));
+      const foot = object?.boundingBox?.min.z ?? Infinity;
+      if (this.reached.min.z < Math.min(foot, this.table.height) || !object) this.table.standUnder(object, this.reached);
     }
+    this.table.castHand(this.hands.capsules(kSegments));
+    if (this.covered.isEmpty() && object) this.covered.copy(object.boundingBox!);
+    if (this.covered.containsBox(hand)) return;
     this.covered.union(hand).expandByScalar(0.01);
     this.lights.cover(this.covered);
   }
 
   private dropObject(): void {
     this.object?.removeFromParent();
-    this.object?.geometry.dispose();
-    this.object = null;
+    this.surfaces?.touched.dispose();
+    this.surfaces?.smooth.dispose();
+    this.object = this.surfaces = null;
   }
 }
 

@@ -4,6 +4,7 @@ import type { Tick } from "../gen/phalanx/tick_pb";
 import type { ThemeName } from "../theme";
 import type { DrawnVertex, Point } from "./posed_hand";
 import type { Shapes } from "./shapes";
+import type { SkinToneName } from "./skin_tones";
 
 export type CameraPreset = "home" | "palm" | "thumb" | "follow";
 
@@ -36,6 +37,8 @@ export interface HandView {
   setLost(lost: boolean): void; // no measurement: the hand greys at once, ghost and arrows go
   setParts(parts: ShownParts): void;
   setTheme(theme: ThemeName): void;
+  setObjectKind(kind: string): void; // as scenes name it; empty: not known
+  setSkinTone(tone: SkinToneName): void;
   camera(preset: CameraPreset): void;
   zoom(factor: number): void; // > 1: nearer
   orbit(right: number, up: number): void; // [rad], for keys

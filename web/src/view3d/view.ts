@@ -10,6 +10,7 @@ import { HandScene } from "./hand_scene";
 import type { CameraPreset, HandView, ShownParts, ViewProbe } from "./hand_view";
 import { highestQuality, pixelRatioFor, QualityWatch, qualityLevels } from "./quality";
 import type { Shapes } from "./shapes";
+import type { SkinToneName } from "./skin_tones";
 
 export type { ViewTrouble } from "./canvas";
 
@@ -44,12 +45,13 @@ class View implements HandView {
   private pending: Tick | null = null;
   private shownTick = kNoTick;
   private seen = false; // a hand has been in the picture since the last geometry
+  private kind = ""; // of the object
   private size = { width: 0, height: 0 };
 
   constructor(host: HTMLElement, private readonly options: HandViewOptions) {
     this.surface.style.cssText = "position:relative;width:100%;height:100%;overflow:hidden;touch-action:none";
     host.append(this.surface);
-    this.canvas = new Canvas(this.surface, this.redraw, () => this.content.release(), (what) => options.onTrouble?.(what));
+    this.canvas = new Canvas(this.surface, this.restored, () => this.content.release(), (what) => options.onTrouble?.(what));
     this.rig = new CameraRig(this.surface, this.demand);
     this.watch = new QualityWatch(options.quality ?? highestQuality);
     this.renderer = this.canvas.use(qualityLevels[this.watch.level]!.antialias);
@@ -87,6 +89,18 @@ class View implements HandView {
 
   setTheme(theme: ThemeName): void {
     this.content.setTheme(theme);
+    this.redraw();
+  }
+
+  setObjectKind(kind: string): void {
+    if (kind === this.kind) return; // State comes twice a second
+    this.kind = kind;
+    this.content.setObjectKind(kind);
+    this.redraw();
+  }
+
+  setSkinTone(tone: SkinToneName): void {
+    this.content.setSkinTone(tone);
     this.redraw();
   }
 
@@ -146,6 +160,12 @@ class View implements HandView {
     this.demand();
   };
 
+  /// What the graphics card had made is gone.
+  private readonly restored = (): void => {
+    this.content.release();
+    this.applyQuality();
+  };
+
   private readonly frame = (): void => {
     this.request = 0;
     const at = now();
@@ -182,7 +202,7 @@ class View implements HandView {
   private applyQuality(): void {
     const settings = qualityLevels[this.watch.level]!;
     this.renderer = this.canvas.use(settings.antialias);
-    this.content.setQuality(settings);
+    this.content.setQuality(settings, this.renderer);
     this.fit();
     this.redraw();
   }

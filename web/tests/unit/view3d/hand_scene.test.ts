@@ -391,7 +391,7 @@ describe("a renderer that goes", () => {
     for (const skin of [true, false]) {
       scene.setParts({ skin, ghost: true, arrows: true, object: true, cones: false });
       for (const settings of qualityLevels) {
-        scene.setQuality(settings);
+        scene.setQuality(settings, null);
         collectAll();
       }
     }
