@@ -24,8 +24,7 @@ export interface Theme {
   readonly ghost: string;
   readonly table: string;
   readonly sky: string; // as shiny objects mirror it
-  readonly arrow: string;
-  readonly slip: string; // an arrow, where the finger slips
+  readonly arrow: string; // of the palm; digits have theirs
   readonly lost: string; // the hand of a page without connection
 }
 
@@ -44,7 +43,6 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     table: "#4a3a2e",
     sky: "#9fb2c4",
     arrow: "#F0E442",
-    slip: "#CC79A7",
     lost: "#6b7076",
   },
   light: {
@@ -61,7 +59,6 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     table: "#d9c4a4",
     sky: "#f2f6fa",
     arrow: "#8a4b00",
-    slip: "#a8477f",
     lost: "#9a9fa5",
   },
 };

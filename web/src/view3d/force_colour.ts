@@ -3,7 +3,7 @@
 // that it reads in grey and with any of the common colour-vision deficiencies; an arrow's length says the same.
 
 export interface ForceStop {
-  readonly newtons: number;
+  readonly at: number; // share of the scale of forces
   readonly colour: string; // #rrggbb
 }
 
@@ -15,24 +15,20 @@ export interface ForceTint {
 /// Between two of them the colour is interpolated linearly in sRGB, beyond the last it stays; below the first its share rises. Close
 /// together at small forces, where most of a session happens.
 export const forceStops: readonly ForceStop[] = [
-  { newtons: 0.8, colour: "#f2a600" },
-  { newtons: 4, colour: "#d0480a" },
-  { newtons: 10, colour: "#8a1040" },
+  { at: 0.12, colour: "#f2a600" },
+  { at: 0.5, colour: "#d0480a" },
+  { at: 1, colour: "#8a1040" },
 ];
 
-/// Tint of what presses with this force [N]; what is no number, or below zero, counts as none.
-export function forceTint(newtons: number): ForceTint {
-  const force = newtons > 0 ? newtons : 0;
-  const first = forceStops[0]!;
-  return { colour: colourOf(force), share: Math.min(1, force / first.newtons) };
+/// Tint of what presses with this share of the scale of forces.
+export function forceTint(share: number): ForceTint {
+  return { colour: colourOf(share), share: Math.min(1, share / forceStops[0]!.at) };
 }
 
-function colourOf(force: number): string {
+function colourOf(share: number): string {
   let below = forceStops[0]!;
   for (const above of forceStops) {
-    if (force < above.newtons) {
-      return above === below ? below.colour : mix(below, above, (force - below.newtons) / (above.newtons - below.newtons));
-    }
+    if (share < above.at) return above === below ? below.colour : mix(below, above, (share - below.at) / (above.at - below.at));
     below = above;
   }
   return below.colour;

@@ -196,9 +196,9 @@ export class HandMaterial extends MeshStandardMaterial {
   /// Which segments press, where and how hard; of several contacts of one segment the hardest counts.
   setPresses(presses: readonly Press[]): void {
     for (const touch of this.touches) touch.w = 0;
-    for (const press of [...presses].sort((a, b) => a.force - b.force)) {
-      if (!(press.force > 0)) continue;
-      const { colour, share } = forceTint(press.force);
+    for (const press of [...presses].sort((a, b) => a.share - b.share)) {
+      if (!(press.share > 0)) continue;
+      const { colour, share } = forceTint(press.share);
       this.colours[press.segment]?.set(colour);
       this.touches[press.segment]?.set(...press.point, share);
     }
@@ -219,5 +219,5 @@ export class HandShadowMaterial extends MeshDepthMaterial {
 export interface Press {
   readonly segment: number;
   readonly point: readonly [number, number, number]; // W [m]
-  readonly force: number; // [N]
+  readonly share: number; // of the scale of forces
 }

@@ -98,6 +98,7 @@ export class HandPair {
     return this.look?.ghost.visible ? this.look.ghost.drawn() : [];
   }
 
+  /// Corners of the segments' boxes, 8 a segment.
   corners(): Vector3[] {
     return this.look?.shown.corners() ?? [];
   }

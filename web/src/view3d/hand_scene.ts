@@ -3,23 +3,30 @@
 import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
 import type { WebGLRenderer } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
-import { themes } from "../theme";
+import { strings } from "../strings";
+import { digitColours, themes } from "../theme";
 import type { ThemeName } from "../theme";
 import type { Sight } from "./camera_presets";
+import { ContactFocus } from "./contact_focus";
 import { ContactMarks, marksOf, pointsOf } from "./contact_marks";
 import type { Mark, PointMark } from "./contact_marks";
+import type { ForceLabel } from "./force_labels";
+import { forceScale, isAtLimit, shareOf, type ForceScale } from "./force_scale";
+import type { Press } from "./hand_material";
 import { HandPair } from "./hand_pair";
 import { objectShape } from "./hand_shape";
 import type { ShownParts } from "./hand_view";
 import { Lights } from "./lights";
-import { ObjectMaterial } from "./object_material";
+import { ObjectMaterial, type Touch } from "./object_material";
+import { MotionExtent } from "./motion_extent";
 import type { QualitySettings } from "./quality";
-import { kSegments } from "./segments";
+import { kPalm, kSegments, kSegmentsPerDigit } from "./segments";
 import type { Shapes } from "./shapes";
 import { kUsualTone, skinTones, type SkinToneName } from "./skin_tones";
 import { Surroundings } from "./surroundings";
 import { Table } from "./table";
 
+const kLeastFigure = 0.05; // [N] a smaller force has none
 const kTouchRadius = 0.011; // of the colour on the object around a contact [m]
 
 export class HandScene {
@@ -36,6 +43,7 @@ export class HandScene {
   private surfaces: { touched: BufferGeometry; smooth: BufferGeometry } | null = null; // of the object
   private smooth = true;
   private tone: SkinToneName = kUsualTone;
+  private scale = forceScale(Infinity);
   private parts: ShownParts = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   private theme: ThemeName = "dark";
   private lost = false;
@@ -45,6 +53,9 @@ export class HandScene {
   private points: readonly PointMark[] = [];
   private covered = new Box3(); // by the shadow
   private reached = new Box3(); // by the hand so far
+  private readonly focus = new ContactFocus();
+  private readonly motion = new MotionExtent();
+  private followed: Vector3 | null = null; // place of the contact that a camera follows
 
   constructor() {
     this.scene.background = this.background;
@@ -67,19 +78,22 @@ export class HandScene {
     }
     this.covered.makeEmpty();
     this.reached.makeEmpty();
+    this.focus.forget();
+    this.motion.forget();
     this.table.standUnder(touched, this.reached);
     this.contacts = [];
     this.points = [];
     this.paint();
   }
 
-  /// @returns false, and the hand stays where it was and is grey, if the tick's is not whole
-  show(tick: Tick): boolean {
+  /// @param now  [s]  @returns false, and the hand stays where it was and is grey, if the tick's is not whole
+  show(tick: Tick, now = 0): boolean {
     this.whole = this.hands.pose(tick.gdpPose, tick.hcpPose);
     if (this.whole) {
       this.contacts = marksOf(tick);
       this.points = pointsOf(tick);
       this.coverHand();
+      this.motion.add(this.hands.corners(), now);
     }
     this.paint();
     return this.whole;
@@ -106,6 +120,26 @@ export class HandScene {
     this.objectMaterial.setKind(kind);
   }
 
+  /// @param felt  of each digit: its force can be felt
+  setForces(scale: ForceScale, felt: readonly boolean[]): void {
+    this.scale = scale;
+    this.marks.setForces(scale, felt);
+    this.paint();
+  }
+
+  /// Figures at the arrows' tips: each segment's force, and the words of a digit at its limit at the strongest of its arrows.
+  labels(): ForceLabel[] {
+    if (!this.marks.solid.visible) return [];
+    const forces = digitSums(this.contacts);
+    return this.contacts.filter(({ force }) => force >= kLeastFigure).map((mark) => {
+      const digit = Math.floor(mark.segment / kSegmentsPerDigit);
+      const strongest = this.contacts.every(({ segment, force }) => Math.floor(segment / kSegmentsPerDigit) !== digit || force <= mark.force);
+      const atLimit = mark.segment !== kPalm && strongest && isAtLimit(this.scale, forces[digit] ?? 0);
+      const figure = `${mark.force.toFixed(1)} ${strings.units.newton}`;
+      return { text: atLimit ? strings.atLimitOf(figure) : figure, tip: this.marks.tipOf(mark), felt: this.marks.isFelt(mark.segment) };
+    });
+  }
+
   setSkinTone(tone: SkinToneName): void {
     this.tone = tone;
     this.paint();
@@ -118,7 +152,7 @@ export class HandScene {
     this.table.setTheme(theme, name === "dark");
     this.lights.setTheme(name === "dark");
     this.scene.environmentIntensity = this.lights.intensity;
-    this.marks.setColours({ arrow: theme.arrow, slip: theme.slip, around: theme.background });
+    this.marks.setColours({ digits: digitColours[name], palm: theme.arrow, around: theme.background, unfelt: theme.quiet });
     this.hands.setGhostColour(theme.ghost);
     this.objectMaterial.setSky(theme.sky, theme.table);
     this.paint();
@@ -139,22 +173,24 @@ export class HandScene {
 
   sight(): Sight {
     return {
-      hand: this.hands.corners(),
+      hand: this.motion.points(),
       object: cornersOf(this.surfaces?.touched.boundingBox ?? null),
       palm: this.hands.palm(),
       left: this.left,
-      grip: this.grip(),
+      contact: this.followed ?? this.grip(),
     };
   }
 
-  /// Between thumb and index: of their contacts if both touch, else of their tips.
-  grip(): Vector3 | null {
-    const touch = (first: number): Vector3 | null => {
-      const mark = this.contacts.find((contact) => contact.touching && contact.segment >= first && contact.segment < first + 3);
-      return mark ? new Vector3(...mark.point) : null;
-    };
-    const thumb = touch(0) ?? this.hands.middleOf(2);
-    const index = touch(3) ?? this.hands.middleOf(5);
+  /// Chooses the contact that a camera follows. Once a frame. @param step  since the last frame [s]
+  follow(step: number): void {
+    const at = this.focus.update(this.dead ? [] : this.contacts, Math.min(step, 0.1));
+    this.followed = at && new Vector3(...at);
+  }
+
+  /// Between the tips of thumb and index.
+  private grip(): Vector3 | null {
+    const thumb = this.hands.middleOf(2);
+    const index = this.hands.middleOf(5);
     return thumb && index ? thumb.add(index).multiplyScalar(0.5) : null;
   }
 
@@ -183,13 +219,13 @@ export class HandScene {
     const { dead } = this;
     const contacts = dead ? [] : this.contacts;
     if (dead) this.hands.paintLost(theme.lost);
-    else this.hands.paint(skinTones[this.tone], contacts);
+    else this.hands.paint(skinTones[this.tone], this.pressing(contacts));
     this.hands.ghostGroup.visible = this.parts.ghost && !dead;
     this.marks.show(contacts, dead ? [] : this.points);
     this.marks.visible = this.parts.arrows && !dead;
     this.marks.cones.visible = this.parts.cones && !dead;
     if (this.object) this.object.visible = this.parts.object;
-    this.objectMaterial.setTouches(contacts.filter((mark) => mark.touching), kTouchRadius);
+    this.objectMaterial.setTouches(this.pressing(contacts.filter((mark) => mark.touching)), kTouchRadius);
     this.objectMaterial.setFingers(this.hands.capsules());
   }
 
@@ -210,12 +246,23 @@ export class HandScene {
     this.lights.cover(this.covered);
   }
 
+  private pressing(marks: readonly Mark[]): (Press & Touch)[] {
+    return marks.map(({ segment, point, force }) => ({ segment, point, share: shareOf(this.scale, force) }));
+  }
+
   private dropObject(): void {
     this.object?.removeFromParent();
     this.surfaces?.touched.dispose();
     this.surfaces?.smooth.dispose();
     this.object = this.surfaces = null;
   }
+}
+
+/// Length of the sum of the forces on each digit [N].
+function digitSums(marks: readonly Mark[]): number[] {
+  const sums: Vector3[] = [];
+  for (const { segment, force, normal } of marks) (sums[Math.floor(segment / kSegmentsPerDigit)] ??= new Vector3()).addScaledVector(new Vector3(...normal), force);
+  return Array.from(sums, (sum) => sum?.length() ?? 0);
 }
 
 function cornersOf(box: Box3 | null): Vector3[] {

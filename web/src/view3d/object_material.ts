@@ -10,7 +10,7 @@ const kFingers = 15; // capsules that darken, one a segment without the palm
 
 export interface Touch {
   readonly point: readonly [number, number, number]; // W [m]
-  readonly force: number; // [N]
+  readonly share: number; // of the scale of forces
 }
 
 const declarations = `
@@ -135,7 +135,7 @@ export class ObjectMaterial extends MeshPhysicalMaterial {
     this.touches.value = shown.length;
     shown.forEach((at, i) => {
       this.touch[i]!.set(at.point[0], at.point[1], at.point[2], radius);
-      const { colour, share } = forceTint(at.force);
+      const { colour, share } = forceTint(at.share);
       tint.set(colour);
       this.touchColour[i]!.set(tint.r, tint.g, tint.b, share);
     });

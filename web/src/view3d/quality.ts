@@ -13,14 +13,15 @@ export interface QualitySettings {
   readonly rich: boolean; // surroundings light the scene, materials have layers, fingers darken the object, the skin has creases
   readonly smooth: boolean; // the object has its display mesh
   readonly grain: boolean; // of the table
+  readonly figures: boolean; // at the arrows' tips
 }
 
 /// Lowest first.
 export const qualityLevels: readonly QualitySettings[] = [
-  { pixelRatio: 1, pixels: 160_000, shadow: 0, antialias: false, ghost: "plain", rich: false, smooth: false, grain: false },
-  { pixelRatio: 1, pixels: 500_000, shadow: 0, antialias: false, ghost: "peeled", rich: false, smooth: true, grain: true },
-  { pixelRatio: 1.5, pixels: 2_000_000, shadow: 768, antialias: true, ghost: "outline", rich: true, smooth: true, grain: true },
-  { pixelRatio: 2, pixels: 8_000_000, shadow: 1024, antialias: true, ghost: "outline", rich: true, smooth: true, grain: true },
+  { pixelRatio: 1, pixels: 160_000, shadow: 0, antialias: false, ghost: "plain", rich: false, smooth: false, grain: false, figures: false },
+  { pixelRatio: 1, pixels: 500_000, shadow: 0, antialias: false, ghost: "peeled", rich: false, smooth: true, grain: true, figures: true },
+  { pixelRatio: 1.5, pixels: 2_000_000, shadow: 768, antialias: true, ghost: "outline", rich: true, smooth: true, grain: true, figures: true },
+  { pixelRatio: 2, pixels: 8_000_000, shadow: 1024, antialias: true, ghost: "outline", rich: true, smooth: true, grain: true, figures: true },
 ];
 export const highestQuality = qualityLevels.length - 1;
 

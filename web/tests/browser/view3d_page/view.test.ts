@@ -4,7 +4,7 @@
 import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, inject, it } from "vitest";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
-import { arrowLength } from "../../../src/view3d/contact_marks";
+import { arrowLength, forceScale } from "../../../src/view3d/force_scale";
 import { distance, skinAt } from "../support/geometry";
 import { kHangMs, until } from "../support/until";
 import { chromium } from "playwright-core";
@@ -135,7 +135,7 @@ describe("what is drawn", () => {
     const contacts = recording(name).ticks[pressing]!.contact.filter((contact) => contact.force > 0);
     for (const digit of [0, 1, 2, 3, 4]) expect(contacts.some((contact) => Math.floor(contact.segment / 3) === digit)).toBe(true);
     expect(arrows.map((arrow) => arrow.segment)).toEqual(contacts.map((contact) => contact.segment));
-    arrows.forEach((arrow, i) => expect(arrow.length).toBeCloseTo(arrowLength(contacts[i]!.force), 5));
+    arrows.forEach((arrow, i) => expect(arrow.length).toBeCloseTo(arrowLength(forceScale(Infinity), contacts[i]!.force), 5));
     await show(free);
     expect(await page.evaluate(() => window.viewPage.view.probe().arrows.length)).toBe(0);
   });
@@ -197,7 +197,7 @@ describe("the camera", () => {
     await load();
     await show(pressing);
     const hashes = [(await look()).hash];
-    for (const preset of ["palm", "thumb", "follow", "home"] as const) {
+    for (const preset of ["palm", "thumb", "contact", "home"] as const) {
       await page.evaluate((to) => window.viewPage.view.camera(to), preset);
       hashes.push((await look()).hash);
     }
@@ -217,11 +217,11 @@ describe("the camera", () => {
     hashes.push((await look()).hash);
     expect(new Set(hashes).size).toBe(hashes.length - 1);
   });
-  it("follows the grip: the camera moves by itself when the hand has moved", async () => {
+  it("follows the contact: the camera moves by itself when the hand has moved", async () => {
     await open(0);
     await load();
     await show(free);
-    await page.evaluate(() => window.viewPage.view.camera("follow"));
+    await page.evaluate(() => window.viewPage.view.camera("contact"));
     const before = (await look()).hash;
     await show(pressing);
     const frames = await page.evaluate(async () => {
