@@ -7,6 +7,7 @@ import type { Capsule } from "./object_material";
 export const kShadowEdge = 64; // texels
 const kObjectHeight = 0.035; // [m] in which the object's shadow falls to 1/e
 const kFingerHeight = 0.045;
+const kMostCuts = 48; // of a triangle's side
 const kObjectDarkness = 0.62;
 const kFingerDarkness = 0.34;
 
@@ -77,9 +78,8 @@ export class ContactShadow {
     }
   }
 
-  /// The lowest point above each texel, from the triangles' corners and middles: a texel is larger than most triangles.
+  /// The lowest point above each texel, from points of the triangles, at most a texel apart.
   private dropTriangles(lowest: Float32Array, position: ArrayLike<number>, index: ArrayLike<number>): void {
-    const kCuts = 6;
     const drop = (x: number, y: number, z: number): void => {
       const [i, j] = [this.texel(x - this.square.x), this.texel(y - this.square.y)];
       if (i < 0 || j < 0 || i >= kShadowEdge || j >= kShadowEdge) return;
@@ -87,11 +87,17 @@ export class ContactShadow {
       lowest[at] = Math.min(lowest[at]!, z - this.height);
     };
     for (let t = 0; t + 2 < index.length; t += 3) {
-      const [a, b, c] = [3 * index[t]!, 3 * index[t + 1]!, 3 * index[t + 2]!];
-      const get = (k: number, u: number, v: number): number => position[a + k]! + u * (position[b + k]! - position[a + k]!) + v * (position[c + k]! - position[a + k]!);
-      const span = Math.hypot(position[b]! - position[a]!, position[b + 1]! - position[a + 1]!) + Math.hypot(position[c]! - position[a]!, position[c + 1]! - position[a + 1]!);
-      const cuts = Math.min(8 * kCuts, Math.max(1, Math.ceil((span / this.square.edge) * kShadowEdge)));
-      for (let p = 0; p <= cuts; ++p) for (let q = 0; p + q <= cuts; ++q) drop(get(0, p / cuts, q / cuts), get(1, p / cuts, q / cuts), get(2, p / cuts, q / cuts));
+      const a = 3 * index[t]!;
+      const side = (corner: number): number[] => [0, 1, 2].map((k) => position[3 * index[t + corner]! + k]! - position[a + k]!);
+      const [u, v] = [side(1), side(2)];
+      const span = Math.hypot(u[0]!, u[1]!) + Math.hypot(v[0]!, v[1]!);
+      const cuts = Math.min(kMostCuts, Math.max(1, Math.ceil((span / this.square.edge) * kShadowEdge)));
+      for (let p = 0; p <= cuts; ++p) {
+        for (let q = 0; p + q <= cuts; ++q) {
+          const at = (k: number): number => position[a + k]! + (p * u[k]! + q * v[k]!) / cuts;
+          drop(at(0), at(1), at(2));
+        }
+      }
     }
   }
 }
@@ -103,10 +109,12 @@ export function squareAround(box: Box3, edge: number): Square {
 
 function blur(field: Float32Array): void {
   const before = field.slice();
-  const at = (i: number, j: number): number => before[Math.min(kShadowEdge - 1, Math.max(0, j)) * kShadowEdge + Math.min(kShadowEdge - 1, Math.max(0, i))]!;
+  const inside = (i: number): number => Math.min(kShadowEdge - 1, Math.max(0, i));
+  const row = (i: number, j: number): number => {
+    const first = inside(j) * kShadowEdge;
+    return before[first + inside(i - 1)]! + 2 * before[first + i]! + before[first + inside(i + 1)]!;
+  };
   for (let j = 0; j < kShadowEdge; ++j) {
-    for (let i = 0; i < kShadowEdge; ++i) {
-      field[j * kShadowEdge + i] = (4 * at(i, j) + 2 * (at(i - 1, j) + at(i + 1, j) + at(i, j - 1) + at(i, j + 1)) + at(i - 1, j - 1) + at(i + 1, j - 1) + at(i - 1, j + 1) + at(i + 1, j + 1)) / 16;
-    }
+    for (let i = 0; i < kShadowEdge; ++i) field[j * kShadowEdge + i] = (row(i, j - 1) + 2 * row(i, j) + row(i, j + 1)) / 16;
   }
 }

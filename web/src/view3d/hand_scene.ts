@@ -134,9 +134,10 @@ export class HandScene {
     return this.contacts.filter(({ force }) => force >= kLeastFigure).map((mark) => {
       const digit = Math.floor(mark.segment / kSegmentsPerDigit);
       const strongest = this.contacts.every(({ segment, force }) => Math.floor(segment / kSegmentsPerDigit) !== digit || force <= mark.force);
-      const atLimit = mark.segment !== kPalm && strongest && isAtLimit(this.scale, forces[digit] ?? 0);
+      const felt = this.marks.isFelt(mark.segment);
+      const atLimit = mark.segment !== kPalm && felt && strongest && isAtLimit(this.scale, forces[digit] ?? 0);
       const figure = `${mark.force.toFixed(1)} ${strings.units.newton}`;
-      return { text: atLimit ? strings.atLimitOf(figure) : figure, tip: this.marks.tipOf(mark), felt: this.marks.isFelt(mark.segment) };
+      return { text: atLimit ? strings.atLimitOf(figure) : figure, tip: this.marks.tipOf(mark), felt };
     });
   }
 
@@ -261,7 +262,10 @@ export class HandScene {
 /// Length of the sum of the forces on each digit [N].
 function digitSums(marks: readonly Mark[]): number[] {
   const sums: Vector3[] = [];
-  for (const { segment, force, normal } of marks) (sums[Math.floor(segment / kSegmentsPerDigit)] ??= new Vector3()).addScaledVector(new Vector3(...normal), force);
+  for (const { segment, force, normal } of marks) {
+    const sum = (sums[Math.floor(segment / kSegmentsPerDigit)] ??= new Vector3());
+    sum.addScaledVector(new Vector3(...normal), force);
+  }
   return Array.from(sums, (sum) => sum?.length() ?? 0);
 }
 

@@ -8,7 +8,7 @@ const kMoved = 0.004; // [m] a hand that has moved less is where it was
 
 interface Sample {
   time: number; // when the hand was last there [s]
-  readonly points: readonly Vector3[];
+  readonly extremes: readonly Vector3[]; // its farthest point in each direction
 }
 
 /// Towards the faces, edges and corners of a cube.
@@ -26,10 +26,11 @@ export class MotionExtent {
     if (points.length === 0 || time - this.sampled < kApart) return;
     this.sampled = time;
     this.samples = this.samples.filter((sample) => time - sample.time <= kKept);
-    const known = this.samples.find((sample) => sample.points.every((point, i) => point.distanceTo(points[i] ?? point) < kMoved));
+    const extremes = kDirections.map((direction) => farthest(points, direction));
+    const known = this.samples.find((sample) => sample.extremes.every((point, i) => point.distanceTo(extremes[i]!) < kMoved));
     if (known) known.time = time;
-    else this.samples.push({ time, points });
-    this.extremes = kDirections.map((direction) => farthest(this.samples.flatMap((sample) => sample.points), direction));
+    else this.samples.push({ time, extremes });
+    this.extremes = kDirections.map((direction, i) => farthest(this.samples.map((sample) => sample.extremes[i]!), direction));
   }
 
   /// The outermost points of all phases of the motion.
@@ -45,5 +46,13 @@ export class MotionExtent {
 }
 
 function farthest(points: readonly Vector3[], direction: Vector3): Vector3 {
-  return points.reduce((best, point) => (point.dot(direction) > best.dot(direction) ? point : best));
+  let best = points[0]!;
+  let most = -Infinity;
+  for (const point of points) {
+    const reach = point.dot(direction);
+    if (reach <= most) continue;
+    most = reach;
+    best = point;
+  }
+  return best;
 }

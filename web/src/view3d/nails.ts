@@ -28,7 +28,7 @@ interface Skin {
 
 /// @param owner  of each vertex: the segment that has most of it
 export function nailsOn(hand: BoundHand, skin: Skin, owner: ArrayLike<number>): Nails {
-  const nails = { position: [] as number[], normal: [] as number[], detail: [] as number[], segment: [] as number[], index: [] as number[] };
+  const nails: Record<keyof Nails, number[]> = { position: [], normal: [], detail: [], segment: [], index: [] };
   for (let segment = 0; segment < kSegments; ++segment) {
     const heights = isTip(segment) ? layOn(hand, skin, owner, segment) : null;
     if (heights) addNail(nails, hand, segment, heights);
@@ -84,7 +84,8 @@ function heightAt(corners: readonly Vector3[], x: number, z: number): number | n
   return highest;
 }
 
-function addNail(nails: { position: number[]; normal: number[]; detail: number[]; segment: number[]; index: number[] }, hand: BoundHand, segment: number, skin: readonly Vector3[]): void {
+/// @param skin  the grid that the nail lies on
+function addNail(nails: Record<keyof Nails, number[]>, hand: BoundHand, segment: number, skin: readonly Vector3[]): void {
   const first = nails.segment.length;
   const surface = plate(skin);
   const frame = hand.frames[segment]!;

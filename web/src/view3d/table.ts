@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A table top of wood that fades into the background, with the shadows of hand and object on it.
 import {
-  Box3, BufferGeometry, CircleGeometry, Color, DataTexture, Group, LinearFilter, LinearMipmapLinearFilter, Mesh, RedFormat, RepeatWrapping, ShaderMaterial,
-  ShadowMaterial, Vector3,
+  Box3, BufferGeometry, CircleGeometry, Color, DataTexture, Group, LinearFilter, LinearMipmapLinearFilter, Mesh, RedFormat, RepeatWrapping,
+  ShaderMaterial, ShadowMaterial, Vector3,
 } from "three";
 import type { Theme } from "../theme";
 import { ContactShadow, kShadowEdge, squareAround } from "./contact_shadow";
@@ -10,7 +10,7 @@ import type { Capsule } from "./object_material";
 
 const kBelow = 0.0006; // of the object's lowest point [m]
 const kClear = 0.012; // below a hand that reaches lower than the object [m]
-const kRadius = 0.55; // [m]
+const kRadius = 0.46; // [m]
 const kGrain = 256; // texels of the wood, a square
 const kGrainLength = 0.55; // of that square [m]
 const kMoved = 0.0005; // of the hand before its shadow is cast again [m]

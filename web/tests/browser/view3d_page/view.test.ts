@@ -157,6 +157,29 @@ describe("what is drawn", () => {
       expect(hashes.size).toBe(5); // each looks different
     });
   }
+  it("looks like what it is made of: another kind of object, another skin tone", async () => {
+    await open(2);
+    await load();
+    await show(pressing);
+    const hashes = [(await look()).hash];
+    for (const kind of ["teapot", "box", "key", "jar"]) {
+      await page.evaluate((one) => window.viewPage.view.setObjectKind(one), kind);
+      hashes.push((await look()).hash);
+    }
+    await page.evaluate(() => window.viewPage.view.setSkinTone("deep"));
+    hashes.push((await look()).hash);
+    expect(new Set(hashes).size).toBe(hashes.length);
+  });
+  it("has its figure at each arrow's tip, but not at the lowest quality", async () => {
+    for (const [quality, some] of [[1, true], [0, false]] as const) {
+      await open(quality);
+      await load();
+      await show(pressing);
+      const figures = page.locator(".force-labels span:not([hidden])");
+      expect(await figures.count() > 0).toBe(some);
+      for (const text of await figures.allTextContents()) expect(text).toMatch(/^\d+\.\d N$/);
+    }
+  });
   it("has a ring at each sliding contact point, and cones on demand", async () => {
     const sliding = "grasp_teapot,contact.mode=sliding";
     await open(1);
@@ -216,6 +239,44 @@ describe("the camera", () => {
     await page.evaluate(() => window.viewPage.settled());
     hashes.push((await look()).hash);
     expect(new Set(hashes).size).toBe(hashes.length - 1);
+  });
+  it("keeps the hand in the picture, open and closed, at every preset", async () => {
+    await open(0);
+    await load();
+    for (const preset of ["home", "palm", "thumb", "contact"] as const) {
+      await show(free);
+      await page.evaluate((to) => window.viewPage.view.camera(to), preset);
+      for (const tick of [free, 120, pressing, 400, free]) {
+        await until(`${preset} at ${tick}`, async () => {
+          await show(tick); // a camera moves with a frame
+          return page.evaluate(() => window.viewPage.view.probe().handInPicture);
+        });
+      }
+    }
+  });
+  it("shows up to three views side by side, of which the first takes the mouse", async () => {
+    await page.setViewportSize({ width: 1000, height: 400 });
+    await open(0);
+    await load();
+    await show(pressing);
+    const one = await look();
+    await page.evaluate(() => window.viewPage.view.setViews(3));
+    expect((await look()).hash).not.toBe(one.hash);
+    const panes = () => page.evaluate(() => window.viewPage.view.probe().panes.map(({ preset }) => preset));
+    expect(await panes()).toEqual(["home", "palm", "contact"]);
+    const drag = async (x: number) => {
+      await page.mouse.move(x, 200);
+      await page.mouse.down();
+      await page.mouse.move(x + 40, 220, { steps: 3 });
+      await page.mouse.up();
+      await page.evaluate(() => window.viewPage.settled());
+    };
+    await drag(800);
+    expect(await panes()).toEqual(["home", "palm", "contact"]);
+    await drag(200);
+    expect(await panes()).toEqual([null, "palm", "contact"]);
+    await page.setViewportSize({ width: 480, height: 400 });
+    await until("one view", async () => (await panes()).length === 1, () => panes());
   });
   it("follows the contact: the camera moves by itself when the hand has moved", async () => {
     await open(0);

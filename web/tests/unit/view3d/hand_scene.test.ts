@@ -226,7 +226,9 @@ describe("arrows", () => {
     scene.setForces(forceScale(4), [true, false, true, true, true]);
     expect(scene.marks.drawn()[0]!.length).toBeCloseTo(full, 6);
     expect(scene.marks.drawn()[0]!.felt).toBe(false); // segment 5 is the index finger's
-    expect(scene.labels().map(({ text, felt }) => [text, felt])).toEqual([[strings.atLimitOf("4.0 N"), false]]);
+    expect(scene.labels().map(({ text, felt }) => [text, felt])).toEqual([["4.0 N", false]]);
+    scene.setForces(forceScale(4), []);
+    expect(scene.labels().map(({ text, felt }) => [text, felt])).toEqual([[strings.atLimitOf("4.0 N"), true]]);
     scene.labels()[0]!.tip.forEach((x, k) => expect(x).toBeCloseTo([0.1, 0, 0.1 + full][k]!, 6));
     scene.setLost(true);
     expect(scene.labels()).toEqual([]);
