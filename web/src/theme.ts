@@ -21,12 +21,10 @@ export interface Theme {
   readonly ok: string; // steady
   readonly bad: string; // shaking, fault
   readonly warn: string;
-  readonly skin: string;
   readonly ghost: string;
-  readonly object: string;
-  readonly floor: string;
-  readonly arrow: string;
-  readonly slip: string; // an arrow, where the finger slips
+  readonly table: string;
+  readonly sky: string; // as shiny objects mirror it
+  readonly arrow: string; // of the palm; digits have theirs
   readonly lost: string; // the hand of a page without connection
 }
 
@@ -41,12 +39,10 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     ok: "#009E73",
     bad: "#D55E00",
     warn: "#F0E442",
-    skin: "#d9b8a0",
     ghost: "#8fd0ff",
-    object: "#8d99a6",
-    floor: "#1a2027",
+    table: "#4a3a2e",
+    sky: "#9fb2c4",
     arrow: "#F0E442",
-    slip: "#CC79A7",
     lost: "#6b7076",
   },
   light: {
@@ -59,12 +55,10 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     ok: "#007a58",
     bad: "#b34700",
     warn: "#8a6d00",
-    skin: "#d9b8a0",
     ghost: "#0072B2",
-    object: "#9aa5b1",
-    floor: "#e6ebf0",
+    table: "#d9c4a4",
+    sky: "#f2f6fa",
     arrow: "#8a4b00",
-    slip: "#a8477f",
     lost: "#9a9fa5",
   },
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything beyond a session's few controls: force law, stabiliser, object, grasp, limits, and every key of a scene.
+import { kDigitLimit } from "../state/keys";
 import { number } from "../state/toml";
 import { strings } from "../strings";
 import { refusal, change, type App } from "./app";
@@ -80,7 +81,7 @@ function calmSection(app: App): HTMLElement {
 function limitsSection(app: App): HTMLElement {
   const words = strings.limits;
   const shown: readonly (readonly [string, string, string])[] = [
-    ["limits.fingertip_force_n", words.force, strings.units.newton],
+    [kDigitLimit, words.force, strings.units.newton],
     ["limits.joint_torque_nm", words.torque, strings.units.torque],
     ["limits.torque_rate_nm_per_s", words.torqueRate, strings.units.torqueRate],
     ["limits.joint_speed_rad_per_s", words.speed, strings.units.radianPerSecond],

@@ -14,7 +14,7 @@ export interface KeyActions {
 /// Least interval at which a key that is held down repeats Stop [ms].
 const kStopAgainMs = 200;
 /// Views of the camera by key.
-export const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "follow" };
+export const presets: Readonly<Record<string, CameraPreset>> = { "1": "home", "2": "palm", "3": "thumb", "4": "contact" };
 const typed = new Set(["text", "search", "number", "email", "url", "tel", "password"]);
 
 /// Whether letters and figures go into it.

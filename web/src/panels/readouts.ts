@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Above the view: the stability verdict as a light, the force of each digit, and which digits cannot have one.
+// Above the view: the stability verdict as a light, the force of each digit on the scale of forces, and which digits cannot have one.
 import { digitForces, followers, kDigits } from "../state/channels";
 import type { Shown } from "../state/shown";
 import type { Verdict } from "../state/verdict";
 import { strings } from "../strings";
+import { forceScale, isAtLimit, shareOf } from "../view3d/force_scale";
 import { el, setAttribute, setShown, setText } from "./dom";
-
-const kFullBar = 5; // [N]
 
 /// "SHAKES, 11 Hz, 1.2 N".
 export function verdictText(verdict: Verdict | null): string {
@@ -37,15 +36,18 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
   const digits = Array.from({ length: kDigits }, (_, digit) => {
     const value = el("output", { "aria-label": strings.digits[digit] ?? "" });
     const bar = el("span", { class: "bar" });
-    const follows = el("small", { title: strings.followsWhy, hidden: true }, strings.follows);
+    const notFelt = el("small", { class: "digit-note", title: strings.followsWhy, hidden: true }, strings.notFelt);
+    const atLimit = el("strong", { class: "digit-note", hidden: true }, strings.atLimit);
     const box = el(
       "div",
       { class: "digit-force", "data-digit": digit },
-      el("span", { class: "digit-name" }, strings.digits[digit] ?? "", " ", follows),
+      el("span", { class: "digit-name" }, strings.digits[digit] ?? ""),
       el("span", { class: "digit-value" }, value, el("span", { class: "unit" }, strings.units.newton)),
       el("span", { class: "bar-track", "aria-hidden": "true" }, bar),
+      notFelt,
+      atLimit,
     );
-    return { box, value, bar, follows };
+    return { box, value, bar, notFelt, atLimit };
   });
   const element = el(
     "div",
@@ -56,7 +58,10 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
   );
   shown.on(["state"], () => {
     const all = followers(shown.sensedJoint);
-    digits.forEach((digit, i) => setShown(digit.follows, all[i] ?? false));
+    digits.forEach(({ box, notFelt }, i) => {
+      setShown(notFelt, all[i] ?? false);
+      setAttribute(box, "data-felt", String(!(all[i] ?? false)));
+    });
   });
   const update = () => {
     const verdict = shown.lost || !shown.tick ? null : asFelt(shown.light.shown, shown.rendersTorque);
@@ -68,10 +73,12 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
     setText(alarm, shakes ? strings.verdict.shakes : "");
     below.update();
     const forces = digitForces(shown.lost ? undefined : shown.tick);
+    const scale = forceScale(shown.digitLimit);
     digits.forEach((digit, i) => {
       const force = forces[i] ?? 0;
+      setShown(digit.atLimit, digit.notFelt.hidden && isAtLimit(scale, force));
       setText(digit.value, shown.lost || !shown.tick ? strings.dash : force.toFixed(1));
-      digit.bar.style.transform = `scaleX(${Math.min(1, force / kFullBar).toFixed(3)})`;
+      digit.bar.style.transform = `scaleX(${shareOf(scale, force).toFixed(3)})`;
     });
   };
   update();

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The place of the 3D view: its buttons, its keys, and the text that replaces it if it cannot be shown.
+import { followers } from "../state/channels";
 import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
-import type { CameraPreset, HandView, ShownParts } from "../view3d/hand_view";
+import { forceScale } from "../view3d/force_scale";
+import type { CameraPreset, HandView, Pane, ShownParts } from "../view3d/hand_view";
 import type { ViewTrouble } from "../view3d/view";
 import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from "./dom";
 import { savedMark, savedName } from "./saved_as";
+import { skinToneChoice } from "./skin_tone_choice";
 import { viewKey } from "./view_key";
+import { viewCountChoice } from "./view_count_choice";
 
 export const kZoomStep = 1.15;
 const kOrbitStep = 0.08; // [rad] for a key
@@ -56,8 +60,22 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     button("+", () => zoom(kZoomStep), { class: "view-zoom", "aria-label": words.nearer, title: words.nearer }),
     button("−", () => zoom(1 / kZoomStep), { class: "view-zoom", "aria-label": words.farther, title: words.farther }),
   );
-  const shown = el("div", { class: "view-parts-list" }, ...switches, picture);
+  const tones = skinToneChoice((tone) => view?.setSkinTone(tone));
+  const views = viewCountChoice((count) => view?.setViews(count));
+  const shown = el("div", { class: "view-parts-list" }, ...switches, views.element, tones.element, picture);
   const menu = el("details", { class: "view-parts" }, el("summary", {}, words.partsMenu), shown);
+
+  const labels = el("div", { class: "view-labels", "aria-hidden": "true" });
+  function label(panes: readonly Pane[]): void {
+    labels.replaceChildren(
+      ...(panes.length === 1 ? [] : panes).map(({ preset, left, width }) => {
+        const one = el("span", {}, preset ? words.presets[preset] : words.own);
+        one.style.left = `${100 * left}%`;
+        one.style.width = `${100 * width}%`;
+        return one;
+      }),
+    );
+  }
 
   host.addEventListener("keydown", (event) => {
     const turn: Readonly<Record<string, readonly [number, number]>> = {
@@ -77,10 +95,14 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     setShown(wait, trouble !== "context-restored");
   }
 
+  let felt: readonly boolean[] = []; // of each digit; empty: not known
+  source.on(["state"], () => (felt = followers(source.sensedJoint).map((follows) => !follows)));
+  const showForces = () => view?.setForces(forceScale(source.digitLimit), felt);
+
   async function load(theme: ThemeName): Promise<void> {
     try {
       const { createHandView } = await import("../view3d/view");
-      view = createHandView(host, { onTrouble: say });
+      view = createHandView(host, { onTrouble: say, onPanes: label });
     } catch (reason) {
       console.error(reason);
       setText(wait, words.failed);
@@ -89,14 +111,25 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     if (wait.textContent === words.loading) setShown(wait, false);
     view.setTheme(theme);
     view.setParts(parts);
+    view.setSkinTone(tones.tone);
+    view.setViews(views.count);
+    view.setObjectKind(source.objectKind);
+    showForces();
+    view.setCovered(key.offsetTop + key.offsetHeight);
     view.setLost(source.viewDead);
     if (source.geometry) view.setGeometry(source.geometry);
     if (source.tick) view.show(source.tick);
+    source.on(["state", "connection"], () => {
+      view?.setObjectKind(source.objectKind);
+      showForces();
+    });
     source.on(["geometry"], () => source.geometry && view?.setGeometry(source.geometry));
     source.on(["tick"], () => source.tick && view?.show(source.tick));
   }
+  const key = viewKey(source);
+  new ResizeObserver(() => view?.setCovered(key.offsetTop + key.offsetHeight)).observe(key);
   return {
-    element: el("div", { class: "view-frame" }, host, wait, viewKey(source), el("div", { class: "view-tools" }, cameras, menu), ...over),
+    element: el("div", { class: "view-frame" }, host, wait, labels, key, el("div", { class: "view-tools" }, cameras, menu), ...over),
     view: () => view,
     load,
     setTheme: (theme) => view?.setTheme(theme),

@@ -16,7 +16,7 @@ import type { Decoder } from "./decoder";
 import { Lookup } from "./lookup";
 import { Playhead } from "./playhead";
 import type { Recording } from "./recording";
-import { rateOf, type StationFacts } from "./station_facts";
+import { rateOf, type ChangeFacts, type StationFacts } from "./station_facts";
 
 export const kOldPose = 0.25; // [s]: a pose that is older than the displayed moment does not show it; as a gap in the curves
 export const kLongRead = 300; // a shorter wait is not displayed [ms]
@@ -31,7 +31,7 @@ export class Player extends Listeners<Topic> implements Shown {
   geometry: Shapes | undefined;
   light = new VerdictLight();
   station: StationFacts | undefined; // in force at the displayed moment
-  slides = false;
+  private change: ChangeFacts | undefined; // likewise
   trouble: unknown; // why nothing more can be read
   shapesTrouble = false; // the geometry cannot be made into shapes
   readonly history = new History(channels.length, kHistoryCapacity);
@@ -71,6 +71,18 @@ export class Player extends Listeners<Topic> implements Shown {
 
   get rendersTorque(): boolean {
     return this.station?.rendersTorque ?? true;
+  }
+
+  get slides(): boolean {
+    return this.change?.slides ?? false;
+  }
+
+  get objectKind(): string {
+    return this.change?.objectKind ?? "";
+  }
+
+  get digitLimit(): number {
+    return this.change?.digitLimit ?? Infinity;
   }
 
   get recordedAt(): number {
@@ -262,7 +274,7 @@ export class Player extends Listeners<Topic> implements Shown {
   private async useStation(at: number): Promise<void> {
     const [setup, change] = [await this.lookup.last("/setup", at), await this.lookup.last("/change", at)];
     this.station = setup?.value;
-    this.slides = (change && change.time > (setup?.time ?? -Infinity) ? change.value.slides : setup?.value.slides) ?? false;
+    this.change = change && change.time > (setup?.time ?? -Infinity) ? change.value : setup?.value;
     this.tell("state");
     const geometry = await this.lookup.last("/geometry", at);
     const place = geometry ? `${geometry.chunk} ${geometry.time}` : "";

@@ -6,12 +6,14 @@ import { SettingSchema, type Setting } from "../gen/phalanx/cockpit_pb";
 import { GeometrySchema } from "../gen/phalanx/geometry_pb";
 import { ChangeSchema, DeviceChannelSchema, SetupSchema, type DeviceChannel } from "../gen/phalanx/recording_pb";
 import { kJointsPerDigit } from "../state/channels";
-import { find } from "../state/keys";
+import { find, kDigitLimit, limitOf } from "../state/keys";
 import { unquote } from "../state/toml";
 
 export interface ChangeFacts {
   readonly scene: string;
   readonly slides: boolean; // contacts slide, with friction
+  readonly objectKind: string; // empty: not stated
+  readonly digitLimit: number; // of a digit's force [N]; Infinity: none, or not stated
 }
 
 export interface StationFacts extends ChangeFacts {
@@ -46,7 +48,8 @@ export function changeFacts(bytes: Uint8Array): ChangeFacts {
     else return false;
     return true;
   });
-  return { scene, slides: unquote(find(values, "contact.mode") ?? "") === "sliding" };
+  const text = (key: string) => unquote(find(values, key) ?? "");
+  return { scene, slides: text("contact.mode") === "sliding", objectKind: text("objects.0.kind"), digitLimit: limitOf(text(kDigitLimit)) };
 }
 
 /// Steps a second of the station whose Geometry this is.
@@ -72,7 +75,7 @@ function sensedJoints(channels: readonly DeviceChannel[]): number[] {
 }
 
 export function stationFacts(bytes: Uint8Array): StationFacts {
-  let facts: StationFacts = { scene: "", slides: false, device: "", rendersTorque: false, sensedJoint: [] };
+  let facts: StationFacts = { scene: "", slides: false, objectKind: "", digitLimit: Infinity, device: "", rendersTorque: false, sensedJoint: [] };
   const channels: DeviceChannel[] = [];
   eachField(bytes, (field, reader) => {
     if (field === setup.start.number) facts = { ...facts, ...changeFacts(reader.bytes()) };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys of a scene: their ranges, which of them an object has, and what is in force.
 import type { KeyInfo, NumberRange, Setting, State, Welcome } from "../gen/phalanx/cockpit_pb";
-import { unquote } from "./toml";
+import { number, unquote } from "./toml";
 
 export function within(value: number, range: NumberRange): boolean {
   if (value === -Infinity && range.minusInfinity) return true;
@@ -44,6 +44,14 @@ export function valueOf(state: State | undefined, welcome: Welcome | undefined, 
   if (stated !== undefined) return stated;
   const key = keyOf(welcome, setting);
   return key ? defaultOf(key, objectKind(state, welcome)) : "";
+}
+
+export const kDigitLimit = "limits.fingertip_force_n";
+
+/// @returns a limit as a number; Infinity: it is off, or not stated
+export function limitOf(value: string): number {
+  const limit = number(value);
+  return limit > 0 ? limit : Infinity;
 }
 
 /// Whether contacts slide, with friction.

@@ -21,6 +21,8 @@ export interface Shown {
   readonly slides: boolean; // contacts slide, with friction
   readonly sensedJoint: readonly number[]; // that the device measures or moves
   readonly rendersTorque: boolean;
+  readonly objectKind: string; // as scenes name it; empty: not known
+  readonly digitLimit: number; // of a digit's force [N]; Infinity: none, or not known
   readonly recordedAt?: number; // of the displayed moment of a recording, UTC [s]; absent for a running station
   on(topics: readonly Topic[], listener: () => void): void;
 }

@@ -8,7 +8,7 @@ import { channels, fillRow } from "./channels";
 import { Delivery } from "./delivery";
 import { Freshness } from "./freshness";
 import { History } from "./history";
-import { isChanged, slides, valueOf } from "./keys";
+import { isChanged, kDigitLimit, limitOf, objectKind, slides, valueOf } from "./keys";
 import { Listeners } from "./listeners";
 import { roleOf, type Role } from "./roles";
 import type { OldCurves, Pausing, Shown, Topic } from "./shown";
@@ -104,6 +104,14 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
 
   get rendersTorque(): boolean {
     return this.state?.rendersTorque !== false;
+  }
+
+  get objectKind(): string {
+    return objectKind(this.state, this.welcome);
+  }
+
+  get digitLimit(): number {
+    return limitOf(valueOf(this.state, this.welcome, kDigitLimit));
   }
 
   get role(): Role {

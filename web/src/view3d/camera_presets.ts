@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the camera stands for each preset: a direction from the hand's own axes, and a distance at which everything is in the picture.
-import { Matrix4, Vector3 } from "three";
+import { Box3, Matrix4, Vector3 } from "three";
 import type { CameraPreset } from "./hand_view";
 
 export interface CameraPlace {
@@ -10,28 +10,53 @@ export interface CameraPlace {
 
 /// The visible content, in W, z up.
 export interface Sight {
-  readonly hand: readonly Vector3[]; // corners of its parts
+  readonly hand: readonly Vector3[]; // corners of its parts, in all phases of its motion
   readonly object: readonly Vector3[]; // corners; none: an empty scene
   readonly palm: Matrix4 | null; // X_WS of the palm: fingers to -z, the back to +y, the little finger of a right hand to +x
   readonly left: boolean;
-  readonly grip: Vector3 | null; // between thumb and index
+  readonly contact: Vector3 | null; // the strongest; without one the grip, between thumb and index
 }
 
+/// The part of the picture that nothing covers, -1 .. 1 from left to right and from below to above.
+export interface FreePart {
+  readonly left: number;
+  readonly right: number;
+  readonly bottom: number;
+  readonly top: number;
+}
+
+export const wholePicture: FreePart = { left: -1, right: 1, bottom: -1, top: 1 };
+
 export const worldUp = new Vector3(0, 0, 1);
-const kMargin = 1.12; // of the picture around what is in it
-const kGripReach = 0.055; // half of what "follow" shows [m]
+const kFilled = 0.82; // of the free part, by the boxes of what is in the picture: about 0.7 by hand and object themselves
+const kContactFilled = 0.97; // likewise by the hand, where the camera follows a contact
+const kTowardsHand = 0.55; // from the contact to the hand's middle: where that camera looks
 const kSteepest = (62 * Math.PI) / 180; // of home's view down
 const kFlattest = (14 * Math.PI) / 180;
 const kFromBelow = (-40 * Math.PI) / 180; // straight up at the palm there is no up in the picture
 
 /// @param fieldOfView  vertical [rad]  @param aspect  width / height
-export function placeFor(preset: CameraPreset, sight: Sight, fieldOfView: number, aspect: number): CameraPlace {
+export function placeFor(preset: CameraPreset, sight: Sight, fieldOfView: number, aspect: number, free: FreePart = wholePicture): CameraPlace {
   const direction = directionFor(preset, sight);
-  if (preset === "follow" && sight.grip) {
-    const reach = kGripReach / Math.sin(Math.min(fieldOfView, 2 * Math.atan(Math.tan(fieldOfView / 2) * aspect)) / 2);
-    return { target: sight.grip.clone(), position: sight.grip.clone().addScaledVector(direction, reach) };
+  if (preset === "contact" && sight.contact) {
+    const target = sight.contact.clone().lerp(sight.hand.length > 0 ? middle(sight.hand) : sight.contact, kTowardsHand);
+    return moved(around(target, sight.hand, direction, fieldOfView, aspect, free), direction, fieldOfView, aspect, free);
   }
-  return fitted(nearHand(sight), direction, fieldOfView, aspect);
+  return moved(fitted(nearHand(sight), direction, fieldOfView, aspect, free), direction, fieldOfView, aspect, free);
+}
+
+/// Whether all points are in the free part of the picture.
+export function inPicture(points: readonly Vector3[], place: CameraPlace, fieldOfView: number, aspect: number, free: FreePart): boolean {
+  const direction = place.position.clone().sub(place.target);
+  const distance = direction.length();
+  const { right, up } = axesOf(direction.divideScalar(Math.max(1e-9, distance)));
+  const tanY = Math.tan(fieldOfView / 2);
+  return points.every((point) => {
+    const from = point.clone().sub(place.target);
+    const depth = distance - from.dot(direction);
+    const [x, y] = [from.dot(right) / (tanY * aspect * depth), from.dot(up) / (tanY * depth)];
+    return depth > 0 && x >= free.left && x <= free.right && y >= free.bottom && y <= free.top;
+  });
 }
 
 /// Unit vector from what is looked at towards the camera.
@@ -48,7 +73,7 @@ export function directionFor(preset: CameraPreset, sight: Sight): Vector3 {
       return elevated(mix(0.3, 0.6, -1, 0), kFromBelow, kSteepest);
     case "thumb":
       return elevated(mix(1, 0.12, 0.05, 0.16), -0.3, kSteepest);
-    case "follow":
+    case "contact":
       return elevated(mix(0.85, 0.4, 0.1, 0.25), -0.2, kSteepest);
     case "home":
       return elevated(mix(0.72, 0.5, 0.2, 0.42), kFlattest, kSteepest);
@@ -78,12 +103,26 @@ function mean(points: readonly Vector3[]): Vector3 {
   return sum.divideScalar(Math.max(1, points.length));
 }
 
-/// The nearest place in that direction from which all points are in the picture, and in its middle.
-export function fitted(points: readonly Vector3[], direction: Vector3, fieldOfView: number, aspect: number): CameraPlace {
+function axesOf(direction: Vector3): { right: Vector3; up: Vector3 } {
   const right = new Vector3().crossVectors(worldUp, direction).normalize();
-  const up = new Vector3().crossVectors(direction, right);
-  const tanY = Math.tan(fieldOfView / 2) / kMargin;
-  const tanX = (Math.tan(fieldOfView / 2) * aspect) / kMargin;
+  return { right, up: new Vector3().crossVectors(direction, right) };
+}
+
+/// Slopes of the rays at the border of a part of the picture that is as large as the free one, and in the picture's middle.
+function slopesOf(fieldOfView: number, aspect: number, free: FreePart): { x: number; y: number } {
+  const tan = Math.tan(fieldOfView / 2);
+  return { x: (tan * aspect * (free.right - free.left)) / 2, y: (tan * (free.top - free.bottom)) / 2 };
+}
+
+function middle(points: readonly Vector3[]): Vector3 {
+  return new Box3().setFromPoints([...points]).getCenter(new Vector3());
+}
+
+/// The nearest place in that direction from which all points are in the picture, and in its middle.
+export function fitted(points: readonly Vector3[], direction: Vector3, fieldOfView: number, aspect: number, free: FreePart = wholePicture): CameraPlace {
+  const { right, up } = axesOf(direction);
+  const slopes = slopesOf(fieldOfView, aspect, free);
+  const [tanX, tanY] = [kFilled * slopes.x, kFilled * slopes.y];
   const target = mean(points);
   let distance = 0.3;
   for (let round = 0; round < 6; ++round) {
@@ -93,19 +132,39 @@ export function fitted(points: readonly Vector3[], direction: Vector3, fieldOfVi
       const depth = from.dot(direction);
       distance = Math.max(distance, depth + Math.abs(from.dot(right)) / tanX, depth + Math.abs(from.dot(up)) / tanY);
     }
-    const slopesX: number[] = [];
-    const slopesY: number[] = [];
+    if (points.length === 0) break;
+    const [x, y] = [[Infinity, -Infinity], [Infinity, -Infinity]] as [[number, number], [number, number]];
     for (const point of points) {
       const from = point.clone().sub(target);
       const depth = Math.max(1e-3, distance - from.dot(direction));
-      slopesX.push(from.dot(right) / depth);
-      slopesY.push(from.dot(up) / depth);
+      const [slopeX, slopeY] = [from.dot(right) / depth, from.dot(up) / depth];
+      [x[0], x[1], y[0], y[1]] = [Math.min(x[0], slopeX), Math.max(x[1], slopeX), Math.min(y[0], slopeY), Math.max(y[1], slopeY)];
     }
-    if (points.length === 0) break;
-    target.addScaledVector(right, ((Math.max(...slopesX) + Math.min(...slopesX)) / 2) * distance);
-    target.addScaledVector(up, ((Math.max(...slopesY) + Math.min(...slopesY)) / 2) * distance);
+    target.addScaledVector(right, ((x[0] + x[1]) / 2) * distance);
+    target.addScaledVector(up, ((y[0] + y[1]) / 2) * distance);
   }
   return { target, position: target.clone().addScaledVector(direction, distance) };
+}
+
+/// The nearest place from which the target is in the middle and all points are in the picture.
+function around(target: Vector3, points: readonly Vector3[], direction: Vector3, fieldOfView: number, aspect: number, free: FreePart): CameraPlace {
+  const { right, up } = axesOf(direction);
+  const slopes = slopesOf(fieldOfView, aspect, free);
+  let distance = 0.12;
+  for (const point of points) {
+    const from = point.clone().sub(target);
+    const depth = from.dot(direction);
+    distance = Math.max(distance, depth + Math.abs(from.dot(right)) / (kContactFilled * slopes.x), depth + Math.abs(from.dot(up)) / (kContactFilled * slopes.y));
+  }
+  return { target: target.clone(), position: target.clone().addScaledVector(direction, distance) };
+}
+
+/// From the middle of the picture to the middle of its free part.
+function moved(place: CameraPlace, direction: Vector3, fieldOfView: number, aspect: number, free: FreePart): CameraPlace {
+  const { right, up } = axesOf(direction);
+  const reach = Math.tan(fieldOfView / 2) * place.position.distanceTo(place.target);
+  const step = right.multiplyScalar((-reach * aspect * (free.left + free.right)) / 2).addScaledVector(up, (-reach * (free.bottom + free.top)) / 2);
+  return { target: place.target.clone().add(step), position: place.position.clone().add(step) };
 }
 
 /// Turned about the target: `right` about the world's up, `upwards` towards it, never over the poles [rad].

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contacts: a ring on the surface at each contact point, and an arrow along the force on the finger, to scale. Drawn twice: once where
-// they can be seen, and once more, faint, over everything, because most of an arrow lies inside the finger that it pushes. Where a finger
-// slips, arrow and ring have another colour, and a second ring is around the first. Friction cones are drawn on demand.
+// they can be seen, and once more, faint, over everything, because most of an arrow lies inside the finger that it pushes. They have the
+// digit's colour; an arrow that is computed but not felt is hollow. Where a finger slips, a dashed ring is around the ring. Friction cones
+// are drawn on demand.
 import {
   Color, ConeGeometry, CylinderGeometry, DoubleSide, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshBasicMaterial,
   NotEqualStencilFunc, Quaternion, ReplaceStencilOp, RingGeometry, Vector3,
 } from "three";
 import type { BufferGeometry } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
-import { arrowLargestForce, arrowMetresPerNewton } from "./arrow_scale";
-import { kSegments } from "./segments";
+import { arrowLength, forceScale, type ForceScale } from "./force_scale";
+import { kPalm, kSegments, kSegmentsPerDigit } from "./segments";
 
 const kShaft = 0.0013; // radius [m]
 const kHead = 0.0036; // radius [m]
 const kHeadLength = 0.008; // [m], shorter where the arrow is
 const kRing = 0.0052; // radius [m]
 const kSmallRing = 0.0036; // of a contact point in sliding mode [m]
-const kSlipRing = 1.6; // around it, of its radius
+const kSlipRing = 1.7; // the dashed one around it, of its radius
 const kCone = 0.016; // from the tip of a friction cone to its rim [m]
 const kLift = 0.0003; // of a ring above the surface [m]
-const kOutline = 0.0006; // around a faint arrow [m]
+const kOutline = 0.0008; // around a faint arrow [m]
 const kMostPoints = 80; // as ContactPoints::kMost of the host
 const kLeastForce = 1e-3; // [N]; less has no arrow
 
@@ -81,11 +82,6 @@ export function pointsOf(tick: Tick): PointMark[] {
   return points.slice(0, kMostPoints);
 }
 
-/// [m]; 0: no arrow.
-export function arrowLength(newtons: number): number {
-  return newtons >= kLeastForce ? Math.min(newtons, arrowLargestForce) * arrowMetresPerNewton : 0;
-}
-
 /// Only where no faint arrow is yet: arrows and their parts do not shine through each other, the outline stays outside.
 const kArrowStencil = 2; // a bit beside the hand's
 const oneLayer = {
@@ -103,23 +99,40 @@ function headLength(arrow: number): number {
 const zAxis = new Vector3(0, 0, 1);
 
 interface Ring extends Place {
+  readonly segment: number;
   readonly radius: number; // [m]
   readonly slips: boolean;
+}
+
+/// A ring with gaps.
+function dashedRing(): RingGeometry {
+  const [kDashes, kCuts] = [7, 5]; // of the cuts of a dash, 3 are drawn
+  const ring = new RingGeometry(0.8, 1, kDashes * kCuts);
+  const perCut = 6; // numbers of the index
+  ring.setIndex(Array.from(ring.getIndex()!.array).filter((_, i) => Math.floor(i / perCut) % kCuts < 3));
+  return ring;
+}
+
+function hasArrow(mark: Mark): boolean {
+  return mark.force >= kLeastForce;
 }
 
 /// Rings of the segments without contact points, and of all contact points.
 function ringsOf(marks: readonly Mark[], points: readonly PointMark[]): Ring[] {
   const listed = new Set(points.map((point) => point.segment));
-  const single = marks.filter((mark) => !listed.has(mark.segment) && (mark.touching || arrowLength(mark.force) > 0));
-  const rings = [...single.map((mark) => ({ ...mark, radius: kRing })), ...points.map((point) => ({ ...point, radius: kSmallRing }))];
-  return [...rings, ...rings.filter((ring) => ring.slips).map((ring) => ({ ...ring, radius: kSlipRing * ring.radius }))];
+  const single = marks.filter((mark) => !listed.has(mark.segment) && (mark.touching || hasArrow(mark)));
+  return [...single.map((mark) => ({ ...mark, radius: kRing })), ...points.map((point) => ({ ...point, radius: kSmallRing }))];
 }
 
 export interface MarkColours {
-  readonly arrow: string;
-  readonly slip: string; // of arrows and rings where the finger slips
+  readonly digits: readonly string[];
+  readonly palm: string;
   readonly around: string; // of the faint arrows' outline
+  readonly unfelt: string; // outline of a hollow arrow, and the ring at its foot
 }
+
+/// Of a hollow arrow the outline shows.
+type Paint = "fill" | "outline";
 
 export class ContactMarks {
   readonly solid = new Group(); // for the scene
@@ -127,50 +140,54 @@ export class ContactMarks {
   readonly cones = new Group(); // likewise: friction cones, forces that a contact point can hold without slip
   private readonly parts: BufferGeometry[];
   private readonly solidMaterial = new MeshBasicMaterial({ toneMapped: false });
-  private readonly faintMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.72, depthTest: false, depthWrite: false, ...oneLayer, stencilZPass: ReplaceStencilOp });
-  private readonly outlineMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.7, depthTest: false, depthWrite: false, ...oneLayer });
+  private readonly faintMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.85, depthTest: false, depthWrite: false, ...oneLayer, stencilZPass: ReplaceStencilOp });
+  private readonly outlineMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.9, depthTest: false, depthWrite: false, ...oneLayer });
   private readonly coneMaterial = new MeshBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.3, side: DoubleSide, forceSinglePass: true, depthTest: false, depthWrite: false });
-  private readonly meshes: InstancedMesh[] = []; // shaft, head, ring of `solid`, then of `faint`, then of the outline
+  private readonly meshes: InstancedMesh[] = []; // shaft, head, ring, dashed ring of `solid`, then of `faint`, then of the outline
   private readonly coneParts: InstancedMesh[]; // surfaces and rims
-  private readonly colour = { arrow: new Color(), slip: new Color() };
-  private segments: number[] = []; // of the arrows
+  private colours: MarkColours = { digits: [], palm: "#ffffff", around: "#000000", unfelt: "#808080" };
+  private scale = forceScale(Infinity);
+  private felt: readonly boolean[] = [];
+  private arrows: readonly Mark[] = [];
 
   constructor() {
     const shaft = new CylinderGeometry(1, 1, 1, 12, 1, true).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     const head = new ConeGeometry(1, 1, 20).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     const ring = new RingGeometry(0.66, 1, 40);
+    const dashes = dashedRing();
     const cone = new ConeGeometry(1, 1, 40, 1, true).rotateX(-Math.PI / 2).translate(0, 0, 0.5); // its tip at the origin
     const rim = new RingGeometry(0.95, 1, 40).translate(0, 0, 1);
-    this.parts = [shaft, head, ring, cone, rim];
+    this.parts = [shaft, head, ring, dashes, cone, rim];
     const layers = [[this.solid, this.solidMaterial, 0], [this.faint, this.faintMaterial, 0], [this.faint, this.outlineMaterial, 1]] as const;
     for (const [group, material, order] of layers) {
-      for (const part of [shaft, head, ring]) {
-        this.meshes.push(made(part, material, part === ring ? 2 * (kSegments + kMostPoints) : kSegments, order, group, material !== this.outlineMaterial));
+      for (const part of [shaft, head, ring, dashes]) {
+        this.meshes.push(made(part, material, part === shaft || part === head ? kSegments : kSegments + kMostPoints, order, group));
       }
     }
-    this.coneParts = [cone, rim].map((part) => made(part, this.coneMaterial, kMostPoints, 0, this.cones, true));
+    this.coneParts = [cone, rim].map((part) => made(part, this.coneMaterial, kMostPoints, 0, this.cones));
     this.faint.renderOrder = 3;
     this.cones.renderOrder = 2;
   }
 
   show(marks: readonly Mark[], points: readonly PointMark[]): void {
-    const arrows = marks.filter((mark) => arrowLength(mark.force) > 0);
+    const arrows = marks.filter(hasArrow);
     const rings = ringsOf(marks, points);
-    this.segments = arrows.map((mark) => mark.segment);
+    const slipping = rings.filter((ring) => ring.slips);
+    this.arrows = arrows;
     for (const [layer, grown] of [[0, 0], [1, 0], [2, kOutline]] as const) {
-      this.place(this.meshes[3 * layer]!, arrows, (mark) => {
-        const length = arrowLength(mark.force);
-        return matrixAt(mark, -grown, kShaft + grown, length - headLength(length) + grown);
+      const [shaft, head, ring, dashes] = this.meshes.slice(4 * layer, 4 * layer + 4) as [InstancedMesh, InstancedMesh, InstancedMesh, InstancedMesh];
+      const paint = layer === 2 ? "outline" : "fill";
+      const lengthOf = (mark: Mark): number => arrowLength(this.scale, mark.force);
+      this.place(shaft, arrows, paint, (mark) => matrixAt(mark, -grown, kShaft + grown, lengthOf(mark) - headLength(lengthOf(mark)) + grown));
+      this.place(head, arrows, paint, (mark) => {
+        const [length, tip] = [lengthOf(mark), headLength(lengthOf(mark))];
+        return matrixAt(mark, length - tip - grown, (kHead * tip) / kHeadLength + 1.6 * grown + 1e-6, tip + 3.4 * grown);
       });
-      this.place(this.meshes[3 * layer + 1]!, arrows, (mark) => {
-        const length = arrowLength(mark.force);
-        const head = headLength(length);
-        return matrixAt(mark, length - head - grown, (kHead * head) / kHeadLength + 1.6 * grown + 1e-6, head + 3.4 * grown);
-      });
-      this.place(this.meshes[3 * layer + 2]!, layer === 2 ? [] : rings, (ring) => matrixAt(ring, kLift, ring.radius, 1));
+      this.place(ring, layer === 2 ? [] : rings, "outline", (one) => matrixAt(one, kLift, one.radius, 1));
+      this.place(dashes, layer === 2 ? [] : slipping, "outline", (one) => matrixAt(one, kLift, kSlipRing * one.radius, 1));
     }
     for (const mesh of this.coneParts) {
-      this.place(mesh, points, (point) => {
+      this.place(mesh, points, "outline", (point) => {
         const half = Math.atan(point.coefficient);
         return matrixAt(point, 0, kCone * Math.sin(half) + 1e-6, kCone * Math.cos(half));
       });
@@ -178,23 +195,38 @@ export class ContactMarks {
   }
 
   /// Visible arrows, their lengths [m] from the matrices that are drawn.
-  drawn(): { segment: number; length: number; slips: boolean }[] {
+  drawn(): { segment: number; length: number; slips: boolean; felt: boolean }[] {
     if (!this.solid.visible) return [];
     const shaft = new Matrix4();
     const head = new Matrix4();
-    return this.segments.map((segment, i) => {
+    return this.arrows.map(({ segment, slips }, i) => {
       this.meshes[0]!.getMatrixAt(i, shaft);
       this.meshes[1]!.getMatrixAt(i, head);
-      const colour = new Color();
-      this.meshes[0]!.getColorAt(i, colour);
-      const slips = difference(colour, this.colour.slip) < difference(colour, this.colour.arrow); // it was rounded to single precision
-      return { segment, slips, length: new Vector3().setFromMatrixColumn(shaft, 2).length() + new Vector3().setFromMatrixColumn(head, 2).length() };
+      const length = new Vector3().setFromMatrixColumn(shaft, 2).length() + new Vector3().setFromMatrixColumn(head, 2).length();
+      return { segment, slips, felt: this.isFelt(segment), length };
     });
   }
 
-  /// Numbers of visible rings and friction cones.
+  /// Numbers of visible rings, dashed ones among them, and friction cones.
   counts(): { rings: number; cones: number } {
-    return { rings: this.solid.visible ? this.meshes[2]!.count : 0, cones: this.cones.visible ? this.coneParts[0]!.count : 0 };
+    const rings = this.solid.visible ? this.meshes[2]!.count + this.meshes[3]!.count : 0;
+    return { rings, cones: this.cones.visible ? this.coneParts[0]!.count : 0 };
+  }
+
+  /// Place of an arrow's tip.
+  tipOf(mark: Mark): [number, number, number] {
+    const length = arrowLength(this.scale, mark.force);
+    return [0, 1, 2].map((k) => mark.point[k]! + length * mark.normal[k]!) as [number, number, number];
+  }
+
+  isFelt(segment: number): boolean {
+    return segment === kPalm || (this.felt[Math.floor(segment / kSegmentsPerDigit)] ?? true);
+  }
+
+  /// Holds for what is shown next. @param felt  of each digit: its force can be felt
+  setForces(scale: ForceScale, felt: readonly boolean[]): void {
+    this.scale = scale;
+    this.felt = felt;
   }
 
   set visible(visible: boolean) {
@@ -203,9 +235,7 @@ export class ContactMarks {
 
   /// Holds for what is shown next.
   setColours(colours: MarkColours): void {
-    this.outlineMaterial.color.set(colours.around);
-    this.colour.arrow.set(colours.arrow);
-    this.colour.slip.set(colours.slip);
+    this.colours = colours;
   }
 
   dispose(): void {
@@ -217,10 +247,19 @@ export class ContactMarks {
     this.coneMaterial.dispose();
   }
 
-  private place<T extends Place & { readonly slips: boolean }>(mesh: InstancedMesh, marks: readonly T[], matrix: (mark: T) => Matrix4): void {
+  private colourOf(segment: number, paint: Paint, isArrow: boolean): string {
+    const { digits, palm, around, unfelt } = this.colours;
+    const felt = this.isFelt(segment);
+    const own = segment === kPalm ? palm : (digits[Math.floor(segment / kSegmentsPerDigit)] ?? palm);
+    if (!isArrow) return felt ? own : unfelt;
+    return (paint === "fill") === felt ? (felt ? own : unfelt) : around; // the other way round: hollow
+  }
+
+  private place<T extends Place & { readonly segment: number }>(mesh: InstancedMesh, marks: readonly T[], paint: Paint, matrix: (mark: T) => Matrix4): void {
+    const isArrow = this.meshes.indexOf(mesh) % 4 < 2 && this.meshes.includes(mesh);
     marks.forEach((mark, i) => {
       mesh.setMatrixAt(i, matrix(mark));
-      if (mesh.instanceColor) mesh.setColorAt(i, mark.slips ? this.colour.slip : this.colour.arrow);
+      mesh.setColorAt(i, colour.set(this.colourOf(mark.segment, paint, isArrow)));
     });
     mesh.count = marks.length;
     mesh.instanceMatrix.needsUpdate = true;
@@ -228,15 +267,13 @@ export class ContactMarks {
   }
 }
 
-function difference(a: Color, b: Color): number {
-  return Math.hypot(a.r - b.r, a.g - b.g, a.b - b.b);
-}
+const colour = new Color();
 
-/// @param coloured  each instance has a colour of its own, from the start: a later one would need another shader
-function made(part: BufferGeometry, material: MeshBasicMaterial, most: number, order: number, group: Group, coloured: boolean): InstancedMesh {
+/// Each instance has a colour of its own, from the start: a later one would need another shader.
+function made(part: BufferGeometry, material: MeshBasicMaterial, most: number, order: number, group: Group): InstancedMesh {
   const mesh = new InstancedMesh(part, material, most);
   mesh.instanceMatrix.setUsage(DynamicDrawUsage);
-  if (coloured) mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(3 * most), 3).setUsage(DynamicDrawUsage);
+  mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(3 * most), 3).setUsage(DynamicDrawUsage);
   mesh.frustumCulled = false;
   mesh.count = 0;
   mesh.renderOrder = order;

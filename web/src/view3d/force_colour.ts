@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// Force as a colour: from the skin's own to orange, vermilion and a dark crimson. Its lightness falls all the way, so that it reads in
-// grey and with any of the common colour-vision deficiencies; where it matters an arrow's length says the same.
-import { themes } from "../theme";
+// Force as a colour over skin and object: more and more of amber, then vermilion, then a dark crimson. Its lightness falls all the way, so
+// that it reads in grey and with any of the common colour-vision deficiencies; an arrow's length says the same.
 
 export interface ForceStop {
-  readonly newtons: number;
+  readonly at: number; // share of the scale of forces
   readonly colour: string; // #rrggbb
 }
 
-/// Between two of them the colour is interpolated linearly in sRGB, beyond the last it stays. Close together at
-/// small forces, where most of a session happens.
+export interface ForceTint {
+  readonly colour: string;
+  readonly share: number; // of it over what is there without force, 0 .. 1
+}
+
+/// Between two of them the colour is interpolated linearly in sRGB, beyond the last it stays; below the first its share rises. Close
+/// together at small forces, where most of a session happens.
 export const forceStops: readonly ForceStop[] = [
-  { newtons: 0, colour: themes.dark.skin },
-  { newtons: 0.8, colour: "#e69f00" },
-  { newtons: 4, colour: "#d0480a" },
-  { newtons: 10, colour: "#7a1238" },
+  { at: 0.12, colour: "#f2a600" },
+  { at: 0.5, colour: "#d0480a" },
+  { at: 1, colour: "#8a1040" },
 ];
 
-/// Colour of a segment that presses with this force [N]; what is no number, or below zero, counts as none.
-/// @returns "#rrggbb"
-export function forceColour(newtons: number): string {
-  const force = newtons > 0 ? newtons : 0;
+/// Tint of what presses with this share of the scale of forces.
+export function forceTint(share: number): ForceTint {
+  return { colour: colourOf(share), share: Math.min(1, share / forceStops[0]!.at) };
+}
+
+function colourOf(share: number): string {
   let below = forceStops[0]!;
   for (const above of forceStops) {
-    if (force < above.newtons) {
-      return mix(below, above, (force - below.newtons) / (above.newtons - below.newtons));
-    }
+    if (share < above.at) return above === below ? below.colour : mix(below, above, (share - below.at) / (above.at - below.at));
     below = above;
   }
   return below.colour;

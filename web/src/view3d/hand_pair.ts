@@ -11,8 +11,10 @@ import type { Capsule } from "./object_material";
 import { PosedHand } from "./posed_hand";
 import type { DrawnVertex, Point } from "./posed_hand";
 import type { GhostDetail } from "./quality";
+import { palmLines } from "./palm_lines";
 import { kPalm } from "./segments";
 import type { Shapes } from "./shapes";
+import type { SkinTone } from "./skin_tones";
 
 interface Look {
   readonly shown: PosedHand;
@@ -36,7 +38,9 @@ export class HandPair {
   setGeometry(shapes: Shapes): void {
     this.dropLooks();
     this.poses = null; // of another hand
-    this.looks = { skin: this.lookOf(skinShape(shapes.skin)), segments: this.lookOf(segmentShape(shapes.segments)) };
+    const skin = skinShape(shapes.skin);
+    if (skin) this.material.setPalm(skin.inverses[kPalm]!, palmLines(skin.inverses));
+    this.looks = { skin: this.lookOf(skin), segments: this.lookOf(segmentShape(shapes.segments)) };
     this.choose();
   }
 
@@ -54,9 +58,20 @@ export class HandPair {
     return true;
   }
 
-  paint(skin: string, alive: boolean, presses: readonly Press[]): void {
-    this.material.setSkin(skin, alive);
+  paint(tone: SkinTone, presses: readonly Press[]): void {
+    this.material.setTone(tone);
     this.material.setPresses(presses);
+  }
+
+  /// One colour: the picture is old.
+  paintLost(colour: string): void {
+    this.material.setLost(colour);
+    this.material.setPresses([]);
+  }
+
+  /// Of the skin.
+  setDetail(on: boolean): void {
+    this.material.setDetail(on);
   }
 
   setGhostColour(colour: string): void {
@@ -83,6 +98,7 @@ export class HandPair {
     return this.look?.ghost.visible ? this.look.ghost.drawn() : [];
   }
 
+  /// Corners of the segments' boxes, 8 a segment.
   corners(): Vector3[] {
     return this.look?.shown.corners() ?? [];
   }
@@ -98,11 +114,11 @@ export class HandPair {
     return (box.isEmpty() ? new Vector3() : box.getCenter(new Vector3())).applyMatrix4(this.look.shown.frame(segment));
   }
 
-  /// The fingers as capsules in W, for the shade that they throw on what is near.
-  capsules(): Capsule[] {
+  /// The segments as capsules in W, for the shade that they throw on what is near.
+  capsules(segments = kPalm): Capsule[] {
     const look = this.look;
     if (!look?.shown.posed) return [];
-    return look.shape.boxes.slice(0, kPalm).flatMap((box, segment) => (box.isEmpty() ? [] : [capsuleIn(box, look.shown.frame(segment))]));
+    return look.shape.boxes.slice(0, segments).flatMap((box, segment) => (box.isEmpty() ? [] : [capsuleIn(box, look.shown.frame(segment))]));
   }
 
   /// Releases the renderer's resources of both looks, visible or not. Later drawing creates them again.

@@ -3,11 +3,12 @@
 import { Box3, BufferAttribute, BufferGeometry, Matrix4, Vector3 } from "three";
 import { bindInverses } from "./poses";
 import { kSegments } from "./segments";
-import { kInfluences, type BonedSurface, type SkinSurface, type Surface } from "./shapes";
+import { kDetail } from "./skin_detail";
+import { kInfluences, ownersOf, type BonedSurface, type SkinSurface, type Surface } from "./shapes";
 import { centresOfRotation } from "./skinning";
 
 export interface HandShape {
-  readonly geometry: BufferGeometry; // with skinIndex, skinWeight and skinCentre
+  readonly geometry: BufferGeometry; // with skinIndex, skinWeight, skinCentre and skinDetail
   readonly inverses: readonly Matrix4[]; // X_SB: bone matrix = X_WS X_SB
   readonly boxes: readonly Box3[]; // of each segment's part, in its frame S; empty: it has none
   readonly source: Uint32Array; // SkinSurface.source; empty: no skin
@@ -16,11 +17,13 @@ export interface HandShape {
 /// Null if there is none or its bind pose is not whole.
 export function skinShape(skin: SkinSurface | null): HandShape | null {
   const inverses = skin && bindInverses(skin.bindPose);
-  return skin && inverses && assemble(skin, inverses, skin.source);
+  return skin && inverses && assemble(skin, inverses, skin.source, skin.detail);
 }
 
 export function segmentShape(segments: BonedSurface | null): HandShape | null {
-  return segments && assemble(segments, Array.from({ length: kSegments }, () => new Matrix4()), new Uint32Array());
+  if (!segments) return null;
+  const plain = new Float32Array((kDetail * segments.position.length) / 3);
+  return assemble(segments, Array.from({ length: kSegments }, () => new Matrix4()), new Uint32Array(), plain);
 }
 
 export function objectShape(object: Surface | null): BufferGeometry | null {
@@ -39,24 +42,22 @@ function geometryOf(surface: Surface): BufferGeometry {
   return geometry;
 }
 
-function assemble(surface: BonedSurface, inverses: readonly Matrix4[], source: Uint32Array): HandShape {
+function assemble(surface: BonedSurface, inverses: readonly Matrix4[], source: Uint32Array, detail: Float32Array): HandShape {
   const geometry = geometryOf(surface);
   geometry.setAttribute("skinIndex", new BufferAttribute(surface.bone, kInfluences));
   geometry.setAttribute("skinWeight", new BufferAttribute(surface.weight, kInfluences));
   geometry.setAttribute("skinCentre", new BufferAttribute(centresOfRotation(surface.position, surface.bone, surface.weight, inverses), 3));
+  geometry.setAttribute("skinDetail", new BufferAttribute(detail, kDetail));
   return { geometry, inverses, boxes: boxesOf(geometry, surface, inverses), source };
 }
 
 /// Each vertex counts for the segment that has most of it.
-function boxesOf(geometry: BufferGeometry, { bone, weight }: BonedSurface, inverses: readonly Matrix4[]): Box3[] {
+function boxesOf(geometry: BufferGeometry, surface: BonedSurface, inverses: readonly Matrix4[]): Box3[] {
   const boxes = inverses.map(() => new Box3());
   const position = geometry.getAttribute("position");
   const point = new Vector3();
-  for (let i = 0; i < position.count; ++i) {
-    let most = kInfluences * i;
-    for (let k = most + 1; k < kInfluences * (i + 1); ++k) if (weight[k]! > weight[most]!) most = k;
-    const segment = bone[most]!;
+  ownersOf(surface).forEach((segment, i) => {
     boxes[segment]!.expandByPoint(point.fromBufferAttribute(position, i).applyMatrix4(inverses[segment]!));
-  }
+  });
   return boxes;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sky and ground, one key light with a soft shadow, and a faint light from the eye so that nothing is black from any side.
+// One key light with a soft shadow, a faint light from the eye so that nothing is black from any side, and light from all around: from the
+// surroundings, or from sky and ground where they would take too long.
 import { DirectionalLight, Group, HemisphereLight, Vector3 } from "three";
 import type { Box3, Camera } from "three";
 
@@ -12,6 +13,9 @@ export class Lights {
   private readonly key = new DirectionalLight();
   private readonly eye = new DirectionalLight();
 
+  private dark = true;
+  private surrounded = false;
+
   constructor() {
     this.sky.position.set(0, 0, 1); // z is up
     this.key.shadow.bias = -0.0002;
@@ -21,12 +25,29 @@ export class Lights {
   }
 
   setTheme(dark: boolean): void {
+    this.dark = dark;
+    this.apply();
+  }
+
+  /// @param on  surroundings light the scene, in place of sky and ground
+  setSurrounded(on: boolean): void {
+    this.surrounded = on;
+    this.apply();
+  }
+
+  /// Of the surroundings.
+  get intensity(): number {
+    return this.dark ? 0.58 : 0.62;
+  }
+
+  private apply(): void {
+    const { dark, surrounded } = this;
     this.sky.color.set(dark ? "#dfeaff" : "#ffffff");
     this.sky.groundColor.set(dark ? "#6a625a" : "#b8aea4");
-    this.sky.intensity = dark ? 1.5 : 1.95;
+    this.sky.intensity = surrounded ? 0.25 : dark ? 1.5 : 1.95;
     this.key.color.set("#fff2e2");
-    this.key.intensity = dark ? 2.6 : 2.2;
-    this.eye.intensity = dark ? 1.0 : 0.6;
+    this.key.intensity = dark ? 2.5 : 2.1;
+    this.eye.intensity = (surrounded ? 0.8 : 1) * (dark ? 1.0 : 0.6);
   }
 
   /// The key light's shadow covers this box.

@@ -10,15 +10,18 @@ export interface QualitySettings {
   readonly shadow: number; // edge of the shadow map, 0: none but the painted one
   readonly antialias: boolean;
   readonly ghost: GhostDetail;
-  readonly occlusion: boolean; // the fingers darken the object near them
+  readonly rich: boolean; // surroundings light the scene, materials have layers, fingers darken the object, the skin has creases
+  readonly smooth: boolean; // the object has its display mesh
+  readonly grain: boolean; // of the table
+  readonly figures: boolean; // at the arrows' tips
 }
 
 /// Lowest first.
 export const qualityLevels: readonly QualitySettings[] = [
-  { pixelRatio: 1, pixels: 160_000, shadow: 0, antialias: false, ghost: "plain", occlusion: false },
-  { pixelRatio: 1, pixels: 500_000, shadow: 0, antialias: false, ghost: "peeled", occlusion: false },
-  { pixelRatio: 1.5, pixels: 2_000_000, shadow: 768, antialias: true, ghost: "outline", occlusion: true },
-  { pixelRatio: 2, pixels: 8_000_000, shadow: 1024, antialias: true, ghost: "outline", occlusion: true },
+  { pixelRatio: 1, pixels: 160_000, shadow: 0, antialias: false, ghost: "plain", rich: false, smooth: false, grain: false, figures: false },
+  { pixelRatio: 1, pixels: 500_000, shadow: 0, antialias: false, ghost: "peeled", rich: false, smooth: true, grain: true, figures: true },
+  { pixelRatio: 1.5, pixels: 2_000_000, shadow: 768, antialias: true, ghost: "outline", rich: true, smooth: true, grain: true, figures: true },
+  { pixelRatio: 2, pixels: 8_000_000, shadow: 1024, antialias: true, ghost: "outline", rich: true, smooth: true, grain: true, figures: true },
 ];
 export const highestQuality = qualityLevels.length - 1;
 

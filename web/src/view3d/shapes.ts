@@ -3,8 +3,12 @@
 // mesh takes seconds.
 import type { Geometry, Mesh, Skin } from "../gen/phalanx/geometry_pb";
 import { creaseNormals, type ShadedMesh } from "./crease_normals";
+import { displayMesh } from "./display_mesh";
+import { nailsOn } from "./nails";
+import { poseMatrices } from "./poses";
 import { roundedMesh } from "./rounded_mesh";
 import { kSegments } from "./segments";
+import { boundHand, kDetail, skinDetail } from "./skin_detail";
 
 export const kInfluences = 4;
 const kRoundBelow = 6000; // triangles; a finer skin looks round without rounding
@@ -25,7 +29,8 @@ export interface BonedSurface extends Surface {
 
 export interface SkinSurface extends BonedSurface {
   readonly bindPose: readonly number[]; // X_BS, 16 x 7
-  readonly source: Uint32Array; // of its first vertices: which vertex of the station's skin each is; those behind lie between
+  readonly source: Uint32Array; // of its first vertices: which vertex of the station's skin each is; those behind lie between, or on nails
+  readonly detail: Float32Array; // kDetail a vertex
 }
 
 /// The part of a Geometry that the page keeps.
@@ -38,20 +43,21 @@ export interface Shapes {
   readonly jointOpen: readonly number[];
   readonly skin: SkinSurface | null; // null: this hand has none, or it does not fit together
   readonly segments: BonedSurface | null; // each on its own bone, in its frame S
-  readonly object: Surface | null; // in W; null: an empty scene
+  readonly object: Surface | null; // in W, that the hand touches; null: an empty scene
+  readonly objectDisplay: Surface | null; // its smooth mesh; null: `object` looks round as it is
 }
 
 export function shapesOf(geometry: Geometry): Shapes {
   const { left, segmentName, jointName, jointMin, jointMax, jointOpen } = geometry;
   return {
     left, segmentName, jointName, jointMin, jointMax, jointOpen,
-    skin: skinSurface(geometry.skin), segments: segmentSurface(geometry), object: objectSurface(geometry.object),
+    skin: skinSurface(geometry.skin), segments: segmentSurface(geometry), ...objectSurfaces(geometry.object),
   };
 }
 
 /// The buffers that are transferred from one thread to another, not copied.
 export function buffersOf(shapes: Shapes): ArrayBufferLike[] {
-  return [shapes.skin, shapes.segments, shapes.object].flatMap((surface) =>
+  return [shapes.skin, shapes.segments, shapes.object, shapes.objectDisplay].flatMap((surface) =>
     Object.values(surface ?? {}).flatMap((array: unknown) => (ArrayBuffer.isView(array) ? [array.buffer] : [])),
   );
 }
@@ -101,7 +107,41 @@ function assembleSkin({ position, normal, index }: ShadedMesh, influences: reado
       weight[kInfluences * vertex + k] = share;
     });
   });
-  return { position, normal, index, bone, weight, source, bindPose: skin.bindPose };
+  return withDetail({ position, normal, index, bone, weight, source, bindPose: skin.bindPose, detail: new Float32Array(kDetail * influences.length) });
+}
+
+/// With what its places look like, and with nails. As it is where the bind pose is not whole.
+function withDetail(skin: SkinSurface): SkinSurface {
+  const frames = poseMatrices(skin.bindPose);
+  if (!frames) return skin;
+  const owner = ownersOf(skin);
+  const hand = boundHand(frames, skin.position, owner);
+  const nails = nailsOn(hand, skin, owner);
+  const vertices = owner.length;
+  const bone = new Uint8Array(kInfluences * nails.segment.length);
+  const weight = new Float32Array(bone.length);
+  nails.segment.forEach((segment, vertex) => {
+    bone[kInfluences * vertex] = segment;
+    weight[kInfluences * vertex] = 1;
+  });
+  return {
+    ...skin,
+    position: Float32Array.from([...skin.position, ...nails.position]),
+    normal: Float32Array.from([...skin.normal, ...nails.normal]),
+    index: Uint32Array.from([...skin.index, ...nails.index.map((vertex) => vertex + vertices)]),
+    bone: Uint8Array.from([...skin.bone, ...bone]),
+    weight: Float32Array.from([...skin.weight, ...weight]),
+    detail: Float32Array.from([...skinDetail(hand, skin.position, skin.normal, owner), ...nails.detail]),
+  };
+}
+
+/// Of each vertex: the segment that has most of it.
+export function ownersOf({ bone, weight }: Pick<BonedSurface, "bone" | "weight">): Uint8Array {
+  return Uint8Array.from({ length: bone.length / kInfluences }, (_, vertex) => {
+    let most = kInfluences * vertex;
+    for (let k = most + 1; k < kInfluences * (vertex + 1); ++k) if (weight[k]! > weight[most]!) most = k;
+    return bone[most]!;
+  });
 }
 
 /// The rigid segments, each on its own bone: those meant for display, else those that the search sees. Null: there are none.
@@ -123,11 +163,12 @@ function segmentSurface(geometry: Geometry): BonedSurface | null {
   return { ...merged(shaded, vertices), bone, weight };
 }
 
-/// The object with smooth normals and creases.
-function objectSurface(mesh: Mesh | undefined): Surface | null {
-  if (!mesh || mesh.index.length === 0) return null;
-  const { position, normal, index } = creaseNormals(mesh.position, mesh.index, kObjectCrease);
-  return { position, normal, index };
+/// The object with smooth normals and creases, as the hand touches it and for display.
+function objectSurfaces(mesh: Mesh | undefined): Pick<Shapes, "object" | "objectDisplay"> {
+  if (!mesh || mesh.index.length === 0) return { object: null, objectDisplay: null };
+  const shaded = creaseNormals(mesh.position, mesh.index, kObjectCrease);
+  const { position, normal, index } = shaded;
+  return { object: { position, normal, index }, objectDisplay: displayMesh(shaded) };
 }
 
 function merged(parts: readonly ShadedMesh[], vertices: number): Surface {

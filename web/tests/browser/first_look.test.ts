@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { beforeAll, describe, expect, it } from "vitest";
 import { strings } from "../../src/strings";
-import { arrowMetresPerNewton } from "../../src/view3d/arrow_scale";
+import { arrowLength, forceScale } from "../../src/view3d/force_scale";
 import type { CockpitPage } from "./support/cockpit_page";
 import { curveHeight } from "./support/pictures";
 import { dataFolder } from "./support/program";
@@ -15,6 +15,7 @@ import { until } from "./support/until";
 
 const kMillimetre = 1e-3;
 const kLeastForce = 1e-3; // [N]; less has no arrow
+const scale = forceScale(5); // the default of limits.fingertip_force_n
 const kBundleLimit = 400_000; // [bytes], gzipped
 const kForceSent = 16; // the channels behind those of the raw forces
 
@@ -70,7 +71,7 @@ describe("the first look", () => {
       for (const arrow of probe.arrows) {
         ++arrows;
         expect(arrow.length).toBeGreaterThan(0);
-        expect(Math.abs(arrow.length - arrowMetresPerNewton * forces.get(arrow.segment)!)).toBeLessThan(0.1 * kMillimetre);
+        expect(Math.abs(arrow.length - arrowLength(scale, forces.get(arrow.segment)!))).toBeLessThan(0.1 * kMillimetre);
       }
       return seen.size >= 6;
     }, () => cockpit.brief());

@@ -81,7 +81,7 @@ window.viewPage = {
       for (const level of [2, 1]) {
         const settings = qualityLevels[level]!;
         const renderer = canvas.use(settings.antialias)!;
-        scene.setQuality(settings);
+        scene.setQuality(settings, renderer);
         renderer.shadowMap.needsUpdate = true;
         renderer.render(scene.scene, camera);
         renderer.render(scene.over, camera);

@@ -4,7 +4,7 @@
 import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, inject, it } from "vitest";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
-import { arrowLength } from "../../../src/view3d/contact_marks";
+import { arrowLength, forceScale } from "../../../src/view3d/force_scale";
 import { distance, skinAt } from "../support/geometry";
 import { kHangMs, until } from "../support/until";
 import { chromium } from "playwright-core";
@@ -135,7 +135,7 @@ describe("what is drawn", () => {
     const contacts = recording(name).ticks[pressing]!.contact.filter((contact) => contact.force > 0);
     for (const digit of [0, 1, 2, 3, 4]) expect(contacts.some((contact) => Math.floor(contact.segment / 3) === digit)).toBe(true);
     expect(arrows.map((arrow) => arrow.segment)).toEqual(contacts.map((contact) => contact.segment));
-    arrows.forEach((arrow, i) => expect(arrow.length).toBeCloseTo(arrowLength(contacts[i]!.force), 5));
+    arrows.forEach((arrow, i) => expect(arrow.length).toBeCloseTo(arrowLength(forceScale(Infinity), contacts[i]!.force), 5));
     await show(free);
     expect(await page.evaluate(() => window.viewPage.view.probe().arrows.length)).toBe(0);
   });
@@ -157,6 +157,29 @@ describe("what is drawn", () => {
       expect(hashes.size).toBe(5); // each looks different
     });
   }
+  it("looks like what it is made of: another kind of object, another skin tone", async () => {
+    await open(2);
+    await load();
+    await show(pressing);
+    const hashes = [(await look()).hash];
+    for (const kind of ["teapot", "box", "key", "jar"]) {
+      await page.evaluate((one) => window.viewPage.view.setObjectKind(one), kind);
+      hashes.push((await look()).hash);
+    }
+    await page.evaluate(() => window.viewPage.view.setSkinTone("deep"));
+    hashes.push((await look()).hash);
+    expect(new Set(hashes).size).toBe(hashes.length);
+  });
+  it("has its figure at each arrow's tip, but not at the lowest quality", async () => {
+    for (const [quality, some] of [[1, true], [0, false]] as const) {
+      await open(quality);
+      await load();
+      await show(pressing);
+      const figures = page.locator(".force-labels span:not([hidden])");
+      expect(await figures.count() > 0).toBe(some);
+      for (const text of await figures.allTextContents()) expect(text).toMatch(/^\d+\.\d N$/);
+    }
+  });
   it("has a ring at each sliding contact point, and cones on demand", async () => {
     const sliding = "grasp_teapot,contact.mode=sliding";
     await open(1);
@@ -197,7 +220,7 @@ describe("the camera", () => {
     await load();
     await show(pressing);
     const hashes = [(await look()).hash];
-    for (const preset of ["palm", "thumb", "follow", "home"] as const) {
+    for (const preset of ["palm", "thumb", "contact", "home"] as const) {
       await page.evaluate((to) => window.viewPage.view.camera(to), preset);
       hashes.push((await look()).hash);
     }
@@ -217,11 +240,49 @@ describe("the camera", () => {
     hashes.push((await look()).hash);
     expect(new Set(hashes).size).toBe(hashes.length - 1);
   });
-  it("follows the grip: the camera moves by itself when the hand has moved", async () => {
+  it("keeps the hand in the picture, open and closed, at every preset", async () => {
+    await open(0);
+    await load();
+    for (const preset of ["home", "palm", "thumb", "contact"] as const) {
+      await show(free);
+      await page.evaluate((to) => window.viewPage.view.camera(to), preset);
+      for (const tick of [free, 120, pressing, 400, free]) {
+        await until(`${preset} at ${tick}`, async () => {
+          await show(tick); // a camera moves with a frame
+          return page.evaluate(() => window.viewPage.view.probe().handInPicture);
+        });
+      }
+    }
+  });
+  it("shows up to three views side by side, of which the first takes the mouse", async () => {
+    await page.setViewportSize({ width: 1000, height: 400 });
+    await open(0);
+    await load();
+    await show(pressing);
+    const one = await look();
+    await page.evaluate(() => window.viewPage.view.setViews(3));
+    expect((await look()).hash).not.toBe(one.hash);
+    const panes = () => page.evaluate(() => window.viewPage.view.probe().panes.map(({ preset }) => preset));
+    expect(await panes()).toEqual(["home", "palm", "contact"]);
+    const drag = async (x: number) => {
+      await page.mouse.move(x, 200);
+      await page.mouse.down();
+      await page.mouse.move(x + 40, 220, { steps: 3 });
+      await page.mouse.up();
+      await page.evaluate(() => window.viewPage.settled());
+    };
+    await drag(800);
+    expect(await panes()).toEqual(["home", "palm", "contact"]);
+    await drag(200);
+    expect(await panes()).toEqual([null, "palm", "contact"]);
+    await page.setViewportSize({ width: 480, height: 400 });
+    await until("one view", async () => (await panes()).length === 1, () => panes());
+  });
+  it("follows the contact: the camera moves by itself when the hand has moved", async () => {
     await open(0);
     await load();
     await show(free);
-    await page.evaluate(() => window.viewPage.view.camera("follow"));
+    await page.evaluate(() => window.viewPage.view.camera("contact"));
     const before = (await look()).hash;
     await show(pressing);
     const frames = await page.evaluate(async () => {

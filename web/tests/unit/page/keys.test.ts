@@ -3,7 +3,7 @@ import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { KeyInfoSchema, NumberRangeSchema, StateSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import { replaceObject } from "../../../src/panels/object_change";
-import { belongsTo, defaultOf, settingOf, valueOf, within } from "../../../src/state/keys";
+import { belongsTo, defaultOf, limitOf, settingOf, valueOf, within } from "../../../src/state/keys";
 
 const key = (path: string, defaultValue = "", kinds: readonly (readonly [string, string])[] = []) =>
   create(KeyInfoSchema, { path, defaultValue, kind: kinds.map(([kind, value]) => ({ kind, defaultValue: value })) });
@@ -24,6 +24,10 @@ describe("within", () => {
 });
 
 describe("keys", () => {
+  it("a limit that is off or not stated is none", () => {
+    expect(["5", "7.5", '"off"', "", "0"].map(limitOf)).toEqual([5, 7.5, Infinity, Infinity, Infinity]);
+  });
+
   it("an object's key belongs to the kinds that have it, others to all", () => {
     const diameter = key("objects[].diameter_mm", "60", [["sphere", "60"]]);
     expect(["sphere", "box"].map((kind) => belongsTo(diameter, kind))).toEqual([true, false]);

@@ -32,16 +32,18 @@ it("tasks of a thread that has failed are refused, not awaited for ever", async 
   await expect(decoder.survey(new Uint8Array([2]))).rejects.toThrow(DecoderError); // and what is asked for later
 });
 
+const kSettings = [{ key: "objects.0.kind", value: '"mug"' }, { key: "limits.fingertip_force_n", value: "7.5" }];
+
 it("a chunk holds what was written, with times since the begin; its survey has the forces", async () => {
   const { recording, source } = await madeRecording([
-    geometry(0, 7), setup(0.001, { deviceName: "beihang", deviceRateHz: 200, start: { scene: "s", model: { object: { position: new Array<number>(300).fill(1) } } } }),
+    geometry(0, 7), setup(0.001, { deviceName: "beihang", deviceRateHz: 200, start: { scene: "s", value: kSettings, model: { object: { position: new Array<number>(300).fill(1) } } } }),
     ...poses(0.01, 1), event(0.9, "marker", "one", "127.0.0.1"), gap(0.95, 5n, 9n, "late"),
   ]);
   const parts = await Promise.all(recording.chunks.map(({ offset, length }) => source.read(BigInt(offset), BigInt(length))));
   const contents = parts.map((part) => decodeChunk(part, recording.layout));
   expect(contents.flatMap((content) => content.poses.map(({ time }) => time)).length).toBe(60);
   expect(contents.flatMap((content) => content.stations)).toEqual([
-    { time: 0.001, value: { scene: "s", slides: false, device: "beihang", rendersTorque: false, sensedJoint: [] } },
+    { time: 0.001, value: { scene: "s", slides: false, objectKind: "mug", digitLimit: 7.5, device: "beihang", rendersTorque: false, sensedJoint: [] } },
   ]);
   expect(contents.flatMap((content) => content.events)).toEqual([{ time: 0.9, value: { code: "marker", who: "127.0.0.1", text: "one" } }]);
   expect(contents.flatMap((content) => content.gaps)).toEqual([{ time: 0.95, value: { steps: 5, why: "late" } }]);

@@ -185,7 +185,7 @@ describe("a recording that is shown", () => {
   });
 
   it("has the object and the station of the moment, also when it plays across their change, and makes each shape once", async () => {
-    const sliding = { scene: "slide", value: [{ key: "contact.mode", value: '"sliding"' }] };
+    const sliding = { scene: "slide", value: [{ key: "contact.mode", value: '"sliding"' }, { key: "objects.0.kind", value: '"mug"' }, { key: "limits.fingertip_force_n", value: "4" }] };
     const { player, at, run, made } = await playerOf([
       geometry(0, 1), setup(0.001, { deviceName: "one", rendersTorque: true, channel: [{ kind: 0, index: 3 }, { kind: 4, index: 1 }] }), ...poses(0.02, 3),
       geometry(3, 2), change(3.001, sliding), ...poses(3.01, 6, 200),
@@ -194,9 +194,11 @@ describe("a recording that is shown", () => {
     await at(2);
     expect([revisionOf(player.geometry), player.station!.device, player.slides]).toEqual([1, "one", false]);
     expect(player.sensedJoint).toEqual([3, 4, 6, 7]);
+    expect([player.objectKind, player.digitLimit]).toEqual(["", Infinity]);
     player.playhead.play();
     await run(2);
     expect([revisionOf(player.geometry), player.station!.device, player.slides]).toEqual([2, "one", true]);
+    expect([player.objectKind, player.digitLimit]).toEqual(["mug", 4]);
     await run(4.5);
     expect([revisionOf(player.geometry), player.station!.device, player.slides, player.rendersTorque]).toEqual([3, "two", false, false]);
     await at(1);

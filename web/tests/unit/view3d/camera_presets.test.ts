@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Matrix4, PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { between, directionFor, fitted, orbited, placeFor, worldUp } from "../../../src/view3d/camera_presets";
+import { between, directionFor, fitted, inPicture, orbited, placeFor, wholePicture, worldUp } from "../../../src/view3d/camera_presets";
 import type { CameraPlace, Sight } from "../../../src/view3d/camera_presets";
 import type { CameraPreset } from "../../../src/view3d/hand_view";
 
-const presets: CameraPreset[] = ["home", "palm", "thumb", "follow"];
+const presets: CameraPreset[] = ["home", "palm", "thumb", "contact"];
 const fieldOfView = (30 * Math.PI) / 180;
 
 function box(min: Vector3, max: Vector3): Vector3[] {
@@ -20,7 +20,7 @@ function palmDown(left: boolean): Sight {
     object: box(new Vector3(-0.03, 0, -0.03), new Vector3(0.03, 0.06, 0.03)),
     palm,
     left,
-    grip: new Vector3(left ? 0.03 : -0.03, 0.05, 0.01),
+    contact: new Vector3(left ? 0.03 : -0.03, 0.05, 0.01),
   };
 }
 
@@ -36,7 +36,7 @@ function pictureOf(place: CameraPlace, aspect: number): (point: Vector3) => Vect
 describe("placeFor", () => {
   for (const aspect of [0.6, 1, 1.9]) {
     for (const preset of ["home", "palm", "thumb"] as const) {
-      it(`${preset} has hand and object in the picture, and fills it (aspect ${aspect})`, () => {
+      it(`${preset} has hand and object in the picture, and fills about 80 % of it with their boxes (aspect ${aspect})`, () => {
         const sight = palmDown(false);
         const project = pictureOf(placeFor(preset, sight, fieldOfView, aspect), aspect);
         let most = 0;
@@ -44,8 +44,19 @@ describe("placeFor", () => {
           const seen = project(point);
           most = Math.max(most, Math.abs(seen.x), Math.abs(seen.y));
         }
-        expect(most).toBeLessThan(1);
-        expect(most).toBeGreaterThan(0.8);
+        expect(most).toBeLessThan(0.88);
+        expect(most).toBeGreaterThan(0.75);
+      });
+      it(`${preset} keeps clear of what covers the picture (aspect ${aspect})`, () => {
+        const sight = palmDown(false);
+        const free = { left: -1, right: 0.6, bottom: -0.5, top: 1 };
+        const place = placeFor(preset, sight, fieldOfView, aspect, free);
+        expect(inPicture([...sight.hand, ...sight.object], place, fieldOfView, aspect, free)).toBe(true);
+        const project = pictureOf(place, aspect);
+        const seen = [...sight.hand, ...sight.object].map(project);
+        const shares = [seen.map(({ x }) => x / 1.6), seen.map(({ y }) => y / 1.5)].map((along) => Math.max(...along) - Math.min(...along));
+        expect(Math.max(...shares)).toBeGreaterThan(0.65);
+        expect(Math.max(...shares)).toBeLessThan(0.98);
       });
     }
   }
@@ -53,13 +64,17 @@ describe("placeFor", () => {
     const sight = { ...palmDown(false), object: box(new Vector3(-1, 0.1, -1), new Vector3(1, 2, 1)) };
     expect(placeFor("home", sight, fieldOfView, 1.3).position.distanceTo(new Vector3())).toBeLessThan(2);
   });
-  it("has the grip in the middle when it follows", () => {
+  it("has contact and hand in the picture when it follows the contact, nearer its middle than at home", () => {
     const sight = palmDown(false);
-    const place = placeFor("follow", sight, fieldOfView, 1.3);
-    expect(place.target.distanceTo(sight.grip!)).toBe(0);
+    for (const aspect of [0.6, 1.3, 2.5]) {
+      const place = placeFor("contact", sight, fieldOfView, aspect);
+      expect(inPicture([...sight.hand, sight.contact!], place, fieldOfView, aspect, wholePicture)).toBe(true);
+      const seen = pictureOf(place, aspect)(sight.contact!);
+      expect(Math.max(Math.abs(seen.x), Math.abs(seen.y))).toBeLessThan(0.6);
+    }
   });
   it("finds a place with nothing to see", () => {
-    const nothing: Sight = { hand: [], object: [], palm: null, left: false, grip: null };
+    const nothing: Sight = { hand: [], object: [], palm: null, left: false, contact: null };
     for (const preset of presets) {
       const place = placeFor(preset, nothing, fieldOfView, 1);
       expect(Number.isFinite(place.position.length())).toBe(true);
@@ -103,10 +118,19 @@ describe("directionFor", () => {
 });
 
 describe("fitted", () => {
-  it("by hand: a square of 2 m, seen from the front at 90 degrees, fills the picture at 1 m times the margin", () => {
+  it("by hand: a square of 2 m, seen from the front at 90 degrees, fills 0.82 of the picture", () => {
     const place = fitted(box(new Vector3(-1, 0, -1), new Vector3(1, 0, 1)), new Vector3(0, -1, 0), Math.PI / 2, 1);
     expect(place.target.length()).toBeCloseTo(0, 9);
-    expect(place.position.y).toBeCloseTo(-1.12, 9);
+    expect(place.position.y).toBeCloseTo(-1 / 0.82, 9);
+  });
+});
+
+describe("inPicture", () => {
+  const place = { target: new Vector3(), position: new Vector3(0, -2, 0) };
+  it("says what the camera sees: at 90 degrees and 2 m, 2 m to each side; nothing behind it", () => {
+    const seen = (x: number, y: number, z: number): boolean => inPicture([new Vector3(x, y, z)], place, Math.PI / 2, 1, wholePicture);
+    expect([seen(1.9, 0, 0), seen(0, 0, -1.9), seen(2.1, 0, 0), seen(0, 0, 2.1), seen(0, -3, 0)]).toEqual([true, true, false, false, false]);
+    expect(inPicture([], place, Math.PI / 2, 1, wholePicture)).toBe(true);
   });
 });
 

@@ -11,11 +11,11 @@ import { GeometrySchema, MeshSchema, SkinSchema } from "../../../src/gen/phalanx
 import type { Geometry, Mesh as MeshMessage } from "../../../src/gen/phalanx/geometry_pb";
 import { ContactPointSchema, ContactSchema, TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import type { Tick } from "../../../src/gen/phalanx/tick_pb";
-import { arrowLargestForce, arrowMetresPerNewton } from "../../../src/view3d/arrow_scale";
-import { arrowLength } from "../../../src/view3d/contact_marks";
+import { arrowLength, forceScale } from "../../../src/view3d/force_scale";
 import { HandScene } from "../../../src/view3d/hand_scene";
 import type { DrawnVertex } from "../../../src/view3d/posed_hand";
 import { qualityLevels } from "../../../src/view3d/quality";
+import { strings } from "../../../src/strings";
 import { shapesOf } from "../../../src/view3d/shapes";
 
 const segments = 16;
@@ -207,17 +207,31 @@ describe("arrows", () => {
     const [arrow, ...others] = scene.marks.drawn();
     expect(others).toEqual([]);
     expect(arrow!.segment).toBe(5);
-    expect(arrow!.length).toBeCloseTo(2 * arrowMetresPerNewton, 6);
+    expect(arrow!.length).toBeCloseTo(arrowLength(forceScale(Infinity), 2), 6);
   });
-  it("do not grow beyond the largest force, and there is none without force", () => {
-    expect(arrowLength(100)).toBe(arrowLargestForce * arrowMetresPerNewton);
-    expect(arrowLength(0)).toBe(0);
+  it("there is none without force", () => {
     const scene = new HandScene();
     scene.setGeometry(shapesOf(geometry(false)));
     for (const nothing of [tick(0), tick(5, 0), tick(NaN)]) {
       scene.show(nothing);
       expect(scene.marks.drawn()).toEqual([]);
     }
+  });
+  it("end at the limit of a digit, whose words are at the tip of the strongest; a force that is not felt is hollow", () => {
+    const scene = new HandScene();
+    scene.setGeometry(shapesOf(geometry(false)));
+    scene.show(tick(4));
+    expect(scene.labels().map(({ text, felt }) => [text, felt])).toEqual([["4.0 N", true]]);
+    const full = arrowLength(forceScale(4), 4);
+    scene.setForces(forceScale(4), [true, false, true, true, true]);
+    expect(scene.marks.drawn()[0]!.length).toBeCloseTo(full, 6);
+    expect(scene.marks.drawn()[0]!.felt).toBe(false); // segment 5 is the index finger's
+    expect(scene.labels().map(({ text, felt }) => [text, felt])).toEqual([["4.0 N", false]]);
+    scene.setForces(forceScale(4), []);
+    expect(scene.labels().map(({ text, felt }) => [text, felt])).toEqual([[strings.atLimitOf("4.0 N"), true]]);
+    scene.labels()[0]!.tip.forEach((x, k) => expect(x).toBeCloseTo([0.1, 0, 0.1 + full][k]!, 6));
+    scene.setLost(true);
+    expect(scene.labels()).toEqual([]);
   });
   it("without a whole point or direction are left out", () => {
     const scene = new HandScene();
@@ -232,14 +246,14 @@ describe("arrows", () => {
 });
 
 describe("contact points", () => {
-  it("each has a ring, one that slips two, and the arrow of a segment that slips another colour", () => {
+  it("each has a ring, and one that slips a dashed ring around it", () => {
     const scene = new HandScene();
     scene.setGeometry(shapesOf(geometry(false)));
     scene.show(tick(2));
     expect(scene.marks.counts()).toEqual({ rings: 1, cones: 0 });
     for (const slips of [true, false]) {
       scene.show(sliding(slips));
-      expect(scene.marks.counts().rings).toBe(3);
+      expect(scene.marks.counts().rings).toBe(3); // two points, one of which slips
       expect(scene.marks.drawn().map((arrow) => arrow.slips)).toEqual([slips]);
     }
   });
@@ -391,7 +405,7 @@ describe("a renderer that goes", () => {
     for (const skin of [true, false]) {
       scene.setParts({ skin, ghost: true, arrows: true, object: true, cones: false });
       for (const settings of qualityLevels) {
-        scene.setQuality(settings);
+        scene.setQuality(settings, null);
         collectAll();
       }
     }

@@ -20,7 +20,7 @@ describe("without WebGL", () => {
     view.setTheme("light");
     view.setLost(true);
     view.setParts({ skin: true, ghost: true, arrows: true, object: true, cones: false });
-    for (const preset of ["home", "palm", "thumb", "follow"] as const) view.camera(preset);
+    for (const preset of ["home", "palm", "thumb", "contact"] as const) view.camera(preset);
     view.zoom(2);
     view.zoom(NaN);
     view.orbit(0.1, NaN);
