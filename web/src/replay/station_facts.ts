@@ -12,11 +12,16 @@ import { unquote } from "../state/toml";
 export interface ChangeFacts {
   readonly scene: string;
   readonly slides: boolean; // contacts slide, with friction
+  readonly stiffness: string; // [N/mm]; empty, as the next ones: not stated
+  readonly law: string;
+  readonly stabiliser: string;
+  readonly rate: string; // [Hz]
 }
 
 export interface StationFacts extends ChangeFacts {
   readonly device: string;
   readonly rendersTorque: boolean;
+  readonly simulated: boolean;
   readonly sensedJoint: readonly number[];
 }
 
@@ -46,7 +51,15 @@ export function changeFacts(bytes: Uint8Array): ChangeFacts {
     else return false;
     return true;
   });
-  return { scene, slides: unquote(find(values, "contact.mode") ?? "") === "sliding" };
+  const value = (setting: string) => unquote(find(values, setting) ?? "");
+  return {
+    scene,
+    slides: value("contact.mode") === "sliding",
+    stiffness: value("force.stiffness_n_per_mm"),
+    law: value("force.law"),
+    stabiliser: value("stabiliser.method"),
+    rate: value("rate_hz"),
+  };
 }
 
 /// Steps a second of the station whose Geometry this is.
@@ -72,12 +85,16 @@ function sensedJoints(channels: readonly DeviceChannel[]): number[] {
 }
 
 export function stationFacts(bytes: Uint8Array): StationFacts {
-  let facts: StationFacts = { scene: "", slides: false, device: "", rendersTorque: false, sensedJoint: [] };
+  let facts: StationFacts = {
+    scene: "", slides: false, stiffness: "", law: "", stabiliser: "", rate: "",
+    device: "", rendersTorque: false, simulated: false, sensedJoint: [],
+  };
   const channels: DeviceChannel[] = [];
   eachField(bytes, (field, reader) => {
     if (field === setup.start.number) facts = { ...facts, ...changeFacts(reader.bytes()) };
     else if (field === setup.deviceName.number) facts = { ...facts, device: reader.string() };
     else if (field === setup.rendersTorque.number) facts = { ...facts, rendersTorque: reader.bool() };
+    else if (field === setup.simulated.number) facts = { ...facts, simulated: reader.bool() };
     else if (field === setup.channel.number) channels.push(fromBinary(DeviceChannelSchema, reader.bytes()));
     else return false;
     return true;
