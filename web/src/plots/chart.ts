@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// One plot over the last seconds, drawn by uPlot from the history's own storage.
+// One plot, drawn by uPlot from the history's own storage.
 import uPlot from "uplot";
-import type { History } from "../state/history";
-import { kHistorySeconds } from "../state/store";
+import { channelsOf } from "../state/channels";
+import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import { themes, type ThemeName } from "../theme";
+import { clockTime } from "../panels/clock";
 import { el, setText } from "../panels/dom";
+import { bands, type Bands } from "./bands";
+import { drawEvents, drawNames, drawNotSent, namesWidth, type Sheet } from "./canvas_marks";
 import { drawCutOff } from "./cut_off";
-import { curvesOf, type Curve, type PlotKind } from "./plot_kinds";
-import { readings, spokenReadings, tipLines, type Reading } from "./readings";
+import { pointsOf, type Points } from "./decimate";
+import { clustersOf } from "./event_clusters";
+import { curvesOf, isForce, titleOf, unitOf, type Curve, type PlotChoice, type PlotKind } from "./plot_kinds";
+import { readings, spokenReadings, tipLines, type Found } from "./readings";
+import { lengthOf, ordered, type Span } from "./span";
+import { leftOut, notSent, pausesOf } from "./stretches";
+import { decimalsOf, multiples, timeStep } from "./ticks";
+import type { TimeView } from "./time_view";
 import { valueRange } from "./value_range";
 
-const kGapSeconds = 0.25; // a longer pause between two samples is a gap in the curve
 const kLineEnd = 4; // how far a line reaches beyond its first point [px]
+const kSettled = 0.04; // share of the shown time whose mean places a curve's name: names stand still while a force shakes
+const kNamesFrom = 26; // width of a plot from which on its curves are named at their ends [rem]
+const kFlag = 22; // events so near become one flag [px]
+const kAtEvent = 8; // the cursor so near to an event shows it [px]
+const kMinutes = 120; // longer spans are read in minutes [s]
 /// How far an arrow key goes, as a share of the plot: to the right, and down. Home and End go to the oldest and the newest values.
 const kSteps: Readonly<Record<string, readonly [number, number]>> = {
   ArrowLeft: [-0.01, 0],
@@ -23,172 +36,273 @@ const kSteps: Readonly<Record<string, readonly [number, number]>> = {
   End: [1, 0],
 };
 const kNowhere = { left: -10, top: -10 }; // uPlot's word for no cursor
+const factor = channelsOf("factor")[0]!.index;
 
 export interface Chart {
   readonly element: HTMLElement;
   readonly canvas: () => HTMLCanvasElement;
-  setDigits(digits: readonly boolean[]): void;
+  readonly curves: () => readonly Curve[];
+  readonly named: () => boolean; // the curves have their names at their ends
+  readonly range: () => readonly [number, number]; // of the shown values
+  setChoice(choice: PlotChoice): void;
   setTheme(theme: ThemeName): void;
   draw(): void;
   resize(): void;
   dispose(): void;
 }
 
-/// Stretches in which a force is zero: not drawn, so that 15 lines do not lie on the axis.
-function idleOf(values: ArrayLike<number | null | undefined>, toPixel: (index: number) => number): [number, number][] {
-  const idle: [number, number][] = [];
-  for (let i = 0; i < values.length; ++i) {
-    if (values[i] !== 0) continue;
-    const from = i;
-    while (i + 1 < values.length && values[i + 1] === 0) ++i;
-    if (i > from) idle.push([toPixel(from) - (from === 0 ? kLineEnd : 0), toPixel(i)]);
-  }
-  return idle;
-}
-
-/// Pauses in the times as uPlot wants its gaps: pixels from, to.
-function gapsOf(time: ArrayLike<number>, toPixel: (time: number) => number): [number, number][] {
-  const gaps: [number, number][] = [];
-  for (let i = 1; i < time.length; ++i) {
-    if (time[i]! - time[i - 1]! > kGapSeconds) gaps.push([toPixel(time[i - 1]!), toPixel(time[i]!)]);
-  }
-  return gaps;
-}
-
-export function chart(kind: PlotKind, history: History, theme: ThemeName, digits: readonly boolean[]): Chart {
-  let chosen = digits;
+/// @param selects  whether a drag selects; otherwise it zooms
+export function chart(
+  kind: PlotKind,
+  shown: Shown,
+  view: TimeView,
+  firstChoice: PlotChoice,
+  theme: ThemeName,
+  selects: () => boolean,
+): Chart {
+  const { history } = shown;
+  let choice = firstChoice;
   let name = theme;
   let curves: readonly Curve[] = [];
   let colours = themes[theme];
   let plot: uPlot | null = null;
-  const scratch = new Map<number, Float32Array>();
+  let overlay: Bands | undefined;
+  let span: Span = view.span; // that is drawn
+  let pauses: readonly Span[] = [];
+  let ends: readonly number[] = [];
+  let anchor: number | undefined; // where a selection by keys began [s]
   const tip = el("div", { class: "plot-tip", hidden: true });
   const host = el("div", { class: "plot-host" });
   const spoken = el("span", { class: "visually-hidden", role: "status" });
-  const label = `${strings.plots.titles[kind]}. ${strings.plots.keys}`;
-  const element = el("div", { class: "plot", tabindex: 0, role: "application", "aria-label": label }, host, tip, spoken);
+  const element = el("div", { class: "plot", tabindex: 0, role: "application" }, host, tip, spoken);
 
-  /// Values as displayed; only angles differ from the stored ones.
-  function values(curve: Curve): Float32Array {
-    const kept = history.channel(curve.channel.index);
-    if (curve.scale === 1) return kept;
-    let room = scratch.get(curve.channel.index);
-    if (!room || room.length !== history.capacity) scratch.set(curve.channel.index, (room = new Float32Array(history.capacity)));
-    for (let i = 0; i < kept.length; ++i) room[i] = kept[i]! * curve.scale;
-    return room.subarray(0, kept.length);
+  const rem = () => parseFloat(getComputedStyle(document.documentElement).fontSize) || 16;
+  const typeSize = () => 0.75 * rem(); // [px]
+  const sheet = (): Sheet => ({ plot: plot!, colours, size: typeSize() * uPlot.pxRatio });
+  const named = () => host.clientWidth >= kNamesFrom * rem() && host.clientHeight >= (1.2 * curves.length + 5) * typeSize();
+  const plotWidth = (u: uPlot) => u.bbox.width / uPlot.pxRatio;
+  const secondsFor = (u: uPlot, pixels: number) => (pixels / Math.max(1, plotWidth(u))) * lengthOf(span);
+
+  function points(): Points {
+    span = view.span;
+    const found = pointsOf(history, curves, span, Math.max(host.clientWidth, 100));
+    pauses = pausesOf(history.time(), span, history);
+    ends = curves.map((curve, i) => endOf(curve, found.values[i]!));
+    return found;
   }
-  const data = () => [history.time(), ...curves.map(values)] as unknown as uPlot.AlignedData;
+
+  /// Mean of a curve's last values; NaN if nothing of it is drawn.
+  function endOf({ channel, scale }: Curve, drawn: Float32Array): number {
+    if (!drawn.some((value) => !Number.isNaN(value) && !(isForce(kind) && value === 0))) return NaN;
+    const values = history.channel(channel.index);
+    let [sum, count] = [0, 0];
+    const last = Math.min(history.length, history.firstFrom(span.to) + 1);
+    for (let i = history.firstFrom(span.to - kSettled * lengthOf(span)); i < last; ++i) {
+      if (Number.isNaN(values[i]!)) continue;
+      sum += values[i]!;
+      ++count;
+    }
+    return count > 0 ? (scale * sum) / count : NaN;
+  }
+
+  function data(): uPlot.AlignedData {
+    const { time, values } = points();
+    return [time, ...values] as unknown as uPlot.AlignedData;
+  }
+
+  function gaps(u: uPlot, index: number): uPlot.Series.Gaps {
+    const [times, values] = [u.data[0], u.data[index] ?? []];
+    const toPixel = (time: number) => u.valToPos(time, "x", true);
+    const at = (i: number) => toPixel(times[Math.min(times.length - 1, Math.max(0, i))]!);
+    const unknown = (i: number) => Number.isNaN(values[i]);
+    const out = leftOut(values, isForce(kind))
+      .filter(([from, to]) => to > from || unknown(from))
+      .map(([from, to]) => [at(unknown(from) ? from - 1 : from) - (from === 0 ? kLineEnd : 0), at(unknown(to) ? to + 1 : to)]);
+    const still = pauses.map(({ from, to }) => [toPixel(from), toPixel(to)]);
+    return [...still, ...out].sort((a, b) => a[0]! - b[0]!) as uPlot.Series.Gaps;
+  }
 
   function series(curve: Curve): uPlot.Series {
-    return {
-      label: curve.label,
-      stroke: curve.colour,
-      width: curve.width,
-      dash: [...curve.dash],
-      points: { show: false },
-      gaps: (u, index) => {
-        const toPixel = (time: number) => u.valToPos(time, "x", true);
-        const pauses = gapsOf(u.data[0], toPixel);
-        const idle = kind === "force" ? idleOf(u.data[index] ?? [], (i) => toPixel(u.data[0][i] ?? 0)) : [];
-        return [...pauses, ...idle].sort((a, b) => a[0] - b[0]) as uPlot.Series.Gaps;
-      },
-    };
+    const { label, colour: stroke, width, dash } = curve;
+    return { label, stroke, width, dash: [...dash], points: { show: false }, gaps: (u, index) => gaps(u, index) };
   }
 
-  /// The values at the cursor; null: there is no cursor.
-  function pointedAt(u: uPlot): { readonly ago: number; readonly found: readonly Reading[] } | null {
-    const { idx: at, left = -1, top = 0 } = u.cursor;
-    const time = at === null || at === undefined ? undefined : u.data[0][at];
-    if (at === null || at === undefined || time === undefined || left < 0) return null;
-    const here = curves.map((_, i) => Number(u.data[i + 1]?.[at]));
-    return { ago: time - history.end, found: readings(kind, curves, here, (value) => Math.abs(u.valToPos(value, "y") - top)) };
+  // ---- the cursor
+
+  /// "-2.35 s", or the time of day of a part that was zoomed.
+  function whenText(time: number, decimals: number): string {
+    if (view.zoom && Number.isFinite(shown.utcOffset)) return clockTime(time + shown.utcOffset, decimals);
+    return strings.plots.ago((time - history.end).toFixed(decimals));
+  }
+
+  /// The values at the cursor; undefined: there is no cursor.
+  function pointedAt(u: uPlot): (Found & { readonly time: number }) | undefined {
+    const { left = -1, top = 0 } = u.cursor;
+    if (left < 0 || history.length === 0) return undefined;
+    const at = history.nearest(u.posToVal(left, "x"));
+    const time = history.time()[at]!;
+    const here = curves.map(({ channel, scale }) => scale * history.channel(channel.index)[at]!);
+    const reach = secondsFor(u, kAtEvent);
+    return {
+      time,
+      when: whenText(time, 2),
+      readings: readings(kind, curves, here, (value) => Math.abs(u.valToPos(value, "y") - top)),
+      sent: history.channel(factor)[at] !== 0,
+      events: shown.happened.filter((one) => Math.abs(one.time - u.posToVal(left, "x")) <= reach),
+    };
   }
 
   function hover(u: uPlot): void {
     const what = pointedAt(u);
-    tip.hidden = what === null;
+    if (what || !tip.hidden) view.pointed = what?.time ?? null;
+    tip.hidden = what === undefined;
     if (!what) return;
-    tip.replaceChildren(...tipLines(kind, what.ago, what.found));
+    tip.replaceChildren(...tipLines(kind, what));
     const left = u.cursor.left ?? 0;
     const right = left < u.over.clientWidth / 2;
     tip.style.left = right ? `${left + u.over.offsetLeft + 14}px` : "auto";
-    tip.style.right = right ? "auto" : `${u.over.clientWidth - left + 14}px`;
+    tip.style.right = right ? "auto" : `${host.clientWidth - u.over.offsetLeft - left + 14}px`;
   }
 
-  /// The cursor by keys, which also say aloud what it finds; they begin at the newest values.
-  function key(event: KeyboardEvent): void {
-    const step = kSteps[event.key];
-    if (!step || !plot || event.ctrlKey || event.altKey || event.metaKey) return;
-    event.preventDefault(); // the page's scrolling
-    const width = plot.bbox.width / uPlot.pxRatio;
-    const height = plot.bbox.height / uPlot.pxRatio;
-    const { left = -1, top = -1 } = plot.cursor;
-    const [fromLeft, fromTop] = left < 0 ? [width, height / 2] : [left, top];
+  // ---- keys, which also say aloud what they find; they begin at the newest values
+
+  function goTo(u: uPlot, left: number, top: number): void {
     const inside = (value: number, most: number) => Math.min(most, Math.max(0, value));
-    plot.setCursor({ left: inside(fromLeft + step[0] * width, width), top: inside(fromTop + step[1] * height, height) });
-    const what = pointedAt(plot);
-    if (what) setText(spoken, spokenReadings(kind, what.ago, what.found));
+    u.setCursor({ left: inside(left, plotWidth(u)), top: inside(top, u.bbox.height / uPlot.pxRatio) });
+    const what = pointedAt(u);
+    if (what) setText(spoken, spokenReadings(kind, what));
   }
-  element.addEventListener("keydown", key);
-  element.addEventListener("blur", () => plot?.setCursor(kNowhere));
 
-  /// @param ratio  canvas pixels for each pixel of the page
-  const font = (ratio: number) => `${0.75 * ratio * parseFloat(getComputedStyle(document.documentElement).fontSize)}px system-ui, sans-serif`;
+  function goToEvent(u: uPlot, direction: 1 | -1): void {
+    const { left = -1, top = 0 } = u.cursor;
+    const from = left < 0 ? span.to : u.posToVal(left, "x");
+    const near = secondsFor(u, 1);
+    const inside = shown.happened.filter(({ time }) => time >= span.from && time <= span.to);
+    const next = direction > 0 ? inside.find(({ time }) => time > from + near) : inside.filter(({ time }) => time < from - near).at(-1);
+    if (next) goTo(u, u.valToPos(next.time, "x"), Math.max(0, top));
+  }
+
+  function move(u: uPlot, event: KeyboardEvent, step: readonly [number, number]): void {
+    const [width, height] = [plotWidth(u), u.bbox.height / uPlot.pxRatio];
+    const { left = -1, top = -1 } = u.cursor;
+    const [fromLeft, fromTop] = left < 0 ? [width, height / 2] : [left, top];
+    const timeBefore = u.posToVal(fromLeft, "x");
+    goTo(u, fromLeft + step[0] * width, fromTop + step[1] * height);
+    if (!event.shiftKey) anchor = undefined;
+    else if (step[0] !== 0) view.selection = ordered((anchor ??= timeBefore), u.posToVal(u.cursor.left ?? 0, "x"));
+  }
+
+  function act(u: uPlot, event: KeyboardEvent): boolean {
+    const step = kSteps[event.key];
+    if (step) move(u, event, step);
+    else if (event.key === "PageUp") goToEvent(u, -1);
+    else if (event.key === "PageDown") goToEvent(u, 1);
+    else if (event.key === "Enter" && view.selection && lengthOf(view.selection) > 0) view.zoom = view.selection;
+    else if (event.key === "Backspace") view.zoom = undefined;
+    else if (event.key === "Delete") view.selection = undefined;
+    else return false;
+    return true;
+  }
+  element.addEventListener("keydown", (event) => {
+    if (!plot || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (act(plot, event)) event.preventDefault(); // the page's scrolling
+  });
+  element.addEventListener("blur", () => {
+    anchor = undefined;
+    plot?.setCursor(kNowhere);
+  });
+
+  // ---- what uPlot draws
 
   function axis(): uPlot.Axis {
-    return {
-      stroke: colours.quiet,
-      grid: { stroke: colours.grid, width: 1 },
-      ticks: { show: false },
-      font: font(1),
-    };
+    const font = `${typeSize()}px system-ui, sans-serif`;
+    return { stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font };
+  }
+
+  /// Seconds back from now, so that the figures stand still while the curves pass; times of day in a part that was zoomed.
+  function timeTicks(u: uPlot): number[] {
+    const label = (view.zoom ? 9 : 7) * typeSize();
+    const step = timeStep(lengthOf(span), Math.floor(plotWidth(u) / label));
+    const origin = view.zoom ? -(Number.isFinite(shown.utcOffset) ? shown.utcOffset : 0) : history.end;
+    return multiples(span.from - origin, span.to - origin, step).map((time) => time + origin);
+  }
+  function timeLabels(times: number[]): string[] {
+    const step = times.length > 1 ? times[1]! - times[0]! : 1;
+    const minutes = !view.zoom && lengthOf(span) > kMinutes;
+    return times.map((time) => {
+      if (view.zoom) return whenText(time, decimalsOf(step));
+      const ago = time - history.end || 0;
+      return minutes ? strings.plots.agoMinutes((ago / 60).toFixed(0)) : strings.plots.ago(ago.toFixed(decimalsOf(step)));
+    });
+  }
+
+  function drawOver(u: uPlot): void {
+    if (!plot) plot = u; // the first time, while it is built
+    if (kind !== "angle") drawNotSent(sheet(), notSent(history, span));
+    drawEvents(sheet(), clustersOf(shown.happened, span, secondsFor(u, kFlag)));
+    drawCutOff(u, curves, unitOf(kind), colours, () => `${sheet().size}px system-ui, sans-serif`);
+    if (named()) drawNames(sheet(), curves, ends);
   }
 
   function build(): void {
     plot?.destroy();
+    plot = null;
     tip.hidden = true;
-    curves = curvesOf(kind, chosen, name);
+    view.release();
+    curves = curvesOf(kind, choice, name);
     colours = themes[name];
+    element.setAttribute("aria-label", `${titleOf(kind, choice)}. ${strings.plots.keys}`);
     const { clientWidth: width, clientHeight: height } = host;
+    const size = typeSize();
+    const right: uPlot.PaddingSide = (u) => (named() ? namesWidth({ plot: u, size: size * uPlot.pxRatio }, curves) / uPlot.pxRatio : size);
     const options: uPlot.Options = {
       width: Math.max(width, 80),
       height: Math.max(height, 60),
+      padding: [1.4 * size, right, 0, 0],
       legend: { show: false },
       cursor: { drag: { x: false, y: false, setScale: false }, points: { show: false } },
       scales: {
-        x: { time: false, range: () => [history.end - kHistorySeconds, history.end] },
+        x: { time: false, range: () => [span.from, span.to] },
         y: { range: (_, low, high) => valueRange(kind, low, high) },
       },
       axes: [
-        { ...axis(), size: 28, space: 60, values: (_, at) => at.map((time) => strings.plots.ago((time - history.end).toFixed(0))), splits: () => seconds() },
-        { ...axis(), size: 46, space: 26 },
+        { ...axis(), size: 2 * size, gap: 4, splits: (u) => timeTicks(u), values: (_, at) => timeLabels(at) },
+        { ...axis(), size: 3.6 * size, space: 2.2 * size },
       ],
       series: [{}, ...curves.map(series)],
-      hooks: { setCursor: [hover], draw: [(u) => drawCutOff(u, curves, strings.plots.units[kind], colours, () => font(uPlot.pxRatio))] },
+      hooks: { setCursor: [hover], draw: [drawOver] },
     };
     plot = new uPlot(options, data(), host);
+    overlay = bands(plot, view, selects);
+    overlay.place();
   }
-  /// Whole seconds back from now, so that the figures stand still while the curves pass.
-  const seconds = () => [10, 8, 6, 4, 2, 0].map((ago) => history.end - ago);
+
+  function draw(): void {
+    if (!plot) return;
+    plot.setData(data(), true);
+    overlay?.place();
+  }
 
   build();
   return {
     element,
     canvas: () => plot!.ctx.canvas,
-    setDigits(next) {
-      chosen = next;
+    curves: () => curves,
+    named,
+    range: () => [plot?.scales["y"]?.min ?? 0, plot?.scales["y"]?.max ?? 1],
+    setChoice(next) {
+      choice = next;
       build();
     },
     setTheme(next) {
       name = next;
       build();
     },
-    draw() {
-      if (history.length > 0) plot?.setData(data(), true);
-    },
+    draw,
     resize() {
       const { clientWidth: width, clientHeight: height } = host;
       if (width > 0 && height > 0) plot?.setSize({ width, height });
+      draw();
     },
     dispose() {
       plot?.destroy();

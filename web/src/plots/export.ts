@@ -1,94 +1,108 @@
 // SPDX-License-Identifier: Apache-2.0
-// Export of a plot as a file.
+// What is saved of the plots: tables and figures.
 import { channels } from "../state/channels";
-import { toCsv } from "../state/csv";
+import { toCsv, type Column } from "../state/csv";
 import type { Shown } from "../state/shown";
-import { kHistorySeconds } from "../state/store";
+import { verdictKinds } from "../state/verdict";
 import { strings } from "../strings";
-import { digitColours, themes, type ThemeName } from "../theme";
 import { saveBlob } from "../panels/dom";
 import { savedMark, savedName } from "../panels/saved_as";
-import { columnName } from "./plot_kinds";
+import { pointsOf } from "./decimate";
+import { clustersOf } from "./event_clusters";
+import { figureSvg, rasterised, type Figure, type FigurePlot, type Svg } from "./figure";
+import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, type PlotChoice, type PlotKind } from "./plot_kinds";
+import { polylines } from "./polylines";
+import { lengthOf, type Span } from "./span";
+import { notSent, pausesOf } from "./stretches";
+import { valueRange } from "./value_range";
 
-export function csvOf(shown: Shown): string {
-  const { geometry, history } = shown;
-  const columns = channels.map((channel) => ({
+const kBins = 800; // of a figure: two to each of its pixels
+const kFlags = 12; // places for events side by side
+const kPngScale = 2;
+const kMoment = { dateStyle: "medium", timeStyle: "medium", hourCycle: "h23" } as const;
+const words = strings.plots;
+
+function columnsOf(shown: Shown): Column[] {
+  const { geometry, scenes } = shown;
+  const named: Readonly<Record<string, Partial<Column>>> = {
+    verdict: { text: (value) => verdictKinds[value] ?? "" },
+    scene: { text: (value) => scenes[value] ?? "" },
+    angle_measured: { unit: strings.units.degree, scale: 180 / Math.PI },
+    angle_shown: { unit: strings.units.degree, scale: 180 / Math.PI },
+  };
+  return channels.map((channel) => ({
     name: columnName(channel, geometry?.segmentName ?? [], geometry?.jointName ?? []),
     unit: channel.unit,
+    ...named[channel.quantity],
   }));
-  return toCsv(history, kHistorySeconds, columns);
 }
 
-export function saveCsv(shown: Shown): void {
-  saveBlob(`${savedName(shown)}.csv`, new Blob([csvOf(shown)], { type: "text/csv" }));
+export const csvOf = (shown: Shown, { from, to }: Span): string => toCsv(shown.history, from, to, columnsOf(shown));
+
+export function saveCsv(shown: Shown, span: Span): void {
+  saveBlob(`${savedName(shown)}.csv`, new Blob([csvOf(shown, span)], { type: "text/csv" }));
 }
 
-/// One plot of the picture.
-export interface Part {
-  readonly title: string;
-  readonly legend: string;
-  readonly canvas: HTMLCanvasElement;
+/// What the figure states of the session, each known statement by itself.
+function factsOf(shown: Shown, span: Span): string[] {
+  const { scene, stiffness, law, stabiliser, rate, device, simulated } = shown.circumstances;
+  const facts = words.facts;
+  const begin = new Date(1000 * (span.from + shown.utcOffset));
+  const known = (value: string, say: (value: string) => string) => (value === "" ? [] : [say(value)]);
+  return [
+    savedMark(shown),
+    ...known(scene, facts.scene),
+    ...known(stiffness, (value) => facts.stiffness(value, strings.units.stiffness)),
+    ...known(law, (value) => facts.law(strings.force.laws[value] ?? value)),
+    ...known(stabiliser, (value) => facts.stabiliser(strings.calm.methods[value] ?? value)),
+    ...known(rate, (value) => facts.rate(value, strings.units.hertz)),
+    ...known(device, simulated === false ? facts.device : facts.simulated),
+    ...(Number.isNaN(begin.getTime()) ? [] : [facts.begin(begin.toLocaleString(strings.locale, kMoment))]),
+  ].filter((fact) => fact !== "");
 }
 
-const kFont = "system-ui, sans-serif";
-const kMargin = 8; // [px], as the others
-const kKeyHeight = 30;
-const kTitleLine = 22;
-const kLegendLine = 40;
-const kHead = 50; // above each plot
-const kSwatch = 12;
-
-/// The plots one under the other, with all that is needed to read them alone: which colour is which digit, each plot's title, and what
-/// its lines mean. As wide as the widest of these.
-/// @param digits  that are shown
-/// @param mark  stands beside the digits; empty: nothing
-export function drawPicture(parts: readonly Part[], digits: readonly boolean[], theme: ThemeName, mark = ""): HTMLCanvasElement | null {
-  const out = document.createElement("canvas");
-  const context = out.getContext("2d");
-  if (!context || parts.length === 0) return null;
-  const ratio = window.devicePixelRatio || 1;
-  const px = (pixels: number) => Math.round(pixels * ratio);
-  const fonts = { title: `600 ${px(14)}px ${kFont}`, small: `${px(12)}px ${kFont}` };
-  const width = (font: string, text: string) => {
-    context.font = font;
-    return context.measureText(text).width;
-  };
-  const names = strings.digits.map((name, digit) => ({ name, colour: digitColours[theme][digit] ?? "" })).filter((_, digit) => digits[digit] ?? false);
-  const keyWidth = (name: string) => px(kSwatch) + width(fonts.small, name) + 3 * px(kMargin);
-  out.width = Math.ceil(
-    Math.max(
-      ...parts.map((part) => Math.max(part.canvas.width, 2 * px(kMargin) + Math.max(width(fonts.title, part.title), width(fonts.small, part.legend)))),
-      px(kMargin) + names.reduce((sum, { name }) => sum + keyWidth(name), 0) + (mark ? width(fonts.title, mark) + px(kMargin) : 0),
-    ),
-  );
-  out.height = parts.reduce((sum, part) => sum + part.canvas.height + px(kHead), px(kKeyHeight));
-
-  const colours = themes[theme];
-  const write = (font: string, colour: string, text: string, left: number, line: number) => {
-    context.font = font;
-    context.fillStyle = colour;
-    context.fillText(text, left, line);
-  };
-  context.fillStyle = colours.panel;
-  context.fillRect(0, 0, out.width, out.height);
-  let left = px(kMargin);
-  for (const { name, colour } of names) {
-    context.fillStyle = colour;
-    context.fillRect(left, px(kTitleLine - kSwatch + 1), px(kSwatch), px(kSwatch));
-    write(fonts.small, colours.text, name, left + px(kSwatch) + px(kMargin), px(kTitleLine));
-    left += keyWidth(name);
+function figurePlot(kind: PlotKind, shown: Shown, choice: PlotChoice, span: Span): FigurePlot {
+  const { history } = shown;
+  const all = curvesOf(kind, choice, "light");
+  const points = pointsOf(history, all, span, kBins);
+  const pauses = pausesOf(history.time(), span, history);
+  let [low, high] = [Infinity, -Infinity];
+  for (const values of points.values) {
+    for (const value of values) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
   }
-  if (mark) write(fonts.title, colours.text, mark, left, px(kTitleLine));
-  let top = px(kKeyHeight);
-  for (const part of parts) {
-    write(fonts.title, colours.text, part.title, px(kMargin), top + px(kTitleLine));
-    write(fonts.small, colours.quiet, part.legend, px(kMargin), top + px(kLegendLine));
-    context.drawImage(part.canvas, 0, top + px(kHead));
-    top += part.canvas.height + px(kHead);
-  }
-  return out;
+  const known = low <= high;
+  return {
+    axis: axisOf(kind),
+    range: valueRange(kind, known ? low : null, known ? high : null),
+    curves: all.map((curve, i) => ({ curve, lines: polylines(points, i, pauses, isForce(kind)) })),
+    notSent: kind === "angle" ? [] : notSent(history, span),
+  };
 }
 
-export function savePng(shown: Shown, parts: readonly Part[], digits: readonly boolean[], theme: ThemeName): void {
-  drawPicture(parts, digits, theme, savedMark(shown))?.toBlob((blob) => blob && saveBlob(`${savedName(shown)}.png`, blob));
+export function figureOf(shown: Shown, choice: PlotChoice, span: Span): Figure {
+  const kinds = kindsOf[choice.subject];
+  return {
+    title: kinds.map((kind) => titleOf(kind, choice)).join(words.titleJoin),
+    facts: factsOf(shown, span),
+    span,
+    timeAxis: words.axis(words.time, strings.units.second),
+    notSentWords: words.notSent,
+    plots: kinds.map((kind) => figurePlot(kind, shown, choice, span)),
+    clusters: clustersOf(shown.happened, span, lengthOf(span) / kFlags),
+  };
+}
+
+const svgOf = (shown: Shown, choice: PlotChoice, span: Span): Svg => figureSvg(figureOf(shown, choice, span));
+
+export function saveSvg(shown: Shown, choice: PlotChoice, span: Span): void {
+  saveBlob(`${savedName(shown)}.svg`, new Blob([svgOf(shown, choice, span).text], { type: "image/svg+xml" }));
+}
+
+export async function savePng(shown: Shown, choice: PlotChoice, span: Span): Promise<void> {
+  const name = savedName(shown);
+  const blob = await rasterised(svgOf(shown, choice, span), kPngScale);
+  if (blob) saveBlob(`${name}.png`, blob);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The range of values that a plot shows, and the values beyond it.
-import type { PlotKind } from "./plot_kinds";
+import { isForce, type PlotKind } from "./plot_kinds";
 
-const kSmallest: Readonly<Record<PlotKind, number>> = { force: 1, torque: 0.02, angle: 10 }; // span of the axis at least
+const kSmallest: Readonly<Record<PlotKind, number>> = { force: 1, segment: 1, torque: 0.02, angle: 10 }; // span of the axis at least
 /// No digit is sent more; what the law asks of a stiff wall may be many times that, and would flatten the curves that are felt [N].
 const kMostForceShown = 10;
 
@@ -11,7 +11,7 @@ export function valueRange(kind: PlotKind, low: number | null, high: number | nu
   const least = kSmallest[kind];
   const both = kind === "torque"; // pushes both ways
   const min = Math.min(both ? -least / 2 : 0, low ?? 0);
-  const highest = kind === "force" ? Math.min(high ?? 0, kMostForceShown) : (high ?? 0);
+  const highest = isForce(kind) ? Math.min(high ?? 0, kMostForceShown) : (high ?? 0);
   const max = Math.max(both ? least / 2 : least, highest);
   const room = 0.08 * (max - min);
   return [min < 0 ? min - room : 0, max + room];

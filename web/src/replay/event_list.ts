@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What happened in a recording: markers, faults, stops, changes, gaps. A press goes there.
 import { button, el, setAttribute, setShown, setSwitch, setText, switchButton } from "../panels/dom";
+import { eventLabel, markKind, type MarkKind } from "../state/happened";
 import { strings } from "../strings";
 import type { Overview } from "./overview";
 import { durationText } from "./times";
 
 const words = strings.replay;
 const kMostShown = 1000; // of the list; a longer one would hold up the page
-
-/// What is drawn, by shape and colour.
-export type MarkKind = "marker" | "bad" | "gap" | "other";
 
 export interface Happening {
   readonly time: number; // [s]
@@ -19,25 +17,17 @@ export interface Happening {
   readonly text: string;
 }
 
-const badCodes = new Set(["fault", "stopped"]);
-
-function markKind(code: string): MarkKind {
-  if (code === "marker") return "marker";
-  return badCodes.has(code) ? "bad" : "other";
-}
-
 /// Everything of the overview that a person may look for, in the order of time.
 export function happenings({ events, stations, holes }: Pick<Overview, "events" | "stations" | "holes">): Happening[] {
-  const label = (code: string) => words.kinds[code] ?? words.otherKind;
   const list: Happening[] = [
     ...stations.map(({ time, value: { scene, device } }) => ({
-      time, code: "station", kind: "other" as const, label: label("station"), text: words.stationBegins(scene, device),
+      time, code: "station", kind: "other" as const, label: eventLabel("station"), text: words.stationBegins(scene, device),
     })),
     ...events.map(({ time, value: { code, who, text } }) => ({
-      time, code, kind: markKind(code), label: label(code), text: who && code !== "marker" ? `${text} (${who})` : text,
+      time, code, kind: markKind(code), label: eventLabel(code), text: who && code !== "marker" ? `${text} (${who})` : text,
     })),
     ...holes.map(({ begin, gap }) => ({
-      time: begin, code: "gap", kind: "gap" as const, label: label("gap"), text: words.missing(gap.steps.toLocaleString(strings.locale), gap.why),
+      time: begin, code: "gap", kind: "gap" as const, label: eventLabel("gap"), text: words.missing(gap.steps.toLocaleString(strings.locale), gap.why),
     })),
   ];
   return list.sort((a, b) => a.time - b.time);

@@ -4,10 +4,11 @@
 import { fromBinary } from "@bufbuild/protobuf";
 import { TickSchema, type Tick } from "../gen/phalanx/tick_pb";
 import { channels, fillRow, isMeasured } from "../state/channels";
-import { History } from "../state/history";
+import { isPlotted, type Happened } from "../state/happened";
+import { capacityFor, History } from "../state/history";
 import { Listeners } from "../state/listeners";
-import type { OldCurves, Shown, Topic } from "../state/shown";
-import { kHistoryCapacity, kHistorySeconds } from "../state/store";
+import { SceneNumbers } from "../state/scene_numbers";
+import type { Circumstances, OldCurves, Shown, Topic } from "../state/shown";
 import { VerdictLight } from "../state/verdict";
 import type { Shapes } from "../view3d/shapes";
 import type { Timed } from "./chunk";
@@ -20,6 +21,7 @@ import { rateOf, type ChangeFacts, type StationFacts } from "./station_facts";
 
 export const kOldPose = 0.25; // [s]: a pose that is older than the displayed moment does not show it; as a gap in the curves
 export const kLongRead = 300; // a shorter wait is not displayed [ms]
+const kWindows: readonly number[] = [10, 60]; // [s]: a longer one would read too many chunks for each moment
 const kPoseInterval = 1 / 60; // [s]
 const kFrame = 0.3; // [s] that a frame may move on, at speed 1
 const kAhead = 4; // [s] that are loaded ahead, at speed 1
@@ -31,11 +33,15 @@ export class Player extends Listeners<Topic> implements Shown {
   geometry: Shapes | undefined;
   light = new VerdictLight();
   station: StationFacts | undefined; // in force at the displayed moment
-  private change: ChangeFacts | undefined; // likewise
   trouble: unknown; // why nothing more can be read
   shapesTrouble = false; // the geometry cannot be made into shapes
-  readonly history = new History(channels.length, kHistoryCapacity);
+  readonly windows = kWindows;
+  readonly history = new History(channels.length, capacityFor(kWindows.at(-1)!));
+  events: readonly Happened[] = []; // by the recording's time, in its order
   readonly playhead: Playhead;
+  private seconds = kWindows[0]!; // that the history covers
+  private readonly sceneNumbers = new SceneNumbers();
+  private change: (ChangeFacts & { readonly since: number }) | undefined; // in force at the displayed moment
   private readonly lookup: Lookup;
   private readonly cache: ChunkCache;
   private readonly row = new Float64Array(channels.length);
@@ -87,6 +93,37 @@ export class Player extends Listeners<Topic> implements Shown {
 
   get recordedAt(): number {
     return Number(this.recording.layout.begin) / 1e9 + this.playhead.position;
+  }
+
+  /// The ticks' clock minus the recording's time [s]. NaN: no pose is shown.
+  private get clock(): number {
+    return this.tick ? this.tick.time - this.shownAt : NaN;
+  }
+
+  get utcOffset(): number {
+    return Number(this.recording.layout.begin) / 1e9 - this.clock;
+  }
+
+  get happened(): readonly Happened[] {
+    const { clock } = this;
+    if (Number.isNaN(clock)) return [];
+    return this.events.filter(({ code }) => isPlotted(code)).map((one) => ({ ...one, time: one.time + clock }));
+  }
+
+  get scenes(): readonly string[] {
+    return this.sceneNumbers.names;
+  }
+
+  get circumstances(): Circumstances {
+    const { scene = "", stiffness = "", law = "", stabiliser = "", rate = "" } = this.change ?? {};
+    const { device = "", simulated } = this.station ?? {};
+    return { scene, stiffness, law, stabiliser, rate: rate || String(this.rate || ""), device, simulated };
+  }
+
+  reachBack(seconds: number): void {
+    if (seconds === this.seconds) return;
+    this.seconds = seconds;
+    this.go(this.playhead.position);
   }
 
   /// The shown pose is not that of the displayed moment.
@@ -211,11 +248,12 @@ export class Player extends Listeners<Topic> implements Shown {
       await this.useStation(Math.max(at, pose?.time ?? at));
       this.show(pose);
       if (this.playhead.position !== at) continue; // another moment was chosen meanwhile
-      await this.lookup.load(at - kHistorySeconds, at + kOldPose); // a gap is written behind the missing steps
-      if (this.playhead.position !== at) continue;
+      const { seconds } = this;
+      await this.lookup.load(at - seconds, at + kOldPose); // a gap is written behind the missing steps
+      if (this.playhead.position !== at || this.seconds !== seconds) continue;
       this.history.clear();
       this.light = new VerdictLight();
-      for (const { value } of this.lookup.poses(at - kHistorySeconds, at)) this.record(fromBinary(TickSchema, value));
+      for (const { value } of this.lookup.poses(at - seconds, at)) this.record(fromBinary(TickSchema, value));
       this.fed = at;
       this.trouble = undefined;
       if (this.tick && this.history.length === 0) this.record(this.tick);
@@ -248,7 +286,8 @@ export class Player extends Listeners<Topic> implements Shown {
   }
 
   private record(tick: Tick): void {
-    fillRow(tick, this.row);
+    const known = this.change && tick.time - this.clock >= this.change.since; // what was in force before is not read
+    fillRow(tick, this.row, this.sceneNumbers.of(known ? this.change?.scene : undefined));
     this.history.push(tick.time, this.row);
     this.light.feed(tick, tick.time);
   }
@@ -274,7 +313,8 @@ export class Player extends Listeners<Topic> implements Shown {
   private async useStation(at: number): Promise<void> {
     const [setup, change] = [await this.lookup.last("/setup", at), await this.lookup.last("/change", at)];
     this.station = setup?.value;
-    this.change = change && change.time > (setup?.time ?? -Infinity) ? change.value : setup?.value;
+    const last = change && change.time > (setup?.time ?? -Infinity) ? change : setup;
+    this.change = last && { ...last.value, since: last.time };
     this.tell("state");
     const geometry = await this.lookup.last("/geometry", at);
     const place = geometry ? `${geometry.chunk} ${geometry.time}` : "";

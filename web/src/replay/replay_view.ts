@@ -124,6 +124,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
         stale = false;
         drawnAt = now;
         list = happenings(overview);
+        player.events = list;
         events.show(list, overview.progress === 1);
         track.show(list);
       }

@@ -14,11 +14,16 @@ export interface ChangeFacts {
   readonly slides: boolean; // contacts slide, with friction
   readonly objectKind: string; // empty: not stated
   readonly digitLimit: number; // of a digit's force [N]; Infinity: none, or not stated
+  readonly stiffness: string; // [N/mm]; empty, as the next ones: not stated
+  readonly law: string;
+  readonly stabiliser: string;
+  readonly rate: string; // [Hz]
 }
 
 export interface StationFacts extends ChangeFacts {
   readonly device: string;
   readonly rendersTorque: boolean;
+  readonly simulated: boolean;
   readonly sensedJoint: readonly number[];
 }
 
@@ -49,7 +54,16 @@ export function changeFacts(bytes: Uint8Array): ChangeFacts {
     return true;
   });
   const text = (key: string) => unquote(find(values, key) ?? "");
-  return { scene, slides: text("contact.mode") === "sliding", objectKind: text("objects.0.kind"), digitLimit: limitOf(text(kDigitLimit)) };
+  return {
+    scene,
+    slides: text("contact.mode") === "sliding",
+    objectKind: text("objects.0.kind"),
+    digitLimit: limitOf(text(kDigitLimit)),
+    stiffness: text("force.stiffness_n_per_mm"),
+    law: text("force.law"),
+    stabiliser: text("stabiliser.method"),
+    rate: text("rate_hz"),
+  };
 }
 
 /// Steps a second of the station whose Geometry this is.
@@ -75,12 +89,16 @@ function sensedJoints(channels: readonly DeviceChannel[]): number[] {
 }
 
 export function stationFacts(bytes: Uint8Array): StationFacts {
-  let facts: StationFacts = { scene: "", slides: false, objectKind: "", digitLimit: Infinity, device: "", rendersTorque: false, sensedJoint: [] };
+  let facts: StationFacts = {
+    scene: "", slides: false, objectKind: "", digitLimit: Infinity, stiffness: "", law: "", stabiliser: "", rate: "",
+    device: "", rendersTorque: false, simulated: false, sensedJoint: [],
+  };
   const channels: DeviceChannel[] = [];
   eachField(bytes, (field, reader) => {
     if (field === setup.start.number) facts = { ...facts, ...changeFacts(reader.bytes()) };
     else if (field === setup.deviceName.number) facts = { ...facts, device: reader.string() };
     else if (field === setup.rendersTorque.number) facts = { ...facts, rendersTorque: reader.bool() };
+    else if (field === setup.simulated.number) facts = { ...facts, simulated: reader.bool() };
     else if (field === setup.channel.number) channels.push(fromBinary(DeviceChannelSchema, reader.bytes()));
     else return false;
     return true;

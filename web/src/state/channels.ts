@@ -3,21 +3,33 @@
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { strings } from "../strings";
 import { kSegments } from "../view3d/segments";
+import { verdictKinds, verdictOf } from "./verdict";
 
 export const kDigits = 5;
 export const kJoints = 20;
 export const kJointsPerDigit = 4;
 export const kSegmentsPerDigit = 3;
 
-export type Quantity = "force_raw" | "force_sent" | "torque" | "angle_measured" | "angle_shown" | "stiffness";
+/// factor: of the station on the torques, 0 where nothing is sent. verdict: number in verdictKinds. scene: number in Shown.scenes.
+export type Quantity =
+  | "force_raw"
+  | "force_sent"
+  | "torque"
+  | "angle_measured"
+  | "angle_shown"
+  | "stiffness"
+  | "digit_force"
+  | "factor"
+  | "verdict"
+  | "scene";
 
 export interface Channel {
   readonly index: number; // in the history
   readonly quantity: Quantity;
-  readonly part: number; // segment or joint; 0: there is but one
+  readonly part: number; // segment, joint or digit; 0: there is but one
   readonly digit: number; // -1: the palm, or the whole hand
   readonly place: number; // in the digit, from the palm
-  readonly unit: string;
+  readonly unit: string; // empty: none
 }
 
 export const digitOfSegment = (segment: number) =>
@@ -32,12 +44,17 @@ function list(): Channel[] {
     }
   };
   const units = strings.units;
+  const hand = () => -1;
   add("force_raw", kSegments, units.newton, digitOfSegment, kSegmentsPerDigit);
   add("force_sent", kSegments, units.newton, digitOfSegment, kSegmentsPerDigit);
   add("torque", kJoints, units.torque, digitOfJoint, kJointsPerDigit);
   add("angle_measured", kJoints, units.radian, digitOfJoint, kJointsPerDigit);
   add("angle_shown", kJoints, units.radian, digitOfJoint, kJointsPerDigit);
-  add("stiffness", 1, units.newtonPerMetre, () => -1, 1);
+  add("stiffness", 1, units.newtonPerMetre, hand, 1);
+  add("digit_force", kDigits, units.newton, (digit) => digit, 1);
+  add("factor", 1, "", hand, 1);
+  add("verdict", 1, "", hand, 1);
+  add("scene", 1, "", hand, 1);
   return channels;
 }
 
@@ -53,7 +70,8 @@ const kSampleStale = 1 << 12; // Status::kSampleStale
 export const isMeasured = (tick: Tick) => (tick.status & kSampleStale) === 0;
 
 /// A tick as one row of the history, in the channels' order. What is missing, or not measured, is NaN.
-export function fillRow(tick: Tick, row: Float64Array): void {
+/// @param scene  its number; NaN: not known
+export function fillRow(tick: Tick, row: Float64Array, scene = NaN): void {
   const torque = 2 * kSegments;
   const measured = torque + kJoints;
   const shown = measured + kJoints;
@@ -69,7 +87,10 @@ export function fillRow(tick: Tick, row: Float64Array): void {
     row[measured + joint] = (now ? tick.hcpAngle[joint] : undefined) ?? NaN;
     row[shown + joint] = (now ? tick.gdpAngle[joint] : undefined) ?? NaN;
   }
-  row[shown + kJoints] = tick.stiffness;
+  const stiffness = shown + kJoints;
+  row[stiffness] = tick.stiffness;
+  row.set(digitForces(tick), stiffness + 1);
+  row.set([tick.atRest ? 0 : tick.factor, verdictKinds.indexOf(verdictOf(tick).kind), scene], stiffness + 1 + kDigits);
 }
 
 /// @returns for each digit the length of the vector sum of the forces on its segments, which the station limits [N]

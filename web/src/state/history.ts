@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
+const kSamplesPerSecond = 60; // that the station sends
+
+/// Samples of so many seconds, with some room for the time after the last ones.
+export const capacityFor = (seconds: number) => Math.ceil(1.1 * seconds * kSamplesPerSecond);
+
 /// The last seconds of all channels, in storage made once. Each sample is written twice, a capacity apart, so that the last ones
 /// always lie in one piece and are read without copying.
 export class History {
@@ -62,5 +67,25 @@ export class History {
     const values = this.values[channel];
     if (!values) throw new RangeError(`there is no channel ${channel}`);
     return values.subarray(this.first, this.first + this.filled);
+  }
+
+  /// Place in time() of the first sample at this time or later; `length`: there is none.
+  firstFrom(time: number): number {
+    let [low, high] = [0, this.filled];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.times[this.first + middle]! < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /// Place in time() of the sample nearest to this time; -1: the history is empty.
+  nearest(time: number): number {
+    const after = this.firstFrom(time);
+    if (after === 0) return this.filled > 0 ? 0 : -1;
+    if (after === this.filled) return after - 1;
+    const at = this.first + after;
+    return time - this.times[at - 1]! < this.times[at]! - time ? after - 1 : after;
   }
 }

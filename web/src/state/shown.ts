@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Tick } from "../gen/phalanx/tick_pb";
 import type { Shapes } from "../view3d/shapes";
+import type { Happened } from "./happened";
 import type { History } from "./history";
 import type { VerdictLight } from "./verdict";
 
@@ -8,6 +9,17 @@ export type Topic = "state" | "tick" | "notice" | "geometry" | "connection" | "o
 
 /// Why curves are not those of the displayed moment; empty: they are.
 export type OldCurves = "" | "offline" | "silent" | "unmeasured";
+
+/// What a saved figure states of its session. Empty: not known.
+export interface Circumstances {
+  readonly scene: string;
+  readonly stiffness: string; // [N/mm]
+  readonly law: string;
+  readonly stabiliser: string;
+  readonly rate: string; // steps a second [Hz]
+  readonly device: string;
+  readonly simulated: boolean | undefined;
+}
 
 /// The source of the 3D view, the plots and the figures: a running station (Store) or a recording (Player).
 export interface Shown {
@@ -24,6 +36,13 @@ export interface Shown {
   readonly objectKind: string; // as scenes name it; empty: not known
   readonly digitLimit: number; // of a digit's force [N]; Infinity: none, or not known
   readonly recordedAt?: number; // of the displayed moment of a recording, UTC [s]; absent for a running station
+  readonly windows: readonly number[]; // lengths of time that the plots can show [s], rising
+  readonly happened: readonly Happened[]; // in the order of time
+  readonly utcOffset: number; // UTC minus the ticks' clock [s]; NaN: not known
+  readonly scenes: readonly string[]; // by their numbers in the history
+  readonly circumstances: Circumstances;
+  /// The history is to reach back so far. @param seconds  one of `windows`
+  reachBack(seconds: number): void;
   on(topics: readonly Topic[], listener: () => void): void;
 }
 

@@ -7,17 +7,17 @@ import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
 import { Delivery } from "./delivery";
 import { Freshness } from "./freshness";
-import { History } from "./history";
+import { happenedOf, type Happened } from "./happened";
+import { capacityFor, History } from "./history";
 import { isChanged, kDigitLimit, limitOf, objectKind, slides, valueOf } from "./keys";
 import { Listeners } from "./listeners";
 import { roleOf, type Role } from "./roles";
-import type { OldCurves, Pausing, Shown, Topic } from "./shown";
-import { same } from "./toml";
+import { SceneNumbers } from "./scene_numbers";
+import type { Circumstances, OldCurves, Pausing, Shown, Topic } from "./shown";
+import { same, unquote } from "./toml";
 import { VerdictLight } from "./verdict";
 
-export const kHistorySeconds = 10;
-const kFramesPerSecond = 60;
-export const kHistoryCapacity = Math.ceil(1.1 * kHistorySeconds * kFramesPerSecond); // samples
+const kWindows: readonly number[] = [10, 60, 300]; // [s]
 const kNoticesKept = 200;
 const kPendingMs = 1500;
 /// The station sends its State twice a second; an older one does not count as the present state [ms].
@@ -40,7 +40,10 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
   paused = false;
   readonly light = new VerdictLight();
   readonly delivery = new Delivery();
-  readonly history = new History(channels.length, kHistoryCapacity);
+  readonly windows = kWindows;
+  readonly history = new History(channels.length, capacityFor(kWindows.at(-1)!));
+  happened: readonly Happened[] = [];
+  private readonly sceneNumbers = new SceneNumbers();
   readonly freshness: Freshness;
   private readonly pending = new Map<string, Pending>();
   private readonly row = new Float64Array(channels.length);
@@ -114,6 +117,30 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     return limitOf(valueOf(this.state, this.welcome, kDigitLimit));
   }
 
+  get utcOffset(): number {
+    return this.welcome ? this.welcome.unixTime - this.welcome.clock : NaN;
+  }
+
+  get scenes(): readonly string[] {
+    return this.sceneNumbers.names;
+  }
+
+  get circumstances(): Circumstances {
+    const value = (setting: string) => unquote(valueOf(this.state, this.welcome, setting));
+    return {
+      scene: this.state?.scene ?? "",
+      stiffness: value("force.stiffness_n_per_mm"),
+      law: value("force.law"),
+      stabiliser: value("stabiliser.method"),
+      rate: value("rate_hz"),
+      device: this.state?.deviceName ?? "",
+      simulated: this.state?.deviceSimulated,
+    };
+  }
+
+  /// The history is always as long as the longest window.
+  reachBack(): void {}
+
   get role(): Role {
     return roleOf(this.connected, this.welcome, this.state);
   }
@@ -147,6 +174,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
       case "welcome":
         this.welcome = what.value;
         this.notices = [...what.value.past];
+        this.happened = happenedOf(this.notices, this.utcOffset);
         this.tell("connection");
         this.tell("notice");
         break;
@@ -162,6 +190,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
       case "notice":
         this.notices.push(what.value);
         if (this.notices.length > kNoticesKept) this.notices.shift();
+        this.happened = happenedOf(this.notices, this.utcOffset);
         this.tell("notice");
         break;
       case "reply":
@@ -176,7 +205,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     this.tick = tick;
     this.light.feed(tick, this.now() / 1000);
     if (!this.paused) {
-      fillRow(tick, this.row);
+      fillRow(tick, this.row, this.sceneNumbers.of(this.state?.scene));
       this.history.push(tick.time, this.row);
     }
     this.tell("tick");

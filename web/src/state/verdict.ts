@@ -8,6 +8,8 @@ export type Verdict =
   | { readonly kind: "steady" }
   | { readonly kind: "shakes"; readonly frequency: number; readonly swing: number }; // [Hz], [N]
 
+export const verdictKinds: readonly Verdict["kind"][] = ["none", "off", "steady", "shakes"];
+
 const kOscillating = 1 << 13; // Status::kOscillating
 /// Shaking is shown at least so long, so that it is seen [s].
 export const kHoldSeconds = 0.5;

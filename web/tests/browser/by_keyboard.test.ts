@@ -162,7 +162,7 @@ describe("by keyboard", () => {
   });
 
   it("saves the curves", async () => {
-    for (const [name, ending] of [[strings.plots.csvLong, ".csv"], [strings.plots.pngLong, ".png"]] as const) {
+    for (const [name, ending] of [[strings.plots.csvLong, ".csv"], [strings.plots.svgLong, ".svg"], [strings.plots.pngLong, ".png"]] as const) {
       await tabTo(name, "button");
       const download = cockpit.page.waitForEvent("download");
       await cockpit.page.keyboard.press("Enter");

@@ -124,6 +124,7 @@ export class FakeHost {
   private timer: ReturnType<typeof setInterval> | undefined;
   private step = 0;
   private readonly began = Date.now();
+  private readonly utcOffset = this.began / 1000; // UTC minus the ticks' clock [s]
 
   constructor(name = "grasp_teapot,skin") {
     const played = recording(name);
@@ -176,8 +177,13 @@ export class FakeHost {
     this.send({ case: "state", value: this.state });
   }
 
+  /// The ticks' clock [s]: slower than the computer's where it is busy.
+  private get clock(): number {
+    return (this.step * kPeriodMs) / 1000;
+  }
+
   notice(level: number, who: string, code: string, text: string): void {
-    this.send({ case: "notice", value: create(NoticeSchema, { level, who, code, text, unixTime: Date.now() / 1000 }) });
+    this.send({ case: "notice", value: create(NoticeSchema, { level, who, code, text, unixTime: this.utcOffset + this.clock }) });
   }
 
   /// The line breaks, and stays so.
@@ -234,7 +240,8 @@ export class FakeHost {
           { level: 0, unixTime: Date.now() / 1000 - 60, who: "", code: "began", text: "The station began: grasp_teapot, simulated patient." },
           { level: 1, unixTime: Date.now() / 1000 - 30, who: "page 2 (127.0.0.1), Anna", code: "set", text: "force.stiffness_n_per_mm = 0.5" },
         ],
-        unixTime: Date.now() / 1000,
+        unixTime: this.utcOffset + this.clock,
+        clock: this.clock,
         viewerUrl: this.mayOperate ? ["https://192.0.2.7:8480/?token=Q3mYf0aLr8sVn2kTzB7w1A"] : [],
       }),
     });
@@ -245,7 +252,7 @@ export class FakeHost {
 
   private tick(): void {
     if (++this.step % 30 === 0) this.say();
-    const time = this.step * kPeriodMs / 1000;
+    const time = this.clock;
     const length = this.ticks.length;
     const at = this.touching ? Math.round(Math.abs(((time * 130 + 0.45 * length) % (2 * 0.55 * length)) - 0.55 * length) * 0.35 + 0.4 * length) : 20;
     const source = this.ticks[Math.min(length - 1, at)]!;

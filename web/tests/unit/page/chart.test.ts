@@ -1,32 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-import { beforeAll, beforeEach, describe, expect, it } from "vitest";
+import { afterEach, beforeAll, beforeEach, describe, expect, it, vi } from "vitest";
 import { chart, type Chart } from "../../../src/plots/chart";
-import { channels, channelsOf, kDigits } from "../../../src/state/channels";
+import { firstChoice, type PlotChoice } from "../../../src/plots/plot_kinds";
+import { TimeView } from "../../../src/plots/time_view";
+import { channels, channelsOf } from "../../../src/state/channels";
+import type { Happened } from "../../../src/state/happened";
 import { History } from "../../../src/state/history";
+import type { Shown } from "../../../src/state/shown";
 import { strings } from "../../../src/strings";
 import { drawnOn, fakeCanvases, forgetDrawn, textsOn } from "./fake_canvas";
 
 const kRate = 60;
-const all = new Array<boolean>(kDigits).fill(true);
 const index = (quantity: Parameters<typeof channelsOf>[0], part: number) => channelsOf(quantity)[part]!.index;
 let history: History;
+let view: TimeView;
+let happened: Happened[];
+let selects = false;
 let drawn: Chart | undefined;
 
 /// Ten seconds that all hold the same values, but for what `change` says of single samples.
 function fill(values: ReadonlyMap<number, number>, change: (sample: number, row: Float64Array) => void = () => {}): void {
   for (let i = 0; i <= 10 * kRate; ++i) {
     const row = new Float64Array(channels.length);
+    row[index("factor", 0)] = 1;
     for (const [channel, value] of values) row[channel] = value;
     change(i, row);
     history.push(i / kRate, row);
   }
 }
-function make(kind: Parameters<typeof chart>[0]): Chart {
-  drawn = chart(kind, history, "dark", all);
+function make(kind: Parameters<typeof chart>[0], choice: Partial<PlotChoice> = {}): Chart {
+  const shown = { history, happened, utcOffset: 0 } as unknown as Shown;
+  drawn = chart(kind, shown, view, { ...firstChoice, ...choice }, "dark", () => selects);
   document.body.replaceChildren(drawn.element);
   return drawn;
 }
-const press = (on: Chart, key: string) => on.element.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+const press = (on: Chart, key: string, shiftKey = false) => on.element.dispatchEvent(new KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }));
 const tip = () => document.querySelector<HTMLElement>(".plot-tip")!;
 const lines = () => [...tip().querySelectorAll("div")].map((line) => line.textContent);
 const spoken = () => document.querySelector("[role=status]")!.textContent!;
@@ -37,6 +45,9 @@ beforeAll(fakeCanvases);
 beforeEach(() => {
   drawn?.dispose();
   history = new History(channels.length, 660);
+  view = new TimeView(history, 10);
+  happened = [];
+  selects = false;
 });
 
 describe("a plot with the focus", () => {
@@ -47,35 +58,35 @@ describe("a plot with the focus", () => {
   });
 
   it("shows and says its values by arrow keys: in time", async () => {
-    const ramp = index("force_sent", 5);
+    const ramp = index("digit_force", 1);
     fill(new Map(), (i, row) => (row[ramp] = i / kRate));
     const force = make("force");
     await settled();
     expect(tip().hidden).toBe(true);
     press(force, "End");
     expect(tip().hidden).toBe(false);
-    expect(lines()).toEqual(["Index tip sent10.00 N"]);
+    expect(lines()).toEqual(["Index10.00 N"]);
     for (let i = 0; i < 10; ++i) press(force, "ArrowLeft");
-    expect(spoken()).toBe("-1.0 s, Index tip sent 9.00 N");
+    expect(spoken()).toBe("-1.00 s, Index 9.00 N");
     press(force, "Home");
     press(force, "ArrowRight");
-    expect(spoken()).toBe("-9.9 s, Index tip sent 0.10 N");
-    expect(lines()).toEqual(["Index tip sent0.10 N"]);
+    expect(spoken()).toBe("-9.90 s, Index 0.10 N");
+    expect(lines()).toEqual(["Index0.10 N"]);
   });
 
   it("names the curve nearest to the cursor first, by arrow keys up and down", async () => {
-    fill(new Map([[index("torque", 0), 0.3], [index("torque", 5), -0.3]]));
-    const torque = make("torque");
+    fill(new Map([[index("torque", 0), 0.3], [index("torque", 1), -0.3]]));
+    const torque = make("torque", { digit: 0 });
     await settled();
     for (let i = 0; i < 20; ++i) press(torque, "ArrowUp");
     expect(lines()[0]).toMatch(/^Thumb flexion0\.300/);
     for (let i = 0; i < 20; ++i) press(torque, "ArrowDown");
-    expect(lines()[0]).toMatch(/^Index spread-0\.300/);
+    expect(lines()[0]).toMatch(/^Thumb spread-0\.300/);
   });
 
   it("lets go of its values with the focus, and leaves other keys alone", () => {
     fill(new Map([[index("torque", 0), 0.3]]));
-    const torque = make("torque");
+    const torque = make("torque", { digit: 0 });
     const other = new KeyboardEvent("keydown", { key: "p", bubbles: true, cancelable: true });
     torque.element.dispatchEvent(other);
     expect(other.defaultPrevented).toBe(false);
@@ -89,8 +100,8 @@ describe("a plot with the focus", () => {
 
 describe("a plot under the pointer", () => {
   it("shows the values there until the pointer leaves, the nearest curve first, also while new ones come", async () => {
-    fill(new Map([[index("torque", 0), 0.3], [index("torque", 5), -0.3]]));
-    const torque = make("torque");
+    fill(new Map([[index("torque", 0), 0.3], [index("torque", 1), -0.3]]));
+    const torque = make("torque", { digit: 0 });
     await settled();
     const over = torque.element.querySelector<HTMLElement>(".u-over")!;
     const point = (clientX: number, clientY: number) => over.dispatchEvent(new MouseEvent("mousemove", { clientX, clientY, bubbles: true }));
@@ -101,7 +112,7 @@ describe("a plot under the pointer", () => {
     expect(lines()[0]).toMatch(/^Thumb flexion/);
     point(5, 30);
     await settled();
-    expect(lines()[0]).toMatch(/^Index spread/);
+    expect(lines()[0]).toMatch(/^Thumb spread/);
     const row = new Float64Array(channels.length).fill(0.25);
     for (let i = 1; i <= 11 * kRate; ++i) history.push(10 + i / kRate, row);
     torque.draw();
@@ -113,11 +124,82 @@ describe("a plot under the pointer", () => {
   });
 });
 
+describe("a time in a plot", () => {
+  const seconds = () => view.selection && [view.selection.from, view.selection.to].map((time) => time.toFixed(2));
+
+  it("is selected by keys with Shift, zoomed to and left again", async () => {
+    fill(new Map([[index("digit_force", 1), 2]]));
+    const force = make("force");
+    await settled();
+    press(force, "End");
+    for (let i = 0; i < 10; ++i) press(force, "ArrowLeft", true);
+    expect(seconds()).toEqual(["9.00", "10.00"]);
+    press(force, "Enter");
+    expect(view.zoom).toEqual(view.selection);
+    press(force, "Backspace");
+    expect(view.zoom).toBeUndefined();
+    press(force, "Delete");
+    expect(view.selection).toBeUndefined();
+    press(force, "ArrowLeft"); // without Shift nothing is selected
+    expect(view.selection).toBeUndefined();
+  });
+
+  it("is told to others while the cursor is there", async () => {
+    fill(new Map([[index("digit_force", 1), 2]]));
+    const told: (number | null)[] = [];
+    view.on(["pointed"], () => told.push(view.pointed));
+    const force = make("force");
+    await settled();
+    press(force, "Home");
+    force.element.dispatchEvent(new Event("blur"));
+    expect(told).toEqual([0, null]);
+  });
+
+  it("with an event is found by Page Up and Page Down, which say it", async () => {
+    happened = [{ time: 2, code: "stopped", text: "stopped the torque" }, { time: 7, code: "set", text: "stiffness = 2" }];
+    fill(new Map([[index("digit_force", 1), 2]]));
+    const force = make("force");
+    await settled();
+    press(force, "PageUp");
+    expect(spoken()).toContain("stiffness = 2");
+    press(force, "PageUp");
+    expect(spoken()).toContain("stopped the torque");
+    press(force, "PageDown");
+    expect(spoken()).toContain("stiffness = 2");
+  });
+});
+
+describe("what is not sent", () => {
+  beforeEach(() => {
+    vi.spyOn(HTMLElement.prototype, "clientWidth", "get").mockReturnValue(600);
+    vi.spyOn(HTMLElement.prototype, "clientHeight", "get").mockReturnValue(200);
+  });
+  afterEach(() => vi.restoreAllMocks());
+
+  it("is hatched, and the words stand there and beside the values", async () => {
+    fill(new Map([[index("force_raw", 5), 3]]), (i, row) => i >= 300 && (row[index("factor", 0)] = 0));
+    const force = make("segment");
+    await settled();
+    expect(textsOn(force.canvas())).toContain(strings.plots.notSent);
+    press(force, "End");
+    expect(spoken()).toContain(strings.plots.notSent);
+    press(force, "Home");
+    expect(spoken()).not.toContain(strings.plots.notSent);
+  });
+
+  it("is said nowhere while forces are sent", async () => {
+    fill(new Map([[index("force_raw", 5), 3]]));
+    const force = make("segment");
+    await settled();
+    expect(textsOn(force.canvas())).not.toContain(strings.plots.notSent);
+  });
+});
+
 describe("what lies beyond a plot", () => {
   it("is marked at its upper edge, with how far it goes", async () => {
     const raw = index("force_raw", 5);
     fill(new Map([[raw, 2]]), (i, row) => i >= 300 && i < 320 && (row[raw] = i === 310 ? 34.25 : 20));
-    const force = make("force");
+    const force = make("segment");
     await settled();
     const canvas = force.canvas();
     expect(textsOn(canvas)).toContain(strings.plots.beyond("34.3", "N"));

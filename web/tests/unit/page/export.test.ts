@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create } from "@bufbuild/protobuf";
-import { beforeAll, describe, expect, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import { csvOf, drawPicture, type Part } from "../../../src/plots/export";
-import { legendOf, plotKinds, titleOf } from "../../../src/plots/plot_kinds";
-import { kJoints } from "../../../src/state/channels";
+import { csvOf, figureOf } from "../../../src/plots/export";
+import { figureSvg } from "../../../src/plots/figure";
+import { firstChoice } from "../../../src/plots/plot_kinds";
+import { kDigits, kJoints } from "../../../src/state/channels";
 import { Store } from "../../../src/state/store";
 import { strings } from "../../../src/strings";
 import { digitColours } from "../../../src/theme";
 import { kSegments } from "../../../src/view3d/segments";
 import type { Shapes } from "../../../src/view3d/shapes";
-import { drawnOn, fakeCanvases, textsOn, textWidth } from "./fake_canvas";
-
-beforeAll(fakeCanvases);
 
 describe("the CSV", () => {
   it("has each value in the column of its segment or joint", () => {
@@ -21,12 +19,15 @@ describe("the CSV", () => {
     const names = { segmentName: Array.from({ length: kSegments }, (_, i) => `segment-${i}`), jointName: Array.from({ length: kJoints }, (_, i) => `joint-${i}`) };
     store.setGeometry(names as unknown as Shapes, 1);
     const joints = (first: number) => Array.from({ length: kJoints }, (_, joint) => first + joint);
-    const contact = Array.from({ length: kSegments }, (_, segment) => ({ segment, touching: true, force: 200 + segment, forceRaw: 100 + segment }));
+    const contact = Array.from({ length: kSegments }, (_, segment) => ({ segment, touching: true, force: 200 + segment, forceRaw: 100 + segment, normal: [0, 0, 1] }));
+    store.receive(create(ToPageSchema, { what: { case: "state", value: { scene: "press_teapot" } } }));
     const value = { tick: 1n, time: 1, factor: 0.5, contact, torque: joints(300), hcpAngle: joints(400), gdpAngle: joints(500), stiffness: 1200 };
     store.receive(create(ToPageSchema, { what: { case: "tick", value } }));
-    const [head, row] = csvOf(store).trimEnd().split("\r\n").map((line) => line.split(","));
+    const [head, row] = csvOf(store, { from: 0, to: 2 }).trimEnd().split("\r\n").map((line) => line.split(","));
     const cells = new Map(head!.map((name, i) => [name, row![i]]));
-    expect(cells.size).toBe(3 + 2 * kSegments + 3 * kJoints);
+    expect(cells.size).toBe(2 + 1 + 2 * kSegments + 3 * kJoints + kDigits + 3);
+    expect([cells.get("factor"), cells.get("verdict"), cells.get("scene")]).toEqual(["0.5", "steady", "press_teapot"]);
+    expect(cells.get("digit_force index [N]")).toBe(String(0.5 * (203 + 204 + 205)));
     expect(cells.get("station_time [s]")).toBe("1.0000");
     expect(cells.get("stiffness [N/m]")).toBe("1200");
     for (let i = 0; i < kSegments; ++i) {
@@ -35,47 +36,66 @@ describe("the CSV", () => {
     }
     for (let i = 0; i < kJoints; ++i) {
       expect(cells.get(`torque joint-${i} [Nm]`)).toBe(String(300 + i));
-      expect(cells.get(`angle_measured joint-${i} [rad]`)).toBe(String(400 + i));
-      expect(cells.get(`angle_shown joint-${i} [rad]`)).toBe(String(500 + i));
+      expect(Number(cells.get(`angle_measured joint-${i} [deg]`))).toBeCloseTo(((400 + i) * 180) / Math.PI, 1);
+      expect(Number(cells.get(`angle_shown joint-${i} [deg]`))).toBeCloseTo(((500 + i) * 180) / Math.PI, 1);
     }
   });
 });
 
-describe("the picture", () => {
-  const plot = (width: number) => Object.assign(document.createElement("canvas"), { width, height: 100 });
-  const parts = (width: number): Part[] => plotKinds.map((kind) => ({ title: titleOf(kind), legend: legendOf(kind), canvas: plot(width) }));
+/// A store that has seen ten seconds of an index finger that presses, and that was stopped after eight.
+function pressed(): Store {
+  const store = new Store();
+  store.setPhase("open");
+  const tell = (what: Parameters<typeof create<typeof ToPageSchema>>[1]) => store.receive(create(ToPageSchema, what));
+  const past = [{ unixTime: 1000 + 8, code: "stopped", text: "stopped the torque" }, { unixTime: 1000 + 3, code: "upload", text: "no curve changes" }];
+  tell({ what: { case: "welcome", value: { unixTime: 1000, clock: 0, past } } });
+  tell({ what: { case: "state", value: { scene: "press_teapot", deviceName: "Exo <5>", deviceSimulated: true, value: [{ key: "force.law", value: '"hooke"' }] } } });
+  for (let i = 0; i <= 600; ++i) {
+    const factor = i < 480 ? 1 : 0;
+    tell({ what: { case: "tick", value: { tick: BigInt(i + 1), time: i / 60, factor, contact: [{ segment: 5, touching: true, force: 2, forceRaw: 3, normal: [0, 0, 1] }] } } });
+  }
+  return store;
+}
+const span = { from: 0, to: 10 };
+const svgOf = (store: Store, choice = firstChoice) => figureSvg(figureOf(store, choice, span)).text;
+const textsOf = (svg: string) => [...new DOMParser().parseFromString(svg, "image/svg+xml").querySelectorAll("text")].map((one) => one.textContent);
 
-  it("says which colour is which digit, of those that are shown", () => {
-    const picture = drawPicture(parts(900), [true, false, true, false, false], "light")!;
-    const swatches = drawnOn(picture).filter((one) => one.what === "fillRect").slice(1);
-    expect(swatches.map((one) => one.fill)).toEqual([digitColours.light[0], digitColours.light[2]]);
-    const texts = drawnOn(picture).filter((one) => one.what === "fillText");
-    expect(texts.slice(0, 2).map((one) => one.values[0])).toEqual([strings.digits[0], strings.digits[2]]);
-    texts.slice(0, 2).forEach((text, i) => expect(Number(text.values[1])).toBeGreaterThan(Number(swatches[i]!.values[0]) + Number(swatches[i]!.values[2]) - 1));
-  });
-
-  it("holds each title and legend on a line of its own, and none runs out of it, however narrow the plots", () => {
-    const picture = drawPicture(parts(120), new Array<boolean>(5).fill(true), "dark")!;
-    const texts = drawnOn(picture).filter((one) => one.what === "fillText");
-    for (const kind of plotKinds) expect(textsOn(picture)).toEqual(expect.arrayContaining([titleOf(kind), legendOf(kind)]));
-    for (const text of texts) {
-      const right = Number(text.values[1]) + textWidth(String(text.values[0]), Number(/([\d.]+)px/.exec(text.font)![1]));
-      expect(right, String(text.values[0])).toBeLessThanOrEqual(picture.width);
+describe("the figure", () => {
+  it("states title, scene, settings, device, axes with units, and the curves' names, as text", () => {
+    const all = textsOf(svgOf(pressed()));
+    const { facts, titles } = strings.plots;
+    for (const fact of [facts.scene("press_teapot"), facts.law(strings.force.laws["hooke"]!), facts.simulated("Exo <5>")]) {
+      expect(all.some((text) => text?.includes(fact)), fact).toBe(true);
     }
-    const rows = texts.slice(strings.digits.length).map((text) => text.values[2]);
-    expect(new Set(rows).size).toBe(2 * plotKinds.length);
-    const images = drawnOn(picture).filter((one) => one.what === "drawImage");
-    expect(images.map((one) => Number(one.values[2]) + 100).at(-1)).toBe(picture.height);
+    expect(all).toEqual(expect.arrayContaining([titles.force, strings.plots.axis(strings.plots.axes.force, "N"), strings.plots.axis(strings.plots.time, "s")]));
+    expect(all).toEqual(expect.arrayContaining([...strings.digits]));
+    const computed = strings.digits.map(strings.plots.computed);
+    expect(textsOf(svgOf(pressed(), { ...firstChoice, computed: new Array<boolean>(5).fill(true) }))).toEqual(expect.arrayContaining(computed));
   });
 
-  it("says that it is of a recording, and is as wide as the word needs", () => {
-    const mark = strings.replay.watermark;
-    const picture = drawPicture(parts(120), [true, false, false, false, false], "dark", mark)!;
-    const text = drawnOn(picture).find((one) => one.what === "fillText" && one.values[0] === mark)!;
-    expect(Number(text.values[1]) + textWidth(mark, Number(/([\d.]+)px/.exec(text.font)![1]))).toBeLessThanOrEqual(picture.width);
+  it("has the curve of the finger that presses in its colour, and none for a force of zero", () => {
+    const paths = [...svgOf(pressed()).matchAll(/<path d="([^"]*)" fill="none" stroke="([^"]*)"/g)].map(([, path, colour]) => ({ path: path!, colour }));
+    expect(paths.length).toBe(5);
+    for (const { path, colour } of paths) expect(path !== "", colour).toBe(colour === digitColours.light[1]);
   });
 
-  it("is none where nothing is plotted", () => {
-    expect(drawPicture([], [true, true, true, true, true], "dark")).toBeNull();
+  it("marks events that change curves, and what is not sent", () => {
+    const all = textsOf(svgOf(pressed(), { ...firstChoice, subject: "segments" }));
+    expect(all).toContain(strings.replay.kinds["stopped"]);
+    expect(all).not.toContain(strings.replay.kinds["upload"]);
+    expect(all).toContain(strings.plots.notSent);
+  });
+
+  it("is a document without scripts, links or styles, whatever the texts", () => {
+    const svg = svgOf(pressed());
+    expect(svg).not.toMatch(/<script|href|<style|style="/);
+    expect(svg).not.toContain("Exo <5>");
+    expect(new DOMParser().parseFromString(svg, "image/svg+xml").querySelectorAll("svg").length).toBe(1);
+  });
+
+  it("of a recording says that it is one", () => {
+    const store = pressed();
+    Object.defineProperty(store, "recordedAt", { value: 1 });
+    expect(textsOf(svgOf(store)).some((text) => text?.includes(strings.replay.watermark))).toBe(true);
   });
 });

@@ -49,6 +49,14 @@ describe("History", () => {
     expect(history.time().length).toBe(0);
     expect(history.end).toBeNaN();
     expect(() => history.channel(1)).toThrow(RangeError);
+    expect(history.nearest(3)).toBe(-1);
+  });
+
+  it("finds samples by their times, also after it has wrapped", () => {
+    const history = new History(1, 5);
+    for (let time = 1; time <= 8; ++time) history.push(time, [time]);
+    expect([3, 4, 4.2, 8, 8.1].map((time) => history.firstFrom(time))).toEqual([0, 0, 1, 4, 5]);
+    expect([0, 4.4, 4.6, 99].map((time) => history.time()[history.nearest(time)])).toEqual([4, 4, 5, 8]);
   });
 });
 
@@ -57,21 +65,28 @@ describe("toCsv", () => {
     const history = new History(2, 4);
     history.push(100, [0.1, NaN]);
     history.push(100.0167, [-2, 1e-5]);
-    const text = toCsv(history, 10, [
+    const text = toCsv(history, 90, 101, [
       { name: "force_raw index tip", unit: "N" },
       { name: 'odd, "name"', unit: "rad" },
     ]);
     expect(text).toBe('time [s],station_time [s],force_raw index tip [N],"odd, ""name"" [rad]"\r\n0.0000,100.0000,0.1,\r\n0.0167,100.0167,-2,0.00001\r\n');
   });
 
-  it("holds no more than the last seconds", () => {
+  it("holds no more than the time that is asked for", () => {
     const history = new History(1, 8);
     for (const time of [1, 2, 11, 12, 13]) history.push(time, [time]);
-    const rows = toCsv(history, 2, [{ name: "a", unit: "N" }]).trimEnd().split("\r\n").slice(1);
-    expect(rows).toEqual(["0.0000,11.0000,11", "1.0000,12.0000,12", "2.0000,13.0000,13"]);
+    const rows = toCsv(history, 11, 12, [{ name: "a", unit: "N" }]).trimEnd().split("\r\n").slice(1);
+    expect(rows).toEqual(["0.0000,11.0000,11", "1.0000,12.0000,12"]);
+  });
+
+  it("scales values, and writes names for numbers", () => {
+    const history = new History(2, 4);
+    history.push(1, [Math.PI, 1]);
+    const text = toCsv(history, 0, 2, [{ name: "angle", unit: "deg", scale: 180 / Math.PI }, { name: "scene", unit: "", text: (value) => ["a", "b, c"][value]! }]);
+    expect(text).toBe('time [s],station_time [s],angle [deg],scene\r\n0.0000,1.0000,180,"b, c"\r\n');
   });
 
   it("is only a head where there is nothing", () => {
-    expect(toCsv(new History(1, 2), 10, [{ name: "a", unit: "N" }])).toBe("time [s],station_time [s],a [N]\r\n");
+    expect(toCsv(new History(1, 2), 0, 10, [{ name: "a", unit: "N" }])).toBe("time [s],station_time [s],a [N]\r\n");
   });
 });

@@ -3,12 +3,12 @@ import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeAll, beforeEach, describe, expect, it, vi } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import * as dom from "../../../src/panels/dom";
-import { titleOf } from "../../../src/plots/plot_kinds";
+import { firstChoice, titleOf, unitOf, type PlotKind } from "../../../src/plots/plot_kinds";
 import { plotPanel, type PlotPanel } from "../../../src/plots/plot_panel";
 import { csvOf } from "../../../src/plots/export";
 import { Store } from "../../../src/state/store";
 import { strings } from "../../../src/strings";
-import { fakeCanvases, textsOn } from "./fake_canvas";
+import { fakeCanvases } from "./fake_canvas";
 
 const words = strings.plots;
 let store: Store;
@@ -16,6 +16,9 @@ let panel: PlotPanel;
 const tick = (time: number) => store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: BigInt(1000 * time), time, factor: 1 } } }));
 const press = (name: string) =>
   [...panel.element.querySelectorAll("button")].find((one) => (one.getAttribute("aria-label") ?? one.textContent) === name)!.click();
+const follows = { ...firstChoice, computed: new Array<boolean>(5).fill(true) }; // no joint is sensed
+const title = (kind: PlotKind, choice = follows) => words.axis(titleOf(kind, choice), unitOf(kind));
+const entry = (digit: number) => panel.element.querySelector(`.plot-legend [data-digit="${digit}"]`)!;
 const plots = () => [...panel.element.querySelectorAll("figcaption strong")].map((title) => title.textContent);
 
 beforeAll(fakeCanvases);
@@ -45,13 +48,36 @@ describe("the plots", () => {
   });
 
   it("are those that were chosen, also when the page comes again", async () => {
-    expect(plots()).toEqual([titleOf("force")]); // there is room for one
-    press(words.titles.angle);
-    const chosen = [titleOf("force"), titleOf("angle")];
+    expect(plots()).toEqual([title("force")]);
+    press(words.subjects.joints);
+    const chosen = [title("torque"), title("angle")];
     expect(plots()).toEqual(chosen);
     panel = plotPanel(store, "dark", store);
     await Promise.resolve();
     expect(plots()).toEqual(chosen);
+  });
+
+  it("show the digit whose legend entry was pressed", () => {
+    press(words.subjects.segments);
+    press(strings.digits[3]!);
+    expect(plots()).toEqual([title("segment", { ...follows, digit: 3 })]);
+    expect(entry(3).getAttribute("aria-pressed")).toBe("true");
+    expect(entry(1).getAttribute("aria-pressed")).toBe("false");
+  });
+
+  it("say which digits are computed, as soon as it is known", () => {
+    store.receive(create(ToPageSchema, { what: { case: "state", value: { sensedJoint: [0, 1, 2, 4] } } }));
+    expect([0, 1, 2, 3, 4].map((digit) => entry(digit).hasAttribute("data-computed"))).toEqual([false, false, true, true, true]);
+    press(words.subjects.segments);
+    press(strings.digits[2]!);
+    expect(plots()[0]).toContain(words.computed(strings.digits[2]!));
+  });
+
+  it("show 10 s, a minute or five", () => {
+    const chosen = () => [...panel.element.querySelectorAll(`[aria-label="${words.window}"] [aria-pressed=true]`)].map((one) => one.textContent);
+    expect(chosen()).toEqual([words.windows(10)]);
+    press(words.windows(300));
+    expect(chosen()).toEqual([words.windows(300)]);
   });
 
   it("are saved as CSV by their button", async () => {
@@ -60,36 +86,22 @@ describe("the plots", () => {
     press(words.csvLong);
     const [name, blob] = save.mock.calls[0]!;
     expect(name).toMatch(/^phalanx-\d{8}-\d{6}\.csv$/);
-    expect(await blob.text()).toBe(csvOf(store));
+    expect(await blob.text()).toBe(csvOf(store, { from: -9, to: 1 }));
   });
 
-  it("of a recording are saved under the recorded moment, in a picture that says so", () => {
+  it("are saved as a figure; those of a recording under the recorded moment", async () => {
     const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
-    let picture: HTMLCanvasElement | undefined;
-    vi.spyOn(HTMLCanvasElement.prototype, "toBlob").mockImplementation(function (this: HTMLCanvasElement, done: BlobCallback) {
-      picture = this;
-      done(new Blob());
-    });
+    tick(1);
+    press(words.svgLong);
     Object.defineProperty(store, "recordedAt", { value: new Date(2026, 10, 27, 14, 3, 5).getTime() / 1000 });
     press(words.csvLong);
-    press(words.pngLong);
-    expect(save.mock.calls.map(([name]) => name)).toEqual(["phalanx-recording-20261127-140305.csv", "phalanx-recording-20261127-140305.png"]);
-    expect(textsOn(picture!)).toContain(strings.replay.watermark);
-  });
-
-  it("are saved as a picture by their button: those that are shown, of the digits that are shown", () => {
-    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
-    let picture: HTMLCanvasElement | undefined;
-    vi.spyOn(HTMLCanvasElement.prototype, "toBlob").mockImplementation(function (this: HTMLCanvasElement, done: BlobCallback) {
-      picture = this;
-      done(new Blob(["png"]));
-    });
-    press(strings.digits[1]!);
-    press(words.pngLong);
-    expect(save.mock.calls[0]![0]).toMatch(/^phalanx-\d{8}-\d{6}\.png$/);
-    const digits = strings.digits.filter((_, digit) => digit !== 1);
-    expect(textsOn(picture!).slice(0, 4)).toEqual(digits);
-    for (const title of plots()) expect(textsOn(picture!)).toContain(title);
+    press(words.svgLong);
+    const names = save.mock.calls.map(([name]) => name);
+    expect(names[0]).toMatch(/^phalanx-\d{8}-\d{6}\.svg$/);
+    expect(names.slice(1)).toEqual(["phalanx-recording-20261127-140305.csv", "phalanx-recording-20261127-140305.svg"]);
+    const [live, recorded] = await Promise.all([save.mock.calls[0]![1].text(), save.mock.calls[2]![1].text()]);
+    expect(live).not.toContain(strings.replay.watermark);
+    expect(recorded).toContain(strings.replay.watermark);
   });
 
   it("leave nothing behind when they are disposed of", async () => {

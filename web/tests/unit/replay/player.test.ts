@@ -4,9 +4,9 @@ import { describe, expect, it } from "vitest";
 import { GeometrySchema } from "../../../src/gen/phalanx/geometry_pb";
 import { Player } from "../../../src/replay/player";
 import type { Shapes } from "../../../src/view3d/shapes";
-import { kHistorySeconds } from "../../../src/state/store";
 import { change, forceAt, forceOf, gap, geometry, kRate, madeRecording, pose, poses, setup } from "./made_recording";
 
+const kHistorySeconds = 10; // at first
 type Message = Parameters<typeof madeRecording>[0][number];
 const kFrameMs = 20;
 const revisionOf = (shapes: Shapes | undefined) => Number(shapes?.jointName[0] ?? 0);
