@@ -8,7 +8,7 @@ export type ThemeName = "dark" | "light";
 /// One a digit, thumb to little finger.
 export const digitColours: Readonly<Record<ThemeName, readonly string[]>> = {
   dark: ["#E69F00", "#56B4E9", "#009E73", "#CC79A7", "#D55E00"],
-  light: ["#B98000", "#0072B2", "#009E73", "#CC79A7", "#A83F00"],
+  light: ["#B98000", "#0072B2", "#009E73", "#C0689A", "#A83F00"],
 };
 
 export interface Theme {

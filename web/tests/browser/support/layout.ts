@@ -73,6 +73,7 @@ export function placeOfStop(): readonly number[] {
 /// Runs in the page. @returns pairs of texts in sight that lie over each other
 export function overlappingTexts(): string[] {
   const kSlack = 2; // [px] of glyphs' boxes
+  const kSparse = 0.25; // of a line that is empty above and below its glyphs
   interface Seen {
     readonly text: string;
     readonly element: Element;
@@ -105,7 +106,8 @@ export function overlappingTexts(): string[] {
       if (one.element === other.element) continue;
       const wide = Math.min(one.box.right, other.box.right) - Math.max(one.box.left, other.box.left);
       const high = Math.min(one.box.bottom, other.box.bottom) - Math.max(one.box.top, other.box.top);
-      if (wide > kSlack && high > kSlack) found.add(`"${one.text}" and "${other.text}"`);
+      const least = Math.min(one.box.bottom - one.box.top, other.box.bottom - other.box.top);
+      if (wide > kSlack && high > Math.max(kSlack, kSparse * least)) found.add(`"${one.text}" and "${other.text}"`);
     }
   });
   return [...found];

@@ -30,7 +30,7 @@ describe("arrows of forces", () => {
   it("have the digits' colours, and are seen on the background of either theme; the palm's and hollow ones are others", () => {
     for (const name of Object.keys(themes) as ThemeName[]) {
       const { arrow, quiet, ghost, background } = themes[name];
-      for (const colour of [arrow, quiet, ...digitColours[name]]) expect(contrast(colour, background), colour).toBeGreaterThanOrEqual(kLeast - 0.3);
+      for (const colour of [arrow, quiet, ...digitColours[name]]) expect(contrast(colour, background), colour).toBeGreaterThanOrEqual(kLeast);
       expect(new Set([arrow, quiet, ghost, ...digitColours[name]]).size).toBeGreaterThanOrEqual(7);
     }
   });
