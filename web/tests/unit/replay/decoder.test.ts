@@ -43,7 +43,13 @@ it("a chunk holds what was written, with times since the begin; its survey has t
   const contents = parts.map((part) => decodeChunk(part, recording.layout));
   expect(contents.flatMap((content) => content.poses.map(({ time }) => time)).length).toBe(60);
   expect(contents.flatMap((content) => content.stations)).toEqual([
-    { time: 0.001, value: { scene: "s", slides: false, objectKind: "mug", digitLimit: 7.5, device: "beihang", rendersTorque: false, sensedJoint: [] } },
+    {
+      time: 0.001,
+      value: {
+        scene: "s", slides: false, objectKind: "mug", digitLimit: 7.5, stiffness: "", law: "", stabiliser: "", rate: "",
+        device: "beihang", rendersTorque: false, simulated: false, sensedJoint: [],
+      },
+    },
   ]);
   expect(contents.flatMap((content) => content.events)).toEqual([{ time: 0.9, value: { code: "marker", who: "127.0.0.1", text: "one" } }]);
   expect(contents.flatMap((content) => content.gaps)).toEqual([{ time: 0.95, value: { steps: 5, why: "late" } }]);
