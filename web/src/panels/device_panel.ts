@@ -7,6 +7,7 @@ import { el, section, setShown, setText } from "./dom";
 import { isBehind, recordingsLink } from "./recording";
 import { faultSection } from "./fault_card";
 import { histogram } from "./histogram";
+import type { CalibrationDialog } from "./calibration_dialog";
 import { wizardSection } from "./wizard";
 
 const words = strings.device;
@@ -33,6 +34,7 @@ function deviceFacts(state: State): readonly Fact[] {
     [words.torque, state.rendersTorque ? words.renders : words.noTorque],
     [words.watchdog, state.holdsWithoutHost ? words.noWatchdog : words.letsGo, state.holdsWithoutHost],
     [words.calibration, state.calibration || words.ownNumbers],
+    [words.range, state.range || words.noRange],
     [words.realtime, state.realtime || words.realtimeUnknown],
   ];
 }
@@ -78,7 +80,7 @@ function loopFacts(loop: Loop): readonly Fact[] {
   ];
 }
 
-export function devicePanel(app: App): HTMLElement {
+export function devicePanel(app: App, calibration: CalibrationDialog): HTMLElement {
   const device = el("dl", { class: "facts" });
   const link = el("dl", { class: "facts facts-narrow" });
   const loop = el("dl", { class: "facts facts-narrow" });
@@ -114,7 +116,7 @@ export function devicePanel(app: App): HTMLElement {
     {},
     section(words.title, holds, device),
     faultSection(app),
-    wizardSection(app),
+    wizardSection(app, calibration),
     section(words.loop, degraded, loop, lateness.element, step.element),
     section(words.link, link),
     section(words.recording, unsaved, notRecorded, recording, recordingsLink()),

@@ -21,10 +21,13 @@ export interface ViewFrame {
   setTheme(theme: ThemeName): void;
   camera(preset: CameraPreset): void;
   zoom(factor: number): void;
+  setCalibrating(on: boolean): void; // the hand alone, with a ghost where it is to go
 }
 
 export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFrame {
   let view: HandView | undefined;
+  let calibrating = false;
+  const partsNow = (): ShownParts => (calibrating ? { ...parts, ghost: true, arrows: false, object: false, cones: false } : parts);
   let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   const host = el("div", { class: "view-host", tabindex: 0, role: "application", "aria-label": words.label });
   const wait = el("p", { class: "view-wait" }, words.loading);
@@ -38,7 +41,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     const control = switchButton(words.parts[part], (on) => {
       parts = { ...parts, [part]: on };
       setSwitch(control, on);
-      view?.setParts(parts);
+      view?.setParts(partsNow());
     });
     setSwitch(control, parts[part]);
     return control;
@@ -88,7 +91,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     }
     if (wait.textContent === words.loading) setShown(wait, false);
     view.setTheme(theme);
-    view.setParts(parts);
+    view.setParts(partsNow());
     view.setLost(source.viewDead);
     if (source.geometry) view.setGeometry(source.geometry);
     if (source.tick) view.show(source.tick);
@@ -102,5 +105,9 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     setTheme: (theme) => view?.setTheme(theme),
     camera,
     zoom,
+    setCalibrating(on) {
+      calibrating = on;
+      view?.setParts(partsNow());
+    },
   };
 }

@@ -125,6 +125,12 @@ export class FakeHost {
   private step = 0;
   private readonly began = Date.now();
 
+  /// The poses of an open hand and of a closed one.
+  hands(): { hand: number[]; target: number[] } {
+    const closed = this.ticks[Math.floor(this.ticks.length / 2)];
+    return { hand: this.ticks[0]?.gdpPose ?? [], target: closed?.gdpPose ?? [] };
+  }
+
   constructor(name = "grasp_teapot,skin") {
     const played = recording(name);
     this.ticks = played.ticks;
@@ -240,11 +246,12 @@ export class FakeHost {
     });
     this.say();
     this.hush();
-    this.timer = setInterval(() => this.playing && this.tick(), kPeriodMs);
+    this.timer = setInterval(() => (this.playing || this.state.wizard) && this.tick(), kPeriodMs);
   }
 
   private tick(): void {
     if (++this.step % 30 === 0) this.say();
+    if (!this.playing) return; // a calibration sends no steps
     const time = this.step * kPeriodMs / 1000;
     const length = this.ticks.length;
     const at = this.touching ? Math.round(Math.abs(((time * 130 + 0.45 * length) % (2 * 0.55 * length)) - 0.55 * length) * 0.35 + 0.4 * length) : 20;

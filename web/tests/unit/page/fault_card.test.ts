@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { beforeEach, describe, expect, it } from "vitest";
+import { calibrationDialog } from "../../../src/panels/calibration_dialog";
 import { devicePanel } from "../../../src/panels/device_panel";
 import { faultCard, faultSection } from "../../../src/panels/fault_card";
 import { strings } from "../../../src/strings";
@@ -19,7 +20,7 @@ describe("a fault", () => {
     for (const place of places) {
       for (const text of [fault.meaning, fault.remedy, fault.report, words.channel(7), "sensor jump"]) expect(place.textContent).toContain(text);
     }
-    expect(devicePanel(fake.app).textContent).toContain(fault.meaning);
+    expect(devicePanel(fake.app, calibrationDialog(fake.app, () => {})).textContent).toContain(fault.meaning);
   });
 
   it("is reset from either place, and what is refused is said there", async () => {
