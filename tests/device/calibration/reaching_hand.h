@@ -21,7 +21,7 @@ class ReachingHand final : public Device {
  public:
   static constexpr double kCount = 1e-4;        ///< [rad]
   static constexpr double kNoise = 0.3 * kDeg;  ///< rms of the sensors [rad]
-  static constexpr double kYield = 20.0;        ///< speed of a relaxed joint per torque [rad/s per Nm]
+  static constexpr double kYield = 2.0;         ///< speed of a relaxed joint per torque [rad/s per Nm]
   static constexpr double kPeriod = 1e-3;       ///< [s]
 
   explicit ReachingHand(double reach) : reach_(reach) {
