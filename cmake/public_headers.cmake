@@ -35,10 +35,14 @@ set(PHALANX_STATION_PUBLIC_HEADERS # of phalanx::station
     device/fault.h
     device/latest.h
     device/link/phalanx_link.h
+    device/measured_range.h
     device/motion.h
+    device/range_session.h
     device/sample_queue.h
+    device/stillness.h
     grasp/grasp_type.h
     scene/calibration_file.h
+    scene/range_file.h
     scene/scene.h
     station/deadline_statistics.h
     station/realtime.h

@@ -34,6 +34,7 @@ void add_completion_command(CLI::App& app, Job& job);
 
 // The commands of `phalanx device`.
 void add_device_calibrate(CLI::App& device, Job& job);
+void add_device_range(CLI::App& device, Job& job);
 void add_device_probe(CLI::App& device, Job& job);
 void add_device_monitor(CLI::App& device, Job& job);
 void add_device_test_link(CLI::App& device, Job& job);

@@ -60,8 +60,8 @@ class Fitter {
                             [](const PoseReading& a, const PoseReading& b) { return a.value < b.value; });
     const double apart = readings_.empty() ? 0.0 : rad_ * (high->value - low->value);
     if (apart <= limits_.apart) {
-      refuse("{} poses, {:.1f} deg apart; measure at least two different ones, such as both end stops",
-             readings_.size(), apart / kDeg);
+      refuse("{} poses, {:.1f} deg apart; measure at least two whose angles differ by more than {:.0f} deg",
+             readings_.size(), apart / kDeg, limits_.apart / kDeg);
     }
   }
 
@@ -143,7 +143,7 @@ class Fitter {
       if (std::abs(fit.residual[i]) <= limits_.most_residual) continue;
       refuse(
           "{}: {:+.1f} deg beside the straight line through all poses, at most {:.1f} are allowed; measure "
-          "this pose again, and check that the hand's range of motion (--hand, --profile) is the wearer's",
+          "this pose again, and check the angle that is stated for it",
           readings_[i].pose, fit.residual[i] / kDeg, limits_.most_residual / kDeg);
     }
   }
@@ -161,8 +161,10 @@ class Fitter {
     for (const PoseReading& r : readings_) {
       for (const double value : {r.value, fit.gain * r.raw + fit.offset}) {
         if (value >= low - margin && value <= high + margin) continue;
-        refuse("{}: {:.1f} deg is beyond what a hand can do, {:.1f} .. {:.1f}; check --hand or --profile",
-               r.pose, rad_ * value / kDeg, rad_ * low / kDeg, rad_ * high / kDeg);
+        refuse(
+            "{}: {:.1f} deg is beyond what a hand can do, {:.1f} .. {:.1f}; check the angle that is stated "
+            "for it",
+            r.pose, rad_ * value / kDeg, rad_ * low / kDeg, rad_ * high / kDeg);
       }
     }
   }
@@ -245,6 +247,32 @@ double radians_per_unit(ChannelKind kind, int index, const HandParameters& hand)
   if (kind == ChannelKind::kCurl) return (range(0) + range(2) + range(3)) / 3.0;
   if (kind == ChannelKind::kSplay) return range(1) / 2.0;
   return 1.0;
+}
+
+int leading_joint(const DeviceChannel& channel) noexcept {
+  if (channel.kind == ChannelKind::kCurl) return joint_index(channel.index, 2);
+  if (channel.kind == ChannelKind::kSplay) return joint_index(channel.index, kAbductionJoint);
+  return channel.index;
+}
+
+double angle_of_value(const DeviceChannel& channel, double value, const HandParameters& hand) noexcept {
+  if (channel.kind == ChannelKind::kAngle) return value;
+  const auto j = static_cast<std::size_t>(leading_joint(channel));
+  const double range = hand.max_angle[j] - hand.min_angle[j];
+  const double share = channel.kind == ChannelKind::kSplay ? 0.5 * (value + 1.0) : value;
+  return hand.min_angle[j] + share * range;
+}
+
+double value_of_angle(const DeviceChannel& channel, double angle, const HandParameters& hand) noexcept {
+  if (channel.kind == ChannelKind::kAngle) return angle;
+  const auto j = static_cast<std::size_t>(leading_joint(channel));
+  const double share = (angle - hand.min_angle[j]) / (hand.max_angle[j] - hand.min_angle[j]);
+  return channel.kind == ChannelKind::kSplay ? 2.0 * share - 1.0 : share;
+}
+
+std::string_view calibration_method_name(CalibrationMethod method) noexcept {
+  if (method == CalibrationMethod::kJig) return "jig";
+  return method == CalibrationMethod::kStops ? "stops" : "goniometer";
 }
 
 ChannelFit fit_channel(const DeviceChannel& channel, std::span<const PoseReading> readings,

@@ -63,6 +63,14 @@ std::string digit_words(int digit) {
   return is_thumb(digit) ? "thumb" : fmt::format("{} finger", digit_name(digit));
 }
 
+/// A motion of one channel in words.
+struct MotionWords {
+  std::string name;     ///< "index_pip_flexion", "index curl"
+  std::string part;     ///< "the middle joint of the index finger"
+  std::string larger;   ///< "bent"
+  std::string smaller;  ///< "straight"
+};
+
 // Names a joint in words: "the middle joint of the index finger".
 std::string joint_words(int joint) {
   constexpr std::array<std::string_view, kJointsPerDigit> kFinger = {"knuckle", "", "middle joint",
@@ -73,88 +81,147 @@ std::string joint_words(int joint) {
   return fmt::format("the {} of the {}", is_thumb(digit) ? kThumb[i] : kFinger[i], digit_words(digit));
 }
 
-struct EndStops {
-  std::string name, towards_largest, towards_smallest;
-};
-
-EndStops end_stops(const DeviceChannel& c) {
-  const std::string digit = digit_words(digit_of(c));
+MotionWords motion_words(const DeviceChannel& c) {
+  const int digit = digit_of(c);
+  const std::string whole = fmt::format("the {}", digit_words(digit));
   if (spreads(c)) {
-    return {.name = fmt::format("{} splay", digit_name(digit_of(c))),
-            .towards_largest = fmt::format("Spread the {} away from the middle finger as far as it goes "
-                                           "(the middle finger: towards the thumb).",
-                                           digit),
-            .towards_smallest = fmt::format("Move the {} the other way as far as it goes.", digit)};
+    const bool middle = digit == static_cast<int>(Digit::kMiddle);
+    return {.name = fmt::format("{} splay", digit_name(digit)),
+            .part = whole,
+            .larger = middle ? "spread towards the thumb" : "spread away from the middle finger",
+            .smaller = "moved to the other side"};
   }
-  if (c.kind == ChannelKind::kCurl) {
-    return {.name = fmt::format("{} curl", digit_name(c.index)),
-            .towards_largest = fmt::format("Close the {}, all its joints, as far as it goes.", digit),
-            .towards_smallest = fmt::format("Stretch the {} and bend it back as far as it goes.", digit)};
-  }
-  if (c.index == joint_index(static_cast<int>(Digit::kThumb), 0)) {  // its flexion is opposition
+  if (c.kind == ChannelKind::kCurl)
+    return {.name = fmt::format("{} curl", digit_name(digit)),
+            .part = whole,
+            .larger = "closed",
+            .smaller = "open"};
+  if (c.index == joint_index(static_cast<int>(Digit::kThumb), 0))  // its flexion is opposition
     return {.name = std::string(joint_name(c.index)),
-            .towards_largest = "Move the thumb across the palm towards the little finger as far as it goes.",
-            .towards_smallest =
-                "Move the thumb back to the side of the hand as far as it goes, "
-                "behind the palm's plane if it can."};
-  }
-  const std::string joint = joint_words(c.index);
-  return {
-      .name = std::string(joint_name(c.index)),
-      .towards_largest = fmt::format("Bend {} as far as it goes.", joint),
-      .towards_smallest = fmt::format("Straighten {} as far as it goes, beyond straight if it can.", joint)};
+            .part = whole,
+            .larger = "across the palm, towards the little finger",
+            .smaller = "at the side of the hand"};
+  return {.name = std::string(joint_name(c.index)),
+          .part = joint_words(c.index),
+          .larger = "bent",
+          .smaller = "straight"};
 }
 
 using Value = std::function<std::optional<double>(const DeviceChannel&)>;
 
 class Poses {
  public:
-  explicit Poses(std::span<const DeviceChannel> channels) : channels_(channels) {}
+  Poses(std::span<const DeviceChannel> channels, const CalibrationPlan& plan)
+      : channels_(channels), plan_(plan) {}
 
+  [[nodiscard]] bool chosen(const DeviceChannel& c) const {
+    if (!can_be_posed(c)) return false;
+    const auto& joints = plan_.joints;
+    return joints.empty() || std::find(joints.begin(), joints.end(), leading_joint(c)) != joints.end();
+  }
   void add(std::string name, std::string instruction, const Value& value) {
-    CalibrationPose pose{.name = std::move(name), .instruction = std::move(instruction), .value = {}};
-    for (const DeviceChannel& c : channels_)
-      pose.value.push_back(can_be_posed(c) ? value(c) : std::optional<double>{});
+    CalibrationPose pose{
+        .name = std::move(name), .instruction = std::move(instruction), .value = {}, .concerns = {}};
+    for (const DeviceChannel& c : channels_) {
+      pose.value.push_back(chosen(c) ? value(c) : std::optional<double>{});
+      pose.concerns.push_back(pose.value.back().has_value());
+    }
     const bool says_something =
-        std::any_of(pose.value.begin(), pose.value.end(), [](const auto& v) { return v.has_value(); });
+        std::find(pose.concerns.begin(), pose.concerns.end(), true) != pose.concerns.end();
     if (says_something) poses_.push_back(std::move(pose));
   }
-  void add_for(const DeviceChannel& only, std::string name, std::string instruction, double value) {
+  /// Adds a pose of one channel. @param value  none: it is to be entered
+  void add_for(const DeviceChannel& only, std::string name, std::string instruction,
+               std::optional<double> value) {
     add(std::move(name), std::move(instruction),
-        [&](const DeviceChannel& c) { return &c == &only ? std::optional<double>(value) : std::nullopt; });
+        [&](const DeviceChannel& c) { return &c == &only ? value.value_or(0.0) : std::optional<double>{}; });
+    if (!value && !poses_.empty()) poses_.back().value.assign(channels_.size(), std::nullopt);
   }
   [[nodiscard]] std::vector<CalibrationPose> take() { return std::move(poses_); }
 
  private:
   std::span<const DeviceChannel> channels_;
+  const CalibrationPlan& plan_;
   std::vector<CalibrationPose> poses_;
 };
 
-}  // namespace
-
-std::vector<CalibrationPose> calibration_poses(std::span<const DeviceChannel> channels,
-                                               const HandParameters& hand) {
+void add_jig(Poses& poses, std::span<const DeviceChannel> channels, const HandParameters& hand) {
   using Known = std::optional<double>;
-  Poses poses(channels);
-  poses.add("open hand", "Lay the hand flat on a table, fingers straight and side by side.",
+  poses.add("open hand", "On the jig: the open hand, each joint at the angle that is shown.",
             [&](const DeviceChannel& c) -> Known { return open_value(c, hand); });
-  poses.add("fist", "Make a fist, every joint of the four fingers bent as far as it goes.",
+  poses.add("fist", "On the jig: the fist, each joint of the four fingers at the angle that is shown.",
             [&](const DeviceChannel& c) -> Known {
               if (spreads(c) || is_thumb(digit_of(c))) return std::nullopt;
               return largest(c, hand);
             });
-  poses.add("spread", "Spread all fingers and the thumb as wide as they go.",
+  poses.add("spread", "On the jig: fingers and thumb spread, each at the angle that is shown.",
             [&](const DeviceChannel& c) -> Known {
               const bool stays = digit_of(c) == static_cast<int>(Digit::kMiddle);
               if (!spreads(c) || stays) return std::nullopt;
               return largest(c, hand);
             });
   for (const DeviceChannel& c : channels) {
-    if (!can_be_posed(c)) continue;
-    const EndStops stops = end_stops(c);
-    poses.add_for(c, stops.name + " largest", stops.towards_largest, largest(c, hand));
-    poses.add_for(c, stops.name + " smallest", stops.towards_smallest, smallest(c, hand));
+    if (!poses.chosen(c)) continue;
+    const MotionWords words = motion_words(c);
+    const auto text = [&](const std::string& where) {
+      return fmt::format("On the jig: {} {}, at the angle that is shown.", words.part, where);
+    };
+    poses.add_for(c, words.name + " largest", text(words.larger), largest(c, hand));
+    poses.add_for(c, words.name + " smallest", text(words.smaller), smallest(c, hand));
   }
+}
+
+void add_stops(Poses& poses, std::span<const DeviceChannel> channels, const CalibrationPlan& plan) {
+  for (const DeviceChannel& c : channels) {
+    if (!poses.chosen(c) || c.kind != ChannelKind::kAngle) continue;
+    const auto stops = std::find_if(plan.stops.begin(), plan.stops.end(),
+                                    [&](const JointStops& s) { return s.joint == c.index; });
+    if (stops == plan.stops.end()) continue;
+    const MotionWords words = motion_words(c);
+    const auto text = [&](const std::string& where) {
+      return fmt::format("No hand in the device. Move {} by hand to the device's stop: {}.", words.part,
+                         where);
+    };
+    poses.add_for(c, words.name + " largest", text(words.larger), stops->max);
+    poses.add_for(c, words.name + " smallest", text(words.smaller), stops->min);
+  }
+}
+
+void add_goniometer(Poses& poses, std::span<const DeviceChannel> channels) {
+  for (const DeviceChannel& c : channels) {
+    if (!poses.chosen(c)) continue;
+    const MotionWords words = motion_words(c);
+    const bool curl = c.kind == ChannelKind::kCurl;
+    const std::string where = curl ? "its middle joint" : "the joint";
+    poses.add_for(
+        c, words.name + " first",
+        fmt::format(
+            "Hold {} {} as far as is comfortable. Measure {} with the goniometer and enter the angle.",
+            words.part, words.smaller, where),
+        std::nullopt);
+    poses.add_for(
+        c, words.name + " second",
+        fmt::format("Hold {} further {}, at least 20 degrees from the first position. Measure {} and enter "
+                    "the angle.",
+                    words.part, words.larger, where),
+        std::nullopt);
+    poses.add_for(
+        c, words.name + " third",
+        fmt::format("To check both: hold {} between the two positions, measure {} and enter the angle. It "
+                    "may be skipped.",
+                    words.part, where),
+        std::nullopt);
+  }
+}
+
+}  // namespace
+
+std::vector<CalibrationPose> calibration_poses(std::span<const DeviceChannel> channels,
+                                               const HandParameters& hand, const CalibrationPlan& plan) {
+  Poses poses(channels, plan);
+  if (plan.method == CalibrationMethod::kJig) add_jig(poses, channels, hand);
+  if (plan.method == CalibrationMethod::kStops) add_stops(poses, channels, plan);
+  if (plan.method == CalibrationMethod::kGoniometer) add_goniometer(poses, channels);
   return poses.take();
 }
 

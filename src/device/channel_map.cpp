@@ -202,32 +202,26 @@ ChannelMap::ChannelMap(std::vector<DeviceChannel> channels, JointFollowers follo
   follow_origins(followers_.coupled, followers_.copy, measured_, angle_origin_);
 }
 
-void ChannelMap::measure(std::size_t channel, double value, Sample& out) const noexcept {
-  const int index = channels_[channel].index;
-  switch (channels_[channel].kind) {
-    case ChannelKind::kAngle:
-      out.angle[idx(index)] = value;
-      break;
-    case ChannelKind::kTorque:
-      out.measured_torque[idx(index)] = value;
-      break;
-    case ChannelKind::kForce:
-      out.measured_force[idx(index)] = value;
-      break;
-    case ChannelKind::kCurl:
-      for (int i = 0; i < kJointsPerDigit; ++i) {
-        const auto j = idx(joint_index(index, i));
-        if (i != kAbductionJoint) out.angle[j] = min_[j] + value * (max_[j] - min_[j]);
-      }
-      break;
-    case ChannelKind::kSplay: {
-      const auto j = idx(joint_index(index, kAbductionJoint));
-      out.angle[j] = 0.5 * (min_[j] + max_[j]) + value * 0.5 * (max_[j] - min_[j]);
-      break;
+void put_angles(const DeviceChannel& channel, double value, const JointArray& min, const JointArray& max,
+                JointArray& angle) noexcept {
+  if (channel.kind == ChannelKind::kAngle) angle[idx(channel.index)] = value;
+  if (channel.kind == ChannelKind::kCurl) {
+    for (int i = 0; i < kJointsPerDigit; ++i) {
+      const auto j = idx(joint_index(channel.index, i));
+      if (i != kAbductionJoint) angle[j] = min[j] + value * (max[j] - min[j]);
     }
-    case ChannelKind::kMotor:  // does not affect the hand beyond its angle channels
-      break;
   }
+  if (channel.kind == ChannelKind::kSplay) {
+    const auto j = idx(joint_index(channel.index, kAbductionJoint));
+    angle[j] = 0.5 * (min[j] + max[j]) + value * 0.5 * (max[j] - min[j]);
+  }
+}
+
+void ChannelMap::measure(std::size_t channel, double value, Sample& out) const noexcept {
+  const DeviceChannel& c = channels_[channel];
+  if (c.kind == ChannelKind::kTorque) out.measured_torque[idx(c.index)] = value;
+  if (c.kind == ChannelKind::kForce) out.measured_force[idx(c.index)] = value;
+  put_angles(c, value, min_, max_, out.angle);
 }
 
 void ChannelMap::convert(const DeviceSample& raw, Sample& out) const noexcept {

@@ -20,6 +20,9 @@ constexpr NumberRange kValue = {.min = -100.0, .max = 100.0};
 constexpr NumberRange kOffset = {.min = -1e6, .max = 1e6};
 constexpr NumberRange kGain = {.min = -100.0, .max = 100.0};
 constexpr NumberRange kResidual = {.min = 0.0, .max = 10.0};
+constexpr NumberRange kPoseResidual = {.min = -10.0, .max = 10.0};
+
+constexpr const char* kWriteDate = "write UTC as \"2026-05-04T09:30:00Z\"";
 
 const std::vector<std::string>& kind_names() {
   static const std::vector<std::string> names = {"angle", "curl", "splay"};
@@ -65,6 +68,15 @@ int read_name(TomlTable& table, std::string_view key, int count, Name name_of) {
   table.fail(key, fmt::format("did you mean \"{}\"?", nearest_name(text, known)));
 }
 
+CalibrationMethod read_method(TomlTable& table) {
+  const std::string text = table.text("method");
+  static const std::vector<std::string> names = {"jig", "stops", "goniometer"};
+  for (const CalibrationMethod method :
+       {CalibrationMethod::kJig, CalibrationMethod::kStops, CalibrationMethod::kGoniometer})
+    if (text == calibration_method_name(method)) return method;
+  table.fail("method", fmt::format("did you mean \"{}\"?", nearest_name(text, names)));
+}
+
 double read_gain(TomlTable& table) {
   const double gain = table.number("gain", kGain);
   if (gain == 0.0) table.fail("gain", "gives every count the same value; calibrate again");
@@ -76,6 +88,7 @@ PoseReading read_pose(TomlTable table) {
   pose.pose = table.text("name");
   pose.raw = table.number("raw", kRaw);
   pose.value = table.number("value", kValue);
+  pose.residual = table.number("residual_rad", kPoseResidual);
   table.finish();
   return pose;
 }
@@ -89,20 +102,12 @@ CalibratedChannel read_channel(TomlTable table) {
   channel.gain = read_gain(table);
   channel.offset = table.number("offset", kOffset);
   read.residual = table.number("residual_rad", kResidual);
+  read.method = read_method(table);
+  if (table.has("date")) read.date = table.text("date");
+  if (!read.date.empty() && !is_calibration_date(read.date)) table.fail("date", kWriteDate);
   for (TomlTable& pose : table.tables("poses", -1)) read.poses.push_back(read_pose(std::move(pose)));
   table.finish();
   return read;
-}
-
-// @returns true for a date such as "2026-05-04T09:30:00Z".
-bool is_date(std::string_view text) {
-  constexpr std::string_view kShape = "0000-00-00T00:00:00Z";
-  if (text.size() != kShape.size()) return false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool digit = text[i] >= '0' && text[i] <= '9';
-    if (kShape[i] == '0' ? !digit : text[i] != kShape[i]) return false;
-  }
-  return true;
 }
 
 void read_head(TomlTable& table, Calibration& calibration) {
@@ -114,7 +119,7 @@ void read_head(TomlTable& table, Calibration& calibration) {
   calibration.device = table.text("device");
   calibration.serial = table.text("serial");
   calibration.date = table.text("date");
-  if (!is_date(calibration.date)) table.fail("date", "write UTC as \"2026-05-04T09:30:00Z\"");
+  if (!is_calibration_date(calibration.date)) table.fail("date", kWriteDate);
   calibration.phalanx = table.text("phalanx");
 }
 
@@ -126,6 +131,16 @@ bool has_channel(const Calibration& calibration, const DeviceChannel& channel) {
 
 }  // namespace
 
+bool is_calibration_date(std::string_view text) {
+  constexpr std::string_view kShape = "0000-00-00T00:00:00Z";
+  if (text.size() != kShape.size()) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool digit = text[i] >= '0' && text[i] <= '9';
+    if (kShape[i] == '0' ? !digit : text[i] != kShape[i]) return false;
+  }
+  return true;
+}
+
 std::string calibration_text(const Calibration& calibration) {
   std::string text = fmt::format(
       "# Written by `phalanx device calibrate`: value = gain raw + offset, angles in rad.\n"
@@ -133,13 +148,15 @@ std::string calibration_text(const Calibration& calibration) {
       kCalibrationFormat, toml_string(calibration.device), toml_string(calibration.serial),
       toml_string(calibration.date), toml_string(calibration.phalanx));
   for (const CalibratedChannel& c : calibration.channels) {
-    text += fmt::format("\n[[channel]]\nkind = \"{}\"\n{}\ngain = {}\noffset = {}\nresidual_rad = {}\n",
-                        kind_name(c.channel.kind), place_of(c.channel), c.channel.gain, c.channel.offset,
-                        c.residual);
+    text += fmt::format(
+        "\n[[channel]]\nkind = \"{}\"\n{}\ngain = {}\noffset = {}\nresidual_rad = {}\nmethod = \"{}\"\n",
+        kind_name(c.channel.kind), place_of(c.channel), c.channel.gain, c.channel.offset, c.residual,
+        calibration_method_name(c.method));
+    if (!c.date.empty()) text += fmt::format("date = {}\n", toml_string(c.date));
     text += "poses = [\n";
     for (const PoseReading& pose : c.poses)
-      text += fmt::format("  {{ name = {}, raw = {}, value = {} }},\n", toml_string(pose.pose), pose.raw,
-                          pose.value);
+      text += fmt::format("  {{ name = {}, raw = {}, value = {}, residual_rad = {} }},\n",
+                          toml_string(pose.pose), pose.raw, pose.value, pose.residual);
     text += "]\n";
   }
   return text;

@@ -17,6 +17,7 @@ namespace {
 
 /// Far beyond any hand exoskeleton: a value outside has a wrong decimal point or unit.
 constexpr NumberRange kArmMm = {.min = -100.0, .max = 100.0};
+constexpr NumberRange kStopDeg = {.min = -180.0, .max = 180.0};
 constexpr NumberRange kRate = {.min = 1.0, .max = 100e3};
 constexpr NumberRange kScale = {.min = 0.0, .max = 1e3};
 constexpr NumberRange kScaleAbove0 = {.min = 0.0, .max = 1e3, .min_open = true};
@@ -42,6 +43,13 @@ class Defaulted {
   TomlTable* defaults_;
 };
 
+void read_stops(TomlTable& table, ExoJoint& exo) {
+  if (!table.has("stop_min_deg") && !table.has("stop_max_deg")) return;
+  exo.stop_min = table.number("stop_min_deg", kStopDeg) * kDeg;
+  exo.stop_max = table.number("stop_max_deg", kStopDeg) * kDeg;
+  if (*exo.stop_min >= *exo.stop_max) table.fail("stop_max_deg", "must be above stop_min_deg; swap the two");
+}
+
 ExoJoint read_joint(TomlTable own, TomlTable* defaults, int joint) {
   Defaulted table(std::move(own), defaults);
   ExoJoint exo;
@@ -54,6 +62,7 @@ ExoJoint read_joint(TomlTable own, TomlTable* defaults, int joint) {
   exo.sensor_lsb = table.number("sensor_lsb_rad", between(0.0, 1.0), 0.0);
   exo.sensor_noise = table.number("sensor_noise_rad", between(0.0, 1.0), 0.0);
   exo.torque_sensor = table.flag("torque_sensor", false);
+  read_stops(table.own(), exo);
   table.own().finish();
   return exo;
 }

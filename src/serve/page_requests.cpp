@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "phalanx/core/constants.h"
+#include "phalanx/hand/joints.h"
 #include "phalanx/scene/scene_keys.h"
 #include "record/plain_text.h"
 #include "scene/toml/toml_reader.h"
@@ -145,27 +147,63 @@ PageRequest open_digit(const wire::OpenDigit& message, Session& session) {
           .done_at_once = true};
 }
 
+constexpr std::size_t kLongestLabel = 40;  ///< of a patient [bytes]
+
+/// Makes the step that a page asks for. @throws std::invalid_argument for values out of range
+WizardStep wizard_step(const wire::Calibrate& message, WizardStep::Kind kind) {
+  if (message.method() < 0 || message.method() > wire::Wizard::GONIOMETER)
+    throw std::invalid_argument(fmt::format("method {} of a calibration: there are 0 to {}; reload the page",
+                                            static_cast<int>(message.method()),
+                                            static_cast<int>(wire::Wizard::GONIOMETER)));
+  if (message.patient().size() > kLongestLabel)
+    throw std::invalid_argument(
+        fmt::format("the patient's label has {} bytes; use at most {}, such as a number",
+                    message.patient().size(), kLongestLabel));
+  WizardStep step{.kind = kind,
+                  .pose = message.pose(),
+                  .patient = message.patient(),
+                  .joint = static_cast<int>(std::min(message.joint(), 1000U)),
+                  .angle = static_cast<double>(message.angle())};
+  step.plan.method = static_cast<CalibrationMethod>(message.method());
+  for (const std::uint32_t digit : message.digit()) {
+    if (digit >= kDigits)
+      throw std::invalid_argument(
+          fmt::format("digit {}: a hand has 0 to {}; reload the page", digit, kDigits - 1));
+    for (int i = 0; i < kJointsPerDigit; ++i)
+      step.plan.joints.push_back(joint_index(static_cast<int>(digit), i));
+  }
+  return step;
+}
+
 PageRequest calibrate(const wire::Calibrate& message, Session& session, Session::Done done) {
-  using Step = CalibrationSession::Step;
+  using Kind = WizardStep::Kind;
   struct Known {
-    Step step;
+    Kind kind;
     const char* words;
   };
-  constexpr std::array<Known, 7> kSteps = {{{Step::kBegin, "begins"},
-                                            {Step::kMeasure, "measures the pose"},
-                                            {Step::kSkip, "leaves the pose out"},
-                                            {Step::kBack, "goes a pose back"},
-                                            {Step::kGoTo, "goes to pose"},
-                                            {Step::kAbandon, "is given up"},
-                                            {Step::kWrite, "is written and used"}}};
+  constexpr std::array<Known, 10> kSteps = {{{Kind::kBegin, "begins"},
+                                             {Kind::kMeasure, "measures the pose"},
+                                             {Kind::kSkip, "leaves the pose out"},
+                                             {Kind::kBack, "goes a pose back"},
+                                             {Kind::kGoTo, "goes to pose"},
+                                             {Kind::kAbandon, "is given up"},
+                                             {Kind::kWrite, "is written and used"},
+                                             {Kind::kBeginRange, "begins to measure the patient's range"},
+                                             {Kind::kAccept, "accepts the digit's range"},
+                                             {Kind::kEnter, "takes an angle that was entered"}}};
   const auto index = static_cast<std::size_t>(message.step());
   if (index >= kSteps.size())
     throw std::invalid_argument(fmt::format("step {} of a calibration: there are 0 to {}; reload the page",
                                             index, kSteps.size() - 1));
   const Known& known = kSteps[index];
-  session.calibrate(known.step, message.pose(), std::move(done));
+  session.calibrate(wizard_step(message, known.kind), std::move(done));
   std::string text = fmt::format("calibration: {}", known.words);
-  if (known.step == Step::kGoTo) text += fmt::format(" {}", message.pose() + 1);
+  if (known.kind == Kind::kBegin)
+    text += fmt::format(" ({})", calibration_method_name(static_cast<CalibrationMethod>(message.method())));
+  if (known.kind == Kind::kGoTo) text += fmt::format(" {}", message.pose() + 1);
+  if (known.kind == Kind::kEnter)
+    text += fmt::format(", {:.1f} deg for pose {}", static_cast<double>(message.angle()) / kDeg,
+                        message.pose() + 1);
   return {.code = "calibrate", .text = std::move(text)};
 }
 

@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "phalanx/core/index.h"
+#include "phalanx/hand/hand_model.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/scene_keys.h"
+#include "phalanx/step/haptic_step.h"
 #include "record/plain_text.h"
 #include "record/recording/view_message.h"
 
@@ -42,7 +45,22 @@ void put(const FaultEvent& event, wire::Fault& out) {
   out.set_from_device(event.from_device);
 }
 
-void put(const CalibrationSession::View& view, wire::Wizard& out) {
+/// Writes the poses of all segments, as those of a Tick.
+void put_hand(const HandModel& hand, const JointArray& angle, google::protobuf::RepeatedField<float>& out) {
+  HandPoses poses;
+  hand.poses(angle, poses);
+  for (int s = 0; s < kSegments; ++s) {
+    const bool palm = s == kPalm;
+    const Pose& X =
+        palm ? hand.palm_pose() : poses.digit[idx(digit_of_segment(s))].segment[idx(s % kSegmentsPerDigit)];
+    const Eigen::Quaterniond q(X.R);
+    for (const double value : {X.p.x(), X.p.y(), X.p.z(), q.x(), q.y(), q.z(), q.w()})
+      out.Add(static_cast<float>(value));
+  }
+}
+
+/// @param hand  null: it is not known yet
+void put(const CalibrationSession::View& view, const HandModel* hand, wire::Wizard& out) {
   out.set_pose(static_cast<std::uint32_t>(view.pose));
   for (const std::string& name : view.names) out.add_name(name);
   out.set_instruction(view.instruction);
@@ -53,6 +71,40 @@ void put(const CalibrationSession::View& view, wire::Wizard& out) {
   for (const std::string& problem : view.problems) out.add_problem(as_utf8(problem));
   for (const std::string& result : view.results) out.add_result(result);
   out.set_finished(view.finished);
+  out.set_method(static_cast<wire::Wizard::Method>(view.method));
+  for (const CalibrationSession::JointView& joint : view.joints) {
+    wire::Wizard::Joint& to = *out.add_joint();
+    to.set_joint(static_cast<std::uint32_t>(joint.joint));
+    if (joint.target) to.set_target(static_cast<float>(*joint.target));
+    if (joint.present) to.set_present(static_cast<float>(*joint.present));
+    to.set_may_enter(joint.may_enter);
+  }
+  out.set_still_for(static_cast<float>(view.still_for));
+  if (hand == nullptr) return;
+  put_hand(*hand, view.hand, *out.mutable_hand());
+  put_hand(*hand, view.target, *out.mutable_target());
+}
+
+void put(const RangeSession::View& view, const HandModel* hand, wire::Wizard& out) {
+  out.set_of_range(true);
+  out.set_pose(static_cast<std::uint32_t>(view.digit));
+  for (const int digit : view.digits) out.add_digit(static_cast<std::uint32_t>(digit));
+  for (const bool done : view.done) out.add_done(done);
+  out.set_measuring(view.measuring);
+  out.set_finished(view.finished);
+  for (const RangeSession::JointView& joint : view.joints) {
+    wire::Wizard::Joint& to = *out.add_joint();
+    to.set_joint(static_cast<std::uint32_t>(joint.joint));
+    if (joint.present) to.set_present(static_cast<float>(*joint.present));
+    if (joint.reached) {
+      to.set_reached_min(static_cast<float>(joint.reached->min));
+      to.set_reached_max(static_cast<float>(joint.reached->max));
+    }
+    to.set_limit_min(static_cast<float>(joint.limit.min));
+    to.set_limit_max(static_cast<float>(joint.limit.max));
+  }
+  out.set_still_for(static_cast<float>(view.still_for));
+  if (hand != nullptr) put_hand(*hand, view.hand, *out.mutable_hand());
 }
 
 void put_info(const SessionInfo& info, wire::State& out) {
@@ -74,7 +126,11 @@ void put_info(const SessionInfo& info, wire::State& out) {
   out.set_holds_without_host(holds_without_host(info.device));
   out.set_calibration(as_utf8(info.calibration));
   for (const int joint : info.sensed_joints) out.add_sensed_joint(static_cast<std::uint32_t>(joint));
-  if (info.wizard) put(*info.wizard, *out.mutable_wizard());
+  out.set_range(as_utf8(info.range));
+  const bool known = info.geometry && info.geometry->model;
+  const HandModel* hand = known ? &info.geometry->model->hand : nullptr;
+  if (info.wizard) put(*info.wizard, hand, *out.mutable_wizard());
+  if (info.range_wizard) put(*info.range_wizard, hand, *out.mutable_wizard());
 }
 
 /// File names without their ending, sorted.
@@ -172,7 +228,7 @@ void write_state(const Session& session, wire::State& out) {
   out.set_stops(session.stops());
   out.set_held_stopped(session.held_stopped());
   // There is no station during a calibration: the fault is that of the station before it.
-  if (view.fault.fault != Fault::kNone && !info->wizard) put(view.fault, *out.mutable_fault());
+  if (view.fault.fault != Fault::kNone && !info->calibrating()) put(view.fault, *out.mutable_fault());
   out.set_degraded(view.degraded);
   out.set_device_state(device_state_name(view.device));
   out.set_estop(view.estop);

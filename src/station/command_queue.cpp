@@ -53,7 +53,7 @@ std::string text_of(const Command& command) {
   if (const auto* scene = std::get_if<LoadScene>(&action)) return "scene " + scene->scene;
   if (const auto* hand = std::get_if<SelectSource>(&action))
     return hand->source == HandSource::kSliders ? "sliders" : "simulated patient";
-  return std::holds_alternative<StepCalibration>(action) ? "calibration" : "another try";
+  return std::holds_alternative<WizardStep>(action) ? "calibration" : "another try";
 }
 
 Overrides changes_of(const Command& command) {

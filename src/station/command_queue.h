@@ -25,14 +25,10 @@ struct LoadScene {
 struct SelectSource {
   HandSource source;
 };
-struct StepCalibration {
-  CalibrationSession::Step step;
-  std::size_t pose;
-};
 /// Tries again to make a station while there is none.
 struct MakeStation {};
 
-using Action = std::variant<SetValues, LoadScene, SelectSource, StepCalibration, MakeStation>;
+using Action = std::variant<SetValues, LoadScene, SelectSource, WizardStep, MakeStation>;
 
 /// An action and the callbacks that wait for its outcome.
 struct Request {

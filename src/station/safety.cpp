@@ -49,7 +49,13 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
       timeout_(timeout_of(settings, device)),
       obeys_within_(device.renders_torque ? kObeys : std::max(kObeys, 5.0 / device.rate_hz)),
       simulated_(device.simulated),
-      may_oscillate_(device.simulated || !device.renders_torque) {}
+      may_oscillate_(device.simulated || !device.renders_torque) {
+  for (std::size_t j = 0; j < settings.range.size(); ++j) {
+    if (!settings.range[j]) continue;
+    min_[j] = std::max(min_[j], settings.range[j]->min);
+    max_[j] = std::min(max_[j], settings.range[j]->max);
+  }
+}
 
 // ---- judging ----
 

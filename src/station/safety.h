@@ -23,8 +23,8 @@ namespace phalanx {
 ///   observe()   with every sample since the last step, the connection's state, and whether it was late
 ///   command()   with the step's torques; it writes the command that leaves
 /// The command is finite, and no joint's torque exceeds its limit. No torque changes by more than its rate
-/// limit per step, except downwards at a fault. No torque pushes a joint beyond the patient's range of
-/// motion. In every state but kStarting, kRunning and kStopping it is zero, after a fault 5 ms later.
+/// limit per step, except downwards at a fault. No torque pushes a joint beyond the hand's range of
+/// motion, nor beyond the patient's own one (SafetySettings::range). In every state but kStarting, kRunning and kStopping it is zero, after a fault 5 ms later.
 ///
 /// If a device has motors and is not simulated, an OscillationObserver watches the force that leaves of each
 /// segment. It uses its default swing, independent of the scene. The first oscillation fades the torque over
@@ -89,8 +89,8 @@ class Safety {
 
   SafetySettings settings_;
   SensorWatch watch_;
-  JointArray min_{};
-  JointArray max_{};
+  JointArray min_{};  ///< no torque pushes a joint below it [rad]
+  JointArray max_{};  ///< nor above it [rad]
   double period_;
   double timeout_;       ///< timeout of samples [s]
   double obeys_within_;  ///< longest time that the device may be enabled without acting [s]

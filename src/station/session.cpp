@@ -90,9 +90,7 @@ void Session::set_source(HandSource source, Done done) { queue_->ask(SelectSourc
 
 bool Session::set_sliders(const JointArray& angle) noexcept { return state_->set_sliders(angle); }
 
-void Session::calibrate(CalibrationSession::Step step, std::size_t pose, Done done) {
-  queue_->ask(StepCalibration{.step = step, .pose = pose}, std::move(done));
-}
+void Session::calibrate(WizardStep step, Done done) { queue_->ask(std::move(step), std::move(done)); }
 
 bool Session::held_stopped() const noexcept { return state_->held(); }
 

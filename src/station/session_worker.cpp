@@ -12,11 +12,10 @@
 
 #include "phalanx/core/error_text.h"
 #include "phalanx/core/give_way.h"
+#include "phalanx/scene/calibration_file.h"
 
 namespace phalanx {
 namespace {
-
-using Step = CalibrationSession::Step;
 
 /// Interval of the updates of a calibration, and of further tries to publish that no change is being made.
 constexpr std::chrono::milliseconds kUpdate{20};
@@ -24,6 +23,15 @@ constexpr std::chrono::milliseconds kUpdate{20};
 HandSource source_of(const std::string& device) {
   if (device == "simulated") return HandSource::kPatient;
   return device == "sliders" ? HandSource::kSliders : HandSource::kDevice;
+}
+
+/// @returns the stops that the scene's device states.
+std::vector<JointStops> stops_of(const Exoskeleton& exoskeleton) {
+  std::vector<JointStops> stops;
+  for (const ExoJoint& joint : exoskeleton.joints)
+    if (joint.stop_min && joint.stop_max)
+      stops.push_back({.joint = joint.joint, .min = *joint.stop_min, .max = *joint.stop_max});
+  return stops;
 }
 
 /// Runs a computation of seconds on a thread of its own with low priority, so that it does not slow the loop.
@@ -60,7 +68,8 @@ SessionWorker::SessionWorker(const SessionSettings& settings, const Clock& clock
       plan_{.scene = settings.scene,
             .overrides = laid_over({}, settings.overrides),
             .source = source_of(settings.device),
-            .calibration = settings.calibration} {
+            .calibration = settings.calibration,
+            .range = settings.range} {
   state_.change_info([&](SessionInfo& info) { info.device_spec = settings_.device; });
   StationBuild first = built(plan_, SceneFile(plan_.scene));
   take_over(first);
@@ -264,6 +273,7 @@ void SessionWorker::take_over(StationBuild& build) {
     info.values = build.values;
     info.source = build.plan.source;
     info.calibration = build.plan.calibration;
+    info.range = build.plan.range;
     info.fingertip_force = build.made.safety.fingertip_force;
     info.margin = build.made.parameters.contact.margin;
     info.patient = build.made.safety.patient;
@@ -317,29 +327,42 @@ void SessionWorker::refuse_while_calibrating() const {
   if (wizard_.on()) throw std::invalid_argument("a calibration is on; finish or abandon it first");
 }
 
-void SessionWorker::apply(const StepCalibration& calibration) {
-  switch (calibration.step) {
-    case Step::kBegin:
-      return begin_wizard();
-    case Step::kAbandon:
+void SessionWorker::apply(const WizardStep& step) {
+  using Kind = WizardStep::Kind;
+  switch (step.kind) {
+    case Kind::kBegin:
+    case Kind::kBeginRange:
+      return begin_wizard(step);
+    case Kind::kAbandon:
       wizard_.refuse_unless_on();
       return leave_wizard();
-    case Step::kWrite:
+    case Kind::kWrite:
       return write_wizard();
     default:
-      wizard_.step(calibration.step, calibration.pose, clock_.now());
+      wizard_.step(step, clock_.now());
       publish_wizard();
   }
 }
 
-void SessionWorker::begin_wizard() {
+void SessionWorker::begin_wizard(const WizardStep& step) {
   refuse_while_calibrating();
   if (plan_.source != HandSource::kDevice)
     throw std::invalid_argument("the simulated device needs no calibration; start with --device to have one");
   const StationBuild build = built(plan_, file_of_plan());
+  const bool of_range = step.kind == WizardStep::Kind::kBeginRange;
+  if (of_range) refuse_range_here();
+  std::optional<Calibration> earlier;
+  if (!plan_.calibration.empty()) earlier = load_calibration(plan_.calibration);
   state_.retire();
   try {
-    wizard_.begin(settings_.device, build.made.model->hand.parameters(), clock_);
+    const HandParameters& hand = build.made.model->hand.parameters();
+    if (of_range) {
+      wizard_.begin_range(settings_.device, hand, clock_, *earlier, step.patient);
+    } else {
+      CalibrationPlan plan = step.plan;
+      plan.stops = stops_of(build.exoskeleton);
+      wizard_.begin(settings_.device, hand, clock_, plan, std::move(earlier));
+    }
     publish_wizard();
   } catch (const std::exception&) {
     wizard_.end();
@@ -348,12 +371,31 @@ void SessionWorker::begin_wizard() {
   }
 }
 
-/// Writes the calibration before it ends the wizard: if writing fails, the measured poses are still there.
+/// Refuses to measure a range on a device that is not calibrated, or that no patient may wear.
+void SessionWorker::refuse_range_here() const {
+  if (plan_.calibration.empty())
+    throw std::invalid_argument(
+        "the device is not calibrated, so that its angles are estimates; calibrate it first, then measure "
+        "the range");
+  SafetySettings of_patient;
+  of_patient.patient = "the patient's own range";
+  check_watchdog(of_patient, state_.info()->device);
+}
+
+/// Writes the result before it ends the wizard: if writing fails, what was measured is still there.
 void SessionWorker::write_wizard() {
+  if (wizard_.measures_range()) {
+    const MeasuredRange found = wizard_.found_range();
+    if (!settings_.write_range)
+      throw std::invalid_argument("this program writes no ranges; use `phalanx device range`");
+    plan_.range = settings_.write_range(found);
+    return leave_wizard();
+  }
   const Calibration& found = wizard_.found();
   if (!settings_.write_calibration)
     throw std::invalid_argument("this program writes no calibrations; use `phalanx device calibrate`");
   plan_.calibration = settings_.write_calibration(found);  // it is written, also if no station can be made
+  plan_.range.clear();                                     // it was measured with another calibration
   leave_wizard();
 }
 
@@ -361,7 +403,10 @@ void SessionWorker::write_wizard() {
 /// example, there is none.
 void SessionWorker::leave_wizard() {
   // First, because it may fail without memory: the wizard is then still on, and shown.
-  state_.change_info([](SessionInfo& info) { info.wizard = nullptr; });
+  state_.change_info([](SessionInfo& info) {
+    info.wizard = nullptr;
+    info.range_wizard = nullptr;
+  });
   wizard_.end();
   try {
     switch_to(built(plan_, SceneFile(plan_.scene)));
@@ -381,9 +426,15 @@ void SessionWorker::update_wizard() noexcept {
 }
 
 void SessionWorker::publish_wizard() {
-  auto view = std::make_shared<const CalibrationSession::View>(wizard_.view());
+  std::shared_ptr<const CalibrationSession::View> view;
+  std::shared_ptr<const RangeSession::View> range;
+  if (wizard_.measures_range())
+    range = std::make_shared<const RangeSession::View>(wizard_.range_view());
+  else
+    view = std::make_shared<const CalibrationSession::View>(wizard_.view());
   state_.change_info([&](SessionInfo& info) {
     info.wizard = std::move(view);
+    info.range_wizard = std::move(range);
     info.trouble = wizard_.trouble();
   });
 }

@@ -41,7 +41,7 @@ class SessionWorker {
   void apply(const SetValues& set);
   void apply(const LoadScene& load);
   void apply(const SelectSource& select);
-  void apply(const StepCalibration& calibration);
+  void apply(const WizardStep& step);
   void apply(const MakeStation& again);
 
   /// Calls build_station() beside a station that runs. @throws as that; also as check_watchdog() if one runs
@@ -65,7 +65,8 @@ class SessionWorker {
                             std::shared_ptr<const SessionGeometry> geometry);
 
   void refuse_while_calibrating() const;
-  void begin_wizard();
+  void begin_wizard(const WizardStep& step);
+  void refuse_range_here() const;
   void write_wizard();
   void leave_wizard();
   void update_wizard() noexcept;

@@ -13,6 +13,7 @@
 #include "phalanx/device/opengloves/opengloves_device.h"
 #include "phalanx/device/posed_device.h"
 #include "phalanx/scene/calibration_file.h"
+#include "phalanx/scene/range_file.h"
 #include "phalanx/station/open_device.h"
 #include "phalanx/station/realtime.h"
 #include "phalanx/station/resolved_station.h"
@@ -40,6 +41,12 @@ std::shared_ptr<SessionGeometry> geometry_of(ResolvedScene scene) {
   return geometry;
 }
 
+/// Reads the calibration of the plan; none if it states none.
+std::optional<Calibration> calibration_of(const StationPlan& plan) {
+  if (plan.calibration.empty()) return std::nullopt;
+  return load_calibration(plan.calibration);
+}
+
 /// Opens the device on a wire as `device`, with the limits and the calibration. @returns its channels
 std::vector<DeviceChannel> open_wired(const StationBuild& build, const SessionSettings& settings,
                                       const Clock& clock, std::unique_ptr<Device>& device) {
@@ -53,8 +60,7 @@ std::vector<DeviceChannel> open_wired(const StationBuild& build, const SessionSe
   device = open_device(settings.device, clock, link_settings);
   auto* link = dynamic_cast<LinkDevice*>(device.get());
   auto* glove = dynamic_cast<OpenGlovesDevice*>(device.get());
-  std::optional<Calibration> calibration;
-  if (!build.plan.calibration.empty()) calibration = load_calibration(build.plan.calibration);
+  const std::optional<Calibration> calibration = calibration_of(build.plan);
   if (glove != nullptr) {
     glove->set_hand(build.made.model->hand.parameters());
     glove->set_watchdog(settings.watchdog);
@@ -92,6 +98,16 @@ std::vector<DeviceChannel> open_for(const StationBuild& build, const SessionSett
   }
   running.device->open();
   return running.device->info().channels;
+}
+
+/// Reads the patient's own range of motion of the plan, if it states one.
+/// @throws SceneError or CalibrationError: the file, another device or another calibration
+JointRanges range_of(const StationPlan& plan, const DeviceInfo& device, const JointFollowers& followers) {
+  if (plan.range.empty()) return {};
+  const MeasuredRange range = load_range(plan.range);
+  const std::optional<Calibration> calibration = calibration_of(plan);
+  check_range(range, device, calibration ? calibration->date : "");
+  return with_followers(range.joint, followers.coupled);
 }
 
 /// Makes the patient's settings. The message names the patient, because the object is not at fault.
@@ -192,12 +208,14 @@ RunningStation make_station(const StationBuild& build, const SessionSettings& se
   if (build.plan.source != HandSource::kSliders)
     options.witnesses = motor_witnesses(build.exoskeleton, channels, build.made.safety.joint_torque);
   const JointFollowers followers = followers_of(build.exoskeleton);
+  options.safety.range = range_of(build.plan, running.device->info(), followers);
   running.setup = {.source = build.plan.source,
                    .device = running.device->info(),
                    .channels = channels,
                    .followers = followers,
                    .witnesses = options.witnesses,
                    .calibration = build.plan.calibration,
+                   .range = build.plan.range,
                    .clinician = settings.clinician,
                    .patient = build.made.safety.patient};
   ChannelMap map(channels, followers, build.made.model->hand.parameters());

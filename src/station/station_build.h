@@ -23,6 +23,7 @@ struct StationPlan {
   Overrides overrides;
   HandSource source = HandSource::kPatient;
   std::string calibration;
+  std::string range = {};
 
   [[nodiscard]] bool operator==(const StationPlan&) const = default;
 };

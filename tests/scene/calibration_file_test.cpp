@@ -24,8 +24,10 @@ Calibration example() {
                                     .gain = -1.0 / 3.0 * 1e-3,
                                     .offset = 2.0 / 7.0},
                         .residual = 0.012345678901234567,
-                        .poses = {{.pose = "open hand", .value = 0.0, .raw = 3021.5},
-                                  {.pose = "fist", .value = 1.7453292519943295, .raw = 12.25}}});
+                        .poses = {{.pose = "open hand", .value = 0.0, .raw = 3021.5, .residual = -0.01},
+                                  {.pose = "fist", .value = 1.7453292519943295, .raw = 12.25}},
+                        .method = CalibrationMethod::kGoniometer,
+                        .date = "2026-05-03T10:00:00Z"});
   c.channels.push_back(
       {.channel = {.kind = ChannelKind::kCurl, .index = 0, .gain = 1e-300, .offset = -1e-5}});
   c.channels.push_back({.channel = {.kind = ChannelKind::kSplay, .index = 4, .gain = 2.0, .offset = -1.0}});
@@ -33,9 +35,9 @@ Calibration example() {
 }
 
 const std::string kHead =
-    "format = 1\ndevice = \"glove\"\nserial = \"1\"\ndate = \"2026-05-04T09:30:00Z\"\nphalanx = \"0.1.0\"\n";
+    "format = 2\ndevice = \"glove\"\nserial = \"1\"\ndate = \"2026-05-04T09:30:00Z\"\nphalanx = \"0.1.0\"\n";
 const std::string kAngle = "[[channel]]\nkind = \"angle\"\njoint = \"index_pip_flexion\"\n";
-const std::string kNumbers = "gain = 0.001\noffset = 0\nresidual_rad = 0\nposes = []\n";
+const std::string kNumbers = "gain = 0.001\noffset = 0\nresidual_rad = 0\nmethod = \"jig\"\nposes = []\n";
 
 void expect_bad_calibration(const std::string& text, const std::vector<std::string>& words) {
   SCOPED_TRACE(text);
@@ -56,11 +58,14 @@ void expect_same(const Calibration& a, const Calibration& b) {
     EXPECT_EQ(x.channel.gain, y.channel.gain);
     EXPECT_EQ(x.channel.offset, y.channel.offset);
     EXPECT_EQ(x.residual, y.residual);
+    EXPECT_EQ(x.method, y.method);
+    EXPECT_EQ(x.date, y.date);
     ASSERT_EQ(x.poses.size(), y.poses.size());
     for (std::size_t p = 0; p < x.poses.size(); ++p) {
       EXPECT_EQ(x.poses[p].pose, y.poses[p].pose);
       EXPECT_EQ(x.poses[p].raw, y.poses[p].raw);
       EXPECT_EQ(x.poses[p].value, y.poses[p].value);
+      EXPECT_EQ(x.poses[p].residual, y.poses[p].residual);
     }
   }
 }
@@ -109,22 +114,22 @@ TEST(CalibrationFile, HoldsOnlyWhatPosesCanCalibrate) {
 }
 
 TEST(CalibrationFile, OfAnotherFormatIsRefused) {
-  expect_bad_calibration("format = 2\n", {"bad.toml:1", "format = 2", "reads format 1"});
+  expect_bad_calibration("format = 1\n", {"bad.toml:1", "format = 1", "reads format 2"});
   expect_bad_calibration("format = \"1\"\n", {"format", "is a string"});
   expect_bad_calibration("format = nan\n", {"format", "must be"});
   expect_bad_calibration("", {"format", "is missing"});
 }
 
 TEST(CalibrationFile, WithAHeadThatIsNone) {
-  expect_bad_calibration("format = 1\ndevice = 3\n", {"device = 3", "write a string"});
+  expect_bad_calibration("format = 2\ndevice = 3\n", {"device = 3", "write a string"});
   // The characters next to the digits are '/' and ':'.
   for (const char* date : {"yesterday", "2026-05-04", "2026-05-04 09:30:00Z", "2026-05-04T09:30:00+02:00",
                            "2026-05-/4T09:30:00Z", "2026-05-:4T09:30:00Z"}) {
     expect_bad_calibration(
-        "format = 1\ndevice = \"d\"\nserial = \"s\"\ndate = \"" + std::string(date) + "\"\nphalanx = \"1\"\n",
+        "format = 2\ndevice = \"d\"\nserial = \"s\"\ndate = \"" + std::string(date) + "\"\nphalanx = \"1\"\n",
         {"bad.toml:4", "date", "2026-05-04T09:30:00Z"});
   }
-  expect_bad_calibration("format = 1\ndevice = \"d\"\nserial = \"s\"\n", {"date", "is missing"});
+  expect_bad_calibration("format = 2\ndevice = \"d\"\nserial = \"s\"\n", {"date", "is missing"});
 }
 
 TEST(CalibrationFile, WithoutAChannelOrWithTooMany) {
@@ -155,21 +160,26 @@ TEST(CalibrationFile, WithANameThatNobodyKnows) {
   expect_bad_calibration(kHead + "[[channel]]\nkind = \"curl\"\ndigit = \"pinky\"\n", {"digit = 'pinky'"});
   expect_bad_calibration(kHead + "[[channel]]\nkind = \"curl\"\njoint = \"index_pip_flexion\"\n",
                          {"digit", "is missing"});
+  expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = 0\nmethod = \"jigg\"\n",
+                         {"method = 'jigg'", "\"jig\""});
+  expect_bad_calibration(kHead + kAngle + kNumbers + "date = \"today\"\n", {"date", "2026-05-04T09:30:00Z"});
   expect_bad_calibration(kHead + kAngle + kNumbers + "gian = 1\n", {"gian = 1", "gain"});
 }
 
 TEST(CalibrationFile, WithABadNumber) {
-  const std::string rest = "offset = 0\nresidual_rad = 0\nposes = []\n";
+  const std::string rest = "offset = 0\nresidual_rad = 0\nmethod = \"jig\"\nposes = []\n";
   for (const char* bad : {"nan", "inf", "-inf", "1e9", "true", "\"1\"", "0"})
     expect_bad_calibration(kHead + kAngle + "gain = " + bad + "\n" + rest, {"bad.toml:9", "gain"});
   expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = nan\n", {"offset = nan"});
   expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = -1\n", {"residual_rad = -1"});
-  expect_bad_calibration(kHead + kAngle +
-                             "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [{ name = \"a\", raw = 1e99, "
-                             "value = 0 }]\n",
-                         {"raw"});
-  expect_bad_calibration(kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = 0\nposes = [1]\n",
-                         {"poses", "write a table"});
+  expect_bad_calibration(
+      kHead + kAngle +
+          "gain = 1\noffset = 0\nresidual_rad = 0\nmethod = \"jig\"\nposes = [{ name = \"a\", raw = 1e99, "
+          "value = 0 }]\n",
+      {"raw"});
+  expect_bad_calibration(
+      kHead + kAngle + "gain = 1\noffset = 0\nresidual_rad = 0\nmethod = \"jig\"\nposes = [1]\n",
+      {"poses", "write a table"});
 }
 
 // Each number at its largest and smallest, and just beyond.
@@ -185,7 +195,8 @@ TEST(CalibrationFile, TakesEachNumberUpToItsBoundAndNoFurther) {
     };
     return kHead + kAngle + "gain = " + of("gain", "1") + "\noffset = " + of("offset", "0") +
            "\nresidual_rad = " + of("residual_rad", "0") +
-           "\nposes = [{ name = \"a\", raw = " + of("raw", "0") + ", value = " + of("value", "0") + " }]\n";
+           "\nmethod = \"stops\"\nposes = [{ name = \"a\", raw = " + of("raw", "0") +
+           ", value = " + of("value", "0") + ", residual_rad = 0 }]\n";
   };
   for (const Bound& bound : {Bound{"gain", "100", "100.001"},
                              {"gain", "-100", "-100.001"},

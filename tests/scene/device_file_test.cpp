@@ -113,6 +113,16 @@ middle = { of = "index", gain = 0.9 }
   EXPECT_EQ(exo.controller.copy[3].of, -1);
 }
 
+TEST(DeviceFile, MayStateTheStopsOfAJointBothOrNeither) {
+  const ExoJoint none = parse_text(kJoint).joints[0];
+  EXPECT_FALSE(none.stop_min || none.stop_max);
+  const ExoJoint joint = parse_text(kJoint + "stop_min_deg = -10\nstop_max_deg = 95\n").joints[0];
+  EXPECT_DOUBLE_EQ(joint.stop_min.value(), -10.0 * std::numbers::pi / 180.0);
+  EXPECT_DOUBLE_EQ(joint.stop_max.value(), 95.0 * std::numbers::pi / 180.0);
+  expect_refused(kJoint + "stop_max_deg = 95\n", {"stop_min_deg", "is missing"});
+  expect_refused(kJoint + "stop_min_deg = 95\nstop_max_deg = 95\n", {"stop_max_deg", "must be above"});
+}
+
 TEST(DeviceFile, TakesFromTheDefaultsWhatAJointOrAMotorDoesNotSay) {
   const Exoskeleton exo = parse_text(
       "[defaults.joint]\ninertia_kg_m2 = 5e-4\nsensor_lsb_rad = 1e-4\n[defaults.motor]\nlag_ms = "

@@ -181,6 +181,18 @@ TEST_F(PageRequestsTest, ScenesSourcesAndCalibrationsArePassedOn) {
   const PageRequest step = applied(message);
   EXPECT_EQ(step.code, "calibrate");
   EXPECT_EQ(step.text, "calibration: goes to pose 3") << "counted from 1";
+  auto& calibrate = *message.mutable_calibrate();
+  calibrate.set_step(wire::Calibrate::ENTER);
+  calibrate.set_angle(0.5F);
+  EXPECT_EQ(applied(message).text, "calibration: takes an angle that was entered, 28.6 deg for pose 3");
+  calibrate.set_method(static_cast<wire::Wizard::Method>(7));
+  EXPECT_THAT(why_not(message), HasSubstr("method 7"));
+  calibrate.set_method(wire::Wizard::GONIOMETER);
+  calibrate.add_digit(5);
+  EXPECT_THAT(why_not(message), HasSubstr("digit 5"));
+  calibrate.clear_digit();
+  calibrate.set_patient(std::string(41, 'p'));
+  EXPECT_THAT(why_not(message), HasSubstr("41 bytes"));
 }
 
 TEST_F(PageRequestsTest, SlidersOfAnyNumberStayInTheRangeOfMotion) {
@@ -302,7 +314,7 @@ TEST_F(PageRequestsTest, PatientAndSlidersMoveTheHandAsRequested) {
 /// Fixture with a station whose wired device has two angle sensors.
 class WiredPagesTest : public SessionFixture {
  protected:
-  using Step = CalibrationSession::Step;
+  using Step = WizardStep::Kind;
 
   WiredPagesTest() {
     SessionSettings settings = with(controller.address(), "grasp_teapot");
@@ -345,7 +357,7 @@ class GlovePagesTest : public SessionFixture {
 
 TEST_F(GlovePagesTest, AGloveWithoutAWatchdogIsShownAsSuchAlsoWithoutAStation) {
   start(with("opengloves:" + firmware.port()));
-  ASSERT_EQ(calibrate(CalibrationSession::Step::kBegin), "");
+  ASSERT_EQ(calibrate(WizardStep::Kind::kBegin), "");
   wire::State state;
   write_state(*session, state);
   EXPECT_TRUE(state.station_gone());

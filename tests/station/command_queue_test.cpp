@@ -172,7 +172,7 @@ TEST_F(CommandQueueTest, ALongTextIsCutBetweenTwoChanges) {
 TEST_F(CommandQueueTest, EachKindOfCommandHasAText) {
   queue.ask(SelectSource{HandSource::kSliders}, {});
   queue.ask(SelectSource{HandSource::kPatient}, {});
-  queue.ask(StepCalibration{.step = CalibrationSession::Step::kSkip, .pose = 0}, {});
+  queue.ask(WizardStep{.kind = WizardStep::Kind::kSkip}, {});
   queue.ask(MakeStation{}, {});
   for (const char* text : {"sliders", "simulated patient", "calibration", "another try"})
     EXPECT_EQ(take_text(), text);

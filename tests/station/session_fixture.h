@@ -120,8 +120,11 @@ class SessionFixture : public ::testing::Test {
   std::string move_by(HandSource source) {
     return ask([&](Session::Done done) { session->set_source(source, std::move(done)); });
   }
-  std::string calibrate(CalibrationSession::Step step, std::size_t pose = 0) {
-    return ask([&](Session::Done done) { session->calibrate(step, pose, std::move(done)); });
+  std::string calibrate(const WizardStep& step) {
+    return ask([&](Session::Done done) { session->calibrate(step, std::move(done)); });
+  }
+  std::string calibrate(WizardStep::Kind kind, std::size_t pose = 0) {
+    return calibrate(WizardStep{.kind = kind, .pose = pose});
   }
 
   [[nodiscard]] std::string value(const std::string& key) const {

@@ -861,7 +861,7 @@ TEST_F(SessionTest, TheTorqueIsZeroBeforeAChangeOnItsWayIsDone) {
 TEST_F(SessionTest, CalibratingWhatNeedsNoneIsRefused) {
   start(with("simulated"));
   ASSERT_TRUE(until_running());
-  using Step = CalibrationSession::Step;
+  using Step = WizardStep::Kind;
   for (const Step step :
        {Step::kBegin, Step::kMeasure, Step::kSkip, Step::kBack, Step::kGoTo, Step::kAbandon, Step::kWrite})
     EXPECT_THAT(calibrate(step, 3), HasSubstr("calibration"));

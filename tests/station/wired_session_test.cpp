@@ -10,8 +10,10 @@
 #include <stdexcept>
 
 #include "device/link/controller_thread.h"
+#include "phalanx/core/constants.h"
 #include "phalanx/device/calibration_session.h"
 #include "phalanx/scene/calibration_file.h"
+#include "phalanx/scene/range_file.h"
 #include "record/temporary_folder.h"
 #include "station/session_fixture.h"
 
@@ -23,10 +25,10 @@ using test::SessionFixture;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using Step = CalibrationSession::Step;
+using Step = WizardStep::Kind;
 
-/// Its raw values rise for ever, whatever pose is asked for, until they are held: nothing can be calibrated
-/// by it, and a station ends in a fault after a while.
+/// Its raw values rise for ever, whatever pose is asked for, until they are held: no pose can be measured, and a
+/// station ends in a fault after a while.
 class WiredSessionTest : public SessionFixture {
  protected:
   void connect(const std::string& scene = "grasp_teapot") {
@@ -39,6 +41,13 @@ class WiredSessionTest : public SessionFixture {
       found.phalanx = "0.1.0";
       const std::string file = folder / "found.toml";
       std::ofstream(file) << calibration_text(found);
+      return file;
+    };
+    settings.write_range = [this](MeasuredRange found) -> std::string {
+      found.date = "2026-05-04T09:45:00Z";
+      found.phalanx = "0.1.0";
+      const std::string file = folder / "range.toml";
+      std::ofstream(file) << range_text(found);
       return file;
     };
     start(settings);
@@ -139,6 +148,52 @@ TEST_F(WiredSessionTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
   EXPECT_EQ(session->stops(), stops + 1);
 }
 
+// The patient reaches 40 degrees of PIP, of the hand's 100 or so.
+TEST_F(WiredSessionTest, AWizardMeasuresThePatientsRangeAndTheNextStationHasIt) {
+  connect();
+  EXPECT_THAT(calibrate(Step::kBeginRange), HasSubstr("not calibrated"));
+  EXPECT_TRUE(session->info()->running);
+  begin();
+  EXPECT_THAT(calibrate(Step::kAccept), HasSubstr("belongs to a patient's range"));
+  measure_all();
+  ASSERT_EQ(calibrate(Step::kWrite), "");
+  EXPECT_EQ(session->info()->range, "");
+  ASSERT_EQ(calibrate(WizardStep{.kind = Step::kBeginRange, .patient = "P07"}), "");
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_EQ(session->info()->wizard, nullptr);
+  ASSERT_NE(session->info()->range_wizard, nullptr);
+  EXPECT_THAT(set({{"rate_hz", "250"}}), HasSubstr("calibration"));
+  EXPECT_THAT(calibrate(Step::kEnter), HasSubstr("belongs to a calibration"));
+  EXPECT_THAT(calibrate(Step::kWrite), HasSubstr("no digit's range was accepted"));
+  hold({0.2, 2.0 * kDeg});
+  ASSERT_EQ(calibrate(Step::kMeasure), "");
+  pass(1.0);
+  hold({0.9, 40.0 * kDeg});
+  pass(1.0);
+  ASSERT_EQ(calibrate(Step::kAccept), "");
+  EXPECT_TRUE(session->info()->range_wizard->finished);
+  ASSERT_EQ(calibrate(Step::kWrite), "");
+  EXPECT_EQ(session->info()->range_wizard, nullptr);
+  EXPECT_TRUE(session->info()->running);
+  ASSERT_EQ(session->info()->range, folder / "range.toml");
+  const MeasuredRange range = load_range(session->info()->range);
+  EXPECT_EQ(range.patient, "P07");
+  EXPECT_EQ(range.calibration, "2026-05-04T09:30:00Z");
+  ASSERT_TRUE(range.joint[kJoint[1]]);
+  EXPECT_NEAR(range.joint[kJoint[1]]->max, 40.0 * kDeg, 3.0 * kDeg);
+  EXPECT_NEAR(range.joint[kJoint[1]]->min, 2.0 * kDeg, 3.0 * kDeg);
+  // Another calibration may turn every angle: the range is not used with it.
+  begin();
+  hold({0.2, 0.2});
+  ASSERT_EQ(calibrate(Step::kAbandon), "");
+  EXPECT_EQ(session->info()->range, folder / "range.toml");
+  begin();
+  measure_all();
+  ASSERT_EQ(calibrate(Step::kWrite), "");
+  EXPECT_EQ(session->info()->range, "");
+  EXPECT_TRUE(session->info()->running);
+}
+
 TEST_F(WiredSessionTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {
   const std::filesystem::path shipped = PHALANX_SOURCE_DIR "/scenes/grasp_teapot.toml";
   const std::string scene = folder / "own.toml";
@@ -192,7 +247,12 @@ TEST_F(WiredSessionTest, AWizardWhosePosesFitNothingSaysWhyAndGoesBackToAStation
     EXPECT_EQ(calibrate(Step::kBack), "");
     EXPECT_EQ(session->info()->wizard->pose, before);
   }
+  ASSERT_EQ(calibrate(Step::kMeasure), "");
+  ASSERT_TRUE(until([&] { return !session->info()->wizard->measuring; }));
+  EXPECT_THAT(session->info()->trouble, HasSubstr("moved by")) << "its counts rise";
+  EXPECT_EQ(session->info()->wizard->pose, 0U);
   for (std::size_t i = 0; i < poses; ++i) {
+    hold({0.1, 0.1});
     measure();
   }
   const auto end = session->info()->wizard;

@@ -3,6 +3,7 @@
 import type { State } from "./gen/phalanx/cockpit_pb";
 import type { Tick } from "./gen/phalanx/tick_pb";
 import type { App } from "./panels/app";
+import { calibrationDialog } from "./panels/calibration_dialog";
 import { confirmDialog } from "./panels/dialog";
 import { devicePanel } from "./panels/device_panel";
 import { el } from "./panels/dom";
@@ -26,6 +27,7 @@ import { troubleCard } from "./panels/trouble_card";
 import { viewFrame } from "./panels/view_frame";
 import type { PlotPanel } from "./plots/plot_panel";
 import { GeometryLoader } from "./state/geometry_loader";
+import { calibratedHands } from "./state/calibrated_hands";
 import { Store } from "./state/store";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";
@@ -103,10 +105,15 @@ const stop = stopBox(app);
 const own = ownObject(app);
 numbers.element.append(storyRibbon(app));
 frame.element.append(dropPlace(app, frame.element, own));
+const calibration = calibrationDialog(app, (shown) => {
+  document.documentElement.dataset["calibrating"] = String(shown);
+  frame.setCalibrating(shown);
+  window.dispatchEvent(new Event("resize"));
+});
 const panels = tabs([
   { name: "touch", text: strings.tabs.touch, panel: touchPanel(app, own) },
   { name: "expert", text: strings.tabs.expert, panel: expertPanel(app, own) },
-  { name: "device", text: strings.tabs.device, panel: devicePanel(app, () => frame.view()?.probe().framesPerSecond) },
+  { name: "device", text: strings.tabs.device, panel: devicePanel(app, calibration, () => frame.view()?.probe().framesPerSecond) },
   { name: "people", text: strings.tabs.people, panel: peoplePanel(app) },
 ]);
 const plotPlace = el("div", { class: "plot-slot" });
@@ -121,6 +128,7 @@ document.getElementById("page")?.append(
     el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
     el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels.element),
   ),
+  calibration.element,
   dialogs,
   el("div", { class: "dock" }, toasts(store), stop.element),
 );
@@ -137,6 +145,12 @@ const geometry = new GeometryLoader(async (revision) => makeShapes(await fetchGe
 store.on(["state"], () => store.state && geometry.want(store.state.geometry));
 store.on(["connection"], () => {
   if (!store.connected) geometry.forget(); // another station counts its revisions from the beginning
+});
+
+/// While a calibration is on there are no steps: the hand and its ghost are those of the calibration.
+store.on(["state"], () => {
+  const hands = calibratedHands(store.state?.wizard);
+  if (hands) frame.view()?.show(hands);
 });
 
 let readAt = 0;

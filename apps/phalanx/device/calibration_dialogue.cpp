@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <vector>
 
@@ -20,7 +22,7 @@ class Dialogue {
         clock_(clock),
         console_(console),
         measure_for_(settings.measure_for),
-        session_(device, hand, settings.measure_for, settings.limits) {}
+        session_(device, hand, settings.measure_for, settings.limits, settings.plan, settings.earlier) {}
 
   Calibration run() {
     introduce();
@@ -34,7 +36,10 @@ class Dialogue {
   void introduce() {
     console_.say(fmt::format("{} {}: {} poses, {:g} s each. Motors stay off.", info_.name, info_.serial,
                              session_.poses().size(), measure_for_));
-    console_.say("Go into the pose, then press Enter and hold still. s: skip, b: back by one, q: end.");
+    console_.say(
+        "Press Enter in each pose and hold still. A number is the angle of its joint in degrees, "
+        "NAME=DEGREES that of "
+        "one of several. s: skip, b: back by one, q: end.");
   }
 
   // Handles one answer to the current pose.
@@ -42,6 +47,9 @@ class Dialogue {
     const CalibrationSession::View view = session_.view();
     console_.say(fmt::format("[{}/{}] {}: {}", view.pose + 1, view.names.size(), view.names[view.pose],
                              view.instruction));
+    for (const CalibrationSession::JointView& joint : view.joints)
+      if (joint.target)
+        console_.say(fmt::format("  {} {:.1f} deg", joint_name(joint.joint), *joint.target / kDeg));
     const auto answer = console_.answer([&] { return live(); });
     if (!answer || *answer == "q") throw CalibrationError("ended before all poses; nothing was written");
     if (*answer == "b") {
@@ -50,7 +58,32 @@ class Dialogue {
       session_.skip();
       console_.say("skipped");
     } else {
-      measure();
+      try {
+        enter(*answer, view);
+        measure();
+      } catch (const CalibrationError& error) {
+        console_.say(fmt::format("refused: {}", error.what()));
+      }
+    }
+  }
+
+  // Takes the angles that were typed: "40", or "index_pip_flexion=40 index_dip_flexion=25".
+  void enter(const std::string& typed, const CalibrationSession::View& view) {
+    std::istringstream words(typed);
+    for (std::string word; words >> word;) {
+      const std::size_t equals = word.find('=');
+      if (equals == std::string::npos && view.joints.size() != 1)
+        throw CalibrationError(
+            fmt::format("{}: the pose has {} joints; write NAME=DEGREES", word, view.joints.size()));
+      const auto joint = equals == std::string::npos ? std::optional(view.joints.front().joint)
+                                                     : find_joint(word.substr(0, equals));
+      const std::string number = equals == std::string::npos ? word : word.substr(equals + 1);
+      char* end = nullptr;
+      const double degrees = std::strtod(number.c_str(), &end);
+      if (!joint || number.empty() || *end != '\0')
+        throw CalibrationError(
+            fmt::format("'{}' is no angle; write degrees such as 40, or NAME=DEGREES, or press Enter", word));
+      session_.enter(view.pose, *joint, degrees * kDeg);
     }
   }
 

@@ -7,13 +7,14 @@
 #include <string>
 
 #include "phalanx/device/calibration.h"
+#include "phalanx/device/calibration_session.h"
 #include "phalanx/device/clock.h"
 #include "phalanx/device/device.h"
 #include "phalanx/hand/hand_parameters.h"
 
 namespace phalanx {
 
-/// Input and output for the wearer: a terminal, or a script.
+/// Input and output for the person who calibrates: a terminal, or a script.
 class CalibrationConsole {
  public:
   CalibrationConsole() = default;
@@ -30,10 +31,13 @@ class CalibrationConsole {
 /// Settings of the dialogue.
 struct CalibrationDialogue {
   double measure_for = 1.0;  ///< duration of each pose's measurement [s]
-  CalibrationLimits limits;
+  CalibrationLimits limits = {};
+  CalibrationPlan plan = {};
+  std::optional<Calibration> earlier = {};  ///< CalibrationSession's
 };
 
-/// Leads the wearer through the poses: Enter measures, `s` skips, `b` goes back by one, `q` ends. It then
+/// Leads through the poses: Enter measures, a number is the angle of the pose's joint in degrees, NAME=DEGREES that of
+/// one of several joints. `s` skips, `b` goes back by one, `q` ends. It then
 /// fits all channels and shows a table. If a channel is refused, poses can be measured again
 /// by their numbers.
 /// @param device  open, with at least one channel that poses can calibrate

@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// phalanx device calibrate DEVICE --out FILE: gains and offsets of its channels, from poses of the wearer.
+// phalanx device calibrate DEVICE --method METHOD --out FILE: gains and offsets of its channels, from known angles.
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "device/calibration_dialogue.h"
+#include "device/calibration_terminal.h"
 #include "device/device_text.h"
-#include "phalanx/device/opengloves/opengloves_device.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/calibration_file.h"
-#include "phalanx/scene/hand_meshes.h"
+#include "phalanx/scene/device_file.h"
 #include "phalanx/station/open_device.h"
 #include "terminal/end_signals.h"
 #include "usage.h"
@@ -27,105 +23,61 @@
 namespace phalanx {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct CalibrateOptions {
-  std::string spec, out, hand, profile;
+  std::string spec, out, method, hand, profile, device_file, earlier;
+  std::vector<std::string> only;
   bool force = false;
 };
 
-/// Standard input and output. On a terminal, the line of live values is overwritten repeatedly.
-class Terminal final : public CalibrationConsole {
- public:
-  void say(const std::string& line) override {
-    wipe();
-    fmt::print("{}\n", line);
-    std::fflush(stdout);
-  }
-
-  std::optional<std::string> answer(const std::function<std::string()>& live) override {
-    while (true) {
-      if (auto line = take_line()) {
-        shown_ = 0;  // the typed line end has moved on
-        return line;
-      }
-      if (ended_ || asked_to_end != 0) return std::nullopt;
-      const std::string values = live();
-      if (shows_live_ && !values.empty()) show(values);
-      read_more();
-    }
-  }
-
- private:
-  std::optional<std::string> take_line() {
-    const std::size_t end = typed_.find('\n');
-    if (end == std::string::npos) return std::nullopt;
-    std::string line = typed_.substr(0, end);
-    typed_.erase(0, end + 1);
-    return line;
-  }
-
-  void read_more() {
-    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    if (::poll(&input, 1, 100) <= 0) return;
-    std::array<char, 256> bytes{};
-    const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-    if (count > 0) typed_.append(bytes.data(), static_cast<std::size_t>(count));
-    if (count == 0 || (count < 0 && errno != EINTR && errno != EAGAIN)) ended_ = true;
-  }
-
-  void show(const std::string& values) {
-    fmt::print("\r{:<{}}", values, shown_);
-    shown_ = values.size();
-    std::fflush(stdout);
-  }
-
-  void wipe() {
-    if (shown_ > 0) fmt::print("\r{:<{}}\r", "", shown_);
-    shown_ = 0;
-  }
-
-  const bool shows_live_ = ::isatty(STDOUT_FILENO) != 0;
-  std::string typed_;
-  bool ended_ = false;
-  std::size_t shown_ = 0;  ///< characters of the live line
-};
-
-void check_out(const CalibrateOptions& options) {
-  const fs::path out = options.out;
-  if (fs::is_directory(out))
-    throw std::invalid_argument(fmt::format("--out '{}' is a folder; name a file in it", options.out));
-  if (fs::exists(out) && !options.force) {
+/// @returns the joints that a digit's or a joint's name stands for
+std::vector<int> joints_named(const std::string& name) {
+  if (const auto joint = find_joint(name)) return {*joint};
+  std::vector<int> joints;
+  for (int digit = 0; digit < kDigits; ++digit)
+    for (int i = 0; i < kJointsPerDigit; ++i)
+      if (name == digit_name(digit)) joints.push_back(joint_index(digit, i));
+  if (joints.empty())
     throw std::invalid_argument(fmt::format(
-        "--out '{}' is there already; name another file, or say --force to replace it", options.out));
-  }
-  const fs::path folder = out.has_parent_path() ? out.parent_path() : fs::path(".");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw std::invalid_argument(
-        fmt::format("--out '{}': no file can be made in '{}'; name one in a folder of yours", options.out,
-                    folder.string()));
-  }
+        "--only {}: this is neither a digit (thumb, index, middle, ring, little) nor a joint such as {}",
+        name, joint_name(joint_index(1, 2))));
+  return joints;
 }
 
-HandParameters hand_of(const CalibrateOptions& options) {
-  if (!options.hand.empty() && !options.profile.empty())
-    throw std::invalid_argument("--hand and --profile: the profile says which hand; leave out --hand");
-  HandDescription hand;
-  hand.profile = options.profile;
-  if (!options.hand.empty()) hand.file = options.hand;
-  return load_hand_numbers(hand).parameters;
+std::vector<JointStops> stops_of_file(const std::string& name) {
+  std::vector<JointStops> stops;
+  for (const ExoJoint& joint : load_device_file(name).joints)
+    if (joint.stop_min && joint.stop_max)
+      stops.push_back({.joint = joint.joint, .min = *joint.stop_min, .max = *joint.stop_max});
+  return stops;
+}
+
+CalibrationPlan plan_of(const CalibrateOptions& options) {
+  CalibrationPlan plan;
+  if (options.method == "stops") plan.method = CalibrationMethod::kStops;
+  if (options.method == "goniometer") plan.method = CalibrationMethod::kGoniometer;
+  const bool stops = plan.method == CalibrationMethod::kStops;
+  if (stops != !options.device_file.empty())
+    throw std::invalid_argument(
+        stops ? "--method stops needs --device-file FILE, which states the angles of the device's stops"
+              : "--device-file is for --method stops; leave it out");
+  for (const std::string& name : options.only)
+    for (const int joint : joints_named(name)) plan.joints.push_back(joint);
+  if (stops) plan.stops = stops_of_file(options.device_file);
+  return plan;
 }
 
 int calibrate(const CalibrateOptions& options) {
-  check_out(options);
-  const HandParameters hand = hand_of(options);
+  check_out(options.out, options.force);
+  const CalibrationPlan plan = plan_of(options);
+  const HandParameters hand = hand_of_options(options.hand, options.profile);
+  std::optional<Calibration> earlier;
+  if (!options.earlier.empty()) earlier = load_calibration(options.earlier);
   const Clock clock;
-  const auto device = open_device(options.spec, clock);
-  if (auto* glove = dynamic_cast<OpenGlovesDevice*>(device.get())) glove->set_hand(hand);
-  device->open();
+  const auto device = open_to_measure(options.spec, hand, clock);
   end_on_interrupt();
-  Terminal terminal;
-  Calibration calibration = calibrate_by_poses(*device, clock, hand, terminal);
+  CalibrationTerminal terminal;
+  Calibration calibration =
+      calibrate_by_poses(*device, clock, hand, terminal, {.plan = plan, .earlier = std::move(earlier)});
   device->close();
   calibration.date = made_here().date;
   calibration.phalanx = PHALANX_VERSION;
@@ -143,17 +95,35 @@ int calibrate(const CalibrateOptions& options) {
 void add_device_calibrate(CLI::App& device, Job& job) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command =
-      device.add_subcommand("calibrate", "Find the gains and offsets of a device's channels by poses");
+      device.add_subcommand("calibrate", "Find the gains and offsets of a device's channels at known angles");
   command->footer(
       std::string("DEVICE is one of\n") + kDeviceSpecs +
-      "\nThe wearer goes through open hand, fist, spread and each joint's end stops; the angles there are "
-      "those of\n--hand or --profile. Nothing implausible is written. Motors stay off.\n"
+      "\nMETHOD is one of\n"
+      "  jig         the device is on a jig or a dummy hand; its angles are those of --hand or --profile, or "
+      "typed\n"
+      "  stops       without a hand in it, the device is moved to its stops; --device-file states their "
+      "angles\n"
+      "  goniometer  a hand is held where it can be held; each angle is measured and typed\n"
+      "None of them needs to know how far a patient can move: `phalanx device range` measures that.\n"
+      "Nothing implausible is written. Motors stay off.\n"
       "Exit codes: 0 done, 1 refused or failed, 2 wrong usage.");
   command->add_option("DEVICE", options->spec, "its address")->required()->type_name("");
+  command->add_option("--method", options->method, "jig, stops or goniometer")
+      ->required()
+      ->check(CLI::IsMember({"jig", "stops", "goniometer"}))
+      ->type_name("METHOD");
   command->add_option("--out", options->out, "the calibration file")->required()->type_name("FILE");
-  command->add_option("--hand", options->hand, "hand file with the wearer's range of motion [adult]")
-      ->type_name("HAND");
-  command->add_option("--profile", options->profile, "the wearer's profile")->type_name("PROFILE");
+  command->add_option("--only", options->only, "a digit or a joint; may be repeated [all]")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  command
+      ->add_option("--calibration", options->earlier,
+                   "an earlier file of this device: channels that are not measured keep its numbers")
+      ->type_name("FILE");
+  command->add_option("--device-file", options->device_file, "for stops: a name in assets/devices, or a path")
+      ->type_name("FILE");
+  command->add_option("--hand", options->hand, "hand file with the jig's angles [adult]")->type_name("HAND");
+  command->add_option("--profile", options->profile, "the same, by a profile")->type_name("PROFILE");
   command->add_flag("--force", options->force, "replace FILE if it is there");
   command->callback([options, command, &job] {
     refuse_empty_values(*command);

@@ -120,6 +120,10 @@ class Run {
       console_.complain(
           "no --calibration: using the device's own numbers; see `phalanx device calibrate --help`",
           Emphasis::kWarning);
+    if (info->source == HandSource::kDevice && info->range.empty())
+      console_.say(
+          "no --range: the limits of the hand or the profile alone bound the torque at the ends of the "
+          "motion");
     if (holds_without_host(info->device)) console_.complain(kHoldsWithoutHost, Emphasis::kWarning);
     console_.say(
         "Not a medical device. Ctrl-C ramps to zero and ends; type stop, resume, reset, open DIGIT, set "
@@ -457,6 +461,8 @@ void add_run_command(CLI::App& app, Job& job) {
       ->capture_default_str();
   run->add_option("--calibration", options->calibration,
                   "the device's calibration file (phalanx device calibrate)");
+  run->add_option("--range", options->range,
+                  "the patient's own range of motion (phalanx device range); no torque pushes beyond it");
   run->add_option("--seconds", options->seconds, "end after so long; else with Ctrl-C")->check(positive());
   run->add_option("--rate-hz", options->rate_hz, "the loop's rate, 200 .. 2000 Hz; else the scene's");
   run->add_option("--profile", options->profile, "the patient's hand: a profile's name or file");
@@ -517,6 +523,8 @@ void add_run_command(CLI::App& app, Job& job) {
   run->add_option("--uploads", options->uploads, "folder of the meshes that pages send")
       ->capture_default_str();
   run->add_option("--calibrations", options->calibrations, "folder of what the page's calibration writes")
+      ->capture_default_str();
+  run->add_option("--ranges", options->ranges, "folder of the ranges of motion that the page measures")
       ->capture_default_str();
   run->add_flag("--quiet", options->quiet, "no status line");
   run->callback([options, run, port, &job] {

@@ -13,6 +13,7 @@
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/calibration_file.h"
 #include "phalanx/scene/device_file.h"
+#include "phalanx/scene/range_file.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/station/station.h"
 
@@ -71,18 +72,34 @@ Overrides overrides_of(const RunOptions& o, const std::string& scene) {
   return overrides;
 }
 
-/// Writes the page's calibration: one file a device, named after its serial number.
-std::string write_calibration(const std::string& folder, Calibration calibration) {
-  calibration.date = made_here().date;
-  calibration.phalanx = PHALANX_VERSION;
-  std::string name = calibration.serial;
+/// @returns the path of a file in the folder, which is made if needed
+std::filesystem::path file_in(const std::string& folder, std::string name) {
   for (char& c : name) {
     const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-';
     if (!plain) c = '_';
   }
   prepare_output_folder(folder);
+  return std::filesystem::absolute(std::filesystem::path(folder) /
+                                   ((name.empty() ? "device" : name) + ".toml"));
+}
+
+/// Writes the range that the page measured: one file for a device and a patient's label.
+std::string write_range(const std::string& folder, MeasuredRange range) {
+  range.date = made_here().date;
+  range.phalanx = PHALANX_VERSION;
   const std::filesystem::path file =
-      std::filesystem::absolute(std::filesystem::path(folder) / ((name.empty() ? "device" : name) + ".toml"));
+      file_in(folder, range.patient.empty() ? range.serial : range.serial + "-" + range.patient);
+  const std::string text = range_text(range);
+  static_cast<void>(parse_range(text, file.string()));
+  write_text_file(file, text);
+  return file.string();
+}
+
+/// Writes the page's calibration: one file a device, named after its serial number.
+std::string write_calibration(const std::string& folder, Calibration calibration) {
+  calibration.date = made_here().date;
+  calibration.phalanx = PHALANX_VERSION;
+  const std::filesystem::path file = file_in(folder, calibration.serial);
   const std::string text = calibration_text(calibration);
   // A device's name may contain bytes that a TOML file cannot: refuse it now, not when the file is read.
   static_cast<void>(parse_calibration(text, file.string()));
@@ -97,6 +114,12 @@ SessionSettings session_settings(const RunOptions& o) {
   check_glove_options(o);
   if (is_simulated(o) && !o.calibration.empty())
     throw std::invalid_argument("--calibration: the simulated device needs none; leave it out");
+  if (is_simulated(o) && !o.range.empty())
+    throw std::invalid_argument(
+        "--range: it limits a device on a wire, and this one is simulated; leave it out");
+  if (!o.range.empty() && o.calibration.empty())
+    throw std::invalid_argument(
+        "--range: it holds for one calibration of the device; state it, too, with --calibration");
   SessionSettings settings;
   settings.scene = !o.scene.empty()  ? o.scene
                    : is_simulated(o) ? RunOptions::kDemonstration
@@ -104,6 +127,7 @@ SessionSettings session_settings(const RunOptions& o) {
   settings.overrides = overrides_of(o, settings.scene);
   settings.device = o.device;
   settings.calibration = o.calibration;
+  settings.range = o.range;
   settings.clinician = o.clinician;
   if (o.watchdog_ms) settings.watchdog = 1e-3 * *o.watchdog_ms;
   settings.force_feedback = !o.no_force_feedback;
@@ -112,6 +136,9 @@ SessionSettings session_settings(const RunOptions& o) {
   settings.keep_changes = o.recordings != "off";
   settings.write_calibration = [folder = o.calibrations](const Calibration& found) {
     return write_calibration(folder, found);
+  };
+  settings.write_range = [folder = o.ranges](const MeasuredRange& found) {
+    return write_range(folder, found);
   };
   return settings;
 }

@@ -21,6 +21,7 @@ struct RunOptions {
   std::string scene;  ///< empty: kDemonstration with a simulated device, else kGrasp
   std::string device = "simulated";
   std::string calibration;
+  std::string range;
   std::string clinician;
   std::optional<double> watchdog_ms;  ///< watchdog of a glove's firmware [ms]
   bool no_force_feedback = false;     ///< a glove that only senses
@@ -53,6 +54,7 @@ struct RunOptions {
   std::string audit = "out/cockpit/changes.jsonl";
   std::string uploads = "out/cockpit/meshes";
   std::string calibrations = "out/calibrations";
+  std::string ranges = "out/ranges";
   bool quiet = false;
 };
 

@@ -7,12 +7,23 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "phalanx/device/device.h"
 #include "phalanx/hand/hand_parameters.h"
 
 namespace phalanx {
+
+/// Source of the known angles of a calibration. None of them depends on what a patient can reach.
+enum class CalibrationMethod : std::uint8_t {
+  kJig,         ///< the device is on a jig or a dummy hand, whose joints are set to stated angles
+  kStops,       ///< the device is at its mechanical stops, whose angles its file states
+  kGoniometer,  ///< a hand is held where it can be held, and a person measures and enters each angle
+};
+
+/// Names a method: "jig", "stops", "goniometer".
+[[nodiscard]] std::string_view calibration_method_name(CalibrationMethod method) noexcept;
 
 /// Limits for a plausible calibration. Angles also bound curls and splays, through radians_per_unit().
 struct CalibrationLimits {
@@ -21,7 +32,7 @@ struct CalibrationLimits {
   double most_noise = 0.03491;  ///< largest noise (root mean square, rms) while a pose is held: 2 deg [rad]
   double most_drift = 0.05236;  ///< largest drift while a pose is held: 3 deg; beyond it, the hand
                                 ///< has moved [rad]
-  double apart = 0.01745;       ///< poses that differ by less count as one: 1 deg [rad]
+  double apart = 0.01745;       ///< the poses' known angles must differ by more: 1 deg [rad]
 };
 
 /// Error of a calibration that is not plausible. what() names the channel, the value and the remedy.
@@ -53,11 +64,12 @@ class RawAverage {
 
 /// Reading of one channel at one pose.
 struct PoseReading {
-  std::string pose;    ///< name of the pose, for messages
-  double value = 0.0;  ///< known value, in the channel's unit
-  double raw = 0.0;    ///< mean [counts]
-  double noise = 0.0;  ///< [counts]
-  double drift = 0.0;  ///< [counts]
+  std::string pose;       ///< name of the pose, for messages
+  double value = 0.0;     ///< known value, in the channel's unit
+  double raw = 0.0;       ///< mean [counts]
+  double noise = 0.0;     ///< [counts]
+  double drift = 0.0;     ///< [counts]
+  double residual = 0.0;  ///< fitted less known value, once fitted [rad]
 };
 
 /// Result of a fit: value = gain raw + offset.
@@ -77,6 +89,17 @@ struct ChannelFit {
 /// joints for a curl, half the range of abduction for a splay.
 [[nodiscard]] double radians_per_unit(ChannelKind kind, int index, const HandParameters& hand);
 
+/// @returns the joint whose angle stands for the channel: its own, the middle joint of a curl's digit, the abduction of
+/// a splay's.
+/// @pre is_posable(channel.kind)
+[[nodiscard]] int leading_joint(const DeviceChannel& channel) noexcept;
+/// @returns the angle of the leading joint at a value of the channel [rad].
+[[nodiscard]] double angle_of_value(const DeviceChannel& channel, double value,
+                                    const HandParameters& hand) noexcept;
+/// @returns the value of the channel at an angle of its leading joint [rad].
+[[nodiscard]] double value_of_angle(const DeviceChannel& channel, double angle,
+                                    const HandParameters& hand) noexcept;
+
 /// Fits value over raw counts by least squares: minimises sum (gain raw + offset - value)^2.
 /// @param channel   kind, index and valid raw range
 /// @throws CalibrationError naming the channel, the value and the remedy:
@@ -94,6 +117,8 @@ struct CalibratedChannel {
   DeviceChannel channel;                ///< without the raw range, which a file does not state
   double residual = 0.0;                ///< residual of the worst pose [rad]
   std::vector<PoseReading> poses = {};  ///< readings that it was fitted to
+  CalibrationMethod method = CalibrationMethod::kJig;
+  std::string date = {};  ///< of its own measurement, as Calibration::date; empty: that of the calibration
 };
 
 /// Content of a calibration file. It belongs to one device.

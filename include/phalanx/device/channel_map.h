@@ -45,6 +45,11 @@ struct JointFollowers {
   std::array<DigitCopy, kDigits> copy{};
 };
 
+/// Sets the joints of an angle, a curl or a splay at a value; other channels set none. Real-time.
+/// @param min, max  the hand's range of motion [rad]
+void put_angles(const DeviceChannel& channel, double value, const JointArray& min, const JointArray& max,
+                JointArray& angle) noexcept;
+
 /// Map from raw counts, through gain and offset, to all joint angles and the optional channels:
 ///   angle channel   sets its joint
 ///   curl c          sets its digit's flexion joints to  min + c (max - min)

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct ExoJoint {
       0.0;  ///< least significant bit of the joint's potentiometer [rad] >= 0; 0: not quantised
   double sensor_noise = 0.0;   ///< root mean square (rms), before quantisation [rad] >= 0
   bool torque_sensor = false;  ///< the tendon's torque on the joint is measured and sent with the sample
+  std::optional<double> stop_min = {};  ///< the device's mechanical stop at the smallest angle [rad]
+  std::optional<double> stop_max = {};  ///< at the largest angle [rad] > stop_min; for its calibration only
 };
 
 /// A motor and the tendon that it pulls, in the tendon's coordinates. y is the length that the motor has

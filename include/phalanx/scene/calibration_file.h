@@ -4,16 +4,20 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "phalanx/device/calibration.h"
 
 namespace phalanx {
 
 /// Version of the format below; a file of another version is refused.
-inline constexpr int kCalibrationFormat = 1;
+inline constexpr int kCalibrationFormat = 2;
+
+/// @returns true for a date such as "2026-05-04T09:30:00Z".
+[[nodiscard]] bool is_calibration_date(std::string_view text);
 
 /// Writes a calibration as the text of its file:
-///   format = 1
+///   format = 2
 ///   device = "opengloves"            # DeviceInfo::name
 ///   serial = "0001"                  # of the one device that it is for
 ///   date = "2026-05-04T09:30:00Z"
@@ -24,7 +28,9 @@ inline constexpr int kCalibrationFormat = 1;
 ///   gain = 0.00042                   # value = gain raw + offset; an angle in rad
 ///   offset = -0.21
 ///   residual_rad = 0.011             # of the worst pose
-///   poses = [ { name = "fist", raw = 3021.5, value = 1.05 }, ... ]
+///   method = "goniometer"            # jig, stops, goniometer
+///   date = "2026-05-03T10:00:00Z"    # only of a channel that was kept from an earlier calibration
+///   poses = [ { name = "index_pip_flexion first", raw = 3021.5, value = 1.05, residual_rad = 0.002 }, ... ]
 /// Numbers are read back to the same bits.
 /// @throws std::invalid_argument if the format cannot express a channel.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration);

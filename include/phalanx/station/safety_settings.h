@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "phalanx/device/device.h"
+#include "phalanx/device/measured_range.h"
 #include "phalanx/force/force_parameters.h"
 #include "phalanx/hand/joints.h"
 
@@ -31,7 +32,7 @@ struct SafetySettings {
   double joint_torque = 0.5;     ///< each joint, absolute [Nm]
   double torque_rate = 10.0;     ///< each joint, absolute [Nm/s]
   double range_taper = 3.0 * std::numbers::pi / 180.0;  ///< outward torque fades over this angle, to zero at
-                                                        ///< the end of the patient's range of motion [rad]
+                                                        ///< the end of the range of motion [rad]
   // Ramps.
   double start_ramp = 1.0;    ///< from zero to full torque after every start [s]
   double stop_ramp = 0.2;     ///< to zero after a stop [s]
@@ -54,6 +55,9 @@ struct SafetySettings {
   /// The same bound for a fingertip's measured force and the magnitude of the sum of the forces commanded on
   /// its digit [N]. torque_error_part and torque_error_time hold here too.
   double force_error = 2.0;
+
+  /// The patient's own range of motion, which narrows that of the hand for range_taper; none: only the hand's holds.
+  JointRanges range{};
 
   /// The setting that makes this a patient's session, as stated ("hand.profile = small-woman"); empty: none.
   std::string patient;

@@ -15,6 +15,7 @@
 
 #include "phalanx/device/calibration_session.h"
 #include "phalanx/device/clock.h"
+#include "phalanx/device/range_session.h"
 #include "phalanx/hand/hand_model.h"
 #include "phalanx/hand/hand_skin.h"
 #include "phalanx/scene/scene.h"
@@ -36,6 +37,7 @@ struct SessionSettings {
   Overrides overrides;                  ///< replace values of the scene, until another scene is loaded
   std::string device = "simulated";     ///< "simulated", "sliders", or an address (docs/device.md)
   std::string calibration;              ///< calibration file; empty: the device's own values
+  std::string range = {};               ///< file of the patient's own range of motion; empty: none
   std::string clinician;                ///< who answers for a fingertip force above 5 N: safety_settings.h
   std::optional<double> watchdog = {};  ///< DeviceInfo::watchdog of a glove's firmware [s]
   bool force_feedback = true;           ///< false: a glove that only senses (DeviceInfo::actuated)
@@ -45,6 +47,30 @@ struct SessionSettings {
   /// Writes the calibration wizard's result, on the worker's thread.
   /// @returns the file's path. @throws if it cannot
   std::function<std::string(const Calibration&)> write_calibration;
+  /// Writes the patient's range that was measured, likewise.
+  std::function<std::string(const MeasuredRange&)> write_range = {};
+};
+
+/// One step of a calibration, or of the measurement of a patient's range.
+struct WizardStep {
+  enum class Kind : std::uint8_t {
+    kBegin,       ///< begins a calibration after `plan`
+    kMeasure,     ///< measures the pose; begins to take the digit's positions
+    kSkip,        ///< leaves the pose or digit out
+    kBack,        ///< goes back by one
+    kGoTo,        ///< goes to `pose`, which may be a digit
+    kAbandon,     ///< ends without a file
+    kWrite,       ///< writes the file and uses it
+    kBeginRange,  ///< begins to measure the range of `patient`
+    kAccept,      ///< accepts the digit's range
+    kEnter,       ///< sets `angle` as the known angle of `joint` in `pose`
+  };
+  Kind kind = Kind::kBegin;
+  std::size_t pose = 0;
+  CalibrationPlan plan = {};  ///< without stops: they are those of the scene's device
+  std::string patient = {};   ///< MeasuredRange::patient
+  int joint = 0;
+  double angle = 0.0;  ///< [rad]
 };
 
 /// Geometry that stays the same from step to step.
@@ -73,6 +99,7 @@ struct SessionInfo {
   HandSource source = HandSource::kPatient;
   std::string device_spec;
   std::string calibration;  ///< calibration file; empty: the device's own values
+  std::string range;        ///< file of the patient's own range of motion; empty: none
   DeviceInfo device;
   double fingertip_force = 0.0;  ///< limit of a digit's force [N]
   double margin = 0.0;           ///< ContactParameters::margin [m]
@@ -84,6 +111,10 @@ struct SessionInfo {
   std::string trouble;   ///< why no station exists, or a problem of the device in calibration
   std::shared_ptr<const SessionGeometry> geometry;
   std::shared_ptr<const CalibrationSession::View> wizard;  ///< null: no calibration runs
+  std::shared_ptr<const RangeSession::View> range_wizard;  ///< null: no range is measured
+
+  /// @returns true while a calibration runs or a range is measured: there is no station then.
+  [[nodiscard]] bool calibrating() const noexcept { return wizard != nullptr || range_wizard != nullptr; }
 };
 
 /// Result of a change.
@@ -157,8 +188,9 @@ class Session {
   /// an angle that is not finite is left as it was.
   /// @returns false, with no effect, if sliders do not move the hand of the running station
   bool set_sliders(const JointArray& angle) noexcept;
-  /// Takes one step of the calibration. kBegin ends the station at zero torque; kAbandon and kWrite start it.
-  void calibrate(CalibrationSession::Step step, std::size_t pose, Done done);
+  /// Takes one step of a calibration or of the measurement of a range. kBegin and kBeginRange end the station at zero
+  /// torque; kAbandon and kWrite start it.
+  void calibrate(WizardStep step, Done done);
 
   [[nodiscard]] bool held_stopped() const noexcept;  ///< no resume() since stops() last rose
   [[nodiscard]] double now() const noexcept;         ///< the process's clock [s]

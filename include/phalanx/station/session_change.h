@@ -28,6 +28,7 @@ struct StationSetup {
   JointFollowers followers;
   std::vector<MotorWitness> witnesses;
   std::string calibration;  ///< its file; empty: none
+  std::string range;        ///< file of the patient's own range of motion; empty: none
   std::string clinician;    ///< SessionSettings::clinician
   std::string patient;      ///< SafetySettings::patient
 };

@@ -235,6 +235,7 @@ void write_change(const SessionChange& change, const std::string& device_spec, w
     write_channel(channel, *out.add_factory_channel());
   for (const DeviceChannel& channel : setup.channels) write_channel(channel, *out.add_channel());
   out.set_calibration(as_utf8(setup.calibration));
+  out.set_range(as_utf8(setup.range));
   write_followers(setup.followers, out);
   for (const MotorWitness& witness : setup.witnesses) {
     wire::Setup::Witness& to = *out.add_witness();

@@ -99,7 +99,7 @@ TEST(CalibrateGlove, WritesWhatTheGloveReads) {
   const TemporaryFolder folder;
   GloveFirmware firmware(line_at(kOpen));
   const std::string file = folder / "glove.toml";
-  Program program({"device", "calibrate", "opengloves:" + firmware.port(), "--out", file});
+  Program program({"device", "calibrate", "opengloves:" + firmware.port(), "--method", "jig", "--out", file});
   const std::vector<std::pair<std::string, double>> poses = {
       {"open hand", kOpen}, {"fist", 1.0}, {"index curl largest", 1.0}, {"index curl smallest", 0.0}};
   for (const auto& [name, curl] : poses) {
@@ -125,7 +125,7 @@ TEST(CalibrateGlove, WritesNothingWhenItIsEnded) {
   const TemporaryFolder folder;
   GloveFirmware firmware(line_at(kOpen));
   const std::string file = folder / "glove.toml";
-  Program program({"device", "calibrate", "opengloves:" + firmware.port(), "--out", file});
+  Program program({"device", "calibrate", "opengloves:" + firmware.port(), "--method", "jig", "--out", file});
   ASSERT_TRUE(program.says("] open hand:")) << program.said;
   program.type("q");
   EXPECT_EQ(program.finish(), 1);
@@ -137,7 +137,7 @@ TEST(CalibrateGlove, ReplacesNoFileUnasked) {
   const TemporaryFolder folder;
   const std::string file = folder / "glove.toml";
   std::ofstream(file) << "mine";
-  Program program({"device", "calibrate", "opengloves:/dev/no-such-glove", "--out", file});
+  Program program({"device", "calibrate", "opengloves:/dev/no-such-glove", "--method", "jig", "--out", file});
   EXPECT_EQ(program.finish(), 2);
   EXPECT_THAT(program.said, HasSubstr("--force"));
   EXPECT_EQ(testing::read_file(file), "mine");
@@ -145,7 +145,8 @@ TEST(CalibrateGlove, ReplacesNoFileUnasked) {
 
 TEST(CalibrateGlove, SaysThatNoGloveIsThere) {
   const TemporaryFolder folder;
-  Program program({"device", "calibrate", "opengloves:/dev/no-such-glove", "--out", folder / "glove.toml"});
+  Program program({"device", "calibrate", "opengloves:/dev/no-such-glove", "--method", "jig", "--out",
+                   folder / "glove.toml"});
   EXPECT_EQ(program.finish(), 1);
   EXPECT_THAT(program.said, HasSubstr("/dev/serial/by-id"));
 }

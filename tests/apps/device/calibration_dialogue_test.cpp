@@ -10,6 +10,7 @@
 #include <map>
 
 #include "device/calibration/held_device.h"
+#include "phalanx/core/constants.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -28,6 +29,12 @@ class Wearer final : public CalibrationConsole {
 
   void say(const std::string& line) override {
     said += line + "\n";
+    for (const auto& [name, angle] : held) {
+      if (line.find(fmt::format("] {}:", name)) == std::string::npos) continue;
+      device_.held[1] = static_cast<std::int32_t>(std::lround((angle - kOffset[1]) / kGain[1]));
+    }
+    for (const auto& [name, answer] : script)
+      if (line.find(fmt::format("] {}:", name)) != std::string::npos) pose_ = name;
     for (const CalibrationPose& pose : poses_) {
       if (line.find(fmt::format("] {}:", pose.name)) == std::string::npos) continue;
       pose_ = pose.name;
@@ -37,12 +44,16 @@ class Wearer final : public CalibrationConsole {
   }
   std::optional<std::string> answer(const std::function<std::string()>& live) override {
     lived += live();
+    if (ends_after-- == 0) return "q";
     if (said.ends_with("to give up.\n")) return at_the_end;
     return script.contains(pose_) ? script[pose_] : std::string();
   }
 
   std::map<std::string, std::optional<std::string>> script;
   std::string at_the_end;
+  std::map<std::string, double>
+      held;               ///< the angle of index_pip_flexion that is held, by the pose's name [rad]
+  int ends_after = -1;    ///< answers until it ends; -1: never
   std::string cheats_in;  ///< the pose in which another angle is held, so many times
   int cheats = 1;
   std::string said;
@@ -56,7 +67,8 @@ class Wearer final : public CalibrationConsole {
 
 struct Scene {
   Calibration run() {
-    return calibrate_by_poses(device, clock, hand, wearer, {.measure_for = 0.01, .limits = {}});
+    return calibrate_by_poses(device, clock, hand, wearer,
+                              {.measure_for = 0.01, .limits = {}, .plan = plan, .earlier = earlier});
   }
   std::string refusal() {
     try {
@@ -66,6 +78,8 @@ struct Scene {
     }
     return "";
   }
+  CalibrationPlan plan = {};
+  std::optional<Calibration> earlier = {};
   Clock clock;
   HandParameters hand = test::simple_parameters();
   HeldDevice device;
@@ -86,7 +100,7 @@ TEST(CalibrationDialogue, FindsTheGainsOfEveryChannelAndCommandsNothing) {
   }
   EXPECT_EQ(scene.device.commands, 0) << "torque must never be enabled";
   EXPECT_THAT(scene.wearer.said, HasSubstr("angle of index_pip_flexion"));
-  EXPECT_THAT(scene.wearer.said, HasSubstr("Make a fist"));
+  EXPECT_THAT(scene.wearer.said, HasSubstr("On the jig: the fist"));
   EXPECT_THAT(scene.wearer.lived, HasSubstr("raw"));
 }
 
@@ -109,6 +123,42 @@ TEST(CalibrationDialogue, SkipsAPose) {
   scene.wearer.script["fist"] = std::string("s");
   const Calibration found = scene.run();
   EXPECT_EQ(found.channels[0].poses.size(), 3U);
+}
+
+// Of the finger's two angles only one is calibrated; the other one keeps what an earlier calibration found.
+TEST(CalibrationDialogue, TakesTheAnglesOfAGoniometer) {
+  Scene first;
+  Calibration before = first.run();
+  before.date = "2026-05-04T09:30:00Z";
+  Scene scene;
+  scene.plan = {.method = CalibrationMethod::kGoniometer, .joints = {joint_index(1, 2)}};
+  scene.earlier = before;
+  scene.wearer.script["index_pip_flexion first"] = std::string("10");
+  scene.wearer.script["index_pip_flexion second"] = std::string("index_pip_flexion=40");
+  scene.wearer.script["index_pip_flexion third"] = std::string("s");
+  scene.wearer.held = {{"index_pip_flexion first", 10.0 * kDeg}, {"index_pip_flexion second", 40.0 * kDeg}};
+  const Calibration found = scene.run();
+  ASSERT_EQ(found.channels.size(), 2U);
+  EXPECT_EQ(found.channels[0].channel.gain, before.channels[0].channel.gain);
+  EXPECT_EQ(found.channels[0].date, before.date);
+  EXPECT_EQ(found.channels[0].method, CalibrationMethod::kJig);
+  EXPECT_NEAR(found.channels[1].channel.gain, kGain[1], 1e-2 * kGain[1]);
+  EXPECT_NEAR(found.channels[1].channel.offset, kOffset[1], 2e-2);
+  EXPECT_EQ(found.channels[1].method, CalibrationMethod::kGoniometer);
+}
+
+TEST(CalibrationDialogue, SaysWhichAngleIsMissingOrNoAngle) {
+  for (const auto& [typed, reason] : {std::pair{"", "the angle of index_pip_flexion is not entered"},
+                                      {"far", "'far' is no angle"},
+                                      {"400", "400.0 deg is beyond what a hand can do"},
+                                      {"nose=3", "'nose=3' is no angle"}}) {
+    Scene scene;
+    scene.plan = {.method = CalibrationMethod::kGoniometer, .joints = {joint_index(1, 2)}};
+    scene.wearer.script["index_pip_flexion first"] = std::string(typed);
+    scene.wearer.ends_after = 5;
+    EXPECT_THAT(scene.refusal(), HasSubstr("nothing was written"));
+    EXPECT_THAT(scene.wearer.said, HasSubstr(reason));
+  }
 }
 
 TEST(CalibrationDialogue, EndsWithoutAResultWhenItIsTold) {

@@ -109,7 +109,40 @@ TEST(CalibrationPoses, AskForOppositionAtTheThumbsFirstJoint) {
   const CalibrationPose* next = find(poses, "thumb_mcp_flexion largest");
   ASSERT_TRUE(largest && next);
   EXPECT_NE(largest->instruction.find("across the palm"), std::string::npos) << largest->instruction;
-  EXPECT_EQ(next->instruction, "Bend the middle joint of the thumb as far as it goes.");
+  EXPECT_EQ(next->instruction, "On the jig: the middle joint of the thumb bent, at the angle that is shown.");
+}
+
+// What a patient can reach is not assumed: no angle is known before a person enters it.
+TEST(CalibrationPoses, OfAGoniometerKnowNoAngle) {
+  const auto channels = every_joint();
+  const auto poses = calibration_poses(channels, hand(), {.method = CalibrationMethod::kGoniometer});
+  EXPECT_EQ(poses.size(), 3U * kJoints);
+  for (const CalibrationPose& pose : poses) {
+    EXPECT_EQ(std::count(pose.concerns.begin(), pose.concerns.end(), true), 1) << pose.name;
+    for (const auto& value : pose.value) EXPECT_FALSE(value) << pose.name;
+  }
+}
+
+TEST(CalibrationPoses, OfStopsAreThoseThatTheDeviceStates) {
+  const auto channels = every_joint();
+  const int pip = joint_index(1, 2);
+  const auto poses = calibration_poses(
+      channels, hand(),
+      {.method = CalibrationMethod::kStops, .stops = {{.joint = pip, .min = -0.1, .max = 1.7}}});
+  ASSERT_EQ(poses.size(), 2U);
+  EXPECT_EQ(poses[0].value[static_cast<std::size_t>(pip)], 1.7);
+  EXPECT_EQ(poses[1].value[static_cast<std::size_t>(pip)], -0.1);
+  EXPECT_NE(poses[0].instruction.find("No hand in the device"), std::string::npos);
+}
+
+TEST(CalibrationPoses, AreOfTheChosenJointsOnly) {
+  const auto channels = every_joint();
+  const int pip = joint_index(1, 2);
+  const auto poses = calibration_poses(channels, hand(), {.joints = {pip}});
+  EXPECT_EQ(poses.size(), 4U) << "open hand, fist and two of the joint";
+  for (const CalibrationPose& pose : poses)
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      EXPECT_EQ(pose.value[c].has_value(), channels[c].index == pip) << pose.name;
 }
 
 // Counts that a device with these gains would send at the poses give the gains back.

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "device/calibration/held_device.h"
+#include "phalanx/core/index.h"
 #include "support/simple_hand.h"
 
 namespace phalanx {
@@ -224,6 +225,87 @@ TEST_F(CalibrationSessionTest, WithEverythingSkippedEveryChannelIsRefused) {
   while (!session.at_end()) session.skip();
   EXPECT_FALSE(session.view().finished);
   EXPECT_THAT(session.view().problems, SizeIs(2));
+}
+
+// The maker's gain of this device is 1 rad a count, which no one believes: 2 % of 4095 counts are still.
+TEST_F(CalibrationSessionTest, AMovingHandIsRefusedAndThePoseStaysTheCurrentOne) {
+  session.measure(now);
+  EXPECT_THROW(
+      {
+        while (session.measuring()) {
+          device.held[1] += 20;  // 120 counts in the six updates of a measurement
+          wait();
+        }
+      },
+      CalibrationError);
+  EXPECT_EQ(session.view().pose, 0U);
+  EXPECT_THAT(session.view().done, Each(false));
+  measure();
+  EXPECT_TRUE(session.view().done[0]);
+}
+
+TEST_F(CalibrationSessionTest, SaysForHowLongTheJointsHaveBeenStill) {
+  for (int i = 0; i < 11; ++i) wait();
+  EXPECT_NEAR(session.view().still_for, 0.2, 1e-9);
+  device.held[1] += 200;
+  wait();
+  EXPECT_EQ(session.view().still_for, 0.0);
+}
+
+TEST_F(CalibrationSessionTest, ShowsWhereTheJointsAreAndWhereTheyAreToGo) {
+  EXPECT_FALSE(session.view().joints[0].present) << "no sample has come";
+  measure();
+  const CalibrationSession::View view = session.view();
+  ASSERT_THAT(view.joints, SizeIs(2)) << "of the fist";
+  EXPECT_EQ(view.joints[1].joint, joint_index(1, 2));
+  EXPECT_EQ(view.joints[1].target, test::simple_parameters().max_angle[idx(joint_index(1, 2))]);
+  EXPECT_NEAR(*view.joints[1].present, 0.0, 1e-9)
+      << "it is still at the open hand, which is the first reference";
+  EXPECT_EQ(view.target[idx(joint_index(1, 2))], *view.joints[1].target);
+  EXPECT_NEAR(view.hand[idx(joint_index(1, 2))], 0.0, 1e-9);
+}
+
+TEST_F(CalibrationSessionTest, AnAngleThatWasEnteredReplacesThatOfThePose) {
+  measure_all();
+  ASSERT_TRUE(session.calibration());
+  const double before = session.calibration()->channels[1].channel.gain;
+  EXPECT_THROW(session.enter(fist(), joint_index(1, 3), 1.0), CalibrationError) << "not a joint of the pose";
+  EXPECT_THROW(session.enter(99, joint_index(1, 2), 1.0), CalibrationError);
+  EXPECT_THROW(session.enter(fist(), joint_index(1, 2), std::nan("")), CalibrationError);
+  ASSERT_TRUE(session.calibration()) << "what was refused changes nothing";
+  session.enter(fist(), joint_index(1, 2), 1.97);
+  ASSERT_TRUE(session.calibration());
+  EXPECT_NE(session.calibration()->channels[1].channel.gain, before) << "fitted again";
+}
+
+TEST_F(CalibrationSessionTest, AGoniometersAnglesAreEnteredAndWellApart) {
+  const int pip = joint_index(1, 2);
+  CalibrationSession by_hand{device,
+                             test::simple_parameters(),
+                             kMeasureFor,
+                             {},
+                             {.method = CalibrationMethod::kGoniometer, .joints = {pip}}};
+  ASSERT_THAT(by_hand.view().names, SizeIs(3));
+  EXPECT_THROW(by_hand.measure(now), CalibrationError) << "no angle is entered";
+  const auto measure_at = [&](double held, double entered) {
+    device.held[1] = static_cast<std::int32_t>(std::lround((held - kOffset[1]) / kGain[1]));
+    by_hand.enter(by_hand.view().pose, pip, entered);
+    by_hand.measure(now);
+    while (by_hand.measuring()) by_hand.update(now += kWizardPeriod);
+  };
+  measure_at(0.2, 0.2);
+  measure_at(0.5, 0.5);
+  by_hand.skip();
+  ASSERT_THAT(by_hand.view().problems, SizeIs(2)) << "one is not measured, and 17 deg are too near";
+  EXPECT_THAT(by_hand.view().problems[1], HasSubstr("17.2 deg apart"));
+  by_hand.go_to(1);
+  measure_at(0.7, 0.7);
+  ASSERT_THAT(by_hand.view().problems, SizeIs(1))
+      << "the other joint has neither a pose nor an earlier calibration";
+  EXPECT_THAT(by_hand.view().problems[0], HasSubstr("index_mcp_flexion"));
+  by_hand.go_to(2);
+  measure_at(0.4, 0.6);
+  EXPECT_THAT(by_hand.view().problems[1], HasSubstr("beside the straight line")) << "11 deg wrong";
 }
 
 TEST_F(CalibrationSessionTest, ASilentDeviceLeavesThePoseAskedFor) {

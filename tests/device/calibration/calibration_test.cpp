@@ -142,7 +142,7 @@ TEST(CalibrationFit, MeasuresACurlsResidualInAngle) {
 // ---- what is refused ----
 
 TEST(CalibrationFit, RefusesFewerThanTwoPosesThatDiffer) {
-  expect_refused({}, {"angle of index_pip_flexion", "0 poses", "end stops"});
+  expect_refused({}, {"angle of index_pip_flexion", "0 poses", "more than 1 deg"});
   expect_refused({reading("fist", 1.5, 3000.0)}, {"1 poses"});
   expect_refused({reading("fist", 1.5, 1000.0), reading("end stop", 1.5, 3000.0)},
                  {"2 poses, 0.0 deg apart"});
@@ -156,7 +156,7 @@ TEST(CalibrationFit, RefusesASensorThatDoesNotMove) {
 TEST(CalibrationFit, RefusesAPoseBesideTheLine) {
   auto readings = straight_line();
   readings[1].raw += 200.0;  // 9 deg: 5.9 of them remain beside the best line
-  expect_refused(readings, {"half way: +5.9 deg", "5.0", "--profile"});
+  expect_refused(readings, {"half way: +5.9 deg", "5.0", "the angle that is stated"});
 }
 
 TEST(CalibrationFit, RefusesPosesThatDisagreeOnTheDirection) {

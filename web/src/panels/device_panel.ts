@@ -7,6 +7,7 @@ import type { App } from "./app";
 import { el, section, setShown, setText } from "./dom";
 import { isBehind, recordingsLink } from "./recording";
 import { histogram } from "./histogram";
+import type { CalibrationDialog } from "./calibration_dialog";
 import { wizardSection } from "./wizard";
 
 const words = strings.device;
@@ -33,6 +34,7 @@ function deviceFacts(state: State): readonly Fact[] {
     [words.torque, state.rendersTorque ? words.renders : words.noTorque],
     [words.watchdog, state.holdsWithoutHost ? words.noWatchdog : words.letsGo, state.holdsWithoutHost],
     [words.calibration, state.calibration || words.ownNumbers],
+    [words.range, state.range || words.noRange],
     [words.realtime, state.realtime || words.realtimeUnknown],
   ];
 }
@@ -91,7 +93,7 @@ function pageFacts(figures: DeliveryFigures, drawn: number | undefined): readonl
 }
 
 /// @param framesDrawn  in a second; undefined: there is no view
-export function devicePanel(app: App, framesDrawn: () => number | undefined = () => undefined): HTMLElement {
+export function devicePanel(app: App, calibration: CalibrationDialog, framesDrawn: () => number | undefined = () => undefined): HTMLElement {
   const device = el("dl", { class: "facts" });
   const link = el("dl", { class: "facts facts-narrow" });
   const loop = el("dl", { class: "facts facts-narrow" });
@@ -128,7 +130,7 @@ export function devicePanel(app: App, framesDrawn: () => number | undefined = ()
     "div",
     {},
     section(words.title, holds, device),
-    wizardSection(app),
+    wizardSection(app, calibration),
     section(words.recording, unsaved, notRecorded, recording, recordingsLink()),
     section(words.loop, degraded, loop, lateness.element, step.element),
     section(words.link, link),

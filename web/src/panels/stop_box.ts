@@ -25,6 +25,7 @@ const names: Readonly<Record<SafetyState, SafetyName>> = {
 export function safetyName(store: Store): SafetyName {
   const state = store.known;
   if (!state) return "unknown";
+  if (state.wizard) return "calibrating";
   if (state.stationGone) return "gone";
   return names[state.safety] ?? "unknown";
 }

@@ -25,10 +25,13 @@ export interface ViewFrame {
   setTheme(theme: ThemeName): void;
   camera(preset: CameraPreset): void;
   zoom(factor: number): void;
+  setCalibrating(on: boolean): void; // the hand alone, with a ghost where it is to go
 }
 
 export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFrame {
   let view: HandView | undefined;
+  let calibrating = false;
+  const partsNow = (): ShownParts => (calibrating ? { ...parts, ghost: true, arrows: false, object: false, cones: false } : parts);
   let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   const host = el("div", { class: "view-host", tabindex: 0, role: "application", "aria-label": words.label });
   const wait = el("p", { class: "view-wait" }, words.loading);
@@ -42,7 +45,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     const control = switchButton(words.parts[part], (on) => {
       parts = { ...parts, [part]: on };
       setSwitch(control, on);
-      view?.setParts(parts);
+      view?.setParts(partsNow());
     });
     setSwitch(control, parts[part]);
     return control;
@@ -110,7 +113,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     }
     if (wait.textContent === words.loading) setShown(wait, false);
     view.setTheme(theme);
-    view.setParts(parts);
+    view.setParts(partsNow());
     view.setSkinTone(tones.tone);
     view.setViews(views.count);
     view.setObjectKind(source.objectKind);
@@ -135,5 +138,9 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     setTheme: (theme) => view?.setTheme(theme),
     camera,
     zoom,
+    setCalibrating(on) {
+      calibrating = on;
+      view?.setParts(partsNow());
+    },
   };
 }

@@ -86,9 +86,14 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     return state !== undefined && !state.stationGone && state.geometry !== this.shape;
   }
 
+  /// A calibration is on, and shows the hand in place of the station.
+  get calibrating(): boolean {
+    return (this.known?.wizard?.hand.length ?? 0) > 0;
+  }
+
   /// The picture is old.
   get viewDead(): boolean {
-    return this.lost || this.shapeMissing;
+    return (this.lost && !this.calibrating) || this.shapeMissing;
   }
 
   get oldCurves(): OldCurves {

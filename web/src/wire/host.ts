@@ -15,7 +15,7 @@ import {
   SlidersSchema,
   StopSchema,
   TakeControlSchema,
-  type Calibrate_Step,
+  type Calibrate,
   type HandSource,
 } from "../gen/phalanx/cockpit_pb";
 import type { Opening } from "../gen/phalanx/tick_pb";
@@ -26,6 +26,9 @@ export type Change = readonly [key: string, value: string];
 
 /// Time that the socket has to confirm a stop before the stop is sent by HTTP, too [ms].
 const kStopPatienceMs = 300;
+
+/// A step of a calibration; what is left out is 0 or empty.
+export type CalibrateRequest = Partial<Omit<Calibrate, "$typeName" | "$unknown">>;
 
 export class Host {
   constructor(
@@ -94,7 +97,7 @@ export class Host {
     return this.connection.ask({ case: "name", value: create(SetNameSchema, { name }) });
   }
 
-  calibrate(step: Calibrate_Step, pose = 0): Promise<Answer> {
-    return this.connection.ask({ case: "calibrate", value: create(CalibrateSchema, { step, pose }) });
+  calibrate(request: CalibrateRequest): Promise<Answer> {
+    return this.connection.ask({ case: "calibrate", value: create(CalibrateSchema, request) });
   }
 }

@@ -126,6 +126,12 @@ export class FakeHost {
   private readonly began = Date.now();
   private readonly utcOffset = this.began / 1000; // UTC minus the ticks' clock [s]
 
+  /// The poses of an open hand and of a closed one.
+  hands(): { hand: number[]; target: number[] } {
+    const closed = this.ticks[Math.floor(this.ticks.length / 2)];
+    return { hand: this.ticks[0]?.gdpPose ?? [], target: closed?.gdpPose ?? [] };
+  }
+
   constructor(name = "grasp_teapot,skin") {
     const played = recording(name);
     this.ticks = played.ticks;
@@ -247,11 +253,12 @@ export class FakeHost {
     });
     this.say();
     this.hush();
-    this.timer = setInterval(() => this.playing && this.tick(), kPeriodMs);
+    this.timer = setInterval(() => (this.playing || this.state.wizard) && this.tick(), kPeriodMs);
   }
 
   private tick(): void {
     if (++this.step % 30 === 0) this.say();
+    if (!this.playing) return; // a calibration sends no steps
     const time = this.clock;
     const length = this.ticks.length;
     const at = this.touching ? Math.round(Math.abs(((time * 130 + 0.45 * length) % (2 * 0.55 * length)) - 0.55 * length) * 0.35 + 0.4 * length) : 20;

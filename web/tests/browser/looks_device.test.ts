@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // With a device on a wire: its faults and its calibration, as seen and as they work.
 import { beforeAll, describe, expect, it } from "vitest";
+import { poseName } from "../../src/panels/joint_table";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { shootReadable } from "./support/readable";
@@ -36,13 +37,22 @@ describe("a device on a wire", () => {
     expect(await cockpit.page.getByText(device.address).isVisible()).toBe(true);
   });
 
-  it("is calibrated pose by pose", async () => {
-    const words = strings.wizard;
+  it("is calibrated pose by pose, in a dialog beside the hand, without an alarm", async () => {
+    const words = strings.calibration;
+    await cockpit.button(words.device).click();
+    await cockpit.page.getByText(words.methods.jig, { exact: true }).click();
+    await shootReadable(cockpit, "31_calibration_asks");
     await cockpit.button(words.begin).click();
-    await cockpit.untilState("the wizard", (state) => state.wizard !== undefined && state.busy === "");
+    await cockpit.untilState("the calibration", (state) => state.wizard !== undefined && state.busy === "");
     const { wizard } = cockpit.stream.state!;
-    await cockpit.page.getByText(words.pose(1, wizard!.name.length, wizard!.name[0]!)).scrollIntoViewIfNeeded();
+    const dialog = cockpit.page.getByRole("dialog", { name: words.deviceTitle });
+    await dialog.getByText(words.step(1, wizard!.name.length, poseName(wizard!.name[0]!))).waitFor();
+    await dialog.getByText(words.torqueZero).waitFor();
     await until("live counts", () => (cockpit.stream.state!.wizard?.raw.length ?? 0) > 0, () => cockpit.brief());
+    await until("a hand that is not grey", async () => !(await cockpit.probe())!.lost, () => cockpit.brief());
+    expect(await cockpit.page.locator(".lost-band").isVisible()).toBe(false);
+    expect((await cockpit.probe())!.ghost.length).toBeGreaterThan(0);
+    expect(await cockpit.page.locator("button.stop").isVisible()).toBe(true);
     await shootReadable(cockpit, "31_wizard");
     await cockpit.button(words.measure).click();
     await until("measuring", () => cockpit.stream.state!.wizard!.measuring || cockpit.stream.state!.wizard!.done[0] === true, () => cockpit.brief());

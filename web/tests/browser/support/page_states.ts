@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The states of the page, fed by a host that is none, for pictures and for the test of their layout.
+import { create } from "@bufbuild/protobuf";
 import type { Page } from "playwright-core";
+import { Wizard_JointSchema, Wizard_Method, WizardSchema, type Wizard } from "../../../src/gen/phalanx/cockpit_pb";
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import type { FakeHost } from "../fake_host";
 
@@ -25,14 +27,30 @@ async function upload(page: Page, host: FakeHost, answer: unknown): Promise<void
   await page.locator(".upload .import").scrollIntoViewIfNeeded();
 }
 
-const wizard = {
-  $typeName: "phalanx.wire.Wizard" as const,
-  pose: 2, name: ["flat hand", "fist", "fingers at right angles", "thumb across the palm", "fingers spread"],
-  instruction: "Bend the fingers at the knuckles to a right angle, the other joints straight, and hold still.",
-  measuring: false, measured: 0, done: [true, true, false, false, false], raw: [20412, 18003, 22410, 19772],
-  problem: [] as string[], result: [] as string[], finished: false,
-};
+const rad = Math.PI / 180;
+const joint = (joint: number, present: number, rest: object) => create(Wizard_JointSchema, { joint, present: present * rad, ...rest });
+const poseNames = ["index", "middle"].flatMap((digit) => ["mcp_flexion", "pip_flexion", "dip_flexion"].flatMap((part) => ["first", "second", "third"].map((one) => `${digit}_${part} ${one}`)));
+const wizard = create(WizardSchema, {
+  pose: 4, name: poseNames, method: Wizard_Method.GONIOMETER, stillFor: 0.9,
+  instruction: "Hold the middle joint of the index finger further bent, at least 20 degrees from the first position. Measure the joint and enter the angle.",
+  done: poseNames.map((_, i) => i < 4), raw: [20412], joint: [joint(6, 38, { target: 52 * rad, mayEnter: true })],
+});
+const jig = create(WizardSchema, {
+  pose: 1, name: ["open hand", "fist", "spread"], method: Wizard_Method.JIG, stillFor: 0.1, measuring: true, measured: 0.6,
+  instruction: "On the jig: the fist, each joint of the four fingers at the angle that is shown.", done: [true, false, false],
+  joint: [4, 6, 7, 8, 10, 11].map((j, i) => joint(j, 80 + 4 * i, { target: 90 * rad, mayEnter: true })),
+});
+const range = create(WizardSchema, {
+  ofRange: true, pose: 1, digit: [0, 1, 2], done: [true, false, false], measuring: true, stillFor: 0.7,
+  joint: [joint(4, 30, { limitMin: -30 * rad, limitMax: 90 * rad, reachedMin: -5 * rad, reachedMax: 62 * rad }), joint(5, 3, { limitMin: -20 * rad, limitMax: 20 * rad }), joint(6, 38, { limitMin: 0, limitMax: 100 * rad, reachedMin: 2 * rad, reachedMax: 40 * rad }), joint(7, 12, { limitMin: -10 * rad, limitMax: 70 * rad, reachedMin: 0, reachedMax: 25 * rad })],
+});
 
+/// A calibration that shows the host's hand, as it does without steps.
+const calibrates = (host: FakeHost, shown: Wizard) => {
+  onWire(host);
+  host.playing = false;
+  Object.assign(host.state, { wizard: { ...shown, ...host.hands() }, stationGone: true, calibration: "out/calibrations/BH-0042.toml" });
+};
 const onWire = (host: FakeHost) => Object.assign(host.state, { source: 0, deviceSimulated: false, deviceSpec: "serial:/dev/ttyACM0", deviceSerial: "BH-0042" });
 const fault = {
   $typeName: "phalanx.wire.Fault" as const,
@@ -61,8 +79,13 @@ export const pageStates: readonly PageState[] = [
   { name: "refused", before: (host) => (host.refuse = "force.stiffness_n_per_mm = 900: beyond its range, >= 0, <= 100 N/mm; write a number within it"), act: async (page) => { await page.fill(".row-slider input.number", "900"); await page.keyboard.press("Enter"); await wait(300); } },
   { name: "sliders", act: async (page) => { await page.click("[aria-label='Simulated patient']"); await wait(400); await page.click("text=Fist"); } },
   { name: "device", act: async (page) => tab(page, "device") },
-  { name: "wizard", before: (host) => { onWire(host); host.state.wizard = wizard; }, act: async (page) => { await tab(page, "device"); await page.locator(".wizard").scrollIntoViewIfNeeded(); } },
-  { name: "wizard_end", before: (host) => { onWire(host); host.state.wizard = { ...wizard, pose: 5, done: [true, true, true, true, true], problem: ["channel 3 (index pip): moved 40 counts between flat and fist, at least 200 are needed"], result: ["channel 0  thumb cmc flexion   0.00153 rad/count", "channel 1  thumb ip flexion    0.00148 rad/count"] }; }, act: async (page) => { await tab(page, "device"); await page.locator(".wizard").scrollIntoViewIfNeeded(); } },
+  { name: "calibration_ask", before: (host) => onWire(host), act: async (page) => { await tab(page, "device"); await page.click("text=Calibrate the device"); } },
+  { name: "calibration", size: [1920, 1080], before: (host) => calibrates(host, wizard) },
+  { name: "calibration_jig", size: [1366, 768], before: (host) => calibrates(host, jig) },
+  { name: "calibration_end", light: true, before: (host) => calibrates(host, create(WizardSchema, { ...wizard, pose: poseNames.length, joint: [], problem: ["angle of index_pip_flexion: 2 poses, 12.0 deg apart; measure at least two whose angles differ by more than 20 deg"] })) },
+  { name: "range", size: [1366, 768], before: (host) => calibrates(host, range) },
+  { name: "range_tablet", size: [1024, 768], light: true, before: (host) => calibrates(host, range) },
+  { name: "calibration_telephone", size: [390, 844], before: (host) => calibrates(host, wizard) },
   { name: "people", act: async (page, host) => { await tab(page, "people"); host.notice(1, "page 2 (127.0.0.1), Anna", "set", "force.stiffness_n_per_mm = 3"); await wait(200); } },
   { name: "upload_good", act: async (page, host) => upload(page, host, { ok: true, error: "", report: ["knob.stl: 1,204 vertices, 2,404 triangles", "closed, one piece, 61 x 40 x 38 mm", "simplified: no"], findings: ["2 degenerate triangles were removed"], file: "/var/phalanx/uploads/knob.stl" }) },
   { name: "upload_bad", act: async (page, host) => upload(page, host, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },

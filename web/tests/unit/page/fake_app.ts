@@ -6,7 +6,7 @@ import type { Opening } from "../../../src/gen/phalanx/tick_pb";
 import type { App } from "../../../src/panels/app";
 import { Store } from "../../../src/state/store";
 import { kProtocol } from "../../../src/wire/connection";
-import type { Change, Host } from "../../../src/wire/host";
+import type { CalibrateRequest, Change, Host } from "../../../src/wire/host";
 
 export const stiffness = "force.stiffness_n_per_mm";
 export const kMe = 2; // this page's number
@@ -18,6 +18,7 @@ export interface FakeApp {
   readonly dragging: boolean[]; // of each of `asked`
   readonly resets: number[]; // times of the faults that were to be reset
   readonly opened: Opening[]; // that were to be opened
+  readonly calibrated: CalibrateRequest[]; // steps of a calibration
   refuse: string; // what the station answers; empty: it does it
   state(state: MessageInitShape<typeof StateSchema>): void;
   /// The page that has control, and the values of keys.
@@ -48,6 +49,10 @@ export function fakeApp(): FakeApp {
       made.resets.push(faultTime);
       return answer();
     },
+    calibrate: (request: CalibrateRequest) => {
+      made.calibrated.push(request);
+      return answer();
+    },
     openDigit: (seen: Opening) => {
       made.opened.push(seen);
       return answer();
@@ -61,6 +66,7 @@ export function fakeApp(): FakeApp {
     dragging: [],
     resets: [],
     opened: [],
+    calibrated: [],
     refuse: "",
     state,
     operate: (page, values = []) => state({ operatorPage: page, value: values.map(([name, value]) => ({ key: name, value })) }),

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// The joints of one step of a calibration: where each is, where it is to go, and how far it has reached.
+import type { Wizard, Wizard_Joint as Joint } from "../gen/phalanx/cockpit_pb";
+import { strings } from "../strings";
+import { el, newId, setAttribute, setShown, setText } from "./dom";
+
+const words = strings.calibration;
+const kReachedDeg = 3; // closer than this is there
+const kBeyond = 15; // that a bar shows beyond the limits [deg]
+const kNoLimits = { min: -20, max: 120 } as const; // of a bar without limits [deg]
+
+const degrees = (radians: number) => (radians * 180) / Math.PI;
+const shown = (value: number) => value.toLocaleString(strings.locale, { maximumFractionDigits: 0 });
+
+/// The name of a joint for people: "Index: middle joint".
+export function jointName(joint: number): string {
+  const digit = Math.floor(joint / 4);
+  const part = joint % 4;
+  return words.joint(strings.digits[digit] ?? "", words.parts[digit === 0 ? "thumb" : "finger"][part] ?? "");
+}
+
+const limits = (joint: Joint) => words.span(shown(degrees(joint.limitMin)), shown(degrees(joint.limitMax)));
+const digitsOfHost = ["thumb", "index", "middle", "ring", "little"];
+const partsOfHost: Readonly<Record<string, number>> = { mcp_flexion: 0, cmc_flexion: 0, mcp_abduction: 1, cmc_abduction: 1, pip_flexion: 2, dip_flexion: 3, ip_flexion: 3 };
+
+/// The name of a step for people: of "index_pip_flexion second" it is "Index: middle joint, second angle". Others stay as they are.
+export function poseName(name: string): string {
+  const found = /^([a-z]+)_(\w+) (\w+)$/.exec(name);
+  const digit = digitsOfHost.indexOf(found?.[1] ?? "");
+  const part = digit === 0 && found?.[2] === "mcp_flexion" ? 2 : partsOfHost[found?.[2] ?? ""];
+  const which = words.references[found?.[3] ?? ""];
+  if (digit < 0 || part === undefined || which === undefined) return name;
+  return words.poseOf(jointName(4 * digit + part), which);
+}
+
+export class JointTable {
+  readonly element = el("div", { class: "joint-table" });
+  private rows: Row[] = [];
+  private key = "";
+
+  /// @param enter  called with an angle that a person typed [deg]
+  constructor(private readonly enter: (joint: number, angle: number) => void) {}
+
+  show(wizard: Wizard, live: boolean): void {
+    const key = `${wizard.ofRange} ${wizard.pose} ${wizard.joint.map((joint) => `${joint.joint}${joint.mayEnter}`).join()}`;
+    if (key !== this.key) {
+      this.key = key;
+      this.rows = wizard.joint.map((joint) => new Row(joint, wizard.ofRange, this.enter));
+      this.element.replaceChildren(...this.rows.map((row) => row.element));
+      setShown(this.element, this.rows.length > 0);
+    }
+    wizard.joint.forEach((joint, i) => this.rows[i]?.show(joint, live));
+  }
+
+  /// The first angle that is to be entered.
+  focusFirst(): void {
+    this.rows.find((row) => row.wantsAngle)?.focus();
+  }
+}
+
+class Row {
+  readonly element: HTMLElement;
+  private readonly present = el("output", { class: "joint-present" });
+  private readonly note = el("span", { class: "joint-note" });
+  private readonly input = el("input", { type: "text", inputmode: "decimal", class: "number", id: newId("angle") });
+  private readonly marker = el("span", { class: "joint-marker" });
+  private readonly target = el("span", { class: "joint-target" });
+  private readonly reached = el("span", { class: "joint-reached" });
+  wantsAngle = false;
+
+  constructor(joint: Joint, private readonly ofRange: boolean, enter: (joint: number, angle: number) => void) {
+    const name = jointName(joint.joint);
+    const send = () => {
+      const value = Number.parseFloat(this.input.value.replace(",", "."));
+      if (this.input.value.trim() !== "" && Number.isFinite(value)) enter(joint.joint, value);
+    };
+    this.input.addEventListener("change", send);
+    const entry = joint.mayEnter
+      ? el("label", { class: "joint-entry", for: this.input.id }, words.knownAngle, this.input, words.degree)
+      : null;
+    const bar = el("div", { class: "joint-bar", "aria-hidden": true }, this.reached, this.target, this.marker);
+    this.element = el("div", { class: "joint-row", role: "group", "aria-label": name }, el("span", { class: "joint-name" }, name), this.present, bar, this.note, entry);
+  }
+
+  show(joint: Joint, live: boolean): void {
+    const present = live && joint.present !== undefined ? degrees(joint.present) : undefined;
+    const target = joint.target === undefined ? undefined : degrees(joint.target);
+    this.wantsAngle = joint.mayEnter && target === undefined;
+    setText(this.present, present === undefined ? strings.dash : words.angle(shown(present)));
+    const min = this.ofRange ? degrees(joint.limitMin) - kBeyond : Math.min(kNoLimits.min, (target ?? 0) - kBeyond);
+    const max = this.ofRange ? degrees(joint.limitMax) + kBeyond : Math.max(kNoLimits.max, (target ?? 0) + kBeyond);
+    const share = (value: number) => `${(100 * Math.min(1, Math.max(0, (value - min) / (max - min)))).toFixed(1)}%`;
+    place(this.marker, present, share);
+    place(this.target, this.ofRange ? undefined : target, share);
+    const { reachedMin, reachedMax } = joint;
+    const has = this.ofRange && reachedMin !== undefined && reachedMax !== undefined;
+    setShown(this.reached, has);
+    if (has) {
+      this.reached.style.left = share(degrees(reachedMin));
+      this.reached.style.right = `${(100 - Number.parseFloat(share(degrees(reachedMax)))).toFixed(1)}%`;
+    }
+    setText(this.note, has ? words.reached(shown(degrees(reachedMin)), shown(degrees(reachedMax)), limits(joint)) : this.noteOf(present, target, joint));
+    const away = present === undefined || target === undefined ? NaN : target - present;
+    setAttribute(this.element, "data-there", String(Math.abs(away) <= kReachedDeg));
+    if (target !== undefined && document.activeElement !== this.input) this.input.value = target.toFixed(1);
+  }
+
+  focus(): void {
+    this.input.focus();
+  }
+
+  private noteOf(present: number | undefined, target: number | undefined, joint: Joint): string {
+    if (this.ofRange) return words.notReached(limits(joint));
+    if (target === undefined) return words.enterAngle;
+    if (present === undefined) return words.target(shown(target));
+    const away = target - present;
+    return Math.abs(away) <= kReachedDeg ? words.there(shown(target)) : words.toGo(shown(target), shown(Math.abs(away)), away > 0);
+  }
+}
+
+function place(mark: HTMLElement, value: number | undefined, share: (value: number) => string): void {
+  setShown(mark, value !== undefined);
+  if (value !== undefined) mark.style.left = share(value);
+}
