@@ -42,7 +42,7 @@ export function calibrationDialog(app: App, onShown: (shown: boolean) => void): 
   // ---- before it begins: what is to be calibrated
   const method = (value: Method, text: string, meaning: string, chosen: boolean) => {
     const input = el("input", { type: "radio", name: "calibration-method", value, checked: chosen });
-    return { input, row: el("label", { class: "choice" }, input, el("span", {}, el("strong", {}, text), el("span", { class: "hint" }, meaning))) };
+    return { input, row: el("label", { class: "calibration-method" }, input, el("span", {}, el("strong", {}, text), el("span", { class: "hint" }, meaning))) };
   };
   const methods = [
     method(Method.GONIOMETER, words.methods.goniometer, words.methods.goniometerMeaning, true),

@@ -8,20 +8,23 @@ import type { Page } from "playwright-core";
 import { strings } from "../../src/strings";
 import { CockpitPage } from "./support/cockpit_page";
 import { addressOf, projectFolder, runStation, slowMotion } from "./support/program";
+import { until } from "./support/until";
 import { launch } from "./view3d_page/browser";
 
 const [kWidth, kHeight] = [256, 192]; // of a card's picture
 const kScreen = { width: 1024, height: 900 };
 const kQuality = 0.82; // of WebP
+const kHolding = 60; // ticks
+const kCloser = 1.12; // than the view's own preset
 
 /// The PNG in the size of a card, its middle part, as WebP.
 function scaled(page: Page, png: Buffer): Promise<string> {
   return page.evaluate(
-    async ({ data, width, height, quality }) => {
+    async ({ data, width, height, quality, closer }) => {
       const image = new Image();
       image.src = data;
       await image.decode();
-      const scale = Math.max(width / image.width, height / image.height);
+      const scale = closer * Math.max(width / image.width, height / image.height);
       const canvas = document.createElement("canvas");
       [canvas.width, canvas.height] = [width, height];
       const context = canvas.getContext("2d")!;
@@ -29,7 +32,7 @@ function scaled(page: Page, png: Buffer): Promise<string> {
       context.drawImage(image, (width - scale * image.width) / 2, (height - scale * image.height) / 2, scale * image.width, scale * image.height);
       return canvas.toDataURL("image/webp", quality);
     },
-    { data: `data:image/png;base64,${png.toString("base64")}`, width: kWidth, height: kHeight, quality: kQuality },
+    { data: `data:image/png;base64,${png.toString("base64")}`, width: kWidth, height: kHeight, quality: kQuality, closer: kCloser },
   );
 }
 
@@ -47,8 +50,11 @@ async function shoot(scene: string, folder: string): Promise<number> {
     await page.getByText(strings.view.partsMenu, { exact: true }).click();
     for (const part of ["ghost", "arrows"] as const) await cockpit.switch(strings.view.parts[part]).click();
     await page.getByText(strings.view.partsMenu, { exact: true }).click();
-    await cockpit.stream.next(60);
-    await cockpit.untilTouching();
+    await page.evaluate(() => document.querySelector<HTMLElement>(".view-key")!.style.setProperty("visibility", "hidden"));
+    // Without torque no segment is tinted. The patient goes on squeezing.
+    await cockpit.stopButton.click();
+    await cockpit.untilStopped();
+    await until("a hand that holds", () => cockpit.stream.ticks.slice(-kHolding).every((tick) => tick.contact.some((contact) => contact.touching)), () => cockpit.brief());
     const picture = await scaled(page, await page.locator(".view-host").screenshot());
     const bytes = Buffer.from(picture.split(",")[1]!, "base64");
     writeFileSync(join(folder, `${scene}.webp`), bytes);

@@ -55,4 +55,3 @@ export function fakeCanvases(): void {
 export const drawnOn = (canvas: HTMLCanvasElement): readonly Drawn[] => contexts.get(canvas)?.drawn ?? [];
 export const textsOn = (canvas: HTMLCanvasElement): readonly string[] => drawnOn(canvas).filter((one) => one.what === "fillText").map((one) => String(one.values[0]));
 export const forgetDrawn = (canvas: HTMLCanvasElement): void => void contexts.get(canvas)?.drawn.splice(0);
-export const textWidth = (text: string, pixels: number): number => kLetter * pixels * text.length;

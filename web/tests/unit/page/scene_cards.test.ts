@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create } from "@bufbuild/protobuf";
-import { readFileSync, readdirSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { resolve } from "node:path";
 import { beforeEach, describe, expect, it } from "vitest";
 import { ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
@@ -87,11 +87,12 @@ describe("the cards of scenes", () => {
   });
 });
 
-it("every exercise that is shipped has a plain name", () => {
+it("every exercise that is shipped has a plain name and a picture", () => {
   for (const file of readdirSync(resolve(root, "scenes"))) {
     const text = readFileSync(resolve(root, "scenes", file), "utf8");
     const name = file.replace(".toml", "");
     if (text.includes("\npurpose = ") || name === "wave") continue; // wave touches nothing
     expect(words.names[name], name).toBeTruthy();
+    expect(existsSync(resolve(root, "web/src/pictures", `${name}.webp`)), name).toBe(true);
   }
 });
