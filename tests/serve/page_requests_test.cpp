@@ -482,8 +482,12 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
                                           : studies ? "study"
                                                     : "exercise")
         << scenes[idx(i)].name;
-    if (welcome.scene(i).name() == "tripod_pen") EXPECT_EQ(welcome.scene(i).grasp(), "tripod");
-    if (welcome.scene(i).name() == "index_ball") EXPECT_EQ(welcome.scene(i).grasp(), "");
+    if (welcome.scene(i).name() == "tripod_pen") {
+      EXPECT_EQ(welcome.scene(i).grasp(), "tripod");
+    }
+    if (welcome.scene(i).name() == "index_ball") {
+      EXPECT_EQ(welcome.scene(i).grasp(), "");
+    }
   }
   ASSERT_GT(welcome.scene_size(), 10);
   ASSERT_GT(welcome.profile_size(), 1);

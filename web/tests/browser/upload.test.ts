@@ -31,7 +31,7 @@ async function upload(name: string, bytes: Buffer, sizeMm: string, unit = "mm"):
   await cockpit.button(words.upload).click();
   const verdict = page.getByRole("status").filter({ hasText: new RegExp(`^(${words.good}|${words.bad})$`) });
   await verdict.waitFor();
-  return { verdict: await verdict.innerText(), all: await page.locator(".import").first().innerText(), mayUse: await cockpit.button(words.useMesh).isVisible() };
+  return { verdict: await verdict.innerText(), all: await page.locator(".upload .import").innerText(), mayUse: await cockpit.button(words.useMesh).isVisible() };
 }
 
 /// Extent of the object's mesh as the station serves it [m].
