@@ -40,11 +40,13 @@ describe.each(kSizes)("at %i x %i", (width, height) => {
     await cockpit.button(strings.scene.all(kScenes)).click();
     await expectNoFaults("with all scenes");
     await cockpit.button(strings.scene.fewer).click();
-    // A notice: this page gives control back and takes it again.
-    await cockpit.tab("people");
-    await cockpit.button(strings.role.release).click();
+    // A notice of a change that is not this page's own.
+    await page.evaluate(() => fetch("marker", { method: "POST", body: "stimulus 3" }));
     await page.locator(".toast").first().waitFor();
     await expectNoFaults("with notices");
+    // A question: this page gives control back and takes it again.
+    await cockpit.tab("people");
+    await cockpit.button(strings.role.release).click();
     await cockpit.button(strings.role.take).first().click();
     await expectNoFaults("with a question");
     await page.getByRole("dialog").getByRole("button", { name: strings.role.confirm, exact: true }).click();
