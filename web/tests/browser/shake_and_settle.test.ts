@@ -56,6 +56,7 @@ describe("shake and settle", () => {
   it("shakes when the slider makes the wall stiff, and says so", async () => {
     expect(await cockpit.switch(strings.calm.smoothing).getAttribute("aria-checked")).toBe("false");
     const slider = cockpit.slider(strings.force.stiffness);
+    await slider.scrollIntoViewIfNeeded();
     const box = (await slider.boundingBox())!;
     const place = (newtonPerMm: number) => box.x + 10 + (box.width - 20) * (Math.log(newtonPerMm / 0.1) / Math.log(5 / 0.1));
     await cockpit.page.mouse.move(place(0.8), box.y + box.height / 2);
