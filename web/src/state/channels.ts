@@ -90,7 +90,8 @@ export function fillRow(tick: Tick, row: Float64Array, scene = NaN): void {
   const stiffness = shown + kJoints;
   row[stiffness] = tick.stiffness;
   row.set(digitForces(tick), stiffness + 1);
-  row.set([tick.atRest ? 0 : tick.factor, verdictKinds.indexOf(verdictOf(tick).kind), scene], stiffness + 1 + kDigits);
+  const withheld = tick.atRest && tick.contact.some((contact) => contact.forceRaw > 0); // without contact there is nothing to send
+  row.set([withheld ? 0 : tick.factor, verdictKinds.indexOf(verdictOf(tick).kind), scene], stiffness + 1 + kDigits);
 }
 
 /// @returns for each digit the length of the vector sum of the forces on its segments, which the station limits [N]
