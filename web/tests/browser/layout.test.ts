@@ -44,6 +44,7 @@ describe.each(kSizes)("at %i x %i", (width, height) => {
     await page.evaluate(() => fetch("marker", { method: "POST", body: "stimulus 3" }));
     await page.locator(".toast").first().waitFor();
     await expectNoFaults("with notices");
+    await page.locator(".toast button").evaluateAll((buttons) => buttons.forEach((button) => (button as HTMLButtonElement).click())); // sizes follow faster than notices go
     // A question: this page gives control back and takes it again.
     await cockpit.tab("people");
     await cockpit.button(strings.role.release).click();
