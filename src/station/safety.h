@@ -24,7 +24,8 @@ namespace phalanx {
 ///   command()   with the step's torques; it writes the command that leaves
 /// The command is finite, and no joint's torque exceeds its limit. No torque changes by more than its rate
 /// limit per step, except downwards at a fault. No torque pushes a joint beyond the hand's range of
-/// motion, nor beyond the patient's own one (SafetySettings::range). In every state but kStarting, kRunning and kStopping it is zero, after a fault 5 ms later.
+/// motion, nor beyond the patient's own one (SafetySettings::range). In every state but kStarting, kRunning
+/// and kStopping it is zero, after a fault 5 ms later.
 ///
 /// If a device has motors and is not simulated, an OscillationObserver watches the force that leaves of each
 /// segment. It uses its default swing, independent of the scene. The first oscillation fades the torque over

@@ -38,8 +38,7 @@ class Dialogue {
                              session_.poses().size(), measure_for_));
     console_.say(
         "Press Enter in each pose and hold still. A number is the angle of its joint in degrees, "
-        "NAME=DEGREES that of "
-        "one of several. s: skip, b: back by one, q: end.");
+        "NAME=DEGREES that of one of several. s: skip, b: back by one, q: end.");
   }
 
   // Handles one answer to the current pose.

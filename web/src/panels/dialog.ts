@@ -14,7 +14,7 @@ export interface OpenDialog {
 }
 
 /// Opens over the view. The focus goes in, and back when it closes.
-export function openDialog(app: DialogHost, title: string, content: readonly Node[], kind: "small" | "large" = "small", onClose: () => void = () => {}): OpenDialog {
+export function openDialog(app: DialogHost, title: string, content: readonly Node[]): OpenDialog {
   for (const open of app.dialogs.querySelectorAll<HTMLElement>(".dialog")) open.dispatchEvent(new Event("phalanx-close"));
   const before = document.activeElement;
   const id = newId("dialog");
@@ -22,12 +22,11 @@ export function openDialog(app: DialogHost, title: string, content: readonly Nod
     if (!element.isConnected) return;
     element.remove();
     app.dialogs.hidden = true;
-    onClose();
     if (before instanceof HTMLElement && before.isConnected) before.focus();
   };
   const element = el(
     "div",
-    { class: `dialog dialog-${kind}`, role: "dialog", "aria-labelledby": id, tabindex: -1 },
+    { class: "dialog", role: "dialog", "aria-labelledby": id, tabindex: -1 },
     el("header", {}, el("h2", { id }, title), button(strings.look.close, close, { class: "quiet" })),
     el("div", { class: "dialog-body" }, ...content),
   );

@@ -102,8 +102,10 @@ describe("by keyboard", () => {
       expect(changed, `key ${key}`).toBeGreaterThan(0.05);
       before = after;
     }
+    await cockpit.page.keyboard.press("1"); // near again
+    before = await look();
     await view.focus();
-    for (let i = 0; i < 6; ++i) await cockpit.page.keyboard.press("ArrowLeft");
+    for (let i = 0; i < 12; ++i) await cockpit.page.keyboard.press("ArrowLeft"); // by 55 degrees
     expect(await differing(cockpit.page, before, await look()), "arrow keys").toBeGreaterThan(0.05);
   });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of the page in all its states, fed by a host that is none. Not a test: for looking at.
+// Pictures of the page in all its states, with a simulated station (FakeHost). Not a test: for looking at.
 // npx vite-node tests/browser/page_pictures.ts FOLDER [NAME ...]
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The states of the page, fed by a host that is none, for pictures and for the test of their layout.
+// The states of the page with a simulated station (FakeHost), for pictures and for the test of their layout.
 import { create } from "@bufbuild/protobuf";
 import type { Page } from "playwright-core";
 import { Wizard_JointSchema, Wizard_Method, WizardSchema, type Wizard } from "../../../src/gen/phalanx/cockpit_pb";
