@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "apps/run_program.h"
 #include "record/temporary_folder.h"
@@ -88,11 +90,22 @@ TEST_F(CliSession, ExportsTablesWithUnits) {
   EXPECT_THAT(said("session export last --out part --from 3 --to 2"),
               HasSubstr("from 3 s to 2 s there is no time"));
   EXPECT_FALSE(fs::exists(folder / "part"));
-  EXPECT_THAT(said("session export last --out part --from 0.2 --to 0.4 --quiet "
-                   "--columns torque_nm_index_pip_flexion,stiffness"),
+  // A part from before the 20th step to after the 40th, whenever this computer made them.
+  std::vector<std::string> time;
+  std::istringstream steps(testing::read_file(folder / "tables/steps.csv"));
+  for (std::string line; std::getline(steps, line);) time.push_back(line.substr(0, line.find(',')));
+  ASSERT_GT(time.size(), 42U);
+  const auto before = [&](std::size_t step) {
+    return 0.5 * (std::stod(time[step - 1]) + std::stod(time[step]));
+  };
+  const std::string range = "--from " + std::to_string(before(20)) + " --to " + std::to_string(before(41));
+  EXPECT_THAT(said("session export last --out part --quiet " + range +
+                   " --columns torque_nm_index_pip_flexion,stiffness"),
               HasSubstr("part/steps.csv: "));
   const std::string part = testing::read_file(folder / "part/steps.csv");
-  EXPECT_THAT(part, StartsWith("time_s,station,tick,stiffness_n_per_m,torque_nm_index_pip_flexion\n0.2"));
+  EXPECT_THAT(part, StartsWith("time_s,station,tick,stiffness_n_per_m,torque_nm_index_pip_flexion\n" +
+                               time[20] + ","));
+  EXPECT_EQ(std::count(part.begin(), part.end(), '\n'), 1 + 21);
   EXPECT_FALSE(fs::exists(folder / "part/hand.csv"));
 }
 
