@@ -126,6 +126,12 @@ void RangeSession::go_to(std::size_t digit) {
   digit_ = digit;
 }
 
+bool RangeSession::is_accepted(const Joint& joint) const {
+  for (std::size_t d = 0; d < digits_.size(); ++d)
+    if (done_[d] && of_digit(joint, d)) return true;
+  return false;
+}
+
 RangeSession::View RangeSession::view() const {
   View view;
   view.digits = digits_;
@@ -135,8 +141,7 @@ RangeSession::View RangeSession::view() const {
   view.hand = angle_;
   double still = std::numeric_limits<double>::infinity();
   for (const Joint& joint : joints_) {
-    const bool accepted = joint.reached.has_value() && at_end();
-    if (!accepted && !of_digit(joint, digit_)) continue;
+    if (!(at_end() ? is_accepted(joint) : of_digit(joint, digit_))) continue;
     const auto j = idx(joint.joint);
     view.joints.push_back({.joint = joint.joint,
                            .present = joint.present,
@@ -154,9 +159,8 @@ std::optional<MeasuredRange> RangeSession::range() const {
   MeasuredRange range;
   range.device = device_.info().name;
   range.serial = device_.info().serial;
-  for (std::size_t d = 0; d < digits_.size(); ++d)
-    for (const Joint& joint : joints_)
-      if (done_[d] && of_digit(joint, d)) range.joint[idx(joint.joint)] = joint.reached;
+  for (const Joint& joint : joints_)
+    if (is_accepted(joint)) range.joint[idx(joint.joint)] = joint.reached;
   return range;
 }
 

@@ -181,7 +181,7 @@ PageRequest calibrate(const wire::Calibrate& message, Session& session, Session:
     Kind kind;
     const char* words;
   };
-  constexpr std::array<Known, 10> kSteps = {{{Kind::kBegin, "begins"},
+  constexpr std::array<Known, 11> kSteps = {{{Kind::kBegin, "begins"},
                                              {Kind::kMeasure, "measures the pose"},
                                              {Kind::kSkip, "leaves the pose out"},
                                              {Kind::kBack, "goes a pose back"},
@@ -190,7 +190,8 @@ PageRequest calibrate(const wire::Calibrate& message, Session& session, Session:
                                              {Kind::kWrite, "is written and used"},
                                              {Kind::kBeginRange, "begins to measure the patient's range"},
                                              {Kind::kAccept, "accepts the digit's range"},
-                                             {Kind::kEnter, "takes an angle that was entered"}}};
+                                             {Kind::kEnter, "takes an angle that was entered"},
+                                             {Kind::kDropRange, "the patient's range is no longer used"}}};
   const auto index = static_cast<std::size_t>(message.step());
   if (index >= kSteps.size())
     throw std::invalid_argument(fmt::format("step {} of a calibration: there are 0 to {}; reload the page",

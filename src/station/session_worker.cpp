@@ -338,6 +338,8 @@ void SessionWorker::apply(const WizardStep& step) {
       return leave_wizard();
     case Kind::kWrite:
       return write_wizard();
+    case Kind::kDropRange:
+      return drop_range();
     default:
       wizard_.step(step, clock_.now());
       publish_wizard();
@@ -399,8 +401,20 @@ void SessionWorker::write_wizard() {
   leave_wizard();
 }
 
-/// Ends the wizard and starts a station. No station runs meanwhile: if anything is refused, its scene for
-/// example, there is none.
+/// Starts a station without the patient's range. It begins stopped: its torque may push further than before.
+void SessionWorker::drop_range() {
+  refuse_while_calibrating();
+  if (plan_.range.empty()) throw std::invalid_argument("no range of a patient is in force");
+  StationPlan next = plan_;
+  next.range.clear();
+  StationBuild build = built(next, file_of_plan());
+  state_.hold();
+  switch_to(std::move(build));
+}
+
+/// Ends the wizard and starts a station, which is stopped until people resume it: after a jig, or without a hand in the
+/// device, motors must not begin by themselves. No station runs meanwhile: if anything is refused, its scene for example,
+/// there is none.
 void SessionWorker::leave_wizard() {
   // First, because it may fail without memory: the wizard is then still on, and shown.
   state_.change_info([](SessionInfo& info) {
@@ -408,6 +422,7 @@ void SessionWorker::leave_wizard() {
     info.range_wizard = nullptr;
   });
   wizard_.end();
+  state_.hold();
   try {
     switch_to(built(plan_, SceneFile(plan_.scene)));
   } catch (const std::exception& error) {

@@ -68,6 +68,7 @@ class SessionWorker {
   void begin_wizard(const WizardStep& step);
   void refuse_range_here() const;
   void write_wizard();
+  void drop_range();
   void leave_wizard();
   void update_wizard() noexcept;
   void publish_wizard();

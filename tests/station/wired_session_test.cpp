@@ -128,6 +128,7 @@ TEST_F(WiredSessionTest, WhatAWizardHasFoundIsWrittenAndUsedAtOnce) {
   EXPECT_EQ(session->info()->wizard, nullptr);
   EXPECT_EQ(session->info()->calibration, folder / "found.toml");
   EXPECT_TRUE(session->info()->running);
+  EXPECT_TRUE(session->held_stopped()) << "motors must not begin by themselves";
   EXPECT_EQ(session->info()->trouble, "");
   ASSERT_TRUE(until([&] {
     const StationView view = session->view();
@@ -165,14 +166,18 @@ TEST_F(WiredSessionTest, AWizardMeasuresThePatientsRangeAndTheNextStationHasIt) 
   EXPECT_THAT(set({{"rate_hz", "250"}}), HasSubstr("calibration"));
   EXPECT_THAT(calibrate(Step::kEnter), HasSubstr("belongs to a calibration"));
   EXPECT_THAT(calibrate(Step::kWrite), HasSubstr("no digit's range was accepted"));
-  hold({0.2, 2.0 * kDeg});
-  ASSERT_EQ(calibrate(Step::kMeasure), "");
-  pass(1.0);
-  hold({0.9, 40.0 * kDeg});
-  pass(1.0);
-  ASSERT_EQ(calibrate(Step::kAccept), "");
-  EXPECT_TRUE(session->info()->range_wizard->finished);
-  ASSERT_EQ(calibrate(Step::kWrite), "");
+  const auto reach = [&] {
+    hold({0.2, 2.0 * kDeg});
+    ASSERT_EQ(calibrate(Step::kMeasure), "");
+    pass(1.0);
+    hold({0.9, 40.0 * kDeg});
+    pass(1.0);
+    ASSERT_EQ(calibrate(Step::kAccept), "");
+    EXPECT_TRUE(session->info()->range_wizard->finished);
+    ASSERT_EQ(calibrate(Step::kWrite), "");
+    EXPECT_TRUE(session->held_stopped());
+  };
+  reach();
   EXPECT_EQ(session->info()->range_wizard, nullptr);
   EXPECT_TRUE(session->info()->running);
   ASSERT_EQ(session->info()->range, folder / "range.toml");
@@ -192,6 +197,18 @@ TEST_F(WiredSessionTest, AWizardMeasuresThePatientsRangeAndTheNextStationHasIt) 
   ASSERT_EQ(calibrate(Step::kWrite), "");
   EXPECT_EQ(session->info()->range, "");
   EXPECT_TRUE(session->info()->running);
+  // The next patient has another one, or none.
+  EXPECT_THAT(calibrate(Step::kDropRange), HasSubstr("no range of a patient is in force"));
+  ASSERT_EQ(calibrate(Step::kBeginRange), "");
+  EXPECT_THAT(calibrate(Step::kDropRange), HasSubstr("a calibration is on"));
+  reach();
+  ASSERT_EQ(session->info()->range, folder / "range.toml");
+  EXPECT_TRUE(session->resume(session->stops()));
+  EXPECT_EQ(calibrate(Step::kDropRange), "");
+  EXPECT_EQ(session->info()->range, "");
+  EXPECT_TRUE(session->info()->running);
+  EXPECT_TRUE(session->held_stopped()) << "the torque may push further than before";
+  EXPECT_TRUE(std::filesystem::exists(folder / "range.toml"));
 }
 
 TEST_F(WiredSessionTest, AWizardThatEndsWhereNoStationCanBeMadeSaysWhyAndTheNextOneBeginsStopped) {

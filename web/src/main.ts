@@ -113,8 +113,8 @@ const own = ownObject(app);
 numbers.element.append(storyRibbon(app));
 frame.element.append(dropPlace(app, frame.element, own));
 const calibration = calibrationDialog(app, (shown) => {
-  document.documentElement.dataset["calibrating"] = String(shown);
-  frame.setCalibrating(shown);
+  document.documentElement.dataset["calibrating"] = shown;
+  frame.setCalibrating(shown === "on");
   window.dispatchEvent(new Event("resize"));
 });
 const panels = tabs([

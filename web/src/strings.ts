@@ -82,7 +82,8 @@ const en = {
   notFelt: "not felt",
   atLimit: "at limit",
   atLimitOf: (figure: string) => `${figure}, at limit`,
-  followsWhy: "The device neither measures nor moves this finger: it follows another one. Its force is computed, and is not felt.",
+  followsWhy: "The device does not measure this finger: it follows another one. Its force is computed, and is not felt.",
+  noTorqueWhy: "The device renders no torque. The force is computed, and is not felt.",
   dash: "–", // not known, or nothing
 
   view: {
@@ -642,6 +643,10 @@ const en = {
     beginHint: "The station ends meanwhile: the torque is zero.",
     limitedBy: (file: string) => `No torque pushes a joint beyond the patient’s own range: ${file}`,
     noRange: "The patient’s own range is not measured: the limits of the profile alone hold.",
+    dropRange: "Stop using this range",
+    dropTitle: "Stop using this range?",
+    dropText: "The torque may then push up to the limits of the profile. It goes to zero now, and stays there until Resume is pressed. The file stays.",
+    thenStopped: "Afterwards the torque stays zero until Resume is pressed.",
     deviceTitle: "Calibrate the device",
     rangeTitle: "The patient’s own range",
     torqueZero: "Calibration: torque is zero",
@@ -698,6 +703,7 @@ const en = {
     knownAngle: "Angle",
     degree: "°",
     enterAngle: "Measure the angle and enter it.",
+    noAngle: (typed: string) => `“${typed}” is no angle. Enter degrees as a number, such as 42.5.`,
     target: (target: string) => `to ${target}°`,
     there: (target: string) => `at ${target}°: there`,
     toGo: (target: string, away: string, more: boolean) => (more ? `to ${target}°: ${away}° more` : `to ${target}°: ${away}° back`),

@@ -52,7 +52,10 @@ class RangeDialogue {
   void take(const std::string& answer, bool measuring) {
     if (answer == "s") return session_.skip();
     if (answer == "b") return session_.back();
-    if (answer == "r" || !measuring) return session_.measure(clock_.now());
+    if (answer == "r" || (answer.empty() && !measuring)) return session_.measure(clock_.now());
+    if (!answer.empty())
+      return console_.say(
+          fmt::format("'{}' is not known, and nothing was done: Enter, r, s, b or q", answer));
     const auto joints = session_.view().joints;
     session_.accept();
     for (const RangeSession::JointView& joint : joints) console_.say(line_of(joint));

@@ -76,6 +76,7 @@ class RangeSession {
   void take(const DeviceSample& sample, double now);
   void leave_digit();
   [[nodiscard]] bool of_digit(const Joint& joint, std::size_t digit) const;
+  [[nodiscard]] bool is_accepted(const Joint& joint) const;
 
   Device& device_;
   std::vector<DeviceChannel> channels_;

@@ -64,6 +64,7 @@ struct WizardStep {
     kBeginRange,  ///< begins to measure the range of `patient`
     kAccept,      ///< accepts the digit's range
     kEnter,       ///< sets `angle` as the known angle of `joint` in `pose`
+    kDropRange,   ///< outside of a calibration: the patient's range in force no longer limits the torque
   };
   Kind kind = Kind::kBegin;
   std::size_t pose = 0;

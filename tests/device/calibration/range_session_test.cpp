@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <vector>
 
 #include "device/calibration/held_device.h"
 #include "device/calibration/reaching_hand.h"
@@ -112,6 +113,33 @@ TEST_F(RangeSessionTest, NeedsAJointToMeasure) {
   test::HeldDevice motors;
   motors.keep_only_motors();
   EXPECT_THROW(RangeSession(motors, motors.info().channels, test::simple_parameters()), CalibrationError);
+}
+
+// What is shown at the end is what the file will hold.
+TEST(RangeSession, ADigitThatWasMeasuredAndNotAcceptedIsNotAmongTheResults) {
+  test::HeldDevice device;
+  std::vector<DeviceChannel> channels = device.info().channels;
+  channels.resize(2);
+  channels[0] = {.kind = ChannelKind::kAngle, .index = joint_index(1, 0), .raw_max = 4095, .gain = 1e-3};
+  channels[1] = {.kind = ChannelKind::kAngle, .index = joint_index(2, 2), .raw_max = 4095, .gain = 1e-3};
+  RangeSession session(device, channels, test::simple_parameters());
+  double now = 0.0;
+  const auto measure = [&] {
+    session.measure(now);
+    for (int i = 0; i < 2000; ++i) session.update(now += 1e-3);
+  };
+  device.held[0] = device.held[1] = 500;
+  measure();
+  ASSERT_TRUE(session.view().joints.at(0).reached);
+  session.go_to(1);  // the index finger is not accepted
+  measure();
+  session.accept();
+  ASSERT_TRUE(session.at_end());
+  const auto shown = session.view().joints;
+  ASSERT_EQ(shown.size(), 1U);
+  EXPECT_EQ(shown[0].joint, joint_index(2, 2));
+  EXPECT_FALSE(session.range()->joint[idx(joint_index(1, 0))]);
+  EXPECT_TRUE(session.range()->joint[idx(joint_index(2, 2))]);
 }
 
 TEST(MeasuredRange, BelongsToOneDeviceAndOneCalibration) {

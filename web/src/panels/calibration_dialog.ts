@@ -8,6 +8,7 @@ import type { CalibrateRequest } from "../wire/host";
 import { refusal, type App } from "./app";
 import { button, el, newId, setAttribute, setShown, setSwitch, setText, switchButton } from "./dom";
 import { JointTable, poseName } from "./joint_table";
+import { roleStrip } from "./role_strip";
 import { guarded } from "./setting_controls";
 
 const words = strings.calibration;
@@ -20,11 +21,15 @@ export interface CalibrationDialog {
   askRange(): void; // of which patient
 }
 
-/// @param onShown  called when the dialog appears or goes
-export function calibrationDialog(app: App, onShown: (shown: boolean) => void): CalibrationDialog {
+/// asking: the dialog stands beside a station that runs; on: there is no station, and the hand is that of the calibration.
+export type CalibrationShown = "" | "asking" | "on";
+
+/// @param onShown  called when the dialog appears, changes or goes
+export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) => void): CalibrationDialog {
   type Asking = "" | "device" | "range";
   let asking: Asking = "";
   let before: Element | null = null; // had the focus
+  let told: CalibrationShown = "";
   let shownStep = ""; // which of the steps the focus and the list belong to
 
   const error = el("p", { class: "refused", role: "alert", hidden: true });
@@ -108,6 +113,7 @@ export function calibrationDialog(app: App, onShown: (shown: boolean) => void): 
   const resultBox = el("div", { class: "import", "data-ok": "true" }, el("h3", {}, words.results), results);
   const measure = button(words.measure, press(Step.MEASURE), { class: "primary" });
   const accept = button(words.accept, press(Step.ACCEPT), { class: "primary" });
+  const then = el("p", { class: "hint" }, words.thenStopped);
   const write = button(words.write, press(Step.WRITE), { class: "primary" });
   const again = button(words.again, press(Step.MEASURE));
   const skip = button(words.skip, press(Step.SKIP));
@@ -128,6 +134,7 @@ export function calibrationDialog(app: App, onShown: (shown: boolean) => void): 
     problemBox,
     resultBox,
     steps,
+    then,
     el("div", { class: "buttons calibration-actions" }, measure, accept, write, again, back, skip),
   );
 
@@ -197,6 +204,7 @@ export function calibrationDialog(app: App, onShown: (shown: boolean) => void): 
     setShown(skip, !end);
     back.disabled = wizard.pose === 0 || (wizard.measuring && !wizard.ofRange);
     setShown(write, end && wizard.finished);
+    setShown(then, end);
     showList(wizard, names);
     const now = `${wizard.ofRange} ${wizard.pose}`;
     if (now !== shownStep && dialog.contains(document.activeElement)) joints.focusFirst();
@@ -212,6 +220,7 @@ export function calibrationDialog(app: App, onShown: (shown: boolean) => void): 
     "section",
     { class: "calibration", role: "dialog", "aria-labelledby": id, tabindex: -1, hidden: true },
     el("header", {}, el("div", {}, title, zero), giveUp),
+    roleStrip(app), // who may act; that of the side panel is hidden meanwhile
     el("div", { class: "calibration-body" }, error, guarded(app, asks, course)),
   );
 
@@ -243,9 +252,10 @@ export function calibrationDialog(app: App, onShown: (shown: boolean) => void): 
     setShown(course, wizard !== undefined);
     setShown(giveUp, wizard !== undefined);
     if (wizard) showCourse(wizard);
+    const now: CalibrationShown = wizard ? "on" : shown ? "asking" : "";
+    if (now !== told) onShown((told = now));
     if (dialog.hidden === !shown) return;
     setShown(dialog, shown);
-    onShown(shown);
     if (shown) return dialog.focus();
     say("");
     if (before instanceof HTMLElement && before.isConnected) before.focus();

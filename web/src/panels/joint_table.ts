@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The joints of one step of a calibration: where each is, where it is to go, and how far it has reached.
-import type { Wizard, Wizard_Joint as Joint } from "../gen/phalanx/cockpit_pb";
+import { KeyType, type Wizard, type Wizard_Joint as Joint } from "../gen/phalanx/cockpit_pb";
+import { fromTyped, number } from "../state/toml";
 import { strings } from "../strings";
 import { el, newId, setAttribute, setShown, setText } from "./dom";
 
@@ -63,6 +64,7 @@ class Row {
   private readonly present = el("output", { class: "joint-present" });
   private readonly note = el("span", { class: "joint-note" });
   private readonly input = el("input", { type: "text", inputmode: "decimal", class: "number", id: newId("angle") });
+  private readonly wrong = el("p", { class: "refused", role: "alert", hidden: true });
   private readonly marker = el("span", { class: "joint-marker" });
   private readonly target = el("span", { class: "joint-target" });
   private readonly reached = el("span", { class: "joint-reached" });
@@ -71,15 +73,20 @@ class Row {
   constructor(joint: Joint, private readonly ofRange: boolean, enter: (joint: number, angle: number) => void) {
     const name = jointName(joint.joint);
     const send = () => {
-      const value = Number.parseFloat(this.input.value.replace(",", "."));
-      if (this.input.value.trim() !== "" && Number.isFinite(value)) enter(joint.joint, value);
+      const typed = this.input.value.trim();
+      const value = number(fromTyped(typed, KeyType.KEY_NUMBER));
+      const wrong = typed !== "" && !Number.isFinite(value);
+      this.input.setAttribute("aria-invalid", String(wrong));
+      setText(this.wrong, wrong ? words.noAngle(typed) : "");
+      setShown(this.wrong, wrong);
+      if (typed !== "" && !wrong) enter(joint.joint, value);
     };
     this.input.addEventListener("change", send);
     const entry = joint.mayEnter
       ? el("label", { class: "joint-entry", for: this.input.id }, words.knownAngle, this.input, words.degree)
       : null;
     const bar = el("div", { class: "joint-bar", "aria-hidden": true }, this.reached, this.target, this.marker);
-    this.element = el("div", { class: "joint-row", role: "group", "aria-label": name }, el("span", { class: "joint-name" }, name), this.present, bar, this.note, entry);
+    this.element = el("div", { class: "joint-row", role: "group", "aria-label": name }, el("span", { class: "joint-name" }, name), this.present, bar, this.note, entry, this.wrong);
   }
 
   show(joint: Joint, live: boolean): void {
@@ -102,7 +109,7 @@ class Row {
     setText(this.note, has ? words.reached(shown(degrees(reachedMin)), shown(degrees(reachedMax)), limits(joint)) : this.noteOf(present, target, joint));
     const away = present === undefined || target === undefined ? NaN : target - present;
     setAttribute(this.element, "data-there", String(Math.abs(away) <= kReachedDeg));
-    if (target !== undefined && document.activeElement !== this.input) this.input.value = target.toFixed(1);
+    if (target !== undefined && this.wrong.hidden && document.activeElement !== this.input) this.input.value = target.toFixed(1);
   }
 
   focus(): void {

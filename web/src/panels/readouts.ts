@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Above the view: the stability verdict as a light, the force of each digit on the scale of forces, and which digits cannot have one.
-import { digitForces, followers, kDigits } from "../state/channels";
+import { digitForces, kDigits, notFelt } from "../state/channels";
 import type { Shown } from "../state/shown";
 import type { Verdict } from "../state/verdict";
 import { strings } from "../strings";
@@ -36,7 +36,7 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
   const digits = Array.from({ length: kDigits }, (_, digit) => {
     const value = el("output", { "aria-label": strings.digits[digit] ?? "" });
     const bar = el("span", { class: "bar" });
-    const notFelt = el("small", { class: "digit-note", title: strings.followsWhy, hidden: true }, strings.notFelt);
+    const unfelt = el("small", { class: "digit-note", hidden: true }, strings.notFelt);
     const atLimit = el("strong", { class: "digit-note", hidden: true }, strings.atLimit);
     const box = el(
       "div",
@@ -44,10 +44,10 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
       el("span", { class: "digit-name" }, strings.digits[digit] ?? ""),
       el("span", { class: "digit-value" }, value, el("span", { class: "unit" }, strings.units.newton)),
       el("span", { class: "bar-track", "aria-hidden": "true" }, bar),
-      notFelt,
+      unfelt,
       atLimit,
     );
-    return { box, value, bar, notFelt, atLimit };
+    return { box, value, bar, unfelt, atLimit };
   });
   const element = el(
     "div",
@@ -57,9 +57,10 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
     below.element,
   );
   shown.on(["state"], () => {
-    const all = followers(shown.sensedJoint);
-    digits.forEach(({ box, notFelt }, i) => {
-      setShown(notFelt, all[i] ?? false);
+    const all = notFelt(shown);
+    digits.forEach(({ box, unfelt }, i) => {
+      setShown(unfelt, all[i] ?? false);
+      unfelt.title = shown.rendersTorque ? strings.followsWhy : strings.noTorqueWhy;
       setAttribute(box, "data-felt", String(!(all[i] ?? false)));
     });
   });
@@ -76,7 +77,7 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
     const scale = forceScale(shown.digitLimit);
     digits.forEach((digit, i) => {
       const force = forces[i] ?? 0;
-      setShown(digit.atLimit, digit.notFelt.hidden && isAtLimit(scale, force));
+      setShown(digit.atLimit, digit.unfelt.hidden && isAtLimit(scale, force));
       setText(digit.value, shown.lost || !shown.tick ? strings.dash : force.toFixed(1));
       digit.bar.style.transform = `scaleX(${shareOf(scale, force).toFixed(3)})`;
     });

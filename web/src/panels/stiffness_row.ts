@@ -32,8 +32,8 @@ export function stiffnessRow(app: App): HTMLElement {
   const said = el("p", { class: "hint" });
   const row = logSliderRow(app, kSetting, { label: words.stiffness, field: words.stiffnessField, unit: strings.units.stiffness }, kSoftest, kStiffest, scale);
   const show = () => {
-    const { state, welcome } = app.store;
-    const least = seen.from(state, welcome);
+    const { state } = app.store;
+    const least = seen.from(state);
     const shook = Number.isFinite(least);
     setShown(zone, shook);
     if (shook) at(zone, least);
@@ -41,10 +41,8 @@ export function stiffnessRow(app: App): HTMLElement {
     setShown(said, shook || state?.deviceSimulated === false);
   };
   app.store.on(["tick"], () => {
-    const { tick, state, welcome, light } = app.store;
-    if (!tick || light.shown.kind !== "shakes") return;
-    seen.feed(tick, state, welcome);
-    show();
+    const { tick, state } = app.store;
+    if (tick && seen.feed(tick, state)) show();
   });
   app.store.on(["state", "connection", "own"], show);
   show();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The place of the 3D view: its buttons, its keys, and the text that replaces it if it cannot be shown.
 import type { PastHand } from "../replay/look_back";
-import { followers } from "../state/channels";
+import { notFelt } from "../state/channels";
 import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
@@ -102,7 +102,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
   }
 
   let felt: readonly boolean[] = []; // of each digit; empty: not known
-  source.on(["state"], () => (felt = followers(source.sensedJoint).map((follows) => !follows)));
+  source.on(["state"], () => (felt = notFelt(source).map((unfelt) => !unfelt)));
   const showForces = () => view?.setForces(forceScale(source.digitLimit), felt);
 
   let past: PastHand | undefined;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The key of lengths, colours and signs in the 3D view.
-import { followers } from "../state/channels";
+import { notFelt } from "../state/channels";
 import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import { forceStops } from "../view3d/force_colour";
@@ -24,7 +24,7 @@ export function viewKey(shown: Shown): HTMLElement {
     setShown(slips, shown.slides);
   };
   shown.on(["state", "connection"], update);
-  shown.on(["state"], () => setShown(hollow, followers(shown.sensedJoint).includes(true)));
+  shown.on(["state"], () => setShown(hollow, notFelt(shown).includes(true)));
   setShown(hollow, false);
   update();
   return el("div", { class: "view-key" }, el("span", { class: "force-scale" }, "0", bar, end), slips, hollow);

@@ -3,6 +3,7 @@
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { strings } from "../strings";
 import { kSegments } from "../view3d/segments";
+import type { Shown } from "./shown";
 import { verdictKinds, verdictOf } from "./verdict";
 
 export const kDigits = 5;
@@ -105,8 +106,13 @@ export function digitForces(tick: Tick | undefined): number[] {
   return sums.map((sum) => Math.hypot(...sum));
 }
 
-/// Digits of which the device measures or moves no joint: they follow others, and nothing pushes them back.
+/// Digits of which the device measures no joint: they follow others, and nothing pushes them back.
 export function followers(sensedJoints: readonly number[]): boolean[] {
   const own = new Set(sensedJoints.map(digitOfJoint));
   return Array.from({ length: kDigits }, (_, digit) => !own.has(digit));
+}
+
+/// Digits whose force is computed and not felt: followers, and all of a device that renders no torque.
+export function notFelt({ sensedJoint, rendersTorque }: Pick<Shown, "sensedJoint" | "rendersTorque">): boolean[] {
+  return followers(sensedJoint).map((follows) => follows || !rendersTorque);
 }

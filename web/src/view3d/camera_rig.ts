@@ -37,6 +37,7 @@ export class CameraRig {
   private readonly controls: OrbitControls;
   private flight: { from: CameraPlace; to: CameraPlace; began: number } | null = null;
   private following = false;
+  private byHand = false; // turned or zoomed since the preset was chosen
   private free = wholePicture;
   private corrected = -Infinity; // when the preset was last applied [s]
 
@@ -67,6 +68,7 @@ export class CameraRig {
     const to = placeFor(preset, sight, fieldOf(this.camera), this.camera.aspect, this.free);
     this.preset = preset;
     this.following = preset === "contact";
+    this.byHand = false;
     if (at !== null) this.corrected = at;
     if (at === null || reducedMotion()) {
       this.flight = null;
@@ -119,14 +121,19 @@ export class CameraRig {
     this.controls.dispose();
   }
 
-  /// The target goes to the contact; direction and distance stay the user's. While the preset is untouched, the distance is its own.
+  /// The target goes to the contact. Direction and distance are the user's; the distance is the preset's until the user has turned or
+  /// zoomed, so that a hand that opens stays in the picture.
   private follow(sight: Sight, step: number): boolean {
     const to = placeFor("contact", sight, fieldOf(this.camera), this.camera.aspect, this.free);
-    const away = to.target.sub(this.controls.target);
-    if (away.length() < 5e-5) return false;
-    away.multiplyScalar(1 - Math.exp(-Math.min(step, 0.1) / kFollowTime));
-    this.controls.target.add(away);
-    this.camera.position.add(away);
+    const { position, target } = this.place();
+    const from = position.sub(target);
+    const distance = from.length();
+    const wanted = this.byHand ? distance : to.position.distanceTo(to.target);
+    const away = to.target.sub(target);
+    if (away.length() < 5e-5 && Math.abs(wanted - distance) < 5e-5) return false;
+    const share = 1 - Math.exp(-Math.min(step, 0.1) / kFollowTime);
+    target.addScaledVector(away, share);
+    this.stand({ target, position: target.clone().addScaledVector(from, (distance + (wanted - distance) * share) / distance) });
     return true;
   }
 
@@ -139,6 +146,7 @@ export class CameraRig {
     const place = this.place();
     this.flight = null;
     this.preset = this.following ? "contact" : null;
+    this.byHand = true;
     return place;
   }
 

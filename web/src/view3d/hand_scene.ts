@@ -247,8 +247,9 @@ export class HandScene {
     this.lights.cover(this.covered);
   }
 
+  /// A force that is not felt gives no colour.
   private pressing(marks: readonly Mark[]): (Press & Touch)[] {
-    return marks.map(({ segment, point, force }) => ({ segment, point, share: shareOf(this.scale, force) }));
+    return marks.map(({ segment, point, force }) => ({ segment, point, share: this.marks.isFelt(segment) ? shareOf(this.scale, force) : 0 }));
   }
 
   private dropObject(): void {

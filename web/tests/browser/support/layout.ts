@@ -60,12 +60,14 @@ export function faultsOfLayout(): string[] {
     if (note.scrollWidth > note.clientWidth + kSlack || note.scrollHeight > note.clientHeight + kSlack) say("which digits are silent is cut off");
   }
   const stop = document.querySelector(".stop")!;
+  for (const scroller of document.querySelectorAll(".dock, .dock *")) scroller.scrollTop = scroller.scrollHeight; // as a hand may have left it
   if (!within(stop.getBoundingClientRect(), screen) || !uncovered(stop)) say("STOP is not wholly in sight");
   return faults;
 }
 
 /// Runs in the page. @returns the place of Stop, rounded [px]
 export function placeOfStop(): readonly number[] {
+  for (const scroller of document.querySelectorAll(".dock, .dock *")) scroller.scrollTop = scroller.scrollHeight;
   const box = document.querySelector(".stop")!.getBoundingClientRect();
   return [box.left, box.top, box.right, box.bottom].map(Math.round);
 }

@@ -2,7 +2,7 @@
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, it } from "vitest";
 import { Calibrate_Step as Step, Wizard_Method as Method, WizardSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import { calibrationDialog, type CalibrationDialog } from "../../../src/panels/calibration_dialog";
+import { calibrationDialog, type CalibrationDialog, type CalibrationShown } from "../../../src/panels/calibration_dialog";
 import { jointName, poseName } from "../../../src/panels/joint_table";
 import { wizardSection } from "../../../src/panels/wizard";
 import { calibratedHands } from "../../../src/state/calibrated_hands";
@@ -14,7 +14,7 @@ const rad = Math.PI / 180;
 const onWire = { operatorPage: kMe, source: 0, deviceSimulated: false, calibration: "c.toml" };
 let fake: FakeApp;
 let dialog: CalibrationDialog;
-let shown: boolean[];
+let shown: CalibrationShown[];
 
 const flush = () => Promise.resolve().then(() => {}).then(() => {});
 const named = (text: string) => [...dialog.element.querySelectorAll("button")].find((one) => one.textContent === text)!;
@@ -34,7 +34,7 @@ describe("the dialog of a calibration", () => {
   it("asks for the method and the fingers, and begins with them", async () => {
     expect(dialog.element.hidden).toBe(true);
     dialog.askDevice();
-    expect(shown).toEqual([true]);
+    expect(shown).toEqual(["asking"]); // the station runs: verdict and forces stay in sight
     named(strings.digits[0]!).click(); // without the thumb
     dialog.element.querySelector<HTMLInputElement>(`input[value="${Method.JIG}"]`)!.checked = true;
     named(words.begin).click();
@@ -116,7 +116,8 @@ describe("the dialog of a calibration", () => {
     expect(dialog.element.querySelector("fieldset")!.disabled).toBe(true);
     fake.state(onWire);
     expect(dialog.element.hidden).toBe(true);
-    expect(shown).toEqual([true, false]);
+    expect(shown).toEqual(["on", ""]);
+    expect([...dialog.element.querySelectorAll("button")].some((one) => one.textContent === strings.role.take)).toBe(true);
   });
 });
 
@@ -128,6 +129,20 @@ describe("the device's tab", () => {
     expect([range.disabled, section.textContent?.includes(words.noRange)]).toEqual([true, true]);
     fake.state({ ...onWire, range: "out/ranges/1.toml" });
     expect([range.disabled, section.textContent?.includes(words.limitedBy("out/ranges/1.toml"))]).toEqual([false, true]);
+  });
+
+  it("ends the use of a patient's range only after a question", async () => {
+    const section = wizardSection(fake.app, dialog);
+    const drop = [...section.querySelectorAll("button")].find((one) => one.textContent === words.dropRange)!;
+    fake.state(onWire);
+    expect(drop.hidden).toBe(true);
+    fake.state({ ...onWire, range: "out/ranges/1.toml" });
+    expect(drop.hidden).toBe(false);
+    drop.click();
+    expect(fake.calibrated).toEqual([]);
+    [...fake.app.dialogs.querySelectorAll("button")].find((one) => one.textContent === words.dropRange)!.click();
+    await flush();
+    expect(fake.calibrated).toEqual([{ step: Step.DROP_RANGE }]);
   });
 });
 
