@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every text of the page. Another language is a second object of the type Strings; texts that the station sends (descriptions of
-// scenes and keys, refusals, faults) come in English, with codes that a page may translate.
+// Every text of the page in English. Texts that the station sends (descriptions of scenes and keys, refusals, faults) come in English,
+// with codes that a page may translate.
 
-const en = {
+export const en = {
   locale: "en-GB", // of figures and times, and for screen readers
   title: "Phalanx cockpit",
   product: "Phalanx",
@@ -959,6 +959,3 @@ const en = {
 };
 
 export type Strings = typeof en;
-
-/// The language in use.
-export const strings: Strings = en;
