@@ -3,7 +3,8 @@
 // with codes that a page may translate.
 
 export const en = {
-  locale: "en-GB", // of figures and times, and for screen readers
+  locale: "en-GB", // of the words, for screen readers
+  figures: "en-GB", // locale of figures and times; its decimal separator is the point, as in the figures that need no locale
   title: "Phalanx cockpit",
   product: "Phalanx",
   opening: "Opening … If this stays, reload the page.",
@@ -520,7 +521,10 @@ export const en = {
     fist: "Fist",
     grasp: "Planned grasp",
     degrees: "°",
-    joints: ["Flexion", "Spread", "Middle joint", "End joint"],
+    joints: {
+      finger: ["Flexion", "Spread", "Middle joint", "End joint"],
+      thumb: ["Flexion", "Spread", "Middle joint", "End joint"],
+    },
   },
 
   device: {
@@ -655,8 +659,8 @@ export const en = {
     progress: "Steps done",
     step: (step: number, of: number, name: string) => `Step ${step} of ${of}: ${name}`,
     end: "The end",
-    deviceEnd: (finished: boolean) => (finished ? "Everything is measured. Write the file to use it." : "Some sensors were refused. Read why, then measure their steps again."),
-    rangeEnd: (finished: boolean) => (finished ? "Look at the ranges. Write the file to use them, or go back to a finger." : "No finger was accepted. Go back to one, or end without a file."),
+    deviceEnd: (finished: boolean): string => (finished ? "Everything is measured. Write the file to use it." : "Some sensors were refused. Read why, then measure their steps again."),
+    rangeEnd: (finished: boolean): string => (finished ? "Look at the ranges. Write the file to use them, or go back to a finger." : "No finger was accepted. Go back to one, or end without a file."),
     readyFinger: (finger: string) => `Next: the ${finger}. Begin when the patient is ready.`,
     moveFinger: (finger: string) => `Bend the ${finger}, stretch it and spread it to both sides, each as far as it goes. Hold each end still for a second.`,
     beginFinger: "Begin with this finger",
@@ -765,7 +769,7 @@ export const en = {
     agoMinutes: (minutes: string) => `${minutes} min`,
     nothing: "nothing",
     notSent: "not sent",
-    curve: (digit: string, part: string, kind: string) => `${digit} ${part} ${kind}`.trim(),
+    curve: (digit: string, part: string, kind: string) => `${digit} ${part.toLowerCase()} ${kind}`.trim(),
     segmentLines: "thick: sent; thin: before smoothing and limits",
     angleLines: "thick: shown; thin: from the device",
     more: (count: number) => `and ${count} more`,
