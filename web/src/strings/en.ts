@@ -10,6 +10,16 @@ export const en = {
   opening: "Opening … If this stays, reload the page.",
   noScript: "Phalanx’s cockpit needs JavaScript.",
 
+  language: {
+    name: "English", // in the language itself
+    label: "Language / Sprache", // for those who do not read the language in force
+    unreviewedName: (name: string) => `${name} (unreviewed translation)`,
+    unreviewed: "unreviewed",
+    unreviewedHint: "A native speaker has not yet reviewed this translation.",
+    stationHint: "Texts that the station sends (descriptions, refusals, faults) come in English.",
+    notKept: "This browser keeps no choice: the language stays.",
+  },
+
   stop: {
     button: "STOP",
     soft: "software stop",

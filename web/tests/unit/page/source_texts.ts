@@ -6,6 +6,7 @@ import ts from "typescript";
 const root = resolve(__dirname, "../../..");
 const source = resolve(root, "src");
 const texts = resolve(source, "strings/en.ts");
+const languages = [resolve(source, "strings.ts"), resolve(source, "strings")]; // the choice, and the texts
 
 function program(): ts.Program {
   const read = ts.readConfigFile(resolve(root, "tsconfig.json"), (name) => ts.sys.readFile(name));
@@ -17,7 +18,8 @@ const made = program();
 const checker = made.getTypeChecker();
 const pageFiles = made.getSourceFiles().filter((file) => {
   const folder = dirname(file.fileName);
-  return folder !== dirname(texts) && (folder === source || folder.startsWith(`${source}/`)) && !folder.startsWith(`${source}/gen`);
+  const isText = languages.includes(file.fileName) || languages.includes(folder);
+  return !isText && (folder === source || folder.startsWith(`${source}/`)) && !folder.startsWith(`${source}/gen`);
 });
 
 function visit(node: ts.Node, see: (node: ts.Node) => void): void {
