@@ -345,8 +345,8 @@ export const de: Strings = {
     title: "Grenzen",
     force: "Kraft eines Fingers",
     torque: "Drehmoment eines Gelenks",
-    torqueRate: "Schnellste Änderung eines Drehmoments",
-    speed: "Höchstes Tempo eines Gelenks, das als wahr gilt",
+    torqueRate: "Änderung eines Drehmoments",
+    speed: "Glaubhaftes Gelenktempo",
     off: "AUS",
   },
 
