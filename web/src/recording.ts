@@ -3,6 +3,7 @@
 import type { Tick } from "./gen/phalanx/tick_pb";
 import { helpDialog, openDialog } from "./panels/dialog";
 import { button, el, setShown, setText } from "./panels/dom";
+import { unreviewedMark } from "./panels/language_choice";
 import { Look, lookSwitches } from "./panels/look";
 import { openRecording, type Recording } from "./replay/recording";
 import { listenToReplayKeys } from "./replay/replay_keys";
@@ -63,6 +64,7 @@ const band = el(
   { class: "header band" },
   what,
   el("span", { class: "band-note" }, words.notLive, " ", noStop),
+  unreviewedMark(),
   el("div", { class: "header-tools" }, others, ...lookSwitches(look).elements, button("?", help, { "aria-label": strings.look.help, title: strings.look.help })),
 );
 const start = startPanel({

@@ -39,7 +39,7 @@ function deviceFacts(state: State): readonly Fact[] {
   ];
 }
 
-const count = (value: bigint) => value.toLocaleString(strings.locale);
+const count = (value: bigint) => value.toLocaleString(strings.figures);
 
 function linkFacts(link: Link): readonly Fact[] {
   const names = words.linkNames;
@@ -55,7 +55,7 @@ function linkFacts(link: Link): readonly Fact[] {
 
 function size(bytes: bigint): string {
   const megabytes = Number(bytes) / 1e6;
-  const rounded = (value: number) => value.toLocaleString(strings.locale, { maximumFractionDigits: 1 });
+  const rounded = (value: number) => value.toLocaleString(strings.figures, { maximumFractionDigits: 1 });
   return megabytes < 1000 ? words.megabytes(rounded(megabytes)) : words.gigabytes(rounded(megabytes / 1000));
 }
 
@@ -73,7 +73,7 @@ const unknown = (facts: readonly Fact[]): readonly Fact[] => facts.map(([label])
 
 function loopFacts(loop: Loop): readonly Fact[] {
   return [
-    [words.period, strings.device.durations.ms((loop.period * 1000).toLocaleString(strings.locale, { maximumSignificantDigits: 4 }))],
+    [words.period, strings.device.durations.ms((loop.period * 1000).toLocaleString(strings.figures, { maximumSignificantDigits: 4 }))],
     [words.steps, count(loop.steps)],
     [words.overruns, count(loop.overruns), loop.overruns > 0n],
     [words.skipped, count(loop.skipped), loop.skipped > 0n],

@@ -4,6 +4,7 @@ import { strings } from "../strings";
 import type { App } from "./app";
 import { button, el, setShown, setText } from "./dom";
 import { helpDialog } from "./dialog";
+import { unreviewedMark } from "./language_choice";
 import { lookSwitches, type Look } from "./look";
 import { recordingChip } from "./recording";
 import { operatorName } from "./role_strip";
@@ -39,6 +40,7 @@ export function header(app: App, look: Look): HTMLElement {
     source,
     who,
     recordingChip(app),
+    unreviewedMark(),
     el("div", { class: "header-tools" }, ...switches.elements, button("?", () => keysDialog(app), { "aria-label": strings.look.help, title: strings.look.help })),
   );
 }

@@ -11,7 +11,7 @@ const kHeight = 48;
 
 /// 0.8 µs, 25.6 µs, 1.6 ms, 3.3 s.
 export function duration(microseconds: number): string {
-  const digits = (value: number) => value.toLocaleString(strings.locale, { maximumSignificantDigits: 3, useGrouping: false });
+  const digits = (value: number) => value.toLocaleString(strings.figures, { maximumSignificantDigits: 3, useGrouping: false });
   const units = strings.device.durations;
   if (!Number.isFinite(microseconds)) return strings.dash;
   // Less than a nanosecond is the rounding of the clock, and its digits are wider than the panel.

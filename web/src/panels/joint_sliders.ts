@@ -103,8 +103,8 @@ export function jointSliders(app: App): HTMLElement {
       throttle.push(null);
     });
     onLetGo(input, () => letGo(number));
-    const name = words.joints[number % kJointsPerDigit] ?? "";
-    return el("div", { class: "joint" }, el("label", { for: id }, name), input, output);
+    const names = number < kJointsPerDigit ? words.joints.thumb : words.joints.finger;
+    return el("div", { class: "joint" }, el("label", { for: id }, names[number % kJointsPerDigit] ?? ""), input, output);
   }
   const digits = Array.from({ length: kDigits }, (_, digit) =>
     el(

@@ -11,7 +11,7 @@ const kBeyond = 15; // that a bar shows beyond the limits [deg]
 const kNoLimits = { min: -20, max: 120 } as const; // of a bar without limits [deg]
 
 const degrees = (radians: number) => (radians * 180) / Math.PI;
-const shown = (value: number) => value.toLocaleString(strings.locale, { maximumFractionDigits: 0 });
+const shown = (value: number) => value.toLocaleString(strings.figures, { maximumFractionDigits: 0 });
 
 /// The name of a joint for people: "Index: middle joint".
 export function jointName(joint: number): string {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The open pages, the operator, and the list of changes.
+// The open pages, the operator, the name and the language of this page, and the list of changes.
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
 import { strings } from "../strings";
 import { lasting } from "../wire/memory";
 import { refusal, type App } from "./app";
 import { clockTime } from "./clock";
 import { button, el, section, setShown, setText } from "./dom";
+import { languageChoice } from "./language_choice";
 import { plainWords } from "./plain_words";
 import { operatorName } from "./role_strip";
 import { row } from "./setting_controls";
@@ -86,7 +87,8 @@ export function peoplePanel(app: App): HTMLElement {
   return el(
     "div",
     {},
-    section(words.title, looking, facts, nameRow(app), error, el("div", { class: "buttons" }, release, take), urlBox),
+    section(words.title, looking, facts, error, el("div", { class: "buttons" }, release, take), urlBox),
+    section(words.thisPage, nameRow(app), languageChoice(app)),
     section(words.log, empty, log),
   );
 }

@@ -17,7 +17,7 @@ const words = strings.object;
 export function reportLines(report: ImportReport): string[] {
   const facts = report.facts;
   if (!facts) return [...report.report];
-  const count = (value: number) => value.toLocaleString(strings.locale);
+  const count = (value: number) => value.toLocaleString(strings.figures);
   const extent = facts.extent.map((metres) => (metres * 1000).toFixed(1)).join(" × ");
   return [
     facts.verdict,

@@ -57,7 +57,7 @@ function factsOf(shown: Shown, span: Span): string[] {
     ...known(stabiliser, (value) => facts.stabiliser(strings.calm.methods[value] ?? value)),
     ...known(rate, (value) => facts.rate(value, strings.units.hertz)),
     ...known(device, simulated === false ? facts.device : facts.simulated),
-    ...(Number.isNaN(begin.getTime()) ? [] : [facts.begin(begin.toLocaleString(strings.locale, kMoment))]),
+    ...(Number.isNaN(begin.getTime()) ? [] : [facts.begin(begin.toLocaleString(strings.figures, kMoment))]),
   ].filter((fact) => fact !== "");
 }
 

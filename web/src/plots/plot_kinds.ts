@@ -72,7 +72,8 @@ const digitName = (digit: number, computed: boolean) => {
 function partCurve(channel: Channel, theme: ThemeName): Curve {
   const words = strings.plots;
   const ofForce = channel.quantity.startsWith("force");
-  const part = (ofForce ? words.segments : strings.hand.joints)[channel.place] ?? "";
+  const joints = channel.digit === 0 ? strings.hand.joints.thumb : strings.hand.joints.finger;
+  const part = (ofForce ? words.segments : joints)[channel.place] ?? "";
   const suffixes: Readonly<Partial<Record<Quantity, string>>> = {
     force_raw: words.raw,
     force_sent: words.sent,
@@ -88,7 +89,7 @@ function partCurve(channel: Channel, theme: ThemeName): Curve {
     colour: mixed(colour, themes[theme].text, kShades[rank] ?? 0),
     width: input ? kThin : kThick,
     dash: partDash[rank] ?? [],
-    label: words.curve(strings.digits[channel.digit] ?? "", part.toLowerCase(), suffix),
+    label: words.curve(strings.digits[channel.digit] ?? "", part, suffix),
     short: input ? "" : part,
     scale: channel.quantity.startsWith("angle") ? 180 / Math.PI : 1,
   };

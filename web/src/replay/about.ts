@@ -30,7 +30,7 @@ export function about(player: Player, overview: Overview): About {
         [words.facts.scene, station?.scene ?? ""],
         [words.facts.device, station?.device ?? ""],
         [words.facts.rate, rate > 0 ? words.rate(String(rate)) : ""],
-        [words.facts.gaps, missing.toLocaleString(strings.locale)],
+        [words.facts.gaps, missing.toLocaleString(strings.figures)],
         [words.facts.size, sizeText(recording.bytes)],
         [words.facts.version, recording.version],
       ];

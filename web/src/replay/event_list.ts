@@ -27,7 +27,7 @@ export function happenings({ events, stations, holes }: Pick<Overview, "events" 
       time, code, kind: markKind(code), label: eventLabel(code), text: who && code !== "marker" ? `${text} (${who})` : text,
     })),
     ...holes.map(({ begin, gap }) => ({
-      time: begin, code: "gap", kind: "gap" as const, label: eventLabel("gap"), text: words.missing(gap.steps.toLocaleString(strings.locale), gap.why),
+      time: begin, code: "gap", kind: "gap" as const, label: eventLabel("gap"), text: words.missing(gap.steps.toLocaleString(strings.figures), gap.why),
     })),
   ];
   return list.sort((a, b) => a.time - b.time);
@@ -70,7 +70,7 @@ export function eventList(goTo: (time: number) => void): EventList {
     current = undefined;
     const shown = all.filter(({ kind }) => !markersOnly || kind === "marker");
     list.replaceChildren(...shown.slice(0, kMostShown).map(row));
-    setText(more, words.moreEvents(kMostShown.toLocaleString(strings.locale), shown.length.toLocaleString(strings.locale)));
+    setText(more, words.moreEvents(kMostShown.toLocaleString(strings.figures), shown.length.toLocaleString(strings.figures)));
     setShown(more, shown.length > kMostShown);
     setShown(none, shown.length === 0);
     setShown(only, all.some(({ kind }) => kind === "marker"));

@@ -16,11 +16,11 @@ export function durationText(seconds: number, decimals = 1): string {
 
 /// 27 Nov 2026, 14:03, of this browser's clock.
 export function momentText(unixSeconds: number): string {
-  return new Date(unixSeconds * 1000).toLocaleString(strings.locale, { dateStyle: "medium", timeStyle: "short", hourCycle: "h23" });
+  return new Date(unixSeconds * 1000).toLocaleString(strings.figures, { dateStyle: "medium", timeStyle: "short", hourCycle: "h23" });
 }
 
 export function sizeText(bytes: number): string {
   const megabytes = bytes / 1e6;
-  const rounded = (value: number) => value.toLocaleString(strings.locale, { maximumFractionDigits: 1 });
+  const rounded = (value: number) => value.toLocaleString(strings.figures, { maximumFractionDigits: 1 });
   return megabytes < 1000 ? strings.device.megabytes(rounded(megabytes)) : strings.device.gigabytes(rounded(megabytes / 1000));
 }

@@ -181,7 +181,7 @@ describe("by keyboard", () => {
     const angle = () => cockpit.stream.newest!.hcpAngle[0]!;
     await tabTo(strings.hand.single, "summary");
     await keyboard.press("Enter");
-    await tabTo(strings.hand.joints[0]!, "input"); // the thumb's
+    await tabTo(strings.hand.joints.thumb[0]!, "input");
     await keyboard.press("Home");
     await until("the joint at the end of its range", () => Math.abs(angle() - smallest) < 0.02, () => `${angle()} rad`);
     await keyboard.press("PageUp");

@@ -5,7 +5,7 @@ import type { Locator, Page } from "playwright-core";
 import { HandSource, type State } from "../../../src/gen/phalanx/cockpit_pb";
 import { GeometrySchema, type Geometry } from "../../../src/gen/phalanx/geometry_pb";
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
-import { strings } from "../../../src/strings";
+import { english, type Strings } from "../../../src/strings";
 import type { ViewProbe } from "../../../src/view3d/hand_view";
 import { Stream } from "./stream";
 import { kHangMs, until } from "./until";
@@ -15,6 +15,7 @@ const kStill = 2e-4; // [rad]
 export class CockpitPage {
   readonly stream: Stream;
   readonly errors: string[] = [];
+  texts: Strings = english.texts; // of the language that the page is in
 
   constructor(readonly page: Page) {
     this.stream = new Stream(page);
@@ -87,19 +88,19 @@ export class CockpitPage {
   }
 
   get stopButton(): Locator {
-    return this.page.getByRole("button", { name: strings.stop.button });
+    return this.page.getByRole("button", { name: this.texts.stop.button });
   }
 
   get stopBox(): Locator {
-    return this.page.getByRole("region", { name: strings.stop.region });
+    return this.page.getByRole("region", { name: this.texts.stop.region });
   }
 
   get stiffnessField(): Locator {
-    return this.field(strings.force.stiffnessField);
+    return this.field(this.texts.force.stiffnessField);
   }
 
-  async tab(name: keyof typeof strings.tabs): Promise<void> {
-    await this.page.getByRole("tab", { name: strings.tabs[name], exact: true }).click();
+  async tab(name: keyof Strings["tabs"]): Promise<void> {
+    await this.page.getByRole("tab", { name: this.texts.tabs[name], exact: true }).click();
   }
 
   // ---- what a person does
@@ -114,21 +115,21 @@ export class CockpitPage {
   /// Switches the simulated patient on, or off: the sliders then move the hand.
   async setPatient(on: boolean): Promise<void> {
     await this.tab("touch");
-    if ((await this.switch(strings.hand.patient).getAttribute("aria-checked")) !== String(on)) await this.switch(strings.hand.patient).click();
+    if ((await this.switch(this.texts.hand.patient).getAttribute("aria-checked")) !== String(on)) await this.switch(this.texts.hand.patient).click();
     const source = on ? HandSource.HAND_PATIENT : HandSource.HAND_SLIDERS;
     await this.untilState(`the source ${HandSource[source]}`, (state) => state.source === source && (on || state.slider.length > 0) && !state.stationGone);
   }
 
   /// Opens the sliders of single joints.
   async openSingleJoints(): Promise<void> {
-    await this.page.getByText(strings.hand.single, { exact: true }).click();
+    await this.page.getByText(this.texts.hand.single, { exact: true }).click();
   }
 
   /// Opens the dialog of the user's own object by its card.
   async openOwnObject(): Promise<void> {
     await this.tab("touch");
     await this.page.locator(".card-own").click();
-    await this.page.getByRole("dialog", { name: strings.object.own }).waitFor();
+    await this.page.getByRole("dialog", { name: this.texts.object.own }).waitFor();
   }
 
   async setStiffness(newtonPerMm: number): Promise<void> {

@@ -4,6 +4,7 @@ import { create } from "@bufbuild/protobuf";
 import type { Page } from "playwright-core";
 import { Wizard_JointSchema, Wizard_Method, WizardSchema, type Wizard } from "../../../src/gen/phalanx/cockpit_pb";
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
+import type { Strings } from "../../../src/strings";
 import type { FakeHost } from "../fake_host";
 
 export interface PageState {
@@ -11,18 +12,18 @@ export interface PageState {
   readonly size?: readonly [number, number];
   readonly light?: boolean;
   readonly before?: (host: FakeHost) => void;
-  readonly act?: (page: Page, host: FakeHost) => Promise<void>;
+  readonly act?: (page: Page, host: FakeHost, words: Strings) => Promise<void>; // with the words of the language that the page is in
 }
 
 const wait = (ms: number) => new Promise<void>((done) => setTimeout(done, ms));
 const tab = (page: Page, name: string) => page.click(`[data-tab=${name}]`);
 const cube = { name: "knob.stl", mimeType: "model/stl", buffer: Buffer.from("solid") };
 
-async function upload(page: Page, host: FakeHost, answer: unknown): Promise<void> {
+async function upload(page: Page, host: FakeHost, words: Strings, answer: unknown): Promise<void> {
   host.import_ = answer;
   await page.click(".card-own");
   await page.setInputFiles("input[type=file]", cube);
-  await page.click("button:text-is(\"Upload\")");
+  await page.click(`button:text-is("${words.object.upload}")`);
   await page.waitForSelector(".upload .import:not([hidden])");
   await page.locator(".upload .import").scrollIntoViewIfNeeded();
 }
@@ -77,9 +78,9 @@ export const pageStates: readonly PageState[] = [
   { name: "take", before: (host) => { host.page = 4; }, act: async (page) => page.click(".role-why button") },
   { name: "busy", before: (host) => (host.state.busy = "a new object: the torque goes to zero, the station begins anew") },
   { name: "refused", before: (host) => (host.refuse = "force.stiffness_n_per_mm = 900: beyond its range, >= 0, <= 100 N/mm; write a number within it"), act: async (page) => { await page.fill(".row-slider input.number", "900"); await page.keyboard.press("Enter"); await wait(300); } },
-  { name: "sliders", act: async (page) => { await page.click("[aria-label='Simulated patient']"); await wait(400); await page.click("text=Fist"); } },
+  { name: "sliders", act: async (page, _, words) => { await page.click(`[aria-label="${words.hand.patient}"]`); await wait(400); await page.click(`text=${words.hand.fist}`); } },
   { name: "device", act: async (page) => tab(page, "device") },
-  { name: "calibration_ask", before: (host) => onWire(host), act: async (page) => { await tab(page, "device"); await page.click("text=Calibrate the device"); } },
+  { name: "calibration_ask", before: (host) => onWire(host), act: async (page, _, words) => { await tab(page, "device"); await page.click(`text=${words.calibration.device}`); } },
   { name: "calibration", size: [1920, 1080], before: (host) => calibrates(host, wizard) },
   { name: "calibration_jig", size: [1366, 768], before: (host) => calibrates(host, jig) },
   { name: "calibration_end", light: true, before: (host) => calibrates(host, create(WizardSchema, { ...wizard, pose: poseNames.length, joint: [], problem: ["angle of index_pip_flexion: 2 poses, 12.0 deg apart; measure at least two whose angles differ by more than 20 deg"] })) },
@@ -87,8 +88,8 @@ export const pageStates: readonly PageState[] = [
   { name: "range_tablet", size: [1024, 768], light: true, before: (host) => calibrates(host, range) },
   { name: "calibration_telephone", size: [390, 844], before: (host) => calibrates(host, wizard) },
   { name: "people", act: async (page, host) => { await tab(page, "people"); host.notice(1, "page 2 (127.0.0.1), Anna", "set", "force.stiffness_n_per_mm = 3"); await wait(200); } },
-  { name: "upload_good", act: async (page, host) => upload(page, host, { ok: true, error: "", report: ["knob.stl: 1,204 vertices, 2,404 triangles", "closed, one piece, 61 x 40 x 38 mm", "simplified: no"], findings: ["2 degenerate triangles were removed"], file: "/var/phalanx/uploads/knob.stl" }) },
-  { name: "upload_bad", act: async (page, host) => upload(page, host, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },
+  { name: "upload_good", act: async (page, host, words) => upload(page, host, words, { ok: true, error: "", report: ["knob.stl: 1,204 vertices, 2,404 triangles", "closed, one piece, 61 x 40 x 38 mm", "simplified: no"], findings: ["2 degenerate triangles were removed"], file: "/var/phalanx/uploads/knob.stl" }) },
+  { name: "upload_bad", act: async (page, host, words) => upload(page, host, words, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },
   { name: "expert", act: async (page) => tab(page, "expert") },
   { name: "settings", act: async (page) => { await tab(page, "expert"); await page.fill("input[type=search]", "force"); await wait(200); } },
   { name: "help", act: async (page) => page.keyboard.press("?") },
@@ -98,6 +99,6 @@ export const pageStates: readonly PageState[] = [
   { name: "tablet_viewer", size: [1024, 768], before: (host) => { host.page = 4; } },
   { name: "tablet_stopped", size: [1024, 768], act: async (page) => page.click(".stop") },
   { name: "upright", size: [768, 1024] },
-  { name: "large", size: [1920, 1080], act: async (page) => { await page.click("text=Large type"); await wait(5000); } },
-  { name: "large_tablet", size: [1280, 800], act: async (page) => page.click("text=Large type") },
+  { name: "large", size: [1920, 1080], act: async (page, _, words) => { await page.click(`text=${words.look.large}`); await wait(5000); } },
+  { name: "large_tablet", size: [1280, 800], act: async (page, _, words) => page.click(`text=${words.look.large}`) },
 ];

@@ -2,12 +2,15 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { afterEach, expect, it, vi } from "vitest";
-import { strings } from "../../../src/strings";
+import { kLanguageKey, languages, strings } from "../../../src/strings";
 
 const html = (name: string) => readFileSync(resolve(__dirname, `../../../${name}`), "utf8");
 const page = html("index.html");
 const brought = vi.fn();
+const withoutScripts = (page: string) => /<noscript>(.*)<\/noscript>/.exec(page)![1]!.replace(/<[^>]*>/g, "");
 afterEach(() => {
+  localStorage.clear();
+  vi.resetModules(); // whoever reads the language next finds no choice
   vi.unstubAllGlobals();
   vi.useRealTimers();
 });
@@ -27,13 +30,13 @@ async function open(): Promise<() => void> {
   return () => frames.forEach((call) => call());
 }
 
-it("the page's frame stands in index.html itself, in the words of strings.ts, with no style or script that the station forbids", () => {
+it("the page's frame stands in index.html itself, in English, and without scripts in every language, with no style or script that the station forbids", () => {
   const parsed = new DOMParser().parseFromString(page.replace(/<(script|link)[^>]*>/g, ""), "text/html"); // which would be fetched
   expect(parsed.documentElement.lang).toBe(strings.locale);
   expect(parsed.title).toBe(strings.title);
   expect(parsed.querySelector("#page > #opening h1")!.textContent).toBe(strings.product);
   expect(parsed.querySelector("#page > #opening p")!.textContent).toBe(strings.opening);
-  expect(/<noscript>(.*)<\/noscript>/.exec(page)![1]).toBe(strings.noScript);
+  expect(withoutScripts(page)).toBe(languages.map(({ texts }) => texts.noScript).join(" "));
   expect(page).not.toMatch(/<style|style=|<script(?![^>]* src=)/);
 });
 
@@ -44,7 +47,7 @@ it("so does the frame of the page of recordings, which looks like a recording fr
   expect(parsed.documentElement.dataset["page"]).toBe("recording");
   expect(parsed.title).toBe(strings.replay.titleNone);
   expect(parsed.querySelector("#page > #opening.band p")!.textContent).toBe(strings.opening);
-  expect(/<noscript>(.*)<\/noscript>/.exec(recording)![1]).toBe(strings.replay.noScript);
+  expect(withoutScripts(recording)).toBe(languages.map(({ texts }) => texts.replay.noScript).join(" "));
   expect(recording).not.toMatch(/<style|style=|<script(?![^>]* src=)/);
   expect(recording).not.toContain("icon.svg"); // the cockpit's
 });
@@ -65,4 +68,12 @@ it("a page that nobody sees comes, too", async () => {
   await vi.advanceTimersByTimeAsync(1000);
   vi.useRealTimers();
   await vi.waitFor(() => expect(brought).toHaveBeenCalledOnce());
+});
+
+it.each(languages)("the first script says that the page opens in the language that this browser remembers, $code", async ({ code, texts }) => {
+  localStorage.setItem(kLanguageKey, code);
+  document.body.innerHTML = '<header id="opening"><h1>Phalanx</h1><p>…</p></header>';
+  await open();
+  expect(document.documentElement.lang).toBe(texts.locale);
+  expect(document.querySelector("#opening p")!.textContent).toBe(texts.opening);
 });

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page's sources say themselves, and what of strings.ts they use: read by the compiler, not by patterns.
+// What the page's sources say themselves, and what of strings/en.ts they use: read by the compiler, not by patterns.
 import { dirname, relative, resolve } from "node:path";
 import ts from "typescript";
 
 const root = resolve(__dirname, "../../..");
 const source = resolve(root, "src");
-const texts = resolve(source, "strings.ts");
+const texts = resolve(source, "strings/en.ts");
+const languages = [resolve(source, "strings.ts"), resolve(source, "strings")]; // the choice, and the texts
 
 function program(): ts.Program {
   const read = ts.readConfigFile(resolve(root, "tsconfig.json"), (name) => ts.sys.readFile(name));
@@ -17,7 +18,8 @@ const made = program();
 const checker = made.getTypeChecker();
 const pageFiles = made.getSourceFiles().filter((file) => {
   const folder = dirname(file.fileName);
-  return file.fileName !== texts && (folder === source || folder.startsWith(`${source}/`)) && !folder.startsWith(`${source}/gen`);
+  const isText = languages.includes(file.fileName) || languages.includes(folder);
+  return !isText && (folder === source || folder.startsWith(`${source}/`)) && !folder.startsWith(`${source}/gen`);
 });
 
 function visit(node: ts.Node, see: (node: ts.Node) => void): void {
@@ -57,11 +59,11 @@ export function literals(): readonly Literal[] {
   return found;
 }
 
-// ---- use of strings.ts
+// ---- use of the texts
 
 const name = (property: ts.PropertyAssignment) => property.name.getText();
 
-/// Texts, lists and tables of strings.ts, with where they stand.
+/// Texts, lists and tables of strings/en.ts, with where they stand.
 function leaves(): ReadonlyMap<ts.Node, string> {
   const all = new Map<ts.Node, string>();
   const walk = (literal: ts.ObjectLiteralExpression, path: string) => {

@@ -4,7 +4,7 @@ import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
 import { ChangeKind, HandSource, KeyType, Notice_Level } from "../../../src/gen/phalanx/cockpit_pb";
 import { groupOf } from "../../../src/panels/settings_list";
-import { strings } from "../../../src/strings";
+import { english, languages, type Strings } from "../../../src/strings";
 import { literals, unusedTexts } from "./source_texts";
 
 const keysOfDocs = readFileSync(resolve(__dirname, "../../../../docs/scenes.md"), "utf8");
@@ -15,42 +15,115 @@ function choices(key: string): string[] {
   return line?.split("|")[4]?.split(",").map((word) => word.trim()) ?? [];
 }
 
-function visit(value: unknown, path: string, found: (path: string, text: string) => void): void {
-  if (typeof value === "string") found(path, value);
-  else if (typeof value === "function") found(path, String((value as (...words: unknown[]) => unknown)("a", "b", "c", "d", "e")));
+type Text = string | ((...words: readonly string[]) => string);
+
+/// Every text with where it stands.
+function visit(value: unknown, path: string, found: (path: string, text: Text) => void): void {
+  if (typeof value === "string" || typeof value === "function") found(path, value as Text);
   else if (Array.isArray(value)) value.forEach((one, i) => visit(one, `${path}[${i}]`, found));
-  else for (const [name, one] of Object.entries(value as object)) visit(one, `${path}.${name}`, found);
+  else for (const [name, one] of Object.entries(value as object)) visit(one, path === "" ? name : `${path}.${name}`, found);
+}
+
+function textsOf(texts: Strings): ReadonlyMap<string, Text> {
+  const all = new Map<string, Text>();
+  visit(texts, "", (path, text) => all.set(path, text));
+  return all;
+}
+
+/// What texts are told: numbers, as most of it is.
+const words: readonly string[] = ["21", "22", "23", "24", "25"];
+const said = (text: Text) => (typeof text === "string" ? text : text(...words));
+
+/// Texts with what they are told that chooses among wordings and is no part of them: its place.
+const choosing: Readonly<Record<string, number>> = { "calibration.deviceEnd": 0, "calibration.rangeEnd": 0, "calibration.toGo": 2 };
+
+/// Tables in the order of their keys, since some of them are listed on the page.
+function shape(value: unknown): unknown {
+  if (typeof value === "function") return `function of ${value.length}`;
+  if (Array.isArray(value)) return value.map(shape);
+  if (typeof value === "object" && value !== null) return Object.entries(value).map(([name, one]) => [name, shape(one)]);
+  return typeof value;
+}
+
+/// What is the same in English and in another language: words, names, units, signs, keys, names of files and of columns.
+const same: readonly string[] = [
+  "Phalanx", "STOP", "Ball", "Hand", "Station", "Pause", "Hooke (linear)",
+  "mm", "cm", "m", "N", "Nm", "N/s", "N/mm", "N/m", "Nm/s", "rad", "deg", "rad/s", "Hz", "s", "°",
+  "21 mm", "21 µs", "21 ms", "21 s", "21 min", "21 MB", "21 GB", "21 Hz", "21°", "21×", "21 22 N", "99 %", "99.9 %",
+  "–", "; ", "21, 22", "21: 22", "21 [22]", "21 ×22", "✕", "HTTP 21",
+  "‹ Pose", "Pose ›", "CSV", "SVG", "PNG", "phalanx-fault-21.json", "time", "station_time", "thumb", "index", "middle", "ring", "little",
+  "P", "← →", ", .", "< >", "1 2 3 4", "+ −", "Tab", "Esc", "?",
+];
+
+/// Texts that are those of English.
+function untranslated(texts: Strings): readonly string[] {
+  const theirs = textsOf(english.texts);
+  return [...textsOf(texts)].filter(([path, text]) => said(text) === said(theirs.get(path) ?? "")).map(([, text]) => said(text));
 }
 
 const enumNames = (values: object) => Object.values(values).filter((value) => typeof value === "string").length;
 
-describe("strings", () => {
+describe.each(languages)("the texts in $code", ({ texts, reviewed }) => {
   it("are all there, and none is blank", () => {
     let count = 0;
-    visit(strings, "strings", (path, text) => {
+    visit(texts, "", (path, text) => {
       ++count;
-      expect(text.trim(), path).not.toBe("");
-      expect(text, path).not.toContain("undefined");
+      expect(said(text).trim(), path).not.toBe("");
+      expect(said(text), path).not.toContain("undefined");
     });
     expect(count).toBeGreaterThan(200);
   });
 
+  it("are those of English, of the same kinds and in the same order", () => expect(shape(texts)).toEqual(shape(english.texts)));
+
+  it("are translated, but for what is the same in both languages", () => {
+    if (texts !== english.texts) expect(untranslated(texts).filter((text) => !same.includes(text))).toEqual([]);
+  });
+
+  it("say all that they are told", () => {
+    for (const [path, text] of textsOf(texts)) {
+      if (typeof text === "string") continue;
+      const choice = choosing[path];
+      words.slice(0, text.length).forEach((word, i) => i !== choice && expect(text(...words), path).toContain(word));
+      if (choice === undefined) continue;
+      const wording = (chosen: boolean) => (text as (...told: unknown[]) => string)(...words.map((word, i) => (i === choice ? chosen : word)));
+      expect(wording(true), path).not.toBe(wording(false));
+    }
+    expect(texts.device.unsaved("", "21")).toContain("21");
+    for (const one of [texts.people.looking(1), texts.view.viewCount(1), texts.scene.changes(1), texts.plots.windows(60)]) expect(one).toContain("1");
+  });
+
+  it("have the word on the button that presentations and documents show", () => expect(texts.stop.button).toBe("STOP"));
+
+  it("have figures with a decimal point, as the page makes most of them", () => {
+    const figure = (1234.5).toLocaleString(texts.figures);
+    expect(figure).toMatch(/^1\D?234\.5$/);
+    expect(figure).not.toMatch(/^1\./);
+  });
+
+  it("have a name, and one that both sorts of readers understand until they are reviewed", () => {
+    const { name, unreviewedName, label } = texts.language;
+    expect(new Intl.DisplayNames(texts.locale, { type: "language" }).of(texts.locale.slice(0, 2))).toBe(name);
+    if (!reviewed) expect(unreviewedName(name)).toContain(english.texts.language.unreviewed);
+    for (const word of english.texts.language.label.split(" / ")) expect(label).toContain(word);
+  });
+
   it("name every value of the messages' enumerations", () => {
-    expect(strings.hand.sources.length).toBe(enumNames(HandSource));
-    expect(strings.settings.change.length).toBe(enumNames(ChangeKind));
-    expect(strings.settings.types.length).toBe(enumNames(KeyType));
-    expect(strings.notice.levels.length).toBe(enumNames(Notice_Level));
+    expect(texts.hand.sources.length).toBe(enumNames(HandSource));
+    expect(texts.settings.change.length).toBe(enumNames(ChangeKind));
+    expect(texts.settings.types.length).toBe(enumNames(KeyType));
+    expect(texts.notice.levels.length).toBe(enumNames(Notice_Level));
   });
 
   it("name every shape, force law and stabiliser that a scene may choose", () => {
     const named: readonly (readonly [string, Readonly<Record<string, string>>])[] = [
-      ["objects[].kind", strings.object.kinds],
-      ["force.law", strings.force.laws],
-      ["stabiliser.method", strings.calm.methods],
+      ["objects[].kind", texts.object.kinds],
+      ["force.law", texts.force.laws],
+      ["stabiliser.method", texts.calm.methods],
     ];
-    for (const [key, texts] of named) {
+    for (const [key, choicesOf] of named) {
       expect(choices(key).length, key).toBeGreaterThan(3);
-      for (const choice of choices(key)) expect(texts[choice], `${key} = ${choice}`).toBeTruthy();
+      for (const choice of choices(key)) expect(choicesOf[choice], `${key} = ${choice}`).toBeTruthy();
     }
   });
 
@@ -58,16 +131,23 @@ describe("strings", () => {
     const keys = [...keysOfDocs.matchAll(/^\| `([a-z0-9_.[\]]+)` \| (?:number|integer|flag|text|choice|vector|file|name)/gm)].map((match) => match[1]!);
     expect(keys.length).toBeGreaterThan(80);
     for (const key of keys) {
-      expect(strings.settings.labels[key], key).toBeTruthy();
-      expect(strings.settings.groups[groupOf(key)], key).toBeTruthy();
+      expect(texts.settings.labels[key], key).toBeTruthy();
+      expect(texts.settings.groups[groupOf(key)], key).toBeTruthy();
     }
-    expect(Object.keys(strings.settings.labels).filter((key) => !keys.includes(key)), "labels of keys that are gone").toEqual([]);
+    expect(Object.keys(texts.settings.labels).filter((key) => !keys.includes(key)), "labels of keys that are gone").toEqual([]);
   });
 
   it("name every size that an object may have", () => {
     const sizes = [...keysOfDocs.matchAll(/\| `objects\[\]\.(\w+)` \| (?:number|vector)/g)].map((match) => match[1]!);
     const placed = ["position_mm", "rotation_deg", "friction"]; // no sizes
-    for (const size of sizes.filter((one) => !placed.includes(one))) expect(strings.object.sizes[size], size).toBeTruthy();
+    for (const size of sizes.filter((one) => !placed.includes(one))) expect(texts.object.sizes[size], size).toBeTruthy();
+  });
+});
+
+describe("the texts", () => {
+  it("are the same in two languages only where the list states it", () => {
+    const found = languages.filter(({ texts }) => texts !== english.texts).flatMap(({ texts }) => untranslated(texts));
+    expect(same.filter((text) => !found.includes(text))).toEqual([]);
   });
 
   it("hold all the text: the sources have none of their own", () => {
@@ -81,12 +161,12 @@ describe("strings", () => {
       expect(text, place).not.toMatch(/(^|\s)[A-Za-z]{2,} [a-z]{2,}(\s|[.,:!?…]|$)/); // a sentence
       expect(text, place).not.toMatch(/(^|\s)[A-Z][a-z]{2,}(\s|[.,:!?…]|$)/); // a label
       expect(text.trim(), place).not.toMatch(/^(N|Nm|rad|mm|cm|N\/s|Nm\/s|rad\/s|N\/mm|ms|µs|s|°|HTTP|–)$/);
-      expect(text, place).not.toMatch(/^en(-[A-Z]{2})?$/); // strings.locale
+      expect(text, place).not.toMatch(/^(en|de)(-[A-Z]{2})?$/); // a language, or strings.locale
     }
   });
 
   it("are all used", () => {
-    const inHtml = ["opening", "noScript", "replay.noScript"]; // opening.test.ts
+    const inHtml = ["noScript", "replay.noScript"]; // opening.test.ts
     expect(unusedTexts().filter((path) => !inHtml.includes(path))).toEqual([]);
   });
 });
