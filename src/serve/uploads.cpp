@@ -31,6 +31,10 @@ constexpr std::size_t kKept = 50;
 /// passes there also passes if the station imports it with another size.
 constexpr mesh::IsolationLimits kImportLimits{
     .cpu_seconds = 60, .memory_bytes = std::uint64_t{4} << 30, .wall_seconds = 180.0};
+constexpr std::size_t kPreviewTriangles = 20'000;
+constexpr double kPreviewUnit = 1e-6;  // [m], of a preview's coordinates
+constexpr mesh::IsolationLimits kPreviewLimits{
+    .cpu_seconds = 5, .memory_bytes = std::uint64_t{4} << 30, .wall_seconds = 20.0};
 constexpr std::array<const char*, 5> kFormats = {".obj", ".3ds", ".stl", ".ply", ".glb"};
 
 int hex(char c) {
@@ -155,6 +159,25 @@ Json answer_about(const std::string& name, const MeshReport& report) {
   return answer;
 }
 
+/// @returns the imported mesh for the page's picture, see docs/meshes.md; null if it has too many triangles
+/// and was not simplified within the limits
+Json preview_of(const TriangleMesh& mesh, const std::string& name) {
+  TriangleMesh drawn;
+  try {
+    drawn = mesh::picture_isolated(mesh, kPreviewTriangles, name, kPreviewLimits);
+  } catch (const std::exception&) {
+    return nullptr;  // the mesh can be used without a picture
+  }
+  if (drawn.triangles.empty()) return nullptr;
+  Json position = Json::array();
+  for (const Vec3& v : drawn.vertices)
+    for (int k = 0; k < 3; ++k) position.push_back(std::llround(v[k] / kPreviewUnit));
+  Json triangle = Json::array();
+  for (const Triangle& t : drawn.triangles)
+    for (const std::int32_t vertex : t) triangle.push_back(vertex);
+  return {{"position_um", std::move(position)}, {"triangle", std::move(triangle)}};
+}
+
 Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInForce& in_force,
               ImportCache& imports) {
   const std::string extension = extension_of(mesh.name);
@@ -167,6 +190,7 @@ Json accepted(const UploadedMesh& mesh, const fs::path& folder, const ValuesInFo
   ImportedMesh imported = mesh::import_isolated(mesh.bytes, format, options, mesh.name, kImportLimits);
   Json answer = answer_about(mesh.name, imported.report);
   if (!answer["ok"].get<bool>()) return answer;
+  answer["preview"] = preview_of(imported.mesh, mesh.name);
   require_station(in_force);
   fs::create_directories(folder);
   const fs::path file = fs::absolute(folder) / file_name(mesh, extension);

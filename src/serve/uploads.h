@@ -42,8 +42,8 @@ constexpr std::size_t kMostUploadedTriangles = 500'000;  ///< more would take mi
 /// the newest 50 uploads in the folder and those that the scene in force names. Does not touch files with
 /// names of another form. Does not throw for a mesh that is refused. Forks; takes long.
 /// @param in_force  called before each step, so that an abandoned upload ends with its step
-/// @returns a JSON object: "ok"; "error" (if not ok); "file", the value for objects.N.file;
-/// "report", see docs/meshes.md
+/// @returns a JSON object: "ok"; "error" (if not ok); "file", the value for objects.N.file; "report" and
+/// "preview", see docs/meshes.md
 [[nodiscard]] std::string take_upload(const UploadedMesh& mesh, const std::filesystem::path& folder,
                                       const ValuesInForce& in_force, ImportCache& imports);
 

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/import/mesh_files.h"
 #include "phalanx/mesh/import_cache.h"
+#include "phalanx/mesh/primitives.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "record/temporary_folder.h"
@@ -114,6 +116,55 @@ TEST(Uploads, AStatedSizeIsInMillimetresIndependentOfTheFilesNumbers) {
   for (const auto& extent : answer["report"]["extent_m"]) EXPECT_NEAR(extent.get<double>(), 0.06, 1e-6);
 }
 
+/// @returns the mesh of an answer's preview, in metres
+TriangleMesh preview_of(const nlohmann::json& answer) {
+  const auto position = answer["preview"]["position_um"].get<std::vector<std::int64_t>>();
+  const auto index = answer["preview"]["triangle"].get<std::vector<std::int32_t>>();
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i + 2 < position.size(); i += 3)
+    mesh.vertices.push_back(1e-6 * Vec3(static_cast<double>(position[i]),
+                                        static_cast<double>(position[i + 1]),
+                                        static_cast<double>(position[i + 2])));
+  for (std::size_t i = 0; i + 2 < index.size(); i += 3)
+    mesh.triangles.push_back({index[i], index[i + 1], index[i + 2]});
+  EXPECT_EQ(position.size() % 3, 0U);
+  EXPECT_EQ(index.size() % 3, 0U);
+  check_mesh(mesh, "preview");
+  return mesh;
+}
+
+// The tetrahedron of three edges of 60 mm has a volume of 60^3/6 mm^3 = 36 cm^3 if its triangles wind outward.
+TEST(Uploads, TheAnswerHoldsTheImportedMeshForAPicture) {
+  const TemporaryFolder folder;
+  const TriangleMesh as_in_file = preview_of(taken("name=a.obj&unit=mm", solid(60), folder / "up"));
+  EXPECT_EQ(as_in_file.vertices.size(), 4U);
+  EXPECT_TRUE(is_closed(as_in_file));
+  EXPECT_NEAR(signed_volume(as_in_file), 36e-6, 1e-12);
+  EXPECT_NEAR(bounds(as_in_file).min.norm(), 0.0, 1e-9);
+  const Bounds scaled = bounds(preview_of(taken("name=a.obj&size_mm=90", solid(60), folder / "up")));
+  EXPECT_NEAR((scaled.max - Vec3(0.045, 0.045, 0.045)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((scaled.min + Vec3(0.045, 0.045, 0.045)).norm(), 0.0, 1e-9);
+}
+
+TEST(Uploads, APictureOfAMeshWithManyTrianglesHasFewer) {
+  const TemporaryFolder folder;
+  const TriangleMesh fine = make_torus(0.08, 0.03, 40'000);
+  const auto answer = taken("name=a.obj&unit=m", test::to_obj(fine), folder / "up");
+  ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
+  EXPECT_EQ(answer["report"]["triangles"].get<std::size_t>(), fine.triangles.size());
+  const TriangleMesh picture = preview_of(answer);
+  EXPECT_LE(picture.triangles.size(), 20'000U);
+  EXPECT_GT(picture.triangles.size(), 15'000U);
+  EXPECT_TRUE(is_closed(picture));
+  EXPECT_NEAR(signed_volume(picture), signed_volume(fine), 0.01 * signed_volume(fine));
+}
+
+TEST(Uploads, ARefusedMeshHasNoPicture) {
+  const TemporaryFolder folder;
+  for (const char* query : {"name=a.obj&unit=m", "name=a.exe&unit=mm"})
+    EXPECT_FALSE(taken(query, solid(60), folder / "up").contains("preview")) << query;
+}
+
 TEST(Uploads, AFolderThatCannotBeWrittenIsReported) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";
@@ -211,6 +262,29 @@ TEST(Uploads, ASceneWithTheMeshNeedsNoOtherImport) {
     static_cast<void>(resolve(scene_with(file, "size_mm = 91"), {.imports = &imports}));
     EXPECT_EQ(imports.misses(), 1U) << "another size";
   }
+}
+
+// A page states which axis of the file is up: R = Rz(yaw) Ry(pitch) Rx(roll) turns it to z.
+TEST(Uploads, ASceneTurnsTheMeshWithoutAnotherImport) {
+  const TemporaryFolder folder;
+  ImportCache imports;
+  const auto answer = nlohmann::json::parse(take_upload(
+      upload_of("name=a.obj&unit=mm",
+                "v 0 0 0\nv 30 0 0\nv 0 40 0\nv 0 0 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"),
+      folder / "up", [] { return Overrides(); }, imports));
+  ASSERT_TRUE(answer["ok"].get<bool>()) << answer.dump();
+  const std::string place = "{kind = 'file', file = '" + answer["file"].get<std::string>() +
+                            "', size_mm = 0, unit = 'mm', rotation_deg = ";
+  for (const auto& [turn, height] : std::vector<std::pair<std::string, double>>{
+           {"[0, -90, 0]", 0.03}, {"[90, 0, 0]", 0.04}, {"[0, 0, 0]", 0.05}}) {
+    const auto scene = load_scene(
+        "first_touch",
+        {{"hand.meshes", "\"capsules\""}, {"grasp.type", "\"none\""}, {"objects.0", place + turn + "}"}});
+    const Bounds box = bounds(resolve(scene, {.imports = &imports}).world);
+    EXPECT_NEAR(box.max.z(), height, 1e-8) << turn;
+    EXPECT_NEAR(box.min.z(), 0.0, 1e-8) << turn;
+  }
+  EXPECT_EQ(imports.misses(), 0U);
 }
 
 TEST(Uploads, AMeshThatNoSceneCanUseIsNotKeptInTheCache) {

@@ -32,6 +32,7 @@ import { calibratedHands } from "./state/calibrated_hands";
 import { Store } from "./state/store";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";
+import type { MeshPreviewProbe } from "./view3d/mesh_preview";
 import { makeShapes } from "./view3d/shape_maker";
 import { Connection, type Socket } from "./wire/connection";
 import { Host } from "./wire/host";
@@ -43,6 +44,7 @@ declare global {
     /// The page's state, for tests and inspection; changes nothing.
     phalanx: {
       view: () => ViewProbe | undefined;
+      preview: () => MeshPreviewProbe | undefined;
       tick: () => Tick | undefined;
       state: () => State | undefined;
       lost: () => boolean;
@@ -103,13 +105,14 @@ const past = pastHand(app, async (name) => {
 });
 const frame = viewFrame(store, [past.element, band.element, faultCard(app), troubleCard(app)]);
 past.attach(frame);
+const own = ownObject(app);
 const look = new Look((theme) => {
   frame.setTheme(theme);
+  own.setTheme(theme);
   plots?.setTheme(theme);
   window.dispatchEvent(new Event("resize"));
 });
 const stop = stopBox(app);
-const own = ownObject(app);
 numbers.element.append(storyRibbon(app));
 frame.element.append(dropPlace(app, frame.element, own));
 const calibration = calibrationDialog(app, (shown) => {
@@ -202,6 +205,7 @@ store.on(["connection", "geometry", "state"], () => heartbeat(performance.now())
 
 window.phalanx = {
   view: () => frame.view()?.probe(),
+  preview: own.preview,
   tick: () => store.tick,
   state: () => store.state,
   lost: () => store.lost,

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "mesh/import/decimate.h"
 #include "mesh/import/import_bytes.h"
 #include "phalanx/mesh/isolation/isolation_helper.h"
 
@@ -22,6 +23,13 @@ std::string import_packed(const std::string& packed) {
                                                packed.substr(sizeof options, end - sizeof options), options));
 }
 
+/// Calls picture_of() for "triangles mesh".
+TriangleMesh picture_packed(const std::string& packed) {
+  std::size_t triangles = 0;
+  std::memcpy(&triangles, packed.data(), sizeof triangles);
+  return picture_of(from_bytes(std::string_view(packed).substr(sizeof triangles), "mesh").mesh, triangles);
+}
+
 }  // namespace
 
 ImportedMesh import_isolated(std::string_view content, const std::string& format,
@@ -31,6 +39,14 @@ ImportedMesh import_isolated(std::string_view content, const std::string& format
   packed.append(format).push_back('\0');
   packed.append(content);
   return from_bytes(run_isolated_work(import_packed, packed, origin, limits), origin);
+}
+
+TriangleMesh picture_isolated(const TriangleMesh& mesh, std::size_t triangles, const std::string& origin,
+                              const IsolationLimits& limits) {
+  if (mesh.triangles.size() <= triangles) return mesh;
+  std::string packed(reinterpret_cast<const char*>(&triangles), sizeof triangles);
+  packed.append(to_bytes({mesh, {}}));
+  return run_isolated_mesh(picture_packed, packed, origin, limits);
 }
 
 }  // namespace phalanx::mesh

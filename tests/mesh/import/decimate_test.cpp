@@ -110,6 +110,38 @@ TEST(Decimate, RefusesATargetThatDestroysTheMesh) {
   EXPECT_NE(refusal(balls, 100), "accepted");
 }
 
+TEST(PictureOf, KeepsASolidClosedAndNearTheOriginal) {
+  const TriangleMesh fine = make_torus(0.08, 0.03, 20'000);
+  const TriangleMesh picture = picture_of(fine, 2000);
+  EXPECT_LE(picture.triangles.size(), 2000U);
+  EXPECT_EQ(test::manifold_flaw(picture), "");
+  const SurfaceDeviation d = measure_deviation(fine, picture);
+  EXPECT_LT(std::max(d.outward, d.inward), 4 * 0.23e-3);  // as for decimate()
+}
+
+TEST(PictureOf, LeavesAMeshThatIsSmallEnough) {
+  const TriangleMesh mesh = make_box({0.1, 0.1, 0.1}, 12);
+  EXPECT_EQ(picture_of(mesh, 12).triangles, mesh.triangles);
+}
+
+// The triangles that point to one side, of a plane cut into equal ones. They meet in vertices only, and no edge
+// of them can be collapsed.
+TEST(PictureOf, JoinsTheVerticesOfAMeshWhoseEdgesCannotBeCollapsed) {
+  constexpr std::int32_t kSide = 60;
+  TriangleMesh mesh;
+  const auto vertex = [](std::int32_t i, std::int32_t j) { return i * (i + 1) / 2 + j; };
+  for (std::int32_t i = 0; i <= kSide; ++i)
+    for (std::int32_t j = 0; j <= i; ++j) mesh.vertices.emplace_back(1e-3 * i, 1e-3 * j, 0.0);
+  for (std::int32_t i = 0; i < kSide; ++i)
+    for (std::int32_t j = 0; j <= i; ++j)
+      mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+  EXPECT_THROW((void)decimate(mesh, 100, "mesh"), std::invalid_argument);
+  const TriangleMesh picture = picture_of(mesh, 100);
+  EXPECT_LE(picture.triangles.size(), 100U);
+  ASSERT_GT(picture.triangles.size(), 10U);
+  EXPECT_LT((test::extents(picture) - test::extents(mesh)).norm(), 0.02);
+}
+
 TEST(ImportAndCheck, DecimatesAndReportsHowFarItIsOff) {
   const TriangleMesh ball = make_sphere(0.09, 5000);
   const std::string text = test::to_obj(ball);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mesh/import/decimate.h"
 #include "mesh/import/import_bytes.h"
 #include "mesh/import/mesh_files.h"
 #include "phalanx/mesh/primitives.h"
@@ -62,6 +63,26 @@ TEST(IsolatedImport, TheLimitsHoldForTheWholeImport) {
   const std::string refused = isolated_refusal(text, {}, {.memory_bytes = std::uint64_t{1} << 20});
   EXPECT_THAT(refused, StartsWith("cup.obj: "));
   EXPECT_THAT(refused, HasSubstr("1 MiB of memory"));
+}
+
+TEST(IsolatedPicture, IsThatOfThisProcess) {
+  const TriangleMesh fine = make_sphere(0.09, 5000);
+  const TriangleMesh here = picture_of(fine, 1000);
+  const TriangleMesh isolated = picture_isolated(fine, 1000, "cup.obj", {});
+  EXPECT_EQ(isolated.vertices, here.vertices);
+  EXPECT_EQ(isolated.triangles, here.triangles);
+  EXPECT_EQ(picture_isolated(fine, fine.triangles.size(), "cup.obj", {}).triangles, fine.triangles);
+}
+
+TEST(IsolatedPicture, TheLimitsHold) {
+  if (test::kSanitized) GTEST_SKIP() << "the sanitizer's allocator ends the process in its own words";
+  try {
+    static_cast<void>(picture_isolated(make_sphere(0.09, 200'000), 1000, "cup.obj",
+                                       {.memory_bytes = std::uint64_t{1} << 20}));
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& refused) {
+    EXPECT_THAT(refused.what(), StartsWith("cup.obj: "));
+  }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ import type { Store } from "../state/store";
 import { strings } from "../strings";
 import type { Answer } from "../wire/connection";
 import type { Change, Host } from "../wire/host";
-import type { ImportReport } from "../wire/http";
+import type { ImportReport } from "../wire/import_report";
 import { plainWords } from "./plain_words";
 
 export interface App {

@@ -14,7 +14,7 @@ export interface OpenDialog {
 }
 
 /// Opens over the view. The focus goes in, and back when it closes.
-export function openDialog(app: DialogHost, title: string, content: readonly Node[]): OpenDialog {
+export function openDialog(app: DialogHost, title: string, content: readonly Node[], closed: () => void = () => {}): OpenDialog {
   for (const open of app.dialogs.querySelectorAll<HTMLElement>(".dialog")) open.dispatchEvent(new Event("phalanx-close"));
   const before = document.activeElement;
   const id = newId("dialog");
@@ -22,6 +22,7 @@ export function openDialog(app: DialogHost, title: string, content: readonly Nod
     if (!element.isConnected) return;
     element.remove();
     app.dialogs.hidden = true;
+    closed();
     if (before instanceof HTMLElement && before.isConnected) before.focus();
   };
   const element = el(

@@ -102,7 +102,7 @@ function limitsSection(app: App): HTMLElement {
   return section(words.title, list);
 }
 
-export function expertPanel(app: App, own: OwnObject): HTMLElement {
+export function expertPanel(app: App, own: Pick<OwnObject, "open">): HTMLElement {
   const chosen = el(
     "div",
     {},

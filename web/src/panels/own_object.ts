@@ -2,6 +2,8 @@
 // An object of the user's own: a dialog for its mesh file, and the view as a place to drop one.
 import { mayChange } from "../state/roles";
 import { strings } from "../strings";
+import type { ThemeName } from "../theme";
+import type { MeshPreviewProbe } from "../view3d/mesh_preview";
 import type { App } from "./app";
 import { openDialog, type OpenDialog } from "./dialog";
 import { el, setShown } from "./dom";
@@ -13,6 +15,8 @@ const words = strings.object;
 export interface OwnObject {
   /// Opens the dialog. @param file  that is uploaded at once; absent: the user chooses one
   open(file?: File): void;
+  setTheme(theme: ThemeName): void;
+  preview(): MeshPreviewProbe | undefined;
 }
 
 export function ownObject(app: App): OwnObject {
@@ -21,9 +25,13 @@ export function ownObject(app: App): OwnObject {
   const content = guarded(app, box.element);
   return {
     open(file) {
-      dialog = openDialog(app, words.own, [content]);
+      dialog = openDialog(app, words.own, [content], () => box.setOpen(false));
+      takeFiles(app, dialog.element, (on) => box.element.toggleAttribute("data-drop", on), box.take);
+      box.setOpen(true);
       if (file) box.take(file);
     },
+    setTheme: box.setTheme,
+    preview: box.probe,
   };
 }
 
@@ -31,22 +39,39 @@ export function ownObject(app: App): OwnObject {
 /// @returns the notice that lies over the view while a file is dragged
 export function dropPlace(app: App, view: HTMLElement, own: OwnObject): HTMLElement {
   const notice = el("p", { class: "drop-notice", hidden: true }, words.drop);
-  const isFile = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
-  const show = (on: boolean) => setShown(notice, on && mayChange(app.store.role));
-  view.addEventListener("dragover", (event) => {
+  takeFiles(app, view, (on) => setShown(notice, on), (file) => own.open(file));
+  keepPage();
+  return notice;
+}
+
+const isFile = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
+
+/// Takes files that are dropped on an element while this page has control.
+/// @param show  called with whether one is dragged over it
+function takeFiles(app: App, place: HTMLElement, show: (on: boolean) => void, take: (file: File) => void): void {
+  place.addEventListener("dragover", (event) => {
     if (!isFile(event)) return;
     event.preventDefault();
-    show(true);
+    show(mayChange(app.store.role));
   });
-  view.addEventListener("dragleave", (event) => {
-    if (!(event.relatedTarget instanceof Node && view.contains(event.relatedTarget))) show(false);
+  place.addEventListener("dragleave", (event) => {
+    if (!(event.relatedTarget instanceof Node && place.contains(event.relatedTarget))) show(false);
   });
-  view.addEventListener("drop", (event) => {
+  place.addEventListener("drop", (event) => {
     if (!isFile(event)) return;
     event.preventDefault();
     show(false);
     const file = event.dataTransfer?.files[0];
-    if (file && mayChange(app.store.role)) own.open(file);
+    if (file && mayChange(app.store.role)) take(file);
   });
-  return notice;
+}
+
+/// Refuses files elsewhere on the page: the browser would show the file in place of the page and its Stop.
+function keepPage(): void {
+  window.addEventListener("dragover", (event) => {
+    if (!isFile(event) || event.defaultPrevented) return;
+    event.preventDefault();
+    if (event.dataTransfer) event.dataTransfer.dropEffect = "none";
+  });
+  window.addEventListener("drop", (event) => isFile(event) && event.preventDefault());
 }

@@ -10,7 +10,7 @@ import { guarded } from "./setting_controls";
 import { smoothingSwitch } from "./smoothing";
 import { stiffnessRow } from "./stiffness_row";
 
-export function touchPanel(app: App, own: OwnObject): HTMLElement {
+export function touchPanel(app: App, own: Pick<OwnObject, "open">): HTMLElement {
   const force = section(strings.force.title, stiffnessRow(app), smoothingSwitch(app));
   force.firstElementChild!.classList.add("visually-hidden"); // the stiffness is the heading
   return el("div", {}, guarded(app, sceneCards(app, () => own.open()), force, handSection(app)));

@@ -1,31 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Upload of a mesh: choose a file, upload it, read the import's report, use the mesh.
+// Upload of a mesh: choose a file, upload it, see what the import made of it, use the mesh.
 import { KeyType } from "../gen/phalanx/cockpit_pb";
 import { fromTyped, quote } from "../state/toml";
+import { uprightRotation, usualUpAxis } from "../state/up_axis";
 import { strings } from "../strings";
-import type { ImportReport } from "../wire/http";
+import type { ThemeName } from "../theme";
+import type { MeshPreviewProbe } from "../view3d/mesh_preview";
+import { refusedReport, type ImportReport } from "../wire/import_report";
 import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
 import { button, el, setShown, setText } from "./dom";
 import { graspOfNextObject } from "./grasp_section";
+import { importSummary, reportLines } from "./import_words";
+import { MeshPreviewBox } from "./mesh_preview_box";
 import { replaceObject } from "./object_change";
 import { row } from "./setting_controls";
+import { UpAxisChoice } from "./up_axis_choice";
 
 const words = strings.object;
-
-/// Writes the report in lines.
-export function reportLines(report: ImportReport): string[] {
-  const facts = report.facts;
-  if (!facts) return [...report.report];
-  const count = (value: number) => value.toLocaleString(strings.figures);
-  const extent = facts.extent.map((metres) => (metres * 1000).toFixed(1)).join(" × ");
-  return [
-    facts.verdict,
-    words.counts(count(facts.vertices), count(facts.triangles)),
-    words.extent(extent),
-    facts.closed ? words.volume((facts.volume * 1e6).toFixed(1)) : words.open,
-  ];
-}
 const kLimitBytes = 64 * 1024 * 1024; // Cockpit::kUploadLimit
 /// For the way of the largest file and the longest import [ms].
 export const kUploadPatienceMs = 600_000;
@@ -34,6 +26,10 @@ export interface UploadBox {
   readonly element: HTMLElement;
   /// Takes a file that was dropped, and uploads it.
   take(file: File): void;
+  /// The dialog has opened, or closed: an upload goes on, but nothing is drawn.
+  setOpen(open: boolean): void;
+  setTheme(theme: ThemeName): void;
+  probe(): MeshPreviewProbe | undefined;
 }
 
 /// @param used  called when the station has taken the mesh
@@ -47,13 +43,16 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   unit.value = Object.keys(words.units)[0] ?? "";
   const unitRow = row(words.unit, unit).element;
   const send = button(words.upload, () => void upload(), { class: "primary" });
-  const verdict = el("p", { class: "import-verdict", role: "status" });
-  const error = el("p", { class: "refused" });
+  const preview = new MeshPreviewBox();
+  const up = new UpAxisChoice(() => preview.setUp(up.value));
+  const summary = el("p", { class: "import-summary", role: "status" });
+  const error = el("p", { class: "refused", hidden: true });
+  const use = button(words.useMesh, () => void apply(), { class: "primary" });
   const findings = el("ul", { class: "findings" });
   const findingsBox = el("div", {}, el("h3", {}, words.findings), findings);
   const report = el("pre", { class: "report", tabindex: 0, "aria-label": words.report });
-  const use = button(words.useMesh, () => void apply(), { class: "primary" });
-  const outcome = el("div", { class: "import" }, verdict, error, findingsBox, report, use);
+  const details = el("details", {}, el("summary", {}, words.details), findingsBox, report);
+  const outcome = el("div", { class: "import" }, summary, error, el("div", { class: "buttons" }, use), details);
   let dropped: File | undefined; // in place of a chosen one
   let done: ImportReport | null = null; // of the file, size and unit that are shown
   let running: AbortController | null = null; // the upload whose answer is awaited
@@ -61,24 +60,26 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   const wanted = () => dropped ?? picker.files?.[0];
   const number = () => Math.max(0, Number(fromTyped(size.value, KeyType.KEY_NUMBER)) || 0);
 
+  /// @param report_  null: none has come
   function show(report_: ImportReport | null): void {
     done = report_;
+    preview.show(report_);
     setShown(outcome, report_ !== null);
     if (!report_) return;
-    setText(verdict, report_.ok ? words.good : words.bad);
+    const sentence = importSummary(wanted()?.name ?? "", report_);
+    setText(summary, sentence);
     outcome.dataset["ok"] = String(report_.ok);
-    setText(error, report_.error);
-    setShown(error, report_.error !== "");
+    setShown(error, false);
     findings.replaceChildren(...report_.findings.map((line) => el("li", {}, line)));
     setShown(findingsBox, report_.findings.length > 0);
-    const text = reportLines(report_).filter((line) => line !== report_.error);
+    const text = reportLines(report_).filter((line) => line !== sentence);
     setText(report, text.join("\n"));
     setShown(report, text.length > 0);
+    details.open = false;
+    setShown(details, text.length + report_.findings.length > 0);
     setShown(use, report_.ok && report_.file !== "");
     use.disabled = false;
   }
-
-  const failed = (why: string): ImportReport => ({ ok: false, error: why, report: [], facts: null, findings: [], file: "" });
 
   /// Handles another file, size or unit: the report is removed, and a running upload is abandoned.
   function outdated(): void {
@@ -90,21 +91,28 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
     show(null);
   }
 
+  function otherFile(): void {
+    up.value = usualUpAxis(wanted()?.name ?? "");
+    preview.setUp(up.value);
+    outdated();
+  }
+
   async function upload(): Promise<void> {
     const file = wanted();
     if (!file) return picker.click();
     outdated();
-    if (file.size > kLimitBytes) return show(failed(words.tooLarge));
+    if (file.size > kLimitBytes) return show(refusedReport(words.tooLarge));
     const mine = new AbortController();
     running = mine;
     const patience = setTimeout(() => mine.abort(), kUploadPatienceMs);
     setText(chosen, words.uploading(file.name));
     send.disabled = true;
-    const answer = await app.upload(file, number(), unit.value, mine.signal).catch(() => failed(words.noConnection));
+    const answer = await app.upload(file, number(), unit.value, mine.signal).catch(() => refusedReport(words.noConnection));
     clearTimeout(patience);
     if (running !== mine) return; // it was given up
     outdated();
     show(answer);
+    outcome.scrollIntoView?.({ block: "nearest" });
   }
 
   async function apply(): Promise<void> {
@@ -113,6 +121,7 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
       ["kind", quote("file")],
       ["file", quote(done.file)],
       ["size_mm", String(number())],
+      ["rotation_deg", `[${uprightRotation[up.value].join(", ")}]`],
     ];
     if (number() === 0) entries.push(["unit", quote(unit.value)]);
     use.disabled = true;
@@ -126,7 +135,7 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   picker.addEventListener("change", () => {
     dropped = undefined;
     setText(chosen, words.accepted);
-    outdated();
+    otherFile();
   });
   app.store.on(["connection"], () => !app.store.connected && running?.abort());
   const showUnit = () => setShown(unitRow, number() === 0);
@@ -135,19 +144,25 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   showUnit();
   show(null);
 
-  const element = el(
+  const file = el(
     "div",
-    { class: "upload" },
+    { class: "upload-file" },
     el("div", { class: "buttons" }, choose, picker),
     chosen,
     row(words.size, size, strings.units.mm, words.sizeHint).element,
     unitRow,
     el("div", { class: "buttons" }, send),
-    outcome,
   );
-  const take = (file: File) => {
-    dropped = file;
-    void upload();
+  const seen = el("div", { class: "upload-seen" }, preview.element, up.element);
+  return {
+    element: el("div", { class: "upload" }, el("div", { class: "upload-parts" }, file, seen, outcome)),
+    take(taken) {
+      dropped = taken;
+      otherFile();
+      void upload();
+    },
+    setOpen: (open) => preview.setOpen(open),
+    setTheme: (theme) => preview.setTheme(theme),
+    probe: () => preview.probe(),
   };
-  return { element, take };
 }

@@ -13,7 +13,7 @@ import { boundHand, kDetail, skinDetail } from "./skin_detail";
 export const kInfluences = 4;
 const kRoundBelow = 6000; // triangles; a finer skin looks round without rounding
 const kSegmentCrease = (50 * Math.PI) / 180;
-const kObjectCrease = (38 * Math.PI) / 180;
+export const kObjectCrease = (38 * Math.PI) / 180;
 
 export interface Surface {
   readonly position: Float32Array; // 3 a vertex

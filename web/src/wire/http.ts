@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests over plain HTTP: shapes, uploads, and the stop while the socket is down.
-import { strings } from "../strings";
+import { readImportReport, type ImportReport } from "./import_report";
 
 const kGeometryMs = 10_000;
 const kStopMs = 2000;
@@ -44,81 +44,6 @@ export async function postStop(secret: string): Promise<boolean> {
   } catch {
     return false;
   }
-}
-
-/// The import's report on a mesh.
-export interface ImportReport {
-  readonly ok: boolean;
-  readonly error: string;
-  readonly report: readonly string[]; // lines
-  readonly facts: MeshFacts | null;
-  readonly findings: readonly string[];
-  readonly file: string; // to be set as objects.0.file
-}
-
-/// The import's own report: numbers and findings.
-export interface MeshFacts {
-  readonly verdict: string;
-  readonly triangles: number;
-  readonly vertices: number;
-  readonly extent: readonly number[]; // [m]
-  readonly closed: boolean;
-  readonly volume: number; // [m^3]
-}
-
-const asRecord = (value: unknown): Record<string, unknown> =>
-  typeof value === "object" && value !== null ? (value as Record<string, unknown>) : {};
-const asText = (value: unknown) => (typeof value === "string" ? value : "");
-const asNumber = (value: unknown) => (typeof value === "number" ? value : NaN);
-
-function readFacts(value: unknown): MeshFacts | null {
-  const report = asRecord(value);
-  if (asText(report["verdict"]) === "") return null;
-  const extent = report["extent_m"];
-  return {
-    verdict: asText(report["verdict"]),
-    triangles: asNumber(report["triangles"]),
-    vertices: asNumber(report["vertices"]),
-    extent: Array.isArray(extent) ? extent.map(asNumber) : [],
-    closed: report["closed"] === true,
-    volume: asNumber(report["volume_m3"]),
-  };
-}
-
-/// Findings in the station's words; of those that were looked for, only what was found.
-function readFindings(value: unknown): string[] {
-  if (!Array.isArray(value)) return [];
-  return value.flatMap((one: unknown) => {
-    if (typeof one === "string") return [one];
-    const finding = asRecord(one);
-    const found = asNumber(finding["found"]);
-    if (found === 0) return [];
-    return [`${Number.isFinite(found) ? `${found} ` : ""}${asText(finding["kind"]).replaceAll("_", " ")}: ${asText(finding["meaning"])}`];
-  });
-}
-
-function lines(value: unknown): string[] {
-  if (typeof value === "string") return value.split("\n").filter((line) => line.trim() !== "");
-  return Array.isArray(value) ? value.map(asText) : [];
-}
-
-/// Takes apart what the station answered; whatever is missing is empty.
-export function readImportReport(text: string, status: number): ImportReport {
-  let parsed: unknown;
-  try {
-    parsed = JSON.parse(text);
-  } catch {
-    return { ok: false, error: text.trim() || strings.http(status), report: [], facts: null, findings: [], file: "" };
-  }
-  const answer = asRecord(parsed);
-  return {
-    ok: answer["ok"] === true,
-    error: asText(answer["error"]) || (answer["ok"] === true ? "" : strings.http(status)),
-    report: lines(answer["report"]),
-    facts: readFacts(answer["report"]),
-    findings: readFindings(answer["findings"] ?? asRecord(answer["report"])["findings"]),
-    file: asText(answer["file"]),
-  };
 }
 
 /// @param sizeMm  largest extent; 0 keeps the file's numbers in `unit`

@@ -202,7 +202,7 @@ describe("by keyboard", () => {
     await keyboard.type("60"); // mm; a larger one goes through the open hand
     await tabTo(words.upload, "button");
     await keyboard.press("Enter");
-    await cockpit.page.getByRole("status").filter({ hasText: words.good }).waitFor();
+    await cockpit.page.getByRole("status").filter({ hasText: "cube.stl" }).waitFor();
     await tabTo(words.useMesh, "button");
     await keyboard.press("Enter");
     await cockpit.untilState("the mesh in force", (state) => valueOf(state, "objects.0.kind") === '"file"');

@@ -23,9 +23,9 @@ async function upload(name: string, bytes: Buffer): Promise<void> {
   if (!(await page.getByRole("dialog").isVisible())) await cockpit.openOwnObject();
   await page.getByLabel(strings.object.file, { exact: true }).setInputFiles(asFile(name, bytes));
   await cockpit.button(strings.object.upload).click();
-  const verdict = page.getByText(new RegExp(`^(${strings.object.good}|${strings.object.bad})$`));
-  await verdict.waitFor();
-  await verdict.scrollIntoViewIfNeeded();
+  const summary = page.getByRole("status").filter({ hasText: name });
+  await summary.waitFor();
+  await summary.scrollIntoViewIfNeeded();
 }
 
 describe("the page looks right", () => {

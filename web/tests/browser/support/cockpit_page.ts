@@ -7,6 +7,7 @@ import { GeometrySchema, type Geometry } from "../../../src/gen/phalanx/geometry
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import { english, type Strings } from "../../../src/strings";
 import type { ViewProbe } from "../../../src/view3d/hand_view";
+import type { MeshPreviewProbe } from "../../../src/view3d/mesh_preview";
 import { Stream } from "./stream";
 import { kHangMs, until } from "./until";
 
@@ -35,6 +36,11 @@ export class CockpitPage {
 
   probe(): Promise<ViewProbe | undefined> {
     return this.page.evaluate(() => window.phalanx?.view());
+  }
+
+  /// The preview of the user's own object; undefined: nothing is drawn.
+  preview(): Promise<MeshPreviewProbe | undefined> {
+    return this.page.evaluate(() => window.phalanx.preview());
   }
 
   state(): Promise<State | undefined> {

@@ -6,6 +6,7 @@ import { Wizard_JointSchema, Wizard_Method, WizardSchema, type Wizard } from "..
 import { SafetyState } from "../../../src/gen/phalanx/tick_pb";
 import type { Strings } from "../../../src/strings";
 import type { FakeHost } from "../fake_host";
+import { cupAnswer } from "./meshes";
 
 export interface PageState {
   readonly name: string;
@@ -26,6 +27,13 @@ async function upload(page: Page, host: FakeHost, words: Strings, answer: unknow
   await page.click(`button:text-is("${words.object.upload}")`);
   await page.waitForSelector(".upload .import:not([hidden])");
   await page.locator(".upload .import").scrollIntoViewIfNeeded();
+}
+
+/// A mesh with a preview, and the axis that is up in its file.
+async function uploadCup(page: Page, host: FakeHost): Promise<void> {
+  await upload(page, host, cupAnswer(cube.name));
+  await page.click(".up-axis button:text-is(\"y\")");
+  await page.waitForFunction(() => (window.phalanx.preview()?.frames ?? 0) > 1);
 }
 
 const rad = Math.PI / 180;
@@ -89,6 +97,14 @@ export const pageStates: readonly PageState[] = [
   { name: "calibration_telephone", size: [390, 844], before: (host) => calibrates(host, wizard) },
   { name: "people", act: async (page, host) => { await tab(page, "people"); host.notice(1, "page 2 (127.0.0.1), Anna", "set", "force.stiffness_n_per_mm = 3"); await wait(200); } },
   { name: "upload_good", act: async (page, host, words) => upload(page, host, words, { ok: true, error: "", report: ["knob.stl: 1,204 vertices, 2,404 triangles", "closed, one piece, 61 x 40 x 38 mm", "simplified: no"], findings: ["2 degenerate triangles were removed"], file: "/var/phalanx/uploads/knob.stl" }) },
+  { name: "upload_preview", act: uploadCup },
+  { name: "upload_preview_light", light: true, size: [1920, 1080], act: uploadCup },
+  { name: "upload_preview_small", size: [1366, 768], act: uploadCup },
+  { name: "upload_preview_tablet", light: true, size: [1024, 768], act: uploadCup },
+  { name: "upload_preview_upright", size: [768, 1024], act: uploadCup },
+  { name: "upload_preview_telephone", size: [390, 844], act: uploadCup },
+  { name: "upload_preview_large", size: [1366, 768], act: async (page, host) => { await page.click("text=Large type"); await wait(1500); await uploadCup(page, host); } },
+  { name: "upload_empty", size: [1366, 768], act: async (page) => page.click(".card-own") },
   { name: "upload_bad", act: async (page, host, words) => upload(page, host, words, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },
   { name: "expert", act: async (page) => tab(page, "expert") },
   { name: "settings", act: async (page) => { await tab(page, "expert"); await page.fill("input[type=search]", "force"); await wait(200); } },
