@@ -30,8 +30,8 @@ async function upload(page: Page, host: FakeHost, words: Strings, answer: unknow
 }
 
 /// A mesh with a preview, and the axis that is up in its file.
-async function uploadCup(page: Page, host: FakeHost): Promise<void> {
-  await upload(page, host, cupAnswer(cube.name));
+async function uploadCup(page: Page, host: FakeHost, words: Strings): Promise<void> {
+  await upload(page, host, words, cupAnswer(cube.name));
   await page.click(".up-axis button:text-is(\"y\")");
   await page.waitForFunction(() => (window.phalanx.preview()?.frames ?? 0) > 1);
 }
@@ -103,7 +103,7 @@ export const pageStates: readonly PageState[] = [
   { name: "upload_preview_tablet", light: true, size: [1024, 768], act: uploadCup },
   { name: "upload_preview_upright", size: [768, 1024], act: uploadCup },
   { name: "upload_preview_telephone", size: [390, 844], act: uploadCup },
-  { name: "upload_preview_large", size: [1366, 768], act: async (page, host) => { await page.click("text=Large type"); await wait(1500); await uploadCup(page, host); } },
+  { name: "upload_preview_large", size: [1366, 768], act: async (page, host, words) => { await page.click("text=Large type"); await wait(1500); await uploadCup(page, host, words); } },
   { name: "upload_empty", size: [1366, 768], act: async (page) => page.click(".card-own") },
   { name: "upload_bad", act: async (page, host, words) => upload(page, host, words, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },
   { name: "expert", act: async (page) => tab(page, "expert") },
