@@ -59,6 +59,7 @@ const en = {
   },
 
   digits: ["Thumb", "Index", "Middle", "Ring", "Little"],
+  digitLetters: ["T", "I", "M", "R", "L"],
   openings: {
     digits: ["thumb", "index finger", "middle finger", "ring finger", "little finger"],
     unconfirmed: {
