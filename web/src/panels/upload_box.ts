@@ -51,7 +51,7 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   const error = el("p", { class: "refused" });
   const findings = el("ul", { class: "findings" });
   const findingsBox = el("div", {}, el("h3", {}, words.findings), findings);
-  const report = el("pre", { class: "report", tabindex: 0, "aria-label": words.report });
+  const report = el("pre", { class: "report", tabindex: 0, role: "group", "aria-label": words.report });
   const use = button(words.useMesh, () => void apply(), { class: "primary" });
   const outcome = el("div", { class: "import" }, verdict, error, findingsBox, report, use);
   let dropped: File | undefined; // in place of a chosen one

@@ -10,6 +10,7 @@ export interface PageState {
   readonly name: string;
   readonly size?: readonly [number, number];
   readonly light?: boolean;
+  readonly again?: boolean; // another state at another size or in another theme
   readonly before?: (host: FakeHost) => void;
   readonly act?: (page: Page, host: FakeHost) => Promise<void>;
 }
@@ -66,10 +67,10 @@ export const pageStates: readonly PageState[] = [
   { name: "fault", before: (host) => Object.assign(host.state, { fault, safety: SafetyState.SAFETY_FAULT }), act: async (_, host) => host.notice(3, "", "fault", "sensor_jump: a sensor's angle jumped.") },
   { name: "silent", before: (host) => (host.silent = [3]) },
   { name: "silent_dialog", size: [1024, 768], before: (host) => (host.silent = [1, 4]), act: async (page) => page.click(".silent-digits button") },
-  { name: "silent_projector", size: [1920, 1080], before: (host) => (host.silent = [3]) },
-  { name: "silent_laptop", size: [1280, 720], before: (host) => (host.silent = [1, 2, 3, 4]) },
-  { name: "silent_tablet_light", size: [1024, 768], light: true, before: (host) => (host.silent = [0, 3]) },
-  { name: "silent_telephone", size: [390, 844], before: (host) => (host.silent = [0, 1, 2, 3, 4]) },
+  { name: "silent_projector", again: true, size: [1920, 1080], before: (host) => (host.silent = [3]) },
+  { name: "silent_laptop", again: true, size: [1280, 720], before: (host) => (host.silent = [1, 2, 3, 4]) },
+  { name: "silent_tablet_light", again: true, size: [1024, 768], light: true, before: (host) => (host.silent = [0, 3]) },
+  { name: "silent_telephone", again: true, size: [390, 844], before: (host) => (host.silent = [0, 1, 2, 3, 4]) },
   { name: "lost", act: async (_, host) => { await host.cut(); await wait(2500); } },
   { name: "lost_stop", act: async (page, host) => { await host.cut(); await wait(600); await page.keyboard.press("Space"); await wait(900); } },
   { name: "stale", act: async (_, host) => { host.playing = false; await wait(1500); } },
@@ -84,20 +85,20 @@ export const pageStates: readonly PageState[] = [
   { name: "calibration_jig", size: [1366, 768], before: (host) => calibrates(host, jig) },
   { name: "calibration_end", light: true, before: (host) => calibrates(host, create(WizardSchema, { ...wizard, pose: poseNames.length, joint: [], problem: ["angle of index_pip_flexion: 2 poses, 12.0 deg apart; measure at least two whose angles differ by more than 20 deg"] })) },
   { name: "range", size: [1366, 768], before: (host) => calibrates(host, range) },
-  { name: "range_tablet", size: [1024, 768], light: true, before: (host) => calibrates(host, range) },
-  { name: "calibration_telephone", size: [390, 844], before: (host) => calibrates(host, wizard) },
+  { name: "range_tablet", again: true, size: [1024, 768], light: true, before: (host) => calibrates(host, range) },
+  { name: "calibration_telephone", again: true, size: [390, 844], before: (host) => calibrates(host, wizard) },
   { name: "people", act: async (page, host) => { await tab(page, "people"); host.notice(1, "page 2 (127.0.0.1), Anna", "set", "force.stiffness_n_per_mm = 3"); await wait(200); } },
   { name: "upload_good", act: async (page, host) => upload(page, host, { ok: true, error: "", report: ["knob.stl: 1,204 vertices, 2,404 triangles", "closed, one piece, 61 x 40 x 38 mm", "simplified: no"], findings: ["2 degenerate triangles were removed"], file: "/var/phalanx/uploads/knob.stl" }) },
   { name: "upload_bad", act: async (page, host) => upload(page, host, { ok: false, error: "knob.stl: the surface is open: 36 edges belong to one triangle only. Close the holes in a mesh editor.", report: ["knob.stl: 1,204 vertices, 2,380 triangles"], findings: ["36 open edges, the first at (12.1, 3.4, 0.0) mm"], file: "" }) },
   { name: "expert", act: async (page) => tab(page, "expert") },
   { name: "settings", act: async (page) => { await tab(page, "expert"); await page.fill("input[type=search]", "force"); await wait(200); } },
   { name: "help", act: async (page) => page.keyboard.press("?") },
-  { name: "light", light: true },
-  { name: "light_shaking", light: true, before: (host) => (host.shaking = true) },
-  { name: "tablet", size: [1024, 768], before: (host) => (host.shaking = true) },
-  { name: "tablet_viewer", size: [1024, 768], before: (host) => { host.page = 4; } },
-  { name: "tablet_stopped", size: [1024, 768], act: async (page) => page.click(".stop") },
-  { name: "upright", size: [768, 1024] },
+  { name: "light", again: true, light: true },
+  { name: "light_shaking", again: true, light: true, before: (host) => (host.shaking = true) },
+  { name: "tablet", again: true, size: [1024, 768], before: (host) => (host.shaking = true) },
+  { name: "tablet_viewer", again: true, size: [1024, 768], before: (host) => { host.page = 4; } },
+  { name: "tablet_stopped", again: true, size: [1024, 768], act: async (page) => page.click(".stop") },
+  { name: "upright", again: true, size: [768, 1024] },
   { name: "large", size: [1920, 1080], act: async (page) => { await page.click("text=Large type"); await wait(5000); } },
-  { name: "large_tablet", size: [1280, 800], act: async (page) => page.click("text=Large type") },
+  { name: "large_tablet", again: true, size: [1280, 800], act: async (page) => page.click("text=Large type") },
 ];

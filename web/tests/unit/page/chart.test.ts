@@ -198,7 +198,8 @@ describe("what is not sent", () => {
 describe("the ends of the digits' curves", () => {
   afterEach(() => vi.restoreAllMocks());
 
-  it.each([[600, strings.digits], [300, strings.digitLetters]])("tell the digits apart by more than colour: %d pixels wide", async (width, names) => {
+  const cases = [[600, strings.digits], [300, strings.digitLetters]] as const;
+  it.each(cases)("tell the digits apart by more than colour: %d pixels wide", async (width, names) => {
     vi.spyOn(HTMLElement.prototype, "clientWidth", "get").mockReturnValue(width);
     vi.spyOn(HTMLElement.prototype, "clientHeight", "get").mockReturnValue(200);
     fill(new Map([[index("digit_force", 1), 2], [index("digit_force", 4), 1]]));
