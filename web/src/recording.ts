@@ -41,7 +41,7 @@ document.documentElement.lang = strings.locale;
 document.documentElement.dataset["page"] = "recording";
 const dialogs = el("div", { class: "dialogs", hidden: true });
 const content = el("div", { class: "content" });
-const what = el("strong", { class: "band-what" });
+const what = el("h1", { class: "band-what" });
 const look = new Look((theme) => {
   view?.setTheme(theme);
   window.dispatchEvent(new Event("resize"));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours that mean something, in one place: for the 3D view, the plots and the style sheet. Chosen from Okabe and Ito's palette, which
-// people with any of the common colour-vision deficiencies tell apart; nothing is said by colour alone. On white some of them are
-// darker, so that a thin line of them is seen: at least 3:1 against the panel.
+// Colours that mean something, in one place: for the 3D view, the plots and the style sheet. They begin with Okabe and Ito's palette. On
+// white some are darker, so that a thin line of them is seen. tests/unit/page/theme.test.ts demands a contrast and a difference of the
+// digits' colours, also in the sight of people with protanopia, deuteranopia and tritanopia. Nothing is said by colour alone.
 
 export type ThemeName = "dark" | "light";
 
 /// One a digit, thumb to little finger.
 export const digitColours: Readonly<Record<ThemeName, readonly string[]>> = {
   dark: ["#E69F00", "#56B4E9", "#009E73", "#CC79A7", "#D55E00"],
-  light: ["#B98000", "#0072B2", "#009E73", "#C0689A", "#A83F00"],
+  light: ["#B47D06", "#0072B2", "#00996C", "#A65580", "#A83F00"],
 };
 
 export interface Theme {
@@ -58,7 +58,7 @@ export const themes: Readonly<Record<ThemeName, Theme>> = {
     ghost: "#0072B2",
     table: "#d9c4a4",
     sky: "#f2f6fa",
-    arrow: "#8a4b00",
+    arrow: "#363200",
     lost: "#9a9fa5",
   },
 };

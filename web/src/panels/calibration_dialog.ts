@@ -102,8 +102,8 @@ export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) =
   const instruction = el("p", { class: "instruction", role: "status" });
   const joints = new JointTable((joint, degrees) => void enter(joint, degrees));
   const stillText = el("span", {});
-  const stillBar = el("progress", { max: kStillSeconds, "aria-hidden": true });
-  const still = el("div", { class: "stillness", role: "status" }, el("span", { class: "still-lamp", "aria-hidden": true }), stillText, stillBar);
+  const stillBar = el("progress", { max: kStillSeconds, "aria-hidden": "true" });
+  const still = el("div", { class: "stillness", role: "status" }, el("span", { class: "still-lamp", "aria-hidden": "true" }), stillText, stillBar);
   const measuring = el("progress", { max: 1, "aria-label": words.measuring });
   const measuringBox = el("div", { class: "measuring" }, el("span", {}, words.measuring), measuring);
   const trouble = el("p", { class: "refused", role: "alert", hidden: true });

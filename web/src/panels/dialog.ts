@@ -26,7 +26,7 @@ export function openDialog(app: DialogHost, title: string, content: readonly Nod
     if (before instanceof HTMLElement && before.isConnected) before.focus();
   };
   const element = el(
-    "div",
+    "section", // so that its header is not the page's
     { class: "dialog", role: "dialog", "aria-labelledby": id, tabindex: -1 },
     el("header", {}, el("h2", { id }, title), button(strings.look.close, close, { class: "quiet" })),
     el("div", { class: "dialog-body" }, ...content),
@@ -51,7 +51,7 @@ export function confirmDialog(app: DialogHost, title: string, text: string, conf
 
 /// Lists the keys of a page and what they do.
 export function helpDialog(app: DialogHost, title: string, rows: readonly (readonly [string, string])[], note: string): void {
-  const list = el("dl", { class: "keys" });
+  const list = el("dl", { class: "keys", tabindex: 0 }); // keys scroll it where it is longer than the dialog
   for (const [key, meaning] of rows) list.append(el("dt", {}, el("kbd", {}, key)), el("dd", {}, meaning));
   openDialog(app, title, [list, el("p", { class: "hint" }, note)]);
 }

@@ -46,6 +46,7 @@ export function histogram(title: string): Histogram {
   const svg = document.createElementNS(kSvg, "svg");
   svg.setAttribute("class", "histogram");
   svg.setAttribute("role", "img");
+  svg.setAttribute("aria-label", title);
   svg.setAttribute("preserveAspectRatio", "none");
   const from = el("span");
   const to = el("span");
@@ -62,6 +63,7 @@ export function histogram(title: string): Histogram {
     const used = usedOctaves(counts);
     if (!used) {
       svg.replaceChildren();
+      setAttribute(svg, "aria-label", title);
       setText(from, "");
       setText(to, "");
       return;

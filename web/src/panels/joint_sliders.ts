@@ -94,7 +94,7 @@ export function jointSliders(app: App): HTMLElement {
   function joint(number: number): HTMLElement {
     const id = newId("joint");
     const input = el("input", { type: "range", id, step: 0.005 });
-    const output = el("output", { for: id });
+    const output = el("output", { for: id, "aria-live": "off" });
     sliders[number] = { input, output };
     input.addEventListener("input", () => {
       held.add(number);

@@ -61,7 +61,7 @@ export class JointTable {
 
 class Row {
   readonly element: HTMLElement;
-  private readonly present = el("output", { class: "joint-present" });
+  private readonly present = el("output", { class: "joint-present", "aria-live": "off" });
   private readonly note = el("span", { class: "joint-note" });
   private readonly input = el("input", { type: "text", inputmode: "decimal", class: "number", id: newId("angle") });
   private readonly wrong = el("p", { class: "refused", role: "alert", hidden: true });
@@ -85,7 +85,7 @@ class Row {
     const entry = joint.mayEnter
       ? el("label", { class: "joint-entry", for: this.input.id }, words.knownAngle, this.input, words.degree)
       : null;
-    const bar = el("div", { class: "joint-bar", "aria-hidden": true }, this.reached, this.target, this.marker);
+    const bar = el("div", { class: "joint-bar", "aria-hidden": "true" }, this.reached, this.target, this.marker);
     this.element = el("div", { class: "joint-row", role: "group", "aria-label": name }, el("span", { class: "joint-name" }, name), this.present, bar, this.note, entry, this.wrong);
   }
 

@@ -34,7 +34,7 @@ export function readouts(shown: Shown, below: Readouts): Readouts {
   const alarm = el("span", { class: "visually-hidden", role: "alert" });
   const light = el("div", { class: "verdict" }, el("span", { class: "lamp", "aria-hidden": "true" }), el("div", {}, el("small", {}, strings.verdict.label), text), spoken, alarm);
   const digits = Array.from({ length: kDigits }, (_, digit) => {
-    const value = el("output", { "aria-label": strings.digits[digit] ?? "" });
+    const value = el("output", { "aria-label": strings.digits[digit] ?? "", "aria-live": "off" }); // it changes all the time
     const bar = el("span", { class: "bar" });
     const unfelt = el("small", { class: "digit-note", hidden: true }, strings.notFelt);
     const atLimit = el("strong", { class: "digit-note", hidden: true }, strings.atLimit);

@@ -21,6 +21,7 @@ export function tabs(all: readonly Tab[]): Tabs {
     tab.panel.setAttribute("role", "tabpanel");
     tab.panel.setAttribute("aria-labelledby", id);
     tab.panel.classList.add("tab-panel");
+    tab.panel.tabIndex = 0; // keys scroll it also where a viewer can use none of its controls
     const button = el("button", { type: "button", role: "tab", id, "aria-controls": tab.panel.id, "data-tab": tab.name }, tab.text);
     button.addEventListener("click", () => choose(tab.name));
     return button;

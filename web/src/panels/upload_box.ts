@@ -50,7 +50,7 @@ export function uploadBox(app: App, used: () => void = () => {}): UploadBox {
   const use = button(words.useMesh, () => void apply(), { class: "primary" });
   const findings = el("ul", { class: "findings" });
   const findingsBox = el("div", {}, el("h3", {}, words.findings), findings);
-  const report = el("pre", { class: "report", tabindex: 0, "aria-label": words.report });
+  const report = el("pre", { class: "report", tabindex: 0, role: "group", "aria-label": words.report });
   const details = el("details", {}, el("summary", {}, words.details), findingsBox, report);
   const outcome = el("div", { class: "import" }, summary, error, el("div", { class: "buttons" }, use), details);
   let dropped: File | undefined; // in place of a chosen one

@@ -121,18 +121,19 @@ export function drawEvents(sheet: Sheet, clusters: readonly Cluster[]): void {
 }
 
 /// Width that the names need beside the plot [canvas px].
-export function namesWidth({ plot, size }: Pick<Sheet, "plot" | "size">, curves: readonly Curve[]): number {
+export function namesWidth({ plot, size }: Pick<Sheet, "plot" | "size">, names: readonly string[]): number {
   plot.ctx.font = fontOf({ plot, size } as Sheet);
-  const widest = Math.max(0, ...curves.map(({ short }) => plot.ctx.measureText(short).width));
+  const widest = Math.max(0, ...names.map((name) => plot.ctx.measureText(name).width));
   return widest + (2 * kNear + kSample + 4) * uPlot.pxRatio;
 }
 
+/// @param names  of each curve; empty: it has none
 /// @param ends  the value that each name stands beside; NaN: the curve is not drawn, and has no name
-export function drawNames(sheet: Sheet, curves: readonly Curve[], ends: readonly number[]): void {
+export function drawNames(sheet: Sheet, curves: readonly Curve[], names: readonly string[], ends: readonly number[]): void {
   const { plot, colours, size } = sheet;
   const { ctx, bbox } = plot;
   const ratio = uPlot.pxRatio;
-  const named = curves.flatMap((curve, i) => (curve.short === "" || Number.isNaN(ends[i]) ? [] : [{ curve, value: ends[i]! }]));
+  const named = curves.flatMap((curve, i) => (names[i] === "" || Number.isNaN(ends[i]) ? [] : [{ curve, name: names[i]!, value: ends[i]! }]));
   const wishes = named.map(({ value }) => Math.min(bbox.top + bbox.height, Math.max(bbox.top, plot.valToPos(value, "y", true))));
   const places = labelPlaces(wishes, 1.2 * size, bbox.top - size / 2, bbox.top + bbox.height + size / 2);
   if (!places) return;
@@ -141,7 +142,7 @@ export function drawNames(sheet: Sheet, curves: readonly Curve[], ends: readonly
   ctx.font = fontOf(sheet);
   ctx.textAlign = "left";
   ctx.textBaseline = "middle";
-  named.forEach(({ curve }, i) => {
+  named.forEach(({ curve, name }, i) => {
     ctx.strokeStyle = curve.colour;
     ctx.lineWidth = curve.width * ratio;
     ctx.setLineDash(curve.dash.map((length) => length * 0.5 * ratio));
@@ -150,7 +151,7 @@ export function drawNames(sheet: Sheet, curves: readonly Curve[], ends: readonly
     ctx.lineTo(left + kSample * ratio, places[i]!);
     ctx.stroke();
     ctx.fillStyle = colours.text;
-    ctx.fillText(curve.short, left + (kSample + kNear) * ratio, places[i]!);
+    ctx.fillText(name, left + (kSample + kNear) * ratio, places[i]!);
   });
   ctx.restore();
 }

@@ -22,7 +22,7 @@ import { valueRange } from "./value_range";
 
 const kLineEnd = 4; // how far a line reaches beyond its first point [px]
 const kSettled = 0.04; // share of the shown time whose mean places a curve's name: names stand still while a force shakes
-const kNamesFrom = 26; // width of a plot from which on its curves are named at their ends [rem]
+const kNamesFrom = 26; // width of a plot from which on its curves have their whole names at their ends [rem]
 const kFlag = 22; // events so near become one flag [px]
 const kAtEvent = 8; // the cursor so near to an event shows it [px]
 const kMinutes = 120; // longer spans are read in minutes [s]
@@ -42,7 +42,7 @@ export interface Chart {
   readonly element: HTMLElement;
   readonly canvas: () => HTMLCanvasElement;
   readonly curves: () => readonly Curve[];
-  readonly named: () => boolean; // the curves have their names at their ends
+  readonly named: () => boolean; // the curves have their whole names at their ends
   readonly range: () => readonly [number, number]; // of the shown values
   setChoice(choice: PlotChoice): void;
   setTheme(theme: ThemeName): void;
@@ -80,6 +80,7 @@ export function chart(
   const typeSize = () => 0.75 * rem(); // [px]
   const sheet = (): Sheet => ({ plot: plot!, colours, size: typeSize() * uPlot.pxRatio });
   const named = () => host.clientWidth >= kNamesFrom * rem() && host.clientHeight >= (1.2 * curves.length + 5) * typeSize();
+  const names = () => curves.map(named() ? ({ short }) => short : ({ letter }) => letter);
   const plotWidth = (u: uPlot) => u.bbox.width / uPlot.pxRatio;
   const secondsFor = (u: uPlot, pixels: number) => (pixels / Math.max(1, plotWidth(u))) * lengthOf(span);
 
@@ -241,7 +242,7 @@ export function chart(
     if (kind !== "angle") drawNotSent(sheet(), notSent(history, span));
     drawEvents(sheet(), clustersOf(shown.happened, span, secondsFor(u, kFlag)));
     drawCutOff(u, curves, unitOf(kind), colours, () => `${sheet().size}px system-ui, sans-serif`);
-    if (named()) drawNames(sheet(), curves, ends);
+    drawNames(sheet(), curves, names(), ends);
   }
 
   function build(): void {
@@ -254,7 +255,10 @@ export function chart(
     element.setAttribute("aria-label", `${titleOf(kind, choice)}. ${strings.plots.keys}`);
     const { clientWidth: width, clientHeight: height } = host;
     const size = typeSize();
-    const right: uPlot.PaddingSide = (u) => (named() ? namesWidth({ plot: u, size: size * uPlot.pxRatio }, curves) / uPlot.pxRatio : size);
+    const right: uPlot.PaddingSide = (u) => {
+      const shown = names().filter((name) => name !== "");
+      return shown.length > 0 ? namesWidth({ plot: u, size: size * uPlot.pxRatio }, shown) / uPlot.pxRatio : size;
+    };
     const options: uPlot.Options = {
       width: Math.max(width, 80),
       height: Math.max(height, 60),

@@ -53,6 +53,7 @@ export interface Curve {
   readonly dash: readonly number[];
   readonly label: string; // that is understood alone
   readonly short: string; // at the curve's end; empty: it has the name of the thick one beside it
+  readonly letter: string; // there, where the plot is narrow; empty: its dashes tell it
   readonly scale: number; // factor from the stored to the displayed value: degrees
 }
 
@@ -91,6 +92,7 @@ function partCurve(channel: Channel, theme: ThemeName): Curve {
     dash: partDash[rank] ?? [],
     label: words.curve(strings.digits[channel.digit] ?? "", part, suffix),
     short: input ? "" : part,
+    letter: "",
     scale: channel.quantity.startsWith("angle") ? 180 / Math.PI : 1,
   };
 }
@@ -104,7 +106,7 @@ export function curvesOf(kind: PlotKind, choice: PlotChoice, theme: ThemeName): 
       const computed = choice.computed[channel.digit] ?? false;
       const name = digitName(channel.digit, computed);
       const style = computed ? { width: kThin, dash: computedDash } : { width: kThick, dash: [] };
-      return { channel, colour: digitColours[theme][channel.digit] ?? "", ...style, label: name, short: name, scale: 1 };
+      return { channel, colour: digitColours[theme][channel.digit] ?? "", ...style, label: name, short: name, letter: strings.digitLetters[channel.digit] ?? "", scale: 1 };
     });
 }
 

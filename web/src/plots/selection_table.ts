@@ -36,7 +36,7 @@ export function selectionTable(history: History, view: TimeView, plots: () => re
     button(words.close, () => (view.selection = undefined), { "aria-label": words.closeLong, title: words.closeLong }),
   );
   const table = el("table", {}, el("thead", {}, el("tr", {}, ...titles)), body);
-  const scroll = el("div", { class: "plot-selected-scroll" }, table);
+  const scroll = el("div", { class: "plot-selected-scroll", tabindex: 0, role: "group", "aria-label": words.label }, table);
   const element = el("section", { class: "plot-selected", "aria-label": words.label, hidden: true }, el("header", {}, head, tools), scroll, spoken);
   let timer: ReturnType<typeof setTimeout> | undefined;
 

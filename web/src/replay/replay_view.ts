@@ -80,7 +80,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
   const events = eventList(seek);
   const facts = about(player, overview);
   const panel = el("div", { class: "tab-panel" }, el("div", {}, section(strings.replay.events, events.element), facts.element));
-  const dock = el("div", { class: "replay-dock" }, bar.element, track.element);
+  const dock = el("section", { class: "replay-dock", "aria-label": strings.replay.transport }, bar.element, track.element);
 
   let drawnAt = -Infinity;
   let stale = true; // the overview has grown since it was drawn
@@ -107,7 +107,7 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
     overview,
     content: [
       el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
-      el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels" }, panel))),
+      el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels", tabindex: 0 }, panel))),
     ],
     dock,
     draw(now) {

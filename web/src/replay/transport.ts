@@ -30,7 +30,7 @@ export function transport(playhead: Playhead, begin: number, actions: TransportA
   return {
     element: el(
       "div",
-      { class: "transport", role: "group", "aria-label": words.transport },
+      { class: "transport" },
       el(
         "div",
         { class: "buttons" },

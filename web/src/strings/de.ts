@@ -71,6 +71,7 @@ export const de: Strings = {
   },
 
   digits: ["Daumen", "Zeigefinger", "Mittelfinger", "Ringfinger", "Kleinfinger"],
+  digitLetters: ["D", "Z", "M", "R", "K"],
   openings: {
     digits: ["Daumen", "Zeigefinger", "Mittelfinger", "Ringfinger", "Kleinfinger"],
     unconfirmed: {

@@ -70,6 +70,7 @@ export const en = {
   },
 
   digits: ["Thumb", "Index", "Middle", "Ring", "Little"],
+  digitLetters: ["T", "I", "M", "R", "L"],
   openings: {
     digits: ["thumb", "index finger", "middle finger", "ring finger", "little finger"],
     unconfirmed: {

@@ -39,6 +39,8 @@ export interface ViewProbe {
   readonly lost: boolean; // grey
   readonly panes: readonly Pane[];
   readonly handInPicture: boolean; // all of it, in the first view
+  readonly geometries: number; // that the graphics card holds
+  readonly textures: number; // likewise
 }
 
 export interface HandView {

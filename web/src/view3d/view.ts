@@ -155,6 +155,7 @@ class View implements HandView {
   }
 
   probe(): ViewProbe {
+    const { geometries, textures } = this.renderer?.info.memory ?? { geometries: 0, textures: 0 };
     return {
       frames: this.frames,
       tick: this.shownTick,
@@ -168,6 +169,8 @@ class View implements HandView {
       lost: this.content.dead,
       panes: this.panes,
       handInPicture: this.rig.sees(this.content.hands.corners()),
+      geometries,
+      textures,
     };
   }
 

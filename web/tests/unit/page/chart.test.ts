@@ -195,6 +195,21 @@ describe("what is not sent", () => {
   });
 });
 
+describe("the ends of the digits' curves", () => {
+  afterEach(() => vi.restoreAllMocks());
+
+  const cases = [[600, strings.digits], [300, strings.digitLetters]] as const;
+  it.each(cases)("tell the digits apart by more than colour: %d pixels wide", async (width, names) => {
+    vi.spyOn(HTMLElement.prototype, "clientWidth", "get").mockReturnValue(width);
+    vi.spyOn(HTMLElement.prototype, "clientHeight", "get").mockReturnValue(200);
+    fill(new Map([[index("digit_force", 1), 2], [index("digit_force", 4), 1]]));
+    const force = make("force");
+    await settled();
+    const known = new Set([...strings.digits, ...strings.digitLetters]);
+    expect(new Set(textsOn(force.canvas()).filter((text) => known.has(text)))).toEqual(new Set([names[1], names[4]]));
+  });
+});
+
 describe("what lies beyond a plot", () => {
   it("is marked at its upper edge, with how far it goes", async () => {
     const raw = index("force_raw", 5);
