@@ -6,6 +6,7 @@ import { chromium, type Browser, type Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, inject, it } from "vitest";
 import { GeometrySchema } from "../../src/gen/phalanx/geometry_pb";
 import { bytesOf, event, gap, pose, setup } from "../unit/replay/made_recording";
+import { english } from "../../src/strings";
 import { FakeHost, serveSite } from "./fake_host";
 import { allRules, bringAxe, colourRules, violations } from "./support/axe";
 import { pageStates, type PageState } from "./support/page_states";
