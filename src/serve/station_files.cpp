@@ -18,6 +18,7 @@
 
 #include "phalanx/record/recordings.h"
 #include "record/mcap/mcap_reader.h"
+#include "record/mcap/mcap_writer.h"
 #include "record/plain_text.h"
 
 namespace phalanx {
@@ -50,6 +51,17 @@ std::optional<ByteRange> read_range(std::string_view field) {
   const auto last = std::from_chars(first.ptr + 1, end, range.last);
   if (last.ec != std::errc() || last.ptr != end || range.last < range.first) return std::nullopt;
   return range;
+}
+
+/// @returns the number of "until=NUMBER"; none for any other form
+std::optional<std::uint64_t> read_until(std::string_view query) {
+  constexpr std::string_view kKey = "until=";
+  if (!query.starts_with(kKey)) return std::nullopt;
+  query.remove_prefix(kKey.size());
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(query.data(), query.data() + query.size(), value);
+  if (error != std::errc() || end != query.data() + query.size()) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -104,9 +116,11 @@ WebResponse StationFiles::response_to(const WebRequest& request) {
   try {
     if (request.path == kReport) return whole_report();
     if (!request.path.starts_with(kFiles)) return list();
-    return part_of(request.path.substr(kFiles.size()), request.range);
+    return part_of(request.path.substr(kFiles.size()), request);
   } catch (const std::system_error& error) {
     return words(500, fmt::format("the disk refuses ({})", error.code().message()));
+  } catch (const mcap::McapError& error) {
+    return words(409, fmt::format("the recording cannot be read: {}", error.what()));
   } catch (const std::invalid_argument& refused) {
     return words(404, as_utf8(refused.what()));
   }
@@ -151,29 +165,60 @@ WebResponse StationFiles::list() {
   return response;
 }
 
-WebResponse StationFiles::part_of(const std::string& name, const std::string& range_field) const {
+const StationFiles::Cut& StationFiles::cut_at(const std::string& name, const mcap::ReadableFile& file,
+                                              std::uint64_t until) {
+  const auto known = std::find_if(cuts_.begin(), cuts_.end(),
+                                  [&](const Cut& cut) { return cut.name == name && cut.until == until; });
+  if (known != cuts_.end()) return *known;
+  const mcap::Summary summary = mcap::summarise_until(file, until);
+  const mcap::Bytes end = mcap::end_of_file(summary, summary.begin);
+  cuts_.push_front({.name = name,
+                    .until = until,
+                    .place = summary.begin,
+                    .end = std::make_shared<const std::string>(end.begin(), end.end())});
+  if (cuts_.size() > kKeptEnds) cuts_.pop_back();
+  return cuts_.front();
+}
+
+WebResponse StationFiles::part_of(const std::string& name, const WebRequest& request) {
   const std::filesystem::path file = folder_ / name;
   if (name.find('/') != std::string::npos || file.extension() != ".mcap" ||
       !std::filesystem::is_regular_file(file))
     return words(404, "there is no recording of this name; /recordings lists them");
-  const auto range = read_range(range_field);
+  const auto range = read_range(request.range);
   if (!range || range->last - range->first >= kLargestPart)
     return words(400, fmt::format("a recording is read in parts of at most {} bytes: ask with the header "
                                   "'Range: bytes=FIRST-LAST'",
                                   kLargestPart));
   const mcap::ReadableFile readable(file);
+  std::uint64_t from_file = readable.size();  // bytes that are read from it; the others are those of `end`
+  std::string_view end;
+  if (!request.query.empty()) {
+    const auto until = read_until(request.query);
+    if (!until) return words(400, "the query of a recording is 'until=BYTES', or none");
+    const Cut& cut = cut_at(name, readable, *until);
+    from_file = cut.place;
+    end = *cut.end;
+  }
+  const std::uint64_t size = from_file + end.size();
   WebResponse response;
-  if (range->first >= readable.size()) {
-    response = words(416, fmt::format("the recording has {} bytes", readable.size()));
-    response.content_range = fmt::format("bytes */{}", readable.size());
+  if (range->first >= size) {
+    response = words(416, fmt::format("the recording has {} bytes", size));
+    response.content_range = fmt::format("bytes */{}", size);
     return response;
   }
-  const std::uint64_t last = std::min(range->last, readable.size() - 1);
+  const std::uint64_t last = std::min(range->last, size - 1);
   std::string bytes;
-  readable.read(range->first, last - range->first + 1, bytes);
+  if (range->first < from_file)
+    readable.read(range->first, std::min(last + 1, from_file) - range->first, bytes);
+  if (last >= from_file) {
+    const std::uint64_t begin = std::max(range->first, from_file) - from_file;
+    bytes +=
+        end.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(last + 1 - from_file - begin));
+  }
   response.status = 206;
   response.type = "application/octet-stream";
-  response.content_range = fmt::format("bytes {}-{}/{}", range->first, last, readable.size());
+  response.content_range = fmt::format("bytes {}-{}/{}", range->first, last, size);
   if (bytes.size() != last - range->first + 1) return words(500, "the recording became shorter meanwhile");
   response.body = std::make_shared<const std::string>(std::move(bytes));
   return response;

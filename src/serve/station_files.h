@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -16,14 +17,20 @@
 
 namespace phalanx {
 
+namespace mcap {
+class ReadableFile;
+}
+
 /// Files of the station for its pages: /recordings is the list of the recordings of a folder as JSON, /recordings/NAME a part of one
-/// (HTTP Range), /report the report of the newest fault. Only those who may operate get them, since they hold what happened to people.
+/// (HTTP Range), /recordings/NAME?until=BYTES the same of one that is being written, as it was when it had so many bytes, with an
+/// end as a finished one has, /report the report of the newest fault. Only those who may operate get them, since they hold what happened to people.
 /// A thread of its own reads the disk, so that neither a stop nor a tick waits for it on the server's thread.
 class StationFiles : public std::enable_shared_from_this<StationFiles> {
  public:
   using Respond = std::function<void(WebResponse)>;
   static constexpr std::size_t kLargestPart = 16U << 20U;  ///< of a file in one response [bytes]
   static constexpr std::size_t kMostWaiting = 64;          ///< requests
+  static constexpr std::size_t kKeptEnds = 4;              ///< of recordings that are being written
 
   /// @param folder  empty: there are none
   explicit StationFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -44,12 +51,22 @@ class StationFiles : public std::enable_shared_from_this<StationFiles> {
   };
   void work();
   [[nodiscard]] WebResponse response_to(const WebRequest& request);
-  [[nodiscard]] WebResponse part_of(const std::string& name, const std::string& range) const;
+  /// The bytes of a recording up to a place, and what follows them.
+  struct Cut {
+    std::string name;
+    std::uint64_t until = 0;  ///< as it was asked for
+    std::uint64_t place = 0;  ///< where the end begins: no chunk lies across it
+    Bytes end;
+  };
+  [[nodiscard]] WebResponse part_of(const std::string& name, const WebRequest& request);
+  [[nodiscard]] const Cut& cut_at(const std::string& name, const mcap::ReadableFile& file,
+                                  std::uint64_t until);
   [[nodiscard]] WebResponse list();
   [[nodiscard]] WebResponse whole_report();
 
   const std::filesystem::path folder_;
   std::vector<RecordingSummary> known_;  ///< the newest list; of the reading thread
+  std::deque<Cut> cuts_;                 ///< the newest first, likewise
   std::mutex mutex_;                     ///< of all members below
   std::deque<Request> requests_;
   std::filesystem::path report_;  ///< empty: no fault has been reported

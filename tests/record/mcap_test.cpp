@@ -101,6 +101,62 @@ TEST(Mcap, AFileWithoutAnEndIsRefusedWhereItEnds) {
               ThrowsMessage<McapError>(HasSubstr("does not begin as an MCAP file")));
 }
 
+/// @returns the file as it was at `until`, with an end
+std::string ended_at(const std::string& bytes, std::uint64_t until) {
+  const ReadableFile file(InMemory{bytes});
+  const Summary summary = summarise_until(file, until);
+  return bytes.substr(0, summary.begin) + std::string(view_of(end_of_file(summary, summary.begin)));
+}
+
+TEST(Mcap, AFileThatIsBeingWrittenIsReadAsIfItEndedAfterAnyOfItsChunks) {
+  test::MemoryFile longer;
+  write_messages(longer, 500, 50, false);
+  std::uint64_t closed_before = 0;
+  for (int messages = 0; messages <= 500; messages += 50) {
+    SCOPED_TRACE(messages);
+    test::MemoryFile open;
+    write_messages(open, messages, 50, false);
+    const std::uint64_t closed = open.content.size();
+    test::MemoryFile whole;
+    write_messages(whole, messages, 50, true);
+    EXPECT_EQ(ended_at(longer.content, closed), whole.content);
+    for (std::uint64_t until = closed_before + 1; until < closed && messages > 0; ++until) {
+      const std::string ended = ended_at(longer.content, until);
+      const std::vector<int> numbers = numbers_in(ended);
+      ASSERT_TRUE(numbers == up_to(messages - 50) || numbers == up_to(messages)) << until;
+    }
+    closed_before = closed;
+  }
+}
+
+TEST(Mcap, WhatIsAskedOfAFileThatIsBeingWrittenIsRefusedWhereItCannotBe) {
+  test::MemoryFile file;
+  write_messages(file, 100, 50, false);
+  const auto refused = [](const std::string& bytes, std::uint64_t until, const char* why) {
+    const ReadableFile readable(InMemory{bytes});
+    EXPECT_THAT([&] { static_cast<void>(summarise_until(readable, until)); },
+                ThrowsMessage<McapError>(HasSubstr(why)));
+  };
+  const std::uint64_t size = file.content.size();
+  refused("a text", 6, "does not begin as an MCAP file");
+  refused(file.content, size + 1, "were asked for");
+  test::MemoryFile whole;
+  write_messages(whole, 100, 50, true);
+  refused(whole.content, whole.content.size(), "before byte");
+  constexpr std::uint64_t kSeed = 20261128;  // of bytes that are damaged
+  std::mt19937_64 random(kSeed);
+  for (int i = 0; i < 2000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", case " + std::to_string(i));
+    std::string damaged = file.content;
+    damaged[8 + random() % (size - 8)] = static_cast<char>(random());
+    try {
+      const std::string ended = ended_at(damaged, size);
+      EXPECT_TRUE(has_end(ReadableFile(InMemory{ended})));
+    } catch (const McapError&) {  // a refusal in words
+    }
+  }
+}
+
 TEST(Mcap, AChunkWithAFlippedBitIsRefused) {
   test::MemoryFile file;
   write_messages(file, 100, 50, true);

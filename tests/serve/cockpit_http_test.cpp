@@ -80,6 +80,45 @@ TEST_F(CockpitHttp, TheReportOfTheNewestFaultIsReadByWhoMayOperate) {
   EXPECT_NE(asked_as("operators-own-token"), 403);
 }
 
+TEST_F(CockpitHttp, ARecordingThatIsBeingWrittenIsReadAsItWas) {
+  std::filesystem::create_directory(folder_ / "recordings");
+  const std::filesystem::path file = folder_ / "recordings/2026-11-28T10-00-00Z.mcap";
+  mcap::DiskFile disk(file);
+  mcap::McapWriter writer(disk, recording_schemas(), recording_channels(), {{"phalanx", {{"version", "9"}}}});
+  const auto write = [&](std::uint64_t second) {
+    writer.add(static_cast<std::uint16_t>(Topic::kEvent), second * 1'000'000'000, "");
+    writer.write_chunk();
+  };
+  write(5);
+  write(6);
+  const std::uint64_t until = writer.size();
+  write(7);
+  const auto part = [&](const std::string& query, const std::string& range) {
+    return ask(port(),
+               get("/recordings/2026-11-28T10-00-00Z.mcap?" + query, "Range: bytes=" + range + "\r\n"));
+  };
+  const std::string query = "until=" + std::to_string(until);
+  const std::string bytes = body_of(part(query, "0-9999999"));
+  const mcap::ReadableFile read(mcap::InMemory{bytes});
+  EXPECT_EQ(field_of(part(query, "0-9"), "Content-Range"), "bytes 0-9/" + std::to_string(bytes.size()));
+  ASSERT_TRUE(mcap::has_end(read));
+  EXPECT_EQ(mcap::read_summary(read).chunks.size(), 2U);
+  mcap::McapReader reader(read);
+  mcap::Message message;
+  std::uint64_t last = 0;
+  while (reader.next(message)) last = message.time;
+  EXPECT_EQ(last, 6'000'000'000U);
+  for (const std::uint64_t from : {until - 5, until, until + 5}) {  // over the place where the end begins
+    const std::string range = std::to_string(from) + "-" + std::to_string(from + 9);
+    EXPECT_EQ(body_of(part(query, range)), bytes.substr(from, 10)) << range;
+  }
+  EXPECT_EQ(status_of(part(query, "9999999-10000000")), 416);
+  EXPECT_EQ(status_of(part("until=", "0-9")), 400);
+  EXPECT_EQ(status_of(part("until=-1", "0-9")), 400);
+  EXPECT_EQ(status_of(part("since=3", "0-9")), 400);
+  EXPECT_EQ(status_of(part("until=9999999", "0-9")), 409);
+}
+
 TEST_F(CockpitHttp, RecordingsAreListedAndReadInPartsByWhoMayOperate) {
   std::filesystem::create_directory(folder_ / "recordings");
   const std::filesystem::path file = folder_ / "recordings/2026-11-27T14-03-11Z.mcap";

@@ -14,6 +14,7 @@ import { listenToKeys } from "./panels/keyboard";
 import { Look } from "./panels/look";
 import { lostBand } from "./panels/lost_band";
 import { openings } from "./panels/openings";
+import { pastHand } from "./panels/past_hand";
 import { dropPlace, ownObject } from "./panels/own_object";
 import { kNameKey, peoplePanel } from "./panels/people_panel";
 import { readouts } from "./panels/readouts";
@@ -95,7 +96,13 @@ const app: App = {
 let plots: PlotPanel | undefined;
 const band = lostBand(store);
 const numbers = readouts(store, openings(app));
-const frame = viewFrame(store, [band.element, faultCard(app), troubleCard(app)]);
+/// What reads recordings is brought in when it is needed.
+const past = pastHand(app, async (name) => {
+  const [{ LookBack }, { stationSource }] = await Promise.all([import("./replay/look_back"), import("./replay/source")]);
+  return new LookBack((until) => stationSource(name, undefined, until), makeShapes);
+});
+const frame = viewFrame(store, [past.element, band.element, faultCard(app), troubleCard(app)]);
+past.attach(frame);
 const look = new Look((theme) => {
   frame.setTheme(theme);
   plots?.setTheme(theme);
@@ -225,7 +232,7 @@ async function bringIn(): Promise<void> {
   await painted();
   const view = frame.load(look.theme);
   const { plotPanel } = await import("./plots/plot_panel");
-  plots = plotPanel(store, look.theme, store);
+  plots = plotPanel(store, look.theme, store, (time) => past.point(time));
   plotPlace.append(plots.element);
   await view;
   wasDead = undefined; // the view has not heard yet

@@ -131,6 +131,17 @@ const en = {
     mismatch: "This page and the station are of different versions. Reload the page; if that does not help, restart the station.",
   },
 
+  past: {
+    hint: "Paused. Point at a plot to see the hand at that moment.",
+    shown: (seconds: string) => `The hand ${seconds} s before the pause. The figures above and Stop are of now.`,
+    now: "Back to now",
+    hole: "No step of this moment is recorded yet.",
+    notRecorded: "Paused. The hand at an earlier moment cannot be shown: nothing is recorded.",
+    refused: "Paused. The hand at an earlier moment is shown to those who may operate.",
+    offline: "Paused. No connection: the hand at an earlier moment cannot be read.",
+    failed: "The recording cannot be read now. Point at another moment to try again.",
+  },
+
   gone: {
     title: "There is no station",
     noReason: "It gave no reason.",

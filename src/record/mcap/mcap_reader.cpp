@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <new>
 #include <system_error>
+#include <utility>
 
 namespace phalanx::mcap {
 namespace {
@@ -275,6 +276,84 @@ Summary read_summary(const ReadableFile& file) {
     if (op == Op::kChunkIndex) summary.chunks.push_back(parse_chunk_index(content));
     if (op == Op::kStatistics) summary.messages = parse_message_counts(content);
   }
+  return summary;
+}
+
+namespace {
+
+/// Head of a Chunk record. Its messages are not read. @param place  of the record
+ChunkEntry chunk_entry(Cursor& fields, std::uint64_t place, std::uint64_t length) {
+  ChunkEntry entry;
+  entry.place = place;
+  entry.length = kRecordHead + length;
+  entry.first = fields.u64();
+  entry.last = fields.u64();
+  entry.uncompressed = fields.u64();
+  static_cast<void>(fields.u32());  // checksum
+  entry.compression = fields.text();
+  entry.compressed = fields.u64();
+  return entry;
+}
+
+}  // namespace
+
+Summary summarise_until(const ReadableFile& file, std::uint64_t until) {
+  constexpr std::uint64_t kSeen = 128;  ///< of each record; the head of a chunk or of an index needs less
+  if (!begins_as_mcap(file)) throw McapError("it does not begin as an MCAP file");
+  if (until > file.size())
+    throw McapError(fmt::format("it has {} bytes, and {} were asked for", file.size(), until));
+  Summary summary;
+  std::map<std::uint16_t, std::uint64_t> in_last;  ///< messages of the last chunk
+  const auto end_chunk = [&] {
+    for (const auto& [channel, count] : std::exchange(in_last, {})) summary.messages[channel] += count;
+  };
+  std::uint64_t described = 0;
+  std::string seen;
+  Record record;
+  std::uint64_t place = kMagic.size();
+  bool cut_index = false;
+  while (place < until) {
+    file.read(place, kSeen, seen);
+    Cursor fields(seen);
+    const auto op = static_cast<Op>(fields.u8());
+    cut_index = op == Op::kMessageIndex;
+    if (until - place < kRecordHead) break;
+    const std::uint64_t length = fields.u64();
+    if (length > until - place - kRecordHead) break;
+    cut_index = false;
+    if (op == Op::kSchema || op == Op::kChannel || op == Op::kMetadata) {
+      described += length;
+      if (described > kMostDescription)
+        throw McapError(
+            fmt::format("schemas, channels and metadata have more than {} bytes", kMostDescription));
+      read_record(file, place, record);
+      if (op == Op::kSchema) summary.schemas.push_back(parse_schema(record.content));
+      if (op == Op::kChannel) summary.channels.push_back(parse_channel(record.content));
+      if (op == Op::kMetadata)
+        summary.metadata.push_back({.place = place,
+                                    .length = kRecordHead + length,
+                                    .name = std::string(Cursor(record.content).text())});
+    } else if (op == Op::kChunk) {
+      end_chunk();
+      summary.chunks.push_back(chunk_entry(fields, place, length));
+    } else if (op == Op::kMessageIndex) {
+      if (summary.chunks.empty()) throw McapError("an index comes before the first chunk");
+      const std::uint16_t channel = fields.u16();
+      in_last[channel] += fields.u32() / 16;  // bytes of an entry: time and offset
+      summary.chunks.back().index[channel] = place;
+      summary.chunks.back().index_length += kRecordHead + length;
+    } else if (op != Op::kHeader) {
+      throw McapError(fmt::format("its data end at byte {}, before byte {}", place, until));
+    }
+    place += kRecordHead + length;
+  }
+  if (cut_index && !summary.chunks.empty()) {
+    place = summary.chunks.back().place;
+    summary.chunks.pop_back();
+  } else {
+    end_chunk();
+  }
+  summary.begin = place;
   return summary;
 }
 

@@ -160,6 +160,14 @@ class McapReader {
 /// @throws McapError if the file has no end, or its summary's checksum is wrong
 [[nodiscard]] Summary read_summary(const ReadableFile& file);
 
+/// Collects the summary of what a file held when it had `until` bytes: of the whole chunks before that place, without the
+/// contents of their messages. With end_of_file(summary, summary.begin) in the place of the rest it is a whole file, so a
+/// recording can be read while it is written.
+/// @param until  a place where the writer had closed a chunk, such as McapWriter::size(); elsewhere the last chunk may be
+/// left out, or lack indexes
+/// @throws McapError if it does not begin as an MCAP file, has fewer bytes, or has ended before
+[[nodiscard]] Summary summarise_until(const ReadableFile& file, std::uint64_t until);
+
 /// @returns true if the file begins as an MCAP file does
 [[nodiscard]] bool begins_as_mcap(const ReadableFile& file);
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The place of the 3D view: its buttons, its keys, and the text that replaces it if it cannot be shown.
+import type { PastHand } from "../replay/look_back";
 import { followers } from "../state/channels";
 import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
 import { forceScale } from "../view3d/force_scale";
 import type { CameraPreset, HandView, Pane, ShownParts } from "../view3d/hand_view";
+import type { Shapes } from "../view3d/shapes";
 import type { ViewTrouble } from "../view3d/view";
 import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from "./dom";
 import { savedMark, savedName } from "./saved_as";
@@ -26,6 +28,7 @@ export interface ViewFrame {
   camera(preset: CameraPreset): void;
   zoom(factor: number): void;
   setCalibrating(on: boolean): void; // the hand alone, with a ghost where it is to go
+  showPast(hand: PastHand | undefined): void; // in the place of the source's; undefined: that one again
 }
 
 export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFrame {
@@ -102,6 +105,19 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
   source.on(["state"], () => (felt = followers(source.sensedJoint).map((follows) => !follows)));
   const showForces = () => view?.setForces(forceScale(source.digitLimit), felt);
 
+  let past: PastHand | undefined;
+  let shapes: Shapes | undefined; // that the view has
+  function showShapes(): void {
+    const next = past?.geometry ?? source.geometry;
+    if (!view || !next || next === shapes) return;
+    shapes = next;
+    view.setGeometry(next);
+  }
+  function showHand(): void {
+    const tick = past?.tick ?? source.tick;
+    if (tick) view?.show(tick);
+  }
+
   async function load(theme: ThemeName): Promise<void> {
     try {
       const { createHandView } = await import("../view3d/view");
@@ -120,19 +136,20 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     showForces();
     view.setCovered(key.offsetTop + key.offsetHeight);
     view.setLost(source.viewDead);
-    if (source.geometry) view.setGeometry(source.geometry);
-    if (source.tick) view.show(source.tick);
+    showShapes();
+    showHand();
     source.on(["state", "connection"], () => {
       view?.setObjectKind(source.objectKind);
       showForces();
     });
-    source.on(["geometry"], () => source.geometry && view?.setGeometry(source.geometry));
-    source.on(["tick"], () => source.tick && view?.show(source.tick));
+    source.on(["geometry"], showShapes);
+    source.on(["tick"], showHand);
   }
   const key = viewKey(source);
   new ResizeObserver(() => view?.setCovered(key.offsetTop + key.offsetHeight)).observe(key);
+  const element = el("div", { class: "view-frame" }, host, wait, labels, key, el("div", { class: "view-tools" }, cameras, menu), ...over);
   return {
-    element: el("div", { class: "view-frame" }, host, wait, labels, key, el("div", { class: "view-tools" }, cameras, menu), ...over),
+    element,
     view: () => view,
     load,
     setTheme: (theme) => view?.setTheme(theme),
@@ -141,6 +158,12 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     setCalibrating(on) {
       calibrating = on;
       view?.setParts(partsNow());
+    },
+    showPast(hand) {
+      past = hand;
+      element.classList.toggle("view-past", hand !== undefined);
+      showShapes();
+      showHand();
     },
   };
 }

@@ -62,8 +62,9 @@ export async function ask(get: Fetch, address: string, options: RequestInit): Pr
 }
 
 /// A recording of the station's list, read by HTTP ranges.
-export function stationSource(name: string, get: Fetch = (address, options) => fetch(address, options)): Source {
-  const address = `recordings/${encodeURIComponent(name)}`;
+/// @param until  as it was when it had so many bytes, for one that is being written; absent: a finished one
+export function stationSource(name: string, get: Fetch = (address, options) => fetch(address, options), until?: bigint): Source {
+  const address = `recordings/${encodeURIComponent(name)}${until === undefined ? "" : `?until=${until}`}`;
   async function part(offset: bigint, length: bigint): Promise<{ bytes: Uint8Array; size: bigint }> {
     const response = await ask(get, address, { headers: { Range: `bytes=${offset}-${offset + length - 1n}` }, cache: "no-store" });
     const size = /\/(\d+)$/.exec(response.headers.get("Content-Range") ?? "")?.[1];

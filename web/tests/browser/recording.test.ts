@@ -10,6 +10,7 @@ import { compareBag, compareScene } from "./support/other_readers";
 import { byIndexOf, decompressHandlers } from "./support/mcap";
 import { programPath } from "./support/program";
 import { stage, unseen } from "./support/stage";
+import { until } from "./support/until";
 
 const play = stage();
 
@@ -71,6 +72,43 @@ describe("the recording", () => {
     execFileSync(programPath(), ["session", "export", file!, "--format", "ros2", "--out", bag, "--quiet"]);
     await compareBag(bag, file!);
     await compareScene(file!);
+  });
+
+  it("of the running session shows the hand of an earlier moment while the plots are paused", async () => {
+    const station = await play.ownStation(["first_touch"]);
+    const page = await play.open(station.url, unseen);
+    await page.ready();
+    await page.untilTouching();
+    const atPause = page.stream.newest!.tick;
+    await page.untilState("the touch on the disk", (state) => (state.recording?.bytes ?? 0n) > 400_000n);
+    await page.untilLater(2);
+    await page.button(strings.plots.pause).click();
+    const note = page.page.locator(".past-note");
+    expect(await note.textContent()).toContain(strings.past.hint);
+    const plot = (await page.page.locator(".plot-area .u-over").first().boundingBox())!;
+    const pointAt = async (share: number) => {
+      await page.page.mouse.move(plot.x + share * plot.width, plot.y + plot.height / 2);
+      await until("the hand of that moment", async () => (await page.page.locator(".view-past").count()) === 1, () => note.textContent());
+      await until("it is drawn", async () => (await page.probe())!.tick < page.stream.newest!.tick - 200n, () => page.brief());
+      return (await page.probe())!.tick;
+    };
+    const earlier = await pointAt(0.85);
+    const later = await until("a later hand", async () => {
+      const tick = await pointAt(0.93);
+      return tick !== earlier && tick;
+    });
+    expect(Number(later - earlier) / 1000, "8 % of a plot of 10 s at 1 kHz").toBeCloseTo(0.8, 1);
+    expect(later).toBeGreaterThan(atPause);
+    expect((await page.probe())!.tick).toBe(later); // it stays while the station goes on
+    await page.page.mouse.move(1, 1);
+    await page.stopButton.click();
+    await page.untilStopped();
+    expect((await page.probe())!.tick).toBe(later);
+    await page.button(strings.past.now).click();
+    await until("the hand of now", async () => (await page.probe())!.tick > later);
+    expect(await page.page.locator(".view-past").count()).toBe(0);
+    expect(await note.isVisible()).toBe(false);
+    expect(page.errors).toEqual([]);
   });
 
   it("of a killed program is repaired, and is accepted then", async () => {
