@@ -40,10 +40,8 @@ const factor = channelsOf("factor")[0]!.index;
 
 export interface Chart {
   readonly element: HTMLElement;
-  readonly canvas: () => HTMLCanvasElement;
   readonly curves: () => readonly Curve[];
   readonly named: () => boolean; // the curves have their names at their ends
-  readonly range: () => readonly [number, number]; // of the shown values
   setChoice(choice: PlotChoice): void;
   setTheme(theme: ThemeName): void;
   draw(): void;
@@ -286,10 +284,8 @@ export function chart(
   build();
   return {
     element,
-    canvas: () => plot!.ctx.canvas,
     curves: () => curves,
     named,
-    range: () => [plot?.scales["y"]?.min ?? 0, plot?.scales["y"]?.max ?? 1],
     setChoice(next) {
       choice = next;
       build();

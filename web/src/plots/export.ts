@@ -10,11 +10,11 @@ import { savedMark, savedName } from "../panels/saved_as";
 import { pointsOf } from "./decimate";
 import { clustersOf } from "./event_clusters";
 import { figureSvg, rasterised, type Figure, type FigurePlot, type Svg } from "./figure";
-import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, type PlotChoice, type PlotKind } from "./plot_kinds";
+import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, unitOf, type PlotChoice, type PlotKind } from "./plot_kinds";
 import { polylines } from "./polylines";
 import { lengthOf, type Span } from "./span";
 import { notSent, pausesOf } from "./stretches";
-import { valueRange } from "./value_range";
+import { peaksBeyond, valueRange } from "./value_range";
 
 const kBins = 800; // of a figure: two to each of its pixels
 const kFlags = 12; // places for events side by side
@@ -74,9 +74,18 @@ function figurePlot(kind: PlotKind, shown: Shown, choice: PlotChoice, span: Span
     }
   }
   const known = low <= high;
+  const range = valueRange(kind, known ? low : null, known ? high : null);
+  const peaks = all
+    .flatMap(({ colour }, i) => {
+      const values = points.values[i]!;
+      return peaksBeyond(values, range[1]).map((at) => ({ colour, time: points.time[at]!, value: values[at]! }));
+    })
+    .filter(({ time }) => time >= span.from && time <= span.to);
   return {
     axis: axisOf(kind),
-    range: valueRange(kind, known ? low : null, known ? high : null),
+    range,
+    peaks,
+    beyond: peaks.length > 0 ? words.beyond(Math.max(...peaks.map(({ value }) => value)).toFixed(1), unitOf(kind)) : "",
     curves: all.map((curve, i) => ({ curve, lines: polylines(points, i, pauses, isForce(kind)) })),
     notSent: kind === "angle" ? [] : notSent(history, span),
   };

@@ -86,6 +86,20 @@ describe("the figure", () => {
     expect(all).toContain(strings.plots.notSent);
   });
 
+  it("marks in their colour the peaks that lie beyond its plot, and states how far they go", () => {
+    const marks = (svg: string) => [...svg.matchAll(/<polygon points="[^"]*" fill="([^"]*)"/g)].map(([, colour]) => colour);
+    const store = pressed();
+    expect(marks(svgOf(store, { ...firstChoice, subject: "segments" }))).toEqual([]);
+    for (const [i, forceRaw] of [20, 3, 34.25].entries()) {
+      const contact = [{ segment: 5, touching: true, force: 2, forceRaw, normal: [0, 0, 1] }];
+      store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: BigInt(700 + i), time: 10 + (i + 1) / 60, factor: 1, contact } } }));
+    }
+    const svg = figureSvg(figureOf(store, { ...firstChoice, subject: "segments" }, { from: 0, to: 11 })).text;
+    const own = digitColours.light[1]!.toLowerCase();
+    expect(marks(svg)).toEqual([own, own]);
+    expect(textsOf(svg)).toContain(strings.plots.beyond("34.3", "N"));
+  });
+
   it("is a document without scripts, links or styles, whatever the texts", () => {
     const svg = svgOf(pressed());
     expect(svg).not.toMatch(/<script|href|<style|style="/);
