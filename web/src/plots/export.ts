@@ -6,9 +6,10 @@ import type { Shown } from "../state/shown";
 import { verdictKinds } from "../state/verdict";
 import { strings } from "../strings";
 import { saveBlob } from "../panels/dom";
-import { savedMark, savedName } from "../panels/saved_as";
+import { savedName } from "../panels/saved_as";
 import { pointsOf } from "./decimate";
 import { clustersOf } from "./event_clusters";
+import { factsOf } from "./figure_facts";
 import { figureSvg, rasterised, type Figure, type FigurePlot, type Svg } from "./figure";
 import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, unitOf, type PlotChoice, type PlotKind } from "./plot_kinds";
 import { polylines } from "./polylines";
@@ -19,14 +20,14 @@ import { peaksBeyond, valueRange } from "./value_range";
 const kBins = 800; // of a figure: two to each of its pixels
 const kFlags = 12; // places for events side by side
 const kPngScale = 2;
-const kMoment = { dateStyle: "medium", timeStyle: "medium", hourCycle: "h23" } as const;
 const words = strings.plots;
 
 function columnsOf(shown: Shown): Column[] {
-  const { geometry, scenes } = shown;
+  const { geometry, circumstances } = shown;
   const named: Readonly<Record<string, Partial<Column>>> = {
     verdict: { text: (value) => verdictKinds[value] ?? "" },
-    scene: { text: (value) => scenes[value] ?? "" },
+    circumstances: { name: "scene", text: (value) => circumstances[value]?.scene ?? "" },
+    stiffness: { unit: strings.units.stiffness, scale: 1 / 1000 },
     angle_measured: { unit: strings.units.degree, scale: 180 / Math.PI },
     angle_shown: { unit: strings.units.degree, scale: 180 / Math.PI },
   };
@@ -41,24 +42,6 @@ export const csvOf = (shown: Shown, { from, to }: Span): string => toCsv(shown.h
 
 export function saveCsv(shown: Shown, span: Span): void {
   saveBlob(`${savedName(shown)}.csv`, new Blob([csvOf(shown, span)], { type: "text/csv" }));
-}
-
-/// What the figure states of the session, each known statement by itself.
-function factsOf(shown: Shown, span: Span): string[] {
-  const { scene, stiffness, law, stabiliser, rate, device, simulated } = shown.circumstances;
-  const facts = words.facts;
-  const begin = new Date(1000 * (span.from + shown.utcOffset));
-  const known = (value: string, say: (value: string) => string) => (value === "" ? [] : [say(value)]);
-  return [
-    savedMark(shown),
-    ...known(scene, facts.scene),
-    ...known(stiffness, (value) => facts.stiffness(value, strings.units.stiffness)),
-    ...known(law, (value) => facts.law(strings.force.laws[value] ?? value)),
-    ...known(stabiliser, (value) => facts.stabiliser(strings.calm.methods[value] ?? value)),
-    ...known(rate, (value) => facts.rate(value, strings.units.hertz)),
-    ...known(device, simulated === false ? facts.device : facts.simulated),
-    ...(Number.isNaN(begin.getTime()) ? [] : [facts.begin(begin.toLocaleString(strings.locale, kMoment))]),
-  ].filter((fact) => fact !== "");
 }
 
 function figurePlot(kind: PlotKind, shown: Shown, choice: PlotChoice, span: Span): FigurePlot {

@@ -5,6 +5,7 @@ import { SafetyState, type Tick } from "../gen/phalanx/tick_pb";
 import type { Shapes } from "../view3d/shapes";
 import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
+import { CircumstanceNumbers, type Circumstances } from "./circumstances";
 import { Delivery } from "./delivery";
 import { Freshness } from "./freshness";
 import { happenedOf, type Happened } from "./happened";
@@ -12,8 +13,7 @@ import { capacityFor, History } from "./history";
 import { isChanged, kDigitLimit, limitOf, objectKind, slides, valueOf } from "./keys";
 import { Listeners } from "./listeners";
 import { roleOf, type Role } from "./roles";
-import { SceneNumbers } from "./scene_numbers";
-import type { Circumstances, OldCurves, Pausing, Shown, Topic } from "./shown";
+import type { OldCurves, Pausing, Shown, Topic } from "./shown";
 import { same, unquote } from "./toml";
 import { VerdictLight } from "./verdict";
 
@@ -43,7 +43,8 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
   readonly windows = kWindows;
   readonly history = new History(channels.length, capacityFor(kWindows.at(-1)!));
   happened: readonly Happened[] = [];
-  private readonly sceneNumbers = new SceneNumbers();
+  private readonly numbers = new CircumstanceNumbers();
+  private inForce = NaN; // number of the circumstances; NaN: not known
   readonly freshness: Freshness;
   private readonly pending = new Map<string, Pending>();
   private readonly row = new Float64Array(channels.length);
@@ -126,21 +127,8 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     return this.welcome ? this.welcome.unixTime - this.welcome.clock : NaN;
   }
 
-  get scenes(): readonly string[] {
-    return this.sceneNumbers.names;
-  }
-
-  get circumstances(): Circumstances {
-    const value = (setting: string) => unquote(valueOf(this.state, this.welcome, setting));
-    return {
-      scene: this.state?.scene ?? "",
-      stiffness: value("force.stiffness_n_per_mm"),
-      law: value("force.law"),
-      stabiliser: value("stabiliser.method"),
-      rate: value("rate_hz"),
-      device: this.state?.deviceName ?? "",
-      simulated: this.state?.deviceSimulated,
-    };
+  get circumstances(): readonly Circumstances[] {
+    return this.numbers.all;
   }
 
   /// The history is always as long as the longest window.
@@ -156,6 +144,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
       this.pending.clear();
       this.shape = undefined; // another station counts its revisions from the beginning
       this.stateAt = -Infinity;
+      this.inForce = NaN;
     } else {
       this.freshness.listen();
     }
@@ -186,6 +175,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
       case "state":
         this.state = what.value;
         this.stateAt = this.now();
+        this.inForce = this.numbers.of(this.circumstancesOf(what.value));
         this.settle();
         this.tell("state");
         break;
@@ -204,13 +194,25 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     }
   }
 
+  private circumstancesOf(state: State): Circumstances {
+    const value = (setting: string) => unquote(valueOf(state, this.welcome, setting));
+    return {
+      scene: state.scene,
+      law: value("force.law"),
+      stabiliser: value("stabiliser.method"),
+      rate: value("rate_hz"),
+      device: state.deviceName,
+      simulated: state.deviceSimulated,
+    };
+  }
+
   private step(tick: Tick): void {
     if (!this.freshness.take(tick, this.now())) return;
     this.delivery.feed(tick, this.now() / 1000);
     this.tick = tick;
     this.light.feed(tick, this.now() / 1000);
     if (!this.paused) {
-      fillRow(tick, this.row, this.sceneNumbers.of(this.state?.scene));
+      fillRow(tick, this.row, this.inForce);
       this.history.push(tick.time, this.row);
     }
     this.tell("tick");
