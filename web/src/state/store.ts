@@ -176,6 +176,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
         this.state = what.value;
         this.stateAt = this.now();
         this.inForce = this.numbers.of(this.circumstancesOf(what.value));
+        if (what.value.stationGone || what.value.busy !== "" || what.value.wizard) this.delivery.rest();
         this.settle();
         this.tell("state");
         break;
