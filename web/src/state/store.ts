@@ -76,6 +76,11 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     return this.connected && this.lost && !this.unmeasured && !this.freshness.silent;
   }
 
+  /// The newest State of this connection's station; undefined: none has come.
+  private get present(): State | undefined {
+    return this.stateAt === -Infinity ? undefined : this.state;
+  }
+
   /// The newest State of the station; undefined: no connection, or it has been silent for too long.
   get known(): State | undefined {
     return this.connected && this.now() - this.stateAt <= kStateStaleMs ? this.state : undefined;
@@ -83,7 +88,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
 
   /// The displayed shape is not the one in force, whose shape has not arrived yet.
   get shapeMissing(): boolean {
-    const state = this.connected && this.stateAt !== -Infinity ? this.state : undefined;
+    const state = this.connected ? this.present : undefined;
     return state !== undefined && !state.stationGone && state.geometry !== this.shape;
   }
 
@@ -135,7 +140,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
   reachBack(): void {}
 
   get role(): Role {
-    return roleOf(this.connected, this.welcome, this.state);
+    return roleOf(this.connected, this.welcome, this.present);
   }
 
   setPhase(phase: Phase): void {
