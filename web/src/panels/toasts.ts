@@ -16,8 +16,9 @@ export function toasts(store: Store): HTMLElement {
   const loud = el("div", { class: "toast-list", role: "alert" });
   let seen: Notice | undefined;
 
-  /// A change that this page has made is seen in its control.
-  const isOwn = (notice: Notice) => notice.level === Notice_Level.CHANGE && new RegExp(`^page ${store.welcome?.page ?? -1}\\b`).test(notice.who);
+  /// A change that this page has made is seen in its control, and a refusal stands beside it.
+  const isOwn = ({ level, code, who }: Notice) =>
+    (level === Notice_Level.CHANGE || code === "refused") && new RegExp(`^page ${store.welcome?.page ?? -1}\\b`).test(who);
 
   function show(notice: Notice): void {
     const fault = notice.level === Notice_Level.FAULT;
