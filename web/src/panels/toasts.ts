@@ -5,7 +5,7 @@ import type { Store } from "../state/store";
 import { strings } from "../strings";
 import { clockTime } from "./clock";
 import { button, el } from "./dom";
-import { plainWords } from "./plain_words";
+import { eventWords, whoText } from "./plain_words";
 
 const kShownMs = 6000;
 const kAtOnce = 3;
@@ -22,11 +22,11 @@ export function toasts(store: Store): HTMLElement {
 
   function show(notice: Notice): void {
     const fault = notice.level === Notice_Level.FAULT;
-    const when = el("small", {}, `${clockTime(notice.unixTime)} ${notice.who || strings.people.station}`);
+    const when = el("small", {}, `${clockTime(notice.unixTime)} ${whoText(notice.who, store.welcome?.page)}`);
     const toast = el(
       "div",
       { class: "toast", "data-level": Notice_Level[notice.level]?.toLowerCase() },
-      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, plainWords(notice.text))),
+      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, eventWords(notice.code, notice.text))),
     );
     toast.append(button(strings.notice.dismiss, () => toast.remove(), { class: "quiet" }));
     const list = fault ? loud : quiet;

@@ -18,8 +18,11 @@ describe("allowedText", () => {
   });
 
   it("lists choices, and names the type where any value is allowed", () => {
-    expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_CHOICE, choice: ["hooke", "duffing"] }))).toBe("range hooke, duffing");
-    expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_FLAG }))).toBe("range true, false");
+    const { laws } = strings.force;
+    const law = create(KeyInfoSchema, { path: "force.law", type: KeyType.KEY_CHOICE, choice: ["hooke", "duffing"], defaultValue: '"hooke"' });
+    expect(allowedText(law)).toBe(strings.settings.oneOf(`${laws["hooke"]}, ${laws["duffing"]}`));
+    expect(factsText(law, "")).toContain(strings.settings.default(laws["hooke"]!));
+    expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_FLAG }))).toBe(strings.settings.oneOf("on, off"));
     expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_FILE }))).toBe("file");
     const unbounded = { min: -Infinity, max: Infinity };
     expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_VECTOR, range: unbounded }))).toBe("vector");

@@ -35,7 +35,7 @@ describe("toasts", () => {
     expect(shown()).toEqual(["by page 3"]);
     by("page 21 (127.0.0.1)");
     by("page 2", Notice_Level.WARNING);
-    expect(shown()).toEqual(["by page 2", "by page 21 (127.0.0.1)", "by page 3"]);
+    expect(shown()).toEqual(["by page 2", "by page 21", "by page 3"]);
   });
 
   it("leaves a fault of the station to its card", () => {
