@@ -24,7 +24,7 @@ function showFacts(list: HTMLElement, facts: readonly Fact[]): void {
 }
 
 function deviceFacts(state: State): readonly Fact[] {
-  const name = state.deviceSimulated ? `${state.deviceName} (${words.simulated})` : state.deviceName;
+  const name = state.deviceSimulated ? words.simulated(state.deviceName) : state.deviceName;
   return [
     [words.name, name],
     [words.serial, state.deviceSerial],

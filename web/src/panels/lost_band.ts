@@ -56,7 +56,7 @@ export function lostBand(store: Store): LostBand {
       setText(why, whySilent(store.state));
     } else {
       setText(title, fresh.ever ? words.closed : words.connecting);
-      setText(since, fresh.ever ? `${age}, ${words.retry}` : "");
+      setText(since, fresh.ever ? words.retry(age) : "");
       setText(why, fresh.ever ? words.device : "");
     }
     setShown(why, why.textContent !== "");

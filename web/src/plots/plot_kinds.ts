@@ -88,7 +88,7 @@ function partCurve(channel: Channel, theme: ThemeName): Curve {
     colour: mixed(colour, themes[theme].text, kShades[rank] ?? 0),
     width: input ? kThin : kThick,
     dash: partDash[rank] ?? [],
-    label: words.curve(strings.digits[channel.digit] ?? "", part.toLowerCase(), suffix),
+    label: words.curve(strings.digits[channel.digit] ?? "", part, suffix),
     short: input ? "" : part,
     scale: channel.quantity.startsWith("angle") ? 180 / Math.PI : 1,
   };
