@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The open pages, the operator, and the list of changes.
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
+import { mayTake } from "../state/roles";
 import { strings } from "../strings";
 import { lasting } from "../wire/memory";
 import { refusal, type App } from "./app";
@@ -67,7 +68,7 @@ export function peoplePanel(app: App): HTMLElement {
     }
     setText(looking, strings.people.looking(state?.pages ?? 0));
     setShown(release, role === "mine");
-    setShown(take, role === "other" || role === "nobody");
+    setShown(take, mayTake(role));
     const links = welcome?.viewerUrl ?? [];
     setShown(urlBox, links.length > 0);
     if (urls.dataset["shown"] !== links.join()) {

@@ -2,13 +2,12 @@
 // The curves of a session: their numbers in the history, names and units.
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { strings } from "../strings";
-import { kSegments } from "../view3d/segments";
+import { kPalm, kSegments, kSegmentsPerDigit } from "../view3d/segments";
 import { verdictKinds, verdictOf } from "./verdict";
 
 export const kDigits = 5;
 export const kJoints = 20;
 export const kJointsPerDigit = 4;
-export const kSegmentsPerDigit = 3;
 
 /// factor: of the station on the torques, 0 where nothing is sent. verdict: number in verdictKinds. circumstances: number in Shown's.
 export type Quantity =
@@ -32,8 +31,7 @@ export interface Channel {
   readonly unit: string; // empty: none
 }
 
-export const digitOfSegment = (segment: number) =>
-  segment === kSegments - 1 ? -1 : Math.floor(segment / kSegmentsPerDigit);
+export const digitOfSegment = (segment: number) => (segment === kPalm ? -1 : Math.floor(segment / kSegmentsPerDigit));
 export const digitOfJoint = (joint: number) => Math.floor(joint / kJointsPerDigit);
 
 function list(): Channel[] {

@@ -3,6 +3,7 @@
 import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
 import type { WebGLRenderer } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
+import { digitForces } from "../state/channels";
 import { strings } from "../strings";
 import { digitColours, themes } from "../theme";
 import type { ThemeName } from "../theme";
@@ -51,6 +52,7 @@ export class HandScene {
   private left = false;
   private contacts: readonly Mark[] = [];
   private points: readonly PointMark[] = [];
+  private forces: readonly number[] = []; // of each digit [N]
   private covered = new Box3(); // by the shadow
   private reached = new Box3(); // by the hand so far
   private readonly focus = new ContactFocus();
@@ -92,6 +94,7 @@ export class HandScene {
     if (this.whole) {
       this.contacts = marksOf(tick);
       this.points = pointsOf(tick);
+      this.forces = digitForces(tick);
       this.coverHand();
       this.motion.add(this.hands.corners(), now);
     }
@@ -130,12 +133,11 @@ export class HandScene {
   /// Figures at the arrows' tips: each segment's force, and the words of a digit at its limit at the strongest of its arrows.
   labels(): ForceLabel[] {
     if (!this.marks.solid.visible) return [];
-    const forces = digitSums(this.contacts);
     return this.contacts.filter(({ force }) => force >= kLeastFigure).map((mark) => {
       const digit = Math.floor(mark.segment / kSegmentsPerDigit);
       const strongest = this.contacts.every(({ segment, force }) => Math.floor(segment / kSegmentsPerDigit) !== digit || force <= mark.force);
       const felt = this.marks.isFelt(mark.segment);
-      const atLimit = mark.segment !== kPalm && felt && strongest && isAtLimit(this.scale, forces[digit] ?? 0);
+      const atLimit = mark.segment !== kPalm && felt && strongest && isAtLimit(this.scale, this.forces[digit] ?? 0);
       const figure = `${mark.force.toFixed(1)} ${strings.units.newton}`;
       return { text: atLimit ? strings.atLimitOf(figure) : figure, tip: this.marks.tipOf(mark), felt };
     });
@@ -257,16 +259,6 @@ export class HandScene {
     this.surfaces?.smooth.dispose();
     this.object = this.surfaces = null;
   }
-}
-
-/// Length of the sum of the forces on each digit [N].
-function digitSums(marks: readonly Mark[]): number[] {
-  const sums: Vector3[] = [];
-  for (const { segment, force, normal } of marks) {
-    const sum = (sums[Math.floor(segment / kSegmentsPerDigit)] ??= new Vector3());
-    sum.addScaledVector(new Vector3(...normal), force);
-  }
-  return Array.from(sums, (sum) => sum?.length() ?? 0);
 }
 
 function cornersOf(box: Box3 | null): Vector3[] {
