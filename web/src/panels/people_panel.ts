@@ -5,7 +5,7 @@ import { mayTake } from "../state/roles";
 import { strings } from "../strings";
 import { lasting } from "../wire/memory";
 import { refusal, type App } from "./app";
-import { clockTime } from "./clock";
+import { clockTime } from "./as_text";
 import { button, el, section, setShown, setText } from "./dom";
 import { eventWords, whoText } from "./plain_words";
 import { operatorName } from "./role_strip";

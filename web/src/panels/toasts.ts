@@ -3,7 +3,7 @@
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
 import { strings } from "../strings";
-import { clockTime } from "./clock";
+import { clockTime } from "./as_text";
 import { button, el } from "./dom";
 import { eventWords, whoText } from "./plain_words";
 

@@ -9,11 +9,10 @@ import { forceScale } from "../view3d/force_scale";
 import type { CameraPreset, HandView, Pane, ShownParts } from "../view3d/hand_view";
 import type { Shapes } from "../view3d/shapes";
 import type { ViewTrouble } from "../view3d/view";
-import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from "./dom";
-import { savedMark, savedName } from "./saved_as";
-import { skinToneChoice } from "./skin_tone_choice";
+import { button, el, setShown, setSwitch, setText, switchButton } from "./dom";
+import { savedMark, savedName, saveFile } from "./saving";
+import { skinToneChoice, viewCountChoice } from "./view_choices";
 import { viewKey } from "./view_key";
-import { viewCountChoice } from "./view_count_choice";
 
 export const kZoomStep = 1.15;
 const kOrbitStep = 0.08; // [rad] for a key
@@ -130,8 +129,8 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
     if (wait.textContent === words.loading) setShown(wait, false);
     view.setTheme(theme);
     view.setParts(partsNow());
-    view.setSkinTone(tones.tone);
-    view.setViews(views.count);
+    view.setSkinTone(tones.value);
+    view.setViews(views.value);
     view.setObjectKind(source.objectKind);
     showForces();
     view.setCovered(key.offsetTop + key.offsetHeight);

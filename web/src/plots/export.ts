@@ -5,15 +5,14 @@ import { toCsv, type Column } from "../state/csv";
 import type { Shown } from "../state/shown";
 import { verdictKinds } from "../state/verdict";
 import { strings } from "../strings";
-import { saveBlob } from "../panels/dom";
-import { savedName } from "../panels/saved_as";
+import { saveBlob, savedName } from "../panels/saving";
 import { pointsOf } from "./decimate";
 import { clustersOf } from "./event_clusters";
 import { factsOf } from "./figure_facts";
 import { figureSvg, rasterised, type Figure, type FigurePlot, type Svg } from "./figure";
 import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, unitOf, type PlotChoice, type PlotKind } from "./plot_kinds";
 import { polylines } from "./polylines";
-import { lengthOf, type Span } from "./span";
+import { lengthOf, type Span } from "./time_view";
 import { notSent, pausesOf } from "./stretches";
 import { peaksBeyond, valueRange } from "./value_range";
 

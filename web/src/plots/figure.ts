@@ -2,11 +2,10 @@
 // A figure for print as SVG: curves as vectors, text as text, light background. It can be read in a paper's column.
 import { themes } from "../theme";
 import type { Cluster } from "./event_clusters";
-import { labelPlaces } from "./label_places";
 import type { Curve } from "./plot_kinds";
 import type { Point } from "./polylines";
-import type { Span } from "./span";
-import { decimalsOf, multiples, niceStep } from "./ticks";
+import type { Span } from "./time_view";
+import { decimalsOf, labelPlaces, multiples, niceStep } from "./ticks";
 
 export interface FigurePlot {
   readonly axis: string; // "Force [N]"

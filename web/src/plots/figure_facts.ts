@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a figure states of the steps that it shows, each statement by itself.
-import { savedMark } from "../panels/saved_as";
+import { savedMark } from "../panels/saving";
 import { channelsOf } from "../state/channels";
 import type { Circumstances } from "../state/circumstances";
 import type { Shown } from "../state/shown";
 import { strings } from "../strings";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 
 const kMoment = { dateStyle: "medium", timeStyle: "medium", hourCycle: "h23" } as const;
 const kDigits = 4; // of a stiffness: a history has single precision

@@ -22,8 +22,7 @@ import {
   type PlotSubject,
 } from "./plot_kinds";
 import { selectionTable } from "./selection_table";
-import type { Span } from "./span";
-import { TimeView } from "./time_view";
+import { TimeView, type Span } from "./time_view";
 
 const kChosen = "phalanx.plots";
 const words = strings.plots;

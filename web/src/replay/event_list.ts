@@ -5,7 +5,7 @@ import { eventWords, whoText } from "../panels/plain_words";
 import { eventLabel, markKind, type MarkKind } from "../state/happened";
 import { strings } from "../strings";
 import type { Overview } from "./overview";
-import { durationText } from "./times";
+import { durationText } from "../panels/as_text";
 
 const words = strings.replay;
 const kMostShown = 1000; // of the list; a longer one would hold up the page

@@ -6,7 +6,7 @@ import type { ThemeName } from "../theme";
 import { happeningText, type Happening } from "./event_list";
 import type { Overview } from "./overview";
 import { drawStrip } from "./strip";
-import { durationText } from "./times";
+import { durationText } from "../panels/as_text";
 
 const words = strings.replay;
 const kArrowStep = 1; // [s] for ArrowUp and ArrowDown; the page's keys do the others

@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeAll, beforeEach, describe, expect, it, vi } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import * as dom from "../../../src/panels/dom";
+import * as saving from "../../../src/panels/saving";
 import { firstChoice, titleOf, unitOf, type PlotKind } from "../../../src/plots/plot_kinds";
 import { plotPanel, type PlotPanel } from "../../../src/plots/plot_panel";
 import { csvOf } from "../../../src/plots/export";
@@ -81,7 +81,7 @@ describe("the plots", () => {
   });
 
   it("are saved as CSV by their button", async () => {
-    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    const save = vi.spyOn(saving, "saveBlob").mockImplementation(() => {});
     tick(1);
     press(words.csvLong);
     const [name, blob] = save.mock.calls[0]!;
@@ -90,7 +90,7 @@ describe("the plots", () => {
   });
 
   it("are saved as a figure; those of a recording under the recorded moment", async () => {
-    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    const save = vi.spyOn(saving, "saveBlob").mockImplementation(() => {});
     tick(1);
     press(words.svgLong);
     Object.defineProperty(store, "recordedAt", { value: new Date(2026, 10, 27, 14, 3, 5).getTime() / 1000 });
