@@ -133,7 +133,7 @@ document.getElementById("page")?.append(
     { class: "content" },
     header(app, look),
     el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
-    el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels.element),
+    el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels),
   ),
   calibration.element,
   dialogs,

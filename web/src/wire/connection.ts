@@ -68,10 +68,6 @@ export class Connection {
 
   constructor(private readonly parts: ConnectionParts) {}
 
-  get phase(): Phase {
-    return this.state;
-  }
-
   start(): void {
     if (this.socket || this.state === "mismatch" || this.state === "replaced") return;
     clearTimeout(this.retry);
