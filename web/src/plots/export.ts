@@ -92,8 +92,10 @@ export function saveSvg(shown: Shown, choice: PlotChoice, span: Span): void {
   saveBlob(`${savedName(shown)}.svg`, new Blob([svgOf(shown, choice, span).text], { type: "image/svg+xml" }));
 }
 
+/// @throws if the browser cannot draw the figure
 export async function savePng(shown: Shown, choice: PlotChoice, span: Span): Promise<void> {
   const name = savedName(shown);
   const blob = await rasterised(svgOf(shown, choice, span), kPngScale);
-  if (blob) saveBlob(`${name}.png`, blob);
+  if (!blob) throw new Error("the figure has no picture");
+  saveBlob(`${name}.png`, blob);
 }

@@ -156,6 +156,18 @@ describe("Connection", () => {
     expect(seen()).toEqual([[0, 1]]);
   });
 
+  it("drops a frame that is no message, and reports it", () => {
+    const report = vi.spyOn(console, "error").mockImplementation(() => {});
+    connect();
+    newest().welcome();
+    const count = messages.length;
+    newest().onmessage?.({ data: Uint8Array.of(255, 255, 255).buffer });
+    expect([report.mock.calls.length, messages.length]).toEqual([1, count]);
+    newest().say({ case: "tick", value: create(TickSchema) });
+    expect(messages.length).toBe(count + 1);
+    report.mockRestore();
+  });
+
   it("gives up a line that is silent, also before the welcome", () => {
     connect();
     vi.advanceTimersByTime(kSilenceMs);
