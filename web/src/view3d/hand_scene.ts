@@ -26,6 +26,7 @@ import type { Shapes } from "./shapes";
 import { kUsualTone, skinTones, type SkinToneName } from "./skin_tones";
 import { Surroundings } from "./surroundings";
 import { Table } from "./table";
+import type { Underside } from "./underside";
 
 const kLeastFigure = 0.05; // [N] a smaller force has none
 const kTouchRadius = 0.011; // of the colour on the object around a contact [m]
@@ -41,7 +42,7 @@ export class HandScene {
   private readonly background = new Color();
   private readonly objectMaterial = new ObjectMaterial();
   private object: Mesh<BufferGeometry, ObjectMaterial> | null = null;
-  private surfaces: { touched: BufferGeometry; smooth: BufferGeometry } | null = null; // of the object
+  private surfaces: { touched: BufferGeometry; smooth: BufferGeometry; underside: Underside | null } | null = null; // of the object
   private smooth = true;
   private tone: SkinToneName = kUsualTone;
   private scale = forceScale(Infinity);
@@ -72,7 +73,7 @@ export class HandScene {
     this.dropObject();
     const touched = objectShape(shapes.object);
     if (touched) {
-      this.surfaces = { touched, smooth: objectShape(shapes.objectDisplay) ?? touched };
+      this.surfaces = { touched, smooth: objectShape(shapes.objectDisplay) ?? touched, underside: shapes.underside };
       this.object = new Mesh(this.smooth ? this.surfaces.smooth : touched, this.objectMaterial);
       this.object.castShadow = this.object.receiveShadow = true;
       this.scene.add(this.object);
@@ -82,7 +83,7 @@ export class HandScene {
     this.reached.makeEmpty();
     this.focus.forget();
     this.motion.forget();
-    this.table.standUnder(touched, this.reached);
+    this.standTable();
     this.contacts = [];
     this.points = [];
     this.paint();
@@ -240,13 +241,17 @@ export class HandScene {
     if (!this.reached.containsBox(hand)) {
       this.reached.union(hand.clone().expandByScalar(0.01));
       const foot = object?.boundingBox?.min.z ?? Infinity;
-      if (this.reached.min.z < Math.min(foot, this.table.height) || !object) this.table.standUnder(object, this.reached);
+      if (this.reached.min.z < Math.min(foot, this.table.height) || !object) this.standTable();
     }
     this.table.castHand(this.hands.capsules(kSegments));
     if (this.covered.isEmpty() && object) this.covered.copy(object.boundingBox!);
     if (this.covered.containsBox(hand)) return;
     this.covered.union(hand).expandByScalar(0.01);
     this.lights.cover(this.covered);
+  }
+
+  private standTable(): void {
+    this.table.standUnder(this.surfaces?.touched.boundingBox ?? null, this.surfaces?.underside ?? null, this.reached);
   }
 
   private pressing(marks: readonly Mark[]): (Press & Touch)[] {
