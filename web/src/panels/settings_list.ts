@@ -89,9 +89,10 @@ function entry(app: App, key: KeyInfo): Entry {
   const setting = settingOf(key.path);
   const id = newId("key");
   let touched = false;
+  let pending = false; // a request is
   const touch = () => {
     touched = true;
-    set.disabled = false;
+    set.disabled = pending;
   };
   const field = valueField(key, id, touch, () => !set.disabled && set.click());
   const error = el("p", { class: "refused", role: "alert", hidden: true });
@@ -100,10 +101,13 @@ function entry(app: App, key: KeyInfo): Entry {
   const facts = el("p", { class: "hint" });
 
   async function send(value: string): Promise<void> {
-    touched = false;
+    const sent = field.value;
+    pending = true;
     setText(error, "");
-    set.disabled = true;
+    update();
     const refused = await change(app, [[setting, value]]);
+    pending = false;
+    if (refused === "" && field.value === sent) touched = false; // else what was typed stays
     setText(error, refused);
     setShown(error, refused !== "");
     update();
@@ -111,7 +115,7 @@ function entry(app: App, key: KeyInfo): Entry {
   function update(): void {
     setText(facts, factsText(key, objectKind(app.store.state, app.store.welcome)));
     if (!touched) field.value = unquote(app.store.value(setting));
-    set.disabled = !touched;
+    set.disabled = !touched || pending;
     const differs = app.store.changed(setting);
     setShown(reset, differs);
     element.classList.toggle("differs", differs);
