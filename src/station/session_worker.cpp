@@ -408,7 +408,7 @@ void SessionWorker::drop_range() {
   StationPlan next = plan_;
   next.range.clear();
   StationBuild build = built(next, file_of_plan());
-  state_.hold();
+  state_.stop();
   switch_to(std::move(build));
 }
 
@@ -422,7 +422,7 @@ void SessionWorker::leave_wizard() {
     info.range_wizard = nullptr;
   });
   wizard_.end();
-  state_.hold();
+  state_.stop();
   try {
     switch_to(built(plan_, SceneFile(plan_.scene)));
   } catch (const std::exception& error) {

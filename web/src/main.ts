@@ -13,6 +13,7 @@ import { header, keysDialog } from "./panels/header";
 import { listenToKeys } from "./panels/keyboard";
 import { Look } from "./panels/look";
 import { lostBand } from "./panels/lost_band";
+import { notLoaded } from "./panels/not_loaded";
 import { openings } from "./panels/openings";
 import { pastHand } from "./panels/past_hand";
 import { dropPlace, ownObject } from "./panels/own_object";
@@ -136,7 +137,7 @@ document.getElementById("page")?.append(
     { class: "content" },
     header(app, look),
     el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
-    el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels.element),
+    el("aside", { class: "side", "aria-label": strings.tabs.label }, roleStrip(app), panels),
   ),
   calibration.element,
   dialogs,
@@ -235,9 +236,14 @@ function painted(): Promise<void> {
 async function bringIn(): Promise<void> {
   await painted();
   const view = frame.load(look.theme);
-  const { plotPanel } = await import("./plots/plot_panel");
-  plots = plotPanel(store, look.theme, store, (time) => past.point(time));
-  plotPlace.append(plots.element);
+  try {
+    const { plotPanel } = await import("./plots/plot_panel");
+    plots = plotPanel(store, look.theme, store, (time) => past.point(time));
+    plotPlace.append(plots.element);
+  } catch (reason) {
+    console.error(reason);
+    plotPlace.append(notLoaded(strings.plots.notLoaded));
+  }
   await view;
   wasDead = undefined; // the view has not heard yet
 }

@@ -11,7 +11,7 @@ import { replayView, type ReplayView } from "./replay/replay_view";
 import { fileSource, stationSource, type Source } from "./replay/source";
 import { startPanel } from "./replay/start_panel";
 import { fetchList } from "./replay/station_list";
-import { momentText } from "./replay/times";
+import { momentText } from "./panels/as_text";
 import { troubleText } from "./replay/trouble";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";

@@ -7,7 +7,7 @@ import { strings } from "../strings";
 import type { CalibrateRequest } from "../wire/host";
 import { refusal, type App } from "./app";
 import { button, el, newId, setAttribute, setShown, setSwitch, setText, switchButton } from "./dom";
-import { JointTable, poseName } from "./joint_table";
+import { calibrationWords, JointTable, poseName } from "./joint_table";
 import { roleStrip } from "./role_strip";
 import { guarded } from "./setting_controls";
 
@@ -39,7 +39,7 @@ export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) =
   };
   async function send(request: CalibrateRequest): Promise<boolean> {
     const answer = await app.host.calibrate(request);
-    say(refusal(answer));
+    say(calibrationWords(refusal(answer)));
     return answer.ok;
   }
   const press = (step: Step) => () => void send({ step });
@@ -189,11 +189,11 @@ export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) =
     setShown(measuringBox, live && wizard.measuring && !wizard.ofRange);
     measuring.value = wizard.measured;
     const why = app.store.state?.trouble ?? "";
-    setText(trouble, why);
+    setText(trouble, calibrationWords(why));
     setShown(trouble, why !== "");
-    showLines(problems, wizard.problem);
+    showLines(problems, wizard.problem.map(calibrationWords));
     setShown(problemBox, wizard.problem.length > 0);
-    showLines(results, wizard.result);
+    showLines(results, wizard.result.map(calibrationWords));
     setShown(resultBox, wizard.result.length > 0);
     const missing = wizard.joint.some((joint) => joint.mayEnter && joint.target === undefined);
     setText(measure, wizard.ofRange ? words.beginFinger : words.measure);

@@ -4,6 +4,7 @@ import type { Link, Loop, Recording, State } from "../gen/phalanx/cockpit_pb";
 import type { DeliveryFigures } from "../state/delivery";
 import { strings } from "../strings";
 import type { App } from "./app";
+import { sizeText } from "./as_text";
 import { el, section, setShown, setText } from "./dom";
 import { isBehind, recordingsLink } from "./recording";
 import { histogram } from "./histogram";
@@ -24,7 +25,7 @@ function showFacts(list: HTMLElement, facts: readonly Fact[]): void {
 }
 
 function deviceFacts(state: State): readonly Fact[] {
-  const name = state.deviceSimulated ? `${state.deviceName} (${words.simulated})` : state.deviceName;
+  const name = state.deviceSimulated ? words.simulated(state.deviceName) : state.deviceName;
   return [
     [words.name, name],
     [words.serial, state.deviceSerial],
@@ -53,17 +54,11 @@ function linkFacts(link: Link): readonly Fact[] {
   ];
 }
 
-function size(bytes: bigint): string {
-  const megabytes = Number(bytes) / 1e6;
-  const rounded = (value: number) => value.toLocaleString(strings.figures, { maximumFractionDigits: 1 });
-  return megabytes < 1000 ? words.megabytes(rounded(megabytes)) : words.gigabytes(rounded(megabytes / 1000));
-}
-
 function recordingFacts(recording: Recording): readonly Fact[] {
   return [
     [words.recordingFile, recording.file],
-    [words.recordingSize, size(recording.bytes)],
-    [words.recordingRoom, size(recording.freeBytes)],
+    [words.recordingSize, sizeText(Number(recording.bytes))],
+    [words.recordingRoom, sizeText(Number(recording.freeBytes))],
     [words.recordingMissing, count(recording.lostSteps), recording.lostSteps > 0n],
   ];
 }

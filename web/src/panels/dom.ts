@@ -59,26 +59,3 @@ export function section(title: string, ...children: readonly Child[]): HTMLEleme
   const id = newId("section");
   return el("section", { class: "section", "aria-labelledby": id }, el("h2", { id }, title), ...children);
 }
-
-/// Hands a file to the person.
-export function saveFile(name: string, url: string): void {
-  const link = el("a", { href: url, download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-}
-
-export function saveBlob(name: string, blob: Blob): void {
-  const url = URL.createObjectURL(blob);
-  saveFile(name, url);
-  setTimeout(() => URL.revokeObjectURL(url), 10_000);
-}
-
-/// 20261122-010359, for names of files.
-export function stamp(date = new Date()): string {
-  const two = (value: number) => String(value).padStart(2, "0");
-  return (
-    `${date.getFullYear()}${two(date.getMonth() + 1)}${two(date.getDate())}-` +
-    `${two(date.getHours())}${two(date.getMinutes())}${two(date.getSeconds())}`
-  );
-}

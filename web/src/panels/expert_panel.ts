@@ -25,12 +25,16 @@ function sceneSection(app: App): HTMLElement {
   const changes = el("span", { class: "hint" });
   const back = button(strings.scene.reset, () => void reset());
   let chosen = "";
+  let pending = false; // a request is
 
   async function go(): Promise<void> {
     made.refuse("");
-    load.disabled = true;
-    made.refuse(refusal(await app.host.loadScene(box.value)));
-    chosen = "";
+    pending = true;
+    update();
+    const refused = refusal(await app.host.loadScene(box.value));
+    pending = false;
+    made.refuse(refused);
+    if (refused === "") chosen = "";
     update();
   }
   async function reset(): Promise<void> {
@@ -44,7 +48,7 @@ function sceneSection(app: App): HTMLElement {
     const listed = known.some((one) => one.value === current) || current === "";
     box.setChoices(listed ? known : [{ value: current, text: current, title: "" }, ...known]);
     box.value = chosen || current;
-    load.disabled = chosen === "" || chosen === current;
+    load.disabled = chosen === "" || chosen === current || pending;
     const meaning = chosen ? welcome?.scene.find((one) => one.name === chosen)?.meaning : state?.sceneDescription;
     setText(description, meaning ?? "");
     const count = state?.changed.length ?? 0;

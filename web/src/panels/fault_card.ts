@@ -30,9 +30,9 @@ export function faultCard(app: App): HTMLElement {
       setShown(error, false);
       return;
     }
-    setText(name, `${words.title}: ${fault.name.replaceAll("_", " ")}`);
+    setText(name, words.title(fault.name.replaceAll("_", " ")));
     setText(meaning, fault.meaning);
-    setText(remedy, `${words.remedy}: ${fault.remedy}`);
+    setText(remedy, words.remedy(fault.remedy));
     const parts = [fault.fromDevice ? words.fromDevice : "", fault.channel >= 0 ? words.channel(fault.channel) : "", fault.report === "" ? words.reportPending : ""];
     setText(facts, parts.filter((text) => text !== "").join(" · "));
     setShown(facts, facts.textContent !== "");

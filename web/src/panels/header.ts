@@ -26,7 +26,7 @@ export function header(app: App, look: Look): HTMLElement {
     scene.title = state?.sceneDescription ?? "";
     setText(source, state && connected ? (strings.hand.sources[state.source] ?? "") : strings.dash);
     setShown(source, state !== undefined);
-    setText(who, `${strings.people.operator}: ${connected ? (role === "mine" ? strings.me : operatorName(app)) : strings.dash}`);
+    setText(who, strings.people.inControl(connected ? (role === "mine" ? strings.me : operatorName(app)) : strings.dash));
     setShown(who, state !== undefined);
     switches.update();
   };

@@ -4,6 +4,7 @@ import { KeyType, type Wizard, type Wizard_Joint as Joint } from "../gen/phalanx
 import { fromTyped, number } from "../state/toml";
 import { strings } from "../strings";
 import { el, newId, setAttribute, setShown, setText } from "./dom";
+import { plainWords } from "./plain_words";
 
 const words = strings.calibration;
 const kReachedDeg = 3; // closer than this is there
@@ -24,14 +25,34 @@ const limits = (joint: Joint) => words.span(shown(degrees(joint.limitMin)), show
 const digitsOfHost = ["thumb", "index", "middle", "ring", "little"];
 const partsOfHost: Readonly<Record<string, number>> = { mcp_flexion: 0, cmc_flexion: 0, mcp_abduction: 1, cmc_abduction: 1, pip_flexion: 2, dip_flexion: 3, ip_flexion: 3 };
 
-/// The name of a step for people: of "index_pip_flexion second" it is "Index: middle joint, second angle". Others stay as they are.
-export function poseName(name: string): string {
-  const found = /^([a-z]+)_(\w+) (\w+)$/.exec(name);
+/// Of "index_pip_flexion" it is "Index: middle joint". undefined: it is no joint.
+function jointOfHost(name: string): string | undefined {
+  const found = /^([a-z]+)_(\w+)$/.exec(name);
   const digit = digitsOfHost.indexOf(found?.[1] ?? "");
   const part = digit === 0 && found?.[2] === "mcp_flexion" ? 2 : partsOfHost[found?.[2] ?? ""];
-  const which = words.references[found?.[3] ?? ""];
-  if (digit < 0 || part === undefined || which === undefined) return name;
-  return words.poseOf(jointName(4 * digit + part), which);
+  return digit < 0 || part === undefined ? undefined : jointName(4 * digit + part);
+}
+
+/// The name of a step for people: of "index_pip_flexion second" it is "Index: middle joint, second angle". Others stay as they are.
+export function poseName(name: string): string {
+  const [joint = "", reference = ""] = name.split(" ");
+  const [of, which] = [jointOfHost(joint), words.references[reference]];
+  return of === undefined || which === undefined ? name : words.poseOf(of, which);
+}
+
+const kJointOfHost = /(?:^angle of )?\b((?:thumb|index|middle|ring|little)_(?:cmc|mcp|pip|dip|ip)_(?:flexion|abduction))(?: (first|second|third|largest|smallest))?\b/g;
+const kSensorOfDigit = /\b(curl|splay) of (thumb|index|middle|ring|little)\b/g;
+const kFit = /^(.*): -?[\d.]+e[-+]\d+ a count, offset -?[\d.]+, from (\d+) poses, at most ([\d.]+) deg off$/;
+
+/// What the station says of a calibration, with names for people, and without the numbers of its file.
+export function calibrationWords(text: string): string {
+  return plainWords(text)
+    .replace(kFit, (_, sensor: string, poses: string, off: string) => words.fitted(sensor, poses, off))
+    .replace(kJointOfHost, (_, joint: string, which?: string) => (which ? poseName(`${joint} ${which}`) : (jointOfHost(joint) ?? joint)))
+    .replace(kSensorOfDigit, (_, sensor: string, digit: string) => {
+      const name = strings.digits[digitsOfHost.indexOf(digit)] ?? "";
+      return sensor === "curl" ? words.bending(name) : words.spreading(name);
+    });
 }
 
 export class JointTable {

@@ -4,6 +4,7 @@ import type { State } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
 import { strings } from "../strings";
 import { el, setShown, setText } from "./dom";
+import { plainWords } from "./plain_words";
 import { isStuck } from "./trouble_card";
 
 export interface LostBand {
@@ -14,7 +15,7 @@ export interface LostBand {
 function whySilent(state: State | undefined): string {
   if (state?.wizard) return strings.lost.calibrating;
   if (isStuck(state)) return ""; // the card states it
-  return state?.trouble || (state?.busy ? strings.busy(state.busy) : "");
+  return plainWords(state?.trouble ?? "") || (state?.busy ? strings.busy(plainWords(state.busy)) : "");
 }
 
 export function lostBand(store: Store): LostBand {
@@ -55,7 +56,7 @@ export function lostBand(store: Store): LostBand {
       setText(why, whySilent(store.state));
     } else {
       setText(title, fresh.ever ? words.closed : words.connecting);
-      setText(since, fresh.ever ? `${age}, ${words.retry}` : "");
+      setText(since, fresh.ever ? words.retry(age) : "");
       setText(why, fresh.ever ? words.device : "");
     }
     setShown(why, why.textContent !== "");

@@ -34,6 +34,7 @@ export function objectSection(app: App, own: () => void): HTMLElement {
   const use = button(words.use, () => void apply(), { class: "primary" });
   let chosen = ""; // by the person and not yet used; empty: what is in force
   let built = "";
+  let pending = false; // a request is
 
   const current = () => objectKind(app.store.state, app.store.welcome);
   const fields = new Map<string, HTMLInputElement>();
@@ -78,7 +79,7 @@ export function objectSection(app: App, own: () => void): HTMLElement {
     setShown(file, current() === "file" && shown === "file");
     setText(file, unquote(app.store.value("objects.0.file")).split("/").pop() ?? "");
     setShown(use, shown !== "file");
-    use.disabled = chosen === "";
+    use.disabled = chosen === "" || pending;
   }
 
   async function apply(): Promise<void> {
@@ -90,11 +91,12 @@ export function objectSection(app: App, own: () => void): HTMLElement {
       if (text.trim() !== "") entries.push([nameOf(key), fromTyped(text, key.type)]);
     }
     kindRow.refuse("");
-    use.disabled = true;
+    pending = true;
+    update();
     const refused = await change(app, [...replaceObject(app.store.state, entries), ...graspOfNextObject(app)]);
+    pending = false;
     kindRow.refuse(refused);
-    chosen = "";
-    built = "";
+    if (refused === "") chosen = built = ""; // else what was typed stays
     update();
   }
 

@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // The open pages, the operator, the name and the language of this page, and the list of changes.
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
+import { mayTake } from "../state/roles";
 import { strings } from "../strings";
 import { lasting } from "../wire/memory";
 import { refusal, type App } from "./app";
-import { clockTime } from "./clock";
+import { clockTime } from "./as_text";
 import { button, el, section, setShown, setText } from "./dom";
 import { languageChoice } from "./language_choice";
-import { plainWords } from "./plain_words";
+import { eventWords, whoText } from "./plain_words";
 import { operatorName } from "./role_strip";
 import { row } from "./setting_controls";
 
 const words = strings.people;
 
-export function noticeItem(notice: Notice): HTMLElement {
+/// @param own  number of this page
+function noticeItem(notice: Notice, own: number | undefined): HTMLElement {
   const level = strings.notice.levels[notice.level] ?? "";
   return el(
     "li",
     { class: "notice", "data-level": Notice_Level[notice.level]?.toLowerCase() },
     el("time", {}, clockTime(notice.unixTime)),
     el("span", { class: "notice-level" }, level),
-    el("span", { class: "notice-who" }, notice.who || words.station),
-    el("span", { class: "notice-text" }, plainWords(notice.text)),
+    el("span", { class: "notice-who" }, whoText(notice.who, own)),
+    el("span", { class: "notice-text" }, eventWords(notice.code, notice.text)),
   );
 }
 
@@ -59,7 +61,7 @@ export function peoplePanel(app: App): HTMLElement {
   const update = () => {
     const { state, welcome, role } = app.store;
     const me = welcome ? strings.page(welcome.page) : strings.dash;
-    const operator = role === "mine" ? `${operatorName(app)}, ${strings.me}` : operatorName(app);
+    const operator = role === "mine" ? words.named(operatorName(app)) : operatorName(app);
     const wanted = [words.thisPage, me, words.operator, operator];
     if (facts.dataset["shown"] !== wanted.join()) {
       facts.dataset["shown"] = wanted.join();
@@ -67,7 +69,7 @@ export function peoplePanel(app: App): HTMLElement {
     }
     setText(looking, strings.people.looking(state?.pages ?? 0));
     setShown(release, role === "mine");
-    setShown(take, role === "other" || role === "nobody");
+    setShown(take, mayTake(role));
     const links = welcome?.viewerUrl ?? [];
     setShown(urlBox, links.length > 0);
     if (urls.dataset["shown"] !== links.join()) {
@@ -76,7 +78,8 @@ export function peoplePanel(app: App): HTMLElement {
     }
   };
   const notices = () => {
-    log.replaceChildren(...[...app.store.notices].reverse().map(noticeItem));
+    const own = app.store.welcome?.page;
+    log.replaceChildren(...[...app.store.notices].reverse().map((notice) => noticeItem(notice, own)));
     setShown(empty, app.store.notices.length === 0);
   };
   const looking = el("p", { class: "hint" });

@@ -4,13 +4,13 @@ import { mayTake } from "../state/roles";
 import { strings } from "../strings";
 import type { App } from "./app";
 import { button, el, setAttribute, setShown, setText } from "./dom";
+import { pageName, plainWords } from "./plain_words";
 
 /// Name of the operator, as text.
 export function operatorName(app: App): string {
   const state = app.store.state;
   if (!state || state.operatorPage === 0) return strings.nobody;
-  const page = strings.page(state.operatorPage);
-  return state.operatorName ? `${state.operatorName} (${page})` : page;
+  return pageName(state.operatorPage, state.operatorName);
 }
 
 export function roleText(app: App): string {
@@ -30,7 +30,7 @@ export function roleStrip(app: App): HTMLElement {
     setShown(why, role !== "mine");
     setShown(take, mayTake(role));
     const working = app.store.connected ? (app.store.state?.busy ?? "") : "";
-    setText(busy, working === "" ? "" : strings.busy(working));
+    setText(busy, working === "" ? "" : strings.busy(plainWords(working)));
     setShown(busy, working !== "");
     setAttribute(element, "data-role", role);
   };

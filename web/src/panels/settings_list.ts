@@ -8,18 +8,11 @@ import { change, type App } from "./app";
 import { ChoiceBox } from "./choice_box";
 import { button, el, newId, section, setShown, setSwitch, setText, switchButton } from "./dom";
 import { guarded } from "./setting_controls";
-import { settingLabel } from "./plain_words";
+import { settingLabel, valueLabel } from "./plain_words";
 
 const words = strings.settings;
 
-/// Words for the choices of some keys.
-const choices: Readonly<Record<string, Readonly<Record<string, string>>>> = {
-  "force.law": strings.force.laws,
-  "stabiliser.method": strings.calm.methods,
-  "grasp.type": strings.grasp.types,
-  "objects[].kind": strings.object.kinds,
-  "hand.side": { right: strings.hand.right, left: strings.hand.left },
-};
+const optionsOf = (key: KeyInfo): readonly string[] => (key.type === KeyType.KEY_FLAG ? ["true", "false"] : key.choice);
 
 interface Entry {
   readonly key: KeyInfo;
@@ -29,8 +22,8 @@ interface Entry {
 
 /// @returns the allowed values as text; the type if any value is allowed
 export function allowedText(key: KeyInfo): string {
-  if (key.type === KeyType.KEY_FLAG) return `${words.range} true, false`;
-  if (key.type === KeyType.KEY_CHOICE) return `${words.range} ${key.choice.join(", ")}`;
+  const options = optionsOf(key);
+  if (options.length > 0) return words.oneOf(options.map((value) => valueLabel(key.path, value)).join(words.join));
   const range = key.range;
   if (!range) return words.types[key.type] ?? "";
   const parts = [
@@ -39,14 +32,14 @@ export function allowedText(key: KeyInfo): string {
     range.minusInfinity ? words.orMinusInfinity : "",
     key.type === KeyType.KEY_NUMBER_OR_OFF ? words.orOff : "",
   ].filter((part) => part !== "");
-  return parts.length > 0 ? `${words.range} ${parts.join(", ")}` : (words.types[key.type] ?? "");
+  return parts.length > 0 ? words.range(parts.join(words.join)) : (words.types[key.type] ?? "");
 }
 
 /// @returns allowed values, default and requirement of a change as text
 /// @param kind  of the object, on which the default may depend
 export function factsText(key: KeyInfo, kind: string): string {
-  const fallback = unquote(defaultOf(key, kind));
-  const facts = [allowedText(key), fallback && `${words.default} ${fallback}`, words.change[key.change] ?? ""];
+  const fallback = valueLabel(key.path, unquote(defaultOf(key, kind)));
+  const facts = [allowedText(key), fallback && words.default(fallback), words.change[key.change] ?? ""];
   return facts.filter((text) => text !== "").join(" · ");
 }
 
@@ -59,11 +52,9 @@ interface ValueField {
 
 function valueField(key: KeyInfo, id: string, touched: () => void, done: () => void): ValueField {
   if (key.type === KeyType.KEY_FLAG || key.type === KeyType.KEY_CHOICE) {
-    const options = key.type === KeyType.KEY_FLAG ? ["true", "false"] : key.choice;
-    const text = (value: string) => (value === "true" ? words.on : value === "false" ? words.off : (choices[key.path]?.[value] ?? value));
     const empty = key.defaultValue === "" ? [{ value: "", text: words.notStated }] : [];
     const box = new ChoiceBox(touched);
-    box.setChoices([...empty, ...options.map((value) => ({ value, text: text(value) }))]);
+    box.setChoices([...empty, ...optionsOf(key).map((value) => ({ value, text: valueLabel(key.path, value) }))]);
     box.button.id = id;
     box.name(settingLabel(key.path));
     return {
@@ -98,9 +89,10 @@ function entry(app: App, key: KeyInfo): Entry {
   const setting = settingOf(key.path);
   const id = newId("key");
   let touched = false;
+  let pending = false; // a request is
   const touch = () => {
     touched = true;
-    set.disabled = false;
+    set.disabled = pending;
   };
   const field = valueField(key, id, touch, () => !set.disabled && set.click());
   const error = el("p", { class: "refused", role: "alert", hidden: true });
@@ -109,10 +101,13 @@ function entry(app: App, key: KeyInfo): Entry {
   const facts = el("p", { class: "hint" });
 
   async function send(value: string): Promise<void> {
-    touched = false;
+    const sent = field.value;
+    pending = true;
     setText(error, "");
-    set.disabled = true;
+    update();
     const refused = await change(app, [[setting, value]]);
+    pending = false;
+    if (refused === "" && field.value === sent) touched = false; // else what was typed stays
     setText(error, refused);
     setShown(error, refused !== "");
     update();
@@ -120,7 +115,7 @@ function entry(app: App, key: KeyInfo): Entry {
   function update(): void {
     setText(facts, factsText(key, objectKind(app.store.state, app.store.welcome)));
     if (!touched) field.value = unquote(app.store.value(setting));
-    set.disabled = !touched;
+    set.disabled = !touched || pending;
     const differs = app.store.changed(setting);
     setShown(reset, differs);
     element.classList.toggle("differs", differs);

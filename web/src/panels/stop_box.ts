@@ -6,7 +6,7 @@ import { mayChange } from "../state/roles";
 import { strings } from "../strings";
 import { StopOrder, type StopProgress } from "../wire/stop_order";
 import { refusal, type App } from "./app";
-import { clockTime } from "./clock";
+import { clockTime } from "./as_text";
 import { button, el, setAttribute, setShown, setText } from "./dom";
 import { onPress } from "./press";
 

@@ -9,12 +9,7 @@ export interface Tab {
   readonly panel: HTMLElement;
 }
 
-export interface Tabs {
-  readonly element: HTMLElement;
-  choose(name: string): void;
-}
-
-export function tabs(all: readonly Tab[]): Tabs {
+export function tabs(all: readonly Tab[]): HTMLElement {
   const buttons = all.map((tab) => {
     const id = newId("tab");
     tab.panel.id = `${id}-panel`;
@@ -45,5 +40,5 @@ export function tabs(all: readonly Tab[]): Tabs {
     });
   }
   choose(all[0]?.name ?? "");
-  return { element: el("div", { class: "tabbed" }, list, el("div", { class: "tab-panels" }, ...all.map((tab) => tab.panel))), choose };
+  return el("div", { class: "tabbed" }, list, el("div", { class: "tab-panels" }, ...all.map((tab) => tab.panel)));
 }

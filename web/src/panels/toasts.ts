@@ -3,9 +3,9 @@
 import { Notice_Level, type Notice } from "../gen/phalanx/cockpit_pb";
 import type { Store } from "../state/store";
 import { strings } from "../strings";
-import { clockTime } from "./clock";
+import { clockTime } from "./as_text";
 import { button, el } from "./dom";
-import { plainWords } from "./plain_words";
+import { eventWords, whoText } from "./plain_words";
 
 const kShownMs = 6000;
 const kAtOnce = 3;
@@ -16,16 +16,17 @@ export function toasts(store: Store): HTMLElement {
   const loud = el("div", { class: "toast-list", role: "alert" });
   let seen: Notice | undefined;
 
-  /// A change that this page has made is seen in its control.
-  const isOwn = (notice: Notice) => notice.level === Notice_Level.CHANGE && new RegExp(`^page ${store.welcome?.page ?? -1}\\b`).test(notice.who);
+  /// A change that this page has made is seen in its control, and a refusal stands beside it.
+  const isOwn = ({ level, code, who }: Notice) =>
+    (level === Notice_Level.CHANGE || code === "refused") && new RegExp(`^page ${store.welcome?.page ?? -1}\\b`).test(who);
 
   function show(notice: Notice): void {
     const fault = notice.level === Notice_Level.FAULT;
-    const when = el("small", {}, `${clockTime(notice.unixTime)} ${notice.who || strings.people.station}`);
+    const when = el("small", {}, `${clockTime(notice.unixTime)} ${whoText(notice.who, store.welcome?.page)}`);
     const toast = el(
       "div",
       { class: "toast", "data-level": Notice_Level[notice.level]?.toLowerCase() },
-      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, plainWords(notice.text))),
+      el("div", {}, el("strong", {}, strings.notice.levels[notice.level] ?? ""), when, el("p", {}, eventWords(notice.code, notice.text))),
     );
     toast.append(button(strings.notice.dismiss, () => toast.remove(), { class: "quiet" }));
     const list = fault ? loud : quiet;

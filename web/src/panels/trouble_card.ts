@@ -5,6 +5,7 @@ import { mayChange } from "../state/roles";
 import { strings } from "../strings";
 import { refusal, type App } from "./app";
 import { button, el, setShown, setText } from "./dom";
+import { plainWords } from "./plain_words";
 
 const words = strings.gone;
 const kNoFault = 0; // Reset.fault_time
@@ -30,7 +31,7 @@ export function troubleCard(app: App): HTMLElement {
     const stuck = app.store.connected && isStuck(app.store.state);
     setShown(element, stuck);
     if (!stuck) return setShown(error, false);
-    setText(why, app.store.state?.trouble || words.noReason);
+    setText(why, plainWords(app.store.state?.trouble ?? "") || words.noReason);
     again.disabled = !mayChange(app.store.role);
     setShown(hint, again.disabled);
   };

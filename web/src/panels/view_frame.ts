@@ -9,11 +9,11 @@ import { forceScale } from "../view3d/force_scale";
 import type { CameraPreset, HandView, Pane, ShownParts } from "../view3d/hand_view";
 import type { Shapes } from "../view3d/shapes";
 import type { ViewTrouble } from "../view3d/view";
-import { button, el, saveFile, setShown, setSwitch, setText, switchButton } from "./dom";
-import { savedMark, savedName } from "./saved_as";
-import { skinToneChoice } from "./skin_tone_choice";
+import { button, el, setShown, setSwitch, setText, switchButton } from "./dom";
+import { reloadButton } from "./not_loaded";
+import { savedMark, savedName, saveFile } from "./saving";
+import { skinToneChoice, viewCountChoice } from "./view_choices";
 import { viewKey } from "./view_key";
-import { viewCountChoice } from "./view_count_choice";
 
 export const kZoomStep = 1.15;
 const kOrbitStep = 0.08; // [rad] for a key
@@ -37,7 +37,16 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
   const partsNow = (): ShownParts => (calibrating ? { ...parts, ghost: true, arrows: false, object: false, cones: false } : parts);
   let parts: Record<Part, boolean> = { skin: true, ghost: true, arrows: true, object: true, cones: false };
   const host = el("div", { class: "view-host", tabindex: 0, role: "application", "aria-label": words.label });
-  const wait = el("p", { class: "view-wait" }, words.loading);
+  const said = el("p", {}, words.loading);
+  const reload = reloadButton();
+  const wait = el("div", { class: "view-wait", role: "status" }, said, reload);
+  /// @param helps  a reload may bring the view back
+  function explain(why: string, helps: boolean): void {
+    setText(said, why);
+    setShown(reload, helps);
+    setShown(wait, why !== "");
+  }
+  explain(words.loading, false);
 
   const camera = (preset: CameraPreset) => view?.camera(preset);
   const zoom = (factor: number) => view?.zoom(factor);
@@ -97,8 +106,9 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
   });
 
   function say(trouble: ViewTrouble): void {
-    setText(wait, trouble === "context-lost" ? words.contextLost : words.failed);
-    setShown(wait, trouble !== "context-restored");
+    if (trouble === "context-restored") explain("", false);
+    else if (trouble === "context-lost") explain(words.contextLost, true);
+    else explain(words.failed, false);
   }
 
   let felt: readonly boolean[] = []; // of each digit; empty: not known
@@ -124,14 +134,14 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
       view = createHandView(host, { onTrouble: say, onPanes: label });
     } catch (reason) {
       console.error(reason);
-      setText(wait, words.failed);
+      explain(words.notLoaded, true);
       return;
     }
-    if (wait.textContent === words.loading) setShown(wait, false);
+    if (said.textContent === words.loading) explain("", false);
     view.setTheme(theme);
     view.setParts(partsNow());
-    view.setSkinTone(tones.tone);
-    view.setViews(views.count);
+    view.setSkinTone(tones.value);
+    view.setViews(views.value);
     view.setObjectKind(source.objectKind);
     showForces();
     view.setCovered(key.offsetTop + key.offsetHeight);

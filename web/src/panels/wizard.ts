@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device's tab: what is calibrated, and the ways into the dialog that does it.
 import { Calibrate_Step as Step } from "../gen/phalanx/cockpit_pb";
-import { mayCalibrate } from "../state/roles";
+import { isOnWire, mayCalibrate } from "../state/roles";
 import { strings } from "../strings";
 import { refusal, type App } from "./app";
 import type { CalibrationDialog } from "./calibration_dialog";
@@ -24,7 +24,7 @@ export function wizardSection(app: App, dialog: CalibrationDialog): HTMLElement 
   const limits = el("p", { role: "status" });
   const update = () => {
     const { state, role } = app.store;
-    const onWire = state !== undefined && !state.deviceSimulated && state.source === 0;
+    const onWire = isOnWire(state);
     const calibrated = (state?.calibration ?? "") !== "";
     device.disabled = !mayCalibrate(role, state);
     range.disabled = device.disabled || !calibrated;

@@ -2,8 +2,7 @@
 // Time chosen by pointer: a drag zooms, or selects. The selection has an edge on each side, which can be dragged.
 import type uPlot from "uplot";
 import { el, setShown } from "../panels/dom";
-import { lengthOf, ordered, type Span } from "./span";
-import type { TimeView } from "./time_view";
+import { lengthOf, ordered, type Span, type TimeView } from "./time_view";
 
 const kDrag = 5; // a shorter way is a press [px]
 const kEdge = 8; // reach of the selection's edges [px]

@@ -4,9 +4,9 @@ import uPlot from "uplot";
 import { strings } from "../strings";
 import type { Theme } from "../theme";
 import type { Cluster } from "./event_clusters";
-import { labelPlaces } from "./label_places";
+import { labelPlaces } from "./ticks";
 import type { Curve } from "./plot_kinds";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 
 const kHatch = 9; // distance of the lines [px]
 const kVeil = 0.6; // how much a curve that is not sent is greyed

@@ -5,7 +5,7 @@ import { channelsOf } from "../state/channels";
 import type { Shown } from "../state/shown";
 import { strings } from "../strings";
 import { themes, type ThemeName } from "../theme";
-import { clockTime } from "../panels/clock";
+import { clockTime } from "../panels/as_text";
 import { el, setText } from "../panels/dom";
 import { bands, type Bands } from "./bands";
 import { drawEvents, drawNames, drawNotSent, namesWidth, type Sheet } from "./canvas_marks";
@@ -14,10 +14,9 @@ import { pointsOf, type Points } from "./decimate";
 import { clustersOf } from "./event_clusters";
 import { curvesOf, isForce, titleOf, unitOf, type Curve, type PlotChoice, type PlotKind } from "./plot_kinds";
 import { readings, spokenReadings, tipLines, type Found } from "./readings";
-import { lengthOf, ordered, type Span } from "./span";
 import { leftOut, notSent, pausesOf } from "./stretches";
 import { decimalsOf, multiples, timeStep } from "./ticks";
-import type { TimeView } from "./time_view";
+import { lengthOf, ordered, type Span, type TimeView } from "./time_view";
 import { valueRange } from "./value_range";
 
 const kLineEnd = 4; // how far a line reaches beyond its first point [px]
@@ -40,10 +39,8 @@ const factor = channelsOf("factor")[0]!.index;
 
 export interface Chart {
   readonly element: HTMLElement;
-  readonly canvas: () => HTMLCanvasElement;
   readonly curves: () => readonly Curve[];
   readonly named: () => boolean; // the curves have their whole names at their ends
-  readonly range: () => readonly [number, number]; // of the shown values
   setChoice(choice: PlotChoice): void;
   setTheme(theme: ThemeName): void;
   draw(): void;
@@ -290,10 +287,8 @@ export function chart(
   build();
   return {
     element,
-    canvas: () => plot!.ctx.canvas,
     curves: () => curves,
     named,
-    range: () => [plot?.scales["y"]?.min ?? 0, plot?.scales["y"]?.max ?? 1],
     setChoice(next) {
       choice = next;
       build();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curves that leave the plot at its upper edge say so there: a mark at each peak, and how high the highest goes. On the canvas, so that
-// saved pictures say it, too.
+// Curves that leave the plot at its upper edge: a mark there at each peak, and how high the highest goes. Figures have the same marks.
 import uPlot from "uplot";
 import { strings } from "../strings";
 import type { Theme } from "../theme";

@@ -3,7 +3,7 @@
 // order, so that a peak never vanishes. Bins lie at multiples of their width, so that they stand still while the curves pass.
 import type { History } from "../state/history";
 import type { Curve } from "./plot_kinds";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 
 const kSamplesPerBin = 4; // with fewer of them, all are drawn
 

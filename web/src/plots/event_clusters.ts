@@ -2,7 +2,7 @@
 // Events as flags: those that would lie over each other become one.
 import { eventLabel, markKind, type Happened, type MarkKind } from "../state/happened";
 import { strings } from "../strings";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 
 export interface Cluster {
   readonly events: readonly Happened[];

@@ -5,28 +5,28 @@ import { toCsv, type Column } from "../state/csv";
 import type { Shown } from "../state/shown";
 import { verdictKinds } from "../state/verdict";
 import { strings } from "../strings";
-import { saveBlob } from "../panels/dom";
-import { savedMark, savedName } from "../panels/saved_as";
+import { saveBlob, savedName } from "../panels/saving";
 import { pointsOf } from "./decimate";
 import { clustersOf } from "./event_clusters";
+import { factsOf } from "./figure_facts";
 import { figureSvg, rasterised, type Figure, type FigurePlot, type Svg } from "./figure";
-import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, type PlotChoice, type PlotKind } from "./plot_kinds";
+import { axisOf, columnName, curvesOf, isForce, kindsOf, titleOf, unitOf, type PlotChoice, type PlotKind } from "./plot_kinds";
 import { polylines } from "./polylines";
-import { lengthOf, type Span } from "./span";
+import { lengthOf, type Span } from "./time_view";
 import { notSent, pausesOf } from "./stretches";
-import { valueRange } from "./value_range";
+import { peaksBeyond, valueRange } from "./value_range";
 
 const kBins = 800; // of a figure: two to each of its pixels
 const kFlags = 12; // places for events side by side
 const kPngScale = 2;
-const kMoment = { dateStyle: "medium", timeStyle: "medium", hourCycle: "h23" } as const;
 const words = strings.plots;
 
 function columnsOf(shown: Shown): Column[] {
-  const { geometry, scenes } = shown;
+  const { geometry, circumstances } = shown;
   const named: Readonly<Record<string, Partial<Column>>> = {
     verdict: { text: (value) => verdictKinds[value] ?? "" },
-    scene: { text: (value) => scenes[value] ?? "" },
+    circumstances: { name: "scene", text: (value) => circumstances[value]?.scene ?? "" },
+    stiffness: { unit: strings.units.stiffness, scale: 1 / 1000 },
     angle_measured: { unit: strings.units.degree, scale: 180 / Math.PI },
     angle_shown: { unit: strings.units.degree, scale: 180 / Math.PI },
   };
@@ -43,24 +43,6 @@ export function saveCsv(shown: Shown, span: Span): void {
   saveBlob(`${savedName(shown)}.csv`, new Blob([csvOf(shown, span)], { type: "text/csv" }));
 }
 
-/// What the figure states of the session, each known statement by itself.
-function factsOf(shown: Shown, span: Span): string[] {
-  const { scene, stiffness, law, stabiliser, rate, device, simulated } = shown.circumstances;
-  const facts = words.facts;
-  const begin = new Date(1000 * (span.from + shown.utcOffset));
-  const known = (value: string, say: (value: string) => string) => (value === "" ? [] : [say(value)]);
-  return [
-    savedMark(shown),
-    ...known(scene, facts.scene),
-    ...known(stiffness, (value) => facts.stiffness(value, strings.units.stiffness)),
-    ...known(law, (value) => facts.law(strings.force.laws[value] ?? value)),
-    ...known(stabiliser, (value) => facts.stabiliser(strings.calm.methods[value] ?? value)),
-    ...known(rate, (value) => facts.rate(value, strings.units.hertz)),
-    ...known(device, simulated === false ? facts.device : facts.simulated),
-    ...(Number.isNaN(begin.getTime()) ? [] : [facts.begin(begin.toLocaleString(strings.figures, kMoment))]),
-  ].filter((fact) => fact !== "");
-}
-
 function figurePlot(kind: PlotKind, shown: Shown, choice: PlotChoice, span: Span): FigurePlot {
   const { history } = shown;
   const all = curvesOf(kind, choice, "light");
@@ -74,9 +56,18 @@ function figurePlot(kind: PlotKind, shown: Shown, choice: PlotChoice, span: Span
     }
   }
   const known = low <= high;
+  const range = valueRange(kind, known ? low : null, known ? high : null);
+  const peaks = all
+    .flatMap(({ colour }, i) => {
+      const values = points.values[i]!;
+      return peaksBeyond(values, range[1]).map((at) => ({ colour, time: points.time[at]!, value: values[at]! }));
+    })
+    .filter(({ time }) => time >= span.from && time <= span.to);
   return {
     axis: axisOf(kind),
-    range: valueRange(kind, known ? low : null, known ? high : null),
+    range,
+    peaks,
+    beyond: peaks.length > 0 ? words.beyond(Math.max(...peaks.map(({ value }) => value)).toFixed(1), unitOf(kind)) : "",
     curves: all.map((curve, i) => ({ curve, lines: polylines(points, i, pauses, isForce(kind)) })),
     notSent: kind === "angle" ? [] : notSent(history, span),
   };
@@ -101,8 +92,10 @@ export function saveSvg(shown: Shown, choice: PlotChoice, span: Span): void {
   saveBlob(`${savedName(shown)}.svg`, new Blob([svgOf(shown, choice, span).text], { type: "image/svg+xml" }));
 }
 
+/// @throws if the browser cannot draw the figure
 export async function savePng(shown: Shown, choice: PlotChoice, span: Span): Promise<void> {
   const name = savedName(shown);
   const blob = await rasterised(svgOf(shown, choice, span), kPngScale);
-  if (blob) saveBlob(`${name}.png`, blob);
+  if (!blob) throw new Error("the figure has no picture");
+  saveBlob(`${name}.png`, blob);
 }

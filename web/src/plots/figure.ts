@@ -2,15 +2,16 @@
 // A figure for print as SVG: curves as vectors, text as text, light background. It can be read in a paper's column.
 import { themes } from "../theme";
 import type { Cluster } from "./event_clusters";
-import { labelPlaces } from "./label_places";
 import type { Curve } from "./plot_kinds";
 import type { Point } from "./polylines";
-import type { Span } from "./span";
-import { decimalsOf, multiples, niceStep } from "./ticks";
+import type { Span } from "./time_view";
+import { decimalsOf, labelPlaces, multiples, niceStep } from "./ticks";
 
 export interface FigurePlot {
   readonly axis: string; // "Force [N]"
   readonly range: readonly [number, number];
+  readonly peaks: readonly { readonly colour: string; readonly time: number }[]; // above the range
+  readonly beyond: string; // how far they go; empty: there are none
   readonly curves: readonly { readonly curve: Curve; readonly lines: readonly Point[][] }[];
   readonly notSent: readonly Span[];
 }
@@ -43,6 +44,8 @@ const kPlotHeight = 190;
 const kAxisHeight = 38; // below, likewise
 const kFlagHeight = 16; // above, for events
 const kSampleWidth = 22;
+const kMark = 4; // of a peak beyond the plot: half its width, and its height
+const kHalo = 'paint-order="stroke" stroke="#ffffff" stroke-width="3"'; // of words over curves
 const kLetter = 0.56; // mean width of a letter, as a share of its size
 const kStroke = 0.55; // a line's width, as a share of that on the screen
 const kTimeTicks = 7;
@@ -134,9 +137,16 @@ function notSent(figure: Figure, plot: FigurePlot, at: Field): string[] {
     const band = { ...at, left, right };
     const veils = [rect(band, 'fill="#ffffff" fill-opacity="0.6"'), rect(band, 'fill="url(#hatch)"')];
     if (widthOf(figure.notSentWords, kSmall) >= right - left) return veils;
-    const halo = 'text-anchor="middle" paint-order="stroke" stroke="#ffffff" stroke-width="3"';
-    return [...veils, text(figure.notSentWords, (left + right) / 2, at.top + 14, halo, kSmall, colours.quiet)];
+    return [...veils, text(figure.notSentWords, (left + right) / 2, at.top + 14, `text-anchor="middle" ${kHalo}`, kSmall, colours.quiet)];
   });
+}
+
+/// Marks at the upper edge where curves leave the plot, and how far they go, below the words for what is not sent.
+function cutOff({ peaks, beyond }: FigurePlot, at: Field): string[] {
+  if (beyond === "") return [];
+  const mark = (x: number) => [[x, at.top], [x - kMark, at.top + kMark], [x + kMark, at.top + kMark]].map((point) => point.map(px).join()).join(" ");
+  const marks = peaks.map(({ time, colour }) => `<polygon points="${mark(at.x(time))}" fill="${colour}"/>`);
+  return [...marks, text(beyond, at.right - 4, at.top + 14 + kLine, `text-anchor="end" ${kHalo}`, kSmall)];
 }
 
 function events({ clusters }: Figure, at: Field, first: boolean): string[] {
@@ -186,6 +196,7 @@ function drawPlot(figure: Figure, plot: FigurePlot, number: number, top: number)
     ...axes(figure, plot, at, number === figure.plots.length - 1),
     `<g clip-path="url(#${clip})">${paths.join("")}</g>`,
     ...notSent(figure, plot, at),
+    ...cutOff(plot, at),
     ...events(figure, at, number === 0),
     ...names(plot, at),
   ];

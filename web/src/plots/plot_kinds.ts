@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the plots show: which channels each has, how they are drawn and named.
+import { mixed } from "../colour";
 import { channelsOf, kDigits, type Channel, type Quantity } from "../state/channels";
 import { strings } from "../strings";
 import { digitColours, themes, type ThemeName } from "../theme";
-import { mixed } from "./colour";
 
 /// digits: the force of each digit. segments, joints: of one digit.
 export type PlotSubject = "digits" | "segments" | "joints";

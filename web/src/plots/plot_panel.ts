@@ -22,8 +22,7 @@ import {
   type PlotSubject,
 } from "./plot_kinds";
 import { selectionTable } from "./selection_table";
-import type { Span } from "./span";
-import { TimeView } from "./time_view";
+import { TimeView, type Span } from "./time_view";
 
 const kChosen = "phalanx.plots";
 const words = strings.plots;
@@ -186,6 +185,16 @@ export function plotPanel(source: Shown, theme: ThemeName, pausing?: Pausing, on
   view.on(["pointed"], () => onTime(view.pointed));
   const save = (text: string, long: string, act: (span: Span) => void) => button(text, () => act(view.span), { title: long, "aria-label": long });
 
+  const unsaved = el("p", { class: "refused", role: "alert", hidden: true }, words.pngFailed);
+  async function png(span: Span): Promise<void> {
+    setShown(unsaved, false);
+    try {
+      await savePng(source, choice, span);
+    } catch (reason) {
+      console.error(reason);
+      setShown(unsaved, true);
+    }
+  }
   const dead = el("p", { class: "plot-offline", role: "status" });
   const live = () => {
     const why = source.oldCurves;
@@ -209,7 +218,8 @@ export function plotPanel(source: Shown, theme: ThemeName, pausing?: Pausing, on
       measure,
       save(words.csv, words.csvLong, (span) => saveCsv(source, span)),
       save(words.svg, words.svgLong, (span) => saveSvg(source, choice, span)),
-      save(words.png, words.pngLong, (span) => void savePng(source, choice, span)),
+      save(words.png, words.pngLong, (span) => void png(span)),
+      unsaved,
     ),
   );
   const element = el("section", { class: "plots", "aria-label": words.label }, tools, el("div", { class: "plot-frame" }, area, table.element, dead));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Points } from "./decimate";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 import { leftOut } from "./stretches";
 
 export type Point = readonly [number, number]; // time [s], value

@@ -2,6 +2,7 @@
 // The values at one moment, as read from a plot.
 import { eventLabel, type Happened } from "../state/happened";
 import { el } from "../panels/dom";
+import { eventWords } from "../panels/plain_words";
 import { strings } from "../strings";
 import { isForce, unitOf, type Curve, type PlotKind } from "./plot_kinds";
 
@@ -38,7 +39,7 @@ export function readings(
 
 export const figureText = (kind: PlotKind, value: number) => (Number.isFinite(value) ? value.toFixed(kDecimals[kind]) : strings.dash);
 const valueText = (kind: PlotKind, value: number) => `${figureText(kind, value)} ${unitOf(kind)}`;
-const eventText = ({ code, text }: Happened) => strings.plots.event(eventLabel(code), text);
+const eventText = ({ code, text }: Happened) => strings.plots.event(eventLabel(code), eventWords(code, text));
 
 /// The lines of the tip.
 export function tipLines(kind: PlotKind, found: Found): HTMLElement[] {

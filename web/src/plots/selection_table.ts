@@ -5,9 +5,8 @@ import type { History } from "../state/history";
 import { strings } from "../strings";
 import { unitOf, type Curve, type PlotKind } from "./plot_kinds";
 import { figureText } from "./readings";
-import { lengthOf } from "./span";
 import { statisticsOf, type Statistics } from "./statistics";
-import type { TimeView } from "./time_view";
+import { lengthOf, type TimeView } from "./time_view";
 
 const kSpokenAfter = 600; // a selection that changes is not spoken [ms]
 const words = strings.plots.selection;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { History } from "../state/history";
 import type { Curve } from "./plot_kinds";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 
 /// What a curve does in a selection, as displayed. NaN: there are too few values.
 export interface Statistics {

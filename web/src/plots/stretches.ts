@@ -2,7 +2,7 @@
 // Stretches of time in which a curve is not drawn, or not sent.
 import { channelsOf } from "../state/channels";
 import type { History } from "../state/history";
-import type { Span } from "./span";
+import type { Span } from "./time_view";
 
 const kPause = 0.25; // a longer time between two samples is a gap in the curve [s]
 const factor = channelsOf("factor")[0]!.index;

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { History } from "../state/history";
 import { Listeners } from "../state/listeners";
-import type { Span } from "./span";
+
+/// A stretch of time on the ticks' clock [s].
+export interface Span {
+  readonly from: number;
+  readonly to: number;
+}
+
+export const ordered = (one: number, other: number): Span => ({ from: Math.min(one, other), to: Math.max(one, other) });
+export const lengthOf = ({ from, to }: Span) => to - from;
 
 /// The time that all plots show: the newest seconds or a zoomed part of them; the selection; the time that is pointed at.
 export class TimeView extends Listeners<"span" | "selection" | "pointed"> {

@@ -4,7 +4,7 @@ import { el, section, setShown, setText } from "../panels/dom";
 import { strings } from "../strings";
 import type { Overview } from "./overview";
 import type { Player } from "./player";
-import { durationText, momentText, sizeText } from "./times";
+import { durationText, momentText, sizeText } from "../panels/as_text";
 
 const words = strings.replay;
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What happened in a recording: markers, faults, stops, changes, gaps. A press goes there.
 import { button, el, setAttribute, setShown, setSwitch, setText, switchButton } from "../panels/dom";
+import { eventWords, whoText } from "../panels/plain_words";
 import { eventLabel, markKind, type MarkKind } from "../state/happened";
 import { strings } from "../strings";
 import type { Overview } from "./overview";
-import { durationText } from "./times";
+import { durationText } from "../panels/as_text";
 
 const words = strings.replay;
 const kMostShown = 1000; // of the list; a longer one would hold up the page
@@ -15,6 +16,7 @@ export interface Happening {
   readonly kind: MarkKind;
   readonly label: string;
   readonly text: string;
+  readonly who?: string; // did it; absent: the recording
 }
 
 /// Everything of the overview that a person may look for, in the order of time.
@@ -24,13 +26,19 @@ export function happenings({ events, stations, holes }: Pick<Overview, "events" 
       time, code: "station", kind: "other" as const, label: eventLabel("station"), text: words.stationBegins(scene, device),
     })),
     ...events.map(({ time, value: { code, who, text } }) => ({
-      time, code, kind: markKind(code), label: eventLabel(code), text: who && code !== "marker" ? `${text} (${who})` : text,
+      time, code, kind: markKind(code), label: eventLabel(code), text, who,
     })),
     ...holes.map(({ begin, gap }) => ({
       time: begin, code: "gap", kind: "gap" as const, label: eventLabel("gap"), text: words.missing(gap.steps.toLocaleString(strings.figures), gap.why),
     })),
   ];
   return list.sort((a, b) => a.time - b.time);
+}
+
+/// What happened, and who did it.
+export function happeningText({ code, text, who }: Happening): string {
+  const what = eventWords(code, text);
+  return who && code !== "marker" ? words.by(what, whoText(who)) : what;
 }
 
 export interface EventList {
@@ -60,7 +68,7 @@ export function eventList(goTo: (time: number) => void): EventList {
       el("span", { class: "happening-time" }, durationText(one.time)),
       el("span", { class: "happening-mark", "aria-hidden": "true" }),
       el("span", { class: "happening-label" }, one.label),
-      el("span", { class: "happening-text" }, one.text),
+      el("span", { class: "happening-text" }, happeningText(one)),
     );
     rows.push({ time: one.time, button: made });
     return el("li", {}, made);

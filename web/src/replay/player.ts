@@ -4,11 +4,11 @@
 import { fromBinary } from "@bufbuild/protobuf";
 import { TickSchema, type Tick } from "../gen/phalanx/tick_pb";
 import { channels, fillRow, isMeasured } from "../state/channels";
+import { CircumstanceNumbers, type Circumstances } from "../state/circumstances";
 import { isPlotted, type Happened } from "../state/happened";
 import { capacityFor, History } from "../state/history";
 import { Listeners } from "../state/listeners";
-import { SceneNumbers } from "../state/scene_numbers";
-import type { Circumstances, OldCurves, Shown, Topic } from "../state/shown";
+import type { OldCurves, Shown, Topic } from "../state/shown";
 import { VerdictLight } from "../state/verdict";
 import type { Shapes } from "../view3d/shapes";
 import type { Timed } from "./chunk";
@@ -40,7 +40,8 @@ export class Player extends Listeners<Topic> implements Shown {
   events: readonly Happened[] = []; // by the recording's time, in its order
   readonly playhead: Playhead;
   private seconds = kWindows[0]!; // that the history covers
-  private readonly sceneNumbers = new SceneNumbers();
+  private readonly numbers = new CircumstanceNumbers();
+  private inForce = NaN; // number of the circumstances; NaN: not known
   private change: (ChangeFacts & { readonly since: number }) | undefined; // in force at the displayed moment
   private readonly lookup: Lookup;
   private readonly cache: ChunkCache;
@@ -110,14 +111,8 @@ export class Player extends Listeners<Topic> implements Shown {
     return this.events.filter(({ code }) => isPlotted(code)).map((one) => ({ ...one, time: one.time + clock }));
   }
 
-  get scenes(): readonly string[] {
-    return this.sceneNumbers.names;
-  }
-
-  get circumstances(): Circumstances {
-    const { scene = "", stiffness = "", law = "", stabiliser = "", rate = "" } = this.change ?? {};
-    const { device = "", simulated } = this.station ?? {};
-    return { scene, stiffness, law, stabiliser, rate: rate || String(this.rate || ""), device, simulated };
+  get circumstances(): readonly Circumstances[] {
+    return this.numbers.all;
   }
 
   reachBack(seconds: number): void {
@@ -287,7 +282,7 @@ export class Player extends Listeners<Topic> implements Shown {
 
   private record(tick: Tick): void {
     const known = this.change && tick.time - this.clock >= this.change.since; // what was in force before is not read
-    fillRow(tick, this.row, this.sceneNumbers.of(known ? this.change?.scene : undefined));
+    fillRow(tick, this.row, known ? this.inForce : NaN);
     this.history.push(tick.time, this.row);
     this.light.feed(tick, tick.time);
   }
@@ -331,7 +326,13 @@ export class Player extends Listeners<Topic> implements Shown {
       this.geometry = made;
       this.tell("geometry");
     }
+    this.inForce = this.change ? this.numbers.of(this.circumstancesOf(this.change)) : NaN;
     this.until = this.lookup.next(["/geometry", "/setup", "/change"], at);
+  }
+
+  private circumstancesOf({ scene, law, stabiliser, rate }: ChangeFacts): Circumstances {
+    const { device = "", simulated } = this.station ?? {};
+    return { scene, law, stabiliser, rate: rate || String(this.rate || ""), device, simulated };
   }
 
   private loadAhead(): void {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of one recording that is open: view, plots, figures, scrubber, events.
 import { el, section, setText } from "../panels/dom";
+import { notLoaded } from "../panels/not_loaded";
 import { openingsText } from "../panels/openings";
 import { readouts, type Readouts } from "../panels/readouts";
 import { viewFrame, type ViewFrame } from "../panels/view_frame";
@@ -89,10 +90,15 @@ export function replayView(recording: Recording, theme: ThemeName): ReplayView {
   survey();
   void (async () => {
     const view = frame.load(theme);
-    const { plotPanel } = await import("../plots/plot_panel");
-    if (!ended.signal.aborted) {
-      plots = plotPanel(player, colours);
-      plotPlace.append(plots.element);
+    try {
+      const { plotPanel } = await import("../plots/plot_panel");
+      if (!ended.signal.aborted) {
+        plots = plotPanel(player, colours);
+        plotPlace.append(plots.element);
+      }
+    } catch (reason) {
+      console.error(reason);
+      plotPlace.append(notLoaded(strings.plots.notLoaded));
     }
     await view;
     if (ended.signal.aborted) frame.view()?.dispose();

@@ -3,10 +3,10 @@
 import { el, setAttribute, setShown, setText } from "../panels/dom";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
-import type { Happening } from "./event_list";
+import { happeningText, type Happening } from "./event_list";
 import type { Overview } from "./overview";
 import { drawStrip } from "./strip";
-import { durationText } from "./times";
+import { durationText } from "../panels/as_text";
 
 const words = strings.replay;
 const kArrowStep = 1; // [s] for ArrowUp and ArrowDown; the page's keys do the others
@@ -57,7 +57,7 @@ export function scrubber(overview: Overview, seconds: number, theme: ThemeName, 
     const on = near(time) ?? (inHole && happenings.find((one) => one.kind === "gap" && one.time === inHole.begin));
     tip.replaceChildren(
       el("b", {}, durationText(time)),
-      ...(on ? [el("div", {}, `${on.label}: ${on.text}`)] : []),
+      ...(on ? [el("div", {}, strings.plots.event(on.label, happeningText(on)))] : []),
       ...(forces
         ? forces.map(forceLine)
         : [el("div", {}, words.unknownForce)]),

@@ -3,7 +3,7 @@
 import { button, el, newId, setShown, setText } from "../panels/dom";
 import { strings } from "../strings";
 import type { Listed, StationList } from "./station_list";
-import { durationText, momentText, sizeText } from "./times";
+import { durationText, momentText, sizeText } from "../panels/as_text";
 import { listTroubleText } from "./trouble";
 
 const words = strings.replay;

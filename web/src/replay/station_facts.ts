@@ -14,8 +14,7 @@ export interface ChangeFacts {
   readonly slides: boolean; // contacts slide, with friction
   readonly objectKind: string; // empty: not stated
   readonly digitLimit: number; // of a digit's force [N]; Infinity: none, or not stated
-  readonly stiffness: string; // [N/mm]; empty, as the next ones: not stated
-  readonly law: string;
+  readonly law: string; // empty, as the next ones: not stated
   readonly stabiliser: string;
   readonly rate: string; // [Hz]
 }
@@ -59,7 +58,6 @@ export function changeFacts(bytes: Uint8Array): ChangeFacts {
     slides: text("contact.mode") === "sliding",
     objectKind: text("objects.0.kind"),
     digitLimit: limitOf(text(kDigitLimit)),
-    stiffness: text("force.stiffness_n_per_mm"),
     law: text("force.law"),
     stabiliser: text("stabiliser.method"),
     rate: text("rate_hz"),
@@ -90,7 +88,7 @@ function sensedJoints(channels: readonly DeviceChannel[]): number[] {
 
 export function stationFacts(bytes: Uint8Array): StationFacts {
   let facts: StationFacts = {
-    scene: "", slides: false, objectKind: "", digitLimit: Infinity, stiffness: "", law: "", stabiliser: "", rate: "",
+    scene: "", slides: false, objectKind: "", digitLimit: Infinity, law: "", stabiliser: "", rate: "",
     device: "", rendersTorque: false, simulated: false, sensedJoint: [],
   };
   const channels: DeviceChannel[] = [];

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Play, pause, step, speed, and the displayed moment as time.
-import { clockTime } from "../panels/clock";
+import { clockTime, durationText } from "../panels/as_text";
 import { button, el, setAttribute, setText } from "../panels/dom";
 import { strings } from "../strings";
 import { speeds, type Playhead } from "./playhead";
-import { durationText } from "./times";
 
 const words = strings.replay;
 

@@ -2,16 +2,15 @@
 // The curves of a session: their numbers in the history, names and units.
 import type { Tick } from "../gen/phalanx/tick_pb";
 import { strings } from "../strings";
-import { kSegments } from "../view3d/segments";
+import { kPalm, kSegments, kSegmentsPerDigit } from "../view3d/segments";
 import type { Shown } from "./shown";
 import { verdictKinds, verdictOf } from "./verdict";
 
 export const kDigits = 5;
 export const kJoints = 20;
 export const kJointsPerDigit = 4;
-export const kSegmentsPerDigit = 3;
 
-/// factor: of the station on the torques, 0 where nothing is sent. verdict: number in verdictKinds. scene: number in Shown.scenes.
+/// factor: of the station on the torques, 0 where nothing is sent. verdict: number in verdictKinds. circumstances: number in Shown's.
 export type Quantity =
   | "force_raw"
   | "force_sent"
@@ -22,7 +21,7 @@ export type Quantity =
   | "digit_force"
   | "factor"
   | "verdict"
-  | "scene";
+  | "circumstances";
 
 export interface Channel {
   readonly index: number; // in the history
@@ -33,8 +32,7 @@ export interface Channel {
   readonly unit: string; // empty: none
 }
 
-export const digitOfSegment = (segment: number) =>
-  segment === kSegments - 1 ? -1 : Math.floor(segment / kSegmentsPerDigit);
+export const digitOfSegment = (segment: number) => (segment === kPalm ? -1 : Math.floor(segment / kSegmentsPerDigit));
 export const digitOfJoint = (joint: number) => Math.floor(joint / kJointsPerDigit);
 
 function list(): Channel[] {
@@ -55,7 +53,7 @@ function list(): Channel[] {
   add("digit_force", kDigits, units.newton, (digit) => digit, 1);
   add("factor", 1, "", hand, 1);
   add("verdict", 1, "", hand, 1);
-  add("scene", 1, "", hand, 1);
+  add("circumstances", 1, "", hand, 1);
   return channels;
 }
 
@@ -71,8 +69,8 @@ const kSampleStale = 1 << 12; // Status::kSampleStale
 export const isMeasured = (tick: Tick) => (tick.status & kSampleStale) === 0;
 
 /// A tick as one row of the history, in the channels' order. What is missing, or not measured, is NaN.
-/// @param scene  its number; NaN: not known
-export function fillRow(tick: Tick, row: Float64Array, scene = NaN): void {
+/// @param circumstances  their number; NaN: not known
+export function fillRow(tick: Tick, row: Float64Array, circumstances = NaN): void {
   const torque = 2 * kSegments;
   const measured = torque + kJoints;
   const shown = measured + kJoints;
@@ -92,7 +90,7 @@ export function fillRow(tick: Tick, row: Float64Array, scene = NaN): void {
   row[stiffness] = tick.stiffness;
   row.set(digitForces(tick), stiffness + 1);
   const withheld = tick.atRest && tick.contact.some((contact) => contact.forceRaw > 0); // without contact there is nothing to send
-  row.set([withheld ? 0 : tick.factor, verdictKinds.indexOf(verdictOf(tick).kind), scene], stiffness + 1 + kDigits);
+  row.set([withheld ? 0 : tick.factor, verdictKinds.indexOf(verdictOf(tick).kind), circumstances], stiffness + 1 + kDigits);
 }
 
 /// @returns for each digit the length of the vector sum of the forces on its segments, which the station limits [N]

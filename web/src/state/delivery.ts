@@ -13,14 +13,24 @@ export interface DeliveryFigures {
 }
 
 export class Delivery {
-  private readonly came: { readonly time: number; readonly at: number }[] = []; // on the station's clock and on the page's [s]
+  // On the station's clock and on the page's [s]. follows: the one before came from the same station, which was at work in between.
+  private readonly came: { readonly time: number; readonly at: number; readonly follows: boolean }[] = [];
+  private step = 0n; // of the newest picture
+  private rested = false; // since then
+
+  /// The station sends no pictures now, for example while it changes: the time until the next one is no gap.
+  rest(): void {
+    this.rested = true;
+  }
 
   /// @param at  of its arrival, on the page's clock [s]
   feed(tick: Tick, at: number): void {
     const last = this.came.at(-1);
     if (last && tick.time < last.time) this.came.length = 0; // another station, whose clock begins elsewhere
     if (last && tick.time === last.time) return;
-    this.came.push({ time: tick.time, at });
+    this.came.push({ time: tick.time, at, follows: !this.rested && tick.tick >= this.step });
+    this.step = tick.tick;
+    this.rested = false;
     while (this.came[0]!.at < at - kWindow) this.came.shift();
   }
 
@@ -30,7 +40,9 @@ export class Delivery {
     if (!first) return { perSecond: 0, missing: 0, delay: { p50: NaN, p99: NaN } };
     const late = recent.map((one) => one.at - one.time).sort((a, b) => a - b);
     const quantile = (share: number) => late[Math.min(late.length - 1, Math.floor(share * late.length))]! - late[0]!;
-    const gaps = recent.slice(1).map((one, i) => Math.max(0, Math.round((one.time - recent[i]!.time) * kPerSecond) - 1));
+    const gapBefore = ({ time, follows }: (typeof recent)[number], i: number) =>
+      follows ? Math.max(0, Math.round((time - recent[i]!.time) * kPerSecond) - 1) : 0;
+    const gaps = recent.slice(1).map(gapBefore);
     return {
       perSecond: recent.length / Math.max(1, at - first.at),
       missing: gaps.reduce((sum, gap) => sum + gap, 0),

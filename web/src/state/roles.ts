@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The role of this page and what it may do.
-import type { State, Welcome } from "../gen/phalanx/cockpit_pb";
+import { HandSource, type State, type Welcome } from "../gen/phalanx/cockpit_pb";
 
 /// mine: this page operates. Otherwise the reason: no connection; the address may only watch; another page operates; no page operates.
 export type Role = "mine" | "offline" | "watch_only" | "other" | "nobody";
@@ -15,7 +15,8 @@ export function roleOf(connected: boolean, welcome: Welcome | undefined, state: 
 export const mayChange = (role: Role): boolean => role === "mine";
 export const mayTake = (role: Role): boolean => role === "other" || role === "nobody";
 
-/// A wizard needs a device whose sensors the wearer moves.
-export function mayCalibrate(role: Role, state: State | undefined): boolean {
-  return mayChange(role) && state !== undefined && !state.deviceSimulated && state.source === 0;
-}
+/// A device on a wire, whose sensors the wearer moves.
+export const isOnWire = (state: State | undefined): boolean =>
+  state !== undefined && !state.deviceSimulated && state.source === HandSource.HAND_DEVICE;
+
+export const mayCalibrate = (role: Role, state: State | undefined): boolean => mayChange(role) && isOnWire(state);

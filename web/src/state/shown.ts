@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Tick } from "../gen/phalanx/tick_pb";
 import type { Shapes } from "../view3d/shapes";
+import type { Circumstances } from "./circumstances";
 import type { Happened } from "./happened";
 import type { History } from "./history";
 import type { VerdictLight } from "./verdict";
@@ -9,17 +10,6 @@ export type Topic = "state" | "tick" | "notice" | "geometry" | "connection" | "o
 
 /// Why curves are not those of the displayed moment; empty: they are.
 export type OldCurves = "" | "offline" | "silent" | "unmeasured";
-
-/// What a saved figure states of its session. Empty: not known.
-export interface Circumstances {
-  readonly scene: string;
-  readonly stiffness: string; // [N/mm]
-  readonly law: string;
-  readonly stabiliser: string;
-  readonly rate: string; // steps a second [Hz]
-  readonly device: string;
-  readonly simulated: boolean | undefined;
-}
 
 /// The source of the 3D view, the plots and the figures: a running station (Store) or a recording (Player).
 export interface Shown {
@@ -39,8 +29,7 @@ export interface Shown {
   readonly windows: readonly number[]; // lengths of time that the plots can show [s], rising
   readonly happened: readonly Happened[]; // in the order of time
   readonly utcOffset: number; // UTC minus the ticks' clock [s]; NaN: not known
-  readonly scenes: readonly string[]; // by their numbers in the history
-  readonly circumstances: Circumstances;
+  readonly circumstances: readonly Circumstances[]; // by their numbers in the history
   /// The history is to reach back so far. @param seconds  one of `windows`
   reachBack(seconds: number): void;
   on(topics: readonly Topic[], listener: () => void): void;

@@ -5,6 +5,7 @@ import { SafetyState, type Tick } from "../gen/phalanx/tick_pb";
 import type { Shapes } from "../view3d/shapes";
 import type { Phase } from "../wire/connection";
 import { channels, fillRow } from "./channels";
+import { CircumstanceNumbers, type Circumstances } from "./circumstances";
 import { Delivery } from "./delivery";
 import { Freshness } from "./freshness";
 import { happenedOf, type Happened } from "./happened";
@@ -12,8 +13,7 @@ import { capacityFor, History } from "./history";
 import { isChanged, kDigitLimit, limitOf, objectKind, slides, valueOf } from "./keys";
 import { Listeners } from "./listeners";
 import { roleOf, type Role } from "./roles";
-import { SceneNumbers } from "./scene_numbers";
-import type { Circumstances, OldCurves, Pausing, Shown, Topic } from "./shown";
+import type { OldCurves, Pausing, Shown, Topic } from "./shown";
 import { same, unquote } from "./toml";
 import { VerdictLight } from "./verdict";
 
@@ -43,7 +43,8 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
   readonly windows = kWindows;
   readonly history = new History(channels.length, capacityFor(kWindows.at(-1)!));
   happened: readonly Happened[] = [];
-  private readonly sceneNumbers = new SceneNumbers();
+  private readonly numbers = new CircumstanceNumbers();
+  private inForce = NaN; // number of the circumstances; NaN: not known
   readonly freshness: Freshness;
   private readonly pending = new Map<string, Pending>();
   private readonly row = new Float64Array(channels.length);
@@ -75,6 +76,11 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     return this.connected && this.lost && !this.unmeasured && !this.freshness.silent;
   }
 
+  /// The newest State of this connection's station; undefined: none has come.
+  private get present(): State | undefined {
+    return this.stateAt === -Infinity ? undefined : this.state;
+  }
+
   /// The newest State of the station; undefined: no connection, or it has been silent for too long.
   get known(): State | undefined {
     return this.connected && this.now() - this.stateAt <= kStateStaleMs ? this.state : undefined;
@@ -82,7 +88,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
 
   /// The displayed shape is not the one in force, whose shape has not arrived yet.
   get shapeMissing(): boolean {
-    const state = this.connected && this.stateAt !== -Infinity ? this.state : undefined;
+    const state = this.connected ? this.present : undefined;
     return state !== undefined && !state.stationGone && state.geometry !== this.shape;
   }
 
@@ -126,28 +132,15 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     return this.welcome ? this.welcome.unixTime - this.welcome.clock : NaN;
   }
 
-  get scenes(): readonly string[] {
-    return this.sceneNumbers.names;
-  }
-
-  get circumstances(): Circumstances {
-    const value = (setting: string) => unquote(valueOf(this.state, this.welcome, setting));
-    return {
-      scene: this.state?.scene ?? "",
-      stiffness: value("force.stiffness_n_per_mm"),
-      law: value("force.law"),
-      stabiliser: value("stabiliser.method"),
-      rate: value("rate_hz"),
-      device: this.state?.deviceName ?? "",
-      simulated: this.state?.deviceSimulated,
-    };
+  get circumstances(): readonly Circumstances[] {
+    return this.numbers.all;
   }
 
   /// The history is always as long as the longest window.
   reachBack(): void {}
 
   get role(): Role {
-    return roleOf(this.connected, this.welcome, this.state);
+    return roleOf(this.connected, this.welcome, this.present);
   }
 
   setPhase(phase: Phase): void {
@@ -156,6 +149,7 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
       this.pending.clear();
       this.shape = undefined; // another station counts its revisions from the beginning
       this.stateAt = -Infinity;
+      this.inForce = NaN;
     } else {
       this.freshness.listen();
     }
@@ -186,6 +180,8 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
       case "state":
         this.state = what.value;
         this.stateAt = this.now();
+        this.inForce = this.numbers.of(this.circumstancesOf(what.value));
+        if (what.value.stationGone || what.value.busy !== "" || what.value.wizard) this.delivery.rest();
         this.settle();
         this.tell("state");
         break;
@@ -204,13 +200,25 @@ export class Store extends Listeners<Topic> implements Shown, Pausing {
     }
   }
 
+  private circumstancesOf(state: State): Circumstances {
+    const value = (setting: string) => unquote(valueOf(state, this.welcome, setting));
+    return {
+      scene: state.scene,
+      law: value("force.law"),
+      stabiliser: value("stabiliser.method"),
+      rate: value("rate_hz"),
+      device: state.deviceName,
+      simulated: state.deviceSimulated,
+    };
+  }
+
   private step(tick: Tick): void {
     if (!this.freshness.take(tick, this.now())) return;
     this.delivery.feed(tick, this.now() / 1000);
     this.tick = tick;
     this.light.feed(tick, this.now() / 1000);
     if (!this.paused) {
-      fillRow(tick, this.row, this.sceneNumbers.of(this.state?.scene));
+      fillRow(tick, this.row, this.inForce);
       this.history.push(tick.time, this.row);
     }
     this.tell("tick");

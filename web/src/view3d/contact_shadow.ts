@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How dark the table is below hand and object: a coarse field over the table, darker the lower something is above it. It is computed by the
 // processor, in a fraction of a millisecond, so that every quality has it.
-import type { Box3 } from "three";
 import type { Capsule } from "./object_material";
+import { kShadowEdge, texelOf, type Square } from "./underside";
 
-export const kShadowEdge = 64; // texels
 const kObjectHeight = 0.035; // [m] in which the object's shadow falls to 1/e
 const kFingerHeight = 0.045;
-const kMostCuts = 48; // of a triangle's side
 const kObjectDarkness = 0.62;
 const kFingerDarkness = 0.34;
-
-/// A square of the table in W [m].
-export interface Square {
-  readonly x: number; // of its lower corner
-  readonly y: number;
-  readonly edge: number;
-}
 
 export class ContactShadow {
   readonly texels = new Uint8Array(kShadowEdge * kShadowEdge); // 255: black
@@ -29,13 +20,14 @@ export class ContactShadow {
     this.object.fill(1);
   }
 
-  /// @param position  of the object, 3 numbers a vertex; null: there is none
-  lay(square: Square, height: number, position: ArrayLike<number> | null, index: ArrayLike<number> | null): void {
+  /// @param lowest  point of the object above each texel of the square; null: there is no object
+  lay(square: Square, height: number, lowest: Float32Array | null): void {
     this.square = square;
     this.height = height;
-    const lowest = new Float32Array(kShadowEdge * kShadowEdge).fill(Infinity);
-    if (position && index) this.dropTriangles(lowest, position, index);
-    lowest.forEach((above, i) => (this.object[i] = above === Infinity ? 1 : 1 - kObjectDarkness * Math.exp(-Math.max(0, above) / kObjectHeight)));
+    for (let i = 0; i < this.object.length; ++i) {
+      const above = Math.max(0, (lowest?.[i] ?? Infinity) - height);
+      this.object[i] = 1 - kObjectDarkness * Math.exp(-above / kObjectHeight);
+    }
     for (let round = 0; round < 3; ++round) blur(this.object);
     this.cast([]);
   }
@@ -48,16 +40,13 @@ export class ContactShadow {
 
   /// How dark the table is at a place, 0 .. 1.
   darknessAt(x: number, y: number): number {
-    const [i, j] = [this.texel(x - this.square.x), this.texel(y - this.square.y)];
+    const [i, j] = [texelOf(x - this.square.x, this.square), texelOf(y - this.square.y, this.square)];
     return i < 0 || j < 0 || i >= kShadowEdge || j >= kShadowEdge ? 0 : this.texels[j * kShadowEdge + i]! / 255;
-  }
-
-  private texel(along: number): number {
-    return Math.floor((along / this.square.edge) * kShadowEdge);
   }
 
   private castFinger({ from, to, radius }: Capsule): void {
     const { x, y, edge } = this.square;
+    const texel = (along: number): number => texelOf(along, this.square);
     const above = Math.max(0, (from[2] + to[2]) / 2 - radius - this.height);
     const dark = kFingerDarkness * Math.exp(-above / kFingerHeight);
     if (dark < 0.01) return;
@@ -66,8 +55,8 @@ export class ContactShadow {
     const step = edge / kShadowEdge;
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     const square = Math.max(1e-12, dx * dx + dy * dy);
-    const [i0, i1] = [this.texel(Math.min(from[0], to[0]) - reach - x), this.texel(Math.max(from[0], to[0]) + reach - x)];
-    const [j0, j1] = [this.texel(Math.min(from[1], to[1]) - reach - y), this.texel(Math.max(from[1], to[1]) + reach - y)];
+    const [i0, i1] = [texel(Math.min(from[0], to[0]) - reach - x), texel(Math.max(from[0], to[0]) + reach - x)];
+    const [j0, j1] = [texel(Math.min(from[1], to[1]) - reach - y), texel(Math.max(from[1], to[1]) + reach - y)];
     for (let j = Math.max(0, j0); j <= Math.min(kShadowEdge - 1, j1); ++j) {
       for (let i = Math.max(0, i0); i <= Math.min(kShadowEdge - 1, i1); ++i) {
         const [px, py] = [x + (i + 0.5) * step - from[0], y + (j + 0.5) * step - from[1]];
@@ -77,34 +66,6 @@ export class ContactShadow {
       }
     }
   }
-
-  /// The lowest point above each texel, from points of the triangles, at most a texel apart.
-  private dropTriangles(lowest: Float32Array, position: ArrayLike<number>, index: ArrayLike<number>): void {
-    const drop = (x: number, y: number, z: number): void => {
-      const [i, j] = [this.texel(x - this.square.x), this.texel(y - this.square.y)];
-      if (i < 0 || j < 0 || i >= kShadowEdge || j >= kShadowEdge) return;
-      const at = j * kShadowEdge + i;
-      lowest[at] = Math.min(lowest[at]!, z - this.height);
-    };
-    for (let t = 0; t + 2 < index.length; t += 3) {
-      const a = 3 * index[t]!;
-      const side = (corner: number): number[] => [0, 1, 2].map((k) => position[3 * index[t + corner]! + k]! - position[a + k]!);
-      const [u, v] = [side(1), side(2)];
-      const span = Math.hypot(u[0]!, u[1]!) + Math.hypot(v[0]!, v[1]!);
-      const cuts = Math.min(kMostCuts, Math.max(1, Math.ceil((span / this.square.edge) * kShadowEdge)));
-      for (let p = 0; p <= cuts; ++p) {
-        for (let q = 0; p + q <= cuts; ++q) {
-          const at = (k: number): number => position[a + k]! + (p * u[k]! + q * v[k]!) / cuts;
-          drop(at(0), at(1), at(2));
-        }
-      }
-    }
-  }
-}
-
-/// A square around what casts a shadow, with room for hands.
-export function squareAround(box: Box3, edge: number): Square {
-  return { x: (box.min.x + box.max.x - edge) / 2, y: (box.min.y + box.max.y - edge) / 2, edge };
 }
 
 function blur(field: Float32Array): void {

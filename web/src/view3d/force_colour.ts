@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Force as a colour over skin and object: more and more of amber, then vermilion, then a dark crimson. Its lightness falls all the way, so
 // that it reads in grey and with any of the common colour-vision deficiencies; an arrow's length says the same.
+import { mixed } from "../colour";
 
 export interface ForceStop {
   readonly at: number; // share of the scale of forces
@@ -28,20 +29,8 @@ export function forceTint(share: number): ForceTint {
 function colourOf(share: number): string {
   let below = forceStops[0]!;
   for (const above of forceStops) {
-    if (share < above.at) return above === below ? below.colour : mix(below, above, (share - below.at) / (above.at - below.at));
+    if (share < above.at) return above === below ? below.colour : mixed(below.colour, above.colour, (share - below.at) / (above.at - below.at));
     below = above;
   }
   return below.colour;
-}
-
-function mix(from: ForceStop, to: ForceStop, share: number): string {
-  const a = parseInt(from.colour.slice(1), 16);
-  const b = parseInt(to.colour.slice(1), 16);
-  let mixed = 0;
-  for (const shift of [16, 8, 0]) {
-    const x = (a >> shift) & 255;
-    const y = (b >> shift) & 255;
-    mixed |= Math.round(x + (y - x) * share) << shift;
-  }
-  return "#" + mixed.toString(16).padStart(6, "0");
 }

@@ -3,6 +3,7 @@
 import { Box3, BufferGeometry, Color, Mesh, Scene, Vector3 } from "three";
 import type { WebGLRenderer } from "three";
 import type { Tick } from "../gen/phalanx/tick_pb";
+import { digitForces } from "../state/channels";
 import { strings } from "../strings";
 import { digitColours, themes } from "../theme";
 import type { ThemeName } from "../theme";
@@ -25,6 +26,7 @@ import type { Shapes } from "./shapes";
 import { kUsualTone, skinTones, type SkinToneName } from "./skin_tones";
 import { Surroundings } from "./surroundings";
 import { Table } from "./table";
+import type { Underside } from "./underside";
 
 const kLeastFigure = 0.05; // [N] a smaller force has none
 const kTouchRadius = 0.011; // of the colour on the object around a contact [m]
@@ -40,7 +42,7 @@ export class HandScene {
   private readonly background = new Color();
   private readonly objectMaterial = new ObjectMaterial();
   private object: Mesh<BufferGeometry, ObjectMaterial> | null = null;
-  private surfaces: { touched: BufferGeometry; smooth: BufferGeometry } | null = null; // of the object
+  private surfaces: { touched: BufferGeometry; smooth: BufferGeometry; underside: Underside | null } | null = null; // of the object
   private smooth = true;
   private tone: SkinToneName = kUsualTone;
   private scale = forceScale(Infinity);
@@ -51,6 +53,7 @@ export class HandScene {
   private left = false;
   private contacts: readonly Mark[] = [];
   private points: readonly PointMark[] = [];
+  private forces: readonly number[] = []; // of each digit [N]
   private covered = new Box3(); // by the shadow
   private reached = new Box3(); // by the hand so far
   private readonly focus = new ContactFocus();
@@ -70,7 +73,7 @@ export class HandScene {
     this.dropObject();
     const touched = objectShape(shapes.object);
     if (touched) {
-      this.surfaces = { touched, smooth: objectShape(shapes.objectDisplay) ?? touched };
+      this.surfaces = { touched, smooth: objectShape(shapes.objectDisplay) ?? touched, underside: shapes.underside };
       this.object = new Mesh(this.smooth ? this.surfaces.smooth : touched, this.objectMaterial);
       this.object.castShadow = this.object.receiveShadow = true;
       this.scene.add(this.object);
@@ -80,7 +83,7 @@ export class HandScene {
     this.reached.makeEmpty();
     this.focus.forget();
     this.motion.forget();
-    this.table.standUnder(touched, this.reached);
+    this.standTable();
     this.contacts = [];
     this.points = [];
     this.paint();
@@ -92,6 +95,7 @@ export class HandScene {
     if (this.whole) {
       this.contacts = marksOf(tick);
       this.points = pointsOf(tick);
+      this.forces = digitForces(tick);
       this.coverHand();
       this.motion.add(this.hands.corners(), now);
     }
@@ -130,12 +134,11 @@ export class HandScene {
   /// Figures at the arrows' tips: each segment's force, and the words of a digit at its limit at the strongest of its arrows.
   labels(): ForceLabel[] {
     if (!this.marks.solid.visible) return [];
-    const forces = digitSums(this.contacts);
     return this.contacts.filter(({ force }) => force >= kLeastFigure).map((mark) => {
       const digit = Math.floor(mark.segment / kSegmentsPerDigit);
       const strongest = this.contacts.every(({ segment, force }) => Math.floor(segment / kSegmentsPerDigit) !== digit || force <= mark.force);
       const felt = this.marks.isFelt(mark.segment);
-      const atLimit = mark.segment !== kPalm && felt && strongest && isAtLimit(this.scale, forces[digit] ?? 0);
+      const atLimit = mark.segment !== kPalm && felt && strongest && isAtLimit(this.scale, this.forces[digit] ?? 0);
       const figure = `${mark.force.toFixed(1)} ${strings.units.newton}`;
       return { text: atLimit ? strings.atLimitOf(figure) : figure, tip: this.marks.tipOf(mark), felt };
     });
@@ -238,13 +241,17 @@ export class HandScene {
     if (!this.reached.containsBox(hand)) {
       this.reached.union(hand.clone().expandByScalar(0.01));
       const foot = object?.boundingBox?.min.z ?? Infinity;
-      if (this.reached.min.z < Math.min(foot, this.table.height) || !object) this.table.standUnder(object, this.reached);
+      if (this.reached.min.z < Math.min(foot, this.table.height) || !object) this.standTable();
     }
     this.table.castHand(this.hands.capsules(kSegments));
     if (this.covered.isEmpty() && object) this.covered.copy(object.boundingBox!);
     if (this.covered.containsBox(hand)) return;
     this.covered.union(hand).expandByScalar(0.01);
     this.lights.cover(this.covered);
+  }
+
+  private standTable(): void {
+    this.table.standUnder(this.surfaces?.touched.boundingBox ?? null, this.surfaces?.underside ?? null, this.reached);
   }
 
   /// A force that is not felt gives no colour.
@@ -258,16 +265,6 @@ export class HandScene {
     this.surfaces?.smooth.dispose();
     this.object = this.surfaces = null;
   }
-}
-
-/// Length of the sum of the forces on each digit [N].
-function digitSums(marks: readonly Mark[]): number[] {
-  const sums: Vector3[] = [];
-  for (const { segment, force, normal } of marks) {
-    const sum = (sums[Math.floor(segment / kSegmentsPerDigit)] ??= new Vector3());
-    sum.addScaledVector(new Vector3(...normal), force);
-  }
-  return Array.from(sums, (sum) => sum?.length() ?? 0);
 }
 
 function cornersOf(box: Box3 | null): Vector3[] {

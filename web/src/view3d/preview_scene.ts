@@ -13,6 +13,7 @@ import type { QualitySettings } from "./quality";
 import { kObjectCrease } from "./shapes";
 import { Surroundings } from "./surroundings";
 import { Table } from "./table";
+import { undersideOf } from "./underside";
 
 const kLongBar = 0.1; // [m] about a palm's breadth
 const kShortBar = 0.01; // before a mesh that is much smaller than a palm
@@ -51,7 +52,8 @@ export class PreviewScene {
     const side = Math.max(this.barLength, ...this.extent);
     const thick = kBarThickness * this.barLength;
     this.bar.position.set((box.min.x + box.max.x) / 2, box.min.y - kGap * side, box.min.z + thick / 2);
-    this.table.standUnder(this.object.geometry, new Box3());
+    const { position } = this.object.geometry.attributes;
+    this.table.standUnder(box, undersideOf(position!.array, this.object.geometry.index!.array), new Box3());
     this.lights.cover(box);
   }
 

@@ -9,6 +9,7 @@ import { poseMatrices } from "./poses";
 import { roundedMesh } from "./rounded_mesh";
 import { kSegments } from "./segments";
 import { boundHand, kDetail, skinDetail } from "./skin_detail";
+import { undersideOf, type Underside } from "./underside";
 
 export const kInfluences = 4;
 const kRoundBelow = 6000; // triangles; a finer skin looks round without rounding
@@ -45,6 +46,7 @@ export interface Shapes {
   readonly segments: BonedSurface | null; // each on its own bone, in its frame S
   readonly object: Surface | null; // in W, that the hand touches; null: an empty scene
   readonly objectDisplay: Surface | null; // its smooth mesh; null: `object` looks round as it is
+  readonly underside: Underside | null; // of the object; null: there is none
 }
 
 export function shapesOf(geometry: Geometry): Shapes {
@@ -57,7 +59,7 @@ export function shapesOf(geometry: Geometry): Shapes {
 
 /// The buffers that are transferred from one thread to another, not copied.
 export function buffersOf(shapes: Shapes): ArrayBufferLike[] {
-  return [shapes.skin, shapes.segments, shapes.object, shapes.objectDisplay].flatMap((surface) =>
+  return [shapes.skin, shapes.segments, shapes.object, shapes.objectDisplay, shapes.underside].flatMap((surface) =>
     Object.values(surface ?? {}).flatMap((array: unknown) => (ArrayBuffer.isView(array) ? [array.buffer] : [])),
   );
 }
@@ -164,11 +166,11 @@ function segmentSurface(geometry: Geometry): BonedSurface | null {
 }
 
 /// The object with smooth normals and creases, as the hand touches it and for display.
-function objectSurfaces(mesh: Mesh | undefined): Pick<Shapes, "object" | "objectDisplay"> {
-  if (!mesh || mesh.index.length === 0) return { object: null, objectDisplay: null };
+function objectSurfaces(mesh: Mesh | undefined): Pick<Shapes, "object" | "objectDisplay" | "underside"> {
+  if (!mesh || mesh.index.length === 0) return { object: null, objectDisplay: null, underside: null };
   const shaded = creaseNormals(mesh.position, mesh.index, kObjectCrease);
   const { position, normal, index } = shaded;
-  return { object: { position, normal, index }, objectDisplay: displayMesh(shaded) };
+  return { object: { position, normal, index }, objectDisplay: displayMesh(shaded), underside: undersideOf(position, index) };
 }
 
 function merged(parts: readonly ShadedMesh[], vertices: number): Surface {

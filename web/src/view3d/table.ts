@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A table top of wood that fades into the background, with the shadows of hand and object on it.
 import {
-  Box3, BufferGeometry, CircleGeometry, Color, DataTexture, Group, LinearFilter, LinearMipmapLinearFilter, Mesh, RedFormat, RepeatWrapping,
+  CircleGeometry, Color, DataTexture, Group, LinearFilter, LinearMipmapLinearFilter, Mesh, RedFormat, RepeatWrapping,
   ShaderMaterial, ShadowMaterial, Vector3,
 } from "three";
+import type { Box3 } from "three";
 import type { Theme } from "../theme";
-import { ContactShadow, kShadowEdge, squareAround } from "./contact_shadow";
+import { ContactShadow } from "./contact_shadow";
 import type { Capsule } from "./object_material";
+import { kShadowEdge, squareAround, type Underside } from "./underside";
 
 const kBelow = 0.0006; // of the object's lowest point [m]
 const kClear = 0.012; // below a hand that reaches lower than the object [m]
@@ -94,9 +96,8 @@ export class Table {
 
   /// Under an object; without one under the hand, and without either there is no table. A hand that reaches below the object's foot
   /// would go through the table: then it is below the hand.
-  /// @param hand  what the hand has reached so far
-  standUnder(object: BufferGeometry | null, hand: Box3): void {
-    const foot = object?.boundingBox ?? null;
+  /// @param foot  the object's box  @param underside  of the object  @param hand  what the hand has reached so far
+  standUnder(foot: Box3 | null, underside: Underside | null, hand: Box3): void {
     const box = foot ?? hand;
     this.group.visible = !box.isEmpty();
     if (!this.group.visible) return;
@@ -106,9 +107,9 @@ export class Table {
     const height = stands ? foot.min.z - kBelow : (hand.isEmpty() ? box : hand).min.z - kClear;
     this.group.position.set(centre.x, centre.y, height);
     this.group.scale.set(1, 1, 1).multiplyScalar(Math.max(kRadius, 1.8 * Math.max(size.x, size.y)));
-    const square = squareAround(box, Math.max(0.5, 1.6 * Math.max(size.x, size.y)));
+    const square = underside?.square ?? squareAround(box);
     this.square.set(square.x, square.y, square.edge);
-    this.contact.lay(square, height, object ? object.getAttribute("position").array : null, object?.getIndex()?.array ?? null);
+    this.contact.lay(square, height, underside?.lowest ?? null);
     this.cast = [];
     this.shadows.needsUpdate = true;
   }

@@ -35,7 +35,6 @@ export interface ConnectionParts {
   readonly name: () => string;
   readonly onPhase: (phase: Phase) => void;
   readonly onMessage: (message: ToPage) => void;
-  readonly onBroken?: (reason: unknown) => void; // a frame that is not a ToPage: dropped
   readonly linkExpired?: () => Promise<boolean>; // called after some failed tries; returns whether the station refuses this page's address
   readonly random?: () => number; // [0, 1)
 }
@@ -67,10 +66,6 @@ export class Connection {
   private readonly waitingFor = new Map<number, (answer: Answer) => void>();
 
   constructor(private readonly parts: ConnectionParts) {}
-
-  get phase(): Phase {
-    return this.state;
-  }
 
   start(): void {
     if (this.socket || this.state === "mismatch" || this.state === "replaced") return;
@@ -134,7 +129,7 @@ export class Connection {
     try {
       message = fromBinary(ToPageSchema, new Uint8Array(data));
     } catch (reason) {
-      this.parts.onBroken?.(reason);
+      console.error(reason); // the frame is no ToPage: it is dropped
       return;
     }
     const what = message.what;

@@ -111,7 +111,7 @@ describe("the sliders", () => {
     await until("nothing is touched", () => cockpit.stream.newest!.contact.length === 0, () => cockpit.brief());
   });
 
-  it("close on an object that then changes: the page says which digits feel nothing of it, until the hand is opened", async () => {
+  it("close on an object that then changes: the page says which digits have no force, until the hand is opened", async () => {
     const { page, stream } = cockpit;
     const line = page.locator(".silent-digits p");
     expect(await line.textContent()).toBe("");

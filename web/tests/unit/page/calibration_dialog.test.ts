@@ -3,7 +3,7 @@ import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, it } from "vitest";
 import { Calibrate_Step as Step, Wizard_Method as Method, WizardSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import { calibrationDialog, type CalibrationDialog, type CalibrationShown } from "../../../src/panels/calibration_dialog";
-import { jointName, poseName } from "../../../src/panels/joint_table";
+import { calibrationWords, jointName, poseName } from "../../../src/panels/joint_table";
 import { wizardSection } from "../../../src/panels/wizard";
 import { calibratedHands } from "../../../src/state/calibrated_hands";
 import { strings } from "../../../src/strings";
@@ -170,4 +170,14 @@ describe("the names of steps", () => {
     expect(poseName("ring_dip_flexion first")).toBe(words.poseOf(jointName(15), words.references["first"]!));
     for (const other of ["open hand", "fist", "index splay first"]) expect(poseName(other)).toBe(other);
   });
+});
+
+it("problems and results of a calibration name joints for people, without the numbers of the file", () => {
+  expect(calibrationWords("angle of index_pip_flexion: 1.2345e-04 a count, offset -0.1234, from 3 poses, at most 0.50 deg off")).toBe(
+    words.fitted(jointName(6), "3", "0.50"),
+  );
+  expect(calibrationWords("index_pip_flexion second: the angle of thumb_mcp_flexion is not entered")).toBe(
+    `${words.poseOf(jointName(6), words.references["second"]!)}: the angle of ${jointName(2)} is not entered`,
+  );
+  expect(calibrationWords("curl of ring: the poses differ too little")).toBe(`${words.bending(strings.digits[3]!)}: the poses differ too little`);
 });

@@ -34,6 +34,7 @@ function make(kind: Parameters<typeof chart>[0], choice: Partial<PlotChoice> = {
   document.body.replaceChildren(drawn.element);
   return drawn;
 }
+const canvasOf = (of: Chart) => of.element.querySelector("canvas")!;
 const press = (on: Chart, key: string, shiftKey = false) => on.element.dispatchEvent(new KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }));
 const tip = () => document.querySelector<HTMLElement>(".plot-tip")!;
 const lines = () => [...tip().querySelectorAll("div")].map((line) => line.textContent);
@@ -180,7 +181,7 @@ describe("what is not sent", () => {
     fill(new Map([[index("force_raw", 5), 3]]), (i, row) => i >= 300 && (row[index("factor", 0)] = 0));
     const force = make("segment");
     await settled();
-    expect(textsOn(force.canvas())).toContain(strings.plots.notSent);
+    expect(textsOn(canvasOf(force))).toContain(strings.plots.notSent);
     press(force, "End");
     expect(spoken()).toContain(strings.plots.notSent);
     press(force, "Home");
@@ -191,7 +192,7 @@ describe("what is not sent", () => {
     fill(new Map([[index("force_raw", 5), 3]]));
     const force = make("segment");
     await settled();
-    expect(textsOn(force.canvas())).not.toContain(strings.plots.notSent);
+    expect(textsOn(canvasOf(force))).not.toContain(strings.plots.notSent);
   });
 });
 
@@ -206,7 +207,7 @@ describe("the ends of the digits' curves", () => {
     const force = make("force");
     await settled();
     const known = new Set([...strings.digits, ...strings.digitLetters]);
-    expect(new Set(textsOn(force.canvas()).filter((text) => known.has(text)))).toEqual(new Set([names[1], names[4]]));
+    expect(new Set(textsOn(canvasOf(force)).filter((text) => known.has(text)))).toEqual(new Set([names[1], names[4]]));
   });
 });
 
@@ -216,7 +217,7 @@ describe("what lies beyond a plot", () => {
     fill(new Map([[raw, 2]]), (i, row) => i >= 300 && i < 320 && (row[raw] = i === 310 ? 34.25 : 20));
     const force = make("segment");
     await settled();
-    const canvas = force.canvas();
+    const canvas = canvasOf(force);
     expect(textsOn(canvas)).toContain(strings.plots.beyond("34.3", "N"));
     const marks = drawnOn(canvas).filter((one) => one.what === "fill").length;
     forgetDrawn(canvas);

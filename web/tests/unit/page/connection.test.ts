@@ -67,12 +67,12 @@ afterEach(() => vi.useRealTimers());
 describe("Connection", () => {
   it("says hello first, and is open once it is welcome", () => {
     kept = "earlier";
-    const connection = connect();
+    connect();
     newest().onopen?.();
-    expect(connection.phase).toBe("connecting");
+    expect(phases.at(-1)).toBe("connecting");
     expect(newest().sent[0]?.what).toMatchObject({ case: "hello", value: { protocol: kProtocol, secret: "earlier", name: "Anna" } });
     newest().welcome("abc");
-    expect(connection.phase).toBe("open");
+    expect(phases.at(-1)).toBe("open");
     expect(kept).toBe("abc");
     expect(phases).toEqual(["connecting", "open"]);
   });
@@ -128,18 +128,18 @@ describe("Connection", () => {
 
   it("says that its link is refused, once three tries have failed, and still comes back", async () => {
     const linkExpired = vi.fn(() => Promise.resolve(true));
-    const connection = connect({ linkExpired });
+    connect({ linkExpired });
     for (let i = 0; i < 3; ++i) {
       expect(linkExpired).not.toHaveBeenCalled();
       newest().onclose?.();
       if (i < 2) await vi.advanceTimersByTimeAsync(kLongestWaitMs);
     }
     await vi.advanceTimersByTimeAsync(0);
-    expect(connection.phase).toBe("expired");
+    expect(phases.at(-1)).toBe("expired");
     await vi.advanceTimersByTimeAsync(kLongestWaitMs);
-    expect(connection.phase).toBe("expired");
+    expect(phases.at(-1)).toBe("expired");
     newest().welcome();
-    expect(connection.phase).toBe("open");
+    expect(phases.at(-1)).toBe("open");
   });
 
   it("says how many ticks it has taken in: after the first, and after every third; anew with each connection", () => {
@@ -156,17 +156,29 @@ describe("Connection", () => {
     expect(seen()).toEqual([[0, 1]]);
   });
 
+  it("drops a frame that is no message, and reports it", () => {
+    const report = vi.spyOn(console, "error").mockImplementation(() => {});
+    connect();
+    newest().welcome();
+    const count = messages.length;
+    newest().onmessage?.({ data: Uint8Array.of(255, 255, 255).buffer });
+    expect([report.mock.calls.length, messages.length]).toEqual([1, count]);
+    newest().say({ case: "tick", value: create(TickSchema) });
+    expect(messages.length).toBe(count + 1);
+    report.mockRestore();
+  });
+
   it("gives up a line that is silent, also before the welcome", () => {
-    const connection = connect();
+    connect();
     vi.advanceTimersByTime(kSilenceMs);
-    expect(connection.phase).toBe("waiting");
+    expect(phases.at(-1)).toBe("waiting");
     expect(sockets[0]?.closed).toBe(true);
     vi.advanceTimersByTime(250);
     newest().welcome();
     vi.advanceTimersByTime(kSilenceMs - 1);
-    expect(connection.phase).toBe("open");
+    expect(phases.at(-1)).toBe("open");
     vi.advanceTimersByTime(1);
-    expect(connection.phase).toBe("waiting");
+    expect(phases.at(-1)).toBe("waiting");
   });
 
   it("hears nothing more of a socket that it gave up", () => {
@@ -181,9 +193,9 @@ describe("Connection", () => {
   });
 
   it("stops trying where the station speaks another protocol", () => {
-    const connection = connect();
+    connect();
     newest().welcome("abc", kProtocol + 1);
-    expect(connection.phase).toBe("mismatch");
+    expect(phases.at(-1)).toBe("mismatch");
     vi.advanceTimersByTime(60_000);
     expect(sockets.length).toBe(1);
     expect(kept).toBe("");

@@ -4,7 +4,7 @@ import { describe, expect, it } from "vitest";
 import { TickSchema } from "../../../src/gen/phalanx/tick_pb";
 import { Delivery } from "../../../src/state/delivery";
 
-const tick = (time: number) => create(TickSchema, { time });
+const tick = (time: number, step = 0n) => create(TickSchema, { time, tick: step });
 
 describe("how pictures arrive", () => {
   it("counts those that came and those that are missing, and how much later than the fastest they were", () => {
@@ -38,5 +38,17 @@ describe("how pictures arrive", () => {
     delivery.feed(tick(3), 2);
     delivery.feed(tick(3 + 1 / 60), 2 + 1 / 60);
     expect(delivery.figures(2.1).missing).toBe(0);
+  });
+
+  it("counts no gap while the station changes, or before another one's first step", () => {
+    const delivery = new Delivery();
+    delivery.feed(tick(1, 1000n), 1);
+    delivery.rest();
+    delivery.feed(tick(3, 3000n), 3);
+    expect(delivery.figures(3).missing).toBe(0);
+    delivery.feed(tick(5, 1n), 5);
+    expect(delivery.figures(5).missing).toBe(0);
+    delivery.feed(tick(6, 1000n), 6); // at work all the time
+    expect(delivery.figures(6).missing).toBe(59);
   });
 });

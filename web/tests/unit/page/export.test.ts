@@ -29,7 +29,7 @@ describe("the CSV", () => {
     expect([cells.get("factor"), cells.get("verdict"), cells.get("scene")]).toEqual(["0.5", "steady", "press_teapot"]);
     expect(cells.get("digit_force index [N]")).toBe(String(0.5 * (203 + 204 + 205)));
     expect(cells.get("station_time [s]")).toBe("1.0000");
-    expect(cells.get("stiffness [N/m]")).toBe("1200");
+    expect(cells.get("stiffness [N/mm]")).toBe("1.2");
     for (let i = 0; i < kSegments; ++i) {
       expect(cells.get(`force_raw segment-${i} [N]`)).toBe(String(100 + i));
       expect(cells.get(`force_sent segment-${i} [N]`)).toBe(String(0.5 * (200 + i)));
@@ -73,6 +73,49 @@ describe("the figure", () => {
     expect(textsOf(svgOf(pressed(), { ...firstChoice, computed: new Array<boolean>(5).fill(true) }))).toEqual(expect.arrayContaining(computed));
   });
 
+  it("states what was in force in the steps that it shows, not what is when it is saved", () => {
+    const store = pressed();
+    const tell = (what: Parameters<typeof create<typeof ToPageSchema>>[1]) => store.receive(create(ToPageSchema, what));
+    const state = (scene: string, law: string) =>
+      tell({ what: { case: "state", value: { scene, deviceName: "Exo <5>", deviceSimulated: true, value: [{ key: "force.law", value: `"${law}"` }] } } });
+    const steps = (from: number, stiffness: number) => {
+      for (let i = 1; i <= 60; ++i) tell({ what: { case: "tick", value: { tick: BigInt(60 * from + i + 1), time: from + i / 60, factor: 1, stiffness } } });
+    };
+    state("pinch_ball", "hooke");
+    steps(10, 500);
+    state("pinch_ball", "duffing");
+    steps(11, 2200);
+    state("press_teapot", "kelvin_voigt");
+    const { facts } = strings.plots;
+    const laws = strings.force.laws;
+    const factsIn = (from: number, to: number) => figureOf(store, firstChoice, { from, to }).facts;
+    expect(factsIn(10.1, 11)).toEqual(expect.arrayContaining([facts.scene("pinch_ball"), facts.stiffness("0.5", "N/mm"), facts.law(laws["hooke"]!)]));
+    expect(factsIn(11.1, 12)).toEqual(expect.arrayContaining([facts.stiffness("2.2", "N/mm"), facts.law(laws["duffing"]!)]));
+    expect(factsIn(10.1, 12)).toEqual(
+      expect.arrayContaining([
+        facts.scene("pinch_ball"),
+        facts.changed(facts.stiffness(facts.fromTo("0.5", "2.2"), "N/mm")),
+        facts.changed(facts.law(`${laws["hooke"]}, ${laws["duffing"]}`)),
+        facts.simulated("Exo <5>"),
+      ]),
+    );
+    expect(factsIn(9, 11)).toContain(facts.changed(facts.scene("press_teapot, pinch_ball")));
+  });
+
+  it("says so where a part of what was in force is not known", () => {
+    const store = new Store();
+    store.setPhase("open");
+    const tick = (i: number) => store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: BigInt(i + 1), time: i / 60, factor: 1 } } }));
+    for (let i = 0; i < 60; ++i) tick(i);
+    store.receive(create(ToPageSchema, { what: { case: "state", value: { scene: "press_teapot" } } }));
+    for (let i = 60; i < 120; ++i) tick(i);
+    const { facts } = strings.plots;
+    const factsIn = (from: number, to: number) => figureOf(store, firstChoice, { from, to }).facts;
+    expect(factsIn(0, 2)).toEqual(expect.arrayContaining([facts.scene("press_teapot"), facts.partly]));
+    expect(factsIn(1, 2)).not.toContain(facts.partly);
+    expect(factsIn(0, 0.5).some((fact) => fact.startsWith(facts.scene("")))).toBe(false);
+  });
+
   it("has the curve of the finger that presses in its colour, and none for a force of zero", () => {
     const paths = [...svgOf(pressed()).matchAll(/<path d="([^"]*)" fill="none" stroke="([^"]*)"/g)].map(([, path, colour]) => ({ path: path!, colour }));
     expect(paths.length).toBe(5);
@@ -84,6 +127,20 @@ describe("the figure", () => {
     expect(all).toContain(strings.replay.kinds["stopped"]);
     expect(all).not.toContain(strings.replay.kinds["upload"]);
     expect(all).toContain(strings.plots.notSent);
+  });
+
+  it("marks in their colour the peaks that lie beyond its plot, and states how far they go", () => {
+    const marks = (svg: string) => [...svg.matchAll(/<polygon points="[^"]*" fill="([^"]*)"/g)].map(([, colour]) => colour);
+    const store = pressed();
+    expect(marks(svgOf(store, { ...firstChoice, subject: "segments" }))).toEqual([]);
+    for (const [i, forceRaw] of [20, 3, 34.25].entries()) {
+      const contact = [{ segment: 5, touching: true, force: 2, forceRaw, normal: [0, 0, 1] }];
+      store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: BigInt(700 + i), time: 10 + (i + 1) / 60, factor: 1, contact } } }));
+    }
+    const svg = figureSvg(figureOf(store, { ...firstChoice, subject: "segments" }, { from: 0, to: 11 })).text;
+    const own = digitColours.light[1]!.toLowerCase();
+    expect(marks(svg)).toEqual([own, own]);
+    expect(textsOf(svg)).toContain(strings.plots.beyond("34.3", "N"));
   });
 
   it("is a document without scripts, links or styles, whatever the texts", () => {

@@ -17,6 +17,7 @@ export interface FakeApp {
   readonly asked: (readonly Change[])[];
   readonly dragging: boolean[]; // of each of `asked`
   readonly resets: number[]; // times of the faults that were to be reset
+  readonly loaded: string[]; // scenes
   readonly opened: Opening[]; // that were to be opened
   readonly calibrated: CalibrateRequest[]; // steps of a calibration
   refuse: string; // what the station answers; empty: it does it
@@ -53,6 +54,10 @@ export function fakeApp(): FakeApp {
       made.calibrated.push(request);
       return answer();
     },
+    loadScene: (name: string) => {
+      made.loaded.push(name);
+      return answer();
+    },
     openDigit: (seen: Opening) => {
       made.opened.push(seen);
       return answer();
@@ -65,6 +70,7 @@ export function fakeApp(): FakeApp {
     asked: [],
     dragging: [],
     resets: [],
+    loaded: [],
     opened: [],
     calibrated: [],
     refuse: "",

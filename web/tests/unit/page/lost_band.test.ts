@@ -33,7 +33,7 @@ beforeEach(() => {
   receive({ case: "state", value: {} });
   store.setPhase("open");
   tick(1);
-  store.setGeometry({ left: false, segmentName: [], jointName: [], jointMin: [], jointMax: [], jointOpen: [], skin: null, segments: null, object: null, objectDisplay: null }, 0);
+  store.setGeometry({ left: false, segmentName: [], jointName: [], jointMin: [], jointMax: [], jointOpen: [], skin: null, segments: null, object: null, objectDisplay: null, underside: null }, 0);
 });
 
 describe("the band over the view", () => {

@@ -45,9 +45,9 @@ function setUp() {
 it("which digits began inside the object is said while it lasts, and not of a tick that is old", () => {
   const page = setUp();
   expect(page.tick([])).toBe("");
-  expect(page.tick([{ digit: 3 }])).toBe("The ring finger began inside the object and feels nothing. Open the hand, or move the object away.");
-  expect(page.tick([{ digit: 0 }, { digit: 1 }, { digit: 4 }])).toBe("The thumb, index finger and little finger began inside the object and feel nothing. Open the hand, or move the object away.");
-  expect(page.tick([{ digit: 1, phase: CONFIRMED }, { digit: 2, phase: NOT_FOLLOWED }])).toBe("The index finger is pushed out of the object. The middle finger did not follow for 3 s and feels nothing. Open the hand, or move the object away.");
+  expect(page.tick([{ digit: 3 }])).toBe("The ring finger began inside the object and has no force. Open the hand, or move the object away.");
+  expect(page.tick([{ digit: 0 }, { digit: 1 }, { digit: 4 }])).toBe("The thumb, index finger and little finger began inside the object and have no force. Open the hand, or move the object away.");
+  expect(page.tick([{ digit: 1, phase: CONFIRMED }, { digit: 2, phase: NOT_FOLLOWED }])).toBe("The index finger is pushed out of the object. The middle finger did not follow for 3 s and has no force. Open the hand, or move the object away.");
   expect(page.tick([])).toBe("");
   page.tick([{ digit: 3 }]);
   expect(page.grow(10_000)).toBe("");

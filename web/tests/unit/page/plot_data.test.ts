@@ -3,12 +3,11 @@
 import { describe, expect, it } from "vitest";
 import { pointsOf } from "../../../src/plots/decimate";
 import { clustersOf } from "../../../src/plots/event_clusters";
-import { labelPlaces } from "../../../src/plots/label_places";
 import { curvesOf, firstChoice, kindsOf, plotSubjects, type Curve } from "../../../src/plots/plot_kinds";
 import { polylines } from "../../../src/plots/polylines";
 import { statisticsOf } from "../../../src/plots/statistics";
 import { leftOut, notSent, pausesOf } from "../../../src/plots/stretches";
-import { decimalsOf, multiples, niceStep, timeStep } from "../../../src/plots/ticks";
+import { decimalsOf, labelPlaces, multiples, niceStep, timeStep } from "../../../src/plots/ticks";
 import { TimeView } from "../../../src/plots/time_view";
 import { channels, channelsOf } from "../../../src/state/channels";
 import type { Happened } from "../../../src/state/happened";

@@ -2,7 +2,8 @@
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeAll, beforeEach, describe, expect, it, vi } from "vitest";
 import { ToPageSchema } from "../../../src/gen/phalanx/cockpit_pb";
-import * as dom from "../../../src/panels/dom";
+import * as saving from "../../../src/panels/saving";
+import * as figure from "../../../src/plots/figure";
 import { firstChoice, titleOf, unitOf, type PlotKind } from "../../../src/plots/plot_kinds";
 import { plotPanel, type PlotPanel } from "../../../src/plots/plot_panel";
 import { csvOf } from "../../../src/plots/export";
@@ -81,7 +82,7 @@ describe("the plots", () => {
   });
 
   it("are saved as CSV by their button", async () => {
-    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    const save = vi.spyOn(saving, "saveBlob").mockImplementation(() => {});
     tick(1);
     press(words.csvLong);
     const [name, blob] = save.mock.calls[0]!;
@@ -90,7 +91,7 @@ describe("the plots", () => {
   });
 
   it("are saved as a figure; those of a recording under the recorded moment", async () => {
-    const save = vi.spyOn(dom, "saveBlob").mockImplementation(() => {});
+    const save = vi.spyOn(saving, "saveBlob").mockImplementation(() => {});
     tick(1);
     press(words.svgLong);
     Object.defineProperty(store, "recordedAt", { value: new Date(2026, 10, 27, 14, 3, 5).getTime() / 1000 });
@@ -102,6 +103,21 @@ describe("the plots", () => {
     const [live, recorded] = await Promise.all([save.mock.calls[0]![1].text(), save.mock.calls[2]![1].text()]);
     expect(live).not.toContain(strings.replay.watermark);
     expect(recorded).toContain(strings.replay.watermark);
+  });
+
+  it("say so where the browser cannot make their picture, until it can", async () => {
+    const save = vi.spyOn(saving, "saveBlob").mockImplementation(() => {});
+    const report = vi.spyOn(console, "error").mockImplementation(() => {});
+    const rasterised = vi.spyOn(figure, "rasterised").mockRejectedValueOnce(new Error("no memory")).mockResolvedValueOnce(null).mockResolvedValue(new Blob());
+    const said = [...panel.element.querySelectorAll<HTMLElement>("[role=alert]")].find((one) => one.textContent === words.pngFailed)!;
+    const shown: boolean[] = [];
+    for (let i = 0; i < 3; ++i) {
+      press(words.pngLong);
+      await vi.waitFor(() => expect(report.mock.calls.length + save.mock.calls.length).toBe(i + 1));
+      shown.push(!said.hidden);
+    }
+    expect(shown).toEqual([true, true, false]);
+    expect(rasterised).toHaveBeenCalledTimes(3);
   });
 
   it("leave nothing behind when they are disposed of", async () => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the list of all settings says of each key.
 import { create } from "@bufbuild/protobuf";
-import { beforeEach, describe, expect, it } from "vitest";
+import { beforeEach, describe, expect, it, vi } from "vitest";
 import { ChangeKind, KeyInfoSchema, KeyType, ToPageSchema, WelcomeSchema } from "../../../src/gen/phalanx/cockpit_pb";
 import { allowedText, factsText, settingsList, type SettingsList } from "../../../src/panels/settings_list";
 import { strings } from "../../../src/strings";
@@ -18,8 +18,11 @@ describe("allowedText", () => {
   });
 
   it("lists choices, and names the type where any value is allowed", () => {
-    expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_CHOICE, choice: ["hooke", "duffing"] }))).toBe("range hooke, duffing");
-    expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_FLAG }))).toBe("range true, false");
+    const { laws } = strings.force;
+    const law = create(KeyInfoSchema, { path: "force.law", type: KeyType.KEY_CHOICE, choice: ["hooke", "duffing"], defaultValue: '"hooke"' });
+    expect(allowedText(law)).toBe(strings.settings.oneOf(`${laws["hooke"]}, ${laws["duffing"]}`));
+    expect(factsText(law, "")).toContain(strings.settings.default(laws["hooke"]!));
+    expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_FLAG }))).toBe(strings.settings.oneOf("on, off"));
     expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_FILE }))).toBe("file");
     const unbounded = { min: -Infinity, max: Infinity };
     expect(allowedText(create(KeyInfoSchema, { type: KeyType.KEY_VECTOR, range: unbounded }))).toBe("vector");
@@ -102,6 +105,27 @@ describe("the list of all settings", () => {
     search("");
     expect(shown().map(([, open]) => open)).toEqual([false, false, false]);
     expect(searching).toBe(false);
+  });
+
+  it("keeps what was typed until it is granted, and asks for one thing at a time", async () => {
+    const exponent = [...list.element.querySelectorAll<HTMLElement>("li")].find((one) => one.querySelector("strong")!.textContent === words.labels["force.exponent"])!;
+    const input = exponent.querySelector("input")!;
+    const set = [...exponent.querySelectorAll("button")].find((one) => one.textContent === words.apply)!;
+    const error = exponent.querySelector<HTMLElement>("[role=alert]")!;
+    input.value = "900";
+    input.dispatchEvent(new Event("input"));
+    fake.refuse = "too large";
+    set.click();
+    fake.operate(kMe);
+    expect([set.disabled, input.value]).toEqual([true, "900"]);
+    await vi.waitFor(() => expect(error.textContent).toBe("too large"));
+    fake.operate(kMe);
+    expect([set.disabled, input.value, error.hidden]).toEqual([false, "900", false]);
+    fake.refuse = "";
+    set.click();
+    await vi.waitFor(() => expect(error.hidden).toBe(true));
+    expect(set.disabled).toBe(true);
+    expect(fake.asked.length).toBe(2);
   });
 
   it("filters by group, and what differs from the scene", () => {

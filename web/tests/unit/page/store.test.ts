@@ -162,6 +162,22 @@ describe("what is drawn", () => {
   });
 });
 
+describe("the role", () => {
+  it("is not known from the line's break until the station has stated who operates", () => {
+    const mine = () => {
+      receive({ case: "welcome", value: { page: 2, mayOperate: true } });
+      receive({ case: "state", value: { operatorPage: 2 } });
+    };
+    mine();
+    expect(store.role).toBe("mine");
+    store.setPhase("waiting");
+    store.setPhase("open");
+    expect(store.role).toBe("offline");
+    mine();
+    expect(store.role).toBe("mine");
+  });
+});
+
 describe("listeners", () => {
   it("hear all, though one of them throws", () => {
     const report = vi.spyOn(console, "error").mockImplementation(() => {});
@@ -174,6 +190,20 @@ describe("listeners", () => {
     expect(heard).toHaveBeenCalledOnce();
     expect(report).toHaveBeenCalledOnce();
     report.mockRestore();
+  });
+});
+
+describe("pictures that are missing", () => {
+  const missing = () => store.delivery.figures(now / 1000).missing;
+  it("are those that a station at work sent, not those of the time in which it changed", () => {
+    for (const [busy, expected] of [["another scene", 0], ["", 59]] as const) {
+      store = new Store(() => now);
+      store.setPhase("open");
+      tick(1);
+      receive({ case: "state", value: { busy } });
+      tick(2);
+      expect(missing(), busy).toBe(expected);
+    }
   });
 });
 

@@ -23,16 +23,19 @@ describe("toasts", () => {
     expect(shown(), "the newest first").toEqual(["the log cannot be written", "pinch_ball"]);
   });
 
-  it("shows nothing of a change that this page made itself", () => {
+  it("shows nothing of a change that this page made itself, nor of one that it was refused", () => {
     store.receive(create(ToPageSchema, { what: { case: "welcome", value: { page: 2 } } }));
-    const by = (who: string, level = Notice_Level.CHANGE) =>
-      store.receive(create(ToPageSchema, { what: { case: "notice", value: { level, who, code: "set", text: `by ${who}`, unixTime: 1 } } }));
+    const by = (who: string, level = Notice_Level.CHANGE, code = "set") =>
+      store.receive(create(ToPageSchema, { what: { case: "notice", value: { level, who, code, text: `by ${who}`, unixTime: 1 } } }));
     by("page 2 (127.0.0.1), Anna");
     by("page 2");
+    by("page 2", Notice_Level.WARNING, "refused");
     expect(shown()).toEqual([]);
+    by("page 3", Notice_Level.WARNING, "refused");
+    expect(shown()).toEqual(["by page 3"]);
     by("page 21 (127.0.0.1)");
     by("page 2", Notice_Level.WARNING);
-    expect(shown()).toEqual(["by page 2", "by page 21 (127.0.0.1)"]);
+    expect(shown()).toEqual(["by page 2", "by page 21", "by page 3"]);
   });
 
   it("leaves a fault of the station to its card", () => {

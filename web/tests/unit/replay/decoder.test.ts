@@ -46,7 +46,7 @@ it("a chunk holds what was written, with times since the begin; its survey has t
     {
       time: 0.001,
       value: {
-        scene: "s", slides: false, objectKind: "mug", digitLimit: 7.5, stiffness: "", law: "", stabiliser: "", rate: "",
+        scene: "s", slides: false, objectKind: "mug", digitLimit: 7.5, law: "", stabiliser: "", rate: "",
         device: "beihang", rendersTorque: false, simulated: false, sensedJoint: [],
       },
     },

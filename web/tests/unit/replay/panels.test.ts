@@ -5,7 +5,7 @@ import { listenToReplayKeys, type ReplayActions } from "../../../src/replay/repl
 import { SourceError } from "../../../src/replay/source";
 import { startPanel } from "../../../src/replay/start_panel";
 import type { Listed } from "../../../src/replay/station_list";
-import { durationText } from "../../../src/replay/times";
+import { durationText } from "../../../src/panels/as_text";
 import { strings } from "../../../src/strings";
 
 const words = strings.replay;

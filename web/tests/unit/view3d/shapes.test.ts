@@ -51,9 +51,9 @@ describe("shapesOf", () => {
 });
 
 describe("buffersOf", () => {
-  it("are those of all arrays, each once: 7 of the skin, 5 of the segments, 3 of the object; none of a display mesh for what is flat", () => {
+  it("are those of all arrays, each once: 7 of the skin, 5 of the segments, 3 of the object and one of its underside; none of a display mesh for what is flat", () => {
     const buffers = buffersOf(shapesOf(geometry));
-    expect(buffers.length).toBe(7 + 5 + 3);
+    expect(buffers.length).toBe(7 + 5 + 3 + 1);
     expect(new Set(buffers).size).toBe(buffers.length);
   });
 });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Times and sizes as text.
 import { strings } from "../strings";
 
 const two = (value: number) => String(value).padStart(2, "0");
@@ -12,6 +13,13 @@ export function durationText(seconds: number, decimals = 1): string {
   const clock = `${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
   const fraction = decimals > 0 ? `.${String(units % scale).padStart(decimals, "0")}` : "";
   return `${hours > 0 ? `${hours}:` : ""}${clock}${fraction}`;
+}
+
+/// 14:03:59, of this browser's clock.
+export function clockTime(unixSeconds: number, decimals = 0): string {
+  const fraction = decimals > 0 ? { fractionalSecondDigits: Math.min(3, decimals) as 1 | 2 | 3 } : {};
+  const time = { hourCycle: "h23", hour: "2-digit", minute: "2-digit", second: "2-digit", ...fraction } as const;
+  return new Date(unixSeconds * 1000).toLocaleTimeString(strings.figures, time);
 }
 
 /// 27 Nov 2026, 14:03, of this browser's clock.

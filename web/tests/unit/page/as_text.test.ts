@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, it } from "vitest";
-import { clockTime } from "../../../src/panels/clock";
+import { clockTime } from "../../../src/panels/as_text";
 
 it("the clock says hours from 0 to 23, minutes and seconds", () => {
   const at = (hours: number, minutes: number, seconds: number) => clockTime(new Date(2026, 10, 22, hours, minutes, seconds).getTime() / 1000);
