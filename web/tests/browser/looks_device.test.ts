@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // With a device on a wire: its faults and its calibration, as seen and as they work.
 import { beforeAll, describe, expect, it } from "vitest";
-import { poseName } from "../../src/panels/joint_table";
+import { calibrationWords, poseName } from "../../src/panels/joint_table";
 import { strings } from "../../src/strings";
 import type { CockpitPage } from "./support/cockpit_page";
 import { shootReadable } from "./support/readable";
@@ -68,7 +68,7 @@ describe("a device on a wire", () => {
       const { wizard: now } = cockpit.stream.state!;
       return now !== undefined && now.problem.length > 0 && now;
     }, () => cockpit.brief());
-    for (const words of [...problem, ...result]) await cockpit.page.getByText(words).first().waitFor();
+    for (const words of [...problem, ...result].map(calibrationWords)) await cockpit.page.getByText(words).first().waitFor();
     await shootReadable(cockpit, "33_wizard_refused");
     await cockpit.button(words.abandon).click();
     await cockpit.untilState("no wizard any more", (state) => state.wizard === undefined && !state.stationGone && state.busy === "");

@@ -77,7 +77,7 @@ describe("the cards of scenes", () => {
     fake.refuse = "grasp.type = sphere: this hand cannot";
     shown()[3]!.click();
     await new Promise((done) => setTimeout(done));
-    expect(element.querySelector(".refused:not([hidden])")!.textContent).toBe("“Type of grasp” = sphere: this hand cannot");
+    expect(element.querySelector(".refused:not([hidden])")!.textContent).toBe("“Type of grasp” = Whole hand around a ball: this hand cannot");
   });
 
   it("end with the user's own object", () => {
