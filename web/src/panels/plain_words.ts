@@ -34,7 +34,7 @@ export function valueLabel(key: string, value: string): string {
 const kSetting = /(?<![\w./-])([a-z]+(?:\.(?:\d+\.)?[a-z0-9_]+)+)(?![\w/.-]*\w)(?: = (?:"([a-z0-9_]+)"|([a-z_]+)(?![\w."])))?/g;
 const kPartOfObject = /(?<=, )([a-z_]+)(?= [-\d[])/g; // objects.0 = sphere, diameter_mm 60
 const kFolders = /(?<![\w:/])(?:[\w.~-]*\/)+([\w.-]+\.\w+)/g;
-const kAddressOfPage = /\b(page(?: \d+)?) \([\da-f.:]+\)/gi;
+const kAddressOfPage = /\b(page(?: \d+)?) \([\da-f.:]+(?:%\w+)?\)/gi;
 
 function settingWords(whole: string, key: string, quoted?: string, bare?: string): string {
   const label = settingLabel(key);
@@ -60,8 +60,8 @@ export const eventWords = (code: string, text: string) => (code === "marker" ? t
 /// @param name  that its person has given; empty: none
 export const pageName = (number: number, name: string) => (name === "" ? strings.page(number) : strings.namedPage(name, strings.page(number)));
 
-const kPage = /^page (\d+)(?: \([\da-f.:]+\))?(?:, (.*))?$/i;
-const kAddress = /^[\da-f]*[.:][\da-f.:]*$/i;
+const kPage = /^page (\d+)(?: \([^)]*\))?(?:, (.*))?$/;
+const kAddress = /^[\da-f]*[.:][\da-f.:]*(?:%\w+)?$/i;
 
 /// @param who  did something, as the station states it: "page 2 (127.0.0.1), Anna"; empty: the station  @param own  number of this page
 export function whoText(who: string, own?: number): string {

@@ -46,7 +46,7 @@ it("an index of an object is of no account for its label", () => {
 });
 
 it("people and programs have no addresses", () => {
-  const all = ["page 2 (127.0.0.1), Anna", "page 2 (::1)", "a page (127.0.0.1)", "127.0.0.1", "the terminal", ""];
+  const all = ["page 2 (127.0.0.1), Anna", "page 2 (fe80::1%eth0)", "a page (127.0.0.1)", "127.0.0.1", "the terminal", ""];
   expect(all.map((who) => whoText(who))).toEqual(["Anna (page 2)", "page 2", "a page", "a program", "the terminal", "station"]);
   expect(whoText("page 2 (127.0.0.1), Anna", 2)).toBe("you");
 });

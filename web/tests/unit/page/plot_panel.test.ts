@@ -110,6 +110,7 @@ describe("the plots", () => {
     const report = vi.spyOn(console, "error").mockImplementation(() => {});
     const rasterised = vi.spyOn(figure, "rasterised").mockRejectedValueOnce(new Error("no memory")).mockResolvedValueOnce(null).mockResolvedValue(new Blob());
     const said = [...panel.element.querySelectorAll<HTMLElement>("[role=alert]")].find((one) => one.textContent === words.pngFailed)!;
+    tick(1);
     const shown: boolean[] = [];
     for (let i = 0; i < 3; ++i) {
       press(words.pngLong);
