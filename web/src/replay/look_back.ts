@@ -63,7 +63,8 @@ export class LookBack {
   private async poseAt({ recording, lookup }: Opened, time: number, utcOffset: number): Promise<{ tick: Tick; place: number } | undefined> {
     if (Number.isNaN(this.clock)) this.clock = Number(recording.layout.begin) / 1e9 - utcOffset;
     for (let tries = 0; tries < 2; ++tries) {
-      const found = await lookup.last("/pose", time - this.clock + kHalfPose);
+      const before = await lookup.last("/pose", time - this.clock + kHalfPose);
+      const found = before ?? (tries === 0 ? await lookup.poseAfter(-Infinity) : undefined);
       if (!found) return undefined;
       const tick = fromBinary(TickSchema, found.value);
       const clock = tick.time - found.time;

@@ -44,6 +44,8 @@ const settled = () => new Promise((resolve) => setTimeout(resolve));
 
 beforeAll(fakeCanvases);
 beforeEach(() => {
+  vi.spyOn(HTMLElement.prototype, "clientWidth", "get").mockReturnValue(600);
+  vi.spyOn(HTMLElement.prototype, "clientHeight", "get").mockReturnValue(200);
   drawn?.dispose();
   history = new History(channels.length, 660);
   view = new TimeView(history, 10);
@@ -111,7 +113,7 @@ describe("a plot under the pointer", () => {
     await settled();
     expect(tip().hidden).toBe(false);
     expect(lines()[0]).toMatch(/^Thumb flexion/);
-    point(5, 30);
+    point(5, 150);
     await settled();
     expect(lines()[0]).toMatch(/^Thumb spread/);
     const row = new Float64Array(channels.length).fill(0.25);

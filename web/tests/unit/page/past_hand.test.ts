@@ -77,8 +77,8 @@ describe("the hand of an earlier moment", () => {
     await turn();
     arrive();
     await turn();
-    expect(seen.asked).toEqual([4, 6]);
-    expect(seen.shown).toEqual([4, 6]);
+    expect(seen.asked).toEqual([1, 6]);
+    expect(seen.shown).toEqual([1, 6]);
   });
 
   it("is not shown any more if it arrives after the plots go on", async () => {

@@ -35,7 +35,7 @@ it("a digit's bar ends at its limit, which is said in words; a force that is not
   const { element, update } = readouts(store, openings({ ...fakeApp().app, store }));
   const sensed = [0, 1, 2, 3, 4, 5, 6, 7]; // thumb and index finger
   const value = [{ key: "limits.fingertip_force_n", value: "5" }];
-  store.receive(create(ToPageSchema, { what: { case: "state", value: { sensedJoint: sensed, value } } }));
+  store.receive(create(ToPageSchema, { what: { case: "state", value: { sensedJoint: sensed, rendersTorque: true, value } } }));
   const contact = [2, 5, 8].map((segment, i) => ({ segment, touching: true, force: [2.5, 4.98, 5][i]!, normal: [0, 0, 1] }));
   store.receive(create(ToPageSchema, { what: { case: "tick", value: { tick: 1n, time: 1, factor: 1, contact } } }));
   update();
@@ -43,5 +43,8 @@ it("a digit's bar ends at its limit, which is said in words; a force that is not
   expect(cards.map((card) => card.querySelector<HTMLElement>(".bar")!.style.transform).slice(0, 3)).toEqual(["scaleX(0.500)", "scaleX(0.996)", "scaleX(1.000)"]);
   const notes = cards.map((card) => [...card.querySelectorAll<HTMLElement>(".digit-note")].filter((note) => !note.hidden).map((note) => note.textContent));
   expect(notes).toEqual([[], [strings.atLimit], [strings.notFelt], [strings.notFelt], [strings.notFelt]]);
-  expect(cards.map((card) => card.dataset["felt"])).toEqual(["true", "true", "false", "false", "false"]);
+  const felt = () => cards.map((card) => card.dataset["felt"]);
+  expect(felt()).toEqual(["true", "true", "false", "false", "false"]);
+  store.receive(create(ToPageSchema, { what: { case: "state", value: { sensedJoint: sensed, rendersTorque: false, value } } }));
+  expect(felt(), "a glove that only stops a finger").toEqual(Array(5).fill("false"));
 });

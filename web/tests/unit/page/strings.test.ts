@@ -51,6 +51,7 @@ const same: readonly string[] = [
   "Phalanx", "STOP", "Ball", "Hand", "Station", "Pause", "Hooke (linear)",
   "mm", "cm", "m", "N", "Nm", "N/s", "N/mm", "N/m", "Nm/s", "rad", "deg", "rad/s", "Hz", "s", "°",
   "21 mm", "21 µs", "21 ms", "21 s", "21 min", "21 MB", "21 GB", "21 Hz", "21°", "21×", "21 22 N", "99 %", "99.9 %",
+  "M", "R", "x", "y", "z", "21 ↑", "21 = 22", "21 (22)", ", ",
   "–", "; ", "21, 22", "21: 22", "21 [22]", "21 ×22", "✕", "HTTP 21",
   "‹ Pose", "Pose ›", "CSV", "SVG", "PNG", "phalanx-fault-21.json", "time", "station_time", "thumb", "index", "middle", "ring", "little",
   "P", "← →", ", .", "< >", "1 2 3 4", "+ −", "Tab", "Esc", "?",

@@ -147,9 +147,9 @@ describe("a mesh of one's own", () => {
     choose("a.stl");
     named(words.upload).click();
     upload.setOpen(false);
+    expect(sent[0]!.signal.aborted).toBe(false);
     sent[0]!.answer(good);
     await flush();
-    expect(sent[0]!.signal.aborted).toBe(false);
     expect(summary()).toBe(words.usable("a.stl"));
     expect(upload.probe()).toBeUndefined();
   });

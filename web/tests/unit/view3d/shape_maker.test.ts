@@ -46,6 +46,6 @@ describe("the thread", () => {
     vi.unstubAllGlobals();
     expect(said.length).toBe(1);
     expect(said[0]![0]).toEqual(shapesOf(geometry));
-    expect(said[0]![1].transfer.length).toBe(3);
+    expect(said[0]![1].transfer.length).toBe(4);
   });
 });
