@@ -21,6 +21,7 @@
 
 #include "phalanx/geometry.pb.h"
 #include "phalanx/mesh/import_cache.h"
+#include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_writer.h"
 #include "record/recording/topics.h"
 #include "serve/cockpit_fixture.h"

@@ -216,11 +216,12 @@ export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) =
   const title = el("h2", { id });
   const zero = el("p", { class: "calibration-zero" }, words.torqueZero);
   const giveUp = guarded(app, abandon);
+  const head = el("header", {}, el("div", {}, title, zero), giveUp);
+  const who = roleStrip(app); // that of the side panel is hidden while the dialog is shown
   const dialog = el(
     "section",
     { class: "calibration", role: "dialog", "aria-labelledby": id, tabindex: -1, hidden: true },
-    el("header", {}, el("div", {}, title, zero), giveUp),
-    roleStrip(app), // who may act; that of the side panel is hidden meanwhile
+    head,
     el("div", { class: "calibration-body" }, error, guarded(app, asks, course)),
   );
 
@@ -256,6 +257,8 @@ export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) =
     if (now !== told) onShown((told = now));
     if (dialog.hidden === !shown) return;
     setShown(dialog, shown);
+    if (shown) head.after(who);
+    else who.remove();
     if (shown) return dialog.focus();
     say("");
     if (before instanceof HTMLElement && before.isConnected) before.focus();

@@ -151,6 +151,7 @@ export class FakeHost {
       ],
       geometry: 1, safety: SafetyState.SAFETY_RUNNING, source: HandSource.HAND_PATIENT, deviceSpec: "simulated",
       deviceName: "Beihang exoskeleton", deviceSerial: "SIM-0001", deviceSimulated: true, rendersTorque: true, deviceState: "active",
+      sensedJoint: [0, 1, 2, 3, 4, 5, 6, 7], // of thumb and index finger: the others follow, as on the device of ./run
       realtime: "SCHED_FIFO 80, memory locked",
       link: { received: 118230n, lost: 0n, corrupt: 0n, refused: 0n, outdated: 0n, sent: 118229n },
       loop: {
