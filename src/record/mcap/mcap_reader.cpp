@@ -328,7 +328,10 @@ Summary summarise_until(const ReadableFile& file, std::uint64_t until) {
             fmt::format("schemas, channels and metadata have more than {} bytes", kMostDescription));
       read_record(file, place, record);
       if (op == Op::kSchema) summary.schemas.push_back(parse_schema(record.content));
-      if (op == Op::kChannel) summary.channels.push_back(parse_channel(record.content));
+      if (op == Op::kChannel) {
+        summary.channels.push_back(parse_channel(record.content));
+        summary.messages[summary.channels.back().id] = 0;
+      }
       if (op == Op::kMetadata)
         summary.metadata.push_back({.place = place,
                                     .length = kRecordHead + length,

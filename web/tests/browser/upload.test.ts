@@ -8,7 +8,7 @@ import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, box, cube, noise } from "./support/meshes";
 import { differing, shoot } from "./support/pictures";
 import { valueOf } from "./support/settings";
-import { stage, unseen } from "./support/stage";
+import { small, stage } from "./support/stage";
 import { until } from "./support/until";
 
 const words = strings.object;
@@ -19,7 +19,7 @@ const play = stage();
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station("grasp_box")).url, unseen);
+  cockpit = await play.open((await play.station("grasp_box")).url, small);
   await cockpit.untilRunning();
   await cockpit.openOwnObject();
 });
