@@ -216,7 +216,7 @@ export function calibrationDialog(app: App, onShown: (shown: CalibrationShown) =
   const title = el("h2", { id });
   const zero = el("p", { class: "calibration-zero" }, words.torqueZero);
   const giveUp = guarded(app, abandon);
-  const head = el("header", {}, el("div", {}, title, zero), giveUp);
+  const head = el("div", { class: "calibration-head" }, el("div", {}, title, zero), giveUp);
   const who = roleStrip(app); // that of the side panel is hidden while the dialog is shown
   const dialog = el(
     "section",

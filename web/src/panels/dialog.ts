@@ -26,9 +26,9 @@ export function openDialog(app: DialogHost, title: string, content: readonly Nod
     if (before instanceof HTMLElement && before.isConnected) before.focus();
   };
   const element = el(
-    "section", // so that its header is not the page's
+    "div",
     { class: "dialog", role: "dialog", "aria-labelledby": id, tabindex: -1 },
-    el("header", {}, el("h2", { id }, title), button(strings.look.close, close, { class: "quiet" })),
+    el("div", { class: "dialog-head" }, el("h2", { id }, title), button(strings.look.close, close, { class: "quiet" })),
     el("div", { class: "dialog-body" }, ...content),
   );
   element.addEventListener("phalanx-close", close);

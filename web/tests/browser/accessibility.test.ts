@@ -77,7 +77,7 @@ const openStates: readonly PageState[] = [
   { name: "no_station", before: (host) => Object.assign(host.state, { stationGone: true, trouble: "The device did not open." }) },
   { name: "watch_only", before: (host) => (host.mayOperate = false) },
   { name: "all_scenes", act: async (page) => page.click(".section-scenes > button") },
-  { name: "list_of_a_choice", act: async (page) => { await page.click("[data-tab=expert]"); await page.click(".row .choice"); } },
+  { name: "list_of_a_choice", act: async (page) => { await page.click("[data-tab=expert]"); await page.click(".row .choice:visible"); } },
   { name: "own_object", act: async (page) => page.click(".card-own") },
   { name: "parts_of_the_view", act: async (page) => page.click(".view-parts > summary") },
   { name: "plots_of_joints", act: async (page) => page.click(".plot-tools .segmented button:nth-child(3)") },
