@@ -6,9 +6,9 @@ import { strings } from "../../src/strings";
 import type { MeshPreviewProbe } from "../../src/view3d/mesh_preview";
 import type { CockpitPage } from "./support/cockpit_page";
 import { asFile, box, cube, noise } from "./support/meshes";
-import { differing, shoot } from "./support/pictures";
+import { shoot } from "./support/pictures";
 import { valueOf } from "./support/settings";
-import { small, stage } from "./support/stage";
+import { stage, unseen } from "./support/stage";
 import { until } from "./support/until";
 
 const words = strings.object;
@@ -19,7 +19,7 @@ const play = stage();
 let cockpit: CockpitPage;
 
 beforeAll(async () => {
-  cockpit = await play.open((await play.station("grasp_box")).url, small);
+  cockpit = await play.open((await play.station("grasp_box")).url, unseen);
   await cockpit.untilRunning();
   await cockpit.openOwnObject();
 });
@@ -132,11 +132,9 @@ describe("an uploaded mesh", () => {
     for (const extent of preview.extent) expect(extent).toBeCloseTo(kCube / 1000, 5);
     expect(preview.bar).toBe(0.1);
     const place = page.getByRole("application", { name: words.preview });
-    const first = await place.screenshot();
     await place.focus();
     for (let i = 0; i < 4; ++i) await page.keyboard.press("ArrowRight"); // an eighth of a turn
     const turned = await untilPreview("turned by keys", ({ direction }) => Math.abs(Math.atan2(direction[1], direction[0]) - Math.atan2(preview.direction[1], preview.direction[0]) - Math.PI / 4) < 1e-6);
-    await until("the picture of the turned cube", async () => (await differing(page, first, await place.screenshot())) > 0.05);
     const around = (await place.boundingBox())!;
     await page.mouse.move(around.x + around.width / 2, around.y + around.height / 2);
     await page.mouse.down();
@@ -147,7 +145,6 @@ describe("an uploaded mesh", () => {
     await page.mouse.move(around.x + around.width / 2, around.y + 10);
     await cockpit.stream.next(30);
     expect((await cockpit.preview())!.frames - frames, "nothing changes: nothing is drawn").toBeLessThanOrEqual(1);
-    await shoot(page, "mesh_preview");
   });
 
   it("is used without a preview if that is malformed", async () => {
