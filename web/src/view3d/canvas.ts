@@ -101,22 +101,3 @@ export function isSoftware(renderer: WebGLRenderer): boolean {
   const name: unknown = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
   return typeof name === "string" && /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
-
-const kMarkSize = 0.05; // height of the letters, of the picture's
-
-/// A copy of the canvas with words in its upper left corner; without words the canvas itself.
-export function marked(canvas: HTMLCanvasElement, mark: string): HTMLCanvasElement {
-  const copy = document.createElement("canvas");
-  const context = mark ? copy.getContext("2d") : null;
-  if (!context) return canvas;
-  [copy.width, copy.height] = [canvas.width, canvas.height];
-  context.drawImage(canvas, 0, 0);
-  const size = Math.round(kMarkSize * copy.height);
-  context.font = `600 ${size}px system-ui, sans-serif`;
-  context.lineWidth = size / 6;
-  context.strokeStyle = "black"; // legible on every background
-  context.fillStyle = "white";
-  context.strokeText(mark, size, 2 * size);
-  context.fillText(mark, size, 2 * size);
-  return copy;
-}

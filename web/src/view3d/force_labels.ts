@@ -31,6 +31,27 @@ export function apart(wanted: readonly Placed[]): Placed[] {
   return placed;
 }
 
+/// A label in the picture, from its upper left corner [pixels of the style sheet].
+export interface PlacedLabel {
+  readonly label: ForceLabel;
+  readonly left: number;
+  readonly top: number;
+}
+
+/// @param width, height  of the picture [pixels of the style sheet]
+export function placedLabels(labels: readonly ForceLabel[], camera: Camera, width: number, height: number): PlacedLabel[] {
+  const tip = new Vector3();
+  const seen = labels.flatMap((label) => {
+    tip.set(...label.tip).project(camera);
+    if (!(Math.abs(tip.x) < 1 && Math.abs(tip.y) < 1 && tip.z < 1)) return [];
+    const breadth = kBreadth * label.text.length;
+    const left = Math.min(((tip.x + 1) / 2) * width + kAside, width - breadth);
+    return [{ label, at: { left, top: Math.max(0, ((1 - tip.y) / 2) * height - kHeight / 2), width: breadth } }];
+  });
+  const places = apart(seen.map(({ at }) => at));
+  return seen.map(({ label }, i) => ({ label, left: places[i]!.left, top: places[i]!.top }));
+}
+
 export class ForceLabels {
   readonly element = document.createElement("div");
   private readonly spans: HTMLElement[] = [];
@@ -40,17 +61,7 @@ export class ForceLabels {
     this.element.ariaHidden = "true"; // the figures above the view say it
   }
 
-  /// @param width, height  of the picture [pixels of the style sheet]
-  show(labels: readonly ForceLabel[], camera: Camera, width: number, height: number): void {
-    const tip = new Vector3();
-    const seen = labels.flatMap((label) => {
-      tip.set(...label.tip).project(camera);
-      if (!(Math.abs(tip.x) < 1 && Math.abs(tip.y) < 1 && tip.z < 1)) return [];
-      const breadth = kBreadth * label.text.length;
-      const left = Math.min(((tip.x + 1) / 2) * width + kAside, width - breadth);
-      return [{ label, at: { left, top: Math.max(0, ((1 - tip.y) / 2) * height - kHeight / 2), width: breadth } }];
-    });
-    const places = apart(seen.map(({ at }) => at));
+  show(seen: readonly PlacedLabel[]): void {
     while (this.spans.length < seen.length) this.spans.push(this.element.appendChild(document.createElement("span")));
     this.spans.forEach((span, i) => {
       const one = seen[i];
@@ -58,7 +69,7 @@ export class ForceLabels {
       if (!one) return;
       if (span.textContent !== one.label.text) span.textContent = one.label.text;
       span.dataset["felt"] = String(one.label.felt);
-      span.style.transform = `translate(${places[i]!.left.toFixed(1)}px, ${places[i]!.top.toFixed(1)}px)`;
+      span.style.transform = `translate(${one.left.toFixed(1)}px, ${one.top.toFixed(1)}px)`;
     });
   }
 }

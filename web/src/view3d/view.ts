@@ -5,14 +5,15 @@ import type { Tick } from "../gen/phalanx/tick_pb";
 import type { ThemeName } from "../theme";
 import type { FreePart } from "./camera_presets";
 import { CameraRig, FixedCamera } from "./camera_rig";
-import { Canvas, isSoftware, marked } from "./canvas";
+import { Canvas, isSoftware } from "./canvas";
 import type { ViewTrouble } from "./canvas";
-import { ForceLabels } from "./force_labels";
+import { ForceLabels, placedLabels, type PlacedLabel } from "./force_labels";
 import type { ForceScale } from "./force_scale";
 import { HandScene } from "./hand_scene";
 import type { CameraPreset, HandView, Pane, ShownParts, ViewProbe } from "./hand_view";
 import { kMostViews, panesFor, viewsWithRoom } from "./panes";
 import { highestQuality, pixelRatioFor, QualityWatch, qualityLevels } from "./quality";
+import { savedPicture } from "./saved_picture";
 import type { Shapes } from "./shapes";
 import type { SkinToneName } from "./skin_tones";
 
@@ -177,7 +178,7 @@ class View implements HandView {
   picture(mark = ""): string {
     if (!this.renderer) return "";
     this.draw(now()); // the canvas keeps nothing between frames
-    return marked(this.renderer.domElement, mark).toDataURL("image/png");
+    return savedPicture(this.renderer.domElement, mark, this.labels(), this.size.height).toDataURL("image/png");
   }
 
   dispose(): void {
@@ -235,12 +236,16 @@ class View implements HandView {
       if (other && pane.preset) moving = other.update(pane.preset, sight(), this.aspectOf(pane), this.free, step) || moving;
       this.drawPane(renderer, pane, other ?? this.rig);
     });
-    const labels = qualityLevels[this.watch.level]!.figures ? this.content.labels() : [];
-    this.figures.show(labels, this.rig.camera, panes[0]!.width * this.size.width, this.size.height);
+    this.figures.show(qualityLevels[this.watch.level]!.figures ? this.labels() : []);
     ++this.frames;
     this.lastFrame = at;
     this.recent = [...this.recent.filter((time) => time > at - kRateWindow), at];
     if (moving) this.demand();
+  }
+
+  /// Figures of the first view.
+  private labels(): PlacedLabel[] {
+    return placedLabels(this.content.labels(), this.rig.camera, this.panes[0]!.width * this.size.width, this.size.height);
   }
 
   private drawPane(renderer: WebGLRenderer, pane: Pane, { camera, target }: Pick<CameraRig, "camera" | "target">): void {

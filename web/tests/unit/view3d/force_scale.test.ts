@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { PerspectiveCamera } from "three";
 import { describe, expect, it } from "vitest";
-import { apart, ForceLabels } from "../../../src/view3d/force_labels";
+import { apart, ForceLabels, placedLabels } from "../../../src/view3d/force_labels";
 import { arrowLength, forceScale, isAtLimit, shareOf } from "../../../src/view3d/force_scale";
 
 describe("the scale of forces", () => {
@@ -44,11 +44,11 @@ describe("figures at the arrows' tips", () => {
     const camera = new PerspectiveCamera(90, 1, 0.01, 10);
     camera.updateMatrixWorld();
     const labels = new ForceLabels();
-    labels.show([{ text: "1 N", tip: [0, 0, -1], felt: true }, { text: "2 N", tip: [0, 0, 1], felt: true }], camera, 200, 100);
+    labels.show(placedLabels([{ text: "1 N", tip: [0, 0, -1], felt: true }, { text: "2 N", tip: [0, 0, 1], felt: true }], camera, 200, 100));
     const seen = () => [...labels.element.querySelectorAll("span")].filter((span) => !span.hidden);
     expect(seen().map((span) => span.textContent)).toEqual(["1 N"]);
     expect(seen()[0]!.style.transform).toBe("translate(106.0px, 41.5px)");
-    labels.show([], camera, 200, 100);
+    labels.show([]);
     expect(seen()).toEqual([]);
   });
 });
