@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours that mean something, in one place: for the 3D view, the plots and the style sheet. They begin with Okabe and Ito's palette. On
 // white some are darker, so that a thin line of them is seen. tests/unit/page/theme.test.ts demands a contrast and a difference of the
-// digits' colours, also in the sight of people with protanopia, deuteranopia and tritanopia. Nothing is said by colour alone.
+// digits' colours, also in the sight of people with protanopia, deuteranopia and tritanopia. Each meaning has a second sign beside its colour.
 
 export type ThemeName = "dark" | "light";
 

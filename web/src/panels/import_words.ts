@@ -6,12 +6,12 @@ import type { ImportReport, MeshFacts } from "../wire/import_report";
 const words = strings.object;
 const kGraspable = 1; // [m] a largest extent that is refused is above it, or far below
 
-const count = (value: number) => value.toLocaleString(strings.locale);
+const count = (value: number) => value.toLocaleString(strings.figures);
 const extentOf = (facts: MeshFacts, digits: (millimetres: number) => number) =>
   words.extent(
     facts.extent
       .map((metres) => 1000 * metres)
-      .map((millimetres) => millimetres.toLocaleString(strings.locale, { maximumFractionDigits: digits(millimetres) }))
+      .map((millimetres) => millimetres.toLocaleString(strings.figures, { maximumFractionDigits: digits(millimetres) }))
       .join(" × "),
   );
 

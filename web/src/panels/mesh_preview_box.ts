@@ -50,7 +50,7 @@ export class MeshPreviewBox {
     setText(this.note, report?.ok ? words.previewMissing : words.previewEmpty);
     const shown = (this.mesh?.index.length ?? 0) / 3;
     const all = report?.facts?.triangles ?? 0;
-    const count = (triangles: number) => triangles.toLocaleString(strings.locale);
+    const count = (triangles: number) => triangles.toLocaleString(strings.figures);
     setShown(this.simplified, shown > 0 && shown < all);
     setText(this.simplified, words.previewSimplified(count(shown), count(all)));
     void this.draw();

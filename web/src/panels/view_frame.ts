@@ -153,7 +153,7 @@ export function viewFrame(source: Shown, over: readonly HTMLElement[]): ViewFram
       showForces();
     });
     source.on(["geometry"], showShapes);
-    source.on(["tick"], showHand);
+    source.on(["tick"], () => past ?? showHand());
   }
   const key = viewKey(source);
   new ResizeObserver(() => view?.setCovered(key.offsetTop + key.offsetHeight)).observe(key);

@@ -27,7 +27,8 @@ const kSameClock = 1e-3; // [s]
 
 export class LookBack {
   private opened: Opened | undefined;
-  private readonly shapes = new Map<string, Shapes>(); // by place in the recording
+  private ended = false;
+  private newest: { readonly time: number; readonly shapes: Shapes } | undefined; // made of the geometry of this time in the recording
   private clock = NaN; // the ticks' clock minus the recording's time [s]
 
   /// @param open  the recording as it was when it had so many bytes
@@ -46,15 +47,19 @@ export class LookBack {
     const known = this.opened && (await this.poseAt(this.opened, time, utcOffset));
     if (known) return this.handOf(this.opened!, known);
     if (this.opened?.until === written) return undefined;
-    this.close();
+    this.opened?.decoder.close();
+    this.opened = undefined;
     const recording = await openRecording(this.open(written));
+    if (this.ended) return undefined; // nothing would close another thread
     const decoder = this.decoderOf(recording);
     this.opened = { until: written, recording, lookup: new Lookup(recording, new ChunkCache(recording, decoder)), decoder };
     const pose = await this.poseAt(this.opened, time, utcOffset);
     return pose && this.handOf(this.opened, pose);
   }
 
+  /// Ends the reading. What is being read may never come.
   close(): void {
+    this.ended = true;
     this.opened?.decoder.close();
     this.opened = undefined;
   }
@@ -77,13 +82,8 @@ export class LookBack {
   private async handOf({ lookup }: Opened, { tick, place }: { tick: Tick; place: number }): Promise<PastHand> {
     const geometry = await lookup.last("/geometry", place);
     if (!geometry) return { tick, geometry: undefined };
-    const key = String(geometry.time);
-    let made = this.shapes.get(key);
-    if (!made) {
-      made = await this.makeShapes(geometry.value.slice().buffer);
-      this.shapes.clear(); // those of another object are seldom needed again
-      this.shapes.set(key, made);
-    }
-    return { tick, geometry: made };
+    const { time, value } = geometry;
+    if (this.newest?.time !== time) this.newest = { time, shapes: await this.makeShapes(value.slice().buffer) };
+    return { tick, geometry: this.newest.shapes };
   }
 }

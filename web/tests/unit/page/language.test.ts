@@ -17,7 +17,7 @@ beforeEach(() => localStorage.clear());
 afterEach(() => {
   vi.unstubAllGlobals();
   localStorage.clear();
-  vi.resetModules(); // whoever reads the language next finds no choice
+  vi.resetModules(); // the next module that reads the language finds no choice
 });
 
 describe("the language", () => {

@@ -10,7 +10,7 @@ const brought = vi.fn();
 const withoutScripts = (page: string) => /<noscript>(.*)<\/noscript>/.exec(page)![1]!.replace(/<[^>]*>/g, "");
 afterEach(() => {
   localStorage.clear();
-  vi.resetModules(); // whoever reads the language next finds no choice
+  vi.resetModules(); // the next module that reads the language finds no choice
   vi.unstubAllGlobals();
   vi.useRealTimers();
 });

@@ -13,7 +13,7 @@ const revisionOf = (shapes: Shapes | undefined) => shapes?.jointName[0];
 
 /// A recording that grows: its length is the number of its messages.
 async function growing(messages: readonly Message[]) {
-  const made = { opened: [] as bigint[], shapes: 0, closed: 0 };
+  const made = { opened: [] as bigint[], shapes: 0, decoders: 0, closed: 0 };
   const known = new Map<bigint, Uint8Array>();
   for (let count = 1; count <= messages.length; ++count) known.set(BigInt(count), await bytesOf(messages.slice(0, count)));
   const look = new LookBack(
@@ -25,7 +25,10 @@ async function growing(messages: readonly Message[]) {
       ++made.shapes;
       return Promise.resolve({ jointName: [String(fromBinary(GeometrySchema, new Uint8Array(bytes)).revision)] } as unknown as Shapes);
     },
-    ({ layout }) => ({ ...plainDecoder(layout), close: () => void ++made.closed }),
+    ({ layout }) => {
+      ++made.decoders;
+      return { ...plainDecoder(layout), close: () => void ++made.closed };
+    },
   );
   const at = async (time: number, written: number, utcOffset = kUtcOffset) => look.at(kClock + time, utcOffset, BigInt(written));
   return { look, at, made };
@@ -71,6 +74,14 @@ it("the computer's clock may have been set since the recording began", async () 
   expect((await at(1.5, session.length, kUtcOffset - 0.4))!.tick.tick).toBe(123n);
   const late = await growing(session);
   expect((await late.at(0.3, session.length, kUtcOffset - 3600))!.tick.tick).toBe(18n);
+});
+
+it("what is opened when the reading has ended keeps no thread", async () => {
+  const { look, at, made } = await growing(session);
+  const reading = at(0.5, session.length);
+  look.close();
+  expect(await reading).toBeUndefined();
+  expect(made.decoders).toBe(0);
 });
 
 it("a recording without shapes has a hand without them", async () => {
