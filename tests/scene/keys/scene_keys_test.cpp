@@ -42,7 +42,8 @@ TEST(SceneKeys, HaveDefaultsForEachKindOfObject) {
     std::string text = "[[objects]]\nkind = \"" + kind.name + "\"\n";
     for (const SceneKey& key : scene_keys()) {
       if (!key.is_of_objects() || key.path == "objects[].kind" || !key.belongs_to(kind.name)) continue;
-      text += key.path.substr(10) + " = " + value_text(key, *key.default_for(kind.name)) + "\n";
+      const auto value = key.default_for(kind.name);
+      if (value) text += key.path.substr(10) + " = " + value_text(key, *value) + "\n";
     }
     const SceneDescription stated = parse_scene(text, "test.toml", ".");
     const SceneDescription left_out =
