@@ -6,7 +6,7 @@ export default defineConfig({
   base: "./",
   build: {
     target: "es2022", outDir: "dist", emptyOutDir: true, sourcemap: false, assetsInlineLimit: 0, reportCompressedSize: true, chunkSizeWarningLimit: 700,
-    rollupOptions: { input: ["index.html", "recording.html"] }, // the cockpit, and the page of recordings
+    rollupOptions: { input: ["index.html", "recording.html", "people.html"] }, // the cockpit, and the pages of recordings and of patients
   },
   worker: { format: "es" },
   server: {
@@ -17,6 +17,7 @@ export default defineConfig({
       "/recordings": "http://127.0.0.1:8480",
       "/mesh": "http://127.0.0.1:8480",
       "/stop": "http://127.0.0.1:8480",
+      "^/people($|/)": "http://127.0.0.1:8480",
     },
   },
 });

@@ -30,6 +30,9 @@ void add_mesh_command(CLI::App& app, Job& job);
 void add_device_command(CLI::App& app, Job& job);
 void add_session_command(CLI::App& app, Job& job);
 void add_replay_command(CLI::App& app, Job& job);
+void add_patient_command(CLI::App& app, Job& job);
+void add_account_command(CLI::App& app, Job& job);
+void add_exercise_command(CLI::App& app, Job& job);
 void add_completion_command(CLI::App& app, Job& job);
 
 // The commands of `phalanx device`.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "phalanx/exercise/participant_skill.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/scene.h"
 #include "usage.h"
@@ -26,12 +27,15 @@ const CLI::App* subcommand(const CLI::App& command, const std::string& name) {
   return nullptr;
 }
 
+/// @returns the first line: a shell takes each line for a word
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 Candidates options_of(const CLI::App& command) {
   Candidates all;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;
     for (const std::string& name : option->get_lnames())
-      all.push_back({"--" + name, option->get_description()});
+      all.push_back({"--" + name, first_line(option->get_description())});
   }
   return all;
 }
@@ -56,6 +60,12 @@ Candidates scenes() {
   return all;
 }
 
+Candidates skills() {
+  Candidates all;
+  for (const std::string_view name : participant_skill_names()) all.push_back({std::string(name), ""});
+  return all;
+}
+
 Candidates settings() {
   Candidates all;
   for (const std::string& key : settable_keys()) all.push_back({key + "=", ""});
@@ -77,6 +87,9 @@ Candidates choices(const CLI::Option& option) {
 Candidates values_of(const CLI::Option& option) {
   const std::string name = CLI::detail::to_lower(option.get_single_name());
   if (option.get_positional() && name == "scene") return scenes();
+  if ((option.get_positional() && name == "exercise") || is_named(option, "exercise"))
+    return files_of("assets/exercises");
+  if (is_named(option, "demo")) return skills();
   if (option.get_positional() && name == "postures") return files_of("assets/postures", ".csv");
   if (is_named(option, "set")) return settings();
   if (is_named(option, "profile")) return files_of("assets/profiles");

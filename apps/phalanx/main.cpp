@@ -43,6 +43,9 @@ int run(int argc, char** argv) {
   add_device_command(app, job);
   add_session_command(app, job);
   add_replay_command(app, job);
+  add_exercise_command(app, job);
+  add_patient_command(app, job);
+  add_account_command(app, job);
   add_completion_command(app, job);
   try {
     app.parse(argc, argv);

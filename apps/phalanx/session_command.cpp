@@ -2,6 +2,7 @@
 // phalanx session: the recordings of `phalanx run`. phalanx replay: one of them, played again.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cstdio>
 #include <ctime>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "patient/registry_options.h"
 #include "phalanx/figures/recording_page.h"
 #include "phalanx/record/export_recording.h"
 #include "phalanx/record/output_file.h"
@@ -45,6 +47,8 @@ struct SessionOptions {
   std::optional<double> to;
   std::optional<double> keep_days;
   std::optional<double> keep_gb;
+  RegistryOptions registry;  ///< --keys
+  FindRecordingKey keys;     ///< of `registry`
   bool confirmed = false;
   bool quiet = false;
 };
@@ -53,7 +57,7 @@ struct SessionOptions {
 fs::path found(const SessionOptions& o) {
   std::error_code ignored;
   if (o.file == "last") {
-    const std::vector<RecordingSummary> all = list_recordings(o.folder);
+    const std::vector<RecordingSummary> all = list_recordings(o.folder, {}, o.keys);
     if (all.empty())
       throw std::invalid_argument(fmt::format(
           "there is no recording in {}; `phalanx run` makes one, and --folder names another folder",
@@ -61,7 +65,8 @@ fs::path found(const SessionOptions& o) {
     return all.back().file;
   }
   for (const fs::path& name :
-       {fs::path(o.file), fs::path(o.folder) / o.file, fs::path(o.folder) / (o.file + ".mcap")})
+       {fs::path(o.file), fs::path(o.folder) / o.file, fs::path(o.folder) / (o.file + ".mcap"),
+        fs::path(o.folder) / (o.file + ".mcap.enc")})
     if (fs::is_regular_file(name, ignored)) return name;
   throw std::invalid_argument(
       fmt::format("there is no recording {}, and none of that name in {}; `phalanx session list` shows them",
@@ -69,19 +74,28 @@ fs::path found(const SessionOptions& o) {
 }
 
 void say_repaired(const fs::path& file, const RepairedRecording& repaired) {
-  fmt::print(stderr, "{} had no end or was damaged; it is whole again, with {} chunks. The original is {}\n",
-             file.string(), repaired.chunks, repaired.original.string());
+  if (repaired.needs_key)
+    fmt::print(
+        stderr,
+        "{} was damaged; {} frames are whole and kept. It is encrypted: with its key (--keys FILE), the same "
+        "command completes it. The original is {}\n",
+        file.string(), repaired.chunks, repaired.original.string());
+  else
+    fmt::print(stderr,
+               "{} had no end or was damaged; it is whole again, with {} chunks. The original is {}\n",
+               file.string(), repaired.chunks, repaired.original.string());
   for (const std::string& loss : repaired.losses) fmt::print(stderr, "  lost: {}\n", loss);
 }
 
-/// Finds a recording, and repairs it if it has no end.
+/// Finds a recording, and repairs it if it has no end. @throws std::invalid_argument if its key is not here
 fs::path opened(const SessionOptions& o) {
   const fs::path file = found(o);
-  const RecordingSummary summary = summarise_recording(file);
+  const RecordingSummary summary = summarise_recording(file, o.keys);
   if (summary.written)
     throw std::invalid_argument(fmt::format("{} is being written; end that run first", file.string()));
+  if (summary.no_key) throw std::invalid_argument(fmt::format("{}: {}", file.string(), summary.trouble));
   if (summary.has_end) return file;
-  const RepairedRecording repaired = repair_recording(file);
+  const RepairedRecording repaired = repair_recording(file, o.keys);
   if (repaired.changed) say_repaired(file, repaired);
   return file;
 }
@@ -91,32 +105,45 @@ std::string date_text(double utc) {
                     : fmt::format("{:%Y-%m-%d %H:%M:%S}Z", fmt::gmtime(static_cast<std::time_t>(utc)));
 }
 
+bool is_known(const RecordingSummary& recording) { return recording.has_end && !recording.no_key; }
+
 int list(const SessionOptions& o) {
-  const std::vector<RecordingSummary> all = list_recordings(o.folder);
+  const std::vector<RecordingSummary> all = list_recordings(o.folder, {}, o.keys);
   if (all.empty()) {
     fmt::print("no recordings in {}\n", o.folder);
     return kDone;
   }
-  fmt::print("{:<26} {:<20} {:>9} {:>9} {:>8}  {:<16} {}\n", "file", "begin", "duration", "steps", "MB",
+  fmt::print("{:<30} {:<20} {:>9} {:>9} {:>8}  {:<16} {}\n", "file", "begin", "duration", "steps", "MB",
              "scene", "state");
   for (const RecordingSummary& recording : all)
-    fmt::print("{:<26} {:<20} {:>9} {:>9} {:>8.1f}  {:<16} {}\n", recording.file.filename().string(),
+    fmt::print("{:<30} {:<20} {:>9} {:>9} {:>8.1f}  {:<16} {}\n", recording.file.filename().string(),
                date_text(recording.begin),
-               recording.has_end ? fmt::format("{:.1f} s", recording.seconds) : "-",
-               recording.has_end ? std::to_string(recording.steps) : "-",
+               is_known(recording) ? fmt::format("{:.1f} s", recording.seconds) : "-",
+               is_known(recording) ? std::to_string(recording.steps) : "-",
                1e-6 * static_cast<double>(recording.bytes), recording.scene.empty() ? "-" : recording.scene,
                recording_state(recording));
   return kDone;
 }
 
+/// Lets only the owner read what is written from here on: what is made of an encrypted recording is not encrypted.
+void write_for_owner_alone() { ::umask(S_IRWXG | S_IRWXO); }
+
+void warn_of_plain(const fs::path& out) {
+  fmt::print(stderr,
+             "{} is not encrypted, and stays if the person is deleted; delete it when it is not needed\n",
+             out.string());
+}
+
 int show(const SessionOptions& o) {
   const fs::path file = opened(o);
-  const RecordingSummary summary = summarise_recording(file);
+  const RecordingSummary summary = summarise_recording(file, o.keys);
   ProgressBar bar("reading", !o.quiet);
-  const RecordingContent content =
-      read_recording(file, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
-  const fs::path out = o.out.empty() ? fs::path(file).replace_extension(".html") : fs::path(o.out);
+  const RecordingContent content = read_recording(
+      file, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); }, o.keys);
+  const fs::path out = o.out.empty() ? beside_recording(file, ".html") : fs::path(o.out);
+  if (summary.encrypted) write_for_owner_alone();
   write_text_file(out, recording_page_html(summary, content));
+  if (summary.encrypted) warn_of_plain(out);
   fmt::print(
       "{}\n  {}, {:.1f} s, {} steps, {} events, {} gaps\n  scene {}, device {}, recorded by Phalanx {}\n  "
       "page: {}\n",
@@ -136,13 +163,17 @@ int export_as(const SessionOptions& o) {
   options.task = o.task;
   options.from = o.from;
   if (o.to) options.to = *o.to;
-  const fs::path out = o.out.empty() ? fs::path(file).replace_extension(format.ending) : fs::path(o.out);
+  const fs::path out = o.out.empty() ? beside_recording(file, format.ending) : fs::path(o.out);
+  const bool encrypted = summarise_recording(file, o.keys).encrypted;
+  if (encrypted) write_for_owner_alone();
   std::vector<ExportedPart> written;
   {
     ProgressBar bar("exporting", !o.quiet);
     written = export_recording(
-        file, out, options, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
+        file, out, options, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); },
+        o.keys);
   }
+  if (encrypted) warn_of_plain(out);
   const char* what = format.format == ExportFormat::kRos2 ? "messages" : "rows";
   for (const ExportedPart& each : written)
     fmt::print("{}: {}, {} {}\n", each.file.string(), each.part, each.rows, what);
@@ -151,9 +182,14 @@ int export_as(const SessionOptions& o) {
 
 int repair(const SessionOptions& o) {
   const fs::path file = found(o);
-  const RepairedRecording repaired = repair_recording(file);
+  const RepairedRecording repaired = repair_recording(file, o.keys);
   if (repaired.changed)
     say_repaired(file, repaired);
+  else if (repaired.needs_key)
+    fmt::print(
+        "{} is encrypted, and its key is not here: {} frames, all with the right checksum. With --keys FILE "
+        "its chunks are checked, too, and its end is made if it has none\n",
+        file.string(), repaired.chunks);
   else
     fmt::print("{} is whole: {} chunks, all with the right checksum\n", file.string(), repaired.chunks);
   return kDone;
@@ -161,7 +197,7 @@ int repair(const SessionOptions& o) {
 
 int remove(const SessionOptions& o) {
   const fs::path file = found(o);
-  const RecordingSummary summary = summarise_recording(file);
+  const RecordingSummary summary = summarise_recording(file, o.keys);
   if (summary.written)
     throw std::invalid_argument(fmt::format("{} is being written; end that run first", file.string()));
   if (!o.confirmed)
@@ -175,8 +211,8 @@ int remove(const SessionOptions& o) {
 int prune(const SessionOptions& o) {
   const RetentionRule rule = retention_rule(o.keep_days, o.keep_gb);
   if (!rule.deletes()) throw std::invalid_argument("state what to keep: --keep-days D, --keep-gb G, or both");
-  const std::vector<RecordingSummary> expired =
-      expired_recordings(list_recordings(o.folder), rule, static_cast<double>(std::time(nullptr)));
+  const std::vector<RecordingSummary> expired = expired_recordings(
+      list_recordings(o.folder, {}, o.keys), rule, static_cast<double>(std::time(nullptr)));
   double bytes = 0.0;
   for (const RecordingSummary& recording : expired) {
     bytes += static_cast<double>(recording.bytes);
@@ -194,7 +230,9 @@ int play_again(const SessionOptions& o) {
   ReplayResult result;
   {
     ProgressBar bar("replaying", !o.quiet);
-    result = replay(file, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); });
+    result = replay(
+        file, [&](double part) { bar.show(static_cast<std::uint64_t>(1000.0 * part), 1000); }, nullptr,
+        o.keys);
   }
   fmt::print("{}: {} stations, {} steps in {:.1f} s; {} made again, {} different\n", file.string(),
              result.stations, result.steps, result.seconds, result.compared, result.different);
@@ -216,6 +254,14 @@ int play_again(const SessionOptions& o) {
   else if (result.exact && result.compared > 0)
     fmt::print("  of those made again, every force, angle and command has the same bits\n");
   return result.different == 0 ? kDone : kFailed;
+}
+
+/// Runs a command with the keys of its options.
+int with_keys(const std::shared_ptr<SessionOptions>& options, int (*work)(const SessionOptions&)) {
+  return with_registry_errors([&] {
+    options->keys = recording_keys_of(options->registry);
+    return work(*options);
+  });
 }
 
 /// @returns the help on the parts of all formats
@@ -253,9 +299,10 @@ void add_session_command(CLI::App& app, Job& job) {
       command->add_option("--folder", options->folder, "folder of the recordings")
           ->capture_default_str()
           ->type_name("DIR");
+    add_registry_options(*command, options->registry);
     command->callback([options, command, work, &job] {
       refuse_empty_values(*command);
-      job = [options, work] { return work(*options); };
+      job = [options, work] { return with_keys(options, work); };
     });
     return command;
   };
@@ -303,10 +350,11 @@ void add_replay_command(CLI::App& app, Job& job) {
       "Make every step of a recording again, through the code that the station runs, and compare its bits");
   command->footer("Exit codes: 0 all steps are the same, 1 some differ, 2 wrong usage or input.");
   add_file(*command, *options);
+  add_registry_options(*command, options->registry);
   command->add_flag("--quiet", options->quiet, "no progress bar");
   command->callback([options, command, &job] {
     refuse_empty_values(*command);
-    job = [options] { return play_again(*options); };
+    job = [options] { return with_keys(options, play_again); };
   });
 }
 

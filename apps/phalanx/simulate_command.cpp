@@ -15,6 +15,7 @@
 #include "nearest_approach.h"
 #include "option_text.h"
 #include "parameters_text.h"
+#include "patient/registry_options.h"
 #include "phalanx/device/motion.h"
 #include "phalanx/record/recordings.h"
 #include "phalanx/scene/build_model.h"
@@ -46,6 +47,7 @@ struct SimulateOptions {
   bool poses = false;
   bool contacts = false;
   bool quiet = false;
+  RegistryOptions registry;  ///< --keys
 };
 
 /// A command-line option that sets a scene key.
@@ -71,7 +73,7 @@ KeyOption integer_option(const std::string& option, const std::string& key, std:
 }
 
 /// @returns true for a recording of `phalanx run`, whose samples are played as the motion
-bool is_recording(const std::string& motion) { return motion.ends_with(".mcap"); }
+bool is_recording(const std::string& motion) { return has_recording_name(motion); }
 
 std::vector<KeyOption> key_options(const SimulateOptions& o) {
   std::vector<KeyOption> result;
@@ -225,7 +227,8 @@ int simulate_scene(const SimulateOptions& options) {
       resolve(scene, {.hand = draws ? HandDetail::kDrawn : HandDetail::kCollision, .motion = true});
   const JointArray& open = resolved.hand.parameters.open_angle;
   const Motion motion = is_recording(options.motion)
-                            ? led_in(recorded_motion(options.motion), open, options.lead_in.value_or(0.0))
+                            ? led_in(recorded_motion(options.motion, recording_keys_of(options.registry)),
+                                     open, options.lead_in.value_or(0.0))
                             : resolved.motion.value();
   DrawnHand drawn = draws ? drawn_hand(resolved.hand) : DrawnHand();
   std::vector<std::string> notes = notes_on_overrides(options.set);
@@ -331,7 +334,7 @@ void add_simulate_command(CLI::App& app, Job& job) {
       ->type_name("NAME");
   command
       ->add_option("--motion", options->motion,
-                   "a CSV of joint angles, or a recording (.mcap), in place of the scene's motion")
+                   "a CSV of joint angles, or a recording (.mcap, .mcap.enc), in place of the scene's motion")
       ->type_name("FILE");
   command
       ->add_option("--mapping", options->mapping,
@@ -350,9 +353,10 @@ void add_simulate_command(CLI::App& app, Job& job) {
   command->add_option("--rate-hz", options->rate_hz, "steps per second [the scene's]")->type_name("HZ");
   command->add_option("--seed", options->seed, "of everything random in the motion")->type_name("N");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  add_registry_options(*command, options->registry);
   command->callback([options, command, &job] {
     refuse_empty_values(*command);
-    job = [options] { return simulate_scene(*options); };
+    job = [options] { return with_registry_errors([&] { return simulate_scene(*options); }); };
   });
 }
 

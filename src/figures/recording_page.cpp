@@ -20,11 +20,18 @@ namespace {
 
 constexpr std::size_t kMostNumbered = 30;
 constexpr std::size_t kMostRows = 500;
-constexpr double kLongestGap = 0.2;  ///< between two forces that are joined by a line [s]
+constexpr std::size_t kLongText = 500;  ///< above which the data of an exercise are not shown [bytes]
+constexpr double kLongestGap = 0.2;     ///< between two forces that are joined by a line [s]
 
 std::string moment(double seconds) {
   const int whole = static_cast<int>(seconds);
   return fmt::format("{}:{:06.3f}", whole / 60, seconds - 60.0 * (whole / 60));
+}
+
+/// @returns the text of an event; data of an exercise are for programs
+std::string shown_text(const RecordedEvent& event) {
+  if (!event.code.starts_with("exercise_") || event.text.size() <= kLongText) return event.text;
+  return fmt::format("{} bytes; `phalanx exercise results` shows what they hold", event.text.size());
 }
 
 LineChart chart_of(const RecordingContent& content) {
@@ -73,7 +80,7 @@ std::string recording_page_html(const RecordingSummary& summary, const Recording
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < std::min(kMostRows, content.events.size()); ++i) {
     const RecordedEvent& event = content.events[i];
-    rows.push_back({std::to_string(i + 1), moment(event.time), event.code, event.who, event.text});
+    rows.push_back({std::to_string(i + 1), moment(event.time), event.code, event.who, shown_text(event)});
   }
   page.heading("Events");
   if (content.events.size() > kMostRows)

@@ -17,6 +17,7 @@ namespace phalanx {
 namespace {
 
 constexpr std::string_view kGeometry = "/geometry/";
+constexpr double kSignInInterval = 1.0;  ///< between two checks whether accounts are still signed in [s]
 constexpr auto kAbandonTimeout = std::chrono::seconds(1);
 
 double steady_now() {
@@ -61,6 +62,7 @@ Cockpit::Impl::Impl(Session& served, CockpitSettings given)
 Cockpit::Impl::~Impl() {
   if (drag) log.add(make_notice(wire::Notice::CHANGE, drag->who, drag->newest.code, drag->newest.text));
   if (upload) upload->abandon(kAbandonTimeout);
+  people->finish(kAbandonTimeout);
 }
 
 Cockpit::Cockpit(Session& session, CockpitSettings settings)
@@ -133,6 +135,7 @@ void Cockpit::frame() {
   impl_->notify_if_log_breaks();
   impl_->notify_drag_if_due();
   impl_->give_control_to_only_page();
+  impl_->notify_sign_ins();
   if (impl_->greeted.empty()) return;
   impl_->send_state_if_due();
   impl_->send_tick();
@@ -151,6 +154,10 @@ void Cockpit::requested(const WebRequest& request, std::function<void(WebRespons
   if (request.method == "POST" && request.path == "/mesh")
     return impl_->begin_upload(request, std::move(respond));
   if (request.method == "POST" && request.path == "/marker") return impl_->mark(request, respond);
+  if (People::is_one(request.path)) {
+    impl_->notify_sign_ins();  // no frame comes while no page of the cockpit is open
+    return impl_->people->request(request, std::move(respond));
+  }
   if (StationFiles::is_one(request.path)) return impl_->station_files->request(request, std::move(respond));
   if (request.method != "POST" && request.path.starts_with(kGeometry))
     return impl_->respond_with_geometry(request.path.substr(kGeometry.size()), std::move(respond));
@@ -163,6 +170,7 @@ void Cockpit::requested(const WebRequest& request, std::function<void(WebRespons
 std::size_t Cockpit::body_limit(const WebRequest& head) {
   if (head.method != "POST") return 0;
   if (head.path == "/marker" && head.client.may_operate) return kMarkerLimit;
+  if (People::is_one(head.path)) return impl_->people->body_limit(head);
   return head.path == "/mesh" && impl_->operator_of(head) != nullptr ? kUploadLimit : 0;
 }
 
@@ -184,6 +192,21 @@ void Cockpit::Impl::mark(const WebRequest& request, const std::function<void(Web
   if (text.empty()) return respond(text_response(400, "a marker is a text: send it as the request's body\n"));
   notify(wire::Notice::CHANGE, request.client.address, "marker", text);
   respond(text_response(200, "marked\n"));
+}
+
+void Cockpit::Impl::notify_sign_ins() {
+  if (now() - sign_ins_checked >= kSignInInterval) {
+    sign_ins_checked = now();
+    people->check_sessions();
+  }
+  for (const People::SignIn& change : people->take_sign_ins()) {
+    if (!change.in) participants.sign_in(change.page_secret, "");
+    const Participant* participant = participants.with_secret(change.page_secret);
+    const std::string page = participant != nullptr ? participant->label() : "the page of patients";
+    if (change.in) participants.sign_in(change.page_secret, change.account);
+    notify(wire::Notice::CHANGE, page, "account",
+           fmt::format("account {} {}", change.account, change.in ? "signed in" : "signed out"));
+  }
 }
 
 const Participant* Cockpit::Impl::operator_of(const WebRequest& request) const {

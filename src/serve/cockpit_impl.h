@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inside of the Cockpit, with an overview of this folder. Begin here to read it.
 //
-// Threads: all of Cockpit::Impl runs on the server's thread, whose functions must return soon. Three further
+// Threads: all of Cockpit::Impl runs on the server's thread, whose functions must return soon. Further
 // threads do what takes long: the log of changes (audit_log.h), the encoding of a geometry
-// (geometry_cache.h), and one upload at a time (uploads.h). The station's owner reports the outcome of a
-// change in Session::poll(); the report is posted to the server's thread.
+// (geometry_cache.h), one upload at a time (uploads.h), the reading of files (station_files.h), and the
+// patients (people.h). The station's owner reports the outcome of a change in Session::poll(); the report is
+// posted to the server's thread.
 //
 // Way of a message: the bytes of a page arrive in Cockpit::received(), are decoded, and go to handle(). A
 // stop calls Session::stop() right there: no queue and no other thread stand between the page and the
-// station. Requests of the operator go through page_requests.h to the Session; their outcome becomes a
-// Reply and a Notice. Each frame sends the newest tick (record/recording/view_message.h), and the state (state_message.h) if
-// it has changed or is due.
+// station. Requests of the operator go through page_requests.h to the Session; their outcome becomes a Reply
+// and a Notice. Each frame sends the newest tick (record/recording/view_message.h), and the state
+// (state_message.h) if it has changed or is due.
 //
-// Further files: participants.h has the roles, plain_text.h and settings_text.h the texts for people.
+// Further files: participants.h has the roles, people.h the patients, plain_text.h and settings_text.h the
+// texts for people.
 #pragma once
 
 #include <filesystem>
@@ -30,6 +32,7 @@
 #include "serve/geometry_cache.h"
 #include "serve/page_requests.h"
 #include "serve/participants.h"
+#include "serve/people.h"
 #include "serve/station_files.h"
 #include "serve/uploads.h"
 
@@ -95,6 +98,8 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   /// @returns the operator if the request is the operator's; else null
   [[nodiscard]] const Participant* operator_of(const WebRequest& request) const;
   void mark(const WebRequest& request, const std::function<void(WebResponse)>& respond);
+  /// Writes accounts that have signed in or out to the log, and names them beside their pages from now on.
+  void notify_sign_ins();
   void begin_upload(const WebRequest& request, std::function<void(WebResponse)> respond);
 
   Session& session;
@@ -126,7 +131,11 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   std::uint64_t sent_revision = 0;
   SafetyState sent_safety = SafetyState::kWaiting;
   const std::shared_ptr<GeometryCache> geometry_cache = std::make_shared<GeometryCache>();
-  const std::shared_ptr<StationFiles> station_files = std::make_shared<StationFiles>(settings.recordings);
+  const std::shared_ptr<People> people = std::make_shared<People>(settings.registry, settings.exercises);
+  const std::shared_ptr<StationFiles> station_files = std::make_shared<StationFiles>(
+      settings.recordings,
+      [people = people](const WebRequest& request) { return people->recording_access(request); });
+  double sign_ins_checked = -1e9;                         ///< [s]
   std::shared_ptr<UploadJob> upload;                      ///< the newest
   std::shared_ptr<const SessionGeometry> drawn_geometry;  ///< of `drawn`
   double drawn_margin = 0.0;                              ///< of `drawn` [m]

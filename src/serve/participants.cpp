@@ -12,7 +12,8 @@
 namespace phalanx {
 
 std::string Participant::label() const {
-  return fmt::format("page {} ({}){}{}", number, client.address, name.empty() ? "" : ", ", name);
+  return fmt::format("page {} ({}{}{}){}{}", number, client.address, account.empty() ? "" : ", account ",
+                     account, name.empty() ? "" : ", ", name);
 }
 
 const Participant& Participants::join(PageId page, const ClientInfo& client, std::string secret, double now) {
@@ -85,6 +86,10 @@ const Participant* Participants::give_to_only_page(double now) {
 void Participants::name(PageId page, const std::string& name) {
   if (const auto here = page_.find(page); here != page_.end())
     here->second.name = shortened(one_line(name), kNameLength);
+}
+
+void Participants::sign_in(const std::string& secret, const std::string& account) {
+  if (const auto here = page_.find(page_with(secret)); here != page_.end()) here->second.account = account;
 }
 
 const Participant* Participants::find(PageId page) const {

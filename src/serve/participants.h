@@ -16,11 +16,13 @@ struct Participant {
   std::uint32_t number = 0;  ///< as people read it: "page 2"
   std::string secret;        ///< with which a page proves after a reconnect that it is the same one
   std::string name;
+  std::string account = {};  ///< that is signed in at this page; empty: none
   ClientInfo client;
   bool greeted = false;           ///< its page has sent Hello
   bool released_control = false;  ///< it was the operator and gave control back
 
-  /// @returns "page 2 (127.0.0.1), Anna"
+  /// @returns "page 2 (127.0.0.1), Anna"; "page 2 (127.0.0.1, account a.meier), Anna" if an account is signed in. The name
+  /// comes last, so that it cannot imitate an account
   [[nodiscard]] std::string label() const;
 };
 
@@ -59,6 +61,8 @@ class Participants {
   const Participant* give_to_only_page(double now);
   /// Sets a name: one line, at most kNameLength bytes.
   void name(PageId page, const std::string& name);
+  /// Sets the account that is signed in at a connected page; empty: none.
+  void sign_in(const std::string& secret, const std::string& account);
 
   /// @returns null if there is none
   [[nodiscard]] const Participant* find(PageId page) const;

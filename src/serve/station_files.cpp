@@ -112,15 +112,24 @@ void StationFiles::work() {
   working_ = false;
 }
 
+WebResponse StationFiles::answer(const WebRequest& request, const FindRecordingKey& keys) {
+  if (!request.path.starts_with(kFiles)) return list(keys);
+  return part_of(request.path.substr(kFiles.size()), request, keys);
+}
+
 WebResponse StationFiles::response_to(const WebRequest& request) {
+  RecordingAccess access;
   try {
     if (request.path == kReport) return whole_report();
-    if (!request.path.starts_with(kFiles)) return list();
-    return part_of(request.path.substr(kFiles.size()), request);
+    if (access_) access = access_(request);
+    return answer(request, access.keys);
   } catch (const std::system_error& error) {
     return words(500, fmt::format("the disk refuses ({})", error.code().message()));
   } catch (const mcap::McapError& error) {
     return words(409, fmt::format("the recording cannot be read: {}", error.what()));
+  } catch (const mcap::NoKeyError& error) {
+    return words(409, fmt::format("the recording cannot be read: {}",
+                                  access.refusal.empty() ? error.what() : as_utf8(access.refusal)));
   } catch (const std::invalid_argument& refused) {
     return words(404, as_utf8(refused.what()));
   }
@@ -141,10 +150,12 @@ WebResponse StationFiles::whole_report() {
   return response;
 }
 
-WebResponse StationFiles::list() {
+WebResponse StationFiles::list(const FindRecordingKey& keys) {
   nlohmann::json files = nlohmann::json::array();
-  known_ = list_recordings(folder_, known_);
-  for (const RecordingSummary& recording : known_) {
+  // A request without keys must not get what was read for one with keys.
+  std::vector<RecordingSummary>& known = keys ? known_opened_ : known_;
+  known = list_recordings(folder_, known, keys);
+  for (const RecordingSummary& recording : known) {
     const bool opens = recording.has_end && recording.trouble.empty() && !recording.written;
     files.push_back({{"name", as_utf8(recording.file.filename().string())},
                      {"bytes", recording.bytes},
@@ -180,9 +191,10 @@ const StationFiles::Cut& StationFiles::cut_at(const std::string& name, const mca
   return cuts_.front();
 }
 
-WebResponse StationFiles::part_of(const std::string& name, const WebRequest& request) {
+WebResponse StationFiles::part_of(const std::string& name, const WebRequest& request,
+                                  const FindRecordingKey& keys) {
   const std::filesystem::path file = folder_ / name;
-  if (name.find('/') != std::string::npos || file.extension() != ".mcap" ||
+  if (name.find('/') != std::string::npos || !has_recording_name(file) ||
       !std::filesystem::is_regular_file(file))
     return words(404, "there is no recording of this name; /recordings lists them");
   const auto range = read_range(request.range);
@@ -190,7 +202,7 @@ WebResponse StationFiles::part_of(const std::string& name, const WebRequest& req
     return words(400, fmt::format("a recording is read in parts of at most {} bytes: ask with the header "
                                   "'Range: bytes=FIRST-LAST'",
                                   kLargestPart));
-  const mcap::ReadableFile readable(file);
+  const mcap::ReadableFile readable(file, keys);
   std::uint64_t from_file = readable.size();  // bytes that are read from it; the others are those of `end`
   std::string_view end;
   if (!request.query.empty()) {

@@ -43,16 +43,6 @@ double shut_down_within(const SafetySettings& safety) {
   return 2.0 + safety.stop_ramp + 1.5 * safety.joint_torque / safety.torque_rate;
 }
 
-DigitArray digit_forces(const Snapshot& snapshot) noexcept {
-  DigitArray force{};
-  for (int digit = 0; digit < kDigits; ++digit) {
-    for (int k = 0; k < kSegmentsPerDigit; ++k)
-      force[static_cast<std::size_t>(digit)] +=
-          snapshot.segment[static_cast<std::size_t>(segment_index(digit, k))].force;
-  }
-  return force;
-}
-
 }  // namespace
 
 /// The loop's functions and state, and the data that it shares with other threads.
@@ -227,15 +217,7 @@ void Station::Loop::write_down(const Wake& wake, std::size_t count, double sent_
   record.lateness = wake.lateness;
   record.duration = sent_at - wake.now;
   record.samples = static_cast<std::uint32_t>(count);
-  record.sample_sequence = step.newest_sample().sequence;
-  record.sample_time_us = step.newest_sample().time_us;
-  record.state = safety.state();
-  record.fault = safety.fault().fault;
-  record.factor = safety.factor();
-  record.status = step.status();
-  record.stiffness = step.rendering().ramp.parameters().force.stiffness;
-  record.angle = snapshot.hcp_angle;
-  record.force = digit_forces(snapshot);
+  step.describe(record);
   record.hash = step.hash();
   append(count);
   if (!frozen.load(std::memory_order_acquire)) {

@@ -1,12 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "station/station_step.h"
 
+#include <algorithm>
 #include <atomic>
+#include <limits>
 #include <utility>
 
 #include "phalanx/core/bit_hash.h"
+#include "phalanx/core/index.h"
+#include "phalanx/hand/pad.h"
 
 namespace phalanx {
+namespace {
+
+/// Writes forces and contacts of one digit.
+void describe_digit(const Snapshot& shown, int digit, StepRecord& out) noexcept {
+  double force = 0.0;
+  bool touching = false;
+  bool slips = false;
+  const SegmentSnapshot* deepest = nullptr;
+  for (int k = 0; k < kSegmentsPerDigit; ++k) {
+    const SegmentSnapshot& segment = shown.segment[idx(segment_index(digit, k))];
+    force += segment.force;
+    if (!segment.contact) continue;
+    touching = true;
+    slips = slips || segment.slips;
+    if (segment.depth >= StepRecord::kLeastDepth && (deepest == nullptr || segment.depth > deepest->depth))
+      deepest = &segment;
+  }
+  out.force[idx(digit)] = force;
+  out.touching[idx(digit)] = touching;
+  out.slips[idx(digit)] = slips;
+  out.depth[idx(digit)] = deepest == nullptr ? std::numeric_limits<double>::quiet_NaN() : deepest->depth;
+  out.sent_stiffness[idx(digit)] = deepest == nullptr
+                                       ? std::numeric_limits<double>::quiet_NaN()
+                                       : out.sent_share[idx(digit)] * deepest->force / deepest->depth;
+}
+
+/// Returns the torques of the digits' forces before any limit, from the shown hand; friction's couples are
+/// left out [Nm].
+JointArray unlimited_torques(const HandModel& hand, const Snapshot& shown) noexcept {
+  HandPoses poses;
+  hand.poses(shown.gdp_angle, poses);
+  JointArray torque{};
+  for (int digit = 0; digit < kDigits; ++digit)
+    for (int k = 0; k < kSegmentsPerDigit; ++k) {
+      const SegmentSnapshot& segment = shown.segment[idx(segment_index(digit, k))];
+      if (segment.force > 0.0)
+        add_torques(poses.digit[idx(digit)], digit, k, segment.point, segment.force * segment.normal, torque);
+    }
+  return torque;
+}
+
+/// Returns StepRecord::sent_share of a digit.
+/// @param wanted  torques of the digit's forces before any limit [Nm]
+/// @param sent    torques in the command [Nm]
+double share_sent(const JointArray& wanted, const JointArray& sent, int digit, double factor) noexcept {
+  bool whole = true;
+  double product = 0.0;
+  double square = 0.0;
+  for (int i = 0; i < kJointsPerDigit; ++i) {
+    const std::size_t j = idx(joint_index(digit, i));
+    whole = whole && sent[j] == factor * wanted[j];
+    product += wanted[j] * sent[j];
+    square += wanted[j] * wanted[j];
+  }
+  if (whole || !(square > 0.0)) return factor;
+  return std::clamp(product / square, 0.0, 1.0);
+}
+
+}  // namespace
 
 StationStep::StationStep(std::unique_ptr<Rendering> first, ChannelMap map, const DeviceInfo& device,
                          const SafetySettings& safety, std::vector<MotorWitness> witnesses, double period)
@@ -86,6 +149,31 @@ void StationStep::number_running() noexcept {
 void StationStep::end_running() noexcept {
   running_ = 0;
   rendering_->state.withdraw_openings();
+}
+
+void StationStep::describe(StepRecord& out) const noexcept {
+  const Snapshot& shown = snapshot();
+  out.sample_sequence = newest_sample_.sequence;
+  out.sample_time_us = newest_sample_.time_us;
+  out.state = safety_.state();
+  out.fault = safety_.fault().fault;
+  out.factor = safety_.factor();
+  out.status = status_;
+  out.stiffness = rendering_->ramp.parameters().force.stiffness;
+  out.angle = shown.hcp_angle;
+  out.angle_origin = shown.angle_origin;
+  out.measured_force = shown.measured_force;
+  const bool limited = has(status_, Status::kTorqueLimited) || has(status_, Status::kTorqueRateLimited);
+  const JointArray wanted = limited ? unlimited_torques(rendering_->model->hand, shown) : shown.torque;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    out.sent_share[idx(digit)] = share_sent(wanted, command_.torque, digit, out.factor);
+    describe_digit(shown, digit, out);
+  }
+  const HandParameters& hand = rendering_->model->hand.parameters();
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const Vec3 pad = pad_in_world(hand, digit, shown.hcp_pose[idx(segment_index(digit, 2))]);
+    out.pad[idx(digit)] = {pad.x(), pad.y(), pad.z()};
+  }
 }
 
 std::uint64_t StationStep::hash() const noexcept {

@@ -82,6 +82,9 @@ class StationStep {
   /// @returns a hash of the newest step: measured angles, shown angles, forces with points and directions, the step's
   /// torques, and the command with its walls. Any bit that differs changes it.
   [[nodiscard]] std::uint64_t hash() const noexcept;
+  /// Writes what the newest step was and did to `out`: state, fault, ramps, status, stiffness, angles, forces and contacts, but
+  /// neither StepRecord::input, command, hash nor times. A replay describes a step as its station did.
+  void describe(StepRecord& out) const noexcept;
 
  private:
   bool reset(Fault connection, double now) noexcept;

@@ -55,15 +55,17 @@ Words options_in(const std::string& help) {
 }
 
 TEST_F(CliCompletion, OffersEveryCommand) {
-  EXPECT_THAT(offered("''"), ElementsAre("run", "simulate", "experiment", "study", "grasp", "scene", "hand",
-                                         "mesh", "device", "session", "replay", "completion"));
+  EXPECT_THAT(offered("''"),
+              ElementsAre("run", "simulate", "experiment", "study", "grasp", "scene", "hand", "mesh",
+                          "device", "session", "replay", "exercise", "patient", "account", "completion"));
   EXPECT_THAT(offered("scene ''"), ElementsAre("list", "check", "keys", "grasps", "pictures"));
 }
 
 TEST_F(CliCompletion, OffersEveryOptionThatHelpNames) {
   Words commands = offered("''");
   commands.emplace_back("");
-  for (const std::string group : {"scene", "hand", "device", "mesh"})
+  for (const std::string group :
+       {"scene", "hand", "device", "mesh", "exercise", "patient", "account", "session"})
     for (const std::string& command : offered(group + " ''")) commands.push_back(group + " " + command);
   std::size_t options = 0;
   for (const std::string& command : commands) {
@@ -88,6 +90,8 @@ TEST_F(CliCompletion, OffersWhatBeginsAsTyped) {
 TEST_F(CliCompletion, OffersTheValuesThatAreListed) {
   EXPECT_THAT(offered("run grasp_t"), Contains("grasp_teapot"));
   EXPECT_THAT(offered("run grasp_t"), Each(StartsWith("grasp_t")));
+  EXPECT_THAT(offered("exercise run range_"), ElementsAre("range_of_motion"));
+  EXPECT_THAT(offered("exercise run x --demo mod"), ElementsAre("moderate"));
   EXPECT_THAT(offered("simulate --profile small"), ElementsAre("small-woman"));
   EXPECT_THAT(offered("simulate --profile=small"), ElementsAre("--profile=small-woman"));
   EXPECT_THAT(offered("simulate --profile = small"), ElementsAre("small-woman")) << "as Bash parts words";
@@ -95,6 +99,9 @@ TEST_F(CliCompletion, OffersTheValuesThatAreListed) {
   EXPECT_THAT(offered("run --set force.stiff"), ElementsAre("force.stiffness_n_per_mm="));
   EXPECT_THAT(offered("hand export --format ''"), UnorderedElementsAre("urdf", "mjcf"));
   EXPECT_THAT(offered("hand pictures small"), ElementsAre("small-woman")) << "postures";
+  EXPECT_THAT(offered("patient test P07 --kind gr"), ElementsAre("grip"));
+  EXPECT_THAT(offered("patient add P07 --symbol su"), ElementsAre("sun"));
+  EXPECT_THAT(offered("account add anna --role t"), ElementsAre("therapist"));
   EXPECT_THAT(offered("scene check a b grasp_t"), Contains("grasp_teapot")) << "one of several arguments";
   EXPECT_THAT(offered("simulate wave grasp_t"), IsEmpty()) << "one argument too many";
   EXPECT_THAT(offered("simulate --out ''"), IsEmpty()) << "file names are the shell's";

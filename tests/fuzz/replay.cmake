@@ -2,6 +2,7 @@
 # The fuzz targets over their corpora as ordinary tests, in the tree with AddressSanitizer: no fuzzing, no tree of their own.
 set(targets
     fuzz_device
+    fuzz_encrypted_recording
     fuzz_link
     fuzz_mesh
     fuzz_motion

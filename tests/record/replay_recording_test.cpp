@@ -16,6 +16,7 @@
 #include "record/mcap/mcap_repair.h"
 #include "record/memory_file.h"
 #include "record/recording/topics.h"
+#include "record/stored_recording.h"
 #include "record/temporary_folder.h"
 #include "station/session_fixture.h"
 
@@ -31,9 +32,9 @@ class Recorded : public SessionFixture {
     start(settings);
     auto made = std::make_unique<MemoryFile>([this] { return clock.now(); });
     file = made.get();
-    recorder = std::make_unique<SessionRecorder>(
-        RecorderSettings{.folder = {}, .least_room = 0, .metadata = recording_metadata("test")}, *session,
-        clock, "a.mcap", std::move(made));
+    RecorderSettings to{.folder = {}, .least_room = 0, .metadata = recording_metadata("test")};
+    if (stored() == Stored::kEncrypted) to.encryption = test_encryption();
+    recorder = std::make_unique<SessionRecorder>(std::move(to), *session, clock, "a.mcap", std::move(made));
   }
   void own() override {
     session->poll();
@@ -47,6 +48,7 @@ class Recorded : public SessionFixture {
     if (auto report = session->take_fault_report()) reports.push_back(std::move(*report));
   }
   virtual bool drops(const StepRecord&) { return false; }
+  [[nodiscard]] virtual Stored stored() const { return Stored::kPlain; }
   /// Ends the session and the recording. @returns the file
   std::string finished() {
     session->shut_down();
@@ -60,9 +62,21 @@ class Recorded : public SessionFixture {
     return name;
   }
 
+  [[nodiscard]] ReplayResult replayed(const std::string& bytes) const {
+    return replay(on_disk(bytes), {}, nullptr, test_keys());
+  }
+  void lose_power_200_times();
+  void delay_each_write();
+  void fill_the_disk();
+
   const testing::TemporaryFolder folder;
   std::unique_ptr<SessionRecorder> recorder;
   MemoryFile* file = nullptr;  ///< of the recorder
+};
+
+/// The same, encrypted.
+class RecordedEncrypted : public Recorded {
+  [[nodiscard]] Stored stored() const override { return Stored::kEncrypted; }
 };
 
 /// Calls `change(step)` with each Step, and writes the file again.
@@ -209,7 +223,7 @@ TEST_F(RecordedWithGap, AGapNamesItsStepsAndIsNotCompared) {
   EXPECT_EQ(result.compared + result.not_compared + result.missing, records.size());
 }
 
-TEST_F(Recorded, OfTwoHundredPowerLossesAtMostHalfASecondIsMissing) {
+void Recorded::lose_power_200_times() {
   record(with("simulated"));
   ASSERT_TRUE(until_running());
   pass(6.0);
@@ -218,13 +232,13 @@ TEST_F(Recorded, OfTwoHundredPowerLossesAtMostHalfASecondIsMissing) {
   constexpr std::uint64_t kSeed = 200;
   std::mt19937_64 random(kSeed);
   // The first operations are the header's: before them there is no recording.
-  const std::size_t header = 2;
+  const std::size_t header = stored() == Stored::kEncrypted ? 3 : 2;
   for (int i = 0; i < 200; ++i) {
     const std::size_t at = header + random() % (file->operations.size() - header);
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", case " + std::to_string(i) + ", operation " +
                  std::to_string(at));
     const std::string disk = file->after_power_loss(at, random);
-    const mcap::ReadableFile torn(mcap::InMemory{disk});
+    const mcap::ReadableFile torn(mcap::InMemory{disk}, test_keys(), mcap::Unreadable::kFilled);
     MemoryFile repaired;
     static_cast<void>(mcap::repair(torn, repaired));
     double last = begin;
@@ -243,7 +257,10 @@ TEST_F(Recorded, OfTwoHundredPowerLossesAtMostHalfASecondIsMissing) {
   }
 }
 
-TEST_F(Recorded, ADiskThatTakes200MsForEachWriteFor30SecondsLosesNothing) {
+TEST_F(Recorded, OfTwoHundredPowerLossesAtMostHalfASecondIsMissing) { lose_power_200_times(); }
+TEST_F(RecordedEncrypted, OfTwoHundredPowerLossesAtMostHalfASecondIsMissing) { lose_power_200_times(); }
+
+void Recorded::delay_each_write() {
   record(with("simulated"));
   ASSERT_TRUE(until_running());
   double longest = 0.0;
@@ -258,12 +275,15 @@ TEST_F(Recorded, ADiskThatTakes200MsForEachWriteFor30SecondsLosesNothing) {
   EXPECT_EQ(session->view().state, SafetyState::kRunning);
   pass(1.0);
   EXPECT_EQ(recorder->status().lost_steps, 0U);
-  const ReplayResult result = replay(on_disk(finished()));
+  const ReplayResult result = replayed(finished());
   EXPECT_EQ(result.compared, records.size());
   EXPECT_EQ(result.different, 0U);
 }
 
-TEST_F(Recorded, WhileTheDiskIsFullTheStationRunsOnAndEverythingIsWrittenLater) {
+TEST_F(Recorded, ADiskThatTakes200MsForEachWriteFor30SecondsLosesNothing) { delay_each_write(); }
+TEST_F(RecordedEncrypted, ADiskThatTakes200MsForEachWriteFor30SecondsLosesNothing) { delay_each_write(); }
+
+void Recorded::fill_the_disk() {
   record(with("simulated"));
   ASSERT_TRUE(until_running());
   pass(1.0);
@@ -278,9 +298,39 @@ TEST_F(Recorded, WhileTheDiskIsFullTheStationRunsOnAndEverythingIsWrittenLater) 
   EXPECT_EQ(recorder->status().trouble, "");
   EXPECT_LT(recorder->status().unsaved, 0.5);
   EXPECT_EQ(recorder->status().lost_steps, 0U);
-  const ReplayResult result = replay(on_disk(finished()));
+  const ReplayResult result = replayed(finished());
   EXPECT_EQ(result.compared, records.size());
   EXPECT_EQ(result.different, 0U);
+}
+
+TEST_F(Recorded, WhileTheDiskIsFullTheStationRunsOnAndEverythingIsWrittenLater) { fill_the_disk(); }
+TEST_F(RecordedEncrypted, WhileTheDiskIsFullTheStationRunsOnAndEverythingIsWrittenLater) { fill_the_disk(); }
+
+TEST_F(RecordedEncrypted, NothingOfTheSessionIsOnTheDiskAsItIs) {
+  record(with("simulated"));
+  ASSERT_TRUE(until_running());
+  recorder->event("marker", "", "a remarkable word");
+  pass(1.0);
+  const std::string bytes = finished();
+  for (const char* text : {"MCAP", "phalanx", "first_touch", "simulated", "remarkable", "zstd", "/step"})
+    EXPECT_EQ(bytes.find(text), std::string::npos) << text;
+  for (const MemoryFile::Operation& operation : file->operations)
+    EXPECT_EQ(operation.bytes.find("MCAP"), std::string::npos);
+  const ReplayResult result = replayed(bytes);
+  EXPECT_EQ(result.compared, records.size());
+  EXPECT_EQ(result.different, 0U);
+}
+
+TEST_F(RecordedEncrypted, AFileOfTheFolderIsNamedAsAnEncryptedOne) {
+  SessionSettings settings = with("simulated");
+  settings.keep_changes = true;
+  start(settings);
+  SessionRecorder written(
+      {.folder = folder.path(), .least_room = 0, .metadata = {}, .encryption = test_encryption()}, *session,
+      clock);
+  EXPECT_THAT(written.status().file.string(), ::testing::EndsWith("Z.mcap.enc"));
+  EXPECT_TRUE(written.finish());
+  EXPECT_THAT(testing::read_file(written.status().file), ::testing::StartsWith("\x89PHXE"));
 }
 
 }  // namespace

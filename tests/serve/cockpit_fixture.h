@@ -132,7 +132,11 @@ class CockpitTest : public ::testing::Test {
  protected:
   /// @param still  the cockpit's clock advances by skip() only; then a page receives the states after its
   /// Welcome and no further ones
-  explicit CockpitTest(bool still = false, const std::string& device = "sliders") : still_(still) {
+  /// @param registry  makes the patients' registry in a folder; empty: there is none
+  explicit CockpitTest(
+      bool still = false, const std::string& device = "sliders",
+      const std::function<std::shared_ptr<Registry>(const std::filesystem::path&)>& registry = {})
+      : still_(still) {
     SessionSettings station;
     station.scene = "first_touch";
     station.device = device;
@@ -145,7 +149,8 @@ class CockpitTest : public ::testing::Test {
                                    .uploads = folder_ / "up",
                                    .recordings = folder_ / "recordings",
                                    .version = "1.2.3",
-                                   .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); }});
+                                   .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); },
+                                   .registry = registry ? registry(folder_.path()) : nullptr});
     serve();
   }
   ~CockpitTest() override {

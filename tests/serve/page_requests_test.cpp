@@ -477,7 +477,8 @@ TEST(Choices, AreEveryKeySceneAndProfile) {
     EXPECT_EQ(welcome.scene(i).object_kind(), scenes[idx(i)].object_kind);
     const bool measures =
         scenes[idx(i)].name.starts_with("bench_") || scenes[idx(i)].name.starts_with("timing_");
-    const bool studies = scenes[idx(i)].name.starts_with("stability_");
+    const bool studies = scenes[idx(i)].name.starts_with("stability_") || scenes[idx(i)].name == "sponge" ||
+                         scenes[idx(i)].name == "object_in_hand" || scenes[idx(i)].name == "pinch_slip";
     EXPECT_EQ(welcome.scene(i).purpose(), measures  ? "benchmark"
                                           : studies ? "study"
                                                     : "exercise")

@@ -101,8 +101,8 @@ const band = lostBand(store);
 const numbers = readouts(store, openings(app));
 /// What reads recordings is brought in when it is needed.
 const past = pastHand(app, async (name) => {
-  const [{ LookBack }, { stationSource }] = await Promise.all([import("./replay/look_back"), import("./replay/source")]);
-  return new LookBack((until) => stationSource(name, undefined, until), makeShapes);
+  const [{ LookBack }, { stationSource }, { pageFetch }] = await Promise.all([import("./replay/look_back"), import("./replay/source"), import("./wire/shared_session")]);
+  return new LookBack((until) => stationSource(name, pageFetch(false), until), makeShapes);
 });
 const frame = viewFrame(store, [past.element, band.element, faultCard(app), troubleCard(app)]);
 past.attach(frame);

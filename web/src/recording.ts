@@ -15,6 +15,7 @@ import { momentText } from "./panels/as_text";
 import { troubleText } from "./replay/trouble";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";
+import { pageFetch } from "./wire/shared_session";
 
 declare global {
   interface Window {
@@ -68,8 +69,8 @@ const band = el(
   el("div", { class: "header-tools" }, others, ...lookSwitches(look).elements, button("?", help, { "aria-label": strings.look.help, title: strings.look.help })),
 );
 const start = startPanel({
-  list: () => fetchList(),
-  openListed: (name) => void open(stationSource(name), undefined, name),
+  list: () => fetchList(pageFetch(true)),
+  openListed: (name) => void open(stationSource(name, pageFetch(false)), undefined, name),
   openFile: (file) => void open(fileSource(file)),
 });
 document.getElementById("opening")?.remove(); // what was painted until now
@@ -194,7 +195,7 @@ if (wanted !== null) {
   show(undefined);
   content.replaceChildren(start.element);
   const time = query.get("t");
-  void open(stationSource(wanted), time === null ? undefined : Number(time), wanted);
+  void open(stationSource(wanted, pageFetch(false)), time === null ? undefined : Number(time), wanted);
 } else {
   leave();
 }

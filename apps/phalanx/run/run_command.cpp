@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "patient/registry_options.h"
 #include "phalanx/mesh/isolation/isolation_helper.h"
 #include "phalanx/record/retention.h"
 #include "phalanx/record/station_csv.h"
@@ -29,6 +30,7 @@
 #include "run/run_options.h"
 #include "run/run_page.h"
 #include "run/run_recorder.h"
+#include "run/run_registry.h"
 #include "run/status_line.h"
 #include "run/terminate.h"
 #include "terminal/end_signals.h"
@@ -42,8 +44,12 @@ namespace {
 /// One run of the station, with its terminal. This thread waits for neither the terminal nor the disk.
 class Run {
  public:
-  Run(const RunOptions& options, const Clock& clock)
-      : options_(options), clock_(clock), recorder_(options.log, options.faults) {}
+  /// @param registry  patients of the page; null: none
+  Run(const RunOptions& options, const Clock& clock, std::shared_ptr<Registry> registry)
+      : options_(options),
+        clock_(clock),
+        registry_(std::move(registry)),
+        recorder_(options.log, options.faults) {}
 
   /// Runs the station. In every case the station first ends at zero torque, and the files are then written.
   int go() {
@@ -85,7 +91,8 @@ class Run {
                                                 recorder_.event("marker", from, text);
                                               });
     introduce();
-    if (!options_.headless) page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_);
+    if (!options_.headless)
+      page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_, registry_);
     watch();
   }
 
@@ -430,6 +437,7 @@ class Run {
 
   const RunOptions& options_;
   const Clock& clock_;
+  const std::shared_ptr<Registry> registry_;
   RunConsole console_;
   std::unique_ptr<Session> session_;
   RunRecorder recorder_;
@@ -518,6 +526,12 @@ void add_run_command(CLI::App& app, Job& job) {
   run->add_option("--tls-cert", options->certificate,
                   "the page's certificate (PEM); else one of its own is made");
   run->add_option("--tls-key", options->key, "its key (PEM)");
+  run->add_option("--data", options->data,
+                  "data folder of the patients: the page people.html shows them (docs/patients.md) [none]")
+      ->type_name("DIR");
+  run->add_option("--keys", options->keys,
+                  "file with the patients' keys, with --data [$PHALANX_KEYS, else ~/.config/phalanx/keys]")
+      ->type_name("FILE");
   run->add_option("--audit", options->audit, "every change made in the page, a JSON line each")
       ->capture_default_str();
   run->add_option("--uploads", options->uploads, "folder of the meshes that pages send")
@@ -534,8 +548,10 @@ void add_run_command(CLI::App& app, Job& job) {
     job = [options] {
       end_on_signal();
       const mesh::IsolationHelper helper;  // before there are threads, while memory is small
+      std::shared_ptr<Registry> registry;
+      with_registry_errors([&] { return registry = open_run_registry(*options), 0; });
       const Clock clock(options->slow_motion);
-      return Run(*options, clock).go();
+      return Run(*options, clock, std::move(registry)).go();
     };
   });
 }

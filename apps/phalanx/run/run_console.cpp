@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <exception>
+#include <utility>
 
 namespace phalanx {
 namespace {
@@ -19,7 +20,7 @@ bool are_the_same(int a, int b) {
 
 }  // namespace
 
-RunConsole::RunConsole() : out_(STDOUT_FILENO) {
+RunConsole::RunConsole(std::string command) : command_(std::move(command)), out_(STDOUT_FILENO) {
   if (!are_the_same(STDOUT_FILENO, STDERR_FILENO)) err_.emplace(STDERR_FILENO);
 }
 
@@ -33,7 +34,7 @@ void RunConsole::say(const std::string& line, Emphasis emphasis) noexcept {
 void RunConsole::complain(const std::string& what, Emphasis emphasis) noexcept {
   try {
     (err_ ? *err_ : out_)
-        .line(emphasised(emphasis, fmt::format("phalanx run: {}", what), takes_colour(STDERR_FILENO)));
+        .line(emphasised(emphasis, fmt::format("{}: {}", command_, what), takes_colour(STDERR_FILENO)));
   } catch (const std::exception&) {  // no memory
   }
 }

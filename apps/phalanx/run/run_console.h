@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of `phalanx run` on its terminal.
+// Messages of `phalanx run` and `phalanx exercise run` on their terminal.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,8 @@ namespace phalanx {
 /// terminal, pipe or file, lines keep their order.
 class RunConsole {
  public:
-  RunConsole();
+  /// @param command  name of the command that writes, for standard error
+  explicit RunConsole(std::string command = "phalanx run");
 
   void say(const std::string& line) noexcept { out_.line(line); }
   void say(const std::string& line, Emphasis emphasis) noexcept;
@@ -28,6 +29,7 @@ class RunConsole {
   [[nodiscard]] std::size_t width() const noexcept { return out_.width(); }  ///< LineWriter::width()
 
  private:
+  const std::string command_;
   LineWriter out_;
   std::optional<LineWriter> err_;  ///< none if it is the same as out_
 };

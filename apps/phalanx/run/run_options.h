@@ -51,6 +51,8 @@ struct RunOptions {
   bool port_stated = false;  ///< --port was given: use that port or none
   std::string certificate;
   std::string key;
+  std::string data;  ///< data folder of the registry of patients; empty: the page keeps none
+  std::string keys;  ///< file with the patients' keys, with `data`; empty: the default one
   std::string audit = "out/cockpit/changes.jsonl";
   std::string uploads = "out/cockpit/meshes";
   std::string calibrations = "out/calibrations";

@@ -6,12 +6,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/serve/cockpit.h"
 #include "phalanx/serve/reach.h"
 #include "phalanx/serve/web_server.h"
+#include "run/run_registry.h"
 
 namespace phalanx {
 namespace {
@@ -63,8 +65,11 @@ WebServerSettings server_settings(const RunOptions& o) {
   return settings;
 }
 
-CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder) {
+CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder,
+                                 std::shared_ptr<Registry> registry) {
   CockpitSettings settings;
+  if (registry) settings.exercises = exercises_for_pages;
+  settings.registry = std::move(registry);
   settings.recording = [&recorder] { return recorder.recording(); };
   if (o.recordings != "off") settings.recordings = o.recordings;
   settings.on_notice = [&recorder](const std::string& code, const std::string& who, const std::string& text) {
@@ -79,10 +84,10 @@ CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder) {
 }  // namespace
 
 struct RunPage::Parts {
-  Parts(const RunOptions& o, Session& session, RunRecorder& recorder)
+  Parts(const RunOptions& o, Session& session, RunRecorder& recorder, std::shared_ptr<Registry> registry)
       : options(o),
         settings(server_settings(o)),
-        cockpit(session, cockpit_settings(o, recorder)),
+        cockpit(session, cockpit_settings(o, recorder, std::move(registry))),
         server(settings, cockpit) {
     cockpit.attach(server, is_loopback(o.listen)
                                ? std::vector<std::string>()
@@ -140,6 +145,9 @@ struct RunPage::Parts {
 };
 
 void check_page_options(const RunOptions& o) {
+  if (o.headless && !o.data.empty())
+    throw std::invalid_argument(fmt::format(
+        "--data {}: --headless runs without the page, which alone uses it; leave one of them out", o.data));
   if (o.certificate.empty() != o.key.empty())
     throw std::invalid_argument(
         "--tls-cert and --tls-key: give both, or neither for a certificate of our own");
@@ -153,8 +161,9 @@ void check_page_options(const RunOptions& o) {
   }
 }
 
-RunPage::RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console)
-    : parts_(std::make_unique<Parts>(options, session, recorder)) {
+RunPage::RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console,
+                 std::shared_ptr<Registry> registry)
+    : parts_(std::make_unique<Parts>(options, session, recorder, std::move(registry))) {
   parts_->server.start();
   parts_->introduce(console);
 }

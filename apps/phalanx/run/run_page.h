@@ -11,6 +11,8 @@
 
 namespace phalanx {
 
+class Registry;
+
 /// Checks the options of the page.
 /// @throws std::invalid_argument if they contradict each other; the message names what to type instead
 void check_page_options(const RunOptions& options);
@@ -20,8 +22,10 @@ class RunPage {
  public:
   /// Binds the server, shows the page's addresses on the console, and serves.
   /// @param session, console  outlive the page
+  /// @param registry  patients and accounts; null: none
   /// @throws WebServerError or std::runtime_error, naming the remedy
-  RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console);
+  RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console,
+          std::shared_ptr<Registry> registry = nullptr);
   ~RunPage();
 
   /// Writes a line for each address. Addresses with a token are written to a terminal only.

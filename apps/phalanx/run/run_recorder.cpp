@@ -35,8 +35,10 @@ std::filesystem::path RunRecorder::finished_earlier() const {
   return log_ ? log_->finished_earlier() : std::filesystem::path();
 }
 
-void RunRecorder::begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings) {
+void RunRecorder::begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings,
+                        Watch watch) {
   session_ = &session;
+  watch_ = std::move(watch);
   if (settings) recording_ = std::make_unique<SessionRecorder>(*std::move(settings), session, clock);
   thread_ = start_nice_thread("phalanx-record", [this] { work(); });
 }
@@ -68,6 +70,7 @@ void RunRecorder::finish(bool in_good_order,
   if (!thread_.joinable()) return;
   ending_ = true;
   thread_.join();
+  watch_last();
   if (in_good_order) commit();
   log_.reset();
   if (recording_) finish_recording(on_refused);
@@ -133,6 +136,7 @@ void RunRecorder::write_steps() noexcept {
     while (session_->next_record(record, samples_)) {
       record_step(record);
       log_step(record);
+      watch_step(record);
     }
   } catch (const std::exception&) {  // no memory: the steps wait in the station
   }
@@ -162,6 +166,22 @@ void RunRecorder::log_step(const StepRecord& record) noexcept {
     if (log_) write_step(*log_, record);
   } catch (const std::exception& error) {
     give_up_log(error);
+  }
+}
+
+void RunRecorder::watch_step(const StepRecord& record) noexcept {
+  try {
+    if (watch_.on_step) watch_.on_step(record);
+  } catch (const std::exception& error) {
+    complain([&] { return "a step could not be evaluated: " + reason(error); });
+  }
+}
+
+void RunRecorder::watch_last() noexcept {
+  try {
+    if (watch_.on_last) watch_.on_last();
+  } catch (const std::exception& error) {
+    complain([&] { return "the end could not be evaluated: " + reason(error); });
   }
 }
 

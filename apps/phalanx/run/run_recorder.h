@@ -34,6 +34,12 @@ class RunRecorder {
     double fault_time = 0.0;  ///< FaultEvent::time of the fault [s]
   };
 
+  /// What is called on the recorder's thread, beside what is written. Exceptions become notes.
+  struct Watch {
+    std::function<void(const StepRecord&)> on_step;  ///< after the step was handed to the recording
+    std::function<void()> on_last;                   ///< after the last step, before the recording ends
+  };
+
   /// Opens the log.
   /// @param log      empty: none
   /// @param reports  folder of fault reports
@@ -48,8 +54,10 @@ class RunRecorder {
   /// Begins the recording, and starts the thread.
   /// @param session   outlives the recorder, as does `clock`
   /// @param settings  none: nothing is recorded
+  /// @param watch     may be empty
   /// @throws std::system_error if no thread can be made; as SessionRecorder
-  void begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings);
+  void begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings,
+             Watch watch = {});
   /// Adds something that happened to the recording, if there is one. Any thread.
   void event(const std::string& code, const std::string& who, const std::string& text);
   /// @returns the state of the recording; empty: nothing is recorded. Any thread.
@@ -72,6 +80,8 @@ class RunRecorder {
   void write_steps() noexcept;
   void record_step(const StepRecord& record) noexcept;
   void log_step(const StepRecord& record) noexcept;
+  void watch_step(const StepRecord& record) noexcept;
+  void watch_last() noexcept;
   void write_reports() noexcept;
   void commit() noexcept;
   void finish_recording(const std::function<void(const RecordingStatus&)>& on_refused) noexcept;
@@ -85,6 +95,7 @@ class RunRecorder {
 
   const std::filesystem::path reports_;
   Session* session_ = nullptr;
+  Watch watch_;
   std::unique_ptr<SessionRecorder> recording_;  ///< null: nothing is recorded
   std::optional<OutputFile> log_;               ///< the thread uses it while there is one
   std::vector<DeviceSample> samples_;           ///< of the step being written

@@ -114,6 +114,8 @@ void TypedLines::read_all() noexcept {
     } catch (const std::exception&) {  // no memory for the typed text: it may have been `stop`
       session_.stop();
       pending_.clear();
+      const std::lock_guard lock(mutex_);
+      ++left_out_;
     }
   }
 }
@@ -140,12 +142,13 @@ void TypedLines::take_lines() {
     line.text.erase(line.text.find_last_not_of(" \t\r") + 1);
     line.text.erase(0, line.text.find_first_not_of(" \t"));
     if (std::exchange(too_long_, false)) continue;  // the rest of a line that was too long
+    // Under the lock: next() does not miss the line of a stop() that has happened.
+    const std::lock_guard lock(mutex_);
     if (is_stop(line.text)) {
       line.text = "stop";
       session_.stop();
       line.stops = session_.stops();
     }
-    const std::lock_guard lock(mutex_);
     if (lines_.size() < kWaiting)
       lines_.push_back(std::move(line));
     else

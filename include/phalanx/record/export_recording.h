@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "phalanx/record/recording_keys.h"
+
 namespace phalanx {
 
 /// File formats of export_recording().
@@ -65,11 +67,13 @@ struct ExportedPart {
 /// same bits; in BIDS tables, six decimals. If it fails, nothing is left of the target.
 /// @param target  a folder or file (ExportFormatName::ending) that does not exist yet
 /// @param on_progress  as replay()
+/// @param keys  of encrypted recordings; may be empty. What is written is not encrypted
 /// @throws std::invalid_argument for an unknown part or column, a range without any time, a target that exists, or a table that
 /// is too large for the format; std::runtime_error if the recording is not whole or the disk refuses. what() names the remedy.
 /// Not real-time.
 std::vector<ExportedPart> export_recording(const std::filesystem::path& recording,
                                            const std::filesystem::path& target, const ExportOptions& options,
-                                           const std::function<void(double)>& on_progress = {});
+                                           const std::function<void(double)>& on_progress = {},
+                                           const FindRecordingKey& keys = {});
 
 }  // namespace phalanx

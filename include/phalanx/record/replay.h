@@ -8,7 +8,11 @@
 #include <optional>
 #include <string>
 
+#include "phalanx/record/recording_keys.h"
+
 namespace phalanx {
+
+class ReplayVisitor;
 
 /// The first step of a replay that differs from the recording.
 struct ReplayDifference {
@@ -43,9 +47,12 @@ struct ReplayResult {
 /// faults, resets and stops. Where this machine's sine and cosine round otherwise than the recording's, it compares the
 /// commands and, 60 times a second, the angles to ReplayResult::kTolerance.
 /// @param on_progress  gets the part that is read, 0 .. 1, some times a second; may be empty
-/// @throws std::runtime_error if the file is not whole, is no recording, or needs what this version cannot make; what() names
+/// @param visitor      gets each step that is made again, and what is missing; null: none
+/// @param keys         of encrypted recordings; may be empty
+/// @throws std::runtime_error if the file is not whole, is encrypted and without its key, is no recording, or needs what this version cannot make; what() names
 /// the place and the remedy. Not real-time.
 [[nodiscard]] ReplayResult replay(const std::filesystem::path& file,
-                                  const std::function<void(double)>& on_progress = {});
+                                  const std::function<void(double)>& on_progress = {},
+                                  ReplayVisitor* visitor = nullptr, const FindRecordingKey& keys = {});
 
 }  // namespace phalanx

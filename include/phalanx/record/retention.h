@@ -20,7 +20,8 @@ struct RetentionRule {
 };
 
 /// @returns the recordings that the rule deletes, oldest first. The newest whole one always stays, whatever the clock says. A file
-/// that is being written, has no end, or was not recorded by this program stays, too, and does not count
+/// that is being written, has no end, or was not recorded by this program stays, too, and does not count. An encrypted one
+/// without its key is deleted as others are: its name and its frames show begin and end
 /// @param all  of a folder, as list_recordings()
 /// @param now  UTC [s since 1970]
 [[nodiscard]] std::vector<RecordingSummary> expired_recordings(const std::vector<RecordingSummary>& all,

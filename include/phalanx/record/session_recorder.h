@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "phalanx/device/clock.h"
+#include "phalanx/record/recording_keys.h"
 #include "phalanx/station/session.h"
 
 namespace phalanx {
@@ -28,6 +29,8 @@ struct RecorderSettings {
   bool foxglove = true;  ///< with frames, meshes and forces for tools that read Foxglove's schemas
   /// Stated in the file outside its chunks: version, commit, machine. Nothing about a person may stand here.
   std::map<std::string, std::string> metadata;
+  /// Encrypts the file, whose name then ends with ".mcap.enc"; none: it is written as it is.
+  std::optional<RecordingEncryption> encryption = {};
 };
 
 /// Makes the folder of recordings if it does not exist, and checks that a recording can begin there.
@@ -61,12 +64,12 @@ class SessionRecorder {
   static constexpr std::size_t kMostWaitingBytes = 64U
                                                    << 20U;  ///< of steps that the disk does not take [bytes]
 
-  /// Begins the file `<folder>/<UTC date and time>.mcap`.
+  /// Begins the file `<folder>/<UTC date and time>.mcap`, or `.mcap.enc`.
   /// @param session  of SessionSettings::keep_changes; outlives the recorder, as does `clock`
   /// @throws std::invalid_argument for a folder that cannot be written, or too little room, with the remedy;
   /// std::runtime_error, likewise, if the disk refuses
   SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock);
-  /// The same into a file that is given. For tests. @param name  RecordingStatus::file
+  /// The same into a file that is given, encrypted if the settings say so. For tests. @param name  RecordingStatus::file
   SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock, std::filesystem::path name,
                   std::unique_ptr<mcap::WritableFile> file);
   SessionRecorder(const SessionRecorder&) = delete;

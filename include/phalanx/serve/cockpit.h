@@ -16,6 +16,16 @@
 
 namespace phalanx {
 
+class Registry;
+
+/// Exercise that can be prescribed, as the page of patients lists it.
+struct ListedExercise {
+  std::string name;     ///< of its file
+  std::string title;    ///< for people
+  std::string kind;     ///< "training" or "assessment"
+  std::string measure;  ///< "press_and_hold"
+};
+
 /// Settings that stay constant from the start on.
 struct CockpitSettings {
   std::filesystem::path log;              ///< file for the log of changes, one JSON line each; empty: none
@@ -28,6 +38,9 @@ struct CockpitSettings {
   /// Gets each notice with its code, who made the change, and its text; on the server's thread.
   std::function<void(const std::string& code, const std::string& who, const std::string& text)> on_notice =
       {};
+  std::shared_ptr<Registry> registry = {};  ///< patients and accounts; null: /people answers 404
+  std::function<std::vector<ListedExercise>()> exercises =
+      {};  ///< that can be prescribed; called on a thread of the cockpit; empty: none
 };
 
 /// Application behind the web server: connects the pages with a Session.
@@ -40,6 +53,9 @@ struct CockpitSettings {
 /// Messages. A page is sent ticks only as fast as it acknowledges them. A page with another protocol is
 /// refused with a reason. If the log of changes cannot be written, changes are made all the same, and both
 /// the pages and the log say so.
+///
+/// Patients. With a registry the addresses below /people serve the page of patients (src/serve/people.h). If an
+/// account signs in there, the log of changes names it beside the page that the sign-in came from.
 ///
 /// Not real-time: all functions allocate, lock, or both.
 class Cockpit final : public WebApplication {

@@ -34,6 +34,7 @@ struct WebRequest {
   std::string range;        ///< value of the field Range; empty if there is none
   std::string body;
   ClientInfo client;
+  std::string session = {};  ///< value of the field X-Phalanx-Session; empty if there is none
 };
 
 struct WebResponse {

@@ -2,6 +2,7 @@
 // The state of a station that other threads read: plain values, copied.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct StationView {
   double duration = 0.0;   ///< from the start of the step until the command was handed to the device [s]
   JointArray sent{};       ///< torques after the safety gate [Nm]
   SafetyState state = SafetyState::kWaiting;
-  /// Number of this period of SafetyState::kRunning, unique in the process; 0 in other states. A stop, a fault or an
-  /// exchange ends it.
+  /// Number of this period of SafetyState::kRunning, unique in the process; 0 in other states. A stop, a
+  /// fault or an exchange ends it.
   std::uint64_t running = 0;
   FaultEvent fault;                  ///< the present fault; kNone: no fault
   double factor = 0.0;               ///< factor of the ramps on the step's torques, 0 .. 1 [-]
@@ -50,8 +51,8 @@ struct StepRequest {
   };
 };
 
-/// All that a step depends on, besides its samples, the station's set-up and the steps before. With these a replay makes
-/// the step again, to the last bit.
+/// All that a step depends on, besides its samples, the station's set-up and the steps before. With these a
+/// replay makes the step again, to the last bit.
 struct StepInput {
   double time = 0.0;                            ///< the host's clock at the start of the step [s]
   bool late = false;                            ///< the step before ended after this one was due
@@ -83,6 +84,24 @@ struct StepRecord {
   double stiffness = 0.0;  ///< stiffness of the force law at this step [N/m]
   JointArray angle{};      ///< HCP [rad]
   DigitArray force{};      ///< sum of the magnitudes on each digit [N]
+
+  // What exercises observe besides (StationStep::describe()). It enters neither the hash nor a recording: a
+  // replay makes it.
+  AngleOrigins angle_origin{};           ///< of `angle`
+  DigitArray measured_force{};           ///< of a force sensor at each tip; NaN: the device has none [N]
+  std::array<bool, kDigits> touching{};  ///< a segment of the digit has a contact
+  std::array<bool, kDigits> slips{};     ///< a segment of the digit in contact slips
+  /// Share of `force` that ramps and all torque limits leave of it on the way to the device, 0 .. 1: `factor`
+  /// where no limit acts. With a limit, the share s whose torques s tau come closest to the sent ones [-]
+  DigitArray sent_share{};
+  /// Force that was sent over the depth, at the digit's deepest contact; NaN without contact or below
+  /// kLeastDepth [N/m]
+  DigitArray sent_stiffness{};
+  DigitArray depth{};  ///< of that contact in the object [m]; NaN like sent_stiffness
+  std::array<std::array<double, 3>, kDigits>
+      pad{};  ///< middle of each digit's pad on the measured hand, W [m]
+
+  static constexpr double kLeastDepth = 0.3e-3;  ///< below which a stiffness is not stated [m]
 };
 
 /// Report of one fault: the last 2 s before the torque had come to rest.

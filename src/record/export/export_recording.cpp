@@ -11,7 +11,10 @@
 #include <utility>
 
 #include "phalanx/device/channel_map.h"
+#include "phalanx/record/hand_observer.h"
 #include "phalanx/record/output_file.h"
+#include "phalanx/record/replay.h"
+#include "phalanx/record/replay_visitor.h"
 #include "phalanx/recording.pb.h"
 #include "record/export/bids_format.h"
 #include "record/export/export_sink.h"
@@ -55,12 +58,12 @@ struct Beginning {
   BidsLabels labels;
 };
 
-Beginning read_beginning(const fs::path& recording) {
+Beginning read_beginning(const fs::path& recording, const FindRecordingKey& keys) {
   Beginning out;
   out.origin.name = as_utf8(recording.filename().string());
   out.labels.task = bids_label("");
   try {
-    const mcap::ReadableFile file(recording);
+    const mcap::ReadableFile file(recording, keys);
     mcap::McapReader reader(file);
     mcap::Message message;
     wire::Setup setup;
@@ -77,6 +80,7 @@ Beginning read_beginning(const fs::path& recording) {
     out.origin.version = one_line(metadata_of(reader, "version"));
   } catch (const mcap::McapError&) {  // for_each_message_of() says what is wrong
   } catch (const std::system_error&) {
+  } catch (const mcap::NoKeyError&) {
   }
   return out;
 }
@@ -105,14 +109,39 @@ std::unique_ptr<ExportSink> sink_for(const fs::path& target, const Beginning& be
   return table_sink(bids_format(target, beginning.origin, labels), parts);
 }
 
+/// Hands each step that a replay makes again to a sink, as exercises observe it.
+class ExportObserver final : public ReplayVisitor {
+ public:
+  ExportObserver(ExportSink& sink, const ExportOptions& options) : sink_(sink), options_(options) {}
+
+  void step(const StepRecord& record, std::span<const DeviceSample> /*samples*/, double time) override {
+    const Observation observation = observer_.observe(record);
+    if (time >= options_.from && time < options_.to)
+      sink_.add_observation(observation, record.station, record.input.time, time);
+  }
+  void unknown_step(std::uint64_t /*station*/, std::uint64_t /*tick*/) override { observer_.gap(); }
+  void missing(std::uint64_t /*station*/, std::uint64_t /*first*/, std::uint64_t /*last*/) override {
+    observer_.gap();
+  }
+
+ private:
+  ExportSink& sink_;
+  const ExportOptions& options_;
+  HandObserver observer_;
+};
+
 std::vector<ExportedPart> write(const fs::path& recording, const fs::path& target,
-                                const ExportOptions& options,
-                                const std::function<void(double)>& on_progress) {
-  const std::unique_ptr<ExportSink> sink = sink_for(target, read_beginning(recording), options);
-  for_each_message_of(recording, on_progress,
+                                const ExportOptions& options, const std::function<void(double)>& on_progress,
+                                const FindRecordingKey& keys) {
+  const std::unique_ptr<ExportSink> sink = sink_for(target, read_beginning(recording, keys), options);
+  for_each_message_of(recording, on_progress, keys,
                       [&](std::string_view schema, const mcap::Message& message, double time) {
                         sink->add(schema, message, time, time >= options.from && time < options.to);
                       });
+  if (std::find(options.parts.begin(), options.parts.end(), "observations") != options.parts.end()) {
+    ExportObserver observer(*sink, options);
+    static_cast<void>(replay(recording, on_progress, &observer, keys));
+  }
   return sink->finish();
 }
 
@@ -161,21 +190,23 @@ std::vector<ExportPart> export_parts(ExportFormat format) {
 
 std::vector<ExportedPart> export_recording(const fs::path& recording, const fs::path& target,
                                            const ExportOptions& options,
-                                           const std::function<void(double)>& on_progress) {
+                                           const std::function<void(double)>& on_progress,
+                                           const FindRecordingKey& keys) {
   check(target, options);
   const bool is_file = options.format == ExportFormat::kHdf5 || options.format == ExportFormat::kMatlab;
   std::vector<ExportedPart> parts;
   if (is_file) {
     if (target.has_parent_path()) prepare_output_folder(target.parent_path());
-    write_then_rename(
-        target, [&](const fs::path& partial) { parts = write(recording, partial, options, on_progress); });
+    write_then_rename(target, [&](const fs::path& partial) {
+      parts = write(recording, partial, options, on_progress, keys);
+    });
     for (ExportedPart& part : parts) part.file = target;
     return parts;
   }
   const fs::path partial = target.string() + fmt::format(".partial-{}", ::getpid());
   prepare_output_folder(partial);
   try {
-    parts = write(recording, partial, options, on_progress);
+    parts = write(recording, partial, options, on_progress, keys);
     fs::rename(partial, target);
   } catch (const fs::filesystem_error& error) {
     remove_folder(partial);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "phalanx/device/channel_map.h"
+#include "phalanx/exercise/observation.h"
 #include "phalanx/record/export_recording.h"
 #include "phalanx/recording.pb.h"
 #include "record/export/export_table.h"
@@ -26,6 +27,11 @@ class ExportSink {
   /// @param time       since the beginning of the recording [s]
   /// @param in_range   false: it is not to be exported, but may state what later messages mean
   virtual void add(std::string_view schema, const mcap::Message& message, double time, bool in_range) = 0;
+  /// Gets what exercises observe at a step, after all messages, if the part `observations` is exported.
+  /// @param time       since the beginning of the recording [s]
+  /// @param host_time  StepInput::time [s]
+  virtual void add_observation(const Observation& /*observation*/, std::uint64_t /*station*/,
+                               double /*host_time*/, double /*time*/) {}
   /// Writes what is left.
   virtual std::vector<ExportedPart> finish() = 0;
 };

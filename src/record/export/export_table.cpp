@@ -3,6 +3,7 @@
 
 #include "phalanx/core/index.h"
 #include "phalanx/device/device.h"
+#include "phalanx/exercise/observation_table.h"
 #include "phalanx/hand/joints.h"
 
 namespace phalanx {
@@ -31,6 +32,17 @@ std::vector<std::string> digit_labels() {
   std::vector<std::string> labels;
   for (int digit = 0; digit < kDigits; ++digit) labels.emplace_back(digit_name(digit));
   return labels;
+}
+
+/// @returns the columns of the recording, then those of an observation
+std::vector<ExportColumn> columns_of_observations() {
+  std::vector<ExportColumn> columns = {{.name = "time", .unit = "s"},
+                                       {.name = "station"},
+                                       {.name = "tick"},
+                                       {.name = "host_time", .unit = "s"}};
+  for (const ObservationColumn& column : observation_columns())
+    columns.push_back({.name = column.name, .unit = column.unit, .labels = column.labels});
+  return columns;
 }
 
 /// @returns "index_finger_tip_x", and so on, segment by segment
@@ -120,6 +132,11 @@ const std::vector<ExportTable>& export_tables() {
                    {.name = "orientation", .labels = segment_labels({"qx", "qy", "qz", "qw"})},
                    {.name = "force", .unit = "N", .labels = segment_labels({"x", "y", "z"})},
                    {.name = "moment", .unit = "Nm", .labels = segment_labels({"x", "y", "z"})}}},
+      {.name = "observations",
+       .meaning = "only if named: what exercises observe at each step, made again by a replay; fault 0 none, "
+                  "1 no sample, 2 fault, 3 gap, 4 not finite",
+       .columns = columns_of_observations(),
+       .if_named = true},
       {.name = "events",
        .meaning = "what happened, with who and when",
        .columns = {{.name = "time", .unit = "s"},

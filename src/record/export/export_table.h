@@ -29,6 +29,8 @@ struct ExportTable {
   std::string name;     ///< "steps"
   std::string meaning;  ///< one line
   std::vector<ExportColumn> columns;
+  bool if_named =
+      false;  ///< is written only if ExportOptions::parts names it: each of its rows is computed again
 };
 
 /// @returns the name of a segment with underscores: "index_finger_tip"

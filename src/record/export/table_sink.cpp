@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "phalanx/device/channel_map.h"
+#include "phalanx/exercise/observation_table.h"
 #include "phalanx/hand/joints.h"
 #include "phalanx/recording.pb.h"
 #include "phalanx/step/snapshot.h"
@@ -96,8 +97,9 @@ class TableSink final : public ExportSink {
     if (!unknown.empty()) throw std::invalid_argument(unknown_column(unknown.front()));
     for (std::size_t t = 0; t < tables_.size(); ++t) {
       const std::string& name = export_tables()[t].name;
-      const bool wanted = options.parts.empty() ||
-                          std::find(options.parts.begin(), options.parts.end(), name) != options.parts.end();
+      const bool wanted = options.parts.empty() ? !export_tables()[t].if_named
+                                                : std::find(options.parts.begin(), options.parts.end(),
+                                                            name) != options.parts.end();
       if (wanted && tables_[t]->holds_chosen()) tables_[t]->begin(*format_);
     }
     if (std::none_of(tables_.begin(), tables_.end(), [](const auto& table) { return table->writes(); }))
@@ -121,6 +123,19 @@ class TableSink final : public ExportSink {
       add_event(time, "gap", "",
                 fmt::format("steps {} to {} of station {} are missing: {}", gap_.first_tick(),
                             gap_.last_tick(), gap_.station(), gap_.why()));
+  }
+
+  void add_observation(const Observation& observation, std::uint64_t station, double host_time,
+                       double time) override {
+    ChosenTable* table = written("observations");
+    if (table == nullptr) return;
+    row_.clear();
+    number(time);
+    integer(station);
+    integer(observation.tick);
+    number(host_time);
+    append_observation(observation, row_.numbers);
+    table->add(row_);
   }
 
   std::vector<ExportedPart> finish() override {

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "record/mcap/mcap_reader.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <new>
-#include <system_error>
 #include <utility>
 
 namespace phalanx::mcap {
@@ -50,42 +45,34 @@ std::map<std::uint16_t, std::uint64_t> parse_message_counts(std::string_view con
   return messages;
 }
 
+/// @returns null for a file that is not encrypted
+std::unique_ptr<DecryptedFile> decrypting(const StoredBytes& file, const FindRecordingKey& keys,
+                                          Unreadable unreadable) {
+  return is_encrypted(file) ? std::make_unique<DecryptedFile>(file, keys, unreadable) : nullptr;
+}
+
 }  // namespace
 
-ReadableFile::ReadableFile(const std::filesystem::path& file)
-    : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), file.string());
-  struct stat status{};
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    ::close(descriptor_);
-    throw McapError(fmt::format("{} is no regular file; name a recording", file.string()));
-  }
-  size_ = static_cast<std::uint64_t>(status.st_size);
-}
+ReadableFile::ReadableFile(const std::filesystem::path& file, const FindRecordingKey& keys,
+                           Unreadable unreadable)
+    : stored_(file), decrypted_(decrypting(stored_, keys, unreadable)) {}
 
-ReadableFile::~ReadableFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
+ReadableFile::ReadableFile(InMemory memory, const FindRecordingKey& keys, Unreadable unreadable)
+    : stored_(memory), decrypted_(decrypting(stored_, keys, unreadable)) {}
+
+ReadableFile::~ReadableFile() = default;
+
+std::uint64_t ReadableFile::size() const noexcept { return decrypted_ ? decrypted_->size() : stored_.size(); }
 
 void ReadableFile::read(std::uint64_t place, std::uint64_t length, std::string& out) const {
-  out.clear();
-  if (place >= size_) return;
-  length = std::min(length, size_ - place);
-  if (descriptor_ < 0) {
-    out.assign(bytes_.substr(static_cast<std::size_t>(place), static_cast<std::size_t>(length)));
-    return;
-  }
-  out.resize(static_cast<std::size_t>(length));
-  std::size_t done = 0;
-  while (done < out.size()) {
-    const ssize_t count =
-        ::pread(descriptor_, out.data() + done, out.size() - done, static_cast<off_t>(place + done));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw std::system_error(errno, std::generic_category(), "read");
-    if (count == 0) break;  // it was cut meanwhile
-    done += static_cast<std::size_t>(count);
-  }
-  out.resize(done);
+  if (decrypted_)
+    decrypted_->read(place, length, out);
+  else
+    stored_.read(place, length, out);
+}
+
+std::vector<Damage> ReadableFile::undecrypted() const {
+  return decrypted_ ? decrypted_->damages() : std::vector<Damage>();
 }
 
 void read_record(const ReadableFile& file, std::uint64_t place, Record& record) {

@@ -4,12 +4,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "phalanx/record/recording_keys.h"
+#include "record/mcap/decrypted_file.h"
 #include "record/mcap/mcap_bytes.h"
 #include "record/mcap/mcap_writer.h"
+#include "record/mcap/stored_bytes.h"
 
 struct ZSTD_DCtx_s;
 
@@ -21,30 +26,33 @@ inline constexpr std::uint64_t kMostBytes = 256U << 20U;
 /// Largest sum of all schemas, channels and metadata of a file [bytes].
 inline constexpr std::uint64_t kMostDescription = 16U << 20U;
 
-/// Bytes that are read as a file.
-struct InMemory {
-  std::string_view bytes;
-};
-
-/// A file, or bytes in memory, that is read at given places.
+/// An MCAP file, or bytes in memory, that is read at given places. An encrypted one is decrypted while it is read: places and
+/// sizes are those of the MCAP file. Not for two threads at once.
 class ReadableFile {
  public:
-  /// @throws std::system_error if it cannot be opened; McapError if it is no regular file
-  explicit ReadableFile(const std::filesystem::path& file);
+  /// @param keys  of encrypted files; may be empty
+  /// @throws std::system_error if it cannot be opened; McapError if it is no regular file; NoKeyError if it is encrypted, and
+  /// `keys` does not have its key
+  explicit ReadableFile(const std::filesystem::path& file, const FindRecordingKey& keys = {},
+                        Unreadable unreadable = Unreadable::kRefused);
   /// Reads from memory, which must outlive this object.
-  explicit ReadableFile(InMemory memory) : bytes_(memory.bytes), size_(memory.bytes.size()) {}
+  explicit ReadableFile(InMemory memory, const FindRecordingKey& keys = {},
+                        Unreadable unreadable = Unreadable::kRefused);
   ReadableFile(const ReadableFile&) = delete;
   ReadableFile& operator=(const ReadableFile&) = delete;
   ~ReadableFile();
 
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< when it was opened
-  /// Reads up to `length` bytes into `out`; fewer if the file ends before. @throws std::system_error
+  [[nodiscard]] std::uint64_t size() const noexcept;  ///< when it was opened
+  /// Reads up to `length` bytes into `out`; fewer if the file ends before. @throws std::system_error, and McapError for a part
+  /// that cannot be decrypted
   void read(std::uint64_t place, std::uint64_t length, std::string& out) const;
+  [[nodiscard]] bool encrypted() const noexcept { return decrypted_ != nullptr; }
+  /// @returns the parts of an encrypted file that could not be decrypted so far; places are those on the disk
+  [[nodiscard]] std::vector<Damage> undecrypted() const;
 
  private:
-  int descriptor_ = -1;
-  std::string_view bytes_;
-  std::uint64_t size_ = 0;
+  const StoredBytes stored_;
+  const std::unique_ptr<DecryptedFile> decrypted_;  ///< null: not encrypted
 };
 
 /// A record at the top level of a file.

@@ -9,6 +9,11 @@
 namespace phalanx::mcap {
 namespace {
 
+/// @returns the ciphertext of a whole frame with its tag
+std::string_view body_of(std::string_view frame) noexcept {
+  return frame.substr(kFrameHead, frame.size() - kFrameHead - 4);
+}
+
 constexpr std::uint64_t kBlock = 1U << 20U;  ///< read at once while a chunk is searched for [bytes]
 
 /// The repair of one file: reads one after the other, writes one after the other.
@@ -39,8 +44,10 @@ class Repair {
       }
     }
     end_chunk();
+    flush();
     name_missing_chunks();
     write(end_of_file(result_.summary, place_));
+    flush();
     to_.truncate(place_);
     to_.synchronise();
     return std::move(result_);
@@ -99,9 +106,15 @@ class Repair {
                                    .what = "the index has a chunk here, and there is none"});
   }
 
+  /// Collects what is written: a chunk and its indexes are one write, and so one frame of an encrypted file.
   void write(const Bytes& bytes) {
-    to_.write(place_, view_of(bytes));
+    written_.insert(written_.end(), bytes.begin(), bytes.end());
     place_ += bytes.size();
+  }
+
+  void flush() {
+    to_.write(place_ - written_.size(), view_of(written_));
+    written_.clear();
   }
 
   /// Writes the record as it is.
@@ -174,6 +187,7 @@ class Repair {
           });
     }
     end_chunk();
+    flush();
     found_.insert(record_.place);
     entry.place = place_;
     entry.length = kRecordHead + record_.content.size();
@@ -263,7 +277,8 @@ class Repair {
   std::optional<Summary> old_;                            ///< of `from_`; none: it has no end
   std::set<std::uint64_t> found_;                         ///< places of chunks in `from_`
   std::uint64_t budget_ = 2 * from_.size() + kMostBytes;  ///< bytes of records that may be tried in a search
-  std::uint64_t place_ = 0;                               ///< in `to_`
+  std::uint64_t place_ = 0;                               ///< in `to_`, with what is in `written_`
+  Bytes written_;                                         ///< and not in `to_` yet
   Record record_;
   ChunkReader reader_;
   Chunk chunk_;
@@ -275,5 +290,35 @@ class Repair {
 }  // namespace
 
 Repaired repair(const ReadableFile& from, WritableFile& to) { return Repair(from, to).run(); }
+
+KeptFrames keep_whole_frames(const StoredBytes& from, WritableFile& to) {
+  std::string bytes;
+  from.read(0, 2 * kEncryptedHead, bytes);
+  if (!begins_as_encrypted(bytes)) throw McapError("it does not begin as an encrypted recording");
+  const Bytes head = begin_of_encrypted(parse_encrypted_head(bytes));
+  to.write(0, view_of(head));
+  std::uint64_t place = head.size();
+  KeptFrames result;
+  FrameWalk walk(from);
+  Frame frame;
+  while (walk.next(frame)) {
+    from.read(frame.stored, frame.head.stored(), bytes);
+    if (bytes.size() != frame.head.stored() || crc32_of(body_of(bytes)) != frame.head.body_crc) {
+      result.damages.push_back(
+          {.place = frame.stored, .length = frame.head.stored(), .what = "a frame's checksum is wrong"});
+      continue;
+    }
+    to.write(place, bytes);
+    place += bytes.size();
+    ++result.frames;
+    result.had_end = frame.head.last;
+  }
+  to.truncate(place);
+  to.synchronise();
+  result.damages.insert(result.damages.end(), walk.damages().begin(), walk.damages().end());
+  std::sort(result.damages.begin(), result.damages.end(),
+            [](const Damage& a, const Damage& b) { return a.place < b.place; });
+  return result;
+}
 
 }  // namespace phalanx::mcap

@@ -36,12 +36,13 @@ template <class Wire>
 
 /// Calls `on_message(schema, message, time)` for each message of a recording; the time is that since its beginning [s].
 /// @param on_progress  gets the part that is read, 0 .. 1; may be empty
-/// @throws std::runtime_error naming the place and the remedy if the file is not whole
+/// @param keys  of encrypted recordings; may be empty
+/// @throws std::runtime_error naming the place and the remedy if the file is not whole, or is encrypted and without its key
 template <class OnMessage>
 void for_each_message_of(const std::filesystem::path& name, const std::function<void(double)>& on_progress,
-                         OnMessage on_message) {
+                         const FindRecordingKey& keys, OnMessage on_message) {
   try {
-    const mcap::ReadableFile file(name);
+    const mcap::ReadableFile file(name, keys);
     mcap::McapReader reader(file);
     mcap::Message message;
     std::optional<std::uint64_t> begin;
@@ -59,6 +60,8 @@ void for_each_message_of(const std::filesystem::path& name, const std::function<
   } catch (const mcap::McapError& error) {
     throw std::runtime_error(
         fmt::format("{}: {}; phalanx session repair FILE keeps what is whole", name.string(), error.what()));
+  } catch (const mcap::NoKeyError& error) {
+    throw std::runtime_error(fmt::format("{}: {}", name.string(), error.what()));
   } catch (const std::system_error& error) {
     throw std::runtime_error(fmt::format("{}: cannot be read ({})", name.string(), error.code().message()));
   }

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -17,6 +18,7 @@
 
 #include "phalanx/core/index.h"
 #include "phalanx/recording.pb.h"
+#include "record/mcap/encrypted_file.h"
 #include "record/mcap/mcap_file.h"
 #include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_repair.h"
@@ -68,6 +70,25 @@ void read_end(const mcap::ReadableFile& file, RecordingSummary& out) {
   }
 }
 
+/// @returns the begin that the name of a recording states: UTC [s since 1970]; 0: it states none
+double begin_in_name(const fs::path& file) {
+  std::tm utc{};
+  const std::string name = file.filename().string();
+  return ::strptime(name.c_str(), "%Y-%m-%dT%H-%M-%SZ", &utc) == nullptr
+             ? 0.0
+             : static_cast<double>(::timegm(&utc));
+}
+
+/// Fills in what an encrypted file says to all.
+void read_encrypted(const fs::path& file, RecordingSummary& out) {
+  const auto encrypted = mcap::summarise_encrypted(mcap::StoredBytes(file));
+  if (!encrypted) return;
+  out.encrypted = true;
+  out.key_id = encrypted->id;
+  out.begins = true;
+  out.has_end = encrypted->has_end;
+}
+
 /// @returns the time of the last change of a file: UTC [s since 1970]
 double changed_at(const fs::path& file) {
   const auto time = std::chrono::file_clock::to_sys(fs::last_write_time(file));
@@ -103,7 +124,7 @@ void keep_original(const fs::path& file, const fs::path& original) {
   std::error_code linked;
   fs::create_hard_link(file, original, linked);
   if (!linked) return synchronise_folder(original.parent_path());
-  const mcap::ReadableFile from(file);
+  const mcap::StoredBytes from(file);
   mcap::DiskFile to(original);
   constexpr std::uint64_t kPart = 1U << 20U;
   std::string part;
@@ -115,17 +136,61 @@ void keep_original(const fs::path& file, const fs::path& original) {
   to.synchronise();
 }
 
+/// Writes what is whole of a file into another. An encrypted one is written encrypted; without its key, only whole frames are.
+/// @returns a result whose names are not set yet
+RepairedRecording repair_into(const fs::path& file, const FindRecordingKey& keys, mcap::DiskFile& to) {
+  RepairedRecording out;
+  const auto lost = [&](const mcap::Damage& damage, bool bytes, const char* of) {
+    if (bytes) out.lost_bytes += damage.length;
+    out.losses.push_back(
+        fmt::format("{} bytes from byte {} on{}: {}", damage.length, damage.place, of, damage.what));
+  };
+  const mcap::StoredBytes stored(file);
+  const auto encrypted = mcap::summarise_encrypted(stored);
+  const std::optional<RecordingKey> key = encrypted && keys ? keys(encrypted->id) : std::nullopt;
+  if (encrypted && !key) {
+    const mcap::KeptFrames kept = mcap::keep_whole_frames(stored, to);
+    for (const mcap::Damage& damage : kept.damages) lost(damage, true, " of the encrypted file");
+    out.chunks = kept.frames;
+    out.changed = !kept.damages.empty();
+    out.needs_key = true;
+    return out;
+  }
+  const mcap::ReadableFile from(file, keys, mcap::Unreadable::kFilled);
+  std::optional<mcap::EncryptedFile> sealed;
+  if (encrypted) sealed.emplace(to, RecordingEncryption{.id = encrypted->id, .key = *key});
+  const mcap::Repaired repaired = mcap::repair(from, sealed ? static_cast<mcap::WritableFile&>(*sealed) : to);
+  out.chunks = repaired.summary.chunks.size();
+  const std::vector<mcap::Damage> undecrypted = from.undecrypted();
+  for (const mcap::Damage& damage : undecrypted)
+    lost(damage, repaired.damages.empty(), " of the encrypted file");
+  for (const mcap::Damage& damage : repaired.damages)
+    lost(damage, true, encrypted ? " of the recording" : "");
+  out.changed = !repaired.had_end || !out.losses.empty();
+  return out;
+}
+
 }  // namespace
+
+bool has_recording_name(const fs::path& file) {
+  return file.extension() == ".mcap" || (file.extension() == ".enc" && file.stem().extension() == ".mcap");
+}
+
+fs::path beside_recording(const fs::path& file, const std::string& ending) {
+  fs::path name = file.extension() == ".enc" ? fs::path(file).replace_extension() : file;
+  return name.replace_extension(ending);
+}
 
 std::string recording_state(const RecordingSummary& recording) {
   if (recording.written) return "being written";
   if (!recording.begins) return recording.trouble;
+  if (recording.no_key) return recording.has_end ? "encrypted, no key" : "encrypted, no key, no end: repair";
   if (!recording.has_end) return "no end: repair";
   if (!recording.trouble.empty()) return recording.trouble;
   return recording.gaps > 0 ? fmt::format("{} gaps", recording.gaps) : "whole";
 }
 
-RecordingSummary summarise_recording(const fs::path& file) {
+RecordingSummary summarise_recording(const fs::path& file, const FindRecordingKey& keys) {
   RecordingSummary out;
   out.file = file;
   std::error_code error;
@@ -134,13 +199,18 @@ RecordingSummary summarise_recording(const fs::path& file) {
         "there is no recording {}; `phalanx session list` shows those of the folder", file.string()));
   try {
     out.written = mcap::is_being_written(file);
-    const mcap::ReadableFile readable(file);
-    out.bytes = readable.size();
+    out.bytes = fs::file_size(file);
     out.changed = changed_at(file);
+    read_encrypted(file, out);
+    const mcap::ReadableFile readable(file, keys);
     out.has_end = mcap::has_end(readable);
     out.begins = mcap::begins_as_mcap(readable);
     if (out.has_end) read_end(readable, out);
     read_begin(readable, out);
+  } catch (const mcap::NoKeyError& trouble) {
+    out.trouble = trouble.what();
+    out.no_key = true;
+    out.begin = begin_in_name(file);
   } catch (const std::exception& trouble) {
     out.trouble = trouble.what();
   }
@@ -148,7 +218,8 @@ RecordingSummary summarise_recording(const fs::path& file) {
 }
 
 std::vector<RecordingSummary> list_recordings(const fs::path& folder,
-                                              const std::vector<RecordingSummary>& known) {
+                                              const std::vector<RecordingSummary>& known,
+                                              const FindRecordingKey& keys) {
   std::vector<RecordingSummary> all;
   std::error_code error;
   if (!fs::exists(folder, error)) return all;
@@ -157,9 +228,9 @@ std::vector<RecordingSummary> list_recordings(const fs::path& folder,
     throw std::invalid_argument(fmt::format("the folder {} cannot be read ({}); name another with --folder",
                                             folder.string(), error.message()));
   for (const fs::directory_entry& entry : entries)
-    if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.path(), error)) {
+    if (has_recording_name(entry.path()) && fs::is_regular_file(entry.path(), error)) {
       const RecordingSummary* same = unchanged(entry.path(), known);
-      all.push_back(same != nullptr ? *same : summarise_recording(entry.path()));
+      all.push_back(same != nullptr ? *same : summarise_recording(entry.path(), keys));
     }
   std::sort(all.begin(), all.end(), [](const RecordingSummary& a, const RecordingSummary& b) {
     return std::tie(a.begin, a.file) < std::tie(b.begin, b.file);
@@ -167,23 +238,15 @@ std::vector<RecordingSummary> list_recordings(const fs::path& folder,
   return all;
 }
 
-RepairedRecording repair_recording(const fs::path& file) {
+RepairedRecording repair_recording(const fs::path& file, const FindRecordingKey& keys) {
   static_cast<void>(summarise_recording(file));
   if (mcap::is_being_written(file))
     throw std::invalid_argument(fmt::format("{} is being written; end that run first", file.string()));
   const fs::path made = free_name(file, fmt::format(".repairing-{}", ::getpid()));
   RepairedRecording out;
   try {
-    const mcap::ReadableFile from(file);
     mcap::DiskFile to(made);
-    const mcap::Repaired repaired = mcap::repair(from, to);
-    out.chunks = repaired.summary.chunks.size();
-    for (const mcap::Damage& damage : repaired.damages) {
-      out.lost_bytes += damage.length;
-      out.losses.push_back(
-          fmt::format("{} bytes from byte {} on: {}", damage.length, damage.place, damage.what));
-    }
-    out.changed = !repaired.had_end || !repaired.damages.empty();
+    out = repair_into(file, keys, to);
     if (out.changed) {
       out.original = free_name(file, ".torn");
       keep_original(file, out.original);
@@ -194,6 +257,9 @@ RepairedRecording repair_recording(const fs::path& file) {
     remove_quietly(made);
     throw std::invalid_argument(
         fmt::format("{}: {}; there is nothing to repair", file.string(), error.what()));
+  } catch (const mcap::NoKeyError& error) {
+    remove_quietly(made);
+    throw std::invalid_argument(fmt::format("{}: {}", file.string(), error.what()));
   } catch (...) {
     remove_quietly(made);
     throw;
@@ -202,14 +268,15 @@ RepairedRecording repair_recording(const fs::path& file) {
   return out;
 }
 
-RecordingContent read_recording(const fs::path& name, const std::function<void(double)>& on_progress) {
+RecordingContent read_recording(const fs::path& name, const std::function<void(double)>& on_progress,
+                                const FindRecordingKey& keys) {
   RecordingContent out;
   const auto add = [&](double time, std::string code, std::string who, std::string text) {
     out.events.push_back(
         {.time = time, .code = std::move(code), .who = std::move(who), .text = std::move(text)});
   };
   for_each_message_of(
-      name, on_progress,
+      name, on_progress, keys,
       [&, tick = wire::Tick(), event = wire::Event(), setup = wire::Setup(), change = wire::Change(),
        gap = wire::Gap()](std::string_view schema, const mcap::Message& message, double time) mutable {
         if (schema == "phalanx.wire.Tick" && parsed(message, tick)) {
@@ -275,10 +342,10 @@ class MotionReader {
 
 }  // namespace
 
-Motion recorded_motion(const fs::path& name) {
+Motion recorded_motion(const fs::path& name, const FindRecordingKey& keys) {
   MotionReader reader;
   try {
-    for_each_message_of(name, {},
+    for_each_message_of(name, {}, keys,
                         [&](std::string_view schema, const mcap::Message& message, double /*time*/) {
                           reader.add(schema, message);
                         });

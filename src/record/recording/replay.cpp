@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -14,7 +15,9 @@
 #include "phalanx/core/index.h"
 #include "phalanx/device/channel_map.h"
 #include "phalanx/record/made.h"
+#include "phalanx/record/replay_visitor.h"
 #include "record/mcap/mcap_reader.h"
+#include "record/recording/recording_messages.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
 #include "record/recording/topics.h"
@@ -44,12 +47,18 @@ std::string channel_name(const DeviceChannel& channel) {
 
 class Replay {
  public:
-  explicit Replay(const std::filesystem::path& file) : name_(file), file_(file), reader_(file_) {}
+  Replay(const std::filesystem::path& file, const FindRecordingKey& keys)
+      : name_(file), file_(file, keys), reader_(file_) {}
 
-  ReplayResult run(const std::function<void(double)>& on_progress) {
+  /// @param visitor  null: none
+  ReplayResult run(const std::function<void(double)>& on_progress, ReplayVisitor* visitor) {
+    visitor_ = visitor;
     mcap::Message message;
     std::uint64_t told = 0;
+    std::optional<std::uint64_t> begin_ns;
     while (reader_.next(message)) {
+      if (!begin_ns) begin_ns = message.time;
+      message_time_ = message.time > *begin_ns ? 1e-9 * static_cast<double>(message.time - *begin_ns) : 0.0;
       const std::string_view schema = reader_.schema_of(message.channel);
       if (schema == "phalanx.wire.Step")
         step(parsed(step_, message));
@@ -125,11 +134,19 @@ class Replay {
     tick_ = 0;
     lost_ = false;
     ++result_.stations;
+    if (visitor_ == nullptr) return;
+    visitor_->station({.number = number_,
+                       .scene = setup.start().scene(),
+                       .device = read_device(setup),
+                       .calibration = setup.calibration(),
+                       .rate_hz = 1.0 / read_parameters(setup.start()).period()});
   }
 
   void gap(const wire::Gap& gap) {
     if (gap.station() != number_ || gap.last_tick() < gap.first_tick() || gap.last_tick() <= tick_) return;
     result_.missing += gap.last_tick() - std::max(tick_, gap.first_tick() - 1);
+    if (visitor_ != nullptr)
+      visitor_->missing(number_, std::max(tick_ + 1, gap.first_tick()), gap.last_tick());
     tick_ = gap.last_tick();
     lost_ = true;
   }
@@ -154,24 +171,38 @@ class Replay {
     });
   }
 
+  void not_made(const wire::Step& recorded) {
+    ++result_.not_compared;
+    if (visitor_ != nullptr) visitor_->unknown_step(recorded.station(), recorded.tick());
+  }
+
   void step(const wire::Step& recorded) {
     ++result_.steps;
     if (result_.steps == 1) begin_time_ = recorded.time();
     result_.seconds = recorded.time() - begin_time_;
     // A station's beginning, or steps of it, may be lost with a damaged part of the file.
-    if (!station_ || recorded.station() != number_) {
-      ++result_.not_compared;
-      return;
+    if (!station_ || recorded.station() != number_) return not_made(recorded);
+    if (recorded.tick() > tick_ + 1) {
+      result_.missing += recorded.tick() - tick_ - 1;
+      if (visitor_ != nullptr) visitor_->missing(number_, tick_ + 1, recorded.tick() - 1);
     }
-    if (recorded.tick() > tick_ + 1) result_.missing += recorded.tick() - tick_ - 1;
     if (recorded.tick() != tick_ + 1) lost_ = true;
     tick_ = recorded.tick();
-    if (lost_) {
-      ++result_.not_compared;
-      return;
-    }
+    if (lost_) return not_made(recorded);
     make(recorded);
     compare(recorded);
+    if (visitor_ != nullptr) show(recorded);
+  }
+
+  void show(const wire::Step& recorded) {
+    StepRecord made;
+    made.station = number_;
+    made.input = read_input(recorded);
+    made.command = station_->command();
+    made.hash = station_->hash();
+    made.samples = static_cast<std::uint32_t>(samples_.size());
+    station_->describe(made);
+    visitor_->step(made, samples_, message_time_);
   }
 
   void make(const wire::Step& recorded) {
@@ -198,12 +229,15 @@ class Replay {
     const bool same = same_machine_ ? station_->hash() == recorded.hash() : close(recorded, torque);
     if (same && same_input) return;
     ++result_.different;
+    if (result_.first && visitor_ == nullptr) return;
+    std::string what =
+        same_input ? output_difference(recorded) : input_difference(check, recorded.channel_check());
+    if (visitor_ != nullptr) visitor_->different(number_, recorded.tick(), what);
     if (result_.first) return;
-    result_.first = {
-        .station = number_,
-        .tick = recorded.tick(),
-        .time = recorded.time() - begin_time_,
-        .what = same_input ? output_difference(recorded) : input_difference(check, recorded.channel_check())};
+    result_.first = {.station = number_,
+                     .tick = recorded.tick(),
+                     .time = recorded.time() - begin_time_,
+                     .what = std::move(what)};
   }
 
   [[nodiscard]] static double recorded_torque(const wire::Step& recorded, std::size_t joint) {
@@ -282,16 +316,21 @@ class Replay {
   bool same_machine_ = true;
   bool lost_ = false;  ///< steps of this station are missing
   double begin_time_ = 0.0;
+  ReplayVisitor* visitor_ = nullptr;
+  double message_time_ = 0.0;  ///< of the newest message, since the recording's beginning [s]
 };
 
 }  // namespace
 
-ReplayResult replay(const std::filesystem::path& file, const std::function<void(double)>& on_progress) {
+ReplayResult replay(const std::filesystem::path& file, const std::function<void(double)>& on_progress,
+                    ReplayVisitor* visitor, const FindRecordingKey& keys) {
   try {
-    return Replay(file).run(on_progress);
+    return Replay(file, keys).run(on_progress, visitor);
   } catch (const mcap::McapError& error) {
     throw std::runtime_error(
         fmt::format("{}: {}; phalanx session repair FILE keeps what is whole", file.string(), error.what()));
+  } catch (const mcap::NoKeyError& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
   }
 }
 

@@ -18,7 +18,8 @@ fs::path folder_of(const fs::path& file) {
 }
 
 bool may_be_deleted(const RecordingSummary& recording) {
-  return !recording.written && recording.has_end && recording.trouble.empty() && !recording.version.empty();
+  if (recording.written || !recording.has_end) return false;
+  return recording.no_key || (recording.trouble.empty() && !recording.version.empty());
 }
 
 }  // namespace
@@ -45,7 +46,7 @@ std::vector<RecordingSummary> expired_recordings(const std::vector<RecordingSumm
 
 std::vector<fs::path> delete_recording(const fs::path& file) {
   std::vector<fs::path> all{file};
-  const fs::path page = fs::path(file).replace_extension(".html");
+  const fs::path page = beside_recording(file, ".html");
   std::error_code ignored;
   if (fs::exists(page, ignored)) all.push_back(page);
   const std::string torn = file.filename().string() + ".torn";

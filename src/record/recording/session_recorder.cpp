@@ -18,6 +18,7 @@
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/record/retention.h"
+#include "record/mcap/encrypted_file.h"
 #include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_writer.h"
 #include "record/plain_text.h"
@@ -31,11 +32,12 @@
 namespace phalanx {
 namespace {
 
-constexpr double kBetweenPoses = 1.0 / 60.0;    // [s]
-constexpr double kBetweenLoops = 1.0;           // statistics of deadlines [s]
-constexpr double kBetweenClocks = 10.0;         // pairs of clocks [s]
-constexpr std::size_t kLargeChunk = 8U << 20U;  // is written before its time [bytes]
-constexpr std::size_t kEventLength = 4000;      // [bytes]
+constexpr double kBetweenPoses = 1.0 / 60.0;           // [s]
+constexpr double kBetweenLoops = 1.0;                  // statistics of deadlines [s]
+constexpr double kBetweenClocks = 10.0;                // pairs of clocks [s]
+constexpr std::size_t kLargeChunk = 8U << 20U;         // is written before its time [bytes]
+constexpr std::size_t kEventLength = 4000;             // [bytes]
+constexpr std::size_t kExerciseEventLength = 200'000;  // of what a replay of an exercise needs [bytes]
 constexpr std::size_t kMostWaitingEvents = 1000;
 constexpr double kBetweenTries = 0.2;  // of a disk that refuses [s]
 constexpr const char* kTooFast = "they came faster than they were fetched";
@@ -48,6 +50,9 @@ std::int64_t utc_ns() {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
+/// @returns true for an event without which an exercise cannot be carried out again (record/exercise/exercise_events.h)
+bool is_of_exercise(const std::string& code) { return code.starts_with("exercise_"); }
+
 std::uint64_t free_bytes(const std::filesystem::path& folder) {
   std::error_code error;
   const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, error);
@@ -59,7 +64,8 @@ std::unique_ptr<mcap::WritableFile> new_file(const RecorderSettings& settings, s
   check_recordings_folder(settings);
   const std::string date = fmt::format("{:%Y-%m-%dT%H-%M-%SZ}", fmt::gmtime(std::time(nullptr)));
   for (int i = 1;; ++i) {
-    name = settings.folder / (i == 1 ? date + ".mcap" : fmt::format("{}-{}.mcap", date, i));
+    name = settings.folder / fmt::format("{}{}.mcap{}", date, i == 1 ? std::string() : fmt::format("-{}", i),
+                                         settings.encryption ? ".enc" : "");
     try {
       return std::make_unique<mcap::DiskFile>(name);
     } catch (const std::system_error& error) {
@@ -90,6 +96,11 @@ void check_recordings_folder(const RecorderSettings& settings) {
 }
 
 namespace {
+
+/// @returns null if the settings do not encrypt
+std::unique_ptr<mcap::WritableFile> encrypting(mcap::WritableFile& file, const RecorderSettings& settings) {
+  return settings.encryption ? std::make_unique<mcap::EncryptedFile>(file, *settings.encryption) : nullptr;
+}
 
 /// @returns the room that is left for recordings. @param others  bytes of the folder's other recordings
 std::uint64_t room_left(const RecorderSettings& settings, const std::filesystem::path& folder,
@@ -124,8 +135,9 @@ struct SessionRecorder::Impl {
         clock(process_clock),
         name(std::move(given_name)),
         file(std::move(given_file)),
-        writer(*file, recording_schemas(settings.foxglove), recording_channels(settings.foxglove),
-               {{"phalanx", settings.metadata}}),
+        encrypted(encrypting(*file, settings)),
+        writer(encrypted ? *encrypted : *file, recording_schemas(settings.foxglove),
+               recording_channels(settings.foxglove), {{"phalanx", settings.metadata}}),
         begin_mono(clock.now()),
         begin_utc(utc_ns()) {
     now_bytes = writer.size();
@@ -171,6 +183,7 @@ struct SessionRecorder::Impl {
   const Clock& clock;
   std::filesystem::path name;
   std::unique_ptr<mcap::WritableFile> file;
+  std::unique_ptr<mcap::WritableFile> encrypted;  ///< over `file`; null: it is written as it is
   mcap::McapWriter writer;
   const double begin_mono;
   const std::int64_t begin_utc;
@@ -367,7 +380,8 @@ void SessionRecorder::Impl::put_events() {
     wire::Event event;
     event.set_code(as_utf8(next.code));
     event.set_who(as_utf8(next.who));
-    event.set_text(shortened(as_utf8(next.text), kEventLength));
+    event.set_text(
+        shortened(as_utf8(next.text), is_of_exercise(next.code) ? kExerciseEventLength : kEventLength));
     put(Topic::kEvent, next.time, event);
   }
 }
@@ -441,6 +455,10 @@ std::unique_ptr<SessionRecorder::Impl> SessionRecorder::begun(RecorderSettings s
         "the recording {} cannot be written ({}); name another folder with --record DIR, or record nothing "
         "with --record off",
         name.string(), error.code().message()));
+  } catch (...) {
+    std::error_code ignored;
+    if (!name.empty()) std::filesystem::remove(name, ignored);
+    throw;
   }
 }
 
@@ -480,7 +498,7 @@ bool SessionRecorder::finish() noexcept {
 
 void SessionRecorder::event(const std::string& code, const std::string& who, const std::string& text) {
   const std::lock_guard lock(impl_->mutex);
-  if (impl_->events.size() >= kMostWaitingEvents) {
+  if (impl_->events.size() >= kMostWaitingEvents && !is_of_exercise(code)) {
     ++impl_->events_lost;
     return;
   }

@@ -76,6 +76,18 @@ TEST_F(TypedLinesTest, StopActsInCapitalsAmongBlanksAndWithoutALineFeedAtTheEndO
   }
 }
 
+// An owner that sees the stop without its line would bring the forces back.
+TEST_F(TypedLinesTest, TheLineOfAStopIsThereAsSoonAsItsEffect) {
+  for (int i = 0; i < 200; ++i) {
+    const std::uint64_t before = session->stops();
+    type("stop\n");
+    const double give_up = wall_seconds() + 240.0;
+    while (session->stops() == before && wall_seconds() < give_up) {
+    }
+    ASSERT_TRUE(typed->next().has_value()) << i;
+  }
+}
+
 TEST_F(TypedLinesTest, NothingElseIsAStop) {
   for (const std::string text : {"stopp\n", "sto\n", "s top\n", "set stop\n", "resume\n", "3TOP\n"}) {
     type(text);
@@ -107,6 +119,7 @@ TEST_F(TypedLinesTest, ALineForWhichThereIsNoMemoryStops) {
   const StarvedThread starved("phalanx-typed");
   type("set force.stiffness_n_per_mm=0.9 # a line that is long enough to need memory\n");
   EXPECT_TRUE(eventually([&] { return session->stops() == 1; }));
+  EXPECT_TRUE(eventually([&] { return typed->take_left_out() == 1; })) << "its owner is told";
 }
 
 }  // namespace

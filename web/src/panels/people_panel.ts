@@ -45,6 +45,16 @@ function nameRow(app: App): HTMLElement {
   return made.element;
 }
 
+/// Opens the page of patients in a tab of its own. That tab gets this page's memory (rel=opener): the log of changes then names the account
+/// that signs in there beside this page.
+function patientsLink(app: App): HTMLElement {
+  const link = el("p", {}, el("a", { href: "people.html", target: "_blank", rel: "opener" }, words.patients), el("small", { class: "link-hint" }, words.patientsHint));
+  const update = () => setShown(link, app.store.welcome?.mayOperate ?? false);
+  app.store.on(["state", "connection"], update);
+  update();
+  return link;
+}
+
 export function peoplePanel(app: App): HTMLElement {
   const facts = el("dl", { class: "facts" });
   const release = button(strings.role.release, () => void go());
@@ -90,7 +100,7 @@ export function peoplePanel(app: App): HTMLElement {
   return el(
     "div",
     {},
-    section(words.title, looking, facts, error, el("div", { class: "buttons" }, release, take), urlBox),
+    section(words.title, looking, facts, error, el("div", { class: "buttons" }, release, take), urlBox, patientsLink(app)),
     section(words.thisPage, nameRow(app), languageChoice(app)),
     section(words.log, empty, log),
   );

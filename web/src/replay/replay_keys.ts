@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of a recording's page. Space plays and pauses; buttons are pressed with Enter, as in the cockpit.
-import { isTextField, presets } from "../panels/keyboard";
+import { presets } from "../panels/keyboard";
+import { isTextField } from "../panels/stop_keys";
 import { kZoomStep } from "../panels/view_frame";
 import type { CameraPreset } from "../view3d/hand_view";
 

@@ -783,6 +783,8 @@ export const de: Strings = {
     logEmpty: "Noch nichts.",
     station: "Station",
     program: "ein Programm",
+    patients: "Patienten",
+    patientsHint: "öffnet einen eigenen Tab, der auch STOP hat",
   },
 
   notice: {

@@ -782,6 +782,8 @@ export const en = {
     logEmpty: "Nothing yet.",
     station: "station",
     program: "a program",
+    patients: "Patients",
+    patientsHint: "opens in a tab of its own, which has a STOP, too",
   },
 
   notice: {

@@ -104,6 +104,7 @@ void HttpSession::on_head(error_code error, std::size_t /*bytes*/) {
   response_context_.head_only = head.method() == http::verb::head;
   request_.method = std::string(head.method_string());
   request_.page_secret = std::string(head["X-Phalanx-Page"]);
+  request_.session = std::string(head["X-Phalanx-Session"]);
   request_.range = field(http::field::range);
   request_.body.clear();
   if (!check_head()) return;

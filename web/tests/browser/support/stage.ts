@@ -8,6 +8,7 @@ import { afterAll, afterEach, expect, inject } from "vitest";
 import { CockpitPage } from "./cockpit_page";
 import { bringToKnownState, freeControl, type Values } from "./known_state";
 import { addressOf, runDevice, runStation, slowMotion, type Program } from "./program";
+import { PatientsPage } from "./patients_page";
 import { RecordingPage } from "./recording_page";
 import { paintNothing, slowScreen } from "./slow_screen";
 import type {} from "./setup"; // what it provides
@@ -46,7 +47,7 @@ const kLastWords = 600; // characters
 export class Stage {
   private readonly programs: Program[] = [];
   private readonly folders: string[] = [];
-  private readonly pages: (CockpitPage | RecordingPage)[] = [];
+  private readonly pages: (CockpitPage | RecordingPage | PatientsPage)[] = [];
   private browser: Promise<Browser> | undefined;
   private shared = "";
 
@@ -97,6 +98,14 @@ export class Stage {
     const page = new RecordingPage(await this.blank(wishes));
     this.pages.push(page);
     await page.page.goto(`${url}recording.html${query}`);
+    return page;
+  }
+
+  /// The page of patients of a station.
+  async openPatients(url: string, wishes: PageWishes = {}): Promise<PatientsPage> {
+    const page = new PatientsPage(await this.blank(wishes));
+    this.pages.push(page);
+    await page.page.goto(`${url}people.html`);
     return page;
   }
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was measured and entered of one patient: results, clinical tests, trends, notes.
+import { el, section } from "../panels/dom";
+import { form, table, type FieldPlan } from "./form";
+import type { Course, EnteredTest, Result, ScoreValue, TestKind, Trend } from "./shapes";
+import { changeText, figureText, timeText, valueText, words } from "./words";
+
+const hint = (text: string) => el("p", { class: "hint" }, text);
+
+/// The name of a score in words, without its unit, which follows its value: "mean_n" is "mean".
+export function scoreName(name: string, unit: string): string {
+  const parts = name.split("_");
+  if (parts.length > 1 && parts.at(-1) === unit.toLowerCase()) parts.pop();
+  return parts.join(" ");
+}
+
+function scoreItem({ name, unit, origin, value, invalid }: ScoreValue): HTMLElement {
+  const said = invalid === "" ? valueText(value, unit) : invalid;
+  const from = invalid === "" ? (words.origins[origin] ?? origin) : words.results.notValid;
+  return el("li", {}, `${scoreName(name, unit)}: ${said} `, el("small", {}, from));
+}
+
+function resultRow(one: Result): readonly (Node | string)[] {
+  const marks = [one.invalid === "" ? "" : `${words.results.notValid}: ${one.invalid}`, one.interrupted ? words.results.interrupted : ""].filter((mark) => mark !== "");
+  const kind = one.assessment ? words.results.assessment : words.results.training;
+  const scores = el("ul", { class: "people-scores" }, ...one.scores.map(scoreItem));
+  return [
+    timeText(one.date),
+    el("span", {}, one.exercise, " ", el("small", {}, kind)),
+    el("div", {}, marks.length > 0 ? el("p", { class: "refused" }, marks.join("; ")) : null, scores),
+  ];
+}
+
+export function resultsSection(course: Course): HTMLElement {
+  const { title, none, columns } = words.results;
+  return section(title, course.results.length === 0 ? hint(none) : table(title, Object.values(columns), course.results.map(resultRow)));
+}
+
+const side = (name: string) => words.testSides[name] ?? name;
+const kind = (name: string) => words.kinds[name] ?? name;
+
+function testRow(one: EnteredTest): readonly (Node | string)[] {
+  const noted = one.note === "" ? null : el("small", {}, one.note);
+  return [one.date, kind(one.kind), side(one.side), el("span", {}, valueText(one.value, one.unit), " ", noted), one.rater];
+}
+
+/// @param enter  gets the form's values; what it throws is shown in it
+export function testsSection(course: Course, kinds: readonly TestKind[], enter: (test: Readonly<Record<string, unknown>>) => Promise<void>): HTMLElement {
+  const { title, none, columns } = words.tests;
+  const choices = kinds.map(({ kind: value, least, most, unit }) => ({ value, text: `${kind(value)} (${words.tests.allowed(figureText(least), figureText(most), unit)})` }));
+  const plans: readonly FieldPlan[] = [
+    { name: "kind", label: words.tests.kind, kind: "choice", choices },
+    { name: "side", label: words.tests.side, kind: "choice", choices: Object.entries(words.testSides).map(([value, text]) => ({ value, text })) },
+    { name: "value", label: words.tests.value, kind: "number" },
+    { name: "date", label: words.tests.date, kind: "date", hint: words.hints.date, longest: 10 },
+    { name: "rater", label: words.tests.rater, kind: "text", hint: words.tests.raterHint, longest: 16 },
+    { name: "note", label: words.tests.note, kind: "text" },
+  ];
+  return section(
+    title,
+    course.tests.length === 0 ? hint(none) : table(title, Object.values(columns), course.tests.map(testRow)),
+    el("details", {}, el("summary", {}, words.tests.add), form(plans, {}, words.save, enter)),
+  );
+}
+
+function trendRow(one: Trend): readonly (Node | string)[] {
+  const figures = [valueText(one.first, one.unit), valueText(one.last, one.unit), changeText(one.last - one.first, one.unit), String(one.count)];
+  return [one.title, ...figures.map((text) => el("span", { class: "figure" }, text)), one.verdict];
+}
+
+export function trendsSection(course: Course): HTMLElement {
+  const { title, none, columns } = words.trends;
+  const all = table(title, Object.values(columns), course.trends.map(trendRow));
+  return section(title, course.trends.length === 0 ? hint(none) : all, hint(words.trends.hint));
+}
+
+export function notesSection(course: Course, write: (text: string) => Promise<void>): HTMLElement {
+  const { title, none, add, text } = words.notes;
+  const items = course.notes.map((note) => el("li", {}, el("small", {}, `${timeText(note.date)}, ${note.account}`), el("p", {}, note.text)));
+  return section(
+    title,
+    items.length === 0 ? hint(none) : el("ul", { class: "people-notes" }, ...items),
+    el("details", {}, el("summary", {}, add), form([{ name: "text", label: text, kind: "area", longest: 4000 }], {}, words.save, (values) => write(String(values["text"])))),
+  );
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// One patient: who it is, what keeps the patient from exercises, the fields, and the course.
+import { button, el, newId, section } from "../panels/dom";
+import { notesSection, resultsSection, testsSection, trendsSection } from "./course_sections";
+import { form } from "./form";
+import { facts, formChanges, formValues, patientPlans } from "./patient_fields";
+import { obstacleTexts, sideText, symbolText } from "./lists";
+import { fieldLines, type Course, type Patient, type Status } from "./shapes";
+import { picture } from "./symbols";
+import { words } from "./words";
+
+export interface PatientActions {
+  edit(): void;
+  back(): void;
+  addTest(test: Readonly<Record<string, unknown>>): Promise<void>;
+  addNote(text: string): Promise<void>;
+  remove(confirm: string): Promise<void>;
+}
+
+function factList(patient: Patient): HTMLElement {
+  const rows = facts(patient).flatMap(([label, text]) => [el("dt", {}, label), el("dd", {}, text)]);
+  return el("dl", { class: "facts" }, ...rows);
+}
+
+/// What a person has to know before this patient's hand is in the device.
+function told(patient: Patient): HTMLElement {
+  const against = [...obstacleTexts(patient), ...fieldLines(patient, "contraindications"), ...fieldLines(patient, "warnings")];
+  if (against.length === 0) return el("p", { class: "patient-good" }, words.patient.ready);
+  return el("ul", { class: "patient-told" }, ...against.map((text) => el("li", { class: "refused" }, text)));
+}
+
+function head(patient: Patient, back: () => void): HTMLElement {
+  const id = newId("patient");
+  return el(
+    "header",
+    { class: "patient-head" },
+    picture(patient.symbol),
+    el("h2", { id, tabindex: -1 }, patient.code),
+    el("p", { class: "patient-who" }, `${sideText(patient)}, ${symbolText(patient)}`),
+    button(words.back, back, { class: "people-back" }),
+  );
+}
+
+function removal(patient: Patient, remove: (confirm: string) => Promise<void>): HTMLElement {
+  const plan = { name: "confirm", label: words.remove.confirm(patient.code), kind: "text", longest: 16 } as const;
+  return el(
+    "details",
+    { class: "patient-remove" },
+    el("summary", {}, words.remove.title),
+    el("p", { class: "hint" }, words.remove.hint),
+    form([plan], {}, words.remove.submit, (values) => remove(String(values["confirm"]))),
+  );
+}
+
+/// @param course  absent: it is still being read
+export function patientView(patient: Patient, status: Status, course: Course | undefined, actions: PatientActions): HTMLElement {
+  const parts = course
+    ? [trendsSection(course), resultsSection(course), testsSection(course, status.tests, actions.addTest), notesSection(course, actions.addNote)]
+    : [el("p", { class: "hint", role: "status" }, words.reading)];
+  return el(
+    "section",
+    { class: "people-box people-patient", "aria-label": words.patient.region(patient.code) },
+    head(patient, actions.back),
+    told(patient),
+    ...parts,
+    section(words.patient.facts, factList(patient), el("div", { class: "buttons" }, button(words.patient.edit, actions.edit))),
+    removal(patient, actions.remove),
+  );
+}
+
+/// The form of a new patient, or of one that is changed.
+export function patientForm(
+  patient: Patient | undefined,
+  status: Status,
+  save: (fields: Readonly<Record<string, unknown>>) => Promise<void>,
+  cancel: () => void,
+): HTMLElement {
+  const id = newId("patient-form");
+  const title = patient ? `${words.patient.edit}: ${patient.code}` : words.patient.newOne;
+  return el(
+    "section",
+    { class: "people-box people-patient", "aria-labelledby": id },
+    el("h2", { id, tabindex: -1 }, title),
+    el("p", { class: "hint" }, words.patient.noNames),
+    form(patientPlans(status, !patient), patient ? formValues(patient) : {}, words.save, (values) => save(formChanges(values, patient)), cancel),
+  );
+}

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the station answers, read defensively: a field of another kind is as if it were absent.
+
+type Entry = Readonly<Record<string, unknown>>;
+
+const entry = (value: unknown): Entry => (typeof value === "object" && value !== null && !Array.isArray(value) ? (value as Entry) : {});
+const text = (value: unknown): string => (typeof value === "string" ? value : "");
+const figure = (value: unknown): number | undefined => (typeof value === "number" && Number.isFinite(value) ? value : undefined);
+const list = (value: unknown): readonly unknown[] => (Array.isArray(value) ? (value as unknown[]) : []);
+const texts = (value: unknown): readonly string[] => list(value).map(text).filter((one) => one !== "");
+
+/// A clinical test that is entered by hand, with the values that it allows.
+export interface TestKind {
+  readonly kind: string;
+  readonly unit: string;
+  readonly least: number;
+  readonly most: number;
+}
+
+/// What the page may know before a person signs in.
+export interface Status {
+  readonly accounts: boolean; // people sign in
+  readonly symbols: readonly string[];
+  readonly tests: readonly TestKind[];
+}
+
+export function readStatus(answer: unknown): Status {
+  const one = entry(answer);
+  const tests = list(one["tests"]).map(entry).map((test) => ({
+    kind: text(test["kind"]), unit: text(test["unit"]), least: figure(test["least"]) ?? 0, most: figure(test["most"]) ?? 0,
+  }));
+  return { accounts: one["accounts"] === true, symbols: texts(one["symbols"]), tests: tests.filter(({ kind }) => kind !== "") };
+}
+
+export interface SignedIn {
+  readonly session: string; // secret
+  readonly account: string;
+  readonly role: string;
+  readonly idle: number; // after which the station locks the session [s]
+}
+
+const kIdle = 600; // [s], as RegistrySettings::idle_lock_s
+
+export function readSignedIn(answer: unknown): SignedIn {
+  const one = entry(answer);
+  return { session: text(one["session"]), account: text(one["account"]), role: text(one["role"]), idle: figure(one["idle_s"]) ?? kIdle };
+}
+
+/// A patient as the list has it.
+export interface Listed {
+  readonly record: string; // random id
+  readonly code: string;
+  readonly side: string;
+  readonly symbol: string;
+  readonly obstacles: readonly string[]; // what the patient lacks for an exercise on this device
+}
+
+export interface Prescribed {
+  readonly exercise: string;
+  readonly repetitions: number; // a day; 0: the exercise's own
+  readonly minutes: number; // a day; 0: the exercise's own
+  readonly note: string;
+}
+
+/// One patient with all fields, by their names in the station's JSON.
+export interface Patient extends Listed {
+  readonly revision: string; // of the fields: the station refuses a change of others
+  readonly said: readonly string[]; // what a change did beyond its fields, in the station's words
+  readonly fields: Entry;
+}
+
+function readListed(value: unknown): Listed {
+  const one = entry(value);
+  return { record: text(one["record"]), code: text(one["code"]), side: text(one["side"]), symbol: text(one["symbol"]), obstacles: texts(one["obstacles"]) };
+}
+
+export function readPatient(answer: unknown): Patient {
+  const fields = entry(answer);
+  return { ...readListed(answer), revision: text(fields["revision"]), said: texts(fields["said"]), fields };
+}
+
+export function readPatients(answer: unknown): readonly Listed[] {
+  const patients = list(entry(answer)["patients"]).map(readListed).filter(({ record }) => record !== "");
+  return patients.sort((a, b) => a.code.localeCompare(b.code));
+}
+
+export const fieldText = (patient: Patient, name: string): string => text(patient.fields[name]);
+export const fieldLines = (patient: Patient, name: string): readonly string[] => texts(patient.fields[name]);
+export const fieldFigure = (patient: Patient, name: string): number | undefined => figure(patient.fields[name]);
+export const fieldFlag = (patient: Patient, name: string): boolean => patient.fields[name] === true;
+
+export function prescription(patient: Patient): readonly Prescribed[] {
+  const all = list(patient.fields["prescription"]).map(entry).map((one) => ({
+    exercise: text(one["exercise"]), repetitions: figure(one["repetitions_per_day"]) ?? 0, minutes: figure(one["minutes_per_day"]) ?? 0, note: text(one["note"]),
+  }));
+  return all.filter(({ exercise }) => exercise !== "");
+}
+
+/// Values of a key of each prescribed exercise, which this page does not change.
+export function overridesOf(patient: Patient, exercise: string): Entry {
+  return entry(list(patient.fields["prescription"]).map(entry).find((one) => one["exercise"] === exercise)?.["overrides"]);
+}
+
+export interface EntryCheck {
+  readonly flexion: number; // [deg]
+  readonly release: number; // [deg]
+  readonly date: string;
+}
+
+export function entryCheck(patient: Patient): EntryCheck | undefined {
+  const one = entry(patient.fields["entry"]);
+  const flexion = figure(one["flexion_deg"]);
+  return flexion === undefined ? undefined : { flexion, release: figure(one["release_deg"]) ?? 0, date: text(one["date"]) };
+}
+
+/// Largest own force of each digit [N]; 0: not measured.
+export const ownForces = (patient: Patient): readonly number[] => list(patient.fields["own_force_n"]).map((one) => figure(one) ?? 0);
+/// Joints whose own range has been measured.
+export const ownRanges = (patient: Patient): number => Object.keys(entry(patient.fields["own_range_deg"])).length;
+
+export interface ScoreValue {
+  readonly name: string;
+  readonly unit: string;
+  readonly origin: string;
+  readonly value: number | undefined;
+  readonly invalid: string; // why there is no value
+}
+
+export interface Result {
+  readonly date: number; // UTC [s]
+  readonly exercise: string;
+  readonly assessment: boolean;
+  readonly scores: readonly ScoreValue[];
+  readonly invalid: string; // why none of it counts
+  readonly interrupted: boolean;
+}
+
+export interface EnteredTest {
+  readonly date: string; // UTC, 2026-05-04
+  readonly kind: string;
+  readonly side: string;
+  readonly value: number | undefined;
+  readonly unit: string;
+  readonly rater: string;
+  readonly note: string;
+}
+
+export interface Note {
+  readonly date: number; // UTC [s]
+  readonly account: string;
+  readonly text: string;
+}
+
+export interface Trend {
+  readonly title: string;
+  readonly unit: string;
+  readonly count: number; // values
+  readonly first: number;
+  readonly last: number;
+  readonly proven: boolean;
+  readonly verdict: string;
+}
+
+/// What was measured and entered of a patient, the newest first.
+export interface Course {
+  readonly results: readonly Result[];
+  readonly tests: readonly EnteredTest[];
+  readonly notes: readonly Note[];
+  readonly trends: readonly Trend[];
+}
+
+function readScore(row: Entry): ScoreValue {
+  return { name: text(row["name"]), unit: text(row["unit"]), origin: text(row["origin"]), value: figure(row["value"]), invalid: text(row["invalid"]) };
+}
+
+function readTrend(row: Entry): Trend {
+  const points = list(row["points"]).map(entry).map((point) => figure(point["value"]) ?? NaN);
+  return {
+    title: text(row["title"]) || text(row["name"]), unit: text(row["unit"]), count: points.length, first: points[0] ?? NaN, last: points.at(-1) ?? NaN,
+    proven: row["proven"] === true, verdict: text(row["verdict"]),
+  };
+}
+
+export function readCourse(answer: unknown): Course {
+  const one = entry(answer);
+  const rows = (name: string) => list(one[name]).map(entry);
+  const results = rows("results").map((row) => ({
+    date: figure(row["date"]) ?? 0, exercise: text(row["exercise"]), assessment: row["assessment"] === true, scores: list(row["scores"]).map(entry).map(readScore),
+    invalid: text(row["invalid"]), interrupted: row["interrupted"] === true,
+  }));
+  const tests = rows("tests").map((row) => ({
+    date: text(row["date"]), kind: text(row["kind"]), side: text(row["side"]), value: figure(row["value"]), unit: text(row["unit"]), rater: text(row["rater"]),
+    note: text(row["note"]),
+  }));
+  const notes = rows("notes").map((row) => ({ date: figure(row["date"]) ?? 0, account: text(row["account"]), text: text(row["text"]) }));
+  return {
+    results: results.sort((a, b) => b.date - a.date),
+    tests: tests.sort((a, b) => b.date.localeCompare(a.date)),
+    notes: notes.sort((a, b) => b.date - a.date),
+    trends: rows("trends").map(readTrend),
+  };
+}
+
+/// What a deletion could not reach.
+export interface Deleted {
+  readonly left: readonly string[]; // files that a person must remove
+}
+
+export function readDeleted(answer: unknown): Deleted {
+  const one = entry(answer);
+  return { left: [...texts(one["exports_missing"]), ...texts(one["plain_recordings"])] };
+}
+
+export interface Exercise {
+  readonly name: string;
+  readonly title: string;
+  readonly kind: string;
+  readonly measure: string;
+}
+
+export function readExercises(answer: unknown): readonly Exercise[] {
+  const all = list(entry(answer)["exercises"]).map(entry).map((row) => ({
+    name: text(row["name"]), title: text(row["title"]), kind: text(row["kind"]), measure: text(row["measure"]),
+  }));
+  return all.filter(({ name }) => name !== "");
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// A station that keeps patients, for the page: it answers at once, and can refuse.
+import { PeopleError, type PeopleApi, type Trouble } from "../../../src/people/api";
+import { readCourse, readPatient, readStatus, type Course, type Patient, type SignedIn } from "../../../src/people/shapes";
+
+export class FakeApi {
+  accounts = true;
+  locked = false;
+  signedIn = false;
+  said: readonly string[] = [];
+  lockFails = 0; // so many requests to lock are lost
+  refuse: { readonly trouble: Trouble; readonly message: string } | undefined;
+  readonly asked: string[] = [];
+  kept: Patient[] = [
+    readPatient({ record: "aa", code: "P07", side: "left", symbol: "boat", revision: "r1", obstacles: ["unchecked"], warnings: ["skin at the thumb"], force_limit_n: 4 }),
+    readPatient({ record: "bb", code: "P12", side: "right", symbol: "sun", obstacles: [] }),
+  ];
+  readonly measured: Course = readCourse({
+    results: [{ date: 1_780_000_000, exercise: "press_and_hold", assessment: true, scores: [{ name: "mean_n", unit: "N", value: 4.25, origin: "measured" }] }],
+    tests: [{ date: "2026-05-04", kind: "grip", side: "more_affected", value: 20, unit: "kg", rater: "PT1" }],
+    notes: [{ date: 1_780_000_000, account: "a.meier", text: "hand is warm" }],
+    trends: [{ title: "Grip", unit: "kg", points: [{ date: 1, value: 20 }, { date: 2, value: 24 }], verdict: "improved by 4 kg" }],
+  });
+
+  get api(): PeopleApi {
+    return this as unknown as PeopleApi;
+  }
+
+  private answer<T>(what: string, value: () => T, open = true): Promise<T> {
+    this.asked.push(what);
+    const { refuse } = this;
+    if (refuse) return Promise.reject(new PeopleError(refuse.trouble, refuse.message));
+    if (open && (!this.signedIn || this.locked)) return Promise.reject(new PeopleError("signed_out", "sign in"));
+    return Promise.resolve(value());
+  }
+
+  status = () => this.answer("status", () => readStatus({ accounts: this.accounts, symbols: ["sun", "boat"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }] }), false);
+  signIn(account: string, password: string): Promise<SignedIn> {
+    this.asked.push("sign_in");
+    if (this.refuse || (this.accounts && password !== "right")) return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
+    this.signedIn = true;
+    this.locked = false;
+    return Promise.resolve({ session: "s", account, role: "therapist", idle: 100 });
+  }
+  signOut(): Promise<void> {
+    this.asked.push("sign_out");
+    this.signedIn = false;
+    return Promise.resolve();
+  }
+  lock(): Promise<void> {
+    this.asked.push("lock");
+    if (this.lockFails > 0) {
+      --this.lockFails;
+      return Promise.reject(new PeopleError("gone", "no answer"));
+    }
+    this.locked = true;
+    return Promise.resolve();
+  }
+  unlock(password: string): Promise<void> {
+    this.asked.push("unlock");
+    if (this.accounts && password !== "right") return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
+    this.locked = false;
+    return Promise.resolve();
+  }
+  alive = () => this.answer("alive", () => undefined);
+  patients = () => this.answer("patients", () => this.kept);
+  patient = (record: string) => this.answer(`patient ${record}`, () => this.kept.find((one) => one.record === record)!);
+  course = (record: string) => this.answer(`course ${record}`, () => this.measured);
+  exercises = () => this.answer("exercises", () => [{ name: "press", title: "Press and hold", kind: "assessment", measure: "press_and_hold" }]);
+  add = (fields: Readonly<Record<string, unknown>>) =>
+    this.answer(`add ${JSON.stringify(fields)}`, () => {
+      const added = readPatient({ ...fields, record: "cc", obstacles: [] });
+      this.kept = [...this.kept, added];
+      return added;
+    });
+  edit = (record: string, revision: string, fields: Readonly<Record<string, unknown>>) =>
+    this.answer(`edit ${record} ${JSON.stringify({ ...fields, revision })}`, () => {
+      const before = this.kept.find((one) => one.record === record)!.fields;
+      const edited = readPatient({ ...before, ...fields, record, obstacles: [], revision: `${revision}+`, said: this.said });
+      this.kept = this.kept.map((one) => (one.record === record ? edited : one));
+      return edited;
+    });
+  addTest = (record: string, test: Readonly<Record<string, unknown>>) => this.answer(`test ${record} ${JSON.stringify(test)}`, () => undefined);
+  addNote = (record: string, text: string) => this.answer(`note ${record} ${text}`, () => undefined);
+  remove = (record: string, confirm: string) =>
+    this.answer(`delete ${record} ${confirm}`, () => {
+      this.kept = this.kept.filter((one) => one.record !== record);
+      return { left: ["/exports/old"] };
+    });
+}
