@@ -83,15 +83,18 @@ describe("the recording", () => {
     await page.untilState("the touch on the disk", (state) => (state.recording?.bytes ?? 0n) > 400_000n);
     await page.untilLater(2);
     await page.button(strings.plots.pause).click();
-    const paused = page.stream.newest!.tick;
+    const { tick: paused, time: pausedAt } = page.stream.newest!;
+    await page.untilState("what the plots show on the disk", (state) => state.time - (state.recording?.unsaved ?? 0) > pausedAt);
     const note = page.page.locator(".past-note");
     expect(await note.textContent()).toContain(strings.past.hint);
     const plot = (await page.page.locator(".plot-area .u-over").first().boundingBox())!;
     const pointAt = async (share: number) => {
       await page.page.mouse.move(plot.x + share * plot.width, plot.y + plot.height / 2);
       await until("the hand of that moment", async () => (await page.page.locator(".view-past").count()) === 1, () => note.textContent());
-      await until("it is drawn", async () => (await page.probe())!.tick < paused - 60n, () => page.brief()); // 60: what is drawn of the present may be so old
-      return (await page.probe())!.tick;
+      return until("it is drawn", async () => {
+        const { tick } = (await page.probe())!; // 0: nothing has been drawn yet
+        return tick > 0n && tick < paused - 60n && tick; // 60: what is drawn of the present may be so old
+      }, () => page.brief());
     };
     const earlier = await pointAt(0.85);
     const later = await until("a later hand", async () => {
