@@ -94,7 +94,8 @@ KnownPatient known_patient(const ExerciseOptions& o) {
 }
 
 /// Adds the results of recordings that a killed program has left without one, so that their dose counts, and
-/// takes over what they have measured. A recording without an end is repaired first; the original stays beside it. What cannot be read is named, and prevents nothing.
+/// takes over what they have measured. A recording without an end is repaired first; the original stays beside
+/// it. What cannot be read is named, and prevents nothing.
 void take_up_left_recordings(KnownPatient& known, const fs::path& folder) {
   Registry& registry = known.opened.registry;
   const Actor& actor = known.opened.actor;
