@@ -114,6 +114,8 @@ DeviceInfo device_info(const phx_welcome& welcome) {
   info.serial = read_serial(welcome.serial);
   info.name = info.serial;
   info.rate_hz = welcome.rate_hz;
+  info.simulated = (welcome.flags & PHX_WELCOME_SIMULATED) != 0;
+  info.own_clock = true;
   info.watchdog = 1e-6 * PHX_LATCH_AGE_US;  // as the link prescribes
   for (std::size_t c = 0; c < std::min<std::size_t>(welcome.channel_count, kMaxChannels); ++c) {
     const phx_channel& channel = welcome.channel[c];

@@ -43,6 +43,7 @@ phx_device link_device(const DeviceInfo& info, const Exoskeleton& exoskeleton) {
   write_serial(info.serial, device.serial);
   device.rate_hz = static_cast<std::uint16_t>(std::lround(info.rate_hz));
   device.channel_count = static_cast<std::uint8_t>(info.channels.size());
+  device.simulated = info.simulated;
   for (std::size_t c = 0; c < info.channels.size(); ++c) device.channel[c] = link_channel(info.channels[c]);
   device.torque_limit = static_cast<float>(most_torque(exoskeleton));
   device.torque_rate = static_cast<float>(SimulatedController::kOwnTorqueRate);

@@ -40,7 +40,7 @@ class SimulatedDevice final : public Device {
     epoch_ = answer.header.epoch;
     info_ = device_info(answer.as.welcome);
     info_.name = controller_.info().name;
-    info_.simulated = true;
+    info_.own_clock = false;  // receive() advances its controller
     newest_ = configure_message(info_.channels, torque_limit_, torque_rate_);
     post(newest_);
   }

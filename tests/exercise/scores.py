@@ -319,11 +319,13 @@ def pinch(steps, trial, put):
 
 def opposition(steps, trial, put):
     for finger in trial["digits"]:
-        with put.group(f"opposition_{finger}_mm") as group:
+        with put.group(f"opposition_{finger}_mm", f"opposition_held_{finger}_mm") as group:
             steps.check()
             independent(trial)
             steps.angles(joints_of("thumb") + joints_of(finger))
-            group.values(1000 * np.linalg.norm(steps.pad("thumb") - steps.pad(finger), axis=0).min())
+            distance = 1000 * np.linalg.norm(steps.pad("thumb") - steps.pad(finger), axis=0)
+            group.one(f"opposition_{finger}_mm", distance.min)
+            group.one(f"opposition_held_{finger}_mm", lambda: held(steps.t, distance, trial.get("hold_time", 1.0), np.max, np.min))
 
 
 def motion_independence(steps, trial, put):

@@ -3,6 +3,7 @@
 set(targets
     fuzz_device
     fuzz_encrypted_recording
+    fuzz_exercise
     fuzz_link
     fuzz_mesh
     fuzz_motion
@@ -19,5 +20,5 @@ phalanx_test(
   fuzz_replay_test
   IN_ASAN
   SOURCES ${sources}
-  MODULES mcap scene opengloves grasp simulation device step force contact hand mesh_import mesh
+  MODULES mcap exercise_file exercise scores psychophysics scene opengloves grasp simulation device step force contact hand mesh_import mesh
   LIBRARIES phalanx_wire assimp::assimp fmt::fmt nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus Threads::Threads)

@@ -4,6 +4,7 @@
 extern "C" {
 int fuzz_device(const std::uint8_t* data, std::size_t size);
 int fuzz_encrypted_recording(const std::uint8_t* data, std::size_t size);
+int fuzz_exercise(const std::uint8_t* data, std::size_t size);
 int fuzz_link(const std::uint8_t* data, std::size_t size);
 int fuzz_mesh(const std::uint8_t* data, std::size_t size);
 int fuzz_motion(const std::uint8_t* data, std::size_t size);
@@ -16,6 +17,7 @@ namespace phalanx {
 namespace {
 
 TEST(FuzzReplay, DeviceFiles) { test::replay("fuzz_device", fuzz_device); }
+TEST(FuzzReplay, ExerciseFiles) { test::replay("fuzz_exercise", fuzz_exercise); }
 TEST(FuzzReplay, LinkFrames) { test::replay("fuzz_link", fuzz_link); }
 TEST(FuzzReplay, MeshFiles) { test::replay("fuzz_mesh", fuzz_mesh); }
 TEST(FuzzReplay, MotionFiles) { test::replay("fuzz_motion", fuzz_motion); }

@@ -19,6 +19,7 @@ std::atomic<bool> armed{false};
 std::atomic<std::uint64_t> calls{0};
 std::atomic<std::uint64_t> last_call{0};
 std::atomic<bool> only_fails{false};
+std::atomic<bool> links_refused{false};
 
 /// @returns the next definition of a function: the C library's, or a sanitizer's
 template <typename Function>
@@ -56,12 +57,15 @@ void fail_at_call(std::uint64_t call) {
   only_fails = true;
 }
 
+void refuse_links(bool refused) { links_refused = refused; }
+
 std::uint64_t counted_calls() { return calls.load(); }
 
 }  // namespace phalanx::testing
 
 using phalanx::testing::die;
 using phalanx::testing::is_last_call;
+using phalanx::testing::links_refused;
 using phalanx::testing::next_of;
 
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name)
@@ -109,6 +113,13 @@ int rename(const char* from, const char* to) noexcept {
   static auto* const real = next_of<int(const char*, const char*)>("rename");
   if (is_last_call()) return die();
   return real(from, to);
+}
+
+int link(const char* from, const char* to) noexcept {
+  static auto* const real = next_of<int(const char*, const char*)>("link");
+  if (!links_refused.load()) return real(from, to);
+  errno = EPERM;
+  return -1;
 }
 
 int unlink(const char* name) noexcept {

@@ -21,6 +21,9 @@ void kill_at_call(std::uint64_t call);
 /// written half of its bytes. Later calls succeed. @param call  0: none
 void fail_at_call(std::uint64_t call);
 
+/// From now on link() fails with EPERM, as on a file system without hard links (FAT), or works again.
+void refuse_links(bool refused);
+
 /// @returns the calls since kill_at_call() or fail_at_call()
 [[nodiscard]] std::uint64_t counted_calls();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program that changes the registry is killed at any of its system calls, half-written bytes included.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -8,11 +9,13 @@
 
 #include <atomic>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <random>
 
 #include "registry/killed_calls.h"
+#include "registry/private_file.h"
 #include "registry/registry_files.h"
 
 namespace phalanx {
@@ -325,6 +328,54 @@ TEST(RegistryFullDisk, ChangesNothingByAPatientWhoCannotBeAdded) {
   fail_at_each_call([](Registry& registry, const std::string&, std::uint64_t number) {
     registry.add_patient(kOwner, example_patient(fmt::format("Q{}", number)));
   });
+}
+
+/// link() fails for the lifetime of this object.
+class WithoutLinks {
+ public:
+  WithoutLinks() { testing::refuse_links(true); }
+  ~WithoutLinks() { testing::refuse_links(false); }
+  WithoutLinks(const WithoutLinks&) = delete;
+  WithoutLinks& operator=(const WithoutLinks&) = delete;
+};
+
+// A program that had the file open, or a tool that reads the free blocks of the disk, finds the old bytes otherwise.
+TEST(RegistryWithoutHardLinks, OverwritesTheBytesOfAReplacedFile) {
+  RegistryFiles files;
+  const std::filesystem::path file = files.keys_file().parent_path() / "replaced";
+  std::filesystem::create_directories(file.parent_path());
+  const std::string before = "the old content, which must not stay on the disk";
+  registry::replace_private_file(file, before, true);
+  const registry::Descriptor old(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  ASSERT_TRUE(old.valid());
+  {
+    const WithoutLinks refused;
+    ASSERT_NE(::link(file.c_str(), files.path("link").c_str()), 0);
+    registry::replace_private_file(file, "the new content", true);
+  }
+  EXPECT_EQ(registry::read_private_file(file), "the new content");
+  std::string bytes(before.size(), '\0');
+  ASSERT_EQ(::pread(old.number(), bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  EXPECT_EQ(bytes.find("content"), std::string::npos) << bytes;
+  for (const char* name : {"replaced.old", "replaced.new"})
+    EXPECT_FALSE(std::filesystem::exists(file.parent_path() / name)) << name;
+}
+
+TEST(RegistryWithoutHardLinks, DeletesAPatientAndKeepsTheOthers) {
+  RegistryFiles files;
+  const std::string record = files.open().add_patient(kOwner, example_patient()).record;
+  {
+    const WithoutLinks refused;
+    Registry registry = files.open();
+    const std::string other = registry.add_patient(kOwner, example_patient("Q2")).record;
+    registry.delete_patient(kOwner, record);
+    EXPECT_EQ(registry.patient(kOwner, other).code, "Q2");
+    EXPECT_THROW(static_cast<void>(registry.patient(kOwner, record)), RegistryError);
+  }
+  Registry again = files.open();
+  EXPECT_EQ(again.patients(kOwner).size(), 1U);
+  EXPECT_EQ(again.patients_without_key(kOwner), std::vector<std::string>{});
+  EXPECT_TRUE(again.check_audit(kOwner).whole) << again.check_audit(kOwner).text;
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
 #include "registry/registry_files.h"
 
 namespace phalanx {
@@ -205,6 +209,32 @@ TEST(Registry, IsSharedBySeveralPrograms) {
   second.delete_patient(kOwner, record);
   EXPECT_THAT(first.patients(kOwner), IsEmpty());
   EXPECT_TRUE(first.check_audit(kOwner).whole) << first.check_audit(kOwner).text;
+}
+
+TEST(Registry, AnExportInMemoryEqualsThatOnTheDiskAndIsWrittenNowhere) {
+  RegistryFiles files;
+  Registry registry = files.open();
+  const std::string record = registry.add_patient(kOwner, example_patient()).record;
+  registry.add_result(kOwner, record, example_result("a.mcap"));
+  registry.add_note(kOwner, record, "cold \xC3\xA4hand, \"dry\"");
+  const std::vector<ExportText> texts = registry.export_texts(kOwner, record);
+  const auto exports = [&] {
+    const auto all = registry.audit(kOwner);
+    return std::count_if(all.begin(), all.end(), [&](const AuditEntry& entry) {
+      return entry.action == "export" && entry.record == record;
+    });
+  };
+  EXPECT_EQ(exports(), 1);
+  const ExportReport report = registry.export_patient(kOwner, record, files.path("export"));
+  EXPECT_EQ(exports(), 2);
+  ASSERT_EQ(texts.size(), report.files.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    EXPECT_EQ(texts[i].name, report.files[i].filename().string());
+    std::ifstream file(report.files[i]);
+    EXPECT_EQ(texts[i].text, std::string(std::istreambuf_iterator<char>(file), {})) << texts[i].name;
+  }
+  EXPECT_THAT(texts[1].text, ::testing::HasSubstr("a.mcap"));
+  EXPECT_THROW(static_cast<void>(registry.export_texts(kOwner, std::string(32, 'f'))), RegistryError);
 }
 
 TEST(Registry, HasFilesThatOthersCannotRead) {

@@ -54,6 +54,9 @@ struct DeviceInfo {
   bool renders_torque = true;           ///< false: it can at most stop a digit, as force-feedback gloves do
   bool actuated = true;                 ///< false: it has no actuator, and cannot hold a digit
   bool simulated = false;               ///< no motor and no patient are connected
+  /// Its time goes on without the host, as behind a link. False: a simulated device's time advances with the
+  /// host's steps; of a device that is not simulated it means nothing.
+  bool own_clock = false;
   /// Watchdog time-out [s] > 0. At most so long after the host's last message, the device by itself removes
   /// all torque, or lets go of all digits. None: it keeps the last command, also for a host that is frozen or
   /// killed. If such a device is actuated, it is refused for a patient's session (check_watchdog()).

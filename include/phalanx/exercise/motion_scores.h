@@ -51,11 +51,14 @@ struct TotalActiveMotion {
 /// Opposition of the thumb to fingers.
 struct Opposition {
   DigitFlags fingers = {false, true, true, true, true};  ///< the thumb's flag does not count
+  double hold_time = 1.0;                                ///< of opposition_held_<finger>_mm [s]
   bool calibration_independent = false;                  ///< as of RangeOfMotion
 };
 
-/// Calculates opposition_<finger>_mm of each finger: the least distance between the middles of the thumb's
-/// and the finger's pad.
+/// Calculates of each finger opposition_<finger>_mm, the least distance between the middles of the thumb's
+/// and the finger's pad, and opposition_held_<finger>_mm, the least distance that was not exceeded for
+/// hold_time. A hand that moves at random comes near, but does not stay.
+/// @throws std::invalid_argument  for no finger, or a hold_time outside 0 .. 10 s
 [[nodiscard]] std::vector<Score> opposition_scores(std::span<const Observation> steps,
                                                    const Opposition& task);
 

@@ -27,7 +27,7 @@ constexpr int kFramesPerCall = 2 * static_cast<int>(SampleQueue::kCapacity);
 
 bool same_device(const phx_welcome& a, const phx_welcome& b) noexcept {
   if (std::memcmp(a.serial, b.serial, sizeof a.serial) != 0 || a.rate_hz != b.rate_hz ||
-      a.channel_count != b.channel_count)
+      a.channel_count != b.channel_count || a.flags != b.flags)
     return false;
   return std::equal(
       a.channel, a.channel + a.channel_count, b.channel, [](const phx_channel& x, const phx_channel& y) {

@@ -242,6 +242,9 @@ size_t phx_frame_size(uint8_t type) {
   return PHX_HEADER_SIZE + payload[type] + PHX_CRC_SIZE;
 }
 
+/* Flags that the header of a type may have; other bits are reserved. */
+static unsigned known_flags(uint8_t type) { return type == PHX_WELCOME ? PHX_WELCOME_SIMULATED : 0u; }
+
 size_t phx_encode(const phx_message* message, uint8_t* out, size_t capacity) {
   const size_t size = phx_frame_size(message->header.type);
   if (size == 0 || size > capacity) return 0;
@@ -251,13 +254,16 @@ size_t phx_encode(const phx_message* message, uint8_t* out, size_t capacity) {
   uint8_t second = 'X';
   uint8_t version = PHX_VERSION;
   uint16_t whole = (uint16_t)size;
-  uint16_t zero = 0;
+  /* only known bits: phx_decode() refuses a frame with others */
+  uint16_t flags = 0;
+  if (source->header.type == PHX_WELCOME)
+    flags = (uint16_t)(source->as.welcome.flags & known_flags(PHX_WELCOME));
   pass_u8(&stream, &first);
   pass_u8(&stream, &second);
   pass_u8(&stream, &version);
   pass_u8(&stream, &source->header.type);
   pass_u16(&stream, &whole);
-  pass_u16(&stream, &zero);
+  pass_u16(&stream, &flags);
   pass_u32(&stream, &source->header.epoch);
   pass_u32(&stream, &source->header.sequence);
   pass_payload(&stream, source);
@@ -331,17 +337,19 @@ enum phx_decoded phx_decode(const uint8_t* frame, size_t size, phx_message* mess
   if (frame[2] != PHX_VERSION) return decode_other_version(frame, size, message);
   if (size != phx_frame_size(frame[3])) return PHX_NOT_A_FRAME;
   if (!crc_is_right(frame, size)) return PHX_BAD_CRC;
-  uint16_t zero = 0;
+  uint16_t flags = 0;
   phx_stream stream = {(uint8_t*)frame + 2, true,
                        true}; /* a stream that reads leaves the bytes as they are */
   pass_u8(&stream, &message->header.version);
   pass_u8(&stream, &message->header.type);
   pass_u16(&stream, &message->header.size);
-  pass_u16(&stream, &zero);
+  pass_u16(&stream, &flags);
   pass_u32(&stream, &message->header.epoch);
   pass_u32(&stream, &message->header.sequence);
-  if (message->header.size != size || zero != 0) return PHX_NOT_A_FRAME;
+  if (message->header.size != size || (flags & ~known_flags(message->header.type)) != 0)
+    return PHX_NOT_A_FRAME;
   pass_payload(&stream, message);
+  if (message->header.type == PHX_WELCOME) message->as.welcome.flags = (uint8_t)flags;
   return stream.finite && numbers_are_right(message) ? PHX_OK : PHX_BAD_NUMBER;
 }
 
@@ -478,6 +486,7 @@ static void reply_welcome(const phx_controller* controller, phx_message* message
   for (size_t i = 0; i < PHX_SERIAL_SIZE; ++i) message->as.welcome.serial[i] = device->serial[i];
   message->as.welcome.rate_hz = device->rate_hz;
   message->as.welcome.channel_count = device->channel_count;
+  message->as.welcome.flags = device->simulated ? PHX_WELCOME_SIMULATED : 0u;
   for (size_t i = 0; i < device->channel_count; ++i) message->as.welcome.channel[i] = device->channel[i];
 }
 

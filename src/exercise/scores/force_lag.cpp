@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exercise/scores/force_lag.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -11,7 +11,6 @@
 #include <string>
 #include <utility>
 
-#include "exercise/scores/force_lag.h"
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"

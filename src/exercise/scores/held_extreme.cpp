@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exercise/scores/held_extreme.h"
+#include "exercise/scores/trial_values.h"
 
 #include <cstddef>
 #include <deque>

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "exercise/scores/held_extreme.h"
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
@@ -134,26 +133,34 @@ std::vector<Score> total_active_motion_scores(std::span<const Observation> steps
 }
 
 std::vector<Score> opposition_scores(std::span<const Observation> steps, const Opposition& task) {
+  check_between("hold_time", task.hold_time, 0.0, 10.0);
   const std::string no_motion = why_no_motion(steps, task.calibration_independent);
   std::vector<Score> scores;
   for (int finger = 1; finger < kDigits; ++finger) {
     if (!task.fingers[idx(finger)]) continue;
-    const ScoreName name{fmt::format("opposition_{}_mm", digit_name(finger)), "mm"};
+    const std::array names = {ScoreName{fmt::format("opposition_{}_mm", digit_name(finger)), "mm"},
+                              ScoreName{fmt::format("opposition_held_{}_mm", digit_name(finger)), "mm"}};
     std::vector<int> joints;
     for (const int digit : {0, finger})
       for (int i = 0; i < kJointsPerDigit; ++i) joints.push_back(joint_index(digit, i));
     std::string why = no_motion;
     if (why.empty()) why = why_not_measured(steps, joints);
-    double least = kInfinity;
+    std::vector<double> distance;
     for (const Observation& step : steps) {
       if (!why.empty()) break;
-      const double distance = (step.pad[0] - step.pad[idx(finger)]).norm();
-      if (!std::isfinite(distance))
+      distance.push_back((step.pad[0] - step.pad[idx(finger)]).norm());
+      if (!std::isfinite(distance.back()))
         why = fmt::format("not scored: a pad's position is not finite at {:.3f} s", step.time);
-      least = std::min(least, distance);
     }
-    scores.push_back(why.empty() ? valid_score(name, least / kMm, ScoreOrigin::kMeasured)
-                                 : invalid_score(name, ScoreOrigin::kMeasured, why));
+    if (!why.empty()) {
+      append(scores, invalid_scores(names, ScoreOrigin::kMeasured, why));
+      continue;
+    }
+    scores.push_back(valid_score(names[0], *std::min_element(distance.begin(), distance.end()) / kMm,
+                                 ScoreOrigin::kMeasured));
+    const std::optional<double> held = held_minimum(steps, distance, task.hold_time);
+    scores.push_back(held ? valid_score(names[1], *held / kMm, ScoreOrigin::kMeasured)
+                          : invalid_score(names[1], ScoreOrigin::kMeasured, too_short(task.hold_time)));
   }
   if (scores.empty()) throw std::invalid_argument("the task has no finger; name one at least");
   return scores;

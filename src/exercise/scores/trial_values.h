@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a trial that several scores use: weights of the steps, forces with their origin, and joints
-// that are measured.
+// Values of a trial that several scores use: weights of the steps, forces with their origin, joints that are
+// measured, the lag of a force behind its target, and values that were held for a time.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,6 +75,29 @@ inline constexpr double kScoreRate = 100.0;
 [[nodiscard]] std::vector<double> resample(std::span<const double> time, std::span<const double> value);
 /// Returns the times of the steps [s].
 [[nodiscard]] std::vector<double> step_times(std::span<const Observation> steps);
+
+/// Lag of one signal behind another, or why there is none.
+struct ForceLag {
+  double seconds = 0.0;      ///< positive: the force comes later
+  double correlation = 0.0;  ///< Pearson's, at the whole step of the lag [-]
+  std::string why = {};      ///< for people; empty: there is a lag
+};
+
+/// Finds the lag with the largest correlation. Both signals have kScoreRate. docs/exercises.md ("Force
+/// tracking") has the rule.
+/// @param longest_lag  [s]
+[[nodiscard]] ForceLag find_lag(const std::vector<double>& force, const std::vector<double>& target,
+                                double longest_lag);
+
+/// Returns the largest value that was held:  max over i of min{x_k : t_i <= t_k <= t_i + hold}, where
+/// t_i + hold <= t_last. Nothing if the steps do not span the hold. Takes time in proportion to the
+/// number of steps.
+/// @param value  of each step  @param hold  [s]
+[[nodiscard]] std::optional<double> held_maximum(std::span<const Observation> steps,
+                                                 std::span<const double> value, double hold);
+/// Returns the smallest value that was held:  min over i of max{x_k : t_i <= t_k <= t_i + hold}.
+[[nodiscard]] std::optional<double> held_minimum(std::span<const Observation> steps,
+                                                 std::span<const double> value, double hold);
 
 /// Samples of the device in a trial: a step without a new one repeats the last one's angles.
 struct TrialSamples {

@@ -56,6 +56,25 @@ TEST(LinkDecode, RefusesAFrameOfWhichOnlyOneOfTheFirstTwoBytesIsRight) {
   }
 }
 
+TEST(LinkDecode, RefusesAWelcomeWithAnUnknownFlag) {
+  std::mt19937_64 random(618);
+  phx_message message = random_message(PHX_WELCOME, random);
+  message.as.welcome.flags = PHX_WELCOME_SIMULATED;
+  ASSERT_EQ(decoded(encoded(message)), PHX_OK);
+  const Bytes frame = encoded(message);
+  for (const std::size_t at : {6U, 7U}) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      if (at == 6 && bit == 0) continue;  // PHX_WELCOME_SIMULATED
+      Bytes other = frame;
+      other[at] ^= static_cast<std::uint8_t>(1U << bit);
+      close_again(other);
+      EXPECT_EQ(decoded(other), PHX_NOT_A_FRAME) << "byte " << at << ", bit " << bit;
+    }
+  }
+  message.as.welcome.flags = 0xFF;  // the encoder leaves out what it does not know
+  EXPECT_EQ(encoded(message), frame);
+}
+
 TEST(LinkDecode, RefusesASizeFieldThatIsNotTheFramesAndReservedBytesThatAreNotZero) {
   std::mt19937_64 random(613);
   const Bytes frame = encoded(random_message(PHX_COMMAND, random));

@@ -102,7 +102,12 @@ TEST(LinkFrame, OfACommandIsItsTableInOrder) {
 TEST(LinkFrame, OfWelcomeIsItsTableInOrderWithZerosForTheChannelsThatTheDeviceHasNot) {
   phx_message message = empty(PHX_WELCOME, 7, 1);
   phx_welcome& welcome = message.as.welcome;
-  welcome = {.host_id = 3, .serial = {'P', 'H', 'X'}, .rate_hz = 1000, .channel_count = 2, .channel = {}};
+  welcome = {.host_id = 3,
+             .serial = {'P', 'H', 'X'},
+             .rate_hz = 1000,
+             .channel_count = 2,
+             .flags = 0,
+             .channel = {}};
   welcome.channel[0] = {PHX_CHANNEL_ANGLE, 19, -5, 4095, 0.5F, -1.0F};
   welcome.channel[1] = {PHX_CHANNEL_FORCE, 4, 0, 70000, 2.0F, 0.0F};
   welcome.channel[2] = {9, 9, 9, 9, 9.0F, 9.0F};  // left over: not the device's
@@ -111,6 +116,26 @@ TEST(LinkFrame, OfWelcomeIsItsTableInOrderWithZerosForTheChannelsThatTheDeviceHa
   frame.u8(0).u8(19).i32(-5).i32(4095).f32(0.5F).f32(-1.0F);
   frame.u8(2).u8(4).i32(0).i32(70000).f32(2.0F).f32(0.0F).zeros(30U * 18U);
   EXPECT_EQ(encoded(message), frame.closed());
+}
+
+TEST(LinkFrame, OfWelcomeStatesASimulatedDeviceInTheHeadersFlags) {
+  phx_message message = empty(PHX_WELCOME, 7, 1);
+  message.as.welcome.rate_hz = 1000;
+  const Bytes real = encoded(message);
+  EXPECT_EQ(real.at(6), 0);
+  message.as.welcome.flags = PHX_WELCOME_SIMULATED;
+  Bytes simulated = encoded(message);
+  EXPECT_EQ(simulated.size(), 623U);
+  EXPECT_EQ(simulated.at(6), 1);
+  EXPECT_EQ(simulated.at(7), 0);
+  phx_message read{};
+  ASSERT_EQ(phx_decode(simulated.data(), simulated.size(), &read), PHX_OK);
+  EXPECT_EQ(read.as.welcome.flags, PHX_WELCOME_SIMULATED);
+  ASSERT_EQ(phx_decode(real.data(), real.size(), &read), PHX_OK);
+  EXPECT_EQ(read.as.welcome.flags, 0);
+  simulated[6] = 0;
+  close_again(simulated);
+  EXPECT_EQ(simulated, real) << "nothing else states it";
 }
 
 TEST(LinkFrame, OfConfigureIsItsTableInOrder) {

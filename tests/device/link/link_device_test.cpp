@@ -358,6 +358,45 @@ TEST(LinkDevice, AfterAnOpenThatFailedAnotherDeviceMayStandAtTheAddress) {
   EXPECT_EQ(device->info().serial, "BENCH-2");
 }
 
+TEST(LinkDevice, IsSimulatedIfItsControllerStatesSo) {
+  const Clock clock;
+  auto controller = std::make_unique<ControllerThread>(listen_udp("127.0.0.1:0"), clock);
+  const std::string address = controller->after_scheme();
+  const auto device = make_link_device(connect_udp(address), clock);
+  device->open();
+  EXPECT_FALSE(device->info().simulated) << "firmware does not state it";
+  device->close();
+  controller.reset();
+  phx_device simulated = test::bench_device();
+  simulated.simulated = true;
+  controller = std::make_unique<ControllerThread>(listen_udp(address), clock, simulated);
+  device->open();
+  EXPECT_TRUE(device->info().simulated);
+  EXPECT_TRUE(device->info().own_clock) << "its silence counts in seconds, as that of every device on a wire";
+  device->close();
+}
+
+// Results of a simulated device never join those of a person: a session that a person began ends here.
+TEST(LinkDevice, ASimulatedControllerThatTakesTheDevicesPlaceIsAnotherDevice) {
+  const Clock clock;
+  auto controller = std::make_unique<ControllerThread>(listen_udp("127.0.0.1:0"), clock);
+  const std::string address = controller->after_scheme();
+  const auto device = make_link_device(connect_udp(address), clock);
+  device->open();
+  Loop loop(*device, clock);
+  ASSERT_TRUE(loop.until([&] { return loop.samples > 10; }));
+  controller.reset();
+  phx_device simulated = test::bench_device();
+  simulated.simulated = true;
+  controller = std::make_unique<ControllerThread>(listen_udp(address), clock, simulated);
+  EXPECT_TRUE(loop.until([&] {
+    const Fault fault = device->connection_fault();
+    if (fault != Fault::kNone && fault != Fault::kDeviceLost) device->reset();
+    return device->connection_fault() == Fault::kDeviceLost;
+  }));
+  device->close();
+}
+
 TEST(LinkDevice, AnUnpluggedPortIsADeviceLost) {
   const Clock clock;
   ControllerThread controller(open_pseudo_terminal(), clock);

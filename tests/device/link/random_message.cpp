@@ -18,6 +18,7 @@ void fill(phx_welcome& welcome, std::mt19937_64& random) {
   for (char& letter : welcome.serial) letter = static_cast<char>('A' + random() % 26);
   welcome.rate_hz = static_cast<std::uint16_t>(1 + random() % 2000);
   welcome.channel_count = static_cast<std::uint8_t>(random() % (PHX_CHANNELS + 1));
+  welcome.flags = static_cast<std::uint8_t>(random() % 2);
   for (std::size_t i = 0; i < welcome.channel_count; ++i) {
     phx_channel& channel = welcome.channel[i];
     channel.kind = static_cast<std::uint8_t>(random() % 6);

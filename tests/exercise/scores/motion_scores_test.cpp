@@ -104,6 +104,13 @@ TEST(MotionScores, OppositionIsAsByHand) {
   const auto scores = opposition_scores(steps, {.calibration_independent = true});
   EXPECT_NEAR(value_of(scores, "opposition_index_mm"), 20.0, 1e-12);
   EXPECT_NEAR(value_of(scores, "opposition_middle_mm"), 50.0, 1e-12);
+  EXPECT_NEAR(value_of(scores, "opposition_held_index_mm"), 50.0, 1e-12);
+  EXPECT_NEAR(value_of(opposition_scores(steps, {.hold_time = 0.0, .calibration_independent = true}),
+                       "opposition_held_index_mm"),
+              20.0, 1e-12);
+  EXPECT_THAT(reason_of(opposition_scores(steps, {.hold_time = 3.0, .calibration_independent = true}),
+                        "opposition_held_index_mm"),
+              HasSubstr("3"));
   steps[1].pad[1].x() = kNaN;
   EXPECT_THAT(reason_of(opposition_scores(steps, {.calibration_independent = true}), "opposition_index_mm"),
               HasSubstr("not finite at 1.000 s"));

@@ -26,6 +26,7 @@ constexpr double kLongestNap = 500e-6;
 constexpr double kLongestPacedNap = 5e-3;  ///< real time for which a paced clock that is ahead sleeps [s]
 constexpr std::int64_t kLongStep = 1'000'000'000;  ///< [ns]; before it the threads are looked at once more
 constexpr double kLookAgain = 2e-3;                ///< real time until then [s]
+constexpr unsigned kLooksBetween = 16;             ///< looks at the threads for one at the end of a process
 constexpr double kHang = 120.0;                    ///< real seconds for which a thread may run without a wait
 
 double real_seconds() noexcept {
@@ -78,6 +79,8 @@ struct HeldClock::Threads {
   };
 
   struct Thread {
+    static constexpr unsigned long kNoTurns = ~0UL;
+
     Thread(const std::string& folder, std::int32_t id)
         : tid(id), stat(folder + "/stat"), schedstat(folder + "/schedstat"), call(folder + "/syscall") {}
 
@@ -117,6 +120,9 @@ struct HeldClock::Threads {
     File call;
     ClockWait* wait = nullptr;  ///< its place on the page; nullptr: none known
     unsigned long seen = 0;     ///< turns() at the first look
+    /// turns() when it was last found off the processors and not ready. While they are the same it has not run, and is
+    /// off them still: is_off_processors(), the slowest of these files, need not be read.
+    unsigned long asleep = kNoTurns;
   };
 
   static bool works(char state) noexcept { return state == 'R' || state == 'D'; }
@@ -229,7 +235,12 @@ bool HeldClock::all_sleep() {
     for (std::size_t i = 0; i < all.size(); ++i) {
       Threads::Thread& thread = all[i];
       if (thread.sleeps_for_time(*page_)) continue;
-      const unsigned long before = thread.turns();
+      const unsigned long before = look == 0 ? thread.turns() : 0;
+      if (look == 0 && before != 0 &&
+          before == thread.asleep) {  // it has not run since: the second look asks if it is ready
+        thread.seen = before;
+        continue;
+      }
       const bool runs = look == 0 && !thread.is_off_processors();
       const char state = thread.state();
       const unsigned long turns = look == 0 ? before : thread.turns();  // the last word of the second look
@@ -242,6 +253,7 @@ bool HeldClock::all_sleep() {
         return false;
       }
       thread.seen = turns;
+      thread.asleep = look == 0 ? Threads::Thread::kNoTurns : turns;
     }
     for (const Threads::Process& process : threads_->processes) {
       if (process.folder.entries() == process.threads) continue;
@@ -361,7 +373,7 @@ void HeldClock::run(const std::function<bool()>& ended, double pace) {
   ask_for_the_processor(2);
   double nap = kShortestNap;
   double moved = real_seconds();
-  while (!ended()) {
+  for (unsigned look = 0; look % kLooksBetween != 0 || !ended(); ++look) {
     const std::optional<std::int64_t> next = next_wait();
     std::int64_t until = kNever;
     if (pace > 0.0)

@@ -15,8 +15,7 @@ export function roleOf(connected: boolean, welcome: Welcome | undefined, state: 
 export const mayChange = (role: Role): boolean => role === "mine";
 export const mayTake = (role: Role): boolean => role === "other" || role === "nobody";
 
-/// A device on a wire, whose sensors the wearer moves.
-export const isOnWire = (state: State | undefined): boolean =>
-  state !== undefined && !state.deviceSimulated && state.source === HandSource.HAND_DEVICE;
+/// A device on a wire, whose sensors the wearer moves; also a simulated one behind the link.
+export const isOnWire = (state: State | undefined): boolean => state?.source === HandSource.HAND_DEVICE;
 
 export const mayCalibrate = (role: Role, state: State | undefined): boolean => mayChange(role) && isOnWire(state);

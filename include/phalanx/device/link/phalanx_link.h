@@ -116,11 +116,14 @@ typedef struct {
   uint64_t host_id; /* random for each run of a host; identifies the session's owner */
 } phx_hello;
 
+#define PHX_WELCOME_SIMULATED 0x01u /* no motor and no person are connected: what is measured is computed */
+
 typedef struct {
   uint64_t host_id; /* of the HELLO that it answers */
   char serial[PHX_SERIAL_SIZE];
   uint16_t rate_hz; /* of samples and control */
   uint8_t channel_count;
+  uint8_t flags; /* PHX_WELCOME_*; on the wire they are the header's bytes 6 and 7 */
   phx_channel channel[PHX_CHANNELS];
 } phx_welcome;
 
@@ -250,6 +253,7 @@ typedef struct {
   char serial[PHX_SERIAL_SIZE];
   uint16_t rate_hz;
   uint8_t channel_count;
+  bool simulated; /* false in firmware: the host must be able to trust it. See PHX_WELCOME_SIMULATED */
   phx_channel channel[PHX_CHANNELS];
   float torque_limit; /* [Nm] of every joint, the device's own */
   float torque_rate;  /* [Nm/s] of every joint, the device's own */
