@@ -93,6 +93,7 @@ Candidates values_of(const CLI::Option& option) {
   if (option.get_positional() && name == "postures") return files_of("assets/postures", ".csv");
   if (is_named(option, "set")) return settings();
   if (is_named(option, "profile")) return files_of("assets/profiles");
+  if (is_named(option, "template")) return files_of("assets/prescriptions");
   if (is_named(option, "mapping")) return files_of("assets/mappings");
   if (is_named(option, "hand")) return files_of("assets/hands");
   return choices(option);

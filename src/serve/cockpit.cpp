@@ -127,7 +127,8 @@ void Cockpit::received_over_limit(PageId page, std::string_view bytes) {
   const Participant* participant = impl_->participants.find(page);
   wire::ToHost message;
   if (participant == nullptr || !message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return;
-  if (message.has_stop()) impl_->stop(*participant);
+  const bool pause = message.has_feel() && message.feel().kind() == wire::Feel::PAUSE;
+  if (message.has_stop() || pause) impl_->stop(*participant);
 }
 
 void Cockpit::frame() {
@@ -137,6 +138,7 @@ void Cockpit::frame() {
   impl_->give_control_to_only_page();
   impl_->notify_sign_ins();
   if (impl_->greeted.empty()) return;
+  impl_->send_exercise_if_due();
   impl_->send_state_if_due();
   impl_->send_tick();
 }
@@ -178,6 +180,9 @@ std::size_t Cockpit::body_limit(const WebRequest& head) {
 
 void Cockpit::Impl::respond_with_geometry(const std::string& revision,
                                           std::function<void(WebResponse)> respond) {
+  look_at_exercise();
+  if (hides_scene)
+    return respond(text_response(404, "the exercise that runs hides its scene; it is shown after the end\n"));
   auto geometry = session.info()->geometry;
   if (!geometry || revision != std::to_string(geometry->revision))
     return respond(text_response(404, "this geometry is no longer shown; pages are told the new revision\n"));
@@ -188,6 +193,9 @@ void Cockpit::Impl::respond_with_geometry(const std::string& revision,
 void Cockpit::Impl::mark(const WebRequest& request, const std::function<void(WebResponse)>& respond) {
   if (!request.client.may_operate)
     return respond(text_response(403, "only who may operate may set markers; use the operator's token\n"));
+  const Participant* participant = participants.with_secret(request.page_secret);
+  if (participant != nullptr && participant->patient_screen)
+    return respond(text_response(403, "the patient's screen sets no markers\n"));
   const std::string text = one_line(request.body);
   if (text.empty()) return respond(text_response(400, "a marker is a text: send it as the request's body\n"));
   notify(wire::Notice::CHANGE, request.client.address, "marker", text);
@@ -197,13 +205,13 @@ void Cockpit::Impl::mark(const WebRequest& request, const std::function<void(Web
 void Cockpit::Impl::notify_sign_ins() {
   if (now() - sign_ins_checked >= kSignInInterval) {
     sign_ins_checked = now();
-    people->check_sessions();
+    people->check_sessions(participants.any_patient_screen());
   }
   for (const People::SignIn& change : people->take_sign_ins()) {
     if (!change.in) participants.sign_in(change.page_secret, "");
     const Participant* participant = participants.with_secret(change.page_secret);
     const std::string page = participant != nullptr ? participant->label() : "the page of patients";
-    if (change.in) participants.sign_in(change.page_secret, change.account);
+    if (change.in) participants.sign_in(change.page_secret, change.account, change.role);
     notify(wire::Notice::CHANGE, page, "account",
            fmt::format("account {} {}", change.account, change.in ? "signed in" : "signed out"));
   }

@@ -13,8 +13,8 @@
 // and a Notice. Each frame sends the newest tick (record/recording/view_message.h), and the state
 // (state_message.h) if it has changed or is due.
 //
-// Further files: participants.h has the roles, people.h the patients, plain_text.h and settings_text.h the
-// texts for people.
+// Further files: participants.h has the roles, exercise_message.h the exercise, people.h the patients,
+// plain_text.h and settings_text.h the texts for people.
 #pragma once
 
 #include <filesystem>
@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "phalanx/clinic/exercise_host.h"
 #include "phalanx/cockpit.pb.h"
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/serve/cockpit.h"
@@ -42,9 +43,11 @@ namespace phalanx {
 struct TickWindow {
   /// Ticks that may be sent and not acknowledged: 0.2 s at 60 a second.
   static constexpr std::uint64_t kUnacknowledged = 12;
-  std::uint64_t sent = 0;          ///< since the Welcome, without ticks that a newer one replaced
-  std::uint64_t acknowledged = 0;  ///< of these, by Seen
-  std::optional<double> newest;    ///< time of the newest tick that was sent [s]; none yet
+  std::uint64_t sent = 0;             ///< since the Welcome, without ticks that a newer one replaced
+  std::uint64_t acknowledged = 0;     ///< of these, by Seen
+  std::optional<double> newest = {};  ///< time of the newest tick that was sent [s]; none yet
+  bool of_patient = false;            ///< of the patient's screen: it gets no notices
+  bool may_operate = false;           ///< false: of the viewers' link
 
   [[nodiscard]] bool open() const noexcept { return sent - acknowledged < kUnacknowledged; }
 };
@@ -58,7 +61,7 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   [[nodiscard]] double now() const { return settings.clock(); }  ///< [s]
 
   // ---- messages to pages: cockpit_outgoing.cpp
-  void send_to_all(const Bytes& bytes);
+  void send_notice(const Bytes& bytes);  ///< to all pages but the patient's screens
   /// Sends a notice to all pages and the log, after the notice of a drag that is held back.
   void notify(wire::Notice::Level level, const std::string& who, const std::string& code,
               const std::string& text);
@@ -74,7 +77,11 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   [[nodiscard]] std::string for_pages(const std::string& text) const;
   void send_welcome(PageId page);
   void refuse_protocol(PageId page, std::uint32_t protocol);
-  [[nodiscard]] Bytes encoded_state();
+  [[nodiscard]] wire::ToPage present_state();
+  /// @returns true if a page gets what concerns the patient's screen alone
+  [[nodiscard]] bool gets_patient_state(const TickWindow& window) const noexcept {
+    return window.of_patient || (exercise_has_station && !window.may_operate);
+  }
   /// Sends the state with a later frame, however often something changes: at
   /// most every kShortestStateInterval.
   void request_state() { state_requested = true; }
@@ -83,6 +90,12 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   /// Replaces the GDP's poses by those of the hand that is drawn.
   void draw(StationView& view);
   void disconnect_pages_without_hello();
+
+  // ---- exercises and the patient's screen: cockpit_exercise.cpp
+  [[nodiscard]] Bytes encoded_exercise(const ExerciseStatus& status) const;
+  void look_at_exercise();  ///< before a page gets a state or a geometry
+  void send_present_exercise(PageId page);
+  void send_exercise_if_due();
 
   // ---- messages from pages: cockpit_incoming.cpp
   /// @throws std::exception if the message is refused
@@ -131,10 +144,25 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   std::uint64_t sent_revision = 0;
   SafetyState sent_safety = SafetyState::kWaiting;
   const std::shared_ptr<GeometryCache> geometry_cache = std::make_shared<GeometryCache>();
-  const std::shared_ptr<People> people = std::make_shared<People>(settings.registry, settings.exercises);
+  const std::shared_ptr<People> people = std::make_shared<People>(
+      settings.registry, settings.exercises, std::function<double()>(), settings.exercises_host);
   const std::shared_ptr<StationFiles> station_files = std::make_shared<StationFiles>(
       settings.recordings,
       [people = people](const WebRequest& request) { return people->recording_access(request); });
+  /// WebServer::send_newest(): ticks are of kind 0.
+  static constexpr std::size_t kExerciseMessages = 1;
+  /// Part of an exercise of which each change is sent to each page.
+  struct SentExercise {
+    std::uint32_t number = 0;
+    ExerciseStatus::Stage stage = ExerciseStatus::Stage::kNone;
+    ExercisePhase phase = ExercisePhase::kReady;
+    std::string trouble = {};
+    [[nodiscard]] bool operator==(const SentExercise&) const = default;
+  };
+  SentExercise sent_exercise;
+  bool exercise_has_station = false;  ///< exercise_runs(), at the newest frame or page
+  bool hides_scene = false;           ///< the exercise that runs does, likewise
+  std::uint64_t frames = 0;
   double sign_ins_checked = -1e9;                         ///< [s]
   std::shared_ptr<UploadJob> upload;                      ///< the newest
   std::shared_ptr<const SessionGeometry> drawn_geometry;  ///< of `drawn`
@@ -153,6 +181,9 @@ struct Cockpit::Impl : std::enable_shared_from_this<Cockpit::Impl> {
   /// @returns true if the drag that is held back is of this page and these keys
   [[nodiscard]] bool continues_drag(PageId page, const PageRequest& request) const;
   void hold_back(PageId page, const std::string& who, const PageRequest& request);
+  void feel(PageId page, const wire::Feel& feel);
+  void refuse_unless_may_feel(const Participant& participant) const;
+  void refuse_during_exercise(const wire::ToHost& message) const;
   void refuse_unless_operator(PageId page) const;
   void pass_to_session(PageId page, const wire::ToHost& message);
   void on_outcome(PageId page, std::uint32_t number, const std::string& who, const PageRequest& request,

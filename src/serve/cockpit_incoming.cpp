@@ -16,14 +16,26 @@ namespace {
 constexpr double kStopInterval = 1.0;      ///< [s]
 constexpr double kSlidersInterval = 10.0;  ///< [s]
 
+/// @returns true for a message that the patient's screen may send
+bool of_patient_screen(wire::ToHost::WhatCase what) noexcept {
+  return what == wire::ToHost::kHello || what == wire::ToHost::kStop || what == wire::ToHost::kFeel ||
+         what == wire::ToHost::kSeen;
+}
+
 }  // namespace
 
 void Cockpit::Impl::handle(PageId page, const wire::ToHost& message) {
+  if (participants.find(page)->patient_screen && !of_patient_screen(message.what_case()))
+    throw std::invalid_argument(
+        "this is the patient's screen: it can only stop, and report how the patient feels");
   switch (message.what_case()) {
     case wire::ToHost::kHello:
       return hello(page, message.hello());
     case wire::ToHost::kStop:
       stop(*participants.find(page));
+      return reply(page, message.request(), "");
+    case wire::ToHost::kFeel:
+      feel(page, message.feel());
       return reply(page, message.request(), "");
     case wire::ToHost::kSeen:
       return acknowledge(page, message.seen().ticks());
@@ -41,6 +53,7 @@ void Cockpit::Impl::handle(PageId page, const wire::ToHost& message) {
       break;
   }
   refuse_unless_operator(page);
+  refuse_during_exercise(message);
   pass_to_session(page, message);
 }
 
@@ -48,14 +61,16 @@ void Cockpit::Impl::hello(PageId page, const wire::Hello& hello) {
   if (greeted.contains(page)) return;
   if (hello.protocol() != kProtocol) return refuse_protocol(page, hello.protocol());
   awaiting_hello.erase(page);
-  const Participants::Reconnection reconnection = participants.reconnect(page, hello.secret(), now());
+  const Participants::Reconnection reconnection =
+      participants.reconnect(page, hello.secret(), now(), hello.patient_screen());
   if (reconnection.replaced != 0) disconnect_replaced(reconnection.replaced);
   if (!hello.name().empty()) participants.name(page, hello.name());
   if (reconnection.became_operator)
     notify(wire::Notice::CHANGE, participants.find(page)->label(), "operator_taken",
            "operates: there was no operator");
   send_welcome(page);
-  if (holds_without_host(session.info()->device)) notify_page(page, "no_watchdog", kHoldsWithoutHost);
+  if (!hello.patient_screen() && holds_without_host(session.info()->device))
+    notify_page(page, "no_watchdog", kHoldsWithoutHost);
   request_state();
 }
 

@@ -11,6 +11,7 @@
 #include "record/plain_text.h"
 #include "record/recording/view_message.h"
 #include "serve/cockpit_impl.h"
+#include "serve/exercise_message.h"
 #include "serve/state_message.h"
 
 namespace phalanx {
@@ -28,6 +29,13 @@ double unix_now() {
 
 Bytes encoded(const wire::ToPage& message) {
   return std::make_shared<const std::string>(message.SerializeAsString());
+}
+
+/// @returns a state for the patient's screen
+wire::ToPage for_patient(const wire::ToPage& state) {
+  wire::ToPage message;
+  write_patient_state(state.state(), *message.mutable_state());
+  return message;
 }
 
 void write_recording(const RecordingStatus& recording, wire::Recording& out) {
@@ -52,8 +60,9 @@ wire::Notice make_notice(wire::Notice::Level level, const std::string& who, cons
   return notice;
 }
 
-void Cockpit::Impl::send_to_all(const Bytes& bytes) {
-  for (const auto& [page, window] : greeted) server->send(page, bytes);
+void Cockpit::Impl::send_notice(const Bytes& bytes) {
+  for (const auto& [page, window] : greeted)
+    if (!window.of_patient) server->send(page, bytes);
 }
 
 void Cockpit::Impl::notify(wire::Notice::Level level, const std::string& who, const std::string& code,
@@ -63,7 +72,7 @@ void Cockpit::Impl::notify(wire::Notice::Level level, const std::string& who, co
   if (settings.on_notice) settings.on_notice(code, who, text);
   wire::ToPage message;
   *message.mutable_notice() = log.newest().back();
-  send_to_all(encoded(message));
+  send_notice(encoded(message));
 }
 
 void Cockpit::Impl::notify_drag() {
@@ -116,18 +125,26 @@ void Cockpit::Impl::send_welcome(PageId page) {
   const Participant& participant = *participants.find(page);
   wire::ToPage message;
   wire::Welcome& welcome = *message.mutable_welcome();
-  welcome = choices;
+  if (participant.patient_screen) {
+    welcome.set_protocol(kProtocol);
+    welcome.set_version(settings.version);
+  } else {
+    welcome = choices;
+    welcome.set_may_operate(participant.client.may_operate);
+    if (participant.client.may_operate)
+      for (const std::string& url : viewer_urls) welcome.add_viewer_url(url);
+    for (const wire::Notice& notice : log.newest()) *welcome.add_past() = notice;
+  }
   welcome.set_page(participant.number);
   welcome.set_secret(participant.secret);
-  welcome.set_may_operate(participant.client.may_operate);
   welcome.set_clock(session.now());
   welcome.set_unix_time(unix_now());
-  if (participant.client.may_operate)
-    for (const std::string& url : viewer_urls) welcome.add_viewer_url(url);
-  for (const wire::Notice& notice : log.newest()) *welcome.add_past() = notice;
   server->send(page, encoded(message));
-  greeted[page] = {};
-  server->send(page, encoded_state());
+  greeted[page] = {.of_patient = participant.patient_screen, .may_operate = participant.client.may_operate};
+  look_at_exercise();
+  const wire::ToPage state = present_state();
+  server->send(page, encoded(gets_patient_state(greeted[page]) ? for_patient(state) : state));
+  send_present_exercise(page);
 }
 
 // Sends only the number and the version: a page of another protocol may not understand the rest of a Welcome.
@@ -140,17 +157,18 @@ void Cockpit::Impl::refuse_protocol(PageId page, std::uint32_t protocol) {
       page, fmt::format("this page uses protocol {}, the station {}: reload the page", protocol, kProtocol));
 }
 
-Bytes Cockpit::Impl::encoded_state() {
+wire::ToPage Cockpit::Impl::present_state() {
   wire::ToPage message;
   wire::State& state = *message.mutable_state();
   write_state(session, state);
   state.set_trouble(for_pages(state.trouble()));
   if (state.has_fault() && state.fault().time() == reported)
     state.mutable_fault()->set_report(as_utf8(report));
+  if (hides_scene) hide_scene(state);
   write_participants(participants, now(), state);
   if (settings.recording)
     if (const auto recording = settings.recording()) write_recording(*recording, *state.mutable_recording());
-  return encoded(message);
+  return message;
 }
 
 void Cockpit::Impl::send_state_if_due() {
@@ -164,7 +182,14 @@ void Cockpit::Impl::send_state_if_due() {
   state_sent = now();
   sent_revision = revision;
   sent_safety = safety;
-  send_to_all(encoded_state());
+  const wire::ToPage state = present_state();
+  const Bytes of_others = encoded(state);
+  Bytes of_patient;
+  for (const auto& [page, window] : greeted) {
+    const bool patient_state = gets_patient_state(window);
+    if (patient_state && !of_patient) of_patient = encoded(for_patient(state));
+    server->send(page, patient_state ? of_patient : of_others);
+  }
 }
 
 void Cockpit::Impl::draw(StationView& view) {
@@ -183,6 +208,7 @@ void Cockpit::Impl::draw(StationView& view) {
 }
 
 void Cockpit::Impl::send_tick() {
+  if (hides_scene) return;
   StationView view = session.view();
   // Before the first step there is no hand to show.
   if (view.snapshot.tick == 0) return;

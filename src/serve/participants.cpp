@@ -23,7 +23,8 @@ const Participant& Participants::join(PageId page, const ClientInfo& client, std
   return participant;
 }
 
-Participants::Reconnection Participants::reconnect(PageId page, const std::string& secret, double now) {
+Participants::Reconnection Participants::reconnect(PageId page, const std::string& secret, double now,
+                                                   bool patient_screen) {
   forget(now);
   Reconnection result;
   const auto here = page_.find(page);
@@ -42,6 +43,8 @@ Participants::Reconnection Participants::reconnect(PageId page, const std::strin
     away_.erase(away);
     if (operates(here->second) && !client.may_operate) operator_number_ = 0;
   }
+  here->second.patient_screen = patient_screen;
+  if (patient_screen && operates(here->second)) operator_number_ = 0;
   result.became_operator = operate_if_free(here->second, now);
   return result;
 }
@@ -60,6 +63,9 @@ std::string Participants::take_control(PageId page, double now) {
     throw std::invalid_argument(
         "this page has the viewers' link and may only view and stop; open the operator's link to take "
         "control");
+  if (participant->patient_screen)
+    throw std::invalid_argument(
+        "this is the patient's screen, which never operates; open the cockpit's page");
   const Participant* other = current_operator(now);
   std::string before = other != nullptr ? other->label() : "";
   operator_number_ = participant->number;
@@ -76,7 +82,7 @@ bool Participants::release_control(PageId page) {
 const Participant* Participants::give_to_only_page(double now) {
   const Participant* only = nullptr;
   for (const auto& [id, participant] : page_) {
-    if (!participant.greeted || !participant.client.may_operate) continue;
+    if (!participant.greeted || !participant.client.may_operate || participant.patient_screen) continue;
     if (only != nullptr) return nullptr;
     only = &participant;
   }
@@ -88,8 +94,18 @@ void Participants::name(PageId page, const std::string& name) {
     here->second.name = shortened(one_line(name), kNameLength);
 }
 
-void Participants::sign_in(const std::string& secret, const std::string& account) {
-  if (const auto here = page_.find(page_with(secret)); here != page_.end()) here->second.account = account;
+void Participants::sign_in(const std::string& secret, const std::string& account, Role role) {
+  Participant* participant = nullptr;
+  if (const auto here = page_.find(page_with(secret)); here != page_.end()) participant = &here->second;
+  if (const auto away = away_.find(secret); away != away_.end()) participant = &away->second.participant;
+  if (participant == nullptr) return;
+  participant->account = account;
+  participant->role = role;
+}
+
+bool Participants::any_patient_screen() const noexcept {
+  return std::any_of(page_.begin(), page_.end(),
+                     [](const auto& entry) { return entry.second.patient_screen; });
 }
 
 const Participant* Participants::find(PageId page) const {
@@ -126,7 +142,8 @@ const Participant* Participants::current_operator(double now) const {
 }
 
 bool Participants::operate_if_free(const Participant& participant, double now) {
-  if (!participant.client.may_operate || current_operator(now) != nullptr) return false;
+  if (!participant.client.may_operate || participant.patient_screen || current_operator(now) != nullptr)
+    return false;
   operator_number_ = participant.number;
   return true;
 }

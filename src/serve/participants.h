@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "phalanx/registry/accounts.h"
 #include "phalanx/serve/web_server.h"
 
 namespace phalanx {
@@ -16,9 +17,12 @@ struct Participant {
   std::uint32_t number = 0;  ///< as people read it: "page 2"
   std::string secret;        ///< with which a page proves after a reconnect that it is the same one
   std::string name;
-  std::string account = {};  ///< that is signed in at this page; empty: none
+  std::string account = {};   ///< that is signed in at this page; empty: none
+  Role role = Role::kLookOn;  ///< of that account
   ClientInfo client;
-  bool greeted = false;           ///< its page has sent Hello
+  bool greeted = false;  ///< its page has sent Hello
+  bool patient_screen =
+      false;  ///< its page is the patient's screen, which never operates: Hello.patient_screen
   bool released_control = false;  ///< it was the operator and gave control back
 
   /// @returns "page 2 (127.0.0.1), Anna"; "page 2 (127.0.0.1, account a.meier), Anna" if an account is signed in. The name
@@ -47,11 +51,12 @@ class Participants {
   /// Handles the Hello of a page, with the secret that it had before. If the secret is known, the page is
   /// that participant again, with number, name and role. A connection that broke silently counts as open for
   /// a while; then the older page is replaced.
-  Reconnection reconnect(PageId page, const std::string& secret, double now);
+  /// @param patient_screen  Hello.patient_screen: the page is no operator, even if it was
+  Reconnection reconnect(PageId page, const std::string& secret, double now, bool patient_screen = false);
   void leave(PageId page, double now);
 
   /// Makes a page the operator. @returns the label of the previous one; empty if there was none
-  /// @throws std::invalid_argument if the page may only view
+  /// @throws std::invalid_argument if the page may only view, or is the patient's screen
   std::string take_control(PageId page, double now);
   /// @returns true if the page was the operator
   bool release_control(PageId page);
@@ -61,8 +66,8 @@ class Participants {
   const Participant* give_to_only_page(double now);
   /// Sets a name: one line, at most kNameLength bytes.
   void name(PageId page, const std::string& name);
-  /// Sets the account that is signed in at a connected page; empty: none.
-  void sign_in(const std::string& secret, const std::string& account);
+  /// Sets the account that is signed in at a page, also at one that may reconnect; empty: none.
+  void sign_in(const std::string& secret, const std::string& account, Role role = Role::kLookOn);
 
   /// @returns null if there is none
   [[nodiscard]] const Participant* find(PageId page) const;
@@ -72,6 +77,8 @@ class Participants {
   [[nodiscard]] bool operates(const Participant& participant) const;
   /// @returns the operator, also during kGrace; null if there is none
   [[nodiscard]] const Participant* current_operator(double now) const;
+  /// @returns true if a connected page is the patient's screen
+  [[nodiscard]] bool any_patient_screen() const noexcept;
   /// @returns the number of connected pages
   [[nodiscard]] std::size_t count() const noexcept { return page_.size(); }
 

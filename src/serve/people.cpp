@@ -14,6 +14,7 @@
 #include "phalanx/core/nice_thread.h"
 #include "phalanx/serve/reach.h"
 #include "record/plain_text.h"
+#include "serve/people_exercise.h"
 #include "serve/web/request_checks.h"
 
 namespace phalanx {
@@ -45,11 +46,14 @@ RegistryError signed_out() {
 }  // namespace
 
 People::People(std::shared_ptr<Registry> registry, people::ListExercises exercises,
-               std::function<double()> utc)
+               std::function<double()> utc, std::shared_ptr<ExerciseHost> host)
     : registry_(std::move(registry)),
       exercises_(std::move(exercises)),
       utc_(utc ? std::move(utc) : system_utc),
-      owner_secret_(registry_ ? random_token() : "") {}
+      host_(std::move(host)),
+      owner_secret_(registry_ ? random_token() : "") {
+  if (registry_) read_accounts();
+}
 
 std::size_t People::body_limit(const WebRequest& head) const noexcept {
   return registry_ && head.client.may_operate && head.method == "POST" ? kBodyLimit : 0;
@@ -65,6 +69,7 @@ void People::request(const WebRequest& request, Respond respond) {
     return respond(words_response(404,
                                   "this station keeps no patients; start it with --data FOLDER to give it a "
                                   "folder for them"));
+  if (host_) people::stop_at_once(*host_, request);
   std::unique_lock lock(mutex_);
   if (requests_.size() >= kMostWaiting) {
     lock.unlock();
@@ -83,9 +88,18 @@ std::vector<People::SignIn> People::take_sign_ins() {
   return std::exchange(sign_ins_, {});
 }
 
-void People::check_sessions() {
+/// Reads whether accounts exist. If that cannot be read, there are some: a patient's screen then needs one.
+void People::read_accounts() noexcept {
+  try {
+    has_accounts_ = registry_->has_accounts();
+  } catch (const std::exception&) {
+    has_accounts_ = true;
+  }
+}
+
+void People::check_sessions(bool accounts) {
   const std::scoped_lock lock(mutex_);
-  if (named_.empty() || checks_) return;
+  if (!registry_ || (named_.empty() && !accounts) || checks_) return;
   checks_ = working_ || start_thread();
 }
 
@@ -116,6 +130,7 @@ void People::work() {
   while (!requests_.empty() || checks_) {
     if (std::exchange(checks_, false)) {
       lock.unlock();
+      read_accounts();
       try {
         report_ended_sessions();
       } catch (const std::exception&) {  // the disk: the next check asks again
@@ -157,7 +172,9 @@ WebResponse People::answer(const WebRequest& request) {
   const bool changes = request.method == "POST";
   if (request.path == kStatus) {
     if (changes) return words_response(405, "this address does not allow this method");
-    return json_response(people::status_json(registry_->has_accounts()));
+    nlohmann::json status = people::status_json(registry_->has_accounts());
+    status["exercises"] = host_ != nullptr;
+    return json_response(status);
   }
   for (const std::string_view path : {kSignIn, kSignOut, kLock, kUnlock, kAlive})
     if (request.path == path && !changes)
@@ -166,10 +183,16 @@ WebResponse People::answer(const WebRequest& request) {
   if (request.path == kSignOut) return end_session(request, false);
   if (request.path == kLock) return end_session(request, true);
   if (request.path == kUnlock) return unlock(request);
-  const Actor actor = actor_of(request);
+  // A page asks for the exercise's state by itself, several times a second: that is no sign of a person.
+  const Actor actor = actor_of(request, changes || request.path != people::kExercise);
   if (request.path == kAlive) return json_response(nlohmann::json::object());
-  return people::route({.registry = *registry_, .exercises = exercises_, .today = utc_date(utc_())}, actor,
-                       request);
+  if (!actor.may_see_patients())
+    return words_response(403, fmt::format("the role of this account, {}, sees no patients; sign in as a "
+                                           "therapist",
+                                           role_name(actor.role)));
+  return people::route(
+      {.registry = *registry_, .exercises = exercises_, .today = utc_date(utc_()), .host = host_.get()},
+      actor, request);
 }
 
 // ---- sessions ----
@@ -178,14 +201,14 @@ bool People::is_owner(const WebRequest& request) const {
   return !request.session.empty() && web::equal_secrets(request.session, owner_secret_);
 }
 
-Actor People::actor_of(const WebRequest& request) {
+Actor People::actor_of(const WebRequest& request, bool touch) {
   if (request.session.empty()) throw signed_out();
   if (is_owner(request)) {
     // Accounts may have been added since: then the registry refuses the owner.
     if (!is_loopback(request.client.address)) throw signed_out();
     return Actor::owner();
   }
-  const SignedIn known = registry_->signed_in(request.session);
+  const SignedIn known = registry_->signed_in(request.session, touch);
   if (known.state != SignInState::kActive) throw signed_out();
   return known.actor;
 }
@@ -198,7 +221,7 @@ WebResponse People::sign_in(const WebRequest& request) {
     const std::string token =
         registry_->sign_in(account, people::text_of(given, "password", kLongestPassword));
     const SignedIn known = registry_->signed_in(token);
-    if (!known.actor.may_see_patients()) {
+    if (!known.actor.may_see_patients() && known.actor.role != Role::kPatientScreen) {
       registry_->sign_out(token);
       return words_response(403, fmt::format("the role of this account, {}, sees no patients; sign in as a "
                                              "therapist",
@@ -208,7 +231,10 @@ WebResponse People::sign_in(const WebRequest& request) {
                {"account", known.actor.account},
                {"role", role_name(known.actor.role)},
                {"idle_s", known.idle_left_s}};
-    begin_name(token, {.page_secret = request.page_secret, .account = known.actor.account, .in = true});
+    begin_name(token, {.page_secret = request.page_secret,
+                       .account = known.actor.account,
+                       .in = true,
+                       .role = known.actor.role});
   } else {
     if (!is_loopback(request.client.address))
       return words_response(403,
@@ -237,9 +263,9 @@ WebResponse People::unlock(const WebRequest& request) {
   if (is_owner(request)) return json_response(nlohmann::json::object());
   registry_->unlock(request.session,
                     people::text_of(people::read_object(request.body), "password", kLongestPassword));
-  begin_name(request.session, {.page_secret = request.page_secret,
-                               .account = registry_->signed_in(request.session).actor.account,
-                               .in = true});
+  const Actor actor = registry_->signed_in(request.session).actor;
+  begin_name(request.session,
+             {.page_secret = request.page_secret, .account = actor.account, .in = true, .role = actor.role});
   return json_response(nlohmann::json::object());
 }
 

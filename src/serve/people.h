@@ -2,6 +2,7 @@
 // The patients of the station for its page: signing in, and the addresses below /people.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -23,7 +24,8 @@ namespace phalanx {
 
 /// The registry behind HTTP, through the functions that the commands call, too.
 ///
-/// Access. A client that may only view gets 403. All requests but GET /people and a sign-in need the secret
+/// Access. A client that may only view gets 403. The account of a patient's screen signs in and out, and gets 403 for
+/// all that is about patients. All requests but GET /people and a sign-in need the secret
 /// of a session in the field X-Phalanx-Session. A page of another site can neither read it nor send this
 /// field. Without accounts a client of this computer signs in as the owner, without a password; other
 /// computers are refused. The registry delays sign-ins after wrong passwords, locks idle sessions, checks
@@ -43,8 +45,9 @@ class People : public std::enable_shared_from_this<People> {
   /// @param registry   null: the station keeps no patients
   /// @param exercises  list of the exercises; empty: there are none. Called on the thread
   /// @param utc        UTC [s since 1970]; empty: the system's clock. For tests
+  /// @param host       carries out exercises; null: none
   explicit People(std::shared_ptr<Registry> registry, people::ListExercises exercises = {},
-                  std::function<double()> utc = {});
+                  std::function<double()> utc = {}, std::shared_ptr<ExerciseHost> host = {});
 
   /// @returns true if the path is that of patients
   [[nodiscard]] static bool is_one(const std::string& path) noexcept {
@@ -65,12 +68,16 @@ class People : public std::enable_shared_from_this<People> {
     std::string page_secret;  ///< WebRequest::page_secret; empty: no page of the cockpit opened that one
     std::string account;
     bool in = false;  ///< false: signed out, or locked
+    Role role = Role::kLookOn;
   };
   /// @returns what has happened since the last call, for the log of changes. Any thread.
   [[nodiscard]] std::vector<SignIn> take_sign_ins();
   /// Looks on the thread for sessions that the registry has locked or ended: take_sign_ins() then has them,
   /// too. Any thread.
-  void check_sessions();
+  /// @param accounts  has_accounts() is read again, too
+  void check_sessions(bool accounts = false);
+  /// @returns true if accounts exist, as it was read last. Any thread; at once.
+  [[nodiscard]] bool has_accounts() const noexcept { return has_accounts_; }
 
   /// States which keys of recordings a request may use. With accounts, those of a session that is signed in
   /// and not locked. Without accounts, those of the owner at this computer. The first key that a session or
@@ -94,11 +101,13 @@ class People : public std::enable_shared_from_this<People> {
   [[nodiscard]] bool is_owner(const WebRequest& request) const;
   /// @returns the account of a request's session, or the owner
   /// @throws RegistryError kSignIn if the session is unknown or locked
-  [[nodiscard]] Actor actor_of(const WebRequest& request);
+  /// @param touch  the request puts the session's lock off
+  [[nodiscard]] Actor actor_of(const WebRequest& request, bool touch);
   void begin_name(const std::string& session, const SignIn& sign_in);
   /// Reports that an account is no longer signed in, once. Needs mutex_.
   void end_name(const std::string& session);
   void report_ended_sessions();
+  void read_accounts() noexcept;
   /// @param session  empty: the owner
   [[nodiscard]] std::optional<RecordingKey> recording_key(const Actor& actor, const std::string& session,
                                                           const std::string& id);
@@ -106,8 +115,10 @@ class People : public std::enable_shared_from_this<People> {
   const std::shared_ptr<Registry> registry_;
   const people::ListExercises exercises_;
   const std::function<double()> utc_;
+  const std::shared_ptr<ExerciseHost> host_;
   const std::string owner_secret_;  ///< of the owner's session; of this process
-  std::mutex mutex_;                ///< of the members up to keys_mutex_
+  std::atomic<bool> has_accounts_ = false;
+  std::mutex mutex_;  ///< of the members up to keys_mutex_
   std::deque<Request> requests_;
   std::vector<SignIn> sign_ins_;
   std::map<std::string, SignIn> named_;           ///< sessions whose account the log of changes names

@@ -155,7 +155,9 @@ json deleted_json(const DeleteReport& report) {
   return {{"record", report.record},
           {"exports_missing", texts(report.exports_missing)},
           {"plain_recordings", texts(report.plain_recordings)},
-          {"encrypted_recordings", report.encrypted_recordings.size()}};
+          {"encrypted_recordings", report.encrypted_recordings.size()},
+          {"exports_removed", report.exports_removed.size()},
+          {"unreadable_rows", report.unreadable_rows}};
 }
 
 json read_object(std::string_view body) {

@@ -2,18 +2,23 @@
 #include "serve/people_routes.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "phalanx/patients/patient_change.h"
 #include "record/plain_text.h"
+#include "serve/exercise_message.h"
+#include "serve/people_exercise.h"
+#include "serve/people_report.h"
 
 namespace phalanx::people {
 namespace {
 
 constexpr std::string_view kPatients = "/people/patients";
 constexpr std::string_view kExercises = "/people/exercises";
+constexpr std::string_view kTemplates = "/people/templates";
 constexpr std::size_t kLongestNote = 4000;    // [bytes]
 constexpr std::size_t kLongestCode = 16;      // [bytes]
 constexpr std::size_t kLongestRevision = 64;  // [bytes]
@@ -48,8 +53,12 @@ WebResponse changed_response(const Patient& patient, const std::vector<std::stri
 }
 
 WebResponse all_patients(const RouteContext& context, const Actor& actor, const WebRequest& request) {
-  if (request.method != "POST")
-    return json_response(list_json(context.registry.patients(actor), context.today));
+  if (request.method != "POST") {
+    nlohmann::json list = list_json(context.registry.patients(actor), context.today);
+    list["damaged"] = context.registry.damaged_patients(actor);
+    list["without_key"] = context.registry.patients_without_key(actor).size();
+    return json_response(list);
+  }
   const ChangedPatient made = change({}, with_fields({}, read_object(request.body)), context.today);
   return changed_response(context.registry.add_patient(actor, made.patient), made.said, context.today);
 }
@@ -76,7 +85,7 @@ WebResponse course(const RouteContext& context, const Actor& actor, const std::s
   const auto results = registry.results(actor, record);
   const auto tests = registry.tests(actor, record);
   const auto notes = registry.notes(actor, record);
-  const auto trends = registry.trends(actor, record);
+  const auto trends = make_trends(results, tests);  // Registry::trends() would open all results again
   return json_response(course_json(results, tests, notes, trends));
 }
 
@@ -84,15 +93,30 @@ WebResponse course(const RouteContext& context, const Actor& actor, const std::s
 WebResponse remove(const RouteContext& context, const Actor& actor, const WebRequest& request,
                    const std::string& record) {
   const std::string confirmed = text_of(read_object(request.body), "confirm", kLongestCode);
-  if (context.registry.patient(actor, record).code != confirmed)
+  const Patient patient = context.registry.patient(actor, record);
+  if (patient.code != confirmed)
     throw std::invalid_argument("this is not the code of the patient; type it again to delete the patient");
-  return json_response(deleted_json(context.registry.delete_patient(actor, record)));
+  if (context.host != nullptr) {
+    const ExerciseStatus status = context.host->status();
+    if (exercise_runs(status) && status.record == record)
+      return words_response(409, "an exercise of this patient runs; end it first, then delete the patient");
+  }
+  nlohmann::json report = deleted_json(context.registry.delete_patient(actor, record));
+  // A deletion leaves these files where they are.
+  report["bound_files"] = nlohmann::json::array();
+  for (const std::string& file : {patient.calibration, patient.range})
+    if (!file.empty()) report["bound_files"].push_back(as_utf8(file));
+  return json_response(report);
 }
 
 WebResponse part_of_patient(const RouteContext& context, const Actor& actor, const WebRequest& request,
                             const std::string& record, std::string_view part) {
   const bool changes = request.method == "POST";
   if (part == "course") return changes ? wrong_method() : course(context, actor, record);
+  if (std::optional<WebResponse> made = report_part(context, actor, request, record, part))
+    return *std::move(made);
+  if (std::optional<WebResponse> begun = exercise_part(context, actor, request, record, part))
+    return *std::move(begun);
   if (part != "tests" && part != "notes" && part != "delete") return nothing_here();
   if (!changes) return wrong_method();
   if (part == "delete") return remove(context, actor, request, record);
@@ -153,6 +177,8 @@ WebResponse route(const RouteContext& context, const Actor& actor, const WebRequ
     return json_response(
         exercises_json(context.exercises ? context.exercises() : std::vector<ListedExercise>()));
   }
+  if (path == kTemplates) return templates_response(request);
+  if (path == kExercise) return exercise_response(context, actor, request);
   if (path == kPatients) return all_patients(context, actor, request);
   if (!path.starts_with(kPatients) || path[kPatients.size()] != '/') return nothing_here();
   path.remove_prefix(kPatients.size() + 1);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "phalanx/clinic/exercise_host.h"
 #include "phalanx/registry/registry.h"
 #include "phalanx/serve/web_server.h"
 #include "serve/people_json.h"
@@ -19,7 +20,8 @@ using ListExercises = std::function<std::vector<ListedExercise>()>;
 struct RouteContext {
   Registry& registry;
   const ListExercises& exercises;
-  std::string today;  ///< UTC, "2026-05-04"
+  std::string today;             ///< UTC, "2026-05-04"
+  ExerciseHost* host = nullptr;  ///< carries out exercises; null: none
 };
 
 /// Answers a request for patients or exercises.

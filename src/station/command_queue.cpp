@@ -51,6 +51,7 @@ std::string text_of(const Command& command) {
   const Action& action = command.requests.front().action;
   if (std::holds_alternative<SetValues>(action)) return text_of(changes_of(command));
   if (const auto* scene = std::get_if<LoadScene>(&action)) return "scene " + scene->scene;
+  if (const auto* order = std::get_if<StationOrder>(&action)) return "another station, scene " + order->scene;
   if (const auto* hand = std::get_if<SelectSource>(&action))
     return hand->source == HandSource::kSliders ? "sliders" : "simulated patient";
   return std::holds_alternative<WizardStep>(action) ? "calibration" : "another try";

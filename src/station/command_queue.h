@@ -28,7 +28,7 @@ struct SelectSource {
 /// Tries again to make a station while there is none.
 struct MakeStation {};
 
-using Action = std::variant<SetValues, LoadScene, SelectSource, WizardStep, MakeStation>;
+using Action = std::variant<SetValues, LoadScene, SelectSource, StationOrder, WizardStep, MakeStation>;
 
 /// An action and the callbacks that wait for its outcome.
 struct Request {

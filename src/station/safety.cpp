@@ -48,8 +48,8 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
       period_(period),
       timeout_(timeout_of(settings, device)),
       obeys_within_(device.renders_torque ? kObeys : std::max(kObeys, 5.0 / device.rate_hz)),
-      simulated_(device.simulated),
-      may_oscillate_(device.simulated || !device.renders_torque) {
+      in_step_(device.simulated && !device.own_clock),
+      may_oscillate_(in_step_ || !device.renders_torque) {
   for (std::size_t j = 0; j < settings.range.size(); ++j) {
     if (!settings.range[j]) continue;
     min_[j] = std::max(min_[j], settings.range[j]->min);
@@ -98,7 +98,7 @@ void Safety::observe(std::span<const DeviceSample> samples, Fault connection, bo
 
 /// @returns the time since the newest sample, or since waiting for the first one began [s].
 double Safety::silent_for(double now) const noexcept {
-  if (simulated_) return silence_;
+  if (in_step_) return silence_;
   return now - (heard_ ? last_.received : waiting_since_);
 }
 

@@ -95,8 +95,8 @@ class Safety {
   double period_;
   double timeout_;       ///< timeout of samples [s]
   double obeys_within_;  ///< longest time that the device may be enabled without acting [s]
-  bool simulated_;       ///< true: silence is counted in steps, the simulated device's time
-  bool may_oscillate_;   ///< true: no motor moves a hand (simulated, or without motors)
+  bool in_step_;  ///< true: silence is counted in steps, the time of a simulated device without own_clock
+  bool may_oscillate_;  ///< true: no motor moves a hand (simulated, or without motors)
   SafetyState state_ = SafetyState::kWaiting;
   FaultEvent fault_;
   double factor_ = 0.0;

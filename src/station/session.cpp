@@ -86,6 +86,8 @@ void Session::load_scene(std::string scene, Done done) {
   queue_->ask(LoadScene{std::move(scene)}, std::move(done));
 }
 
+void Session::replace(StationOrder order, Done done) { queue_->ask(std::move(order), std::move(done)); }
+
 void Session::set_source(HandSource source, Done done) { queue_->ask(SelectSource{source}, std::move(done)); }
 
 bool Session::set_sliders(const JointArray& angle) noexcept { return state_->set_sliders(angle); }

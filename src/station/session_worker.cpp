@@ -13,6 +13,7 @@
 #include "phalanx/core/error_text.h"
 #include "phalanx/core/give_way.h"
 #include "phalanx/scene/calibration_file.h"
+#include "phalanx/scene/range_file.h"
 
 namespace phalanx {
 namespace {
@@ -202,12 +203,42 @@ void SessionWorker::apply(const LoadScene& load) {
 void SessionWorker::apply(const SelectSource& select) {
   refuse_while_calibrating();
   if (plan_.source == select.source) return;
-  if (select.source == HandSource::kDevice || plan_.source == HandSource::kDevice)
-    throw std::invalid_argument(
-        "a device on a wire moves the hand; start the station without --device for this");
+  refuse_source(select.source);
   StationPlan next = plan_;
   next.source = select.source;
   switch_to(built(next, file_of_plan()));
+}
+
+void SessionWorker::apply(const StationOrder& order) {
+  refuse_while_calibrating();
+  const StationPlan next{.scene = order.scene,
+                         .overrides = laid_over({}, order.overrides),
+                         .source = order.source.value_or(plan_.source),
+                         .calibration = order.calibration,
+                         .range = order.range};
+  if (next.source != plan_.source) refuse_source(next.source);
+  if (!order.always && order.recording == 0 && next == plan_ && state_.current() != nullptr) {
+    if (order.stopped) state_.stop();
+    return;
+  }
+  // What can be refused is refused while the last station still runs.
+  std::string calibrated;
+  if (!next.calibration.empty()) calibrated = load_calibration(next.calibration).date;
+  if (!next.range.empty()) {
+    const MeasuredRange range = load_range(next.range);
+    const auto info = state_.info();
+    if (info->running && next.source == plan_.source) check_range(range, info->device, calibrated);
+  }
+  StationBuild build = built(next, SceneFile(next.scene));
+  if (order.stopped) state_.stop();
+  switch_to(std::move(build), order.recording);
+}
+
+/// Refuses another source of the hand's motion if a device on a wire moves it, or should.
+void SessionWorker::refuse_source(HandSource source) const {
+  if (source == HandSource::kDevice || plan_.source == HandSource::kDevice)
+    throw std::invalid_argument(
+        "a device on a wire moves the hand; start the station without --device for this");
 }
 
 void SessionWorker::apply(const MakeStation&) {
@@ -240,10 +271,10 @@ StationBuild SessionWorker::built(const StationPlan& plan, SceneFile file, Scene
 
 SceneFile SessionWorker::file_of_plan() const { return file_ ? *file_ : SceneFile(plan_.scene); }
 
-void SessionWorker::switch_to(StationBuild build) {
+void SessionWorker::switch_to(StationBuild build, std::uint64_t recording) {
   state_.retire();
   try {
-    take_over(build);
+    take_over(build, recording);
   } catch (const std::exception& error) {
     if (build.plan == plan_)
       state_.set_unavailable(error_text(error));
@@ -263,7 +294,7 @@ void SessionWorker::go_back() {
   }
 }
 
-void SessionWorker::take_over(StationBuild& build) {
+void SessionWorker::take_over(StationBuild& build, std::uint64_t recording) {
   // Nothing is published before the device is open.
   auto next = std::make_shared<RunningStation>(make_station(build, settings_, clock_, ++stations_));
   state_.change_info([&](SessionInfo& info) {
@@ -290,7 +321,8 @@ void SessionWorker::take_over(StationBuild& build) {
                         .scene = build.plan.scene,
                         .values = build.values,
                         .geometry = build.geometry,
-                        .setup = next->setup});
+                        .setup = next->setup,
+                        .recording = recording});
   state_.begin(std::move(next));
   // The station runs. Nothing below throws: an exception would bring back the old station beside it.
   static_assert(std::is_nothrow_move_assignable_v<StationPlan> &&

@@ -41,6 +41,7 @@ class SessionWorker {
   void apply(const SetValues& set);
   void apply(const LoadScene& load);
   void apply(const SelectSource& select);
+  void apply(const StationOrder& order);
   void apply(const WizardStep& step);
   void apply(const MakeStation& again);
 
@@ -53,17 +54,19 @@ class SessionWorker {
   /// LoadScene and a start after there was no station read it again.
   [[nodiscard]] SceneFile file_of_plan() const;
   void exchange_object(Station& station, StationBuild build);
-  void switch_to(StationBuild build);
+  /// @param recording  StationOrder::recording
+  void switch_to(StationBuild build, std::uint64_t recording = 0);
   void go_back();
   /// Opens the device, publishes and starts the station, and keeps its parts.
   /// @throws as make_station() and SessionState::begin(); the plan and the parts of the last station are
   /// then still kept
-  void take_over(StationBuild& build);
+  void take_over(StationBuild& build, std::uint64_t recording = 0);
 
   /// Keeps a change for recordings, before it is made. @returns its number
   std::uint64_t keep_change(const std::string& scene, const Overrides& values,
                             std::shared_ptr<const SessionGeometry> geometry);
 
+  void refuse_source(HandSource source) const;
   void refuse_while_calibrating() const;
   void begin_wizard(const WizardStep& step);
   void refuse_range_here() const;

@@ -101,6 +101,7 @@ TEST_F(CliCompletion, OffersTheValuesThatAreListed) {
   EXPECT_THAT(offered("hand pictures small"), ElementsAre("small-woman")) << "postures";
   EXPECT_THAT(offered("patient test P07 --kind gr"), ElementsAre("grip"));
   EXPECT_THAT(offered("patient add P07 --symbol su"), ElementsAre("sun"));
+  EXPECT_THAT(offered("patient edit P07 --template mo"), ElementsAre("moderate"));
   EXPECT_THAT(offered("account add anna --role t"), ElementsAre("therapist"));
   EXPECT_THAT(offered("scene check a b grasp_t"), Contains("grasp_teapot")) << "one of several arguments";
   EXPECT_THAT(offered("simulate wave grasp_t"), IsEmpty()) << "one argument too many";

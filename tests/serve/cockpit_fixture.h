@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "phalanx/clinic/exercise_host.h"
 #include "phalanx/cockpit.pb.h"
 #include "phalanx/serve/cockpit.h"
 #include "record/temporary_folder.h"
@@ -29,12 +30,13 @@ using testing::read_file;
 class Page {
  public:
   explicit Page(std::uint16_t port, const std::string& secret = "", const std::string& name = "",
-                const std::string& path = "/")
+                const std::string& path = "/", bool patient_screen = false)
       : client_(std::make_unique<RawClient>(port), PageClient::head(PageClient::good_fields(), path)) {
     wire::ToHost hello;
     hello.mutable_hello()->set_protocol(Cockpit::kProtocol);
     hello.mutable_hello()->set_secret(secret);
     hello.mutable_hello()->set_name(name);
+    hello.mutable_hello()->set_patient_screen(patient_screen);
     send(hello);
     welcome = receive(wire::ToPage::kWelcome).welcome();
     state = receive(wire::ToPage::kState).state();
@@ -133,9 +135,11 @@ class CockpitTest : public ::testing::Test {
   /// @param still  the cockpit's clock advances by skip() only; then a page receives the states after its
   /// Welcome and no further ones
   /// @param registry  makes the patients' registry in a folder; empty: there is none
+  /// @param exercises  null: the station carries out none
   explicit CockpitTest(
       bool still = false, const std::string& device = "sliders",
-      const std::function<std::shared_ptr<Registry>(const std::filesystem::path&)>& registry = {})
+      const std::function<std::shared_ptr<Registry>(const std::filesystem::path&)>& registry = {},
+      std::shared_ptr<ExerciseHost> exercises = {})
       : still_(still) {
     SessionSettings station;
     station.scene = "first_touch";
@@ -150,7 +154,8 @@ class CockpitTest : public ::testing::Test {
                                    .recordings = folder_ / "recordings",
                                    .version = "1.2.3",
                                    .clock = [this] { return skipped_ + (still_ ? 0.0 : real_.now()); },
-                                   .registry = registry ? registry(folder_.path()) : nullptr});
+                                   .registry = registry ? registry(folder_.path()) : nullptr,
+                                   .exercises_host = std::move(exercises)});
     serve();
   }
   ~CockpitTest() override {

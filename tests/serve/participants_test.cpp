@@ -258,5 +258,36 @@ TEST_F(ParticipantsTest, ANameIsOneShortLine) {
   participants.name(99, "unknown");
 }
 
+TEST_F(ParticipantsTest, ThePatientsScreenNeverOperates) {
+  const PageId screen = ++last;
+  participants.join(screen, kHere, "of the screen", now);
+  EXPECT_FALSE(participants.reconnect(screen, "", now, true).became_operator);
+  EXPECT_EQ(operator_label(), "");
+  EXPECT_EQ(participants.give_to_only_page(now), nullptr);
+  EXPECT_THROW(participants.take_control(screen, now), std::invalid_argument);
+  EXPECT_TRUE(participants.any_patient_screen());
+  const PageId cockpit = connect();
+  EXPECT_TRUE(participants.operates(cockpit)) << "the screen does not stand in its way";
+  const std::string mine = secret(cockpit);
+  participants.leave(cockpit, now);
+  const PageId again = ++last;
+  participants.join(again, kHere, "another", now);
+  participants.reconnect(again, mine, now, true);
+  EXPECT_FALSE(participants.operates(again)) << "the operator's page comes back as the patient's screen";
+  EXPECT_EQ(operator_label(), "");
+}
+
+TEST_F(ParticipantsTest, AnAccountThatSignsOutWhileItsPageIsAwayIsNotThereAfterwards) {
+  const PageId page = connect();
+  participants.sign_in(secret(page), "screen1", Role::kPatientScreen);
+  EXPECT_EQ(participants.find(page)->role, Role::kPatientScreen);
+  const std::string mine = secret(page);
+  participants.leave(page, now);
+  participants.sign_in(mine, "");
+  const PageId again = connect(kHere, mine);
+  EXPECT_EQ(participants.find(again)->account, "");
+  EXPECT_EQ(participants.find(again)->role, Role::kLookOn);
+}
+
 }  // namespace
 }  // namespace phalanx

@@ -408,6 +408,77 @@ TEST_F(PeopleTest, TheCourseHasResultsTestsNotesAndTrends) {
   EXPECT_TRUE(found);
 }
 
+TEST_F(PeopleTest, AnExportHasThreeFilesAndOneLineInTheAuditLogAndNeverTheCodeInAnAddress) {
+  const std::string session = owner();
+  const std::string record = patient("P07");
+  const std::string path = "/people/patients/" + record + "/export";
+  const Answer answer = get(path, session);
+  ASSERT_EQ(answer.status, 200) << answer.text;
+  const json& files = answer.value["files"];
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_EQ(files[0]["name"], "patient.json");
+  EXPECT_EQ(files[0]["type"], "application/json");
+  EXPECT_EQ(json::parse(files[0]["text"].get<std::string>())["patient"]["code"], "P07");
+  EXPECT_EQ(files[1]["name"], "results.csv");
+  EXPECT_THAT(files[1]["text"].get<std::string>(), HasSubstr("record,code,recording"));
+  EXPECT_EQ(files[2]["name"], "tests.csv");
+  EXPECT_EQ(audited("owner", "export"), 1U);
+  EXPECT_EQ(post(path, json::object(), session).status, 405);
+  EXPECT_EQ(get(path, "").status, 401);
+  EXPECT_EQ(get("/people/patients/P07/export", session).status, 404);
+}
+
+TEST_F(PeopleTest, AReportIsAPageAndABundleOfWhatTheRegistryHolds) {
+  const std::string session = owner();
+  const std::string record = patient("P07");
+  const std::string path = "/people/patients/" + record;
+  ResultRow row;
+  row.recording = "2026-05-28T10-00-00Z.mcap.enc";
+  row.exercise = "press_and_hold";
+  row.assessment = true;
+  row.date = 1'779'960'000.0;
+  row.scores = {
+      {.name = "mean_n", .unit = "N", .value = 4.25, .origin = ScoreOrigin::kMeasured, .invalid = ""}};
+  ASSERT_TRUE(registry_->add_result(Actor::owner(), record, row));
+  EXPECT_EQ(get(path + "/report", "").status, 401);
+  const Answer english = get(path + "/report", session);
+  ASSERT_EQ(english.status, 200) << english.text;
+  EXPECT_THAT(english.text,
+              AllOf(HasSubstr("<!DOCTYPE html>"), HasSubstr("P07"), HasSubstr("data-value=\"4.25\"")));
+  const auto asked = [&](const std::string& part, const std::string& query) {
+    WebRequest request = request_for(path + part, session);
+    request.query = query;
+    return send(*people_, request).get();
+  };
+  EXPECT_THAT(asked("/report", "lang=de").text, HasSubstr("kein Medizinprodukt"));
+  EXPECT_EQ(asked("/report", "lang=de&day=2026-05-28").status, 200);
+  for (const std::string query : {"lang=fr", "day=2026-05-27", "day=yesterday", "x=1", "lang"})
+    EXPECT_EQ(asked("/report", query).status, 400) << query;
+  EXPECT_EQ(asked("/fhir", "lang=de").status, 400);
+  const Answer bundle = asked("/fhir", "day=2026-05-28");
+  ASSERT_EQ(bundle.status, 200) << bundle.text;
+  EXPECT_EQ(json::parse(bundle.text)["resourceType"], "Bundle");
+  for (const std::string part : {"/report", "/fhir"})
+    EXPECT_EQ(post(path + part, json::object(), session).status, 405);
+}
+
+TEST_F(PeopleTest, TheTemplatesOfPrescriptionsCanBePrescribedAsTheyAre) {
+  const std::string session = owner();
+  const std::string path = "/people/patients/" + patient("P07");
+  EXPECT_EQ(get("/people/templates", "").status, 401);
+  EXPECT_EQ(post("/people/templates", json::object(), session).status, 405);
+  const json templates = get("/people/templates", session).value["templates"];
+  std::vector<std::string> names;
+  for (const json& each : templates) {
+    names.push_back(each["name"].get<std::string>());
+    EXPECT_FALSE(each["title"].get<std::string>().empty());
+    const Answer edited = edit(path, {{"prescription", each["lines"]}}, session);
+    EXPECT_EQ(edited.status, 200) << edited.text;
+    EXPECT_EQ(registry_->patient(Actor::owner(), "P07").prescription.size(), each["lines"].size());
+  }
+  EXPECT_THAT(names, ElementsAre("assessment_day", "mild", "moderate", "severe"));
+}
+
 TEST_F(PeopleTest, AccountsEndTheOwnersSession) {
   const std::string before = owner();
   const std::string session = therapist();
@@ -437,13 +508,14 @@ TEST_F(PeopleTest, WrongPasswordsAreDelayed) {
 
 TEST_F(PeopleTest, AnAccountThatLooksOnSeesNoPatient) {
   static_cast<void>(therapist());
-  for (const auto& [name, role] :
-       {std::pair{"viewer", Role::kLookOn}, std::pair{"screen", Role::kPatientScreen}}) {
-    registry_->add_account(chief_, {.name = name, .role = role}, kPassword);
-    const Answer answer = sign_in(name, kPassword);
-    EXPECT_EQ(answer.status, 403) << name;
-    EXPECT_FALSE(answer.value.contains("session"));
-  }
+  registry_->add_account(chief_, {.name = "viewer", .role = Role::kLookOn}, kPassword);
+  const Answer viewer = sign_in("viewer", kPassword);
+  EXPECT_EQ(viewer.status, 403);
+  EXPECT_FALSE(viewer.value.contains("session"));
+  registry_->add_account(chief_, {.name = "screen", .role = Role::kPatientScreen}, kPassword);
+  const Answer screen = sign_in("screen", kPassword);
+  ASSERT_EQ(screen.status, 200) << "the patient's screen signs in, so that it can report pain";
+  EXPECT_EQ(get("/people/patients", screen.value.at("session").get<std::string>()).status, 403);
 }
 
 TEST_F(PeopleTest, AnIdleSessionIsLockedUntilThePasswordIsGivenAgain) {

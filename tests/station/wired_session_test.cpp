@@ -382,5 +382,30 @@ TEST_F(WiredSessionTest, ADeviceThatDoesNotOpenAgainIsTroubleUntilAReset) {
   EXPECT_EQ(session->info()->geometry->rate_hz, 200.0);
 }
 
+TEST_F(WiredSessionTest, AStationIsReplacedAlsoIfThereIsNoneAndBeginsStopped) {
+  connect();
+  const std::string address = controller->after_scheme();
+  ASSERT_TRUE(until([&] { return session->view().snapshot.tick > 0; }));
+  controller.reset();
+  const auto replace = [&](const StationOrder& order) {
+    return ask([&](Session::Done done) { session->replace(order, std::move(done)); });
+  };
+  const StationOrder order{
+      .scene = "grasp_teapot",
+      .overrides = {{"limits.joint_torque_nm", "0.3"}, {"limits.torque_rate_nm_per_s", "80"}}};
+  EXPECT_THAT(replace(order), HasSubstr("no controller answers"));
+  EXPECT_FALSE(session->info()->running);
+  EXPECT_TRUE(session->held_stopped());
+  controller = std::make_unique<ControllerThread>(listen_udp(address), clock);
+  EXPECT_EQ(replace(order), "");
+  EXPECT_TRUE(session->info()->running);
+  EXPECT_TRUE(session->held_stopped()) << "there was no station";
+  ASSERT_TRUE(until([&] { return controller->controller().configured; }));
+  EXPECT_EQ(controller->controller().configure.torque_limit, 0.3F);
+  begin();
+  EXPECT_THAT(replace(order), HasSubstr("a calibration is on"));
+  EXPECT_NE(session->info()->wizard, nullptr);
+}
+
 }  // namespace
 }  // namespace phalanx

@@ -11,7 +11,6 @@
 
 #include "commands.h"
 #include "exercise/exercise_run_command.h"
-#include "exercise/exercise_text.h"
 #include "patient/registry_options.h"
 #include "phalanx/record/recorded_exercise.h"
 #include "phalanx/scene/exercise_file.h"

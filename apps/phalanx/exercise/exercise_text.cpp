@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exercise/exercise_text.h"
+#include "exercise/exercise_run_command.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -69,7 +69,9 @@ std::string exercise_report(const RecordedExercise& exercise, bool with_trials) 
   if (result.kind == ExerciseKind::kTraining)
     text += fmt::format("  {} of {} counted trials successful, difficulty {:.2f}\n", result.successes,
                         result.counted, result.difficulty.value_or(0.0));
-  if (exercise.invalid.empty()) {
+  const bool proven = exercise.difference.empty() || exercise.other_program;
+  if (exercise.invalid.empty() && !proven) text += "  not proven: it has no scores\n";
+  if (exercise.invalid.empty() && proven) {
     for (const Score& score : result.scores) text += score_line(score, "  ");
     if (result.entry) text += fmt::format("  {}\n", result.entry->text);
     if (with_trials)

@@ -11,8 +11,8 @@
 #include "patient/patient_commands.h"
 #include "patient/patient_fields.h"
 #include "patient/patient_text.h"
-#include "patient/trainings.h"
 #include "phalanx/patients/bound_files.h"
+#include "phalanx/patients/trainings.h"
 
 namespace phalanx {
 namespace {
@@ -103,6 +103,7 @@ void add_patient_command(CLI::App& app, Job& job) {
   add_patient_edit_commands(*patient, job);
   add_patient_view_commands(*patient, job);
   add_patient_result_commands(*patient, job);
+  add_patient_report_commands(*patient, job);
   add_patient_store_commands(*patient, job);
   add_patient_control_commands(*patient, job);
   patient->footer(

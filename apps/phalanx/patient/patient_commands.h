@@ -45,6 +45,7 @@ inline CLI::Option* add_code(CLI::App& command, PatientOptions& options) {
 
 void add_patient_edit_commands(CLI::App& patient, Job& job);     ///< add, edit, delete
 void add_patient_result_commands(CLI::App& patient, Job& job);   ///< results, trend, test, note
+void add_patient_report_commands(CLI::App& patient, Job& job);   ///< report, fhir
 void add_patient_store_commands(CLI::App& patient, Job& job);    ///< export, rebuild, backup, restore
 void add_patient_control_commands(CLI::App& patient, Job& job);  ///< audit, passphrase
 

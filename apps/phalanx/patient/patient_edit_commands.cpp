@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -55,6 +56,18 @@ int edit_known_patient(const PatientEditOptions& o) {
   return kDone;
 }
 
+/// @param code  of a patient, or a damaged record
+/// @returns the patient; of a damaged record its record id alone, also as the code
+Patient patient_to_delete(OpenedRegistry& opened, const std::string& code) {
+  const std::vector<std::string> damaged = opened.registry.damaged_patients(opened.actor);
+  if (std::find(damaged.begin(), damaged.end(), code) == damaged.end())
+    return opened.registry.patient(opened.actor, code);
+  Patient record;
+  record.record = code;
+  record.code = code;
+  return record;
+}
+
 /// Asks for the code again, unless --confirm has it.
 void confirm_deletion(const PatientDeleteOptions& o, const Patient& patient) {
   std::string confirmed = o.confirmed;
@@ -62,8 +75,11 @@ void confirm_deletion(const PatientDeleteOptions& o, const Patient& patient) {
     if (::isatty(STDIN_FILENO) != 1)
       throw std::invalid_argument(fmt::format(
           "{} and all its results would be gone for good; type the same with --confirm {}", o.code, o.code));
-    fmt::print(stderr, "{} ({} hand, {}) and all its results will be gone for good. Type the code again: ",
-               patient.code, side_name(patient.side), patient.symbol);
+    const std::string who =
+        patient.code == patient.record
+            ? fmt::format("the damaged record {}", patient.record)
+            : fmt::format("{} ({} hand, {})", patient.code, side_name(patient.side), patient.symbol);
+    fmt::print(stderr, "{} and all its results will be gone for good. Type the code again: ", who);
     std::getline(std::cin, confirmed);
   }
   if (confirmed != patient.code)
@@ -84,7 +100,7 @@ void print_remains(const Patient& patient, const DeleteReport& report) {
 
 int delete_known_patient(const PatientDeleteOptions& o) {
   OpenedRegistry opened = open_registry(o.registry);
-  const Patient patient = opened.registry.patient(opened.actor, o.code);
+  const Patient patient = patient_to_delete(opened, o.code);
   confirm_deletion(o, patient);
   const DeleteReport report = opened.registry.delete_patient(opened.actor, patient.record);
   fmt::print("deleted; the record {} remains as a tombstone\n", report.record);

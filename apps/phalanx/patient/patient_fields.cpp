@@ -14,6 +14,7 @@
 #include "phalanx/patients/bound_files.h"
 #include "phalanx/patients/patient_change.h"
 #include "phalanx/patients/prescribed_line.h"
+#include "phalanx/patients/prescription_template.h"
 
 namespace phalanx {
 namespace {
@@ -100,6 +101,8 @@ void take_limits_and_texts(Patient& patient, const PatientFields& fields, std::v
   if (fields.torque_limit_nm) patient.torque_limit_nm = fields.torque_limit_nm;
   for (const std::string& text : fields.contraindications) patient.contraindications.push_back(text);
   for (const std::string& text : fields.warnings) patient.warnings.push_back(text);
+  for (const std::string& name : fields.templates)
+    take_prescription_template(patient, load_prescription_template(name));
   for (const std::string& line : fields.prescription) take_prescription(patient, line, said);
   if (!fields.symbol.empty()) patient.symbol = fields.symbol;
   if (!fields.profile.empty()) patient.profile = fields.profile;
@@ -149,6 +152,11 @@ void add_patient_fields(CLI::App& command, PatientFields& fields) {
   many("--contraindication", fields.contraindications, "adds a reason against any session; may be repeated",
        "TEXT");
   many("--warning", fields.warnings, "adds a text that is shown before torque; may be repeated", "TEXT");
+  many(
+      "--template", fields.templates,
+      "prescribes the lines of a template: a name in assets/prescriptions or a file; before --prescribe; may "
+      "be repeated",
+      "NAME");
   many("--prescribe", fields.prescription,
        "an exercise and what differs from its file, as 'train_press trials=12 most_minutes=10'; replaces the "
        "exercise's earlier line; may be repeated",

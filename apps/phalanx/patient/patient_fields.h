@@ -26,6 +26,7 @@ struct PatientFields {
   std::optional<double> torque_limit_nm = {};
   std::vector<std::string> contraindications = {};
   std::vector<std::string> warnings = {};
+  std::vector<std::string> templates = {};     ///< names of prescription templates; before `prescription`
   std::vector<std::string> prescription = {};  ///< lines of parse_prescription()
   std::string consent = {};                    ///< "yes" or "no"
   std::string consent_date = {};

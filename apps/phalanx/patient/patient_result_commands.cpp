@@ -10,7 +10,7 @@
 #include "patient/patient_commands.h"
 #include "patient/patient_fields.h"
 #include "patient/patient_text.h"
-#include "patient/trainings.h"
+#include "phalanx/patients/trainings.h"
 
 namespace phalanx {
 namespace {

@@ -2,8 +2,9 @@
 #include "patient/rebuilt_measurements.h"
 
 #include <algorithm>
+#include <tuple>
 
-#include "exercise/exercise_patient.h"
+#include "phalanx/clinic/exercise_patient.h"
 
 namespace phalanx {
 
@@ -30,8 +31,10 @@ std::vector<ResultRow> RebuiltMeasurements::read(const std::filesystem::path& re
 }
 
 std::vector<std::string> RebuiltMeasurements::take_over() {
-  std::stable_sort(read_.begin(), read_.end(),
-                   [](const auto& a, const auto& b) { return a.second.begin_utc < b.second.begin_utc; });
+  std::sort(read_.begin(), read_.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.second.begin_utc, a.first, a.second.number) <
+           std::tie(b.second.begin_utc, b.first, b.second.number);
+  });
   std::vector<std::string> changed;
   for (const Patient& before : registry_.patients(actor_)) {
     const auto known = known_.find(before.record);
@@ -43,15 +46,16 @@ std::vector<std::string> RebuiltMeasurements::take_over() {
   return changed;
 }
 
-bool RebuiltMeasurements::take_over_of(Patient& patient, const std::vector<ResultRow>& known) const {
+bool RebuiltMeasurements::take_over_of(Patient& patient, std::vector<ResultRow> known) const {
   const std::vector<ResultRow> rows = registry_.results(actor_, patient.record);
   bool takes = false;
   for (const auto& [name, exercise] : read_) {
     const bool has_row = std::any_of(rows.begin(), rows.end(), [&](const ResultRow& row) {
       return row.recording == name && row.number == exercise.number;
     });
-    if (has_row && takes_late(patient, exercise, name, known))
-      takes = take_measured(patient, exercise) || takes;
+    if (!has_row || !take_late(patient, exercise, name, known)) continue;
+    takes = true;
+    known.push_back(result_row(exercise, name));  // has measured what the next one may replace
   }
   return takes;
 }

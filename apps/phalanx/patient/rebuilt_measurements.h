@@ -26,13 +26,13 @@ class RebuiltMeasurements {
                                             const FindRecordingKey& keys);
 
   /// Takes over what the assessments that were read have measured, in the order of their dates, as far as the
-  /// rebuild has given them rows and takes_late() permits it.
+  /// rebuild has given them rows and take_late() permits it.
   /// @returns the codes of the changed patients
   /// @throws RegistryError as Registry::edit_patient()
   [[nodiscard]] std::vector<std::string> take_over();
 
  private:
-  [[nodiscard]] bool take_over_of(Patient& patient, const std::vector<ResultRow>& known) const;
+  [[nodiscard]] bool take_over_of(Patient& patient, std::vector<ResultRow> known) const;
 
   Registry& registry_;
   const Actor& actor_;

@@ -20,6 +20,7 @@
 #include "patient/registry_options.h"
 #include "phalanx/mesh/isolation/isolation_helper.h"
 #include "phalanx/record/retention.h"
+#include "phalanx/record/run_recorder.h"
 #include "phalanx/record/station_csv.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/station/session.h"
@@ -29,7 +30,6 @@
 #include "run/run_console.h"
 #include "run/run_options.h"
 #include "run/run_page.h"
-#include "run/run_recorder.h"
 #include "run/run_registry.h"
 #include "run/status_line.h"
 #include "run/terminate.h"
@@ -90,9 +90,15 @@ class Run {
                                               [this](const std::string& from, const std::string& text) {
                                                 recorder_.event("marker", from, text);
                                               });
+    exercises_ = exercises_of_run(options_, *session_, recorder_, registry_,
+                                  [this](const std::string& text, bool warning) {
+                                    warning ? console_.say(text, Emphasis::kWarning) : console_.say(text);
+                                    tell_notice("exercise", text);
+                                  });
     introduce();
     if (!options_.headless)
-      page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_, registry_);
+      page_ = std::make_unique<RunPage>(options_, *session_, recorder_, console_,
+                                        PagePatients{.registry = registry_, .exercises = exercises_});
     watch();
   }
 
@@ -141,13 +147,14 @@ class Run {
     const double begin = clock_.now();
     double next_line = begin + 1.0;
     while (asked_to_end == 0 && !quit_) {
-      clock_.sleep_until(clock_.now() + 0.02);
+      clock_.sleep_until(clock_.now() + (exercises_ ? exercises_->between_ticks() : 0.02));
       const double seconds = clock_.now() - begin;
       seconds_ = seconds;
       if (options_.seconds && seconds >= *options_.seconds) break;
       session_->poll();
       drain();
       handle_typed();
+      if (exercises_) exercises_->tick();
       if (clock_.now() < next_line) continue;
       next_line += 1.0;
       if (options_.quiet) continue;
@@ -295,7 +302,8 @@ class Run {
     seen_.fault = event.time;
     console_.say("FAULT " + text, Emphasis::kError);
     tell_notice("fault", text, true);
-    recorder_.write_report(std::move(report));
+    // A report has the steps before the fault in plain text; those of a patient stay in the encrypted recording.
+    if (!exercises_ || !exercises_->keeps_private()) recorder_.write_report(std::move(report));
   }
 
   void tell(const RunRecorder::Note& note) {
@@ -332,6 +340,9 @@ class Run {
         seen_ = look();
         seen_.stops = typed.stops;
         tell_typed("stopped", "stopped");
+      } else if (line == "resume" && carries_out_exercise()) {
+        resume_exercise();
+        tell_typed("resumed", "resumed the exercise");
       } else if (line == "resume") {
         const bool resumed = session_->resume(seen_.stops);
         look_after(resumed);
@@ -349,11 +360,13 @@ class Run {
         quit_ = true;
         tell_typed("quit", "ends the station");
       } else if (line.starts_with("set ")) {
+        refuse_during_exercise();
         const std::string change = line.substr(4);
         session_->set({parse_override(change)}, [this, change](const ChangeOutcome& outcome) {
           say_typed("set", change, change, outcome);
         });
       } else if (line.starts_with("scene ")) {
+        refuse_during_exercise();
         session_->load_scene(line.substr(6), [this, line](const ChangeOutcome& outcome) {
           say_typed("scene", line.substr(6), line, outcome);
         });
@@ -365,6 +378,23 @@ class Run {
     } catch (const std::exception& error) {  // a refusal ends nothing
       console_.complain(reason(error));
     }
+  }
+
+  /// Resumes the exercise. It ends no stop that the user at the terminal has not seen.
+  void resume_exercise() {
+    try {
+      exercises_->input({.kind = ExerciseInput::Kind::kResume},
+                        {.stops = seen_.stops, .account = "the terminal"});
+    } catch (const std::exception&) {
+      look_after(false);
+      throw;
+    }
+  }
+
+  [[nodiscard]] bool carries_out_exercise() const { return exercises_ && exercises_->busy(); }
+
+  void refuse_during_exercise() const {
+    if (carries_out_exercise()) throw std::invalid_argument("an exercise runs; end it first, on its page");
   }
 
   void say_typed(const std::string& code, const std::string& text, const std::string& line,
@@ -393,6 +423,7 @@ class Run {
           "room now: it is tried again for {} s",
           recording.trouble, recording.unsaved, RunRecorder::kPatience));
     });
+    if (exercises_) exercises_->end();
     const bool summarised = in_good_order && write_summary();
     drain();
     page_.reset();
@@ -442,6 +473,7 @@ class Run {
   std::unique_ptr<Session> session_;
   RunRecorder recorder_;
   std::unique_ptr<MarkerPort> markers_;
+  std::shared_ptr<StationExercises> exercises_;  ///< null: no patients, or no recordings
   std::unique_ptr<RunPage> page_;
   std::optional<TypedLines> typed_;
   std::optional<RealtimeGrant> granted_;
@@ -532,6 +564,11 @@ void add_run_command(CLI::App& app, Job& job) {
   run->add_option("--keys", options->keys,
                   "file with the patients' keys, with --data [$PHALANX_KEYS, else ~/.config/phalanx/keys]")
       ->type_name("FILE");
+  run->add_option("--stable-n-per-mm", options->stable_n_per_mm,
+                  "largest stiffness at which this device is stable with an exercise's scene, as measured "
+                  "(docs/stability.md); feel_and_find needs it")
+      ->check(positive())
+      ->type_name("K");
   run->add_option("--audit", options->audit, "every change made in the page, a JSON line each")
       ->capture_default_str();
   run->add_option("--uploads", options->uploads, "folder of the meshes that pages send")

@@ -53,6 +53,8 @@ struct RunOptions {
   std::string key;
   std::string data;  ///< data folder of the registry of patients; empty: the page keeps none
   std::string keys;  ///< file with the patients' keys, with `data`; empty: the default one
+  std::optional<double>
+      stable_n_per_mm;  ///< largest stiffness at which the device is stable, as measured [N/mm]
   std::string audit = "out/cockpit/changes.jsonl";
   std::string uploads = "out/cockpit/meshes";
   std::string calibrations = "out/calibrations";

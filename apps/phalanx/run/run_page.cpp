@@ -65,11 +65,11 @@ WebServerSettings server_settings(const RunOptions& o) {
   return settings;
 }
 
-CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder,
-                                 std::shared_ptr<Registry> registry) {
+CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder, PagePatients patients) {
   CockpitSettings settings;
-  if (registry) settings.exercises = exercises_for_pages;
-  settings.registry = std::move(registry);
+  if (patients.registry) settings.exercises = exercises_for_pages;
+  settings.registry = std::move(patients.registry);
+  settings.exercises_host = std::move(patients.exercises);
   settings.recording = [&recorder] { return recorder.recording(); };
   if (o.recordings != "off") settings.recordings = o.recordings;
   settings.on_notice = [&recorder](const std::string& code, const std::string& who, const std::string& text) {
@@ -84,10 +84,10 @@ CockpitSettings cockpit_settings(const RunOptions& o, RunRecorder& recorder,
 }  // namespace
 
 struct RunPage::Parts {
-  Parts(const RunOptions& o, Session& session, RunRecorder& recorder, std::shared_ptr<Registry> registry)
+  Parts(const RunOptions& o, Session& session, RunRecorder& recorder, PagePatients patients)
       : options(o),
         settings(server_settings(o)),
-        cockpit(session, cockpit_settings(o, recorder, std::move(registry))),
+        cockpit(session, cockpit_settings(o, recorder, std::move(patients))),
         server(settings, cockpit) {
     cockpit.attach(server, is_loopback(o.listen)
                                ? std::vector<std::string>()
@@ -162,8 +162,8 @@ void check_page_options(const RunOptions& o) {
 }
 
 RunPage::RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console,
-                 std::shared_ptr<Registry> registry)
-    : parts_(std::make_unique<Parts>(options, session, recorder, std::move(registry))) {
+                 PagePatients patients)
+    : parts_(std::make_unique<Parts>(options, session, recorder, std::move(patients))) {
   parts_->server.start();
   parts_->introduce(console);
 }

@@ -4,14 +4,21 @@
 #include <memory>
 #include <string>
 
+#include "phalanx/record/run_recorder.h"
 #include "phalanx/station/session.h"
 #include "run/run_console.h"
 #include "run/run_options.h"
-#include "run/run_recorder.h"
 
 namespace phalanx {
 
+class ExerciseHost;
 class Registry;
+
+/// Patients of the page. Null: none.
+struct PagePatients {
+  std::shared_ptr<Registry> registry = {};
+  std::shared_ptr<ExerciseHost> exercises = {};  ///< carries out their exercises
+};
 
 /// Checks the options of the page.
 /// @throws std::invalid_argument if they contradict each other; the message names what to type instead
@@ -22,10 +29,10 @@ class RunPage {
  public:
   /// Binds the server, shows the page's addresses on the console, and serves.
   /// @param session, console  outlive the page
-  /// @param registry  patients and accounts; null: none
+  /// @param patients  and accounts
   /// @throws WebServerError or std::runtime_error, naming the remedy
   RunPage(const RunOptions& options, Session& session, RunRecorder& recorder, RunConsole& console,
-          std::shared_ptr<Registry> registry = nullptr);
+          PagePatients patients = {});
   ~RunPage();
 
   /// Writes a line for each address. Addresses with a token are written to a terminal only.

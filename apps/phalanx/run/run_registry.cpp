@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "patient/registry_options.h"
 #include "phalanx/scene/exercise_file.h"
@@ -46,6 +47,21 @@ std::shared_ptr<Registry> open_run_registry(const RunOptions& options) {
   auto opened = std::make_shared<Registry>(settings, run_key_store(registry, is_new));
   if (is_new) fmt::print(stderr, "new registry of patients: {}\n", folder.string());
   return opened;
+}
+
+std::shared_ptr<StationExercises> exercises_of_run(
+    const RunOptions& options, Session& session, RunRecorder& recorder, std::shared_ptr<Registry> registry,
+    std::function<void(const std::string& text, bool warning)> say) {
+  const auto recording = recorder_settings(options);
+  if (!registry || !recording) return nullptr;
+  StationExercisesSettings settings;
+  settings.recording = *recording;
+  if (options.rate_hz) settings.overrides.emplace_back("rate_hz", fmt::format("{:.17g}", *options.rate_hz));
+  settings.clinician = options.clinician;
+  if (options.stable_n_per_mm) settings.stable_stiffness = 1e3 * *options.stable_n_per_mm;
+  settings.plain_log = options.log;
+  settings.say = std::move(say);
+  return std::make_shared<StationExercises>(session, recorder, std::move(registry), std::move(settings));
 }
 
 std::vector<ListedExercise> exercises_for_pages() {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The patients of `phalanx run`: its page gets them with --data.
+// The patients of `phalanx run`, and their exercises: its page gets them with --data.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "phalanx/clinic/station_exercises.h"
 #include "phalanx/registry/registry.h"
 #include "phalanx/serve/cockpit.h"
 #include "run/run_options.h"
@@ -22,5 +25,13 @@ namespace phalanx {
 /// @returns the exercises of assets/exercises that can be read, by name; none if the folder is not found.
 /// Reads the disk
 [[nodiscard]] std::vector<ListedExercise> exercises_for_pages();
+
+/// Makes what carries out exercises of patients on the station.
+/// @param registry  null: there is none
+/// @param say       gets messages for people; the owner's thread
+/// @returns null without a registry, or with --record off: a result is made from its recording
+[[nodiscard]] std::shared_ptr<StationExercises> exercises_of_run(
+    const RunOptions& options, Session& session, RunRecorder& recorder, std::shared_ptr<Registry> registry,
+    std::function<void(const std::string& text, bool warning)> say);
 
 }  // namespace phalanx

@@ -2,9 +2,10 @@
 // Messages of a command on standard error.
 #pragma once
 
-#include <exception>
 #include <string>
 #include <string_view>
+
+#include "phalanx/core/reason.h"
 
 namespace phalanx {
 
@@ -14,9 +15,5 @@ void print_error_line(std::string message);
 
 /// Writes progress or other text unchanged to standard error. If it takes nothing, that is ignored.
 void print_aside(std::string_view text) noexcept;
-
-/// Describes an exception for people. It is error.what(), and a sentence if the C++ library or the system has
-/// only a name: no memory, no further file descriptor or thread.
-[[nodiscard]] std::string reason(const std::exception& error);
 
 }  // namespace phalanx

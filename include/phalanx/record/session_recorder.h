@@ -17,6 +17,8 @@
 
 namespace phalanx {
 
+class ChangeReader;
+
 namespace mcap {
 class WritableFile;
 }
@@ -68,10 +70,12 @@ class SessionRecorder {
   /// @param session  of SessionSettings::keep_changes; outlives the recorder, as does `clock`
   /// @throws std::invalid_argument for a folder that cannot be written, or too little room, with the remedy;
   /// std::runtime_error, likewise, if the disk refuses
-  SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock);
+  /// @param changes  shared by recorders that follow each other; null: this one is the session's only recorder
+  SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock,
+                  std::shared_ptr<ChangeReader> changes = {});
   /// The same into a file that is given, encrypted if the settings say so. For tests. @param name  RecordingStatus::file
   SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock, std::filesystem::path name,
-                  std::unique_ptr<mcap::WritableFile> file);
+                  std::unique_ptr<mcap::WritableFile> file, std::shared_ptr<ChangeReader> changes = {});
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
   ~SessionRecorder();  ///< does not finish(): the file then has no end
@@ -81,9 +85,16 @@ class SessionRecorder {
   /// Adds what is due beside the steps, and writes the chunk if it is. Call it 60 times a second. @throws std::bad_alloc;
   /// what was due is then missing, but no step
   void update();
-  /// Writes the rest and the file's end. Call it after Session::shut_down().
+  /// Ends the recording before the first step of this station: finish() then writes no change of it or of later ones, and
+  /// names the steps that are missing before it. Another recorder with the same ChangeReader takes over. No add() or
+  /// update() follows. @throws std::bad_alloc; it may be called again
+  void end_before(std::uint64_t station);
+  /// Writes the rest and the file's end. Call it after Session::shut_down() or end_before().
   /// @returns false if the disk refuses, or there is no memory (RecordingStatus::trouble); it may be called again then
   bool finish() noexcept;
+
+  /// Removes the file of a recorder that got no step. It is of no use afterwards.
+  void discard() noexcept;
 
   /// Adds something that happened. @param who  as in cockpit.proto's Notice
   void event(const std::string& code, const std::string& who, const std::string& text);
@@ -91,7 +102,8 @@ class SessionRecorder {
 
  private:
   struct Impl;
-  static std::unique_ptr<Impl> begun(RecorderSettings settings, Session& session, const Clock& clock);
+  static std::unique_ptr<Impl> begun(RecorderSettings settings, Session& session, const Clock& clock,
+                                     std::shared_ptr<ChangeReader> changes);
 
   const std::unique_ptr<Impl> impl_;
 };

@@ -16,6 +16,7 @@
 
 namespace phalanx {
 
+class ExerciseHost;
 class Registry;
 
 /// Exercise that can be prescribed, as the page of patients lists it.
@@ -41,6 +42,7 @@ struct CockpitSettings {
   std::shared_ptr<Registry> registry = {};  ///< patients and accounts; null: /people answers 404
   std::function<std::vector<ListedExercise>()> exercises =
       {};  ///< that can be prescribed; called on a thread of the cockpit; empty: none
+  std::shared_ptr<ExerciseHost> exercises_host = {};  ///< carries out exercises of patients; null: none
 };
 
 /// Application behind the web server: connects the pages with a Session.

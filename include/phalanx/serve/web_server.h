@@ -145,6 +145,8 @@ struct WebServerSettings {
 /// Messages of pages are binary. A page that sends text is disconnected.
 class WebServer {
  public:
+  static constexpr std::size_t kNewestKinds = 2;  ///< of send_newest()
+
   /// Binds the port and reads the site. port() is known afterwards.
   /// @param application  outlives the server
   /// @throws WebServerError if the settings cannot be used
@@ -171,10 +173,11 @@ class WebServer {
   /// Sends a message to a page, in order. If the page's queue is full, drops the queue and disconnects the
   /// page. Ignores an unknown page.
   void send(PageId page, Bytes message);
-  /// Sends a message of which only the newest matters: it replaces one that still waits. It is sent after all
-  /// messages of send().
+  /// Sends a message of which only the newest of its kind matters: it replaces one of this kind that still waits. It is
+  /// sent after all messages of send().
+  /// @param kind  below kNewestKinds
   /// @returns true if it replaced one, which will never be sent
-  bool send_newest(PageId page, Bytes message);
+  bool send_newest(PageId page, Bytes message, std::size_t kind = 0);
   /// Disconnects a page: sends what waits, then the reason (its first 123 bytes). Aborts the connection if
   /// the page has not taken these in within 2 s. Ignores all that it sends from now on.
   void disconnect(PageId page, const std::string& reason);

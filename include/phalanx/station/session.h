@@ -74,6 +74,18 @@ struct WizardStep {
   double angle = 0.0;  ///< [rad]
 };
 
+/// Order of a whole station for Session::replace(). Keys that it does not name have the scene's values.
+struct StationOrder {
+  std::string scene;         ///< name of a shipped scene, or a file
+  Overrides overrides = {};  ///< replace values of the scene; those of the station before do not hold
+  std::optional<HandSource> source = {};  ///< none: the hand is moved as before
+  std::string calibration = {};           ///< calibration file; empty: the device's own values
+  std::string range = {};                 ///< file of the patient's own range of motion; empty: none
+  bool always = true;    ///< false: a station that runs with the same values is left, if nothing begins
+  bool stopped = false;  ///< the station begins after a stop(): its torque is zero until resume()
+  std::uint64_t recording = 0;  ///< RunRecorder::next_recording() that begins with it; 0: none
+};
+
 /// Geometry that stays the same from step to step.
 struct SessionGeometry {
   std::uint32_t revision = 0;
@@ -183,6 +195,10 @@ class Session {
   void set(Overrides changes, Done done);
   /// Loads another scene, without the overrides of the last one.
   void load_scene(std::string scene, Done done);
+  /// Replaces the whole station, as load_scene() does: at zero torque, and stopped if it was stopped. It is also for a
+  /// session without a station. What can be refused before the station ends is refused then; if the device refuses
+  /// afterwards, the station before is made again, as a new one. With StationOrder::stopped that one is stopped, too.
+  void replace(StationOrder order, Done done);
   /// Selects kPatient or kSliders of the simulated device; refused for a device on a wire.
   void set_source(HandSource source, Done done);
   /// Sets the joint angles of the hand that the sliders move [rad]. They are clamped to the range of motion;

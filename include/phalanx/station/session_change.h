@@ -45,6 +45,7 @@ struct SessionChange {
   Overrides values;                                 ///< SessionInfo::values
   std::shared_ptr<const SessionGeometry> geometry;  ///< null: that of `model_of`
   std::optional<StationSetup> setup;                ///< of a station that begins
+  std::uint64_t recording = 0;                      ///< StationOrder::recording of a station that begins
 };
 
 }  // namespace phalanx

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "phalanx/record/change_reader.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
 #include "phalanx/record/retention.h"
@@ -129,9 +130,11 @@ std::map<std::string, std::string> recording_metadata(const std::string& version
 
 struct SessionRecorder::Impl {
   Impl(RecorderSettings given, Session& of_session, const Clock& process_clock,
-       std::filesystem::path given_name, std::unique_ptr<mcap::WritableFile> given_file)
+       std::filesystem::path given_name, std::unique_ptr<mcap::WritableFile> given_file,
+       std::shared_ptr<ChangeReader> given_changes)
       : settings(std::move(given)),
         session(of_session),
+        changes(given_changes ? std::move(given_changes) : std::make_shared<ChangeReader>(of_session)),
         clock(process_clock),
         name(std::move(given_name)),
         file(std::move(given_file)),
@@ -159,7 +162,7 @@ struct SessionRecorder::Impl {
   void fetch_station(const StepRecord& record);
   void fetch_change(std::uint64_t number, double now);
   void end_station(std::uint64_t of, std::uint64_t last, double now);
-  [[nodiscard]] bool next_change();
+  void put_last_changes(double now);
   void lost(std::uint64_t first, std::uint64_t last, const char* why) noexcept;
   void put_gap(double now);
   bool write(double now) noexcept;
@@ -180,6 +183,7 @@ struct SessionRecorder::Impl {
 
   const RecorderSettings settings;
   Session& session;
+  const std::shared_ptr<ChangeReader> changes;
   const Clock& clock;
   std::filesystem::path name;
   std::unique_ptr<mcap::WritableFile> file;
@@ -203,7 +207,7 @@ struct SessionRecorder::Impl {
     const char* why = "";
   };
   Missing missing;
-  std::optional<SessionChange> waiting;  ///< fetched, and not written yet
+  std::uint64_t until = 0;  ///< first station that another recorder takes; 0: none
   double next_pose = 0.0;
   double next_loop = 0.0;
   double next_clock = 0.0;
@@ -261,7 +265,12 @@ void SessionRecorder::Impl::put_step(const StepRecord& record, std::span<const D
 
 /// Writes the setups up to that of the station whose first step this is.
 void SessionRecorder::Impl::fetch_station(const StepRecord& record) {
-  for (; station != record.station && next_change(); waiting.reset()) put_change(*waiting, record.input.time);
+  while (station != record.station) {
+    const SessionChange* next = changes->next();
+    if (next == nullptr) return;
+    put_change(*next, record.input.time);
+    changes->pop();
+  }
 }
 
 /// Names the steps that are missing at a station's end. @param last  number of its last step
@@ -274,16 +283,24 @@ void SessionRecorder::Impl::end_station(std::uint64_t of, std::uint64_t last, do
 }
 
 void SessionRecorder::Impl::fetch_change(std::uint64_t number, double now) {
-  for (; change < number && next_change(); waiting.reset()) put_change(*waiting, now);
+  while (change < number) {
+    const SessionChange* next = changes->next();
+    if (next == nullptr) return;
+    put_change(*next, now);
+    changes->pop();
+  }
 }
 
-/// Fetches the next change, unless one waits already because there was no memory to write it. @returns false: there is none
-bool SessionRecorder::Impl::next_change() {
-  if (waiting) return true;
-  SessionChange next;
-  if (!session.next_change(next)) return false;
-  waiting = std::move(next);
-  return true;
+/// Writes the changes that no step has named, and the gap before the recording's end.
+void SessionRecorder::Impl::put_last_changes(double now) {
+  for (const SessionChange* next = changes->next(); next != nullptr; next = changes->next()) {
+    if (until != 0 && next->station >= until) break;
+    put_change(*next, now);
+    changes->pop();
+  }
+  if (until != 0) return;  // end_before() has named the last step
+  const StationView last = session.view();
+  end_station(last.station, last.tick, now);
 }
 
 void SessionRecorder::Impl::put_change(const SessionChange& next, double now) {
@@ -393,7 +410,8 @@ void SessionRecorder::Impl::update() {
     if (now >= next_pose) {
       next_pose = std::max(next_pose + kBetweenPoses, now);
       const StationView view = session.view();
-      if (view.time > 0.0 && view.snapshot.tick != posed) {
+      // The next station may be another recording's.
+      if (view.time > 0.0 && view.station == station && view.snapshot.tick != posed) {
         posed = view.snapshot.tick;
         write_tick(view, pose);
         put(Topic::kPose, view.time, pose);
@@ -443,11 +461,12 @@ void SessionRecorder::Impl::say_trouble(const std::exception& error) noexcept {
 }
 
 std::unique_ptr<SessionRecorder::Impl> SessionRecorder::begun(RecorderSettings settings, Session& session,
-                                                              const Clock& clock) {
+                                                              const Clock& clock,
+                                                              std::shared_ptr<ChangeReader> changes) {
   std::filesystem::path name;
   try {
     auto file = new_file(settings, name);
-    return std::make_unique<Impl>(settings, session, clock, name, std::move(file));
+    return std::make_unique<Impl>(settings, session, clock, name, std::move(file), std::move(changes));
   } catch (const std::system_error& error) {
     std::error_code ignored;
     std::filesystem::remove(name, ignored);  // it holds nothing
@@ -462,12 +481,15 @@ std::unique_ptr<SessionRecorder::Impl> SessionRecorder::begun(RecorderSettings s
   }
 }
 
-SessionRecorder::SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock)
-    : impl_(begun(std::move(settings), session, clock)) {}
+SessionRecorder::SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock,
+                                 std::shared_ptr<ChangeReader> changes)
+    : impl_(begun(std::move(settings), session, clock, std::move(changes))) {}
 
 SessionRecorder::SessionRecorder(RecorderSettings settings, Session& session, const Clock& clock,
-                                 std::filesystem::path name, std::unique_ptr<mcap::WritableFile> file)
-    : impl_(std::make_unique<Impl>(std::move(settings), session, clock, std::move(name), std::move(file))) {}
+                                 std::filesystem::path name, std::unique_ptr<mcap::WritableFile> file,
+                                 std::shared_ptr<ChangeReader> changes)
+    : impl_(std::make_unique<Impl>(std::move(settings), session, clock, std::move(name), std::move(file),
+                                   std::move(changes))) {}
 
 SessionRecorder::~SessionRecorder() = default;
 
@@ -477,13 +499,25 @@ void SessionRecorder::add(const StepRecord& record, std::span<const DeviceSample
 
 void SessionRecorder::update() { impl_->update(); }
 
+void SessionRecorder::end_before(std::uint64_t station) {
+  Impl& impl = *impl_;
+  impl.until = station;
+  const double now = impl.clock.now();
+  impl.put_last_changes(now);
+  if (const SessionChange* next = impl.changes->beginning_of(station))
+    impl.end_station(next->last_station, next->last_tick, now);
+}
+
+void SessionRecorder::discard() noexcept {
+  std::error_code ignored;
+  std::filesystem::remove(impl_->name, ignored);
+}
+
 bool SessionRecorder::finish() noexcept {
   Impl& impl = *impl_;
   const double now = impl.clock.now();
   try {
-    for (; impl.next_change(); impl.waiting.reset()) impl.put_change(*impl.waiting, now);
-    const StationView last = impl.session.view();
-    impl.end_station(last.station, last.tick, now);
+    impl.put_last_changes(now);
     impl.put_events();
     impl.put_clock(now);
     impl.writer.finish();

@@ -230,6 +230,7 @@ void write_change(const SessionChange& change, const std::string& device_spec, w
   out.set_renders_torque(setup.device.renders_torque);
   out.set_actuated(setup.device.actuated);
   out.set_simulated(setup.device.simulated);
+  out.set_own_clock(setup.device.own_clock);
   if (setup.device.watchdog) out.set_watchdog(*setup.device.watchdog);
   for (const DeviceChannel& channel : setup.device.channels)
     write_channel(channel, *out.add_factory_channel());
@@ -288,6 +289,7 @@ DeviceInfo read_device(const wire::Setup& setup) {
   device.renders_torque = setup.renders_torque();
   device.actuated = setup.actuated();
   device.simulated = setup.simulated();
+  device.own_clock = setup.own_clock();
   if (setup.has_watchdog()) device.watchdog = setup.watchdog();
   return device;
 }

@@ -53,7 +53,15 @@ bool OutgoingQueue::push(Bytes message) {
 }
 
 Bytes OutgoingQueue::pop() {
-  if (waiting_.empty()) return std::exchange(newest_, nullptr);
+  if (waiting_.empty()) {
+    for (std::size_t i = 0; i < newest_.size(); ++i) {
+      const std::size_t kind = (turn_ + i) % newest_.size();
+      if (!newest_[kind]) continue;
+      turn_ = kind + 1;
+      return std::exchange(newest_[kind], nullptr);
+    }
+    return nullptr;
+  }
   Bytes first = std::move(waiting_.front());
   waiting_.pop_front();
   waiting_bytes_ -= first->size();
@@ -63,7 +71,7 @@ Bytes OutgoingQueue::pop() {
 void OutgoingQueue::clear() {
   waiting_.clear();
   waiting_bytes_ = 0;
-  newest_ = nullptr;
+  newest_.fill(nullptr);
 }
 
 }  // namespace phalanx::web

@@ -3,6 +3,7 @@
 // messages, the outgoing queue, and the time for a transfer. None of them reads a socket.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -103,8 +104,8 @@ class MessageRateLimit {
   std::size_t next_ = 0;
 };
 
-/// Bounded queue of the messages for one page: ordered messages, and after them at most one newest message,
-/// which a newer one replaces.
+/// Bounded queue of the messages for one page: ordered messages, and after them at most one newest message of
+/// each kind, which a newer one of its kind replaces. The kinds take turns.
 class OutgoingQueue {
  public:
   /// @param messages  ordered messages that may wait
@@ -113,8 +114,10 @@ class OutgoingQueue {
 
   /// Appends an ordered message. @returns false if the queue is full; it is unchanged then
   [[nodiscard]] bool push(Bytes message);
-  /// Sets the newest message. @returns true if it replaced one
-  bool set_newest(Bytes message) { return std::exchange(newest_, std::move(message)) != nullptr; }
+  /// Sets the newest message of a kind, below WebServer::kNewestKinds. @returns true if it replaced one
+  bool set_newest(Bytes message, std::size_t kind = 0) {
+    return std::exchange(newest_.at(kind), std::move(message)) != nullptr;
+  }
   /// Removes the next message to write. @returns it; null if the queue is empty
   [[nodiscard]] Bytes pop();
   void clear();
@@ -122,7 +125,8 @@ class OutgoingQueue {
  private:
   std::deque<Bytes> waiting_;
   std::size_t waiting_bytes_ = 0;
-  Bytes newest_;
+  std::array<Bytes, WebServer::kNewestKinds> newest_;
+  std::size_t turn_ = 0;  ///< kind that is looked at first
   std::size_t messages_;
   std::size_t bytes_;
 };

@@ -48,9 +48,9 @@ void Pages::send(PageId page, Bytes message) {
   disconnect(page, websocket::close_code::policy_error, "this page does not read fast enough", true);
 }
 
-bool Pages::send_newest(PageId page, Bytes message) {
+bool Pages::send_newest(PageId page, Bytes message, std::size_t kind) {
   const auto found = pages_.find(page);
-  return found != pages_.end() && message && found->second->send_newest(std::move(message));
+  return found != pages_.end() && message && found->second->send_newest(std::move(message), kind);
 }
 
 void Pages::disconnect(PageId page, websocket::close_code code, const std::string& reason, bool drop_queue) {

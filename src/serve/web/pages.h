@@ -29,7 +29,7 @@ class Pages {
   void remove(PageId page);
 
   void send(PageId page, Bytes message);
-  bool send_newest(PageId page, Bytes message);
+  bool send_newest(PageId page, Bytes message, std::size_t kind);
   /// Removes a page from those that are connected, and closes its connection.
   /// @param drop_queue  as PageSession::begin_close()
   void disconnect(PageId page, websocket::close_code code, const std::string& reason, bool drop_queue);

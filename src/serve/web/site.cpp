@@ -124,7 +124,10 @@ std::string gzip(std::string_view bytes) {
 }
 
 const SiteFile* Site::find(const std::string& path) const noexcept {
-  const auto found = files_.find(path == "/" ? std::string_view("/index.html") : std::string_view(path));
+  std::string_view name = path;
+  if (path == "/") name = "/index.html";
+  if (path == "/patient") name = "/patient.html";
+  const auto found = files_.find(name);
   return found == files_.end() ? nullptr : &found->second;
 }
 

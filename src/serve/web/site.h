@@ -27,7 +27,8 @@ class Site {
   /// @throws WebServerError if it cannot be read, or is too large to be a front-end
   explicit Site(const std::filesystem::path& folder);
 
-  /// @param path  of the request; "/" means "/index.html". @returns null if there is no such file
+  /// @param path  of the request; "/" means "/index.html", "/patient" means "/patient.html".
+  /// @returns null if there is no such file
   [[nodiscard]] const SiteFile* find(const std::string& path) const noexcept;
 
  private:

@@ -231,8 +231,8 @@ void WebServer::send(PageId page, Bytes message) {
   if (impl_->context->pages) impl_->context->pages->send(page, std::move(message));
 }
 
-bool WebServer::send_newest(PageId page, Bytes message) {
-  return impl_->context->pages && impl_->context->pages->send_newest(page, std::move(message));
+bool WebServer::send_newest(PageId page, Bytes message, std::size_t kind) {
+  return impl_->context->pages && impl_->context->pages->send_newest(page, std::move(message), kind);
 }
 
 void WebServer::disconnect(PageId page, const std::string& reason) {

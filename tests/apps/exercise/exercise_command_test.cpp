@@ -2,6 +2,12 @@
 // phalanx exercise list | check | keys | run | results.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/exercise/changed_recording.h"
 #include "apps/exercise/exercise_program.h"
 
 namespace phalanx {
@@ -68,6 +74,54 @@ TEST_F(CliExercise, ADemonstrationIsRecordedAndGivesTheSameResultAgain) {
   EXPECT_THAT(json, AllOf(StartsWith("{\"name\":\"short\""), EndsWith("}\n")));
   EXPECT_THAT(run("session export --quiet --parts events --out events " + file).exit_code, 0);
   EXPECT_THAT(testing::read_file(folder / "events/events.csv"), HasSubstr("exercise_result"));
+}
+
+TEST_F(CliExercise, AResultThatTheReplayDoesNotProveHasNoScores) {
+  write_short();
+  ASSERT_EQ(exercise("short.toml --demo 0.8 --seed 7").exit_code, 0);
+  // The recorded result states other seconds than its steps give.
+  ASSERT_EQ(testing::copy_changed(folder / recordings().front(), folder / "changed.mcap", "\"seconds\":12.",
+                                  "\"seconds\":13."),
+            1);
+  EXPECT_THAT(
+      said("exercise results --quiet changed.mcap"),
+      AllOf(StartsWith("1 "), HasSubstr("not proven"), HasSubstr("differ"), Not(HasSubstr("measured"))));
+  const auto json = run("exercise results --json changed.mcap");
+  EXPECT_EQ(json.exit_code, 1);
+  const auto result = nlohmann::json::parse(json.out);
+  EXPECT_FALSE(result["scores"].empty());
+  for (const auto& score : result["scores"]) {
+    EXPECT_FALSE(score.contains("value")) << score;
+    EXPECT_THAT(score["invalid"].get<std::string>(), HasSubstr("not proven")) << score;
+  }
+}
+
+// Thumb and finger close through the grasp of the scene. By the way of a fist, the thumb slides off the ball.
+TEST_F(CliExercise, AHealthyParticipantHoldsAPinchAndAWeakOneScoresLower) {
+  testing::write_file(folder / "hold.toml",
+                      "format = 1\ntitle = \"Hold\"\nkind = \"assessment\"\nmeasure = \"pinch\"\n"
+                      "scene = \"pinch_slip\"\ndigits = \"index\"\ninstruction = \"Hold the ball.\"\n"
+                      "trials = 5\ntrial_s = 6\nrest_s = 1\ntarget = 0.3\ntolerance = 0.3\n");
+  const auto scores_of = [&](const std::string& skill) {
+    const auto shown = exercise(fmt::format("hold.toml --demo {} --seed 5", skill));
+    EXPECT_EQ(shown.exit_code, 0) << shown.err << shown.out;
+    const auto result = nlohmann::json::parse(run("exercise results --json " + recordings().back()).out);
+    int valid = 0;
+    for (const auto& trial : result["trials"]) valid += trial.contains("invalid") ? 0 : 1;
+    EXPECT_GE(valid, 4) << skill << ": " << result.dump();
+    EXPECT_EQ(result["repetitions"], 5) << "no trial is repeated";
+    std::map<std::string, double> scores;
+    for (const auto& score : result["scores"])
+      if (score.contains("value")) scores[score["name"]] = score["value"];
+    std::filesystem::remove_all(folder / "rec");
+    return scores;
+  };
+  auto healthy = scores_of("healthy");
+  auto weak = scores_of("weak");
+  EXPECT_GT(healthy["index_time_in_target_share"], 0.6);
+  EXPECT_LT(weak["index_time_in_target_share"], healthy["index_time_in_target_share"]);
+  EXPECT_GT(weak["index_grip_force_n"], 0.0);
+  EXPECT_LT(weak["index_grip_force_n"], healthy["index_grip_force_n"]);
 }
 
 TEST_F(CliExercise, ObservationsHaveARowForEachStep) {

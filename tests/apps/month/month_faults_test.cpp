@@ -79,8 +79,6 @@ class CliMonthFaults : public testing::MonthProgram {
 };
 
 TEST_F(CliMonthFaults, ALinkThatIsCutAndADeviceThatIsLostMakeTrialsInvalid) {
-  // The link does not state that a device is simulated: the patient's code is one of a person.
-  code_ = "M07";
   add_patient("--entry-check 60,50 --own-force index=4");
   set_date(2);
   {

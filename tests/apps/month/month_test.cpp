@@ -3,9 +3,11 @@
 // training with a simulated participant that recovers slowly, assessments again. The registry equals what
 // NumPy makes of the recordings.
 #include <array>
+#include <csignal>
 #include <filesystem>
 
 #include "apps/month/calibrated_device.h"
+#include "apps/month/held_programs.h"
 #include "apps/month/month_program.h"
 
 namespace phalanx {
@@ -57,9 +59,26 @@ TEST_F(CliMonth, AnAssessmentAndATrainingAreWhatNumPyMakesOfThem) {
   EXPECT_GT(compared["numbers"], 30);
 }
 
+TEST_F(CliMonth, ASimulatedDeviceBehindTheLinkServesNoPerson) {
+  code_ = "M07";
+  done_today(fmt::format(
+      "patient add {} --side right --symbol boat --consent yes --entry-check 60,50 --own-force index=4",
+      code_));
+  testing::HeldPrograms programs(folder.path(), environment());
+  const auto device = programs.start_device("device.txt");
+  const auto run = programs.start(
+      exercise_command(fmt::format("train_press --seed 1 --device {}", programs.address())), "run.txt");
+  EXPECT_EQ(programs.wait(*run, 60.0), 2) << run->output() << run->errors();
+  EXPECT_THAT(run->errors(), AllOf(HasSubstr("M07"), HasSubstr("never join those of a person")));
+  device->signal(SIGINT);
+  EXPECT_EQ(programs.wait(*device, 10.0), 0) << device->errors();
+  EXPECT_THAT(recordings(), SizeIs(0));
+  EXPECT_THAT(results(), SizeIs(0));
+}
+
 TEST_F(CliMonth, TheRegistryIsWhatNumPyMakesOfTheRecordings) {
   done_today(fmt::format(
-      "patient add {} --side right --symbol boat --consent yes --prescribe 'train_press trials=6'", code_));
+      "patient add {} --side right --symbol boat --consent yes --prescribe 'train_press trials=4'", code_));
   // Day 1: the device is calibrated through the link, and its file is the patient's.
   const testing::CalibratedDevice device = testing::calibrate_through_the_link(folder, environment());
   ASSERT_EQ(device.exit_code, 0) << device.said;

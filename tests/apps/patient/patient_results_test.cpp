@@ -125,5 +125,48 @@ TEST_F(CliPatientResults, ShowTheMeasuredEntryCheckBesideTheOneOfTheHand) {
                     "resists, it does not assist) (entered by hand, 2026-05-04)\n")));
 }
 
+TEST_F(CliPatientResults, MakeAReportAndAFhirBundleAsFilesOfTheirOwner) {
+  Score score{.name = "mean_force_n", .unit = "N", .value = 3.0625, .invalid = {}};
+  add({assessment("press_and_hold", 0, score), assessment("press_and_hold", 7, score)});
+  testing::write_file(folder / "report.html", "an earlier report that all may read");
+  std::filesystem::permissions(folder / "report.html", std::filesystem::perms::others_read,
+                               std::filesystem::perm_options::add);
+  done("patient report P07 --lang de --output report.html");
+  EXPECT_FALSE(std::filesystem::exists(folder / "report.html.partial"));
+  const std::string page = testing::read_file(folder / "report.html");
+  EXPECT_THAT(page, AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("P07"), HasSubstr("data-value=\"3.0625\""),
+                          HasSubstr("kein Medizinprodukt")));
+  const auto mode = std::filesystem::status(folder / "report.html").permissions();
+  EXPECT_EQ(mode, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  EXPECT_THAT(said("patient report P07 --day 2026-05-04"),
+              AllOf(StartsWith("0 <!DOCTYPE"), HasSubstr("Session report")));
+  EXPECT_THAT(said("patient fhir P07"),
+              AllOf(StartsWith("0 {"), HasSubstr("\"Bundle\""), HasSubstr("3.0625")));
+}
+
+TEST_F(CliPatientResults, ReportsOfUnknownPatientsDaysAndPlacesAreRefusedInWords) {
+  for (const std::string command : {"report", "fhir"}) {
+    EXPECT_THAT(said("patient " + command + " P99"), AllOf(StartsWith("2 "), HasSubstr("P99")));
+    EXPECT_THAT(said("patient " + command + " P07 --day 2026-05-04"),
+                AllOf(StartsWith("2 "), HasSubstr("nothing was done")));
+    EXPECT_THAT(said("patient " + command + " P07 --day monday"),
+                AllOf(StartsWith("2 "), HasSubstr("a date")));
+    EXPECT_THAT(said("patient " + command + " P07 --output nowhere/x"),
+                AllOf(StartsWith("2 "), HasSubstr("nowhere/x")));
+    EXPECT_THAT(said("patient " + command + " P07 --output data/x"),
+                AllOf(StartsWith("2 "), HasSubstr("data/x"), HasSubstr("data folder")));
+    EXPECT_THAT(said("patient " + command + " P07 --output keys"),
+                AllOf(StartsWith("2 "), HasSubstr("no file")));
+  }
+  EXPECT_THAT(said("patient report P07 --lang fr"), StartsWith("2 "));
+}
+
+TEST_F(CliPatientResults, ATemplateIsPrescribedAndAnUnknownOneIsRefused) {
+  done("patient edit P07 --prescribe 'feel_and_find most_minutes=5' --template severe");
+  EXPECT_THAT(said("patient show P07"),
+              AllOf(HasSubstr("feel_and_find"), HasSubstr("train_press"), HasSubstr("pain_limit=3")));
+  EXPECT_THAT(said("patient edit P07 --template sever"), AllOf(StartsWith("2 "), HasSubstr("severe")));
+}
+
 }  // namespace
 }  // namespace phalanx

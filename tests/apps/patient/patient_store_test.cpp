@@ -78,6 +78,23 @@ TEST_F(CliPatientStore, DeletesOnlyWhenTheCodeIsTypedAgain) {
   EXPECT_THAT(said("patient list"), HasSubstr("no patients in "));
 }
 
+TEST_F(CliPatientStore, DeletesADamagedRecordByItsId) {
+  done("patient add P07 --side left");
+  const std::string record = fs::directory_iterator(folder / "data/journal")->path().filename().string();
+  done("patient add P08 --side right");
+  sql("update patients set sealed = 0");
+  std::string journal = testing::read_file(folder / "data/journal" / record);
+  for (std::size_t i = 60; i < journal.size(); ++i) journal[i] = static_cast<char>(journal[i] ^ 1);
+  testing::write_file(folder / "data/journal" / record, journal);
+  EXPECT_THAT(said("patient list"),
+              AllOf(HasSubstr("P08"), HasSubstr("the record " + record + " is damaged")));
+  EXPECT_THAT(said("patient delete " + record), HasSubstr("type the same with --confirm " + record));
+  EXPECT_THAT(said("patient delete " + record + " --confirm P07"), HasSubstr("nothing was deleted"));
+  EXPECT_THAT(said(fmt::format("patient delete {} --confirm {}", record, record)),
+              StartsWith(fmt::format("0 deleted; the record {} remains as a tombstone", record)));
+  EXPECT_THAT(said("patient list"), AllOf(HasSubstr("P08"), Not(HasSubstr("damaged"))));
+}
+
 TEST_F(CliPatientStore, NamesWhatADeletionDoesNotReach) {
   testing::write_file(
       folder / "c.toml",

@@ -37,6 +37,19 @@ TEST_F(WebFiles, TheIndexIsServedAtTheRootAndAlwaysRevalidated) {
   EXPECT_EQ(body_of(answer), "<!doctype html><title>hand</title>\n");
 }
 
+TEST_F(WebFiles, ThePatientsScreenHasAnAddressWithoutAnEnding) {
+  start();
+  EXPECT_EQ(status_of(ask(get("/patient"))), 404);  // this front-end has none
+  server_.reset();
+  write("site/patient.html", "<!doctype html><title>exercise</title>\n");
+  start();
+  const std::string answer = ask(get("/patient"));
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_EQ(field_of(answer, "Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(body_of(answer), body_of(ask(get("/patient.html"))));
+  EXPECT_EQ(status_of(ask(get("/patient/"))), 404);
+}
+
 TEST_F(WebFiles, HashedAssetsMayBeCached) {
   start();
   const std::string answer = ask(get("/assets/app-1a2b.js"));

@@ -76,6 +76,26 @@ TEST(OutgoingQueue, AcceptsAMessageLargerThanItsLimitWhenEmpty) {
   EXPECT_FALSE(queue.push(short_one));
 }
 
+TEST(OutgoingQueue, KindsOfNewestMessagesTakeTurns) {
+  OutgoingQueue queue(2, 10);
+  const auto a = std::make_shared<const std::string>("a");
+  const auto b = std::make_shared<const std::string>("b");
+  const auto c = std::make_shared<const std::string>("c");
+  EXPECT_FALSE(queue.set_newest(a, 0));
+  EXPECT_FALSE(queue.set_newest(b, 1)) << "another kind replaces none";
+  EXPECT_EQ(queue.pop(), a);
+  EXPECT_FALSE(queue.set_newest(a, 0));
+  EXPECT_EQ(queue.pop(), b) << "kind 0 does not go first each time";
+  EXPECT_FALSE(queue.set_newest(b, 1));
+  EXPECT_TRUE(queue.set_newest(c, 1));
+  EXPECT_EQ(queue.pop(), a);
+  EXPECT_EQ(queue.pop(), c);
+  EXPECT_EQ(queue.pop(), nullptr);
+  EXPECT_FALSE(queue.set_newest(c, 1));
+  queue.clear();
+  EXPECT_EQ(queue.pop(), nullptr);
+}
+
 // 32,000 bytes at 16 kB/s: 2 s more.
 TEST(TransferTimeout, IsTheIdleTimeoutAndTheTimeOfASlowTransfer) {
   EXPECT_EQ(transfer_timeout(20.0, 0), 20.0);

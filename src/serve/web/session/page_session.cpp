@@ -105,8 +105,8 @@ bool PageSession::send(Bytes message) {
   return true;
 }
 
-bool PageSession::send_newest(Bytes message) {
-  const bool replaced = queue_.set_newest(std::move(message));
+bool PageSession::send_newest(Bytes message, std::size_t kind) {
+  const bool replaced = queue_.set_newest(std::move(message), kind);
   write_next();
   return replaced;
 }

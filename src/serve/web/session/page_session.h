@@ -34,7 +34,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   /// Queues an ordered message. @returns false if the queue is full
   [[nodiscard]] bool send(Bytes message);
   /// Queues the newest message. @returns true if it replaced one
-  bool send_newest(Bytes message);
+  bool send_newest(Bytes message, std::size_t kind);
   /// Begins to close: sends the queued messages, then the close frame. Ignores all that is received
   /// from now on.
   /// @param drop_queue  sends the close frame without the queued messages

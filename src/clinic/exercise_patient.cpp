@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exercise/exercise_patient.h"
+#include "phalanx/clinic/exercise_patient.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "phalanx/core/error_text.h"
 #include "phalanx/core/index.h"
 #include "phalanx/patients/patient_change.h"
 
@@ -40,14 +41,6 @@ int last_rating(const ExerciseResult& result, ExerciseInput::Kind kind) {
   for (const ExerciseRating& rating : result.ratings)
     if (rating.kind == kind) value = rating.value;
   return value;
-}
-
-/// @returns the valid trials of a training: a row states only those that ran, and its detail both
-int counted_trials(const ResultRow& row) {
-  const auto detail = nlohmann::json::parse(row.detail, nullptr, false);
-  if (!detail.is_object() || !detail.contains("counted") || !detail["counted"].is_number_integer())
-    return row.repetitions;
-  return detail["counted"].get<int>();
 }
 
 /// What was done on a day.
@@ -120,6 +113,17 @@ std::optional<EntryCheck> measured_entry(const RecordedExercise& exercise) {
   return check;
 }
 
+/// @returns true if a known result from before `utc` has measured this own force of the digit: no person has entered it
+bool was_measured(double force, int digit, double utc, std::span<const ResultRow> known) {
+  const std::string name = fmt::format("{}_peak_force_n", digit_name(digit));
+  return std::any_of(known.begin(), known.end(), [&](const ResultRow& row) {
+    return row.valid && row.assessment && row.date <= utc &&
+           std::any_of(row.scores.begin(), row.scores.end(), [&](const Score& score) {
+             return score.valid() && score.name == name && score.value == force;
+           });
+  });
+}
+
 std::string condition(const RecordedExercise& exercise, const char* key) {
   const auto found = exercise.start.conditions.find(key);
   return found == exercise.start.conditions.end() ? std::string() : found->second;
@@ -133,55 +137,74 @@ std::string utc_date(double utc) {
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(utc)));
 }
 
+ExerciseRefusal::ExerciseRefusal(const std::string& reason, const std::string& at_terminal,
+                                 const std::string& on_page)
+    : std::invalid_argument(fmt::format("{}; {}", reason, at_terminal)),
+      on_page_(fmt::format("{}; {}", reason, on_page)) {}
+
+std::string refusal_on_page(const std::exception& error) {
+  const auto* refused = dynamic_cast<const ExerciseRefusal*>(&error);
+  return refused != nullptr ? refused->on_page() : error_text(error);
+}
+
 void refuse_patient(const Patient& patient, const ExerciseDescription& exercise, bool simulated,
                     const std::string& today) {
-  if (simulated != is_simulated(patient))
-    throw std::invalid_argument(
-        simulated ? fmt::format(
-                        "--demo with --patient {}: results of a simulated participant never join "
-                        "those of a person; add a patient whose code begins with {}, or leave --patient out",
-                        patient.code, kSimulatedCode)
-                  : fmt::format("--patient {}: codes that begin with {} are of simulated patients; name the "
-                                "person's code, or add --demo",
-                                patient.code, kSimulatedCode));
+  const std::string& code = patient.code;
+  if (simulated && !is_simulated(patient))
+    throw ExerciseRefusal(
+        fmt::format(
+            "{}: results of a simulated participant or on a simulated device never join those of a person",
+            code),
+        fmt::format("name a patient whose code begins with {}, or leave --patient out", kSimulatedCode),
+        fmt::format(
+            "choose a patient whose code begins with {}, or start the station with the person's device",
+            kSimulatedCode));
+  if (!simulated && is_simulated(patient))
+    throw ExerciseRefusal(
+        fmt::format("{}: codes that begin with {} are of simulated patients", code, kSimulatedCode),
+        "name the person's code, or add --demo", "choose the person, or a simulated participant");
   if (!patient.contraindications.empty())
-    throw std::invalid_argument(fmt::format(
-        "{} has a contraindication: {}. No exercise begins; if it no longer holds, remove it with "
-        "`phalanx patient edit {}`",
-        patient.code, joined(patient.contraindications), patient.code));
+    throw ExerciseRefusal(
+        fmt::format("{} has a contraindication: {}", code, joined(patient.contraindications)),
+        fmt::format("if it no longer holds, remove it with `phalanx patient edit {}`", code),
+        "if it no longer holds, remove it in the patient's fields");
   if (!patient.consent)
-    throw std::invalid_argument(fmt::format(
-        "{} has not consented to the recording of their data; enter the consent with `phalanx patient edit "
-        "{} --consent yes`",
-        patient.code, patient.code));
+    throw ExerciseRefusal(fmt::format("{} has not consented to the recording of their data", code),
+                          fmt::format("enter the consent with `phalanx patient edit {} --consent yes`", code),
+                          "enter the consent in the patient's fields");
   if (!patient.calibration_expires.empty() && patient.calibration_expires < today)
-    throw std::invalid_argument(fmt::format(
-        "the calibration of {} was valid until {}, and today is {}; calibrate again (`phalanx device "
-        "calibrate`) and enter it with `phalanx patient edit {} --calibration FILE`",
-        patient.code, patient.calibration_expires, today, patient.code));
+    throw ExerciseRefusal(
+        fmt::format("the calibration of {} was valid until {}, and today is {}", code,
+                    patient.calibration_expires, today),
+        fmt::format("calibrate again (`phalanx device calibrate`) and enter it with `phalanx patient edit {} "
+                    "--calibration FILE`",
+                    code),
+        "calibrate again on the patient's page");
   if (exercise.measure == ExerciseMeasure::kEntryCheck) return;
   if (patient.entry && !patient.entry->suitable)
     throw std::invalid_argument(fmt::format(
         "{} is not suitable on this device (it resists, it does not assist): active flexion {:.0f} deg and "
         "release {:.0f} deg on {}; repeat the entry check if that has changed",
-        patient.code, patient.entry->flexion_deg, patient.entry->release_deg, patient.entry->date));
+        code, patient.entry->flexion_deg, patient.entry->release_deg, patient.entry->date));
   const bool needs_entry = exercise.kind == ExerciseKind::kTraining || needs_torque(exercise.measure);
   if (needs_entry && !patient.entry)
-    throw std::invalid_argument(
-        fmt::format("{} has no entry check; run it first: phalanx exercise run entry_check --patient {}",
-                    patient.code, patient.code));
+    throw ExerciseRefusal(fmt::format("{} has no entry check", code),
+                          fmt::format("run it first: phalanx exercise run entry_check --patient {}", code),
+                          "begin the entry check first");
 }
 
 void refuse_other_hand(const Patient& patient, Handedness opened) {
   if (opened == patient.side) return;
-  throw std::invalid_argument(fmt::format(
-      "the station has a {} hand, and {} exercises the {} hand; {}", side_name(opened), patient.code,
-      side_name(patient.side),
-      patient.profile.empty()
-          ? std::string("the exercise's scene has another hand or a mirror; name one of this side")
-          : fmt::format("the profile {} is of the other hand: enter another with `phalanx patient edit {} "
-                        "--profile NAME`",
-                        patient.profile, patient.code)));
+  const std::string reason = fmt::format("the station has a {} hand, and {} exercises the {} hand",
+                                         side_name(opened), patient.code, side_name(patient.side));
+  if (patient.profile.empty()) {
+    const char* remedy = "the exercise's scene has another hand or a mirror; name one of this side";
+    throw ExerciseRefusal(reason, remedy, "the exercise's scene has another hand; choose another exercise");
+  }
+  throw ExerciseRefusal(
+      fmt::format("{}; the profile {} is of the other hand", reason, patient.profile),
+      fmt::format("enter another with `phalanx patient edit {} --profile NAME`", patient.code),
+      "enter another in the patient's fields");
 }
 
 ExerciseDescription exercise_of(const Patient& patient, ExerciseDescription exercise) {
@@ -200,16 +223,6 @@ ExerciseDescription exercise_of(const Patient& patient, ExerciseDescription exer
   if (patient.stiffness_limit_n_per_mm)
     lower(exercise.limits.stiffness, 1e3 * *patient.stiffness_limit_n_per_mm);
   return exercise;
-}
-
-std::vector<TrainingSession> training_history(std::span<const ResultRow> results,
-                                              const std::string& exercise) {
-  std::vector<TrainingSession> history;
-  for (const ResultRow& row : results)
-    if (row.exercise == exercise && !row.assessment && row.valid)
-      history.push_back(
-          {.difficulty = row.difficulty, .successes = row.successes, .counted = counted_trials(row)});
-  return history;
 }
 
 std::vector<TrainingSession> difficulty_history(std::span<const ResultRow> results,
@@ -286,7 +299,7 @@ ResultRow result_row(const RecordedExercise& exercise, const std::string& record
                     .stabiliser = condition(exercise, "stabiliser"),
                     .rendering = condition(exercise, "rendering"),
                     .protocol = condition(exercise, "protocol")};
-  if (exercise.start.simulated) row.conditions.device += " (simulated participant)";
+  if (exercise.start.simulated) row.conditions.device += kSimulatedDevice;
   row.interrupted = result.interrupted;
   row.valid = why.empty();
   row.invalid = why;
@@ -346,6 +359,18 @@ bool take_measured(Patient& patient, const RecordedExercise& exercise) {
     changed = true;
   }
   return changed;
+}
+
+bool take_late(Patient& patient, const RecordedExercise& exercise, const std::string& recording,
+               std::span<const ResultRow> known) {
+  if (!takes_late(patient, exercise, recording, known)) return false;
+  const std::array<double, kDigits> before = patient.own_force_n;
+  const std::string text = patient_json(patient);
+  if (!take_measured(patient, exercise)) return false;
+  for (int d = 0; d < kDigits; ++d)
+    if (before[idx(d)] > 0.0 && !was_measured(before[idx(d)], d, exercise.begin_utc, known))
+      patient.own_force_n[idx(d)] = before[idx(d)];
+  return patient_json(patient) != text;
 }
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exercise/exercise_options.h"
+#include "phalanx/clinic/exercise_limits.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include "phalanx/registry/patient.h"
 #include "phalanx/scene/calibration_file.h"
 #include "phalanx/scene/exercise_file.h"
+#include "phalanx/step/rendering_version.h"
 
 namespace phalanx {
 namespace {
@@ -65,11 +66,11 @@ Overrides lowered_limits(const std::string& scene, const Overrides& overrides,
   return lowered;
 }
 
-std::optional<double> stable_stiffness(const ExerciseOptions& options, const SceneDescription& scene) {
-  if (options.stable_n_per_mm) return 1e3 * *options.stable_n_per_mm;
-  if (options.run.device == "sliders" || !options.demo.empty()) return scene.parameters.force.stiffness;
+std::optional<double> stable_stiffness(const KnownStability& known, const SceneDescription& scene) {
+  if (known.stated) return known.stated;
+  if (known.sliders) return scene.parameters.force.stiffness;
   const bool measured = scene.device.file == "beihang" && scene.device.overlay.empty();
-  if (options.run.device == "simulated" && measured) return kMeasuredStable;
+  if (known.simulated && measured) return kMeasuredStable;
   return std::nullopt;
 }
 
@@ -87,14 +88,13 @@ std::array<bool, kDigits> felt_digits(const SessionInfo& info) {
   return felt;
 }
 
-std::map<std::string, std::string> conditions_of(const SessionInfo& info, const std::string& calibration,
-                                                 const std::string& version) {
+std::map<std::string, std::string> conditions_of(const SessionInfo& info, const std::string& calibration) {
   return {{"device", info.device.name},
           {"serial", info.device.serial},
           {"calibration", calibration_methods(calibration)},
           {"contact_mode", stated_value(info.values, "contact.mode", "static")},
           {"stabiliser", stated_value(info.values, "stabiliser.method", "rise_only")},
-          {"rendering", version},
+          {"rendering", fmt::format("{}", kRenderingVersion)},
           {"side", std::string(side_name(info.geometry->handedness))},
           {"scene", info.scene}};
 }

@@ -3,21 +3,37 @@
 // is kept of it.
 #pragma once
 
+#include <exception>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "phalanx/exercise/exercise.h"
 #include "phalanx/exercise/training.h"
+#include "phalanx/patients/trainings.h"
 #include "phalanx/record/recorded_exercise.h"
 #include "phalanx/registry/patient.h"
 #include "phalanx/registry/result.h"
+#include "phalanx/registry/result_detail.h"
 
 namespace phalanx {
 
-/// Beginning of the codes of simulated patients. Only they may have results of a simulated participant, and
-/// they have no other ones.
-inline constexpr const char* kSimulatedCode = "SIM";
+/// Refusal of an exercise, with a remedy for each place at which it may begin.
+class ExerciseRefusal : public std::invalid_argument {
+ public:
+  /// @param reason       in words
+  /// @param at_terminal  remedy with commands; what() has it
+  /// @param on_page      remedy for the page of patients
+  ExerciseRefusal(const std::string& reason, const std::string& at_terminal, const std::string& on_page);
+  [[nodiscard]] const std::string& on_page() const noexcept { return on_page_; }  ///< reason and remedy
+
+ private:
+  std::string on_page_;
+};
+
+/// @returns the text of an error for the page of patients
+[[nodiscard]] std::string refusal_on_page(const std::exception& error);
 
 /// @returns true if the patient's code begins with kSimulatedCode
 [[nodiscard]] bool is_simulated(const Patient& patient);
@@ -27,14 +43,14 @@ inline constexpr const char* kSimulatedCode = "SIM";
 
 /// Checks that this patient may do the exercise today.
 /// @param simulated  a simulated participant does it
-/// @throws std::invalid_argument naming the reason and the remedy: a contraindication, no consent, an expired
+/// @throws ExerciseRefusal naming the reason and the remedies: a contraindication, no consent, an expired
 /// calibration, an entry check that is not passed, or is missing (of a training, and of each measure that
 /// needs torque), a simulated participant for a person or the reverse
 void refuse_patient(const Patient& patient, const ExerciseDescription& exercise, bool simulated,
                     const std::string& today);
 
 /// Checks that the station's hand is of the patient's side, before there is a force.
-/// @throws std::invalid_argument naming both sides and the remedy
+/// @throws ExerciseRefusal naming both sides and the remedies
 void refuse_other_hand(const Patient& patient, Handedness opened);
 
 /// @returns the exercise with the patient's prescription and limits, which only lower it
@@ -52,17 +68,13 @@ inline constexpr DoseCap kDayDose = {.repetitions = 500, .minutes = 90.0};
 [[nodiscard]] PersonLimits person_of(const Patient& patient, const ExerciseDescription& exercise,
                                      std::span<const ResultRow> results, const std::string& today);
 
-/// @returns the past sessions of a training, oldest first
-[[nodiscard]] std::vector<TrainingSession> training_history(std::span<const ResultRow> results,
-                                                            const std::string& exercise);
-
-/// The same for next_difficulty(): a session whose difficulty the therapist changed becomes one entry for
+/// training_history() for next_difficulty(): a session whose difficulty the therapist changed becomes one entry for
 /// each difficulty, from its trials.
 [[nodiscard]] std::vector<TrainingSession> difficulty_history(std::span<const ResultRow> results,
                                                               const std::string& exercise);
 
 /// @returns the registry's row of an exercise. What may not be scored has no valid score. A result that
-/// another version or machine recorded is kept as recorded; its conditions name that version.
+/// another version or machine recorded is kept as recorded; its conditions name the rendering version.
 /// @param recording  its file name, without a folder
 [[nodiscard]] ResultRow result_row(const RecordedExercise& exercise, const std::string& recording);
 
@@ -84,5 +96,11 @@ inline constexpr DoseCap kDayDose = {.repetitions = 500, .minutes = 90.0};
 /// scores, leaves the earlier one.
 /// @returns true if the patient has changed
 [[nodiscard]] bool take_measured(Patient& patient, const RecordedExercise& exercise);
+
+/// Does take_measured() if takes_late() permits it. An own force that no earlier known result has measured was entered
+/// by a person, perhaps after the recording; it stays.
+/// @returns true if the patient has changed
+[[nodiscard]] bool take_late(Patient& patient, const RecordedExercise& exercise, const std::string& recording,
+                             std::span<const ResultRow> known);
 
 }  // namespace phalanx

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "run/run_recorder.h"
+#include "phalanx/record/run_recorder.h"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <exception>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "phalanx/core/nice_thread.h"
+#include "phalanx/core/reason.h"
 #include "phalanx/record/station_csv.h"
-#include "terminal/error_line.h"
 
 namespace phalanx {
 namespace {
@@ -38,17 +39,23 @@ std::filesystem::path RunRecorder::finished_earlier() const {
 void RunRecorder::begin(Session& session, const Clock& clock, std::optional<RecorderSettings> settings,
                         Watch watch) {
   session_ = &session;
+  clock_ = &clock;
   watch_ = std::move(watch);
-  if (settings) recording_ = std::make_unique<SessionRecorder>(*std::move(settings), session, clock);
+  changes_ = std::make_shared<ChangeReader>(session);
+  if (settings)
+    recording_ = std::make_shared<SessionRecorder>(*std::move(settings), session, clock, changes_);
   thread_ = start_nice_thread("phalanx-record", [this] { work(); });
 }
 
 void RunRecorder::event(const std::string& code, const std::string& who, const std::string& text) {
+  // Under the lock: the thread cannot end the recording meanwhile.
+  const std::lock_guard lock(recording_mutex_);
   if (recording_) recording_->event(code, who, text);
 }
 
 std::optional<RecordingStatus> RunRecorder::recording() const {
-  if (!recording_) return std::nullopt;
+  const std::lock_guard lock(recording_mutex_);
+  if (!recording_) return ended_;
   return recording_->status();
 }
 
@@ -70,9 +77,11 @@ void RunRecorder::finish(bool in_good_order,
   if (!thread_.joinable()) return;
   ending_ = true;
   thread_.join();
+  refuse_orders("the station has ended");
   watch_last();
   if (in_good_order) commit();
   log_.reset();
+  end_earlier(true);
   if (recording_) finish_recording(on_refused);
 }
 
@@ -90,33 +99,32 @@ bool RunRecorder::ended_recording(const std::function<void(const RecordingStatus
 }
 
 void RunRecorder::finish_recording(const std::function<void(const RecordingStatus&)>& on_refused) noexcept {
+  bool whole = false;
   try {
-    if (ended_recording(on_refused)) return;
+    whole = ended_recording(on_refused);
   } catch (const std::exception&) {  // no memory to tell it
   }
+  if (!whole) complain_of_end(*recording_);
+  std::filesystem::path file;
+  try {
+    const std::lock_guard lock(recording_mutex_);
+    ended_ = recording_->status();
+    file = ended_->file;
+    recording_.reset();              // closes the file
+  } catch (const std::exception&) {  // no memory: it is closed with this recorder
+  }
+  watch_ended(watch_, file, whole);
+}
+
+void RunRecorder::complain_of_end(const SessionRecorder& file) noexcept {
   lost_ = true;
   complain([&] {
-    const RecordingStatus status = recording_->status();
+    const RecordingStatus status = file.status();
     return fmt::format(
         "the recording has no end, and its last {:.1f} s are lost: {}; what {} holds is kept, and "
         "`phalanx session repair` ends it",
         status.unsaved, status.trouble, status.file.string());
   });
-}
-
-template <class Text>
-void RunRecorder::complain(Text text) noexcept {
-  note([&] { return Note{.complaint = text(), .report = {}, .fault_time = 0.0}; });
-}
-
-template <class Make>
-void RunRecorder::note(Make make) noexcept {
-  try {
-    Note made = make();
-    const std::lock_guard lock(mutex_);
-    notes_.push_back(std::move(made));
-  } catch (const std::exception&) {  // no memory for it
-  }
 }
 
 void RunRecorder::work() noexcept {
@@ -131,12 +139,22 @@ void RunRecorder::work() noexcept {
 
 /// Fetches and writes all steps. Without a log, too: the station must not keep a fetched record.
 void RunRecorder::write_steps() noexcept {
+  take_order();
   try {
     StepRecord record;
     while (session_->next_record(record, samples_)) {
+      if (record.station != station_) begin_station(record.station);
       record_step(record);
       log_step(record);
       watch_step(record);
+    }
+    if (end_asked_.exchange(false) && recording_) {
+      watch_last();
+      exchange_recording(nullptr);
+    }
+    if (!recording_) {  // the changes of the steps so far are of no use
+      changes_->fetch();
+      changes_->drop_through(station_);
     }
   } catch (const std::exception&) {  // no memory: the steps wait in the station
   }
@@ -145,6 +163,7 @@ void RunRecorder::write_steps() noexcept {
   } catch (const std::exception& error) {
     complain([&] { return "the recording lacks something of the hand or an event: " + reason(error); });
   }
+  end_earlier(false);
   try {
     if (log_) log_->write_through();
   } catch (const std::exception& error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated participant of `phalanx exercise run --demo`: it sees what a participant sees, and
-// moves the hand.
+// Simulated participant of a demonstration (`phalanx exercise run --demo`, or chosen on the page of patients). It sees what a
+// participant sees, and moves the hand.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include "phalanx/exercise/observation.h"
 #include "phalanx/exercise/simulated_participant.h"
 #include "phalanx/hand/hand_model.h"
+#include "phalanx/scene/scene.h"
 
 namespace phalanx {
 
@@ -19,13 +20,21 @@ namespace phalanx {
 /// @throws std::invalid_argument naming the text and what is known
 [[nodiscard]] ParticipantSkill demo_skill(const std::string& text);
 
+/// Reads the posture that a scene states for its grasp (`motion.name = "posture"`): the digits press the object.
+/// @param values  SessionInfo::values
+/// @returns one angle for each joint [rad]; none: the scene states another motion, or not all joints
+[[nodiscard]] std::optional<JointArray> grasp_posture(const Overrides& values);
+
 /// Participant at an exercise. It has no clock.
 class ExerciseParticipant {
  public:
   /// @param hand      of the station
   /// @param exercise  that it does
+  /// @param grasp     grasp_posture(): in a pinch, thumb and finger close through it, as a person who sees the object. None:
+  /// they close to the fist, and may miss it
   ExerciseParticipant(const HandModel& hand, const ExerciseDescription& exercise,
-                      const ParticipantSkill& skill, std::uint64_t seed);
+                      const ParticipantSkill& skill, std::uint64_t seed,
+                      const std::optional<JointArray>& grasp);
 
   /// What it does: where the hand goes, and an answer to give.
   struct Act {

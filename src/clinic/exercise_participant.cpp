@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exercise/exercise_participant.h"
+#include "phalanx/clinic/exercise_participant.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
+#include <system_error>
 
+#include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
 #include "phalanx/hand/pad.h"
@@ -19,13 +23,29 @@ constexpr double kSqueeze =
     4.5;  // force of a squeeze as strongly as comfortable, below the limit without a clinician [N]
 constexpr double kExploreDepth = 7e-3;  // beyond each end position, at which the instruction is to stop [m]
 constexpr double kExploreSpeed = 4e-3;  // "press slowly" [m/s]
-constexpr int kPostures = 4000;         // postures that are compared for the opposition of one finger
+constexpr double kBeyondGrasp = 1.6;  // closed hand of a pinch: so many times the way from open to the grasp
+constexpr int kPostures = 4000;       // postures that are compared for the opposition of one finger
 constexpr std::uint64_t kPostureSeed = 1;
 
 ParticipantHand participant_hand(const HandParameters& hand) {
   ParticipantHand out{.least = hand.min_angle, .most = hand.max_angle, .open = hand.open_angle, .closed = {}};
   for (std::size_t j = 0; j < kJoints; ++j) out.closed[j] = hand.closed_angle[j].value_or(hand.max_angle[j]);
   return out;
+}
+
+/// @returns the hand whose thumb and pinching fingers close through a grasp. A fist's thumb passes beside the object, or
+/// slides off it.
+ParticipantHand pinching(ParticipantHand hand, const ExerciseDescription& exercise,
+                         const std::optional<JointArray>& grasp) {
+  if (exercise.measure != ExerciseMeasure::kPinch || !grasp) return hand;
+  for (int joint = 0; joint < kJoints; ++joint) {
+    const auto j = idx(joint);
+    const int digit = digit_of_joint(joint);
+    if (digit != 0 && !exercise.digits[idx(digit)]) continue;
+    hand.closed[j] =
+        std::clamp(hand.open[j] + kBeyondGrasp * ((*grasp)[j] - hand.open[j]), hand.least[j], hand.most[j]);
+  }
+  return hand;
 }
 
 /// Finds the posture in which the thumb's pad is nearest the finger's: drawn postures first, then smaller and smaller steps.
@@ -68,13 +88,36 @@ ParticipantSkill demo_skill(const std::string& text) {
   } catch (const std::logic_error&) {  // no number
   }
   throw std::invalid_argument(
-      fmt::format("--demo {}: type a number from 0 (severe) to 1 (healthy), or one of {}", text,
+      fmt::format("demo {}: state a number from 0 (severe) to 1 (healthy), or one of {}", text,
                   fmt::join(participant_skill_names(), ", ")));
 }
 
+std::optional<JointArray> grasp_posture(const Overrides& values) {
+  constexpr std::string_view kPrefix = "motion.angle_deg.";
+  JointArray angle{};
+  std::array<bool, kJoints> stated{};
+  bool posture = false;
+  for (const auto& [key, value] : values) {
+    if (key == "motion.name") posture = value == "\"posture\"";
+    if (!key.starts_with(kPrefix)) continue;
+    const auto joint = find_joint(key.substr(kPrefix.size()));
+    double degrees = 0.0;
+    const char* const end = value.data() + value.size();
+    const auto read = std::from_chars(value.data(), end, degrees);
+    if (!joint || read.ec != std::errc{} || read.ptr != end || !std::isfinite(degrees)) continue;
+    angle[idx(*joint)] = kDeg * degrees;
+    stated[idx(*joint)] = true;
+  }
+  const bool whole = std::all_of(stated.begin(), stated.end(), [](bool known) { return known; });
+  return posture && whole ? std::optional(angle) : std::nullopt;
+}
+
 ExerciseParticipant::ExerciseParticipant(const HandModel& hand, const ExerciseDescription& exercise,
-                                         const ParticipantSkill& skill, std::uint64_t seed)
-    : exercise_(exercise), hand_(participant_hand(hand.parameters())), participant_(hand_, skill, seed) {
+                                         const ParticipantSkill& skill, std::uint64_t seed,
+                                         const std::optional<JointArray>& grasp)
+    : exercise_(exercise),
+      hand_(pinching(participant_hand(hand.parameters()), exercise, grasp)),
+      participant_(hand_, skill, seed) {
   opened_ = hand_.open;
   for (int joint = 0; joint < kJoints; ++joint)
     if (joint % kJointsPerDigit != kAbductionJoint) opened_[idx(joint)] = hand_.least[idx(joint)];

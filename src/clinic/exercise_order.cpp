@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clinic/exercise_order.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "phalanx/clinic/exercise_patient.h"
+#include "phalanx/core/error_text.h"
+#include "phalanx/record/recordings.h"
+
+namespace phalanx {
+namespace {
+
+/// Refuses a name that would be read as a path: pages name shipped exercises only.
+void refuse_path(const std::string& exercise) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (!exercise.empty() && std::all_of(exercise.begin(), exercise.end(), plain)) return;
+  throw std::invalid_argument("exercise: it is no name of an exercise; choose one of the list");
+}
+
+KnownPatient read_patient(Registry& registry, const Actor& actor, const ExerciseOrder& order,
+                          const std::string& today) {
+  Patient patient = registry.patient(actor, order.record);
+  if (patient.record != order.record)
+    throw std::invalid_argument("the patient is not named by the id of their records; reload the page");
+  std::string typed = order.confirm;
+  std::transform(typed.begin(), typed.end(), typed.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  refuse_other_code(patient, typed);
+  std::vector<ResultRow> results = registry.results(actor, patient.record);
+  return {.patient = std::move(patient), .results = std::move(results), .today = today};
+}
+
+/// @returns the result with its scores, or why it has none
+ExerciseResult shown_result(const RecordedExercise& exercise) {
+  if (!exercise.invalid.empty()) return without_scores(exercise.result, exercise.invalid);
+  if (exercise.other_program) return read_exercise_result(exercise.recorded, exercise.start.exercise);
+  if (exercise.difference.empty()) return exercise.result;
+  return without_scores(exercise.result, fmt::format("not proven: {}", exercise.difference));
+}
+
+}  // namespace
+
+std::string without_code(const std::string& text, const std::string& code) {
+  const auto of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  std::string out;
+  std::size_t from = 0;
+  for (std::size_t at = code.empty() ? std::string::npos : text.find(code); at != std::string::npos;
+       at = text.find(code, at + 1)) {
+    const std::size_t end = at + code.size();
+    if ((at > 0 && of_word(text[at - 1])) || (end < text.size() && of_word(text[end])) || at < from) continue;
+    out.append(text, from, at - from).append("the patient");
+    from = end;
+  }
+  return out.append(text, from);
+}
+
+FindRecordingKey PreparedExercise::keys() const {
+  return [key = key](const std::string& id) -> std::optional<RecordingKey> {
+    return id == key.id ? std::optional(key.key) : std::nullopt;
+  };
+}
+
+StationOrder PreparedExercise::station(std::optional<HandSource> source, std::uint64_t recording) const {
+  StationOrder order;
+  order.scene = plan.start.exercise.scene;
+  order.overrides = plan.overrides;
+  order.source = source;
+  order.calibration = plan.calibration;
+  order.range = plan.range;
+  order.always = true;
+  order.stopped = true;
+  order.recording = recording;
+  return order;
+}
+
+PreparedExercise prepare_exercise(Registry& registry, const Actor& actor, const ExerciseOrder& order,
+                                  ExercisePlace place, const ExerciseWords& say,
+                                  const std::function<bool()>& ends) {
+  refuse_path(order.exercise);
+  if (!order.demo.empty() && !is_own_simulation(place.station.device))
+    throw std::invalid_argument(
+        fmt::format("demo: a simulated participant needs the simulated device, and this station has {}; "
+                    "start another station for it",
+                    place.station.device));
+  PreparedExercise prepared;
+  prepared.actor = actor;
+  prepared.known = read_patient(registry, actor, order, place.today);
+  const auto say_to_all = [&](const std::string& text) {
+    say(without_code(text, prepared.known.patient.code));
+  };
+  take_up_left_recordings({.registry = registry, .actor = actor}, prepared.known, place.recordings,
+                          say_to_all, ends);
+  try {
+    prepared.plan = plan_exercise({.exercise = order.exercise, .demo = order.demo, .seed = order.seed},
+                                  place.station, &prepared.known);
+  } catch (const ExerciseRefusal& refused) {
+    throw std::invalid_argument(refused.on_page());
+  }
+  prepared.key = registry.recording_key(actor, order.record);
+  return prepared;
+}
+
+KeptExercise keep_exercise(Registry& registry, const PreparedExercise& prepared,
+                           const EndedRecording& recording, const std::optional<UnscoredExercise>& done) {
+  const ActingRegistry acting = {.registry = registry, .actor = prepared.actor};
+  const std::string& record = prepared.known.patient.record;
+  KeptExercise kept;
+  const auto complain = [&kept](const std::string& text) {
+    kept.trouble.append(kept.trouble.empty() ? "" : "; ").append(text);
+  };
+  const auto keep_at_least_dose = [&] {
+    if (done && keep_dose(acting, record, *done, recording.file, complain))
+      complain("its dose is kept, without scores");
+  };
+  try {
+    const FindRecordingKey keys = prepared.keys();
+    if (!recording.whole) static_cast<void>(repair_recording(recording.file, keys));
+    const std::vector<RecordedExercise> exercises = recorded_exercises(recording.file, keys);
+    if (exercises.empty()) {
+      keep_at_least_dose();
+      complain("the exercise has not begun; it has no result");
+      return kept;
+    }
+    keep_results(acting, record, exercises, recording.file, complain);
+    kept.result = shown_result(exercises.back());
+  } catch (const std::exception& error) {
+    complain(fmt::format("{}. The recording {} is kept; `phalanx patient rebuild` makes the result again",
+                         error_text(error), recording.file.filename().string()));
+    keep_at_least_dose();
+  }
+  return kept;
+}
+
+}  // namespace phalanx
