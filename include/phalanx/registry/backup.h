@@ -75,4 +75,11 @@ struct ExportReport {
   std::vector<std::filesystem::path> files;
 };
 
+/// One file of an export in memory: Registry::export_texts().
+struct ExportText {
+  std::string name = {};  ///< "patient.json", "results.csv", "tests.csv"
+  std::string type = {};  ///< media type
+  std::string text = {};  ///< UTF-8
+};
+
 }  // namespace phalanx

@@ -115,6 +115,9 @@ class Registry {
   /// std::invalid_argument if it is empty or inside
   ExportReport export_patient(const Actor& actor, const std::string& record,
                               const std::filesystem::path& folder = {});
+  /// Makes the same files in memory, for a page that saves them elsewhere: nothing is written, and
+  /// delete_patient() does not know of them. Audit: "export". @throws RegistryError kUnknown
+  [[nodiscard]] std::vector<ExportText> export_texts(const Actor& actor, const std::string& record);
   /// Makes the rows again from the journal and the recordings. Rows whose recording is missing are kept.
   /// An encrypted recording adds rows only to the patient whose key opens it. A plain one adds rows only
   /// if the registry knows its file name. @param recordings  files or folders; a folder stands for its

@@ -76,6 +76,40 @@ std::string tests_table(const Patient& patient, const std::vector<EnteredTest>& 
   return out;
 }
 
+/// What an export holds.
+struct ExportedData {
+  std::vector<ResultRow> results = {};
+  std::vector<EnteredTest> tests = {};
+  json whole = {};  ///< of patient.json
+};
+
+/// @param tests, notes  as the registry keeps them
+ExportedData exported_data(const Patient& patient, std::vector<ResultRow> results,
+                           const std::vector<json>& tests, const std::vector<json>& notes) {
+  ExportedData data;
+  data.results = std::move(results);
+  data.whole = {{"record", patient.record},
+                {"patient", json::parse(patient_json(patient))},
+                {"results", json::array()},
+                {"tests", json::array()},
+                {"notes", json::array()}};
+  for (const ResultRow& row : data.results) data.whole["results"].push_back(json::parse(result_json(row)));
+  for (const json& event : tests) {
+    data.tests.push_back(parse_test_json(event.at("test").dump()));
+    data.whole["tests"].push_back(event.at("test"));
+  }
+  for (const json& event : notes) data.whole["notes"].push_back(event.at("note"));
+  return data;
+}
+
+std::vector<ExportText> texts_of(const Patient& patient, const ExportedData& data) {
+  return {{.name = "patient.json",
+           .type = "application/json",
+           .text = fmt::format("{}\n", data.whole.dump(1, ' ', false, json::error_handler_t::replace))},
+          {.name = "results.csv", .type = "text/csv", .text = results_table(patient, data.results)},
+          {.name = "tests.csv", .type = "text/csv", .text = tests_table(patient, data.tests)}};
+}
+
 void require_empty(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
@@ -100,37 +134,33 @@ ExportReport Registry::export_patient(const Actor& actor, const std::string& rec
   require_empty(to);
   impl_->log(actor, "export", record);
 
-  const std::vector<ResultRow> results = impl_->results_of(open);
-  std::vector<EnteredTest> tests;
-  json whole = {{"record", record},
-                {"patient", json::parse(patient_json(open.patient))},
-                {"results", json::array()},
-                {"tests", json::array()},
-                {"notes", json::array()}};
-  for (const ResultRow& row : results) whole["results"].push_back(json::parse(result_json(row)));
-  for (const json& event : impl_->entries_of(open, "test")) {
-    tests.push_back(parse_test_json(event.at("test").dump()));
-    whole["tests"].push_back(event.at("test"));
-  }
-  for (const json& event : impl_->entries_of(open, "note")) whole["notes"].push_back(event.at("note"));
-
-  const std::vector<std::pair<fs::path, std::string>> files = {
-      {to / "patient.json", fmt::format("{}\n", whole.dump(1))},
-      {to / "results.csv", results_table(open.patient, results)},
-      {to / "tests.csv", tests_table(open.patient, tests)}};
+  const ExportedData data = exported_data(open.patient, impl_->results_of(open),
+                                          impl_->entries_of(open, "test"), impl_->entries_of(open, "note"));
+  const std::vector<ExportText> files = texts_of(open.patient, data);
   std::set<std::string> known;
   for (const json& event : impl_->entries_of(open, "export"))
     known.insert(event.at("path").get<std::string>());
-  for (const auto& [file, text] : files)  // before the files exist: delete_patient() finds them in any case
-    if (!known.contains(file.string()))
-      impl_->add_event(open, json{{"event", "export"}, {"path", file.string()}}.dump());
+  for (const ExportText& file : files) {  // before the files exist: delete_patient() finds them in any case
+    const std::string path = (to / file.name).string();
+    if (!known.contains(path)) impl_->add_event(open, json{{"event", "export"}, {"path", path}}.dump());
+  }
   ExportReport out;
   registry::make_private_folder(to);
-  for (const auto& [file, text] : files) {
-    registry::replace_private_file(file, text, true);
-    out.files.push_back(file);
+  for (const ExportText& file : files) {
+    registry::replace_private_file(to / file.name, file.text, true);
+    out.files.push_back(to / file.name);
   }
   return out;
+}
+
+std::vector<ExportText> Registry::export_texts(const Actor& actor, const std::string& record) {
+  const Impl::Operation operation(*impl_);
+  impl_->require(actor, Impl::Permission::kPatients);
+  const OpenRecord open = impl_->open_record(record);
+  impl_->log(actor, "export", record);
+  return texts_of(open.patient,
+                  exported_data(open.patient, impl_->results_of(open), impl_->entries_of(open, "test"),
+                                impl_->entries_of(open, "note")));
 }
 
 }  // namespace phalanx
