@@ -6,7 +6,7 @@ export default defineConfig({
   base: "./",
   build: {
     target: "es2022", outDir: "dist", emptyOutDir: true, sourcemap: false, assetsInlineLimit: 0, reportCompressedSize: true, chunkSizeWarningLimit: 700,
-    rollupOptions: { input: ["index.html", "recording.html", "people.html"] }, // the cockpit, and the pages of recordings and of patients
+    rollupOptions: { input: ["index.html", "recording.html", "people.html", "patient.html"] }, // the cockpit, the pages of recordings and of patients, the patient's screen
   },
   worker: { format: "es" },
   server: {

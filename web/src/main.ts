@@ -30,11 +30,13 @@ import { viewFrame } from "./panels/view_frame";
 import type { PlotPanel } from "./plots/plot_panel";
 import { GeometryLoader } from "./state/geometry_loader";
 import { calibratedHands } from "./state/calibrated_hands";
+import { mayCalibrate } from "./state/roles";
 import { Store } from "./state/store";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";
 import type { MeshPreviewProbe } from "./view3d/mesh_preview";
 import { makeShapes } from "./view3d/shape_maker";
+import { tellCalibration, wantedDialog } from "./wire/calibration_channel";
 import { Connection, type Socket } from "./wire/connection";
 import { Host } from "./wire/host";
 import { fetchGeometry, linkExpired, postStop, streamUrl, uploadMesh } from "./wire/http";
@@ -150,6 +152,26 @@ listenToKeys(window, {
   help: () => keysDialog(app),
   camera: (preset) => frame.camera(preset),
   zoom: (factor) => frame.zoom(factor),
+});
+
+/// The page of patients binds the station's calibration to a patient.
+const tell = tellCalibration();
+store.on(["state"], () => store.state && tell({ calibration: store.state.calibration, range: store.state.range }));
+
+/// A therapist who comes from the page of patients finds the dialog open, as soon as this page may calibrate.
+const kWantedMs = 60_000; // later the person has something else in mind
+let wanted = wantedDialog(location.search);
+if (wanted !== "") {
+  const address = new URL(location.href); // a reload does not ask again
+  address.searchParams.delete("open");
+  history.replaceState(history.state, "", address);
+  setTimeout(() => (wanted = ""), kWantedMs);
+}
+store.on(["state", "connection"], () => {
+  if (wanted === "" || store.state?.wizard || !mayCalibrate(store.role, store.state)) return;
+  if (wanted === "range") calibration.askRange();
+  else calibration.askDevice();
+  wanted = "";
 });
 
 const geometry = new GeometryLoader(async (revision) => makeShapes(await fetchGeometry(revision)), (loaded, revision) => store.setGeometry(loaded, revision));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests of the page of patients. The secret of a session is in the memory of this page only: no cookie, no storage. It goes in a header,
 // which no other site's page can send.
+import { readExerciseNow, type ExerciseNow } from "./exercise_now";
 import {
-  readCourse, readDeleted, readExercises, readPatient, readPatients, readSignedIn, readStatus,
-  type Course, type Deleted, type Exercise, type Listed, type Patient, type SignedIn, type Status,
+  readCourse, readDeleted, readExercises, readExport, readPatient, readPatients, readSignedIn, readStatus, readTemplates, readUnreadable,
+  type Course, type Deleted, type Exercise, type ExportedFile, type Listed, type Patient, type SignedIn, type Status, type Template, type Unreadable,
 } from "./shapes";
 
 /// none: the station keeps no patients; signed_out: no session, or it is locked; refused: the station says why; forbidden: never with this
@@ -23,6 +24,7 @@ export class PeopleError extends Error {
 export type Fetch = (address: string, options: RequestInit) => Promise<Response>;
 
 const kAnswerMs = 20_000; // Argon2id of a slow computer, after requests that wait
+const kExerciseMs = 1500; // of the exercise that is watched: a cut link must not look live
 const troubles: Readonly<Record<number, Trouble>> = { 401: "signed_out", 403: "forbidden", 404: "none", 429: "busy", 503: "busy" };
 
 export class PeopleApi {
@@ -34,8 +36,8 @@ export class PeopleApi {
     private readonly get: Fetch = (address, options) => fetch(address, options),
   ) {}
 
-  /// Sends a request. @throws PeopleError
-  private async ask(path: string, body?: unknown, keepalive = false): Promise<unknown> {
+  /// Sends a request. @returns the answer's text @throws PeopleError
+  private async send(path: string, body?: unknown, keepalive = false, answerMs = kAnswerMs): Promise<string> {
     const headers: Record<string, string> = this.session === "" ? {} : { "X-Phalanx-Session": this.session };
     if (body !== undefined) headers["Content-Type"] = "application/json";
     if (this.page !== "") headers["X-Phalanx-Page"] = this.page;
@@ -44,13 +46,19 @@ export class PeopleApi {
     try {
       response = await this.get(path, {
         method: body === undefined ? "GET" : "POST", headers, body: body === undefined ? null : JSON.stringify(body),
-        cache: "no-store", signal: AbortSignal.timeout(kAnswerMs), keepalive,
+        cache: "no-store", signal: AbortSignal.timeout(answerMs), keepalive,
       });
       said = await response.text();
     } catch (reason) {
       throw new PeopleError("gone", String(reason));
     }
     if (!response.ok) throw new PeopleError(troubles[response.status] ?? "refused", said.trim());
+    return said;
+  }
+
+  /// Sends a request that is answered in JSON. @throws PeopleError
+  private async ask(path: string, body?: unknown, keepalive = false, answerMs = kAnswerMs): Promise<unknown> {
+    const said = await this.send(path, body, keepalive, answerMs);
     try {
       return said.trim() === "" ? {} : JSON.parse(said);
     } catch (reason) {
@@ -97,8 +105,10 @@ export class PeopleApi {
     await this.ask("people/alive", {});
   }
 
-  async patients(): Promise<readonly Listed[]> {
-    return readPatients(await this.ask("people/patients"));
+  /// The patients, and what is known of those that cannot be read.
+  async patients(): Promise<Unreadable & { readonly patients: readonly Listed[] }> {
+    const answer = await this.ask("people/patients");
+    return { patients: readPatients(answer), ...readUnreadable(answer) };
   }
 
   async patient(record: string): Promise<Patient> {
@@ -133,5 +143,41 @@ export class PeopleApi {
 
   async exercises(): Promise<readonly Exercise[]> {
     return readExercises(await this.ask("people/exercises"));
+  }
+
+  async templates(): Promise<readonly Template[]> {
+    return readTemplates(await this.ask("people/templates"));
+  }
+
+  // ---- documents
+
+  async export(record: string): Promise<readonly ExportedFile[]> {
+    return readExport(await this.ask(`people/patients/${record}/export`));
+  }
+
+  /// @param day  2026-05-04; empty: all days
+  async report(record: string, language: string, day: string): Promise<string> {
+    return this.send(`people/patients/${record}/report?${new URLSearchParams(day === "" ? { lang: language } : { lang: language, day }).toString()}`);
+  }
+
+  async fhir(record: string, day: string): Promise<string> {
+    return this.send(`people/patients/${record}/fhir${day === "" ? "" : `?${new URLSearchParams({ day }).toString()}`}`);
+  }
+
+  // ---- the exercise that the station carries out
+
+  async exercise(): Promise<ExerciseNow> {
+    return readExerciseNow(await this.ask("people/exercise", undefined, false, kExerciseMs));
+  }
+
+  /// @param confirm  the patient's code  @param demo  skill of a simulated participant; empty: a person
+  async beginExercise(record: string, exercise: string, confirm: string, demo: string): Promise<void> {
+    await this.ask(`people/patients/${record}/exercise`, demo === "" ? { exercise, confirm } : { exercise, confirm, demo });
+  }
+
+  /// @param number  of the exercise that the page shows: the station refuses what is meant for another one
+  /// @param values  of the input: "value" of a rating, an answer or a difficulty, "stops" of a resume
+  async exerciseInput(kind: string, number: number, values: Readonly<Record<string, number>> = {}): Promise<void> {
+    await this.ask("people/exercise", { kind, number, ...values });
   }
 }

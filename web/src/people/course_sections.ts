@@ -3,18 +3,12 @@
 import { el, section } from "../panels/dom";
 import { form, table, type FieldPlan } from "./form";
 import type { Course, EnteredTest, Result, ScoreValue, TestKind, Trend } from "./shapes";
-import { changeText, figureText, timeText, valueText, words } from "./words";
+import { trendFigure } from "./trend_chart";
+import { changeText, figureText, scoreName, timeText, trendTitle, valueText, words } from "./words";
 
 const hint = (text: string) => el("p", { class: "hint" }, text);
 
-/// The name of a score in words, without its unit, which follows its value: "mean_n" is "mean".
-export function scoreName(name: string, unit: string): string {
-  const parts = name.split("_");
-  if (parts.length > 1 && parts.at(-1) === unit.toLowerCase()) parts.pop();
-  return parts.join(" ");
-}
-
-function scoreItem({ name, unit, origin, value, invalid }: ScoreValue): HTMLElement {
+export function scoreItem({ name, unit, origin, value, invalid }: ScoreValue): HTMLElement {
   const said = invalid === "" ? valueText(value, unit) : invalid;
   const from = invalid === "" ? (words.origins[origin] ?? origin) : words.results.notValid;
   return el("li", {}, `${scoreName(name, unit)}: ${said} `, el("small", {}, from));
@@ -31,9 +25,21 @@ function resultRow(one: Result): readonly (Node | string)[] {
   ];
 }
 
+const kResults = 10; // in sight at once
+
+/// A part that is made when it is unfolded for the first time: a long course opens at once.
+function folded(title: string, make: () => HTMLElement): HTMLElement {
+  const box = el("details", {}, el("summary", {}, title));
+  box.addEventListener("toggle", () => box.open && box.childElementCount === 1 && box.append(make()));
+  return box;
+}
+
 export function resultsSection(course: Course): HTMLElement {
   const { title, none, columns } = words.results;
-  return section(title, course.results.length === 0 ? hint(none) : table(title, Object.values(columns), course.results.map(resultRow)));
+  const rows = (results: readonly Result[]) => table(title, Object.values(columns), results.map(resultRow));
+  if (course.results.length === 0) return section(title, hint(none));
+  const earlier = course.results.slice(kResults);
+  return section(title, rows(course.results.slice(0, kResults)), earlier.length > 0 ? folded(words.trends.all(String(earlier.length)), () => rows(earlier)) : null);
 }
 
 const side = (name: string) => words.testSides[name] ?? name;
@@ -65,13 +71,25 @@ export function testsSection(course: Course, kinds: readonly TestKind[], enter: 
 
 function trendRow(one: Trend): readonly (Node | string)[] {
   const figures = [valueText(one.first, one.unit), valueText(one.last, one.unit), changeText(one.last - one.first, one.unit), String(one.count)];
-  return [one.title, ...figures.map((text) => el("span", { class: "figure" }, text)), one.verdict];
+  return [trendTitle(one), ...figures.map((text) => el("span", { class: "figure" }, text)), one.verdict];
 }
 
+const kCharts = 6; // in sight at once
+
+/// A chart for each trend of two or more values, what was entered by hand first; all of them as a table, too.
 export function trendsSection(course: Course): HTMLElement {
-  const { title, none, columns } = words.trends;
-  const all = table(title, Object.values(columns), course.trends.map(trendRow));
-  return section(title, course.trends.length === 0 ? hint(none) : all, hint(words.trends.hint));
+  const { title, none, columns, more, asTable } = words.trends;
+  if (course.trends.length === 0) return section(title, hint(none));
+  const charts = course.trends.filter(({ count }) => count > 1).sort((a, b) => Number(b.entered) - Number(a.entered));
+  const rest = charts.splice(kCharts);
+  const grid = (figures: readonly HTMLElement[]) => el("div", { class: "trends" }, ...figures);
+  return section(
+    title,
+    charts.length > 0 ? grid(charts.map(trendFigure)) : hint(none),
+    rest.length > 0 ? folded(more(String(rest.length)), () => grid(rest.map(trendFigure))) : null,
+    folded(asTable, () => table(title, Object.values(columns), course.trends.map(trendRow))),
+    hint(words.trends.hint),
+  );
 }
 
 export function notesSection(course: Course, write: (text: string) => Promise<void>): HTMLElement {

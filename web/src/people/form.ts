@@ -2,12 +2,13 @@
 // Fields of a form, without native selects and tick boxes: those take Space or Esc for themselves, and here both mean Stop.
 import { ChoiceBox } from "../panels/choice_box";
 import { button, el, newId, setShown, setSwitch, setText, switchButton } from "../panels/dom";
+import { chips } from "./chips";
 import { refusalText } from "./trouble";
 import { words } from "./words";
 
 /// text: one line; area: several; number: in `unit`, empty: none; lines: a list, one on each line; date: YYYY-MM-DD; flag: a switch;
-/// choice: one of `choices`.
-export type FieldKind = "text" | "area" | "number" | "lines" | "date" | "flag" | "choice";
+/// choice: one of `choices` in a list; chips: one of a few that are all in sight.
+export type FieldKind = "text" | "area" | "number" | "lines" | "date" | "flag" | "choice" | "chips";
 
 export interface FieldPlan {
   readonly name: string; // in the station's JSON
@@ -17,6 +18,7 @@ export interface FieldPlan {
   readonly hint?: string;
   readonly choices?: readonly { readonly value: string; readonly text: string }[];
   readonly longest?: number; // [characters]
+  readonly later?: boolean; // folded away behind the others
 }
 
 export interface Field {
@@ -79,10 +81,16 @@ function choiceField(plan: FieldPlan, value: unknown): Field {
   return { element: labelled(plan, box.button, box.list), value: () => box.value };
 }
 
+function chipsField(plan: FieldPlan, value: unknown): Field {
+  const made = chips(plan.label, plan.choices ?? [], typeof value === "string" ? value : "");
+  return { element: made.element, value: () => made.value };
+}
+
 export function field(plan: FieldPlan, value: unknown): Field {
   if (plan.kind === "lines" || plan.kind === "area") return areaField(plan, value);
   if (plan.kind === "flag") return flagField(plan, value);
   if (plan.kind === "choice") return choiceField(plan, value);
+  if (plan.kind === "chips") return chipsField(plan, value);
   return textField(plan, value);
 }
 
@@ -96,12 +104,14 @@ export function form(
   cancel?: () => void,
 ): HTMLFormElement {
   const fields = plans.map((plan) => ({ plan, made: field(plan, values[plan.name]) }));
+  const later = fields.filter(({ plan }) => plan.later);
   const refused = el("p", { class: "refused", role: "alert", hidden: true });
   const send = el("button", { type: "submit", class: "primary" }, submit);
   const element = el(
     "form",
     { class: "people-form", novalidate: true },
-    el("div", { class: "fields" }, ...fields.map(({ made }) => made.element)),
+    el("div", { class: "fields" }, ...fields.filter(({ plan }) => !plan.later).map(({ made }) => made.element)),
+    later.length > 0 ? el("details", {}, el("summary", {}, words.patient.more), el("div", { class: "fields" }, ...later.map(({ made }) => made.element))) : null,
     refused,
     el("div", { class: "buttons" }, send, cancel ? button(words.cancel, cancel) : null),
   );

@@ -2,7 +2,7 @@
 // The patients of the station: code, side, and the picture that tells one from the other at a glance. Also the exercises that can be prescribed.
 import { button, el, section } from "../panels/dom";
 import { table } from "./form";
-import type { Exercise, Listed } from "./shapes";
+import type { Exercise, Listed, Unreadable } from "./shapes";
 import { picture } from "./symbols";
 import { words } from "./words";
 
@@ -24,14 +24,28 @@ function item(patient: Listed, chosen: boolean, open: () => void): HTMLElement {
   return el("li", {}, press);
 }
 
+function unreadableBox({ damaged, withoutKey }: Unreadable): HTMLElement | null {
+  const keyless = withoutKey > 0 ? el("p", { class: "refused" }, words.list.withoutKey(String(withoutKey))) : null;
+  if (damaged.length === 0) return keyless;
+  const box = el(
+    "details",
+    { class: "people-damaged" },
+    el("summary", { class: "refused" }, words.list.damaged(String(damaged.length))),
+    el("p", { class: "hint" }, words.list.damagedHint),
+    el("ul", {}, ...damaged.map((record) => el("li", {}, el("code", {}, record)))),
+  );
+  return el("div", {}, box, keyless);
+}
+
 /// @param chosen  record of the displayed patient
-export function patientList(patients: readonly Listed[], chosen: string, open: (record: string) => void, add: () => void): HTMLElement {
+export function patientList(patients: readonly Listed[], unreadable: Unreadable, chosen: string, open: (record: string) => void, add: () => void): HTMLElement {
   const items = patients.map((patient) => item(patient, patient.record === chosen, () => open(patient.record)));
   return el(
     "nav",
     { class: "people-box people-list", "aria-label": words.list.label },
     patients.length === 0 ? el("p", { class: "hint" }, words.list.none) : el("ul", {}, ...items),
-    button(words.list.add, add),
+    button(words.list.add, add, patients.length === 0 ? { class: "primary" } : {}),
+    unreadableBox(unreadable),
   );
 }
 

@@ -5,6 +5,7 @@ import { unreviewedMark } from "../panels/language_choice";
 import { Look, lookSwitches } from "../panels/look";
 import { listenToStopKeys } from "../panels/stop_keys";
 import { strings } from "../strings";
+import { hearCalibration } from "../wire/calibration_channel";
 import { postStop } from "../wire/http";
 import { session } from "../wire/memory";
 import { offerSession } from "../wire/shared_session";
@@ -26,12 +27,13 @@ const stop = stopBar(() => postStop(session.get(kSecret)));
 
 listenToStopKeys(window, stop.stop);
 offerSession(() => api.secret); // to the page of recordings
+hearCalibration((files) => page.setStation(files)); // from the cockpit
 for (const input of inputs) window.addEventListener(input, () => page.idle.input(), { capture: true, passive: true });
 setInterval(() => page.idle.check(), kCheckMs);
 document.addEventListener("visibilitychange", () => page.idle.check());
 window.addEventListener("pageshow", (event) => event.persisted && location.reload()); // from the browser's memory: its session has ended
 window.addEventListener("pagehide", () => {
-  page.content.replaceChildren(); // a page that the browser keeps shows nothing when it comes back
+  page.leave(); // a page that the browser keeps shows nothing when it comes back
   void api.signOut();
 });
 

@@ -3,21 +3,32 @@
 // the document only while a session is open: a lock removes it.
 import { button, el, setShown, setText } from "../panels/dom";
 import { PeopleError, type PeopleApi } from "./api";
+import { confirmPanel } from "./begin_exercise";
+import { CalibrationOffer } from "./calibration_offer";
+import { ReportWindows, reportLanguage } from "./documents";
+import { isUnderWay, type ExerciseNow } from "./exercise_now";
+import { ExerciseWatch } from "./exercise_watch";
 import { IdleLock } from "./idle";
-import { patientForm, patientView } from "./patient_view";
+import { deletedReport, patientForm, patientView, type PatientContext } from "./patient_view";
 import { exerciseList, patientList } from "./lists";
-import type { Course, Deleted, Exercise, Listed, Patient, SignedIn, Status } from "./shapes";
+import { RunningPanel } from "./running_panel";
+import { RunningStrip } from "./running_strip";
+import type { Course, Deleted, Exercise, Listed, Patient, SignedIn, Status, Template, Unreadable } from "./shapes";
 import { lockPanel, signInForm } from "./sign_in";
 import { explanation, refusalText } from "./trouble";
 import { words } from "./words";
+import type { CalibrationFiles } from "../wire/calibration_channel";
 
 /// What is displayed beside the list.
 type Shown =
   | { readonly kind: "none" }
   | { readonly kind: "new" }
   | { readonly kind: "deleted"; readonly report: Deleted }
+  | { readonly kind: "confirm"; readonly patient: Patient; readonly course: Course | undefined; readonly exercise: Exercise }
+  | { readonly kind: "exercise"; readonly record: string; readonly number: number } // that runs, or has just ended
   | { readonly kind: "view" | "edit"; readonly patient: Patient; readonly course: Course | undefined };
 
+const kAllReadable: Unreadable = { damaged: [], withoutKey: 0 };
 const kLockMargin = 0.9; // of the station's time: the page is locked first, so that no request meets a locked session
 const kAlivePart = 5; // reports to the station within that time
 const kMillisecond = 1e-3;
@@ -31,18 +42,29 @@ export class PeoplePage {
   private status: Status | undefined;
   private signed: SignedIn | undefined;
   private patients: readonly Listed[] = [];
+  private unreadable: Unreadable = kAllReadable;
   private exercises: readonly Exercise[] = [];
+  private templates: readonly Template[] = [];
+  private readonly offer = new CalibrationOffer(() => this.status?.exercises === true);
+  private readonly windows = new ReportWindows();
+  private readonly watch: ExerciseWatch;
+  private readonly strip = new RunningStrip(() => this.showExercise());
+  private running: ExerciseNow | undefined; // the newest answer
+  private panel: RunningPanel | undefined;
+  private draft = { number: 0, text: "" }; // note that was being written when the page was locked
   private shown: Shown = { kind: "none" };
   private asked = 0; // number of the newest reading: what an older one brings is dropped
   private locked = false; // nothing of a patient is shown, whatever a request brings
 
   /// @param now    [ms]
-  /// @param later  runs a function after kLockAgainMs
+  /// @param later  runs a function after kLockAgainMs  @param watchLater  runs a function after a time [ms], for the exercise that runs
   constructor(
     private readonly api: PeopleApi,
-    now: () => number = () => Date.now(),
+    private readonly now: () => number = () => Date.now(),
     private readonly later: (run: () => void) => void = (run) => void setTimeout(run, kLockAgainMs),
+    watchLater?: (run: () => void, ms: number) => void,
   ) {
+    this.watch = new ExerciseWatch(() => this.api.exercise(), (told) => this.heard(told), (reason, stale) => this.unheard(reason, stale), () => this.setStale(), now, watchLater);
     this.idle = new IdleLock(now, () => this.lock(), () => void this.api.alive().catch((reason: unknown) => this.failed(reason)));
   }
 
@@ -60,18 +82,29 @@ export class PeoplePage {
 
   /// Removes what belongs to patients from the document at once, and locks the session at the station.
   lock(): void {
-    const { signed } = this;
+    const { signed, running, panel } = this;
     if (!signed || this.locked) return;
+    this.draft = { number: panel?.number ?? 0, text: panel?.draft ?? "" };
     this.forget();
     this.locked = true;
     const unlock = async (password: string) => {
       await this.api.unlock(password);
       this.locked = false;
       this.enter(signed);
-      await this.read();
+      await this.readAll();
     };
-    this.put(lockPanel(signed.account, unlock, () => void this.signOut()));
+    const pause = running && isUnderWay(running) ? () => this.pauseLocked(running.number) : undefined;
+    this.put(lockPanel(signed.account, unlock, () => void this.signOut(), pause));
     void this.lockStation();
+  }
+
+  /// Pauses an exercise from the lock's panel. The station takes a pause before it looks at the session, which it then finds locked.
+  private async pauseLocked(number: number): Promise<void> {
+    try {
+      await this.api.exerciseInput("pause", number);
+    } catch (reason) {
+      if (!(reason instanceof PeopleError && reason.trouble === "signed_out")) throw reason;
+    }
   }
 
   /// Locks the session at the station, again and again until the station has confirmed it or the session has ended.
@@ -85,8 +118,16 @@ export class PeoplePage {
     }
   }
 
+  /// Removes everything from the document, before the browser leaves the page.
+  leave(): void {
+    this.windows.closeAll();
+    this.content.replaceChildren();
+  }
+
   async signOut(why = ""): Promise<void> {
     this.forget();
+    this.draft = { number: 0, text: "" };
+    this.offer.end();
     this.locked = false;
     this.signed = undefined;
     void this.api.signOut();
@@ -98,7 +139,7 @@ export class PeoplePage {
 
   private async signIn(account: string, password: string): Promise<void> {
     this.enter(await this.api.signIn(account, password));
-    await this.read();
+    await this.readAll();
   }
 
   private enter(signed: SignedIn): void {
@@ -114,7 +155,13 @@ export class PeoplePage {
   private forget(): void {
     ++this.asked;
     this.idle.end();
+    this.watch.end();
+    this.windows.closeAll();
+    this.running = undefined;
+    this.panel = undefined;
+    this.strip.show(undefined);
     this.patients = [];
+    this.unreadable = kAllReadable;
     this.shown = { kind: "none" };
     setShown(this.account, false);
   }
@@ -152,12 +199,22 @@ export class PeoplePage {
     }
   }
 
+  /// Reads the list, and from then on which exercise runs.
+  private async readAll(): Promise<void> {
+    await this.read();
+    if (this.status?.exercises && this.signed && !this.locked) this.watch.begin();
+  }
+
   /// Reads the list, and the exercises once.
   private async read(): Promise<void> {
     await this.bring(async () => {
-      const patients = await this.api.patients();
+      const { patients, ...unreadable } = await this.api.patients();
       if (this.exercises.length === 0) this.exercises = await this.api.exercises();
-      if (!this.locked) this.patients = patients;
+      if (this.templates.length === 0) this.templates = await this.api.templates().catch(() => []); // a station without them
+      if (!this.locked) {
+        this.patients = patients;
+        this.unreadable = unreadable;
+      }
       return undefined;
     });
   }
@@ -203,7 +260,112 @@ export class PeoplePage {
     ++this.asked; // what is being read is no longer wanted
     this.shown = shown;
     this.show();
-    this.content.querySelector<HTMLElement>(".people-patient h2")?.focus();
+    const first = shown.kind === "new" ? ".people-form input" : ".people-patient h2"; // never a button: Enter that is held down would press it
+    this.content.querySelector<HTMLElement>(first)?.focus();
+  }
+
+  /// What a cockpit of this browser has told of the station's calibration.
+  setStation(files: CalibrationFiles): void {
+    this.offer.told(files);
+    this.watch.now();
+    this.showOffer();
+  }
+
+  private showOffer(): void {
+    if (this.shown.kind === "view" && !this.isTyping()) this.show();
+  }
+
+  /// Whether a form of the displayed patient is being filled in: it must not be made again.
+  private isTyping(): boolean {
+    const { activeElement } = document;
+    return activeElement instanceof HTMLElement && this.content.contains(activeElement) && activeElement.closest("form") !== null;
+  }
+
+  // ---- the exercise that the station carries out
+
+  private heard(told: ExerciseNow): void {
+    if (!this.signed || this.locked) return;
+    const first = this.running === undefined;
+    this.running = told;
+    this.strip.setStale(false);
+    if (this.panel?.number === told.number) this.panel.show(told);
+    else if (this.shown.kind === "exercise") this.another(told);
+    if (this.offer.heard(told)) this.showOffer();
+    // A page that comes to an exercise under way, as after a reload, goes to it. Otherwise the strip leads there.
+    if (first && isUnderWay(told) && this.shown.kind === "none") this.showExercise();
+    this.showStrip();
+  }
+
+  private unheard(reason: unknown, stale: boolean): void {
+    if (this.locked) return;
+    if (reason instanceof PeopleError && reason.trouble === "signed_out") return void this.failed(reason);
+    if (stale) this.setStale();
+  }
+
+  /// What is displayed of the exercise is not what happens now.
+  private setStale(): void {
+    this.panel?.setStale(true);
+    this.strip.setStale(true);
+  }
+
+  /// Another exercise has begun than the one that is displayed. A result, and a form that is being filled in, stay; the strip leads on.
+  private another(told: ExerciseNow): void {
+    if (this.panel?.showsResult || this.isTyping()) return this.panel?.setStale(!this.panel.showsResult);
+    this.shown = told.number === 0 ? { kind: "none" } : { kind: "exercise", record: told.record, number: told.number };
+    this.show();
+  }
+
+  private showStrip(): void {
+    const { running } = this;
+    const { shown } = this;
+    const elsewhere = running && isUnderWay(running) && !(shown.kind === "exercise" && shown.number === running.number);
+    this.strip.show(elsewhere ? running : undefined);
+  }
+
+  private showExercise(): void {
+    const { running } = this;
+    if (running) this.set({ kind: "exercise", record: running.record, number: running.number });
+  }
+
+  private async beginExercise(patient: Patient, exercise: Exercise, demo: string): Promise<void> {
+    await this.change(this.api.beginExercise(patient.record, exercise.name, patient.code, demo));
+    if (this.locked) return;
+    const told = await this.api.exercise();
+    if (this.locked || !this.signed) return;
+    this.running = told;
+    this.showExercise();
+    this.watch.now();
+  }
+
+  /// The panel of the exercise that runs: made once for each.
+  private exercisePanel(shown: { readonly number: number }, told: ExerciseNow): HTMLElement {
+    if (this.panel?.number === shown.number) return this.panel.element;
+    const { record, name, number } = told;
+    const actions = {
+      input: async (kind: string, values?: Readonly<Record<string, number>>) => {
+        await this.change(this.api.exerciseInput(kind, number, values));
+        this.watch.now();
+      },
+      note: (text: string) => this.change(this.api.addNote(record, text)),
+      back: () => void this.readAgain(record),
+      list: () => this.set({ kind: "none" }),
+      again: () => void this.openToBegin(record, name),
+    };
+    const draft = this.draft.number === number ? this.draft.text : "";
+    this.draft = { number: 0, text: "" };
+    this.panel = new RunningPanel(number, told, actions, reportLanguage(), this.now, draft);
+    return this.panel.element;
+  }
+
+  private async openToBegin(record: string, name: string): Promise<void> {
+    await this.open(record);
+    if (this.shown.kind === "view" && this.shown.patient.record === record) this.confirm(this.shown.patient, this.shown.course, name);
+  }
+
+  private confirm(patient: Patient, course: Course | undefined, name: string): void {
+    if (this.running && isUnderWay(this.running)) return this.trouble(words.begin.runs);
+    const exercise = this.exercises.find((one) => one.name === name) ?? { name, title: name, kind: "", measure: "" };
+    this.set({ kind: "confirm", patient, course, exercise });
   }
 
   // ---- what is in the document
@@ -221,24 +383,30 @@ export class PeoplePage {
 
   private put(...elements: readonly HTMLElement[]): void {
     this.trouble("");
-    this.content.replaceChildren(this.alert, ...elements);
+    this.content.replaceChildren(this.alert, this.strip.element, ...elements);
   }
 
   private detail(status: Status): HTMLElement {
-    const { shown } = this;
-    if (shown.kind === "new") return patientForm(undefined, status, (fields) => this.save(undefined, fields), () => this.set({ kind: "none" }));
-    if (shown.kind === "none") return el("div", { class: "people-detail", tabindex: 0, role: "group", "aria-label": words.exercises.title }, el("p", { class: "people-box hint" }, words.list.choose), exerciseList(this.exercises));
-    if (shown.kind === "deleted") {
-      const { left } = shown.report;
-      const files = el("ul", {}, ...left.map((file) => el("li", {}, el("code", {}, file))));
-      return el("div", { class: "people-box", role: "status" }, el("p", {}, words.remove.done), ...(left.length > 0 ? [el("p", {}, words.remove.left), files] : []));
-    }
+    const { shown, exercises, templates, offer, windows } = this;
+    const context: PatientContext = { status, exercises, templates, offer, windows };
+    if (shown.kind === "new") return patientForm(undefined, context, (fields) => this.save(undefined, fields), () => this.set({ kind: "none" }));
+    if (shown.kind === "exercise" && this.running) return this.exercisePanel(shown, this.running);
+    if (shown.kind === "none" || shown.kind === "exercise") return el("div", { class: "people-detail", tabindex: 0, role: "group", "aria-label": words.exercises.title }, el("p", { class: "people-box hint" }, words.list.choose), exerciseList(exercises));
+    if (shown.kind === "deleted") return deletedReport(shown.report);
     const { patient, course } = shown;
     const { record } = patient;
-    if (shown.kind === "edit") return patientForm(patient, status, (fields) => this.save(patient, fields), () => this.set({ kind: "view", patient, course }));
-    return patientView(patient, status, course, {
+    const back = () => this.set({ kind: "view", patient, course });
+    if (shown.kind === "confirm") return confirmPanel(patient, shown.exercise, (demo) => this.beginExercise(patient, shown.exercise, demo), back);
+    if (shown.kind === "edit") return patientForm(patient, context, (fields) => this.save(patient, fields), back);
+    return patientView(patient, context, course, {
       edit: () => this.set({ kind: "edit", patient, course }),
       back: () => this.set({ kind: "none" }),
+      begin: (exercise) => this.confirm(patient, course, exercise),
+      calibrate: () => this.offer.begin(record, this.running),
+      change: (fields) => this.save(patient, fields),
+      report: (day) => this.change(this.api.report(record, reportLanguage(), day)),
+      fhir: (day) => this.change(this.api.fhir(record, day)),
+      export: () => this.change(this.api.export(record)),
       addTest: async (test) => {
         await this.change(this.api.addTest(record, test));
         await this.open(record);
@@ -254,8 +422,9 @@ export class PeoplePage {
   private show(): void {
     if (!this.status || !this.signed || this.locked) return;
     const { shown } = this;
-    const chosen = shown.kind === "view" || shown.kind === "edit" ? shown.patient.record : "";
-    const list = patientList(this.patients, chosen, (record) => void this.open(record), () => this.set({ kind: "new" }));
+    const chosen = "patient" in shown ? shown.patient.record : shown.kind === "exercise" ? shown.record : "";
+    this.showStrip();
+    const list = patientList(this.patients, this.unreadable, chosen, (record) => void this.open(record), () => this.set({ kind: "new" }));
     const scrolled = this.content.querySelector(".people-list")?.scrollTop ?? 0; // the list stays where it is
     const columns = el("div", { class: "people-columns", "data-detail": String(shown.kind !== "none") }, list, this.detail(this.status));
     this.put(columns);

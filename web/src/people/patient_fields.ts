@@ -2,20 +2,22 @@
 // The fields of a patient that a person fills in, and what is measured. The station checks all values.
 import { strings } from "../strings";
 import type { FieldPlan } from "./form";
-import { entryCheck, fieldFigure, fieldFlag, fieldLines, fieldText, overridesOf, ownForces, ownRanges, prescription, type Patient, type Prescribed, type Status } from "./shapes";
+import { entryCheck, fieldFigure, fieldFlag, fieldLines, fieldText, overridesOf, ownForces, ownRanges, prescription, type Patient, type Prescribed, type Status, type Template } from "./shapes";
+import { templateLines, templateName } from "./templates";
 import { figureText, valueText, words } from "./words";
 
 const { newton, degree, stiffness, torque } = strings.units;
 const kCodeLength = 16;
 const kDateLength = 10;
 const kNoteLength = 4000;
+const kTemplate = "template"; // of the form of a new patient; the station has no such field
 
 /// measured: the station takes it from a file; the form has no field for it.
 type Plan = Omit<FieldPlan, "label"> & { readonly measured?: true };
 
 const plans: readonly Plan[] = [
   { name: "code", kind: "text", hint: words.hints.code, longest: kCodeLength },
-  { name: "side", kind: "choice" },
+  { name: "side", kind: "chips" },
   { name: "symbol", kind: "choice" },
   { name: "consent", kind: "flag" },
   { name: "consent_date", kind: "date", hint: words.hints.date, longest: kDateLength },
@@ -39,18 +41,25 @@ const typed = plans.filter(({ measured }) => !measured);
 
 const label = (name: string): string => words.fields[name] ?? name;
 
+/// What a new patient needs; all other fields are folded away.
+const firstFields: readonly string[] = ["code", "side", "consent", kTemplate];
+
 /// The fields of the form, with the symbols that may be chosen.
-/// @param isNew  no side is proposed, since a wrong one would put the wrong hand into these limits
-export function patientPlans(status: Status, isNew: boolean): readonly FieldPlan[] {
-  const first = (text: string) => (isNew ? [{ value: "", text }] : []);
+/// @param templates  of prescriptions  @param isNew  no side is proposed, since a wrong one would put the wrong hand into these limits
+export function patientPlans(status: Status, templates: readonly Template[], isNew: boolean): readonly FieldPlan[] {
   const choices: Readonly<Record<string, FieldPlan["choices"]>> = {
-    side: [...first(words.list.notChosen), ...Object.entries(words.sides).map(([value, text]) => ({ value, text }))],
-    symbol: [...first(words.list.automatic), ...status.symbols.map((value) => ({ value, text: words.symbols[value] ?? value }))],
+    side: Object.entries(words.sides).map(([value, text]) => ({ value, text })),
+    symbol: [...(isNew ? [{ value: "", text: words.list.automatic }] : []), ...status.symbols.map((value) => ({ value, text: words.symbols[value] ?? value }))],
   };
-  return typed.map((plan) => {
+  const all = typed.map((plan): FieldPlan => {
     const chosen = choices[plan.name];
-    return { ...plan, label: label(plan.name), ...(chosen ? { choices: chosen } : {}) };
+    return { ...plan, label: label(plan.name), ...(chosen ? { choices: chosen } : {}), later: isNew && !firstFields.includes(plan.name) };
   });
+  if (!isNew || templates.length === 0) return all;
+  const named = templates.map((one) => ({ value: one.name, text: templateName(one) }));
+  const template: FieldPlan = { name: kTemplate, label: words.templates.label, kind: "chips", choices: [{ value: "", text: words.templates.none }, ...named] };
+  const at = all.findIndex(({ name }) => name === "consent") + 1;
+  return [...all.slice(0, at), template, ...all.slice(at)];
 }
 
 // ---- prescription: one exercise on each line, "press_and_hold; 20; 10; slowly"
@@ -77,6 +86,7 @@ export function formValues(patient: Patient): Readonly<Record<string, unknown>> 
     area: (name) => fieldText(patient, name),
     date: (name) => fieldText(patient, name),
     choice: (name) => fieldText(patient, name),
+    chips: (name) => fieldText(patient, name),
     number: (name) => fieldFigure(patient, name),
     flag: (name) => fieldFlag(patient, name),
     lines: (name) => (name === "prescription" ? prescription(patient).map(prescribedLine) : fieldLines(patient, name)),
@@ -92,8 +102,10 @@ function differing(values: Readonly<Record<string, unknown>>, patient: Patient |
   return Object.fromEntries(Object.entries(values).filter(([name]) => !same(name)));
 }
 
-/// The changes that a filled form makes, in the form of the station's JSON. @throws Error naming a number that cannot be read
-export function formChanges(values: Readonly<Record<string, unknown>>, patient: Patient | undefined): Readonly<Record<string, unknown>> {
+/// The changes that a filled form makes, in the form of the station's JSON. A template is the prescription, followed by the lines that were
+/// typed. @throws Error naming a number that cannot be read
+export function formChanges(filled: Readonly<Record<string, unknown>>, patient: Patient | undefined, templates: readonly Template[] = []): Readonly<Record<string, unknown>> {
+  const { [kTemplate]: template, ...values } = filled;
   const changes = differing(values, patient);
   const lines = Array.isArray(values["prescription"]) ? (values["prescription"] as unknown[]).map(String) : [];
   const prescribed = lines.map((line) => readLine(line, patient));
@@ -103,7 +115,8 @@ export function formChanges(values: Readonly<Record<string, unknown>>, patient: 
   });
   if (values["side"] === "") throw new Error(words.patient.noSide);
   for (const { name, kind } of typed) if (kind === "number" && Number.isNaN(values[name])) throw new Error(words.patient.badNumber(label(name)));
-  return "prescription" in changes ? { ...changes, prescription: prescribed } : changes;
+  const chosen = templates.find(({ name }) => name === template);
+  return "prescription" in changes ? { ...changes, prescription: [...(chosen ? templateLines(chosen) : []), ...prescribed] } : changes;
 }
 
 /// What is known of a patient, a label and a text each. What is absent is left out.

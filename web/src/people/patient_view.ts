@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // One patient: who it is, what keeps the patient from exercises, the fields, and the course.
 import { button, el, newId, section } from "../panels/dom";
+import { beginSection } from "./begin_exercise";
+import type { CalibrationOffer } from "./calibration_offer";
+import { calibrationSection } from "./calibration_section";
 import { notesSection, resultsSection, testsSection, trendsSection } from "./course_sections";
+import { documentsSection, type DocumentActions, type ReportWindows } from "./documents";
 import { form } from "./form";
 import { facts, formChanges, formValues, patientPlans } from "./patient_fields";
 import { obstacleTexts, sideText, symbolText } from "./lists";
-import { fieldLines, type Course, type Patient, type Status } from "./shapes";
+import { fieldLines, prescription, type Course, type Deleted, type Exercise, type Patient, type Status, type Template } from "./shapes";
 import { picture } from "./symbols";
+import { templateLines, templateList } from "./templates";
 import { words } from "./words";
 
-export interface PatientActions {
+export interface PatientActions extends DocumentActions {
   edit(): void;
   back(): void;
+  begin(exercise: string): void;
+  calibrate(): void; // the cockpit's dialog is opened
+  change(fields: Readonly<Record<string, unknown>>): Promise<void>;
   addTest(test: Readonly<Record<string, unknown>>): Promise<void>;
   addNote(text: string): Promise<void>;
   remove(confirm: string): Promise<void>;
@@ -52,17 +60,34 @@ function removal(patient: Patient, remove: (confirm: string) => Promise<void>): 
   );
 }
 
+/// What the views of a patient need besides the patient.
+export interface PatientContext {
+  readonly status: Status;
+  readonly exercises: readonly Exercise[]; // that there are
+  readonly templates: readonly Template[];
+  readonly offer: CalibrationOffer; // of what a cockpit of this browser has made
+  readonly windows: ReportWindows;
+}
+
 /// @param course  absent: it is still being read
-export function patientView(patient: Patient, status: Status, course: Course | undefined, actions: PatientActions): HTMLElement {
+export function patientView(patient: Patient, context: PatientContext, course: Course | undefined, actions: PatientActions): HTMLElement {
+  const { status, exercises, templates, offer, windows } = context;
+  const use = (template: Template) => actions.change({ prescription: templateLines(template) });
+  const list = templateList(templates, exercises, prescription(patient).length > 0, use);
   const parts = course
-    ? [trendsSection(course), resultsSection(course), testsSection(course, status.tests, actions.addTest), notesSection(course, actions.addNote)]
+    ? [
+        trendsSection(course), resultsSection(course), testsSection(course, status.tests, actions.addTest), notesSection(course, actions.addNote),
+        documentsSection(patient, course, windows, actions),
+      ]
     : [el("p", { class: "hint", role: "status" }, words.reading)];
   return el(
     "section",
     { class: "people-box people-patient", "aria-label": words.patient.region(patient.code) },
     head(patient, actions.back),
     told(patient),
+    status.exercises ? beginSection(patient, exercises, list, actions.begin) : null,
     ...parts,
+    calibrationSection(patient, offer.of(patient.record), actions.change, actions.calibrate),
     section(words.patient.facts, factList(patient), el("div", { class: "buttons" }, button(words.patient.edit, actions.edit))),
     removal(patient, actions.remove),
   );
@@ -71,7 +96,7 @@ export function patientView(patient: Patient, status: Status, course: Course | u
 /// The form of a new patient, or of one that is changed.
 export function patientForm(
   patient: Patient | undefined,
-  status: Status,
+  { status, templates }: PatientContext,
   save: (fields: Readonly<Record<string, unknown>>) => Promise<void>,
   cancel: () => void,
 ): HTMLElement {
@@ -82,6 +107,19 @@ export function patientForm(
     { class: "people-box people-patient", "aria-labelledby": id },
     el("h2", { id, tabindex: -1 }, title),
     el("p", { class: "hint" }, words.patient.noNames),
-    form(patientPlans(status, !patient), patient ? formValues(patient) : {}, words.save, (values) => save(formChanges(values, patient)), cancel),
+    form(patientPlans(status, templates, !patient), patient ? formValues(patient) : {}, words.save, (values) => save(formChanges(values, patient, templates)), cancel),
+  );
+}
+
+/// What a deletion did, and which files a person must still delete.
+export function deletedReport({ left, removed, unreadable, unknown }: Deleted): HTMLElement {
+  const files = el("ul", {}, ...left.map((file) => el("li", {}, el("code", {}, file))));
+  const counted = ([[unreadable, words.remove.unreadable], [removed, words.remove.removed], [unknown, words.remove.unknown]] as const).filter(([count]) => count > 0);
+  return el(
+    "div",
+    { class: "people-box people-patient", role: "status" },
+    el("p", {}, words.remove.done),
+    ...counted.map(([count, text]) => el("p", { class: "hint" }, text(String(count)))),
+    ...(left.length > 0 ? [el("p", {}, words.remove.left), files] : []),
   );
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the station answers, read defensively: a field of another kind is as if it were absent.
 
-type Entry = Readonly<Record<string, unknown>>;
+export type Entry = Readonly<Record<string, unknown>>;
 
-const entry = (value: unknown): Entry => (typeof value === "object" && value !== null && !Array.isArray(value) ? (value as Entry) : {});
-const text = (value: unknown): string => (typeof value === "string" ? value : "");
-const figure = (value: unknown): number | undefined => (typeof value === "number" && Number.isFinite(value) ? value : undefined);
-const list = (value: unknown): readonly unknown[] => (Array.isArray(value) ? (value as unknown[]) : []);
-const texts = (value: unknown): readonly string[] => list(value).map(text).filter((one) => one !== "");
+export const entry = (value: unknown): Entry => (typeof value === "object" && value !== null && !Array.isArray(value) ? (value as Entry) : {});
+export const text = (value: unknown): string => (typeof value === "string" ? value : "");
+export const figure = (value: unknown): number | undefined => (typeof value === "number" && Number.isFinite(value) ? value : undefined);
+export const list = (value: unknown): readonly unknown[] => (Array.isArray(value) ? (value as unknown[]) : []);
+export const texts = (value: unknown): readonly string[] => list(value).map(text).filter((one) => one !== "");
 
 /// A clinical test that is entered by hand, with the values that it allows.
 export interface TestKind {
@@ -20,6 +20,7 @@ export interface TestKind {
 /// What the page may know before a person signs in.
 export interface Status {
   readonly accounts: boolean; // people sign in
+  readonly exercises: boolean; // the station can carry them out
   readonly symbols: readonly string[];
   readonly tests: readonly TestKind[];
 }
@@ -29,7 +30,7 @@ export function readStatus(answer: unknown): Status {
   const tests = list(one["tests"]).map(entry).map((test) => ({
     kind: text(test["kind"]), unit: text(test["unit"]), least: figure(test["least"]) ?? 0, most: figure(test["most"]) ?? 0,
   }));
-  return { accounts: one["accounts"] === true, symbols: texts(one["symbols"]), tests: tests.filter(({ kind }) => kind !== "") };
+  return { accounts: one["accounts"] === true, exercises: one["exercises"] === true, symbols: texts(one["symbols"]), tests: tests.filter(({ kind }) => kind !== "") };
 }
 
 export interface SignedIn {
@@ -79,6 +80,14 @@ export function readPatient(answer: unknown): Patient {
   return { ...readListed(answer), revision: text(fields["revision"]), said: texts(fields["said"]), fields };
 }
 
+/// Patients that cannot be read; the others stay in use.
+export interface Unreadable {
+  readonly damaged: readonly string[]; // record numbers
+  readonly withoutKey: number; // patients whose key is missing
+}
+
+export const readUnreadable = (answer: unknown): Unreadable => ({ damaged: texts(entry(answer)["damaged"]), withoutKey: figure(entry(answer)["without_key"]) ?? 0 });
+
 export function readPatients(answer: unknown): readonly Listed[] {
   const patients = list(entry(answer)["patients"]).map(readListed).filter(({ record }) => record !== "");
   return patients.sort((a, b) => a.code.localeCompare(b.code));
@@ -89,12 +98,14 @@ export const fieldLines = (patient: Patient, name: string): readonly string[] =>
 export const fieldFigure = (patient: Patient, name: string): number | undefined => figure(patient.fields[name]);
 export const fieldFlag = (patient: Patient, name: string): boolean => patient.fields[name] === true;
 
-export function prescription(patient: Patient): readonly Prescribed[] {
-  const all = list(patient.fields["prescription"]).map(entry).map((one) => ({
+function readLines(value: unknown): readonly Prescribed[] {
+  const all = list(value).map(entry).map((one) => ({
     exercise: text(one["exercise"]), repetitions: figure(one["repetitions_per_day"]) ?? 0, minutes: figure(one["minutes_per_day"]) ?? 0, note: text(one["note"]),
   }));
   return all.filter(({ exercise }) => exercise !== "");
 }
+
+export const prescription = (patient: Patient): readonly Prescribed[] => readLines(patient.fields["prescription"]);
 
 /// Values of a key of each prescribed exercise, which this page does not change.
 export function overridesOf(patient: Patient, exercise: string): Entry {
@@ -151,9 +162,19 @@ export interface Note {
   readonly text: string;
 }
 
+export interface TrendPoint {
+  readonly date: number; // UTC [s]
+  readonly value: number;
+}
+
+/// Values of equal conditions, the oldest first.
 export interface Trend {
+  readonly name: string;
   readonly title: string;
   readonly unit: string;
+  readonly points: readonly TrendPoint[];
+  readonly smallest: number | undefined; // smallest real difference that is published for it
+  readonly entered: boolean; // a test that was entered by hand
   readonly count: number; // values
   readonly first: number;
   readonly last: number;
@@ -169,14 +190,16 @@ export interface Course {
   readonly trends: readonly Trend[];
 }
 
-function readScore(row: Entry): ScoreValue {
+export function readScore(row: Entry): ScoreValue {
   return { name: text(row["name"]), unit: text(row["unit"]), origin: text(row["origin"]), value: figure(row["value"]), invalid: text(row["invalid"]) };
 }
 
 function readTrend(row: Entry): Trend {
-  const points = list(row["points"]).map(entry).map((point) => figure(point["value"]) ?? NaN);
+  const read = list(row["points"]).map(entry).map((point) => ({ date: figure(point["date"]) ?? NaN, value: figure(point["value"]) ?? NaN }));
+  const points = read.filter(({ date, value }) => !Number.isNaN(date) && !Number.isNaN(value)).sort((a, b) => a.date - b.date);
   return {
-    title: text(row["title"]) || text(row["name"]), unit: text(row["unit"]), count: points.length, first: points[0] ?? NaN, last: points.at(-1) ?? NaN,
+    name: text(row["name"]), title: text(row["title"]) || text(row["name"]), unit: text(row["unit"]), points, smallest: figure(row["smallest_real_difference"]),
+    entered: row["entered"] === true, count: points.length, first: points[0]?.value ?? NaN, last: points.at(-1)?.value ?? NaN,
     proven: row["proven"] === true, verdict: text(row["verdict"]),
   };
 }
@@ -201,14 +224,55 @@ export function readCourse(answer: unknown): Course {
   };
 }
 
-/// What a deletion could not reach.
+/// What a deletion reached, and what it could not.
 export interface Deleted {
   readonly left: readonly string[]; // files that a person must remove
+  readonly removed: number; // exports that were deleted
+  readonly unreadable: number; // encrypted recordings that are unreadable from now on
+  readonly unknown: number; // rows that could not be read: the files that they named are not listed
 }
 
 export function readDeleted(answer: unknown): Deleted {
   const one = entry(answer);
-  return { left: [...texts(one["exports_missing"]), ...texts(one["plain_recordings"])] };
+  const count = (name: string) => figure(one[name]) ?? list(one[name]).length;
+  return {
+    left: [...texts(one["exports_missing"]), ...texts(one["plain_recordings"]), ...texts(one["bound_files"])],
+    removed: count("exports_removed"), unreadable: count("encrypted_recordings"), unknown: count("unreadable_rows"),
+  };
+}
+
+/// A file of an export.
+export interface ExportedFile {
+  readonly name: string;
+  readonly type: string;
+  readonly text: string;
+}
+
+export function readExport(answer: unknown): readonly ExportedFile[] {
+  const files = list(entry(answer)["files"]).map(entry).map((file) => ({ name: text(file["name"]), type: text(file["type"]), text: text(file["text"]) }));
+  return files.filter(({ name }) => name !== "");
+}
+
+/// A prescription that is ready for use.
+export interface Template {
+  readonly name: string;
+  readonly title: string;
+  readonly lines: readonly TemplateLine[];
+}
+
+/// A line of a template, with the values of the exercise's keys that it changes.
+export interface TemplateLine extends Prescribed {
+  readonly overrides: Entry;
+}
+
+function readTemplateLines(value: unknown): readonly TemplateLine[] {
+  const named = list(value).map(entry).filter((one) => text(one["exercise"]) !== "");
+  return readLines(named).map((line, i) => ({ ...line, overrides: entry(named[i]?.["overrides"]) }));
+}
+
+export function readTemplates(answer: unknown): readonly Template[] {
+  const all = list(entry(answer)["templates"]).map(entry).map((one) => ({ name: text(one["name"]), title: text(one["title"]) || text(one["name"]), lines: readTemplateLines(one["lines"]) }));
+  return all.filter(({ name }) => name !== "");
 }
 
 export interface Exercise {

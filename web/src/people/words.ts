@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The texts of the page of patients in the language in use, and values of a patient as text.
-import { language, strings } from "../strings";
+import { english, language, strings } from "../strings";
 import { de } from "../strings/people_de";
 import { en, type PeopleStrings } from "../strings/people_en";
+import type { Trend } from "./shapes";
 
 /// By the code of the language.
 export const peopleLanguages: Readonly<Record<string, PeopleStrings>> = { en, de };
+
+/// The language of the station's own words.
+export const stationLanguage = english.code;
 
 export const words: PeopleStrings = peopleLanguages[language.code] ?? en;
 
@@ -27,4 +31,31 @@ export function valueText(value: number | undefined, unit: string): string {
 /// With its sign.
 export function changeText(value: number, unit: string): string {
   return value > 0 ? `+${valueText(value, unit)}` : valueText(value, unit);
+}
+
+/// 4 May 2026, of this browser's clock.
+export const dayText = (unixSeconds: number): string => new Date(unixSeconds * 1000).toLocaleDateString(strings.figures, { dateStyle: "medium" });
+/// 4 May 26, for the axis of a chart.
+export const axisDay = (unixSeconds: number): string => new Date(unixSeconds * 1000).toLocaleDateString(strings.figures, { day: "numeric", month: "short", year: "2-digit" });
+/// 2026-05-04, of the station's calendar, which is UTC; empty where no date is known.
+export const dayName = (unixSeconds: number): string => (unixSeconds > 0 ? new Date(unixSeconds * 1000).toISOString().slice(0, 10) : "");
+
+/// The name of a score in words, without its unit, which follows its value: "mean_n" is "mean".
+export function scoreName(name: string, unit: string): string {
+  const parts = name.split("_");
+  if (parts.length > 1 && parts.at(-1) === unit.toLowerCase()) parts.pop();
+  return parts.join(" ");
+}
+
+/// What a trend is of, in the language of the page where it is a test that was entered.
+export function trendTitle({ name, title, unit, entered }: Trend): string {
+  const [kind = "", side = ""] = name.split("/");
+  if (entered && words.kinds[kind] !== undefined) return `${words.kinds[kind]}, ${words.testSides[side] ?? side}`;
+  return entered || side === "" ? title : `${kind.replaceAll("_", " ")}: ${scoreName(side, unit)}`;
+}
+
+/// The station's verdict in short, in the language of the page; its own words where they begin in no known way.
+export function verdictText({ verdict }: Trend): string {
+  const found = Object.entries(words.verdicts).find(([begin]) => verdict.startsWith(begin));
+  return found ? found[1] : verdict;
 }

@@ -33,6 +33,7 @@ export interface ConnectionParts {
   readonly openSocket: () => Socket;
   readonly secret: Memory;
   readonly name: () => string;
+  readonly patientScreen?: boolean; // Hello.patient_screen
   readonly onPhase: (phase: Phase) => void;
   readonly onMessage: (message: ToPage) => void;
   readonly linkExpired?: () => Promise<boolean>; // called after some failed tries; returns whether the station refuses this page's address
@@ -86,6 +87,7 @@ export class Connection {
         protocol: kProtocol,
         secret: this.parts.secret.get(),
         name: this.parts.name(),
+        patientScreen: this.parts.patientScreen ?? false,
       });
       this.post({ case: "hello", value: hello }, 0);
     };

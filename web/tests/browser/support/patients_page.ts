@@ -58,7 +58,7 @@ export class PatientsPage {
   async add(code: string, side: "left" | "right"): Promise<void> {
     await this.button(en.list.add).click();
     await this.fieldLike(en.fields["code"]!).fill(code);
-    await this.choose(en.fields["side"]!, side);
+    await this.page.getByRole("radiogroup", { name: en.fields["side"]!, exact: true }).getByRole("radio", { name: en.sides[side]! }).click();
     await this.button(en.save).click();
     await this.patient(code).waitFor();
   }

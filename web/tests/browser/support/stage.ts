@@ -8,6 +8,7 @@ import { afterAll, afterEach, expect, inject } from "vitest";
 import { CockpitPage } from "./cockpit_page";
 import { bringToKnownState, freeControl, type Values } from "./known_state";
 import { addressOf, runDevice, runStation, slowMotion, type Program } from "./program";
+import { PatientScreen } from "./patient_screen";
 import { PatientsPage } from "./patients_page";
 import { RecordingPage } from "./recording_page";
 import { paintNothing, slowScreen } from "./slow_screen";
@@ -47,7 +48,7 @@ const kLastWords = 600; // characters
 export class Stage {
   private readonly programs: Program[] = [];
   private readonly folders: string[] = [];
-  private readonly pages: (CockpitPage | RecordingPage | PatientsPage)[] = [];
+  private readonly pages: (CockpitPage | RecordingPage | PatientsPage | PatientScreen)[] = [];
   private browser: Promise<Browser> | undefined;
   private shared = "";
 
@@ -107,6 +108,14 @@ export class Stage {
     this.pages.push(page);
     await page.page.goto(`${url}people.html`);
     return page;
+  }
+
+  /// The patient's screen of a station, without speech and sound.
+  async openPatientScreen(url: string, wishes: PageWishes = {}): Promise<PatientScreen> {
+    const screen = new PatientScreen(await this.blank(wishes));
+    this.pages.push(screen);
+    await screen.page.goto(`${url}patient.html?lang=en&speech=0&sound=0`);
+    return screen;
   }
 
   private async blank({ hertz, unseen: blind = false, ...options }: PageWishes): Promise<Page> {

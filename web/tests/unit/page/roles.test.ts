@@ -28,7 +28,8 @@ describe("role", () => {
     const wire = create(StateSchema, { source: HandSource.HAND_DEVICE, deviceSimulated: false });
     expect(mayCalibrate("mine", wire)).toBe(true);
     expect(mayCalibrate("other", wire)).toBe(false);
-    expect(mayCalibrate("mine", create(StateSchema, { ...wire, deviceSimulated: true }))).toBe(false);
+    expect(mayCalibrate("mine", create(StateSchema, { ...wire, deviceSimulated: true }))).toBe(true);
+    expect(mayCalibrate("mine", create(StateSchema, { deviceSimulated: true, source: HandSource.HAND_PATIENT }))).toBe(false);
     expect(mayCalibrate("mine", create(StateSchema, { ...wire, source: HandSource.HAND_SLIDERS }))).toBe(false);
     expect(mayCalibrate("mine", undefined)).toBe(false);
   });

@@ -11,7 +11,7 @@ const languages = [resolve(source, "strings.ts"), resolve(source, "strings")]; /
 function program(): ts.Program {
   const read = ts.readConfigFile(resolve(root, "tsconfig.json"), (name) => ts.sys.readFile(name));
   const { options } = ts.parseJsonConfigFileContent(read.config, ts.sys, root);
-  return ts.createProgram(["main.ts", "opening.ts", "recording.ts", "people/main.ts"].map((entry) => resolve(source, entry)), options);
+  return ts.createProgram(["main.ts", "opening.ts", "recording.ts", "people/main.ts", "patient/main.ts"].map((entry) => resolve(source, entry)), options);
 }
 
 const made = program();

@@ -154,7 +154,7 @@ describe("the texts", () => {
     const terms = /^(Message|Files)$/; // kinds of an MCAP record and of what is dropped
     const all = literals();
     expect(all.length).toBeGreaterThan(500);
-    for (const folder of ["panels", "plots", "state", "view3d", "wire", "replay", "people", "main.ts", "recording.ts"]) expect(all.some(({ place }) => place.startsWith(folder)), folder).toBe(true);
+    for (const folder of ["panels", "plots", "state", "view3d", "wire", "replay", "people", "patient", "main.ts", "recording.ts"]) expect(all.some(({ place }) => place.startsWith(folder)), folder).toBe(true);
     for (const { text, place } of all) {
       if (/[;{}=<>#]/.test(text) || keys.test(text) || terms.test(text)) continue; // shaders and the like
       expect(text, place).not.toMatch(/(^|\s)[A-Za-z]{2,} [a-z]{2,}(\s|[.,:!?…]|$)/); // a sentence

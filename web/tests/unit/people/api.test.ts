@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { beforeEach, describe, expect, it } from "vitest";
+import { beforeEach, describe, expect, it, vi } from "vitest";
 import { PeopleApi, PeopleError } from "../../../src/people/api";
 
 interface Asked {
@@ -31,6 +31,28 @@ beforeEach(() => {
 });
 
 describe("a request", () => {
+  it("of an input states the exercise that it is for, and “go on” the stops that were seen", async () => {
+    const made = await signedIn();
+    await made.exerciseInput("pause", 7);
+    await made.exerciseInput("resume", 7, { stops: 4 });
+    await made.exerciseInput("pain", 7, { value: 3 });
+    expect(asked.map(({ options }) => JSON.parse(options.body as string) as unknown)).toEqual([
+      { kind: "pause", number: 7 }, { kind: "resume", number: 7, stops: 4 }, { kind: "pain", number: 7, value: 3 },
+    ]);
+  });
+
+  it("for the exercise that is watched waits much shorter than the others", async () => {
+    const limits: number[] = [];
+    const limit = vi.spyOn(AbortSignal, "timeout").mockImplementation((ms) => (limits.push(ms), new AbortController().signal));
+    const made = await signedIn();
+    limits.length = 0;
+    await made.exercise();
+    await made.patients();
+    limit.mockRestore();
+    expect(limits[0]).toBeLessThanOrEqual(1500);
+    expect(limits[1]).toBeGreaterThanOrEqual(10_000);
+  });
+
   it("has the secret of the session in a header, and never in its address", async () => {
     const made = await signedIn();
     await made.patients();

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // A station that keeps patients, for the page: it answers at once, and can refuse.
 import { PeopleError, type PeopleApi, type Trouble } from "../../../src/people/api";
-import { readCourse, readPatient, readStatus, type Course, type Patient, type SignedIn } from "../../../src/people/shapes";
+import { readExerciseNow } from "../../../src/people/exercise_now";
+import { readCourse, readPatient, readStatus, type Course, type Patient, type SignedIn, type Template } from "../../../src/people/shapes";
 
 export class FakeApi {
   accounts = true;
   locked = false;
   signedIn = false;
+  exercisesOn = false; // the station can carry exercises out
   said: readonly string[] = [];
+  damaged: readonly string[] = [];
+  kinds: readonly Template[] = [{ name: "day", title: "Assessment day", lines: [{ exercise: "press", repetitions: 5, minutes: 0, note: "slowly", overrides: { pain_limit: "4" } }] }];
+  now: Readonly<Record<string, unknown>> = {}; // the exercise that runs, as the station's JSON has it
   lockFails = 0; // so many requests to lock are lost
   refuse: { readonly trouble: Trouble; readonly message: string } | undefined;
   readonly asked: string[] = [];
+  readonly meant: number[] = []; // exercises that inputs were for
   kept: Patient[] = [
     readPatient({ record: "aa", code: "P07", side: "left", symbol: "boat", revision: "r1", obstacles: ["unchecked"], warnings: ["skin at the thumb"], force_limit_n: 4 }),
     readPatient({ record: "bb", code: "P12", side: "right", symbol: "sun", obstacles: [] }),
@@ -19,7 +25,7 @@ export class FakeApi {
     results: [{ date: 1_780_000_000, exercise: "press_and_hold", assessment: true, scores: [{ name: "mean_n", unit: "N", value: 4.25, origin: "measured" }] }],
     tests: [{ date: "2026-05-04", kind: "grip", side: "more_affected", value: 20, unit: "kg", rater: "PT1" }],
     notes: [{ date: 1_780_000_000, account: "a.meier", text: "hand is warm" }],
-    trends: [{ title: "Grip", unit: "kg", points: [{ date: 1, value: 20 }, { date: 2, value: 24 }], verdict: "improved by 4 kg" }],
+    trends: [{ name: "grip_index", title: "Grip", unit: "kg", points: [{ date: 1_770_000_000, value: 20 }, { date: 1_780_000_000, value: 24 }], verdict: "up by 4 kg", smallest_real_difference: 2.9 }],
   });
 
   get api(): PeopleApi {
@@ -34,7 +40,7 @@ export class FakeApi {
     return Promise.resolve(value());
   }
 
-  status = () => this.answer("status", () => readStatus({ accounts: this.accounts, symbols: ["sun", "boat"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }] }), false);
+  status = () => this.answer("status", () => readStatus({ accounts: this.accounts, exercises: this.exercisesOn, symbols: ["sun", "boat"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }] }), false);
   signIn(account: string, password: string): Promise<SignedIn> {
     this.asked.push("sign_in");
     if (this.refuse || (this.accounts && password !== "right")) return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
@@ -63,7 +69,7 @@ export class FakeApi {
     return Promise.resolve();
   }
   alive = () => this.answer("alive", () => undefined);
-  patients = () => this.answer("patients", () => this.kept);
+  patients = () => this.answer("patients", () => ({ patients: this.kept, damaged: this.damaged, withoutKey: 0 }));
   patient = (record: string) => this.answer(`patient ${record}`, () => this.kept.find((one) => one.record === record)!);
   course = (record: string) => this.answer(`course ${record}`, () => this.measured);
   exercises = () => this.answer("exercises", () => [{ name: "press", title: "Press and hold", kind: "assessment", measure: "press_and_hold" }]);
@@ -85,6 +91,21 @@ export class FakeApi {
   remove = (record: string, confirm: string) =>
     this.answer(`delete ${record} ${confirm}`, () => {
       this.kept = this.kept.filter((one) => one.record !== record);
-      return { left: ["/exports/old"] };
+      return { left: ["/exports/old"], removed: 1, unreadable: 7, unknown: 0 };
     });
+  templates = () => this.answer("templates", () => this.kinds);
+  report = (record: string, language: string, day: string) =>
+    this.answer(`report ${record} ${language} ${day}`, () => "<!doctype html><html lang=en><title>Report</title><style>p{color:red}</style><body><p style='margin: 3px'>4.25 N<script>1</script></p></body></html>");
+  fhir = (record: string, day: string) => this.answer(`fhir ${record} ${day}`, () => '{"resourceType":"Bundle"}');
+  export = (record: string) => this.answer(`export ${record}`, () => ["patient.json", "results.csv", "tests.csv"].map((name) => ({ name, type: "text/csv", text: name })));
+  exercise = () => this.answer("exercise", () => readExerciseNow(this.now));
+  beginExercise = (record: string, exercise: string, confirm: string, demo: string) =>
+    this.answer(`begin ${record} ${exercise} ${confirm} ${demo}`, () => {
+      const { code, symbol, side } = this.kept.find((one) => one.record === record)!;
+      this.now = { number: 1, stage: "running", record, code, symbol, side, name: exercise, title: "Press and hold", kind: "training", measure: "press_and_hold", simulated: demo !== "", phase: "ready" };
+    });
+  exerciseInput = (kind: string, number: number, values: Readonly<Record<string, number>> = {}) => {
+    this.meant.push(number);
+    return this.answer(`input ${[kind, ...Object.values(values)].join(" ")}`, () => undefined);
+  };
 }

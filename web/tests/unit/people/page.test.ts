@@ -66,6 +66,14 @@ describe("the page of patients", () => {
     expect(page.account.textContent).toContain("a.meier");
   });
 
+  it("names patients that cannot be read by their record numbers, beside the others", async () => {
+    station.damaged = ["d".repeat(32)];
+    await signIn();
+    expect(find(".people-damaged summary").textContent).toBe(words.list.damaged("1"));
+    expect(find(".people-damaged code").textContent).toBe("d".repeat(32));
+    expect(page.content.querySelectorAll(".patient-item").length).toBe(2);
+  });
+
   it("needs no password where no accounts are set up", async () => {
     station.accounts = false;
     await page.begin();
@@ -87,7 +95,7 @@ describe("one patient", () => {
   });
 
   it("is displayed with obstacles and warnings, course and fields", () => {
-    for (const text of [words.obstacles["unchecked"]!, "skin at the thumb", "4.25 N", "20 kg", "improved by 4 kg", "hand is warm", "4 N"]) expect(shown()).toContain(text);
+    for (const text of [words.obstacles["unchecked"]!, "skin at the thumb", "4.25 N", "20 kg", "up by 4 kg", "hand is warm", "4 N"]) expect(shown()).toContain(text);
     expect(find(".patient-item[aria-current]").textContent).toContain("P07");
     expect(document.activeElement?.textContent).toBe("P07");
   });
@@ -162,7 +170,8 @@ describe("one patient", () => {
     await submit(words.remove.submit);
     expect(station.asked).toContain("delete aa P07");
     expect(shown()).not.toContain("P07");
-    expect(shown()).toContain("/exports/old");
+    for (const text of ["/exports/old", words.remove.unreadable("7"), words.remove.removed("1")]) expect(shown()).toContain(text);
+    expect(shown()).not.toContain(words.remove.unknown("0"));
   });
 
   it("is left for the list", async () => {
@@ -178,8 +187,7 @@ describe("a new patient", () => {
     fill(words.fields["code"]!, "P20");
     await submit(words.save);
     expect(find(".refused:not([hidden])").textContent).toBe(words.patient.noSide);
-    find(".choice").click();
-    [...page.content.querySelectorAll<HTMLElement>("[role=option]")].find((one) => one.dataset["value"] === "right")!.click();
+    find(".chips [data-value=right]").click();
     await submit(words.save);
     expect(station.asked.some((one) => one.startsWith("add ") && one.includes('"code":"P20","side":"right","symbol":""'))).toBe(true);
     expect(find(".patient-item[aria-current]").textContent).toContain("P20");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
-import { scoreName } from "../../../src/people/course_sections";
-import { entryCheck, overridesOf, ownForces, prescription, readCourse, readDeleted, readExercises, readPatient, readPatients, readSignedIn, readStatus } from "../../../src/people/shapes";
+import { entryCheck, overridesOf, ownForces, prescription, readCourse, readDeleted, readExercises, readPatient, readPatients, readSignedIn, readStatus, readTemplates, readUnreadable } from "../../../src/people/shapes";
+import { scoreName } from "../../../src/people/words";
 
 const strange: readonly unknown[] = [null, undefined, 7, "text", [], [[]], { patients: 3 }, { patients: [null, 7] }, { results: {}, tests: "x", notes: [null], trends: [[]] }];
 
@@ -15,7 +15,7 @@ describe("what the station answers", () => {
   it("needs accounts only if it says so", () => {
     expect(readStatus({ accounts: "yes" }).accounts).toBe(false);
     expect(readStatus({ accounts: true, symbols: ["sun", 3], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }, {}] })).toEqual({
-      accounts: true, symbols: ["sun"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }],
+      accounts: true, exercises: false, symbols: ["sun"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }],
     });
   });
 
@@ -47,6 +47,20 @@ describe("what the station answers", () => {
     expect(course.results[0]!.scores[0]).toEqual({ name: "rmse_n", unit: "N", value: 1.5, origin: "measured", invalid: "" });
     expect(course.tests.map(({ value }) => value)).toEqual([24, 20]);
     expect(course.trends[0]).toMatchObject({ first: 20, last: 24, count: 3, proven: true });
+  });
+});
+
+describe("what a deletion or a damaged registry says", () => {
+  it("has the files that are left, and counts, whether they are stated as numbers or as lists", () => {
+    const answer = { exports_missing: ["/a"], plain_recordings: ["b.mcap"], bound_files: ["c.toml"], encrypted_recordings: 7, exports_removed: ["x", "y"], unreadable_rows: 1 };
+    expect(readDeleted(answer)).toEqual({ left: ["/a", "b.mcap", "c.toml"], removed: 2, unreadable: 7, unknown: 1 });
+    expect(readDeleted({})).toEqual({ left: [], removed: 0, unreadable: 0, unknown: 0 });
+    expect(readUnreadable({ damaged: ["d", 3], without_key: 2 })).toEqual({ damaged: ["d"], withoutKey: 2 });
+  });
+
+  it("keeps what a template changes of an exercise", () => {
+    const read = readTemplates({ templates: [{ name: "a", title: "A", lines: [{ exercise: "" }, { exercise: "press", repetitions_per_day: 15, overrides: { pain_limit: "3" } }] }, {}] });
+    expect(read).toEqual([{ name: "a", title: "A", lines: [{ exercise: "press", repetitions: 15, minutes: 0, note: "", overrides: { pain_limit: "3" } }] }]);
   });
 });
 
