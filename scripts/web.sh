@@ -3,7 +3,7 @@
 
 # What web/dist is made from, as one number.
 web_sources() {
-  (cd "$root/web" && find index.html people.html recording.html src vite.config.ts package-lock.json ../proto -type f -not -path 'src/gen/*' -print0 |
+  (cd "$root/web" && find index.html patient.html people.html recording.html src vite.config.ts package-lock.json ../proto -type f -not -path 'src/gen/*' -print0 |
     LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
 }
 
