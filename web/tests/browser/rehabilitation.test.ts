@@ -130,6 +130,7 @@ async function stopAndReload(code: Code): Promise<void> {
   await onlooker.stopButton.click();
   await panel(code).getByText(en.run.forcesOff).waitFor();
   await patients.button(en.run.resume).waitFor();
+  await until("the end of the stop's ramp", async () => largest((await onlooker.stream.next(1)).at(-1)!) === 0, () => onlooker.brief());
   for (const tick of await onlooker.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
   await shoot(screen.page, "rehabilitation_screen_stopped");
   const [goOn, wait] = await Promise.all([patients.button(en.run.resume).boundingBox(), patients.page.locator(".run-buttons > .run-main").boundingBox()]);
