@@ -57,7 +57,7 @@ struct Opposition {
 
 /// Calculates of each finger opposition_<finger>_mm, the least distance between the middles of the thumb's
 /// and the finger's pad, and opposition_held_<finger>_mm, the least distance that was not exceeded for
-/// hold_time. A hand that moves at random comes near, but does not stay.
+/// hold_time. A hand that moves at random comes near, but seldom stays.
 /// @throws std::invalid_argument  for no finger, or a hold_time outside 0 .. 10 s
 [[nodiscard]] std::vector<Score> opposition_scores(std::span<const Observation> steps,
                                                    const Opposition& task);

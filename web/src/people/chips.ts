@@ -9,7 +9,7 @@ export interface Chips {
 
 const kSteps: Readonly<Record<string, number>> = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
 
-/// @param value  chosen at first; one that is none of the choices chooses none
+/// @param value  chosen at first; without a choice of this value, none is chosen
 export function chips(title: string, choices: readonly { readonly value: string; readonly text: string }[], value: string): Chips {
   const id = newId("chips");
   const radios = choices.map((one) => ({ value: one.value, control: button(one.text, () => choose(one.value), { role: "radio", "data-value": one.value }) }));
