@@ -44,12 +44,18 @@ class FakePath {
   addPath(): void {}
 }
 
-/// For this file's tests.
-export function fakeCanvases(): void {
+/// To be given to beforeAll, which calls the answer after the last test: the files of tests share a process.
+export function fakeCanvases(): () => void {
+  const { getContext } = HTMLCanvasElement.prototype;
+  const { Path2D } = globalThis;
   HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement) {
     return contextOf(this);
-  } as unknown as typeof HTMLCanvasElement.prototype.getContext;
+  } as unknown as typeof getContext;
   globalThis.Path2D = FakePath as unknown as typeof Path2D;
+  return () => {
+    HTMLCanvasElement.prototype.getContext = getContext;
+    globalThis.Path2D = Path2D;
+  };
 }
 
 export const drawnOn = (canvas: HTMLCanvasElement): readonly Drawn[] => contexts.get(canvas)?.drawn ?? [];
