@@ -109,7 +109,7 @@ void put_view(const ExerciseView& view, wire::Exercise& out) {
   out.set_remaining(static_cast<float>(view.remaining_s));
   if (view.value) out.set_value(static_cast<float>(*view.value));
   out.set_value_unit(view.value_unit);
-  for (const std::string& choice : view.choices) out.add_choice(as_utf8(choice));
+  for (const std::string& choice : view.choices) *out.add_choice() = as_utf8(choice);
   if (view.asks)
     out.set_asks(*view.asks == ExerciseInput::Kind::kFatigue ? wire::Feel::TIRED : wire::Feel::PAIN);
   out.set_hides_scene(view.hides_scene);

@@ -68,7 +68,7 @@ void put(const CalibrationSession::View& view, const HandModel* hand, wire::Wiza
   out.set_measured(static_cast<float>(view.measured));
   for (const bool done : view.done) out.add_done(done);
   for (const std::int32_t raw : view.raw) out.add_raw(raw);
-  for (const std::string& problem : view.problems) out.add_problem(as_utf8(problem));
+  for (const std::string& problem : view.problems) *out.add_problem() = as_utf8(problem);
   for (const std::string& result : view.results) out.add_result(result);
   out.set_finished(view.finished);
   out.set_method(static_cast<wire::Wizard::Method>(view.method));

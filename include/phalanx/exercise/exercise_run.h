@@ -126,7 +126,7 @@ struct ExerciseRating {
 };
 
 /// One trial that ran.
-struct TrialResult {
+struct ExerciseTrial {
   int number = 0;      ///< of the plan, from 1; a repeated trial has the number of the first attempt
   double begin = 0.0;  ///< time of its first observation [s]
   double end = 0.0;    ///< time of its last observation [s]
@@ -156,7 +156,7 @@ struct ExerciseResult {
   std::string name = {};
   ExerciseKind kind = ExerciseKind::kAssessment;
   ExerciseMeasure measure = ExerciseMeasure::kRangeOfMotion;
-  std::vector<TrialResult> trials = {};
+  std::vector<ExerciseTrial> trials = {};
   /// Of the whole exercise: means of the valid trials by name; kFeelAndFind, kObjectInHand: of all answers
   std::vector<Score> scores = {};
   /// It ended before its last trial. A training that the day's dose ended is not interrupted; an

@@ -13,11 +13,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json place_json(const ExercisePlace& place) {
+Json place_json(const EventPlace& place) {
   return {{"exercise", place.number}, {"station", place.station}, {"tick", place.tick}};
 }
 
-ExercisePlace read_place(const Json& json) {
+EventPlace read_place(const Json& json) {
   return {.number = json.at("exercise").get<int>(),
           .station = json.at("station").get<std::uint64_t>(),
           .tick = json.at("tick").get<std::uint64_t>()};

@@ -15,21 +15,21 @@ inline constexpr const char* kExerciseInput = "exercise_input";
 inline constexpr const char* kExerciseResult = "exercise_result";
 
 /// Step before which something took effect.
-struct ExercisePlace {
+struct EventPlace {
   int number = 0;  ///< of the exercise in its recording
   std::uint64_t station = 0;
   std::uint64_t tick = 0;
-  [[nodiscard]] bool operator==(const ExercisePlace&) const = default;
+  [[nodiscard]] bool operator==(const EventPlace&) const = default;
 };
 
 /// Event "exercise_begin": `place` is the first step that the exercise gets.
 struct ExerciseBeginEvent {
-  ExercisePlace place;
+  EventPlace place;
   ExerciseStart start;
 };
 /// Event "exercise_input". After the last step of a recording its tick is one more than that of the last step.
 struct ExerciseInputEvent {
-  ExercisePlace place;
+  EventPlace place;
   ExerciseInput input;
 };
 /// Event "exercise_result": exercise_result_text(), unchanged.

@@ -46,10 +46,12 @@ bool same(const SegmentMeshes& a, const SegmentMeshes& b) {
   return true;
 }
 
+// add_joint_name(std::string&&) would leave the message broken where memory is short (protobuf 3.21 counts the
+// element before it makes it).
 void put_joints(const HandParameters& hand, wire::Geometry& out) {
   for (int j = 0; j < kJoints; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    out.add_joint_name(std::string(joint_name(j)));
+    out.add_joint_name()->assign(joint_name(j));
     out.add_joint_min(static_cast<float>(hand.min_angle[i]));
     out.add_joint_max(static_cast<float>(hand.max_angle[i]));
     out.add_joint_open(static_cast<float>(hand.open_angle[i]));
@@ -69,7 +71,7 @@ void write_geometry(const SessionGeometry& geometry, wire::Geometry& out) {
   if (geometry.skin) put(*geometry.skin, *out.mutable_skin());
   put(geometry.object, *out.mutable_object());
   out.set_rate_hz(static_cast<float>(geometry.rate_hz));
-  for (int s = 0; s < kSegments; ++s) out.add_segment_name(std::string(segment_name(s)));
+  for (int s = 0; s < kSegments; ++s) out.add_segment_name()->assign(segment_name(s));
   put_joints(geometry.hand, out);
 }
 

@@ -84,6 +84,7 @@ TEST(ExerciseFile, ShippedExercisesAreGoodAndThereIsOneOfEveryMeasure) {
   for (const ExerciseInfo& info : exercises) {
     SCOPED_TRACE(info.name);
     ASSERT_TRUE(info.readable) << info.title;
+    EXPECT_FALSE(info.exercise.title_de.empty()) << info.name;
     EXPECT_THAT(problems_of_exercise(info.name), testing::IsEmpty());
     EXPECT_EQ(parse_exercise(exercise_text(info.exercise), "again.toml"), info.exercise);
     measures.insert(info.exercise.measure);
@@ -186,6 +187,7 @@ TEST(AssessmentProtocol, IsOfTheFixedConditionsAlone) {
   EXPECT_EQ(protocol_of(kPressed,
                         [](ExerciseDescription& exercise) {
                           exercise.title = "another title";
+                          exercise.title_de = "ein anderer Titel";
                           exercise.instruction = "Do the same.";
                           exercise.dose = {.repetitions = 7, .minutes = 3.0};
                           exercise.ratings.pain = 3;

@@ -106,7 +106,7 @@ TEST(ExerciseRun, AFaultMakesATrialInvalidAndItIsRepeatedNotOftenerThanPlanned) 
   }
   EXPECT_EQ(faults, 4) << "two trials, two repetitions";
   const ExerciseResult result = bench.run.result();
-  for (const TrialResult& trial : result.trials) EXPECT_THAT(trial.invalid, HasSubstr("no sample"));
+  for (const ExerciseTrial& trial : result.trials) EXPECT_THAT(trial.invalid, HasSubstr("no sample"));
   for (const Score& score : result.scores) EXPECT_FALSE(score.valid()) << score.name;
 }
 

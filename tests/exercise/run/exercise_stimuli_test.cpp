@@ -45,7 +45,7 @@ TEST(ExerciseStimuli, APersonWhoAlwaysFeelsTheSofterOneHasASmallThreshold) {
   EXPECT_EQ(pairs, 10);
   const ExerciseResult result = bench.run.result();
   ASSERT_EQ(result.trials.size(), 10U);
-  for (const TrialResult& trial : result.trials) {
+  for (const ExerciseTrial& trial : result.trials) {
     EXPECT_EQ(trial.invalid, "");
     EXPECT_NEAR(score_of(trial.scores, "sent_first_n_per_mm"),
                 score_of(trial.scores, "commanded_first_n_per_mm"), 1e-9);
@@ -195,7 +195,7 @@ TEST(ExerciseStimuli, APressThatDoesNotReachItsEndPositionDoesNotCount) {
   ASSERT_TRUE(bench.until(ExercisePhase::kTrial));
   ASSERT_TRUE(bench.until(ExercisePhase::kRest));
   ASSERT_EQ(bench.run.result().trials.size(), 1U) << "without an answer";
-  const TrialResult trial = bench.run.result().trials[0];
+  const ExerciseTrial trial = bench.run.result().trials[0];
   EXPECT_EQ(trial.invalid, "the end position was not reached within 6 s");
   EXPECT_NEAR(score_of(trial.scores, "sent_first_n_per_mm"),
               score_of(trial.scores, "commanded_first_n_per_mm"), 1e-9);
@@ -285,7 +285,7 @@ TEST(ExerciseStimuli, AStimulusThatWasNotSentAsCommandedReportsWhatWasSentAndDoe
   const std::array<double, 2> commanded = feel_pair(bench);
   EXPECT_EQ(bench.input(Kind::kAnswer, 1), "");
   ASSERT_EQ(bench.run.result().trials.size(), 1U);
-  const TrialResult trial = bench.run.result().trials[0];
+  const ExerciseTrial trial = bench.run.result().trials[0];
   EXPECT_THAT(trial.invalid,
               HasSubstr("100 % of the samples were not within 10 % of the commanded stiffness"));
   EXPECT_NEAR(score_of(trial.scores, "sent_first_n_per_mm"), 0.8e-3 * commanded[0], 1e-9);

@@ -19,7 +19,7 @@ TEST(TrialScores, TheTargetOfAMovementIsTheSumOfItsAngles) {
   for (const int digit : {0, 1}) {
     TrialPlan plan = plan_trial(exercise, person, 0, 0.0);
     plan.digit = digit;
-    TrialResult trial;
+    ExerciseTrial trial;
     state_conditions(exercise, person, plan, trial);
     const ExerciseTarget target = trial_target(exercise, person, plan, 3.0);
     double sum = 0.0;
