@@ -13,6 +13,7 @@
 #include "exercise/distributions.h"
 #include "phalanx/core/index.h"
 #include "phalanx/core/number_range.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -238,25 +239,16 @@ StiffnessThreshold StiffnessDiscrimination::threshold() const {
   out.high = weber_of(quantile(posterior_, 1.0 - kTail));
 
   if (!finished()) {
-    out.invalid = fmt::format("not finished: {} of {} trials", counted_, settings_.trials);
+    out.invalid = reason_text<Reason::kNotFinished>(counted_, settings_.trials);
   } else if (counted_ < kFewestCounted * settings_.trials) {
-    out.invalid = fmt::format(
-        "too few trials: {} of {} counted, {} were discarded; let the participant press more slowly, and "
-        "repeat the assessment",
-        counted_, settings_.trials, out.discarded);
+    out.invalid = reason_text<Reason::kTooFewPairs>(counted_, settings_.trials, out.discarded);
   } else if (binomial_at_least(counted_ - out.right, counted_, 0.5) < kGuessing) {
-    out.invalid = fmt::format(
-        "{} of {} answers were wrong, more than guesses are: the question may have been understood the other "
-        "way round; explain it, and repeat the assessment",
-        counted_ - out.right, counted_);
+    out.invalid = reason_text<Reason::kMoreWrongThanGuessed>(counted_ - out.right, counted_);
   } else if (binomial_at_least(out.right, counted_, 0.5) >= kGuessing || out.weber > kMostWeber) {
-    out.invalid =
-        fmt::format("{} of {} answers were right: no threshold below {:.0f} % can be shown", out.right,
-                    counted_, 100.0 * std::min(kMostWeber, std::expm1(largest_difference(settings_))));
+    out.invalid = reason_text<Reason::kNoThresholdShown>(
+        out.right, counted_, 100.0 * std::min(kMostWeber, std::expm1(largest_difference(settings_))));
   } else if (out.weber < kLeastWeber) {
-    out.invalid = fmt::format(
-        "{} of {} answers were right: the threshold is below {:.1f} %, less than this assessment can measure",
-        out.right, counted_, 100.0 * kLeastWeber);
+    out.invalid = reason_text<Reason::kThresholdTooSmall>(out.right, counted_, 100.0 * kLeastWeber);
   }
   return out;
 }

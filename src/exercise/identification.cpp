@@ -12,6 +12,7 @@
 #include "exercise/distributions.h"
 #include "phalanx/core/index.h"
 #include "phalanx/core/random.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -163,13 +164,11 @@ IdentificationResult Identification::result() const {
   out.trials = static_cast<int>(sums.trials);
   const int wanted = objects_ * rounds_;
   if (!finished()) {
-    out.invalid = fmt::format("not finished: {} of {} trials", out.trials, wanted);
+    out.invalid = reason_text<Reason::kNotFinished>(out.trials, wanted);
     return out;
   }
   if (5 * out.trials < 4 * wanted) {
-    out.invalid = fmt::format(
-        "too few trials: {} of {} counted, {} were discarded; remove their cause and repeat the assessment",
-        out.trials, wanted, discarded_);
+    out.invalid = reason_text<Reason::kTooFewObjects>(out.trials, wanted, discarded_);
     return out;
   }
   int right = 0;

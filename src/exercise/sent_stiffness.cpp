@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -45,18 +46,13 @@ double SentStiffness::mean() const noexcept {
 bool SentStiffness::differs() const noexcept { return outside_ > kMostOutside * count_; }
 
 std::string SentStiffness::reason() const {
-  if (fault_) return "the press does not count: a fault or a missing sample during it";
-  if (ramped_) return "the press does not count: the torque was off or ramped during it";
+  if (fault_) return reason_text<Reason::kPressFault>();
+  if (ramped_) return reason_text<Reason::kPressRamped>();
   if (own_ < kFewestSamples) {
-    return fmt::format(
-        "the press does not count: {} samples of the sent stiffness instead of {}; press longer", own_,
-        kFewestSamples);
+    return reason_text<Reason::kPressTooShort>(own_, kFewestSamples);
   }
   if (differs()) {
-    return fmt::format(
-        "the press does not count: {:.0f} % of the samples were not within 10 % of the commanded stiffness; "
-        "press more slowly",
-        100.0 * outside_ / count_);
+    return reason_text<Reason::kPressTooFast>(100.0 * outside_ / count_);
   }
   return {};
 }

@@ -13,7 +13,8 @@ namespace {
 std::vector<ReportedExercise> reported_exercises(const Patient& patient, std::span<const ResultRow> results) {
   std::vector<ReportedExercise> all;
   for (const ExerciseInfo& info : list_exercises())
-    if (info.readable) all.push_back({.name = info.name, .title = info.title});
+    if (info.readable)
+      all.push_back({.name = info.name, .title = info.title, .title_de = info.exercise.title_de});
   for (const TrainingReport& training : training_reports(patient, results)) {
     auto found = std::find_if(all.begin(), all.end(),
                               [&](const ReportedExercise& each) { return each.name == training.exercise; });

@@ -61,8 +61,10 @@ PrescriptionTemplate parse_prescription_template(const std::string& text, const 
   PrescriptionTemplate made;
   made.name = std::filesystem::path(origin).stem().string();
   made.title = root.text("title");
+  if (root.has("title_de")) made.title_de = root.text("title_de");
   std::set<std::string> exercises;
   for (TomlTable& table : root.tables("line", -1)) {
+    if (table.has("note_de")) made.notes_de[table.text("exercise")] = table.text("note_de");
     PrescribedExercise line = read_line(table);
     if (!exercises.insert(line.exercise).second)
       table.fail("exercise", "an exercise has one line; remove one of the two");

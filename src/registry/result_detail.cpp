@@ -45,8 +45,11 @@ ResultDetail result_detail(const ResultRow& row) {
     std::string reason = detail_text(trial, "invalid");
     if (reason.empty()) continue;
     ++read.invalid_trials;
-    if (std::find(read.reasons.begin(), read.reasons.end(), reason) == read.reasons.end())
-      read.reasons.push_back(std::move(reason));
+    auto found = std::find_if(read.reasons.begin(), read.reasons.end(),
+                              [&](const UnscoredTrials& each) { return each.reason == reason; });
+    if (found == read.reasons.end())
+      found = read.reasons.insert(read.reasons.end(), UnscoredTrials{.reason = std::move(reason)});
+    ++found->trials;
   }
   return read;
 }

@@ -230,7 +230,7 @@ void add_not_measured(ReportPage& page, const ReportContext& context) {
   for (const auto& [key, value] : lines)
     rows.push_back({{.text = context.title_of(key.first)},
                     {.text = fmt::format("{}", fmt::join(value.first, "; "))},
-                    {.text = key.second},
+                    {.text = reason_label(key.second, context.language)},
                     {.text = fmt::format("{}", value.second), .number = true}});
   page.table({words.exercise, words.score, words.reason, words.occurrences}, rows);
 }
@@ -246,11 +246,11 @@ void add_conditions(ReportPage& page, const ReportContext& context) {
   std::vector<std::vector<Cell>> rows;
   for (const ResultConditions& each : context.conditions)
     rows.push_back({{.text = context.letter_of(each)},
-                    text(each.device),
+                    text(device_label(each.device, context.language)),
                     text(each.serial),
-                    text(each.calibration_method),
-                    text(each.contact_mode),
-                    text(each.stabiliser),
+                    text(condition_label(each.calibration_method, context.language)),
+                    text(condition_label(each.contact_mode, context.language)),
+                    text(condition_label(each.stabiliser, context.language)),
                     text(each.rendering),
                     text(each.protocol)});
   page.table({"", words.device, words.serial, words.method, words.contact, words.stabiliser, words.rendering,

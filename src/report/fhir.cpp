@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "phalanx/exercise/reasons.h"
 #include "registry/field_checks.h"
 #include "report/report_sections.h"
 #include "report/score_names.h"
@@ -23,6 +24,8 @@ constexpr const char* kScoreSystem = "urn:phalanx:code-system:score";
 constexpr const char* kExerciseSystem = "urn:phalanx:code-system:exercise";
 constexpr const char* kFieldSystem = "urn:phalanx:code-system:result-field";
 constexpr const char* kOriginSystem = "urn:phalanx:code-system:origin";
+constexpr const char* kFaultSystem = "urn:phalanx:code-system:fault";
+constexpr const char* kReasonSystem = "urn:phalanx:code-system:reason";
 constexpr const char* kTestSystem = "urn:phalanx:code-system:entered-test";
 constexpr const char* kPatientSystem = "urn:phalanx:identifier:patient-code";
 constexpr const char* kCategorySystem = "http://terminology.hl7.org/CodeSystem/observation-category";
@@ -61,10 +64,21 @@ Fhir quantity(double value, std::string_view unit) {
       {"value", value}, {"unit", unit == "-" ? "1" : std::string(unit)}, {"system", kUcum}, {"code", code}};
 }
 
+/// @returns a reason with its code, if it is one of this program
+Fhir reason_concept(const std::string& reason) {
+  Fhir made;
+  if (const auto known = find_reason(reason))
+    made["coding"] = Fhir::array({coding(kReasonSystem, std::string(reason_code(*known)), "")});
+  made["text"] = reason;
+  return made;
+}
+
 Fhir absent_reason(const std::string& reason) {
   const bool not_measured = reason.starts_with("not measured");
   Fhir made = concept_of(kAbsentSystem, not_measured ? "not-performed" : "error",
                          not_measured ? "Not Performed" : "Error");
+  if (const auto known = find_reason(reason))
+    made["coding"].push_back(coding(kReasonSystem, std::string(reason_code(*known)), ""));
   made["text"] = reason.empty() ? "not valid" : reason;
   return made;
 }
@@ -98,6 +112,7 @@ class BundleMaker {
       members.push_back({{"reference", "urn:uuid:" + made["id"].get<std::string>()}});
       add(std::move(made));
     }
+    add_faults(row, base, device, members);
     add_whole_row(row, base, device, std::move(members));
   }
 
@@ -204,6 +219,48 @@ class BundleMaker {
     add_text(made, "protocol", "protocol of the assessment", conditions.protocol);
     add_state(made, row);
     return made;
+  }
+
+  /// Makes the Observation of a fault of an exercise, without its value.
+  Fhir fault_of(const ResultRow& row, const std::string& base, const std::string& device, const char* code,
+                const char* display) const {
+    Fhir made =
+        observation(fmt::format("{}\nfault\n{}", base, code), "final", row.assessment ? "exam" : "therapy");
+    made["code"] = concept_of(kFaultSystem, code, display);
+    add_subject(made, registry::utc_text(row.date));
+    made["bodySite"] = {{"text", fmt::format("{} hand", side_name(context_.input.patient.side))}};
+    made["device"] = {{"reference", "urn:uuid:" + device}};
+    return made;
+  }
+
+  /// Adds what the report's chapter of faults states: an exercise that is not valid or was interrupted, and
+  /// trials that were not scored. Their references go to `members`.
+  void add_faults(const ResultRow& row, const std::string& base, const std::string& device, Fhir& members) {
+    const ResultDetail& detail = context_.details.at(&row);
+    const auto add_fault = [&](Fhir made, Fhir components) {
+      if (context_.is_simulated(row.conditions)) add_flag(components, "simulated", kSimulatedText, true);
+      if (!components.empty()) made["component"] = std::move(components);
+      members.push_back({{"reference", "urn:uuid:" + made["id"].get<std::string>()}});
+      add(std::move(made));
+    };
+    const auto add_end = [&](const char* code, const char* display, const std::string& reason) {
+      Fhir made = fault_of(row, base, device, code, display);
+      if (reason.empty()) {
+        made["dataAbsentReason"] = concept_of(kAbsentSystem, "unknown", "Unknown");
+      } else {
+        made["valueCodeableConcept"] = reason_concept(reason);
+      }
+      add_fault(std::move(made), Fhir::array());
+    };
+    if (!row.valid) add_end("not_valid", "the exercise is not valid", row.invalid);
+    if (row.interrupted) add_end("interrupted", "the exercise was interrupted", detail.ended);
+    if (detail.invalid_trials == 0) return;
+    Fhir made = fault_of(row, base, device, "trials_not_scored", "trials that were not scored");
+    made["valueInteger"] = detail.invalid_trials;
+    Fhir components = Fhir::array();
+    for (const UnscoredTrials& each : detail.reasons)
+      components.push_back({{"code", reason_concept(each.reason)}, {"valueInteger", each.trials}});
+    add_fault(std::move(made), std::move(components));
   }
 
   void add_whole_row(const ResultRow& row, const std::string& base, const std::string& device, Fhir members) {

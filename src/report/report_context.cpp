@@ -23,7 +23,9 @@ namespace report {
 
 std::string ReportContext::title_of(const std::string& exercise) const {
   const ReportedExercise* known = find_exercise(exercise);
-  return exercise_label(exercise, known == nullptr ? std::string_view() : known->title, language);
+  if (known == nullptr) return exercise;
+  if (language == ReportLanguage::kGerman && !known->title_de.empty()) return known->title_de;
+  return known->title.empty() ? exercise : known->title;
 }
 
 std::string ReportContext::letter_of(const ResultConditions& wanted) const {
@@ -48,13 +50,17 @@ bool ReportContext::is_simulated(const ResultConditions& of) const {
 
 std::string fault_remark(const ResultRow& row, const ReportContext& context) {
   const ResultDetail& detail = context.details.at(&row);
+  const auto label = [&](const std::string& reason) { return reason_label(reason, context.language); };
   std::vector<std::string> parts;
-  if (!row.invalid.empty()) parts.push_back(row.invalid);
-  if (row.valid && row.interrupted && !detail.ended.empty()) parts.push_back(detail.ended);
-  if (detail.invalid_trials > 0)
+  if (!row.invalid.empty()) parts.push_back(label(row.invalid));
+  if (row.valid && row.interrupted && !detail.ended.empty()) parts.push_back(label(detail.ended));
+  if (detail.invalid_trials > 0) {
+    std::vector<std::string> reasons;
+    for (const UnscoredTrials& each : detail.reasons) reasons.push_back(label(each.reason));
     parts.push_back(fmt::format("{} ({})",
                                 fmt::format(fmt::runtime(context.words.trial_invalid), detail.invalid_trials),
-                                fmt::join(detail.reasons, "; ")));
+                                fmt::join(reasons, "; ")));
+  }
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 

@@ -200,7 +200,11 @@ std::string prescription_text_of(const ReportContext& context) {
     if (each.minutes_per_day > 0.0)
       parts.push_back(fmt::format(fmt::runtime(context.words.most_minutes_a_day),
                                   number_label(each.minutes_per_day, context.language)));
-    for (const auto& [key, value] : each.overrides) parts.push_back(fmt::format("{} = {}", key, value));
+    for (const auto& [key, value] : each.overrides) {
+      std::string number = value;
+      if (context.language == ReportLanguage::kGerman) std::replace(number.begin(), number.end(), '.', ',');
+      parts.push_back(fmt::format("{} {}", prescription_key_label(key, context.language), number));
+    }
     if (!each.note.empty()) parts.push_back(each.note);
     lines.push_back(parts.empty()
                         ? context.title_of(each.exercise)
@@ -221,7 +225,7 @@ void add_patient(ReportPage& page, const ReportContext& context) {
   std::string calibration = words.none;
   if (!patient.calibration_device.empty()) {
     calibration = fmt::format("{} {}, {}", patient.calibration_device, patient.calibration_serial,
-                              patient.calibration_method);
+                              condition_label(patient.calibration_method, context.language));
     if (!patient.calibration_expires.empty())
       calibration.append(", ").append(
           fmt::format(fmt::runtime(words.until), day_label(patient.calibration_expires, context.language)));

@@ -256,12 +256,10 @@ constexpr Words kGerman = {
     .notes = "Notizen",
     .faults = "St\u00F6rungen und Abbr\u00FCche",
     .faults_lead =
-        "\u00DCbungen, die nicht zu Ende kamen oder ung\u00FCltig sind, und Versuche ohne Wertung. "
-        "Gr\u00FCnde stehen so da, wie das Programm sie vermerkt hat, auf Englisch.",
+        "\u00DCbungen, die nicht zu Ende kamen oder ung\u00FCltig sind, und Versuche ohne Wertung.",
     .no_faults = "Keine: Alle \u00DCbungen kamen zu Ende, und alle Versuche wurden gewertet.",
     .not_measured = "Nicht gemessen",
-    .not_measured_lead =
-        "Gr\u00F6\u00DFen ohne Wert, mit dem Grund, wie ihn das Programm vermerkt hat, auf Englisch.",
+    .not_measured_lead = "Gr\u00F6\u00DFen ohne Wert, und der Grund.",
     .occurrences = "Anzahl",
     .reason = "Grund",
     .conditions = "Bedingungen",

@@ -7,6 +7,9 @@
 #include <array>
 #include <span>
 
+#include "phalanx/exercise/reasons.h"
+#include "phalanx/registry/result_detail.h"
+
 namespace phalanx::report {
 namespace {
 
@@ -92,30 +95,44 @@ constexpr std::array kMovements = {
     Label{"flexion", "flexion", "Beugung"},
     Label{"abduction", "abduction", "Abspreizung"},
 };
-constexpr std::array kExercises = {
-    Label{"entry_check", "", "Eingangspr\u00FCfung: aktive Beugung und aktives L\u00F6sen"},
-    Label{"own_force", "", "Eigene gr\u00F6\u00DFte Kraft jedes Fingers"},
-    Label{"range_of_motion", "", "Bewegungsumfang jedes Gelenks"},
-    Label{"total_active_motion", "", "Gesamte aktive Bewegung der Finger"},
-    Label{"press_and_hold", "", "Mit dem Zeigefinger dr\u00FCcken und halten"},
-    Label{"force_tracking", "", "Mit der Kraft einem Ziel folgen"},
-    Label{"squeeze_release", "", "Rasch dr\u00FCcken und rasch loslassen"},
-    Label{"pinch", "", "Einen Ball zwischen Daumen und Zeigefinger halten"},
-    Label{"opposition", "", "Jede Fingerspitze mit dem Daumen ber\u00FChren"},
-    Label{"independence", "", "Einen Finger allein bewegen"},
-    Label{"smoothness", "", "Den Zeigefinger in einer gleichm\u00E4\u00DFigen Bewegung beugen"},
-    Label{"feel_and_find", "", "Welcher von zwei Schw\u00E4mmen ist weicher?"},
-    Label{"object_in_hand", "", "Welcher Gegenstand liegt in der Hand?"},
-    Label{"train_press", "", "Training: mit dem Zeigefinger dr\u00FCcken und halten"},
-    Label{"train_tracking", "", "Training: mit der Kraft des Zeigefingers einem Ziel folgen"},
-    Label{"train_pinch", "", "Training: einen Ball zwischen Daumen und Zeigefinger halten"},
-    Label{"train_opposition", "", "Training: die Fingerspitzen mit dem Daumen ber\u00FChren"},
-};
 constexpr std::array kSymbolLabels = {
     Label{"sun", "sun", "Sonne"},    Label{"tree", "tree", "Baum"},    Label{"boat", "boat", "Boot"},
     Label{"star", "star", "Stern"},  Label{"fish", "fish", "Fisch"},   Label{"house", "house", "Haus"},
     Label{"leaf", "leaf", "Blatt"},  Label{"moon", "moon", "Mond"},    Label{"bird", "bird", "Vogel"},
     Label{"bell", "bell", "Glocke"}, Label{"apple", "apple", "Apfel"}, Label{"kite", "kite", "Drachen"},
+};
+/// Origins of angles, between the words of a reason.
+constexpr std::array kAngleOrigins = {
+    Label{"unknown", "", "unbekannt"},      Label{"measured", "", "gemessen"},
+    Label{"completed", "", "erg\u00E4nzt"}, Label{"fixed", "", "fest"},
+    Label{"scripted", "", "vorgegeben"},
+};
+constexpr std::array kConditionLabels = {
+    Label{"jig", "jig", "Lehre"},
+    Label{"stops", "stops", "Anschl\u00E4ge"},
+    Label{"goniometer", "goniometer", "Goniometer"},
+    Label{"poses", "poses", "Posen"},
+    Label{"static", "static", "haftend (static)"},
+    Label{"sliding", "sliding", "gleitend (sliding)"},
+    Label{"none", "none", "keiner (none)"},
+    Label{"smoothing", "smoothing", "gegl\u00E4ttet (smoothing)"},
+    Label{"rise_only", "rise only", "Anstieg begrenzt (rise_only)"},
+    Label{"direction", "direction", "Richtung begrenzt (direction)"},
+    Label{"low_pass", "low-pass", "Tiefpass (low_pass)"},
+    Label{"kelvin_voigt", "Kelvin-Voigt", "Kelvin-Voigt"},
+    Label{"virtual_coupling", "virtual coupling", "virtuelle Kopplung (virtual_coupling)"},
+    Label{"passivity", "passivity", "Passivit\u00E4t (passivity)"},
+    Label{"energy_bounding", "energy bounding", "Energie begrenzt (energy_bounding)"},
+    Label{"local_wall", "local wall", "lokale Wand (local_wall)"},
+};
+constexpr std::array kPrescriptionLabels = {
+    Label{"trials", "trials", "Versuche"},
+    Label{"target_success", "success aimed at", "angestrebter Erfolg"},
+    Label{"difficulty", "difficulty", "Schwierigkeit"},
+    Label{"pain_limit", "ends at pain", "Abbruch bei Schmerz"},
+    Label{"fatigue_limit", "ends at fatigue", "Abbruch bei Erm\u00FCdung"},
+    Label{"most_repetitions", "trials a day at most", "h\u00F6chstens Versuche am Tag"},
+    Label{"most_minutes", "minutes a day at most", "h\u00F6chstens Minuten am Tag"},
 };
 constexpr std::array kTestLabels = {
     Label{"fugl_meyer_hand", "", "Fugl-Meyer-Test, Hand"},
@@ -187,11 +204,38 @@ std::string score_label(std::string_view name, ReportLanguage language) {
   return with_capital(std::move(words));
 }
 
-std::string exercise_label(std::string_view name, std::string_view title, ReportLanguage language) {
-  if (language == ReportLanguage::kGerman)
-    if (const std::string_view german = find_label(kExercises, name, language); !german.empty())
-      return std::string(german);
-  return std::string(title.empty() ? name : title);
+std::string reason_label(std::string_view reason, ReportLanguage language) {
+  if (language == ReportLanguage::kEnglish || reason.empty()) return std::string(reason);
+  std::string german = german_reason(reason, [](std::string_view word) {
+    std::string part = part_label(word, ReportLanguage::kGerman);
+    if (part.empty()) part = find_label(kAngleOrigins, word, ReportLanguage::kGerman);
+    return part.empty() ? std::string(word) : part;
+  });
+  return german.empty() ? fmt::format("im Wortlaut: \u201E{}\u201C", reason) : german;
+}
+
+std::string condition_label(std::string_view code, ReportLanguage language) {
+  std::string label;
+  for (std::size_t from = 0; from <= code.size();) {
+    const std::size_t end = std::min(code.find('+', from), code.size());
+    const std::string_view one = code.substr(from, end - from);
+    const std::string_view known = find_label(kConditionLabels, one, language);
+    if (from > 0) label.append(" + ");
+    label.append(known.empty() ? one : known);
+    from = end + 1;
+  }
+  return label;
+}
+
+std::string device_label(std::string_view device, ReportLanguage language) {
+  if (language == ReportLanguage::kEnglish || !device.ends_with(kSimulatedDevice)) return std::string(device);
+  device.remove_suffix(kSimulatedDevice.size());
+  return fmt::format("{} (simulierter Teilnehmer)", device);
+}
+
+std::string prescription_key_label(std::string_view key, ReportLanguage language) {
+  const std::string_view found = find_label(kPrescriptionLabels, key, language);
+  return std::string(found.empty() ? key : found);
 }
 
 std::string symbol_label(std::string_view symbol, ReportLanguage language) {

@@ -48,8 +48,8 @@ void draw_points(Svg& svg, const ChartFrame& frame, const Trend& trend, ReportLa
 
 }  // namespace
 
-std::string trend_chart(const Trend& trend, const DateSpan& span, const ChartSize& size,
-                        ReportLanguage language) {
+std::string trend_chart(const Trend& trend, const std::string& title, const DateSpan& span,
+                        const ChartSize& size, ReportLanguage language) {
   const double width = size.width_mm * kPointsPerMm;
   const double height = size.height_mm * kPointsPerMm;
   const Range range = shown_range(trend);
@@ -78,7 +78,7 @@ std::string trend_chart(const Trend& trend, const DateSpan& span, const ChartSiz
   svg.text(std::min(xs.back() + 4.5, frame.right + 4.0), ys.back() + 2.6,
            number_label(trend.points.back().value, language), Anchor::kStart,
            fmt::format(R"( font-size="7.5" font-weight="bold" fill="{}")", kInk));
-  return embedded_svg(svg, height, trend.title);
+  return embedded_svg(svg, height, title);
 }
 
 }  // namespace phalanx::report

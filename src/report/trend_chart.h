@@ -22,8 +22,8 @@ struct ChartSize {
 };
 
 /// Draws a trend as an <svg> element. Each value is a circle with data-score, data-date, data-value, data-unit and
-/// data-recording. @pre the trend has a point; all lie in the span
-[[nodiscard]] std::string trend_chart(const Trend& trend, const DateSpan& span, const ChartSize& size,
-                                      ReportLanguage language);
+/// data-recording. @param title  of the element, for screen readers, in the language. @pre the trend has a point; all lie in the span
+[[nodiscard]] std::string trend_chart(const Trend& trend, const std::string& title, const DateSpan& span,
+                                      const ChartSize& size, ReportLanguage language);
 
 }  // namespace phalanx::report

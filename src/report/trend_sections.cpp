@@ -40,7 +40,7 @@ void add_chart(ReportPage& page, const ReportContext& context, const std::string
                const ChartSize& size) {
   page.raw("<figure>");
   page.element("h4", title);
-  page.raw(trend_chart(trend, context.span, size, context.language));
+  page.raw(trend_chart(trend, title, context.span, size, context.language));
   page.paragraph(trend_verdict(trend, context));
   if (trend.smallest_real_difference)
     page.paragraph(fmt::format(fmt::runtime(context.words.band_is),

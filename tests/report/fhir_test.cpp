@@ -91,8 +91,15 @@ class Checker {
     }
     return codes;
   }
+  /// One coding is of the value set; others may have codes of this program (an extensible binding).
   static void from(const json& value, const std::set<std::string>& allowed) {
-    for (const std::string& code : concept_codes(value)) EXPECT_TRUE(allowed.contains(code)) << code;
+    int known = 0;
+    for (const std::string& code : concept_codes(value)) known += allowed.contains(code) ? 1 : 0;
+    EXPECT_EQ(known, 1) << value;
+    for (const json& coding : value["coding"])
+      EXPECT_TRUE(allowed.contains(coding["code"].get<std::string>()) ||
+                  coding["system"] == "urn:phalanx:code-system:reason")
+          << coding;
   }
   static void quantity(const json& value) {
     only(value, {"value", "unit", "system", "code"});
@@ -133,9 +140,9 @@ class Checker {
     for (const json& note : value.at("note")) only(note, {"text"});
   }
   void observation(const json& value) {
-    only(value,
-         {"resourceType", "id", "status", "category", "code", "subject", "effectiveDateTime", "performer",
-          "valueQuantity", "dataAbsentReason", "note", "bodySite", "device", "hasMember", "component"});
+    only(value, {"resourceType", "id", "status", "category", "code", "subject", "effectiveDateTime",
+                 "performer", "valueQuantity", "valueInteger", "valueCodeableConcept", "dataAbsentReason",
+                 "note", "bodySite", "device", "hasMember", "component"});
     EXPECT_EQ(value.at("resourceType"), "Observation");
     EXPECT_TRUE(kStatus.contains(value.at("status").get<std::string>()));
     for (const json& category : value.at("category")) from(category, kCategory);
@@ -149,7 +156,7 @@ class Checker {
     for (const json& component : value.value("component", json::array())) {
       only(component, {"code", "valueQuantity", "valueInteger", "valueString", "valueBoolean",
                        "valueCodeableConcept", "dataAbsentReason"});
-      EXPECT_FALSE(concept_codes(component.at("code")).empty());
+      static_cast<void>(concept_codes(component.at("code")));  // an unknown reason has its text only
       value_or_reason(component, false);
     }
   }
@@ -166,7 +173,7 @@ class ReportFhir : public ::testing::Test {
   /// @returns the component with this code; null if there is none
   [[nodiscard]] static json field(const json& resource, const std::string& code) {
     for (const json& component : resource.value("component", json::array()))
-      if (code_of(component) == code) return component;
+      if (component["code"].contains("coding") && code_of(component) == code) return component;
     return {};
   }
   /// @returns the Observations by id
@@ -240,6 +247,7 @@ TEST_F(ReportFhir, HasEachScoreWithItsUnitDateOriginAndConditions) {
       EXPECT_EQ(field(one, "interrupted")["valueBoolean"], row.interrupted);
       if (!score.valid()) {
         EXPECT_EQ(one["dataAbsentReason"]["coding"][0]["code"], "not-performed");
+        EXPECT_EQ(one["dataAbsentReason"]["coding"][1]["code"], "no-force-of-digit-alone");
         EXPECT_EQ(one["dataAbsentReason"]["text"], score.invalid);
         EXPECT_TRUE(field(one, "origin").is_null()) << "without a value there is no origin";
         continue;
@@ -258,6 +266,70 @@ TEST_F(ReportFhir, HasEachScoreWithItsUnitDateOriginAndConditions) {
     }
   }
   EXPECT_GT(found, 250U);
+}
+
+TEST_F(ReportFhir, HasEachFaultOfTheRegistryWithItsReasonAsAMemberOfItsExercise) {
+  std::map<std::string, json> faults;  // "code|date" -> Observation
+  std::set<std::string> members;
+  for (const auto& [id, one] : observations(input_)) {
+    if (one["code"]["coding"][0]["system"] == "urn:phalanx:code-system:fault") {
+      EXPECT_EQ(one["status"], "final");
+      EXPECT_TRUE(
+          faults.emplace(code_of(one) + "|" + one["effectiveDateTime"].get<std::string>(), one).second);
+    }
+    if (one["code"]["coding"][0]["system"] == "urn:phalanx:code-system:exercise")
+      for (const json& member : one.value("hasMember", json::array()))
+        members.insert(member["reference"].get<std::string>());
+  }
+  std::map<std::string, int> kinds;
+  for (const ResultRow& row : made_.results) {
+    const std::string date = fmt::format("{}T{}", report::iso_day(row.date), report::time_label(row.date));
+    const auto fault = [&](const std::string& kind) -> json {
+      ++kinds[kind];
+      const auto at = faults.lower_bound(kind + "|" + date);
+      if (at == faults.end() || !at->first.starts_with(kind + "|" + date)) {
+        ADD_FAILURE() << kind << " of " << date << " is not in the bundle";
+        return {};
+      }
+      EXPECT_TRUE(members.contains("urn:uuid:" + at->second["id"].get<std::string>()));
+      json found = at->second;
+      faults.erase(at);
+      return found;
+    };
+    if (!row.valid) {
+      const json one = fault("not_valid");
+      EXPECT_EQ(one["valueCodeableConcept"]["text"], row.invalid);
+      EXPECT_EQ(one["valueCodeableConcept"]["coding"][0]["code"], "steps-missing-in-recording");
+    }
+    if (row.interrupted) {
+      EXPECT_EQ(fault("interrupted")["valueCodeableConcept"]["coding"][0]["code"], "person-ended");
+    }
+    if (const int unscored = made_.details.at(row.recording).unscored; unscored > 0) {
+      const json one = fault("trials_not_scored");
+      EXPECT_EQ(one["valueInteger"], unscored);
+      EXPECT_EQ(field(one, "no-sample")["valueInteger"], unscored);
+    }
+  }
+  EXPECT_TRUE(faults.empty()) << faults.begin()->first << " is not in the registry";
+  EXPECT_EQ(kinds.size(), 3U) << "the generated patient has every kind of fault";
+}
+
+TEST_F(ReportFhir, KeepsAReasonThatThisProgramDoesNotKnowAsText) {
+  ResultRow& row = input_.results.front();
+  row.interrupted = true;
+  row.detail = R"({"ended": "an older text", "trials": [{"invalid": "another one"}]})";
+  row.scores = {{.name = "rmse_n", .unit = "N", .invalid = "not measured: an older text"}};
+  input_.day = report::iso_day(row.date);
+  Checker().bundle(json::parse(report_fhir(input_)));
+  int found = 0;
+  for (const auto& [id, one] : observations(input_)) {
+    const json value = one.value("valueCodeableConcept", json::object());
+    if (value.value("text", "") == "an older text" && !value.contains("coding")) ++found;
+    if (one["code"]["coding"][0]["code"] == "trials_not_scored" &&
+        one["component"][0]["code"] == json{{"text", "another one"}})
+      ++found;
+  }
+  EXPECT_EQ(found, 2);
 }
 
 TEST_F(ReportFhir, HasNoCodeOfAForeignSystemAndNoPatientButAPseudonym) {

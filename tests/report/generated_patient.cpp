@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 
+#include "phalanx/exercise/reasons.h"
 #include "report/date_axis.h"
 
 namespace phalanx::testing {
@@ -121,11 +122,12 @@ class Maker {
       row.interrupted = true;
     } else if (happens(0.01)) {
       row.valid = false;
-      row.invalid = "12 steps are missing in the file";
+      row.invalid = reason_text<Reason::kStepsMissingInRecording>(12);
       row.scores.clear();
     }
     nlohmann::ordered_json detail = {{"name", row.exercise},
-                                     {"ended", row.interrupted ? "ended by a person" : "all trials are done"},
+                                     {"ended", row.interrupted ? reason_text<Reason::kPersonEnded>()
+                                                               : reason_text<Reason::kAllTrialsDone>()},
                                      {"ratings", nlohmann::ordered_json::array()},
                                      {"trials", nlohmann::ordered_json::array()}};
     GeneratedDetail truth{.counted = row.repetitions, .pain = row.pain, .fatigue = row.fatigue};
@@ -139,8 +141,9 @@ class Maker {
                                  {"value", score.value + noise(0.1)},
                                  {"origin", "rendered"}});
       if (happens(0.005)) {
-        one["invalid"] = "a fault: no sample for 0.1 s";
+        one["invalid"] = reason_text<Reason::kNoSample>();
         --truth.counted;
+        ++truth.unscored;
       }
       detail["trials"].push_back(std::move(one));
     }
@@ -173,7 +176,7 @@ class Maker {
           rendered(fmt::format("{}_peak_force_n", digit), "N", 4.0 + 4.0 * learned_ + noise(0.5)));
     own.scores.push_back({.name = "ring_peak_force_n",
                           .unit = "N",
-                          .invalid = "not measured: the device has no motor of the ring finger"});
+                          .invalid = reason_text<Reason::kNoForceOfDigitAlone>("ring")});
     finish(std::move(own));
     ResultRow press = row_of("press_and_hold", true, 80.0, 5);
     press.scores = {rendered("mean_force_n", "N", 2.0 + 1.5 * learned_ + noise(0.1)),

@@ -13,8 +13,9 @@ namespace phalanx::testing {
 
 /// What a generated row's detail states beyond the row.
 struct GeneratedDetail {
-  int counted = 0;  ///< trials that were scored
-  int pain = -1;    ///< largest rating
+  int counted = 0;   ///< trials that were scored
+  int unscored = 0;  ///< trials with a reason why not
+  int pain = -1;     ///< largest rating
   int fatigue = -1;
 };
 

@@ -351,9 +351,9 @@ TEST_F(ReportHtml, RefusesADayOnWhichNothingWasDone) {
 
 TEST_F(ReportHtml, NamesInterruptedAndInvalidExercisesAndScoresThatWereNotMeasured) {
   const std::string html = report_html(input_, ReportLanguage::kEnglish);
-  EXPECT_THAT(html,
-              AllOf(HasSubstr("ended by a person"), HasSubstr("no motor of the ring finger"),
-                    HasSubstr("trials not scored: 1 (a fault: no sample"), HasSubstr("goniometer+jig")));
+  EXPECT_THAT(html, AllOf(HasSubstr("a person has ended it"), HasSubstr("motor of the digit ring alone"),
+                          HasSubstr("trials not scored: 1 (the device sent no sample"),
+                          HasSubstr("goniometer + jig")));
 }
 
 }  // namespace

@@ -50,9 +50,16 @@ TEST(ReportOfTwoHundredSessions, HasEveryResultOfTheRegistry) {
   EXPECT_EQ(sums["exercises"], std::to_string(made.results.size()));
 
   std::size_t scores = 0;
-  for (const ResultRow& row : made.results) scores += row.scores.size();
+  std::size_t faults = 0;
+  for (const ResultRow& row : made.results) {
+    scores += row.scores.size();
+    faults += row.valid ? 0U : 1U;
+    faults += row.interrupted ? 1U : 0U;
+    faults += made.details.at(row.recording).unscored > 0 ? 1U : 0U;
+  }
   const auto bundle = nlohmann::json::parse(report_fhir(input));
-  EXPECT_EQ(bundle["entry"].size(), 1 + made.results.size() + scores + made.tests.size()) << "and one device";
+  EXPECT_EQ(bundle["entry"].size(), 1 + made.results.size() + scores + faults + made.tests.size())
+      << "and one device";
 }
 
 }  // namespace

@@ -88,4 +88,18 @@ inline std::vector<XmlElement> xml_elements(const std::string& text) {
   return all;
 }
 
+/// @returns the text nodes of a well-formed document that are not only white space, without those of <style>
+inline std::vector<std::string> xml_texts(const std::string& text) {
+  std::vector<std::string> all;
+  for (std::size_t at = text.find("<html"); at < text.size();) {
+    const std::size_t end = text.find('>', at);
+    const std::size_t next = std::min(text.find('<', end), text.size());
+    const std::string node = text.substr(end + 1, next - end - 1);
+    if (!text.substr(at).starts_with("<style") && node.find_first_not_of(" \n") != std::string::npos)
+      all.push_back(unescaped(node));
+    at = next;
+  }
+  return all;
+}
+
 }  // namespace phalanx::testing

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "exercise/exercise_run_command.h"
 #include "patient/registry_options.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/record/recorded_exercise.h"
 #include "phalanx/scene/exercise_file.h"
 #include "terminal/error_line.h"
@@ -88,7 +89,7 @@ bool print_recording_results(const fs::path& file, const ExerciseCommandOptions&
   for (const RecordedExercise& exercise : exercises) {
     same = same && exercise.difference.empty();
     const std::string why =
-        !exercise.invalid.empty() ? exercise.invalid : fmt::format("not proven: {}", exercise.difference);
+        !exercise.invalid.empty() ? exercise.invalid : reason_text<Reason::kNotProven>(exercise.difference);
     if (o.json)
       fmt::print("{}\n", exercise.proven() || exercise.other_program
                              ? exercise.text

@@ -180,10 +180,12 @@ int run_exercise(const ExerciseOptions& o) {
                             [](const std::string& text) { print_aside(text + '\n'); });
   ExerciseStationPlan plan = station_plan(o, known ? &*known : nullptr);
   FindRecordingKey keys;
+  std::shared_ptr<const KeyUse> use;  // until the result is kept, no program deletes the patient
   if (known) {
     Registry& registry = known->opened.registry;
     confirm_patient(known->patient(), o.confirm);
     if (!o.record_plain) {
+      use = registry.use_key(known->opened.actor, known->patient().record);
       plan.recording.encryption = registry.recording_key(known->opened.actor, known->patient().record);
       keys = [key = *plan.recording.encryption](const std::string& id) -> std::optional<RecordingKey> {
         return id == key.id ? std::optional(key.key) : std::nullopt;

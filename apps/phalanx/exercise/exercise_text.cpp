@@ -26,7 +26,7 @@ std::string score_line(const Score& score, const char* indent) {
                      score_origin_name(score.origin));
 }
 
-std::string trial_lines(const TrialResult& trial) {
+std::string trial_lines(const ExerciseTrial& trial) {
   std::string text = fmt::format("    trial {}{}{}, {:.1f} to {:.1f} s{}\n", trial.number,
                                  trial.condition.empty() ? "" : ", ", trial.condition, trial.begin, trial.end,
                                  trial.success ? (*trial.success ? ", successful" : ", not successful") : "");
@@ -75,7 +75,7 @@ std::string exercise_report(const RecordedExercise& exercise, bool with_trials) 
     for (const Score& score : result.scores) text += score_line(score, "  ");
     if (result.entry) text += fmt::format("  {}\n", result.entry->text);
     if (with_trials)
-      for (const TrialResult& trial : result.trials) text += trial_lines(trial);
+      for (const ExerciseTrial& trial : result.trials) text += trial_lines(trial);
   }
   if (!exercise.difference.empty())
     text += fmt::format("  the replay differs from the recorded result: {}\n", exercise.difference);

@@ -146,8 +146,9 @@ struct EntryRequirement {
 
 /// Content of an exercise file. The default of each field is that of its key.
 struct ExerciseDescription {
-  std::string name = {};   ///< the file's name without ".toml"
-  std::string title = {};  ///< for people, one line
+  std::string name = {};      ///< the file's name without ".toml"
+  std::string title = {};     ///< for people, one line
+  std::string title_de = {};  ///< the same in German; empty: none
   ExerciseKind kind = ExerciseKind::kAssessment;
   ExerciseMeasure measure = ExerciseMeasure::kRangeOfMotion;
   std::string scene = {};  ///< name of a scene

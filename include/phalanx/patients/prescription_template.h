@@ -2,6 +2,7 @@
 // Templates of prescriptions: files in assets/prescriptions that a therapist can read and change.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,11 @@ inline constexpr int kPrescriptionTemplateFormat = 1;
 
 /// Prescription for a group of patients.
 struct PrescriptionTemplate {
-  std::string name = {};   ///< of its file
-  std::string title = {};  ///< one line for people
+  std::string name = {};      ///< of its file
+  std::string title = {};     ///< one line for people
+  std::string title_de = {};  ///< the same in German; empty: none
   std::vector<PrescribedExercise> lines = {};
+  std::map<std::string, std::string> notes_de = {};  ///< notes of lines in German, by exercise
 };
 
 /// Reads a template from text; `origin` names it in messages, and its file name is the template's name. Each

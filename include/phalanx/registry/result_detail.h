@@ -16,6 +16,12 @@ inline constexpr const char* kSimulatedCode = "SIM";
 /// End of ResultConditions::device if a simulated participant did the exercise.
 inline constexpr std::string_view kSimulatedDevice = " (simulated participant)";
 
+/// Trials that were not scored for one reason.
+struct UnscoredTrials {
+  std::string reason = {};
+  int trials = 0;
+};
+
 /// Content of ResultRow::detail. A row without a readable detail gives what its own fields state.
 struct ResultDetail {
   int counted = 0;         ///< trials that were scored; without a detail ResultRow::repetitions
@@ -23,7 +29,7 @@ struct ResultDetail {
   int fatigue = -1;        ///< likewise
   std::string ended = {};  ///< why the exercise ended, in words
   int invalid_trials = 0;  ///< trials that were not scored, with a reason
-  std::vector<std::string> reasons = {};  ///< of these, each once
+  std::vector<UnscoredTrials> reasons = {};  ///< of these, each once
 };
 
 /// Reads the detail of a row.

@@ -27,6 +27,7 @@ enum class ReportLanguage : std::uint8_t { kEnglish, kGerman };
 struct ReportedExercise {
   std::string name = {};
   std::string title = {};                     ///< for people; in English
+  std::string title_de = {};                  ///< in German; empty: as in English
   double target_success = 0.7;                ///< share of success that a training steers to [-]
   std::optional<SuccessReport> success = {};  ///< success_report(); none: not a training
   int sessions = 0;                           ///< valid ones of the training, in all

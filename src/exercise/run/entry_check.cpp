@@ -8,6 +8,7 @@
 #include "exercise/run/exercise_trial.h"
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/exercise/scored_steps.h"
 
 namespace phalanx {
@@ -28,11 +29,8 @@ std::vector<int> measured_flexion(std::span<const Observation> steps, int digit)
 std::string why_no_entry(std::span<const Observation> steps, const std::vector<int>& joints, int digit,
                          bool calibration_independent) {
   if (std::string reason = why_not_scored(steps); !reason.empty()) return reason;
-  if (joints.empty())
-    return fmt::format("not measured: the device has no sensor of the flexion of the {}", digit_name(digit));
-  if (!calibration_independent)
-    return "not measured: the calibration depends on what the person can reach; calibrate by a method that "
-           "does not";
+  if (joints.empty()) return reason_text<Reason::kNoFlexionSensor>(digit_name(digit));
+  if (!calibration_independent) return reason_text<Reason::kCalibrationDepends>();
   return {};
 }
 
@@ -43,12 +41,12 @@ const Score* find_entry_score(const std::vector<Score>& scores, const std::strin
 }
 
 /// Mean of one name over the trials; invalid with the first reason.
-Score mean_of(const std::vector<TrialResult>& trials, const Score& first) {
+Score mean_of(const std::vector<ExerciseTrial>& trials, const Score& first) {
   Score mean = {.name = first.name, .unit = first.unit, .value = 0.0, .origin = first.origin, .invalid = {}};
   int count = 0;
   bool mixed = false;
   std::string reason;
-  for (const TrialResult& trial : trials) {
+  for (const ExerciseTrial& trial : trials) {
     const Score* score = find_entry_score(trial.scores, first.name);
     if (score == nullptr) continue;
     if (!trial.invalid.empty() || !score->valid()) {
@@ -62,7 +60,7 @@ Score mean_of(const std::vector<TrialResult>& trials, const Score& first) {
   }
   if (count > 0) mean.value /= count;
   if (count == 0) mean.invalid = std::move(reason);
-  if (mixed) mean.invalid = "the trials have scores of different origins; repeat the exercise";
+  if (mixed) mean.invalid = reason_text<Reason::kMixedOrigins>();
   if (!mean.valid()) mean.value = 0.0;
   return mean;
 }
@@ -90,7 +88,8 @@ std::vector<Score> entry_scores(std::span<const Observation> steps, int digit, b
       release = std::max(release, peak - sum);
     }
     flexion = peak - before_peak;
-    if (!std::isfinite(flexion) || !std::isfinite(release)) reason = "an angle is not a finite number";
+    if (!std::isfinite(flexion) || !std::isfinite(release))
+      reason = reason_text<Reason::kEntryAngleNotFinite>();
   }
   if (!reason.empty()) flexion = release = 0.0;
   return {{.name = fmt::format("entry_flexion_{}_deg", digit_name(digit)),
@@ -143,9 +142,9 @@ EntryVerdict entry_verdict(const ExerciseDescription& exercise, const PersonLimi
   return verdict;
 }
 
-std::vector<Score> mean_scores(const std::vector<TrialResult>& trials) {
+std::vector<Score> mean_scores(const std::vector<ExerciseTrial>& trials) {
   std::vector<Score> means;
-  for (const TrialResult& trial : trials)
+  for (const ExerciseTrial& trial : trials)
     for (const Score& score : trial.scores)
       if (find_entry_score(means, score.name) == nullptr) means.push_back(mean_of(trials, score));
   return means;

@@ -314,6 +314,7 @@ void check_exercise(const ExerciseDescription& exercise) {
     refuse("name", fmt::format("\"{}\"", exercise.name.substr(0, 64)), "write 1 to 64 of a-z, 0-9, _ and -");
   check_text("title", exercise.title, 120);
   if (exercise.title.empty()) refuse("title", "\"\"", "write one line for people");
+  check_text("title_de", exercise.title_de, 120);
   check_text("instruction", exercise.instruction, 300);
   if (exercise.instruction.empty()) refuse("instruction", "\"\"", "write what the participant should do");
   if (!is_name(exercise.scene))

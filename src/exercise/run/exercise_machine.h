@@ -10,6 +10,7 @@
 #include "exercise/run/exercise_stimuli.h"
 #include "exercise/run/exercise_trial.h"
 #include "phalanx/exercise/exercise_run.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 
@@ -52,7 +53,7 @@ struct ExerciseRun::Impl {
   void begin_trial(const Observation& observation);
   void end_part();
   void end_trial(const std::string& invalid, bool repeat);
-  void add_trial(TrialResult trial);
+  void add_trial(ExerciseTrial trial);
   void pause(std::string note);
   /// Asks for the last ratings, and then finishes.
   void close(std::string reason);
@@ -67,7 +68,7 @@ struct ExerciseRun::Impl {
   /// @returns the first digit that touches a sponge; none: no digit does
   [[nodiscard]] static std::optional<int> touching(const Observation& observation);
   [[nodiscard]] bool torque_wanted() const noexcept;
-  void judge(TrialResult& trial) const;
+  void judge(ExerciseTrial& trial) const;
   // Inputs.
   [[nodiscard]] std::string begin();
   [[nodiscard]] std::string skip();
@@ -91,7 +92,7 @@ struct ExerciseRun::Impl {
   double trial_begin_ = 0.0;       ///< time of the trial's first observation, of the first part [s]
   std::optional<double> reached_;  ///< time at which the end position was reached [s]
   std::vector<Observation> steps_;
-  std::vector<TrialResult> trials_;
+  std::vector<ExerciseTrial> trials_;
   std::vector<ExerciseRating> ratings_;
 
   bool any_step_ = false;
@@ -109,7 +110,7 @@ struct ExerciseRun::Impl {
   int successes_ = 0;
   int counted_ = 0;
   bool interrupted_ = true;
-  std::string ended_ = "it has not ended";
+  std::string ended_ = reason_text<Reason::kNotEnded>();
 };
 
 }  // namespace phalanx

@@ -33,7 +33,7 @@ void add_number(ResultJson& row, const char* key, const std::optional<double>& v
   if (value) row[key] = *value;
 }
 
-ResultJson json_of(const TrialResult& trial) {
+ResultJson json_of(const ExerciseTrial& trial) {
   ResultJson row;
   row["number"] = trial.number;
   row["begin_s"] = trial.begin;
@@ -89,7 +89,7 @@ std::string exercise_result_text(const ExerciseResult& result) {
     json["ratings"].push_back(std::move(row));
   }
   json["trials"] = ResultJson::array();
-  for (const TrialResult& trial : result.trials) json["trials"].push_back(json_of(trial));
+  for (const ExerciseTrial& trial : result.trials) json["trials"].push_back(json_of(trial));
   return json.dump(-1, ' ', false, ResultJson::error_handler_t::replace);
 }
 

@@ -9,6 +9,7 @@
 
 #include "exercise/run/exercise_machine.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/exercise/scored_steps.h"
 
 namespace phalanx {
@@ -19,15 +20,15 @@ std::string fault_words(ObservationFault fault) {
     case ObservationFault::kNone:
       return {};
     case ObservationFault::kNoSample:
-      return "the device sent no sample";
+      return reason_text<Reason::kNoSample>();
     case ObservationFault::kFault:
-      return "the station was in a fault, or the device was lost";
+      return reason_text<Reason::kStationFault>();
     case ObservationFault::kGap:
-      return "steps are missing";
+      return reason_text<Reason::kStepsMissing>();
     case ObservationFault::kNotFinite:
-      return "a value is not a finite number";
+      return reason_text<Reason::kValueNotFinite>();
   }
-  return "the station reported a fault";
+  return reason_text<Reason::kUnknownFault>();
 }
 
 bool slipped(const std::vector<Observation>& steps, const std::array<bool, kDigits>& digits) {
@@ -97,7 +98,7 @@ bool ExerciseRun::Impl::watch_torque(const Observation& observation) {
 /// @returns true if the day's minutes are over, and the run has ended
 bool ExerciseRun::Impl::watch_dose() {
   if (closing_ || person.minutes_today + minutes() < exercise.dose.minutes) return false;
-  close(fmt::format("the day's dose of {} minutes is done", shortest_text(exercise.dose.minutes)));
+  close(reason_text<Reason::kDoseOfMinutesDone>(shortest_text(exercise.dose.minutes)));
   return true;
 }
 
@@ -225,7 +226,7 @@ void ExerciseRun::Impl::step_trial(const Observation& observation) {
     return;
   }
   if (needs_torque(exercise.measure) && !(observation.factor >= 1.0)) {
-    end_trial("the torque was not fully on", true);
+    end_trial(reason_text<Reason::kTorqueNotFullyOn>(), true);
     return;
   }
   const bool over = observation.time - steps_.front().time >= exercise.trial_s;
@@ -236,10 +237,9 @@ void ExerciseRun::Impl::step_trial(const Observation& observation) {
   if (stimuli_->add(observation) && !reached_) reached_ = observation.time;
   const bool held = reached_ && observation.time - *reached_ >= kHoldAtEnd;
   if (over && stimuli_->object() && contact_s_ < kLeastContact) {
-    end_trial(fmt::format("the object was touched for less than {} s", shortest_text(kLeastContact)), true);
+    end_trial(reason_text<Reason::kTouchedTooShortly>(shortest_text(kLeastContact)), true);
   } else if (over && !stimuli_->object() && !reached_) {
-    end_trial(fmt::format("the end position was not reached within {} s", shortest_text(exercise.trial_s)),
-              true);
+    end_trial(reason_text<Reason::kEndPositionNotReached>(shortest_text(exercise.trial_s)), true);
   } else if (over || held) {
     end_part();
   }
@@ -254,7 +254,7 @@ void ExerciseRun::Impl::end_part() {
   }
 }
 
-void ExerciseRun::Impl::judge(TrialResult& trial) const {
+void ExerciseRun::Impl::judge(ExerciseTrial& trial) const {
   if (trial.invalid.empty() && !trial.scores.empty() &&
       std::none_of(trial.scores.begin(), trial.scores.end(),
                    [](const Score& score) { return score.valid(); }))
@@ -273,13 +273,13 @@ void ExerciseRun::Impl::judge(TrialResult& trial) const {
 
 void ExerciseRun::Impl::end_trial(const std::string& invalid, bool repeat) {
   if (stimuli_) {
-    TrialResult trial = stimuli_->skip(invalid);
+    ExerciseTrial trial = stimuli_->skip(invalid);
     part_ = 0;
     view.note = fmt::format("it does not count: {}", invalid);
     add_trial(std::move(trial));
     return;
   }
-  TrialResult trial;
+  ExerciseTrial trial;
   trial.number = plan_.number;
   state_conditions(exercise, person, plan_, trial);
   trial.scores = trial_scores(exercise, person, plan_, steps_);
@@ -307,7 +307,7 @@ void ExerciseRun::Impl::end_trial(const std::string& invalid, bool repeat) {
   add_trial(std::move(trial));
 }
 
-void ExerciseRun::Impl::add_trial(TrialResult trial) {
+void ExerciseRun::Impl::add_trial(ExerciseTrial trial) {
   trial.begin = trial_begin_;
   trial.end = time_;
   ++repetitions_;
@@ -327,9 +327,9 @@ void ExerciseRun::Impl::go_on() {
   if (closing_)
     enter(ExercisePhase::kRating);
   else if (stimuli_ ? stimuli_->finished() : next_ >= planned_)
-    close("all trials are done");
+    close(reason_text<Reason::kAllTrialsDone>());
   else if (person.repetitions_today + repetitions_ >= exercise.dose.repetitions)
-    close(fmt::format("the day's dose of {} repetitions is done", exercise.dose.repetitions));
+    close(reason_text<Reason::kDoseOfRepetitionsDone>(exercise.dose.repetitions));
   else if (repetitions_ - rated_at_ >= kTrialsBetweenRatings)
     enter(ExercisePhase::kRating);
   else
@@ -341,7 +341,7 @@ bool ExerciseRun::Impl::in_trial() const noexcept {
 }
 
 void ExerciseRun::Impl::pause(std::string note) {
-  if (in_trial()) end_trial("it was paused", true);
+  if (in_trial()) end_trial(reason_text<Reason::kTrialPaused>(), true);
   if (view.phase == ExercisePhase::kDone) return;
   enter(ExercisePhase::kPaused);
   view.note = std::move(note);
@@ -358,7 +358,7 @@ void ExerciseRun::Impl::close(std::string reason) {
 bool ExerciseRun::Impl::complete() const {
   if (stimuli_) return stimuli_->finished();
   std::vector<bool> valid(static_cast<std::size_t>(planned_), false);
-  for (const TrialResult& trial : trials_)
+  for (const ExerciseTrial& trial : trials_)
     if (trial.invalid.empty() && trial.number >= 1 && trial.number <= planned_)
       valid[idx(trial.number - 1)] = true;
   return std::all_of(valid.begin(), valid.end(), [](bool each) { return each; });

@@ -8,6 +8,7 @@
 
 #include "exercise/run/exercise_trial.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -47,7 +48,7 @@ struct PressVerdict {
 
 PressVerdict press_verdict(const std::optional<SentStiffness>& press) {
   if (!press || !std::isfinite(press->mean()))
-    return {.verdict = PairVerdict::kSentNotKnown, .reason = "no stiffness was sent while it was pressed"};
+    return {.verdict = PairVerdict::kSentNotKnown, .reason = reason_text<Reason::kNoStiffnessWhilePressed>()};
   std::string reason = press->reason();
   if (reason.empty()) return {};
   // A fault, a ramp and a short press come before a stiffness that differs.
@@ -109,8 +110,8 @@ bool ExerciseStimuli::add(const Observation& observation) {
   return sent->deepest() >= depth(part_);
 }
 
-TrialResult ExerciseStimuli::answer(int choice) {
-  TrialResult trial = discrimination_ ? answer_pair(choice) : answer_object(choice);
+ExerciseTrial ExerciseStimuli::answer(int choice) {
+  ExerciseTrial trial = discrimination_ ? answer_pair(choice) : answer_object(choice);
   trial.number = number_++;
   return trial;
 }
@@ -132,13 +133,13 @@ std::vector<Score> ExerciseStimuli::pair_scores() const {
                                     stiffness(part).value_or(0.0) * kNPerMm));
     const bool known = std::isfinite(sent[idx(part)]);
     scores.push_back(stimulus_score(fmt::format("sent_{}_n_per_mm", which), "N/mm", sent[idx(part)] * kNPerMm,
-                                    known ? std::string() : std::string("no stiffness was sent")));
+                                    known ? std::string() : reason_text<Reason::kNoStiffness>()));
   }
   return scores;
 }
 
-TrialResult ExerciseStimuli::answer_pair(int choice) {
-  TrialResult trial;
+ExerciseTrial ExerciseStimuli::answer_pair(int choice) {
+  ExerciseTrial trial;
   trial.condition = fmt::format("pair {}", number_);
   trial.scores = pair_scores();
   trial.scores.push_back(stimulus_score("answer", "-", choice));
@@ -147,17 +148,14 @@ TrialResult ExerciseStimuli::answer_pair(int choice) {
   const PressVerdict& worst = first.verdict != PairVerdict::kCounted ? first : second;
   const PairVerdict verdict = discrimination_->answer(choice - 1, sent_means(), worst.verdict);
   if (verdict == PairVerdict::kCounted) return trial;
-  trial.invalid = worst.reason.empty()
-                      ? std::string(
-                            "the stiffness that was sent differs from the commanded one by more "
-                            "than 10 %; press more slowly")
-                      : worst.reason;
-  trial.invalid.insert(0, "not counted: ");
+  const std::string reason =
+      worst.reason.empty() ? reason_text<Reason::kSentStiffnessDiffers>() : worst.reason;
+  trial.invalid = reason_text<Reason::kNotCounted>(reason);
   return trial;
 }
 
-TrialResult ExerciseStimuli::answer_object(int choice) {
-  TrialResult trial;
+ExerciseTrial ExerciseStimuli::answer_object(int choice) {
+  ExerciseTrial trial;
   const int shown = identification_->object().value_or(0);
   trial.condition = choices_[idx(shown)];
   trial.scores.push_back(stimulus_score("answer", "-", choice));
@@ -166,8 +164,8 @@ TrialResult ExerciseStimuli::answer_object(int choice) {
   return trial;
 }
 
-TrialResult ExerciseStimuli::skip(const std::string& reason) {
-  TrialResult trial;
+ExerciseTrial ExerciseStimuli::skip(const std::string& reason) {
+  ExerciseTrial trial;
   trial.number = number_++;
   trial.condition = discrimination_ ? fmt::format("pair {}", trial.number)
                                     : choices_[idx(identification_->object().value_or(0))];

@@ -43,19 +43,19 @@ class ExerciseStimuli {
   [[nodiscard]] bool add(const Observation& observation);
   /// Takes the answer, from 1, and goes on to the next trial. @returns the trial's condition,
   /// scores and validity
-  [[nodiscard]] TrialResult answer(int choice);
+  [[nodiscard]] ExerciseTrial answer(int choice);
   /// Goes on to the next trial without an answer. @returns what was sent up to now, and the reason
-  [[nodiscard]] TrialResult skip(const std::string& reason);
+  [[nodiscard]] ExerciseTrial skip(const std::string& reason);
   /// @returns the scores of all answers
   [[nodiscard]] std::vector<Score> scores() const;
 
  private:
-  [[nodiscard]] TrialResult answer_pair(int choice);
+  [[nodiscard]] ExerciseTrial answer_pair(int choice);
   /// @returns commanded and sent stiffness of both sponges
   [[nodiscard]] std::vector<Score> pair_scores() const;
   /// @returns mean sent stiffness of both sponges; NaN: not known [N/m]
   [[nodiscard]] std::array<double, 2> sent_means() const;
-  [[nodiscard]] TrialResult answer_object(int choice);
+  [[nodiscard]] ExerciseTrial answer_object(int choice);
 
   std::array<bool, kDigits> digits_;
   std::vector<std::string> choices_;

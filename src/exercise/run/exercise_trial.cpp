@@ -11,6 +11,7 @@
 #include "phalanx/core/index.h"
 #include "phalanx/exercise/force_scores.h"
 #include "phalanx/exercise/motion_scores.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/exercise/smoothness.h"
 
 namespace phalanx {
@@ -111,10 +112,7 @@ std::vector<Score> pinch_and_band_scores(const ExerciseDescription& exercise, co
     scores.push_back(std::move(score));
   }
   for (Score& score : scores) {
-    if (!person.detects_slips)
-      score.invalid =
-          "not measured: contacts of this scene cannot slide, so that a slip is not seen; set "
-          "contact.mode = \"sliding\"";
+    if (!person.detects_slips) score.invalid = reason_text<Reason::kNoSlidingContacts>();
     if (!score.valid()) score.value = 0.0;
   }
   return scores;
@@ -293,8 +291,7 @@ std::vector<Score> scores_of_followers(const ExerciseDescription& exercise, cons
     plan.digit = digit;
     for (Score& score : trial_scores(exercise, all, plan, {})) {
       score.value = 0.0;
-      score.invalid =
-          fmt::format("not measured: the {} follows another digit of this device", digit_name(digit));
+      score.invalid = reason_text<Reason::kDigitFollows>(digit_name(digit));
       scores.push_back(std::move(score));
     }
   }
@@ -318,7 +315,7 @@ const Score* scored_by(const SuccessRule& rule, const TrialPlan& plan, const std
 }
 
 void state_conditions(const ExerciseDescription& exercise, const PersonLimits& person, const TrialPlan& plan,
-                      TrialResult& trial) {
+                      ExerciseTrial& trial) {
   const bool with_thumb =
       exercise.measure == ExerciseMeasure::kPinch || exercise.measure == ExerciseMeasure::kOpposition;
   if (plan.digit >= 0)

@@ -73,7 +73,7 @@ struct TrialPlan {
 
 /// States the trial's conditions in its result: condition, target, tolerance and rate.
 void state_conditions(const ExerciseDescription& exercise, const PersonLimits& person, const TrialPlan& plan,
-                      TrialResult& trial);
+                      ExerciseTrial& trial);
 
 /// Calculates active flexion and release of one digit: entry_flexion_<digit>_deg, entry_release_<digit>_deg.
 [[nodiscard]] std::vector<Score> entry_scores(std::span<const Observation> steps, int digit,
@@ -84,6 +84,6 @@ void state_conditions(const ExerciseDescription& exercise, const PersonLimits& p
 
 /// @returns the scores of a whole exercise: by name the mean of the valid trials, in the order of
 /// the first trial
-[[nodiscard]] std::vector<Score> mean_scores(const std::vector<TrialResult>& trials);
+[[nodiscard]] std::vector<Score> mean_scores(const std::vector<ExerciseTrial>& trials);
 
 }  // namespace phalanx

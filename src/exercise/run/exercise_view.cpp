@@ -8,6 +8,7 @@
 #include "exercise/run/exercise_machine.h"
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -51,7 +52,7 @@ std::string ExerciseRun::Impl::input(const ExerciseInput& input) {
       if (closing_)
         end_rating();  // its trials are done
       else
-        finish("a person has ended it", true);
+        finish(reason_text<Reason::kPersonEnded>(), true);
       break;
     case ExerciseInput::Kind::kDifficulty:
       refused = override_difficulty(input.value);
@@ -87,7 +88,7 @@ std::string ExerciseRun::Impl::skip() {
       return {};
     case ExercisePhase::kTrial:
     case ExercisePhase::kAnswer:
-      end_trial("a person has skipped it", false);
+      end_trial(reason_text<Reason::kTrialSkipped>(), false);
       return {};
     default:
       return "there is nothing to skip; begin or resume first";
@@ -103,7 +104,8 @@ std::string ExerciseRun::Impl::rate(const ExerciseInput& input) {
   ratings_.push_back({.time = time_, .kind = input.kind, .value = value});
   const int limit = pain ? exercise.ratings.pain : exercise.ratings.fatigue;
   if (value >= limit) {
-    std::string reason = fmt::format("{} {} of 10 has reached the limit {}", what, value, limit);
+    std::string reason = pain ? reason_text<Reason::kPainLimit>(value, limit)
+                              : reason_text<Reason::kFatigueLimit>(value, limit);
     if (closing_)
       closing_ = fmt::format("{}; {}", *closing_, reason);
     else
@@ -121,7 +123,7 @@ std::string ExerciseRun::Impl::answer(double value) {
   if (view.choices.empty()) return "no answer is asked for now";
   if (!is_whole(value, 1.0, static_cast<double>(view.choices.size())))
     return fmt::format("answer {}: answer a number from 1 to {}", shortest_text(value), view.choices.size());
-  TrialResult trial = stimuli_->answer(static_cast<int>(value));
+  ExerciseTrial trial = stimuli_->answer(static_cast<int>(value));
   part_ = 0;
   view.note = trial.invalid;
   add_trial(std::move(trial));

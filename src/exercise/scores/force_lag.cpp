@@ -6,6 +6,7 @@
 #include <span>
 
 #include "exercise/scores/trial_values.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -45,12 +46,10 @@ double change(const std::vector<double>& signal) {
 ForceLag find_lag(const std::vector<double>& force, const std::vector<double>& target, double longest_lag) {
   const auto most = static_cast<int>(longest_lag * kScoreRate + 1e-9);
   const auto points = static_cast<int>(force.size());
-  if (most < 1) return {.why = "not scored: the longest lag is below the signals' step of 0.01 s"};
-  if (points - 1 < 2 * most)
-    return {.why = fmt::format("not scored: the trial is shorter than twice the longest lag of {:.2f} s",
-                               longest_lag)};
-  if (change(target) < kLeastChange) return {.why = "not scored: the target does not move"};
-  if (change(force) < kLeastChange) return {.why = "not scored: the force does not change"};
+  if (most < 1) return {.why = reason_text<Reason::kLagBelowStep>()};
+  if (points - 1 < 2 * most) return {.why = reason_text<Reason::kShorterThanLag>(longest_lag)};
+  if (change(target) < kLeastChange) return {.why = reason_text<Reason::kTargetDoesNotMove>()};
+  if (change(force) < kLeastChange) return {.why = reason_text<Reason::kForceDoesNotChange>()};
 
   // Pairs force[k + lag], target[k]; r of a lag is at lag + most.
   std::vector<double> r;

@@ -14,6 +14,7 @@
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -35,13 +36,10 @@ struct RiseTime {
 /// Finds the first step that reaches 90 % of the level, and before it the last rise above 10 %.
 RiseTime find_rise(std::span<const Observation> steps, const std::vector<double>& force, double level) {
   const auto high = std::find_if(force.begin(), force.end(), [&](double f) { return f >= kHigh * level; });
-  if (high == force.end())
-    return {.why = fmt::format("not scored: the force never reached 90 % of {:.2f} N", level)};
+  if (high == force.end()) return {.why = reason_text<Reason::kRiseNotReached>(level)};
   auto begin = high;
   while (begin != force.begin() && *(begin - 1) >= kLow * level) --begin;
-  if (begin == force.begin())
-    return {.why =
-                fmt::format("not scored: the force was above 10 % of {:.2f} N when the trial began", level)};
+  if (begin == force.begin()) return {.why = reason_text<Reason::kRiseBeganHigh>(level)};
   const auto time = [&](auto at) { return steps[static_cast<std::size_t>(at - force.begin())].time; };
   return {.seconds = time(high) - time(begin), .why = {}};
 }
@@ -95,9 +93,8 @@ std::vector<Score> press_and_hold_scores(std::span<const Observation> steps, con
   });
   const auto first = static_cast<std::size_t>(settled - steps.begin());
   if (first + 1 >= steps.size())
-    return invalid_scores(
-        names, forces.origin,
-        fmt::format("not scored: the trial is not longer than the {:.2f} s to settle", task.settle_time));
+    return invalid_scores(names, forces.origin,
+                          reason_text<Reason::kNotLongerThanSettling>(task.settle_time));
 
   const std::vector<double> force = forces.sum(task.digits);
   const std::vector<double> weights = step_weights(steps);
@@ -111,7 +108,7 @@ std::vector<Score> press_and_hold_scores(std::span<const Observation> steps, con
   return {valid_score(names[0], mean, origin),
           valid_score(names[1], deviation, origin),
           mean > 0.0 ? valid_score(names[2], deviation / mean, origin)
-                     : invalid_score(names[2], origin, "not scored: the mean force is not above 0"),
+                     : invalid_score(names[2], origin, reason_text<Reason::kMeanForceNotPositive>()),
           valid_score(names[3], inside, origin),
           valid_score(names[4], inside / total(weight), origin),
           time_score(names[5], find_rise(steps, force, task.target), origin)};
@@ -135,8 +132,7 @@ std::vector<Score> force_tracking_scores(std::span<const Observation> steps, std
   const TrialForces forces = trial_forces(steps, task.digits, felt);
   if (!forces.invalid.empty()) return invalid_scores(names, forces.origin, forces.invalid);
   const double largest = *std::max_element(target.begin(), target.end());
-  if (!(largest > 0.0))
-    return invalid_scores(names, forces.origin, "not scored: the target is 0 all the time");
+  if (!(largest > 0.0)) return invalid_scores(names, forces.origin, reason_text<Reason::kTargetAllZero>());
 
   const std::vector<double> force = forces.sum(task.digits);
   const std::vector<double> weight = step_weights(steps);
@@ -167,8 +163,7 @@ std::vector<Score> squeeze_and_release_scores(std::span<const Observation> steps
   const double peak = *std::max_element(force.begin(), force.end());
   std::vector<Score> scores = {valid_score(names[0], peak, forces.origin)};
   if (!(peak >= task.least_peak)) {
-    const std::string why =
-        fmt::format("not scored: the peak of {:.2f} N is below {:.2f} N", peak, task.least_peak);
+    const std::string why = reason_text<Reason::kPeakBelowLeast>(peak, task.least_peak);
     for (std::size_t i = 1; i < names.size(); ++i)
       scores.push_back(invalid_score(names[i], forces.origin, why));
     return scores;
@@ -182,7 +177,7 @@ std::vector<Score> squeeze_and_release_scores(std::span<const Observation> steps
   while (released < force.size() && !(force[released] < kLow * peak)) ++released;
   RiseTime release;
   if (released == force.size())
-    release.why = "not scored: the force did not fall below 10 % of its peak before the trial ended";
+    release.why = reason_text<Reason::kNotReleased>();
   else
     release.seconds = steps[released].time - steps[leaves].time;
   scores.push_back(time_score(names[2], release, forces.origin));
@@ -191,7 +186,7 @@ std::vector<Score> squeeze_and_release_scores(std::span<const Observation> steps
   RiseTime delay{.seconds = 0.0, .why = release.why};
   if (delay.why.empty()) {
     delay.seconds = steps[released].time - steps.front().time - *task.release_cue;
-    if (delay.seconds < 0.0) delay.why = "not scored: the force was released before the cue";
+    if (delay.seconds < 0.0) delay.why = reason_text<Reason::kReleasedBeforeCue>();
   }
   scores.push_back(time_score(names[3], delay, forces.origin));
   return scores;

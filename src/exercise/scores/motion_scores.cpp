@@ -12,6 +12,7 @@
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -20,13 +21,11 @@ constexpr double kLongestHold = 10.0;  ///< [s]
 
 std::string why_no_motion(std::span<const Observation> steps, bool calibration_independent) {
   std::string why = why_not_scored(steps);
-  if (why.empty() && !calibration_independent) why = kDependentCalibration;
+  if (why.empty() && !calibration_independent) why = reason_text<Reason::kCalibrationDependsByMethod>();
   return why;
 }
 
-std::string too_short(double hold_time) {
-  return fmt::format("not scored: the trial is shorter than the hold of {:.2f} s", hold_time);
-}
+std::string too_short(double hold_time) { return reason_text<Reason::kShorterThanHold>(hold_time); }
 
 void append(std::vector<Score>& to, const std::vector<Score>& scores) {
   to.insert(to.end(), scores.begin(), scores.end());
@@ -149,8 +148,7 @@ std::vector<Score> opposition_scores(std::span<const Observation> steps, const O
     for (const Observation& step : steps) {
       if (!why.empty()) break;
       distance.push_back((step.pad[0] - step.pad[idx(finger)]).norm());
-      if (!std::isfinite(distance.back()))
-        why = fmt::format("not scored: a pad's position is not finite at {:.3f} s", step.time);
+      if (!std::isfinite(distance.back())) why = reason_text<Reason::kPadNotFinite>(step.time);
     }
     if (!why.empty()) {
       append(scores, invalid_scores(names, ScoreOrigin::kMeasured, why));
@@ -190,8 +188,8 @@ std::vector<Score> motion_independence_scores(std::span<const Observation> steps
   const double leading_range = range(leading);
   std::vector<Score> scores = {valid_score(names[0], leading_range * kRadToDeg, ScoreOrigin::kMeasured)};
   if (!(leading_range >= task.least_range)) {
-    why = fmt::format("not scored: the instructed digit moved by {:.1f} deg, less than {:.1f} deg",
-                      leading_range * kRadToDeg, task.least_range * kRadToDeg);
+    why =
+        reason_text<Reason::kInstructedMovedLittle>(leading_range * kRadToDeg, task.least_range * kRadToDeg);
     append(scores, invalid_scores(std::span(names).subspan(1), ScoreOrigin::kMeasured, why));
     return scores;
   }

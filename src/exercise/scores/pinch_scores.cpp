@@ -9,6 +9,7 @@
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/index.h"
 #include "phalanx/exercise/force_scores.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -58,8 +59,8 @@ std::string why_slipped(std::span<const Observation> steps, const DigitFlags& di
     }
   }
   if (onsets == 0) return {};
-  return fmt::format("not scored: the object slipped {}, first at {:.3f} s; repeat the trial",
-                     onsets == 1 ? std::string("once") : fmt::format("{} times", onsets), first);
+  return onsets == 1 ? reason_text<Reason::kSlippedOnce>(first)
+                     : reason_text<Reason::kSlippedOften>(onsets, first);
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ std::vector<Score> pinch_scores(std::span<const Observation> steps, const Pinch&
   const Score time = valid_score(names[0], hold.seconds, origin);
   const Score slips = valid_score(names[3], 0.0, origin);
   if (!(hold.seconds > 0.0)) {
-    const std::string why = fmt::format("not scored: both digits never held with {:.2f} N", task.least_force);
+    const std::string why = reason_text<Reason::kNeverHeld>(task.least_force);
     return {time, invalid_score(names[1], origin, why), invalid_score(names[2], origin, why), slips};
   }
   const std::size_t length = hold.end - hold.first;

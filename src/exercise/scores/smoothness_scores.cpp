@@ -11,6 +11,7 @@
 #include "exercise/scores/trial_values.h"
 #include "phalanx/core/constants.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/exercise/scored_steps.h"
 #include "phalanx/exercise/smoothness.h"
 
@@ -79,30 +80,30 @@ std::vector<Score> smoothness_scores(std::span<const Observation> steps, const F
   if (!why.empty()) return invalid_scores(names, ScoreOrigin::kMeasured, why);
   const std::vector<double> flexion = flexion_of(steps, samples, task.digit);
   if (flexion.size() < kLeastPoints)
-    return invalid_scores(names, ScoreOrigin::kMeasured,
-                          fmt::format("not scored: the trial is shorter than {:.2f} s",
-                                      static_cast<double>(kLeastPoints - 1) / kScoreRate));
+    return invalid_scores(
+        names, ScoreOrigin::kMeasured,
+        reason_text<Reason::kShorterThanSpeed>(static_cast<double>(kLeastPoints - 1) / kScoreRate));
 
   const std::vector<double> speed = speed_of(flexion);
   const double peak = *std::max_element(speed.begin(), speed.end());
   if (!(peak >= task.least_speed))
-    return invalid_scores(names, ScoreOrigin::kMeasured,
-                          fmt::format("not scored: the largest speed of {:.1f} deg/s is below {:.1f} deg/s",
-                                      peak * kRadToDeg, task.least_speed * kRadToDeg));
+    return invalid_scores(
+        names, ScoreOrigin::kMeasured,
+        reason_text<Reason::kSpeedBelowLeast>(peak * kRadToDeg, task.least_speed * kRadToDeg));
   const auto moves = [&](double v) { return v >= kMoves * peak; };
   const auto first =
       static_cast<std::size_t>(std::find_if(speed.begin(), speed.end(), moves) - speed.begin());
   std::size_t last = speed.size() - 1;
   while (!moves(speed[last])) --last;
   if (last - first + 1 < kLeastPoints)
-    return invalid_scores(names, ScoreOrigin::kMeasured, "not scored: the movement is shorter than 0.03 s");
+    return invalid_scores(names, ScoreOrigin::kMeasured, reason_text<Reason::kMovementTooShort>());
 
   const std::span<const double> movement = std::span(speed).subspan(first, last - first + 1);
   return {valid_score(names[0], spectral_arc_length(movement, kScoreRate), ScoreOrigin::kMeasured),
           valid_score(names[1], static_cast<double>(last - first) / kScoreRate, ScoreOrigin::kMeasured),
-          task.calibration_independent
-              ? valid_score(names[2], peak * kRadToDeg, ScoreOrigin::kMeasured)
-              : invalid_score(names[2], ScoreOrigin::kMeasured, std::string(kDependentCalibration)),
+          task.calibration_independent ? valid_score(names[2], peak * kRadToDeg, ScoreOrigin::kMeasured)
+                                       : invalid_score(names[2], ScoreOrigin::kMeasured,
+                                                       reason_text<Reason::kCalibrationDependsByMethod>()),
           valid_score(names[3], count_peaks(movement, kPeakChange * peak), ScoreOrigin::kMeasured)};
 }
 

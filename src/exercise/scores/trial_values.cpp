@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 
 namespace phalanx {
 namespace {
@@ -31,19 +32,15 @@ std::string why_no_forces(std::span<const Observation> steps, const DigitFlags& 
                           const DigitFlags& felt) {
   for (int digit = 0; digit < kDigits; ++digit)
     if (digits[idx(digit)] && !felt[idx(digit)])
-      return fmt::format("not measured: the device has no sensor and motor of the digit {} alone",
-                         digit_name(digit));
+      return reason_text<Reason::kNoForceOfDigitAlone>(digit_name(digit));
   for (const Observation& step : steps) {
-    if (!step.torque_on) return fmt::format("not scored: the torques were off at {:.3f} s", step.time);
-    if (!(step.factor >= 1.0))
-      return fmt::format("not scored: the torques were ramped at {:.3f} s (factor {:.2f})", step.time,
-                         step.factor);
+    if (!step.torque_on) return reason_text<Reason::kTorquesOffAt>(step.time);
+    if (!(step.factor >= 1.0)) return reason_text<Reason::kTorquesRampedAt>(step.time, step.factor);
   }
   for (int digit = 0; digit < kDigits; ++digit) {
     const std::size_t sensed = sensed_steps(steps, idx(digit));
     if (digits[idx(digit)] && sensed > 0 && sensed < steps.size())
-      return fmt::format("not scored: the force sensor of the digit {} has no value in {} of {} steps",
-                         digit_name(digit), steps.size() - sensed, steps.size());
+      return reason_text<Reason::kForceSensorGaps>(digit_name(digit), steps.size() - sensed, steps.size());
   }
   return {};
 }
@@ -53,15 +50,14 @@ std::string why_not_finite(const std::array<std::vector<double>, kDigits>& force
   for (int digit = 0; digit < kDigits; ++digit)
     for (std::size_t i = 0; i < forces[idx(digit)].size(); ++i)
       if (!std::isfinite(forces[idx(digit)][i]))
-        return fmt::format("not scored: the force of the digit {} is not finite at {:.3f} s",
-                           digit_name(digit), steps[i].time);
+        return reason_text<Reason::kForceNotFinite>(digit_name(digit), steps[i].time);
   return {};
 }
 
 }  // namespace
 
 Score valid_score(const ScoreName& name, double value, ScoreOrigin origin) {
-  if (!std::isfinite(value)) return invalid_score(name, origin, "not scored: the value is not finite");
+  if (!std::isfinite(value)) return invalid_score(name, origin, reason_text<Reason::kScoreNotFinite>());
   return {.name = name.name, .unit = name.unit, .value = value, .origin = origin, .invalid = {}};
 }
 
@@ -155,11 +151,10 @@ std::string why_not_measured(std::span<const Observation> steps, std::span<const
   for (const int joint : joints)
     for (const Observation& step : steps) {
       if (step.angle_origin[idx(joint)] != AngleOrigin::kMeasured)
-        return fmt::format("not measured: the angle of {} is {}", joint_name(joint),
-                           angle_origin_name(step.angle_origin[idx(joint)]));
+        return reason_text<Reason::kAngleNotMeasured>(joint_name(joint),
+                                                      angle_origin_name(step.angle_origin[idx(joint)]));
       if (!std::isfinite(step.angle[idx(joint)]))
-        return fmt::format("not scored: the angle of {} is not finite at {:.3f} s", joint_name(joint),
-                           step.time);
+        return reason_text<Reason::kAngleNotFinite>(joint_name(joint), step.time);
     }
   return {};
 }
@@ -192,13 +187,12 @@ TrialSamples trial_samples(std::span<const Observation> steps) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const double time = steps[i].sample_time;
     if (!std::isfinite(time)) {
-      out.invalid = fmt::format("not scored: the time of the sample at {:.3f} s is not known", steps[i].time);
+      out.invalid = reason_text<Reason::kSampleTimeNotKnown>(steps[i].time);
       return out;
     }
     if (i > 0 && time == out.time.back()) continue;
     if (i > 0 && time < out.time.back()) {
-      out.invalid =
-          fmt::format("not scored: the device's time goes back at {:.3f} s; repeat the trial", steps[i].time);
+      out.invalid = reason_text<Reason::kSampleTimeGoesBack>(steps[i].time);
       return out;
     }
     out.step.push_back(i);
@@ -207,9 +201,8 @@ TrialSamples trial_samples(std::span<const Observation> steps) {
   const double seconds = out.time.empty() ? 0.0 : out.time.back() - out.time.front();
   const double intervals = out.time.empty() ? 0.0 : static_cast<double>(out.time.size() - 1);
   if (!(intervals > 0.0) || intervals < kLeastSampleRate * seconds)
-    out.invalid = fmt::format(
-        "not measured: the device gave {:.1f} samples a second in the trial; speeds need {:.0f} at least",
-        seconds > 0.0 ? intervals / seconds : 0.0, kLeastSampleRate);
+    out.invalid =
+        reason_text<Reason::kTooFewSamples>(seconds > 0.0 ? intervals / seconds : 0.0, kLeastSampleRate);
   return out;
 }
 

@@ -111,9 +111,4 @@ struct TrialSamples {
 inline constexpr double kLeastSampleRate = 20.0;
 [[nodiscard]] TrialSamples trial_samples(std::span<const Observation> steps);
 
-/// Reason for scores of angles without a calibration that is independent of the person's reach.
-inline constexpr std::string_view kDependentCalibration =
-    "not measured: the calibration depends on what the person can reach; calibrate by jig, stops or "
-    "goniometer";
-
 }  // namespace phalanx

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/record/hand_observer.h"
 #include "phalanx/record/recorded_exercise.h"
 #include "phalanx/record/replay.h"
@@ -95,7 +96,7 @@ class ExercisesAgain final : public ReplayVisitor {
   explicit ExercisesAgain(ExerciseEvents& events) : events_(events) {}
 
   void step(const StepRecord& record, std::span<const DeviceSample> /*samples*/, double time) override {
-    const ExercisePlace here{.number = 0, .station = record.station, .tick = record.command.tick};
+    const EventPlace here{.number = 0, .station = record.station, .tick = record.command.tick};
     for (Pending& exercise : events_.exercises) {
       if (exercise.ended) continue;
       if (!exercise.run && !begins(exercise, here, time)) continue;
@@ -113,7 +114,7 @@ class ExercisesAgain final : public ReplayVisitor {
   }
   void missing(std::uint64_t station, std::uint64_t first, std::uint64_t last) override {
     for (Pending& exercise : events_.exercises) {
-      const ExercisePlace& begin = exercise.begin.place;
+      const EventPlace& begin = exercise.begin.place;
       const bool begins_within = begin.station == station && begin.tick >= first && begin.tick <= last;
       if (exercise.ended || (!exercise.run && !begins_within)) continue;
       exercise.missing += last - first + 1;
@@ -123,12 +124,12 @@ class ExercisesAgain final : public ReplayVisitor {
 
  private:
   /// Begins an exercise at its first step, or at the first one that is left of it.
-  static bool begins_here(const Pending& exercise, const ExercisePlace& here) noexcept {
-    const ExercisePlace& begin = exercise.begin.place;
+  static bool begins_here(const Pending& exercise, const EventPlace& here) noexcept {
+    const EventPlace& begin = exercise.begin.place;
     return here.station > begin.station || (here.station == begin.station && here.tick >= begin.tick);
   }
 
-  bool begins(Pending& exercise, const ExercisePlace& here, double time) {
+  bool begins(Pending& exercise, const EventPlace& here, double time) {
     if (!begins_here(exercise, here)) return false;
     const ExerciseStart& start = exercise.begin.start;
     exercise.run.emplace(start.exercise, start.person, start.seed);
@@ -136,7 +137,7 @@ class ExercisesAgain final : public ReplayVisitor {
     return true;
   }
 
-  static void take_inputs(Pending& exercise, const ExercisePlace& here) {
+  static void take_inputs(Pending& exercise, const EventPlace& here) {
     for (; exercise.next_input < exercise.inputs.size(); ++exercise.next_input) {
       const ExerciseInputEvent& next = exercise.inputs[exercise.next_input];
       if (next.place.station > here.station ||
@@ -149,10 +150,6 @@ class ExercisesAgain final : public ReplayVisitor {
   ExerciseEvents& events_;
 };
 
-std::string steps_text(std::uint64_t count) {
-  return count == 1 ? std::string("1 step is") : fmt::format("{} steps are", count);
-}
-
 /// Ends an exercise whose steps are over: inputs after the last step, and the abort of one that was not finished.
 void end(Pending& exercise) {
   if (!exercise.run)
@@ -164,32 +161,32 @@ void end(Pending& exercise) {
 }
 
 std::string why_invalid(const Pending& exercise) {
-  if (exercise.missing > 0)
-    return fmt::format("not scored: {} missing in the recording", steps_text(exercise.missing));
-  if (exercise.recorded.empty()) return "not scored: the recording ends before the exercise";
+  if (exercise.missing == 1) return reason_text<Reason::kOneStepMissingInRecording>();
+  if (exercise.missing > 1) return reason_text<Reason::kStepsMissingInRecording>(exercise.missing);
+  if (exercise.recorded.empty()) return reason_text<Reason::kRecordingEndsBefore>();
   return {};
 }
 
 std::string difference_of(const Pending& exercise, const std::string& text, const ReplayResult& replayed) {
   if (exercise.recorded.empty() || exercise.recorded == text) return {};
-  std::string why = "the same steps and inputs give another result";
-  if (exercise.missing > 0)
-    why = fmt::format("{} missing in the recording", steps_text(exercise.missing));
-  else if (exercise.different > 0)
-    why = fmt::format("{} steps have other bits ({})", exercise.different, exercise.first_difference);
-  else if (replayed.other_version)
-    why = fmt::format("another version recorded it: {}", replayed.recorded_by);
-  else if (replayed.other_machine)
-    why = fmt::format("it was recorded on {}, whose mathematical functions round otherwise",
-                      replayed.recorded_on);
   const auto first =
       std::mismatch(exercise.recorded.begin(), exercise.recorded.end(), text.begin(), text.end());
   const auto at = static_cast<std::size_t>(first.first - exercise.recorded.begin());
   constexpr std::size_t kShown = 40;
   const std::size_t from = at > kShown / 2 ? at - kShown / 2 : 0;
-  return fmt::format("{}; first difference at byte {}: recorded \"{}\", now \"{}\"", why, at,
-                     exercise.recorded.substr(from, kShown),
-                     from < text.size() ? text.substr(from, kShown) : std::string());
+  const std::string recorded = exercise.recorded.substr(from, kShown);
+  const std::string now = from < text.size() ? text.substr(from, kShown) : std::string();
+  if (exercise.missing == 1) return reason_text<Reason::kOtherResultOneMissing>(at, recorded, now);
+  if (exercise.missing > 1)
+    return reason_text<Reason::kOtherResultMissing>(exercise.missing, at, recorded, now);
+  if (exercise.different > 0)
+    return reason_text<Reason::kOtherResultBits>(exercise.different, exercise.first_difference, at, recorded,
+                                                 now);
+  if (replayed.other_version)
+    return reason_text<Reason::kOtherResultVersion>(replayed.recorded_by, at, recorded, now);
+  if (replayed.other_machine)
+    return reason_text<Reason::kOtherResultMachine>(replayed.recorded_on, at, recorded, now);
+  return reason_text<Reason::kOtherResult>(at, recorded, now);
 }
 
 }  // namespace
@@ -228,7 +225,7 @@ ExerciseResult without_scores(ExerciseResult result, const std::string& why) {
       if (score.invalid.empty()) score.invalid = why;
   };
   invalidate(result.scores);
-  for (TrialResult& trial : result.trials) {
+  for (ExerciseTrial& trial : result.trials) {
     invalidate(trial.scores);
     if (trial.invalid.empty()) trial.invalid = why;
     trial.success.reset();

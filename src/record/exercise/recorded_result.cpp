@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "phalanx/core/constants.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/record/recorded_exercise.h"
 
 namespace phalanx {
@@ -31,13 +32,14 @@ std::vector<Score> scores_of(const RecordedJson& list) {
                        ? ScoreOrigin::kMeasured
                        : ScoreOrigin::kRendered;
     score.invalid = text_of(row, "invalid");
-    if (score.invalid.empty() && !row.contains("value")) score.invalid = "the recorded result has no value";
+    if (score.invalid.empty() && !row.contains("value"))
+      score.invalid = reason_text<Reason::kNoRecordedValue>();
   }
   return scores;
 }
 
-TrialResult trial_of(const RecordedJson& row) {
-  TrialResult trial;
+ExerciseTrial trial_of(const RecordedJson& row) {
+  ExerciseTrial trial;
   trial.number = row.at("number").get<int>();
   trial.begin = number_of(row, "begin_s").value_or(0.0);
   trial.end = number_of(row, "end_s").value_or(0.0);

@@ -27,6 +27,7 @@ void add_text(std::string_view text, BitHash& hash) {
 /// @returns the exercise without what changes no trial
 ExerciseDescription without_texts(ExerciseDescription exercise) {
   exercise.title.clear();
+  exercise.title_de.clear();
   exercise.instruction.clear();
   for (ObjectChoice& object : exercise.objects) object.title.clear();
   exercise.scene = std::filesystem::path(exercise.scene).stem().string();  // its values have the content

@@ -31,13 +31,17 @@ class Rows {
  public:
   explicit Rows(std::vector<ExerciseRow>& rows) : rows_(rows) {}
 
+  /// A text that is not required and empty is not written.
   void text(const char* path, std::string ExerciseDescription::* field, bool required, const char* meaning) {
     add(
         path, "text", "", "", "", meaning, required, {},
         [field](TomlTable& table, std::string_view name, ExerciseDescription& exercise) {
           exercise.*field = table.text(name);
         },
-        [field](const ExerciseDescription& exercise) { return std::optional(toml_string(exercise.*field)); });
+        [field, required](const ExerciseDescription& exercise) -> std::optional<std::string> {
+          if (!required && (exercise.*field).empty()) return std::nullopt;
+          return toml_string(exercise.*field);
+        });
   }
 
   /// @param at  makes a pointer to the number
@@ -134,6 +138,7 @@ Applies only(ExerciseMeasure measure) {
 
 void add_general(Rows& rows) {
   rows.text("title", &ExerciseDescription::title, true, "one line for people");
+  rows.text("title_de", &ExerciseDescription::title_de, false, "the title in German, for page and report");
   std::vector<std::string_view> measures;
   for (int i = 0; i < kExerciseMeasures; ++i)
     measures.push_back(exercise_measure_name(static_cast<ExerciseMeasure>(i)));
