@@ -44,10 +44,12 @@ void StationExercises::Impl::tick_closing() {
   }
   if (closing_ == nullptr) return ask_closing();
   const ChangeReports reports = reports_of(*closing_);
+  if (reports.begun) set_recorded();
   if (reports.begun && !unrecorded_.empty()) return conclude(std::nullopt, std::exchange(unrecorded_, {}));
   if (reports.begun) return;
   if (!reports.refused.empty() || !reports.unopened.empty()) return refused_closing(reports);
-  if (!reports.file.empty() && !closing_->ordered) order_station(*closing_, std::nullopt);
+  if (!reports.file.empty() && !closing_->ordered)
+    order_station(closing_, prepared_->station(std::nullopt, closing_->recording));
 }
 
 /// Without a station no other recording can follow, and no step comes: the recording ends without a next one. Else it is
@@ -80,10 +82,12 @@ void StationExercises::Impl::ask_closing() {
   settings.least_room = 0;
   settings.quota.reset();
   NextRecording next = reporting(closing_, std::move(settings));
-  next.watch = [change = closing_](const std::filesystem::path&) {
+  next.watch = [change = closing_, use = use_of_key()](const std::filesystem::path&) {
     const std::lock_guard lock(change->mutex);
     change->begun = true;
-    return RecordingWatch{};
+    RecordingWatch watch;
+    watch.on_ended = [use](const std::filesystem::path&, bool) {};  // until then the key is in use
+    return watch;
   };
   try {
     closing_->recording = recorder_.next_recording(std::move(next));
@@ -98,6 +102,20 @@ std::optional<UnscoredExercise> StationExercises::Impl::unscored() const {
   return UnscoredExercise{.start = live_->start(), .result = live_->result(), .began = began_utc_};
 }
 
+/// States that the result waits for the registry. Any thread. @returns false if the program ends
+bool StationExercises::Impl::tries_again(const std::string& why) {
+  if (ending_) return false;
+  const std::string waits = fmt::format("the result waits for the registry: {}", why);
+  bool is_new = false;
+  {
+    const std::lock_guard lock(mutex_);
+    is_new = trouble_ != waits;
+    trouble_ = waits;
+  }
+  if (is_new) say(waits, true);
+  return true;
+}
+
 /// Starts the thread that makes the result.
 void StationExercises::Impl::keep() {
   EndedRecording recording;
@@ -106,11 +124,12 @@ void StationExercises::Impl::keep() {
     recording = *carried_->ended;
   }
   auto shared = std::make_shared<Kept>();
-  const auto work = [kept = shared, registry = registry_, prepared = prepared_, recording,
+  const auto work = [kept = shared, self = shared_from_this(), prepared = prepared_, recording,
                      done = unscored()] {
     KeptExercise made;
     try {
-      made = keep_exercise(*registry, *prepared, recording, done);
+      made = keep_exercise(*self->registry_, *prepared, recording, done,
+                           [&self](const std::string& why) { return self->tries_again(why); });
     } catch (const std::exception& error) {  // no memory
       made.trouble = error_text(error);
     }
@@ -135,6 +154,7 @@ void StationExercises::Impl::conclude(std::optional<ExerciseResult> result, cons
   stage_ = Stage::kEnded;
   trouble_ = trouble;
   result_ = std::move(result);
+  use_.reset();
   forces_off_ = false;
   inputs_.clear();
 }
@@ -164,7 +184,7 @@ void StationExercises::Impl::end() {
       KeptExercise made = kept_->made.value_or(KeptExercise{});
       conclude(std::move(made.result), made.trouble);
     } else if (ended) {
-      KeptExercise made = keep_exercise(*registry_, *prepared_, *ended, unscored());
+      KeptExercise made = keep_exercise(*registry_, *prepared_, *ended, unscored(), {});
       conclude(std::move(made.result), made.trouble);
     } else {
       conclude(std::nullopt, "the recording of the exercise has no end");

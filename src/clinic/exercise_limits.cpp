@@ -37,16 +37,6 @@ std::string stated_value(const Overrides& values, const std::string& key, const 
   return otherwise;
 }
 
-std::string calibration_methods(const std::string& file) {
-  if (file.empty()) return "none";
-  std::vector<std::string> methods;
-  for (const auto& channel : load_calibration(file).channels)
-    methods.emplace_back(calibration_method_name(channel.method));
-  std::sort(methods.begin(), methods.end());
-  methods.erase(std::unique(methods.begin(), methods.end()), methods.end());
-  return fmt::format("{}", fmt::join(methods, "+"));
-}
-
 }  // namespace
 
 Overrides lowered_limits(const std::string& scene, const Overrides& overrides,
@@ -88,10 +78,20 @@ std::array<bool, kDigits> felt_digits(const SessionInfo& info) {
   return felt;
 }
 
-std::map<std::string, std::string> conditions_of(const SessionInfo& info, const std::string& calibration) {
+std::string methods_of_calibration(const std::string& file) {
+  if (file.empty()) return "none";
+  std::vector<std::string> methods;
+  for (const auto& channel : load_calibration(file).channels)
+    methods.emplace_back(calibration_method_name(channel.method));
+  std::sort(methods.begin(), methods.end());
+  methods.erase(std::unique(methods.begin(), methods.end()), methods.end());
+  return fmt::format("{}", fmt::join(methods, "+"));
+}
+
+std::map<std::string, std::string> conditions_of(const SessionInfo& info, const std::string& methods) {
   return {{"device", info.device.name},
           {"serial", info.device.serial},
-          {"calibration", calibration_methods(calibration)},
+          {"calibration", methods},
           {"contact_mode", stated_value(info.values, "contact.mode", "static")},
           {"stabiliser", stated_value(info.values, "stabiliser.method", "rise_only")},
           {"rendering", fmt::format("{}", kRenderingVersion)},

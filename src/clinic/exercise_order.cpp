@@ -9,8 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "phalanx/clinic/exercise_limits.h"
 #include "phalanx/clinic/exercise_patient.h"
 #include "phalanx/core/error_text.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/record/recordings.h"
 
 namespace phalanx {
@@ -41,7 +43,19 @@ ExerciseResult shown_result(const RecordedExercise& exercise) {
   if (!exercise.invalid.empty()) return without_scores(exercise.result, exercise.invalid);
   if (exercise.other_program) return read_exercise_result(exercise.recorded, exercise.start.exercise);
   if (exercise.difference.empty()) return exercise.result;
-  return without_scores(exercise.result, fmt::format("not proven: {}", exercise.difference));
+  return without_scores(exercise.result, reason_text<Reason::kNotProven>(exercise.difference));
+}
+
+/// Does what needs the registry, again as long as another program holds it.
+template <class Work>
+void until_free(Work work, const std::function<bool(const std::string& why)>& tries_again) {
+  for (;;) {
+    try {
+      return work();
+    } catch (const RegistryError& refused) {
+      if (refused.fault() != RegistryFault::kBusy || !tries_again || !tries_again(refused.what())) throw;
+    }
+  }
 }
 
 }  // namespace
@@ -99,6 +113,7 @@ PreparedExercise prepare_exercise(Registry& registry, const Actor& actor, const 
   try {
     prepared.plan = plan_exercise({.exercise = order.exercise, .demo = order.demo, .seed = order.seed},
                                   place.station, &prepared.known);
+    prepared.plan.methods = methods_of_calibration(prepared.plan.calibration);  // not on the owner's thread
   } catch (const ExerciseRefusal& refused) {
     throw std::invalid_argument(refused.on_page());
   }
@@ -107,7 +122,8 @@ PreparedExercise prepare_exercise(Registry& registry, const Actor& actor, const 
 }
 
 KeptExercise keep_exercise(Registry& registry, const PreparedExercise& prepared,
-                           const EndedRecording& recording, const std::optional<UnscoredExercise>& done) {
+                           const EndedRecording& recording, const std::optional<UnscoredExercise>& done,
+                           const std::function<bool(const std::string& why)>& tries_again) {
   const ActingRegistry acting = {.registry = registry, .actor = prepared.actor};
   const std::string& record = prepared.known.patient.record;
   KeptExercise kept;
@@ -127,7 +143,7 @@ KeptExercise keep_exercise(Registry& registry, const PreparedExercise& prepared,
       complain("the exercise has not begun; it has no result");
       return kept;
     }
-    keep_results(acting, record, exercises, recording.file, complain);
+    until_free([&] { keep_results(acting, record, exercises, recording.file, complain); }, tries_again);
     kept.result = shown_result(exercises.back());
   } catch (const std::exception& error) {
     complain(fmt::format("{}. The recording {} is kept; `phalanx patient rebuild` makes the result again",

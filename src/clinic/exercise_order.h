@@ -64,8 +64,11 @@ struct EndedRecording {
 /// Makes the result of an exercise from its recording, and keeps it in the registry, or at least its dose. It replays the
 /// recording: not for a thread that must return soon.
 /// @param done  as the station carried it out; none: it did not begin
+/// @param tries_again  asked when another program holds the registry (RegistryFault::kBusy), with the words of that; true:
+/// it is tried again. Empty: never
 [[nodiscard]] KeptExercise keep_exercise(Registry& registry, const PreparedExercise& prepared,
                                          const EndedRecording& recording,
-                                         const std::optional<UnscoredExercise>& done);
+                                         const std::optional<UnscoredExercise>& done,
+                                         const std::function<bool(const std::string& why)>& tries_again);
 
 }  // namespace phalanx

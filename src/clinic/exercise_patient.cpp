@@ -13,6 +13,7 @@
 
 #include "phalanx/core/error_text.h"
 #include "phalanx/core/index.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/patients/patient_change.h"
 
 namespace phalanx {
@@ -279,9 +280,10 @@ PersonLimits person_of(const Patient& patient, const ExerciseDescription& exerci
 
 ResultRow result_row(const RecordedExercise& exercise, const std::string& recording) {
   const bool kept = exercise.invalid.empty() && exercise.other_program;
-  const std::string why = !exercise.invalid.empty()               ? exercise.invalid
-                          : !exercise.difference.empty() && !kept ? "not proven: " + exercise.difference
-                                                                  : std::string();
+  const std::string why = !exercise.invalid.empty() ? exercise.invalid
+                          : !exercise.difference.empty() && !kept
+                              ? reason_text<Reason::kNotProven>(exercise.difference)
+                              : std::string();
   const ExerciseResult made =
       kept ? read_exercise_result(exercise.recorded, exercise.start.exercise) : exercise.result;
   const ExerciseResult result = why.empty() ? made : without_scores(made, why);

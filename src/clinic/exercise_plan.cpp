@@ -104,7 +104,8 @@ ExerciseStart start_on(const ExercisePlan& plan, const SessionInfo& info) {
   // A simulated device's own values are exact; those of a real one are nominal.
   start.person.calibration_independent = info.device.simulated || !info.calibration.empty();
   start.simulated = start.simulated || info.device.simulated;
-  start.conditions = conditions_of(info, info.calibration);
+  start.conditions =
+      conditions_of(info, plan.methods ? *plan.methods : methods_of_calibration(info.calibration));
   if (plan.assume_person && plan.skill)
     start.person = assumed_person(start.person, info.geometry->model->hand.parameters(), *plan.skill);
   if (std::string protocol = assessment_protocol(start.exercise, start.person, info.values);

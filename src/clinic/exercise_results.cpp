@@ -8,6 +8,7 @@
 
 #include "phalanx/clinic/exercise_patient.h"
 #include "phalanx/core/error_text.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/record/recordings.h"
 
 namespace phalanx {
@@ -90,7 +91,7 @@ bool keep_dose(const ActingRegistry& acting, const std::string& record, const Un
   try {
     acting.registry.add_result(acting.actor, record,
                                dose_row(done.start, done.result, file.filename().string(), done.began,
-                                        "not scored: no result could be made from the recording"));
+                                        reason_text<Reason::kNoResultFromRecording>()));
     return true;
   } catch (const std::exception& error) {
     complain(fmt::format("the dose of this exercise is not in the registry: {}", error_text(error)));

@@ -55,6 +55,17 @@ RecorderSettings StationExercises::Impl::encrypted() const {
   return settings;
 }
 
+std::shared_ptr<const KeyUse> StationExercises::Impl::use_of_key() const {
+  const std::lock_guard lock(mutex_);
+  return use_;
+}
+
+/// Keeps that the present recording is encrypted with the exercise's key.
+void StationExercises::Impl::set_recorded() {
+  const std::lock_guard lock(mutex_);
+  recorded_ = prepared_->known.patient.record;
+}
+
 void StationExercises::Impl::tick() {
   say_words();
   bool reset = false;
@@ -72,7 +83,7 @@ void StationExercises::Impl::tick() {
       return tick_closing();
     case Stage::kNone:
     case Stage::kEnded:
-      return;
+      return tick_free();
   }
 }
 
@@ -102,13 +113,20 @@ void StationExercises::Impl::tick_opening() {
                                       ? "it was ended before it began"
                                       : fmt::format("the exercise cannot begin: {}", reports.refused));
   }
-  if (reports.entered) return order_station(*opening_, source_of_hand());
+  if (reports.entered) {
+    {
+      const std::lock_guard lock(mutex_);
+      is_own_ = false;
+    }
+    return order_station(opening_, prepared_->station(source_of_hand(), opening_->recording));
+  }
   if (!reports.file.empty()) enter_recording(reports.file);
 }
 
 /// Waits for the station that was ordered. From the order on the patient's station may run at any time, so that its
 /// recording must begin with it: an abort waits until the exercise has it.
 void StationExercises::Impl::tick_ordered(const ChangeReports& reports) {
+  if (reports.begun) set_recorded();
   if (!reports.unopened.empty()) {
     static_cast<void>(recorder_.cancel_recording(opening_->recording));
     return conclude(std::nullopt, fmt::format("the exercise cannot begin: {}", reports.unopened));
@@ -167,7 +185,8 @@ void StationExercises::Impl::ask_opening() {
   successes_ = 0;
   opening_ = std::make_shared<StationChange>();
   NextRecording next = reporting(opening_, encrypted());
-  next.watch = [change = opening_, carried = carried_](const std::filesystem::path& file) {
+  next.watch = [change = opening_, carried = carried_,
+                use = use_of_key()](const std::filesystem::path& file) {
     {
       const std::lock_guard lock(carried->mutex);
       carried->file = file;
@@ -179,7 +198,7 @@ void StationExercises::Impl::ask_opening() {
     RecordingWatch watch;
     watch.on_step = [carried](const StepRecord& record) { carried->step(record); };
     watch.on_last = [carried] { carried->finish(); };
-    watch.on_ended = [carried](const std::filesystem::path& ended, bool whole) {
+    watch.on_ended = [carried, use](const std::filesystem::path& ended, bool whole) {
       const std::lock_guard lock(carried->mutex);
       carried->ended = EndedRecording{.file = ended.empty() ? carried->file : ended, .whole = whole};
     };
@@ -200,20 +219,20 @@ std::optional<HandSource> StationExercises::Impl::source_of_hand() const {
 }
 
 /// Asks for the station of a change.
-void StationExercises::Impl::order_station(StationChange& change, std::optional<HandSource> source) {
-  change.ordered = true;
-  const auto shared = &change == opening_.get() ? opening_ : closing_;
+void StationExercises::Impl::order_station(const std::shared_ptr<StationChange>& change,
+                                           const StationOrder& order) {
+  change->ordered = true;
   try {
-    session_.replace(prepared_->station(source, change.recording), [shared](const ChangeOutcome& outcome) {
-      const std::lock_guard lock(shared->mutex);
+    session_.replace(order, [change](const ChangeOutcome& outcome) {
+      const std::lock_guard lock(change->mutex);
       if (outcome.refused.empty())
-        shared->opened = true;
+        change->opened = true;
       else
-        shared->unopened = outcome.refused;
+        change->unopened = outcome.refused;
     });
   } catch (const std::exception& error) {
-    const std::lock_guard lock(change.mutex);
-    change.unopened = error_text(error);
+    const std::lock_guard lock(change->mutex);
+    change->unopened = error_text(error);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "clinic/station_exercises_impl.h"
@@ -19,8 +20,10 @@
 namespace phalanx {
 namespace {
 
-constexpr std::size_t kMostInputs = 64;    // that wait for the owner's thread
-constexpr std::size_t kMostMessages = 64;  // likewise
+constexpr std::size_t kMostInputs = 64;                        // that wait for the owner's thread
+constexpr std::size_t kMostMessages = 64;                      // likewise
+constexpr std::chrono::seconds kLongestLeaving{15};            // of let_go()
+constexpr std::chrono::milliseconds kBetweenLeavingLooks{20};  // of its thread
 constexpr const char* kNoneRuns = "no exercise runs; begin one on the page of a patient";
 
 double system_utc() {
@@ -63,6 +66,18 @@ std::string hindrance(const SessionInfo& info, const StationExercisesSettings& s
   return {};
 }
 
+/// @returns the order of a station as it is now, stopped
+StationOrder own_station(const SessionInfo& info) {
+  StationOrder order;
+  order.scene = info.scene;
+  order.overrides = info.overrides;
+  if (info.source != HandSource::kDevice) order.source = info.source;
+  order.calibration = info.calibration;
+  order.range = info.range;
+  order.stopped = true;
+  return order;
+}
+
 }  // namespace
 
 void CarriedExercise::step(const StepRecord& record) {
@@ -92,6 +107,8 @@ std::uint32_t StationExercises::Impl::begin(const Actor& actor, const ExerciseOr
     if (ended_) throw std::runtime_error("the program ends; no exercise begins");
     if (stage_ == Stage::kOpening || stage_ == Stage::kRunning)
       throw std::runtime_error("another exercise runs; end it first");
+    if (leaves_)
+      throw std::runtime_error("the station's own recording is being begun; begin the exercise in a moment");
     if (stage_ == Stage::kClosing)
       throw std::runtime_error(
           fmt::format("the result of the exercise before is being made; begin in a moment{}",
@@ -111,8 +128,13 @@ std::uint32_t StationExercises::Impl::begin(const Actor& actor, const ExerciseOr
   auto prepared = std::make_shared<const PreparedExercise>(prepare_exercise(
       *registry_, actor, order, std::move(place), [this](const std::string& text) { say(text, false); },
       [this] { return ending_.load(); }));
+  std::shared_ptr<const KeyUse> use = registry_->use_key(actor, order.record);
   say(fmt::format("{} orders the exercise {}", actor.account, order.exercise), false);
   const std::lock_guard lock(mutex_);
+  if (is_own_) own_ = own_station(*info);
+  std::erase_if(uses_, [](const auto& each) { return each.second.expired(); });
+  uses_.emplace_back(order.record, use);
+  use_ = std::move(use);
   stops_ = session_.stops();
   stage_ = Stage::kOpening;
   keeps_private_ = true;
@@ -154,6 +176,46 @@ void StationExercises::Impl::reset() {
   reset_asked_ = true;
 }
 
+bool StationExercises::Impl::uses(const std::string& record) {
+  return std::any_of(uses_.begin(), uses_.end(),
+                     [&](const auto& each) { return each.first == record && !each.second.expired(); });
+}
+
+/// Forgets the newest exercise if it is of this patient and over.
+void StationExercises::Impl::forget(const std::string& record) {
+  if (prepared_ == nullptr || prepared_->known.patient.record != record) return;
+  stage_ = Stage::kNone;
+  prepared_.reset();
+  carried_.reset();
+  trouble_.clear();
+  refusal_.clear();
+  result_.reset();
+  last_success_ = false;
+}
+
+void StationExercises::Impl::let_go(const std::string& record) {
+  const std::lock_guard one(begin_mutex_);
+  const auto give_up = std::chrono::steady_clock::now() + kLongestLeaving;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const bool busy = stage_ == Stage::kOpening || stage_ == Stage::kRunning || stage_ == Stage::kClosing;
+    if (busy && prepared_->known.patient.record == record)
+      throw std::runtime_error("an exercise of this patient runs; end it first, then delete the patient");
+    if (!uses(record)) return forget(record);
+    if (ending_) throw std::runtime_error("the program ends; delete the patient when it has ended");
+    if (std::chrono::steady_clock::now() >= give_up) break;
+    // Another patient's exercise ends this recording by itself.
+    if (!busy && recorded_ == record) leaves_ = true;
+    lock.unlock();
+    std::this_thread::sleep_for(kBetweenLeavingLooks);
+    lock.lock();
+  }
+  throw std::runtime_error(fmt::format(
+      "the recording with the key of this patient is not closed after {} s: the disk or the device does not "
+      "answer; mend that, or end this program, then delete the patient",
+      kLongestLeaving.count()));
+}
+
 ExerciseStatus StationExercises::Impl::status() const {
   ExerciseStatus out;
   std::shared_ptr<CarriedExercise> carried;
@@ -165,8 +227,8 @@ ExerciseStatus StationExercises::Impl::status() const {
     if (!ended_) info = session_.info();
     out.stops = ended_ ? stops_ : session_.stops();
     out.stage = stage_;
-    out.number = number_;
     if (prepared_ == nullptr) return out;
+    out.number = number_;
     const Patient& patient = prepared_->known.patient;
     out.record = patient.record;
     out.code = patient.code;
@@ -231,6 +293,7 @@ void StationExercises::input(const ExerciseInput& input, const InputOrigin& orig
   impl_->input(input, origin);
 }
 void StationExercises::reset() { impl_->reset(); }
+void StationExercises::let_go(const std::string& record) { impl_->let_go(record); }
 ExerciseStatus StationExercises::status() const { return impl_->status(); }
 bool StationExercises::busy() const { return impl_->busy(); }
 bool StationExercises::keeps_private() const {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "clinic/exercise_order.h"
@@ -77,6 +78,9 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   std::uint32_t begin(const Actor& actor, const ExerciseOrder& order);
   void input(const ExerciseInput& input, const InputOrigin& origin);
   void reset();
+  void let_go(const std::string& record);
+  [[nodiscard]] bool uses(const std::string& record);
+  void forget(const std::string& record);
   [[nodiscard]] ExerciseStatus status() const;
   [[nodiscard]] bool busy() const;
   void say(const std::string& text, bool warning);
@@ -101,12 +105,20 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   void ask_closing();
   void refused_closing(const ChangeReports& reports);
   [[nodiscard]] std::optional<HandSource> source_of_hand() const;
-  void order_station(StationChange& change, std::optional<HandSource> source);
+  void order_station(const std::shared_ptr<StationChange>& change, const StationOrder& order);
   void keep();
   void conclude(std::optional<ExerciseResult> result, const std::string& trouble);
   [[nodiscard]] std::optional<UnscoredExercise> unscored() const;
   [[nodiscard]] RecorderSettings encrypted() const;
+  [[nodiscard]] std::shared_ptr<const KeyUse> use_of_key() const;
+  void set_recorded();
+  bool tries_again(const std::string& why);
   [[nodiscard]] Stage stage_now() const;
+
+  // ---- the owner's thread: own_recording.cpp
+  void tick_free();
+  void ask_own();
+  void conclude_own(const std::string& why);
 
   Session& session_;
   RunRecorder& recorder_;
@@ -144,10 +156,18 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   bool forces_off_ = false;
   /// Session::stops() when the exercise was ordered; after end(): as they were then
   std::uint64_t stops_ = 0;
+  std::shared_ptr<const KeyUse> use_;  ///< of the exercise's key, from its order to its result
+  /// All uses of keys, with the record of each: those of recordings last until the recording is closed.
+  std::vector<std::pair<std::string, std::weak_ptr<const KeyUse>>> uses_;
+  std::string recorded_;  ///< record whose key encrypts the present recording; empty: none
+  StationOrder own_;      ///< the station before the first exercise since is_own_ was true
+  bool is_own_ = true;    ///< no exercise has had the station since the program began, or since let_go()
+  bool leaves_ = false;   ///< the station's own recording is to begin
 
   // ---- the owner's thread
   std::shared_ptr<StationChange> opening_;
   std::shared_ptr<StationChange> closing_;
+  std::shared_ptr<StationChange> leaving_;  ///< to the station's own recording
   std::optional<ExerciseControl> control_;
   std::shared_ptr<LiveExercise> live_;
   double began_utc_ = 0.0;   ///< [s]

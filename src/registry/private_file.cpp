@@ -5,11 +5,17 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <chrono>
+#include <fstream>
+#include <sstream>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "phalanx/registry/registry_error.h"
@@ -62,6 +68,71 @@ void overwrite_bytes(const fs::path& name, int descriptor) {
   if (::fsync(descriptor) != 0) fail(name, "overwritten", errno);
 }
 
+constexpr std::chrono::milliseconds kBetweenTries{5};  // to take a lock
+
+Descriptor open_lock(const fs::path& file) {
+  Descriptor opened(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!opened.valid()) fail(file, "opened", errno);
+  return opened;
+}
+
+/// @returns false if another program or thread has a lock that excludes this one
+bool try_lock(const fs::path& file, const Descriptor& opened, int kind) {
+  while (::flock(opened.number(), kind | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) return false;
+    if (errno != EINTR) fail(file, "locked", errno);
+  }
+  return true;
+}
+
+/// @returns true for a word of a command, such as "rebuild": no code, no name and no path
+bool is_command_word(const std::string& word) {
+  return !word.empty() && word.front() != '-' && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::islower(c) != 0 || c == '-';
+  });
+}
+
+/// @returns program and command of a process, as "phalanx patient rebuild (process 1234)". What follows the command is
+/// left out: it may name a patient
+std::string process_name(long process) {
+  std::ifstream file(fmt::format("/proc/{}/cmdline", process), std::ios::binary);
+  std::string name;
+  std::string word;
+  for (int i = 0; i < 3 && std::getline(file, word, '\0'); ++i) {
+    if (i == 0) {
+      name = fs::path(word).filename().string();
+      continue;
+    }
+    if (!is_command_word(word)) break;
+    name.append(" ").append(word);
+    if (word == "run") break;  // a scene follows
+  }
+  return fmt::format("{} (process {})", name.empty() ? "a program" : name, process);
+}
+
+/// @returns the program that the system's list of locks names for a file
+std::string named_holder(const fs::path& file) {
+  constexpr const char* kUnknown = "another program";
+  struct stat state{};
+  if (::stat(file.c_str(), &state) != 0) return kUnknown;
+  const std::string place =
+      fmt::format("{:02x}:{:02x}:{}", major(state.st_dev), minor(state.st_dev), state.st_ino);
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream fields(line);
+    std::string number;
+    std::string kind;
+    std::string advisory;
+    std::string mode;
+    long process = 0;
+    std::string inode;
+    if (fields >> number >> kind >> advisory >> mode >> process >> inode && kind == "FLOCK" &&
+        inode == place && process > 0)
+      return process_name(process);
+  }
+  return kUnknown;
+}
+
 fs::path old_name(const fs::path& file) { return file.string() + ".old"; }
 
 Descriptor open_new(const fs::path& file) {
@@ -82,11 +153,32 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
   return *this;
 }
 
-FileLock::FileLock(const fs::path& file)
-    : file_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)) {
-  if (!file_.valid()) fail(file, "opened", errno);
-  while (::flock(file_.number(), LOCK_EX) != 0)
-    if (errno != EINTR) fail(file, "locked", errno);
+FileLock::FileLock(const fs::path& file) : file_(open_lock(file)) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  while (!try_lock(file, file_, LOCK_EX)) {
+    if (std::chrono::steady_clock::now() >= give_up)
+      throw RegistryError(RegistryFault::kBusy,
+                          fmt::format("{} has held {} for more than {} s; wait until it is done, or end it, "
+                                      "then try again",
+                                      named_holder(file), file.string(), kPatience));
+    std::this_thread::sleep_for(kBetweenTries);
+  }
+}
+
+SharedLock::SharedLock(const fs::path& file) : file_(open_lock(file)) {
+  if (!try_lock(file, file_, LOCK_SH))
+    throw RegistryError(RegistryFault::kBusy,
+                        fmt::format("{} holds {}; try again", named_holder(file), file.string()));
+}
+
+std::optional<std::string> holder_of(const fs::path& file) {
+  const Descriptor opened(::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  if (!opened.valid()) {
+    if (errno == ENOENT) return std::nullopt;
+    fail(file, "opened", errno);
+  }
+  if (try_lock(file, opened, LOCK_EX)) return std::nullopt;
+  return named_holder(file);
 }
 
 std::optional<FileStamp> stamp_of(const fs::path& file) {

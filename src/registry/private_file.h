@@ -28,12 +28,28 @@ class Descriptor {
 /// Exclusive lock among programs and threads, by a file of its own. The system ends it with the process.
 class FileLock {
  public:
-  /// Waits for the lock. @throws RegistryError kDisk
+  static constexpr double kPatience = 10.0;  ///< [s]
+
+  /// Waits for the lock, at most kPatience. @throws RegistryError kDisk; kBusy, naming the program that holds it
   explicit FileLock(const std::filesystem::path& file);
 
  private:
   Descriptor file_;
 };
+
+/// Shared lock of a file: any number of programs hold it, and no program can have it alone meanwhile.
+class SharedLock {
+ public:
+  /// Makes the file and takes the lock. @throws RegistryError kDisk; kBusy if a program has it alone
+  explicit SharedLock(const std::filesystem::path& file);
+
+ private:
+  Descriptor file_;
+};
+
+/// @returns the program that holds a lock of this file, such as "phalanx run (process 1234)"; none: no program holds one
+/// @throws RegistryError kDisk
+[[nodiscard]] std::optional<std::string> holder_of(const std::filesystem::path& file);
 
 /// Identity of a file's content as far as the file system tells it: another one means that it
 /// may have changed.

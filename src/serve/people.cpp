@@ -14,6 +14,7 @@
 #include "phalanx/core/nice_thread.h"
 #include "phalanx/serve/reach.h"
 #include "record/plain_text.h"
+#include "serve/people_accounts.h"
 #include "serve/people_exercise.h"
 #include "serve/web/request_checks.h"
 
@@ -92,6 +93,8 @@ std::vector<People::SignIn> People::take_sign_ins() {
 void People::read_accounts() noexcept {
   try {
     has_accounts_ = registry_->has_accounts();
+  } catch (const RegistryError& refused) {
+    if (refused.fault() != RegistryFault::kBusy) has_accounts_ = true;  // else as before
   } catch (const std::exception&) {
     has_accounts_ = true;
   }
@@ -184,12 +187,19 @@ WebResponse People::answer(const WebRequest& request) {
   if (request.path == kLock) return end_session(request, true);
   if (request.path == kUnlock) return unlock(request);
   // A page asks for the exercise's state by itself, several times a second: that is no sign of a person.
-  const Actor actor = actor_of(request, changes || request.path != people::kExercise);
+  const bool watches = request.path == people::kWatchedExercise;
+  const Actor actor = actor_of(request, !watches && (changes || request.path != people::kExercise), watches);
   if (request.path == kAlive) return json_response(nlohmann::json::object());
   if (!actor.may_see_patients())
     return words_response(403, fmt::format("the role of this account, {}, sees no patients; sign in as a "
                                            "therapist",
                                            role_name(actor.role)));
+  if (watches) return people::watched_exercise_response(host_.get(), actor, request);
+  if (people::is_of_accounts(request.path)) {
+    WebResponse response = people::accounts_response(*registry_, actor, request);
+    if (changes) read_accounts();
+    return response;
+  }
   return people::route(
       {.registry = *registry_, .exercises = exercises_, .today = utc_date(utc_()), .host = host_.get()},
       actor, request);
@@ -201,7 +211,7 @@ bool People::is_owner(const WebRequest& request) const {
   return !request.session.empty() && web::equal_secrets(request.session, owner_secret_);
 }
 
-Actor People::actor_of(const WebRequest& request, bool touch) {
+Actor People::actor_of(const WebRequest& request, bool touch, bool locked) {
   if (request.session.empty()) throw signed_out();
   if (is_owner(request)) {
     // Accounts may have been added since: then the registry refuses the owner.
@@ -209,7 +219,8 @@ Actor People::actor_of(const WebRequest& request, bool touch) {
     return Actor::owner();
   }
   const SignedIn known = registry_->signed_in(request.session, touch);
-  if (known.state != SignInState::kActive) throw signed_out();
+  if (known.state != SignInState::kActive && !(locked && known.state == SignInState::kLocked))
+    throw signed_out();
   return known.actor;
 }
 

@@ -25,7 +25,7 @@ namespace phalanx {
 /// The registry behind HTTP, through the functions that the commands call, too.
 ///
 /// Access. A client that may only view gets 403. The account of a patient's screen signs in and out, and gets 403 for
-/// all that is about patients. All requests but GET /people and a sign-in need the secret
+/// all that is about patients. A locked session may watch the exercise that runs, without its patient. All requests but GET /people and a sign-in need the secret
 /// of a session in the field X-Phalanx-Session. A page of another site can neither read it nor send this
 /// field. Without accounts a client of this computer signs in as the owner, without a password; other
 /// computers are refused. The registry delays sign-ins after wrong passwords, locks idle sessions, checks
@@ -101,8 +101,9 @@ class People : public std::enable_shared_from_this<People> {
   [[nodiscard]] bool is_owner(const WebRequest& request) const;
   /// @returns the account of a request's session, or the owner
   /// @throws RegistryError kSignIn if the session is unknown or locked
-  /// @param touch  the request puts the session's lock off
-  [[nodiscard]] Actor actor_of(const WebRequest& request, bool touch);
+  /// @param touch   the request puts the session's lock off
+  /// @param locked  a locked session is enough
+  [[nodiscard]] Actor actor_of(const WebRequest& request, bool touch, bool locked = false);
   void begin_name(const std::string& session, const SignIn& sign_in);
   /// Reports that an account is no longer signed in, once. Needs mutex_.
   void end_name(const std::string& session);

@@ -94,6 +94,7 @@ json result_json(const ExerciseResult& result) {
                       {"origin", score_origin_name(score.origin)},
                       {"invalid", as_utf8(score.invalid)}});
   return {{"scores", scores},
+          {"names", score_names_json(result.scores)},
           {"ended", as_utf8(result.ended)},
           {"interrupted", result.interrupted},
           {"repetitions", result.repetitions},
@@ -187,6 +188,7 @@ json exercise_json(const ExerciseStatus& status) {
           {"side", status.side},
           {"name", as_utf8(exercise.name)},
           {"title", as_utf8(exercise.title)},
+          {"title_de", as_utf8(exercise.title_de)},
           {"measure", known ? std::string(exercise_measure_name(exercise.measure)) : std::string()},
           {"kind", known ? std::string(exercise_kind_name(exercise.kind)) : std::string()},
           {"simulated", status.simulated},
@@ -213,6 +215,14 @@ json exercise_json(const ExerciseStatus& status) {
           {"result", status.result ? result_json(*status.result) : json(nullptr)}};
 }
 
+json watched_exercise_json(const ExerciseStatus& status) {
+  json out = exercise_json(status);
+  for (const char* of_patient : {"record", "code", "symbol", "side", "recording", "result"})
+    out.erase(of_patient);
+  out["trouble"] = as_utf8(status.trouble_without_code);
+  return out;
+}
+
 ExerciseInput exercise_input_of(const json& object) {
   std::string text = text_of(object, "kind", kLongestWord);
   const auto value = object.find("value");
@@ -230,7 +240,8 @@ ExerciseInput exercise_input_of(const json& object) {
 }
 
 void stop_at_once(ExerciseHost& host, const WebRequest& request) noexcept {
-  if (request.path != kExercise || request.method != "POST") return;
+  if (request.path != kExercise && request.path != kWatchedExercise) return;
+  if (request.method != "POST") return;
   try {
     const ExerciseInput input = exercise_input_of(read_object(request.body));
     const ExerciseStatus status = host.status();
@@ -250,6 +261,16 @@ WebResponse exercise_response(const RouteContext& context, const Actor& actor, c
   if (context.host == nullptr) return no_host();
   if (request.method != "POST") return json_response(exercise_json(context.host->status()));
   return with_conflicts([&] { return take_input(*context.host, actor, read_object(request.body)); });
+}
+
+WebResponse watched_exercise_response(ExerciseHost* host, const Actor& actor, const WebRequest& request) {
+  if (host == nullptr) return no_host();
+  if (request.method != "POST") return json_response(watched_exercise_json(host->status()));
+  const json object = read_object(request.body);
+  const std::string kind = text_of(object, "kind", kLongestWord);
+  if (kind != "pause" && kind != "pain" && kind != "fatigue")
+    return words_response(401, "this page is locked: unlock it first; a pause and ratings work without that");
+  return with_conflicts([&] { return take_input(*host, actor, object); });
 }
 
 std::optional<WebResponse> exercise_part(const RouteContext& context, const Actor& actor,

@@ -16,9 +16,14 @@ namespace phalanx::people {
 
 /// Address of the exercise that runs.
 inline constexpr std::string_view kExercise = "/people/exercise";
+/// Address of the same exercise without its patient, for a page that is locked.
+inline constexpr std::string_view kWatchedExercise = "/people/exercise/watched";
 
 /// @returns the state of an exercise. While its scene is hidden, it has no forces.
 [[nodiscard]] nlohmann::json exercise_json(const ExerciseStatus& status);
+
+/// @returns the state without what tells whose exercise it is: record, code, symbol, side, recording and result
+[[nodiscard]] nlohmann::json watched_exercise_json(const ExerciseStatus& status);
 
 /// Reads {"kind":"pain","value":3}. "reset" is not an input of ExerciseInput.
 /// @throws std::invalid_argument naming the field, if the value is missing, superfluous or out of its range
@@ -33,6 +38,12 @@ void stop_at_once(ExerciseHost& host, const WebRequest& request) noexcept;
 /// @throws std::invalid_argument with a refusal in words
 [[nodiscard]] WebResponse exercise_response(const RouteContext& context, const Actor& actor,
                                             const WebRequest& request);
+
+/// Answers kWatchedExercise, for a session that is signed in or locked: GET with the state, POST with a pause or a rating.
+/// All other inputs need an open session.
+/// @throws std::invalid_argument with a refusal in words
+[[nodiscard]] WebResponse watched_exercise_response(ExerciseHost* host, const Actor& actor,
+                                                    const WebRequest& request);
 
 /// Answers POST "exercise" below a patient's address: begins one.
 /// @param part  of the path, after the record id

@@ -8,6 +8,7 @@
 
 #include "phalanx/exercise/score.h"
 #include "record/plain_text.h"
+#include "report/score_names.h"
 
 namespace phalanx::people {
 namespace {
@@ -42,6 +43,16 @@ json result_row_json(const ResultRow& row) {
           {"successes", row.successes},
           {"pain", row.pain},
           {"fatigue", row.fatigue}};
+}
+
+/// Adds the names of scores for people, in the page's languages.
+void add_names(json& names, std::span<const Score> scores) {
+  for (const Score& score : scores) {
+    const std::string name = as_utf8(score.name);
+    if (names.contains(name)) continue;
+    names[name] = {{"en", report::score_label(name, ReportLanguage::kEnglish)},
+                   {"de", report::score_label(name, ReportLanguage::kGerman)}};
+  }
 }
 
 json trend_json(const Trend& trend) {
@@ -122,8 +133,12 @@ json course_json(std::span<const ResultRow> results, std::span<const EnteredTest
   json course = {{"results", json::array()},
                  {"tests", json::array()},
                  {"notes", json::array()},
-                 {"trends", json::array()}};
-  for (const ResultRow& row : results) course["results"].push_back(result_row_json(row));
+                 {"trends", json::array()},
+                 {"names", json::object()}};
+  for (const ResultRow& row : results) {
+    course["results"].push_back(result_row_json(row));
+    add_names(course["names"], row.scores);
+  }
   for (const EnteredTest& test : tests) {
     const TestKindInfo& kind = test_kind(test.kind);
     course["tests"].push_back({{"kind", kind.name},
@@ -141,11 +156,18 @@ json course_json(std::span<const ResultRow> results, std::span<const EnteredTest
   return course;
 }
 
+json score_names_json(std::span<const Score> scores) {
+  json names = json::object();
+  add_names(names, scores);
+  return names;
+}
+
 json exercises_json(std::span<const ListedExercise> exercises) {
   json all = json::array();
   for (const ListedExercise& exercise : exercises)
     all.push_back({{"name", as_utf8(exercise.name)},
                    {"title", as_utf8(exercise.title)},
+                   {"title_de", as_utf8(exercise.title_de)},
                    {"kind", exercise.kind},
                    {"measure", exercise.measure}});
   return {{"exercises", std::move(all)}};

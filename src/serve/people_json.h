@@ -33,7 +33,9 @@ inline constexpr std::size_t kDeepestJson = 8;  ///< objects and lists within ea
 [[nodiscard]] nlohmann::json list_json(std::span<const Patient> patients, const std::string& today);
 /// @returns all fields as in patient_json(), "obstacles", and patient_revision() as "revision"
 [[nodiscard]] nlohmann::json one_json(const Patient& patient, const std::string& today);
-/// @returns results, tests, notes and trends of one patient
+/// @returns the names of scores for people by language: {"index_peak_force_n": {"en": .., "de": ..}}
+[[nodiscard]] nlohmann::json score_names_json(std::span<const Score> scores);
+/// @returns results, tests, notes and trends of one patient, and the "names" of their scores
 [[nodiscard]] nlohmann::json course_json(std::span<const ResultRow> results,
                                          std::span<const EnteredTest> tests,
                                          std::span<const PatientNote> notes, std::span<const Trend> trends);

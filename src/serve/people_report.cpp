@@ -69,7 +69,13 @@ json template_json(const PrescriptionTemplate& one) {
                      {"minutes_per_day", line.minutes_per_day},
                      {"overrides", line.overrides},
                      {"note", as_utf8(line.note)}});
-  return {{"name", as_utf8(one.name)}, {"title", as_utf8(one.title)}, {"lines", std::move(lines)}};
+  json notes = json::object();
+  for (const auto& [exercise, note] : one.notes_de) notes[exercise] = as_utf8(note);
+  return {{"name", as_utf8(one.name)},
+          {"title", as_utf8(one.title)},
+          {"title_de", as_utf8(one.title_de)},
+          {"notes_de", std::move(notes)},
+          {"lines", std::move(lines)}};
 }
 
 }  // namespace

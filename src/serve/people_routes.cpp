@@ -97,9 +97,12 @@ WebResponse remove(const RouteContext& context, const Actor& actor, const WebReq
   if (patient.code != confirmed)
     throw std::invalid_argument("this is not the code of the patient; type it again to delete the patient");
   if (context.host != nullptr) {
-    const ExerciseStatus status = context.host->status();
-    if (exercise_runs(status) && status.record == record)
-      return words_response(409, "an exercise of this patient runs; end it first, then delete the patient");
+    // Before the key is erased: what the station still records must not need it.
+    try {
+      context.host->let_go(record);
+    } catch (const std::runtime_error& refused) {
+      return words_response(409, refused.what());
+    }
   }
   nlohmann::json report = deleted_json(context.registry.delete_patient(actor, record));
   // A deletion leaves these files where they are.
@@ -140,6 +143,8 @@ int status_of_fault(RegistryFault fault) noexcept {
       return 403;
     case RegistryFault::kDisk:
       return 507;
+    case RegistryFault::kBusy:
+      return 503;
     case RegistryFault::kConflict:
     case RegistryFault::kNewer:
     case RegistryFault::kNoKey:

@@ -9,11 +9,13 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "record/temporary_folder.h"
+#include "registry/private_file.h"
 #include "serve/people.h"
 #include "serve/people_registry.h"
 
@@ -21,6 +23,7 @@ namespace phalanx {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -44,6 +47,11 @@ class AskedHost final : public ExerciseHost {
     by = origin.account;
   }
   void reset() override { ++resets; }
+  void let_go(const std::string& record) override {
+    if (!refusal.empty()) throw std::runtime_error(refusal);
+    let_go_of.push_back(record);
+    had_key = keys && keys(record).has_value();
+  }
   [[nodiscard]] ExerciseStatus status() const override { return now; }
 
   [[nodiscard]] std::vector<ExerciseInput> inputs() const {
@@ -56,6 +64,9 @@ class AskedHost final : public ExerciseHost {
   std::string by;  // of the newest input
   std::vector<ExerciseOrder> orders;
   int resets = 0;
+  std::vector<std::string> let_go_of;
+  FindRecordingKey keys;
+  bool had_key = false;  // when let_go() was called
   ExerciseStatus now = {.number = 3};
 
  private:
@@ -72,8 +83,8 @@ class PeopleExercise : public ::testing::Test {
  protected:
   ~PeopleExercise() override { EXPECT_TRUE(people_->finish(std::chrono::minutes(5))); }
 
-  HostAnswer send(const std::string& method, const std::string& path, const std::string& session,
-                  const json& body = {}) {
+  std::future<HostAnswer> begin_sending(const std::string& method, const std::string& path,
+                                        const std::string& session, const json& body = {}) {
     WebRequest request;
     request.method = method;
     request.path = path;
@@ -85,7 +96,11 @@ class PeopleExercise : public ::testing::Test {
     people_->request(request, [promise](const WebResponse& response) {
       promise->set_value({.status = response.status, .text = response.body ? *response.body : ""});
     });
-    return future.get();
+    return future;
+  }
+  HostAnswer send(const std::string& method, const std::string& path, const std::string& session,
+                  const json& body = {}) {
+    return begin_sending(method, path, session, body).get();
   }
   std::string owner() {
     return json::parse(send("POST", "/people/sign_in", "", {{"account", ""}, {"password", ""}}).text)
@@ -105,6 +120,7 @@ class PeopleExercise : public ::testing::Test {
       registry_, people::ListExercises(), [clocks = clocks_] { return clocks->utc.load(); }, host_);
   const std::string record_ = registry_->add_patient(Actor::owner(), test::ready_patient("SIM1")).record;
   const std::string session_ = owner();
+  const bool has_keys_ = (host_->keys = registry_->keys().finder(), true);
 };
 
 TEST_F(PeopleExercise, ABeginHasTheFieldsOfItsBodyAndTheAccount) {
@@ -191,13 +207,47 @@ TEST_F(PeopleExercise, AnInputForAnotherExerciseIsRefusedAndItsPauseStopsAllTheS
 
 TEST_F(PeopleExercise, APatientIsNotDeletedWhileTheirExerciseRuns) {
   const std::string path = "/people/patients/" + record_ + "/delete";
-  host_->now.record = record_;
-  host_->now.stage = ExerciseStatus::Stage::kClosing;
+  host_->refusal = "an exercise of this patient runs; end it first";
   const HostAnswer refused = send("POST", path, session_, {{"confirm", "SIM1"}});
   EXPECT_EQ(refused.status, 409);
   EXPECT_THAT(refused.text, HasSubstr("end it first"));
-  host_->now.stage = ExerciseStatus::Stage::kEnded;
+  EXPECT_EQ(registry_->patient(Actor::owner(), record_).code, "SIM1");
+  host_->refusal.clear();
+  EXPECT_EQ(send("POST", path, session_, {{"confirm", "SIM2"}}).status, 400);
+  EXPECT_THAT(host_->let_go_of, IsEmpty()) << "another code leaves the station as it is";
   EXPECT_EQ(send("POST", path, session_, {{"confirm", "SIM1"}}).status, 200);
+  EXPECT_THAT(host_->let_go_of, ElementsAre(record_));
+  EXPECT_TRUE(host_->had_key) << "the station lets go before the key is erased";
+}
+
+TEST_F(PeopleExercise, APatientWithWhoseKeyAnotherStationRecordsIsNotDeleted) {
+  const std::string path = "/people/patients/" + record_ + "/delete";
+  {
+    const auto use = registry_->use_key(Actor::owner(), record_);
+    const HostAnswer refused = send("POST", path, session_, {{"confirm", "SIM1"}});
+    EXPECT_EQ(refused.status, 409);
+    EXPECT_THAT(refused.text, AllOf(HasSubstr("records with the key of this patient"), HasSubstr("process"),
+                                    HasSubstr("end that program and delete again")));
+  }
+  EXPECT_EQ(send("POST", path, session_, {{"confirm", "SIM1"}}).status, 200);
+}
+
+TEST_F(PeopleExercise, ARegistryThatAnotherProgramHoldsIsNamedAndDelaysNoStop) {
+  host_->now.stage = ExerciseStatus::Stage::kRunning;
+  std::optional<registry::FileLock> held(folder_.path() / "data/lock");
+  std::future<HostAnswer> list = begin_sending("GET", "/people/patients", session_);
+  // The thread of the patients waits for the registry: the clock stands still while this thread works.
+  std::future<HostAnswer> pause =
+      begin_sending("POST", "/people/exercise", session_, {{"kind", "pause"}, {"number", 3}});
+  EXPECT_THAT(host_->inputs(), ElementsAre(ExerciseInput{.kind = Kind::kPause, .value = 0.0}))
+      << "before the request comes to its turn";
+  const HostAnswer refused = list.get();
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_THAT(refused.text, AllOf(HasSubstr("process"), HasSubstr("has held"),
+                                  HasSubstr("wait until it is done, or end it, then try again")));
+  EXPECT_EQ(pause.get().status, 200);
+  held.reset();
+  EXPECT_EQ(send("GET", "/people/patients", session_).status, 200);
 }
 
 TEST_F(PeopleExercise, TheStateHasAllFieldsAndHidesForcesWithTheScene) {
@@ -238,6 +288,57 @@ TEST_F(PeopleExercise, TheStateHasAllFieldsAndHidesForcesWithTheScene) {
   EXPECT_TRUE(hidden.at("value").is_null());
   EXPECT_TRUE(hidden.at("result").at("scores").at(0).at("value").is_null());
   EXPECT_EQ(hidden.at("result").at("scores").at(0).at("invalid"), "no");
+}
+
+TEST_F(PeopleExercise, ALockedSessionWatchesTheExerciseWithoutItsPatientAndMayPauseAndRateIt) {
+  registry_->add_account(Actor::owner(), {.name = "chief", .role = Role::kAdministrator}, "a long password");
+  const std::string session =
+      json::parse(
+          send("POST", "/people/sign_in", "", {{"account", "chief"}, {"password", "a long password"}}).text)
+          .at("session")
+          .get<std::string>();
+  ExerciseStatus& now = host_->now;
+  now.stage = ExerciseStatus::Stage::kRunning;
+  now.record = record_;
+  now.code = "SIM1";
+  now.symbol = "kite";
+  now.side = "right";
+  now.recording = "recording-of-SIM1.mcap";
+  now.trouble = "SIM1: the disk is full";
+  now.trouble_without_code = "the patient: the disk is full";
+  now.exercise.name = "press_and_hold";
+  now.view.phase = ExercisePhase::kTrial;
+  now.view.trial = 2;
+  now.result.emplace();
+  const std::string path = "/people/exercise/watched";
+  EXPECT_EQ(send("GET", path, "").status, 401) << "only with a session";
+  EXPECT_EQ(send("POST", "/people/lock", session, json::object()).status, 200);
+  EXPECT_EQ(send("GET", "/people/exercise", session).status, 401);
+  const HostAnswer watched = send("GET", path, session);
+  ASSERT_EQ(watched.status, 200) << watched.text;
+  const json shown = json::parse(watched.text);
+  EXPECT_EQ(shown.at("phase"), "trial");
+  EXPECT_EQ(shown.at("trial"), 2);
+  EXPECT_EQ(shown.at("trouble"), "the patient: the disk is full");
+  for (const std::string& hidden : {std::string("SIM1"), record_, std::string("kite"), std::string("right")})
+    EXPECT_EQ(watched.text.find(hidden), std::string::npos) << hidden;
+  EXPECT_FALSE(shown.contains("result"));
+  for (const std::string kind : {"begin", "resume", "skip", "answer", "difficulty", "reset"})
+    EXPECT_EQ(send("POST", path, session, {{"kind", kind}, {"value", 1}, {"number", 3}, {"stops", 0}}).status,
+              401)
+        << kind;
+  EXPECT_THAT(host_->inputs(), IsEmpty());
+  EXPECT_EQ(send("POST", path, session, {{"kind", "abort"}, {"number", 3}}).status, 401);
+  EXPECT_THAT(host_->inputs(), ElementsAre(testing::Field(&ExerciseInput::kind, Kind::kPause)))
+      << "an end stops the torque at once, and ends nothing";
+  EXPECT_EQ(send("POST", path, session, {{"kind", "pause"}, {"number", 3}}).status, 200);
+  EXPECT_EQ(send("POST", path, session, {{"kind", "pain"}, {"value", 2}, {"number", 3}}).status, 200);
+  EXPECT_EQ(host_->inputs().back().kind, Kind::kPain);
+  EXPECT_EQ(host_->by, "chief");
+  EXPECT_EQ(send("POST", path, session, {{"kind", "pain"}, {"value", 2}, {"number", 2}}).status, 409);
+  EXPECT_EQ(send("GET", "/people/exercise", session).status, 401) << "it is still locked";
+  EXPECT_EQ(send("POST", "/people/sign_out", session, json::object()).status, 200);
+  EXPECT_EQ(send("GET", path, session).status, 401);
 }
 
 TEST_F(PeopleExercise, AStationThatCarriesOutNoneSaysSo) {

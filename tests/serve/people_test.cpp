@@ -393,6 +393,7 @@ TEST_F(PeopleTest, TheCourseHasResultsTestsNotesAndTrends) {
   const json& scores = course["results"][0]["scores"];
   EXPECT_EQ(scores[0]["value"], 4.25);
   EXPECT_EQ(scores[0]["origin"], "measured");
+  EXPECT_EQ(course["names"]["mean_n"]["en"], "Mean n") << "a name that is not known keeps its words";
   EXPECT_FALSE(scores[1].contains("value")) << "a score that was not measured has no value";
   EXPECT_THAT(scores[1]["invalid"].get<std::string>(), HasSubstr("ring finger"));
   EXPECT_EQ(course["tests"].size(), 2U);
@@ -472,6 +473,10 @@ TEST_F(PeopleTest, TheTemplatesOfPrescriptionsCanBePrescribedAsTheyAre) {
   for (const json& each : templates) {
     names.push_back(each["name"].get<std::string>());
     EXPECT_FALSE(each["title"].get<std::string>().empty());
+    EXPECT_FALSE(each["title_de"].get<std::string>().empty());
+    for (const json& line : each["lines"])
+      EXPECT_EQ(line["note"] != "", each["notes_de"].contains(line["exercise"].get<std::string>()))
+          << each["name"] << ": a note without its German one";
     const Answer edited = edit(path, {{"prescription", each["lines"]}}, session);
     EXPECT_EQ(edited.status, 200) << edited.text;
     EXPECT_EQ(registry_->patient(Actor::owner(), "P07").prescription.size(), each["lines"].size());
@@ -489,6 +494,59 @@ TEST_F(PeopleTest, AccountsEndTheOwnersSession) {
   WebRequest other = request_for("/people/patients", session);
   other.client.address = "192.0.2.7";
   EXPECT_EQ(send(*people_, other).get().status, 200) << "accounts sign in from any computer that may operate";
+}
+
+TEST_F(PeopleTest, TheOwnerAddsTheFirstAccountAndAnAdministratorTheOthers) {
+  const std::string session = owner();
+  EXPECT_EQ(get("/people/accounts", session).value["accounts"], json::array());
+  const json first = {{"name", "chief"}, {"role", "administrator"}, {"password", kPassword}};
+  EXPECT_EQ(post("/people/accounts", {{"name", "m"}, {"role", "therapist"}, {"password", kPassword}}, session)
+                .status,
+            409)
+      << "the first one is an administrator";
+  const Answer added = post("/people/accounts", first, session);
+  ASSERT_EQ(added.status, 200) << added.text;
+  EXPECT_EQ(get("/people/accounts", session).status, 401) << "the owner's session has ended";
+  EXPECT_TRUE(people_->has_accounts());
+  const std::string chief = sign_in("chief", kPassword).value.at("session").get<std::string>();
+  const json second = {{"name", kTherapist}, {"role", "therapist"}, {"password", kPassword}};
+  EXPECT_EQ(post("/people/accounts", second, chief).status, 200);
+  EXPECT_EQ(post("/people/accounts", second, chief).status, 409) << "the name is taken";
+  EXPECT_EQ(
+      post("/people/accounts", {{"name", "x"}, {"role", "chief"}, {"password", kPassword}}, chief).status,
+      400);
+  EXPECT_EQ(
+      post("/people/accounts", {{"name", "x"}, {"role", "therapist"}, {"password", "short"}}, chief).status,
+      400);
+  const Answer list = get("/people/accounts", chief);
+  EXPECT_EQ(list.value["accounts"], json({{{"name", kTherapist}, {"role", "therapist"}},
+                                          {{"name", "chief"}, {"role", "administrator"}}}));
+  EXPECT_THAT(list.text, Not(HasSubstr(kPassword)));
+
+  const std::string of_therapist = "/people/accounts/" + kTherapist;
+  EXPECT_EQ(post(of_therapist, {{"role", "look_on"}, {"password", kPassword}}, chief).status, 400)
+      << "one at a time";
+  EXPECT_EQ(post(of_therapist, {{"role", "patient_screen"}}, chief).status, 200);
+  EXPECT_EQ(post(of_therapist, {{"password", "another long one"}}, chief).status, 200);
+  EXPECT_EQ(sign_in(kTherapist, "another long one").value.at("role"), "patient_screen");
+  EXPECT_EQ(post("/people/accounts/chief", {{"role", "therapist"}}, chief).status, 409)
+      << "the last administrator";
+  EXPECT_EQ(post("/people/accounts/nobody/delete", json::object(), chief).status, 404);
+  EXPECT_EQ(post(of_therapist + "/delete", json::object(), chief).status, 200);
+  EXPECT_EQ(get("/people/accounts", chief).value["accounts"].size(), 1U);
+}
+
+TEST_F(PeopleTest, ATherapistSeesNoAccountsAndChangesTheOwnPasswordOnly) {
+  const std::string session = therapist();
+  EXPECT_EQ(get("/people/accounts", session).status, 403);
+  EXPECT_EQ(post("/people/accounts", {{"name", "x"}, {"role", "therapist"}, {"password", kPassword}}, session)
+                .status,
+            403);
+  EXPECT_EQ(post("/people/accounts/chief", {{"password", "another long one"}}, session).status, 403);
+  EXPECT_EQ(post("/people/accounts/chief/delete", json::object(), session).status, 403);
+  EXPECT_EQ(post("/people/accounts/" + kTherapist, {{"password", "another long one"}}, session).status, 200);
+  EXPECT_EQ(get("/people/patients", session).status, 401) << "it signs in again with the new one";
+  EXPECT_EQ(sign_in(kTherapist, "another long one").status, 200);
 }
 
 TEST_F(PeopleTest, WrongPasswordsAreDelayed) {

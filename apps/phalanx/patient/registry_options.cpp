@@ -191,7 +191,9 @@ int with_registry_errors(const std::function<int()>& job) {
   try {
     return job();
   } catch (const RegistryError& error) {
-    if (error.fault() == RegistryFault::kDisk || error.fault() == RegistryFault::kDamaged) throw;
+    if (error.fault() == RegistryFault::kDisk || error.fault() == RegistryFault::kDamaged ||
+        error.fault() == RegistryFault::kBusy)
+      throw;
     throw std::invalid_argument(error.what());
   }
 }

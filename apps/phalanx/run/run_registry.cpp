@@ -71,6 +71,7 @@ std::vector<ListedExercise> exercises_for_pages() {
       if (info.readable)
         listed.push_back({.name = info.name,
                           .title = info.title,
+                          .title_de = info.exercise.title_de,
                           .kind = std::string(exercise_kind_name(info.exercise.kind)),
                           .measure = std::string(exercise_measure_name(info.exercise.measure))});
   } catch (const SceneError&) {  // the folder is not found: the page lists none

@@ -42,10 +42,14 @@ struct KnownStability {
 /// @returns the digits with an own sensor; those that copy another digit have none
 [[nodiscard]] std::array<bool, kDigits> felt_digits(const SessionInfo& info);
 
-/// @returns ExerciseStart::conditions of a running session; `rendering` is kRenderingVersion
-/// @param calibration  file; empty: the device's own values
+/// Reads how a calibration was made. @param file  empty: the device's own values
+/// @returns its methods, joined by "+", or "none" without a file
 /// @throws SceneError if it cannot be read
+[[nodiscard]] std::string methods_of_calibration(const std::string& file);
+
+/// @returns ExerciseStart::conditions of a running session; `rendering` is kRenderingVersion
+/// @param methods  methods_of_calibration()
 [[nodiscard]] std::map<std::string, std::string> conditions_of(const SessionInfo& info,
-                                                               const std::string& calibration);
+                                                               const std::string& methods);
 
 }  // namespace phalanx

@@ -46,8 +46,10 @@ struct ExerciseWish {
 struct ExercisePlan {
   /// Without conditions; the digits with an own sensor are found when the device is open
   ExerciseStart start = {};
-  Overrides overrides = {};                    ///< of the exercise's scene
-  std::string calibration = {};                ///< of the patient; empty: none
+  Overrides overrides = {};      ///< of the exercise's scene
+  std::string calibration = {};  ///< of the patient; empty: none
+  /// methods_of_calibration() of that file, read before the station opens; none: start_on() reads that of the station
+  std::optional<std::string> methods = {};
   std::string range = {};                      ///< likewise
   std::optional<ParticipantSkill> skill = {};  ///< simulated participant; none: a person
   /// Person without measured force and range: those of the simulated participant's hand are assumed.

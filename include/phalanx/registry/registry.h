@@ -7,6 +7,7 @@
 //   accounts          the accounts, sealed
 //   deleted           record ids of deleted patients
 //   id                random id of this registry
+//   in_use/RECORD     locked while a program records with the patient's key; empty
 //   audit.jsonl       audit.h
 // An event is synchronised to the disk in the journal before the database gets it. open() completes what a
 // killed program left. So the database can be made from journal and recordings at any time.
@@ -47,10 +48,20 @@ struct RegistrySettings {
 /// PHALANX_DATA is another folder: that of scenes and assets
 [[nodiscard]] std::filesystem::path default_data_folder();
 
+/// Use of a patient's key by a program that records with it: while it lives, no program can delete the patient. The
+/// system ends it with the process.
+class KeyUse {
+ public:
+  KeyUse() = default;
+  KeyUse(const KeyUse&) = delete;
+  KeyUse& operator=(const KeyUse&) = delete;
+  virtual ~KeyUse() = default;
+};
+
 /// The store of patients. Several programs may use one folder at once: a lock file makes each operation
 /// whole. Any thread, one operation at a time. Every function that takes an Actor throws RegistryError
-/// kSignIn or kDenied if the actor may not, kDisk if the disk fails, std::invalid_argument for an input out
-/// of range. An entry in the audit log precedes each read and change. Not real-time.
+/// kSignIn or kDenied if the actor may not, kDisk if the disk fails, kBusy if another program holds the lock for 10 s,
+/// std::invalid_argument for an input out of range. An entry in the audit log precedes each read and change. Not real-time.
 class Registry {
  public:
   /// Opens or creates the registry, completes interrupted changes and deletions. Makes a missing database
@@ -76,7 +87,8 @@ class Registry {
   /// those of `base`
   Patient edit_patient(const Actor& actor, const Patient& patient, const std::string& base = {});
   /// Erases the patient's key, journal, rows and exports. Only the record id remains. Needs neither the key
-  /// nor a readable row: what they would name is then left out of the report. @throws RegistryError kUnknown
+  /// nor a readable row: what they would name is then left out of the report. @throws RegistryError kUnknown; kConflict if
+  /// a program uses the key (KeyUse): it is named, with what to do
   DeleteReport delete_patient(const Actor& actor, const std::string& record);
   /// @returns record ids that have data but no key here (another key file), sorted
   [[nodiscard]] std::vector<std::string> patients_without_key(const Actor& actor);
@@ -106,6 +118,9 @@ class Registry {
   [[nodiscard]] std::vector<Trend> trends(const Actor& actor, const std::string& record);
   /// @returns key of the patient's recordings: RecorderSettings::encryption. Audit: "record"
   [[nodiscard]] RecordingEncryption recording_key(const Actor& actor, const std::string& record);
+  /// States that this program records with the patient's key. @returns what ends it when it is destroyed. Audit: none.
+  /// @throws RegistryError kUnknown
+  [[nodiscard]] std::shared_ptr<const KeyUse> use_key(const Actor& actor, const std::string& record);
   /// @returns finder of the keys of all recordings; the roles that see patients only. Audit: "keys"
   [[nodiscard]] FindRecordingKey recording_keys(const Actor& actor);
 

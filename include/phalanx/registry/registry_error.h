@@ -20,6 +20,7 @@ enum class RegistryFault : std::uint8_t {
   kNoKey,     ///< the patient's key is not in the key file                                          HTTP 409
   kDamaged,   ///< a file is damaged, or a key file belongs to another passphrase or master key      HTTP 409
   kDisk,      ///< a file cannot be read or written                                                  HTTP 507
+  kBusy,      ///< another program holds the registry or its keys; the text names it                 HTTP 503
 };
 
 /// Refusal of the registry. what() names place, value and remedy. Numbers and texts that are out of range are

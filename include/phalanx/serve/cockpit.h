@@ -21,10 +21,11 @@ class Registry;
 
 /// Exercise that can be prescribed, as the page of patients lists it.
 struct ListedExercise {
-  std::string name;     ///< of its file
-  std::string title;    ///< for people
-  std::string kind;     ///< "training" or "assessment"
-  std::string measure;  ///< "press_and_hold"
+  std::string name;           ///< of its file
+  std::string title;          ///< for people
+  std::string title_de = {};  ///< the same in German; empty: none
+  std::string kind;           ///< "training" or "assessment"
+  std::string measure;        ///< "press_and_hold"
 };
 
 /// Settings that stay constant from the start on.

@@ -17,6 +17,15 @@ constexpr const char* kDeletedContext = "phalanx deleted record";
 
 bool is_encrypted_name(const std::string& file) { return file.ends_with(".mcap.enc"); }
 
+/// KeyUse by a lock.
+class LockedUse final : public KeyUse {
+ public:
+  explicit LockedUse(const fs::path& file) : lock_(file) {}
+
+ private:
+  registry::SharedLock lock_;
+};
+
 void remove_if_empty(const fs::path& folder) noexcept {
   std::error_code ignored;
   if (fs::is_directory(folder, ignored) && fs::is_empty(folder, ignored)) fs::remove(folder, ignored);
@@ -54,6 +63,7 @@ void Registry::Impl::finish_deletion(const std::string& record) {
   const bool has_journal = registry::stamp_of(journal_file(record)).has_value();
   if (!has_row && !has_journal && !fs::exists(exports, ignored)) return;
   mark_deleted(record);
+  fs::remove(use_file(record), ignored);
   registry::erase_private_file(journal_file(record));
   registry::erase_private_file(fs::path(journal_file(record).string() + ".new"));
   seen.erase(record);
@@ -106,6 +116,26 @@ void Registry::Impl::delete_named_files(const OpenRecord& open, DeleteReport& re
   remove_exports(open, report);
 }
 
+fs::path Registry::Impl::use_file(const std::string& record) const { return folder / "in_use" / record; }
+
+void Registry::Impl::refuse_in_use(const std::string& record) const {
+  const std::optional<std::string> holder = registry::holder_of(use_file(record));
+  if (!holder) return;
+  throw RegistryError(
+      RegistryFault::kConflict,
+      fmt::format("{} records with the key of this patient; delete the patient on the page of that station "
+                  "after the exercise, or end that program and delete again",
+                  *holder));
+}
+
+std::shared_ptr<const KeyUse> Registry::use_key(const Actor& actor, const std::string& record) {
+  const Impl::Operation operation(*impl_);
+  impl_->require(actor, Impl::Permission::kPatients);
+  static_cast<void>(impl_->open_record(record));
+  registry::make_private_folder(impl_->folder / "in_use");
+  return std::make_shared<LockedUse>(impl_->use_file(record));
+}
+
 DeleteReport Registry::delete_patient(const Actor& actor, const std::string& record) {
   const Impl::Operation operation(*impl_);
   impl_->require(actor, Impl::Permission::kPatients);
@@ -114,6 +144,7 @@ DeleteReport Registry::delete_patient(const Actor& actor, const std::string& rec
   const bool is_known = is_record_id(record) && ((row && !row->sealed.empty()) ||
                                                  registry::stamp_of(impl_->journal_file(record)).has_value());
   if (!is_known) static_cast<void>(impl_->open_record(record));  // it refuses an unknown record
+  impl_->logged_if_it_fails(actor, "delete_failed", [&] { impl_->refuse_in_use(record); });
   impl_->log(actor, "delete", record);
   DeleteReport out{.record = record,
                    .exports_removed = {},

@@ -105,6 +105,10 @@ struct Registry::Impl {
   // registry_delete.cpp
   [[nodiscard]] std::set<std::string> deleted_records(const std::filesystem::path& file) const;
   void mark_deleted(const std::string& record);
+  /// @returns the file that is locked while a program uses the key of a record
+  [[nodiscard]] std::filesystem::path use_file(const std::string& record) const;
+  /// @throws RegistryError kConflict if a program uses the key of a record
+  void refuse_in_use(const std::string& record) const;
   /// Removes all that is left of a record whose key is erased.
   void finish_deletion(const std::string& record);
   void remove_exports(const OpenRecord& open, DeleteReport& report);

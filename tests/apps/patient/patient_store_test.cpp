@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // phalanx patient export | delete | rebuild | backup | restore | audit | passphrase: what lies on the disk.
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -228,6 +231,23 @@ TEST_F(CliPatientStore, ChangesThePassphraseOfTheKeys) {
   EXPECT_THAT(said("patient list"), HasSubstr("P07"));
   EXPECT_THAT(said("patient passphrase", "PHALANX_NEW_PASSPHRASE='another one'"), StartsWith("0 "));
   EXPECT_THAT(said("patient list", "PHALANX_PASSPHRASE='another one'"), HasSubstr("P07"));
+}
+
+// The station holds the lock that src/registry takes for the time of a recording.
+TEST_F(CliPatientStore, DoesNotDeleteAPatientWithWhoseKeyAStationRecords) {
+  done("patient add P07 --side left");
+  const std::string record = fs::directory_iterator(folder / "data/journal")->path().filename().string();
+  fs::create_directory(folder / "data/in_use");
+  const int use = ::open((folder / "data/in_use" / record).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_GE(use, 0);
+  ASSERT_EQ(::flock(use, LOCK_SH), 0);
+  EXPECT_THAT(said("patient delete P07 --confirm P07"),
+              AllOf(StartsWith("2 phalanx: "), HasSubstr("records with the key of this patient"),
+                    HasSubstr("on the page of that station"), HasSubstr("end that program")));
+  EXPECT_THAT(said("patient list"), HasSubstr("P07"));
+  ::close(use);
+  EXPECT_THAT(said("patient delete P07 --confirm P07"), StartsWith("0 "));
+  EXPECT_FALSE(fs::exists(folder / "data/in_use" / record));
 }
 
 }  // namespace
