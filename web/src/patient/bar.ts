@@ -2,6 +2,7 @@
 // What is always there: STOP, a break, pain and tired. Each acts at one tap.
 import { el, setShown, setText } from "../panels/dom";
 import { onPress } from "../panels/press";
+import type { Rating } from "./game";
 import { linePicture, type LinePicture } from "./pictures";
 import { words } from "./words";
 
@@ -18,6 +19,8 @@ export interface Bar {
   say(text: string, bad?: boolean): void;
   /// STOP lies on the side of the other hand.
   setSide(side: "left" | "right"): void;
+  /// Gives the focus to the button of a rating.
+  focus(kind: Rating): void;
 }
 
 export function bar(acts: BarActs): Bar {
@@ -46,6 +49,9 @@ export function bar(acts: BarActs): Bar {
     },
     setSide(side) {
       element.dataset["side"] = side;
+    },
+    focus(kind) {
+      buttons.querySelector<HTMLElement>(`.bar-${kind}`)?.focus();
     },
   };
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one thing that the screen says now, in the patient's words.
+import type { ExerciseStrings } from "../strings/exercise_en";
 import type { PatientStrings } from "../strings/patient_en";
 import type { ExerciseNow } from "./game";
 import type { Known } from "./state";
+
+type Told = Pick<ExerciseStrings, "goals" | "moves" | "fingers">;
 
 /// Kinds of screen. play: a game, with its goal above it; rating: faces; answer: pictures to choose from.
 export type Screen = "wait" | "greet" | "ready" | "play" | "rest" | "rating" | "answer" | "break" | "done";
@@ -25,7 +28,7 @@ export const holdsStill = ({ phase, instruction }: Pick<ExerciseNow, "phase" | "
 const only = /^(Straighten|Bend) only the (thumb|index|middle|ring|little) finger\.$/;
 
 /// The instruction of a trial in the language of `texts`. An exercise file's own words stay as they are.
-export function instructionText(now: ExerciseNow, texts: PatientStrings): string {
+export function instructionText(now: { readonly instruction: string; readonly measure: string; readonly target: { readonly kind: string } }, texts: Told): string {
   const { instruction, target, measure } = now;
   const single = only.exec(instruction);
   if (single) {
@@ -43,7 +46,7 @@ export function instructionText(now: ExerciseNow, texts: PatientStrings): string
   return target.kind === "touch" ? texts.moves.touch(finger) : texts.moves.with(goal, finger);
 }
 
-export function choiceText(choice: string, texts: PatientStrings): string {
+export function choiceText(choice: string, texts: Pick<ExerciseStrings, "choices">): string {
   return texts.choices[choice] ?? choice.charAt(0).toUpperCase() + choice.slice(1);
 }
 
@@ -74,11 +77,11 @@ export function goalOf(known: Known, texts: PatientStrings): Goal {
   const wait = (text: string, more: string, picture: Goal["picture"] = ""): Goal => ({ screen: "wait", text, more, picture });
   switch (known.connected) {
     case "replaced":
-      return wait(screen.elsewhere, screen.elsewhereMore);
+      return wait(screen.elsewhere, screen.elsewhereMore, "helper");
     case "expired":
-      return wait(screen.expired, screen.expiredMore);
+      return wait(screen.expired, screen.expiredMore, "helper");
     case "mismatch":
-      return wait(screen.mismatch, screen.mismatchMore);
+      return wait(screen.mismatch, screen.mismatchMore, "helper");
     case "open":
       break;
     default:
@@ -92,7 +95,7 @@ export function goalOf(known: Known, texts: PatientStrings): Goal {
     case "closing":
       return { screen: "done", text: screen.closing, more: screen.doneMore, picture: "lights" };
     case "ended":
-      if (now.trouble !== "" && now.trial === 0) return wait(screen.trouble, screen.troubleMore);
+      if (now.trouble !== "" && now.trial === 0) return wait(screen.trouble, screen.troubleMore, "helper");
       return { screen: "done", text: screen.done, more: screen.doneMore, picture: "lights" };
     default:
       break;

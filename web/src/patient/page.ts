@@ -53,7 +53,7 @@ export class PatientPage {
   private readonly canvas = el("canvas", { class: "stage", "aria-hidden": "true" });
   private readonly gameBox = el("div", { class: "game", "aria-hidden": "true" });
   private readonly goal = goalPanel();
-  private readonly rating = ratingPanel((kind, value) => void this.rated(kind, value), () => this.ask(undefined));
+  private readonly rating = ratingPanel((kind, value) => void this.rated(kind, value), () => this.leave());
   private readonly practiceWord = el("p", { class: "practice-word" });
   private readonly practiceSign = el("span", { class: "practice-sign" });
   private readonly practiceHand = el("div", { class: "practice-hand" });
@@ -272,6 +272,7 @@ export class PatientPage {
     if (!rests(this.known)) void this.pause();
     const isAsked = exercise?.phase === "rating" && exercise.stage === "running" && exercise.asks === kind;
     this.ask(isAsked || connected !== "open" ? undefined : kind);
+    if (this.asked) this.rating.focus();
   }
 
   private openSignIn(): void {
@@ -284,9 +285,15 @@ export class PatientPage {
     this.update();
   }
 
+  /// Closes the faces. The focus goes to the button that opened them, since what has it is hidden.
+  private leave(): void {
+    const { asked } = this;
+    this.ask(undefined);
+    if (asked) this.bar.focus(asked);
+  }
+
   private async rated(kind: Rating, value: number): Promise<void> {
-    this.asked = undefined;
-    this.update();
+    this.leave();
     this.sound.note(2, 0.4);
     const answer = await this.acts.rate(kind, value);
     if (answer.ok) return this.say(words.sent.thanks);

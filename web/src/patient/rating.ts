@@ -14,13 +14,15 @@ export interface RatingPanel {
   readonly element: HTMLElement;
   /// @param kind  undefined: nothing is asked, the panel is hidden  @param title  is displayed here unless the frame shows the question already
   show(kind: Rating | undefined, options: GameOptions, title: boolean): void;
+  /// Gives the question the focus: the faces come next by Tab, and a key that is held down answers nothing.
+  focus(): void;
 }
 
 /// @param choose  is called with the kind and 0 .. 10  @param back  closes a panel that the patient has opened
 export function ratingPanel(choose: (kind: Rating, value: number) => void, back: () => void): RatingPanel {
   const question = el("span");
   const sign = el("span", { class: "rating-sign" });
-  const heading = el("h2", { class: "rating-title" }, sign, question);
+  const heading = el("h2", { class: "rating-title", tabindex: -1 }, sign, question);
   const list = el("div", { class: "faces", role: "group" });
   const leave = el("button", { type: "button", class: "soft rating-back" }, words.rating.back);
   leave.addEventListener("click", back);
@@ -65,5 +67,5 @@ export function ratingPanel(choose: (kind: Rating, value: number) => void, back:
       }),
     );
   };
-  return { element, show };
+  return { element, show, focus: () => heading.focus() };
 }

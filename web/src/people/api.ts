@@ -3,8 +3,8 @@
 // which no other site's page can send.
 import { readExerciseNow, type ExerciseNow } from "./exercise_now";
 import {
-  readCourse, readDeleted, readExercises, readExport, readPatient, readPatients, readSignedIn, readStatus, readTemplates, readUnreadable,
-  type Course, type Deleted, type Exercise, type ExportedFile, type Listed, type Patient, type SignedIn, type Status, type Template, type Unreadable,
+  readAccounts, readCourse, readDeleted, readExercises, readExport, readPatient, readPatients, readSignedIn, readStatus, readTemplates, readUnreadable,
+  type Account, type Course, type Deleted, type Exercise, type ExportedFile, type Listed, type Patient, type SignedIn, type Status, type Template, type Unreadable,
 } from "./shapes";
 
 /// none: the station keeps no patients; signed_out: no session, or it is locked; refused: the station says why; forbidden: never with this
@@ -149,6 +149,25 @@ export class PeopleApi {
     return readTemplates(await this.ask("people/templates"));
   }
 
+  // ---- accounts
+
+  async accounts(): Promise<readonly Account[]> {
+    return readAccounts(await this.ask("people/accounts"));
+  }
+
+  async addAccount(fields: Readonly<Record<string, unknown>>): Promise<void> {
+    await this.ask("people/accounts", fields);
+  }
+
+  /// @param fields  a role or a password
+  async editAccount(name: string, fields: Readonly<Record<string, unknown>>): Promise<void> {
+    await this.ask(`people/accounts/${encodeURIComponent(name)}`, fields);
+  }
+
+  async removeAccount(name: string): Promise<void> {
+    await this.ask(`people/accounts/${encodeURIComponent(name)}/delete`, {});
+  }
+
   // ---- documents
 
   async export(record: string): Promise<readonly ExportedFile[]> {
@@ -179,5 +198,17 @@ export class PeopleApi {
   /// @param values  of the input: "value" of a rating, an answer or a difficulty, "stops" of a resume
   async exerciseInput(kind: string, number: number, values: Readonly<Record<string, number>> = {}): Promise<void> {
     await this.ask("people/exercise", { kind, number, ...values });
+  }
+
+  // ---- the same while the page is locked
+
+  /// The exercise without its patient. A locked session may ask for it.
+  async watchedExercise(): Promise<ExerciseNow> {
+    return readExerciseNow(await this.ask("people/exercise/watched", undefined, false, kExerciseMs));
+  }
+
+  /// @param kind  "pause", "pain" or "fatigue"
+  async watchedInput(kind: string, number: number, values: Readonly<Record<string, number>> = {}): Promise<void> {
+    await this.ask("people/exercise/watched", { kind, number, ...values });
   }
 }

@@ -2,25 +2,26 @@
 // What was measured and entered of one patient: results, clinical tests, trends, notes.
 import { el, section } from "../panels/dom";
 import { form, table, type FieldPlan } from "./form";
-import type { Course, EnteredTest, Result, ScoreValue, TestKind, Trend } from "./shapes";
+import type { Course, EnteredTest, Exercise, Result, ScoreValue, TestKind, Trend } from "./shapes";
 import { trendFigure } from "./trend_chart";
-import { changeText, figureText, scoreName, timeText, trendTitle, valueText, words } from "./words";
+import { changeText, figureText, scoreName, timeText, titleOf, trendTitle, valueText, verdictText, words } from "./words";
 
 const hint = (text: string) => el("p", { class: "hint" }, text);
 
-export function scoreItem({ name, unit, origin, value, invalid }: ScoreValue): HTMLElement {
+export function scoreItem(score: ScoreValue): HTMLElement {
+  const { unit, origin, value, invalid } = score;
   const said = invalid === "" ? valueText(value, unit) : invalid;
   const from = invalid === "" ? (words.origins[origin] ?? origin) : words.results.notValid;
-  return el("li", {}, `${scoreName(name, unit)}: ${said} `, el("small", {}, from));
+  return el("li", {}, `${scoreName(score)}: ${said} `, el("small", {}, from));
 }
 
-function resultRow(one: Result): readonly (Node | string)[] {
+function resultRow(one: Result, exercises: readonly Exercise[]): readonly (Node | string)[] {
   const marks = [one.invalid === "" ? "" : `${words.results.notValid}: ${one.invalid}`, one.interrupted ? words.results.interrupted : ""].filter((mark) => mark !== "");
   const kind = one.assessment ? words.results.assessment : words.results.training;
   const scores = el("ul", { class: "people-scores" }, ...one.scores.map(scoreItem));
   return [
     timeText(one.date),
-    el("span", {}, one.exercise, " ", el("small", {}, kind)),
+    el("span", {}, titleOf(exercises, one.exercise), " ", el("small", {}, kind)),
     el("div", {}, marks.length > 0 ? el("p", { class: "refused" }, marks.join("; ")) : null, scores),
   ];
 }
@@ -34,9 +35,9 @@ function folded(title: string, make: () => HTMLElement): HTMLElement {
   return box;
 }
 
-export function resultsSection(course: Course): HTMLElement {
+export function resultsSection(course: Course, exercises: readonly Exercise[]): HTMLElement {
   const { title, none, columns } = words.results;
-  const rows = (results: readonly Result[]) => table(title, Object.values(columns), results.map(resultRow));
+  const rows = (results: readonly Result[]) => table(title, Object.values(columns), results.map((one) => resultRow(one, exercises)));
   if (course.results.length === 0) return section(title, hint(none));
   const earlier = course.results.slice(kResults);
   return section(title, rows(course.results.slice(0, kResults)), earlier.length > 0 ? folded(words.trends.all(String(earlier.length)), () => rows(earlier)) : null);
@@ -69,15 +70,15 @@ export function testsSection(course: Course, kinds: readonly TestKind[], enter: 
   );
 }
 
-function trendRow(one: Trend): readonly (Node | string)[] {
+function trendRow(one: Trend, exercises: readonly Exercise[]): readonly (Node | string)[] {
   const figures = [valueText(one.first, one.unit), valueText(one.last, one.unit), changeText(one.last - one.first, one.unit), String(one.count)];
-  return [trendTitle(one), ...figures.map((text) => el("span", { class: "figure" }, text)), one.verdict];
+  return [trendTitle(one, exercises), ...figures.map((text) => el("span", { class: "figure" }, text)), verdictText(one)];
 }
 
 const kCharts = 6; // in sight at once
 
 /// A chart for each trend of two or more values, what was entered by hand first; all of them as a table, too.
-export function trendsSection(course: Course): HTMLElement {
+export function trendsSection(course: Course, exercises: readonly Exercise[]): HTMLElement {
   const { title, none, columns, more, asTable } = words.trends;
   if (course.trends.length === 0) return section(title, hint(none));
   const charts = course.trends.filter(({ count }) => count > 1).sort((a, b) => Number(b.entered) - Number(a.entered));
@@ -85,9 +86,9 @@ export function trendsSection(course: Course): HTMLElement {
   const grid = (figures: readonly HTMLElement[]) => el("div", { class: "trends" }, ...figures);
   return section(
     title,
-    charts.length > 0 ? grid(charts.map(trendFigure)) : hint(none),
-    rest.length > 0 ? folded(more(String(rest.length)), () => grid(rest.map(trendFigure))) : null,
-    folded(asTable, () => table(title, Object.values(columns), course.trends.map(trendRow))),
+    charts.length > 0 ? grid(charts.map((one) => trendFigure(one, exercises))) : hint(none),
+    rest.length > 0 ? folded(more(String(rest.length)), () => grid(rest.map((one) => trendFigure(one, exercises)))) : null,
+    folded(asTable, () => table(title, Object.values(columns), course.trends.map((one) => trendRow(one, exercises)))),
     hint(words.trends.hint),
   );
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The exercise that the station carries out, as its answer says, read defensively.
-import { entry, figure, list, readScore, text, texts, type ScoreValue } from "./shapes";
+import { entry, figure, list, scoreReader, text, texts, type ScoreValue } from "./shapes";
 
 /// none: none has begun since the program's start; ended: the result stands.
 export type Stage = "none" | "opening" | "running" | "closing" | "ended";
@@ -26,6 +26,7 @@ export interface ExerciseNow {
   readonly side: string;
   readonly name: string;
   readonly title: string;
+  readonly titleDe: string; // empty: its file has none
   readonly measure: string;
   readonly training: boolean;
   readonly simulated: boolean;
@@ -61,7 +62,7 @@ function readEnded(value: unknown): Ended | undefined {
   if (typeof value !== "object" || value === null) return undefined;
   const one = entry(value);
   return {
-    scores: list(one["scores"]).map(entry).map(readScore), ended: text(one["ended"]), interrupted: one["interrupted"] === true, repetitions: figure(one["repetitions"]) ?? 0,
+    scores: list(one["scores"]).map(entry).map(scoreReader(one["names"])), ended: text(one["ended"]), interrupted: one["interrupted"] === true, repetitions: figure(one["repetitions"]) ?? 0,
     successes: figure(one["successes"]) ?? 0, counted: figure(one["counted"]) ?? 0, seconds: figure(one["seconds"]) ?? 0, verdict: text(one["verdict"]),
   };
 }
@@ -74,7 +75,7 @@ export function readExerciseNow(answer: unknown): ExerciseNow {
   const asks = text(one["asks"]);
   return {
     number: figure(one["number"]) ?? 0, stage: (stages.includes(stage) ? stage : "none") as Stage, record: text(one["record"]), code: text(one["code"]),
-    symbol: text(one["symbol"]), side: text(one["side"]), name: text(one["name"]), title: text(one["title"]) || text(one["name"]), measure: text(one["measure"]),
+    symbol: text(one["symbol"]), side: text(one["side"]), name: text(one["name"]), title: text(one["title"]) || text(one["name"]), titleDe: text(one["title_de"]), measure: text(one["measure"]),
     training: text(one["kind"]) === "training", simulated: one["simulated"] === true, phase: (phases.includes(phase) ? phase : "ready") as Phase,
     instruction: text(one["instruction"]), note: text(one["note"]), trial: figure(one["trial"]) ?? 0, trials: figure(one["trials"]) ?? 0,
     progress: Math.min(1, Math.max(0, figure(one["progress"]) ?? 0)), remaining: figure(one["remaining_s"]) ?? 0, target: text(target["kind"]), digits: texts(target["digits"]),

@@ -6,9 +6,9 @@ import { chips } from "./chips";
 import { refusalText } from "./trouble";
 import { words } from "./words";
 
-/// text: one line; area: several; number: in `unit`, empty: none; lines: a list, one on each line; date: YYYY-MM-DD; flag: a switch;
+/// text: one line; area: several; number: in `unit`, empty: none; lines: a list, one on each line; date: YYYY-MM-DD; flag: a switch; secret: a new password;
 /// choice: one of `choices` in a list; chips: one of a few that are all in sight.
-export type FieldKind = "text" | "area" | "number" | "lines" | "date" | "flag" | "choice" | "chips";
+export type FieldKind = "text" | "area" | "number" | "lines" | "date" | "flag" | "secret" | "choice" | "chips";
 
 export interface FieldPlan {
   readonly name: string; // in the station's JSON
@@ -47,11 +47,12 @@ function labelled(plan: FieldPlan, control: HTMLElement, below: HTMLElement | nu
 
 function textField(plan: FieldPlan, value: unknown): Field {
   const number = plan.kind === "number";
+  const secret = plan.kind === "secret";
   const input = el("input", {
-    type: "text", maxlength: plan.longest ?? kLongest, autocomplete: "off", spellcheck: "false", inputmode: number ? "decimal" : undefined, class: number ? "number" : undefined,
+    type: secret ? "password" : "text", maxlength: plan.longest ?? kLongest, autocomplete: secret ? "new-password" : "off", spellcheck: "false", inputmode: number ? "decimal" : undefined, class: number ? "number" : undefined,
   });
   input.value = typeof value === "string" || typeof value === "number" ? String(value) : "";
-  return { element: labelled(plan, input), value: () => (number ? typedNumber(input.value) : input.value.trim()) };
+  return { element: labelled(plan, input), value: () => (number ? typedNumber(input.value) : secret ? input.value : input.value.trim()) };
 }
 
 function areaField(plan: FieldPlan, value: unknown): Field {

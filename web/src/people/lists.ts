@@ -4,7 +4,7 @@ import { button, el, section } from "../panels/dom";
 import { table } from "./form";
 import type { Exercise, Listed, Unreadable } from "./shapes";
 import { picture } from "./symbols";
-import { words } from "./words";
+import { titleText, words } from "./words";
 
 export const sideText = ({ side }: Listed): string => words.sides[side] ?? side;
 export const symbolText = ({ symbol }: Listed): string => words.symbols[symbol] ?? symbol;
@@ -52,7 +52,7 @@ export function patientList(patients: readonly Listed[], unreadable: Unreadable,
 /// The exercises that can be prescribed.
 export function exerciseList(exercises: readonly Exercise[]): HTMLElement {
   const { title, none, columns } = words.exercises;
-  const rows = exercises.map((one) => [one.title, words.exerciseKinds[one.kind] ?? one.kind, one.measure.replaceAll("_", " "), el("code", {}, one.name)]);
+  const rows = exercises.map((one) => [titleText(one), words.exerciseKinds[one.kind] ?? one.kind, el("code", {}, one.name)]);
   const content = exercises.length === 0 ? el("p", { class: "hint" }, none) : table(title, Object.values(columns), rows);
   return el("div", { class: "people-box" }, section(title, content));
 }

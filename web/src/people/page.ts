@@ -2,6 +2,7 @@
 // The page of patients: who is signed in, which patient is displayed, and what stands there while it is locked. What belongs to patients is in
 // the document only while a session is open: a lock removes it.
 import { button, el, setShown, setText } from "../panels/dom";
+import { accountsPanel, ownPasswordPanel, type AccountActions } from "./accounts_panel";
 import { PeopleError, type PeopleApi } from "./api";
 import { confirmPanel } from "./begin_exercise";
 import { CalibrationOffer } from "./calibration_offer";
@@ -13,9 +14,10 @@ import { deletedReport, patientForm, patientView, type PatientContext } from "./
 import { exerciseList, patientList } from "./lists";
 import { RunningPanel } from "./running_panel";
 import { RunningStrip } from "./running_strip";
-import type { Course, Deleted, Exercise, Listed, Patient, SignedIn, Status, Template, Unreadable } from "./shapes";
+import type { Account, Course, Deleted, Exercise, Listed, Patient, SignedIn, Status, Template, Unreadable } from "./shapes";
 import { lockPanel, signInForm } from "./sign_in";
 import { explanation, refusalText } from "./trouble";
+import { WatchedPanel, withoutPatient } from "./watched_panel";
 import { words } from "./words";
 import type { CalibrationFiles } from "../wire/calibration_channel";
 
@@ -23,6 +25,7 @@ import type { CalibrationFiles } from "../wire/calibration_channel";
 type Shown =
   | { readonly kind: "none" }
   | { readonly kind: "new" }
+  | { readonly kind: "accounts"; readonly accounts: readonly Account[] }
   | { readonly kind: "deleted"; readonly report: Deleted }
   | { readonly kind: "confirm"; readonly patient: Patient; readonly course: Course | undefined; readonly exercise: Exercise }
   | { readonly kind: "exercise"; readonly record: string; readonly number: number } // that runs, or has just ended
@@ -51,6 +54,8 @@ export class PeoplePage {
   private readonly strip = new RunningStrip(() => this.showExercise());
   private running: ExerciseNow | undefined; // the newest answer
   private panel: RunningPanel | undefined;
+  private readonly lockedWatch: ExerciseWatch;
+  private watched: WatchedPanel | undefined; // while the page is locked
   private draft = { number: 0, text: "" }; // note that was being written when the page was locked
   private shown: Shown = { kind: "none" };
   private asked = 0; // number of the newest reading: what an older one brings is dropped
@@ -65,6 +70,7 @@ export class PeoplePage {
     watchLater?: (run: () => void, ms: number) => void,
   ) {
     this.watch = new ExerciseWatch(() => this.api.exercise(), (told) => this.heard(told), (reason, stale) => this.unheard(reason, stale), () => this.setStale(), now, watchLater);
+    this.lockedWatch = new ExerciseWatch(() => this.api.watchedExercise(), (told) => this.watched?.show(told), (reason, stale) => this.unwatched(reason, stale), () => this.watched?.setStale(words.run.stale), now, watchLater);
     this.idle = new IdleLock(now, () => this.lock(), () => void this.api.alive().catch((reason: unknown) => this.failed(reason)));
   }
 
@@ -89,22 +95,23 @@ export class PeoplePage {
     this.locked = true;
     const unlock = async (password: string) => {
       await this.api.unlock(password);
+      this.lockedWatch.end();
+      this.watched = undefined;
       this.locked = false;
       this.enter(signed);
       await this.readAll();
     };
-    const pause = running && isUnderWay(running) ? () => this.pauseLocked(running.number) : undefined;
-    this.put(lockPanel(signed.account, unlock, () => void this.signOut(), pause));
+    this.watched = new WatchedPanel((kind, number, values) => this.api.watchedInput(kind, number, values), this.now);
+    if (running) this.watched.show(withoutPatient(running));
+    this.put(el("div", { class: "people-locked" }, this.watched.element, lockPanel(signed.account, unlock, () => void this.signOut())));
+    if (this.status?.exercises) this.lockedWatch.begin();
     void this.lockStation();
   }
 
-  /// Pauses an exercise from the lock's panel. The station takes a pause before it looks at the session, which it then finds locked.
-  private async pauseLocked(number: number): Promise<void> {
-    try {
-      await this.api.exerciseInput("pause", number);
-    } catch (reason) {
-      if (!(reason instanceof PeopleError && reason.trouble === "signed_out")) throw reason;
-    }
+  private unwatched(reason: unknown, stale: boolean): void {
+    const ended = reason instanceof PeopleError && reason.trouble === "signed_out"; // the station has forgotten the session
+    if (ended) this.lockedWatch.end();
+    if (ended || stale) this.watched?.setStale(ended ? words.lock.lost : words.run.stale);
   }
 
   /// Locks the session at the station, again and again until the station has confirmed it or the session has ended.
@@ -148,7 +155,8 @@ export class PeoplePage {
     this.idle.begin({ lockMs, aliveMs: lockMs / kAlivePart });
     const who = signed.account === "" ? words.signIn.owner : words.signIn.as(signed.account, words.roles[signed.role] ?? signed.role);
     const out = signed.account === "" ? null : button(words.signIn.out, () => void this.signOut());
-    this.account.replaceChildren(el("span", {}, who), button(words.lock.now, () => this.lock()), out ?? "");
+    const accounts = button(this.mayAdminister ? words.accounts.title : words.accounts.own, () => void this.openAccounts());
+    this.account.replaceChildren(el("span", {}, who), button(words.lock.now, () => this.lock()), accounts, out ?? "");
     setShown(this.account, true);
   }
 
@@ -156,6 +164,8 @@ export class PeoplePage {
     ++this.asked;
     this.idle.end();
     this.watch.end();
+    this.lockedWatch.end();
+    this.watched = undefined;
     this.windows.closeAll();
     this.running = undefined;
     this.panel = undefined;
@@ -208,7 +218,7 @@ export class PeoplePage {
   /// Reads the list, and the exercises once.
   private async read(): Promise<void> {
     await this.bring(async () => {
-      const { patients, ...unreadable } = await this.api.patients();
+      const { patients, ...unreadable } = await this.listed();
       if (this.exercises.length === 0) this.exercises = await this.api.exercises();
       if (this.templates.length === 0) this.templates = await this.api.templates().catch(() => []); // a station without them
       if (!this.locked) {
@@ -217,6 +227,18 @@ export class PeoplePage {
       }
       return undefined;
     });
+  }
+
+  /// The list of the station. The session of an account whose role sees no patients is ended: its page would have nothing to show.
+  private async listed(): ReturnType<PeopleApi["patients"]> {
+    try {
+      return await this.api.patients();
+    } catch (reason) {
+      const { signed } = this;
+      const isRefused = reason instanceof PeopleError && reason.trouble === "forbidden";
+      if (isRefused && signed && this.status?.accounts && !this.locked) void this.signOut(words.signIn.noPatients(words.roles[signed.role] ?? signed.role));
+      throw reason;
+    }
   }
 
   private async open(record: string): Promise<void> {
@@ -254,6 +276,41 @@ export class PeoplePage {
     if (this.locked) return;
     this.shown = { kind: "deleted", report };
     await this.read();
+  }
+
+  // ---- accounts
+
+  private get mayAdminister(): boolean {
+    return this.signed?.role === "administrator" || this.signed?.role === "owner";
+  }
+
+  private async openAccounts(): Promise<void> {
+    const accounts = this.mayAdminister ? () => this.api.accounts() : () => Promise.resolve([]);
+    await this.bring(async () => ({ kind: "accounts", accounts: await accounts() }));
+    if (this.patients.length === 0) await this.read(); // the list was perhaps being read
+    this.content.querySelector<HTMLElement>(".people-patient h2")?.focus();
+  }
+
+  private accountActions(signed: SignedIn): AccountActions {
+    // The first account ends the owner's use of the page, and the end of the last one begins it again.
+    const changed = async (request: Promise<void>) => {
+      await this.change(request);
+      const status = await this.api.status();
+      const switched = status.accounts !== this.status?.accounts;
+      this.status = status;
+      if (switched) await this.signOut(words.accounts.firstDone);
+      else await this.openAccounts();
+    };
+    return {
+      add: (fields) => changed(this.api.addAccount(fields)),
+      setRole: (name, role) => changed(this.api.editAccount(name, { role })),
+      setPassword: async (name, password) => {
+        await this.change(this.api.editAccount(name, { password }));
+        if (name === signed.account) await this.signOut(words.accounts.passwordDone);
+        else await this.openAccounts();
+      },
+      remove: (name) => changed(this.api.removeAccount(name)),
+    };
   }
 
   private set(shown: Shown): void {
@@ -364,7 +421,7 @@ export class PeoplePage {
 
   private confirm(patient: Patient, course: Course | undefined, name: string): void {
     if (this.running && isUnderWay(this.running)) return this.trouble(words.begin.runs);
-    const exercise = this.exercises.find((one) => one.name === name) ?? { name, title: name, kind: "", measure: "" };
+    const exercise = this.exercises.find((one) => one.name === name) ?? { name, title: name, titleDe: "", kind: "", measure: "" };
     this.set({ kind: "confirm", patient, course, exercise });
   }
 
@@ -393,6 +450,7 @@ export class PeoplePage {
     if (shown.kind === "exercise" && this.running) return this.exercisePanel(shown, this.running);
     if (shown.kind === "none" || shown.kind === "exercise") return el("div", { class: "people-detail", tabindex: 0, role: "group", "aria-label": words.exercises.title }, el("p", { class: "people-box hint" }, words.list.choose), exerciseList(exercises));
     if (shown.kind === "deleted") return deletedReport(shown.report);
+    if (shown.kind === "accounts") return this.accountsView(shown.accounts);
     const { patient, course } = shown;
     const { record } = patient;
     const back = () => this.set({ kind: "view", patient, course });
@@ -417,6 +475,13 @@ export class PeoplePage {
       },
       remove: (confirm) => this.remove(record, confirm),
     });
+  }
+
+  private accountsView(accounts: readonly Account[]): HTMLElement {
+    const { signed } = this;
+    if (!signed) return el("div", {});
+    const actions = this.accountActions(signed);
+    return this.mayAdminister ? accountsPanel(accounts, actions) : ownPasswordPanel(signed.account, actions);
   }
 
   private show(): void {

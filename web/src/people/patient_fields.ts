@@ -83,6 +83,7 @@ function readLine(line: string, patient: Patient | undefined): Readonly<Record<s
 export function formValues(patient: Patient): Readonly<Record<string, unknown>> {
   const read: Readonly<Record<FieldPlan["kind"], (name: string) => unknown>> = {
     text: (name) => fieldText(patient, name),
+    secret: () => "", // no field of a patient is one
     area: (name) => fieldText(patient, name),
     date: (name) => fieldText(patient, name),
     choice: (name) => fieldText(patient, name),

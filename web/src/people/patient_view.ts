@@ -10,6 +10,7 @@ import { form } from "./form";
 import { facts, formChanges, formValues, patientPlans } from "./patient_fields";
 import { obstacleTexts, sideText, symbolText } from "./lists";
 import { fieldLines, prescription, type Course, type Deleted, type Exercise, type Patient, type Status, type Template } from "./shapes";
+import { stepsSection } from "./steps_section";
 import { picture } from "./symbols";
 import { templateLines, templateList } from "./templates";
 import { words } from "./words";
@@ -76,7 +77,7 @@ export function patientView(patient: Patient, context: PatientContext, course: C
   const list = templateList(templates, exercises, prescription(patient).length > 0, use);
   const parts = course
     ? [
-        trendsSection(course), resultsSection(course), testsSection(course, status.tests, actions.addTest), notesSection(course, actions.addNote),
+        trendsSection(course, exercises), resultsSection(course, exercises), testsSection(course, status.tests, actions.addTest), notesSection(course, actions.addNote),
         documentsSection(patient, course, windows, actions),
       ]
     : [el("p", { class: "hint", role: "status" }, words.reading)];
@@ -85,7 +86,8 @@ export function patientView(patient: Patient, context: PatientContext, course: C
     { class: "people-box people-patient", "aria-label": words.patient.region(patient.code) },
     head(patient, actions.back),
     told(patient),
-    status.exercises ? beginSection(patient, exercises, list, actions.begin) : null,
+    stepsSection(patient, exercises, { begin: status.exercises ? actions.begin : undefined, change: actions.change }),
+    status.exercises ? beginSection(patient, exercises, list, actions) : null,
     ...parts,
     calibrationSection(patient, offer.of(patient.record), actions.change, actions.calibrate),
     section(words.patient.facts, factList(patient), el("div", { class: "buttons" }, button(words.patient.edit, actions.edit))),

@@ -2,16 +2,16 @@
 // The exercise that runs, for the therapist: what the patient should do, how it goes, and the few buttons that it needs now. It is made once
 // for an exercise and only changed afterwards, so that a button stays where a finger goes to. “Pause” and “Go on” are two buttons at two
 // places: one that changed its meaning could turn the forces on when a patient has just paused.
-import { button, el, setAttribute, setShown, setText } from "../panels/dom";
+import { button, el, section, setAttribute, setShown, setText } from "../panels/dom";
 import { onPress } from "../panels/press";
+import { scoreItem } from "./course_sections";
 import { isUnderWay, type ExerciseNow } from "./exercise_now";
-import { endedView } from "./ended_view";
-import { ForceBars, GoalBar } from "./goal_bar";
 import { form } from "./form";
-import { phaseText } from "./running_strip";
+import { Hold, RatingScales } from "./rating_scales";
+import { keepFocus, RunningView } from "./running_view";
 import { picture } from "./symbols";
 import { refusalText } from "./trouble";
-import { stationLanguage, words } from "./words";
+import { figureText, stationLanguage, titleText, words } from "./words";
 
 export interface RunningActions {
   input(kind: string, values?: Readonly<Record<string, number>>): Promise<void>;
@@ -21,29 +21,38 @@ export interface RunningActions {
   again(): void;
 }
 
-const kRatings = Array.from({ length: 11 }, (_, value) => value);
 const kDifficulties = [0, 0.25, 0.5, 0.75, 1] as const;
 const kHundred = 100;
+const kMinute = 60; // [s]
 const kResumeMs = 1000; // after a pause “Go on” takes no press: the second one of a double tap is none
-const kQuestionMs = 800; // after a question has changed its answers take no press, likewise
+const kSkipMs = 800; // after a phase has changed, or after a press: the second one would skip what comes next
 
 /// Address of the patient's screen in the language of this page.
 export const screenAddress = (language: string): string => `patient.html?${new URLSearchParams({ lang: language }).toString()}`;
 
+/// What an exercise has measured, as soon as it has ended. The values are those of the registry, which makes them from the recording.
+function endedView({ result, training }: ExerciseNow): HTMLElement {
+  const { title, none } = { title: words.run.result, none: words.run.noResult };
+  if (!result) return section(title, el("p", { class: "hint" }, none));
+  const { scores, ended, interrupted, repetitions, successes, counted, seconds, verdict } = result;
+  const minutes = `${figureText(Math.round((10 * seconds) / kMinute) / 10)} min`;
+  return section(
+    title,
+    verdict === "" ? null : el("p", { class: "run-verdict", lang: stationLanguage }, verdict),
+    el("p", { class: "run-facts" }, words.run.facts(String(repetitions), minutes)),
+    training && counted > 0 ? el("p", { class: "run-facts" }, words.run.successes(String(successes), String(counted))) : null,
+    interrupted ? el("p", { class: "refused" }, words.run.interrupted) : null,
+    ended === "" ? null : el("p", { class: "hint", lang: stationLanguage }, ended),
+    el("ul", { class: "people-scores" }, ...scores.map(scoreItem)),
+  );
+}
+
 export class RunningPanel {
   private readonly texts = words.run;
-  private readonly phase = el("p", { class: "run-phase", role: "status" });
-  private readonly instruction = el("p", { class: "run-instruction", lang: stationLanguage });
-  private readonly left = el("span", { class: "figure run-left" });
-  private readonly progress = el("progress", { max: 1, value: 0, "aria-label": words.run.pending });
-  private readonly noted = el("p", { class: "hint", lang: stationLanguage });
+  private readonly view = new RunningView();
   private readonly stale = el("p", { class: "refused", role: "alert", hidden: true }, words.run.stale);
   private readonly trouble = el("p", { class: "refused", role: "alert", hidden: true });
-  private readonly off = el("div", { class: "run-off", role: "alert", hidden: true });
-  private readonly offHint = el("span", {}, words.run.forcesOffHint);
   private readonly refused = el("p", { class: "refused", role: "alert", hidden: true });
-  private readonly goal = new GoalBar();
-  private readonly forces = new ForceBars();
   private readonly start = this.send(words.run.start, "begin", { class: "primary run-main" });
   private readonly resume = this.send(words.run.resume, "resume", { class: "primary run-main" });
   private readonly pause = el("button", { type: "button", class: "run-main" }, words.run.pause);
@@ -52,24 +61,20 @@ export class RunningPanel {
   private readonly end = button(words.run.end, () => this.askEnd(true), { class: "quiet" });
   private readonly sure = el(
     "div",
-    { class: "run-sure", role: "group", "aria-label": words.run.endSure, hidden: true },
+    { class: "run-sure", role: "group", "aria-label": words.run.endSure, tabindex: -1, hidden: true },
     el("span", {}, words.run.endSure),
     this.send(words.run.endYes, "abort", { class: "primary" }),
     button(words.run.endNo, () => this.askEnd(false)),
   );
-  private readonly pain = this.ratings("pain", words.run.pain);
-  private readonly fatigue = this.ratings("fatigue", words.run.fatigue);
-  private readonly choices = el("div", { class: "buttons run-choices", role: "group", "aria-label": words.run.phases["answer"] });
+  private readonly scales: RatingScales;
+  private readonly buttons: HTMLElement;
   private readonly difficulty: HTMLElement;
-  private readonly says: HTMLElement;
   private readonly live: HTMLElement;
-  private readonly result = el("div", { class: "run-result", hidden: true });
+  private readonly result = el("div", { class: "run-result", tabindex: -1, hidden: true });
   private newest: ExerciseNow;
-  private shownChoices = "";
-  private saysOpen = false; // the ratings stand there though none was asked for
   private endedShown = false;
-  private resumeFrom = 0; // time from which on “Go on” takes a press [ms]
-  private answersFrom = 0; // likewise of ratings and choices
+  private readonly resumeHold: Hold;
+  private readonly skipHold: Hold;
   private readonly noteText: HTMLTextAreaElement | null;
   readonly element: HTMLElement;
 
@@ -78,20 +83,17 @@ export class RunningPanel {
     now: ExerciseNow,
     private readonly actions: RunningActions,
     language: string,
-    private readonly time: () => number,
+    time: () => number,
     draft: string,
   ) {
+    this.resumeHold = new Hold(time, kResumeMs);
+    this.skipHold = new Hold(time, kSkipMs);
+    this.scales = new RatingScales((kind, value) => this.give(kind, value), time);
     for (const one of [this.resume, this.pause]) setShown(one, false); // each appears when its phase has come
     onPress(this.pause, () => {
       this.holdResume();
       this.give("pause");
     }); // when the button goes down
-    const saysButton = button(words.run.says, () => {
-      this.saysOpen = !this.saysOpen;
-      setAttribute(saysButton, "aria-expanded", String(this.saysOpen));
-      this.showRatings(this.newest);
-    }, { "aria-expanded": "false" });
-    this.says = saysButton;
     this.difficulty = el(
       "div",
       { class: "run-difficulty", role: "group", "aria-label": words.run.difficulty },
@@ -112,20 +114,26 @@ export class RunningPanel {
       el("a", { href: screenAddress(language), target: "_blank", rel: "opener" }, this.texts.screen),
       el("a", { href: "./", target: "_blank", rel: "opener" }, this.texts.watch),
     );
+    const { view, scales } = this;
+    this.buttons = el(
+      "div",
+      { class: "run-buttons run-rows" },
+      el("div", { class: "buttons" }, el("div", { class: "run-pair" }, el("div", { class: "run-go" }, this.start, this.resume), this.pause), this.skip),
+      el("div", { class: "buttons" }, scales.says, this.reset, this.end),
+    );
     const main = el(
       "div",
       { class: "run-column" },
-      el("div", { class: "run-now" }, this.phase, this.left, this.progress, this.instruction, this.noted),
-      el("div", { class: "buttons run-buttons" }, el("div", { class: "run-go" }, this.start, this.resume), this.pause, this.skip, this.reset, this.says, this.end),
+      view.now,
+      this.buttons,
       this.sure,
-      this.choices,
-      this.pain,
-      this.fatigue,
-      this.off,
-      this.goal.element,
+      scales.choices,
+      scales.pain,
+      scales.fatigue,
+      view.off,
+      view.goalElement,
     );
-    this.live = el("div", { class: "run-live" }, main, el("div", { class: "run-column run-beside" }, this.forces.element, this.difficulty, note));
-    this.off.append(el("strong", {}, words.run.forcesOff), this.offHint);
+    this.live = el("div", { class: "run-live" }, main, el("div", { class: "run-column run-beside" }, view.forces, this.difficulty, note));
     const who = el(
       "header",
       { class: "patient-head" },
@@ -135,7 +143,7 @@ export class RunningPanel {
       now.simulated ? el("span", { class: "run-simulated" }, words.run.simulated) : null,
       button(words.back, () => actions.list(), { class: "people-back" }),
     );
-    const title = el("p", { class: "run-title", lang: stationLanguage }, now.title);
+    const title = el("p", { class: "run-title" }, titleText(now));
     this.element = el("section", { class: "people-box people-patient people-run", "aria-label": words.run.region(now.code) }, who, title, this.stale, this.trouble, this.refused, this.live, this.result, links);
     this.newest = now;
     this.show(now);
@@ -163,63 +171,29 @@ export class RunningPanel {
     this.setStale(false);
     const { phase, stage } = now;
     const runs = stage === "running";
-    const at = runs ? [phaseText(now), ...(now.training && now.counted > 0 ? [this.texts.successes(String(now.successes), String(now.counted))] : [])].join(" · ") : (this.texts.stages[stage] ?? stage);
-    setText(this.phase, at);
-    setText(this.instruction, now.instruction);
-    setShown(this.instruction, runs && now.instruction !== "");
-    setText(this.noted, now.note);
-    setShown(this.noted, runs && now.note !== "");
-    setText(this.left, runs && now.remaining > 0 && phase !== "paused" ? this.texts.left(String(Math.ceil(now.remaining))) : "");
-    setShown(this.progress, runs && phase !== "ready" && phase !== "paused" && phase !== "done");
-    this.progress.value = now.progress;
-    setAttribute(this.progress, "aria-label", at);
+    this.view.show(now);
     setText(this.trouble, now.trouble === "" ? "" : `${this.texts.failed} ${now.trouble}`);
     setShown(this.trouble, now.trouble !== "");
-    setShown(this.off, runs && now.forcesOff && phase !== "ready" && phase !== "done");
-    setShown(this.offHint, phase === "paused");
     setShown(this.start, runs && phase === "ready");
     const paused = runs && phase === "paused";
     if ((paused && this.resume.hidden) || now.stops !== before.stops) this.holdResume();
     setShown(this.resume, paused);
-    this.resume.disabled = !paused || this.time() < this.resumeFrom;
+    this.resume.disabled = !paused || this.resumeHold.holds;
     setShown(this.pause, runs && phase !== "ready" && phase !== "paused" && phase !== "done");
     this.pause.disabled = this.pause.hidden;
+    if (phase !== before.phase || now.trial !== before.trial) this.skipHold.begin();
     setShown(this.skip, runs && (phase === "warm_up" || phase === "rest" || phase === "trial" || phase === "rating"));
+    setAttribute(this.skip, "aria-disabled", String(this.skipHold.holds)); // never disabled: the focus would be lost
     setShown(this.reset, runs && now.forcesOff && phase === "paused");
+    setShown(this.buttons, stage !== "closing"); // a place is kept for what comes, and after the end nothing does
     const mayEnd = runs && phase !== "done";
     if (!mayEnd) setShown(this.sure, false);
     setShown(this.end, mayEnd && this.sure.hidden);
-    this.showChoices(now);
-    if (now.asks !== before.asks) this.holdAnswers();
-    this.showRatings(now);
+    this.scales.show(now);
     setShown(this.difficulty, runs && now.training);
-    this.goal.show(now);
-    setShown(this.goal.element, runs && (phase === "trial" || now.value !== undefined));
-    this.forces.show(now);
-    setShown(this.forces.element, runs);
     setShown(this.live, isUnderWay(now));
     if (stage === "ended") this.showEnd(now);
-  }
-
-  private showChoices({ choices, stage }: ExerciseNow): void {
-    const wanted = stage === "running" ? choices.join("\n") : "";
-    setShown(this.choices, wanted !== "");
-    if (wanted === this.shownChoices) return;
-    this.shownChoices = wanted;
-    this.holdAnswers();
-    this.choices.replaceChildren(...(wanted === "" ? [] : choices.map((text, i) => button(text, () => this.answer("answer", i + 1), { lang: stationLanguage, class: "run-choice" }))));
-  }
-
-  /// The rating that is asked for; both of them if the patient has said something without being asked.
-  private showRatings({ asks, stage }: ExerciseNow): void {
-    const runs = stage === "running";
-    setShown(this.says, runs);
-    setShown(this.pain, asks === "pain" || this.saysOpen);
-    setShown(this.fatigue, asks === "fatigue" || this.saysOpen);
-    setAttribute(this.pain, "data-asked", String(asks === "pain"));
-    setAttribute(this.fatigue, "data-asked", String(asks === "fatigue"));
-    const settling = String(this.time() < this.answersFrom);
-    for (const one of [this.pain, this.fatigue, this.choices]) setAttribute(one, "data-settling", settling);
+    keepFocus(this.element, stage === "ended" ? this.result : this.view.now);
   }
 
   private showEnd(now: ExerciseNow): void {
@@ -233,17 +207,7 @@ export class RunningPanel {
   private askEnd(asked: boolean): void {
     setShown(this.sure, asked);
     setShown(this.end, !asked);
-    if (asked) this.sure.querySelector("button")?.focus();
-  }
-
-  private ratings(kind: "pain" | "fatigue", label: string): HTMLElement {
-    const press = (value: number) => this.answer(kind, value);
-    return el(
-      "div",
-      { class: "run-ratings", role: "group", "aria-label": label, hidden: true },
-      el("span", { class: "quiet-text" }, label),
-      el("div", { class: "run-scale" }, ...kRatings.map((value) => button(String(value), () => press(value)))),
-    );
+    (asked ? this.sure : this.end).focus();
   }
 
   private send(text: string, kind: string, attributes: Readonly<Record<string, string>> = {}): HTMLButtonElement {
@@ -251,24 +215,17 @@ export class RunningPanel {
   }
 
   private holdResume(): void {
-    this.resumeFrom = this.time() + kResumeMs;
+    this.resumeHold.begin();
     this.resume.disabled = true;
   }
 
-  private holdAnswers(): void {
-    this.answersFrom = this.time() + kQuestionMs;
-  }
-
-  /// Sends an answer, unless the question has just changed under the finger.
-  private answer(kind: string, value: number): void {
-    if (this.time() < this.answersFrom) return;
-    this.saysOpen = false;
-    this.holdAnswers();
-    this.give(kind, value);
-  }
-
   private give(kind: string, value?: number): void {
-    if (kind === "resume" && this.time() < this.resumeFrom) return;
+    if (kind === "resume" && this.resumeHold.holds) return;
+    if (kind === "skip") {
+      if (this.skipHold.holds) return;
+      this.skipHold.begin();
+      setAttribute(this.skip, "aria-disabled", "true");
+    }
     setShown(this.refused, false);
     const { stops } = this.newest;
     // What this page has shown when the button was pressed: a stop that came meanwhile stays.

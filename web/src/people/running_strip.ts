@@ -2,15 +2,8 @@
 // One line above the patients while an exercise is under way and something else is displayed: whose it is, how far it is, and the way to it.
 import { button, el, setShown, setText } from "../panels/dom";
 import type { ExerciseNow } from "./exercise_now";
-import { words } from "./words";
-
-/// Where it is: the trial, or the phase between trials.
-export function phaseText({ phase, trial, trials }: ExerciseNow): string {
-  const name = words.run.phases[phase] ?? phase;
-  if (trial === 0) return name;
-  const counted = words.run.trial(String(trial), String(trials));
-  return phase === "trial" ? counted : `${name} · ${counted}`;
-}
+import { phaseText } from "./running_view";
+import { titleText, words } from "./words";
 
 export class RunningStrip {
   private readonly what = el("strong", {});
@@ -37,7 +30,7 @@ export class RunningStrip {
       setText(this.state, "");
       return;
     }
-    setText(this.what, words.run.strip(now.code, now.title));
+    setText(this.what, words.run.strip(now.code, titleText(now)));
     setText(this.state, now.stage === "running" ? phaseText(now) : (words.run.stages[now.stage] ?? now.stage));
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the station answers, read defensively: a field of another kind is as if it were absent.
 
+import { language } from "../strings";
+
 export type Entry = Readonly<Record<string, unknown>>;
 
 export const entry = (value: unknown): Entry => (typeof value === "object" && value !== null && !Array.isArray(value) ? (value as Entry) : {});
@@ -107,9 +109,17 @@ function readLines(value: unknown): readonly Prescribed[] {
 
 export const prescription = (patient: Patient): readonly Prescribed[] => readLines(patient.fields["prescription"]);
 
+/// The lines of the prescription as the station's JSON has them.
+export const prescribedRows = (patient: Patient): readonly Entry[] => list(patient.fields["prescription"]).map(entry);
+
+/// The same with other values in the line of an exercise. @param values  undefined: without the line
+export function otherPrescription(patient: Patient, exercise: string, values: Entry | undefined): readonly Entry[] {
+  return prescribedRows(patient).flatMap((row) => (row["exercise"] !== exercise ? [row] : values ? [{ ...row, ...values }] : []));
+}
+
 /// Values of a key of each prescribed exercise, which this page does not change.
 export function overridesOf(patient: Patient, exercise: string): Entry {
-  return entry(list(patient.fields["prescription"]).map(entry).find((one) => one["exercise"] === exercise)?.["overrides"]);
+  return entry(prescribedRows(patient).find((one) => one["exercise"] === exercise)?.["overrides"]);
 }
 
 export interface EntryCheck {
@@ -131,6 +141,7 @@ export const ownRanges = (patient: Patient): number => Object.keys(entry(patient
 
 export interface ScoreValue {
   readonly name: string;
+  readonly label: string; // for people, in the language of the page; empty: the station knows none
   readonly unit: string;
   readonly origin: string;
   readonly value: number | undefined;
@@ -174,6 +185,7 @@ export interface Trend {
   readonly unit: string;
   readonly points: readonly TrendPoint[];
   readonly smallest: number | undefined; // smallest real difference that is published for it
+  readonly label: string; // of its score, likewise
   readonly entered: boolean; // a test that was entered by hand
   readonly count: number; // values
   readonly first: number;
@@ -190,15 +202,21 @@ export interface Course {
   readonly trends: readonly Trend[];
 }
 
-export function readScore(row: Entry): ScoreValue {
-  return { name: text(row["name"]), unit: text(row["unit"]), origin: text(row["origin"]), value: figure(row["value"]), invalid: text(row["invalid"]) };
+/// @param names  of scores for people, by language
+const labels = (names: unknown) => (name: string): string => text(entry(entry(names)[name])[language.code]);
+
+/// @param names  of scores for people, as the station's JSON has them
+export const scoreReader = (names: unknown) => (row: Entry): ScoreValue => readScore(row, labels(names));
+
+function readScore(row: Entry, label: (name: string) => string): ScoreValue {
+  return { name: text(row["name"]), label: label(text(row["name"])), unit: text(row["unit"]), origin: text(row["origin"]), value: figure(row["value"]), invalid: text(row["invalid"]) };
 }
 
-function readTrend(row: Entry): Trend {
+function readTrend(row: Entry, label: (name: string) => string): Trend {
   const read = list(row["points"]).map(entry).map((point) => ({ date: figure(point["date"]) ?? NaN, value: figure(point["value"]) ?? NaN }));
   const points = read.filter(({ date, value }) => !Number.isNaN(date) && !Number.isNaN(value)).sort((a, b) => a.date - b.date);
   return {
-    name: text(row["name"]), title: text(row["title"]) || text(row["name"]), unit: text(row["unit"]), points, smallest: figure(row["smallest_real_difference"]),
+    name: text(row["name"]), title: text(row["title"]) || text(row["name"]), unit: text(row["unit"]), points, smallest: figure(row["smallest_real_difference"]), label: label(text(row["name"]).split("/")[1] ?? ""),
     entered: row["entered"] === true, count: points.length, first: points[0]?.value ?? NaN, last: points.at(-1)?.value ?? NaN,
     proven: row["proven"] === true, verdict: text(row["verdict"]),
   };
@@ -208,7 +226,7 @@ export function readCourse(answer: unknown): Course {
   const one = entry(answer);
   const rows = (name: string) => list(one[name]).map(entry);
   const results = rows("results").map((row) => ({
-    date: figure(row["date"]) ?? 0, exercise: text(row["exercise"]), assessment: row["assessment"] === true, scores: list(row["scores"]).map(entry).map(readScore),
+    date: figure(row["date"]) ?? 0, exercise: text(row["exercise"]), assessment: row["assessment"] === true, scores: list(row["scores"]).map(entry).map(scoreReader(one["names"])),
     invalid: text(row["invalid"]), interrupted: row["interrupted"] === true,
   }));
   const tests = rows("tests").map((row) => ({
@@ -220,7 +238,7 @@ export function readCourse(answer: unknown): Course {
     results: results.sort((a, b) => b.date - a.date),
     tests: tests.sort((a, b) => b.date.localeCompare(a.date)),
     notes: notes.sort((a, b) => b.date - a.date),
-    trends: rows("trends").map(readTrend),
+    trends: rows("trends").map((row) => readTrend(row, labels(one["names"]))),
   };
 }
 
@@ -241,6 +259,17 @@ export function readDeleted(answer: unknown): Deleted {
   };
 }
 
+/// A person who signs in.
+export interface Account {
+  readonly name: string;
+  readonly role: string;
+}
+
+export function readAccounts(answer: unknown): readonly Account[] {
+  const all = list(entry(answer)["accounts"]).map(entry).map((one) => ({ name: text(one["name"]), role: text(one["role"]) }));
+  return all.filter(({ name }) => name !== "");
+}
+
 /// A file of an export.
 export interface ExportedFile {
   readonly name: string;
@@ -257,6 +286,7 @@ export function readExport(answer: unknown): readonly ExportedFile[] {
 export interface Template {
   readonly name: string;
   readonly title: string;
+  readonly titleDe: string; // empty: its file has none
   readonly lines: readonly TemplateLine[];
 }
 
@@ -265,26 +295,29 @@ export interface TemplateLine extends Prescribed {
   readonly overrides: Entry;
 }
 
-function readTemplateLines(value: unknown): readonly TemplateLine[] {
+/// @param german  notes in German, by exercise
+function readTemplateLines(value: unknown, german: Entry): readonly TemplateLine[] {
   const named = list(value).map(entry).filter((one) => text(one["exercise"]) !== "");
-  return readLines(named).map((line, i) => ({ ...line, overrides: entry(named[i]?.["overrides"]) }));
+  const note = ({ exercise, note: plain }: Prescribed) => (language.code === "de" ? text(german[exercise]) || plain : plain);
+  return readLines(named).map((line, i) => ({ ...line, note: note(line), overrides: entry(named[i]?.["overrides"]) }));
 }
 
 export function readTemplates(answer: unknown): readonly Template[] {
-  const all = list(entry(answer)["templates"]).map(entry).map((one) => ({ name: text(one["name"]), title: text(one["title"]) || text(one["name"]), lines: readTemplateLines(one["lines"]) }));
+  const all = list(entry(answer)["templates"]).map(entry).map((one) => ({ name: text(one["name"]), title: text(one["title"]) || text(one["name"]), titleDe: text(one["title_de"]), lines: readTemplateLines(one["lines"], entry(one["notes_de"])) }));
   return all.filter(({ name }) => name !== "");
 }
 
 export interface Exercise {
   readonly name: string;
   readonly title: string;
+  readonly titleDe: string; // empty: its file has none
   readonly kind: string;
   readonly measure: string;
 }
 
 export function readExercises(answer: unknown): readonly Exercise[] {
   const all = list(entry(answer)["exercises"]).map(entry).map((row) => ({
-    name: text(row["name"]), title: text(row["title"]), kind: text(row["kind"]), measure: text(row["measure"]),
+    name: text(row["name"]), title: text(row["title"]) || text(row["name"]), titleDe: text(row["title_de"]), kind: text(row["kind"]), measure: text(row["measure"]),
   }));
   return all.filter(({ name }) => name !== "");
 }

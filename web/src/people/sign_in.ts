@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Signing in, and the page while it is locked.
 import { button, el, newId, setShown, setText } from "../panels/dom";
-import { onPress } from "../panels/press";
 import { refusalText } from "./trouble";
 import { words } from "./words";
 
@@ -45,20 +44,10 @@ export function signInForm(signIn: (account: string, password: string) => Promis
   return secretForm(words.signIn.title, parts, password, words.signIn.submit, () => signIn(account.value.trim(), password.value));
 }
 
-/// Pauses the exercise that is under way, without a word of whose it is.
-function lockedPause(pause: () => Promise<void>): HTMLElement {
-  const said = el("p", { role: "status" }, words.lock.pauseHint);
-  const press = el("button", { type: "button", class: "run-main" }, words.lock.pause);
-  const tell = (text: string) => setText(said, text);
-  onPress(press, () => void pause().then(() => tell(words.lock.pauseSent), () => tell(words.lock.pauseFailed)));
-  return el("div", { class: "buttons" }, press, said);
-}
-
 /// What stands in place of the patients while the page is locked.
 /// @param account  empty: the owner, who has no password
-/// @param pause    pauses the exercise that is under way; absent: there is none
-export function lockPanel(account: string, unlock: (password: string) => Promise<void>, other: () => void, pause?: () => Promise<void>): HTMLElement {
-  const hint = el("div", {}, el("p", { class: "hint", role: "status" }, words.lock.hint), pause ? lockedPause(pause) : null);
+export function lockPanel(account: string, unlock: (password: string) => Promise<void>, other: () => void): HTMLElement {
+  const hint = el("p", { class: "hint", role: "status" }, words.lock.hint);
   if (account === "") return secretForm(words.lock.title, [hint], null, words.lock.goOn, () => unlock(""));
   const password = el("input", { type: "password", autocomplete: "current-password", maxlength: 256 });
   const known = el("input", { type: "text", autocomplete: "username", hidden: true, value: account }); // for the browser's store of passwords

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture symbols of patients: plain shapes in the colour of the text, so that they differ without colour. Their words stand beside them.
-
-const kNamespace = "http://www.w3.org/2000/svg";
+import { svg } from "../panels/dom";
 
 /// Outlines in a square of 24 by 24, by the words of the station.
 const outlines: Readonly<Record<string, string>> = {
@@ -21,11 +20,7 @@ const outlines: Readonly<Record<string, string>> = {
 
 /// @param symbol  a word of the station; an unknown one has an empty square
 export function picture(symbol: string): SVGSVGElement {
-  const svg = document.createElementNS(kNamespace, "svg");
-  for (const [name, value] of Object.entries({ class: "symbol", viewBox: "0 0 24 24", "aria-hidden": "true", "data-symbol": symbol })) svg.setAttribute(name, value);
-  const path = document.createElementNS(kNamespace, "path");
-  path.setAttribute("d", outlines[symbol] ?? "M3 3h18v18H3zM5 5v14h14V5z");
-  path.setAttribute("fill-rule", "evenodd");
-  svg.append(path);
-  return svg;
+  const drawn = svg("svg", { class: "symbol", viewBox: "0 0 24 24", "aria-hidden": "true", "data-symbol": symbol });
+  drawn.append(svg("path", { d: outlines[symbol] ?? "M3 3h18v18H3zM5 5v14h14V5z", "fill-rule": "evenodd" }));
+  return drawn;
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chart of one trend: its values over time, and around the first one the smallest real difference that is published for the measure. A
 // value outside of that band is a change that the measure's own scatter does not explain.
-import { el } from "../panels/dom";
-import type { Trend } from "./shapes";
-import { svg, svgText } from "./svg";
+import { el, svg, svgText } from "../panels/dom";
+import type { Exercise, Trend } from "./shapes";
 import { axisDay, changeText, dayText, figureText, trendTitle, valueText, verdictText, words } from "./words";
 
 const kWidth = 320;
@@ -45,13 +44,14 @@ function labelled(begin: number, end: number): readonly number[] {
 }
 
 /// In one sentence what the chart shows, for those who cannot see it.
-function sentence(trend: Trend): string {
+function sentence(trend: Trend, exercises: readonly Exercise[]): string {
   const { points, unit } = trend;
   const said = (at: number) => words.trends.on(valueText(points[at]!.value, unit), dayText(points[at]!.date));
-  return `${trendTitle(trend)}: ${words.trends.from(said(0), said(points.length - 1))}. ${verdictText(trend)}`;
+  return `${trendTitle(trend, exercises)}: ${words.trends.from(said(0), said(points.length - 1))}. ${verdictText(trend)}`;
 }
 
-export function trendFigure(trend: Trend): HTMLElement {
+/// @param exercises  that there are: a trend is named by the title of its exercise
+export function trendFigure(trend: Trend, exercises: readonly Exercise[]): HTMLElement {
   const { points, unit, smallest, first } = trend;
   const [low, high] = extent(trend);
   const begin = points[0]!.date;
@@ -59,7 +59,7 @@ export function trendFigure(trend: Trend): HTMLElement {
   const x = (date: number) => (end > begin ? kLeft + ((date - begin) / (end - begin)) * (kWidth - kLeft - kRight) : (kLeft + kWidth - kRight) / 2);
   const y = (value: number) => kHeight - kBottom - ((value - low) / (high - low)) * (kHeight - kTop - kBottom);
   const right = kWidth - kRight;
-  const chart = svg("svg", { class: "trend-chart", viewBox: `0 0 ${kWidth} ${kHeight}`, role: "img", "aria-label": sentence(trend) });
+  const chart = svg("svg", { class: "trend-chart", viewBox: `0 0 ${kWidth} ${kHeight}`, role: "img", "aria-label": sentence(trend, exercises) });
 
   if (smallest !== undefined) {
     const top = y(first + smallest);
@@ -89,7 +89,7 @@ export function trendFigure(trend: Trend): HTMLElement {
   return el(
     "figure",
     { class: "trend", "data-proven": String(trend.proven) },
-    el("figcaption", {}, el("strong", {}, trendTitle(trend)), unit === "" || unit === "-" ? null : el("small", {}, ` ${unit}`)),
+    el("figcaption", {}, el("strong", {}, trendTitle(trend, exercises)), unit === "" || unit === "-" ? null : el("small", {}, ` ${unit}`)),
     chart,
     el("p", { class: "trend-verdict" }, change === "" ? verdictText(trend) : words.trends.judged(verdictText(trend), change)),
     el("small", {}, band),

@@ -7,8 +7,10 @@ import { en } from "../../src/strings/people_en";
 import { allRules, bringAxe, violations } from "./support/axe";
 import type { PatientsPage } from "./support/patients_page";
 import { stage, unseen, type OwnStation } from "./support/stage";
+import { until } from "./support/until";
 
 const kMostTaps = 12;
+const kMostTabs = 150; // through the whole page
 const kCode = "SIM1";
 
 const play = stage();
@@ -24,7 +26,28 @@ async function expectNoViolations(what: string): Promise<void> {
   expect(await violations(patients.page, allRules), what).toEqual([]);
 }
 const panel = () => patients.page.getByRole("region", { name: en.run.region(kCode), exact: true });
+/// A button that takes a press now.
+const ready = (name: string) => patients.page.locator('.run-buttons button[aria-disabled="false"]', { hasText: name });
 const trial = () => panel().getByText(/^Trial \d of 3/).first();
+
+/// Presses Tab until a button has the focus, and then Enter. Wherever the focus is on its way, it is in sight and marked.
+async function byKeyboard(name: string): Promise<void> {
+  await patients.page.getByRole("button", { name }).first().waitFor();
+  for (let tabs = 0; tabs < kMostTabs; ++tabs) {
+    await patients.page.keyboard.press("Tab");
+    const at = await patients.page.evaluate(() => {
+      const focused = document.activeElement;
+      if (!(focused instanceof HTMLElement) || focused === document.body) return undefined; // between the page's end and its beginning
+      const { width, height, top, bottom } = focused.getBoundingClientRect();
+      const { outlineStyle, visibility } = getComputedStyle(focused);
+      return { name: focused.getAttribute("aria-label") ?? focused.textContent ?? "", seen: width > 0 && height > 0 && bottom > 0 && top < innerHeight && visibility === "visible", marked: outlineStyle !== "none", disabled: focused.hasAttribute("disabled") };
+    });
+    if (!at) continue;
+    expect([at.seen, at.marked], at.name).toEqual([true, true]);
+    if (at.name.startsWith(name)) return patients.page.keyboard.press("Enter");
+  }
+  throw new Error(`Tab leads to no button “${name}”`);
+}
 
 beforeAll(async () => {
   station = await play.ownStation(["first_touch", "--data", "data", "--keys", "config/keys"]);
@@ -47,7 +70,7 @@ describe("the therapist's way", () => {
     await expectNoViolations("the confirmation");
     await tap(patients.button(en.begin.confirm(kCode, en.sides["right"]!)));
     await tap(patients.button(en.run.start));
-    await tap(patients.button(en.run.skip));
+    await tap(ready(en.run.skip)); // it takes no press just after a phase has changed
     await trial().waitFor(); // a simulated participant gives the ratings itself
     await expectNoViolations("an exercise that runs");
     console.log(`from an empty system to the first repetition: ${taps} taps`);
@@ -85,7 +108,8 @@ describe("the therapist's way", () => {
     patients.page.on("download", (one) => saved.push(one));
     await patients.button(en.documents.export).click();
     await patients.page.getByText(en.documents.saved("").trim()).waitFor();
-    await expect.poll(() => saved.map((one) => one.suggestedFilename()).sort()).toEqual([`${kCode}-patient.json`, `${kCode}-results.csv`, `${kCode}-tests.csv`]);
+    await until("three files", () => saved.length === 3);
+    expect(saved.map((one) => one.suggestedFilename()).sort()).toEqual([`${kCode}-patient.json`, `${kCode}-results.csv`, `${kCode}-tests.csv`]);
     const [report] = await Promise.all([patients.page.waitForEvent("popup"), patients.button(en.documents.report).click()]);
     await report.getByText(kCode).first().waitFor();
     expect(await report.evaluate(() => document.adoptedStyleSheets.reduce((sum, sheet) => sum + sheet.cssRules.length, 0)), "the report has its styles").toBeGreaterThan(0);
@@ -93,5 +117,22 @@ describe("the therapist's way", () => {
     await patients.button(en.lock.now).click();
     await closed;
     expect(await patients.html()).not.toContain(kCode);
+  });
+
+  it("is walked with the keyboard alone, from the lock to a finished exercise", async () => {
+    await byKeyboard(en.lock.goOn);
+    await byKeyboard(kCode);
+    await patients.patient(kCode).waitFor();
+    await byKeyboard(`${en.begin.begin}: Entry check`);
+    await byKeyboard(en.begin.confirm(kCode, en.sides["right"]!));
+    await byKeyboard(en.run.start);
+    await byKeyboard(en.run.pause);
+    await until("a resume that takes a press", () => patients.button(en.run.resume).isEnabled()); // it takes none just after a pause
+    await byKeyboard(en.run.resume);
+    await byKeyboard(en.run.end);
+    await byKeyboard(en.run.endYes);
+    await panel().getByText(en.run.interrupted).waitFor();
+    await byKeyboard(en.run.back(kCode));
+    await patients.patient(kCode).waitFor();
   });
 });

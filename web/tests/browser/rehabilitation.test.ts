@@ -2,17 +2,15 @@
 // The whole way of rehabilitation against the program: a therapist adds three simulated patients, takes a template, and each of them plays the
 // same game on the patient's screen. In the middle of a game an onlooker stops, and both pages are loaded again. Exercises are short: the
 // warm-up is skipped, and each game is ended early.
-import { execFileSync } from "node:child_process";
-import { join } from "node:path";
 import { beforeAll, describe, expect, it } from "vitest";
 import type { Tick } from "../../src/gen/phalanx/tick_pb";
 import { en as screenTexts } from "../../src/strings/patient_en";
+import { english } from "../../src/strings";
 import { en } from "../../src/strings/people_en";
 import type { CockpitPage } from "./support/cockpit_page";
 import { shoot } from "./support/pictures";
 import type { PatientScreen } from "./support/patient_screen";
 import type { PatientsPage } from "./support/patients_page";
-import { dataFolder, programPath } from "./support/program";
 import { stage, unseen, type OwnStation } from "./support/stage";
 import { kHangMs, until } from "./support/until";
 
@@ -93,9 +91,9 @@ describe("rehabilitation", () => {
     await patients.listed("SIM1").click();
     await patients.patient("SIM1").getByText(en.obstacles["unchecked"]!).first().waitFor();
     for (const code of codes) {
-      const store = ["--data", join(station.folder, "data"), "--keys", join(station.folder, "config/keys")];
-      const measured = ["--entry-check", "45,30", "--own-force", "index=4"];
-      execFileSync(programPath(), ["patient", "edit", code, ...measured, ...store], { env: { ...process.env, PHALANX_DATA: dataFolder }, stdio: "pipe" });
+      await patients.listed(code).click();
+      await patients.enter(en.fields["entry"]!, { [en.steps.flexion]: "45", [en.steps.release]: "30" });
+      await patients.enter(en.fields["own_force_n"]!, { [english.texts.digits[1]!]: "4" });
     }
   });
 
@@ -133,7 +131,7 @@ async function stopAndReload(code: Code): Promise<void> {
   await until("the end of the stop's ramp", async () => largest((await onlooker.stream.next(1)).at(-1)!) === 0, () => onlooker.brief());
   for (const tick of await onlooker.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
   await shoot(screen.page, "rehabilitation_screen_stopped");
-  const [goOn, wait] = await Promise.all([patients.button(en.run.resume).boundingBox(), patients.page.locator(".run-buttons > .run-main").boundingBox()]);
+  const [goOn, wait] = await Promise.all([patients.button(en.run.resume).boundingBox(), patients.page.locator(".run-pair > .run-main").boundingBox()]);
   expect(goOn!.x + goOn!.width <= wait!.x || goOn!.y + goOn!.height <= wait!.y, "“Go on” is not where “Pause” was").toBe(true);
   await patients.button(en.run.resume).click();
   await patients.button(en.run.pause).waitFor();

@@ -90,7 +90,8 @@ export abstract class LakeGame implements Game {
     this.sized = { width, height, free, cues, aphasia };
     // The page shifts the picture towards the side of the cues; what is beside it must not be cut off.
     const shifted = cues !== "centre" && width >= height;
-    const most = shifted ? (1 - 2 * kShift - (aphasia && cues === "left" ? 2 * kHandShare : 0)) * width : free.width;
+    // The picture's middle is that of the page, so that what is covered at the left counts twice.
+    const most = shifted ? (1 - 2 * kShift - (aphasia && cues === "left" ? 2 * kHandShare : 0)) * width : width - 2 * free.left;
     this.wanted = fitted(this.region, height, { ...free, width: Math.min(free.width, most) });
     if (!this.placed) this.place(this.wanted);
   }

@@ -28,6 +28,8 @@ const kBeadRadius = 0.075;
 const kSmallBead = 0.55; // of its size while the goal is not reached
 const kGrowth = 1.25;
 const kEase = 3.2; // [1/s]
+/// Pace of soft lights, which are large: they follow more slowly than a sign.
+export const kLightPace = 1; // [1/s]
 
 /// Moves a number towards another one, evenly at any frame rate. No sign of a goal changes faster than by this pace.
 export function eased(now: number, wanted: number, dt: number, pace = kEase): number {
@@ -70,6 +72,11 @@ export function glow(colour: string, size: number, opacity = 0.8): Sprite | null
   sprite.scale.setScalar(size);
   sprite.renderOrder = 3;
   return sprite;
+}
+
+/// Fades a soft light towards an opacity: at most three flashes a second, also where a hand shakes.
+export function shine(light: Sprite | null, opacity: number, dt: number): void {
+  if (light) light.material.opacity = eased(light.material.opacity, opacity, dt, kLightPace);
 }
 
 function softSpot(): Texture | null {

@@ -24,7 +24,7 @@ import {
 import type { ExerciseNow, GameParts, MakeGame } from "../game";
 import { forceTop, nearness } from "./force_scale";
 import { LakeGame } from "./lake_game";
-import { Hoop, Mirrored, bounded, eased, finite, glow, kGold, kInk, kPaper, sequence, solid } from "./marks";
+import { Hoop, Mirrored, bounded, eased, finite, glow, kGold, kInk, kLightPace, kPaper, sequence, shine, solid } from "./marks";
 
 const kFollow = 14; // [1/s] of what shows a force
 
@@ -113,10 +113,8 @@ class BalloonGoal extends LakeGame {
     this.veil.position.y = (low + high) / 2;
     this.veil.scale.y = Math.max(0.01, high - low);
     this.veil.material.opacity = this.present * (0.3 + 0.25 * this.inside);
-    if (this.light) {
-      this.light.position.set(0, this.vessel.position.y + kBody, -0.4);
-      this.light.material.opacity = 0.75 * this.inside;
-    }
+    this.light?.position.set(0, this.vessel.position.y + kBody, -0.4);
+    shine(this.light, 0.75 * this.inside, dt);
   }
 }
 
@@ -176,7 +174,7 @@ class FountainGoal extends LakeGame {
     this.column.position.y = 0.3 + height / 2;
     if (this.light) {
       this.light.position.set(0, 0.3 + height, 0);
-      this.light.scale.setScalar(0.6 + 0.4 * height);
+      this.light.scale.setScalar(eased(this.light.scale.x, 0.6 + 0.4 * height, dt, kLightPace));
     }
     const places = this.drops.geometry.getAttribute("position") as BufferAttribute;
     this.seeds.forEach(({ turn, at, wide }, drop) => {
@@ -272,7 +270,7 @@ class PinchGoal extends LakeGame {
     this.outer.step(wanted, this.inside, dt);
     if (this.veil) this.veil.material.opacity = eased(this.veil.material.opacity, wanted ? 0.26 + 0.25 * this.inside : 0, dt);
     this.ring.scale.set(radius(this.force), radius(this.force), 1);
-    if (this.light) this.light.material.opacity = 0.7 * this.inside;
+    shine(this.light, 0.7 * this.inside, dt);
     const finger = target.digits.find((digit) => digit > 0) ?? 1;
     [0, finger].forEach((digit, at) => {
       const touches = exercise.touching[digit] === true || finite(exercise.force[digit]) > 0.05;

@@ -4,7 +4,7 @@
 import { BufferAttribute, BufferGeometry, CircleGeometry, Color, DoubleSide, Group, Mesh, MeshStandardMaterial } from "three";
 import type { ExerciseNow, GameParts, MakeGame } from "../game";
 import { LakeGame } from "./lake_game";
-import { Hoop, bead, bounded, eased, finite, glow, kGold, solid } from "./marks";
+import { Hoop, bead, bounded, eased, finite, glow, kGold, shine, solid } from "./marks";
 
 const kLength = 2.5; // of a digit's petal [m]
 const kSpread = [-62, -31, 0, 31, 62].map((degrees) => (degrees * Math.PI) / 180);
@@ -149,7 +149,7 @@ class FlowerGoal extends LakeGame {
     const mean = judged.reduce((sum, one) => sum + one.flexion, 0) / Math.max(1, judged.length);
     this.opens = eased(this.opens, 1 - mean, dt);
     this.bud.step(closes, mean ** 2, dt);
-    if (this.heart) this.heart.material.opacity = 0.7 * this.opens ** 2;
+    shine(this.heart, 0.7 * this.opens ** 2, dt);
     if (!this.parts.options.calm) this.flower.position.y = 0.3 + 0.012 * Math.sin(0.8 * this.time);
   }
 }

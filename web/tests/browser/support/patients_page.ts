@@ -63,6 +63,15 @@ export class PatientsPage {
     await this.patient(code).waitFor();
   }
 
+  /// Enters what was measured elsewhere for the displayed patient, and waits until the station has it.
+  async enter(what: string, values: Readonly<Record<string, string>>): Promise<void> {
+    const step = this.page.locator(".step").filter({ hasText: what });
+    await step.locator("summary").click();
+    for (const [name, value] of Object.entries(values)) await step.getByRole("textbox", { name }).fill(value);
+    await step.getByRole("button", { name: en.save, exact: true }).click();
+    await this.page.locator('.step[data-done="true"]').filter({ hasText: what }).waitFor();
+  }
+
   /// All of the document, as the browser holds it.
   html(): Promise<string> {
     return this.page.evaluate(() => document.documentElement.outerHTML);

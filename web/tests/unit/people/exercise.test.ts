@@ -6,6 +6,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import { readExerciseNow } from "../../../src/people/exercise_now";
 import { PeoplePage } from "../../../src/people/page";
 import { words } from "../../../src/people/words";
+import { en as exercise } from "../../../src/strings/exercise_en";
 import { FakeApi } from "./fake_api";
 
 const kMostTaps = 12;
@@ -55,7 +56,7 @@ beforeEach(async () => {
   time = 0;
   later = [];
   station = new FakeApi();
-  station.accounts = false;
+  station.withAccounts = false;
   station.exercisesOn = true;
   page = new PeoplePage(station.api, () => time, () => undefined, (run) => void later.push(run));
   document.body.replaceChildren(page.account, page.content);
@@ -148,7 +149,7 @@ describe("the exercise that runs", () => {
       force: [0, 2.04, 0.5, 0, 0], successes: 1, counted: 1,
     });
     expect(page.content.querySelector(".people-run")).toBe(panel);
-    for (const text of ["Press.", words.run.trial("2", "8"), words.run.left("4"), "2 N", words.run.inBand, words.run.band("1.5", "2.5 N"), "0.5 N"]) expect(shown()).toContain(text);
+    for (const text of ["Press", words.run.trial("2", "8"), words.run.left("4"), "2 N", words.run.inBand, words.run.band("1.5", "2.5 N"), "0.5 N"]) expect(shown()).toContain(text);
     await told({ value: 3.5 });
     expect(shown()).not.toContain(words.run.inBand);
   });
@@ -176,7 +177,7 @@ describe("the exercise that runs", () => {
     expect(places()).toEqual(before);
     expect([goOn.disabled, pause.disabled]).toEqual([false, true]);
     const style = readFileSync(resolve(__dirname, "../../../src/style/people.css"), "utf8");
-    expect(style, "a hidden button keeps its cell").toMatch(/\.run-buttons > \[hidden\],\n\.run-go > \[hidden\],[^}]*display: block !important;\s*visibility: hidden;/);
+    expect(style, "a hidden button keeps its cell").toMatch(/\.run-buttons button\[hidden\],[^}]*display: block !important;\s*visibility: hidden;/);
   });
 
   it("goes on by no second tap, not until a second after the last pause or stop", async () => {
@@ -221,11 +222,66 @@ describe("the exercise that runs", () => {
     time += 200;
     await tap("2");
     await justTold({ asks: "", phase: "answer", choices: ["the first", "the second"] });
-    await tap("the first");
+    await tap("The first one");
     time += 900;
-    await tap("the second");
-    await tap("the second");
+    await tap("The second one");
+    await tap("The second one");
     expect(station.asked.filter((one) => one.startsWith("input"))).toEqual(["input pain 3", "input fatigue 2", "input answer 2"]);
+  });
+
+  it("skips one phase by a double press, not what comes next", async () => {
+    await told({ phase: "warm_up" });
+    await tap(words.run.skip);
+    await tap(words.run.skip);
+    await justTold({ phase: "rating", asks: "pain" });
+    await tap(words.run.skip);
+    const skips = () => station.asked.filter((one) => one === "input skip").length;
+    expect(skips()).toBe(1);
+    const skip = button(words.run.skip)!;
+    expect([skip.getAttribute("aria-disabled"), skip.disabled], "it keeps the focus").toEqual(["true", false]);
+    time += 700;
+    await tap(words.run.skip);
+    expect(skips()).toBe(1);
+    time += 200;
+    await next();
+    expect(skip.getAttribute("aria-disabled")).toBe("false");
+    await tap(words.run.skip);
+    expect(skips()).toBe(2);
+    await told({ phase: "trial", asks: "", trial: 1, trials: 3 });
+    await justTold({ trial: 2 });
+    await tap(words.run.skip);
+    expect(skips(), "another trial has just begun").toBe(2);
+  });
+
+  it("keeps the focus in sight: not on a button, which a key that is held down would press", async () => {
+    await told({ phase: "ready" });
+    button(words.run.start)!.focus();
+    await tap(words.run.start);
+    await told({ phase: "warm_up" });
+    expect(document.activeElement?.className).toBe("run-now");
+    button(words.run.end)!.focus();
+    await tap(words.run.end);
+    expect(document.activeElement?.className).toBe("run-sure");
+    await tap(words.run.endNo);
+    expect(document.activeElement).toBe(button(words.run.end));
+    await tap(words.run.end);
+    button(words.run.endYes)!.focus();
+    await told({ stage: "ended", phase: "done" });
+    expect(document.activeElement?.className).toBe("run-result");
+  });
+
+  it("tells what the patient's screen tells, and its own words between trials", async () => {
+    const says = () => page.content.querySelector<HTMLElement>(".run-instruction:not([hidden])")?.textContent;
+    await told({ phase: "warm_up", instruction: "Warm up: move your fingers freely." });
+    expect(says()).toBe(exercise.warmUp);
+    await told({ phase: "rating", asks: "pain", instruction: "How strong is your pain now? Answer with: pain N" });
+    expect(says()).toBe(words.run.told.pain);
+    await told({ phase: "rest", asks: "", instruction: "Let go. The second one comes." });
+    expect(says()).toBe(exercise.second);
+    await told({ phase: "trial", instruction: "Move only this finger (ring)", target: { kind: "angle" } });
+    expect(says()).toBe("Move only this finger: your ring finger");
+    await told({ phase: "answer", measure: "feel_and_find", choices: ["the first"] });
+    expect(says()).toBe(exercise.softer);
   });
 
   it("gives way to the next patient's, whose inputs are for that one", async () => {
@@ -269,7 +325,7 @@ describe("the exercise that runs", () => {
 
   it("takes answers, a difficulty and a note, and ends after a second question", async () => {
     await told({ phase: "answer", choices: ["the first", "the second"] });
-    await tap("the second");
+    await tap("The second one");
     await tap("75 %");
     const note = page.content.querySelector<HTMLTextAreaElement>(".people-run textarea")!;
     note.value = "slower now";
@@ -321,18 +377,64 @@ describe("the exercise that runs", () => {
     expect(page.content.querySelector(".people-run")!.textContent).toContain("P12");
   });
 
-  it("is paused from the lock's panel, which names no one, and the note that was being written is there after the unlock", async () => {
+  it("is watched and paused while the page is locked, without a word of whose it is", async () => {
+    const running = { phase: "trial", trial: 1, trials: 5, target: { kind: "force", digits: ["index"], low: 1.5, high: 2.5 }, value: 2, value_unit: "N", force: [0, 2, 0, 0, 0] };
+    await told(running);
+    page.content.querySelector<HTMLTextAreaElement>(".people-run textarea")!.value = "slower now";
+    page.lock();
+    await flush();
+    const secret = /P12|slower now|right|sun/i;
+    const watched = () => page.content.querySelector<HTMLElement>(".people-watched:not([hidden])");
+    expect(document.body.innerHTML).not.toMatch(secret);
+    for (const text of [words.run.trial("1", "5"), words.run.inBand, words.run.goal["force"]!]) expect(watched()!.textContent).toContain(text);
+    for (const hidden of [words.run.skip, words.run.end, words.run.resume, words.run.start]) expect(button(hidden), hidden).toBeUndefined();
+    station.locked = true; // the station has confirmed the lock
+    await told({ ...running, trial: 2 });
+    expect(watched()!.textContent).toContain(words.run.trial("2", "5"));
+    await tap(words.run.pause);
+    await told({ phase: "paused", forces_off: true });
+    expect(watched()!.textContent).toContain(words.run.forcesOff);
+    expect(shown()).toContain(words.lock.pauseSent);
+    await tap(words.run.says);
+    await tap("4");
+    expect(station.asked.filter((one) => /^(input|watched .)/.test(one))).toEqual(["watched pause", "watched pain 4"]);
+    expect(document.body.innerHTML).not.toMatch(secret);
+    await told({ stage: "ended", phase: "done" });
+    expect(watched()!.textContent).toContain(words.lock.ended);
+    page.content.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true }));
+    await flush();
+    await next();
+    expect(watched()).toBeNull();
+    expect(shown()).toContain("P12");
+  });
+
+  it("is not shown on a lock's panel when none is under way, until one begins", async () => {
+    await told({ stage: "ended", phase: "done" });
+    page.lock();
+    await flush();
+    expect(page.content.querySelector(".people-watched:not([hidden])")).toBeNull();
+    await told({ number: 2, stage: "running", phase: "trial", trial: 1, trials: 3 });
+    expect(page.content.querySelector(".people-watched:not([hidden])")!.textContent).toContain(words.run.trial("1", "3"));
+    expect(document.body.innerHTML).not.toMatch(/P12|P07/);
+  });
+
+  it("tells the locked page when a pause does not arrive, and when the session has ended", async () => {
+    await told({ phase: "trial", trial: 1, trials: 5 });
+    page.lock();
+    await flush();
+    Object.assign(station, { watchedInput: () => Promise.reject(new Error("no answer")) });
+    await tap(words.run.pause);
+    expect(shown()).toContain(words.lock.pauseFailed);
+    station.signedIn = false;
+    await next();
+    expect(page.content.querySelector(".people-watched")!.textContent).toContain(words.lock.lost);
+  });
+
+  it("has the note that was being written again after the unlock", async () => {
     await told({ phase: "trial", trial: 1, trials: 5 });
     page.content.querySelector<HTMLTextAreaElement>(".people-run textarea")!.value = "slower now";
     page.lock();
     await flush();
-    expect(document.body.innerHTML).not.toMatch(/P12|slower now/);
-    await tap(words.lock.pause);
-    expect(station.asked.filter((one) => one.startsWith("input"))).toEqual(["input pause"]);
-    expect(shown(), "the station takes a pause of a locked session").toContain(words.lock.pauseSent);
-    Object.assign(station, { exerciseInput: () => Promise.reject(new Error("no answer")) });
-    await tap(words.lock.pause);
-    expect(shown()).toContain(words.lock.pauseFailed);
     page.content.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true }));
     await flush();
     expect(page.content.querySelector<HTMLTextAreaElement>(".people-run textarea")!.value).toBe("slower now");

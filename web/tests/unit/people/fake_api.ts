@@ -2,16 +2,18 @@
 // A station that keeps patients, for the page: it answers at once, and can refuse.
 import { PeopleError, type PeopleApi, type Trouble } from "../../../src/people/api";
 import { readExerciseNow } from "../../../src/people/exercise_now";
-import { readCourse, readPatient, readStatus, type Course, type Patient, type SignedIn, type Template } from "../../../src/people/shapes";
+import { readAccounts, readCourse, readPatient, readStatus, type Course, type Patient, type SignedIn, type Template } from "../../../src/people/shapes";
 
 export class FakeApi {
-  accounts = true;
+  withAccounts = true; // people sign in
+  people: readonly { readonly name: string; readonly role: string }[] = [];
+  role = "therapist";
   locked = false;
   signedIn = false;
   exercisesOn = false; // the station can carry exercises out
   said: readonly string[] = [];
   damaged: readonly string[] = [];
-  kinds: readonly Template[] = [{ name: "day", title: "Assessment day", lines: [{ exercise: "press", repetitions: 5, minutes: 0, note: "slowly", overrides: { pain_limit: "4" } }] }];
+  kinds: readonly Template[] = [{ name: "day", title: "Assessment day", titleDe: "Messtag", lines: [{ exercise: "press", repetitions: 5, minutes: 0, note: "slowly", overrides: { pain_limit: "4" } }] }];
   now: Readonly<Record<string, unknown>> = {}; // the exercise that runs, as the station's JSON has it
   lockFails = 0; // so many requests to lock are lost
   refuse: { readonly trouble: Trouble; readonly message: string } | undefined;
@@ -32,21 +34,28 @@ export class FakeApi {
     return this as unknown as PeopleApi;
   }
 
+  /// What a locked session may ask for, too.
+  private answerLocked<T>(what: string, value: () => T): Promise<T> {
+    if (this.signedIn) return this.answer(what, value, false);
+    this.asked.push(what);
+    return Promise.reject(new PeopleError("signed_out", "sign in"));
+  }
+
   private answer<T>(what: string, value: () => T, open = true): Promise<T> {
     this.asked.push(what);
     const { refuse } = this;
     if (refuse) return Promise.reject(new PeopleError(refuse.trouble, refuse.message));
     if (open && (!this.signedIn || this.locked)) return Promise.reject(new PeopleError("signed_out", "sign in"));
-    return Promise.resolve(value());
+    return new Promise((resolve) => resolve(value())); // rejected where it throws
   }
 
-  status = () => this.answer("status", () => readStatus({ accounts: this.accounts, exercises: this.exercisesOn, symbols: ["sun", "boat"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }] }), false);
+  status = () => this.answer("status", () => readStatus({ accounts: this.withAccounts, exercises: this.exercisesOn, symbols: ["sun", "boat"], tests: [{ kind: "grip", unit: "kg", least: 0, most: 100 }] }), false);
   signIn(account: string, password: string): Promise<SignedIn> {
     this.asked.push("sign_in");
-    if (this.refuse || (this.accounts && password !== "right")) return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
+    if (this.refuse || (this.withAccounts && password !== "right")) return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
     this.signedIn = true;
     this.locked = false;
-    return Promise.resolve({ session: "s", account, role: "therapist", idle: 100 });
+    return Promise.resolve({ session: "s", account, role: this.withAccounts ? this.role : "owner", idle: 100 });
   }
   signOut(): Promise<void> {
     this.asked.push("sign_out");
@@ -64,15 +73,38 @@ export class FakeApi {
   }
   unlock(password: string): Promise<void> {
     this.asked.push("unlock");
-    if (this.accounts && password !== "right") return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
+    if (this.withAccounts && password !== "right") return Promise.reject(new PeopleError("signed_out", "account or password is wrong"));
     this.locked = false;
     return Promise.resolve();
   }
   alive = () => this.answer("alive", () => undefined);
-  patients = () => this.answer("patients", () => ({ patients: this.kept, damaged: this.damaged, withoutKey: 0 }));
+  patients = () =>
+    this.answer("patients", () => {
+      if (this.role === "patient_screen") throw new PeopleError("forbidden", "the role of this account sees no patients");
+      return { patients: this.kept, damaged: this.damaged, withoutKey: 0 };
+    });
   patient = (record: string) => this.answer(`patient ${record}`, () => this.kept.find((one) => one.record === record)!);
   course = (record: string) => this.answer(`course ${record}`, () => this.measured);
-  exercises = () => this.answer("exercises", () => [{ name: "press", title: "Press and hold", kind: "assessment", measure: "press_and_hold" }]);
+  exercises = () => this.answer("exercises", () => [
+    { name: "press", title: "Press and hold", titleDe: "Drücken und halten", kind: "assessment", measure: "press_and_hold" },
+    { name: "entry", title: "Entry check", titleDe: "Eingangsprüfung", kind: "assessment", measure: "entry_check" },
+  ]);
+  accounts = () => this.answer("accounts", () => readAccounts({ accounts: this.people }));
+  addAccount = (fields: Readonly<Record<string, unknown>>) =>
+    this.answer(`add account ${JSON.stringify(fields)}`, () => {
+      this.people = [...this.people, { name: String(fields["name"]), role: String(fields["role"]) }];
+      if (!this.withAccounts) [this.withAccounts, this.signedIn] = [true, false]; // the first one ends the owner's session
+    });
+  editAccount = (name: string, fields: Readonly<Record<string, unknown>>) =>
+    this.answer(`edit account ${name} ${JSON.stringify(fields)}`, () => {
+      if ("password" in fields) this.signedIn = false;
+    });
+  removeAccount = (name: string) => this.answer(`remove account ${name}`, () => void (this.people = this.people.filter((one) => one.name !== name)));
+  watchedExercise = () => this.answerLocked("watched", () => readExerciseNow({ ...this.now, record: undefined, code: undefined, symbol: undefined, side: undefined, result: undefined }));
+  watchedInput = (kind: string, number: number, values: Readonly<Record<string, number>> = {}) => {
+    this.meant.push(number);
+    return this.answerLocked(`watched ${[kind, ...Object.values(values)].join(" ")}`, () => undefined);
+  };
   add = (fields: Readonly<Record<string, unknown>>) =>
     this.answer(`add ${JSON.stringify(fields)}`, () => {
       const added = readPatient({ ...fields, record: "cc", obstacles: [] });

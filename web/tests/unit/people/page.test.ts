@@ -74,8 +74,24 @@ describe("the page of patients", () => {
     expect(page.content.querySelectorAll(".patient-item").length).toBe(2);
   });
 
+  it("signs an account out whose role sees no patients, and says why", async () => {
+    station.exercisesOn = true;
+    station.role = "patient_screen";
+    await signIn();
+    await flush();
+    expect(shown()).toContain(words.signIn.noPatients(words.roles["patient_screen"]!));
+    expect(station.signedIn).toBe(false);
+    expect(page.account.hidden).toBe(true);
+    expect(station.asked.filter((one) => one === "exercise")).toEqual([]); // nothing asks on
+    station.role = "therapist";
+    fill(words.signIn.account, "a.meier");
+    fill(words.signIn.password, "right");
+    await submit(words.signIn.submit);
+    expect(page.content.querySelectorAll(".patient-item").length).toBe(2);
+  });
+
   it("needs no password where no accounts are set up", async () => {
-    station.accounts = false;
+    station.withAccounts = false;
     await page.begin();
     expect(page.content.querySelectorAll(".patient-item").length).toBe(2);
     expect(page.account.textContent).toContain(words.signIn.owner);
@@ -153,10 +169,11 @@ describe("one patient", () => {
   });
 
   it("gets tests and notes", async () => {
-    fill(words.tests.value, "21.5");
-    fill(words.tests.date, "2026-06-01");
-    fill(words.tests.rater, "PT1");
-    await submit(words.save);
+    const box = [...page.content.querySelectorAll("details")].find((one) => one.querySelector("summary")!.textContent === words.tests.add)!;
+    const inputs = [...box.querySelectorAll("label")].filter(({ textContent }) => [words.tests.value, words.tests.date, words.tests.rater].some((text) => textContent!.startsWith(text)));
+    ["21.5", "2026-06-01", "PT1"].forEach((text, i) => ((document.getElementById(inputs[i]!.htmlFor) as HTMLInputElement).value = text));
+    box.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true }));
+    await flush();
     expect(station.asked).toContain('test aa {"kind":"grip","side":"more_affected","value":21.5,"date":"2026-06-01","rater":"PT1","note":""}');
     const note = find<HTMLTextAreaElement>("textarea");
     note.value = "a note";
@@ -279,5 +296,113 @@ describe("the lock", () => {
     await open("P12");
     expect(shown()).toContain(words.signedOut);
     expect(shown()).not.toContain("P12");
+  });
+});
+
+describe("what is measured before the first training", () => {
+  beforeEach(async () => {
+    station.exercisesOn = true;
+    await signIn();
+    await open("P07");
+  });
+  const named_ = (label: string) => page.content.querySelector<HTMLElement>(`[aria-label="${label}"]`)!;
+
+  it("is measured by an exercise", async () => {
+    named_(`${words.steps.measure}: ${words.fields["entry"]}`).click();
+    await flush();
+    expect(find(".confirm").textContent).toContain("Entry check");
+  });
+
+  it("is entered if it was measured elsewhere: the station judges it", async () => {
+    fill(words.steps.flexion, "45");
+    fill(words.steps.release, "30,5");
+    named_(`${words.steps.enter}: ${words.fields["entry"]}`).parentElement!.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true }));
+    await flush();
+    const sent = JSON.parse(station.asked.find((one) => one.startsWith("edit aa "))!.slice("edit aa ".length)) as { entry: Record<string, unknown> };
+    expect(sent.entry).toMatchObject({ flexion_deg: 45, release_deg: 30.5 });
+    expect(sent.entry["date"]).toMatch(/^\d{4}-\d\d-\d\d$/);
+  });
+
+  it("has a force for each digit, and what is no number is refused", async () => {
+    const box = named_(`${words.steps.enter}: ${words.fields["own_force_n"]}`).parentElement!;
+    const inputs = [...box.querySelectorAll("input")];
+    const send = async () => {
+      box.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true }));
+      await flush();
+    };
+    inputs[1]!.value = "strong";
+    await send();
+    expect(box.querySelector(".refused:not([hidden])")!.textContent).toContain("Index");
+    inputs[1]!.value = "4.5";
+    await send();
+    expect(station.asked.find((one) => one.startsWith("edit aa "))).toContain('"own_force_n":[0,4.5,0,0,0]');
+  });
+});
+
+describe("a prescription", () => {
+  it("gets lines, doses and loses lines without its text", async () => {
+    station.exercisesOn = true;
+    await signIn();
+    await open("P12");
+    const sent = () => (JSON.parse(station.asked.filter((one) => one.startsWith("edit bb ")).at(-1)!.slice("edit bb ".length)) as { prescription: unknown[] }).prescription;
+    find(".begin-other .choice").click();
+    [...page.content.querySelectorAll<HTMLElement>(".begin-other [role=option]")].find((one) => one.dataset["value"] === "press")!.click();
+    await press(words.begin.prescribe);
+    await flush();
+    expect(sent()).toEqual([{ exercise: "press", repetitions_per_day: 0, minutes_per_day: 0, note: "", overrides: {} }]);
+    await flush();
+    fill(words.begin.repetitions, "20");
+    fill(words.begin.minutes, "7,5");
+    find(".begin-card form").dispatchEvent(new Event("submit", { cancelable: true }));
+    await flush();
+    expect(sent()).toEqual([{ exercise: "press", repetitions_per_day: 20, minutes_per_day: 7.5, note: "", overrides: {} }]);
+    await flush();
+    await flush();
+    await submit(words.begin.remove);
+    expect(sent()).toEqual([]);
+  });
+});
+
+describe("accounts", () => {
+  it("begin with an administrator's, after which everyone signs in", async () => {
+    station.withAccounts = false;
+    await page.begin();
+    await press(words.accounts.title);
+    expect(shown()).toContain(words.accounts.first);
+    fill(words.accounts.name, "chief");
+    fill(words.signIn.password, "a long password");
+    await submit(words.accounts.add);
+    await flush();
+    expect(station.asked).toContain('add account {"name":"chief","role":"administrator","password":"a long password"}');
+    expect(shown()).toContain(words.signIn.account);
+    expect(shown()).not.toContain("P07");
+  });
+
+  it("are listed and changed by an administrator", async () => {
+    station.role = "administrator";
+    station.people = [{ name: "chief", role: "administrator" }, { name: "b.kurz", role: "therapist" }];
+    await signIn();
+    await press(words.accounts.title);
+    await flush();
+    const box = [...page.content.querySelectorAll<HTMLElement>(".account")].find((one) => one.textContent!.includes("b.kurz"))!;
+    const [, password, remove] = [...box.querySelectorAll("form")];
+    password!.querySelector("input")!.value = "another long one";
+    password!.dispatchEvent(new Event("submit", { cancelable: true }));
+    await flush();
+    expect(station.asked).toContain('edit account b.kurz {"password":"another long one"}');
+    remove!.dispatchEvent(new Event("submit", { cancelable: true }));
+    await flush();
+    expect(remove!.querySelector(".refused:not([hidden])")!.textContent).toBe(words.accounts.wrongName);
+    expect(station.asked.some((one) => one.startsWith("remove account"))).toBe(false);
+  });
+
+  it("of a therapist have a password of their own to change", async () => {
+    await signIn();
+    await press(words.accounts.own);
+    expect(station.asked).not.toContain("accounts");
+    fill(words.accounts.newPassword, "another long one");
+    await submit(words.accounts.setPassword);
+    await flush();
+    expect(shown()).toContain(words.accounts.passwordDone);
   });
 });

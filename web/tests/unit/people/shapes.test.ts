@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { entryCheck, overridesOf, ownForces, prescription, readCourse, readDeleted, readExercises, readPatient, readPatients, readSignedIn, readStatus, readTemplates, readUnreadable } from "../../../src/people/shapes";
-import { scoreName } from "../../../src/people/words";
+import { scoreName, trendTitle } from "../../../src/people/words";
 
 const strange: readonly unknown[] = [null, undefined, 7, "text", [], [[]], { patients: 3 }, { patients: [null, 7] }, { results: {}, tests: "x", notes: [null], trends: [[]] }];
 
@@ -44,7 +44,7 @@ describe("what the station answers", () => {
       trends: [{ title: "Grip", unit: "kg", points: [{ date: 1, value: 20 }, { date: 2, value: 22 }, { date: 3, value: 24 }], proven: true, verdict: "improved" }],
     });
     expect(course.results.map(({ exercise }) => exercise)).toEqual(["new", "old"]);
-    expect(course.results[0]!.scores[0]).toEqual({ name: "rmse_n", unit: "N", value: 1.5, origin: "measured", invalid: "" });
+    expect(course.results[0]!.scores[0]).toEqual({ name: "rmse_n", label: "", unit: "N", value: 1.5, origin: "measured", invalid: "" });
     expect(course.tests.map(({ value }) => value)).toEqual([24, 20]);
     expect(course.trends[0]).toMatchObject({ first: 20, last: 24, count: 3, proven: true });
   });
@@ -60,13 +60,20 @@ describe("what a deletion or a damaged registry says", () => {
 
   it("keeps what a template changes of an exercise", () => {
     const read = readTemplates({ templates: [{ name: "a", title: "A", lines: [{ exercise: "" }, { exercise: "press", repetitions_per_day: 15, overrides: { pain_limit: "3" } }] }, {}] });
-    expect(read).toEqual([{ name: "a", title: "A", lines: [{ exercise: "press", repetitions: 15, minutes: 0, note: "", overrides: { pain_limit: "3" } }] }]);
+    expect(read).toEqual([{ name: "a", title: "A", titleDe: "", lines: [{ exercise: "press", repetitions: 15, minutes: 0, note: "", overrides: { pain_limit: "3" } }] }]);
   });
 });
 
 describe("the name of a score", () => {
   it.each([["mean_n", "N", "mean"], ["tam_index_deg", "deg", "tam index"], ["cv", "-", "cv"], ["n", "N", "n"], ["rise_time_s", "s", "rise time"]])(
     "%s in %s is %s",
-    (name, unit, words) => expect(scoreName(name, unit)).toBe(words),
+    (name, unit, words) => expect(scoreName({ name, label: "", unit })).toBe(words),
   );
+
+  it("is the station's own, if it has one, in the language of the page", () => {
+    const names = { rmse_n: { en: "error of the force", de: "Fehler der Kraft" } };
+    const course = readCourse({ results: [{ date: 1, exercise: "press", scores: [{ name: "rmse_n", unit: "N" }] }], trends: [{ name: "press/rmse_n", unit: "N", points: [{ date: 1, value: 2 }] }], names });
+    expect(scoreName(course.results[0]!.scores[0]!)).toBe("error of the force");
+    expect(trendTitle(course.trends[0]!, readExercises({ exercises: [{ name: "press", title: "Press and hold" }] }))).toBe("Press and hold: error of the force");
+  });
 });

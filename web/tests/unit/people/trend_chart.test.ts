@@ -14,7 +14,7 @@ const number = (element: Element, name: string) => Number(element.getAttribute(n
 
 describe("the chart of a trend", () => {
   it("has a point for each value, and a band of the smallest real difference around the first one", () => {
-    const figure = trendFigure(trend(grip));
+    const figure = trendFigure(trend(grip), []);
     const [first, , last] = [...figure.querySelectorAll("circle")].map((one) => [number(one, "cx"), number(one, "cy")] as const);
     const band = figure.querySelector(".trend-band")!;
     const scale = (first![1] - last![1]) / 4; // pixels for each kg
@@ -28,19 +28,19 @@ describe("the chart of a trend", () => {
   });
 
   it("says in words what it shows", () => {
-    const said = trendFigure(trend(grip)).querySelector("svg")!.getAttribute("aria-label")!;
+    const said = trendFigure(trend(grip), []).querySelector("svg")!.getAttribute("aria-label")!;
     for (const text of [words.kinds["grip"]!, "20 kg", "24 kg", words.verdicts["improved"]!]) expect(said).toContain(text);
   });
 
   it("has no band where no difference is published", () => {
-    const figure = trendFigure(trend({ name: "press/mean_n", title: "press: mean_n", unit: "N", verdict: "change not proven: x", points: grip.points }));
+    const figure = trendFigure(trend({ name: "press/mean_n", title: "press: mean_n", unit: "N", verdict: "change not proven: x", points: grip.points }), []);
     expect(figure.querySelector(".trend-band, .trend-first")).toBeNull();
     expect(figure.textContent).toContain(words.trends.noBand);
     expect(figure.querySelector("figcaption")!.textContent).toContain("press: mean");
   });
 
   it.each([[[5]], [[5, 5]], [[0, 0]], [Array.from({ length: 200 }, (_, i) => i % 7)]])("of values %j has finite places alone", (values) => {
-    const figure = trendFigure(trend({ name: "a/b", title: "t", unit: "s", verdict: "v", points: values.map((value, i) => ({ date: (i + 1) * day, value })) }));
+    const figure = trendFigure(trend({ name: "a/b", title: "t", unit: "s", verdict: "v", points: values.map((value, i) => ({ date: (i + 1) * day, value })) }), []);
     expect(figure.innerHTML).not.toMatch(/NaN|Infinity/);
   });
 

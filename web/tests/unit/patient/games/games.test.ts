@@ -10,6 +10,7 @@ import { Crossing, makeMelody } from "../../../../src/patient/games/melody";
 import { fountainHeight, makeBalloon, makeFountain, makePinch } from "../../../../src/patient/games/press";
 import { makeFlower } from "../../../../src/patient/games/range";
 import { arcAt, makeReach } from "../../../../src/patient/games/reach_line";
+import { flashes } from "./flashes";
 import { exercise, pictured, played, type Now } from "./playing";
 
 const kMeasures = ["range_of_motion", "total_active_motion", "press_and_hold", "force_tracking", "squeeze_release", "pinch", "opposition", "independence", "smoothness", "feel_and_find", "object_in_hand", "own_force", "entry_check"];
@@ -125,21 +126,6 @@ describe("signs", () => {
     game.end();
   });
 });
-
-/// Pairs of changes, there and back, of a tenth of the largest value or more.
-function flashes(values: readonly number[]): number {
-  const step = 0.1 * Math.max(...values);
-  let [extreme, rising, turns] = [values[0]!, true, 0];
-  for (const value of values) {
-    if (rising ? value > extreme : value < extreme) extreme = value;
-    else if (Math.abs(value - extreme) >= step) {
-      ++turns;
-      rising = !rising;
-      extreme = value;
-    }
-  }
-  return Math.ceil(turns / 2);
-}
 
 describe("forces", () => {
   test("the scale of a moving target is that of its largest value from the begin on, and never shrinks", () => {
