@@ -31,9 +31,7 @@ class RangeSessionTest : public ::testing::Test {
     hand.intend(angles);
     pass(2.0 + hold);
   }
-  [[nodiscard]] AngleRange reached(int joint) const {
-    return *session.view().joints[idx(joint)].reached;
-  }
+  [[nodiscard]] AngleRange reached(int joint) const { return *session.view().joints[idx(joint)].reached; }
   std::string refusal_of_accept() {
     try {
       session.accept();
