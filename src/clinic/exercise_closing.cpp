@@ -150,11 +150,12 @@ void StationExercises::Impl::conclude(std::optional<ExerciseResult> result, cons
   opening_.reset();
   closing_.reset();
   kept_.reset();
+  std::shared_ptr<const KeyUse> gone;  // closes its file after the lock: the file system may not answer
   const std::lock_guard lock(mutex_);
   stage_ = Stage::kEnded;
   trouble_ = trouble;
   result_ = std::move(result);
-  use_.reset();
+  gone.swap(use_);
   forces_off_ = false;
   inputs_.clear();
 }

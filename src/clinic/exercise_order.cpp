@@ -131,8 +131,21 @@ KeptExercise keep_exercise(Registry& registry, const PreparedExercise& prepared,
     kept.trouble.append(kept.trouble.empty() ? "" : "; ").append(text);
   };
   const auto keep_at_least_dose = [&] {
-    if (done && keep_dose(acting, record, *done, recording.file, complain))
-      complain("its dose is kept, without scores");
+    if (!done) return;
+    try {
+      until_free(
+          [&] {
+            if (keep_dose(acting, record, *done, recording.file, complain))
+              complain("its dose is kept, without scores");
+          },
+          tries_again);
+    } catch (const RegistryError& busy) {  // the program ends
+      complain(fmt::format("the dose of this exercise is not in the registry: {}", busy.what()));
+    }
+  };
+  const auto complain_of_result = [&](const std::string& why) {
+    complain(fmt::format("{}. The recording {} is kept; `phalanx patient rebuild` makes the result again",
+                         why, recording.file.filename().string()));
   };
   try {
     const FindRecordingKey keys = prepared.keys();
@@ -145,9 +158,12 @@ KeptExercise keep_exercise(Registry& registry, const PreparedExercise& prepared,
     }
     until_free([&] { keep_results(acting, record, exercises, recording.file, complain); }, tries_again);
     kept.result = shown_result(exercises.back());
+  } catch (const RegistryError& error) {
+    complain_of_result(error.what());
+    // A busy registry does not prevent the scores: the next exercise or `rebuild` adds them. A dose would hide them.
+    if (error.fault() != RegistryFault::kBusy) keep_at_least_dose();
   } catch (const std::exception& error) {
-    complain(fmt::format("{}. The recording {} is kept; `phalanx patient rebuild` makes the result again",
-                         error_text(error), recording.file.filename().string()));
+    complain_of_result(error_text(error));
     keep_at_least_dose();
   }
   return kept;

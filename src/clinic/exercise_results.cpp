@@ -94,6 +94,8 @@ bool keep_dose(const ActingRegistry& acting, const std::string& record, const Un
                                         reason_text<Reason::kNoResultFromRecording>()));
     return true;
   } catch (const std::exception& error) {
+    const auto* refused = dynamic_cast<const RegistryError*>(&error);
+    if (refused != nullptr && refused->fault() == RegistryFault::kBusy) throw;
     complain(fmt::format("the dose of this exercise is not in the registry: {}", error_text(error)));
     return false;
   }

@@ -64,6 +64,7 @@ std::shared_ptr<const KeyUse> StationExercises::Impl::use_of_key() const {
 void StationExercises::Impl::set_recorded() {
   const std::lock_guard lock(mutex_);
   recorded_ = prepared_->known.patient.record;
+  exercised_ = prepared_->station(std::nullopt, 0);
 }
 
 void StationExercises::Impl::tick() {

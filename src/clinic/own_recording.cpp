@@ -18,10 +18,16 @@ void StationExercises::Impl::tick_free() {
       const std::lock_guard lock(mutex_);
       leaves = leaves_;
     }
-    return leaves ? ask_own() : void();
+    // A calibration has no station, and refuses another one.
+    return leaves && !session_.info()->calibrating() ? ask_own() : void();
   }
   const ChangeReports reports = reports_of(*leaving_);
   if (reports.begun) return conclude_own({});
+  if (session_.info()->calibrating()) {  // it has begun meanwhile: ask again after it
+    static_cast<void>(recorder_.cancel_recording(leaving_->recording));
+    if (!reports_of(*leaving_).begun) leaving_.reset();
+    return;
+  }
   if (!reports.refused.empty() || !reports.unopened.empty())
     return conclude_own(reports.refused.empty() ? reports.unopened : reports.refused);
   if (reports.file.empty() || leaving_->ordered) return;
@@ -58,9 +64,10 @@ void StationExercises::Impl::ask_own() {
 /// Ends the way to the station's own recording. @param why  it cannot begin; empty: it has begun
 void StationExercises::Impl::conclude_own(const std::string& why) {
   if (why.empty()) {
-    say(fmt::format("the station is as it was before the first exercise, stopped; it is recorded, without a "
-                    "patient's key, in {}",
-                    reports_of(*leaving_).file.filename().string()),
+    say(fmt::format(
+            "the station is as it was before the exercises, or as it was loaded since, stopped; it is "
+            "recorded, without a patient's key, in {}",
+            reports_of(*leaving_).file.filename().string()),
         false);
   } else {
     static_cast<void>(recorder_.cancel_recording(leaving_->recording));

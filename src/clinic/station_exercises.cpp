@@ -134,7 +134,7 @@ std::uint32_t StationExercises::Impl::begin(const Actor& actor, const ExerciseOr
   if (is_own_) own_ = own_station(*info);
   std::erase_if(uses_, [](const auto& each) { return each.second.expired(); });
   uses_.emplace_back(order.record, use);
-  use_ = std::move(use);
+  use_.swap(use);  // one before closes its file after the lock
   stops_ = session_.stops();
   stage_ = Stage::kOpening;
   keeps_private_ = true;
@@ -193,6 +193,18 @@ void StationExercises::Impl::forget(const std::string& record) {
   last_success_ = false;
 }
 
+/// Keeps for the station's own recording the scene and the calibration that were loaded since the exercise.
+void StationExercises::Impl::keep_loaded(const SessionInfo& info) {
+  if (info.scene != exercised_.scene) {
+    own_.scene = info.scene;
+    own_.overrides = info.overrides;
+    own_.source = own_station(info).source;
+  }
+  // A range is a patient's and holds for one calibration.
+  if (info.calibration != exercised_.calibration || info.range != exercised_.range) own_.range.clear();
+  if (info.calibration != exercised_.calibration) own_.calibration = info.calibration;
+}
+
 void StationExercises::Impl::let_go(const std::string& record) {
   const std::lock_guard one(begin_mutex_);
   const auto give_up = std::chrono::steady_clock::now() + kLongestLeaving;
@@ -203,9 +215,13 @@ void StationExercises::Impl::let_go(const std::string& record) {
       throw std::runtime_error("an exercise of this patient runs; end it first, then delete the patient");
     if (!uses(record)) return forget(record);
     if (ending_) throw std::runtime_error("the program ends; delete the patient when it has ended");
+    const auto info = session_.info();
+    if (!busy && info->calibrating())
+      throw std::runtime_error(
+          "the device is being calibrated; finish or leave that first, then delete the patient");
     if (std::chrono::steady_clock::now() >= give_up) break;
     // Another patient's exercise ends this recording by itself.
-    if (!busy && recorded_ == record) leaves_ = true;
+    if (!busy && recorded_ == record && !std::exchange(leaves_, true)) keep_loaded(*info);
     lock.unlock();
     std::this_thread::sleep_for(kBetweenLeavingLooks);
     lock.lock();
@@ -267,7 +283,7 @@ ExerciseStatus StationExercises::Impl::status() const {
 
 bool StationExercises::Impl::busy() const {
   const std::lock_guard lock(mutex_);
-  return stage_ == Stage::kOpening || stage_ == Stage::kRunning || stage_ == Stage::kClosing;
+  return leaves_ || stage_ == Stage::kOpening || stage_ == Stage::kRunning || stage_ == Stage::kClosing;
 }
 
 void StationExercises::Impl::say(const std::string& text, bool warning) {

@@ -81,6 +81,7 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   void let_go(const std::string& record);
   [[nodiscard]] bool uses(const std::string& record);
   void forget(const std::string& record);
+  void keep_loaded(const SessionInfo& info);
   [[nodiscard]] ExerciseStatus status() const;
   [[nodiscard]] bool busy() const;
   void say(const std::string& text, bool warning);
@@ -159,10 +160,12 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   std::shared_ptr<const KeyUse> use_;  ///< of the exercise's key, from its order to its result
   /// All uses of keys, with the record of each: those of recordings last until the recording is closed.
   std::vector<std::pair<std::string, std::weak_ptr<const KeyUse>>> uses_;
-  std::string recorded_;  ///< record whose key encrypts the present recording; empty: none
-  StationOrder own_;      ///< the station before the first exercise since is_own_ was true
-  bool is_own_ = true;    ///< no exercise has had the station since the program began, or since let_go()
-  bool leaves_ = false;   ///< the station's own recording is to begin
+  std::string recorded_;    ///< record whose key encrypts the present recording; empty: none
+  StationOrder exercised_;  ///< the station as that recording began
+  /// The station before the first exercise since is_own_ was true, with what was loaded until let_go()
+  StationOrder own_;
+  bool is_own_ = true;   ///< no exercise has had the station since the program began, or since let_go()
+  bool leaves_ = false;  ///< the station's own recording is to begin
 
   // ---- the owner's thread
   std::shared_ptr<StationChange> opening_;

@@ -108,6 +108,19 @@ std::optional<Reason> find_reason(std::string_view english) {
   return found ? std::optional(kReasons[found->index].reason) : std::nullopt;
 }
 
+std::vector<Reason> find_reasons(std::string_view english) {
+  if (const auto whole = find_reason(english)) return {*whole};
+  for (std::size_t at = english.find("; "); at != std::string_view::npos; at = english.find("; ", at + 1)) {
+    const auto first = find_reason(english.substr(0, at));
+    if (!first) continue;
+    std::vector<Reason> all = find_reasons(english.substr(at + 2));
+    if (all.empty()) continue;
+    all.insert(all.begin(), *first);
+    return all;
+  }
+  return {};
+}
+
 std::string german_reason(std::string_view english, const ReasonWord& word) {
   if (std::string whole = german_single(english, word); !whole.empty()) return whole;
   for (std::size_t at = english.find("; "); at != std::string_view::npos; at = english.find("; ", at + 1)) {

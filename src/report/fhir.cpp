@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FHIR R4 (https://hl7.org/fhir/R4): a Bundle of Observations and of the devices that they name.
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <array>
 #include <cmath>
@@ -64,11 +65,11 @@ Fhir quantity(double value, std::string_view unit) {
       {"value", value}, {"unit", unit == "-" ? "1" : std::string(unit)}, {"system", kUcum}, {"code", code}};
 }
 
-/// @returns a reason with its code, if it is one of this program
+/// @returns a reason with a code for each reason of this program that it states
 Fhir reason_concept(const std::string& reason) {
   Fhir made;
-  if (const auto known = find_reason(reason))
-    made["coding"] = Fhir::array({coding(kReasonSystem, std::string(reason_code(*known)), "")});
+  for (const Reason known : find_reasons(reason))
+    made["coding"].push_back(coding(kReasonSystem, std::string(reason_code(known)), ""));
   made["text"] = reason;
   return made;
 }
@@ -77,8 +78,8 @@ Fhir absent_reason(const std::string& reason) {
   const bool not_measured = reason.starts_with("not measured");
   Fhir made = concept_of(kAbsentSystem, not_measured ? "not-performed" : "error",
                          not_measured ? "Not Performed" : "Error");
-  if (const auto known = find_reason(reason))
-    made["coding"].push_back(coding(kReasonSystem, std::string(reason_code(*known)), ""));
+  for (const Reason known : find_reasons(reason))
+    made["coding"].push_back(coding(kReasonSystem, std::string(reason_code(known)), ""));
   made["text"] = reason.empty() ? "not valid" : reason;
   return made;
 }
@@ -258,8 +259,17 @@ class BundleMaker {
     Fhir made = fault_of(row, base, device, "trials_not_scored", "trials that were not scored");
     made["valueInteger"] = detail.invalid_trials;
     Fhir components = Fhir::array();
-    for (const UnscoredTrials& each : detail.reasons)
-      components.push_back({{"code", reason_concept(each.reason)}, {"valueInteger", each.trials}});
+    for (const UnscoredTrials& each : detail.reasons) {
+      const Fhir reason = reason_concept(each.reason);
+      // The same reason at another time, or with other numbers, is counted with the first one.
+      const auto same = std::find_if(components.begin(), components.end(), [&](const Fhir& before) {
+        return reason.contains("coding") && before["code"].value("coding", Fhir()) == reason["coding"];
+      });
+      if (same == components.end())
+        components.push_back({{"code", reason}, {"valueInteger", each.trials}});
+      else
+        (*same)["valueInteger"] = (*same)["valueInteger"].get<int>() + each.trials;
+    }
     add_fault(std::move(made), std::move(components));
   }
 

@@ -53,7 +53,10 @@ People::People(std::shared_ptr<Registry> registry, people::ListExercises exercis
       utc_(utc ? std::move(utc) : system_utc),
       host_(std::move(host)),
       owner_secret_(registry_ ? random_token() : "") {
-  if (registry_) read_accounts();
+  if (registry_)
+    read_accounts();
+  else
+    has_accounts_ = false;
 }
 
 std::size_t People::body_limit(const WebRequest& head) const noexcept {
@@ -89,7 +92,8 @@ std::vector<People::SignIn> People::take_sign_ins() {
   return std::exchange(sign_ins_, {});
 }
 
-/// Reads whether accounts exist. If that cannot be read, there are some: a patient's screen then needs one.
+/// Reads whether accounts exist. If that cannot be read, there are some, since a patient's screen then needs one; while another program
+/// holds the registry, it is as it was.
 void People::read_accounts() noexcept {
   try {
     has_accounts_ = registry_->has_accounts();
@@ -131,7 +135,8 @@ void People::report_ended_sessions() {
 void People::work() {
   std::unique_lock lock(mutex_);
   while (!requests_.empty() || checks_) {
-    if (std::exchange(checks_, false)) {
+    if (requests_.empty() &&
+        std::exchange(checks_, false)) {  // a person waits for an answer, not for a check
       lock.unlock();
       read_accounts();
       try {

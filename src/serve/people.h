@@ -117,9 +117,9 @@ class People : public std::enable_shared_from_this<People> {
   const people::ListExercises exercises_;
   const std::function<double()> utc_;
   const std::shared_ptr<ExerciseHost> host_;
-  const std::string owner_secret_;  ///< of the owner's session; of this process
-  std::atomic<bool> has_accounts_ = false;
-  std::mutex mutex_;  ///< of the members up to keys_mutex_
+  const std::string owner_secret_;         ///< of the owner's session; of this process
+  std::atomic<bool> has_accounts_ = true;  ///< until it is known that there are none
+  std::mutex mutex_;                       ///< of the members up to keys_mutex_
   std::deque<Request> requests_;
   std::vector<SignIn> sign_ins_;
   std::map<std::string, SignIn> named_;           ///< sessions whose account the log of changes names

@@ -2,10 +2,13 @@
 // What becomes of an exercise when its opening, its changes or its end are refused, or the registry does not answer.
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "clinic/exercise_clinic.h"
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/record/recorded_exercise.h"
 #include "phalanx/record/recordings.h"
 #include "registry/private_file.h"
@@ -205,6 +208,24 @@ TEST_F(ExerciseTrouble, AProgramThatEndsWhileTheRegistryIsHeldKeepsTheRecordingF
   EXPECT_THAT(status().trouble, AllOf(HasSubstr("is kept"), HasSubstr("has held")));
   EXPECT_THAT(results(sim1), IsEmpty());
   EXPECT_THAT(registry->recordings_without_result(Actor::owner(), sim1.record), SizeIs(1));
+}
+
+// The lock is freed after the result was refused. A dose in its place would hide the scores from the next exercise.
+TEST_F(ExerciseTrouble, AProgramThatEndsShortlyBeforeTheRegistryIsFreeKeepsNoDoseInPlaceOfTheScores) {
+  begin_exercise(sim1);
+  ASSERT_TRUE(until([&] { return status().view.trial == 2; }));
+  std::optional<registry::FileLock> held(std::in_place, folder.path() / "clinic/data/lock");
+  const double freed = clock.now() + 12.0;
+  std::jthread other([&] {
+    clock.sleep_until(freed);
+    held.reset();
+  });
+  end();
+  other.join();
+  for (const ResultRow& row : results(sim1))
+    EXPECT_NE(row.invalid, reason_text<Reason::kNoResultFromRecording>());
+  EXPECT_THAT(registry->recordings_without_result(Actor::owner(), sim1.record),
+              SizeIs(1 - results(sim1).size()));
 }
 
 }  // namespace

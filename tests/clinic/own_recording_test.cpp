@@ -104,6 +104,16 @@ TEST_F(OwnRecordings, BeginBeforeTheKeyIsErasedOnTheStationAsItWasBeforeTheFirst
                                    Not(HasSubstr("SIM1")))));
 }
 
+TEST_F(OwnRecordings, KeepASceneThatWasLoadedAfterTheExercise) {
+  static_cast<void>(carry_out(sim1));
+  ASSERT_EQ(load("pinch_ball"), "");
+  ASSERT_EQ(let_go(sim1), "");
+  EXPECT_EQ(session->info()->scene, "pinch_ball");
+  EXPECT_THAT(session->info()->overrides, IsEmpty()) << "the patient's hand and limits are not in it";
+  EXPECT_TRUE(session->held_stopped());
+  EXPECT_THAT(recorder->recording()->file.string(), EndsWith(".mcap"));
+}
+
 TEST_F(OwnRecordings, HaveNothingOfTheExerciseInPlainText) {
   const auto [exercise, between] = carry_out(sim1);
   ASSERT_EQ(let_go(sim1), "");

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "phalanx/exercise/reasons.h"
 #include "phalanx/report/report.h"
 #include "report/date_axis.h"
 #include "report/kept_registry.h"
@@ -156,7 +157,10 @@ class Checker {
     for (const json& component : value.value("component", json::array())) {
       only(component, {"code", "valueQuantity", "valueInteger", "valueString", "valueBoolean",
                        "valueCodeableConcept", "dataAbsentReason"});
-      static_cast<void>(concept_codes(component.at("code")));  // an unknown reason has its text only
+      // An unknown reason of a fault has its text only.
+      const std::string system = value["code"]["coding"][0]["system"];
+      const bool fault = system.ends_with(":fault");
+      EXPECT_TRUE(fault || !concept_codes(component.at("code")).empty());
       value_or_reason(component, false);
     }
   }
@@ -328,6 +332,38 @@ TEST_F(ReportFhir, KeepsAReasonThatThisProgramDoesNotKnowAsText) {
     if (one["code"]["coding"][0]["code"] == "trials_not_scored" &&
         one["component"][0]["code"] == json{{"text", "another one"}})
       ++found;
+    const json absent = one.value("dataAbsentReason", json::object());
+    if (absent.value("text", "") == "not measured: an older text" && absent.at("coding").size() == 1U)
+      ++found;
+  }
+  EXPECT_EQ(found, 3);
+}
+
+TEST_F(ReportFhir, HasACodeForEachJoinedReasonAndOneCountForAReasonAtTwoTimes) {
+  ResultRow& row = input_.results.front();
+  row.interrupted = true;
+  row.detail =
+      json{{"ended", reason_text<Reason::kAllTrialsDone>() + "; " + reason_text<Reason::kPainLimit>(6, 5)},
+           {"trials", json::array({{{"invalid", reason_text<Reason::kTorquesOffAt>(1.2)}},
+                                   {{"invalid", reason_text<Reason::kTorquesOffAt>(3.4)}},
+                                   {{"invalid", "another one"}}})}}
+          .dump();
+  input_.day = report::iso_day(row.date);
+  Checker().bundle(json::parse(report_fhir(input_)));
+  int found = 0;
+  for (const auto& [id, one] : observations(input_)) {
+    if (one["code"]["coding"][0]["code"] == "interrupted" && one.contains("valueCodeableConcept")) {
+      const json codings = one["valueCodeableConcept"].value("coding", json::array());
+      ASSERT_EQ(codings.size(), 2U);
+      EXPECT_EQ(codings[0]["code"], reason_code(Reason::kAllTrialsDone));
+      EXPECT_EQ(codings[1]["code"], reason_code(Reason::kPainLimit));
+      ++found;
+    }
+    if (one["code"]["coding"][0]["code"] != "trials_not_scored" || one["valueInteger"] != 3) continue;
+    EXPECT_EQ(one["component"][0]["code"]["coding"][0]["code"], reason_code(Reason::kTorquesOffAt));
+    EXPECT_EQ(one["component"][0]["valueInteger"], 2);
+    EXPECT_EQ(one["component"][1]["code"], (json{{"text", "another one"}}));
+    ++found;
   }
   EXPECT_EQ(found, 2);
 }

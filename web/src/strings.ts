@@ -22,3 +22,6 @@ export const language: Language = languages.find(({ code }) => code === lasting.
 
 /// The texts of the language in use.
 export const strings: Strings = language.texts;
+
+/// Of two texts of a file the one in the language of the page. @param german  empty: the file has none
+export const textOfFile = (plain: string, german: string): string => (language.code === "de" && german !== "" ? german : plain);

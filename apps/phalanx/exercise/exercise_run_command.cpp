@@ -128,9 +128,13 @@ void keep_dose_of(OpenedPatient& known, const LiveExercise* live, double began, 
                   RunConsole& console) {
   if (live == nullptr) return;
   const UnscoredExercise done = {.start = live->start(), .result = live->result(), .began = began};
-  if (keep_dose(known.acting(), known.patient().record, done, file,
-                [&console](const std::string& text) { console.complain(text); }))
-    console.say("the registry has the dose of this exercise, without scores");
+  try {
+    if (keep_dose(known.acting(), known.patient().record, done, file,
+                  [&console](const std::string& text) { console.complain(text); }))
+      console.say("the registry has the dose of this exercise, without scores");
+  } catch (const RegistryError& busy) {
+    console.complain(fmt::format("the dose of this exercise is not in the registry: {}", busy.what()));
+  }
 }
 
 /// Makes the result from the recording, shows it and keeps it.
@@ -158,7 +162,10 @@ bool make_result(const fs::path& file, const FindRecordingKey& keys, OpenedPatie
     return std::all_of(exercises.begin(), exercises.end(),
                        [](const RecordedExercise& exercise) { return exercise.difference.empty(); });
   } catch (const std::exception& error) {
-    if (known != nullptr) keep_dose_of(*known, live, began, file, console);
+    const auto* refused = dynamic_cast<const RegistryError*>(&error);
+    const bool busy = refused != nullptr && refused->fault() == RegistryFault::kBusy;
+    // After a busy registry the scores can still be made: a dose would hide them from the next exercise.
+    if (known != nullptr && !busy) keep_dose_of(*known, live, began, file, console);
     console.complain(fmt::format("{}. The recording {} is kept; {}", reason(error), file.string(),
                                  known != nullptr ? "`phalanx patient rebuild` makes the result again"
                                                   : "`phalanx exercise results` makes the result again"));
@@ -184,8 +191,8 @@ int run_exercise(const ExerciseOptions& o) {
   if (known) {
     Registry& registry = known->opened.registry;
     confirm_patient(known->patient(), o.confirm);
+    use = registry.use_key(known->opened.actor, known->patient().record);
     if (!o.record_plain) {
-      use = registry.use_key(known->opened.actor, known->patient().record);
       plan.recording.encryption = registry.recording_key(known->opened.actor, known->patient().record);
       keys = [key = *plan.recording.encryption](const std::string& id) -> std::optional<RecordingKey> {
         return id == key.id ? std::optional(key.key) : std::nullopt;

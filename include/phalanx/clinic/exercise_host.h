@@ -77,7 +77,8 @@ class ExerciseHost {
   virtual void reset() = 0;
   /// Ends the use of a patient's key, so that the patient can be deleted, and forgets the patient's exercise. Returns when
   /// the recording with this key is closed. Not for the owner's thread.
-  /// @throws std::runtime_error if an exercise of this patient runs, or the recording is not closed within 15 s
+  /// @throws std::runtime_error if an exercise of this patient runs, the device is being calibrated, or the recording is not
+  /// closed within 15 s
   virtual void let_go(const std::string& record) = 0;
   [[nodiscard]] virtual ExerciseStatus status() const = 0;
 };

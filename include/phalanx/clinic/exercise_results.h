@@ -49,6 +49,7 @@ struct UnscoredExercise {
 
 /// Adds the dose of an exercise whose recording gives no result. `patient rebuild` replaces it if the recording is mended.
 /// @returns false if it has no trial, or the registry refuses; complain() has then stated why
+/// @throws RegistryError kBusy as Registry: try again later, or leave the recording to the next exercise
 bool keep_dose(const ActingRegistry& acting, const std::string& record, const UnscoredExercise& done,
                const std::filesystem::path& file, const ExerciseWords& complain);
 

@@ -43,8 +43,8 @@ struct StationExercisesSettings {
 /// key until another patient's exercise, or until let_go(): no plain text of a patient reaches the disk.
 ///
 /// The key is in use (Registry::use_key()) until all recordings with it are closed. let_go() stops forces, and makes the
-/// station as it was before the first exercise, stopped, without the patient's calibration and range. With its first step a
-/// recording without a patient begins. If that is refused, nothing is recorded until the next exercise, and say() gets why.
+/// station as it was before the exercises, stopped, without the patient's calibration and range. A scene or calibration that
+/// was loaded since is kept. With its first step a recording without a patient begins. If that is refused, nothing is recorded until the next exercise, and say() gets why.
 ///
 /// begin(), input(), reset(), let_go(), status(), busy() and keeps_private(): any thread, let_go() not the owner's. The
 /// others: the owner's thread of the Session. Not real-time.

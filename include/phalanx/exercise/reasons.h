@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace phalanx {
 
@@ -405,6 +406,8 @@ template <Reason kReason, typename... Args>
 
 /// @returns the reason with this English text; nothing if there is none
 [[nodiscard]] std::optional<Reason> find_reason(std::string_view english);
+/// @returns the reasons of a stored text that "; " joins; none if a part of it is not in kReasons
+[[nodiscard]] std::vector<Reason> find_reasons(std::string_view english);
 /// @returns ReasonWords::code
 [[nodiscard]] constexpr std::string_view reason_code(Reason reason) noexcept {
   return kReasons[static_cast<std::size_t>(reason)].code;

@@ -60,8 +60,9 @@ class KeyUse {
 
 /// The store of patients. Several programs may use one folder at once: a lock file makes each operation
 /// whole. Any thread, one operation at a time. Every function that takes an Actor throws RegistryError
-/// kSignIn or kDenied if the actor may not, kDisk if the disk fails, kBusy if another program holds the lock for 10 s,
-/// std::invalid_argument for an input out of range. An entry in the audit log precedes each read and change. Not real-time.
+/// kSignIn or kDenied if the actor may not, kDisk if the disk fails, kBusy if another program holds the lock for more than
+/// 10 s, std::invalid_argument for an input out of range. An entry in the audit log precedes each read and change. Not
+/// real-time.
 class Registry {
  public:
   /// Opens or creates the registry, completes interrupted changes and deletions. Makes a missing database

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/exercise/scored_steps.h"
-#include "phalanx/exercise/reasons.h"
 
 #include <cmath>
+
+#include "phalanx/exercise/reasons.h"
+
 namespace phalanx {
 namespace {
 

@@ -72,7 +72,8 @@ function runningGoal(now: ExerciseNow, texts: PatientStrings): Goal {
   }
 }
 
-export function goalOf(known: Known, texts: PatientStrings): Goal {
+/// @param ownBreak  the patient has asked for this pause
+export function goalOf(known: Known, texts: PatientStrings, ownBreak = false): Goal {
   const { screen } = texts;
   const wait = (text: string, more: string, picture: Goal["picture"] = ""): Goal => ({ screen: "wait", text, more, picture });
   switch (known.connected) {
@@ -101,6 +102,6 @@ export function goalOf(known: Known, texts: PatientStrings): Goal {
       break;
   }
   if (known.fault && now.phase !== "done") return { screen: "break", text: screen.fault, more: screen.faultMore, picture: "helper" };
-  if (known.stopped && now.phase === "paused") return { screen: "break", text: screen.stopped, more: screen.stoppedMore, picture: "stop" };
+  if (known.stopped && now.phase === "paused" && !ownBreak) return { screen: "break", text: screen.stopped, more: screen.stoppedMore, picture: "stop" };
   return runningGoal(now, texts);
 }

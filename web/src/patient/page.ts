@@ -24,9 +24,11 @@ import { languageCode, words } from "./words";
 
 const kLongestStep = 0.1; // [s]
 const kSaidMs = 4000; // for which a confirmation stays
+const kBreakBeginsMs = 1000; // within which the stops that a break itself makes are told
 const kSignInWords = /sign in/; // of the station's refusal
 const playing = new Set(["play", "rest", "answer"]);
 const withoutForces = new Set<Phase>(["ready", "rating", "paused", "done"]); // in every other phase, a tap on pain or tired begins a break
+const withoutBreak = new Set<Phase>(["ready", "paused", "done"]); // phases in which no break begins
 const under = new Set<Stage>(["opening", "running", "closing"]); // an exercise is under way
 
 /// Whether it is known that nothing presses on the hand. A lost connection, a screen that knows of no exercise: it is not.
@@ -36,6 +38,13 @@ export const rests = ({ connected, exercise }: Known): boolean => connected === 
 export function isOver(before: Known, now: Known): boolean {
   const [one, other] = [before.exercise, now.exercise];
   return now.connected !== "open" || one?.number !== other?.number || one?.stage !== other?.stage || (rests(before) && !rests(now)) || (one?.phase === "paused" && other?.phase !== "paused");
+}
+
+/// A break that the patient has asked for.
+interface OwnBreak {
+  readonly number: number; // of its exercise
+  readonly since: number; // [ms]
+  readonly stops: number | undefined; // of the station when it began; undefined: the station does not pause yet
 }
 
 /// What the page may send.
@@ -58,7 +67,7 @@ export class PatientPage {
   private readonly practiceSign = el("span", { class: "practice-sign" });
   private readonly practiceHand = el("div", { class: "practice-hand" });
   private readonly practiceBox = el("section", { class: "practice", hidden: true, role: "status" }, this.practiceHand, el("div", { class: "practice-words" }, this.practiceSign, this.practiceWord));
-  private readonly bar = bar({ stop: () => this.acts.stop(), pause: () => void this.pause(), pain: () => this.tapped("pain"), tired: () => this.tapped("tired") });
+  private readonly bar = bar({ stop: () => this.acts.stop(), pause: () => void this.pause(true), pain: () => this.tapped("pain"), tired: () => this.tapped("tired") });
   private readonly menu = menu((change) => this.choose(change), () => this.openSignIn());
   private readonly stage: Stage3d;
   private readonly speech: Speech;
@@ -71,6 +80,7 @@ export class PatientPage {
   private broken = 0; // number of an exercise whose game failed: words alone are shown
   private failed = ""; // the last failure that was reported
   private asked: Rating | undefined; // by a tap of the patient
+  private own: OwnBreak | undefined;
   private signs = false; // the form was opened by hand, so it may cover an exercise
   private width = 1;
   private height = 1;
@@ -99,6 +109,7 @@ export class PatientPage {
       this.asked = undefined;
       this.signs = false;
     }
+    this.followBreak();
     if (before.exercise?.phase !== exercise?.phase) this.menu.close();
     if (exercise) {
       const { phase, succeeded } = this.changes.take(exercise);
@@ -111,6 +122,7 @@ export class PatientPage {
   /// Shows what became of a STOP.
   stopping(progress: StopProgress): void {
     this.stop = progress;
+    if (progress !== "none") this.own = undefined;
     if (progress === "confirmed") this.say(words.sent.stopped);
     else this.tell();
   }
@@ -159,7 +171,7 @@ export class PatientPage {
 
   private update(): void {
     const { exercise } = this.known;
-    const goal = goalOf(this.known, words);
+    const goal = goalOf(this.known, words, this.own !== undefined);
     const tapped = this.asked !== undefined; // comes before what the station asks, which waits
     const asks = this.asked ?? (goal.screen === "rating" ? (exercise?.asks ?? "pain") : undefined);
     const needed = this.known.connected === "open" && this.signIn.needed && !this.signIn.later && (this.signs || !this.underWay);
@@ -259,10 +271,29 @@ export class PatientPage {
   // ---- what the patient does
 
   /// If it fails STOP was sent in its place, and the bar says what becomes of that.
-  private async pause(): Promise<void> {
+  /// @param own  a break that the patient asks for
+  private async pause(own = false): Promise<void> {
+    const { exercise } = this.known;
     const { ok, error } = await this.acts.pause();
+    if (ok && own && exercise && !withoutBreak.has(exercise.phase)) {
+      this.own = { number: exercise.number, since: performance.now(), stops: undefined };
+      this.followBreak();
+      this.update();
+    }
     if (ok) this.say(words.sent.pause);
     else if (kSignInWords.test(error)) this.signIn.refused();
+  }
+
+  /// The patient's own break lasts until the exercise goes on, or something else stops it.
+  private followBreak(): void {
+    const { own } = this;
+    const { exercise, stopped, stops } = this.known;
+    if (!own) return;
+    const pauses = exercise?.phase === "paused" && stopped;
+    const begins = performance.now() - own.since < kBreakBeginsMs;
+    const isOver = exercise?.number !== own.number || (own.stops !== undefined && (!pauses || (!begins && stops > own.stops)));
+    if (isOver) this.own = undefined;
+    else if (pauses && (begins || own.stops === undefined)) this.own = { ...own, stops };
   }
 
   /// Pain or tired: a break begins at once unless it is known that nothing presses, and the faces come if an answer can be sent.

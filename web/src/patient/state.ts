@@ -42,15 +42,16 @@ export interface Known {
   readonly connected: Connected;
   readonly ever: boolean; // a Welcome has come
   readonly stopped: boolean; // the torque is held at zero until a person resumes
+  readonly stops: number; // that the station has made; a pause is one of them
   readonly fault: boolean;
   readonly exercise: ExerciseNow | undefined;
 }
 
-export const nothingKnown: Known = { connected: "connecting", ever: false, stopped: false, fault: false, exercise: undefined };
+export const nothingKnown: Known = { connected: "connecting", ever: false, stopped: false, stops: 0, fault: false, exercise: undefined };
 
 /// @returns what `known` becomes with the station's newest state
 export function withState(before: Known, state: State): Known {
   const stopped = state.heldStopped || state.safety === SafetyState.SAFETY_STOPPED;
   const fault = state.fault !== undefined || state.stationGone;
-  return { ...before, stopped, fault };
+  return { ...before, stopped, stops: Number(state.stops), fault };
 }

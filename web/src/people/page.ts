@@ -298,12 +298,16 @@ export class PeoplePage {
       const status = await this.api.status();
       const switched = status.accounts !== this.status?.accounts;
       this.status = status;
-      if (switched) await this.signOut(words.accounts.firstDone);
+      if (switched) await this.signOut(status.accounts ? words.accounts.firstDone : words.accounts.lastDone);
       else await this.openAccounts();
     };
     return {
       add: (fields) => changed(this.api.addAccount(fields)),
-      setRole: (name, role) => changed(this.api.editAccount(name, { role })),
+      setRole: async (name, role) => {
+        if (name !== signed.account) return changed(this.api.editAccount(name, { role }));
+        await this.change(this.api.editAccount(name, { role }));
+        await this.signOut(words.accounts.roleDone);
+      },
       setPassword: async (name, password) => {
         await this.change(this.api.editAccount(name, { password }));
         if (name === signed.account) await this.signOut(words.accounts.passwordDone);

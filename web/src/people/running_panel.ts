@@ -56,9 +56,9 @@ export class RunningPanel {
   private readonly start = this.send(words.run.start, "begin", { class: "primary run-main" });
   private readonly resume = this.send(words.run.resume, "resume", { class: "primary run-main" });
   private readonly pause = el("button", { type: "button", class: "run-main" }, words.run.pause);
-  private readonly skip = this.send(words.run.skip, "skip");
-  private readonly reset = this.send(words.run.reset, "reset");
-  private readonly end = button(words.run.end, () => this.askEnd(true), { class: "quiet" });
+  private readonly skip = this.send(words.run.skip, "skip", { class: "run-skip" });
+  private readonly reset = this.send(words.run.reset, "reset", { class: "run-reset" });
+  private readonly end = button(words.run.end, () => this.askEnd(true), { class: "quiet run-end" });
   private readonly sure = el(
     "div",
     { class: "run-sure", role: "group", "aria-label": words.run.endSure, tabindex: -1, hidden: true },
@@ -118,8 +118,8 @@ export class RunningPanel {
     this.buttons = el(
       "div",
       { class: "run-buttons run-rows" },
-      el("div", { class: "buttons" }, el("div", { class: "run-pair" }, el("div", { class: "run-go" }, this.start, this.resume), this.pause), this.skip),
-      el("div", { class: "buttons" }, scales.says, this.reset, this.end),
+      el("div", { class: "buttons" }, el("div", { class: "run-pair" }, el("div", { class: "run-go" }, this.start, this.resume), this.pause), scales.says),
+      el("div", { class: "buttons" }, this.reset, this.skip, this.end),
     );
     const main = el(
       "div",

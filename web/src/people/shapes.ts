@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the station answers, read defensively: a field of another kind is as if it were absent.
 
-import { language } from "../strings";
+import { language, textOfFile } from "../strings";
 
 export type Entry = Readonly<Record<string, unknown>>;
 
@@ -298,7 +298,7 @@ export interface TemplateLine extends Prescribed {
 /// @param german  notes in German, by exercise
 function readTemplateLines(value: unknown, german: Entry): readonly TemplateLine[] {
   const named = list(value).map(entry).filter((one) => text(one["exercise"]) !== "");
-  const note = ({ exercise, note: plain }: Prescribed) => (language.code === "de" ? text(german[exercise]) || plain : plain);
+  const note = ({ exercise, note: plain }: Prescribed) => textOfFile(plain, text(german[exercise]));
   return readLines(named).map((line, i) => ({ ...line, note: note(line), overrides: entry(named[i]?.["overrides"]) }));
 }
 

@@ -69,7 +69,8 @@ function rangeStep(patient: Patient): Step {
 
 function row({ label, state, isDone, measure, enter }: Step, exercises: readonly Exercise[], begin: StepActions["begin"]): HTMLElement {
   const exercise = exercises.find((one) => one.measure === measure && one.kind === "assessment");
-  const press = exercise && begin ? button(isDone ? words.steps.again : words.steps.measure, () => begin(exercise.name), { class: isDone ? undefined : "primary", "aria-label": `${words.steps.measure}: ${label}` }) : null;
+  const text = isDone ? words.steps.again : words.steps.measure;
+  const press = exercise && begin ? button(text, () => begin(exercise.name), { class: isDone ? undefined : "primary", "aria-label": `${text}: ${label}` }) : null;
   return el(
     "li",
     { class: "step", "data-done": String(isDone) },

@@ -70,7 +70,7 @@ export class WatchedPanel {
     const done = () => setText(this.said, pauses ? words.lock.pauseSent : words.lock.ratingSent);
     void this.input(kind, newest.number, values).then(done, (reason: unknown) => {
       // The station takes a pause before it looks at the session, which may have ended meanwhile.
-      if (pauses && reason instanceof PeopleError && reason.trouble === "signed_out") return done();
+      if (pauses && reason instanceof PeopleError && reason.trouble === "signed_out") return setText(this.said, words.lock.pauseUnsure);
       const gone = !(reason instanceof PeopleError) || reason.trouble === "gone";
       setText(this.said, gone ? words.lock.pauseFailed : reason.message);
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The texts of the page of patients in the language in use, and values of a patient as text.
-import { english, language, strings } from "../strings";
+import { english, language, strings, textOfFile } from "../strings";
 import { de as exerciseDe } from "../strings/exercise_de";
 import { en as exerciseEn, type ExerciseStrings } from "../strings/exercise_en";
 import { de } from "../strings/people_de";
@@ -20,7 +20,7 @@ const exerciseLanguages: Readonly<Record<string, ExerciseStrings>> = { en: exerc
 export const exerciseTexts: ExerciseStrings = exerciseLanguages[language.code] ?? exerciseEn;
 
 /// The title of an exercise in the language of the page, if its file has it.
-export const titleText = ({ title, titleDe }: { readonly title: string; readonly titleDe: string }): string => (language.code === "de" && titleDe !== "" ? titleDe : title);
+export const titleText = ({ title, titleDe }: { readonly title: string; readonly titleDe: string }): string => textOfFile(title, titleDe);
 
 /// 1 Dec 2026, 14:03, of this browser's clock; a dash where no date is known.
 export function timeText(unixSeconds: number): string {

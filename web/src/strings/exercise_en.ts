@@ -35,7 +35,7 @@ export const en = {
     "a ball": "A ball", "a cube": "A cube", "a cylinder": "A cylinder",
   } as Readonly<Record<string, string>>,
   warmUp: "Move your fingers gently",
-  second: "Let go. The second one comes.",
+  second: "Let go. The second one is next.",
   softer: "Which one was softer?",
   which: "What was in your hand?",
 };

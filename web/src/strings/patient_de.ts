@@ -19,7 +19,7 @@ export const de: PatientStrings = {
   },
   sent: {
     stop: "Es wird gestoppt …",
-    owed: "STOP ist noch nicht angekommen. Er wird weiter gesendet.",
+    owed: "STOP ist noch nicht angekommen. Es wird weiter gesendet.",
     stopped: "Gestoppt. Nichts drückt mehr.",
     pause: "Ihre Pause beginnt.",
     thanks: "Danke. Ihre Antwort ist angekommen.",
@@ -117,7 +117,7 @@ export const de: PatientStrings = {
     aphasia: "Bilder statt Worte",
     aphasiaMore: "Zeigt die Bewegung, übt erst, fragt mit Gesichtern",
     numbers: "Zahlen",
-    cues: "Wohin geschaut wird",
+    cues: "Seite der Hinweise",
     left: "Links",
     centre: "Mitte",
     right: "Rechts",

@@ -131,7 +131,7 @@ async function stopAndReload(code: Code): Promise<void> {
   await until("the end of the stop's ramp", async () => largest((await onlooker.stream.next(1)).at(-1)!) === 0, () => onlooker.brief());
   for (const tick of await onlooker.stream.next(10)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
   await shoot(screen.page, "rehabilitation_screen_stopped");
-  const [goOn, wait] = await Promise.all([patients.button(en.run.resume).boundingBox(), patients.page.locator(".run-pair > .run-main").boundingBox()]);
+  const [goOn, wait] = await Promise.all([patients.button(en.run.resume).boundingBox(), patients.page.locator(".run-main", { hasText: en.run.pause }).boundingBox()]);
   expect(goOn!.x + goOn!.width <= wait!.x || goOn!.y + goOn!.height <= wait!.y, "“Go on” is not where “Pause” was").toBe(true);
   await patients.button(en.run.resume).click();
   await patients.button(en.run.pause).waitFor();

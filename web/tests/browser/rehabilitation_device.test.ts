@@ -15,7 +15,7 @@ import { CockpitPage } from "./support/cockpit_page";
 import type { PatientScreen } from "./support/patient_screen";
 import type { PatientsPage } from "./support/patients_page";
 import { shoot } from "./support/pictures";
-import { stage, unseen } from "./support/stage";
+import { stage, unseen, type PageWishes } from "./support/stage";
 import { until } from "./support/until";
 
 const kCode = "SIM7";
@@ -24,6 +24,7 @@ const kApart = 22; // angles of two positions that a goniometer can tell [deg]
 const kSame = 1; // readings of one position [deg]
 const kStill = 0.5; // [s]
 const kScene = ["index_ball"];
+const readable: PageWishes = { ...unseen, viewport: { width: 1200, height: 800 }, deviceScaleFactor: 1 }; // its pictures are looked at
 
 const play = stage();
 const folder = mkdtempSync(join(tmpdir(), "phalanx-rehabilitation-"));
@@ -52,9 +53,14 @@ async function untilPhase(wanted: string, page = patients): Promise<void> {
 /// The trial that is carried out, from 1.
 const trial = async () => Number(/Trial (\d+)/.exec(await phase())?.[1] ?? 0);
 
+/// Not untilState(): it throws while the fault is still there.
+async function untilReset(page: CockpitPage): Promise<void> {
+  await until("no fault", () => page.stream.state?.fault === undefined && page.stream.state?.stationGone === false, () => page.brief());
+}
+
 beforeAll(async () => {
   own = await DeviceStation.start(folder, kScene);
-  patients = await play.openPatients(own.url, unseen);
+  patients = await play.openPatients(own.url, readable);
 });
 afterAll(async () => {
   await (own as DeviceStation | undefined)?.end(); // it may not have started
@@ -65,7 +71,7 @@ describe("rehabilitation with a device on a wire", () => {
   it("lets a therapist sign in, and shows nothing to the account of a screen", async () => {
     await signIn(patients, accounts.screen);
     await patients.page.getByText(en.signIn.noPatients(en.roles["patient_screen"]!)).waitFor();
-    await shoot(patients.page, "rehabilitation_device_no_patients");
+    await shoot(patients.page, "rehabilitation_device_1_no_patients");
     await signIn(patients, accounts.therapist);
     await patients.page.getByText(en.signIn.as(accounts.therapist.name, en.roles["therapist"]!)).waitFor();
     await patients.add(kCode, "right");
@@ -73,6 +79,7 @@ describe("rehabilitation with a device on a wire", () => {
     await patients.page.getByRole("switch", { name: en.fields["consent"]! }).click();
     await patients.button(en.save).click();
     await patients.patient(kCode).getByText(en.calibrate.none).waitFor();
+    await shoot(patients.page, "rehabilitation_device_1_patient");
   });
 
   it("calibrates the device in the cockpit, and binds the file to the patient", async () => {
@@ -100,6 +107,7 @@ describe("rehabilitation with a device on a wire", () => {
           await dialog.getByRole("textbox").first().fill(String(read));
           await dialog.getByRole("textbox").first().press("Enter");
           await until("the angle is entered", isEntered, () => cockpit.brief());
+          if (position === 1) await shoot(tab, "rehabilitation_device_2_angle");
           return false; // the hand may have left meanwhile: it is measured while it is there
         }
         await cockpit.button(words.measure).click();
@@ -108,7 +116,6 @@ describe("rehabilitation with a device on a wire", () => {
         return false; // where the hand has moved, at its next hold
       }, () => `${JSON.stringify(wizard()?.joint)} still for ${wizard()?.stillFor} s; ${cockpit.brief()}`);
     }
-    await shoot(tab, "rehabilitation_device_calibration");
     await until("the end of all steps", async () => {
       const now = wizard();
       if (now && now.pose >= now.name.length) return true;
@@ -117,27 +124,26 @@ describe("rehabilitation with a device on a wire", () => {
       return false;
     }, () => cockpit.brief());
     expect(wizard()!.problem).toEqual([]);
+    await shoot(tab, "rehabilitation_device_2_calibrated");
     await cockpit.button(words.write).click();
     await cockpit.untilState("the station with the new file", (state) => state.wizard === undefined && !state.stationGone && state.busy === "");
     await patients.page.bringToFront();
     const bind = patients.button(en.calibrate.bind(kCode));
-    await bind.waitFor();
-    await shoot(patients.page, "rehabilitation_device_bind");
+    await bind.scrollIntoViewIfNeeded();
+    await shoot(patients.page, "rehabilitation_device_2_bind");
     await bind.click();
     await patients.patient(kCode).getByText("valid until").first().waitFor();
     expect(readdirSync(join(folder, "out/calibrations")).length).toBe(1);
     await own.cut();
+    await until("the fault", () => cockpit.stream.state?.fault !== undefined, () => cockpit.brief());
     await own.plugIn(); // with its own time
     await cockpit.button(english.texts.fault.reset).click();
-    await cockpit.untilRunning();
-    await shoot(tab, "rehabilitation_device_2_own_time");
+    await untilReset(cockpit);
     await tab.close();
   });
 
   it("prescribes from a template, and takes what was measured on another day", async () => {
-    const use = patients.button(en.templates.use(en.templates.names["mild"]!));
-    if (!(await use.isVisible())) await patients.page.locator("summary", { hasText: en.templates.title }).click();
-    await use.click();
+    await patients.button(en.templates.use(en.templates.names["mild"]!)).click();
     await patients.patient(kCode).getByText(kGame).first().waitFor();
     await patients.patient(kCode).getByText(en.obstacles["unchecked"]!).first().waitFor();
     await patients.enter(en.fields["entry"]!, { [en.steps.flexion]: "45", [en.steps.release]: "30" });
@@ -150,16 +156,17 @@ describe("rehabilitation with a device on a wire", () => {
     const form = screen.page.locator(".sign-in");
     await form.getByLabel(screenTexts.signIn.account).fill(accounts.screen.name);
     await form.getByLabel(screenTexts.signIn.password).fill(kPassword);
-    await shoot(screen.page, "rehabilitation_device_sign_in");
+    await shoot(screen.page, "rehabilitation_device_4_sign_in");
     await form.getByRole("button", { name: screenTexts.signIn.submit }).click();
     await screen.until("greet");
+    await shoot(screen.page, "rehabilitation_device_4_greet");
     onlooker = await play.open(own.url, unseen); // without an account
   });
 
   it("begins a game on the device", async () => {
     await patients.page.getByRole("button", { name: `${en.begin.begin}: ${kGame}` }).first().click();
     await patients.page.getByRole("radio", { name: en.begin.device }).click();
-    await shoot(patients.page, "rehabilitation_device_confirm");
+    await shoot(patients.page, "rehabilitation_device_5_confirm");
     await patients.button(en.begin.confirm(kCode, en.sides["right"]!)).click();
     await patients.button(en.run.start).click();
     await patients.button(en.run.skip).click();
@@ -171,15 +178,18 @@ describe("rehabilitation with a device on a wire", () => {
     await untilPhase("Trial");
     await screen.until("play");
     await until("torque", async () => largest((await onlooker.stream.next(1)).at(-1)!) > 0, () => own.brief());
+    await shoot(screen.page, "rehabilitation_device_5_play");
+    await shoot(patients.page, "rehabilitation_device_5_therapist");
   });
 
   it("shows a second page of the therapist the same, and either may pause and go on", async () => {
-    second = await play.openPatients(own.url, unseen);
+    second = await play.openPatients(own.url, readable);
     await signIn(second, accounts.therapist);
     await panelOn(second).waitFor(); // a page that comes to an exercise goes to it
     await patients.button(en.run.pause).click();
     await second.button(en.run.resume).waitFor();
     await panelOn(second).getByText(en.run.forcesOff).waitFor();
+    await shoot(second.page, "rehabilitation_device_6_second");
     await second.button(en.run.resume).click();
     await patients.button(en.run.pause).waitFor();
     await second.button(en.run.pause).waitFor();
@@ -189,6 +199,8 @@ describe("rehabilitation with a device on a wire", () => {
     await screen.until("play");
     await screen.page.locator(".bar-pause").click();
     await screen.until("break");
+    await until("the words of a break", async () => (await screen.goal.innerText()) === screenTexts.screen.paused, () => screen.goal.innerText());
+    await shoot(screen.page, "rehabilitation_device_7_break");
     for (const page of [patients, second]) await page.button(en.run.resume).waitFor();
     await patients.button(en.run.resume).click();
     await screen.until("play");
@@ -202,16 +214,17 @@ describe("rehabilitation with a device on a wire", () => {
     await panel().getByText(en.run.forcesOff).waitFor();
     await until("the words of the patient's screen", async () => (await screen.goal.innerText()) === screenTexts.screen.fault, () => screen.goal.innerText());
     for (const tick of await onlooker.stream.next(5)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
-    await shoot(patients.page, "rehabilitation_device_cut_therapist");
-    await shoot(screen.page, "rehabilitation_device_cut_screen");
-    await shoot(onlooker.page, "rehabilitation_device_cut_onlooker");
+    await shoot(patients.page, "rehabilitation_device_8_cut_therapist");
+    await shoot(screen.page, "rehabilitation_device_8_cut_screen");
+    await shoot(onlooker.page, "rehabilitation_device_8_cut_onlooker");
     await own.plugIn();
     await patients.button(en.run.reset).click();
-    await onlooker.untilState("no fault", (state) => state.fault === undefined && !state.stationGone);
+    await untilReset(onlooker);
     await patients.button(en.run.resume).click();
     await patients.button(en.run.pause).waitFor();
     await screen.until("play");
     await until("the next trial", async () => (await phase()).startsWith("Trial") && (await trial()) > before, () => panel().innerText());
+    await shoot(patients.page, "rehabilitation_device_8_went_on");
   });
 
   it("ends whole after a second cut, and keeps what was measured", async () => {
@@ -222,9 +235,11 @@ describe("rehabilitation with a device on a wire", () => {
     await panel().getByText(en.run.interrupted).waitFor();
     await panelOn(second).getByText(en.run.interrupted).waitFor();
     await screen.until("done");
-    await shoot(patients.page, "rehabilitation_device_result");
+    await shoot(screen.page, "rehabilitation_device_9_done");
+    await shoot(patients.page, "rehabilitation_device_9_result");
     await patients.button(en.run.back(kCode)).click();
-    await patients.patient(kCode).getByText(en.results.interrupted).first().waitFor();
+    await patients.patient(kCode).getByText(en.results.interrupted).first().scrollIntoViewIfNeeded();
+    await shoot(patients.page, "rehabilitation_device_9_course");
     expect(readdirSync(join(folder, "out/recordings")).filter((name) => name.endsWith(".torn"))).toEqual([]);
   });
 });

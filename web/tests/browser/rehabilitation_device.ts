@@ -52,11 +52,6 @@ export class DeviceStation {
     return new DeviceStation(folder, clock, scene, device, address, station, (await addressOf(station)).url);
   }
 
-  /// Changes a patient by the command, as the therapist.
-  edit(code: string, ...what: readonly string[]): string {
-    return command(this.folder, ["patient", "edit", code, ...what, "--as", accounts.therapist.name, ...store]);
-  }
-
   /// Pulls the cable: nothing is sent and nothing heard any more.
   cut(): Promise<void> {
     return this.device.kill();

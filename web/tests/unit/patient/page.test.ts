@@ -34,6 +34,51 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
+describe("a break that the patient asks for", () => {
+  const paused = (stops: number) => page.take(knownWith(exerciseNow({ phase: "paused" }), { stopped: true, stops }));
+  const goal = () => one(".goal h1").textContent;
+  beforeEach(async () => {
+    show();
+    one(".bar-pause").click();
+    await settled();
+    paused(3);
+  });
+
+  it("is called a break, although the station holds the torque at zero as after a stop", async () => {
+    paused(4); // the exercise stops once more
+    expect(goal()).toBe(en.screen.paused);
+    await vi.advanceTimersByTimeAsync(60_000);
+    paused(4);
+    expect(goal()).toBe(en.screen.paused);
+  });
+
+  it("is none any more after another stop, nor after it has ended", async () => {
+    await vi.advanceTimersByTimeAsync(2000);
+    paused(4);
+    expect(goal()).toBe(en.screen.stopped);
+    show();
+    paused(4);
+    expect(goal()).toBe(en.screen.stopped);
+  });
+
+  it("is none after the patient's STOP, and in a fault the fault is said", () => {
+    page.take(knownWith(exerciseNow({ phase: "paused" }), { stopped: true, stops: 3, fault: true }));
+    expect(goal()).toBe(en.screen.fault);
+    page.stopping("sent");
+    paused(3);
+    expect(goal()).toBe(en.screen.stopped);
+  });
+
+  it("is not begun by a tap while the exercise is stopped", async () => {
+    await vi.advanceTimersByTimeAsync(2000);
+    paused(5);
+    one(".bar-pause").click();
+    await settled();
+    paused(6);
+    expect(goal()).toBe(en.screen.stopped);
+  });
+});
+
 describe("a tap on pain or tired", () => {
   it("begins a break unless it is known that nothing presses", () => {
     const pressed = (known: Parameters<PatientPage["take"]>[0]) => {
