@@ -178,7 +178,7 @@ class Run {
     }
     oscillates_ = oscillates;
     say_recording();
-    openings_->say();
+    if (openings_) openings_->say();  // it may have ended before it had begun
     const std::uint64_t refused = session_->view().resets_refused;
     if (std::exchange(resets_refused_, refused) < refused) {
       const std::string why =

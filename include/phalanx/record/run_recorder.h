@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -142,8 +143,8 @@ class RunRecorder {
   void take_order() noexcept;
   void begin_prepared(std::uint64_t station) noexcept;
   void exchange_recording(std::shared_ptr<SessionRecorder> next) noexcept;
-  void refuse_prepared(const std::string& why) noexcept;
-  void refuse_orders(const std::string& why) noexcept;
+  void refuse_prepared(std::string_view why) noexcept;  // needs no memory: a recording is ended without any
+  void refuse_orders(std::string_view why) noexcept;
   void drop_prepared() noexcept;
   [[nodiscard]] bool still_wanted(std::uint64_t number) noexcept;
   void end_earlier(bool last) noexcept;

@@ -64,7 +64,7 @@ void RunRecorder::take_order() noexcept {
     try {
       refuse_prepared(reason(error));
     } catch (const std::bad_alloc&) {
-      refuse_prepared("no memory");  // short: needs none
+      refuse_prepared("no memory");
     }
   }
 }
@@ -138,12 +138,12 @@ bool RunRecorder::still_wanted(std::uint64_t number) noexcept {
   return true;
 }
 
-void RunRecorder::refuse_prepared(const std::string& why) noexcept {
+void RunRecorder::refuse_prepared(std::string_view why) noexcept {
   if (!prepared_) return;
   if (still_wanted(prepared_->number)) {
-    complain([&] { return "the next recording cannot begin: " + why; });
+    complain([&] { return fmt::format("the next recording cannot begin: {}", why); });
     try {
-      if (prepared_->order.on_refused) prepared_->order.on_refused(why);
+      if (prepared_->order.on_refused) prepared_->order.on_refused(std::string(why));
     } catch (const std::exception&) {  // the note above remains
     }
   }
@@ -151,7 +151,7 @@ void RunRecorder::refuse_prepared(const std::string& why) noexcept {
 }
 
 /// Refuses what has not begun. After the thread's end.
-void RunRecorder::refuse_orders(const std::string& why) noexcept {
+void RunRecorder::refuse_orders(std::string_view why) noexcept {
   refuse_prepared(why);
   {
     const std::lock_guard lock(mutex_);

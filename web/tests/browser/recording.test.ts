@@ -91,18 +91,20 @@ describe("the recording", () => {
     const pointAt = async (share: number) => {
       await page.page.mouse.move(plot.x + share * plot.width, plot.y + plot.height / 2);
       await until("the hand of that moment", async () => (await page.page.locator(".view-past").count()) === 1, () => note.textContent());
-      return until("it is drawn", async () => {
+      let before = 0n;
+      return until("it is drawn, and stays", async () => {
         const { tick } = (await page.probe())!; // 0: nothing has been drawn yet
-        return tick > 0n && tick < paused - 60n && tick; // 60: what is drawn of the present may be so old
+        const stays = tick === before;
+        before = tick;
+        return stays && tick > 0n && tick < paused - 60n && tick; // 60: what is drawn of the present may be so old
       }, () => page.brief());
     };
-    const earlier = await pointAt(0.85);
-    const later = await until("a later hand", async () => {
-      const tick = await pointAt(0.93);
-      return tick !== earlier && tick;
-    });
     const steps = 0.08 * 10 / page.stream.state!.loop!.period; // 8 % of a plot of 10 s
-    expect(Math.abs(Number(later - earlier) - steps)).toBeLessThan(0.1 * steps);
+    let seen: bigint[] = [];
+    const later = await until("two hands that are 8 % of the plot apart", async () => {
+      seen = [await pointAt(0.85), await pointAt(0.93)]; // until it has come from the disk, the hand of the moment before is drawn
+      return Math.abs(Number(seen[1]! - seen[0]!) - steps) < 0.1 * steps && seen[1]!;
+    }, () => `${seen.join(" and ")} were drawn, ${steps} steps should lie between`);
     expect(later).toBeGreaterThan(atPause);
     expect((await page.probe())!.tick).toBe(later); // it stays while the station goes on
     await page.page.mouse.move(1, 1);
