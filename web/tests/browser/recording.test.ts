@@ -100,11 +100,14 @@ describe("the recording", () => {
       }, () => page.brief());
     };
     const steps = 0.08 * 10 / page.stream.state!.loop!.period; // 8 % of a plot of 10 s
+    // In the plots (10 s) the mark goes to the nearest tick that the page has. A busy computer leaves ticks out.
+    const had = page.stream.ticks.filter(({ tick }) => tick <= paused && Number(paused - tick) < 12.5 * steps);
+    const gap = Math.max(...had.slice(1).map(({ tick }, i) => Number(tick - had[i]!.tick)));
     let seen: bigint[] = [];
     const later = await until("two hands that are 8 % of the plot apart", async () => {
       seen = [await pointAt(0.85), await pointAt(0.93)]; // until it has come from the disk, the hand of the moment before is drawn
-      return Math.abs(Number(seen[1]! - seen[0]!) - steps) < 0.1 * steps && seen[1]!;
-    }, () => `${seen.join(" and ")} were drawn, ${steps} steps should lie between`);
+      return Math.abs(Number(seen[1]! - seen[0]!) - steps) < 0.1 * steps + gap && seen[1]!;
+    }, () => `${seen.join(" and ")} were drawn, ${steps} steps should lie between; of the ticks up to ${gap} in a row are missing`);
     expect(later).toBeGreaterThan(atPause);
     expect((await page.probe())!.tick).toBe(later); // it stays while the station goes on
     await page.page.mouse.move(1, 1);
