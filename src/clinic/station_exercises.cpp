@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::size_t kMostInputs = 64;                        // that wait for the owner's thread
 constexpr std::size_t kMostMessages = 64;                      // likewise
-constexpr std::chrono::seconds kLongestLeaving{15};            // of let_go()
-constexpr std::chrono::milliseconds kBetweenLeavingLooks{20};  // of its thread
+constexpr std::chrono::seconds kLongestRelease{15};            // of release_key()
+constexpr std::chrono::milliseconds kBetweenReleaseLooks{20};  // of its thread
 constexpr const char* kNoneRuns = "no exercise runs; begin one on the page of a patient";
 
 double system_utc() {
@@ -205,9 +205,9 @@ void StationExercises::Impl::keep_loaded(const SessionInfo& info) {
   if (info.calibration != exercised_.calibration) own_.calibration = info.calibration;
 }
 
-void StationExercises::Impl::let_go(const std::string& record) {
+void StationExercises::Impl::release_key(const std::string& record) {
   const std::lock_guard one(begin_mutex_);
-  const auto give_up = std::chrono::steady_clock::now() + kLongestLeaving;
+  const auto give_up = std::chrono::steady_clock::now() + kLongestRelease;
   std::unique_lock lock(mutex_);
   for (;;) {
     const bool busy = stage_ == Stage::kOpening || stage_ == Stage::kRunning || stage_ == Stage::kClosing;
@@ -223,13 +223,13 @@ void StationExercises::Impl::let_go(const std::string& record) {
     // Another patient's exercise ends this recording by itself.
     if (!busy && recorded_ == record && !std::exchange(leaves_, true)) keep_loaded(*info);
     lock.unlock();
-    std::this_thread::sleep_for(kBetweenLeavingLooks);
+    std::this_thread::sleep_for(kBetweenReleaseLooks);
     lock.lock();
   }
   throw std::runtime_error(fmt::format(
       "the recording with the key of this patient is not closed after {} s: the disk or the device does not "
       "answer; mend that, or end this program, then delete the patient",
-      kLongestLeaving.count()));
+      kLongestRelease.count()));
 }
 
 ExerciseStatus StationExercises::Impl::status() const {
@@ -309,7 +309,7 @@ void StationExercises::input(const ExerciseInput& input, const InputOrigin& orig
   impl_->input(input, origin);
 }
 void StationExercises::reset() { impl_->reset(); }
-void StationExercises::let_go(const std::string& record) { impl_->let_go(record); }
+void StationExercises::release_key(const std::string& record) { impl_->release_key(record); }
 ExerciseStatus StationExercises::status() const { return impl_->status(); }
 bool StationExercises::busy() const { return impl_->busy(); }
 bool StationExercises::keeps_private() const {

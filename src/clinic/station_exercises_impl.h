@@ -78,7 +78,7 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   std::uint32_t begin(const Actor& actor, const ExerciseOrder& order);
   void input(const ExerciseInput& input, const InputOrigin& origin);
   void reset();
-  void let_go(const std::string& record);
+  void release_key(const std::string& record);
   [[nodiscard]] bool uses(const std::string& record);
   void forget(const std::string& record);
   void keep_loaded(const SessionInfo& info);
@@ -162,9 +162,9 @@ struct StationExercises::Impl : std::enable_shared_from_this<StationExercises::I
   std::vector<std::pair<std::string, std::weak_ptr<const KeyUse>>> uses_;
   std::string recorded_;    ///< record whose key encrypts the present recording; empty: none
   StationOrder exercised_;  ///< the station as that recording began
-  /// The station before the first exercise since is_own_ was true, with what was loaded until let_go()
+  /// The station before the first exercise since is_own_ was true, with what was loaded until release_key()
   StationOrder own_;
-  bool is_own_ = true;   ///< no exercise has had the station since the program began, or since let_go()
+  bool is_own_ = true;   ///< no exercise has had the station since the program began, or since release_key()
   bool leaves_ = false;  ///< the station's own recording is to begin
 
   // ---- the owner's thread

@@ -92,8 +92,8 @@ std::vector<People::SignIn> People::take_sign_ins() {
   return std::exchange(sign_ins_, {});
 }
 
-/// Reads whether accounts exist. If that cannot be read, there are some, since a patient's screen then needs one; while another program
-/// holds the registry, it is as it was.
+/// Reads whether accounts exist. If that cannot be read, there are some, since a patient's screen then needs one.
+/// While another program holds the registry, the answer stays as it was.
 void People::read_accounts() noexcept {
   try {
     has_accounts_ = registry_->has_accounts();

@@ -99,7 +99,7 @@ WebResponse remove(const RouteContext& context, const Actor& actor, const WebReq
   if (context.host != nullptr) {
     // Before the key is erased: what the station still records must not need it.
     try {
-      context.host->let_go(record);
+      context.host->release_key(record);
     } catch (const std::runtime_error& refused) {
       return words_response(409, refused.what());
     }

@@ -26,12 +26,12 @@ class OwnRecordings : public ExerciseClinic {
     ASSERT_TRUE(until_running());
   }
   /// Lets the station go from a patient's key as the page's thread does, while the owner works. @returns why it is refused
-  std::string let_go(const Patient& patient) {
+  std::string release_key(const Patient& patient) {
     std::string refused;
     std::atomic<bool> done = false;
     std::thread page([&] {
       try {
-        exercises->let_go(patient.record);
+        exercises->release_key(patient.record);
       } catch (const std::runtime_error& error) {
         refused = error.what();
       }
@@ -77,7 +77,7 @@ TEST_F(OwnRecordings, BeginBeforeTheKeyIsErasedOnTheStationAsItWasBeforeTheFirst
   ASSERT_TRUE(until_running());
   const FindRecordingKey key = key_of(sim1);
 
-  EXPECT_EQ(let_go(sim1), "");
+  EXPECT_EQ(release_key(sim1), "");
 
   const fs::path own = recorder->recording()->file;
   EXPECT_THAT(own.string(), EndsWith(".mcap"));
@@ -107,7 +107,7 @@ TEST_F(OwnRecordings, BeginBeforeTheKeyIsErasedOnTheStationAsItWasBeforeTheFirst
 TEST_F(OwnRecordings, KeepASceneThatWasLoadedAfterTheExercise) {
   static_cast<void>(carry_out(sim1));
   ASSERT_EQ(load("pinch_ball"), "");
-  ASSERT_EQ(let_go(sim1), "");
+  ASSERT_EQ(release_key(sim1), "");
   EXPECT_EQ(session->info()->scene, "pinch_ball");
   EXPECT_THAT(session->info()->overrides, IsEmpty()) << "the patient's hand and limits are not in it";
   EXPECT_TRUE(session->held_stopped());
@@ -116,7 +116,7 @@ TEST_F(OwnRecordings, KeepASceneThatWasLoadedAfterTheExercise) {
 
 TEST_F(OwnRecordings, HaveNothingOfTheExerciseInPlainText) {
   const auto [exercise, between] = carry_out(sim1);
-  ASSERT_EQ(let_go(sim1), "");
+  ASSERT_EQ(release_key(sim1), "");
   const fs::path own = recorder->recording()->file;
   pass(0.2);
   end();
@@ -142,7 +142,7 @@ TEST_F(OwnRecordings, ACommandCannotDeleteAPatientWithWhoseKeyAStationRecords) {
   pass(0.5);
   EXPECT_THAT(delete_by_command(sim1), is_refused) << "what is recorded now needs the key, too";
   EXPECT_EQ(registry->patient(Actor::owner(), sim1.record).code, "SIM1") << "a refusal erases nothing";
-  ASSERT_EQ(let_go(sim1), "");
+  ASSERT_EQ(release_key(sim1), "");
   EXPECT_EQ(delete_by_command(sim1), "");
   EXPECT_THROW(static_cast<void>(registry->patient(Actor::owner(), sim1.record)), RegistryError);
 }
@@ -156,17 +156,17 @@ TEST_F(OwnRecordings, ACommandDeletesAfterTheStationsProgramHasEnded) {
 
 TEST_F(OwnRecordings, AnExerciseThatRunsIsNotLeft) {
   begin_exercise(sim1);
-  EXPECT_THAT(let_go(sim1), HasSubstr("an exercise of this patient runs; end it first"));
+  EXPECT_THAT(release_key(sim1), HasSubstr("an exercise of this patient runs; end it first"));
   EXPECT_FALSE(session->held_stopped());
   EXPECT_EQ(status().stage, Stage::kRunning);
-  EXPECT_EQ(let_go(sim2), "") << "of a patient whose key is not in use nothing is to be left";
+  EXPECT_EQ(release_key(sim2), "") << "of a patient whose key is not in use nothing is to be left";
   EXPECT_FALSE(session->held_stopped());
 }
 
 TEST_F(OwnRecordings, AnotherPatientsExerciseFreesTheKeyOfTheOneBefore) {
   static_cast<void>(carry_out(sim1));
   begin_exercise(sim2);
-  EXPECT_EQ(let_go(sim1), "");
+  EXPECT_EQ(release_key(sim1), "");
   EXPECT_EQ(delete_by_command(sim1), "");
   EXPECT_EQ(session->view().state, SafetyState::kRunning) << "the exercise of the other patient goes on";
   EXPECT_EQ(status().code, "SIM2");
@@ -181,7 +181,7 @@ TEST_F(OwnRecordings, ThatTheDiskRefusesAreNamedAndNothingMoreIsWrittenWithTheKe
   const fs::path moved = folder / "rec_before";
   fs::rename(folder / "rec", moved);
   std::ofstream(folder / "rec") << "no folder";
-  EXPECT_EQ(let_go(sim1), "") << "the recording with the key is closed in any case";
+  EXPECT_EQ(release_key(sim1), "") << "the recording with the key is closed in any case";
   EXPECT_THAT(said, Contains(AllOf(HasSubstr("nothing is recorded until the next exercise"),
                                    HasSubstr("start this program again"))));
   EXPECT_TRUE(session->held_stopped());
@@ -196,7 +196,7 @@ TEST_F(OwnRecordings, ThatTheDiskRefusesAreNamedAndNothingMoreIsWrittenWithTheKe
   EXPECT_THAT(status().recording, EndsWith(".mcap.enc"));
   input(Kind::kAbort);
   ASSERT_TRUE(until([&] { return status().stage == Stage::kEnded; }));
-  ASSERT_EQ(let_go(sim2), "");
+  ASSERT_EQ(release_key(sim2), "");
   EXPECT_EQ(session->info()->scene, "first_touch") << "the station of the first patient is not its own";
 }
 
@@ -206,7 +206,7 @@ TEST_F(OwnRecordings, OfAStationThatCannotBeMadeAgainAreNamedToo) {
   ASSERT_EQ(load(scene.string()), "");
   static_cast<void>(carry_out(sim1));
   fs::remove(scene);
-  EXPECT_EQ(let_go(sim1), "");
+  EXPECT_EQ(release_key(sim1), "");
   EXPECT_THAT(
       said, Contains(AllOf(HasSubstr("nothing is recorded until the next exercise"), HasSubstr("own.toml"))));
   EXPECT_TRUE(session->held_stopped());
@@ -217,7 +217,7 @@ TEST_F(OwnRecordings, AnOwnerWhoDoesNotAnswerPreventsTheDeletionInWords) {
   static_cast<void>(carry_out(sim1));
   std::string refused;
   try {
-    exercises->let_go(sim1.record);  // on this thread: nothing serves the station meanwhile
+    exercises->release_key(sim1.record);  // on this thread: nothing serves the station meanwhile
   } catch (const std::runtime_error& error) {
     refused = error.what();
   }

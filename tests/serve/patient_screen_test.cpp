@@ -41,7 +41,7 @@ class KeptExercises final : public ExerciseHost {
     inputs_.push_back(exercise_input_text(input));
   }
   void reset() override {}
-  void let_go(const std::string&) override {}
+  void release_key(const std::string&) override {}
   [[nodiscard]] ExerciseStatus status() const override {
     const std::lock_guard lock(mutex_);
     return status_;

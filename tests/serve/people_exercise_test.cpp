@@ -47,9 +47,9 @@ class AskedHost final : public ExerciseHost {
     by = origin.account;
   }
   void reset() override { ++resets; }
-  void let_go(const std::string& record) override {
+  void release_key(const std::string& record) override {
     if (!refusal.empty()) throw std::runtime_error(refusal);
-    let_go_of.push_back(record);
+    released.push_back(record);
     had_key = keys && keys(record).has_value();
   }
   [[nodiscard]] ExerciseStatus status() const override { return now; }
@@ -64,9 +64,9 @@ class AskedHost final : public ExerciseHost {
   std::string by;  // of the newest input
   std::vector<ExerciseOrder> orders;
   int resets = 0;
-  std::vector<std::string> let_go_of;
+  std::vector<std::string> released;
   FindRecordingKey keys;
-  bool had_key = false;  // when let_go() was called
+  bool had_key = false;  // when release_key() was called
   ExerciseStatus now = {.number = 3};
 
  private:
@@ -214,9 +214,9 @@ TEST_F(PeopleExercise, APatientIsNotDeletedWhileTheirExerciseRuns) {
   EXPECT_EQ(registry_->patient(Actor::owner(), record_).code, "SIM1");
   host_->refusal.clear();
   EXPECT_EQ(send("POST", path, session_, {{"confirm", "SIM2"}}).status, 400);
-  EXPECT_THAT(host_->let_go_of, IsEmpty()) << "another code leaves the station as it is";
+  EXPECT_THAT(host_->released, IsEmpty()) << "another code leaves the station as it is";
   EXPECT_EQ(send("POST", path, session_, {{"confirm", "SIM1"}}).status, 200);
-  EXPECT_THAT(host_->let_go_of, ElementsAre(record_));
+  EXPECT_THAT(host_->released, ElementsAre(record_));
   EXPECT_TRUE(host_->had_key) << "the station lets go before the key is erased";
 }
 

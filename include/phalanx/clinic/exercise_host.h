@@ -79,7 +79,7 @@ class ExerciseHost {
   /// the recording with this key is closed. Not for the owner's thread.
   /// @throws std::runtime_error if an exercise of this patient runs, the device is being calibrated, or the recording is not
   /// closed within 15 s
-  virtual void let_go(const std::string& record) = 0;
+  virtual void release_key(const std::string& record) = 0;
   [[nodiscard]] virtual ExerciseStatus status() const = 0;
 };
 

@@ -40,14 +40,15 @@ struct StationExercisesSettings {
 /// pauses, and the torque stays at zero until input(kResume). A fault needs reset() first.
 /// End: the station is replaced by the same one, stopped, so that the exercise's recording ends. Its result is made from
 /// the recording on a thread of its own and kept in the registry. What is recorded after that is encrypted with the same
-/// key until another patient's exercise, or until let_go(): no plain text of a patient reaches the disk.
+/// key until another patient's exercise, or until release_key(): no plain text of a patient reaches the disk.
 ///
-/// The key is in use (Registry::use_key()) until all recordings with it are closed. let_go() stops forces, and makes the
-/// station as it was before the exercises, stopped, without the patient's calibration and range. A scene or calibration that
-/// was loaded since is kept. With its first step a recording without a patient begins. If that is refused, nothing is recorded until the next exercise, and say() gets why.
+/// The key is in use (Registry::use_key()) until all recordings with it are closed. release_key() stops forces, and
+/// makes the station as it was before the exercises, stopped, without the patient's calibration and range. A scene or
+/// calibration that was loaded since is kept. With its first step a recording without a patient begins. If that is
+/// refused, nothing is recorded until the next exercise, and say() gets the reason.
 ///
-/// begin(), input(), reset(), let_go(), status(), busy() and keeps_private(): any thread, let_go() not the owner's. The
-/// others: the owner's thread of the Session. Not real-time.
+/// begin(), input(), reset(), release_key(), status(), busy() and keeps_private(): any thread, release_key() not the
+/// owner's. The others: the owner's thread of the Session. Not real-time.
 class StationExercises final : public ExerciseHost {
  public:
   /// @param session, recorder  outlive end(); the session keeps its changes
@@ -60,7 +61,7 @@ class StationExercises final : public ExerciseHost {
   using ExerciseHost::input;
   void input(const ExerciseInput& input, const InputOrigin& origin) override;
   void reset() override;
-  void let_go(const std::string& record) override;
+  void release_key(const std::string& record) override;
   [[nodiscard]] ExerciseStatus status() const override;
 
   /// @returns true from begin() until the station is free again: others must not change scene, source or calibration
