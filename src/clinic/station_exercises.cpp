@@ -240,7 +240,10 @@ ExerciseStatus StationExercises::Impl::status() const {
   {
     const std::lock_guard lock(mutex_);
     // After end() the session may be gone.
-    if (!ended_) info = session_.info();
+    if (!ended_) {
+      info = session_.info();
+      out.fault = session_.view().fault.fault;
+    }
     out.stops = ended_ ? stops_ : session_.stops();
     out.stage = stage_;
     if (prepared_ == nullptr) return out;

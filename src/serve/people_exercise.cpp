@@ -172,6 +172,12 @@ WebResponse take_input(ExerciseHost& host, const Actor& actor, const json& objec
   return json_response(json::object());
 }
 
+/// @returns name, meaning and remedy of the station's fault; null without one
+json fault_json(Fault fault) {
+  if (fault == Fault::kNone) return nullptr;
+  return {{"name", fault_name(fault)}, {"meaning", fault_meaning(fault)}, {"remedy", fault_remedy(fault)}};
+}
+
 }  // namespace
 
 json exercise_json(const ExerciseStatus& status) {
@@ -209,6 +215,7 @@ json exercise_json(const ExerciseStatus& status) {
           {"last_success", status.last_success},
           {"force", forces_json(status)},
           {"forces_off", status.forces_off},
+          {"fault", fault_json(status.fault)},
           {"stops", status.stops},
           {"trouble", as_utf8(status.trouble)},
           {"recording", status.recording},

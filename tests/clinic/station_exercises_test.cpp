@@ -200,14 +200,17 @@ TEST_F(ClinicExercises, NoWordForTheLogNamesThePatientsCode) {
 
 TEST_F(ClinicExercises, AFaultPausesAndNeedsAResetAndAResume) {
   begin_exercise(sim1);
+  EXPECT_EQ(status().fault, Fault::kNone);
   overload();
   ASSERT_TRUE(until([&] { return status().forces_off; }));
+  EXPECT_EQ(status().fault, Fault::kOverload);
   input(Kind::kResume);
   pass(0.5);
   EXPECT_TRUE(status().forces_off) << "the fault is not reset";
   exercises->reset();
   ASSERT_TRUE(until([&] { return session->view().state != SafetyState::kFault; }));
   pass(2.0);
+  EXPECT_EQ(status().fault, Fault::kNone);
   EXPECT_TRUE(session->held_stopped()) << "a reset alone brings no forces back";
   input(Kind::kResume);
   EXPECT_TRUE(until([&] { return session->view().state == SafetyState::kRunning; }));

@@ -310,6 +310,7 @@ TEST_F(PeopleExercise, ALockedSessionWatchesTheExerciseWithoutItsPatientAndMayPa
   now.view.phase = ExercisePhase::kTrial;
   now.view.trial = 2;
   now.result.emplace();
+  now.fault = Fault::kDeviceLost;
   const std::string path = "/people/exercise/watched";
   EXPECT_EQ(send("GET", path, "").status, 401) << "only with a session";
   EXPECT_EQ(send("POST", "/people/lock", session, json::object()).status, 200);
@@ -320,6 +321,9 @@ TEST_F(PeopleExercise, ALockedSessionWatchesTheExerciseWithoutItsPatientAndMayPa
   EXPECT_EQ(shown.at("phase"), "trial");
   EXPECT_EQ(shown.at("trial"), 2);
   EXPECT_EQ(shown.at("trouble"), "the patient: the disk is full");
+  EXPECT_EQ(shown.at("fault").at("name"), "device_lost");
+  EXPECT_EQ(shown.at("fault").at("meaning"), fault_meaning(Fault::kDeviceLost));
+  EXPECT_EQ(shown.at("fault").at("remedy"), fault_remedy(Fault::kDeviceLost));
   for (const std::string& hidden : {std::string("SIM1"), record_, std::string("kite"), std::string("right")})
     EXPECT_EQ(watched.text.find(hidden), std::string::npos) << hidden;
   EXPECT_FALSE(shown.contains("result"));

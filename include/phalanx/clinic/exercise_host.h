@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "phalanx/device/fault.h"
 #include "phalanx/exercise/exercise_run.h"
 #include "phalanx/registry/accounts.h"
 
@@ -39,6 +40,8 @@ struct ExerciseStatus {
   std::array<double, kDigits> target_flexion = {};  ///< of ExerciseTarget::kAngle; NaN: none
   std::uint64_t stops = 0;  ///< Session::stops(): a resume that states it ends no later stop
   bool forces_off = false;  ///< a person, a fault or a stall keeps the torque at zero
+  /// The station's present fault, which needs a reset; kNone: no fault
+  Fault fault = Fault::kNone;
   bool last_success = false;
   /// Why it could not begin, or its result could not be made. It may name the patient's code
   std::string trouble = {};

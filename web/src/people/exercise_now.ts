@@ -17,6 +17,13 @@ export interface Ended {
   readonly verdict: string; // of an entry check; else empty
 }
 
+/// A fault of the station in its own words.
+export interface FaultWords {
+  readonly name: string;
+  readonly meaning: string;
+  readonly remedy: string;
+}
+
 export interface ExerciseNow {
   readonly number: number; // since the program's start
   readonly stage: Stage;
@@ -49,6 +56,7 @@ export interface ExerciseNow {
   readonly counted: number;
   readonly forces: readonly number[]; // of each digit [N]; empty: hidden
   readonly forcesOff: boolean;
+  readonly fault: FaultWords | undefined; // the station's present fault
   readonly stops: number | undefined; // that the station has made: "go on" states it, so that it ends no later one
   readonly trouble: string;
   readonly recording: string;
@@ -67,6 +75,12 @@ function readEnded(value: unknown): Ended | undefined {
   };
 }
 
+function readFault(value: unknown): FaultWords | undefined {
+  if (typeof value !== "object" || value === null) return undefined;
+  const one = entry(value);
+  return { name: text(one["name"]), meaning: text(one["meaning"]), remedy: text(one["remedy"]) };
+}
+
 export function readExerciseNow(answer: unknown): ExerciseNow {
   const one = entry(answer);
   const target = entry(one["target"]);
@@ -81,7 +95,7 @@ export function readExerciseNow(answer: unknown): ExerciseNow {
     progress: Math.min(1, Math.max(0, figure(one["progress"]) ?? 0)), remaining: figure(one["remaining_s"]) ?? 0, target: text(target["kind"]), digits: texts(target["digits"]),
     low: figure(target["low"]), high: figure(target["high"]), value: figure(one["value"]), unit: text(one["value_unit"]), choices: texts(one["choices"]),
     asks: asks === "pain" || asks === "fatigue" ? asks : "", successes: figure(one["successes"]) ?? 0, counted: figure(one["counted"]) ?? 0,
-    forces: list(one["force"]).map((force) => figure(force) ?? 0), forcesOff: one["forces_off"] === true, stops: figure(one["stops"]), trouble: text(one["trouble"]),
+    forces: list(one["force"]).map((force) => figure(force) ?? 0), forcesOff: one["forces_off"] === true, fault: readFault(one["fault"]), stops: figure(one["stops"]), trouble: text(one["trouble"]),
     recording: text(one["recording"]), result: readEnded(one["result"]),
   };
 }

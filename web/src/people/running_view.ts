@@ -3,9 +3,10 @@
 // off. The panel of the therapist has it, and so has the page while it is locked.
 import { el, setAttribute, setShown, setText } from "../panels/dom";
 import { instructionText } from "../patient/goal";
-import type { ExerciseNow } from "./exercise_now";
+import { language } from "../strings";
+import type { ExerciseNow, FaultWords } from "./exercise_now";
 import { ForceBars, GoalBar } from "./goal_bar";
-import { exerciseTexts, stationLanguage, words } from "./words";
+import { exerciseTexts, faultLanguages, stationLanguage, words } from "./words";
 
 const second = /^Let go\. The second/; // of two sponges; the station's words
 
@@ -49,6 +50,7 @@ export class RunningView {
   private readonly progress = el("progress", { max: 1, value: 0, "aria-label": words.run.pending });
   private readonly noted = el("p", { class: "hint", lang: stationLanguage });
   private readonly offHint: HTMLElement;
+  private readonly fault = el("span", { class: "run-fault", hidden: true });
   private readonly goal = new GoalBar();
   private readonly bars = new ForceBars();
   /// Takes the focus when the button that had it is gone: Tab goes on from here.
@@ -63,7 +65,15 @@ export class RunningView {
     off: string = words.run.forcesOffHint,
   ) {
     this.offHint = el("span", {}, off);
-    this.off.append(this.offHint);
+    this.off.append(this.fault, this.offHint);
+  }
+
+  /// What the fault means and its remedy, in the page's language where it is known.
+  private showFault(fault: FaultWords | undefined): void {
+    const own = fault && faultLanguages[language.code]?.[fault.name];
+    setText(this.fault, own ?? (fault ? `${fault.meaning} ${fault.remedy}` : ""));
+    setAttribute(this.fault, "lang", own === undefined ? stationLanguage : null);
+    setShown(this.fault, fault !== undefined);
   }
 
   show(now: ExerciseNow): void {
@@ -84,6 +94,7 @@ export class RunningView {
     setAttribute(this.progress, "aria-label", at);
     setShown(this.off, runs && now.forcesOff && phase !== "ready" && phase !== "done");
     setShown(this.offHint, phase === "paused");
+    this.showFault(now.fault);
     this.goal.show(now);
     setShown(this.goal.element, runs && (phase === "trial" || now.value !== undefined));
     this.bars.show(now);

@@ -3,6 +3,7 @@
 import { english, language, strings, textOfFile } from "../strings";
 import { de as exerciseDe } from "../strings/exercise_de";
 import { en as exerciseEn, type ExerciseStrings } from "../strings/exercise_en";
+import { de as faultsDe } from "../strings/faults_de";
 import { de } from "../strings/people_de";
 import { en, type PeopleStrings } from "../strings/people_en";
 import type { Exercise, ScoreValue, Trend } from "./shapes";
@@ -18,6 +19,9 @@ export const words: PeopleStrings = peopleLanguages[language.code] ?? en;
 const exerciseLanguages: Readonly<Record<string, ExerciseStrings>> = { en: exerciseEn, de: exerciseDe };
 /// What the participant of an exercise is told, as on the patient's screen.
 export const exerciseTexts: ExerciseStrings = exerciseLanguages[language.code] ?? exerciseEn;
+
+/// Meaning and remedy of a fault by its name, by the code of the language; the station's own words are in none of them.
+export const faultLanguages: Readonly<Record<string, Readonly<Record<string, string>>>> = { de: faultsDe };
 
 /// The title of an exercise in the language of the page, if its file has it.
 export const titleText = ({ title, titleDe }: { readonly title: string; readonly titleDe: string }): string => textOfFile(title, titleDe);

@@ -212,6 +212,7 @@ describe("rehabilitation with a device on a wire", () => {
     await own.cut();
     await until("the pause", async () => (await phase()).startsWith(en.run.phases["paused"]!), () => panel().innerText());
     await panel().getByText(en.run.forcesOff).waitFor();
+    await panel().getByText(/No sample has come from the device|port or socket failed/).waitFor();
     await until("the words of the patient's screen", async () => (await screen.goal.innerText()) === screenTexts.screen.fault, () => screen.goal.innerText());
     for (const tick of await onlooker.stream.next(5)) expect(largest(tick), `tick ${tick.tick}`).toBe(0);
     await shoot(patients.page, "rehabilitation_device_8_cut_therapist");

@@ -160,6 +160,11 @@ describe("the exercise that runs", () => {
     await tap(words.run.pause);
     await told({ phase: "paused", forces_off: true, stops: 5 });
     expect(shown()).toContain(words.run.forcesOff);
+    expect(page.content.querySelector<HTMLElement>(".run-fault")!.hidden).toBe(true);
+    await told({ fault: { name: "device_lost", meaning: "The port failed.", remedy: "Plug it in." } });
+    expect(shown()).toContain("The port failed. Plug it in.");
+    await told({ fault: null });
+    expect(shown()).not.toContain("The port failed.");
     expect(button(words.run.pause)).toBeUndefined();
     await tap(words.run.resume);
     expect(station.asked.filter((one) => one.startsWith("input"))).toEqual(["input pause", "input resume 5"]);

@@ -2,7 +2,7 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
-import { peopleLanguages } from "../../../src/people/words";
+import { faultLanguages, peopleLanguages } from "../../../src/people/words";
 import { languages, strings } from "../../../src/strings";
 import { en } from "../../../src/strings/people_en";
 
@@ -40,6 +40,15 @@ describe.each(Object.entries(peopleLanguages))("the texts of the page of patient
       for (const word of told.slice(0, text.length)) expect(text(...told), path).toContain(word);
     }
   });
+});
+
+it("each fault of the station has words in each other language", () => {
+  const source = readFileSync(resolve(__dirname, "../../../../src/device/fault.cpp"), "utf8");
+  const names = [...source.matchAll(/Entry\{Fault::k\w+, "(\w+)"/g)].map((found) => found[1]!).filter((name) => name !== "none");
+  expect(names.length).toBeGreaterThan(15);
+  const others = languages.map(({ code }) => code).filter((code) => code !== "en");
+  expect(Object.keys(faultLanguages)).toEqual(others);
+  for (const code of others) expect(Object.keys(faultLanguages[code]!).sort()).toEqual([...names].sort());
 });
 
 it("the page of patients is there in each language of the cockpit", () => {
