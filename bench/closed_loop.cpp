@@ -16,8 +16,9 @@
 #include "phalanx/scene/device_file.h"
 #include "phalanx/scene/patient_file.h"
 #include "phalanx/scene/scene.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/simulation/plant.h"
-#include "phalanx/study/trial.h"
 #include "stopwatch.h"
 
 namespace phalanx::bench {

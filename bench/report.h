@@ -11,7 +11,7 @@
 #include "compare.h"
 #include "object_cost.h"
 #include "phalanx/record/made.h"
-#include "phalanx/record/step_times.h"
+#include "phalanx/simulation/step_times.h"
 #include "phases.h"
 #include "time_ours.h"
 #include "time_peer.h"

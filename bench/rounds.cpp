@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "phalanx/core/random.h"
-#include "phalanx/record/step_times.h"
+#include "phalanx/simulation/step_times.h"
 
 namespace phalanx::bench {
 namespace {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where: program, its completion in shells, page, public headers, libraries, assets, scenes, studies, documents, the
-# link's reference in C for firmware, and the package that find_package(phalanx) reads.
+# What `cmake --install` puts where: program, its completion in shells, page, public headers, libraries, assets, scenes, studies, documents,
+# examples, the link's reference in C for firmware, and the package that find_package(phalanx) reads.
 # The libraries install themselves into their export sets, see phalanx_library() in modules.cmake.
 include(CMakePackageConfigHelpers)
 
@@ -15,7 +15,8 @@ endforeach()
 install(FILES ${completion}/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME phalanx)
 install(FILES ${completion}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _phalanx)
 include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
-foreach(header ${PHALANX_PUBLIC_HEADERS} ${PHALANX_IMPORT_PUBLIC_HEADERS} ${PHALANX_STATION_PUBLIC_HEADERS})
+foreach(header ${PHALANX_PUBLIC_HEADERS} ${PHALANX_IMPORT_PUBLIC_HEADERS} ${PHALANX_SIMULATION_PUBLIC_HEADERS}
+        ${PHALANX_STATION_PUBLIC_HEADERS} ${PHALANX_RECORDING_PUBLIC_HEADERS})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES include/phalanx/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/phalanx/${folder})
 endforeach()
@@ -27,8 +28,9 @@ endif()")
 install(DIRECTORY web/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx/web OPTIONAL PATTERN .sources EXCLUDE)
 install(FILES src/device/link/phalanx_link.c DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx/link)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
+install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES README.md CHANGELOG.md LICENSE NOTICE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-foreach(component phalanx import station)
+foreach(component phalanx import simulation station recording)
   install(EXPORT phalanx_${component} FILE phalanx_${component}Targets.cmake NAMESPACE phalanx:: DESTINATION ${package_dir})
 endforeach()
 

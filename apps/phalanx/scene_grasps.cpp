@@ -18,7 +18,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene_file.h"
-#include "phalanx/study/simulate.h"
+#include "phalanx/simulation/simulate.h"
 #include "terminal/progress.h"
 
 namespace phalanx {

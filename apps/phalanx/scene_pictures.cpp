@@ -14,7 +14,7 @@
 #include "phalanx/record/output_file.h"
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
-#include "phalanx/study/simulate.h"
+#include "phalanx/simulation/simulate.h"
 #include "picture_file.h"
 #include "terminal/progress.h"
 

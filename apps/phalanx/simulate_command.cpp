@@ -21,7 +21,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/study/simulate.h"
+#include "phalanx/simulation/simulate.h"
 #include "run_outputs.h"
 #include "summary_table.h"
 #include "terminal/error_line.h"

@@ -19,7 +19,7 @@
 #include "phalanx/study/laboratory/run_study.h"
 #include "phalanx/study/laboratory/scene_inputs.h"
 #include "phalanx/study/laboratory/study_file.h"
-#include "phalanx/study/trial.h"
+#include "phalanx/study/trial_function.h"
 #include "study_progress.h"
 #include "terminal/error_line.h"
 #include "terminal/progress.h"

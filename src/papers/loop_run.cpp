@@ -8,6 +8,8 @@
 
 #include "papers/swing_watch.h"
 #include "phalanx/scene/scene_file.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/simulation/simulated_exoskeleton.h"
 
 namespace phalanx {

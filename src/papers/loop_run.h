@@ -9,7 +9,7 @@
 
 #include "phalanx/hand/joints.h"
 #include "phalanx/scene/scene.h"
-#include "phalanx/study/trial.h"
+#include "phalanx/simulation/closed_loop/stability_criterion.h"
 
 namespace phalanx {
 

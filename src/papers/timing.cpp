@@ -12,7 +12,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/hand_file.h"
 #include "phalanx/scene/resolved_scene.h"
-#include "phalanx/study/simulate.h"
+#include "phalanx/simulation/simulate.h"
 #include "record/made_json.h"
 
 namespace phalanx {

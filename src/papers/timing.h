@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "phalanx/record/step_times.h"
 #include "phalanx/scene/scene.h"
+#include "phalanx/simulation/step_times.h"
 
 namespace phalanx {
 

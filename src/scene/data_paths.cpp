@@ -23,21 +23,23 @@ bool holds_data(const fs::path& folder) {
 }  // namespace
 
 fs::path data_folder() {
-  if (const char* given = std::getenv("PHALANX_DATA"); given != nullptr && *given != '\0') {
+  if (const char* given = std::getenv("PHALANX_DATA_DIR"); given != nullptr && *given != '\0') {
     if (holds_data(given)) return given;
     throw SceneError(fmt::format(
-        "PHALANX_DATA = {}: this folder has no scenes/ and assets/; name one that has, or unset it", given));
+        "PHALANX_DATA_DIR = {}: this folder has no scenes/ and assets/; name one that has, or unset it",
+        given));
   }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed =
-      error ? fs::path() : (program.parent_path() / "../share/phalanx").lexically_normal();
-  if (!installed.empty() && holds_data(installed)) return installed;
-  const fs::path source = PHALANX_SOURCE_TREE;
-  if (holds_data(source)) return source;
+  std::vector<std::string> tried;
+  if (!error) tried.push_back((program.parent_path() / "../share/phalanx").lexically_normal());
+  for (const char* configured : {PHALANX_SOURCE_TREE, PHALANX_INSTALLED_DATA})
+    if (*configured != '\0') tried.emplace_back(configured);
+  for (const std::string& folder : tried)
+    if (holds_data(folder)) return folder;
   throw SceneError(fmt::format(
-      "there is no folder with scenes/ and assets/ at {} or {}; set PHALANX_DATA to the folder that has them",
-      installed.string(), source.string()));
+      "there is no folder with scenes/ and assets/ at {}; set PHALANX_DATA_DIR to the folder that has them",
+      fmt::join(tried, " or ")));
 }
 
 fs::path find_data_file(const std::string& what, const std::string& name, const std::string& folder,

@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "phalanx/device/latest.h"
+#include "phalanx/core/latest.h"
 #include "station/history.h"
 #include "station/pacer.h"
 #include "station/station_step.h"

@@ -122,7 +122,7 @@ TEST_F(CliCompletion, WorksInBash) {
   const auto reply = [&](const std::string& typed) {
     const auto result =
         run_program(folder, "--version", ".out",
-                    "PHALANX_DATA='" PHALANX_SOURCE_DIR "' PHALANX='" PHALANX_PROGRAM "' bash ask.sh " +
+                    "PHALANX_DATA_DIR='" PHALANX_SOURCE_DIR "' PHALANX='" PHALANX_PROGRAM "' bash ask.sh " +
                         typed + " >reply");
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return lines_of(testing::read_file(folder / "reply"));

@@ -22,8 +22,8 @@ struct ProgramResult {
 inline ProgramResult run_program(const TemporaryFolder& folder, const std::string& arguments,
                                  const std::string& out_file = ".out", const std::string& before = ":") {
   const std::string command = "cd '" + folder.path().string() + "' && (" + before +
-                              " && PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM "' " + arguments +
-                              ") >'" + out_file + "' 2>.err </dev/null";
+                              " && PHALANX_DATA_DIR='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM "' " +
+                              arguments + ") >'" + out_file + "' 2>.err </dev/null";
   const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, out_file == ".out" ? read_file(folder / ".out") : "",
           read_file(folder / ".err")};

@@ -33,7 +33,7 @@ class ExerciseClinic : public SessionFixture {
   ExerciseClinic() { make_data(); }
   ~ExerciseClinic() override {
     end();
-    ::unsetenv("PHALANX_DATA");
+    ::unsetenv("PHALANX_DATA_DIR");
   }
 
   /// Starts a station of the simulated device with a registry of SIM1 and SIM2, whose hand is the right one.
@@ -153,7 +153,7 @@ class ExerciseClinic : public SessionFixture {
         << "format = 1\ntitle = \"Short\"\nkind = \"assessment\"\nmeasure = \"press_and_hold\"\n"
            "scene = \"index_ball\"\ndigits = \"index\"\ninstruction = \"Press and hold.\"\n"
            "trials = 2\ntrial_s = 3\nrest_s = 0.5\nwarm_up_s = 0\n";
-    ::setenv("PHALANX_DATA", data.c_str(), 1);
+    ::setenv("PHALANX_DATA_DIR", data.c_str(), 1);
   }
 };
 

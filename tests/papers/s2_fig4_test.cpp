@@ -8,6 +8,8 @@
 
 #include "papers/s2_experiments.h"
 #include "papers/s2_loop_figures.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 
 namespace phalanx {
 namespace {

@@ -12,6 +12,8 @@
 
 #include "papers/s2_experiments.h"
 #include "papers/s2_loop_figures.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/simulation/simulated_exoskeleton.h"
 
 namespace phalanx {

@@ -13,6 +13,8 @@
 
 #include "papers/s2_experiments.h"
 #include "papers/s2_loop_figures.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/study/laboratory/limit_search.h"
 
 namespace phalanx {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "phalanx/study/trial.h"
+#include "phalanx/study/trial_function.h"
 
 namespace phalanx {
 namespace {

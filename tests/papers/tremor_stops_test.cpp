@@ -13,11 +13,12 @@
 #include <vector>
 
 #include "papers/s2_loop_figures.h"
+#include "phalanx/scene/scene_trial.h"
 #include "phalanx/simulation/closed_loop/closed_loop.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/simulation/press_cycle.h"
 #include "phalanx/simulation/simulated_channels.h"
 #include "phalanx/station/station_model.h"
-#include "phalanx/study/trial.h"
 #include "station/safety.h"
 
 namespace phalanx {

@@ -196,7 +196,8 @@ std::set<std::string> installed(const std::string& name) {
 
 // The lists of the libraries; each library uses those before it.
 constexpr std::array kLibraries = {"PHALANX_PUBLIC_HEADERS", "PHALANX_IMPORT_PUBLIC_HEADERS",
-                                   "PHALANX_STATION_PUBLIC_HEADERS"};
+                                   "PHALANX_SIMULATION_PUBLIC_HEADERS", "PHALANX_STATION_PUBLIC_HEADERS",
+                                   "PHALANX_RECORDING_PUBLIC_HEADERS"};
 
 std::string source_of(const std::string& header) { return "include/phalanx/" + header; }
 

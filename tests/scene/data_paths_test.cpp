@@ -12,21 +12,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sets PHALANX_DATA for one test.
+/// Sets PHALANX_DATA_DIR for one test.
 class DataPaths : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (const char* before = std::getenv("PHALANX_DATA")) before_ = before;
-    unsetenv("PHALANX_DATA");
+    if (const char* before = std::getenv("PHALANX_DATA_DIR")) before_ = before;
+    unsetenv("PHALANX_DATA_DIR");
     folder_ = fs::temp_directory_path() / ("phalanx_data_paths_" + std::to_string(getpid()));
     fs::create_directories(folder_);
   }
   void TearDown() override {
     fs::remove_all(folder_);
     if (before_.empty()) {
-      unsetenv("PHALANX_DATA");
+      unsetenv("PHALANX_DATA_DIR");
     } else {
-      setenv("PHALANX_DATA", before_.c_str(), 1);
+      setenv("PHALANX_DATA_DIR", before_.c_str(), 1);
     }
   }
   fs::path folder_;
@@ -40,16 +40,16 @@ TEST_F(DataPaths, AreTheSourceTreesIfNothingElseIsSaid) {
 TEST_F(DataPaths, AreTheEnvironmentsIfItNamesThem) {
   fs::create_directories(folder_ / "scenes");
   fs::create_directories(folder_ / "assets/hands");
-  setenv("PHALANX_DATA", folder_.c_str(), 1);
+  setenv("PHALANX_DATA_DIR", folder_.c_str(), 1);
   EXPECT_EQ(data_folder(), folder_);
   std::ofstream(folder_ / "assets/hands/mine.toml") << "x";
   EXPECT_EQ(find_data_file("hand", "mine", "assets/hands", ".toml", "."), folder_ / "assets/hands/mine.toml");
 }
 
 TEST_F(DataPaths, RefuseAnEnvironmentWithoutData) {
-  setenv("PHALANX_DATA", folder_.c_str(), 1);
+  setenv("PHALANX_DATA_DIR", folder_.c_str(), 1);
   expect_scene_error([] { static_cast<void>(data_folder()); },
-                     {"PHALANX_DATA", folder_.string(), "unset it"});
+                     {"PHALANX_DATA_DIR", folder_.string(), "unset it"});
 }
 
 TEST_F(DataPaths, TakeAPathAsAPath) {

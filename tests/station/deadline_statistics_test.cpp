@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "phalanx/device/latest.h"
+#include "phalanx/core/latest.h"
 #include "station/pacer.h"
 #include "support/count_allocations.h"
 

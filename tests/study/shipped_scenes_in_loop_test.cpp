@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "phalanx/scene/scene.h"
-#include "phalanx/study/trial.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 
 namespace phalanx {
 namespace {

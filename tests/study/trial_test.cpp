@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,9 @@
 #include <vector>
 
 #include "phalanx/scene/scene_file.h"
+#include "phalanx/scene/scene_trial.h"
 #include "phalanx/simulation/simulated_exoskeleton.h"
+#include "phalanx/study/trial_function.h"
 #include "record/temporary_folder.h"
 #include "support/opened_files.h"
 

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/simulation/simulated_exoskeleton.h"
-#include "phalanx/study/trial.h"
 
 namespace phalanx {
 namespace {

@@ -122,7 +122,7 @@ FindRecordingKey keys_when_asked(const RegistryOptions& options) {
 void add_registry_options(CLI::App& command, RegistryOptions& options) {
   command
       .add_option("--data", options.data,
-                  "data folder of the registry [$PHALANX_DATA_DIR, else ~/.local/share/phalanx]")
+                  "data folder of the registry [$PHALANX_PATIENTS_DIR, else ~/.local/share/phalanx]")
       ->type_name("DIR");
   command
       .add_option(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linear algebra of the whole program: SI units, radians, double precision. The folder `core` holds what
-// every other folder uses: vectors and poses (math.h), the status bits of a step (status.h), unit factors,
-// seeded random numbers, suggestions for misspelt names, and threads of lowered priority. It includes no
-// other folder.
+// every other folder uses: vectors and poses (math.h), the status bits of a step (status.h), the newest value
+// for another thread (latest.h), unit factors, seeded random numbers, suggestions for misspelt names, and
+// threads of lowered priority. It includes no other folder.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +30,9 @@ struct Pose {
   /// X_BA.
   [[nodiscard]] Pose inverse() const noexcept { return Pose{R.transpose(), -(R.transpose() * p)}; }
 };
+// Eigen aligns other fixed-size types by the compiler's instruction sets (-mavx2). These must be laid out alike in a
+// library and in a program with other options.
+static_assert(sizeof(Pose) == 12 * sizeof(double) && alignof(Pose) == alignof(double));
 
 /// Rotation by `angle` [rad] about the unit vector `axis` (right-handed).
 [[nodiscard]] inline Mat3 rotation_about(const Vec3& axis, double angle) {

@@ -117,7 +117,7 @@ class DeviceError : public std::runtime_error {
 
 /// One device. open(), close() and info() are for set-up. The loop's thread calls the other functions once a
 /// step; they must not allocate, lock, throw or wait. A device that has to wait for its wire has a thread of
-/// its own (device/latest.h and device/sample_queue.h carry values across).
+/// its own (core/latest.h and device/sample_queue.h carry values across).
 class Device {
  public:
   Device() = default;

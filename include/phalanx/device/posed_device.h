@@ -5,8 +5,8 @@
 
 #include <memory>
 
+#include "phalanx/core/latest.h"
 #include "phalanx/device/device.h"
-#include "phalanx/device/latest.h"
 #include "phalanx/hand/hand_parameters.h"
 
 namespace phalanx {

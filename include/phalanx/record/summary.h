@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "phalanx/record/made.h"
-#include "phalanx/record/step_times.h"
+#include "phalanx/simulation/step_times.h"
 #include "phalanx/step/snapshot.h"
 
 namespace phalanx {

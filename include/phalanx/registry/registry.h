@@ -44,8 +44,8 @@ struct RegistrySettings {
   std::function<double()> steady = {};  ///< for idle times [s]; empty: the system's steady clock
 };
 
-/// @returns the data folder: $PHALANX_DATA_DIR, else $XDG_DATA_HOME/phalanx, else ~/.local/share/phalanx.
-/// PHALANX_DATA is another folder: that of scenes and assets
+/// @returns the data folder: $PHALANX_PATIENTS_DIR, else $XDG_DATA_HOME/phalanx, else ~/.local/share/phalanx.
+/// PHALANX_DATA_DIR is another folder: that of scenes and assets
 [[nodiscard]] std::filesystem::path default_data_folder();
 
 /// Use of a patient's key by a program that records with it: while it lives, no program can delete the patient. The

@@ -22,7 +22,7 @@ struct Wake {
 /// Histogram of durations: 16 equal bins in each octave (doubling), from 0.1 us to 13.4 s, in 3.5 KiB.
 /// A percentile is the middle of its bin, at most 1/32 of the true value away from it; the largest duration
 /// is exact. All durations below 0.1 us share one bin, and all above 13.4 s another.
-/// One thread writes it; readers get a copy by value (device/latest.h).
+/// One thread writes it; readers get a copy by value (core/latest.h).
 /// Real-time: add() and merge(); no allocation, lock, throw or I/O.
 class Histogram {
  public:

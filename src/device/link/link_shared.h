@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include "phalanx/core/latest.h"
 #include "phalanx/device/device.h"
-#include "phalanx/device/latest.h"
 #include "phalanx/device/sample_queue.h"
 
 namespace phalanx {

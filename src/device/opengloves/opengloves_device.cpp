@@ -14,7 +14,7 @@
 #include "device/opengloves/glove_port.h"
 #include "device/opengloves/glove_stops.h"
 #include "device/opengloves/glove_wire.h"
-#include "phalanx/device/latest.h"
+#include "phalanx/core/latest.h"
 #include "phalanx/device/sample_queue.h"
 
 namespace phalanx {

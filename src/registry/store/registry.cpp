@@ -306,7 +306,7 @@ fs::path default_data_folder() {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
     return value == nullptr ? std::string() : std::string(value);
   };
-  if (const std::string folder = variable("PHALANX_DATA_DIR"); !folder.empty()) return folder;
+  if (const std::string folder = variable("PHALANX_PATIENTS_DIR"); !folder.empty()) return folder;
   if (const std::string folder = variable("XDG_DATA_HOME"); !folder.empty())
     return fs::path(folder) / "phalanx";
   return fs::path(variable("HOME")) / ".local" / "share" / "phalanx";

@@ -35,7 +35,7 @@ class Program {
       ::dup2(out[1], STDOUT_FILENO);
       ::dup2(out[1], STDERR_FILENO);
       for (const int end : {in[0], in[1], out[0], out[1]}) ::close(end);
-      ::setenv("PHALANX_DATA", PHALANX_SOURCE_DIR, 1);
+      ::setenv("PHALANX_DATA_DIR", PHALANX_SOURCE_DIR, 1);
       std::vector<char*> argv;
       arguments.insert(arguments.begin(), PHALANX_PROGRAM);
       argv.reserve(arguments.size() + 1);

@@ -19,7 +19,7 @@ class ExerciseProgram : public RegistryProgram {
   ProgramResult exercise(const std::string& arguments) const {
     return run_command(folder,
                        "unset PHALANX_PASSPHRASE PHALANX_PASSWORD && export HOME=\"$PWD/home\" "
-                       "PHALANX_DATA_DIR=data PHALANX_KEYS=keys/patients PHALANX_DATA='" +
+                       "PHALANX_PATIENTS_DIR=data PHALANX_KEYS=keys/patients PHALANX_DATA_DIR='" +
                            scenes_and_assets +
                            "' && '" PHALANX_HELD_CLOCK_PROGRAM "' -- '" PHALANX_PROGRAM
                            "' exercise run --no-realtime --no-foxglove --rate-hz 200 --record rec " +

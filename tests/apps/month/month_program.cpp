@@ -34,9 +34,9 @@ void MonthProgram::set_date(int day, double hour) const {
 
 std::vector<std::string> MonthProgram::environment() const {
   return {fmt::format("HOME={}", (folder / "home").string()),
-          fmt::format("PHALANX_DATA_DIR={}", (folder / "data").string()),
+          fmt::format("PHALANX_PATIENTS_DIR={}", (folder / "data").string()),
           fmt::format("PHALANX_KEYS={}", (folder / "keys/patients").string()),
-          fmt::format("PHALANX_DATA={}", PHALANX_SOURCE_DIR),
+          fmt::format("PHALANX_DATA_DIR={}", PHALANX_SOURCE_DIR),
           fmt::format("PHALANX_SHIFTED_DATE={}", (folder / "date").string())};
 }
 

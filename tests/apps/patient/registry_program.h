@@ -25,7 +25,7 @@ class RegistryProgram : public ::testing::Test {
     return run_program(
         folder, command, ".out",
         "unset PHALANX_PASSPHRASE PHALANX_PASSWORD PHALANX_NEW_PASSWORD && export HOME=\"$PWD/home\" "
-        "PHALANX_DATA_DIR=data PHALANX_KEYS=keys/patients " +
+        "PHALANX_PATIENTS_DIR=data PHALANX_KEYS=keys/patients " +
             set);
   }
   /// @returns what a command says, with its exit code before it
@@ -62,8 +62,8 @@ class RegistryProgram : public ::testing::Test {
     for (const auto& [question, answer] : answers)
       dialogue += fmt::format("{}{}|{}", dialogue.empty() ? "" : ";", question, answer);
     const auto result = run_command(
-        folder, "export PHALANX_DATA='" PHALANX_SOURCE_DIR
-                "' PHALANX_DATA_DIR=data PHALANX_KEYS=keys/patients TERM=dumb && unset PHALANX_PASSWORD "
+        folder, "export PHALANX_DATA_DIR='" PHALANX_SOURCE_DIR
+                "' PHALANX_PATIENTS_DIR=data PHALANX_KEYS=keys/patients TERM=dumb && unset PHALANX_PASSWORD "
                 "PHALANX_NEW_PASSWORD PHALANX_PASSPHRASE && /usr/bin/python3 type.py '" +
                     dialogue + "' '" PHALANX_PROGRAM "' " + command);
     return result.out + result.err;

@@ -141,7 +141,7 @@ Outcome FailingProgram::run(const TemporaryFolder& folder, FailurePage& page, do
   }
   command.insert(command.end(), {"LD_PRELOAD=" + preloaded,
                                  std::string(test::kFailuresVariable) + "=" + (folder / kPage).string(),
-                                 "PHALANX_DATA=" PHALANX_SOURCE_DIR, "TERM=dumb", "SSH_CONNECTION=",
+                                 "PHALANX_DATA_DIR=" PHALANX_SOURCE_DIR, "TERM=dumb", "SSH_CONNECTION=",
                                  "XDG_CONFIG_HOME=" + folder.path().string(), PHALANX_PROGRAM});
   command.insert(command.end(), arguments_.begin(), arguments_.end());
 

@@ -95,7 +95,7 @@ RunningStation::RunningStation(const TemporaryFolder& folder, const Descriptors&
     command.insert(command.end(), more.begin(), more.end());
   };
   add(clock_.environment(PHALANX_HELD_CLOCK_LIBRARY));
-  add({"PHALANX_DATA=" PHALANX_SOURCE_DIR, "TERM=xterm",
+  add({"PHALANX_DATA_DIR=" PHALANX_SOURCE_DIR, "TERM=xterm",
        "SSH_CONNECTION=", "XDG_CONFIG_HOME=" + folder.path().string()});
   if (!script.empty()) add({"/bin/sh", "-c", script, "sh"});
   add({PHALANX_PROGRAM, "run", "grasp_teapot", "--rate-hz", "200", "--log", "x.csv", "--summary", "x.json"});

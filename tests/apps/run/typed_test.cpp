@@ -31,7 +31,7 @@ std::vector<nlohmann::json> changes_in(const testing::TemporaryFolder& folder) {
 int run_with(const testing::TemporaryFolder& folder, const std::string& lines) {
   const std::string command = "cd '" + folder.path().string() + "' && printf '" + lines +
                               "' | "
-                              "PHALANX_DATA='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM
+                              "PHALANX_DATA_DIR='" PHALANX_SOURCE_DIR "' '" PHALANX_PROGRAM
                               "' run --device sliders --port 0 --no-realtime --quiet --slow-motion 4 "
                               "--record recordings --audit changes.jsonl >out 2>err";
   return std::system(command.c_str());  // NOLINT(cert-env33-c): the shell is the user's side here
@@ -85,7 +85,7 @@ TEST(Typed, AResumeDoesNotUndoAStopThatThePersonHadNotSeen) {
   )";
   std::ofstream(folder / "story.sh") << script;
   const std::string command = "cd '" + folder.path().string() +
-                              "' && PROGRAM='" PHALANX_PROGRAM "' PHALANX_DATA='" PHALANX_SOURCE_DIR
+                              "' && PROGRAM='" PHALANX_PROGRAM "' PHALANX_DATA_DIR='" PHALANX_SOURCE_DIR
                               "' timeout 300 bash story.sh 2>trouble";
   ASSERT_EQ(std::system(command.c_str()), 0)  // NOLINT(cert-env33-c)
       << testing::read_file(folder / "trouble") << testing::read_file(folder / "err");

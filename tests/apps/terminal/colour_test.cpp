@@ -25,7 +25,7 @@ void run(const TemporaryFolder& folder, const Words& environment, const Words& a
          const Descriptors& descriptors) {
   Words command{"/usr/bin/env", "-C", folder.path().string(), "-u", "NO_COLOR", "-u", "TERM"};
   command.insert(command.end(), environment.begin(), environment.end());
-  command.insert(command.end(), {"PHALANX_DATA=" PHALANX_SOURCE_DIR, PHALANX_PROGRAM});
+  command.insert(command.end(), {"PHALANX_DATA_DIR=" PHALANX_SOURCE_DIR, PHALANX_PROGRAM});
   command.insert(command.end(), arguments.begin(), arguments.end());
   ChildProcess process(command, descriptors);
   ASSERT_TRUE(process.wait(kEndsWithin));

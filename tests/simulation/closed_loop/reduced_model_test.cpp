@@ -6,7 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "phalanx/study/trial.h"
+#include "phalanx/scene/scene_trial.h"
+#include "phalanx/simulation/closed_loop/trial.h"
 
 namespace phalanx {
 namespace {

@@ -75,7 +75,7 @@ export class DeviceStation {
 }
 
 function command(folder: string, args: readonly string[]): string {
-  const env = { ...process.env, PHALANX_DATA: dataFolder, PHALANX_PASSWORD: kPassword, PHALANX_NEW_PASSWORD: kPassword };
+  const env = { ...process.env, PHALANX_DATA_DIR: dataFolder, PHALANX_PASSWORD: kPassword, PHALANX_NEW_PASSWORD: kPassword };
   return execFileSync(programPath(), args, { cwd: folder, env, stdio: "pipe" }).toString();
 }
 

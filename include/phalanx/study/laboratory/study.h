@@ -2,8 +2,8 @@
 // A study: its points, and the result of a finished point.
 //
 // The laboratory measures how the largest stable stiffness depends on parameters. study_file.h reads a study.
-// run_study.h measures its points with trial.h, in the way that limit_search.h describes. outputs.h and
-// report.h write the results.
+// run_study.h measures its points with trials of the closed loop, in the way that limit_search.h describes.
+// outputs.h and report.h write the results.
 #pragma once
 
 #include <cstdint>

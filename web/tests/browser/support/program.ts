@@ -7,7 +7,7 @@ import { until } from "./until";
 
 export const projectFolder = resolve(dirname(fileURLToPath(import.meta.url)), "../../../..");
 /// Where the program has scenes, hands and the built page from, as it finds them itself.
-export const dataFolder = process.env["PHALANX_DATA"] ?? projectFolder;
+export const dataFolder = process.env["PHALANX_DATA_DIR"] ?? projectFolder;
 const kBeginMs = 240_000;
 
 /// Words of a command that starts the program given behind it, passes SIGINT on to it and ends as it does. "{clock}" in a word stands for a

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/simulate.h"
+#include "phalanx/simulation/simulate.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +45,32 @@ StepTimes simulate(const HapticModel& model, const HapticParameters& parameters,
       observers.progress(i + 1, ticks);
   }
   return step_times(std::move(step_us));
+}
+
+SimulatedMotion simulate_motion(const HapticModel& model, const HapticParameters& parameters,
+                                const Motion& motion, std::uint64_t ticks) {
+  SimulatedMotion all;
+  all.time_s.reserve(ticks);
+  all.status.reserve(ticks);
+  for (auto* angles : {&all.hcp_angle, &all.gdp_angle, &all.torque}) angles->reserve(ticks);
+  for (auto* segments : {&all.depth, &all.force_raw, &all.force}) segments->reserve(ticks);
+  const auto add = [&](const Snapshot& snapshot) {
+    all.time_s.push_back(snapshot.time_s);
+    all.status.push_back(snapshot.status);
+    all.hcp_angle.push_back(snapshot.hcp_angle);
+    all.gdp_angle.push_back(snapshot.gdp_angle);
+    all.torque.push_back(snapshot.torque);
+    SegmentArray& depth = all.depth.emplace_back();
+    SegmentArray& force_raw = all.force_raw.emplace_back();
+    SegmentArray& force = all.force.emplace_back();
+    for (std::size_t s = 0; s < snapshot.segment.size(); ++s) {
+      depth[s] = snapshot.segment[s].depth;
+      force_raw[s] = snapshot.segment[s].force_raw;
+      force[s] = snapshot.segment[s].force;
+    }
+  };
+  simulate(model, parameters, motion, ticks, {.tick = add, .progress = {}});
+  return all;
 }
 
 }  // namespace phalanx

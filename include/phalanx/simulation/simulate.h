@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Running a motion through the step, as fast as the machine allows.
-//
-// The folder holds the laboratory. simulate() plays a motion through the step without dynamics. trial.h
-// closes the loop on a scene with a simulated exoskeleton and patient, and judges whether the trial is
-// stable. laboratory/ runs such trials over a grid of parameters, and finds the largest stable stiffness.
-// report/ writes the page of a study.
+// Running a motion through the step, without dynamics, as fast as the machine allows.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "phalanx/device/motion.h"
-#include "phalanx/record/step_times.h"
+#include "phalanx/simulation/step_times.h"
 #include "phalanx/step/haptic_step.h"
 
 namespace phalanx {
@@ -35,5 +32,26 @@ struct SimulationObservers {
 /// @throws as HapticState's constructor, and everything that an observer throws.
 StepTimes simulate(const HapticModel& model, const HapticParameters& parameters, const Motion& motion,
                    std::uint64_t ticks, const SimulationObservers& observers = {});
+
+/// Value of each segment, in the order of segment_name().
+using SegmentArray = std::array<double, kSegments>;
+
+/// A simulated motion as arrays with one row a step. Each array is one block of memory without gaps, row after
+/// row: `torque.front().data()` points to ticks x kJoints doubles.
+struct SimulatedMotion {
+  std::vector<double> time_s;           ///< [s]
+  std::vector<Status> status;           ///< of each step
+  std::vector<JointArray> hcp_angle;    ///< measured hand [rad]
+  std::vector<JointArray> gdp_angle;    ///< shown hand [rad]
+  std::vector<JointArray> torque;       ///< command [Nm]
+  std::vector<SegmentArray> depth;      ///< SegmentSnapshot::depth [m]
+  std::vector<SegmentArray> force_raw;  ///< SegmentSnapshot::force_raw [N]
+  std::vector<SegmentArray> force;      ///< SegmentSnapshot::force [N]
+};
+
+/// Steps `model` as simulate() does, and returns every step.
+/// @throws as HapticState's constructor
+[[nodiscard]] SimulatedMotion simulate_motion(const HapticModel& model, const HapticParameters& parameters,
+                                              const Motion& motion, std::uint64_t ticks);
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/record/step_times.h"
+#include "phalanx/simulation/step_times.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/study/simulate.h"
+#include "phalanx/simulation/simulate.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <memory>
 
@@ -65,6 +67,47 @@ TEST(Simulate, PassesTheOriginsOfTheMotion) {
   };
   simulate(*model, scene.parameters, motion, 3, observers);
   EXPECT_EQ(ticks, 3);
+}
+
+TEST(SimulateMotion, HasARowForEachStepWithTheSnapshotsBits) {
+  const SceneDescription scene = load_scene("index_ball");
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  const Motion motion = build_motion(scene);
+  constexpr std::uint64_t kTicks = 240;
+  const SimulatedMotion all = simulate_motion(*model, scene.parameters, motion, kTicks);
+  ASSERT_EQ(all.time_s.size(), kTicks);
+  ASSERT_EQ(all.status.size(), kTicks);
+  for (const auto* angles : {&all.hcp_angle, &all.gdp_angle, &all.torque}) ASSERT_EQ(angles->size(), kTicks);
+  for (const auto* segments : {&all.depth, &all.force_raw, &all.force}) ASSERT_EQ(segments->size(), kTicks);
+  std::size_t row = 0;
+  double largest = 0.0;
+  simulate(*model, scene.parameters, motion, kTicks,
+           {.tick =
+                [&](const Snapshot& snapshot) {
+                  ASSERT_EQ(all.time_s[row], snapshot.time_s);
+                  ASSERT_EQ(all.status[row], snapshot.status);
+                  ASSERT_EQ(all.hcp_angle[row], snapshot.hcp_angle);
+                  ASSERT_EQ(all.gdp_angle[row], snapshot.gdp_angle);
+                  ASSERT_EQ(all.torque[row], snapshot.torque);
+                  for (std::size_t s = 0; s < snapshot.segment.size(); ++s) {
+                    ASSERT_EQ(all.depth[row][s], snapshot.segment[s].depth);
+                    ASSERT_EQ(all.force_raw[row][s], snapshot.segment[s].force_raw);
+                    ASSERT_EQ(all.force[row][s], snapshot.segment[s].force);
+                    largest = std::max(largest, snapshot.segment[s].force);
+                  }
+                  ++row;
+                },
+            .progress = {}});
+  EXPECT_EQ(row, kTicks);
+  EXPECT_GT(largest, 0.1) << "the finger must press";
+}
+
+TEST(SimulateMotion, HasOneBlockOfMemoryAnArray) {
+  const SceneDescription scene = load_scene("index_ball");
+  const auto model = std::make_unique<HapticModel>(build_model(scene));
+  const SimulatedMotion all = simulate_motion(*model, scene.parameters, build_motion(scene), 3);
+  EXPECT_EQ(all.torque.back().data(), all.torque.front().data() + std::ptrdiff_t{2 * kJoints});
+  EXPECT_EQ(all.force.back().data(), all.force.front().data() + std::ptrdiff_t{2 * kSegments});
 }
 
 }  // namespace

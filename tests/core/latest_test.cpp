@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "phalanx/device/latest.h"
+#include "phalanx/core/latest.h"
 
 #include <gtest/gtest.h>
 
