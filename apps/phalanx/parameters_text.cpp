@@ -20,6 +20,8 @@ const char* law_name(ForceLaw law) {
       return "Duffing";
     case ForceLaw::kLinearThenCubic:
       return "linear then cubic";
+    case ForceLaw::kOwn:
+      return "own law";
   }
   return "";
 }
@@ -50,6 +52,8 @@ std::string stabiliser_text(const StabiliserParameters& stabiliser) {
       return "energy bounding";
     case Stabiliser::kLocalWall:
       return "local wall";
+    case Stabiliser::kOwn:
+      return "own stabiliser";
   }
   return "";
 }

@@ -3,12 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace phalanx {
 namespace {
 
 constexpr double kReferenceDepth = 1e-3;  // depth at which Hunt-Crossley's stiffness is defined [m]
+constexpr double kOwnStep = 1e-6;         // difference of depths for the slope of a caller's law [m]
+
+/// Returns the force of the caller's law, not below 0; NaN without a function. It may be not finite.
+double own_force(const OwnForceLaw& own, double depth, double speed) noexcept {
+  if (own.function == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  const double force = own.function(own.user, depth, speed);
+  return force < 0.0 ? 0.0 : force;
+}
 
 }  // namespace
 
@@ -31,6 +40,8 @@ double law_force(const ForceLawParameters& law, double depth, double speed) noex
       const double beyond = std::max(0.0, depth - law.linear_depth);
       return hooke + law.cubic * beyond * beyond * beyond;
     }
+    case ForceLaw::kOwn:
+      return own_force(law.own, depth, speed);
   }
   return 0.0;
 }
@@ -49,6 +60,10 @@ double law_slope(const ForceLawParameters& law, double depth) noexcept {
     case ForceLaw::kLinearThenCubic: {
       const double beyond = std::max(0.0, d - law.linear_depth);
       return law.stiffness + 3.0 * law.cubic * beyond * beyond;
+    }
+    case ForceLaw::kOwn: {
+      const double slope = (law_force(law, d + kOwnStep, 0.0) - law_force(law, d, 0.0)) / kOwnStep;
+      return std::isfinite(slope) ? std::max(0.0, slope) : 0.0;
     }
   }
   return 0.0;

@@ -112,7 +112,7 @@ double stabilise(const HapticParameters& parameters, const StabiliserInput& by_l
   StabiliserInput input = by_law;
   input.force = capped_force;
   StabiliserMemory without_cap = memory;
-  const double force = stabilised_force(parameters.stabiliser, input, memory);
+  const double force = stabilised_force(parameters.stabiliser, input, memory, &status);
   if (capped_force < by_law.force) {
     const double uncapped = stabilised_force(parameters.stabiliser, by_law, without_cap);
     if (std::abs(force - uncapped) > kNoDifference) status |= Status::kForceLimited;

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "phalanx/core/constants.h"
 #include "phalanx/force/stabiliser_methods.h"
 
 namespace phalanx {
 namespace {
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 double method_force(const StabiliserParameters& p, const StabiliserInput& in, double moved,
                     StabiliserMemory& memory) noexcept {
@@ -32,6 +35,8 @@ double method_force(const StabiliserParameters& p, const StabiliserInput& in, do
     case Stabiliser::kEnergyBounding:
       return in.depth > 0.0 ? energy_bounded_force(in.force, in.sent, moved, p.device_damping, in.period)
                             : 0.0;
+    case Stabiliser::kOwn:
+      return p.own.function == nullptr ? kNotANumber : p.own.function(p.own.user, in, memory);
     case Stabiliser::kNone:
     case Stabiliser::kDirection:
     case Stabiliser::kLocalWall:
@@ -50,7 +55,7 @@ double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0
 }  // namespace
 
 double stabilised_force(const StabiliserParameters& parameters, const StabiliserInput& input,
-                        StabiliserMemory& memory) noexcept {
+                        StabiliserMemory& memory, Status* status) noexcept {
   if (!input.pressing) memory = {};
   if (!input.pressing && !decays_without_contact(parameters.method)) return 0.0;
   StabiliserInput in = input;
@@ -63,7 +68,8 @@ double stabilised_force(const StabiliserParameters& parameters, const Stabiliser
   const double moved = memory.touching ? in.speed_now * in.period : std::max(0.0, in.depth);
   memory.touching = in.pressing && in.depth > 0.0;
   const double force = method_force(parameters, in, moved, memory);
-  if (std::isfinite(force)) return force;
+  if (std::isfinite(force)) return parameters.method == Stabiliser::kOwn ? std::max(0.0, force) : force;
+  if (status != nullptr) *status |= Status::kCommandNotFinite;
   memory = {};
   return 0.0;
 }

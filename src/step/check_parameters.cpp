@@ -21,8 +21,15 @@ void check_choice(const char* name, Enum value, Enum last) {
   check(name, static_cast<double>(value), between(0, static_cast<double>(last)));
 }
 
+/// Checks that a law or a method of the caller has its function.
+void check_own(const char* name, bool chosen, bool given) {
+  if (chosen && !given)
+    throw std::invalid_argument(std::string(name) + " = null: kOwn needs a function; give one");
+}
+
 void check_law(const ForceLawParameters& law) {
-  check_choice("force.law", law.law, ForceLaw::kLinearThenCubic);
+  check_choice("force.law", law.law, ForceLaw::kOwn);
+  check_own("force.own.function", law.law == ForceLaw::kOwn, law.own.function != nullptr);
   check("force.stiffness [N/m]", law.stiffness, ranges::kStiffness);
   check("force.damping [N s/m]", law.damping, ranges::kDamping);
   check("force.velocity_lowpass_hz", law.velocity_lowpass_hz, ranges::kLowpass);
@@ -33,7 +40,9 @@ void check_law(const ForceLawParameters& law) {
 }
 
 void check_stabiliser(const StabiliserParameters& stabiliser) {
-  check_choice("stabiliser.method", stabiliser.method, Stabiliser::kLocalWall);
+  check_choice("stabiliser.method", stabiliser.method, Stabiliser::kOwn);
+  check_own("stabiliser.own.function", stabiliser.method == Stabiliser::kOwn,
+            stabiliser.own.function != nullptr);
   check("stabiliser.min_rate [N/s]", stabiliser.min_rate, ranges::kMinRate);
   check("stabiliser.max_rate [N/s]", stabiliser.max_rate, ranges::kMaxRate);
   check("stabiliser.lowpass_hz", stabiliser.lowpass_hz, ranges::kLowpass);

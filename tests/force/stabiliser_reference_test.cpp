@@ -101,6 +101,7 @@ class PlainStabiliser {
       case Stabiliser::kNone:
       case Stabiliser::kDirection:
       case Stabiliser::kLocalWall:
+      case Stabiliser::kOwn:  // has no reference
         break;
     }
     return m.F;

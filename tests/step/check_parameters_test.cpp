@@ -149,7 +149,7 @@ TEST(CheckParameters, ThereIsNoMethodBeyondTheLast) {
   HapticParameters parameters;
   parameters.stabiliser.method = Stabiliser::kLocalWall;
   EXPECT_NO_THROW(check_parameters(parameters));
-  for (const int method : {static_cast<int>(Stabiliser::kLocalWall) + 1, -1, 77}) {
+  for (const int method : {static_cast<int>(Stabiliser::kOwn) + 1, -1, 77}) {
     parameters.stabiliser.method = static_cast<Stabiliser>(method);
     expect_refused(parameters, "stabiliser.method", method);
   }
@@ -160,7 +160,7 @@ TEST(CheckParameters, ThereIsNoLawAndNoReactionBeyondTheLast) {
   parameters.force.law = ForceLaw::kLinearThenCubic;
   parameters.oscillation.reaction = OscillationReaction::kHalve;
   EXPECT_NO_THROW(check_parameters(parameters));
-  for (const int number : {static_cast<int>(ForceLaw::kLinearThenCubic) + 1, -1}) {
+  for (const int number : {static_cast<int>(ForceLaw::kOwn) + 1, -1}) {
     HapticParameters unknown;
     unknown.force.law = static_cast<ForceLaw>(number);
     expect_refused(unknown, "force.law", number);

@@ -17,6 +17,27 @@ enum class ForceLaw {
   kHuntCrossley,     ///< F = max(0, K d^n (1 + a v)), with K such that F = k d at d = 1 mm and v = 0
   kDuffing,          ///< F = k d + k3 d^3                                    Cui (cited by S2)
   kLinearThenCubic,  ///< F = k d up to d1, then k d + k3 (d - d1)^3          Stepp (cited by S2)
+  kOwn,              ///< OwnForceLaw, a function of the caller; no scene file can name it
+};
+
+/// Force law of a caller, for ForceLaw::kOwn: a plain function, and a pointer that is passed on to it.
+///
+/// step() calls the function for every contact with d > 0, on the thread that calls step(). It must be real-time safe
+/// like step() itself: no allocation, lock, exception or I/O. Its result must depend on its arguments and on constant
+/// data alone, so that equal samples give equal bits. Stabiliser::kLocalWall also calls it to measure its slope.
+///
+/// All later stages act on the result as on that of any other law: fingertip caps, stabiliser, torque limits. A
+/// result below 0 counts as 0, because no law pulls. A result that is not finite counts as 0, and the step's status is
+/// kCommandNotFinite. SegmentSnapshot::force_raw then still has it.
+struct OwnForceLaw {
+  /// Returns the force with which the object pushes the finger out [N].
+  /// @param user   OwnForceLaw::user
+  /// @param depth  d [m] > 0
+  /// @param speed  v = dd/dt, > 0 while the finger presses in, low-passed at velocity_lowpass_hz [m/s]
+  using Function = double (*)(void* user, double depth, double speed) noexcept;
+
+  Function function = nullptr;
+  void* user = nullptr;  ///< must outlive all steps with these parameters; steps in several threads share it
 };
 
 /// Parameters of the force law.
@@ -29,6 +50,7 @@ struct ForceLawParameters {
   double hunt_crossley_damping = 2.0;   ///< a [s/m] >= 0
   double cubic = 5e7;                   ///< k3 [N/m^3] >= 0, Duffing and linear-then-cubic
   double linear_depth = 2e-3;           ///< d1 [m] >= 0, linear-then-cubic
+  OwnForceLaw own = {};                 ///< with a function for ForceLaw::kOwn
 };
 
 /// Limits of force, torque and joint speed. Each is on by default.

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Selection of a stabiliser, which keeps the loop through device and finger stable: none, or one of nine
-// methods from the law's force to the force sent. docs/stabilisers.md compares them and names
+// Selection of a stabiliser, which keeps the loop through device and finger stable: none, one of nine
+// methods from the law's force to the force sent, or a function of the caller. docs/stabilisers.md compares them and names
 // their sources. S2 is a paper listed in docs/architecture.md.
 #pragma once
 
+#include <array>
 #include <numbers>
 
+#include "phalanx/core/status.h"
+
 namespace phalanx {
+
+struct StabiliserInput;
+struct StabiliserMemory;
 
 /// Method that changes the law's force to keep the loop stable.
 enum class Stabiliser {
@@ -20,6 +26,28 @@ enum class Stabiliser {
   kPassivity,        ///< a damper that acts if the contact generated energy   Hannaford, Ryu 2002
   kEnergyBounding,   ///< force over displacement bounded by the device's damping            Kim, Ryu 2010
   kLocalWall,        ///< the law's force as it is, and a plane for the device's own controller
+  kOwn,              ///< OwnStabiliser, a function of the caller; no scene file can name it
+};
+
+/// Stabiliser of a caller, for Stabiliser::kOwn: a plain function, and a pointer that is passed on to it.
+///
+/// step() calls the function for every contact that presses, on the thread that calls step(). It must be real-time safe
+/// like step() itself: no allocation, lock, exception or I/O. Its result must depend on its arguments and on constant
+/// data alone, so that equal samples give equal bits. All state belongs into `memory`: where a fingertip cap acts, a step
+/// calls the function once more with a copy of it.
+///
+/// Fingertip caps, torque limit and torque-rate limit act on the result. A result below 0 counts as 0. A result that is
+/// not finite counts as 0, resets the memory, and the step's status is kCommandNotFinite. Without contact the force is 0
+/// at once; the torque-rate limit still bounds how fast the torque falls.
+struct OwnStabiliser {
+  /// Returns the force that is sent [N].
+  /// @param user    OwnStabiliser::user
+  /// @param input   of this contact and step; all values are finite, and `force` and `sent` not below 0
+  /// @param memory  of this contact; zero when it begins. StabiliserMemory::own is the function's.
+  using Function = double (*)(void* user, const StabiliserInput& input, StabiliserMemory& memory) noexcept;
+
+  Function function = nullptr;
+  void* user = nullptr;  ///< must outlive all steps with these parameters; steps in several threads share it
 };
 
 /// Parameters of the stabilisers. Each method uses its own.
@@ -35,13 +63,15 @@ struct StabiliserParameters {
   double passivity_damping_max = 10.0;               ///< largest a [N s/m] >= 0, passivity
   double device_damping = 1.6;                       ///< b of the device [N s/m] >= 0, energy bounding
   double wall_valid = 14e-3;                         ///< time for which a local wall may be used [s] > 0
+  OwnStabiliser own = {};                            ///< with a function for Stabiliser::kOwn
 };
 
 /// State of a stabiliser for one contact, beside the force sent. Zero while nothing touches.
 struct StabiliserMemory {
-  double proxy = 0.0;     ///< xp, depth of the virtual coupling's proxy in the wall [m]
-  double energy = 0.0;    ///< E, energy that the finger has put in less what it got back [J]
-  bool touching = false;  ///< the contact pressed at the last step
+  double proxy = 0.0;           ///< xp, depth of the virtual coupling's proxy in the wall [m]
+  double energy = 0.0;          ///< E, energy that the finger has put in less what it got back [J]
+  bool touching = false;        ///< the contact pressed at the last step
+  std::array<double, 4> own{};  ///< state of an OwnStabiliser
 };
 
 /// Inputs of a stabiliser for one contact at one step.
@@ -57,16 +87,17 @@ struct StabiliserInput {
 
 /// Returns the magnitude that the method sends [N]. If nothing presses, smoothing decays at its lower bound,
 /// and the low-pass decays exponentially. All other methods then send 0 and reset their memory.
+/// @param status  gets kCommandNotFinite if the method's result was not finite; null: not reported
 /// @returns [N] finite and >= 0 for any input, if the parameters are finite and in range. Methods that add to
 /// the law's force may exceed the caps, so that the caller applies the caps again.
 /// Real-time: O(1), no allocation, lock, throw or I/O.
 [[nodiscard]] double stabilised_force(const StabiliserParameters& parameters, const StabiliserInput& input,
-                                      StabiliserMemory& memory) noexcept;
+                                      StabiliserMemory& memory, Status* status = nullptr) noexcept;
 
 /// @returns true if the method keeps a contact's force at or below the larger of the law's and the last one
 [[nodiscard]] constexpr bool keeps_below_law(Stabiliser method) noexcept {
   return method != Stabiliser::kKelvinVoigt && method != Stabiliser::kPassivity &&
-         method != Stabiliser::kEnergyBounding;
+         method != Stabiliser::kEnergyBounding && method != Stabiliser::kOwn;
 }
 
 }  // namespace phalanx
