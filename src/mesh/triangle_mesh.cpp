@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace phalanx {
@@ -15,6 +16,25 @@ const Vec3& corner(const TriangleMesh& mesh, const Triangle& t, std::size_t k) {
 }
 
 }  // namespace
+
+TriangleMesh mesh_from_arrays(std::span<const double> coordinates, std::span<const std::int32_t> indices) {
+  const auto refuse = [](const char* what, std::size_t count, const char* remedy) {
+    throw std::invalid_argument("mesh_from_arrays: " + std::to_string(count) + " " + what +
+                                ", not a multiple of three; " + remedy);
+  };
+  if (coordinates.size() % 3 != 0)
+    refuse("coordinates", coordinates.size(), "give x, y and z of each vertex");
+  if (indices.size() % 3 != 0) refuse("indices", indices.size(), "give three vertices for each triangle");
+  TriangleMesh mesh;
+  mesh.vertices.reserve(coordinates.size() / 3);
+  mesh.triangles.reserve(indices.size() / 3);
+  for (std::size_t i = 0; i < coordinates.size(); i += 3)
+    mesh.vertices.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+  for (std::size_t i = 0; i < indices.size(); i += 3)
+    mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  check_mesh(mesh, "mesh_from_arrays");
+  return mesh;
+}
 
 void append(TriangleMesh& mesh, const TriangleMesh& part, const Pose& X) {
   const std::size_t first = mesh.vertices.size();

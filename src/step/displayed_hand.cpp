@@ -153,8 +153,7 @@ class DisplayedHand::Impl::Step {
   };
 
   [[nodiscard]] const Pose& pose_of(int body) const noexcept {
-    static const Pose world{Mat3::Identity(), Vec3::Zero()};
-    return body == kObjectBody ? world : hand_.pose(body);
+    return body == kObjectBody ? world_ : hand_.pose(body);
   }
   [[nodiscard]] double working_gap() const noexcept { return hand_.margin_ + kWorkingGap; }
 
@@ -391,6 +390,7 @@ class DisplayedHand::Impl::Step {
 
   Impl& hand_;
   const JointArray& goal_;
+  const Pose world_;  ///< of the object: the identity
   std::array<bool, kDigits> held_{};           ///< for the rest of the step
   const BodyPair* stopping_ = nullptr;         ///< pair that stopped the last motion
   JointArray lowest_{};                        ///< of a displacement [rad]

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace phalanx {
 namespace {
@@ -89,6 +91,38 @@ TEST(TriangleMesh, CheckNamesTheMeshThePlaceAndTheValue) {
   TriangleMesh negative = unit_tetrahedron();
   negative.triangles[1][0] = -1;
   EXPECT_THAT(mesh_refusal(negative), AllOf(StartsWith("cup.obj: triangle 1"), HasSubstr("vertex -1")));
+}
+
+std::string arrays_refusal(std::vector<double> coordinates, std::vector<std::int32_t> indices) {
+  try {
+    static_cast<void>(mesh_from_arrays(coordinates, indices));
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(MeshFromArrays, HasTheVerticesAndTrianglesInTheirOrder) {
+  const std::vector<double> coordinates{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<std::int32_t> indices{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  const TriangleMesh mesh = mesh_from_arrays(coordinates, indices);
+  EXPECT_EQ(mesh.vertices, unit_tetrahedron().vertices);
+  EXPECT_EQ(mesh.triangles, unit_tetrahedron().triangles);
+}
+
+TEST(MeshFromArrays, RefusesInWordsWhatIsNoMesh) {
+  const std::vector<double> three{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  EXPECT_EQ(arrays_refusal(three, {0, 1, 2}), "accepted");
+  EXPECT_THAT(arrays_refusal({0, 0, 0, 1}, {0, 1, 2}),
+              AllOf(HasSubstr("4 coordinates"), HasSubstr("give x, y and z")));
+  EXPECT_THAT(arrays_refusal(three, {0, 1, 2, 0}),
+              AllOf(HasSubstr("4 indices"), HasSubstr("three vertices for each triangle")));
+  EXPECT_THAT(arrays_refusal(three, {0, 1, 3}),
+              HasSubstr("triangle 0 names vertex 3, but there are 3 vertices"));
+  EXPECT_THAT(arrays_refusal(three, {0, 1, -1}), HasSubstr("names vertex -1"));
+  EXPECT_THAT(arrays_refusal({0, 0, 0, 1, 0, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0}, {0, 1, 2}),
+              HasSubstr("vertex 2 is (0, nan, 0), not finite"));
+  EXPECT_THAT(arrays_refusal(three, {}), HasSubstr("no triangle"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "phalanx/core/math.h"
@@ -23,6 +24,13 @@ struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
 };
+
+/// Makes a mesh from arrays as engines and libraries hold them, in any frame. Set-up only.
+/// @param coordinates  x, y, z of each vertex, one vertex after the other [m]
+/// @param indices      three vertices a triangle, counted from 0, counter-clockwise seen from outside
+/// @throws std::invalid_argument if a length is not a multiple of three, and as check_mesh()
+[[nodiscard]] TriangleMesh mesh_from_arrays(std::span<const double> coordinates,
+                                            std::span<const std::int32_t> indices);
 
 /// Appends `part` to `mesh`, its vertices mapped by `X` (X_mesh_part). `part` may be `mesh`
 /// itself. Set-up only.

@@ -14,26 +14,27 @@
 
 namespace phalanx::mesh {
 
-const std::vector<KeyCut>& key_lower_edge() {
-  static const std::vector<KeyCut> kEdge = [] {
+std::span<const KeyCut> key_lower_edge() {
+  static constexpr std::array<KeyCut, 18> kEdge = [] {
     constexpr std::array<double, 5> kDepths = {0.30, 0.18, 0.36, 0.22, 0.32};
     constexpr double kLand = 0.06;  // remaining depth between two cuts
-    std::vector<KeyCut> edge{{0.0, 0.0}, {0.22, 0.0}};
+    std::array<KeyCut, 18> edge{{{0.0, 0.0}, {0.22, 0.0}}};
+    std::size_t at = 2;
     for (std::size_t i = 0; i < kDepths.size(); ++i) {
       const double begin = 0.275 + 0.14 * static_cast<double>(i);
-      if (i > 0) edge.push_back({begin - 0.045, kLand});
-      edge.push_back({begin, kDepths[i]});
-      edge.push_back({begin + 0.05, kDepths[i]});
+      if (i > 0) edge[at++] = {begin - 0.045, kLand};
+      edge[at++] = {begin, kDepths[i]};
+      edge[at++] = {begin + 0.05, kDepths[i]};
     }
-    edge.push_back({0.93, 0.10});
-    edge.push_back({1.0, 0.45});
+    edge[at++] = {0.93, 0.10};
+    edge[at] = {1.0, 0.45};
     return edge;
   }();
   return kEdge;
 }
 
-const std::vector<KeyCut>& key_upper_edge() {
-  static const std::vector<KeyCut> kEdge{{0.0, 0.0}, {0.93, 0.0}, {1.0, 0.35}};
+std::span<const KeyCut> key_upper_edge() {
+  static constexpr std::array<KeyCut, 3> kEdge{{{0.0, 0.0}, {0.93, 0.0}, {1.0, 0.35}}};
   return kEdge;
 }
 
@@ -86,7 +87,7 @@ TriangleMesh extrude(const PlaneArea& area, double thickness, int bands) {
   return builder.take();
 }
 
-double depth_at(const std::vector<KeyCut>& edge, double along) {
+double depth_at(std::span<const KeyCut> edge, double along) {
   for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
     if (along == edge[i].along) return edge[i].depth;
     if (along < edge[i + 1].along)

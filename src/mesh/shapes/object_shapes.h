@@ -4,6 +4,7 @@
 #pragma once
 
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "mesh/shapes/spun_solid.h"
@@ -62,8 +63,8 @@ struct KeyCut {
   double along;
   double depth;
 };
-[[nodiscard]] const std::vector<KeyCut>& key_lower_edge();
-[[nodiscard]] const std::vector<KeyCut>& key_upper_edge();
+[[nodiscard]] std::span<const KeyCut> key_lower_edge();
+[[nodiscard]] std::span<const KeyCut> key_upper_edge();
 
 // Bumps of the spiky ball: at the poles, 12 around the equator and each latitude of 30 degrees, 6 around each
 // of 60 degrees.

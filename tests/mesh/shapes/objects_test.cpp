@@ -11,6 +11,7 @@
 #include <map>
 #include <ostream>
 #include <stdexcept>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,7 +105,7 @@ double key_volume() {
   const double bow = 0.5 * kKeyBreadth;
   const double blade = mesh::kKeyBlade * bow;  // half its breadth
   const double length = kKeyLength - kKeyBreadth;
-  const auto cut_away = [&](const std::vector<mesh::KeyCut>& edge) {
+  const auto cut_away = [&](std::span<const mesh::KeyCut> edge) {
     double area = 0.0;
     for (std::size_t i = 0; i + 1 < edge.size(); ++i)
       area += 0.5 * (edge[i].depth + edge[i + 1].depth) * (edge[i + 1].along - edge[i].along);
@@ -125,7 +126,7 @@ double off_key(const Vec3& v) {
   const Eigen::Vector2d p(v.x() + 0.5 * kKeyLength - bow, v.y());
   double wall = std::min(std::abs(p.norm() - bow), std::abs(p.norm() - mesh::kKeyHole * bow));
   const double half = mesh::kKeyBlade * bow;
-  const auto line = [&](const std::vector<mesh::KeyCut>& edge, double sign) {
+  const auto line = [&](std::span<const mesh::KeyCut> edge, double sign) {
     for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
       const auto at = [&](const mesh::KeyCut& cut) {
         const double x = i == 0 && &cut == &edge[0] ? bow * std::sqrt(1.0 - mesh::kKeyBlade * mesh::kKeyBlade)
@@ -402,11 +403,11 @@ TEST(Key, HasItsHoleItsBladeAndItsFiveCuts) {
       {0.745, 0.22}, {0.79, 0.06}, {0.835, 0.32}, {0.885, 0.32}, {0.93, 0.10}, {1.0, 0.45}};
   const std::vector<std::pair<double, double>> upper = {{0.0, 0.0}, {0.93, 0.0}, {1.0, 0.35}};
   for (const auto& [edge, corners] :
-       {std::pair{&mesh::key_lower_edge(), &lower}, {&mesh::key_upper_edge(), &upper}}) {
-    ASSERT_EQ(edge->size(), corners->size());
-    for (std::size_t i = 0; i < edge->size(); ++i) {
-      EXPECT_NEAR((*edge)[i].along, (*corners)[i].first, 1e-12) << i;
-      EXPECT_NEAR((*edge)[i].depth, (*corners)[i].second, 1e-12) << i;
+       {std::pair{mesh::key_lower_edge(), &lower}, {mesh::key_upper_edge(), &upper}}) {
+    ASSERT_EQ(edge.size(), corners->size());
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      EXPECT_NEAR(edge[i].along, (*corners)[i].first, 1e-12) << i;
+      EXPECT_NEAR(edge[i].depth, (*corners)[i].second, 1e-12) << i;
     }
   }
 }
