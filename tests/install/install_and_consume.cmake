@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs BUILD_DIR into a fresh prefix under WORK_DIR, moves that prefix (a package must not remember where it was installed), builds
-# the programs in CONSUMER_DIR, README's program and the example driver OWN_DEVICE_DIR against it and runs what came out. Also asks for what
-# the package does not have.
+# Installs BUILD_DIR into a fresh prefix under WORK_DIR, and moves that prefix: a package must not remember where it was installed. Compiles
+# each installed header by itself. Builds the programs in CONSUMER_DIR, README's program and the installed examples against the prefix, and
+# runs them. Also asks for what the package does not have.
 function(must)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   message("${output}")
@@ -25,10 +25,22 @@ foreach(expected bin/phalanx include/phalanx/step/haptic_step.h share/phalanx/as
   endif()
 endforeach()
 
-# The page's server belongs to the program: no installed library has it.
-if(EXISTS ${WORK_DIR}/prefix/include/phalanx/serve)
-  message(FATAL_ERROR "installed without a library: include/phalanx/serve")
+# The headers are those of the lists, and each compiles by itself with nothing but the prefix and Eigen.
+include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/public_headers.cmake)
+set(listed ${PHALANX_PUBLIC_HEADERS} ${PHALANX_IMPORT_PUBLIC_HEADERS} ${PHALANX_SIMULATION_PUBLIC_HEADERS}
+           ${PHALANX_STATION_PUBLIC_HEADERS} ${PHALANX_RECORDING_PUBLIC_HEADERS} ${PHALANX_C_PUBLIC_HEADERS})
+file(GLOB_RECURSE installed RELATIVE ${WORK_DIR}/prefix/include/phalanx ${WORK_DIR}/prefix/include/phalanx/*)
+set(unlisted ${installed})
+list(REMOVE_ITEM unlisted ${listed})
+set(missing ${listed})
+list(REMOVE_ITEM missing ${installed})
+if(unlisted OR missing)
+  message(FATAL_ERROR "include/phalanx has ${unlisted}, which cmake/public_headers.cmake does not list, and has not ${missing}")
 endif()
+list(JOIN listed "\n" lines)
+file(WRITE ${WORK_DIR}/headers.txt "${lines}\n")
+must(bash -c "xargs -P2 -I{} sh -c 'echo \"#include <phalanx/{}>\" | ${CXX} -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
+  $(pkg-config --cflags eigen3 | sed s/-I/-isystem/) -I${WORK_DIR}/prefix/include -x c++ - || { echo {}; exit 255; }' < ${WORK_DIR}/headers.txt")
 
 # Bash can read the script, and it asks the program that was installed with it.
 must(bash -c "PATH=${WORK_DIR}/prefix/bin
@@ -56,18 +68,19 @@ endforeach()
 file(GLOB_RECURSE exported ${WORK_DIR}/prefix/phalanx*.cmake)
 foreach(file ${exported})
   file(READ ${file} text)
-  if(text MATCHES "Boost|embree|PNG::|nlohmann")
+  if(text MATCHES "Boost|embree|PNG::|nlohmann|${BUILD_DIR}|${WORK_DIR}")
     message(FATAL_ERROR "${file} asks for ${CMAKE_MATCH_0}")
   endif()
 endforeach()
 
 # Builds SOURCE with the library phalanx::COMPONENT, with the further options, and runs it. Its output is in `output`.
 function(consume component source)
-  set(build ${WORK_DIR}/${component}_consumer)
+  string(MD5 options "${source} ${ARGN}")
+  set(build ${WORK_DIR}/${component}_${options})
   must(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${build} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
        -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DCOMPONENT=${component} -DSOURCE=${source} ${ARGN})
   must(${CMAKE_COMMAND} --build ${build})
-  must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${build}/consumer)
+  must(${CMAKE_COMMAND} -E env PHALANX_DATA_DIR=${WORK_DIR}/prefix/share/phalanx ${build}/consumer)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
@@ -77,17 +90,43 @@ if(NOT readme MATCHES "```cpp\n([^`]+)```")
   message(FATAL_ERROR "README.md has no program in C++")
 endif()
 file(WRITE ${WORK_DIR}/readme.cpp "${CMAKE_MATCH_1}")
-set(without_station "") # without the packages of phalanx::station
-foreach(package tomlplusplus fmt Threads)
-  list(APPEND without_station -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
-endforeach()
-set(without_import -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON)
-consume(phalanx ${WORK_DIR}/readme.cpp ${without_import} ${without_station})
+function(without name)
+  set(options "")
+  foreach(package ${ARGN})
+    list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+  endforeach()
+  set(${name} ${options} PARENT_SCOPE)
+endfunction()
+without(without_recording Protobuf OpenSSL ZLIB PkgConfig)
+without(without_station Threads)
+list(APPEND without_station ${without_recording})
+without(without_simulation tomlplusplus fmt Qhull TBB)
+list(APPEND without_simulation ${without_station})
+without(without_import assimp meshoptimizer)
+list(APPEND without_import ${without_simulation})
+consume(phalanx ${WORK_DIR}/readme.cpp ${without_import})
 if(NOT output MATCHES "^-0[.][1-9][0-9]* Nm\n$") # the table pushes the finger open
   message(FATAL_ERROR "README's program printed: ${output}")
 endif()
-consume(import import_consumer.cpp ${without_station})
-consume(station station_consumer.cpp)
+consume(import import_consumer.cpp ${without_simulation})
+consume(simulation simulation_consumer.cpp ${without_recording}) # TBB needs Threads
+consume(station station_consumer.cpp ${without_recording})
+
+# A program with other options than the library has the same forces, to the last bit: types are laid out alike, and the program does not
+# replace code of the library.
+consume(phalanx force_hash.cpp)
+set(plain "${output}")
+set(options "-O3" "-O1 -fsanitize=address")
+file(STRINGS /proc/cpuinfo has_avx2 REGEX "^flags.* avx2 " LIMIT_COUNT 1)
+if(has_avx2)
+  list(APPEND options "-O3 -mavx2" "-O3 -mavx2 -fsanitize=address")
+endif()
+foreach(option ${options})
+  consume(phalanx force_hash.cpp "-DCMAKE_CXX_FLAGS=${option}")
+  if(NOT output STREQUAL plain)
+    message(FATAL_ERROR "force_hash.cpp with ${option} printed ${output}, and without options ${plain}")
+  endif()
+endforeach()
 
 # Configures a consumer of phalanx::COMPONENT with the further options. CMake must refuse it and state `reason`.
 function(refuse component reason)
@@ -102,11 +141,24 @@ function(refuse component reason)
   endif()
 endfunction()
 
-refuse(physics "there is no component physics; the components are phalanx, import, station")
+refuse(physics "there is no component physics; the components are phalanx, import, simulation, station, recording")
 refuse(phalanx "phalanx::phalanx needs the package Eigen3 3.4, which was not found" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON)
 
-must(${CMAKE_COMMAND} -S ${OWN_DEVICE_DIR} -B ${WORK_DIR}/own_device -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
-     -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
-must(${CMAKE_COMMAND} --build ${WORK_DIR}/own_device)
-# A session of 1 s, four times slower: it must not fail for a busy machine.
-must(${CMAKE_COMMAND} -E env PHALANX_DATA=${WORK_DIR}/prefix/share/phalanx ${WORK_DIR}/own_device/own_device 1 4)
+# The examples, as installed, each of them under 60 lines.
+set(examples ${WORK_DIR}/prefix/share/doc/phalanx/examples)
+file(GLOB_RECURSE sources ${examples}/0*.cpp)
+foreach(source ${sources})
+  file(STRINGS ${source} lines)
+  list(LENGTH lines count)
+  if(count GREATER_EQUAL 60)
+    message(FATAL_ERROR "${source} has ${count} lines; an example has fewer than 60")
+  endif()
+endforeach()
+must(${CMAKE_COMMAND} -S ${examples} -B ${WORK_DIR}/examples -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_C_COMPILER=${CC}
+     -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DCMAKE_CXX_FLAGS=-Wall\ -Wextra\ -Werror)
+must(${CMAKE_COMMAND} --build ${WORK_DIR}/examples)
+set(arguments_own_device 1 4) # a session of 1 s, four times slower: it must not fail for a busy machine
+set(arguments_recording ${WORK_DIR}/recordings)
+foreach(name step_loop own_object own_force_law own_stabiliser own_device recording game_loop many_hands)
+  must(${CMAKE_COMMAND} -E env PHALANX_DATA_DIR=${WORK_DIR}/prefix/share/phalanx ${WORK_DIR}/examples/${name} ${arguments_${name}})
+endforeach()
