@@ -22,18 +22,18 @@ using test::ball_model;
 using test::grasp;
 using test::Runner;
 
-constexpr int kTicks = 300;
+constexpr int kOwnTicks = 300;
 
-double linear(void* user, double depth, double /*speed*/) noexcept {
+double own_linear(void* user, double depth, double /*speed*/) noexcept {
   return *static_cast<const double*>(user) * depth;
 }
-double damped(void* user, double depth, double speed) noexcept {
+double own_damped(void* user, double depth, double speed) noexcept {
   return std::max(0.0, *static_cast<const double*>(user) * depth + 2.0 * speed);
 }
-double constant(void* user, double /*depth*/, double /*speed*/) noexcept {
+double own_constant(void* user, double /*depth*/, double /*speed*/) noexcept {
   return *static_cast<const double*>(user);
 }
-double unchanged(void* /*user*/, const StabiliserInput& input, StabiliserMemory& /*memory*/) noexcept {
+double own_unchanged(void* /*user*/, const StabiliserInput& input, StabiliserMemory& /*memory*/) noexcept {
   return input.force;
 }
 double sent_always(void* user, const StabiliserInput& /*input*/, StabiliserMemory& /*memory*/) noexcept {
@@ -48,7 +48,7 @@ void expect_same_grasp(const test::Setup& a, const test::Setup& b) {
   Runner one(a);
   Runner other(b);
   double largest = 0.0;
-  for (int n = 0; n <= kTicks; ++n) {
+  for (int n = 0; n <= kOwnTicks; ++n) {
     const Snapshot& expected = one.tick(grasp(n));
     const Snapshot& is = other.tick(grasp(n));
     ASSERT_EQ(is.status, expected.status) << n;
@@ -62,7 +62,7 @@ void expect_same_grasp(const test::Setup& a, const test::Setup& b) {
   EXPECT_GT(largest, 0.5) << "the hand must grasp";
 }
 
-double largest_force(const Snapshot& snapshot) {
+double largest_sent(const Snapshot& snapshot) {
   double largest = 0.0;
   for (const SegmentSnapshot& segment : snapshot.segment) largest = std::max(largest, segment.force);
   return largest;
@@ -75,7 +75,7 @@ TEST(OwnForceLaw, ThatComputesHookesLawGivesItsBitsWithEveryStabiliser) {
     test::Setup own = ball_model(method);
     double stiffness = own.parameters.force.stiffness;
     own.parameters.force.law = ForceLaw::kOwn;
-    own.parameters.force.own = {.function = linear, .user = &stiffness};
+    own.parameters.force.own = {.function = own_linear, .user = &stiffness};
     SCOPED_TRACE(static_cast<int>(method));
     expect_same_grasp(hooke, own);
   }
@@ -87,14 +87,14 @@ TEST(OwnForceLaw, GetsTheLowPassedClosingSpeed) {
   voigt.parameters.force.law = ForceLaw::kKelvinVoigt;
   double stiffness = own.parameters.force.stiffness;
   own.parameters.force.law = ForceLaw::kOwn;
-  own.parameters.force.own = {.function = damped, .user = &stiffness};
+  own.parameters.force.own = {.function = own_damped, .user = &stiffness};
   ASSERT_EQ(voigt.parameters.force.damping, 2.0);
   expect_same_grasp(voigt, own);
 }
 
 TEST(OwnForceLaw, HasItsSlopeMeasuredForLocalWalls) {
   double stiffness = 700.0;
-  const ForceLawParameters law{.law = ForceLaw::kOwn, .own = {.function = linear, .user = &stiffness}};
+  const ForceLawParameters law{.law = ForceLaw::kOwn, .own = {.function = own_linear, .user = &stiffness}};
   EXPECT_NEAR(law_slope(law, 2e-3), 700.0, 1e-6);
   EXPECT_NEAR(law_slope(law, -1e-3), 700.0, 1e-6) << "below the surface its slope there";
   stiffness = -700.0;
@@ -109,13 +109,13 @@ TEST(OwnForceLaw, IsCappedAsEveryOther) {
   test::Setup own = ball_model(Stabiliser::kNone);
   double newtons = 1e6;
   own.parameters.force.law = ForceLaw::kOwn;
-  own.parameters.force.own = {.function = constant, .user = &newtons};
+  own.parameters.force.own = {.function = own_constant, .user = &newtons};
   Runner hand(own);
   bool limited = false;
-  for (int n = 0; n <= kTicks; ++n) {
+  for (int n = 0; n <= kOwnTicks; ++n) {
     const Snapshot& now = hand.tick(grasp(n));
     limited = limited || has(now.status, Status::kForceLimited);
-    ASSERT_LE(largest_force(now), own.parameters.limits.fingertip_force);
+    ASSERT_LE(largest_sent(now), own.parameters.limits.fingertip_force);
     for (const double torque : now.torque) ASSERT_LE(std::abs(torque), own.parameters.limits.joint_torque);
   }
   EXPECT_TRUE(limited);
@@ -127,13 +127,13 @@ TEST(OwnForceLaw, ThatIsNotFiniteGivesNoForceAndStatesIt) {
     test::Setup own = ball_model(Stabiliser::kNone);
     double newtons = bad;
     own.parameters.force.law = ForceLaw::kOwn;
-    own.parameters.force.own = {.function = constant, .user = &newtons};
+    own.parameters.force.own = {.function = own_constant, .user = &newtons};
     Runner hand(own);
     bool stated = false;
-    for (int n = 0; n <= kTicks; ++n) {
+    for (int n = 0; n <= kOwnTicks; ++n) {
       const Snapshot& now = hand.tick(grasp(n));
       stated = stated || has(now.status, Status::kCommandNotFinite);
-      ASSERT_EQ(largest_force(now), 0.0) << n;
+      ASSERT_EQ(largest_sent(now), 0.0) << n;
       for (const double torque : now.torque) ASSERT_EQ(torque, 0.0) << n;
     }
     EXPECT_TRUE(stated) << bad;
@@ -143,7 +143,7 @@ TEST(OwnForceLaw, ThatIsNotFiniteGivesNoForceAndStatesIt) {
 TEST(OwnStabiliser, ThatChangesNothingGivesTheBitsOfNone) {
   const test::Setup none = ball_model(Stabiliser::kNone);
   test::Setup own = ball_model(Stabiliser::kOwn);
-  own.parameters.stabiliser.own = {.function = unchanged, .user = nullptr};
+  own.parameters.stabiliser.own = {.function = own_unchanged, .user = nullptr};
   expect_same_grasp(none, own);
 }
 
@@ -166,10 +166,10 @@ TEST(OwnStabiliser, IsCappedAndNeverPulls) {
     own.parameters.stabiliser.own = {.function = sent_always, .user = &newtons};
     Runner hand(own);
     double largest = 0.0;
-    for (int n = 0; n <= kTicks; ++n) largest = std::max(largest, largest_force(hand.tick(grasp(n))));
+    for (int n = 0; n <= kOwnTicks; ++n) largest = std::max(largest, largest_sent(hand.tick(grasp(n))));
     EXPECT_EQ(largest, newtons > 0.0 ? own.parameters.limits.fingertip_force : 0.0);
-    for (int n = 0; n < 100; ++n) hand.tick(grasp(kTicks));
-    EXPECT_EQ(largest_force(hand.now()), 0.0) << "the hand has left";
+    for (int n = 0; n < 100; ++n) hand.tick(grasp(kOwnTicks));
+    EXPECT_EQ(largest_sent(hand.now()), 0.0) << "the hand has left";
   }
 }
 
@@ -179,10 +179,10 @@ TEST(OwnStabiliser, ThatIsNotFiniteGivesNoForceAndStatesIt) {
   own.parameters.stabiliser.own = {.function = sent_always, .user = &bad};
   Runner hand(own);
   bool stated = false;
-  for (int n = 0; n <= kTicks; ++n) {
+  for (int n = 0; n <= kOwnTicks; ++n) {
     const Snapshot& now = hand.tick(grasp(n));
     stated = stated || has(now.status, Status::kCommandNotFinite);
-    ASSERT_EQ(largest_force(now), 0.0) << n;
+    ASSERT_EQ(largest_sent(now), 0.0) << n;
   }
   EXPECT_TRUE(stated);
 }
@@ -201,12 +201,12 @@ TEST(OwnFunctions, LeaveTheStepWithoutAllocations) {
   test::Setup own = ball_model(Stabiliser::kOwn);
   double stiffness = 500.0;
   own.parameters.force.law = ForceLaw::kOwn;
-  own.parameters.force.own = {.function = linear, .user = &stiffness};
+  own.parameters.force.own = {.function = own_linear, .user = &stiffness};
   own.parameters.stabiliser.own = {.function = rise_by_memory, .user = nullptr};
   Runner hand(own);
   const std::size_t before = test::allocations_of_this_thread();
   double largest = 0.0;
-  for (int n = 0; n <= kTicks; ++n) largest = std::max(largest, largest_force(hand.tick(grasp(n))));
+  for (int n = 0; n <= kOwnTicks; ++n) largest = std::max(largest, largest_sent(hand.tick(grasp(n))));
   EXPECT_EQ(test::allocations_of_this_thread(), before);
   EXPECT_GT(largest, 0.5);
 }

@@ -2,7 +2,7 @@
 // The mechanics of exoskeleton and finger: motors, tendons in sheaths, joints, the patient's impedance.
 //
 // The simulated exoskeleton consists of these mechanics, the motors' force distribution (transmission.h),
-// sensors and delays (simulated_exoskeleton.h), and the controller (simulated_controller.h). A simulated
+// sensors and delays (simulated_exoskeleton.h), and a controller that the link reaches. A simulated
 // patient (patient.h, press_intent.h) moves it from the inside.
 #pragma once
 
