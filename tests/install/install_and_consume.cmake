@@ -37,10 +37,8 @@ list(REMOVE_ITEM missing ${installed})
 if(unlisted OR missing)
   message(FATAL_ERROR "include/phalanx has ${unlisted}, which cmake/public_headers.cmake does not list, and has not ${missing}")
 endif()
-list(JOIN listed "\n" lines)
-file(WRITE ${WORK_DIR}/headers.txt "${lines}\n")
-must(bash -c "xargs -P2 -I{} sh -c 'echo \"#include <phalanx/{}>\" | ${CXX} -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
-  $(pkg-config --cflags eigen3 | sed s/-I/-isystem/) -I${WORK_DIR}/prefix/include -x c++ - || { echo {}; exit 255; }' < ${WORK_DIR}/headers.txt")
+list(TRANSFORM listed PREPEND phalanx/)
+must(${CMAKE_CURRENT_LIST_DIR}/compile_headers ${CXX} ${WORK_DIR}/prefix/include ${listed})
 
 # Bash can read the script, and it asks the program that was installed with it.
 must(bash -c "PATH=${WORK_DIR}/prefix/bin
