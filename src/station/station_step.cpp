@@ -71,6 +71,27 @@ double share_sent(const JointArray& wanted, const JointArray& sent, int digit, d
 
 }  // namespace
 
+void describe_rendering(const Rendering& rendering, Status status, const JointArray& sent,
+                        StepRecord& out) noexcept {
+  const Snapshot& shown = rendering.state.snapshot();
+  out.status = status;
+  out.stiffness = rendering.ramp.parameters().force.stiffness;
+  out.angle = shown.hcp_angle;
+  out.angle_origin = shown.angle_origin;
+  out.measured_force = shown.measured_force;
+  const bool limited = has(status, Status::kTorqueLimited) || has(status, Status::kTorqueRateLimited);
+  const JointArray wanted = limited ? unlimited_torques(rendering.model->hand, shown) : shown.torque;
+  for (int digit = 0; digit < kDigits; ++digit) {
+    out.sent_share[idx(digit)] = share_sent(wanted, sent, digit, out.factor);
+    describe_digit(shown, digit, out);
+  }
+  const HandParameters& hand = rendering.model->hand.parameters();
+  for (int digit = 0; digit < kDigits; ++digit) {
+    const Vec3 pad = pad_in_world(hand, digit, shown.hcp_pose[idx(segment_index(digit, 2))]);
+    out.pad[idx(digit)] = {pad.x(), pad.y(), pad.z()};
+  }
+}
+
 StationStep::StationStep(std::unique_ptr<Rendering> first, ChannelMap map, const DeviceInfo& device,
                          const SafetySettings& safety, std::vector<MotorWitness> witnesses, double period)
     : channels_(std::move(map)),
@@ -152,28 +173,12 @@ void StationStep::end_running() noexcept {
 }
 
 void StationStep::describe(StepRecord& out) const noexcept {
-  const Snapshot& shown = snapshot();
   out.sample_sequence = newest_sample_.sequence;
   out.sample_time_us = newest_sample_.time_us;
   out.state = safety_.state();
   out.fault = safety_.fault().fault;
   out.factor = safety_.factor();
-  out.status = status_;
-  out.stiffness = rendering_->ramp.parameters().force.stiffness;
-  out.angle = shown.hcp_angle;
-  out.angle_origin = shown.angle_origin;
-  out.measured_force = shown.measured_force;
-  const bool limited = has(status_, Status::kTorqueLimited) || has(status_, Status::kTorqueRateLimited);
-  const JointArray wanted = limited ? unlimited_torques(rendering_->model->hand, shown) : shown.torque;
-  for (int digit = 0; digit < kDigits; ++digit) {
-    out.sent_share[idx(digit)] = share_sent(wanted, command_.torque, digit, out.factor);
-    describe_digit(shown, digit, out);
-  }
-  const HandParameters& hand = rendering_->model->hand.parameters();
-  for (int digit = 0; digit < kDigits; ++digit) {
-    const Vec3 pad = pad_in_world(hand, digit, shown.hcp_pose[idx(segment_index(digit, 2))]);
-    out.pad[idx(digit)] = {pad.x(), pad.y(), pad.z()};
-  }
+  describe_rendering(*rendering_, status_, command_.torque, out);
 }
 
 std::uint64_t StationStep::hash() const noexcept {

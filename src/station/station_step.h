@@ -32,6 +32,12 @@ struct Rendering {
   std::uint64_t change;
 };
 
+/// Writes what the newest step of a rendering was: status, stiffness, angles, forces and contacts. Real-time.
+/// @param sent  torques in the command [Nm]
+/// @param out   has StepRecord::factor already
+void describe_rendering(const Rendering& rendering, Status status, const JointArray& sent,
+                        StepRecord& out) noexcept;
+
 /// State of a station's steps. A step is made by these calls, in this order; each may be left out but the last one:
 /// serve(), confirm_openings(), wait_for_exchange() and exchange(), change_to(), step(). Same set-up and same calls, same
 /// commands to the last bit: neither time nor other threads have another way in.

@@ -23,6 +23,7 @@
 #include "record/mcap/mcap_reader.h"
 #include "record/mcap/mcap_repair.h"
 #include "record/plain_text.h"
+#include "record/recording/own_steps.h"
 #include "record/recording/recording_messages.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
@@ -309,6 +310,10 @@ class MotionReader {
     }
     if (schema != "phalanx.wire.Step" || !map_ || !parsed(message, step_)) return;
     if (step_.station() != setup_.station()) return;  // its setup is lost
+    if (setup_.own_steps()) {
+      read_own_sample(step_, sample_);
+      return add(sample_.angle_origin);
+    }
     read_samples(step_, samples_);
     for (const DeviceSample& raw : samples_) add(raw);
   }
@@ -320,9 +325,12 @@ class MotionReader {
  private:
   void add(const DeviceSample& raw) {
     map_->convert(raw, sample_);
+    add(map_->angle_origins());
+  }
+  void add(const AngleOrigins& origins) {
     if (!motion_.time_s.empty() && sample_.time_s == motion_.time_s.back()) return;
     if (!motion_.time_s.empty() && sample_.time_s < motion_.time_s.back()) keep_longest();
-    motion_.angle_origin = map_->angle_origins();
+    motion_.angle_origin = origins;
     motion_.time_s.push_back(sample_.time_s);
     motion_.angle.push_back(sample_.angle);
   }

@@ -17,6 +17,7 @@
 #include "phalanx/record/made.h"
 #include "phalanx/record/replay_visitor.h"
 #include "record/mcap/mcap_reader.h"
+#include "record/recording/own_steps.h"
 #include "record/recording/recording_messages.h"
 #include "record/recording/setup_message.h"
 #include "record/recording/step_message.h"
@@ -76,7 +77,7 @@ class Replay {
     }
     if (result_.stations == 0)
       throw std::runtime_error(
-          fmt::format("{}: it holds no station; it is no recording of `phalanx run`", name_.string()));
+          fmt::format("{}: it holds no station; it is no recording of Phalanx", name_.string()));
     origin();
     return std::move(result_);
   }
@@ -124,11 +125,19 @@ class Replay {
   void begin(const wire::Setup& setup) {
     const std::string place = fmt::format("station {}", setup.station());
     model_ = made(place, [&] { return read_model(setup.start().model()); });
-    station_ = made(place, [&] { return read_station(setup, model_); });
+    station_.reset();
+    own_.reset();
+    if (setup.own_steps())
+      own_ = made(place, [&] {
+        return std::make_unique<OwnSteps>(
+            std::make_unique<Rendering>(model_, read_parameters(setup.start())));
+      });
+    else
+      station_ = made(place, [&] { return read_station(setup, model_); });
     first_model_ = model_;
     model_of_ = 0;
     changes_.clear();
-    channels_ = station_->channels().channels();
+    channels_ = station_ ? station_->channels().channels() : std::vector<DeviceChannel>();
     same_machine_ = metadata("libm") == fmt::format("{:016x}", libm_fingerprint());
     number_ = setup.station();
     tick_ = 0;
@@ -181,7 +190,7 @@ class Replay {
     if (result_.steps == 1) begin_time_ = recorded.time();
     result_.seconds = recorded.time() - begin_time_;
     // A station's beginning, or steps of it, may be lost with a damaged part of the file.
-    if (!station_ || recorded.station() != number_) return not_made(recorded);
+    if ((!station_ && !own_) || recorded.station() != number_) return not_made(recorded);
     if (recorded.tick() > tick_ + 1) {
       result_.missing += recorded.tick() - tick_ - 1;
       if (visitor_ != nullptr) visitor_->missing(number_, tick_ + 1, recorded.tick() - 1);
@@ -189,6 +198,7 @@ class Replay {
     if (recorded.tick() != tick_ + 1) lost_ = true;
     tick_ = recorded.tick();
     if (lost_) return not_made(recorded);
+    if (own_) return own_step(recorded);
     make(recorded);
     compare(recorded);
     if (visitor_ != nullptr) show(recorded);
@@ -205,6 +215,28 @@ class Replay {
     visitor_->step(made, samples_, message_time_);
   }
 
+  /// Makes a step of a program that called step() itself, and compares it.
+  void own_step(const wire::Step& recorded) {
+    if (recorded.changed() != 0) own_->change_to(parameters_of(recorded.changed()));
+    made(fmt::format("tick {}", recorded.tick()), [&] { own_->make(recorded); });
+    StepRecord made;
+    made.station = number_;
+    made.input = read_input(recorded);
+    own_->describe(made);
+    ++result_.compared;
+    const double torque = torque_difference(recorded, made.command.torque);
+    result_.largest_torque = std::max(result_.largest_torque, torque);
+    const bool same =
+        same_machine_ ? made.hash == recorded.hash()
+                      : torque <= ReplayResult::kTolerance && same_angles(recorded, made.command.gdp_angle);
+    if (!same) differs(recorded, "angles, forces or torques (their hash differs)");
+    if (visitor_ != nullptr) visitor_->step(made, {}, message_time_);
+  }
+
+  HapticParameters parameters_of(std::uint64_t change) {
+    return made(fmt::format("change {}", change), [&] { return read_parameters(change_of(change)); });
+  }
+
   void make(const wire::Step& recorded) {
     const StepInput input = read_input(recorded);
     read_samples(recorded, samples_);
@@ -212,9 +244,7 @@ class Replay {
     if (!station_->ending()) {
       if (input.waits) static_cast<void>(station_->wait_for_exchange());
       if (input.exchanged != 0) static_cast<void>(station_->exchange(rendering_of(input.exchanged)));
-      if (input.changed != 0)
-        station_->change_to(made(fmt::format("change {}", input.changed),
-                                 [&] { return read_parameters(change_of(input.changed)); }));
+      if (input.changed != 0) station_->change_to(parameters_of(input.changed));
     }
     station_->confirm_openings(input.openings);
     static_cast<void>(station_->step(samples_, input.connection, input.late, input.time));
@@ -222,16 +252,19 @@ class Replay {
 
   void compare(const wire::Step& recorded) {
     ++result_.compared;
-    const double torque = torque_difference(recorded);
+    const double torque = torque_difference(recorded, station_->command().torque);
     result_.largest_torque = std::max(result_.largest_torque, torque);
     const std::string check = channel_check(samples_, channels_.size());
     const bool same_input = check == recorded.channel_check();
     const bool same = same_machine_ ? station_->hash() == recorded.hash() : close(recorded, torque);
     if (same && same_input) return;
+    if (result_.first && visitor_ == nullptr) return differs(recorded, {});
+    differs(recorded,
+            same_input ? output_difference(recorded) : input_difference(check, recorded.channel_check()));
+  }
+
+  void differs(const wire::Step& recorded, std::string what) {
     ++result_.different;
-    if (result_.first && visitor_ == nullptr) return;
-    std::string what =
-        same_input ? output_difference(recorded) : input_difference(check, recorded.channel_check());
     if (visitor_ != nullptr) visitor_->different(number_, recorded.tick(), what);
     if (result_.first) return;
     result_.first = {.station = number_,
@@ -244,11 +277,17 @@ class Replay {
     return recorded.torque_size() == kJoints ? recorded.torque(static_cast<int>(joint)) : 0.0;
   }
 
-  [[nodiscard]] double torque_difference(const wire::Step& recorded) const {
+  [[nodiscard]] static double torque_difference(const wire::Step& recorded, const JointArray& made) {
     double largest = 0.0;
     for (std::size_t j = 0; j < kJoints; ++j)
-      largest = std::max(largest, std::abs(station_->command().torque[j] - recorded_torque(recorded, j)));
+      largest = std::max(largest, std::abs(made[j] - recorded_torque(recorded, j)));
     return largest;
+  }
+
+  [[nodiscard]] static bool same_angles(const wire::Step& recorded, const JointArray& made) {
+    for (int j = 0; j < recorded.gdp_angle_size() && j < kJoints; ++j)
+      if (!(std::abs(made[idx(j)] - recorded.gdp_angle(j)) <= ReplayResult::kTolerance)) return false;
+    return true;
   }
 
   [[nodiscard]] bool close(const wire::Step& recorded, double torque) const {
@@ -256,11 +295,7 @@ class Replay {
     if (static_cast<int>(station_->safety().state()) != static_cast<int>(recorded.state())) return false;
     for (std::size_t d = 0; d < station_->command().stopped.size(); ++d)
       if (station_->command().stopped[d] != ((recorded.stopped() >> d & 1U) != 0)) return false;
-    for (int j = 0; j < recorded.gdp_angle_size() && j < kJoints; ++j)
-      if (!(std::abs(station_->snapshot().gdp_angle[idx(j)] - recorded.gdp_angle(j)) <=
-            ReplayResult::kTolerance))
-        return false;
-    return true;
+    return same_angles(recorded, station_->snapshot().gdp_angle);
   }
 
   /// Names the first channel whose raw values are not those that the station got.
@@ -309,6 +344,7 @@ class Replay {
   std::shared_ptr<const HapticModel> model_;
   std::shared_ptr<const HapticModel> first_model_;  ///< of the station's setup
   std::unique_ptr<StationStep> station_;
+  std::unique_ptr<OwnSteps> own_;  ///< of a program that called step() itself; then there is no station_
   std::vector<DeviceChannel> channels_;
   std::vector<DeviceSample> samples_;
   std::uint64_t number_ = 0;  ///< of the station

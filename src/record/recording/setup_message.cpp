@@ -249,6 +249,23 @@ void write_change(const SessionChange& change, const std::string& device_spec, w
   out.set_source(wire_source(setup.source));
 }
 
+void write_own_setup(const SessionGeometry& geometry, const std::string& scene, const Overrides& values,
+                     wire::Setup& out) {
+  out.Clear();
+  out.set_station(1);
+  SessionChange start;
+  start.scene = scene;
+  start.values = values;
+  write_change(start, *out.mutable_start());
+  write_model(geometry, *out.mutable_start()->mutable_model());
+  out.set_device_spec("program");
+  out.set_device_name("program");
+  out.set_device_rate_hz(geometry.rate_hz);
+  write_followers({}, out);
+  out.set_source(wire_source(HandSource::kDevice));
+  out.set_own_steps(true);
+}
+
 std::shared_ptr<const HapticModel> read_model(const wire::Model& model) {
   Pose X_WH;
   Numbers pose(model.pose(), "the hand's pose");

@@ -16,6 +16,10 @@ namespace phalanx {
 void write_change(const SessionChange& change, const std::string& device_spec, wire::Setup& out);
 void write_change(const SessionChange& change, wire::Change& out);
 
+/// Writes the beginning of a program's own steps. `out` is cleared first.
+void write_own_setup(const SessionGeometry& geometry, const std::string& scene, const Overrides& values,
+                     wire::Setup& out);
+
 /// Makes a model of the numbers of a recording. Set-up only.
 /// @throws std::invalid_argument if numbers are missing, or as HandModel and ObjectModel
 [[nodiscard]] std::shared_ptr<const HapticModel> read_model(const wire::Model& model);
