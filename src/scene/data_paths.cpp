@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "phalanx/scene/data_paths.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,6 +34,14 @@ fs::path data_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   std::vector<std::string> tried;
   if (!error) tried.push_back((program.parent_path() / "../share/phalanx").lexically_normal());
+  // A shared library has the code of this function: libphalanx.so.0, or a module of Python.
+  Dl_info own{};
+  if (::dladdr(reinterpret_cast<const void*>(&data_folder), &own) != 0 && own.dli_fname != nullptr)
+    if (const fs::path folder = fs::absolute(own.dli_fname, error).parent_path(); !error)
+      for (const char* up : {"../share/phalanx", "../../share/phalanx"})
+        if (fs::path beside = (folder / up).lexically_normal();
+            std::find(tried.begin(), tried.end(), beside.string()) == tried.end())
+          tried.push_back(beside);
   for (const char* configured : {PHALANX_SOURCE_TREE, PHALANX_INSTALLED_DATA})
     if (*configured != '\0') tried.emplace_back(configured);
   for (const std::string& folder : tried)

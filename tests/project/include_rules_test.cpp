@@ -53,13 +53,15 @@ const Table& allowed_includes() {
   return table;
 }
 
+constexpr const char* kCHeader = "phalanx/phalanx.h";  // of no folder: it includes nothing of the project
+
 // "phalanx/tick.pb.h", which the build makes of proto/phalanx/tick.proto.
 bool is_generated(const std::string& path) { return path.ends_with(".pb.h"); }
 
 // The module that a quoted include names, from the project's root of includes ("phalanx/mesh/x.h", or
 // "mesh/x.h" below src/); empty for a file beside the one that includes it.
 std::string module_of_include(const std::string& path) {
-  if (is_generated(path)) return {};
+  if (is_generated(path) || path == kCHeader) return {};
   static const std::regex with_module(R"((?:phalanx/)?([a-z_]+)/.*)");
   std::smatch match;
   return std::regex_match(path, match, with_module) ? match[1].str() : std::string();

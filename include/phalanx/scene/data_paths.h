@@ -10,7 +10,8 @@ namespace phalanx {
 
 /// Finds the folder that holds scenes/ and assets/. It is the environment's PHALANX_DATA_DIR if set. Otherwise it
 /// is ../share/phalanx beside the running program's folder, if that exists (an installed program). Otherwise
-/// it is the source tree from which the library was built, else share/phalanx of the prefix that CMake was
+/// it is ../share/phalanx or ../../share/phalanx beside the folder of a shared library that holds this function.
+/// Otherwise it is the source tree from which the library was built, else share/phalanx of the prefix that CMake was
 /// configured with.
 /// @throws SceneError naming the places that were tried if none has a scenes/ and an assets/
 /// folder. Set-up only.
