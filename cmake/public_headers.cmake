@@ -80,4 +80,5 @@ set(PHALANX_RECORDING_PUBLIC_HEADERS # of phalanx::recording
     record/recordings.h
     record/replay.h
     record/replay_visitor.h
-    record/session_recorder.h)
+    record/session_recorder.h
+    record/step_recorder.h)

@@ -32,7 +32,6 @@ int main(int argc, char** argv) {
   check(phalanx_motion_get_seconds(motion, &seconds));
   check(phalanx_state_get_rate(state, &rate));
   const long steps = (long)(seconds * rate + 0.5);
-
   phalanx_sample sample = {.struct_size = sizeof sample};
   phalanx_snapshot now = {.struct_size = sizeof now};
   uint64_t forces = 0xcbf29ce484222325u, all = forces;

@@ -58,7 +58,7 @@ class StepRecorder {
   void add(const OwnStep& step);
   /// Adds something that happened, at the time of the last step. @param who  may be empty
   void event(const std::string& code, const std::string& who, const std::string& text);
-  /// Writes the rest and the file's end. A second call has no effect.
+  /// Writes the rest and the file's end, and closes the file. A second call has no effect.
   /// @throws std::runtime_error if the disk refuses; it may be called again then
   void finish();
 

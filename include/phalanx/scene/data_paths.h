@@ -8,17 +8,17 @@
 
 namespace phalanx {
 
-/// Finds the folder that holds scenes/ and assets/. It is the environment's PHALANX_DATA_DIR if set. Otherwise it
-/// is ../share/phalanx beside the running program's folder, if that exists (an installed program). Otherwise
-/// it is ../share/phalanx or ../../share/phalanx beside the folder of a shared library that holds this function.
-/// Otherwise it is the source tree from which the library was built, else share/phalanx of the prefix that CMake was
-/// configured with.
+/// Finds the folder that holds scenes/ and assets/. It is the environment's PHALANX_DATA_DIR if set.
+/// Otherwise it is the first of these folders that has both: ../share/phalanx beside the running program's
+/// folder (an installed program); ../share/phalanx or ../../share/phalanx beside the folder of a shared
+/// library that holds this function; the source tree from which the library was built; share/phalanx of the
+/// prefix that CMake was configured with.
 /// @throws SceneError naming the places that were tried if none has a scenes/ and an assets/
 /// folder. Set-up only.
 [[nodiscard]] std::filesystem::path data_folder();
 
-/// Finds a data file by bare name (`folder`/`name``extension` in data_folder()) or by path. `name` is a path
-/// if it contains a `/` or ends with `extension`; a relative path is searched in `base`.
+/// Finds a data file by bare name (`folder`/`name``extension` in data_folder()) or by path. `name` is a
+/// path if it contains a `/` or ends with `extension`; a relative path is searched in `base`.
 /// @param what    kind of file, for messages: "hand", "scene"
 /// @param folder  "assets/hands", "scenes", ...
 /// @throws SceneError if there is no such file; for a bare name it names the nearest existing
@@ -27,8 +27,8 @@ namespace phalanx {
                                                    const std::string& folder, const std::string& extension,
                                                    const std::filesystem::path& base);
 
-/// @returns the sorted names, without extension, of a folder's files with this extension; none if the folder
-/// cannot be read. Set-up only.
+/// @returns the sorted names, without extension, of a folder's files with this extension; none if the
+/// folder cannot be read. Set-up only.
 [[nodiscard]] std::vector<std::string> names_in_folder(const std::filesystem::path& folder,
                                                        const std::string& extension);
 

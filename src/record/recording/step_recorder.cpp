@@ -206,6 +206,7 @@ void StepRecorder::finish() {
   try {
     impl.writer.finish();
     impl.finished = true;
+    impl.file.reset();  // no longer locked: other programs see that it is whole
   } catch (const std::system_error& error) {
     throw std::runtime_error(
         fmt::format("{}: the disk refuses ({})", impl.name.string(), error.code().message()));
