@@ -37,6 +37,12 @@ void check_part(const ExportOptions& options) {
           fmt::format("there is no part '{}' in this format; known: {}", wanted, fmt::join(known, ", ")));
 }
 
+void check_range(const ExportOptions& options) {
+  if (!(options.from >= 0.0 && options.from < options.to))
+    throw std::invalid_argument(fmt::format("from {} s to {} s there is no time; the recording begins at 0",
+                                            options.from, options.to));
+}
+
 void check(const fs::path& target, const ExportOptions& options) {
   check_part(options);
   const bool tables = options.format == ExportFormat::kCsv || options.format == ExportFormat::kHdf5 ||
@@ -44,9 +50,7 @@ void check(const fs::path& target, const ExportOptions& options) {
   if (!options.columns.empty() && !tables)
     throw std::invalid_argument(
         "columns can be chosen for csv, hdf5 and matlab; of the other formats, choose parts");
-  if (!(options.from >= 0.0 && options.from < options.to))
-    throw std::invalid_argument(fmt::format("from {} s to {} s there is no time; the recording begins at 0",
-                                            options.from, options.to));
+  check_range(options);
   std::error_code ignored;
   if (fs::exists(target, ignored))
     throw std::invalid_argument(fmt::format("'{}' exists; name a target that does not", target.string()));
@@ -130,19 +134,25 @@ class ExportObserver final : public ReplayVisitor {
   HandObserver observer_;
 };
 
+std::vector<ExportedPart> write(const fs::path& recording, ExportSink& sink, const ExportOptions& options,
+                                const std::function<void(double)>& on_progress,
+                                const FindRecordingKey& keys) {
+  for_each_message_of(recording, on_progress, keys,
+                      [&](std::string_view schema, const mcap::Message& message, double time) {
+                        sink.add(schema, message, time, time >= options.from && time < options.to);
+                      });
+  if (std::find(options.parts.begin(), options.parts.end(), "observations") != options.parts.end()) {
+    ExportObserver observer(sink, options);
+    static_cast<void>(replay(recording, on_progress, &observer, keys));
+  }
+  return sink.finish();
+}
+
 std::vector<ExportedPart> write(const fs::path& recording, const fs::path& target,
                                 const ExportOptions& options, const std::function<void(double)>& on_progress,
                                 const FindRecordingKey& keys) {
   const std::unique_ptr<ExportSink> sink = sink_for(target, read_beginning(recording, keys), options);
-  for_each_message_of(recording, on_progress, keys,
-                      [&](std::string_view schema, const mcap::Message& message, double time) {
-                        sink->add(schema, message, time, time >= options.from && time < options.to);
-                      });
-  if (std::find(options.parts.begin(), options.parts.end(), "observations") != options.parts.end()) {
-    ExportObserver observer(*sink, options);
-    static_cast<void>(replay(recording, on_progress, &observer, keys));
-  }
-  return sink->finish();
+  return write(recording, *sink, options, on_progress, keys);
 }
 
 void remove_folder(const fs::path& folder) noexcept {
@@ -186,6 +196,15 @@ std::vector<ExportPart> export_parts(ExportFormat format) {
   std::vector<ExportPart> parts;
   for (const ExportTable& table : export_tables()) parts.push_back({table.name, table.meaning});
   return parts;
+}
+
+std::vector<ExportedPart> read_tables(const fs::path& recording, std::unique_ptr<TableFormat> format,
+                                      const ExportOptions& options,
+                                      const std::function<void(double)>& on_progress,
+                                      const FindRecordingKey& keys) {
+  check_part(options);
+  check_range(options);
+  return write(recording, *table_sink(std::move(format), options), options, on_progress, keys);
 }
 
 std::vector<ExportedPart> export_recording(const fs::path& recording, const fs::path& target,

@@ -84,6 +84,15 @@ struct ExportOrigin {
   std::uint64_t begin_utc = 0;  ///< of its first message [ns since 1970]
 };
 
+/// Reads a recording and hands its rows to a format of the caller's own.
+/// @param options  of kCsv: parts, columns, from and to
+/// @param on_progress, keys  as export_recording()
+/// @throws as export_recording(), and what `format` throws
+std::vector<ExportedPart> read_tables(const std::filesystem::path& recording,
+                                      std::unique_ptr<TableFormat> format, const ExportOptions& options,
+                                      const std::function<void(double)>& on_progress,
+                                      const FindRecordingKey& keys);
+
 [[nodiscard]] std::unique_ptr<TableFormat> csv_format(const std::filesystem::path& folder);
 [[nodiscard]] std::unique_ptr<TableFormat> hdf5_format(const std::filesystem::path& file,
                                                        const ExportOrigin& origin);
