@@ -37,8 +37,9 @@ std::string statement_of(const std::filesystem::path& file) {
 
 TEST(Licence, EverySourceFileNamesItInItsFirstThreeLines) {
   std::size_t files = 0;
-  for (const auto* folder : {"include", "src", "apps", "tests", "bench", "examples", "cmake", "scripts"}) {
-    for (const auto& file : files_below(folder, {".h", ".cpp", ".cmake", ".in", ".sh"})) {
+  for (const auto* folder :
+       {"include", "src", "apps", "tests", "bench", "examples", "cmake", "scripts", "python"}) {
+    for (const auto& file : files_below(folder, {".h", ".cpp", ".cmake", ".in", ".sh", ".py", ".pyi"})) {
       EXPECT_TRUE(names_our_licence(file)) << file;
       ++files;
     }
