@@ -42,9 +42,17 @@ inline std::filesystem::path read_path(const py::handle& path) {
   return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
 }
 
-/// Refuses to copy or pickle the objects of a class: Python would make one that C++ has not constructed.
+/// Makes an object that its constructor fills, as pybind11 does.
+inline PyObject* new_object(PyTypeObject* type, PyObject* arguments, PyObject* names) {
+  return py::detail::pybind11_object_new(type, arguments, names);
+}
+
+/// Closes the two ways on which Python makes an object that C++ has not constructed, whose use would crash:
+/// copying and pickling, and a call of Class.__new__. Python refuses the latter for a class whose function for
+/// new objects is not that of its base.
 template <class Class>
-void refuse_pickling(Class& bound) {
+void close_class(Class& bound) {
+  reinterpret_cast<PyTypeObject*>(bound.ptr())->tp_new = &new_object;
   const auto refuse = [](const py::object& self, const py::args&) -> py::object {
     throw py::type_error("cannot copy or pickle a " +
                          py::type::handle_of(self).attr("__name__").template cast<std::string>());

@@ -223,7 +223,7 @@ void bind_run(py::module_& module) {
 Each column is a read-only NumPy array on the memory that the motion was computed into; nothing is copied.
 An array keeps this memory alive, also without its Run. (20,) is in the order of JOINTS, (16,) in that of
 SEGMENTS, and the first dimension of every column is the step.)");
-  refuse_pickling(run);
+  close_class(run);
   for (const Column& column : columns())
     run.def_property_readonly(
         column.name.c_str(),

@@ -240,7 +240,7 @@ void number(py::class_<Trial>& trial, const char* name, Member TrialResult::* me
 
 void bind_trial(py::module_& module) {
   py::class_<Trial> trial(module, "Trial", "Result of one seed in the closed loop; docs/stability.md.");
-  refuse_pickling(trial);
+  close_class(trial);
   trial.def_readonly("seed", &Trial::seed, "Seed of all random numbers.");
   number(trial, "valid", &TrialResult::valid, "True if the trial proves something.");
   number(trial, "why_invalid", &TrialResult::why_invalid, "A few words; empty if valid.");
@@ -272,7 +272,7 @@ void bind_laboratory(py::module_& module) {
 
 The patient presses, is bumped, holds and releases; docs/stability.md. The object is constant: trials do not
 depend on each other.)");
-  refuse_pickling(loop);
+  close_class(loop);
   loop.def(py::init([](const Scene& scene) {
              const Scene copy = scene;
              const py::gil_scoped_release release;
@@ -313,7 +313,7 @@ columns: names of the columns to record; None: those of docs/python.md; False: n
                           R"(A sweep over keys of a scene in the closed loop, as docs/cli.md describes it.
 
 file: path of a study file (.toml).)");
-  refuse_pickling(study);
+  close_class(study);
   study.def(py::init([](const fs::path& file) { return load_study(file); }), py::arg("file"))
       .def_static(
           "from_text",

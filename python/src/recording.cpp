@@ -173,7 +173,7 @@ void bind_recording(py::module_& module) {
 file: path of a .mcap or .mcap.enc file.
 keys: path of the key file for an encrypted recording; "": none.
 passphrase: of the key file; "": it has none.)");
-  refuse_pickling(recording);
+  close_class(recording);
   recording
       .def(py::init([](const fs::path& file, const fs::path& keys, const std::string& passphrase) {
              const py::gil_scoped_release release;

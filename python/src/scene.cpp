@@ -203,7 +203,7 @@ ResolvedScene Scene::resolve(const ResolveOptions& options) const {
 
 void bind_scene(py::module_& module) {
   py::class_<KeyRow> row(module, "SceneKey", "A key that a scene may state, as docs/scenes.md lists it.");
-  refuse_pickling(row);
+  close_class(row);
   row.def_readonly("path", &KeyRow::path, "Name as in a file, such as \"force.law\" or \"objects[].kind\".")
       .def_readonly("type", &KeyRow::type, "number, integer, flag, text, choice, vector, file or name.")
       .def_readonly("unit", &KeyRow::unit, "Unit of its number; empty: none.")
@@ -220,7 +220,7 @@ set: values of further keys, as "--set" on the command line: {"force.stiffness_n
 
 scene[key] reads a value, or its default. scene[key] = value sets it, or raises SceneError and changes
 nothing. Units are part of the keys' names; docs/scenes.md lists them, and so does scene_keys().)");
-  refuse_pickling(scene);
+  close_class(scene);
   scene
       .def(py::init([](const py::object& source, const py::dict& set) {
              const std::string name = py::isinstance<py::str>(source)

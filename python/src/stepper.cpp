@@ -207,7 +207,7 @@ void bind_snapshot(py::module_& module) {
 
 Its arrays are read-only views of its memory; a later step does not change them. "Measured" is the hand at the
 device's angles (HCP), "shown" the hand that does not penetrate (GDP).)");
-  refuse_pickling(snapshot);
+  close_class(snapshot);
   for (const Column& column : columns())
     snapshot.def_property_readonly(
         column.name.c_str(),
@@ -224,7 +224,7 @@ void bind_motion(py::module_& module) {
 
 time_s: (n,) increasing times [s].
 angle_rad: (n, 20) angles in the order of JOINTS [rad].)");
-  refuse_pickling(bound);
+  close_class(bound);
   bound.def(py::init(&make_python_motion), py::arg("time_s"), py::arg("angle_rad"))
       .def_property_readonly(
           "time_s",
@@ -273,7 +273,7 @@ void bind_stepper(py::module_& module) {
                             R"(The hand of a scene, its objects, and the state between steps.
 
 It begins at the open hand at time 0. A call while another thread is in one raises Error.)");
-  refuse_pickling(bound);
+  close_class(bound);
   bound
       .def(py::init([](const Scene& scene) {
              const Scene copy = scene;

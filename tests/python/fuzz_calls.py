@@ -105,7 +105,7 @@ def entries(known):
                         continue
                     if isinstance(inspect.getattr_static(value, part), property):
                         found.append((entry, lambda *a, o=object_, p=part, **k: getattr(o, p)))
-                    elif not part.startswith("__") or part in ("__getitem__", "__setitem__", "__len__", "__init__",
+                    elif not part.startswith("__") or part in ("__getitem__", "__setitem__", "__len__", "__init__", "__new__",
                                                                "__repr__", "__getstate__", "__reduce__"):
                         found.append((entry, lambda *a, o=object_, p=part, **k: getattr(o, p)(*a, **k)))
         elif callable(value) and not inspect.isclass(value):

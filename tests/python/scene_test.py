@@ -71,6 +71,25 @@ class Keys(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "pickle"):
             pickle.dumps(scene)
 
+    def test_no_object_is_made_without_its_constructor(self):
+        for each in vars(phalanx).values():
+            if isinstance(each, type) and type(each).__name__ == "pybind11_type":
+                for make in (each.__new__, object.__new__):
+                    with self.assertRaisesRegex(TypeError, "is not safe", msg=each.__name__):
+                        make(each)
+
+        class Forgetful(phalanx.Scene):
+            def __init__(self):
+                pass
+
+        class Named(phalanx.Scene):
+            def __init__(self):
+                super().__init__("index_ball")
+
+        with self.assertRaisesRegex(TypeError, "__init__"):
+            Forgetful()
+        self.assertEqual(Named().name, "index_ball")
+
     def test_setting_a_key_often_costs_no_more(self):
         scene = ball()
         for i in range(50):
