@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where: program, its completion in shells, page, public headers, libraries, assets, scenes, studies, documents,
-# examples, the link's reference in C for firmware, and the package that find_package(phalanx) reads.
+# What `cmake --install` puts where: program, its manual page and completion in shells, page, public headers, libraries, assets, scenes, studies,
+# documents, examples, the link's reference in C for firmware, and the package that find_package(phalanx) reads.
 # The libraries install themselves into their export sets, see phalanx_library() in modules.cmake.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/phalanx)
 install(TARGETS phalanx RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-# The program prints the scripts, so that they fit it.
+# The program prints its manual page and the scripts, so that they fit it.
 set(completion ${CMAKE_BINARY_DIR}/completion)
 file(MAKE_DIRECTORY ${completion})
 foreach(shell bash zsh)
@@ -14,6 +14,8 @@ foreach(shell bash zsh)
 endforeach()
 install(FILES ${completion}/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME phalanx)
 install(FILES ${completion}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _phalanx)
+install(CODE "execute_process(COMMAND \"$<TARGET_FILE:phalanx>\" man OUTPUT_FILE \"${CMAKE_BINARY_DIR}/phalanx.1\" COMMAND_ERROR_IS_FATAL ANY)")
+install(FILES ${CMAKE_BINARY_DIR}/phalanx.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
 foreach(header ${PHALANX_PUBLIC_HEADERS} ${PHALANX_IMPORT_PUBLIC_HEADERS} ${PHALANX_SIMULATION_PUBLIC_HEADERS}
         ${PHALANX_STATION_PUBLIC_HEADERS} ${PHALANX_RECORDING_PUBLIC_HEADERS})

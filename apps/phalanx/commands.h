@@ -34,6 +34,7 @@ void add_patient_command(CLI::App& app, Job& job);
 void add_account_command(CLI::App& app, Job& job);
 void add_exercise_command(CLI::App& app, Job& job);
 void add_completion_command(CLI::App& app, Job& job);
+void add_manual_command(CLI::App& app, Job& job);
 
 // The commands of `phalanx device`.
 void add_device_calibrate(CLI::App& device, Job& job);

@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   add_patient_command(app, job);
   add_account_command(app, job);
   add_completion_command(app, job);
+  add_manual_command(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
