@@ -3,6 +3,13 @@
 
 say() { printf '%s\n' "$*" >&2; }
 
+# say_installed : names an installed phalanx, which needs no build. The checkout is built all the same.
+say_installed() {
+  local program
+  program=$(command -v phalanx) || return 0
+  say "phalanx: a package is installed, too: \`phalanx run\` starts $program without a build; this is the checkout $root"
+}
+
 # missing_packages LIST... : one name a line, in the order of packages/LIST.txt.
 missing_packages() {
   local list line name command

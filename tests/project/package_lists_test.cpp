@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// packages/*.txt: what ./run and ./test hand to apt, and what THIRD_PARTY.md must account for.
+// packages/*.txt: what ./run, ./test and scripts/make_packages hand to apt, and what THIRD_PARTY.md must account for.
 #include <gtest/gtest.h>
 
 #include <map>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "project/source_tree.h"
 
@@ -30,7 +31,7 @@ std::vector<Entry> entries_of(const std::string& list) {
 }
 
 class PackageList : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Each, PackageList, testing::Values("run", "test", "optional"),
+INSTANTIATE_TEST_SUITE_P(Each, PackageList, testing::Values("run", "test", "packaging", "optional"),
                          [](const auto& list) { return std::string(list.param); });
 
 TEST_P(PackageList, HoldsAPackageNameAndAtMostOneCommandALine) {
@@ -46,12 +47,16 @@ TEST_P(PackageList, HoldsAPackageNameAndAtMostOneCommandALine) {
   }
 }
 
+// Packages are made without the packages of the tests, so that packaging.txt may name some of them, too.
 TEST(PackageLists, NameEachPackageOnce) {
-  std::map<std::string, std::string> seen;
-  for (const auto* list : {"run", "test", "optional"}) {
-    for (const auto& entry : entries_of(list)) {
-      EXPECT_TRUE(seen.emplace(entry.package, list).second)
-          << entry.package << " is in " << seen[entry.package] << ".txt and " << list << ".txt";
+  for (const std::vector<std::string>& lists :
+       {std::vector<std::string>{"run", "test", "optional"}, {"run", "packaging"}}) {
+    std::map<std::string, std::string> seen;
+    for (const std::string& list : lists) {
+      for (const auto& entry : entries_of(list)) {
+        EXPECT_TRUE(seen.emplace(entry.package, list).second)
+            << entry.package << " is in " << seen[entry.package] << ".txt and " << list << ".txt";
+      }
     }
   }
 }
@@ -59,7 +64,7 @@ TEST(PackageLists, NameEachPackageOnce) {
 TEST(PackageLists, AreAccountedForInThirdParty) {
   std::string text;
   for (const auto& line : lines_of("THIRD_PARTY.md")) text += line + "\n";
-  for (const auto* list : {"run", "test"}) {
+  for (const auto* list : {"run", "test", "packaging"}) {
     for (const auto& entry : entries_of(list)) {
       EXPECT_NE(text.find("`" + entry.package + "`"), std::string::npos) << entry.package;
     }

@@ -106,6 +106,25 @@ check "a failed installation: exit status 1" [ "$status" -eq 1 ]
 check "a failed installation: shows what apt said" grep -q '^E: Unable to locate' "$work/err"
 check "a failed installation: says how to do it by hand" grep -q 'as root: apt-get update' "$work/err"
 
+# What ./run says where a package of Phalanx is installed.
+said_installed() {
+  status=0
+  (
+    PATH=$work/bin
+    root=/checkout
+    . "$source_root/scripts/packages.sh"
+    say_installed
+  ) >"$work/out" 2>"$work/err" || status=$?
+}
+machine 1000 "" none
+said_installed
+check "no package of Phalanx: says nothing" [ "$status,$(cat "$work/out" "$work/err")" = "0," ]
+stub phalanx ':'
+said_installed
+check "a package of Phalanx: one line with the command" [ "$(grep -c "\`phalanx run\` starts $work/bin/phalanx without a build" "$work/err")" = 1 ]
+check "a package of Phalanx: it is not run" not_called '^phalanx'
+check "a package of Phalanx: standard output stays clean" [ ! -s "$work/out" ]
+
 # ./run --help on a bare machine: no package is looked for, nothing is built.
 machine 1000 "" none
 mkdir "$work/clone"
