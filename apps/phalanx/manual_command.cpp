@@ -119,6 +119,7 @@ void print_options(const CLI::App& command) {
   for (const bool positional : {true, false})
     for (const CLI::Option* option : command.get_options()) {
       if (option->get_group().empty() || option->get_positional() != positional) continue;
+      if (option == command.get_help_ptr() && command.get_parent() != nullptr) continue;
       print_entry(as_help.make_option_name(option, positional), as_help.make_option_opts(option),
                   option->get_description());
     }
@@ -133,7 +134,7 @@ void print_command(const CLI::App& command, const std::string& name) {
   } else {
     for (const CLI::App* sub : below) print_entry(name + " " + sub->get_name(), "", sub->get_description());
   }
-  if (const std::string footer = command.get_footer(); !footer.empty()) {
+  if (const std::string footer = command.get_footer(); footer != command.get_parent()->get_footer()) {
     fmt::print(".PP\n");
     print_lines(footer);
   }
@@ -143,7 +144,7 @@ void print_command(const CLI::App& command, const std::string& name) {
 int print_manual(const CLI::App& program) {
   fmt::print(
       ".\\\" Made by `phalanx man`.\n.TH PHALANX 1 \"\" \"phalanx {}\" \"User Commands\"\n"
-      ".SH NAME\nphalanx \\- haptic rendering for hand exoskeletons\n"
+      ".ad l\n.SH NAME\nphalanx \\- haptic rendering for hand exoskeletons\n"
       ".SH SYNOPSIS\n.B phalanx\n.I COMMAND\n.RI [ OPTION ]...\n.SH DESCRIPTION\n{}\n"
       ".PP\n.B phalanx run\nstarts a station with a simulated device and prints the address of its page.\n"
       ".SH OPTIONS\n",
