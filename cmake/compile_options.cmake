@@ -4,7 +4,7 @@ add_library(phalanx_options INTERFACE)
 target_compile_options(
   phalanx_options
   INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast>
-            $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wdouble-promotion -Werror
+            $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wdouble-promotion $<$<BOOL:${PHALANX_WARNINGS_ARE_ERRORS}>:-Werror>
             # Same samples, same bits at every optimisation level: no fused multiply-add behind our back.
             -ffp-contract=off)
 # What no tick and no simulation spends its time in: files, pages, commands. Optimised little, since it takes the compiler a third less, and

@@ -130,7 +130,7 @@ void Journal::write_line(const std::string& line) {
     return;
   }
   const int reason = written < 0 ? errno : ENOSPC;  // written in part: the disk is full
-  if (written > 0) static_cast<void>(::ftruncate(descriptor_, before.st_size));
+  if (written > 0) static_cast<void>(::ftruncate(descriptor_, before.st_size) == 0);
   errno = reason;
   fail("written");
 }
