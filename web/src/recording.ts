@@ -5,6 +5,7 @@ import { helpDialog, openDialog } from "./panels/dialog";
 import { button, el, setShown, setText } from "./panels/dom";
 import { unreviewedMark } from "./panels/language_choice";
 import { Look, lookSwitches } from "./panels/look";
+import { threadDecoder } from "./replay/decoder";
 import { openRecording, type Recording } from "./replay/recording";
 import { listenToReplayKeys } from "./replay/replay_keys";
 import { replayView, type ReplayView } from "./replay/replay_view";
@@ -15,6 +16,7 @@ import { momentText } from "./panels/as_text";
 import { troubleText } from "./replay/trouble";
 import { strings } from "./strings";
 import type { ViewProbe } from "./view3d/hand_view";
+import { makeShapes } from "./view3d/shape_maker";
 import { pageFetch } from "./wire/shared_session";
 
 declare global {
@@ -121,7 +123,7 @@ async function open(source: Source, time?: number, name?: string): Promise<void>
     close();
     listed = name;
     history.replaceState(null, "", address(name, time));
-    view = replayView(recording, look.theme);
+    view = replayView(recording, look.theme, { decoder: (layout) => threadDecoder(layout), shapes: (bytes) => makeShapes(bytes) });
     content.replaceChildren(...view.content);
     content.after(view.dock);
     show(recording);

@@ -61,7 +61,8 @@ class HapticState {
   void withdraw_openings() noexcept;
 
  private:
-  friend Status step(const HapticModel&, const HapticParameters&, const Sample&, HapticState&) noexcept;
+  friend Status step(const HapticModel& model, const HapticParameters& parameters, const Sample& sample,
+                     HapticState& state) noexcept;
 
   struct Stages;  ///< states of the sample guard, the contact search and the force stage
   std::unique_ptr<Stages> stages_;

@@ -8,9 +8,10 @@ import { viewFrame, type ViewFrame } from "../panels/view_frame";
 import type { PlotPanel } from "../plots/plot_panel";
 import { strings } from "../strings";
 import type { ThemeName } from "../theme";
-import { makeShapes } from "../view3d/shape_maker";
+import type { Shapes } from "../view3d/shapes";
 import { about } from "./about";
-import { threadDecoder } from "./decoder";
+import type { Layout } from "./chunk";
+import type { Decoder } from "./decoder";
 import { eventList, happenings, type Happening } from "./event_list";
 import { note } from "./note";
 import { Overview } from "./overview";
@@ -47,10 +48,16 @@ function silentDigits(player: Player): Readouts {
   };
 }
 
-export function replayView(recording: Recording, theme: ThemeName): ReplayView {
-  const decoder = threadDecoder(recording.layout);
-  const surveyor = threadDecoder(recording.layout); // of the overview: playing does not wait for it
-  const player = new Player(recording, decoder, makeShapes);
+/// Where chunks are decompressed and shapes are made.
+export interface Workshop {
+  decoder(layout: Layout): Decoder;
+  shapes(bytes: ArrayBuffer): Promise<Shapes>;
+}
+
+export function replayView(recording: Recording, theme: ThemeName, workshop: Workshop): ReplayView {
+  const decoder = workshop.decoder(recording.layout);
+  const surveyor = workshop.decoder(recording.layout); // of the overview: playing does not wait for it
+  const player = new Player(recording, decoder, workshop.shapes);
   const overview = new Overview(recording);
   const ended = new AbortController();
   let list: Happening[] = [];

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The documents: links and anchors, in Markdown and in the built site; abbreviations; pictures; the index.
+
+documents_test.py ROOT
+"""
+import html
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(sys.argv.pop(1)).resolve()
+sys.path.insert(0, str(ROOT / "scripts/site"))
+sys.dont_write_bytecode = True
+import markdown  # noqa: E402
+
+ABBREVIATION = re.compile(r"\b[A-Z][A-Z0-9]*[A-Z0-9](?:[-/_][A-Z0-9]+)*\b|\b[A-Z]-[A-Z]\b")
+GRASP = re.compile(r"T?I?M?R?L?")  # letters of the digits, in this order (docs/grasps.md)
+DOCUMENTS = {path: markdown.Document(ROOT, path) for path in markdown.documents(ROOT)}
+
+
+def prose(document):
+    """Text without code."""
+    body = re.sub(r"<pre>.*?</pre>|<code>.*?</code>", " ", document.body, flags=re.S)
+    return markdown.plain(re.sub(r"<(td|th|li|p|br|h\d)\b", r" <\1", body))
+
+
+def parts(abbreviation):
+    """HKDF-SHA256 is explained by its parts."""
+    return {abbreviation, *re.split(r"[-/_]", abbreviation)}
+
+
+def unexplained(text, explained):
+    return sorted({found for found in ABBREVIATION.findall(text)
+                   if found not in explained and not GRASP.fullmatch(found) and not all(part in explained or part.isdigit() for part in re.split(r"[-/_]", found))})
+
+
+def explained_words():
+    words = set()
+    for line in (ROOT / "tests/docs/not_abbreviations.txt").read_text(encoding="utf-8").splitlines():
+        words |= set(line.split("#")[0].split())
+    for term in re.findall(r"<tr>\s*<td>(.*?)</td>", DOCUMENTS[Path("docs/glossary.md")].body, re.S):
+        for found in ABBREVIATION.findall(markdown.plain(term)):
+            words |= parts(found)
+    return words
+
+
+class Markdown(unittest.TestCase):
+    def test_every_link_and_anchor_leads_somewhere(self):
+        self.assertGreater(len(DOCUMENTS), 40)
+        dead, links = [], 0
+        for path, document in DOCUMENTS.items():
+            for target, anchor in document.links():
+                links += 1
+                if not (ROOT / target).exists():
+                    dead.append(f"{path}: {target}")
+                elif anchor and (target not in DOCUMENTS or anchor not in DOCUMENTS[target].anchors):
+                    dead.append(f"{path}: {target}#{anchor}")
+        self.assertEqual(dead, [])
+        self.assertGreater(links, 500)
+
+    def test_a_link_to_nowhere_would_be_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "a.md").write_text("# One word\n\n[a](b.md) [b](#one-word) [c](#two)\n", encoding="utf-8")
+            document = markdown.Document(Path(folder), Path("a.md"))
+            self.assertEqual(list(document.links())[-3:], [(Path("b.md"), ""), (Path("a.md"), "one-word"), (Path("a.md"), "two")])
+            self.assertEqual(document.anchors, {"one-word"})
+
+    def test_every_page_of_docs_is_in_the_index(self):
+        listed = {target for target, _ in DOCUMENTS[Path("docs/README.md")].links()}
+        missing = [str(path) for path in DOCUMENTS if path.parts[0] == "docs" and path != Path("docs/README.md") and path not in listed]
+        self.assertEqual(missing, [])
+
+
+class Glossary(unittest.TestCase):
+    def test_every_abbreviation_is_explained(self):
+        explained = explained_words()
+        missing = {}
+        for path, document in DOCUMENTS.items():
+            if path in (Path("README.md"), Path("SECURITY.md"), Path("CONTRIBUTING.md")) or path.parts[0] == "docs" and path.name != "glossary.md":
+                for word in unexplained(prose(document), explained):
+                    missing.setdefault(word, []).append(str(path))
+        self.assertEqual(missing, {}, "give each a line in docs/glossary.md, or list it in tests/docs/not_abbreviations.txt")
+
+    def test_an_abbreviation_without_a_line_would_be_found(self):
+        self.assertEqual(unexplained("The HCP, the XYZ and a D-H table of TIM; HKDF-QQQ", {"HCP", "HKDF"}), ["D-H", "HKDF-QQQ", "XYZ"])
+
+    def test_every_exception_occurs(self):
+        everything = " ".join(prose(document) for document in DOCUMENTS.values())
+        used = set()
+        for found in ABBREVIATION.findall(everything):
+            used |= parts(found)
+        text = re.sub(r"#.*", "", (ROOT / "tests/docs/not_abbreviations.txt").read_text(encoding="utf-8"))
+        self.assertEqual([word for word in text.split() if word not in used], [])
+
+
+class Pictures(unittest.TestCase):
+    def test_each_is_listed_with_what_makes_it(self):
+        rows = re.findall(r"<tr>\s*<td>(.*?)</td>\s*<td>(.*?)</td>", DOCUMENTS[Path("docs/pictures/README.md")].body, re.S)
+        listed = {markdown.plain(name): markdown.plain(how) for name, how in rows}
+        there = {file.name for file in (ROOT / "docs/pictures").iterdir() if file.suffix != ".md"}
+        self.assertEqual(set(listed), there)
+        self.assertEqual([name for name, how in listed.items() if not re.match(r"(\./run |scripts/|bench/)", how)], [])
+
+    def test_each_is_shown_somewhere(self):
+        shown = {target.name for document in DOCUMENTS.values() for target, _ in document.links()}
+        self.assertEqual([file.name for file in (ROOT / "docs/pictures").iterdir() if file.name not in shown and file.suffix != ".md"], [])
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = Path(cls.folder.name, "site")
+        subprocess.run([ROOT / "scripts/docs_site", cls.out, "--no-demo"], check=True, capture_output=True, text=True)
+        cls.pages = {page.relative_to(cls.out): page.read_text(encoding="utf-8") for page in cls.out.rglob("*.html")}
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_every_link_and_anchor_leads_somewhere(self):
+        anchors = {page: set(re.findall(r'\sid="([^"]+)"', text)) for page, text in self.pages.items()}
+        dead = []
+        for page, text in self.pages.items():
+            for target in (html.unescape(one) for one in re.findall(r'\s(?:href|src)="([^"]*)"', text)):
+                if markdown.ELSEWHERE.match(target):
+                    continue
+                name, _, anchor = target.partition("#")
+                file = (self.out / page.parent / name).resolve() if name else self.out / page
+                if not file.is_file():
+                    dead.append(f"{page}: {target}")
+                elif anchor and anchor not in anchors[file.relative_to(self.out.resolve()) if name else page]:
+                    dead.append(f"{page}: {target}")
+        self.assertEqual(dead, [])
+        self.assertGreater(len(self.pages), 60)
+
+    def test_nothing_is_loaded_from_a_network(self):
+        for page, text in self.pages.items():
+            self.assertEqual(re.findall(r'<(?:script|link|img|iframe)[^>]*(?:src|href)="(?:https?:)?//[^"]*"', text), [], page)
+            self.assertIn("default-src 'none'", text)
+        self.assertNotRegex((self.out / "site.css").read_text(encoding="utf-8"), r"url\(|@import")
+        self.assertNotRegex((self.out / "site.js").read_text(encoding="utf-8"), r"fetch\(|XMLHttpRequest|WebSocket|https?:")
+
+    def test_the_search_knows_every_document_and_header(self):
+        index = (self.out / "search_index.js").read_text(encoding="utf-8")
+        for page in self.pages:
+            if page.parts[0] != "source" and page != Path("api/index.html"):
+                self.assertIn(f'["{page}",', index)
+        self.assertIn('"step"', index)
+
+    def test_public_headers_are_described(self):
+        step = self.pages[Path("api/step/haptic_step.h.html")]
+        self.assertIn("one tick of the whole", step)
+        self.assertIn('href="../hand/hand_model.h.html#HandModel"', step)
+
+    @unittest.skipUnless(os.environ.get("PHALANX_FULL"), "a second build belongs to ./test --full")
+    def test_two_builds_have_the_same_bytes(self):
+        again = Path(self.folder.name, "again")
+        subprocess.run([ROOT / "scripts/docs_site", again, "--no-demo"], check=True, capture_output=True, text=True)
+        files = {file.relative_to(self.out) for file in self.out.rglob("*") if file.is_file()}
+        self.assertEqual(files, {file.relative_to(again) for file in again.rglob("*") if file.is_file()})
+        self.assertEqual([str(file) for file in sorted(files) if (self.out / file).read_bytes() != (again / file).read_bytes()], [])
+
+
+class Headers(unittest.TestCase):
+    def test_a_warning_of_doxygen_is_an_error(self):
+        import api
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "include/phalanx").mkdir(parents=True)
+            (root / "scripts/site").mkdir(parents=True)
+            (root / "scripts/site/Doxyfile").write_bytes((ROOT / "scripts/site/Doxyfile").read_bytes())
+            (root / "include/phalanx/a.h").write_text("/// Adds.\n/// @param c  is not there\nint add(int a, int b);\n", encoding="utf-8")
+            with self.assertRaises(SystemExit) as refused:
+                api.run_doxygen(root, ["a.h"], root)
+            self.assertIn("a.h:2", str(refused.exception))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=1)
