@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the picture of the cockpit for the documents: the page of `./run` while the hand touches. Not a test.
+// npx vite-node tests/browser/cockpit_picture.ts OUT.png; the page must have been built.
+import { mkdtempSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { CockpitPage } from "./support/cockpit_page";
+import { addressOf, runStation, slowMotion } from "./support/program";
+import { launch } from "./view3d_page/browser";
+
+const kScreen = { width: 1440, height: 900 };
+const kFirm = 1.5; // [N] of a finger
+
+const [out = "cockpit.png"] = process.argv.slice(2);
+const work = mkdtempSync(join(tmpdir(), "phalanx-cockpit-picture-"));
+const station = runStation(work, join(work, "clock"), slowMotion.alone, ["--port", "0", "--record", "off"]);
+const browser = await launch();
+try {
+  const { url } = await addressOf(station);
+  const page = await browser.newPage({ viewport: kScreen, colorScheme: "dark" });
+  const cockpit = new CockpitPage(page);
+  await cockpit.go(url);
+  await cockpit.untilRunning();
+  await cockpit.untilLater(4); // curves of most of a squeeze
+  await cockpit.untilTouching(kFirm);
+  await page.screenshot({ path: resolve(out) });
+} finally {
+  await browser.close();
+  await station.end();
+}
