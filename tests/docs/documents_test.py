@@ -4,6 +4,7 @@
 documents_test.py ROOT [PROGRAM]
 """
 import html
+import json
 import os
 import re
 import subprocess
@@ -74,6 +75,19 @@ class Markdown(unittest.TestCase):
         listed = {target for target, _ in DOCUMENTS[Path("docs/README.md")].links()}
         missing = [str(path) for path in DOCUMENTS if path.parts[0] == "docs" and path != Path("docs/README.md") and path not in listed]
         self.assertEqual(missing, [])
+
+
+class Demo(unittest.TestCase):
+    def test_it_names_the_command_that_made_its_recording(self):
+        facts = json.loads((ROOT / "web/demo/recording.json").read_text(encoding="utf-8"))
+        options = re.search(r"^recorded=\((.*)\)$", (ROOT / "scripts/demo").read_text(encoding="utf-8"), re.M).group(1)
+        self.assertIn(f"./run run {options} --record DIR", facts["commands"])
+
+    def test_readme_begins_with_it_and_says_what_is_simulated(self):
+        begin = "\n".join((ROOT / "README.md").read_text(encoding="utf-8").splitlines()[:15])
+        self.assertIn("(docs/pictures/demo.webp)", begin)
+        self.assertIn("the exoskeleton, the patient's hand and the teapot are simulated", begin)
+        self.assertLessEqual((ROOT / "docs/pictures/demo.webp").stat().st_size, 1_500_000)
 
 
 class Glossary(unittest.TestCase):

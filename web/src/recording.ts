@@ -8,7 +8,7 @@ import { Look, lookSwitches } from "./panels/look";
 import { threadDecoder } from "./replay/decoder";
 import { openRecording, type Recording } from "./replay/recording";
 import { listenToReplayKeys } from "./replay/replay_keys";
-import { replayView, type ReplayView } from "./replay/replay_view";
+import { replayView, type ReplayView, type Workshop } from "./replay/replay_view";
 import { fileSource, stationSource, type Source } from "./replay/source";
 import { startPanel } from "./replay/start_panel";
 import { fetchList } from "./replay/station_list";
@@ -34,6 +34,7 @@ declare global {
 }
 
 const words = strings.replay;
+const workshop: Workshop = { decoder: (layout) => threadDecoder(layout), shapes: (bytes) => makeShapes(bytes), plots: () => import("./plots/plot_panel") };
 const kNoStopMs = 8000; // so long the words on Stop can be read
 const kRemember = 400; // the address follows the displayed moment, at most so often [ms]
 
@@ -123,7 +124,7 @@ async function open(source: Source, time?: number, name?: string): Promise<void>
     close();
     listed = name;
     history.replaceState(null, "", address(name, time));
-    view = replayView(recording, look.theme, { decoder: (layout) => threadDecoder(layout), shapes: (bytes) => makeShapes(bytes) });
+    view = replayView(recording, look.theme, workshop);
     content.replaceChildren(...view.content);
     content.after(view.dock);
     show(recording);

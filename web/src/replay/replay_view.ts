@@ -48,10 +48,11 @@ function silentDigits(player: Player): Readouts {
   };
 }
 
-/// Where chunks are decompressed and shapes are made.
+/// Where chunks are decompressed and shapes are made, and the curves if the page has them.
 export interface Workshop {
   decoder(layout: Layout): Decoder;
   shapes(bytes: ArrayBuffer): Promise<Shapes>;
+  plots?(): Promise<{ readonly plotPanel: (player: Player, theme: ThemeName) => PlotPanel }>;
 }
 
 export function replayView(recording: Recording, theme: ThemeName, workshop: Workshop): ReplayView {
@@ -98,9 +99,9 @@ export function replayView(recording: Recording, theme: ThemeName, workshop: Wor
   void (async () => {
     const view = frame.load(theme);
     try {
-      const { plotPanel } = await import("../plots/plot_panel");
-      if (!ended.signal.aborted) {
-        plots = plotPanel(player, colours);
+      const curves = await workshop.plots?.();
+      if (curves && !ended.signal.aborted) {
+        plots = curves.plotPanel(player, colours);
         plotPlace.append(plots.element);
       }
     } catch (reason) {
@@ -119,7 +120,7 @@ export function replayView(recording: Recording, theme: ThemeName, workshop: Wor
     frame,
     overview,
     content: [
-      el("main", { class: "scene" }, numbers.element, frame.element, plotPlace),
+      el("main", { class: "scene" }, numbers.element, frame.element, ...(workshop.plots ? [plotPlace] : [])),
       el("aside", { class: "side", "aria-label": strings.replay.events }, el("div", { class: "tabbed" }, el("div", { class: "tab-panels", tabindex: 0 }, panel))),
     ],
     dock,
