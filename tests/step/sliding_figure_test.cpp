@@ -51,8 +51,9 @@ ChartSeries dragged(const char* name, double mu) {
   for (int ms = 0; ms <= 2 * kOut; ++ms) {
     press.hand.tick(LoneFinger::pose(press.goal, kPerTick * (ms <= kOut ? ms : 2 * kOut - ms)));
     curve.x.push_back(1e-3 * ms);
-    const Vec3& friction = press.tip().friction;
-    curve.y.push_back(std::copysign(friction.norm(), friction.x()) / press.tip().force);
+    const Vec3 force =
+        press.tip().force * press.tip().normal;  // on the finger; the block's top is horizontal
+    curve.y.push_back(std::copysign(std::hypot(force.x(), force.y()), force.x()) / force.z());
   }
   return curve;
 }

@@ -12,7 +12,7 @@ import { browserOptions } from "../tests/browser/support/browser";
 const kScreen = { width: 720, height: 450 };
 const kFrom = 4.4; // [s] of the demo's recording: the hand is open
 const kTo = 9.3; // it is open again: a squeeze lasts 4.9 s
-const kRate = 15; // pictures a second
+const kRate = 12; // pictures a second
 const kQuality = 62; // of WebP
 const kMost = 1_500_000; // bytes
 
@@ -25,9 +25,8 @@ try {
   await page.goto(pathToFileURL(resolve(demo)).href);
   await page.waitForFunction(() => window.phalanxDemo?.ready());
   // The view alone, over the whole picture.
-  await page.addStyleTag({ content: ".header, .side, .replay-dock, .readouts, .plot-slot, .openings, .view-tools, .view-labels { display: none !important } #page, .content, .scene, .view-frame, .view-host { position: fixed !important; inset: 0 !important; width: auto !important; height: auto !important; padding: 0 !important; border-radius: 0 !important }" });
-  await page.getByRole("button", { name: "Contact" }).dispatchEvent("click");
-  await page.waitForTimeout(1000);
+  await page.addStyleTag({ content: ".header, .side, .replay-dock, .readouts, .plot-slot, .openings, .view-tools, .view-labels, .view-key, .watermark { display: none !important } #page, .content, .scene, .view-frame, .view-host { position: fixed !important; inset: 0 !important; width: auto !important; height: auto !important; padding: 0 !important; border-radius: 0 !important }" });
+  await page.waitForTimeout(500); // the view has its new size
   const files: string[] = [];
   for (let i = 0; i < Math.round((kTo - kFrom) * kRate); ++i) {
     await page.evaluate((time) => window.phalanxDemo.seek(time), kFrom + i / kRate);

@@ -115,7 +115,7 @@ describe("demo.html", () => {
     for (const [width, height] of [[390, 844], [1024, 768], [1440, 900]] as const) {
       await page.setViewportSize({ width, height });
       expect(await page.evaluate(() => document.scrollingElement!.scrollWidth), `${width} px`).toBeLessThanOrEqual(width);
-      for (const what of [page.locator(".view-host"), page.getByRole("slider", { name: words.position }), page.locator(".play")]) {
+      for (const what of [page.locator(".view-host"), page.getByRole("slider", { name: words.position }), page.locator(".play"), page.getByRole("button", { name: strings.look.help })]) {
         const box = (await what.boundingBox())!;
         expect(box.x + box.width, `${width} px`).toBeLessThanOrEqual(width + 1);
         expect(box.height).toBeGreaterThan(20);
