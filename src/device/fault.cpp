@@ -64,6 +64,11 @@ constexpr std::array kEntries{
     Entry{Fault::kOscillation, "oscillation",
           "The force oscillated again within 10 s of its return after an oscillation.",
           "Lower the stiffness or narrow the smoothing's bounds, then reset."},
+    Entry{Fault::kSampleRate, "sample_rate",
+          "The device sent less than half or more than twice the samples that it promises.",
+          "Correct the rate in its firmware (WELCOME) or its clock, and see that its processor is not "
+          "overloaded; "
+          "then reset."},
 };
 
 const Entry& entry(Fault fault) noexcept {

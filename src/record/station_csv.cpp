@@ -41,7 +41,7 @@ Json histogram_json(const Histogram& histogram) {
 Json report_json(const FaultReport& report) {
   const FaultEvent& event = report.event;
   return {{"fault", fault_name(event.fault)},
-          {"meaning", fault_meaning(event.fault)},
+          {"meaning", fault_words(event)},
           {"remedy", fault_remedy(event.fault)},
           {"found_by", event.from_device ? "device" : "host"},
           {"channel", event.channel},

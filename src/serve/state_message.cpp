@@ -37,7 +37,7 @@ void put(const Overrides& from, google::protobuf::RepeatedPtrField<wire::Setting
 
 void put(const FaultEvent& event, wire::Fault& out) {
   out.set_name(std::string(fault_name(event.fault)));
-  out.set_meaning(std::string(fault_meaning(event.fault)));
+  out.set_meaning(fault_words(event));
   out.set_remedy(std::string(fault_remedy(event.fault)));
   out.set_channel(event.channel);
   out.set_time(event.time);

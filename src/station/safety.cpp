@@ -43,12 +43,14 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
                const HandParameters& hand, std::vector<MotorWitness> witnesses, double period)
     : settings_(settings),
       watch_(settings, map, hand, std::move(witnesses)),
+      rate_watch_(settings, device.rate_hz),
       min_(hand.min_angle),
       max_(hand.max_angle),
       period_(period),
       timeout_(timeout_of(settings, device)),
       obeys_within_(device.renders_torque ? kObeys : std::max(kObeys, 5.0 / device.rate_hz)),
       in_step_(device.simulated && !device.own_clock),
+      judges_rate_(device.renders_torque && !in_step_),
       may_oscillate_(in_step_ || !device.renders_torque) {
   for (std::size_t j = 0; j < settings.range.size(); ++j) {
     if (!settings.range[j]) continue;
@@ -62,6 +64,7 @@ Safety::Safety(const SafetySettings& settings, const ChannelMap& map, const Devi
 void Safety::trip(Fault fault, int channel, double now, bool from_device) noexcept {
   if (fault == Fault::kNone || state_ == SafetyState::kFault) return;
   fault_ = {.fault = fault, .channel = channel, .time = now, .tick = tick_, .from_device = from_device};
+  if (fault == Fault::kSampleRate) fault_.rates = rate_watch_.rates();
   state_ = SafetyState::kFault;
   sent_at_fault_ = sent_;
   fault_left_ = 1.0;
@@ -74,6 +77,8 @@ void Safety::judge_sample(const DeviceSample& sample, double now) noexcept {
   last_ = sample;
   if (sample.estop) trip(Fault::kEmergencyStop, -1, now, true);
   trip(finding.fault, finding.channel, now);
+  if (judges_rate_) rate_watch_.take(sample);
+  if (!rate_watch_.good()) trip(Fault::kSampleRate, -1, now);
   // Right after a reset, the device's samples still show the latch that is being cleared.
   if (sample.state == DeviceState::kLatched && now >= answers_until_)
     trip(latch_of(sample), sample.fault_channel, now, true);
@@ -262,7 +267,7 @@ void Safety::stop() noexcept {
 }
 
 bool Safety::cause_gone(double now) const noexcept {
-  return heard_ && silent_for(now) <= timeout_ && watch_.all_good() && !last_.estop;
+  return heard_ && silent_for(now) <= timeout_ && watch_.all_good() && rate_watch_.good() && !last_.estop;
 }
 
 bool Safety::reset(Fault connection, double now) noexcept {
@@ -280,6 +285,7 @@ bool Safety::reset(Fault connection, double now) noexcept {
   ignored_for_ = 0.0;
   silence_ = 0.0;
   watch_.forget();
+  rate_watch_.forget();
   return true;
 }
 

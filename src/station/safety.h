@@ -15,6 +15,7 @@
 #include "phalanx/hand/hand_parameters.h"
 #include "phalanx/station/safety_settings.h"
 #include "phalanx/step/snapshot.h"
+#include "station/sample_rate_watch.h"
 #include "station/sensor_watch.h"
 
 namespace phalanx {
@@ -31,6 +32,9 @@ namespace phalanx {
 /// segment. It uses its default swing, independent of the scene. The first oscillation fades the torque over
 /// stop_ramp. The torque returns by itself once the observers are quiet. An oscillation within 10 s of that
 /// return is the fault kOscillation.
+///
+/// If a device has motors and a clock of its own, a SampleRateWatch compares the rate of its samples with the
+/// promised one.
 ///
 /// Real-time except for the constructor: no allocation, lock, throw or I/O.
 class Safety {
@@ -54,13 +58,13 @@ class Safety {
   /// Ramps to zero. The torque stays zero until start(), also over a fault and its reset.
   void stop() noexcept;
   /// Asks to leave kFault. It is granted once the torque is at rest and the cause is gone. The cause is gone
-  /// if samples come, none is bad, and no emergency stop is pressed. It is also granted if the connection
+  /// if samples come at their rate, none is bad, and no emergency stop is pressed. It is also granted if the connection
   /// itself is in fault, because only a reset mends that. The next state is kWaiting, or kStopped if stop()
   /// was called and start() was not.
   /// @param connection  Device::connection_fault() now
   /// @returns true if granted; the caller then resets the device
   bool reset(Fault connection, double now) noexcept;
-  /// @returns true if samples come, no sensor is bad, and no emergency stop is pressed.
+  /// @returns true if samples come at the promised rate, no sensor is bad, and no emergency stop is pressed.
   [[nodiscard]] bool cause_gone(double now) const noexcept;
 
   [[nodiscard]] SafetyState state() const noexcept { return state_; }
@@ -90,12 +94,14 @@ class Safety {
 
   SafetySettings settings_;
   SensorWatch watch_;
+  SampleRateWatch rate_watch_;
   JointArray min_{};  ///< no torque pushes a joint below it [rad]
   JointArray max_{};  ///< nor above it [rad]
   double period_;
   double timeout_;       ///< timeout of samples [s]
   double obeys_within_;  ///< longest time that the device may be enabled without acting [s]
-  bool in_step_;  ///< true: silence is counted in steps, the time of a simulated device without own_clock
+  bool in_step_;      ///< true: silence is counted in steps, the time of a simulated device without own_clock
+  bool judges_rate_;  ///< true: it has motors, and a clock of its own
   bool may_oscillate_;  ///< true: no motor moves a hand (simulated, or without motors)
   SafetyState state_ = SafetyState::kWaiting;
   FaultEvent fault_;

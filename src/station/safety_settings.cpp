@@ -63,6 +63,16 @@ void check_watchdog(const SafetySettings& settings, const DeviceInfo& device) {
       settings.patient, device.name, device.serial.empty() ? "unknown" : device.serial));
 }
 
+std::string fault_words(const FaultEvent& event) {
+  std::string text(fault_meaning(event.fault));
+  if (event.fault != Fault::kSampleRate) return text;
+  text += fmt::format(" It promises {:.4g} Hz. It sends {:.4g} Hz by its own clock", event.rates.promised,
+                      event.rates.by_device);
+  if (event.rates.by_host > 0.0)
+    text += fmt::format(" and {:.4g} Hz by this computer's", event.rates.by_host);
+  return text + '.';
+}
+
 std::string_view safety_state_name(SafetyState state) noexcept {
   constexpr std::array<std::string_view, 6> kNames = {"waiting",  "starting", "running",
                                                       "stopping", "stopped",  "fault"};

@@ -11,7 +11,7 @@
 namespace phalanx {
 namespace {
 
-constexpr Fault kLast = Fault::kOscillation;
+constexpr Fault kLast = Fault::kSampleRate;
 
 bool is_known(int value) {
   return value <= PHX_FAULT_DRIVE ||

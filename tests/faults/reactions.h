@@ -33,6 +33,11 @@ inline std::size_t row_at(const ControllerRows& rows, double time) {
   });
 }
 
+/// Index of the controller's first row after the sample of this time [us].
+inline std::size_t row_after_sample(const ControllerRows& rows, std::int64_t time_us) {
+  return first_row(rows, 0, [&](const ControllerRow& row) { return row.time_us > time_us; });
+}
+
 /// The largest torque in the 50 ticks before a row [Nm]: a fault without contact would prove nothing.
 inline double torque_before(const ControllerRows& rows, std::size_t i) {
   double largest = 0.0;

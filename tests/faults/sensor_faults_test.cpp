@@ -91,6 +91,48 @@ void expect_latched_by_controller(const std::string& test, const std::string& wh
                         rows[latch].fault, latch - begin + 1, 1e3 * torque_before(rows, begin)));
 }
 
+/// A rate is judged over windows of 0.5 s, which begin with the first sample. A slow clock needs one window
+/// more.
+void expect_slow_found(const std::string& test, const std::string& what, std::int64_t within_us) {
+  const Outcome& o = outcome(test);
+  expect_sane(o);
+  const ControllerRows& rows = o.logs.controller;
+  const HostRows& host = o.logs.host;
+  const std::size_t begin = row_at(rows, kAt);
+  const std::size_t fault = first_row(host, 1, in_fault);
+  ASSERT_LT(begin, rows.size());
+  ASSERT_LT(fault, host.size()) << "not noticed";
+  EXPECT_EQ(o.faults, std::vector<std::string>{"sample_rate"});
+  const std::size_t last = row_after_sample(rows, host[fault].sample_time_us);
+  EXPECT_GT(torque_before(rows, last), 0.02);
+  EXPECT_LE(rows[last].time_us - rows[begin].time_us, within_us);
+  const std::size_t zero = first_row(rows, last, [](const ControllerRow& row) { return row.largest == 0.0; });
+  EXPECT_LE(zero - last, 4U) << "5 ms of the controller are one or two of its ticks";
+  for (std::size_t i = zero; i < rows.size(); ++i) ASSERT_EQ(rows[i].largest, 0.0) << "tick " << rows[i].tick;
+  EXPECT_EQ(o.host_exit, 1);
+  print_row(what, "fault that names both rates; torque off",
+            fmt::format("`{}` {} ms of the controller's clock after it became slow, at {:.0f} mNm; zero {} "
+                        "of its ticks later",
+                        host[fault].fault, (rows[last].time_us - rows[begin].time_us) / 1000,
+                        1e3 * torque_before(rows, last), zero - last));
+}
+
+const Registered kSlow("AControllerAtAFifthOfItsRateIsAFault", "",
+                       {.controller = {"--fault", at("slow=5")}, .seconds = 4.0});
+TEST(Faults, AControllerAtAFifthOfItsRateIsAFault) {
+  expect_slow_found("AControllerAtAFifthOfItsRateIsAFault",
+                    "controller at a fifth of the rate that it promises", 1'000'000);
+  EXPECT_NE(outcome("AControllerAtAFifthOfItsRateIsAFault").host_output.find("promises 1000 Hz"),
+            std::string::npos);
+}
+
+const Registered kSlowClock("AControllerWhoseClockIsFiveTimesTooSlowIsAFault", "",
+                            {.controller = {"--fault", at("slow-clock=5")}, .seconds = 4.0});
+TEST(Faults, AControllerWhoseClockIsFiveTimesTooSlowIsAFault) {
+  expect_slow_found("AControllerWhoseClockIsFiveTimesTooSlowIsAFault",
+                    "the same, with a clock five times too slow", 300'000);
+}
+
 const Registered kOpen("AnOpenSensorIsAFault", "",
                        {.controller = {"--fault", at("open=" + kThumbCmcFlexion)}, .seconds = 3.0});
 TEST(Faults, AnOpenSensorIsAFault) { expect_latched_by_controller("AnOpenSensorIsAFault", "open sensor"); }

@@ -42,6 +42,8 @@ TEST(StationDefaults, WhenSamplesAreBelieved) {
   EXPECT_EQ(settings.torque_error_part, 0.5);
   EXPECT_EQ(settings.torque_error_time, 0.2);
   EXPECT_EQ(settings.force_error, 2.0);
+  EXPECT_EQ(settings.rate_window, 0.5);
+  EXPECT_EQ(settings.rate_factor, 2.0);
   EXPECT_EQ(settings.overruns, 10);
 }
 

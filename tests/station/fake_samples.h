@@ -75,7 +75,7 @@ inline std::vector<MotorWitness> two_witnesses() {
   return out;
 }
 
-/// A sample every millisecond; set what differs.
+/// A sample every `interval_us`; set what differs.
 class FakeSamples {
  public:
   FakeSamples() { at(0.5, 0.5); }
@@ -89,26 +89,30 @@ class FakeSamples {
   }
   const DeviceSample& next(double now) {
     ++sample.sequence;
-    sample.time_us += 1000;
+    sample.time_us += interval_us;
     sample.received = now;
     return sample;
   }
 
   DeviceSample sample{.state = DeviceState::kReady, .factor = 1.0};
+  std::uint64_t interval_us = 1000;  ///< by the device's clock
 };
 
-/// Safety under test with its samples, a step a millisecond.
+/// Safety under test with its samples, one a step.
 struct Bench {
-  explicit Bench(SafetySettings the_settings = {}, double the_period = 1e-3,
-                 const DeviceInfo& device = info())
+  explicit Bench(SafetySettings the_settings = {}, double the_period = 1e-3)
+      : Bench(the_settings, the_period, info(1.0 / the_period)) {}
+  Bench(SafetySettings the_settings, double the_period, const DeviceInfo& device)
       : settings(the_settings),
         period(the_period),
         map(two_joint_channels(), {}, ranged_hand()),
-        safety(settings, map, device, ranged_hand(), two_witnesses(), period) {}
+        safety(settings, map, device, ranged_hand(), two_witnesses(), period) {
+    samples.interval_us = static_cast<std::uint64_t>(std::llround(1e6 * period));
+  }
 
-  static DeviceInfo info() {
+  static DeviceInfo info(double rate_hz = 1000.0) {
     DeviceInfo out;
-    out.rate_hz = 1000.0;
+    out.rate_hz = rate_hz;
     return out;
   }
 

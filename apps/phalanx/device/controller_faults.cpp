@@ -17,7 +17,7 @@ namespace {
 
 using Kind = ControllerFaultKind;
 
-enum class Takes { kNothing, kProbability, kSeconds, kChannel, kMotor };
+enum class Takes { kNothing, kProbability, kSeconds, kFactor, kChannel, kMotor };
 
 struct Entry {
   Kind kind;
@@ -51,6 +51,9 @@ constexpr std::array kEntries{
     Entry{Kind::kEmergencyStop, "estop", Takes::kNothing, "the emergency stop is pressed"},
     Entry{Kind::kDrive, "drive", Takes::kNothing, "the device's electronics report a fault"},
     Entry{Kind::kClockBackwards, "clock-backwards", Takes::kNothing, "the controller's clock runs backwards"},
+    Entry{Kind::kSlow, "slow", Takes::kFactor,
+          "the controller makes so many times fewer ticks than it promises"},
+    Entry{Kind::kSlowClock, "slow-clock", Takes::kFactor, "likewise, and its clock is as slow"},
 };
 
 std::string_view value_text(Takes takes) {
@@ -59,6 +62,8 @@ std::string_view value_text(Takes takes) {
       return "=PROBABILITY";
     case Takes::kSeconds:
       return "=SECONDS";
+    case Takes::kFactor:
+      return "=FACTOR";
     case Takes::kChannel:
       return "=CHANNEL";
     case Takes::kMotor:
@@ -113,6 +118,8 @@ double value_of(const std::string& text, const Entry& entry, std::optional<std::
       return is(v >= 0.0 && v <= 1.0, "a probability from 0 to 1");
     case Takes::kSeconds:
       return is(v >= 0.0 && v <= kLongestDelay, "seconds from 0 to 1");
+    case Takes::kFactor:
+      return is(v >= 1.0 && v <= 255.0 && v == std::floor(v), "a whole number from 1 to 255");
     case Takes::kChannel:
     case Takes::kMotor:
     case Takes::kNothing:
@@ -253,6 +260,15 @@ SimulatedBreakage ControllerFaultPlan::breakage(double t) const noexcept {
   for (const ControllerFault& fault : faults_)
     if (in_force(fault, t)) apply(fault, breakage);
   return breakage;
+}
+
+ControllerSlowness ControllerFaultPlan::slowness(double t) const noexcept {
+  ControllerSlowness slowness;
+  for (const ControllerFault& fault : faults_) {
+    if (!in_force(fault, t) || (fault.kind != Kind::kSlow && fault.kind != Kind::kSlowClock)) continue;
+    slowness = {.every = static_cast<int>(fault.value), .clock = fault.kind == Kind::kSlowClock};
+  }
+  return slowness;
 }
 
 bool ControllerFaultPlan::restarts(double t) noexcept {

@@ -30,12 +30,14 @@ enum class ControllerFaultKind {
   kEmergencyStop,
   kDrive,
   kClockBackwards,
+  kSlow,
+  kSlowClock,
 };
 
 /// One --fault. Its times are those of the process's (slowed) clock, which a restart does not reset.
 struct ControllerFault {
   ControllerFaultKind kind = ControllerFaultKind::kDrop;
-  double value = 0.0;  ///< a probability, a time [s], or the number of a channel or motor
+  double value = 0.0;  ///< a probability, a time [s], a factor, or the number of a channel or motor
   double start = 0.0;  ///< [s]
   double end = std::numeric_limits<double>::infinity();  ///< [s]
   std::string text;                                      ///< as typed
@@ -51,6 +53,12 @@ struct PacketFaults {
   double corrupt = 0.0;    ///< probability: one bit flips
   bool noise_bytes = false;
   bool silence = false;
+};
+
+/// Slowness of the controller: only every n-th tick is made.
+struct ControllerSlowness {
+  int every = 1;       ///< n
+  bool clock = false;  ///< its clock counts only the ticks that are made
 };
 
 /// Parses NAME[=VALUE][@START[+LENGTH]].
@@ -69,6 +77,7 @@ class ControllerFaultPlan {
 
   [[nodiscard]] PacketFaults packets(double t) const noexcept;
   [[nodiscard]] SimulatedBreakage breakage(double t) const noexcept;
+  [[nodiscard]] ControllerSlowness slowness(double t) const noexcept;
   /// @returns true if the time of a restart has come since the last call.
   [[nodiscard]] bool restarts(double t) noexcept;
 

@@ -43,7 +43,19 @@ ServedStatistics ServedController::serve(const Clock& clock, const Transport& tr
   return statistics_;
 }
 
+/// Advances the clock of a controller that is too slow. @returns true if this tick is left out
+bool ServedController::leaves_out(double t) noexcept {
+  const ControllerSlowness slowness = plan_.slowness(t);
+  if (++left_out_ >= slowness.every) {
+    left_out_ = 0;
+    return false;
+  }
+  if (!slowness.clock) controller_.skip(1);
+  return true;
+}
+
 void ServedController::tick(double t) noexcept {
+  if (leaves_out(t)) return;
   const PacketFaults faults = plan_.packets(t);
   if (plan_.restarts(t)) {
     controller_.restart(controller_.controller().epoch + 1000U);

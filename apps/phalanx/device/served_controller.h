@@ -44,6 +44,7 @@ class ServedController {
 
  private:
   void tick(double t) noexcept;
+  [[nodiscard]] bool leaves_out(double t) noexcept;
   void take_frames(double t, const PacketFaults& faults) noexcept;
   void note_command(std::span<const std::uint8_t> frame) noexcept;
 
@@ -52,6 +53,7 @@ class ServedController {
   ControllerFaultPlan& plan_;
   ControllerLog* log_;
   ServedStatistics statistics_;
+  int left_out_ = 0;  ///< ticks in a row that a fault has left out
   Peer host_ = 0;
   bool has_host_ = false;
   std::uint64_t newest_command_ = 0;

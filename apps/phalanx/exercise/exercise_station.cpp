@@ -116,7 +116,7 @@ void ExerciseStation::watch() {
 void ExerciseStation::drain() {
   if (auto report = session_->take_fault_report()) {
     const FaultEvent& event = report->event;
-    console_.say(fmt::format("FAULT {}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
+    console_.say(fmt::format("FAULT {}: {} {}", fault_name(event.fault), fault_words(event),
                              fault_remedy(event.fault)),
                  Emphasis::kError);
     recorder_.event("fault", "", std::string(fault_name(event.fault)));

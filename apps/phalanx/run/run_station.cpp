@@ -208,8 +208,8 @@ class Run {
 
   void tell_fault(FaultReport report) {
     const FaultEvent& event = report.event;
-    const std::string text = fmt::format("{}: {} {}", fault_name(event.fault), fault_meaning(event.fault),
-                                         fault_remedy(event.fault));
+    const std::string text =
+        fmt::format("{}: {} {}", fault_name(event.fault), fault_words(event), fault_remedy(event.fault));
     if (commands_) commands_->saw_fault(event.time);
     console_.say("FAULT " + text, Emphasis::kError);
     tell_notice("fault", text, true);

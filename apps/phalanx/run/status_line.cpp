@@ -33,7 +33,7 @@ Part forces(const StationView& view) {
 std::string of_fault(const FaultEvent& fault) {
   return fmt::format("{}{}: {} Type `reset` when it is mended.", fault_name(fault.fault),
                      fault.channel >= 0 ? fmt::format(" (channel {})", fault.channel) : "",
-                     fault_meaning(fault.fault));
+                     fault_words(fault));
 }
 
 std::vector<Part> parts_of(const StationView& view, const DeadlineStatistics& deadlines) {

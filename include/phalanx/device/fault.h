@@ -30,6 +30,7 @@ enum class Fault : std::uint16_t {
   kDeviceLost,           ///< the device's port or socket failed
   kNotActing,            ///< the device does not act on the commands it receives
   kOscillation,          ///< the force oscillated again soon after it had faded because it oscillated
+  kSampleRate,           ///< the device sends samples at another rate than it promises
 };
 
 /// Names a fault for files and screens: "step_too_old", ... A value without a name is "unknown".

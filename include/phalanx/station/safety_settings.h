@@ -55,6 +55,10 @@ struct SafetySettings {
   /// The same bound for a fingertip's measured force and the magnitude of the sum of the forces commanded on
   /// its digit [N]. torque_error_part and torque_error_time hold here too.
   double force_error = 2.0;
+  /// Sample rate of a wired device with motors. It is a fault if the rate over a window is below the promised
+  /// one divided by rate_factor, or above it times rate_factor, by the device's clock or by the host's.
+  double rate_window = 0.5;  ///< by the host's clock [s]
+  double rate_factor = 2.0;  ///< [-]
 
   /// The patient's own range of motion, which narrows that of the hand for range_taper; none: only the hand's holds.
   JointRanges range{};
@@ -69,8 +73,8 @@ struct SafetySettings {
 /// A motor that measures its wound length, and the joints that it moves. A sensor that stands still is
 /// compared with it.
 struct MotorWitness {
-  int channel = -1;                   ///< channel of kind kMotor
-  std::array<double, kJoints> arm{};  ///< moment arm of the tendon at each joint [m]
+  int channel = -1;                         ///< channel of kind kMotor
+  std::array<double, kJoints> arm{};        ///< moment arm of the tendon at each joint [m]
   double slack = 0.0;  ///< motion of the motor that moves no joint: tendon stretch at the largest torque,
                        ///< and play [m]
 };
@@ -106,6 +110,13 @@ enum class SafetyState : std::uint8_t {
 /// Names a state: "waiting", "starting", "running", "stopping", "stopped", "fault".
 [[nodiscard]] std::string_view safety_state_name(SafetyState state) noexcept;
 
+/// Rates of a device's samples over a window [Hz].
+struct SampleRates {
+  double promised = 0.0;   ///< DeviceInfo::rate_hz
+  double by_device = 0.0;  ///< by the numbers and the clock of the device; 0: not measured
+  double by_host = 0.0;    ///< by its numbers and the host's clock; 0: not measured
+};
+
 /// One fault: its kind, place and time. The first fault is kept until a reset; later ones, which may follow
 /// from it, do not replace it.
 struct FaultEvent {
@@ -114,6 +125,10 @@ struct FaultEvent {
   double time = 0.0;         ///< the host's clock [s]
   std::uint64_t tick = 0;    ///< number of the step that found it
   bool from_device = false;  ///< true: the controller found it
+  SampleRates rates = {};    ///< for kSampleRate
 };
+
+/// @returns the meaning of a fault in words (fault_meaning()), with the rates of kSampleRate. Allocates.
+[[nodiscard]] std::string fault_words(const FaultEvent& event);
 
 }  // namespace phalanx

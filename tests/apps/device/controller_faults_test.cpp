@@ -83,7 +83,18 @@ TEST(ControllerFaults, EveryFaultOfTheListCanBeTyped) {
     EXPECT_EQ(refusal(spec), "") << spec;
     ++count;
   }
-  EXPECT_EQ(count, static_cast<int>(Kind::kClockBackwards) + 1);
+  EXPECT_EQ(count, static_cast<int>(Kind::kSlowClock) + 1);
+}
+
+TEST(ControllerFaults, ASlowControllerMakesEveryNthTick) {
+  const ControllerFaultPlan plan = plan_of({"slow=5@1+1", "slow-clock=3@3"});
+  EXPECT_EQ(plan.slowness(0.5).every, 1);
+  EXPECT_EQ(plan.slowness(1.5).every, 5);
+  EXPECT_FALSE(plan.slowness(1.5).clock);
+  EXPECT_EQ(plan.slowness(3.5).every, 3);
+  EXPECT_TRUE(plan.slowness(3.5).clock);
+  for (const char* text : {"slow", "slow=0", "slow=1.5", "slow-clock=256"})
+    EXPECT_NE(refusal(text).find("a whole number from 1 to 255"), std::string::npos) << text;
 }
 
 TEST(ControllerFaults, AreInForceFromStartToEnd) {
