@@ -33,6 +33,7 @@ set(PHALANX_SIMULATION_PUBLIC_HEADERS # of phalanx::simulation
     device/device.h
     device/exoskeleton.h
     device/fault.h
+    device/moment_arm.h
     device/motion.h
     grasp/grasp_type.h
     hand/sensor_mapping.h

@@ -69,6 +69,23 @@ void check_name(const std::string& name) {
            "a name begins with a letter, and has letters, digits, _ and - only; rename it");
 }
 
+void check_linkages(const ExoMotor& motor, const std::string& place) {
+  for (std::size_t i = 0; i < motor.linkages.size(); ++i) {
+    const JointLinkage& linkage = motor.linkages[i];
+    require_index(linkage.joint);
+    const std::string of = fmt::format("{}, linkage of {}", place, joint_name(linkage.joint));
+    for (std::size_t other = i + 1; other < motor.linkages.size(); ++other)
+      if (motor.linkages[other].joint == linkage.joint) refuse(of, "is there twice; keep one");
+    check_linkage(linkage, of);
+    const double arm = motor.arm[static_cast<std::size_t>(linkage.joint)];
+    if (arm != largest_arm(linkage))
+      refuse(of,
+             fmt::format("the motor's moment arm is {} m, the linkage's largest {} m; add the linkage with "
+                         "add_linkage()",
+                         arm, largest_arm(linkage)));
+  }
+}
+
 void check_motor(const ExoMotor& motor, const std::array<bool, kJoints>& has_joint) {
   check_name(motor.name);
   const std::string place = fmt::format("motor {}", motor.name);
@@ -87,6 +104,7 @@ void check_motor(const ExoMotor& motor, const std::array<bool, kJoints>& has_joi
                                 joint_name(j), arm));
     }
   }
+  check_linkages(motor, place);
   if (!moves) refuse(place, "moves no joint; give it a moment arm that is not 0, or remove the motor");
   check.at_least("lag [s]", motor.lag, 0.0);
   check.above_0("force limit [N]", motor.force_limit);

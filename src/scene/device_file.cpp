@@ -17,6 +17,8 @@ namespace {
 
 /// Far beyond any hand exoskeleton: a value outside has a wrong decimal point or unit.
 constexpr NumberRange kArmMm = {.min = -100.0, .max = 100.0};
+constexpr NumberRange kBarMm = {.min = 0.0, .max = 1e3, .min_open = true};
+constexpr NumberRange kCoefficientMm = {.min = -1e4, .max = 1e4};
 constexpr NumberRange kStopDeg = {.min = -180.0, .max = 180.0};
 constexpr NumberRange kRate = {.min = 1.0, .max = 100e3};
 constexpr NumberRange kScale = {.min = 0.0, .max = 1e3};
@@ -85,11 +87,77 @@ std::array<double, kJoints> read_arms(TomlTable table) {
   return arm;
 }
 
-ExoMotor read_motor(TomlTable own, TomlTable* defaults, const std::string& name) {
+FourBar read_four_bar(TomlTable table) {
+  FourBar bar;
+  bar.ground = table.number("ground_mm", kBarMm) * kMilli;
+  bar.crank = table.number("crank_mm", kBarMm) * kMilli;
+  bar.coupler = table.number("coupler_mm", kBarMm) * kMilli;
+  bar.rocker = table.number("rocker_mm", kBarMm) * kMilli;
+  bar.rocker_angle = table.number("rocker_deg", {.min = -360.0, .max = 360.0}) * kDeg;
+  bar.crossed = table.has("crossed") && table.flag("crossed");
+  bar.drum = table.number("drum_mm", {.min = -1e3, .max = 1e3}) * kMilli;
+  table.finish();
+  return bar;
+}
+
+/// Reads the range of a linkage; without one, the joint's stops.
+void read_range(TomlTable& table, const std::vector<ExoJoint>& joints, JointLinkage& linkage) {
+  if (table.has("range_deg")) {
+    const auto [least, most] = table.pair("range_deg", kStopDeg);
+    linkage.min_angle = least * kDeg;
+    linkage.max_angle = most * kDeg;
+    return;
+  }
+  const auto joint = std::ranges::find(joints, linkage.joint, &ExoJoint::joint);
+  if (joint == joints.end() || !joint->stop_min || !joint->stop_max)
+    table.fail("range_deg",
+               "is missing, and the joint has no stops; write the angles between which the linkage moves");
+  linkage.min_angle = *joint->stop_min;
+  linkage.max_angle = *joint->stop_max;
+}
+
+JointLinkage read_linkage(TomlTable table, const std::vector<ExoJoint>& joints, int joint) {
+  JointLinkage linkage;
+  linkage.joint = joint;
+  read_range(table, joints, linkage);
+  if (table.has("arm_polynomial_mm"))
+    for (const double c : table.list("arm_polynomial_mm", kCoefficientMm))
+      linkage.polynomial.push_back(c * kMilli);
+  if (table.has("arm_table_deg_mm"))
+    for (const auto& [angle, arm] : table.pairs("arm_table_deg_mm", kStopDeg, kArmMm))
+      linkage.table.push_back({.angle = angle * kDeg, .arm = arm * kMilli});
+  if (table.has("four_bar")) linkage.four_bar = read_four_bar(table.table("four_bar"));
+  const std::string place = table.place();
+  table.finish();
+  try {
+    check_linkage(linkage, place);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(error.what());
+  }
+  return linkage;
+}
+
+/// Reads the moment arms: constant ones, and linkages.
+void read_transmission(TomlTable& table, const std::vector<ExoJoint>& joints, ExoMotor& motor) {
+  const bool has_linkages = table.has("linkages");
+  if (table.has("arms_mm") || !has_linkages) motor.arm = read_arms(table.table("arms_mm"));
+  if (!has_linkages) return;
+  TomlTable linkages = table.table("linkages");
+  for (int joint = 0; joint < kJoints; ++joint) {
+    if (!linkages.has(joint_name(joint))) continue;
+    if (motor.arm[static_cast<std::size_t>(joint)] != 0.0)
+      linkages.fail(joint_name(joint), "has a constant moment arm in arms_mm, too; set that to 0");
+    add_linkage(motor, read_linkage(linkages.table(joint_name(joint)), joints, joint));
+  }
+  linkages.finish();
+}
+
+ExoMotor read_motor(TomlTable own, TomlTable* defaults, const std::string& name,
+                    const std::vector<ExoJoint>& joints) {
   Defaulted table(std::move(own), defaults);
   ExoMotor motor;
   motor.name = name;
-  motor.arm = read_arms(table.own().table("arms_mm"));
+  read_transmission(table.own(), joints, motor);
   motor.lag = table.number("lag_ms", between(0.0, 1e3), 0.0) * kMilli;
   motor.force_limit = table.number("force_limit_n", above(0.0, 10e3));
   motor.pull_only = table.flag("pull_only", false);
@@ -242,7 +310,7 @@ void read_mechanics(TomlTable& root, Exoskeleton& exo) {
   if (root.has("motors")) {
     TomlTable motors = root.table("motors");
     for (const std::string& name : motors.keys())
-      exo.motors.push_back(read_motor(motors.table(name), of_motor ? &*of_motor : nullptr, name));
+      exo.motors.push_back(read_motor(motors.table(name), of_motor ? &*of_motor : nullptr, name, exo.joints));
   }
   if (of_joint) of_joint->finish();
   if (of_motor && !exo.motors.empty()) of_motor->finish();

@@ -39,6 +39,25 @@ void lines(std::string& text, const ExoMotor& motor) {
     if (arm != 0.0) line(text, fmt::format("{}.arm.{}", key, joint_name(joint)), arm);
     ++joint;
   }
+  for (const JointLinkage& linkage : motor.linkages) {
+    const std::string of = fmt::format("{}.linkage.{}", key, joint_name(linkage.joint));
+    line(text, of + ".min_angle", linkage.min_angle);
+    line(text, of + ".max_angle", linkage.max_angle);
+    for (std::size_t k = 0; k < linkage.polynomial.size(); ++k)
+      line(text, fmt::format("{}.polynomial.{}", of, k), linkage.polynomial[k]);
+    for (std::size_t i = 0; i < linkage.table.size(); ++i) {
+      line(text, fmt::format("{}.table.{}.angle", of, i), linkage.table[i].angle);
+      line(text, fmt::format("{}.table.{}.arm", of, i), linkage.table[i].arm);
+    }
+    if (!linkage.four_bar) continue;
+    line(text, of + ".four_bar.ground", linkage.four_bar->ground);
+    line(text, of + ".four_bar.crank", linkage.four_bar->crank);
+    line(text, of + ".four_bar.coupler", linkage.four_bar->coupler);
+    line(text, of + ".four_bar.rocker", linkage.four_bar->rocker);
+    line(text, of + ".four_bar.rocker_angle", linkage.four_bar->rocker_angle);
+    line(text, of + ".four_bar.crossed", linkage.four_bar->crossed ? 1.0 : 0.0);
+    line(text, of + ".four_bar.drum", linkage.four_bar->drum);
+  }
   line(text, key + ".lag", motor.lag);
   line(text, key + ".force_limit", motor.force_limit);
   line(text, key + ".pull_only", motor.pull_only ? 1.0 : 0.0);

@@ -82,22 +82,39 @@ Plant::Plant(const Exoskeleton& exoskeleton, const PatientParameters& patient, c
     for (const Joint& joint : joints_) {
       const double arm = motor.arm[static_cast<std::size_t>(joint.joint)];
       if (arm == 0.0) continue;
+      if (const JointLinkage* linkage = linkage_of(motor, joint.joint)) {
+        curves_.push_back({arms_.size(), tendons_.size(), *linkage});
+        wound += excursion(*linkage, bodies_[joint.body].position);
+      } else {
+        wound += arm * bodies_[joint.body].position;
+      }
       arms_.push_back({joint.body, arm});
-      wound += arm * bodies_[joint.body].position;
     }
     tendon.last_arm = arms_.size();
     tendons_.push_back(tendon);
     bodies_.push_back(
         {.mass = motor.mass, .damping = motor.damping, .friction = motor.sheath, .position = wound});
   }
+  follow_linkages();
   patient_torque_.resize(joints_.size());
   pulled_.resize(joints_.size());
+}
+
+/// Takes the moment arms of linkages at the present angles. Around them  e(q) = r q + bend.
+void Plant::follow_linkages() noexcept {
+  for (const Curve& curve : curves_) tendons_[curve.tendon].bend = 0.0;
+  for (const Curve& curve : curves_) {
+    Arm& arm = arms_[curve.arm];
+    const double q = bodies_[arm.body].position;
+    arm.arm = moment_arm(curve.linkage, q);
+    tendons_[curve.tendon].bend += excursion(curve.linkage, q) - arm.arm * q;
+  }
 }
 
 // These three are used only here, on every tendon of every sweep.
 
 inline double Plant::stretch(const Tendon& tendon) const noexcept {
-  double s = bodies_[tendon.rotor].position;
+  double s = bodies_[tendon.rotor].position - tendon.bend;
   for (std::size_t a = tendon.first_arm; a < tendon.last_arm; ++a)
     s -= arms_[a].arm * bodies_[arms_[a].body].position;
   return s;
@@ -264,6 +281,7 @@ void Plant::book(double h) noexcept {
 
 void Plant::one_step(const PlantInput& input, double h, double t) noexcept {
   for (Body& body : bodies_) body.position += 0.5 * h * body.speed;
+  follow_linkages();
   load(input, h, t);
   solve_speeds(h);
   book(h);
@@ -271,6 +289,7 @@ void Plant::one_step(const PlantInput& input, double h, double t) noexcept {
     body.speed = body.next_speed;
     body.position += 0.5 * h * body.speed;
   }
+  follow_linkages();
 }
 
 void Plant::advance(const PlantInput& input, double duration) noexcept {

@@ -48,8 +48,12 @@ DeviceChannel motor_channel(const ExoMotor& motor, int index, const HandParamete
   double low = -kMotorPlay;
   double high = kMotorPlay;
   for (std::size_t j = 0; j < motor.arm.size(); ++j) {
-    const double at_min = motor.arm[j] * (hand.min_angle[j] - kShownBeyondRange);
-    const double at_max = motor.arm[j] * (hand.max_angle[j] + kShownBeyondRange);
+    const JointLinkage* linkage = linkage_of(motor, static_cast<int>(j));
+    const auto unwound = [&](double q) {
+      return linkage != nullptr ? excursion(*linkage, q) : motor.arm[j] * q;
+    };
+    const double at_min = unwound(hand.min_angle[j] - kShownBeyondRange);
+    const double at_max = unwound(hand.max_angle[j] + kShownBeyondRange);
     low += std::min(at_min, at_max);
     high += std::max(at_min, at_max);
   }

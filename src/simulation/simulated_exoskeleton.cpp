@@ -114,6 +114,7 @@ void SimulatedExoskeleton::measure_tick() noexcept {
 }
 
 void SimulatedExoskeleton::drive(const JointArray& torque) noexcept {
+  transmission_.set_angles(sample_.angle);
   transmission_.render(torque, rendered_);
   for (std::size_t i = 0; i < input_.motor_force.size(); ++i) {
     const ExoMotor& motor = exoskeleton_.motors[i];

@@ -38,6 +38,7 @@ Transmission::Transmission(const Exoskeleton& exo) : motor_count_(static_cast<in
                  .pull_only = motor.pull_only,
                  .only_joint = only_joint(motor),
                  .force_constant = motor.force_constant};
+    for (const JointLinkage& linkage : motor.linkages) linkage_.emplace_back(m, linkage);
   }
   coupling_count_ = static_cast<int>(exo.coupled.size());
   for (std::size_t i = 0; i < exo.coupled.size(); ++i) {
@@ -46,6 +47,13 @@ Transmission::Transmission(const Exoskeleton& exo) : motor_count_(static_cast<in
                     coupled.ratio};
   }
   group_motors();
+}
+
+void Transmission::set_angles(const JointArray& angle) noexcept {
+  for (const auto& [motor, linkage] : linkage_) {
+    const auto j = static_cast<std::size_t>(linkage.joint);
+    motor_[motor].arm[j] = moment_arm(linkage, std::isfinite(angle[j]) ? angle[j] : linkage.min_angle);
+  }
 }
 
 double Transmission::overlap(int a, int b) const noexcept {

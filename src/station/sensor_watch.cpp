@@ -68,24 +68,29 @@ Fault SensorWatch::judge_angle(std::size_t c, double t) noexcept {
 }
 
 /// @returns the joint angle that the motor and the other joints it moves imply [rad]. The tendon's length
-/// is  y = sum arm q,  so  q = (y - sum of the others) / arm.
+/// is  y = sum arm q,  so  q = (y - sum of the others) / arm. A linkage has its e(q), and the inverse.
 double SensorWatch::moved_by(const MotorWitness& witness, std::size_t c) const noexcept {
   const auto joint = idx(map_->channels()[c].index);
   double wound = map_->value(idx(witness.channel), channel_[idx(witness.channel)].raw);
   for (std::size_t j = 0; j < witness.arm.size(); ++j) {
     if (j == joint || witness.arm[j] == 0.0) continue;
     const int other = map_->angle_channel(static_cast<int>(j));
-    if (other >= 0) wound -= witness.arm[j] * map_->value(idx(other), channel_[idx(other)].raw);
+    if (other < 0) continue;
+    const double q = map_->value(idx(other), channel_[idx(other)].raw);
+    const JointLinkage* linkage = witness.linkage_of(static_cast<int>(j));
+    wound -= linkage != nullptr ? excursion(*linkage, q) : witness.arm[j] * q;
   }
-  return wound / witness.arm[joint];
+  const JointLinkage* own = witness.linkage_of(static_cast<int>(joint));
+  return own != nullptr ? angle_of_excursion(*own, wound) : wound / witness.arm[joint];
 }
 
 bool SensorWatch::stands_still(std::size_t c, double t) noexcept {
   const DeviceChannel& sensor = map_->channels()[c];
   if (sensor.kind != ChannelKind::kAngle || t - channel_[c].still_since < settings_.stuck_after) return false;
   for (std::size_t w = 0; w < witness_.size(); ++w) {
-    const double arm = witness_[w].arm[idx(sensor.index)];
+    double arm = witness_[w].arm[idx(sensor.index)];
     if (arm == 0.0) continue;
+    if (const double least = witness_[w].least_arm[idx(sensor.index)]; least != 0.0) arm = least;
     const double believable =
         settings_.stuck_counts * std::abs(sensor.gain) + witness_[w].slack / std::abs(arm);
     if (std::abs(moved_by(witness_[w], c) - witnessed_[c * witness_.size() + w]) > believable) return true;
@@ -160,9 +165,13 @@ std::vector<MotorWitness> motor_witnesses(const Exoskeleton& exoskeleton,
     double longest = 0.0;
     for (const double arm : motor.arm) longest = std::max(longest, std::abs(arm));
     if (longest == 0.0) continue;
+    std::array<double, kJoints> least{};
+    for (const JointLinkage& linkage : motor.linkages) least[idx(linkage.joint)] = least_arm(linkage);
     const double tension = std::min(motor.force_limit, largest_torque / longest) + motor.bias;
     witnesses.push_back({.channel = static_cast<int>(c),
                          .arm = motor.arm,
+                         .linkages = motor.linkages,
+                         .least_arm = least,
                          .slack = 2.0 * tension / motor.tendon_stiffness + motor.backlash});
   }
   return witnesses;

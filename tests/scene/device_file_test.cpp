@@ -30,6 +30,57 @@ void expect_refused(const std::string& text, const std::vector<std::string>& wor
   expect_scene_error([&] { static_cast<void>(parse_text(text)); }, words);
 }
 
+const std::string kLinkage =
+    "[motors.mcp]\nforce_limit_n = 60\nmass_kg = 22\ntendon_stiffness_n_per_mm = 1000\n"
+    "[motors.mcp.linkages.index_mcp_flexion]\n";
+
+TEST(DeviceFile, StatesLinkagesInItsUnits) {
+  const Exoskeleton line =
+      parse_text(kJoint + kLinkage + "range_deg = [-30, 90]\narm_polynomial_mm = [-12, 2.5]\n");
+  ASSERT_EQ(line.motors[0].linkages.size(), 1U);
+  const JointLinkage& linkage = line.motors[0].linkages[0];
+  EXPECT_EQ(linkage.joint, 4);
+  EXPECT_DOUBLE_EQ(linkage.max_angle, std::numbers::pi / 2.0);
+  EXPECT_DOUBLE_EQ(linkage.polynomial[1], 0.0025);
+  EXPECT_NEAR(line.motors[0].arm[4], -0.012 - 0.0025 * std::numbers::pi / 6.0, 1e-12) << "the largest";
+  const Exoskeleton table =
+      parse_text(kJoint + kLinkage + "range_deg = [0, 90]\narm_table_deg_mm = [[0, 10], [90, 6]]\n");
+  EXPECT_DOUBLE_EQ(table.motors[0].linkages[0].table[1].arm, 0.006);
+  const Exoskeleton bar =
+      parse_text(kJoint + "stop_min_deg = -5\nstop_max_deg = 105\n" + kLinkage +
+                 "four_bar = { ground_mm = 28, crank_mm = 18, coupler_mm = 32, rocker_mm = 14, "
+                 "rocker_deg = 40, drum_mm = -14, crossed = false }\n");
+  EXPECT_DOUBLE_EQ(bar.motors[0].linkages[0].four_bar->coupler, 0.032);
+  EXPECT_NEAR(bar.motors[0].linkages[0].min_angle, -5.0 * std::numbers::pi / 180.0, 1e-15)
+      << "the joint's stops";
+}
+
+TEST(DeviceFile, RefusesALinkageWithPlaceValueAndRemedy) {
+  const std::string range = "range_deg = [0, 90]\n";
+  expect_refused(kJoint + kLinkage + "arm_polynomial_mm = [10]\n", {"range_deg", "is missing", "no stops"});
+  expect_refused(kJoint + kLinkage + range, {"index_mcp_flexion", "0 of polynomial", "state exactly one"});
+  expect_refused(kJoint + kLinkage + range + "arm_polynomial_mm = [10, -10]\n",
+                 {"d.toml", "index_mcp_flexion", "at 56.", "moment arm is 0.", "narrow the range"});
+  expect_refused(kJoint + kLinkage + range + "arm_table_deg_mm = [[0, 10], [45]]\n",
+                 {"d.toml:7", "no pair of numbers"});
+  expect_refused(kJoint + kLinkage + range + "arm_table_deg_mm = [[0, 10], [90, 1000]]\n",
+                 {"element 1, second"});
+  expect_refused(kJoint + kLinkage + range + "arm_polynomial_mm = []\n",
+                 {"write numbers in square brackets"});
+  expect_refused(
+      kJoint + kLinkage + range +
+          "four_bar = { ground_mm = 28, crank_mm = 5, coupler_mm = 10, rocker_mm = 14, rocker_deg = 40, "
+          "drum_mm = 10 }\n",
+      {"the rocker's end is", "5.00 to 15.00 mm", "Change a length"});
+  expect_refused(
+      kJoint + kMotor + "[motors.mcp.linkages.index_mcp_flexion]\n" + range + "arm_polynomial_mm = [10]\n",
+      {"arms_mm", "set that to 0"});
+  expect_refused(kJoint + kLinkage + range +
+                     "arm_polynomial_mm = [10]\n[motors.mcp.linkages.index_pip_flexion]\n" + range +
+                     "arm_polynomial_mm = [10]\n",
+                 {"index_pip_flexion", "the device has no such joint"});
+}
+
 TEST(DeviceFile, StatesJointsMotorsAndControllerInItsUnits) {
   const Exoskeleton exo = parse_text(R"(description = "all of it"
 [controller]
@@ -426,6 +477,11 @@ TEST(DeviceText, IsTheSameForTheSameNumbersAndHoldsEachOfThem) {
                              "[defaults.motor]\npull_only = true\n", "[defaults.motor]\nbacklash_mm = 1\n",
                              "[defaults.joint]\nstatic_ratio = 1.5\n"})
     EXPECT_NE(text, device_text(parse_text(kJoint + kMotor + change))) << change;
+  const std::string range = kJoint + kLinkage + "range_deg = [0, 90]\n";
+  const std::string line = device_text(parse_text(range + "arm_polynomial_mm = [10, 1]\n"));
+  for (const char* change : {"arm_polynomial_mm = [10, 2]\n", "arm_polynomial_mm = [10, 1, 0.1]\n",
+                             "arm_table_deg_mm = [[0, 10], [90, 11]]\n"})
+    EXPECT_NE(line, device_text(parse_text(range + change))) << change;
 }
 
 TEST(DeviceText, ChangesWithEveryNumberOfADevice) {

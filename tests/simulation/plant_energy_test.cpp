@@ -127,7 +127,8 @@ TEST_P(PlantEnergyOf, BalancesAtTheDefaultStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, PlantEnergyOf,
-                         testing::Values("beihang", "light", "heavy_viscous", "frictionless", "five_digits"),
+                         testing::Values("beihang", "light", "heavy_viscous", "frictionless", "five_digits",
+                                         "linkages"),
                          [](const auto& preset) { return std::string(preset.param); });
 
 /// The index presses a sampled spring of 1 Nm/rad at MCP and 0.4 Nm/rad at PIP, 200 times a second, on the

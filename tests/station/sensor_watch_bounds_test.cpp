@@ -266,6 +266,50 @@ TEST(SensorWatchBounds, AMotorThatIsTheFirstChannelIsAWitnessToo) {
   EXPECT_EQ(witnesses[0].channel, 0);
 }
 
+// ---- linkages ----
+
+/// r = 10 mm + 10 mm/rad q, so e = 10 q + 5 q^2 [mm].
+JointLinkage bent(int joint) {
+  return {.joint = joint, .min_angle = -0.3, .max_angle = 1.5, .polynomial = {0.010, 0.010}};
+}
+
+std::vector<MotorWitness> bent_witness() {
+  Exoskeleton exoskeleton;
+  exoskeleton.motors.resize(1);
+  exoskeleton.motors[0].tendon_stiffness = 1e9;
+  exoskeleton.motors[0].force_limit = 1.0;
+  add_linkage(exoskeleton.motors[0], bent(kMcp));
+  return motor_witnesses(
+      exoskeleton, {{.kind = ChannelKind::kAngle, .index = kMcp}, {}, {.kind = ChannelKind::kMotor}}, 0.5);
+}
+
+// A joint that moves with its motor along the curve is believed. One that stands still while the motor winds
+// what 20 counts of it unwind is stuck.
+TEST(SensorWatchBounds, AMotorWithALinkageImpliesTheAngleOfItsExcursion) {
+  const std::vector<MotorWitness> witnesses = bent_witness();
+  ASSERT_EQ(witnesses.size(), 1U);
+  EXPECT_DOUBLE_EQ(witnesses[0].least_arm[kMcp], 0.007);
+  const auto wind = [](Watch& bench, double q) {
+    bench.sample.raw[2] = static_cast<std::int32_t>(std::lround((0.010 * q + 0.005 * q * q) / 1e-6));
+  };
+  Watch follows(witnesses);
+  wind(follows, 0.5);
+  EXPECT_EQ(follows.judge_many(10).fault, Fault::kNone);
+  for (int i = 0; i < 600; ++i) {
+    const double q = 0.5 + 0.001 * i;
+    follows.at(q, 0.5);
+    wind(follows, q);
+    ASSERT_EQ(follows.judge().fault, Fault::kNone) << q;
+  }
+  Watch stuck(witnesses);
+  wind(stuck, 0.5);
+  EXPECT_EQ(stuck.judge_many(10).fault, Fault::kNone);
+  wind(stuck, 0.5005);  // 5 counts of the joint's sensor: not enough
+  EXPECT_EQ(stuck.judge_many(600).fault, Fault::kNone);
+  wind(stuck, 0.502);
+  EXPECT_EQ(stuck.judge_many(600).fault, Fault::kStuckSensor);
+}
+
 // ---- torque and force that disagree ----
 
 // -0.4 Nm commanded: 0.15 + 0.5 x 0.4 = 0.35 Nm are believed, either way round.

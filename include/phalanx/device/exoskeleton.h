@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "phalanx/device/channel_map.h"
+#include "phalanx/device/moment_arm.h"
 #include "phalanx/hand/joints.h"
 
 namespace phalanx {
@@ -44,21 +45,34 @@ struct ExoJoint {
 /// A motor and the tendon that it pulls, in the tendon's coordinates. y is the length that the motor has
 /// wound up [m]. T is the tendon's tension [N], positive where it pulls. `arm` is a row of the moment-arm
 /// matrix: tension T exerts the torque arm[j] T on joint j, and the joints unwind  e = sum_j arm[j] q_j.
+/// A joint with a linkage unwinds  e(q_j)  instead, with the torque  r(q_j) T.
 struct ExoMotor {
   std::string name;
-  std::array<double, kJoints> arm{};  ///< nonzero only at the device's joints [m]
-  double lag = 0.0;                   ///< first-order lag from command to force [s] >= 0
-  double force_limit = 0.0;           ///< largest force, in both directions [N] > 0
-  bool pull_only = false;             ///< the tendon goes slack instead of pushing
-  double bias = 0.0;                  ///< pull_only: constant tension [N] >= 0; the command adds to it
-  double force_constant = 1.0;        ///< tendon force per motor current [N/A] > 0
-  double mass = 0.0;                  ///< rotor and gear, reflected to the tendon [kg] > 0
-  double damping = 0.0;               ///< viscous damping of rotor and gear [N s/m] >= 0
-  double tendon_stiffness = 0.0;      ///< [N/m] > 0
-  double tendon_damping = 0.0;        ///< [N s/m] >= 0
-  double backlash = 0.0;              ///< play between winding and unwinding, full width [m] >= 0
-  DryFriction sheath;                 ///< between tendon and sheath; acts on the rotor
+  std::array<double, kJoints> arm{};        ///< nonzero only at the device's joints [m]
+  std::vector<JointLinkage> linkages = {};  ///< add_linkage() adds them
+  double lag = 0.0;                         ///< first-order lag from command to force [s] >= 0
+  double force_limit = 0.0;                 ///< largest force, in both directions [N] > 0
+  bool pull_only = false;                   ///< the tendon goes slack instead of pushing
+  double bias = 0.0;                        ///< pull_only: constant tension [N] >= 0; the command adds to it
+  double force_constant = 1.0;              ///< tendon force per motor current [N/A] > 0
+  double mass = 0.0;                        ///< rotor and gear, reflected to the tendon [kg] > 0
+  double damping = 0.0;                     ///< viscous damping of rotor and gear [N s/m] >= 0
+  double tendon_stiffness = 0.0;            ///< [N/m] > 0
+  double tendon_damping = 0.0;              ///< [N s/m] >= 0
+  double backlash = 0.0;                    ///< play between winding and unwinding, full width [m] >= 0
+  DryFriction sheath;                       ///< between tendon and sheath; acts on the rotor
 };
+
+/// Adds a linkage, and sets arm of its joint to the largest moment arm. Bounds use it: of the natural
+/// frequency, the largest torque and the counts of a channel. Set-up only. @pre check_linkage() has passed
+void add_linkage(ExoMotor& motor, JointLinkage linkage);
+
+/// @returns the linkage of a joint; null: its moment arm is constant. Real-time.
+[[nodiscard]] inline const JointLinkage* linkage_of(const ExoMotor& motor, int joint) noexcept {
+  for (const JointLinkage& linkage : motor.linkages)
+    if (linkage.joint == joint) return &linkage;
+  return nullptr;
+}
 
 /// Timing of controller and host. The host's own rate is the scene's.
 struct ExoController {

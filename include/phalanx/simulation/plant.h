@@ -44,7 +44,8 @@ struct TendonState {
 ///   motor force  df/dt = (u - f) / lag,  |u| <= force_limit
 ///   rotor        m y'' = f - T - b y' - friction(y')
 ///   tendon       T = k (|s| - play) sign(s) + c s'  while |s| exceeds the play (half the backlash), else 0;
-///                stretch s = y - sum_j arm_j q_j;  pull_only: T >= 0
+///                stretch s = y - sum_j arm_j q_j;  pull_only: T >= 0.
+///                With a linkage: e(q_j) for arm_j q_j, and r(q_j) for arm_j, in the middle of the step
 ///   joint        I_j q_j'' = sum_i arm_ij T_i - b q_j' - friction(q_j')
 ///                + k_p (q_intended - q) + b_p (q_intended' - q') + push
 ///
@@ -118,7 +119,13 @@ class Plant {
   };
   struct Arm {
     std::size_t body;
-    double arm;
+    double arm;  ///< with a linkage that of this step
+  };
+  /// Linkage of an element of arms_.
+  struct Curve {
+    std::size_t arm;
+    std::size_t tendon;
+    JointLinkage linkage;
   };
   struct Tendon {
     std::size_t rotor = 0;
@@ -132,11 +139,13 @@ class Plant {
     double elastic = 0.0, active_damping = 0.0;  ///< in this step
     double drive = 0.0;                          ///< f in the middle of this step
     double tension = 0.0;                        ///< mean over the last step
+    double bend = 0.0;      ///< sum of  e(q) - r q  of its linkages, at the angles of follow_linkages() [m]
     bool released = false;  ///< made slack in this step, although its spring was stretched
   };
 
   void one_step(const PlantInput& input, double h, double t) noexcept;
   void load(const PlantInput& input, double h, double t) noexcept;
+  void follow_linkages() noexcept;
   void pull(Tendon& tendon, double command) noexcept;
   void solve_speeds(double h) noexcept;
   bool sweep(double h) noexcept;
@@ -151,6 +160,7 @@ class Plant {
   std::vector<Joint> joints_;
   std::vector<Tendon> tendons_;
   std::vector<Arm> arms_;
+  std::vector<Curve> curves_;
   std::vector<double> patient_torque_;  ///< of each joint in this step, without the damping of q'
   std::vector<double> pulled_;          ///< by the tendons' dampers in this sweep, on each joint [Nm]
   JointArray angle_{};

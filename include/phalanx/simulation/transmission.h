@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "phalanx/core/math.h"
 #include "phalanx/device/exoskeleton.h"
@@ -27,9 +29,10 @@ struct Rendered {
 /// pull-only tendon, and  -limit <= T <= limit  otherwise. It minimises  |A' T - w|^2,  with the matrix A of
 /// moment arms (one row a motor). If several T do, it takes the one with the least |T|.
 ///
+/// Motors with a linkage have the moment arms of the angles of set_angles().
+///
 /// Coupled joints: q = ratio q_of + offset. By virtual work, a torque t on the following joint equals the
 /// torque ratio t on the joint that it follows:  w_of += ratio t.
-///
 ///
 /// Motors that share no joint with another are solved in closed form, exactly. Motors that share joints form
 /// a box-constrained quadratic program. An active set method solves its normal equations (Lawson, Hanson
@@ -41,6 +44,9 @@ class Transmission {
   /// @throws std::invalid_argument as check_exoskeleton(). Set-up only.
   explicit Transmission(const Exoskeleton& exoskeleton);
 
+  /// Sets the joints' angles, from which linkages have their moment arms; they begin at the largest ones.
+  /// A device without linkages ignores them. Real-time.
+  void set_angles(const JointArray& angle) noexcept;
   /// Computes the motors' forces.
   /// @param wanted  torque on each of the hand's joints [Nm]; one that is not finite counts as 0, and the
   /// magnitude is bounded by 1e6
@@ -78,6 +84,7 @@ class Transmission {
   [[nodiscard]] double overlap(int a, int b) const noexcept;
 
   int motor_count_ = 0;
+  std::vector<std::pair<std::size_t, JointLinkage>> linkage_;  ///< of a motor
   std::array<Motor, kMaxMotors> motor_{};
   int coupling_count_ = 0;
   std::array<Coupling, kJoints> coupling_{};

@@ -8,9 +8,11 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "phalanx/device/device.h"
 #include "phalanx/device/measured_range.h"
+#include "phalanx/device/moment_arm.h"
 #include "phalanx/force/force_parameters.h"
 #include "phalanx/hand/joints.h"
 
@@ -75,8 +77,17 @@ struct SafetySettings {
 struct MotorWitness {
   int channel = -1;                         ///< channel of kind kMotor
   std::array<double, kJoints> arm{};        ///< moment arm of the tendon at each joint [m]
+  std::vector<JointLinkage> linkages = {};  ///< of the joints whose moment arm depends on the angle
+  std::array<double, kJoints> least_arm{};  ///< least moment arm of these; 0: arm is constant [m]
   double slack = 0.0;  ///< motion of the motor that moves no joint: tendon stretch at the largest torque,
                        ///< and play [m]
+
+  /// @returns the linkage of a joint; null: its moment arm is constant. Real-time.
+  [[nodiscard]] const JointLinkage* linkage_of(int joint) const noexcept {
+    for (const JointLinkage& linkage : linkages)
+      if (linkage.joint == joint) return &linkage;
+    return nullptr;
+  }
 };
 
 /// Makes the settings for a scene's limits. A station accepts no limit that is turned off, and none beyond

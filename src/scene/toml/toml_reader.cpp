@@ -165,12 +165,37 @@ std::vector<double> TomlTable::numbers(std::string_view key, const NumberRange& 
     fail(key, fmt::format("write {} numbers in square brackets", size));
   std::vector<double> result;
   for (std::size_t i = 0; i < size; ++i) {
-    const toml::node& element = (*array)[i];
-    if (!element.is_number())
-      fail(key, fmt::format("element {} is {}; write a number", i, type_name(element)));
-    result.push_back(number_of(element));
-    if (!range.contains(result.back()))
-      fail(key, fmt::format("element {} must be {}; change the value", i, range.text()));
+    result.push_back(element(key, std::to_string(i), (*array)[i], range));
+  }
+  return result;
+}
+
+double TomlTable::element(std::string_view key, const std::string& name, const toml::node& node,
+                          const NumberRange& range) const {
+  if (!node.is_number()) fail(key, fmt::format("element {} is {}; write a number", name, type_name(node)));
+  const double value = number_of(node);
+  if (!range.contains(value))
+    fail(key, fmt::format("element {} must be {}; change the value", name, range.text()));
+  return value;
+}
+
+std::vector<double> TomlTable::list(std::string_view key, const NumberRange& range) {
+  const toml::array* array = node(key).as_array();
+  if (array == nullptr || array->empty()) fail(key, "write numbers in square brackets");
+  return numbers(key, range, array->size());
+}
+
+std::vector<std::pair<double, double>> TomlTable::pairs(std::string_view key, const NumberRange& first,
+                                                        const NumberRange& second) {
+  const toml::array* array = node(key).as_array();
+  if (array == nullptr || array->empty()) fail(key, "write pairs of numbers: [[a, b], [c, d]]");
+  std::vector<std::pair<double, double>> result;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::array* pair = (*array)[i].as_array();
+    if (pair == nullptr || pair->size() != 2)
+      fail(key, fmt::format("element {} is no pair of numbers; write [a, b]", i));
+    result.emplace_back(element(key, fmt::format("{}, first", i), (*pair)[0], first),
+                        element(key, fmt::format("{}, second", i), (*pair)[1], second));
   }
   return result;
 }

@@ -60,6 +60,11 @@ class TomlTable {
   [[nodiscard]] Vec3 vector(std::string_view key, const NumberRange& range);
   /// Reads an array of two numbers.
   [[nodiscard]] std::pair<double, double> pair(std::string_view key, const NumberRange& range);
+  /// Reads an array of at least one number.
+  [[nodiscard]] std::vector<double> list(std::string_view key, const NumberRange& range);
+  /// Reads an array of at least one pair of numbers, [[a, b], ...].
+  [[nodiscard]] std::vector<std::pair<double, double>> pairs(std::string_view key, const NumberRange& first,
+                                                             const NumberRange& second);
   [[nodiscard]] TomlTable table(std::string_view key);
   /// Reads an array of tables with exactly `size` elements (any number if `size` is negative).
   [[nodiscard]] std::vector<TomlTable> tables(std::string_view key, int size);
@@ -75,6 +80,8 @@ class TomlTable {
  private:
   [[nodiscard]] const toml::node& node(std::string_view key);
   [[nodiscard]] std::vector<double> numbers(std::string_view key, const NumberRange& range, std::size_t size);
+  [[nodiscard]] double element(std::string_view key, const std::string& name, const toml::node& node,
+                               const NumberRange& range) const;
   [[nodiscard]] std::string full(std::string_view key) const;
   /// @returns "FILE:LINE: PATH" of a value; if it is null, of the innermost existing table.
   [[nodiscard]] std::string place_of(const toml::node* found, const std::string& path) const;
