@@ -43,5 +43,6 @@ void add_device_probe(CLI::App& device, Job& job);
 void add_device_monitor(CLI::App& device, Job& job);
 void add_device_test_link(CLI::App& device, Job& job);
 void add_device_simulate(CLI::App& device, Job& job);
+void add_device_conform(CLI::App& device, Job& job);
 
 }  // namespace phalanx

@@ -100,6 +100,12 @@ void TwoProcesses::start_controller() {
 }
 
 void TwoProcesses::start_host() {
+  if (scenario_.conform) {
+    host_ = start(
+        {program(), "device", "conform", address_, "--no-hand-in-device", "--out", path("report").string()},
+        "host.txt");
+    return;
+  }
   std::vector<std::string> command{program(),
                                    "run",
                                    scenario_.scene,
@@ -125,7 +131,11 @@ Outcome TwoProcesses::go() {
     if (event.at > now()) pass(event.at - now());
     event.act(*this);
   }
-  if (scenario_.seconds > now()) pass(scenario_.seconds - now());
+  if (scenario_.conform) {
+    while (!host_->ended() && now() < scenario_.seconds) pass(0.1);
+  } else if (scenario_.seconds > now()) {
+    pass(scenario_.seconds - now());
+  }
   host_->signal(SIGINT);
   outcome_.host_exit = wait_for(*host_);
   controller_->signal(SIGINT);
@@ -140,7 +150,7 @@ void TwoProcesses::gather() {
   outcome_.controller_errors = controller_->errors();
   outcome_.host_output = host_->output();
   outcome_.host_errors = host_->errors();
-  outcome_.summary = read_file(path("summary.json"));
+  outcome_.summary = read_file(scenario_.conform ? path("report/conform.json") : path("summary.json"));
   outcome_.faults = faults_below(path("faults"));
 }
 

@@ -34,6 +34,7 @@ struct Scenario {
   bool pty = false;                          ///< a pseudo-terminal is the wire; else UDP
   std::string glove_watchdog_ms = {};        ///< glove_program stands in the controller's place; empty: no
   bool middle = false;                       ///< UDP with the test in the middle
+  bool conform = false;                      ///< `phalanx device conform` stands in the host's place
   std::vector<Event> events = {};            ///< in order
   std::string scene = "grasp_teapot";        ///< of both processes
   double seconds = 4.2;                      ///< then the host is asked to end, then the controller

@@ -62,7 +62,7 @@ TEST(DeviceFile, RefusesALinkageWithPlaceValueAndRemedy) {
   expect_refused(kJoint + kLinkage + range + "arm_polynomial_mm = [10, -10]\n",
                  {"d.toml", "index_mcp_flexion", "at 56.", "moment arm is 0.", "narrow the range"});
   expect_refused(kJoint + kLinkage + range + "arm_table_deg_mm = [[0, 10], [45]]\n",
-                 {"d.toml:7", "no pair of numbers"});
+                 {"d.toml:9", "no pair of numbers"});
   expect_refused(kJoint + kLinkage + range + "arm_table_deg_mm = [[0, 10], [90, 1000]]\n",
                  {"element 1, second"});
   expect_refused(kJoint + kLinkage + range + "arm_polynomial_mm = []\n",

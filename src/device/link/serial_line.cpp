@@ -63,6 +63,15 @@ bool SerialLine::send(std::span<const std::uint8_t> frame, Peer) noexcept {
   return !lost_;
 }
 
+bool SerialLine::send_bytes(std::span<const std::uint8_t> bytes) noexcept {
+  flush();
+  if (lost_ || bytes.size() > out_.size() - out_size_) return false;
+  std::copy(bytes.begin(), bytes.end(), out_.begin() + static_cast<std::ptrdiff_t>(out_size_));
+  out_size_ += bytes.size();
+  flush();
+  return !lost_;
+}
+
 bool SerialLine::wait(double seconds) noexcept {
   if (!in_.empty()) return true;
   if (lost_) {

@@ -21,6 +21,7 @@ class SerialLine : public Transport {
   [[nodiscard]] std::size_t receive(std::span<std::uint8_t> out, Peer& from) noexcept override;
   /// Queues a frame whole or not at all, so that the other side never receives half a frame.
   bool send(std::span<const std::uint8_t> frame, Peer to) noexcept override;
+  bool send_bytes(std::span<const std::uint8_t> bytes) noexcept override;
   bool wait(double seconds) noexcept override;
   [[nodiscard]] bool lost() const noexcept override { return lost_; }
   [[nodiscard]] std::uint64_t dropped() const noexcept override { return receiver_.dropped + too_large_; }

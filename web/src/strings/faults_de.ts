@@ -20,4 +20,5 @@ export const de: Readonly<Record<string, string>> = {
   device_lost: "Der Anschluss des Geräts ist ausgefallen. Stecken Sie das Gerät wieder ein.",
   not_acting: "Das Gerät führt die Befehle nicht aus. Prüfen Sie, ob es das richtige Gerät ist und ob seine Firmware passt.",
   oscillation: "Die Kraft hat bald nach ihrer Rückkehr wieder geschwungen. Verringern Sie die Steifigkeit.",
+  sample_rate: "Das Gerät sendet weniger als halb oder mehr als doppelt so viele Messwerte, wie es zusagt. Korrigieren Sie die Rate in seiner Firmware oder seine Uhr, und prüfen Sie, ob sein Prozessor überlastet ist.",
 };

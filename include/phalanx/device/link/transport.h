@@ -29,6 +29,12 @@ class Transport {
   [[nodiscard]] virtual std::size_t receive(std::span<std::uint8_t> out, Peer& from) noexcept = 0;
   /// Sends a frame. @returns true if the system took it; a full buffer drops it
   virtual bool send(std::span<const std::uint8_t> frame, Peer to) noexcept = 0;
+  /// Sends bytes of a serial line as they are, without COBS: for tests of a receiver.
+  /// @returns true if the system took all of them; false on another wire
+  virtual bool send_bytes(std::span<const std::uint8_t> bytes) noexcept {
+    static_cast<void>(bytes);
+    return false;
+  }
   /// Waits until something can be received, at most `seconds` of real time. @returns true if so
   virtual bool wait(double seconds) noexcept = 0;
   /// @returns true if the wire itself is gone (unplugged).

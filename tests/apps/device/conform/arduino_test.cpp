@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// examples/arduino on a board in memory, and `phalanx device conform` against it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <Arduino.h>
+
+#include "device/conform/conform_report.h"
+
+void setup();
+void loop();
+ArduinoSerial Serial;
+
+namespace {
+
+/// Pins and port of the board. Its core has a buffer of 64 bytes to send, as those of small boards.
+struct ArduinoBoard {
+  double now = 0.0;  ///< [s]
+  std::deque<std::uint8_t> to_sketch;
+  std::deque<std::uint8_t> from_sketch;
+  std::size_t in_buffer = 0;  ///< of the core, to send
+  std::array<int, 32> width{};
+  bool stop_pressed = false;
+};
+ArduinoBoard arduino;
+
+constexpr std::size_t kCoreBuffer = 64;
+
+}  // namespace
+
+unsigned long micros() { return static_cast<std::uint32_t>(std::llround(4.2e9 + 1e6 * arduino.now)); }
+int analogRead(std::uint8_t pin) { return pin == A2 ? 7 : 2000; }
+void analogWrite(std::uint8_t pin, int value) { arduino.width[pin] = value; }
+int digitalRead(std::uint8_t) { return arduino.stop_pressed ? LOW : HIGH; }
+void digitalWrite(std::uint8_t, std::uint8_t) {}
+void pinMode(std::uint8_t, std::uint8_t) {}
+void ArduinoSerial::begin(unsigned long) {}
+int ArduinoSerial::available() { return static_cast<int>(arduino.to_sketch.size()); }
+int ArduinoSerial::read() {
+  if (arduino.to_sketch.empty()) return -1;
+  const int byte = arduino.to_sketch.front();
+  arduino.to_sketch.pop_front();
+  return byte;
+}
+int ArduinoSerial::availableForWrite() { return static_cast<int>(kCoreBuffer - arduino.in_buffer); }
+std::size_t ArduinoSerial::write(const std::uint8_t* bytes, std::size_t size) {
+  EXPECT_LE(size, kCoreBuffer - arduino.in_buffer) << "the sketch would wait";
+  arduino.from_sketch.insert(arduino.from_sketch.end(), bytes, bytes + size);
+  arduino.in_buffer += size;
+  return size;
+}
+
+namespace phalanx {
+namespace {
+
+using ::testing::UnorderedElementsAreArray;
+
+/// Serial line to the sketch. loop() is called each 50 us; the line carries 2 Mbaud, 10 bytes in that time.
+class SketchPort final : public ConformPort {
+ public:
+  SketchPort() { phx_receiver_init(&receiver_); }
+  [[nodiscard]] double now() const override { return arduino.now; }
+  [[nodiscard]] bool serial() const override { return true; }
+  [[nodiscard]] double bytes_per_second() const override { return 2e5; }
+  void send(std::span<const std::uint8_t> frame, ConformSender) override {
+    std::vector<std::uint8_t> stuffed(frame.size() + frame.size() / 254 + 2);
+    stuffed.resize(phx_cobs_encode(frame.data(), frame.size(), stuffed.data(), stuffed.size()));
+    send_bytes(stuffed);
+  }
+  void send_bytes(std::span<const std::uint8_t> bytes) override {
+    on_line_.insert(on_line_.end(), bytes.begin(), bytes.end());
+  }
+  std::size_t receive(double until, std::span<std::uint8_t> out, ConformSender& to) override {
+    to = ConformSender::kHost;
+    while (true) {
+      while (!arduino.from_sketch.empty() && carried_ > 0) {
+        --carried_;
+        --arduino.in_buffer;
+        const std::size_t size = phx_receiver_take(&receiver_, arduino.from_sketch.front());
+        arduino.from_sketch.pop_front();
+        if (size == 0) continue;
+        std::copy_n(receiver_.frame, size, out.begin());
+        return size;
+      }
+      if (arduino.now + kLoop > until) {
+        arduino.now = std::max(arduino.now, until);
+        return 0;
+      }
+      arduino.now += kLoop;
+      carried_ = kBytesPerLoop;
+      for (int i = 0; i < kBytesPerLoop && !on_line_.empty(); ++i) {
+        arduino.to_sketch.push_back(on_line_.front());
+        on_line_.pop_front();
+      }
+      loop();
+    }
+  }
+
+ private:
+  static constexpr double kLoop = 50e-6;  // [s]
+  static constexpr int kBytesPerLoop = 10;
+  phx_receiver receiver_{};
+  std::deque<std::uint8_t> on_line_;
+  int carried_ = 0;
+};
+
+// Its clock begins just before micros() wraps around.
+TEST(ArduinoExample, ConformsToTheLink) {
+  arduino = {};
+  setup();
+  SketchPort port;
+  const ConformReport report = run_conformance(port, {});
+  std::vector<std::string> failed;
+  for (const ConformResult& result : report.results)
+    if (result.finding.outcome == ConformOutcome::kFail) failed.emplace_back(result.row->id);
+  EXPECT_THAT(failed, UnorderedElementsAreArray(std::vector<std::string>{})) << conform_markdown(report);
+  EXPECT_EQ(report.device, "serial number ARDUINO-0001, 500 Hz, 2 channels");
+  EXPECT_EQ(arduino.width[5], 0) << "no torque at the end";
+}
+
+}  // namespace
+}  // namespace phalanx
