@@ -12,6 +12,7 @@
 #include "papers/s2_experiments.h"
 #include "papers/s2_loop_figures.h"
 #include "phalanx/scene/scene.h"
+#include "phalanx/study/trial_function.h"
 #include "record/made_json.h"
 #include "study/laboratory/measure_point.h"
 

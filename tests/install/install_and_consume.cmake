@@ -2,6 +2,8 @@
 # Installs BUILD_DIR into a fresh prefix under WORK_DIR, and moves that prefix: a package must not remember where it was installed. Compiles
 # each installed header by itself. Builds the programs in CONSUMER_DIR, README's program and the installed examples against the prefix, and
 # runs them. Also asks for what the package does not have.
+cmake_minimum_required(VERSION 3.25)
+
 function(must)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   message("${output}")
