@@ -47,7 +47,9 @@ class CliManual : public ::testing::Test {
       const auto options_of_it = names_below(help, "Options");
       EXPECT_FALSE(options_of_it.empty()) << full;
       for (const std::string& option : options_of_it)
-        if (option != "-h,--help") EXPECT_THAT(section, HasSubstr("fB" + option)) << full;
+        if (option != "-h,--help") {
+          EXPECT_THAT(section, HasSubstr("fB" + option)) << full;
+        }
       options += options_of_it.size();
     }
     for (const std::string& name : below) {

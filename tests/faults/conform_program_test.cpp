@@ -36,7 +36,7 @@ TEST(DeviceConform, TheSimulatedDeviceConformsOverAPseudoTerminal) {
   expect_conforms("TheSimulatedDeviceConformsOverAPseudoTerminal");
 }
 
-const Registered kSlow("ASlowDeviceDoesNotConform", "",
+const Registered kConformsSlowly("ASlowDeviceDoesNotConform", "",
                        {.controller = {"--fault", "slow=5"}, .conform = true, .seconds = kAtMost});
 TEST(DeviceConform, ASlowDeviceDoesNotConform) {
   const Outcome& o = outcome("ASlowDeviceDoesNotConform");
