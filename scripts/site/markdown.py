@@ -9,7 +9,7 @@ EXTENSIONS = ["table", "strikethrough", "autolink", "tasklist"]
 HEADING = re.compile(r"<h([1-6])>(.*?)</h\1>", re.S)
 LINK = re.compile(r'(<(?:a|img)\s[^>]*?(?:href|src)=")([^"]*)(")')
 ELSEWHERE = re.compile(r"^[a-z][a-z0-9+.-]*:")
-SKIPPED = {"build", "node_modules", ".git", "out", ".cache", "obj-x86_64-linux-gnu"}
+SKIPPED = {"build", "debian", "node_modules", ".git", "out", ".cache", "obj-x86_64-linux-gnu"}
 
 
 def documents(root):
