@@ -10,10 +10,10 @@ import { chromium } from "playwright-core";
 import { browserOptions } from "../tests/browser/support/browser";
 
 const kScreen = { width: 720, height: 450 };
-const kFrom = 4.4; // [s] of the demo's recording: the hand is open
-const kTo = 9.3; // it is open again: a squeeze lasts 4.9 s
-const kRate = 12; // pictures a second
-const kQuality = 62; // of WebP
+const kFrom = 5.0; // [s] of the recording of the demo: the hand is open
+const kTo = 9.8; // it is open again
+const kRate = 15; // pictures a second
+const kQuality = 80; // of WebP
 const kMost = 1_500_000; // bytes
 
 const [demo = "", out = "", keep] = process.argv.slice(2);
@@ -36,7 +36,7 @@ try {
     files.push(file);
   }
   const each = files.flatMap((file) => ["-d", String(Math.round(1000 / kRate)), file]);
-  execFileSync("img2webp", ["-loop", "0", "-lossy", "-q", String(kQuality), "-m", "6", "-min_size", ...each, "-o", resolve(out)], { stdio: "pipe" });
+  execFileSync("img2webp", ["-loop", "0", "-lossy", "-q", String(kQuality), "-m", "4", ...each, "-o", resolve(out)], { stdio: "pipe" });
   const { size } = statSync(resolve(out));
   console.log(`${out}: ${files.length} pictures, ${size} bytes`);
   if (size > kMost) throw new Error(`more than ${kMost} bytes`);
