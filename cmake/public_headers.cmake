@@ -83,3 +83,4 @@ set(PHALANX_RECORDING_PUBLIC_HEADERS # of phalanx::recording
     record/replay_visitor.h
     record/session_recorder.h
     record/step_recorder.h)
+set(PHALANX_C_PUBLIC_HEADERS phalanx.h) # of phalanx::c

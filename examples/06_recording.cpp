@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <stdexcept>
 #include <vector>
 
 #include "phalanx/record/recordings.h"
@@ -32,6 +33,7 @@ std::filesystem::path record(const std::filesystem::path& folder) {
     recorder.update();
   };
   while (session.view().snapshot.tick < 100) {
+    if (clock.now() > 60.0) throw std::runtime_error("100 steps take longer than 60 s");
     clock.sleep_until(clock.now() + 1.0 / 60.0);
     add_all();
   }

@@ -235,6 +235,7 @@ namespace Phalanx
             Mesh copy = new Mesh { Vertices = new double[3 * mesh.VertexCount], Triangles = new int[3 * mesh.TriangleCount] };
             if (copy.Vertices.Length > 0) Marshal.Copy(mesh.Vertices, copy.Vertices, 0, copy.Vertices.Length);
             if (copy.Triangles.Length > 0) Marshal.Copy(mesh.Triangles, copy.Triangles, 0, copy.Triangles.Length);
+            GC.KeepAlive(this); // the model's finalizer frees the mesh
             return copy;
         }
 
@@ -245,7 +246,15 @@ namespace Phalanx
     public sealed class Sample : IDisposable
     {
         const int Words = 50;  // of 8 bytes
-        internal IntPtr Memory = Marshal.AllocHGlobal(8 * Words);
+        private IntPtr owned = Marshal.AllocHGlobal(8 * Words);
+        internal IntPtr Memory
+        {
+            get
+            {
+                if (owned == IntPtr.Zero) throw new ObjectDisposedException("Sample");
+                return owned;
+            }
+        }
         readonly double[] time = new double[1];
 
         /// <summary>20 joint angles [rad]: 4 for each digit from the thumb: flexion, abduction, two hinges.</summary>
@@ -278,12 +287,12 @@ namespace Phalanx
 
         public void Dispose()
         {
-            Marshal.FreeHGlobal(Memory);
-            Memory = IntPtr.Zero;
+            Marshal.FreeHGlobal(owned);
+            owned = IntPtr.Zero;
             GC.SuppressFinalize(this);
         }
 
-        ~Sample() { Marshal.FreeHGlobal(Memory); }
+        ~Sample() { Marshal.FreeHGlobal(owned); }
     }
 
     /// <summary>Motion of the whole hand over time.</summary>
@@ -303,6 +312,7 @@ namespace Phalanx
         {
             Native.Check(Native.phalanx_motion_get_sample(Handle, time, sample.Memory));
             sample.Read();
+            GC.KeepAlive(sample);
         }
 
         public void Dispose() { Handle.Dispose(); }
@@ -315,7 +325,15 @@ namespace Phalanx
         const int Words = 972, TorqueAt = 3, MeasuredAt = 23, ShownAt = 43, DigitForceAt = 63, FingertipAt = 78;
         const int SegmentAt = 93, SegmentWords = 19, ShownPoseAt = 589, PoseWords = 12, StiffnessAt = 824;
 
-        internal IntPtr Memory = Marshal.AllocHGlobal(8 * Words);
+        private IntPtr owned = Marshal.AllocHGlobal(8 * Words);
+        internal IntPtr Memory
+        {
+            get
+            {
+                if (owned == IntPtr.Zero) throw new ObjectDisposedException("Snapshot");
+                return owned;
+            }
+        }
         readonly double[] word = new double[Words];
 
         public Snapshot()
@@ -372,12 +390,12 @@ namespace Phalanx
 
         public void Dispose()
         {
-            Marshal.FreeHGlobal(Memory);
-            Memory = IntPtr.Zero;
+            Marshal.FreeHGlobal(owned);
+            owned = IntPtr.Zero;
             GC.SuppressFinalize(this);
         }
 
-        ~Snapshot() { Marshal.FreeHGlobal(Memory); }
+        ~Snapshot() { Marshal.FreeHGlobal(owned); }
     }
 
     /// <summary>State that one step leaves for the next, with its parameters.</summary>
@@ -401,6 +419,7 @@ namespace Phalanx
             uint status;
             sample.Write();
             Native.Check(Native.phalanx_step(Handle, sample.Memory, out status));
+            GC.KeepAlive(sample); // its finalizer frees the memory
             return (Status)status;
         }
 
@@ -409,6 +428,7 @@ namespace Phalanx
         {
             Native.Check(Native.phalanx_state_get_snapshot(Handle, into.Memory));
             into.Read();
+            GC.KeepAlive(into);
         }
 
         /// <summary>Replaces a parameter that changes in contact, over 0.2 s. Any thread.</summary>

@@ -8,15 +8,7 @@
 Units are SI and part of every name: _m, _rad, _n, _nm (newton metre), _s. docs/python.md is the manual.
 """
 import enum as _enum
-import os as _os
-from pathlib import Path as _Path
-
-# The data of the installation that this package belongs to, unless the user names another folder.
-_data = _Path(__file__).parents[4] / "share" / "phalanx" if len(_Path(__file__).parents) > 4 else None
-if _data is not None and (_data / "scenes").is_dir():
-    _os.environ.setdefault("PHALANX_DATA_DIR", str(_data))
-
-from phalanx._core import (  # noqa: E402
+from phalanx._core import (
     DIGITS,
     JOINTS,
     RENDERING_VERSION,

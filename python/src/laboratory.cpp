@@ -18,8 +18,8 @@
 #include "columns.h"
 #include "phalanx/force/parameter_ranges.h"
 #include "phalanx/record/made.h"
-#include "phalanx/scene/build_model.h"
 #include "phalanx/scene/resolved_scene.h"
+#include "phalanx/scene/scene_trial.h"
 #include "phalanx/simulation/closed_loop/trial.h"
 #include "phalanx/study/laboratory/run_study.h"
 #include "phalanx/study/laboratory/scene_inputs.h"
@@ -39,16 +39,6 @@ struct Trial {
   TrialResult result;
   std::shared_ptr<Run> run;
 };
-
-/// Makes the set-up of a scene that is resolved with its device and its motion. It opens no file.
-std::shared_ptr<const TrialSetup> set_up(ResolvedScene scene) {
-  const Motion motion = scene.motion.value();
-  const Exoskeleton exoskeleton = scene.exoskeleton.value();
-  const PatientParameters patient = scene.patient.value();
-  const HapticParameters parameters = scene.description.parameters;
-  return std::make_shared<TrialSetup>(
-      make_trial_setup(build_model(std::move(scene)), parameters, exoskeleton, patient, motion));
-}
 
 /// What every trial of a call has in common.
 struct TrialArguments {
@@ -276,7 +266,8 @@ depend on each other.)");
   loop.def(py::init([](const Scene& scene) {
              const Scene copy = scene;
              const py::gil_scoped_release release;
-             return std::make_unique<ClosedLoop>(set_up(copy.resolve({.device = true, .motion = true})));
+             return std::make_unique<ClosedLoop>(
+                 make_trial_setup(copy.resolve({.device = true, .motion = true})));
            }),
            py::arg("scene"))
       .def("run", &ClosedLoop::run, py::arg("seed") = 1, py::arg("stiffness_n_per_m") = py::none(),

@@ -159,8 +159,8 @@ py::dict replay_of(const Recording& recording, const py::object& progress) {
 }
 
 template <class Member>
-void say(py::class_<Recording>& recording, const char* name, Member RecordingSummary::* member,
-         const char* meaning) {
+void bind_summary(py::class_<Recording>& recording, const char* name, Member RecordingSummary::* member,
+                  const char* meaning) {
   recording.def_property_readonly(
       name, [member](const Recording& self) { return self.summary().*member; }, meaning);
 }
@@ -216,16 +216,17 @@ progress: called as progress(part), 0 to 1; what it raises ends the call.)")
       .def("__repr__", [](const Recording& self) {
         return fmt::format("<Recording {}: {}>", self.file().string(), recording_state(self.summary()));
       });
-  say(recording, "trouble", &RecordingSummary::trouble, "Why nothing more is known; empty: all below is.");
-  say(recording, "begin_utc_s", &RecordingSummary::begin, "Begin, UTC [s since 1970].");
-  say(recording, "seconds", &RecordingSummary::seconds, "From the first to the last message [s].");
-  say(recording, "steps", &RecordingSummary::steps, "Number of steps.");
-  say(recording, "events", &RecordingSummary::events, "Number of events.");
-  say(recording, "gaps", &RecordingSummary::gaps, "Number of gaps.");
-  say(recording, "scene", &RecordingSummary::scene, "Scene of the first station.");
-  say(recording, "device", &RecordingSummary::device, "Device of the first station.");
-  say(recording, "version", &RecordingSummary::version, "Version of the program that recorded it.");
-  say(recording, "encrypted", &RecordingSummary::encrypted, "True for an encrypted file.");
+  bind_summary(recording, "trouble", &RecordingSummary::trouble,
+               "Why nothing more is known; empty: all below is.");
+  bind_summary(recording, "begin_utc_s", &RecordingSummary::begin, "Begin, UTC [s since 1970].");
+  bind_summary(recording, "seconds", &RecordingSummary::seconds, "From the first to the last message [s].");
+  bind_summary(recording, "steps", &RecordingSummary::steps, "Number of steps.");
+  bind_summary(recording, "events", &RecordingSummary::events, "Number of events.");
+  bind_summary(recording, "gaps", &RecordingSummary::gaps, "Number of gaps.");
+  bind_summary(recording, "scene", &RecordingSummary::scene, "Scene of the first station.");
+  bind_summary(recording, "device", &RecordingSummary::device, "Device of the first station.");
+  bind_summary(recording, "version", &RecordingSummary::version, "Version of the program that recorded it.");
+  bind_summary(recording, "encrypted", &RecordingSummary::encrypted, "True for an encrypted file.");
 }
 
 }  // namespace phalanx::python

@@ -44,7 +44,9 @@ std::string toml_value(const std::string& key, const py::handle& value, int dept
     std::string text;
     if (py::isinstance<py::dict>(value)) {
       for (const auto& [name, part] : py::reinterpret_borrow<py::dict>(value)) {
-        if (!py::isinstance<py::str>(name)) break;
+        if (!py::isinstance<py::str>(name))
+          throw py::type_error(fmt::format("{}: a key of a dict is a text, not {}", key,
+                                           py::str(py::type::handle_of(name)).cast<std::string>()));
         text += fmt::format("{} {} = {}", text.empty() ? "" : ",", toml_string(name.cast<std::string>()),
                             toml_value(key, part, depth + 1));
       }

@@ -63,7 +63,7 @@ phalanx_result write_struct(Struct& from, std::size_t smallest, Struct* into, co
 
 /// Puts a new object into the table, and gives its handle to the caller.
 template <class Object, class Handle>
-void give(std::unique_ptr<Object> object, Handle** handle) {
+void make_handle(std::unique_ptr<Object> object, Handle** handle) {
   *handle =
       reinterpret_cast<Handle*>(insert_handle(kKind<Object>, object.get()));  // NOLINT: never dereferenced
   static_cast<void>(object.release());

@@ -92,7 +92,7 @@ phalanx_result phalanx_model_create(const phalanx_scene* scene, phalanx_model** 
   if (object == nullptr) return wrong_handle("scene");
   if (model == nullptr) return null_argument("model");
   return guarded([&] {
-    give(std::make_unique<Model>(Model{model_of(*object)}), model);
+    make_handle(std::make_unique<Model>(Model{model_of(*object)}), model);
     return PHALANX_OK;
   });
 }
@@ -114,9 +114,9 @@ phalanx_result phalanx_model_create_from_mesh(const phalanx_hand* hand, const do
         hand_of(with),
         empty ? phalanx::ObjectModel()
               : phalanx::ObjectModel(mesh_of(vertices, vertex_count, triangles, triangle_count)));
-    give(std::make_unique<Model>(Model{std::make_shared<const BuiltModel>(
-             BuiltModel{.haptic = std::move(haptic), .display = {}, .friction = {}, .scene = "arrays"})}),
-         model);
+    make_handle(std::make_unique<Model>(Model{std::make_shared<const BuiltModel>(BuiltModel{
+                    .haptic = std::move(haptic), .display = {}, .friction = {}, .scene = "arrays"})}),
+                model);
     return PHALANX_OK;
   });
 }

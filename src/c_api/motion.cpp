@@ -17,7 +17,7 @@ phalanx_result phalanx_motion_create(const phalanx_scene* scene, phalanx_motion*
     auto timed = std::make_unique<TimedMotion>();
     timed->motion = phalanx::build_motion(object->read.scene);
     timed->seconds = phalanx::simulation_seconds(object->read.scene, timed->motion);
-    give(std::move(timed), motion);
+    make_handle(std::move(timed), motion);
     return PHALANX_OK;
   });
 }

@@ -58,7 +58,7 @@ phalanx_result phalanx_recorder_create(phalanx_state* state, const char* path, p
         PHALANX_ERROR_NOT_NOW,
         "the state has made a step; begin the recording before the first one, so that it can be replayed");
   return guarded([&] {
-    give(begin_recorder(*object, path), recorder);
+    make_handle(begin_recorder(*object, path), recorder);
     return PHALANX_OK;
   });
 }
@@ -98,6 +98,12 @@ phalanx_result phalanx_recorder_finish(phalanx_recorder* recorder) {
   auto* const object = object_of<Recorder>(recorder);
   if (object == nullptr) return wrong_handle("recorder");
   return guarded([&] {
+    {
+      State& state = object->state;
+      const std::lock_guard lock(state.mutex);
+      state.keeps_changes.store(false, std::memory_order_relaxed);
+      state.unrecorded.clear();
+    }
     object->file.finish();
     return PHALANX_OK;
   });

@@ -65,7 +65,7 @@ phalanx_result phalanx_recording_open(const char* path, double from_s, double to
     auto read = std::make_unique<Recording>();
     StepCollector collector(*read, from_s, to_s);
     read->result = phalanx::replay(path, {}, &collector);
-    give(std::move(read), recording);
+    make_handle(std::move(read), recording);
     return PHALANX_OK;
   });
 }

@@ -67,7 +67,7 @@ phalanx_result phalanx_scene_load(const char* name, phalanx_scene** scene) {
   if (name == nullptr) return null_argument("name");
   if (scene == nullptr) return null_argument("scene");
   return guarded([&] {
-    give(std::make_unique<Scene>(scene_of(phalanx::SceneFile(name), name)), scene);
+    make_handle(std::make_unique<Scene>(scene_of(phalanx::SceneFile(name), name)), scene);
     return PHALANX_OK;
   });
 }
@@ -78,7 +78,7 @@ phalanx_result phalanx_scene_parse(const char* text, const char* folder, phalanx
   return guarded([&] {
     const std::filesystem::path of_files =
         folder == nullptr ? std::filesystem::current_path() : std::filesystem::path(folder);
-    give(std::make_unique<Scene>(scene_of(phalanx::SceneFile(text, "scene", of_files), "")), scene);
+    make_handle(std::make_unique<Scene>(scene_of(phalanx::SceneFile(text, "scene", of_files), "")), scene);
     return PHALANX_OK;
   });
 }

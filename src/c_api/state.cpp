@@ -60,7 +60,8 @@ phalanx_result phalanx_state_create(const phalanx_model* model, const phalanx_sc
   if (of_scene == nullptr && scene != nullptr) return wrong_handle("scene");
   if (state == nullptr) return null_argument("state");
   return guarded([&] {
-    give(std::make_unique<State>(of_model->built, of_scene == nullptr ? default_scene() : *of_scene), state);
+    make_handle(std::make_unique<State>(of_model->built, of_scene == nullptr ? default_scene() : *of_scene),
+                state);
     return PHALANX_OK;
   });
 }

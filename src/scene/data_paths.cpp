@@ -38,7 +38,7 @@ fs::path data_folder() {
   Dl_info own{};
   if (::dladdr(reinterpret_cast<const void*>(&data_folder), &own) != 0 && own.dli_fname != nullptr)
     if (const fs::path folder = fs::absolute(own.dli_fname, error).parent_path(); !error)
-      for (const char* up : {"../share/phalanx", "../../share/phalanx"})
+      for (const char* up : {"../share/phalanx", "../../share/phalanx", "../../../../share/phalanx"})
         if (fs::path beside = (folder / up).lexically_normal();
             std::find(tried.begin(), tried.end(), beside.string()) == tried.end())
           tried.push_back(beside);

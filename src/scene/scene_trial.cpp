@@ -9,12 +9,16 @@
 namespace phalanx {
 
 std::shared_ptr<const TrialSetup> make_trial_setup(const SceneDescription& scene) {
-  ResolvedScene resolved = resolve(scene, {.device = true, .motion = true});
-  const Motion motion = resolved.motion.value();
-  const Exoskeleton exoskeleton = resolved.exoskeleton.value();
-  const PatientParameters patient = resolved.patient.value();
+  return make_trial_setup(resolve(scene, {.device = true, .motion = true}));
+}
+
+std::shared_ptr<const TrialSetup> make_trial_setup(ResolvedScene scene) {
+  const Motion motion = scene.motion.value();
+  const Exoskeleton exoskeleton = scene.exoskeleton.value();
+  const PatientParameters patient = scene.patient.value();
+  const HapticParameters parameters = scene.description.parameters;
   return std::make_shared<TrialSetup>(
-      make_trial_setup(build_model(std::move(resolved)), scene.parameters, exoskeleton, patient, motion));
+      make_trial_setup(build_model(std::move(scene)), parameters, exoskeleton, patient, motion));
 }
 
 }  // namespace phalanx

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The C interface seen from C++: no allocation in a step, the same bits
-// as step(), exceptions and threads. The calls themselves are tested from C (calls_test.c).
+// SPDX-License-Identifier: Apache-2.0
+// The C interface seen from C++: no allocation in a step, the same bits as step(), exceptions and threads. The calls themselves are tested from C (calls_test.c).
 #include <gtest/gtest.h>
 
 #include <array>

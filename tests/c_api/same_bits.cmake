@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # The step loop LOOP prints the hash of torques and forces that REFERENCE prints, which calls step() in C++; and the hash tells scenes and
-# parameters apart.
+# parameters apart. TWIN is empty, or another step loop that prints the same hash of whole snapshots.
 function(run variable)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "failed (${result}): ${ARGN}\n${output}${errors}")
   endif()
-  if(NOT output MATCHES "[0-9]+ steps, forces [0-9a-f]+")
+  if(NOT output MATCHES "([0-9]+ steps, forces [0-9a-f]+)(, snapshots [0-9a-f]+)?")
     message(FATAL_ERROR "${ARGN} prints no hash:\n${output}")
   endif()
-  set(${variable} "${CMAKE_MATCH_0}" PARENT_SCOPE)
+  set(${variable} "${CMAKE_MATCH_1}" PARENT_SCOPE)
+  set(${variable}_snapshots "${CMAKE_MATCH_2}" PARENT_SCOPE)
 endfunction()
 
 set(seen "")
@@ -18,6 +19,12 @@ foreach(scene press_teapot grasp_cup)
   run(actual ${LOOP} ${scene})
   if(NOT actual STREQUAL expected)
     message(FATAL_ERROR "${scene}: step() gives ${expected}, the loop ${actual}")
+  endif()
+  if(TWIN)
+    run(twin ${TWIN} ${scene})
+    if(NOT actual_snapshots OR NOT actual_snapshots STREQUAL twin_snapshots)
+      message(FATAL_ERROR "${scene}: the loop prints${actual_snapshots}, the other language's${twin_snapshots}")
+    endif()
   endif()
   list(APPEND seen "${expected}")
 endforeach()

@@ -22,13 +22,14 @@ enum class ForceLaw {
 
 /// Force law of a caller, for ForceLaw::kOwn: a plain function, and a pointer that is passed on to it.
 ///
-/// step() calls the function for every contact with d > 0, on the thread that calls step(). It must be real-time safe
-/// like step() itself: no allocation, lock, exception or I/O. Its result must depend on its arguments and on constant
-/// data alone, so that equal samples give equal bits. Stabiliser::kLocalWall also calls it to measure its slope.
+/// step() calls the function for every contact with d > 0, on the thread that calls step(). It must be
+/// real-time safe like step() itself: no allocation, lock, exception or I/O. Its result must depend on its
+/// arguments and on constant data alone, so that equal samples give equal bits. Stabiliser::kLocalWall also
+/// calls it to measure its slope.
 ///
-/// All later stages act on the result as on that of any other law: fingertip caps, stabiliser, torque limits. A
-/// result below 0 counts as 0, because no law pulls. A result that is not finite counts as 0, and the step's status is
-/// kCommandNotFinite. SegmentSnapshot::force_raw then still has it.
+/// All later stages act on the result as on that of any other law: fingertip caps, stabiliser, torque limits.
+/// A result below 0 counts as 0, because no law pulls. A result that is not finite counts as 0, and the
+/// step's status is kCommandNotFinite. SegmentSnapshot::force_raw then still has it.
 struct OwnForceLaw {
   /// Returns the force with which the object pushes the finger out [N].
   /// @param user   OwnForceLaw::user

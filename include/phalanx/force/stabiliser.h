@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Selection of a stabiliser, which keeps the loop through device and finger stable: none, one of nine
-// methods from the law's force to the force sent, or a function of the caller. docs/stabilisers.md compares them and names
-// their sources. S2 is a paper listed in docs/architecture.md.
+// Selection of a stabiliser, which keeps the loop through device and finger stable: none, one of nine methods
+// from the law's force to the force sent, or a function of the caller. docs/stabilisers.md compares them and
+// names their sources. S2 is a paper listed in docs/architecture.md.
 #pragma once
 
 #include <array>
@@ -31,14 +31,14 @@ enum class Stabiliser {
 
 /// Stabiliser of a caller, for Stabiliser::kOwn: a plain function, and a pointer that is passed on to it.
 ///
-/// step() calls the function for every contact that presses, on the thread that calls step(). It must be real-time safe
-/// like step() itself: no allocation, lock, exception or I/O. Its result must depend on its arguments and on constant
-/// data alone, so that equal samples give equal bits. All state belongs into `memory`: where a fingertip cap acts, a step
-/// calls the function once more with a copy of it.
+/// step() calls the function for every contact that presses, on the thread that calls step(). It must be
+/// real-time safe like step() itself: no allocation, lock, exception or I/O. Its result must depend on its
+/// arguments and on constant data alone, so that equal samples give equal bits. All state belongs into
+/// `memory`: where a fingertip cap acts, a step calls the function once more with a copy of it.
 ///
-/// Fingertip caps, torque limit and torque-rate limit act on the result. A result below 0 counts as 0. A result that is
-/// not finite counts as 0, resets the memory, and the step's status is kCommandNotFinite. Without contact the force is 0
-/// at once; the torque-rate limit still bounds how fast the torque falls.
+/// Fingertip caps, torque limit and torque-rate limit act on the result. A result below 0 counts as 0. A
+/// result that is not finite counts as 0, resets the memory, and the step's status is kCommandNotFinite.
+/// Without contact the force is 0 at once; the torque-rate limit still bounds how fast the torque falls.
 struct OwnStabiliser {
   /// Returns the force that is sent [N].
   /// @param user    OwnStabiliser::user

@@ -10,8 +10,8 @@ namespace phalanx {
 
 /// Finds the folder that holds scenes/ and assets/. It is the environment's PHALANX_DATA_DIR if set.
 /// Otherwise it is the first of these folders that has both: ../share/phalanx beside the running program's
-/// folder (an installed program); ../share/phalanx or ../../share/phalanx beside the folder of a shared
-/// library that holds this function; the source tree from which the library was built; share/phalanx of the
+/// folder (an installed program); ../share/phalanx, ../../share/phalanx or ../../../../share/phalanx beside the
+/// folder of a shared library that holds this function (libphalanx.so.0, or Python's module); the source tree from which the library was built; share/phalanx of the
 /// prefix that CMake was configured with.
 /// @throws SceneError naming the places that were tried if none has a scenes/ and an assets/
 /// folder. Set-up only.
