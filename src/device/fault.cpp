@@ -67,8 +67,7 @@ constexpr std::array kEntries{
     Entry{Fault::kSampleRate, "sample_rate",
           "The device sent less than half or more than twice the samples that it promises.",
           "Correct the rate in its firmware (WELCOME) or its clock, and see that its processor is not "
-          "overloaded; "
-          "then reset."},
+          "overloaded; then reset."},
 };
 
 const Entry& entry(Fault fault) noexcept {

@@ -67,8 +67,8 @@ double crank_angle(const FourBar& bar, const RockerEnd& end) noexcept {
   return std::atan2(end.y, end.x) + (bar.crossed ? -beside : beside);
 }
 
-/// Computes the crank's angle from that in the middle of the range, and its derivative. The derivative is that
-/// of the loop's closure  |A - B| = coupler:  (A - B) . (A' - B') = 0.
+/// Computes the crank's angle from that in the middle of the range, and its derivative. The derivative is
+/// that of the loop's closure  |A - B| = coupler:  (A - B) . (A' - B') = 0.
 LinkageValue at_four_bar(const FourBar& bar, double middle, double q) noexcept {
   const RockerEnd end = rocker_end(bar, q);
   const double crank = crank_angle(bar, end);
@@ -201,21 +201,29 @@ const char* singularity(const JointLinkage& linkage, bool small) noexcept {
                : "coupler and crank are in line, and the joint cannot turn the motor there";
 }
 
+/// @param first  arm at the least angle, whose sign holds in the whole range [m]
+void check_arm(const JointLinkage& linkage, double q, double arm, double first, const std::string& place) {
+  const bool small = !(std::abs(arm) >= kLeastArm) || (arm > 0.0) != (first > 0.0);
+  const bool large = !(std::abs(arm) <= kLargestArm);
+  if (!small && !large) return;
+  refuse_linkage(
+      place, fmt::format("at {:.1f} deg the moment arm is {:.3f} mm: {}. It must keep its sign, with {:g} to "
+                         "{:g} mm. Change the numbers, or narrow the range",
+                         degrees(q), millimetres(arm), singularity(linkage, !large), millimetres(kLeastArm),
+                         millimetres(kLargestArm)));
+}
+
 void check_arms(const JointLinkage& linkage, const std::string& place) {
   const double first = moment_arm(linkage, linkage.min_angle);
+  // Between the points of a table the arm is linear: its extremes are at points or at the ends of the range.
+  for (const ArmPoint& point : linkage.table) {
+    const bool inside = point.angle >= linkage.min_angle && point.angle <= linkage.max_angle;
+    if (inside) check_arm(linkage, point.angle, point.arm, first, place);
+  }
   double before = excursion(linkage, linkage.min_angle);
   for (int i = 0; i <= kCheckPoints; ++i) {
     const double q = angle_of_check(linkage, i);
-    const double arm = moment_arm(linkage, q);
-    const bool small = !(std::abs(arm) >= kLeastArm) || (arm > 0.0) != (first > 0.0);
-    const bool large = !(std::abs(arm) <= kLargestArm);
-    if (small || large)
-      refuse_linkage(
-          place,
-          fmt::format("at {:.1f} deg the moment arm is {:.3f} mm: {}. It must keep its sign, with {:g} to "
-                      "{:g} mm. Change the numbers, or narrow the range",
-                      degrees(q), millimetres(arm), singularity(linkage, !large), millimetres(kLeastArm),
-                      millimetres(kLargestArm)));
+    check_arm(linkage, q, moment_arm(linkage, q), first, place);
     const double here = excursion(linkage, q);
     if (i > 0 && (here > before) != (first > 0.0))
       refuse_linkage(

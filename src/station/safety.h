@@ -58,9 +58,9 @@ class Safety {
   /// Ramps to zero. The torque stays zero until start(), also over a fault and its reset.
   void stop() noexcept;
   /// Asks to leave kFault. It is granted once the torque is at rest and the cause is gone. The cause is gone
-  /// if samples come at their rate, none is bad, and no emergency stop is pressed. It is also granted if the connection
-  /// itself is in fault, because only a reset mends that. The next state is kWaiting, or kStopped if stop()
-  /// was called and start() was not.
+  /// if samples come at their rate, none is bad, and no emergency stop is pressed. It is also granted if the
+  /// connection itself is in fault, because only a reset mends that. The next state is kWaiting, or kStopped
+  /// if stop() was called and start() was not.
   /// @param connection  Device::connection_fault() now
   /// @returns true if granted; the caller then resets the device
   bool reset(Fault connection, double now) noexcept;

@@ -162,11 +162,13 @@ std::vector<MotorWitness> motor_witnesses(const Exoskeleton& exoskeleton,
     if (channels[c].kind != ChannelKind::kMotor || idx(channels[c].index) >= exoskeleton.motors.size())
       continue;
     const ExoMotor& motor = exoskeleton.motors[idx(channels[c].index)];
-    double longest = 0.0;
-    for (const double arm : motor.arm) longest = std::max(longest, std::abs(arm));
-    if (longest == 0.0) continue;
     std::array<double, kJoints> least{};
     for (const JointLinkage& linkage : motor.linkages) least[idx(linkage.joint)] = least_arm(linkage);
+    // Each joint bounds the tension to its largest torque over its arm, at worst the least one of a linkage.
+    double longest = 0.0;
+    for (std::size_t j = 0; j < kJoints; ++j)
+      longest = std::max(longest, std::abs(least[j] != 0.0 ? least[j] : motor.arm[j]));
+    if (longest == 0.0) continue;
     const double tension = std::min(motor.force_limit, largest_torque / longest) + motor.bias;
     witnesses.push_back({.channel = static_cast<int>(c),
                          .arm = motor.arm,

@@ -206,6 +206,24 @@ TEST(MomentArm, WhatIsNotMonotoneOrSingularIsRefusedWithAngleValueAndRemedy) {
   expect_refused(large, {"its unit may be wrong", "100 mm"});
 }
 
+// The range is checked at 2000 equal angles, 0.75 mrad apart. These points are narrower, and lie between two.
+TEST(MomentArm, APointOfATableBetweenTwoCheckedAnglesIsCheckedToo) {
+  const auto with_point = [](double arm) {
+    JointLinkage linkage = table();
+    constexpr double kBetween = 1000.5 * 1.5 / 2000.0;
+    linkage.table = {
+        {0.0, 0.010}, {kBetween - 1e-4, 0.010}, {kBetween, arm}, {kBetween + 1e-4, 0.010}, {1.5, 0.010}};
+    return linkage;
+  };
+  EXPECT_NO_THROW(check_linkage(with_point(0.0003), "t"));
+  expect_refused(with_point(0.0001), {"at 43.0 deg the moment arm is 0.100 mm", "cannot hold the joint"});
+  expect_refused(with_point(-0.010), {"at 43.0 deg the moment arm is -10.000 mm", "keep its sign"});
+  expect_refused(with_point(0.2), {"at 43.0 deg the moment arm is 200.000 mm", "its unit may be wrong"});
+  JointLinkage outside = with_point(0.2);  // beyond the range a point does not count
+  outside.max_angle = 0.7;
+  EXPECT_NO_THROW(check_linkage(outside, "t"));
+}
+
 // Rocker and coupler in line: at the dead centre the motor cannot turn the joint. By hand: crank 10, coupler
 // 20, rocker 25, ground 30 mm.
 TEST(MomentArm, AFourBarLinkageThatPassesADeadCentreOrCannotCloseIsRefused) {

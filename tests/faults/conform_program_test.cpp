@@ -37,7 +37,7 @@ TEST(DeviceConform, TheSimulatedDeviceConformsOverAPseudoTerminal) {
 }
 
 const Registered kConformsSlowly("ASlowDeviceDoesNotConform", "",
-                       {.controller = {"--fault", "slow=5"}, .conform = true, .seconds = kAtMost});
+                                 {.controller = {"--fault", "slow=5"}, .conform = true, .seconds = kAtMost});
 TEST(DeviceConform, ASlowDeviceDoesNotConform) {
   const Outcome& o = outcome("ASlowDeviceDoesNotConform");
   EXPECT_EQ(o.host_exit, 1);

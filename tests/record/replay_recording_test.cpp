@@ -161,6 +161,30 @@ TEST_F(Recorded, ThroughChangesStopsFaultsAndResetsEveryStepHasTheSameBits) {
   }));
 }
 
+TEST_F(Recorded, OfADeviceWithLinkagesEveryStepHasTheSameBits) {
+  SessionSettings settings = with("simulated");
+  settings.overrides = {{"device.file", "\"linkages\""}};
+  record(settings);
+  ASSERT_TRUE(until_running());
+  pass(2.0);
+  const std::string bytes = finished();
+  const ReplayResult result = replay(on_disk(bytes));
+  EXPECT_EQ(result.different, 0U);
+  EXPECT_TRUE(result.exact);
+  EXPECT_EQ(result.compared, records.size());
+  const mcap::ReadableFile whole(mcap::InMemory{bytes});
+  mcap::McapReader reader(whole);
+  mcap::Message message;
+  int linkages = 0;
+  while (reader.next(message)) {
+    if (reader.schema_of(message.channel) != "phalanx.wire.Setup") continue;
+    wire::Setup setup;
+    ASSERT_TRUE(setup.ParseFromString(std::string(message.data)));
+    for (const wire::Setup::Witness& witness : setup.witness()) linkages += witness.linkage_size();
+  }
+  EXPECT_EQ(linkages, 2) << "the gate that is made again has the linkages";
+}
+
 TEST_F(Recorded, OneFlippedBitOfASampleNamesTheFirstStepAndTheChannel) {
   record(with("simulated"));
   ASSERT_TRUE(until_running());

@@ -310,6 +310,26 @@ TEST(SensorWatchBounds, AMotorWithALinkageImpliesTheAngleOfItsExcursion) {
   EXPECT_EQ(stuck.judge_many(600).fault, Fault::kStuckSensor);
 }
 
+// At -0.3 rad the arm is 7 mm, its least: 0.14 Nm need 20 N, which stretch the tendon by 20 / 7000 = 2.86 mm
+// at a healthy joint that stands still. With the largest arm, 25 mm, it would be 0.8 mm.
+TEST(SensorWatchBounds, TheSlackOfALinkageIsThatOfItsLeastArm) {
+  Exoskeleton exoskeleton;
+  exoskeleton.motors.resize(1);
+  exoskeleton.motors[0].tendon_stiffness = 7000.0;
+  exoskeleton.motors[0].force_limit = 40.0;
+  add_linkage(exoskeleton.motors[0], bent(kMcp));
+  const std::vector<MotorWitness> witnesses = motor_witnesses(
+      exoskeleton, {{.kind = ChannelKind::kAngle, .index = kMcp}, {}, {.kind = ChannelKind::kMotor}}, 0.14);
+  ASSERT_EQ(witnesses.size(), 1U);
+  EXPECT_NEAR(witnesses[0].slack, 2.0 * 20.0 / 7000.0, 1e-12);
+  Watch bench(witnesses);
+  bench.at(-0.3, 0.5);
+  bench.sample.raw[2] = -2550;  // 10 q + 5 q^2 [mm] at -0.3 rad
+  EXPECT_EQ(bench.judge_many(10).fault, Fault::kNone);
+  bench.sample.raw[2] += 2857;
+  EXPECT_EQ(bench.judge_many(1000).fault, Fault::kNone);
+}
+
 // ---- torque and force that disagree ----
 
 // -0.4 Nm commanded: 0.15 + 0.5 x 0.4 = 0.35 Nm are believed, either way round.

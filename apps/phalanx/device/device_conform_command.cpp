@@ -71,8 +71,7 @@ int conform(DeviceConformOptions& options) {
   if (!options.no_hand)
     throw std::invalid_argument(
         "device conform: this test enables the motors and sends damaged commands. Take the hand out of the "
-        "device, keep "
-        "the emergency stop in reach, and state --no-hand-in-device");
+        "device, keep the emergency stop in reach, and state --no-hand-in-device");
   end_on_interrupt();
   std::random_device random;
   options.settings.host_id = (std::uint64_t{random()} << 32U) | (random() & ~1U) | 2U;

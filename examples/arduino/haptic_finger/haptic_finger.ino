@@ -16,7 +16,16 @@ const uint8_t kStopPin = 2;                     // low: the emergency stop is pr
 const uint16_t kRate = 500;                     // of samples and control [Hz]
 const uint32_t kPeriod = 1000000UL / kRate;     // [us]
 const float kTorqueOfFullWidth = 0.2f;          // of the motor at the joint [Nm]
-const float kRadPerCount = 0.00157f;            // potentiometer of 270 degrees, 12 bits: 4.71 rad / 3000 counts
+const float kSensorTurn = 4.712389f;            // of the potentiometers over the whole scale: 270 degrees [rad]
+
+// A core for a converter of more than 10 bits has analogReadResolution(), and reads 10 bits until it is called.
+#ifdef __AVR__
+const uint8_t kBits = 10;
+#else
+const uint8_t kBits = 12;
+#endif
+const int32_t kScale = (1L << kBits) - 1;  // largest count
+const int32_t kRail = kScale / 200;        // nearer to an end: an open or shorted potentiometer
 
 phx_controller controller;
 phx_receiver receiver;
@@ -100,6 +109,9 @@ void setup() {
     analogWrite(kMotorPin[i], 0);
   }
   pinMode(kStopPin, INPUT_PULLUP);
+#ifndef __AVR__
+  analogReadResolution(kBits);
+#endif
   Serial.begin(2000000);
 
   phx_device device = {};
@@ -113,9 +125,9 @@ void setup() {
     phx_channel& channel = device.channel[i];
     channel.kind = PHX_CHANNEL_ANGLE;
     channel.index = kLinkJoint[i];
-    channel.raw_min = 20;  // below: an open or shorted potentiometer
-    channel.raw_max = 4075;
-    channel.gain = kRadPerCount;
+    channel.raw_min = kRail;
+    channel.raw_max = kScale - kRail;
+    channel.gain = kSensorTurn / (float)kScale;
     channel.offset = -0.5f;
   }
   phx_controller_init(&controller, &device, first_epoch());

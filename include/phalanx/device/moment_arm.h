@@ -25,8 +25,8 @@ struct FourBar {
   double rocker = 0.0;        ///< O4 to B [m] > 0
   double rocker_angle = 0.0;  ///< [rad]
   bool crossed = false;       ///< the other of the two ways to assemble it
-  double drum =
-      0.0;  ///< length that the motor winds up per radian of the crank [m]; its sign is the direction
+  /// Length that the motor winds up per radian of the crank [m]. Its sign is the direction.
+  double drum = 0.0;
 };
 
 /// Transmission between a motor and one joint. A joint at q has unwound  e(q) = integral of r  from 0 to q,

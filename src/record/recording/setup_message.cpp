@@ -203,6 +203,70 @@ void write_followers(const JointFollowers& followers, wire::Setup& out) {
   }
 }
 
+void write_linkage(const JointLinkage& linkage, wire::Setup::Linkage& out) {
+  out.set_joint(static_cast<std::uint32_t>(linkage.joint));
+  out.set_min_angle(linkage.min_angle);
+  out.set_max_angle(linkage.max_angle);
+  for (const double c : linkage.polynomial) out.add_polynomial(c);
+  for (const ArmPoint& point : linkage.table) {
+    out.add_table(point.angle);
+    out.add_table(point.arm);
+  }
+  if (!linkage.four_bar) return;
+  const FourBar& bar = *linkage.four_bar;
+  wire::Setup::FourBar& to = *out.mutable_four_bar();
+  to.set_ground(bar.ground);
+  to.set_crank(bar.crank);
+  to.set_coupler(bar.coupler);
+  to.set_rocker(bar.rocker);
+  to.set_rocker_angle(bar.rocker_angle);
+  to.set_crossed(bar.crossed);
+  to.set_drum(bar.drum);
+}
+
+/// @throws std::invalid_argument if the linkage cannot be that of a motor
+JointLinkage read_linkage(const wire::Setup::Linkage& from) {
+  if (from.joint() >= static_cast<std::uint32_t>(kJoints))
+    throw std::invalid_argument(
+        fmt::format("the recording has a linkage of joint {}; at most {}", from.joint(), kJoints - 1));
+  JointLinkage linkage;
+  linkage.joint = static_cast<int>(from.joint());
+  linkage.min_angle = from.min_angle();
+  linkage.max_angle = from.max_angle();
+  linkage.polynomial.assign(from.polynomial().begin(), from.polynomial().end());
+  if (from.table_size() % 2 != 0)
+    throw std::invalid_argument("the recording has a table of moment arms with half a point");
+  for (int i = 0; i < from.table_size(); i += 2)
+    linkage.table.push_back({.angle = from.table(i), .arm = from.table(i + 1)});
+  if (from.has_four_bar()) {
+    const wire::Setup::FourBar& bar = from.four_bar();
+    linkage.four_bar = FourBar{.ground = bar.ground(),
+                               .crank = bar.crank(),
+                               .coupler = bar.coupler(),
+                               .rocker = bar.rocker(),
+                               .rocker_angle = bar.rocker_angle(),
+                               .crossed = bar.crossed(),
+                               .drum = bar.drum()};
+  }
+  check_linkage(linkage, "the recording's linkage of " + std::string(joint_name(linkage.joint)));
+  return linkage;
+}
+
+/// Reads a motor. Recordings of earlier versions have no linkages: each arm is constant.
+MotorWitness read_witness(const wire::Setup::Witness& from, int channels) {
+  MotorWitness witness;
+  witness.channel = from.channel();
+  if (witness.channel < 0 || witness.channel >= channels)
+    throw std::invalid_argument("the recording has a motor of a channel that there is not");
+  Numbers(from.arm(), "a motor's moment arms").fill(witness.arm);
+  witness.slack = from.slack();
+  for (const wire::Setup::Linkage& recorded : from.linkage()) {
+    JointLinkage& linkage = witness.linkages.emplace_back(read_linkage(recorded));
+    witness.least_arm[idx(linkage.joint)] = least_arm(linkage);
+  }
+  return witness;
+}
+
 }  // namespace
 
 void write_change(const SessionChange& change, wire::Change& out) {
@@ -243,6 +307,7 @@ void write_change(const SessionChange& change, const std::string& device_spec, w
     to.set_channel(witness.channel);
     for (const double arm : witness.arm) to.add_arm(arm);
     to.set_slack(witness.slack);
+    for (const JointLinkage& linkage : witness.linkages) write_linkage(linkage, *to.add_linkage());
   }
   out.set_clinician(as_utf8(setup.clinician));
   out.set_patient(as_utf8(setup.patient));
@@ -315,23 +380,21 @@ ChannelMap read_channel_map(const wire::Setup& setup) {
   return {read_channels(setup.channel()), read_followers(setup), read_hand(setup.start().model())};
 }
 
+std::vector<MotorWitness> read_witnesses(const wire::Setup& setup) {
+  std::vector<MotorWitness> witnesses;
+  for (const wire::Setup::Witness& from : setup.witness())
+    witnesses.push_back(read_witness(from, setup.channel_size()));
+  return witnesses;
+}
+
 std::unique_ptr<StationStep> read_station(const wire::Setup& setup,
                                           const std::shared_ptr<const HapticModel>& model) {
   const HapticParameters parameters = read_parameters(setup.start());
   SafetySettings safety = make_safety_settings(parameters.limits, setup.clinician());
   safety.patient = setup.patient();
-  std::vector<MotorWitness> witnesses;
-  for (const wire::Setup::Witness& from : setup.witness()) {
-    MotorWitness& witness = witnesses.emplace_back();
-    witness.channel = from.channel();
-    if (witness.channel < 0 || witness.channel >= setup.channel_size())
-      throw std::invalid_argument("the recording has a motor of a channel that there is not");
-    Numbers(from.arm(), "a motor's moment arms").fill(witness.arm);
-    witness.slack = from.slack();
-  }
   return std::make_unique<StationStep>(std::make_unique<Rendering>(model, parameters),
                                        read_channel_map(setup), read_device(setup), safety,
-                                       std::move(witnesses), parameters.period());
+                                       read_witnesses(setup), parameters.period());
 }
 
 }  // namespace phalanx

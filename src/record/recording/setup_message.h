@@ -34,6 +34,10 @@ void write_own_setup(const SessionGeometry& geometry, const std::string& scene, 
 /// @returns how the recorded device's raw values become angles. Set-up only. @throws std::invalid_argument as ChannelMap
 [[nodiscard]] ChannelMap read_channel_map(const wire::Setup& setup);
 
+/// @returns the motors that the safety gate of the recorded station compares sensors with. Set-up only.
+/// @throws std::invalid_argument if one is of no channel, or has a linkage that check_linkage() refuses
+[[nodiscard]] std::vector<MotorWitness> read_witnesses(const wire::Setup& setup);
+
 /// @returns the device of a recorded station
 [[nodiscard]] DeviceInfo read_device(const wire::Setup& setup);
 

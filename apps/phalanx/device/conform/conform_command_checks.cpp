@@ -123,8 +123,7 @@ ConformFinding check_enable(ConformHost& host) {
   return conform_if(
       excess <= allowed && std::abs(full - kRamp) <= 0.05 && host.newest().factor > 0.99F && fresh,
       "ACTIVE {:.3f} s after STARTING; the factor was at most {:.3f} above the ramp; steps acted on were up "
-      "to "
-      "{:.1f} ms old",
+      "to {:.1f} ms old",
       full, excess, in_ms(oldest));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is there, and how it samples.
+// Identity, and how it samples.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -213,8 +213,8 @@ ConformFinding check_samples(ConformHost& host) {
   }
   return conform_if(
       beyond == 0 && not_ready == 0 && not_zero == 0 && host.undecodable() == 0,
-      "{} samples; {} counts beyond their range, {} counts of channels that it does not have, {} samples "
-      "not READY at rest; {} frames that were none",
+      "{} samples; {} counts beyond their range, {} counts of channels that it does not have, {} samples not "
+      "READY at rest; {} frames that could not be decoded",
       samples.size(), beyond, not_zero, not_ready, host.undecodable());
 }
 

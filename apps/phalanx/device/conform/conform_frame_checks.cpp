@@ -42,7 +42,7 @@ ConformFinding expect_dropped(ConformHost& host, const Frames& frames, std::size
 }
 
 /// A command that would act if it were accepted: its tick is far beyond all others'.
-phx_message bait(ConformHost& host) {
+phx_message command_that_must_not_act(ConformHost& host) {
   phx_message command = host.command(PHX_COMMAND_ENABLE);
   command.as.command.tick = host.last_tick() + 1'000'000'000U;
   return command;
@@ -61,7 +61,7 @@ ConformFinding check_crc(ConformHost& host) {
   Random random(host.settings().seed);
   Frames frames;
   for (int i = 0; i < 50; ++i) {
-    auto frame = host.encode(bait(host));
+    auto frame = host.encode(command_that_must_not_act(host));
     static constexpr std::array<std::size_t, 3> kPlaces = {12, 16, PHX_HEADER_SIZE + 97U};
     const std::size_t place = kPlaces[static_cast<std::size_t>(i) % 3];
     frame[place + static_cast<std::size_t>(random.uniform() * 3.0)] ^=
@@ -75,7 +75,7 @@ ConformFinding check_truncated(ConformHost& host) {
   begin(host);
   Frames frames;
   for (const std::size_t size : {1U, 2U, 3U, 8U, 15U, 16U, 20U, 28U, 60U, 100U, 112U, 116U}) {
-    auto frame = host.encode(bait(host));
+    auto frame = host.encode(command_that_must_not_act(host));
     frame.resize(size);
     frames.push_back(frame);
     if (size < PHX_HEADER_SIZE + PHX_CRC_SIZE) continue;
@@ -90,7 +90,7 @@ ConformFinding check_oversize(ConformHost& host) {
   begin(host);
   Frames frames;
   for (const std::size_t size : {118U, 200U, 681U, 1000U, 1024U}) {
-    auto frame = host.encode(bait(host));
+    auto frame = host.encode(command_that_must_not_act(host));
     frame.resize(size, 0x55);
     ConformHost::seal(frame);
     frames.push_back(std::move(frame));
@@ -113,7 +113,7 @@ ConformFinding check_unknown_type(ConformHost& host) {
   begin(host);
   Frames frames;
   for (const unsigned type : {0U, 12U, 13U, 99U, 255U}) {
-    auto frame = host.encode(bait(host));
+    auto frame = host.encode(command_that_must_not_act(host));
     frame[kTypeAt] = static_cast<std::uint8_t>(type);
     ConformHost::seal(frame);
     frames.push_back(std::move(frame));
@@ -125,7 +125,7 @@ ConformFinding check_reserved_bits(ConformHost& host) {
   begin(host);
   Frames frames;
   for (unsigned bit = 0; bit < 16; ++bit) {
-    auto frame = host.encode(bait(host));
+    auto frame = host.encode(command_that_must_not_act(host));
     frame[kFlagsAt + bit / 8U] = static_cast<std::uint8_t>(1U << (bit % 8U));
     ConformHost::seal(frame);
     frames.push_back(std::move(frame));
@@ -153,7 +153,7 @@ ConformFinding check_not_finite(ConformHost& host) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity()}) {
     for (const std::size_t joint : {0U, 4U, 10U, 19U}) {
-      phx_message command = bait(host);
+      phx_message command = command_that_must_not_act(host);
       command.as.command.torque[joint] = bad;
       frames.push_back(host.encode(command));
     }
@@ -174,7 +174,7 @@ ConformFinding check_invalid_values(ConformHost& host) {
   configure.as.configure.torque_rate = -1.0F;
   frames.push_back(host.encode(configure));
   phx_message walls = host.message(PHX_COMMAND_WALLS);
-  walls.as.walls.command = bait(host).as.command;
+  walls.as.walls.command = command_that_must_not_act(host).as.command;
   walls.as.walls.wall[0].stiffness = -1.0F;
   frames.push_back(host.encode(walls));
   walls.as.walls.wall[0] = {
@@ -211,7 +211,7 @@ ConformFinding check_version_frames(ConformHost& host) {
   begin(host);
   Frames frames;
   for (const unsigned version : {0U, 2U, 255U}) {
-    auto frame = host.encode(bait(host));
+    auto frame = host.encode(command_that_must_not_act(host));
     frame[kVersionAt] = static_cast<std::uint8_t>(version);
     ConformHost::seal(frame);
     frames.push_back(std::move(frame));

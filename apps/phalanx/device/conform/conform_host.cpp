@@ -29,6 +29,11 @@ std::uint32_t link_crc(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
+double conform_command_period(double bytes_per_second) {
+  if (bytes_per_second <= 0.0) return 0.0;
+  return 3.0 * static_cast<double>(phx_frame_size(PHX_COMMAND)) / bytes_per_second;
+}
+
 ConformHost::ConformHost(ConformPort& port, const ConformSettings& settings)
     : port_(port), settings_(settings), sequence_(PHX_PONG + 1U, 0U), limit_(settings.torque) {}
 
@@ -39,9 +44,7 @@ double ConformHost::period() const {
 }
 
 double ConformHost::command_period() const {
-  const double bytes = port_.bytes_per_second();
-  const double carried = bytes > 0.0 ? 3.0 * static_cast<double>(phx_frame_size(PHX_COMMAND)) / bytes : 0.0;
-  return std::max({1e-3, period(), carried});
+  return std::max({1e-3, period(), conform_command_period(port_.bytes_per_second())});
 }
 
 double ConformHost::settling() const { return std::max(kLeastSettling, 5.0 * period()) + 2.0 * round_trip; }
@@ -82,10 +85,7 @@ bool ConformHost::take_until(double until) {
 void ConformHost::take(const phx_message& message, ConformSender to) {
   const HeardFrame heard{.message = message, .at = now(), .to = to};
   if (message.header.type != PHX_SAMPLE) return answers_.push_back(heard);
-  if (message.header.epoch != epoch_ || to != ConformSender::kHost) {
-    ++strangers_;
-    return;
-  }
+  if (message.header.epoch != epoch_ || to != ConformSender::kHost) return;
   newest_ = message.as.sample;
   samples_.push_back(heard);
 }

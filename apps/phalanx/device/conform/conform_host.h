@@ -45,6 +45,9 @@ struct ConformCounts {
   }
 };
 
+/// @returns the period at which commands take a third of a line [s]; 0: the line has no limit.
+[[nodiscard]] double conform_command_period(double bytes_per_second);
+
 /// Host that plays the stimuli of a row. Nothing is sent or received but in its functions.
 class ConformHost {
  public:
@@ -107,7 +110,6 @@ class ConformHost {
   [[nodiscard]] const phx_sample& newest() const { return newest_; }
   [[nodiscard]] ConformCounts counts() const { return {newest_.corrupt, newest_.refused, newest_.outdated}; }
   [[nodiscard]] std::uint32_t undecodable() const { return undecodable_; }
-  [[nodiscard]] std::uint32_t strangers() const { return strangers_; }  ///< samples of another epoch
   [[nodiscard]] const std::optional<phx_welcome>& welcome() const { return welcome_; }
   [[nodiscard]] std::uint32_t epoch() const { return epoch_; }
   [[nodiscard]] std::uint32_t hello_sequence() const { return hello_sequence_; }
@@ -137,7 +139,6 @@ class ConformHost {
   std::vector<HeardFrame> samples_;
   std::vector<HeardFrame> answers_;
   std::uint32_t undecodable_ = 0;
-  std::uint32_t strangers_ = 0;
   std::uint64_t tick_ = 1000;  ///< of the last command
   bool driving_ = false;
   bool keeps_alive_ = false;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "phalanx/device/link/messages.h"
@@ -34,6 +35,15 @@ ConformFinding finding_of(const ConformRow& row, ConformHost& host) {
     finding.observed += fmt::format(" (this computer was up to {:.0f} ms late, in each of {} tries: free it)",
                                     1e3 * delay, i);
     return finding;
+  }
+}
+
+/// Ends the session before an exception leaves the test: the motors must not stay enabled.
+void give_up(ConformHost& host) noexcept {
+  try {
+    host.leave();
+  } catch (const std::exception&) {
+    // The first exception states the cause. Without a port the device's own age limit ends the torque.
   }
 }
 
@@ -80,21 +90,26 @@ std::string ConformReport::verdict() const {
 }
 
 ConformReport run_conformance(ConformPort& port, const ConformSettings& settings,
-                              const std::function<void(const ConformResult&)>& told) {
+                              const std::function<void(const ConformResult&)>& on_result) {
   ConformHost host(port, settings);
   ConformReport report;
   report.torque = settings.torque;
   const double begin = host.now();
-  for (const ConformRow& row : conform_rows()) {
-    const bool tried = row.id == "ping" || row.id == "hello";
-    ConformResult result{.row = &row, .finding = {}};
-    result.finding = tried || host.welcome()
-                         ? finding_of(row, host)
-                         : ConformFinding{ConformOutcome::kNotApplicable, "no session was granted"};
-    if (told) told(result);
-    report.results.push_back(std::move(result));
+  try {
+    for (const ConformRow& row : conform_rows()) {
+      const bool tried = row.id == "ping" || row.id == "hello";
+      ConformResult result{.row = &row, .finding = {}};
+      result.finding = tried || host.welcome()
+                           ? finding_of(row, host)
+                           : ConformFinding{ConformOutcome::kNotApplicable, "no session was granted"};
+      if (on_result) on_result(result);
+      report.results.push_back(std::move(result));
+    }
+    host.leave();
+  } catch (...) {
+    give_up(host);
+    throw;
   }
-  host.leave();
   report.seconds = host.now() - begin;
   if (const auto& welcome = host.welcome())
     report.device = fmt::format("serial number {}, {} Hz, {} channels{}", read_serial(welcome->serial),

@@ -34,11 +34,12 @@ struct ConformReport {
   [[nodiscard]] std::string verdict() const;
 };
 
-/// Tests all rows, and leaves the device without a session. A row that cannot be tested to its end has
-/// failed.
-/// @param told  called with each result
+/// Tests all rows, and leaves the device without a session, also if an exception ends the test. A row that
+/// cannot be tested to its end has failed.
+/// @param on_result  called with each result
+/// @throws what the port throws
 [[nodiscard]] ConformReport run_conformance(ConformPort& port, const ConformSettings& settings,
-                                            const std::function<void(const ConformResult&)>& told = {});
+                                            const std::function<void(const ConformResult&)>& on_result = {});
 
 /// Names an outcome: "pass", "FAIL", "not applicable".
 [[nodiscard]] std::string_view conform_outcome_name(ConformOutcome outcome);

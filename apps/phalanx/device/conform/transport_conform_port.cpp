@@ -1,16 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/conform/transport_conform_port.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 #include <utility>
+
+#include "device/conform/conform_host.h"
 
 namespace phalanx {
 namespace {
 
 constexpr double kLook = 1e-3;      ///< interval of looking at the other socket, and for a signal [s]
 constexpr double kSlowLook = 0.05;  ///< with one transport [s]
+
+/// Least baud rate. A third of the line then carries a command every 7 ms. A step that waits for the next one
+/// much longer is older than 14 ms, and good firmware fades its torque.
+constexpr unsigned kLeastBaud = 500'000;
+
+void check_baud(const std::string& address, unsigned baud) {
+  if (baud >= kLeastBaud) return;
+  const double period = conform_command_period(0.1 * baud);
+  throw std::invalid_argument(fmt::format(
+      "{}: {} baud: a third of the line carries a command every {:.1f} ms, and steps fade from 14 ms "
+      "of age on; set device and address to at least {} baud",
+      address, baud, 1e3 * period, kLeastBaud));
+}
 
 }  // namespace
 
@@ -30,8 +47,8 @@ void TransportConformPort::send_bytes(std::span<const std::uint8_t> bytes) {
 
 std::size_t TransportConformPort::receive(double until, std::span<std::uint8_t> out, ConformSender& to) {
   while (true) {
-    if (interrupted && interrupted() && !std::exchange(told_, true))
-      throw std::runtime_error("interrupted; the device was released");
+    if (interrupted && interrupted() && !std::exchange(interruption_thrown_, true))
+      throw std::runtime_error("interrupted; no report was written");
     if (transport_->lost()) throw DeviceError(transport_->address() + ": the port has failed");
     Peer from = 0;
     to = ConformSender::kHost;
@@ -55,6 +72,7 @@ std::unique_ptr<TransportConformPort> open_conform_port(
   unsigned baud = 0;
   if (address.rfind("serial:", 0) == 0) {
     baud = static_cast<unsigned>(std::strtoul(address.substr(address.rfind(':') + 1).c_str(), nullptr, 10));
+    check_baud(address, baud);
   } else {
     other = open(spec);
   }

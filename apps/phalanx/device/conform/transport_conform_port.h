@@ -34,10 +34,11 @@ class TransportConformPort final : public ConformPort {
   std::unique_ptr<Transport> other_;
   unsigned baud_;
   const Clock& clock_;
-  bool told_ = false;  ///< the interruption has been thrown
+  bool interruption_thrown_ = false;
 };
 
-/// Opens the port of an address as open_transport() does. @throws as open_transport()
+/// Opens the port of an address as open_transport() does. @throws as open_transport(); std::invalid_argument
+/// if a serial line is too slow for the commands
 [[nodiscard]] std::unique_ptr<TransportConformPort> open_conform_port(
     const std::string& spec, const std::function<std::unique_ptr<Transport>(const std::string&)>& open,
     const Clock& clock);

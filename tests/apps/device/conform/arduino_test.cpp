@@ -16,6 +16,7 @@
 
 void setup();
 void loop();
+extern phx_controller controller;
 ArduinoSerial Serial;
 
 namespace {
@@ -28,6 +29,8 @@ struct ArduinoBoard {
   std::size_t in_buffer = 0;  ///< of the core, to send
   std::array<int, 32> width{};
   bool stop_pressed = false;
+  int bits = 10;         ///< of the converter, until the sketch asks for more
+  double sensor = 0.49;  ///< of the potentiometers, as a part of the supply
 };
 ArduinoBoard arduino;
 
@@ -36,7 +39,10 @@ constexpr std::size_t kCoreBuffer = 64;
 }  // namespace
 
 unsigned long micros() { return static_cast<std::uint32_t>(std::llround(4.2e9 + 1e6 * arduino.now)); }
-int analogRead(std::uint8_t pin) { return pin == A2 ? 7 : 2000; }
+int analogRead(std::uint8_t pin) {
+  return pin == A2 ? 7 : static_cast<int>(arduino.sensor * ((1 << arduino.bits) - 1));
+}
+void analogReadResolution(int bits) { arduino.bits = bits; }
 void analogWrite(std::uint8_t pin, int value) { arduino.width[pin] = value; }
 int digitalRead(std::uint8_t) { return arduino.stop_pressed ? LOW : HIGH; }
 void digitalWrite(std::uint8_t, std::uint8_t) {}
@@ -123,6 +129,41 @@ TEST(ArduinoExample, ConformsToTheLink) {
   EXPECT_THAT(failed, UnorderedElementsAreArray(std::vector<std::string>{})) << conform_markdown(report);
   EXPECT_EQ(report.device, "serial number ARDUINO-0001, 500 Hz, 2 channels");
   EXPECT_EQ(arduino.width[5], 0) << "no torque at the end";
+}
+
+void run_sketch(SketchPort& port, double seconds) {
+  std::array<std::uint8_t, PHX_FRAME_MAX> frame{};
+  ConformSender to = ConformSender::kHost;
+  for (const double end = arduino.now + seconds; arduino.now < end;) port.receive(end, frame, to);
+}
+
+void open_session(SketchPort& port) {
+  phx_message hello{};
+  hello.header.type = PHX_HELLO;
+  hello.header.sequence = 1;
+  hello.as.hello.host_id = 5;
+  std::array<std::uint8_t, PHX_FRAME_MAX> frame{};
+  port.send(std::span(frame).first(phx_encode(&hello, frame.data(), frame.size())), ConformSender::kHost);
+}
+
+// An open or shorted potentiometer reads an end of the converter's scale.
+TEST(ArduinoExample, ASensorAtARailIsAFault) {
+  for (const double rail : {0.0, 1.0}) {
+    arduino = {};
+    setup();
+    SketchPort port;
+    open_session(port);
+    EXPECT_EQ(arduino.bits, 12) << "a core reads 10 bits until it is told otherwise";
+    arduino.sensor = 0.98;
+    run_sketch(port, 0.05);
+    EXPECT_TRUE(controller.session);
+    EXPECT_EQ(controller.fault, PHX_FAULT_NONE);
+    arduino.sensor = rail;
+    run_sketch(port, 0.05);
+    EXPECT_EQ(controller.fault, PHX_FAULT_SENSOR_RANGE);
+    EXPECT_EQ(controller.fault_channel, 0);
+    EXPECT_EQ(arduino.width[5], 0);
+  }
 }
 
 }  // namespace

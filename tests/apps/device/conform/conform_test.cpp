@@ -6,13 +6,18 @@
 #include <algorithm>
 #include <bit>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/device/conform/fake_firmware.h"
 #include "device/conform/conform_report.h"
+#include "device/conform/transport_conform_port.h"
 #include "phalanx/simulation/simulated_controller.h"
 #include "simulation/squeezing_device.h"
 
@@ -21,6 +26,7 @@ namespace {
 
 using test::FakeFirmware;
 using test::LinkBytes;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAreArray;
 using Rows = std::vector<std::string>;
@@ -247,9 +253,9 @@ const std::vector<Defect> kDefects{
        f.frames_per_tick = 3;
        f.queue = 64;
      }},
-    {"serial: deaf after a piece that is no frame",
+    {"serial: stops receiving after a piece that is no frame",
      {"oversize", "resync"},
-     [](FakeFirmware& f) { f.deaf_after_damage = true; },
+     [](FakeFirmware& f) { f.stops_receiving_after_damage = true; },
      true},
 };
 
@@ -348,6 +354,94 @@ TEST(Conform, ARowInWhichThisComputerWasLateIsRepeated) {
   const ConformReport failed = report_of(late);
   EXPECT_FALSE(failed.conforms());
   EXPECT_THAT(observed(failed, "enable"), HasSubstr("ms late, in each of 3 tries"));
+}
+
+/// Runs the test until the joint's torque is above 10 mNm, and ends it there by an exception.
+struct EndedAtATorque {
+  explicit EndedAtATorque(FakeFirmware& firmware) {
+    firmware.on_frame = [this](FakeFirmware&, LinkBytes& frame) {
+      phx_message message{};
+      if (ended && phx_decode(frame.data(), frame.size(), &message) == PHX_OK) later.push_back(message);
+    };
+    firmware.on_sample = [this](phx_message& message) {
+      counts = message.as.sample.raw[2];
+      if (ended || counts <= 100) return;
+      ended = true;
+      throw std::runtime_error("interrupted");
+    };
+    EXPECT_THAT([&] { static_cast<void>(run_conformance(firmware, {})); },
+                testing::ThrowsMessage<std::runtime_error>("interrupted"));
+  }
+
+  bool ended = false;
+  std::int32_t counts = 0;         ///< of the torque, in the last sample
+  std::vector<phx_message> later;  ///< what the firmware received after the exception
+};
+
+// Ctrl-C and a port that failed are exceptions in the middle of a row.
+TEST(Conform, AnExceptionWhileATorqueActsEndsItAndTheSession) {
+  FakeFirmware firmware;
+  const EndedAtATorque test(firmware);
+  ASSERT_TRUE(test.ended);
+  int stops = 0;
+  int goodbyes = 0;
+  for (const phx_message& message : test.later) {
+    if (message.header.type == PHX_GOODBYE) {
+      ++goodbyes;
+      continue;
+    }
+    ASSERT_EQ(message.header.type, PHX_COMMAND);
+    ++stops;
+    EXPECT_EQ(message.as.command.flags, PHX_COMMAND_FAULT);
+    for (const float torque : message.as.command.torque) EXPECT_EQ(torque, 0.0F);
+  }
+  EXPECT_EQ(stops, 10);
+  EXPECT_GE(goodbyes, 1);
+  ASSERT_FALSE(test.later.empty());
+  EXPECT_EQ(test.later.back().header.type, PHX_GOODBYE);
+  EXPECT_EQ(test.counts, 0) << "the torque is zero";
+  EXPECT_FALSE(firmware.controller.session);
+}
+
+TEST(Conform, AnExceptionOfTheLeavingItselfDoesNotHideTheFirstOne) {
+  FakeFirmware firmware;
+  int ticks = 0;
+  firmware.before_tick = [&ticks](FakeFirmware&) {
+    if (++ticks > 3000) throw std::runtime_error(ticks == 3001 ? "the first" : "a later one");
+  };
+  EXPECT_THAT([&] { static_cast<void>(run_conformance(firmware, {})); },
+              testing::ThrowsMessage<std::runtime_error>("the first"));
+  EXPECT_GT(ticks, 3001) << "it has tried to leave";
+}
+
+/// A transport of which only the address matters.
+class NamedTransport final : public Transport {
+ public:
+  explicit NamedTransport(std::string address) : address_(std::move(address)) {}
+  std::size_t receive(std::span<std::uint8_t>, Peer&) noexcept override { return 0; }
+  bool send(std::span<const std::uint8_t>, Peer) noexcept override { return true; }
+  bool wait(double) noexcept override { return false; }
+  [[nodiscard]] bool lost() const noexcept override { return false; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return 0; }
+  [[nodiscard]] std::string address() const override { return address_; }
+
+ private:
+  std::string address_;
+};
+
+// By hand: 3 x 117 bytes x 10 bits / 115200 baud = 30.5 ms.
+TEST(Conform, ASerialLineThatIsTooSlowForTheCommandsIsRefused) {
+  const Clock clock;
+  const auto open = [](const std::string& address) { return std::make_unique<NamedTransport>(address); };
+  EXPECT_THAT([&] { static_cast<void>(open_conform_port("serial:/dev/ttyX:115200", open, clock)); },
+              testing::ThrowsMessage<std::invalid_argument>(
+                  AllOf(HasSubstr("serial:/dev/ttyX:115200: 115200 baud"), HasSubstr("every 30.5 ms"),
+                        HasSubstr("at least 500000 baud"))));
+  EXPECT_THROW(static_cast<void>(open_conform_port("serial:/dev/ttyX:499999", open, clock)),
+               std::invalid_argument);
+  const auto slowest = open_conform_port("serial:/dev/ttyX:500000", open, clock);
+  EXPECT_NEAR(conform_command_period(slowest->bytes_per_second()), 7e-3, 0.05e-3);
+  EXPECT_NO_THROW(static_cast<void>(open_conform_port("udp:127.0.0.1:4810", open, clock)));
 }
 
 TEST(Conform, FiguresAreMeasured) {

@@ -57,8 +57,9 @@ class FakeFirmware : public ConformPort {
   double clock_speed = 1.0;
   int frames_per_tick = 1000;
   std::size_t queue = 1000;
-  std::vector<double> stalls;      ///< times at which the host stands still for 50 ms, last one first [s]
-  bool deaf_after_damage = false;  ///< serial: it hears nothing for 200 ms after a piece that is no frame
+  std::vector<double> stalls;  ///< times at which the host stands still for 50 ms, last one first [s]
+  /// Serial: it receives nothing for 200 ms after a piece that is no frame.
+  bool stops_receiving_after_damage = false;
 
   [[nodiscard]] std::uint64_t time_us() const {
     return static_cast<std::uint64_t>(std::llround(1e6 * (5.0 + clock_speed * now_)));
@@ -91,8 +92,8 @@ class FakeFirmware : public ConformPort {
     for (const std::uint8_t byte : bytes) {
       const std::uint32_t dropped = receiver_.dropped;
       const std::size_t size = phx_receiver_take(&receiver_, byte);
-      if (receiver_.dropped != dropped && deaf_after_damage) deaf_until_ = now_ + 0.2;
-      if (size > 0 && now_ >= deaf_until_)
+      if (receiver_.dropped != dropped && stops_receiving_after_damage) receives_from_ = now_ + 0.2;
+      if (size > 0 && now_ >= receives_from_)
         put({LinkBytes(receiver_.frame, receiver_.frame + size), ConformSender::kHost});
     }
   }
@@ -193,7 +194,7 @@ class FakeFirmware : public ConformPort {
   phx_output output_{};
   double now_ = 0.0;
   double next_tick_ = 1e-3;
-  double deaf_until_ = 0.0;
+  double receives_from_ = 0.0;
   int ticks_ = 0;
   ConformSender host_ = ConformSender::kHost;
   std::deque<Received> to_firmware_;

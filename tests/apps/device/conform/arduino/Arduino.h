@@ -19,6 +19,7 @@
 
 unsigned long micros(void);
 int analogRead(uint8_t pin);
+void analogReadResolution(int bits);  // cores for an 8-bit AVR have none
 void analogWrite(uint8_t pin, int value);
 int digitalRead(uint8_t pin);
 void digitalWrite(uint8_t pin, uint8_t value);
