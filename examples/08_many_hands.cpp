@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many hands in parallel: the model is constant and shared, and each hand has a state of its own. The library
-// has no globals, so that threads need no lock, and each hand gives the same bits as if it ran alone.
+// has no variable that a step changes, so threads need no lock, and each hand gives the same bits as if alone.
 #include <cstdio>
 #include <cstdlib>
 #include <thread>

@@ -24,6 +24,19 @@ The input was valid, but the work failed: for example a full disk, no answer fro
 Wrong usage or input; nothing was written.
 .SH ENVIRONMENT
 .TP
+.B PHALANX_DATA_DIR
+Folder with scenes and assets.
+.TP
+.B PHALANX_PATIENTS_DIR
+Data folder of the patients, where
+.B \-\-data
+names none.
+.TP
+.B PHALANX_KEYS
+File with the keys of patients, where
+.B \-\-keys
+names none.
+.TP
 .B PHALANX_PASSPHRASE
 Passphrase of the file with the keys of patients.
 .TP

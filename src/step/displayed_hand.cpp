@@ -390,7 +390,7 @@ class DisplayedHand::Impl::Step {
 
   Impl& hand_;
   const JointArray& goal_;
-  const Pose world_;  ///< of the object: the identity
+  const Pose world_;                           ///< of the object: the identity
   std::array<bool, kDigits> held_{};           ///< for the rest of the step
   const BodyPair* stopping_ = nullptr;         ///< pair that stopped the last motion
   JointArray lowest_{};                        ///< of a displacement [rad]

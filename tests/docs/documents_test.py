@@ -112,6 +112,68 @@ class Glossary(unittest.TestCase):
         self.assertEqual([word for word in text.split() if word not in used], [])
 
 
+    def test_each_term_is_defined_once_in_a_table(self):
+        twice = []
+        for table in re.findall(r"<table>(.*?)</table>", DOCUMENTS[Path("docs/glossary.md")].body, re.S):
+            terms = [markdown.plain(term).strip() for term in re.findall(r"<tr>\s*<td>(.*?)</td>", table, re.S)]
+            twice += sorted({term for term in terms if terms.count(term) > 1})
+        self.assertEqual(twice, [])
+
+
+def manual(text):
+    """Command -> its options, from the manual page: {"session prune": {"--yes", ...}}."""
+    commands, options = {}, set()
+    for line in text.replace("\\-", "-").splitlines():
+        if found := re.match(r'\.SS "?phalanx ([^"]*)"?', line):
+            options = commands.setdefault(found.group(1).strip(), {"--help", "-h"})
+        elif line.startswith("\\fB"):
+            options |= set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", line[3:].partition("\\fR")[0]))
+    return commands
+
+
+def wrong_commands(text, commands):
+    """Lines of fenced code that name a command or an option that the program does not have."""
+    wrong = []
+    for block in re.findall(r"^```[^\n]*\n(.*?)^```", text, re.M | re.S):
+        for line in block.replace("\\\n", " ").splitlines():
+            for call in re.split(r"\s[&|]+\s|;\s", re.sub(r"(^|\s)#.*", "", line)):
+                found = re.match(r"\s*(?:sudo (?:-u \w+ )?)?(?:\./run|phalanx)(?:\s+(.*))?$", call)
+                words = (found.group(1) or "").split() if found else []
+                if not words or words[0] in ("--help", "-h", "--version", "=", "->"):
+                    continue
+                if words[0].startswith("-"):
+                    words.insert(0, "run")
+                command = next((name for name in (" ".join(words[:2]), words[0]) if name in commands), None)
+                groups = {name.split()[0] for name in commands if " " in name}
+                if command is None or command in groups and len(words) > 1 and re.fullmatch(r"[a-z-]*[a-z]", words[1]) and f"{command} {words[1]}" not in commands:
+                    wrong.append(f"{call.strip()}: no such command")
+                    continue
+                if command in groups:
+                    continue  # the manual page lists the commands below it, and not its own options
+                wrong += [f"{call.strip()}: no option {word}" for word in words if re.match(r"--[a-z]", word) and word.partition("=")[0] not in commands[command]]
+    return wrong
+
+
+class Commands(unittest.TestCase):
+    def test_the_program_has_every_command_and_option_of_the_documents(self):
+        if not PROGRAM:
+            self.skipTest("no program was named")
+        commands = manual(subprocess.run([PROGRAM, "man"], capture_output=True, text=True, check=True).stdout)
+        self.assertIn("--yes", commands["session prune"])
+        wrong = {}
+        for path in DOCUMENTS:
+            if path == Path("README.md") or path.parts[0] == "docs":
+                if found := wrong_commands((ROOT / path).read_text(encoding="utf-8"), commands):
+                    wrong[str(path)] = found
+        self.assertEqual(wrong, {})
+
+    def test_a_wrong_one_would_be_found(self):
+        commands = manual('.SS "phalanx run"\n\\fBscene\\fR TEXT\n\\fB\\-\\-data\\fR DIR\n.SS "phalanx session prune"\n\\fB\\-\\-yes\\fR\n')
+        self.assertEqual(commands, {"run": {"-h", "--help", "--data"}, "session prune": {"-h", "--help", "--yes"}})
+        text = "```\n./run --data a  # --not\n./run first_touch --data a\nphalanx session prune --no & phalanx session prune --yes\n```\n"
+        self.assertEqual(wrong_commands(text, commands), ["./run first_touch --data a: no such command", "phalanx session prune --no: no option --no"])
+
+
 class Pictures(unittest.TestCase):
     def test_each_is_listed_with_what_makes_it(self):
         rows = re.findall(r"<tr>\s*<td>(.*?)</td>\s*<td>(.*?)</td>", DOCUMENTS[Path("docs/pictures/README.md")].body, re.S)
@@ -179,6 +241,21 @@ class Site(unittest.TestCase):
             if page.parts[0] != "source" and page != Path("api/index.html"):
                 self.assertIn(f'["{page}",', index)
         self.assertIn('"step"', index)
+
+    def test_a_build_that_failed_does_not_stop_the_next_one(self):
+        out = Path(self.folder.name, "failed")
+        failed = subprocess.run([ROOT / "scripts/docs_site", out, "--no-demo"], capture_output=True, text=True,
+                                env={**os.environ, "PATH": f"{self.broken_doxygen()}:{os.environ['PATH']}"})
+        self.assertNotEqual(failed.returncode, 0)
+        self.assertFalse(out.exists())
+        self.assertEqual([one.name for one in out.parent.iterdir() if one.name.startswith(".")], [])
+
+    def broken_doxygen(self):
+        folder = Path(self.folder.name, "broken")
+        folder.mkdir(exist_ok=True)
+        (folder / "doxygen").write_text("#!/bin/sh\nexit 1\n", encoding="utf-8")
+        (folder / "doxygen").chmod(0o755)
+        return folder
 
     def test_public_headers_are_described(self):
         step = self.pages[Path("api/step/haptic_step.h.html")]

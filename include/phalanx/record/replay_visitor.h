@@ -30,8 +30,8 @@ class ReplayVisitor {
 
   virtual void station(const ReplayedStation& /*begun*/) {}
   /// Gets a step that was made again: StationStep::describe(), with its input, command and number of samples.
-  /// @param time     since the beginning of the recording, as in its exports [s]
-  /// @param samples  the device's samples of this step
+  /// It also gets the device's samples of this step, and the time since the beginning of the recording, as in
+  /// its exports [s].
   virtual void step(const StepRecord& /*record*/, std::span<const DeviceSample> /*samples*/,
                     double /*time*/) {}
   /// Gets a step that is in the file and cannot be made again, since steps before it are missing.

@@ -10,8 +10,8 @@
 #include <limits>
 #include <map>
 #include <ostream>
-#include <stdexcept>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
