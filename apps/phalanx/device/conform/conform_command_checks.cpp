@@ -200,7 +200,8 @@ ConformFinding check_reset(ConformHost& host) {
   phx_message old = host.command(PHX_COMMAND_ENABLE);
   const double begin = host.now();
   while (host.newest().state == PHX_STATE_LATCHED && host.now() < begin + 0.2) {
-    old.as.command.sample_time_us = host.newest().time_us;
+    // Before the newest sample: a device may take RESET within the tick of that sample.
+    old.as.command.sample_time_us = host.newest().time_us - 1;
     host.send(host.message(PHX_RESET));
     host.pass(std::max(0.005, 2.0 * host.period()));
   }
