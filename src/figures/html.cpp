@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "figures/chart/svg.h"
+#include "phalanx/core/xml_text.h"
 
 namespace phalanx {
 namespace {

@@ -6,8 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "figures/chart/svg.h"
-
+#include "phalanx/core/xml_text.h"
 #include "report/date_axis.h"
 #include "report/dose.h"
 #include "report/report_sections.h"

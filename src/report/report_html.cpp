@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "figures/chart/svg.h"
+#include "phalanx/core/xml_text.h"
 #include "phalanx/hand/joints.h"
 #include "report/date_axis.h"
 #include "report/dose.h"

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "phalanx/core/xml_text.h"
 #include "phalanx/exercise/training.h"
 #include "report/chart_frame.h"
 #include "report/date_axis.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "phalanx/core/xml_text.h"
 #include "report/chart_frame.h"
 #include "report/date_axis.h"
 #include "report/report_words.h"

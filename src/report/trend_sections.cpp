@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "figures/chart/svg.h"
+#include "phalanx/core/xml_text.h"
 #include "phalanx/exercise/training.h"
 #include "report/date_axis.h"
 #include "report/report_sections.h"

@@ -35,20 +35,6 @@ JointLinkage table() {
           .table = {{0.0, 0.010}, {0.5, 0.012}, {1.0, 0.008}, {1.5, 0.006}}};
 }
 
-/// The one of assets/devices/linkages.toml.
-JointLinkage four_bar() {
-  return {.joint = test::kMcp,
-          .min_angle = -5.0 * kDegree,
-          .max_angle = 105.0 * kDegree,
-          .four_bar = FourBar{.ground = 0.028,
-                              .crank = 0.018,
-                              .coupler = 0.032,
-                              .rocker = 0.014,
-                              .rocker_angle = 40.0 * kDegree,
-                              .crossed = false,
-                              .drum = -0.014}};
-}
-
 /// r = c0 + c1 q by hand: at 1 rad, e = c0 + c1 / 2.
 TEST(MomentArm, OfAPolynomialIsItsValueAndTheExcursionItsIntegral) {
   const JointLinkage line = {.min_angle = 0.0, .max_angle = 2.0, .polynomial = {0.010, 0.004}};
@@ -101,7 +87,7 @@ void close_loop(const FourBar& bar, double theta, double& psi, double& phi) {
 // An independent solution: Newton's method on the loop, followed from angle to angle.
 TEST(MomentArm, OfAFourBarLinkageAgreesWithTheNumericClosureOfItsLoop) {
   for (const bool crossed : {false, true}) {
-    JointLinkage linkage = four_bar();
+    JointLinkage linkage = test::four_bar_linkage(test::kMcp);
     linkage.four_bar->crossed = crossed;
     linkage.max_angle = 60.0 * kDegree;
     const FourBar& bar = *linkage.four_bar;
@@ -133,7 +119,7 @@ TEST(MomentArm, OfAFourBarLinkageAgreesWithTheNumericClosureOfItsLoop) {
 
 TEST(MomentArm, IsTheDerivativeOfTheExcursion) {
   Random random(3);
-  for (const JointLinkage& linkage : {polynomial(), table(), four_bar()}) {
+  for (const JointLinkage& linkage : {polynomial(), table(), test::four_bar_linkage(test::kMcp)}) {
     for (int i = 0; i < 200; ++i) {
       const double q =
           linkage.min_angle - 0.3 + random.uniform() * (linkage.max_angle - linkage.min_angle + 0.6);
@@ -146,7 +132,7 @@ TEST(MomentArm, IsTheDerivativeOfTheExcursion) {
 
 TEST(MomentArm, TheAngleOfAnExcursionIsItsInverse) {
   Random random(4);
-  for (const JointLinkage& linkage : {polynomial(), table(), four_bar()}) {
+  for (const JointLinkage& linkage : {polynomial(), table(), test::four_bar_linkage(test::kMcp)}) {
     for (int i = 0; i < 200; ++i) {
       const double q =
           linkage.min_angle - 0.3 + random.uniform() * (linkage.max_angle - linkage.min_angle + 0.6);
@@ -156,7 +142,7 @@ TEST(MomentArm, TheAngleOfAnExcursionIsItsInverse) {
 }
 
 TEST(MomentArm, BeyondTheRangeItKeepsItsValueAtTheEnd) {
-  const JointLinkage linkage = four_bar();
+  const JointLinkage linkage = test::four_bar_linkage(test::kMcp);
   const double arm = moment_arm(linkage, linkage.max_angle);
   EXPECT_EQ(moment_arm(linkage, linkage.max_angle + 0.4), arm);
   EXPECT_NEAR(excursion(linkage, linkage.max_angle + 0.4), excursion(linkage, linkage.max_angle) + 0.4 * arm,
@@ -172,7 +158,7 @@ TEST(MomentArm, ItsExtremesAreThoseOfTheRange) {
 }
 
 TEST(MomentArm, AllocatesNothing) {
-  const JointLinkage all[] = {polynomial(), table(), four_bar()};
+  const JointLinkage all[] = {polynomial(), table(), test::four_bar_linkage(test::kMcp)};
   const std::size_t before = test::allocations_of_this_thread();
   double sum = 0.0;
   for (const JointLinkage& linkage : all)
@@ -194,7 +180,7 @@ void expect_refused(const JointLinkage& linkage, const std::vector<std::string>&
 TEST(MomentArm, WhatIsNotMonotoneOrSingularIsRefusedWithAngleValueAndRemedy) {
   EXPECT_NO_THROW(check_linkage(polynomial(), "p"));
   EXPECT_NO_THROW(check_linkage(table(), "t"));
-  EXPECT_NO_THROW(check_linkage(four_bar(), "f"));
+  EXPECT_NO_THROW(check_linkage(test::four_bar_linkage(test::kMcp), "f"));
   // Zero at 0.5 rad, 28.6 deg.
   expect_refused({.min_angle = 0.0, .max_angle = 1.0, .polynomial = {0.010, -0.020}},
                  {"at 28.", "moment arm is 0.", "cannot hold the joint", "narrow the range"});
@@ -238,7 +224,7 @@ TEST(MomentArm, AFourBarLinkageThatPassesADeadCentreOrCannotCloseIsRefused) {
                                               .drum = 0.01}};
   expect_refused(linkage,
                  {"the rocker's end is", "crank and coupler reach 10.00 to 30.00 mm", "Change a length"});
-  linkage = four_bar();
+  linkage = test::four_bar_linkage(test::kMcp);
   linkage.min_angle = -90.0 * kDegree;
   expect_refused(linkage, {"at -8", "coupler and rocker are in line", "keep its sign"});
 }
@@ -259,10 +245,10 @@ TEST(MomentArm, NumbersThatAreNoneAndShapesThatDisagreeAreRefused) {
   JointLinkage short_table = table();
   short_table.max_angle = 2.0;
   expect_refused(short_table, {"the table ends at 0.0 and 85.9 deg", "narrow the range"});
-  JointLinkage no_length = four_bar();
+  JointLinkage no_length = test::four_bar_linkage(test::kMcp);
   no_length.four_bar->crank = 0.0;
   expect_refused(no_length, {"crank = 0 mm", "must be above 0"});
-  JointLinkage no_drum = four_bar();
+  JointLinkage no_drum = test::four_bar_linkage(test::kMcp);
   no_drum.four_bar->drum = 0.0;
   expect_refused(no_drum, {"drum not 0"});
   JointLinkage not_finite = polynomial();
@@ -272,13 +258,13 @@ TEST(MomentArm, NumbersThatAreNoneAndShapesThatDisagreeAreRefused) {
 
 TEST(MomentArm, ADeviceIsRefusedWithALinkageThatItsMotorDoesNotHave) {
   Exoskeleton exo = test::two_joint_device();
-  add_linkage(exo.motors[0], four_bar());
+  add_linkage(exo.motors[0], test::four_bar_linkage(test::kMcp));
   EXPECT_NO_THROW(check_exoskeleton(exo));
   exo.motors[0].arm[test::kMcp] = -0.0125;
   EXPECT_THAT([&] { check_exoskeleton(exo); }, ThrowsMessage<std::invalid_argument>(AllOf(
                                                    HasSubstr("motor mcp"), HasSubstr("add_linkage()"))));
   exo = test::two_joint_device();
-  add_linkage(exo.motors[0], four_bar());
+  add_linkage(exo.motors[0], test::four_bar_linkage(test::kMcp));
   add_linkage(exo.motors[0], table());
   EXPECT_THAT([&] { check_exoskeleton(exo); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("is there twice")));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <string>
 
 #include "phalanx/device/exoskeleton.h"
@@ -26,6 +27,21 @@ inline ExoJoint joint_of(int joint) {
   exo.joint = joint;
   exo.inertia = 1e-4;
   return exo;
+}
+
+/// The four-bar linkage of assets/devices/linkages.toml, on a joint of the caller's.
+inline JointLinkage four_bar_linkage(int joint) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  return {.joint = joint,
+          .min_angle = -5.0 * kDegree,
+          .max_angle = 105.0 * kDegree,
+          .four_bar = FourBar{.ground = 0.028,
+                              .crank = 0.018,
+                              .coupler = 0.032,
+                              .rocker = 0.014,
+                              .rocker_angle = 40.0 * kDegree,
+                              .crossed = false,
+                              .drum = -0.014}};
 }
 
 /// The index finger's MCP and PIP flexion, a motor each; the DIP follows the PIP at half its angle.

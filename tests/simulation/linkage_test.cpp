@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "phalanx/core/random.h"
 #include "phalanx/hand/hand_parameters.h"
@@ -20,21 +19,6 @@ using test::at;
 using test::kMcp;
 using test::kPip;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-JointLinkage pip_four_bar() {
-  return {.joint = kPip,
-          .min_angle = -5.0 * kDegree,
-          .max_angle = 105.0 * kDegree,
-          .four_bar = FourBar{.ground = 0.028,
-                              .crank = 0.018,
-                              .coupler = 0.032,
-                              .rocker = 0.014,
-                              .rocker_angle = 40.0 * kDegree,
-                              .crossed = false,
-                              .drum = -0.014}};
-}
-
 JointLinkage mcp_polynomial() {
   return {.joint = kMcp, .min_angle = -0.8, .max_angle = 1.6, .polynomial = {-0.0125, 0.003}};
 }
@@ -43,7 +27,7 @@ JointLinkage mcp_polynomial() {
 Exoskeleton linked_device() {
   Exoskeleton exo = test::two_joint_device();
   add_linkage(exo.motors[0], mcp_polynomial());
-  add_linkage(exo.motors[1], pip_four_bar());
+  add_linkage(exo.motors[1], test::four_bar_linkage(kPip));
   return exo;
 }
 
@@ -87,7 +71,7 @@ TEST(Linkages, AMotorsForceLimitBoundsTheJointsTorqueAtEachAngle) {
     Rendered rendered;
     transmission.render(wanted, rendered);
     EXPECT_TRUE(rendered.saturated);
-    EXPECT_NEAR(rendered.torque[at(kPip)], 10.0 * moment_arm(pip_four_bar(), pip), 1e-12);
+    EXPECT_NEAR(rendered.torque[at(kPip)], 10.0 * moment_arm(test::four_bar_linkage(kPip), pip), 1e-12);
   }
 }
 
@@ -118,7 +102,7 @@ TEST(Linkages, ACommandedTorqueReachesTheJointAtEachAngle) {
     }
     EXPECT_NEAR(device.plant().tendon_torque()[at(kMcp)], 0.04, 1e-4) << pip;
     EXPECT_NEAR(device.plant().tendon_torque()[at(kPip)], -0.03, 1e-4) << pip;
-    const double force = -0.03 / moment_arm(pip_four_bar(), pip);
+    const double force = -0.03 / moment_arm(test::four_bar_linkage(kPip), pip);
     EXPECT_NEAR(device.plant().tendon(1).tension, force, 0.01) << pip;
   }
 }

@@ -68,6 +68,18 @@ double largest_sent(const Snapshot& snapshot) {
   return largest;
 }
 
+void expect_no_force_and_the_status(const test::Setup& own) {
+  Runner hand(own);
+  bool stated = false;
+  for (int n = 0; n <= kOwnTicks; ++n) {
+    const Snapshot& now = hand.tick(grasp(n));
+    stated = stated || has(now.status, Status::kCommandNotFinite);
+    ASSERT_EQ(largest_sent(now), 0.0) << n;
+    for (const double torque : now.torque) ASSERT_EQ(torque, 0.0) << n;
+  }
+  EXPECT_TRUE(stated);
+}
+
 TEST(OwnForceLaw, ThatComputesHookesLawGivesItsBitsWithEveryStabiliser) {
   for (const Stabiliser method : test::kAllStabilisers) {
     if (method == Stabiliser::kLocalWall) continue;  // the slope is measured there, see below
@@ -128,15 +140,8 @@ TEST(OwnForceLaw, ThatIsNotFiniteGivesNoForceAndStatesIt) {
     double newtons = bad;
     own.parameters.force.law = ForceLaw::kOwn;
     own.parameters.force.own = {.function = own_constant, .user = &newtons};
-    Runner hand(own);
-    bool stated = false;
-    for (int n = 0; n <= kOwnTicks; ++n) {
-      const Snapshot& now = hand.tick(grasp(n));
-      stated = stated || has(now.status, Status::kCommandNotFinite);
-      ASSERT_EQ(largest_sent(now), 0.0) << n;
-      for (const double torque : now.torque) ASSERT_EQ(torque, 0.0) << n;
-    }
-    EXPECT_TRUE(stated) << bad;
+    SCOPED_TRACE(bad);
+    expect_no_force_and_the_status(own);
   }
 }
 
@@ -177,14 +182,7 @@ TEST(OwnStabiliser, ThatIsNotFiniteGivesNoForceAndStatesIt) {
   test::Setup own = ball_model(Stabiliser::kOwn);
   double bad = std::numeric_limits<double>::quiet_NaN();
   own.parameters.stabiliser.own = {.function = sent_always, .user = &bad};
-  Runner hand(own);
-  bool stated = false;
-  for (int n = 0; n <= kOwnTicks; ++n) {
-    const Snapshot& now = hand.tick(grasp(n));
-    stated = stated || has(now.status, Status::kCommandNotFinite);
-    ASSERT_EQ(largest_sent(now), 0.0) << n;
-  }
-  EXPECT_TRUE(stated);
+  expect_no_force_and_the_status(own);
 }
 
 TEST(OwnFunctions, AreRequiredWhereTheyAreChosen) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "phalanx/core/xml_text.h"
+
 namespace phalanx {
 namespace {
 
@@ -39,29 +41,6 @@ const char* name(Anchor anchor) {
 }
 
 }  // namespace
-
-std::string xml_escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 double text_width(const std::string& text) { return kCharacter * static_cast<double>(characters(text)); }
 

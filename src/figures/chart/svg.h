@@ -12,8 +12,6 @@ namespace phalanx {
 
 inline constexpr double kPointsPerMm = 72.0 / 25.4;
 
-/// @returns `text` with &, <, > and " as entities; control characters become spaces.
-[[nodiscard]] std::string xml_escaped(const std::string& text);
 /// @returns the width of `text` at 8 points, estimated a little too large, since the font is
 /// unknown here [pt].
 [[nodiscard]] double text_width(const std::string& text);

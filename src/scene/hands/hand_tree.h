@@ -6,7 +6,6 @@
 
 #include <array>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "phalanx/scene/hand_meshes.h"
@@ -40,8 +39,5 @@ struct HandTree {
 /// Writes a number that reads back to the same bits: 17 significant digits.
 [[nodiscard]] std::string exact(double value);
 [[nodiscard]] std::string exact(const Vec3& v);
-
-/// @returns `text` as the value of an XML attribute in double quotes.
-[[nodiscard]] std::string xml_escaped(std::string_view text);
 
 }  // namespace phalanx

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "phalanx/core/xml_text.h"
 #include "phalanx/scene/hand_export.h"
 #include "scene/hands/hand_tree.h"
 #include "scene/hands/mass_properties.h"

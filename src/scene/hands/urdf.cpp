@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "phalanx/core/xml_text.h"
 #include "phalanx/force/force_parameters.h"
 #include "phalanx/scene/hand_export.h"
 #include "scene/hands/hand_tree.h"

@@ -48,6 +48,14 @@ phx_message command_that_must_not_act(ConformHost& host) {
   return command;
 }
 
+/// Such a command as a frame with a valid CRC, one of whose bytes has the value.
+std::vector<std::uint8_t> sealed_with(ConformHost& host, std::size_t at, unsigned value) {
+  auto frame = host.encode(command_that_must_not_act(host));
+  frame[at] = static_cast<std::uint8_t>(value);
+  ConformHost::seal(frame);
+  return frame;
+}
+
 void begin(ConformHost& host) {
   host.open();
   host.enable();
@@ -113,10 +121,7 @@ ConformFinding check_unknown_type(ConformHost& host) {
   begin(host);
   Frames frames;
   for (const unsigned type : {0U, 12U, 13U, 99U, 255U}) {
-    auto frame = host.encode(command_that_must_not_act(host));
-    frame[kTypeAt] = static_cast<std::uint8_t>(type);
-    ConformHost::seal(frame);
-    frames.push_back(std::move(frame));
+    frames.push_back(sealed_with(host, kTypeAt, type));
   }
   return expect_dropped(host, frames, frames.size());
 }
@@ -125,10 +130,7 @@ ConformFinding check_reserved_bits(ConformHost& host) {
   begin(host);
   Frames frames;
   for (unsigned bit = 0; bit < 16; ++bit) {
-    auto frame = host.encode(command_that_must_not_act(host));
-    frame[kFlagsAt + bit / 8U] = static_cast<std::uint8_t>(1U << (bit % 8U));
-    ConformHost::seal(frame);
-    frames.push_back(std::move(frame));
+    frames.push_back(sealed_with(host, kFlagsAt + bit / 8U, 1U << (bit % 8U)));
   }
   return expect_dropped(host, frames, frames.size());
 }
@@ -211,10 +213,7 @@ ConformFinding check_version_frames(ConformHost& host) {
   begin(host);
   Frames frames;
   for (const unsigned version : {0U, 2U, 255U}) {
-    auto frame = host.encode(command_that_must_not_act(host));
-    frame[kVersionAt] = static_cast<std::uint8_t>(version);
-    ConformHost::seal(frame);
-    frames.push_back(std::move(frame));
+    frames.push_back(sealed_with(host, kVersionAt, version));
   }
   return expect_dropped(host, frames, frames.size());
 }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "phalanx/core/xml_text.h"
 #include "phalanx/device/link/messages.h"
 
 namespace phalanx {
@@ -45,21 +46,6 @@ void give_up(ConformHost& host) noexcept {
   } catch (const std::exception&) {
     // The first exception states the cause. Without a port the device's own age limit ends the torque.
   }
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 std::string facts(const ConformReport& report) {
@@ -157,14 +143,14 @@ std::string conform_html(const ConformReport& report) {
       "<h1>Conformance with the Phalanx link</h1>\n<p><strong>{}</strong></p>\n<p>{} Tested with "
       "{}.</p>\n<p>{}</p>\n"
       "<table>\n<tr><th>row<th>result<th>requirement<th>stimulus<th>expected<th>observed</tr>\n",
-      escaped(report.verdict()), escaped(facts(report)), escaped(report.program), kScope);
+      xml_escaped(report.verdict()), xml_escaped(facts(report)), xml_escaped(report.program), kScope);
   for (const ConformResult& result : report.results) {
     const std::string_view name = conform_outcome_name(result.finding.outcome);
     const bool plain = result.finding.outcome == ConformOutcome::kNotApplicable;
     text += fmt::format("<tr><td>{}<td{}>{}<td>{}<td>{}<td>{}<td>{}</tr>\n", result.row->id,
                         plain ? std::string() : fmt::format(" class=\"{}\"", name), name,
-                        escaped(result.row->requirement), escaped(result.row->stimulus),
-                        escaped(result.row->expected), escaped(result.finding.observed));
+                        xml_escaped(result.row->requirement), xml_escaped(result.row->stimulus),
+                        xml_escaped(result.row->expected), xml_escaped(result.finding.observed));
   }
   return text + "</table>\n</html>\n";
 }
