@@ -62,6 +62,14 @@ class Runs {
     return trials;
   }
 
+  /// Runs one seed, 0 .. seeds - 1.
+  TrialResult one(double stiffness, int seed) {
+    TrialResult result =
+        trial_(overrides_, stiffness, kNotSet, study_.first_seed + static_cast<std::uint64_t>(seed));
+    count(result);
+    return result;
+  }
+
   void count_into(PointResult& result) const {
     result.trials = count_;
     result.invalid_trials = invalid_;
@@ -127,9 +135,9 @@ void measure_k_eff(Runs& runs, double stiffness, PointResult& result) {
   if (result.k_eff_seeds > 0) result.k_eff = sum / result.k_eff_seeds;
 }
 
-/// Measures the point's results at one stiffness.
+/// Sets the point's results at one stiffness, without k_eff.
 /// @param trials  all seeds at `stiffness`
-void measure_at(Runs& runs, double stiffness, const Trials& trials, PointResult& result) {
+void set_results_at(double stiffness, const Trials& trials, PointResult& result) {
   result.measured_at = stiffness;
   result.stable = verdict_of(trials) == Verdict::kStable;
   result.peak_depth = largest(trials, &TrialResult::peak_depth);
@@ -137,7 +145,6 @@ void measure_at(Runs& runs, double stiffness, const Trials& trials, PointResult&
   result.position_swing = largest(trials, &TrialResult::position_swing);
   result.ghost_s = mean_and_largest(trials, &TrialResult::ghost_s);
   result.ghost_energy = mean_and_largest(trials, &TrialResult::ghost_energy);
-  measure_k_eff(runs, stiffness, result);
 }
 
 void measure_at_limit(const StiffnessGrid& grid, Runs& runs, PointResult& result) {
@@ -151,13 +158,35 @@ void measure_at_limit(const StiffnessGrid& grid, Runs& runs, PointResult& result
   result.at_least = search.at_least;
   result.non_monotone = search.non_monotone;
   result.ends_in_invalid = !search.at_least && verdict_of(tried.at(search.limit + 1)) == Verdict::kInvalid;
-  if (search.limit >= 0) measure_at(runs, result.k_lim, tried.at(search.limit), result);
+  if (search.limit < 0) return;
+  set_results_at(result.k_lim, tried.at(search.limit), result);
+  measure_k_eff(runs, result.k_lim, result);
+}
+
+void trace_limit_of_point(const StiffnessGrid& grid, int seeds, Runs& runs, PointResult& result) {
+  std::map<int, std::map<int, TrialResult>> tried;  // by grid point, then seed
+  const TracedLimit trace = trace_limit(grid.size(), seeds, [&](int index, int seed) {
+    return good(tried[index][seed] = runs.one(grid.at(index), seed));
+  });
+  const auto trials_at = [&tried](int index) {
+    Trials trials;
+    for (const auto& [seed, trial] : tried.at(index)) trials.push_back(trial);
+    return trials;
+  };
+  for (const auto& [index, by_seed] : tried)
+    result.checked.push_back(summed_up(trials_at(index), grid.n_per_mm(index)));
+  result.k_lim = trace.limit < 0 ? 0.0 : grid.at(trace.limit);
+  result.at_least = trace.at_least;
+  result.non_monotone = trace.non_monotone;
+  result.ends_in_invalid = !trace.at_least && verdict_of(trials_at(trace.limit + 1)) == Verdict::kInvalid;
+  if (trace.limit >= 0) set_results_at(result.k_lim, trials_at(trace.limit), result);
 }
 
 void measure_at_scenes_stiffness(Runs& runs, PointResult& result) {
   const Trials trials = runs.all(kNotSet, kNotSet);
   result.checked = {summed_up(trials, kNotSet)};
-  measure_at(runs, kNotSet, trials, result);
+  set_results_at(kNotSet, trials, result);
+  measure_k_eff(runs, kNotSet, result);
 }
 
 }  // namespace
@@ -166,7 +195,9 @@ PointResult measure_point(const Study& study, int index, const TrialFunction& tr
   PointResult result;
   result.index = index;
   Runs runs(study, index, trial);
-  if (study.stiffness) {
+  if (study.stiffness && study.stiffness->search == StiffnessSearch::kTrace) {
+    trace_limit_of_point(*study.stiffness, study.seeds, runs, result);
+  } else if (study.stiffness) {
     measure_at_limit(*study.stiffness, runs, result);
   } else {
     measure_at_scenes_stiffness(runs, result);

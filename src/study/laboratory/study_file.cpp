@@ -163,6 +163,12 @@ StiffnessGrid stiffness_grid(TomlTable table) {
   grid.step_n_per_mm = table.number("step_n_per_mm", positive);
   static_cast<void>(
       whole_steps(table, grid.min_n_per_mm, grid.max_n_per_mm, grid.step_n_per_mm, "step_n_per_mm"));
+  if (table.has("search")) {
+    const std::string search = table.text("search");
+    if (search != "scan" && search != "trace")
+      table.fail("search", fmt::format("is \"{}\"; write \"scan\" or \"trace\"", search));
+    grid.search = search == "trace" ? StiffnessSearch::kTrace : StiffnessSearch::kScan;
+  }
   table.finish();
   return grid;
 }
@@ -261,9 +267,14 @@ std::string scene_of(const Study& study) {
 }
 
 TrialEstimate most_trials(const Study& study) {
-  const int stiffnesses = study.stiffness ? most_checked_if_monotone(study.stiffness->size()) : 1;
   constexpr int kPresses = 2;
-  const int per_point = (stiffnesses + kPresses) * study.seeds;
+  int per_point = (1 + kPresses) * study.seeds;
+  if (study.stiffness) {
+    const int size = study.stiffness->size();
+    per_point = study.stiffness->search == StiffnessSearch::kTrace
+                    ? most_traced_if_monotone(size, study.seeds)
+                    : (most_checked_if_monotone(size) + kPresses) * study.seeds;
+  }
   return {.per_point = per_point, .all = static_cast<long long>(per_point) * point_count(study)};
 }
 

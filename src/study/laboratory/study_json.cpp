@@ -97,9 +97,13 @@ StiffnessVerdict verdict_from_json(const OrderedJson& json) {
 }
 
 StiffnessGrid grid_from_json(const OrderedJson& json) {
-  const StiffnessGrid grid{.min_n_per_mm = json.at("min_n_per_mm"),
-                           .max_n_per_mm = json.at("max_n_per_mm"),
-                           .step_n_per_mm = json.at("step_n_per_mm")};
+  StiffnessGrid grid{.min_n_per_mm = json.at("min_n_per_mm"),
+                     .max_n_per_mm = json.at("max_n_per_mm"),
+                     .step_n_per_mm = json.at("step_n_per_mm")};
+  if (json.contains("search")) {
+    if (json.at("search") != "trace") throw std::out_of_range("\"search\" is not \"trace\"");
+    grid.search = StiffnessSearch::kTrace;
+  }
   if (!(grid.min_n_per_mm > 0.0 && grid.max_n_per_mm >= grid.min_n_per_mm &&
         grid.max_n_per_mm <= kLargestStiffness && grid.step_n_per_mm > 0.0 &&
         (grid.max_n_per_mm - grid.min_n_per_mm) / grid.step_n_per_mm < kMostValues))
@@ -138,6 +142,7 @@ OrderedJson study_to_json(const Study& study) {
     json["stiffness"] = {{"min_n_per_mm", study.stiffness->min_n_per_mm},
                          {"max_n_per_mm", study.stiffness->max_n_per_mm},
                          {"step_n_per_mm", study.stiffness->step_n_per_mm}};
+    if (study.stiffness->search == StiffnessSearch::kTrace) json["stiffness"]["search"] = "trace";
   }
   json["set"] = overrides_to_json(study.set);
   json["variants"] = OrderedJson::array();

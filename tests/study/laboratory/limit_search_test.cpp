@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace phalanx {
@@ -141,6 +143,91 @@ TEST(LimitSearch, EstimatesTheMostPointsOfALongGrid) {
       most = std::max(most, static_cast<int>(search(stable_up_to(limit, size)).checked.size()));
     EXPECT_EQ(most_checked_if_monotone(size), most) << size;
   }
+}
+
+/// The limit of each seed, and a point below it at which the seed is unstable; -1: none.
+struct Seed {
+  int limit = -1;
+  int hole = -1;
+};
+
+struct Trace {
+  TracedLimit found;
+  std::set<std::pair<int, int>> asked;
+};
+
+/// Traces a limit, and fails if a pair is asked for twice.
+Trace trace(int size, const std::vector<Seed>& seeds, int coarse = 4) {
+  Trace trace;
+  trace.found = trace_limit(
+      size, static_cast<int>(seeds.size()),
+      [&](int index, int number) {
+        EXPECT_TRUE(trace.asked.emplace(index, number).second) << index << ", seed " << number;
+        const Seed& seed = seeds.at(static_cast<std::size_t>(number));
+        return index <= seed.limit && index != seed.hole;
+      },
+      coarse);
+  return trace;
+}
+
+TEST(TracedLimit, IsTheLeastOfTheSeedsLimits) {
+  std::mt19937 random(7);
+  long long traced = 0;
+  constexpr int kCases = 2000;
+  for (int n = 0; n < kCases; ++n) {
+    SCOPED_TRACE(::testing::Message() << "case " << n);
+    const int size = 1 + static_cast<int>(random() % 60);
+    std::vector<Seed> seeds(1 + random() % 24);
+    int least = size - 1;
+    for (Seed& seed : seeds) {
+      seed.limit = static_cast<int>(random() % static_cast<unsigned>(size + 4)) - 1;
+      least = std::min(least, seed.limit);
+    }
+    const Trace found = trace(size, seeds);
+    EXPECT_EQ(found.found.limit, least);
+    EXPECT_EQ(found.found.at_least, least == size - 1);
+    EXPECT_FALSE(found.found.non_monotone);
+    EXPECT_LE(static_cast<int>(found.asked.size()),
+              most_traced_if_monotone(size, static_cast<int>(seeds.size())));
+    for (int seed = 0; least >= 0 && seed < static_cast<int>(seeds.size()); ++seed)
+      EXPECT_TRUE(found.asked.contains({least, seed})) << "all seeds are tried at the limit";
+    traced += static_cast<long long>(found.asked.size());
+  }
+  RecordProperty("mean_trials", static_cast<int>(traced / kCases));
+}
+
+// 40 points and 20 seeds whose limits are 17 to 20: a scan runs 12 stable points with all seeds.
+TEST(TracedLimit, NeedsASixthOfAScansTrials) {
+  std::mt19937 random(11);
+  std::size_t most = 0;
+  for (int n = 0; n < 200; ++n) {
+    std::vector<Seed> seeds(20);
+    for (Seed& seed : seeds) seed.limit = 17 + static_cast<int>(random() % 4);
+    most = std::max(most, trace(40, seeds).asked.size());
+  }
+  EXPECT_LE(most, 40U) << "of 240 and more";
+}
+
+TEST(TracedLimit, FindsAWideInstabilityBelowAndStatesThatItIsNotMonotone) {
+  // Below the limit the third seed alone is tried at 8, where it is unstable.
+  const Trace found = trace(40, {{.limit = 30}, {.limit = 31}, {.limit = 32, .hole = 8}});
+  EXPECT_EQ(found.found.limit, 7);
+  EXPECT_TRUE(found.found.non_monotone);
+  EXPECT_FALSE(found.found.at_least);
+}
+
+TEST(TracedLimit, MovesBelowASeedThatIsUnstableAtTheLimitOfTheOthers) {
+  // The first seed is stable at 20, where the search begins, and unstable at 12, the limit of the second one.
+  const Trace found = trace(40, {{.limit = 25, .hole = 12}, {.limit = 12}});
+  EXPECT_EQ(found.found.limit, 11);
+  EXPECT_TRUE(found.found.non_monotone);
+}
+
+TEST(TracedLimit, RefusesAnEmptyGridNoSeedsAndNoStep) {
+  const auto stable = [](int, int) { return true; };
+  EXPECT_THROW(static_cast<void>(trace_limit(0, 1, stable)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(trace_limit(1, 0, stable)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(trace_limit(1, 1, stable, 0)), std::invalid_argument);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -145,6 +146,41 @@ TEST(MeasurePoint, SaysWhyTheFirstInvalidTrialProvesNothing) {
   EXPECT_EQ(result.trials, 9);
   EXPECT_EQ(result.invalid_trials, 6);
   EXPECT_EQ(result.why_invalid, "seed 2");
+}
+
+// The same as a scan finds: 5 seeds at 2.5 N/mm, and one that is unstable at 2.6.
+TEST(MeasurePoint, TracesTheSameLimitWithFewerTrials) {
+  Study study = study_of(testing::kTwelvePoints);
+  const PointResult scanned = measure_point(study, 6, synthetic_trial);
+  study.stiffness->search = StiffnessSearch::kTrace;
+  const PointResult traced = measure_point(study, 6, synthetic_trial);
+  EXPECT_EQ(traced.k_lim, scanned.k_lim);
+  EXPECT_EQ(traced.at_least, scanned.at_least);
+  EXPECT_EQ(traced.measured_at, scanned.measured_at);
+  EXPECT_EQ(traced.peak_depth, scanned.peak_depth);
+  EXPECT_EQ(traced.ghost_energy.mean, scanned.ghost_energy.mean);
+  EXPECT_EQ(checked_at(traced, 2.5).seeds_run, 5);
+  EXPECT_EQ(checked_at(traced, 2.5).verdict, Verdict::kStable);
+  EXPECT_EQ(checked_at(traced, 2.6).verdict, Verdict::kUnstable);
+  EXPECT_TRUE(std::isnan(traced.k_eff)) << "is not measured in a trace";
+  int runs = 0;
+  for (const StiffnessVerdict& checked : traced.checked) runs += checked.seeds_run;
+  EXPECT_EQ(runs, traced.trials);
+  EXPECT_LT(4 * traced.trials, scanned.trials);
+}
+
+TEST(MeasurePoint, StatesThatATraceEndsInAnInvalidTrial) {
+  Study study = study_of(testing::kTwelvePoints);
+  study.stiffness->search = StiffnessSearch::kTrace;
+  const PointResult result =
+      measure_point(study, 6, [](const Overrides& overrides, double k, double press, std::uint64_t seed) {
+        TrialResult trial = synthetic_trial(overrides, k, press, seed);
+        if (k > 1000.0) trial = {.valid = false, .why_invalid = "capped", .stable = true};
+        return trial;
+      });
+  EXPECT_EQ(result.k_lim, 1000.0);
+  EXPECT_TRUE(result.ends_in_invalid);
+  EXPECT_EQ(result.why_invalid, "capped");
 }
 
 // The light press of seed 1 shakes, the firm press of seed 2 comes no deeper, that of seed 3 proves nothing:

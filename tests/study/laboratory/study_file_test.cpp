@@ -120,6 +120,22 @@ TEST(StudyFile, SurvivesTheJournalsForm) {
   }
 }
 
+TEST(StudyFile, ReadsHowTheLimitIsSearched) {
+  const std::string grid =
+      "scene = \"a\"\n[stiffness]\nmin_n_per_mm = 1\nmax_n_per_mm = 2\nstep_n_per_mm = 1\n";
+  EXPECT_EQ(study_of(grid).stiffness->search, StiffnessSearch::kScan);
+  EXPECT_EQ(study_of(grid + "search = \"scan\"").stiffness->search, StiffnessSearch::kScan);
+  const Study traced = study_of(grid + "search = \"trace\"");
+  EXPECT_EQ(traced.stiffness->search, StiffnessSearch::kTrace);
+  const OrderedJson json = study_to_json(traced);
+  EXPECT_EQ(study_from_json(json).stiffness->search, StiffnessSearch::kTrace);
+  expect_refusal([&] { static_cast<void>(study_of(grid + "search = \"grid\"")); },
+                 {"synthetic.toml:6", "stiffness.search", "\"grid\"", "write \"scan\" or \"trace\""});
+  OrderedJson other = json;
+  other["stiffness"]["search"] = "grid";
+  EXPECT_THROW(static_cast<void>(study_from_json(other)), std::out_of_range);
+}
+
 TEST(StudyFile, AllowsNoStifferGridThanASceneMayState) {
   EXPECT_EQ(kLargestStiffness, find_scene_key("force.stiffness_n_per_mm")->range.max);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Search for the largest stable stiffness of a grid. It does not try all points, and does not assume that
-// stability is monotone.
+// Two searches for the largest stiffness of a grid at which all seeds are stable. Neither tries all points.
 #pragma once
 
 #include <functional>
@@ -41,5 +40,35 @@ struct LimitSearch {
 
 /// @returns an upper bound of the points that are tried on a grid of `size` if stability is monotone.
 [[nodiscard]] int most_checked_if_monotone(int size, int coarse = 4);
+
+/// Result of a traced limit.
+struct TracedLimit {
+  int limit = -1;             ///< grid index of the limit; -1: the grid's smallest stiffness is not stable
+  bool at_least = false;      ///< the limit is the grid's last point: the true limit may be higher
+  bool non_monotone = false;  ///< a seed that is unstable at a point was stable at a higher one
+};
+
+/// Finds the same limit with fewer trials: the least of the seeds' own limits, for a stiffness is stable if
+/// all seeds are. The first seed's limit is bisected over the whole grid. A further seed is tried at the least
+/// limit so far; only if it is unstable there, its own lower limit is sought downwards, in steps of 1, 2, 4 ..
+/// grid points, and bisected. In the mean over the order of seeds with different limits, 1/2 + 1/3 + .. + 1/n
+/// of the further seeds lower the limit: 2.6 of 20.
+/// The result guarantees:
+///  - all seeds are stable at `limit`;
+///  - at limit + 1 a seed is unstable;
+///  - one seed is stable at each `coarse`-th point below `limit`, another seed at each.
+/// search_limit() guarantees more: all seeds at these points and at two points below the limit. If a seed's
+/// stability is monotone in the stiffness, both find the same limit.
+/// @param size    number of grid points > 0
+/// @param seeds   number of seeds > 0
+/// @param stable  verdict on a grid point with a seed, 0 .. seeds - 1; called at most once for each pair
+/// @param coarse  > 0
+/// @throws std::invalid_argument if size, seeds or coarse is not positive, and everything that `stable` throws.
+[[nodiscard]] TracedLimit trace_limit(int size, int seeds,
+                                      const std::function<bool(int index, int seed)>& stable, int coarse = 4);
+
+/// @returns an upper bound of the calls of `stable` in trace_limit() if each seed's stability is monotone. It
+/// lets each seed lower the limit of those before it: the mean is far below.
+[[nodiscard]] int most_traced_if_monotone(int size, int seeds, int coarse = 4);
 
 }  // namespace phalanx

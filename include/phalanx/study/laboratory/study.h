@@ -42,11 +42,18 @@ struct StudyVariant {
   Overrides set;  ///< values as TOML
 };
 
+/// How the limit is searched, see limit_search.h.
+enum class StiffnessSearch {
+  kScan,   ///< search_limit() with all seeds; the largest stable stiffness is then measured in full
+  kTrace,  ///< trace_limit(): about a sixth of the trials; no k_eff
+};
+
 /// The grid of wall stiffnesses in which the limit is searched: min, min + step, .. max.
 struct StiffnessGrid {
   double min_n_per_mm = 0.1;   ///< [N/mm] > 0
   double max_n_per_mm = 4.0;   ///< [N/mm] >= min
   double step_n_per_mm = 0.1;  ///< [N/mm] > 0; max - min is a whole number of steps
+  StiffnessSearch search = StiffnessSearch::kScan;
 
   [[nodiscard]] int size() const noexcept;
   /// @returns grid point `index` [N/mm], rounded to 12 digits, so that 0.1 + 2 x 0.1 equals 0.3.
@@ -92,13 +99,14 @@ struct StudyPoint {
 
 /// Verdict of the seeds on one stiffness. An invalid trial never counts for stability.
 enum class Verdict {
-  kStable,    ///< every seed is stable and valid
+  kStable,    ///< every seed that ran is stable and valid
   kUnstable,  ///< the first seed that is not stable and valid is unstable
   kInvalid,   ///< the first seed that is not stable and valid is stable but invalid: it proves nothing
 };
 [[nodiscard]] const char* verdict_name(Verdict verdict) noexcept;  ///< "stable", "unstable", "invalid"
 
-/// One stiffness that was tried. The seeds run in their order, until the verdict is known.
+/// One stiffness that was tried. In a scan the seeds run in their order, until the verdict is known; in a trace
+/// those that its search asks for.
 struct StiffnessVerdict {
   double n_per_mm = 0.0;  ///< [N/mm]; NaN: the scene's own
   Verdict verdict = Verdict::kUnstable;
@@ -120,7 +128,7 @@ struct PointResult {
 
   int index = 0;  ///< StudyPoint::index
   /// The largest stable stiffness of the grid that has only stable ones below it, among those that were
-  /// checked (search_limit()) [N/m]. 0: not even the smallest is stable; the limit is below the grid.
+  /// checked (limit_search.h) [N/m]. 0: not even the smallest is stable; the limit is below the grid.
   double k_lim = kNone;
   bool at_least = false;      ///< k_lim is the grid's largest: the limit may be higher
   bool non_monotone = false;  ///< a stiffness above the first unstable one was stable: see `checked`
