@@ -164,7 +164,7 @@ int most_checked_if_monotone(int size, int coarse) {
 }
 
 int most_traced_if_monotone(int size, int seeds, int coarse) {
-  const int halvings = std::bit_width(static_cast<unsigned>(size));
+  const auto halvings = static_cast<int>(std::bit_width(static_cast<unsigned>(size)));
   const int lowering = 2 * halvings;  // downwards, then bisected
   const long long most = halvings + (seeds - 1LL) * (1 + lowering) + seeds + (size + coarse - 1) / coarse;
   return static_cast<int>(std::min(most, static_cast<long long>(size) * seeds));

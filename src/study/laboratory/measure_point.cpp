@@ -195,7 +195,7 @@ PointResult measure_point(const Study& study, int index, const TrialFunction& tr
   PointResult result;
   result.index = index;
   Runs runs(study, index, trial);
-  if (study.stiffness && study.stiffness->search == StiffnessSearch::kTrace) {
+  if (study.traces()) {
     trace_limit_of_point(*study.stiffness, study.seeds, runs, result);
   } else if (study.stiffness) {
     measure_at_limit(*study.stiffness, runs, result);

@@ -271,9 +271,8 @@ TrialEstimate most_trials(const Study& study) {
   int per_point = (1 + kPresses) * study.seeds;
   if (study.stiffness) {
     const int size = study.stiffness->size();
-    per_point = study.stiffness->search == StiffnessSearch::kTrace
-                    ? most_traced_if_monotone(size, study.seeds)
-                    : (most_checked_if_monotone(size) + kPresses) * study.seeds;
+    per_point = study.traces() ? most_traced_if_monotone(size, study.seeds)
+                               : (most_checked_if_monotone(size) + kPresses) * study.seeds;
   }
   return {.per_point = per_point, .all = static_cast<long long>(per_point) * point_count(study)};
 }

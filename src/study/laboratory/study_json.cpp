@@ -142,7 +142,7 @@ OrderedJson study_to_json(const Study& study) {
     json["stiffness"] = {{"min_n_per_mm", study.stiffness->min_n_per_mm},
                          {"max_n_per_mm", study.stiffness->max_n_per_mm},
                          {"step_n_per_mm", study.stiffness->step_n_per_mm}};
-    if (study.stiffness->search == StiffnessSearch::kTrace) json["stiffness"]["search"] = "trace";
+    if (study.traces()) json["stiffness"]["search"] = "trace";
   }
   json["set"] = overrides_to_json(study.set);
   json["variants"] = OrderedJson::array();

@@ -51,8 +51,8 @@ void add_what_was_swept(HtmlPage& page, const Study& study) {
   if (study.stiffness) {
     const StiffnessGrid& grid = *study.stiffness;
     rows.push_back({"stiffness", "wall",
-                    fmt::format("{:.12g} to {:.12g} N/mm in steps of {:.12g}", grid.min_n_per_mm,
-                                grid.max_n_per_mm, grid.step_n_per_mm)});
+                    fmt::format("{:.12g} to {:.12g} N/mm in steps of {:.12g}{}", grid.min_n_per_mm,
+                                grid.max_n_per_mm, grid.step_n_per_mm, study.traces() ? ", traced" : "")});
   }
   rows.push_back({"seeds", "", fmt::format("{} ({} a point)", seeds(study), study.seeds)});
   page.table({}, rows);
@@ -77,13 +77,19 @@ void add_what_stable_means(HtmlPage& page, const Study& study) {
       "k_lim is the largest stiffness of the grid that is stable and has only stable ones below it, as far "
       "as "
       "they were tried. All other numbers are measured at k_lim.");
+  if (study.traces())
+    page.paragraph(
+        "The limit is traced: it is the least of the seeds' own limits. All seeds ran at k_lim; below it one "
+        "seed ran at every fourth stiffness. k_eff is not measured.");
 }
 
-void add_what_is_measured(HtmlPage& page) {
+void add_what_is_measured(HtmlPage& page, const Study& study) {
+  if (!study.traces())
+    page.paragraph(
+        "k_eff is the stiffness that is felt: the force between a 2 N and a 4 N press over the way between "
+        "them, mean over the seeds for which both are stable.");
   page.paragraph(
-      "k_eff is the stiffness that is felt: the force between a 2 N and a 4 N press over the way between "
-      "them, mean over "
-      "the seeds for which both are stable. Ghost time is how long a force is sent after the finger has left "
+      "Ghost time is how long a force is sent after the finger has left "
       "the wall, "
       "ghost energy the work that this force does on the finger. Swings are from peak to peak in the window. "
       "Peak "
@@ -106,7 +112,7 @@ std::string notes(const Study& study, const PointResult& result) {
   add(result.ends_in_invalid, "ends in an invalid run");
   add(result.k_eff_seeds > 0 && result.k_eff_seeds < study.seeds,
       fmt::format("k_eff of {} seeds", result.k_eff_seeds));
-  add(result.invalid_trials > 0, fmt::format("{} invalid", result.invalid_trials));
+  add(result.invalid_trials > 0, fmt::format("invalid: {}", result.invalid_trials));
   return text;
 }
 
@@ -160,7 +166,7 @@ std::string study_report_html(const Study& study, const std::vector<PointResult>
   page.warnings(study_warnings(view));
   add_what_was_swept(page, study);
   add_what_stable_means(page, study);
-  add_what_is_measured(page);
+  add_what_is_measured(page, study);
   // A short table comes before the charts, a long one after them.
   constexpr int kShort = 40;
   if (point_count(study) <= kShort) add_all_points(page, view);

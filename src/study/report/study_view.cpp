@@ -123,7 +123,8 @@ std::vector<Quantity> StudyView::quantities() const {
   std::vector<Quantity> result;
   if (study_.stiffness)
     result.push_back({"k_lim", "N/mm", [](const R& r) { return 1e-3 * r.k_lim; }, nullptr, kNone});
-  result.push_back({"k_eff", "N/mm", [](const R& r) { return 1e-3 * r.k_eff; }, nullptr, kNone});
+  if (!study_.traces())
+    result.push_back({"k_eff", "N/mm", [](const R& r) { return 1e-3 * r.k_eff; }, nullptr, kNone});
   result.push_back({"peak penetration", "mm", [](const R& r) { return 1e3 * r.peak_depth; }, nullptr, kNone});
   result.push_back({"ghost time", "ms", [](const R& r) { return 1e3 * r.ghost_s.mean; },
                     [](const R& r) { return 1e3 * r.ghost_s.largest; }, kNone});

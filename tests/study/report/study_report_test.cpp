@@ -236,6 +236,16 @@ TEST(StudyReport, WithoutAGridHasNoLimit) {
               HasSubstr("Not stable at the stiffness of the scene: 1 point (none, sheath friction 0.34 N)."));
 }
 
+TEST(StudyReport, StatesThatALimitIsTracedAndHasNoEffectiveStiffnessThen) {
+  Study study = synthetic_study({"none", "smoothing"}, {kFriction});
+  study.stiffness->search = StiffnessSearch::kTrace;
+  const std::string page = page_of(study);
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page, HasSubstr("in steps of 0.1, traced<"));
+  EXPECT_THAT(page, HasSubstr("k_eff is not measured."));
+  EXPECT_THAT(page, Not(HasSubstr("k_eff [N/mm]")));
+}
+
 TEST(StudyReport, WarnsOfWhatIsMissingInvalidOrAtTheEdge) {
   const Study study = synthetic_study({"none", "smoothing"}, {kFriction});
   std::vector<PointResult> results = synthetic_results(study);

@@ -45,7 +45,7 @@ struct StudyVariant {
 /// How the limit is searched, see limit_search.h.
 enum class StiffnessSearch {
   kScan,   ///< search_limit() with all seeds; the largest stable stiffness is then measured in full
-  kTrace,  ///< trace_limit(): about a sixth of the trials; no k_eff
+  kTrace,  ///< trace_limit(): fewer trials; no k_eff
 };
 
 /// The grid of wall stiffnesses in which the limit is searched: min, min + step, .. max.
@@ -75,6 +75,10 @@ struct Study {
   std::vector<StudyVariant> variants;  ///< at least one; a study without variants has one with an empty name
   std::vector<StudyAxis> axes;         ///< may be empty
 
+  /// @returns true if the limit is traced, so that k_eff is not measured.
+  [[nodiscard]] bool traces() const noexcept {
+    return stiffness && stiffness->search == StiffnessSearch::kTrace;
+  }
   /// @returns true if the study file names variants.
   [[nodiscard]] bool has_variants() const noexcept;
 };
