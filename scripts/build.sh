@@ -39,14 +39,14 @@ cached() {
 }
 
 # configure PRESET [-DNAME=VALUE...] : only if needed, that is: never configured to the end, the presets changed, or a value
-# differs. A tree that was moved or copied is configured anew from nothing, for CMake's cache holds absolute paths.
+# differs. A tree that was moved or copied is configured from nothing, for CMake's cache holds absolute paths.
 configure() {
   local preset=$1; shift
   local build=$root/build/$preset define
   local cache=$build/CMakeCache.txt
   if [ -f "$cache" ] && ! { [ "$(cached "$cache" CMAKE_HOME_DIRECTORY)" -ef "$root" ] &&
                             [ "$(cached "$cache" CMAKE_CACHEFILE_DIR)" -ef "$build" ]; }; then
-    say "phalanx: build/$preset was made elsewhere; making it anew"
+    say "phalanx: build/$preset was made elsewhere; making it again"
     rm -rf "$build"
   fi
   local needed=false

@@ -26,7 +26,8 @@ namespace {
 
 int run(int argc, char** argv) {
   using namespace phalanx;
-  CLI::App app("Phalanx: a hand that feels virtual objects, from joint angles to joint torques.", "phalanx");
+  CLI::App app("Phalanx: haptic rendering for hand exoskeletons, from joint angles to joint torques.",
+               "phalanx");
   app.set_version_flag("--version", fmt::format("phalanx {} ({})", PHALANX_VERSION, built_from_commit()));
   app.require_subcommand(1);
   app.footer(

@@ -62,10 +62,9 @@ Scenes, hands, profiles, studies, the pages, and the link's reference in C.
 Phalanx is not a medical device.
 A powered device on a hand needs an emergency stop in hardware that works without this program.
 .SH SEE ALSO
-The documents in
-.I /usr/share/doc/phalanx
-and
-.IR /usr/share/doc/phalanx\-doc .
+The documents of the package
+.BR phalanx\-doc :
+.IR /usr/share/doc/phalanx/html/index.html .
 )";
 
 /// Escapes what troff would read as an instruction or print as another character.

@@ -8,7 +8,7 @@ from pathlib import Path
 EXTENSIONS = ["table", "strikethrough", "autolink", "tasklist"]
 HEADING = re.compile(r"<h([1-6])>(.*?)</h\1>", re.S)
 LINK = re.compile(r'(<(?:a|img)\s[^>]*?(?:href|src)=")([^"]*)(")')
-ELSEWHERE = re.compile(r"^[a-z][a-z0-9+.-]*:")
+ELSEWHERE = re.compile(r"^(https?|mailto|data|javascript):")
 SKIPPED = {"build", "debian", "node_modules", ".git", "out", ".cache", "obj-x86_64-linux-gnu"}
 
 

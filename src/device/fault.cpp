@@ -29,7 +29,7 @@ constexpr std::array kEntries{
           "Check the cable, the device's power and whether another program loads this computer, then reset."},
     Entry{Fault::kControllerRestarted, "controller_restarted",
           "The controller speaks of another session than ours: it has been switched off and on.",
-          "Check its power supply, then reset; the session is then opened anew."},
+          "Check its power supply, then reset; that opens a new session."},
     Entry{Fault::kRefused, "refused",
           "The device has refused us: it belongs to another host, or speaks another version.",
           "End the other program that uses the device, or bring firmware and host to one version, then "
@@ -38,7 +38,7 @@ constexpr std::array kEntries{
           "Check the calibration file and the sensor, then reset."},
     Entry{Fault::kOutOfRange, "out_of_range",
           "A joint was far outside the patient's range of motion in 3 samples running.",
-          "Check how the device is worn, calibrate anew if needed, then reset."},
+          "Check how the device is worn, calibrate again if needed, then reset."},
     Entry{Fault::kJump, "jump", "A joint moved faster than a hand can in 3 samples running.",
           "Check the joint's sensor and its wire, then reset."},
     Entry{Fault::kClockBackwards, "clock_backwards",
@@ -58,7 +58,7 @@ constexpr std::array kEntries{
           "Keep the fault report and tell the authors; then reset."},
     Entry{Fault::kDeviceLost, "device_lost", "The device's port or socket failed.",
           "Plug the device in again, check that its port is there and reset; if that does not help, start "
-          "anew."},
+          "the program again."},
     Entry{Fault::kNotActing, "not_acting", "The device does not act on the commands that it is sent.",
           "Check that it is the right device and that its firmware follows docs/link.md, then reset."},
     Entry{Fault::kOscillation, "oscillation",

@@ -34,7 +34,8 @@ SafetySettings make_safety_settings(const LimitParameters& limits, const std::st
   refuse_above(limits.fingertip_force, kForceWithClinician, "limits.fingertip_force_n", "N");
   if (limits.fingertip_force > kForceWithoutClinician && clinician.empty()) {
     throw std::invalid_argument(fmt::format(
-        "limits.fingertip_force_n = {}: above {} N somebody must answer for it; lower it, or name who: "
+        "limits.fingertip_force_n = {}: above {} N a clinician must answer for it; lower it, or name the "
+        "clinician: "
         "--clinician NAME (up to {} N)",
         limits.fingertip_force, kForceWithoutClinician, kForceWithClinician));
   }

@@ -52,6 +52,12 @@ must(bash -c "PATH=${WORK_DIR}/prefix/bin
 # Firmware takes the reference in C from the installed files alone.
 must(${CC} -c -I${WORK_DIR}/prefix/include ${WORK_DIR}/prefix/share/phalanx/link/phalanx_link.c -o ${WORK_DIR}/phalanx_link.o)
 
+# An Arduino library of the installed files.
+must(bash ${WORK_DIR}/prefix/share/doc/phalanx/examples/arduino/make_library ${WORK_DIR}/arduino)
+if(NOT EXISTS ${WORK_DIR}/arduino/src/phalanx_link.c OR NOT EXISTS ${WORK_DIR}/arduino/src/phalanx/device/link/phalanx_link.h)
+  message(FATAL_ERROR "examples/arduino/make_library made no library of the installed files")
+endif()
+
 # All that the page names is there.
 file(READ ${WORK_DIR}/prefix/share/phalanx/web/index.html page)
 string(REGEX MATCHALL "\\./assets/[^\"]+" named "${page}")

@@ -125,6 +125,20 @@ class BillOfMaterials(unittest.TestCase):
         self.assertEqual(eigen["versionInfo"], asked.stdout)
         self.assertEqual(eigen["licenseDeclared"], "MPL-2.0")
 
+    def test_has_a_licence_of_each_package_that_the_program_is_built_with(self) -> None:
+        built_with = {relation["spdxElementId"] for relation in self.document["relationships"] if relation["relationshipType"] == "BUILD_DEPENDENCY_OF"}
+        texts = {info["licenseId"] for info in self.document["hasExtractedLicensingInfos"]}
+        for package in self.packages:
+            licence = package["licenseDeclared"]
+            if package["SPDXID"] in built_with:
+                self.assertNotEqual(licence, "NOASSERTION", package["name"])
+            if licence.startswith("LicenseRef-"):
+                self.assertIn(licence, texts)
+
+    def test_names_what_the_hands_are_derived_from(self) -> None:
+        hand = next(package for package in self.packages if package["name"] == "@webxr-input-profiles/assets")
+        self.assertEqual((hand["versionInfo"], hand["licenseDeclared"]), ("1.0.20", "MIT"))
+
     def test_is_the_same_each_time(self) -> None:
         self.assertEqual(bill_of_materials(), self.document)
 

@@ -11,9 +11,11 @@ SOURCE = pathlib.Path(sys.argv.pop(2))
 BUILD = pathlib.Path(sys.argv.pop(1))
 
 PROGRAM = """
+import importlib.metadata
 import phalanx
 print(phalanx.data_folder())
 print(phalanx._core.__file__)
+assert importlib.metadata.version("phalanx") == phalanx.__version__
 print(len(phalanx.scenes()), phalanx.simulate(phalanx.Scene("index_ball"), seconds=0.05).tick[-1])
 """
 
@@ -24,7 +26,9 @@ class Installed(unittest.TestCase):
             first, moved = pathlib.Path(folder) / "first", pathlib.Path(folder) / "moved"
             subprocess.run(["cmake", "--install", BUILD, "--component", "python", "--prefix", first], check=True,
                            capture_output=True)
-            self.assertEqual(sorted(part.name for part in (first / "lib/python3/dist-packages").iterdir()), ["phalanx"])
+            parts = sorted(part.name for part in (first / "lib/python3/dist-packages").iterdir())
+            self.assertEqual(parts[0], "phalanx")
+            self.assertRegex(" ".join(parts[1:]), r"^phalanx-[0-9.]+[.]dist-info$")
             first.rename(moved)
             data = moved / "share" / "phalanx"
             data.mkdir(parents=True)

@@ -55,7 +55,7 @@ void print_device(const std::string& spec, const DeviceInfo& info,
   fmt::print("  renders   {}\n", info.renders_torque ? "joint torques" : "stops of digits only");
   fmt::print("  watchdog  {}\n",
              info.watchdog
-                 ? fmt::format("lets go {:g} ms after the host's last message", 1e3 * *info.watchdog)
+                 ? fmt::format("ends its forces {:g} ms after the host's last message", 1e3 * *info.watchdog)
                  : "not known: with force it is for trying out, not for a patient's session");
   if (!sample) {
     fmt::print("  state     it answers, but no sample came within {:g} s\n", kPatience);
@@ -93,8 +93,9 @@ void add_device_probe(CLI::App& device, Job& job) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       device.add_subcommand("probe", "Who is there: serial number, rate, channels, first values");
-  command->footer(std::string("DEVICE is one of\n") + kDeviceSpecs +
-                  "\nMotors stay off. Exit codes: 0 done, 1 nobody answers or refused, 2 wrong usage.");
+  command->footer(
+      std::string("DEVICE is one of\n") + kDeviceSpecs +
+      "\nMotors stay off. Exit codes: 0 done, 1 no device answers, or it refuses, 2 wrong usage.");
   command->add_option("DEVICE", options->spec, "its address")->required()->type_name("");
   command->add_option("--timeout", options->timeout, "give up after so long [3]")
       ->check(CLI::Range(0.1, 3600.0))

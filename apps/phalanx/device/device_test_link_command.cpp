@@ -99,7 +99,7 @@ class LinkTest {
 /// @returns why the link is not good enough for a station; empty if it is.
 std::string complaint(const RoundTrips& trips, const RoundTripTimes& times) {
   if (trips.received() == 0)
-    return "nobody answers: is the controller switched on and connected, and is the address right?";
+    return "no device answers: is the controller switched on and connected, and is the address right?";
   std::string text;
   if (trips.loss() > kMostLoss)
     text += fmt::format("{:.2f} % are lost, more than {:g} %: look for a bad cable or a radio link. ",

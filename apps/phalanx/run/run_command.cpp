@@ -48,7 +48,7 @@ void add_run_command(CLI::App& app, Job& job) {
                   "who answers for a fingertip force above 5 N (up to 10 N)");
   CLI::Option* watchdog = run->add_option(
       "--watchdog-ms", options->watchdog_ms,
-      "a glove's firmware lets go by itself so long after this program's last message [1 .. 1000]");
+      "a glove's firmware ends its forces so long after this program's last message [1 .. 1000]");
   run->add_flag("--no-force-feedback", options->no_force_feedback,
                 "the glove only senses: it is never told to hold a finger")
       ->excludes(watchdog);

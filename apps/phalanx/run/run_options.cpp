@@ -36,7 +36,7 @@ void refuse_slow_motion(const RunOptions& o) {
 void check_glove_options(const RunOptions& o) {
   if (o.watchdog_ms && !(*o.watchdog_ms >= 1.0 && *o.watchdog_ms <= 1000.0))
     throw std::invalid_argument(fmt::format(
-        "--watchdog-ms {}: must be 1 to 1000 ms; state within which time the glove's firmware lets go",
+        "--watchdog-ms {}: must be 1 to 1000 ms; state after which time the glove's firmware ends its forces",
         *o.watchdog_ms));
   if (o.device.starts_with("opengloves:")) return;
   const char* stated = o.watchdog_ms         ? "--watchdog-ms"

@@ -7,8 +7,8 @@
 
 namespace phalanx {
 
-/// @returns `text` as the content of an element or the value of an attribute in double quotes: &, <, > and " as
-/// entities; control characters become spaces. Set-up only.
+/// @returns `text` as the content of an element or the value of an attribute in double quotes: &, <, > and "
+/// as entities; control characters become spaces. Set-up only.
 [[nodiscard]] inline std::string xml_escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -98,8 +98,8 @@ struct HeatMap {
 /// @throws std::invalid_argument if `value` or `at_least` is not rows x columns long.
 [[nodiscard]] std::string heat_map_svg(const HeatMap& map);
 
-/// Result for a stiffness.
-enum class CellVerdict { kNotChecked, kStable, kUnstable, kInvalid };
+/// Result for a stiffness. kSomeStable: the seeds that ran are stable, and others did not run.
+enum class CellVerdict { kNotChecked, kStable, kSomeStable, kUnstable, kInvalid };
 
 /// Stability over stiffness (upwards) for several points beside each other.
 struct VerdictMap {

@@ -157,7 +157,7 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// applied to the file's tree before it is checked, by the same code. Every number is finite and in the range
 /// that `phalanx scene keys` prints. If the scene states anything about the device or the patient, its file is
 /// opened for a check.
-/// @throws SceneError naming file:line (or the override), key, value and remedy; for an unknown key also the
+/// @throws SceneError naming file and line (or the override), key, value and remedy; for an unknown key also the
 /// nearest known one. Set-up only.
 [[nodiscard]] SceneDescription load_scene(const std::string& scene, const Overrides& overrides = {});
 

@@ -16,12 +16,15 @@ struct Look {
   CellVerdict verdict;
   const char* fill;
   const char* name;
+  const char* shown;
 };
 /// Dark, pale and hatched, so that they differ without colour, too. Cells that were not checked
 /// show the background.
-constexpr std::array<Look, 3> kLooks = {Look{CellVerdict::kStable, "#0072B2", "stable"},
-                                        Look{CellVerdict::kUnstable, "#F0B95B", "unstable"},
-                                        Look{CellVerdict::kInvalid, "url(#hatch)", "invalid"}};
+constexpr std::array<Look, 4> kLooks = {
+    Look{CellVerdict::kStable, "#0072B2", "stable", "stable"},
+    Look{CellVerdict::kSomeStable, "#A6CEE3", "some_stable", "some seeds stable"},
+    Look{CellVerdict::kUnstable, "#F0B95B", "unstable", "unstable"},
+    Look{CellVerdict::kInvalid, "url(#hatch)", "invalid", "invalid"}};
 constexpr const char* kBackground = "#F1F1F1";
 constexpr double kMapLeft = 36.0;
 constexpr double kMapRight = 8.0;
@@ -63,6 +66,12 @@ class VerdictMapDrawing {
     return top_ + height_ - cell_h_ * static_cast<double>(row + 1);
   }
 
+  [[nodiscard]] bool has(CellVerdict verdict) const {
+    return std::any_of(map_.columns.begin(), map_.columns.end(), [verdict](const VerdictMap::Column& column) {
+      return std::find(column.cell.begin(), column.cell.end(), verdict) != column.cell.end();
+    });
+  }
+
   void legend(double y) {
     double x = 4.0;
     const auto entry = [&](const char* fill, const std::string& name) {
@@ -72,7 +81,8 @@ class VerdictMapDrawing {
       svg_.text(x + 12, y, name);
       x += 17 + text_width(name);
     };
-    for (const Look& look : kLooks) entry(look.fill, look.name);
+    for (const Look& look : kLooks)
+      if (look.verdict != CellVerdict::kSomeStable || has(look.verdict)) entry(look.fill, look.shown);
     entry(kBackground, "not checked");
     svg_.add(R"svg(<path d="M{:.2f},{:.2f}h9" stroke="#000" stroke-width="1.8"/>)svg", x, y - 2.5);
     svg_.text(x + 12, y, "k_lim");

@@ -86,8 +86,9 @@ void add_what_stable_means(HtmlPage& page, const Study& study) {
 void add_what_is_measured(HtmlPage& page, const Study& study) {
   if (!study.traces())
     page.paragraph(
-        "k_eff is the stiffness that is felt: the force between a 2 N and a 4 N press over the way between "
-        "them, mean over the seeds for which both are stable.");
+        "k_eff is the stiffness that is felt: the difference of the forces of a 4 N and a 2 N press over "
+        "that of "
+        "their depths, mean over the seeds for which both are stable.");
   page.paragraph(
       "Ghost time is how long a force is sent after the finger has left "
       "the wall, "

@@ -14,10 +14,10 @@ constexpr std::size_t kMostColumns = 60;  // in one map
 constexpr std::size_t kMostMaps = 40;
 constexpr std::size_t kColumnsOfHalfVerdictMap = 8;  // up to here two maps fit beside each other
 
-CellVerdict cell_of(Verdict verdict) {
-  switch (verdict) {
+CellVerdict cell_of(const StiffnessVerdict& checked, int seeds) {
+  switch (checked.verdict) {
     case Verdict::kStable:
-      return CellVerdict::kStable;
+      return checked.seeds_run < seeds ? CellVerdict::kSomeStable : CellVerdict::kStable;
     case Verdict::kUnstable:
       return CellVerdict::kUnstable;
     case Verdict::kInvalid:
@@ -26,7 +26,8 @@ CellVerdict cell_of(Verdict verdict) {
   return CellVerdict::kNotChecked;
 }
 
-VerdictMap::Column column_of(const PointResult* result, const std::string& name, const StiffnessGrid& grid) {
+VerdictMap::Column column_of(const PointResult* result, const std::string& name, const Study& study) {
+  const StiffnessGrid& grid = *study.stiffness;
   const int size = grid.size();
   VerdictMap::Column column{.name = name, .cell = std::vector<CellVerdict>(static_cast<std::size_t>(size))};
   if (result == nullptr) return column;
@@ -34,7 +35,7 @@ VerdictMap::Column column_of(const PointResult* result, const std::string& name,
   column.at_least = result->at_least;
   for (const StiffnessVerdict& checked : result->checked) {
     const double row = std::round((checked.n_per_mm - grid.min_n_per_mm) / grid.step_n_per_mm);
-    if (row >= 0.0 && row < size) column.cell[static_cast<std::size_t>(row)] = cell_of(checked.verdict);
+    if (row >= 0.0 && row < size) column.cell[static_cast<std::size_t>(row)] = cell_of(checked, study.seeds);
   }
   return column;
 }
@@ -46,7 +47,7 @@ std::vector<VerdictMap> maps_of(const StudyView& view, const Dimension* along, c
   empty.title = slice.text;
   for (int i = 0; i < grid.size(); ++i) empty.stiffness.push_back(grid.n_per_mm(i));
   if (along == nullptr) {
-    empty.columns.push_back(column_of(view.result(slice.offset), "", grid));
+    empty.columns.push_back(column_of(view.result(slice.offset), "", view.study()));
     empty.width_mm = 88.0;
     return {empty};
   }
@@ -57,7 +58,7 @@ std::vector<VerdictMap> maps_of(const StudyView& view, const Dimension* along, c
     if (i % kMostColumns == 0) maps.push_back(empty);
     const std::size_t value = along->order[i];
     const int index = slice.offset + static_cast<int>(value) * along->stride;
-    maps.back().columns.push_back(column_of(view.result(index), along->names[value], grid));
+    maps.back().columns.push_back(column_of(view.result(index), along->names[value], view.study()));
   }
   return maps;
 }
@@ -80,20 +81,24 @@ std::string where_not_monotone(const PointResult& result) {
 
 void add_not_monotone(HtmlPage& page, const StudyView& view) {
   constexpr std::size_t kMost = 50;
+  const bool traces = view.study().traces();
   std::vector<std::string> items;
   std::size_t all = 0;
   for (int i = 0; i < point_count(view.study()); ++i) {
     const PointResult* result = view.result(i);
     if (result == nullptr || !result->non_monotone || ++all > kMost) continue;
-    items.push_back(fmt::format("{}: {}", view.name(i), where_not_monotone(*result)));
+    items.push_back(traces ? view.name(i) : fmt::format("{}: {}", view.name(i), where_not_monotone(*result)));
   }
   if (items.empty()) {
-    page.paragraph("At no point was a stiffness above the limit found to be stable again.");
+    page.paragraph(traces ? "At no point was a seed stable above a stiffness at which it was not."
+                          : "At no point was a stiffness above the limit found to be stable again.");
     return;
   }
   page.paragraph(
-      "Not monotone: at these points something stiffer than the limit was stable again. k_lim is the limit "
-      "below which everything that was tried is stable.");
+      traces ? "Not monotone: at these points a seed was stable above a stiffness at which it was not."
+             : "Not monotone: at these points something stiffer than the limit was stable again. k_lim is "
+               "the limit "
+               "below which everything that was tried is stable.");
   if (all > kMost) items.push_back(fmt::format("and {} more", all - kMost));
   page.list(items);
 }
@@ -107,8 +112,14 @@ void add_verdict_maps(HtmlPage& page, const StudyView& view) {
   const std::vector<Slice> slices = along < 0 ? std::vector<Slice>{Slice{}} : view.slices({along});
   page.heading("Which stiffness was tried, and what came of it");
   page.paragraph(
-      "Every stiffness was tried with one seed after the other until one of them was not stable. The thick "
-      "line stands above k_lim, the largest stiffness below which nothing that was tried was unstable.");
+      view.study().traces()
+          ? "Each seed was tried where the search for its limit needed it; at k_lim all seeds are "
+            "stable. At a pale blue stiffness the seeds that ran are stable, and others did not run."
+          : "Every stiffness was tried with one seed after the other until one of them was not "
+            "stable.");
+  page.paragraph(
+      "The thick line stands above k_lim, the largest stiffness below which nothing that was tried was "
+      "unstable.");
   std::vector<std::string> svgs;
   std::size_t all = 0;
   for (const Slice& slice : slices) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -219,6 +220,45 @@ TEST(TracedLimit, MovesBelowASeedThatIsUnstableAtTheLimitOfTheOthers) {
   const Trace found = trace(40, {{.limit = 25, .hole = 12}, {.limit = 12}});
   EXPECT_EQ(found.found.limit, 11);
   EXPECT_TRUE(found.found.non_monotone);
+}
+
+// Verdicts without any order, most of them stable at first.
+TEST(TracedLimit, KeepsItsGuaranteesWithAnyVerdicts) {
+  std::mt19937 random(23);
+  for (int n = 0; n < 10'000; ++n) {
+    SCOPED_TRACE(::testing::Message() << "case " << n);
+    const int size = 1 + static_cast<int>(random() % 30);
+    const int seeds = 1 + static_cast<int>(random() % 6);
+    const int coarse = 1 + static_cast<int>(random() % 6);
+    const unsigned unstable = 1 + static_cast<unsigned>(random() % 20);  // of 20
+    std::map<std::pair<int, int>, bool> verdicts;                        // by seed, then point
+    const TracedLimit found = trace_limit(
+        size, seeds,
+        [&](int index, int seed) {
+          EXPECT_TRUE(index >= 0 && index < size && seed >= 0 && seed < seeds);
+          const auto [it, is_new] = verdicts.emplace(std::pair(seed, index), random() % 20 >= unstable);
+          EXPECT_TRUE(is_new) << "asked twice";
+          return it->second;
+        },
+        coarse);
+    ASSERT_TRUE(found.limit >= -1 && found.limit < size);
+    EXPECT_EQ(found.at_least, found.limit == size - 1);
+    bool unstable_above = found.at_least;
+    bool non_monotone = false;
+    for (const auto& [pair, stable] : verdicts) {
+      const auto& [seed, index] = pair;
+      unstable_above = unstable_above || (index == found.limit + 1 && !stable);
+      for (const auto& [other, stable_there] : verdicts)
+        non_monotone =
+            non_monotone || (other.first == seed && other.second > index && !stable && stable_there);
+    }
+    EXPECT_TRUE(unstable_above);
+    EXPECT_EQ(found.non_monotone, non_monotone);
+    for (int seed = 0; found.limit >= 0 && seed < seeds; ++seed)
+      EXPECT_TRUE(verdicts.at({seed, found.limit})) << "seed " << seed;
+    for (int index = 0; index < found.limit; index += coarse)
+      EXPECT_TRUE(verdicts.at({index / coarse % seeds, index})) << "point " << index;
+  }
 }
 
 TEST(TracedLimit, RefusesAnEmptyGridNoSeedsAndNoStep) {

@@ -246,6 +246,22 @@ TEST(StudyReport, StatesThatALimitIsTracedAndHasNoEffectiveStiffnessThen) {
   EXPECT_THAT(page, Not(HasSubstr("k_eff [N/mm]")));
 }
 
+// A seed alone was stable at 2 N/mm, above the limit of 0.6 N/mm that another one has.
+TEST(StudyReport, ShowsWhereSomeSeedsAloneWereStable) {
+  Study study = synthetic_study({"none", "smoothing"}, {kFriction});
+  std::vector<PointResult> results = synthetic_results(study);
+  EXPECT_THAT(study_report_html(study, results, kMadeUp), Not(HasSubstr("some seeds stable")));
+  study.stiffness->search = StiffnessSearch::kTrace;
+  results[0].checked = {{.n_per_mm = 0.6, .verdict = Verdict::kStable, .seeds_run = study.seeds},
+                        {.n_per_mm = 0.7, .verdict = Verdict::kUnstable, .seeds_run = 1},
+                        {.n_per_mm = 2.0, .verdict = Verdict::kStable, .seeds_run = 1}};
+  const std::string page = study_report_html(study, results, kMadeUp);
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page, HasSubstr(">some seeds stable<"));
+  EXPECT_THAT(page, HasSubstr("<path class=\"some_stable\""));
+  EXPECT_THAT(page, HasSubstr("At no point was a seed stable above a stiffness at which it was not."));
+}
+
 TEST(StudyReport, WarnsOfWhatIsMissingInvalidOrAtTheEdge) {
   const Study study = synthetic_study({"none", "smoothing"}, {kFriction});
   std::vector<PointResult> results = synthetic_results(study);

@@ -48,22 +48,24 @@ struct TracedLimit {
   bool non_monotone = false;  ///< a seed that is unstable at a point was stable at a higher one
 };
 
-/// Finds the same limit with fewer trials: the least of the seeds' own limits, for a stiffness is stable if
-/// all seeds are. The first seed's limit is bisected over the whole grid. A further seed is tried at the least
-/// limit so far; only if it is unstable there, its own lower limit is sought downwards, in steps of 1, 2, 4 ..
-/// grid points, and bisected. In the mean over the order of seeds with different limits, 1/2 + 1/3 + .. + 1/n
-/// of the further seeds lower the limit: 2.6 of 20.
-/// The result guarantees:
+/// Finds the limit that search_limit() finds, with fewer trials, if each seed's stability is monotone in the
+/// stiffness. A stiffness is stable if all seeds are: the limit is the least of the seeds' own limits. That of
+/// the first seed is bisected over the whole grid. A further seed is tried at the least limit so far; only if
+/// it is unstable there, its lower limit is sought downwards, in steps of 1, 2, 4 .. grid points, and bisected.
+/// Seeds run one after the other. If their limits differ and their order is random, the expected number of
+/// seeds that lower the limit is 1/2 + 1/3 + .. + 1/n: 2.6 of 20.
+/// The result guarantees, also where stability is not monotone:
 ///  - all seeds are stable at `limit`;
 ///  - at limit + 1 a seed is unstable;
-///  - one seed is stable at each `coarse`-th point below `limit`, another seed at each.
-/// search_limit() guarantees more: all seeds at these points and at two points below the limit. If a seed's
-/// stability is monotone in the stiffness, both find the same limit.
+///  - at each `coarse`-th point below `limit` one seed is stable, seed (point / coarse) % seeds.
+/// Of these points search_limit() tries all seeds, of two points on each side of the limit, too, and the whole
+/// grid above it.
 /// @param size    number of grid points > 0
 /// @param seeds   number of seeds > 0
 /// @param stable  verdict on a grid point with a seed, 0 .. seeds - 1; called at most once for each pair
 /// @param coarse  > 0
-/// @throws std::invalid_argument if size, seeds or coarse is not positive, and everything that `stable` throws.
+/// @throws std::invalid_argument if size, seeds or coarse is not positive, and everything that `stable`
+/// throws.
 [[nodiscard]] TracedLimit trace_limit(int size, int seeds,
                                       const std::function<bool(int index, int seed)>& stable, int coarse = 4);
 

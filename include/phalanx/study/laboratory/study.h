@@ -109,8 +109,8 @@ enum class Verdict {
 };
 [[nodiscard]] const char* verdict_name(Verdict verdict) noexcept;  ///< "stable", "unstable", "invalid"
 
-/// One stiffness that was tried. In a scan the seeds run in their order, until the verdict is known; in a trace
-/// those that its search asks for.
+/// One stiffness that was tried. In a scan the seeds run in their order, until the verdict is known; in a
+/// trace those that the search asks for.
 struct StiffnessVerdict {
   double n_per_mm = 0.0;  ///< [N/mm]; NaN: the scene's own
   Verdict verdict = Verdict::kUnstable;
@@ -134,8 +134,10 @@ struct PointResult {
   /// The largest stable stiffness of the grid that has only stable ones below it, among those that were
   /// checked (limit_search.h) [N/m]. 0: not even the smallest is stable; the limit is below the grid.
   double k_lim = kNone;
-  bool at_least = false;      ///< k_lim is the grid's largest: the limit may be higher
-  bool non_monotone = false;  ///< a stiffness above the first unstable one was stable: see `checked`
+  bool at_least = false;  ///< k_lim is the grid's largest: the limit may be higher
+  /// Scan: a stiffness above the first unstable one was stable, see `checked`. Trace: a seed was stable above a
+  /// stiffness at which it was unstable.
+  bool non_monotone = false;
   bool ends_in_invalid =
       false;            ///< the next stiffness above k_lim is invalid, not unstable: the limit may be higher
   bool stable = false;  ///< every seed is stable and valid at `measured_at`
