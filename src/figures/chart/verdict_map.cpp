@@ -46,8 +46,7 @@ class VerdictMapDrawing {
   std::string draw() {
     svg_.define_hatch();
     const double heading = svg_.heading(map_.title);
-    legend(heading + 9);
-    top_ = heading + 22;
+    top_ = legend(heading + 9) + 13;
     svg_.add(
         R"svg(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="{}" stroke="#000" stroke-width="0.6"/>)svg",
         kMapLeft, top_, cell_w_ * static_cast<double>(map_.columns.size()), height_, kBackground);
@@ -72,9 +71,16 @@ class VerdictMapDrawing {
     });
   }
 
-  void legend(double y) {
+  /// @returns where its last line stands.
+  double legend(double y) {
     double x = 4.0;
+    const auto make_room = [&](const std::string& name) {
+      if (x + 12 + text_width(name) <= width_) return;
+      x = 4.0;
+      y += 11;
+    };
     const auto entry = [&](const char* fill, const std::string& name) {
+      make_room(name);
       svg_.add(
           R"svg(<rect x="{:.2f}" y="{:.2f}" width="9" height="7" fill="{}" stroke="#777" stroke-width="0.4"/>)svg",
           x, y - 6, fill);
@@ -84,8 +90,10 @@ class VerdictMapDrawing {
     for (const Look& look : kLooks)
       if (look.verdict != CellVerdict::kSomeStable || has(look.verdict)) entry(look.fill, look.shown);
     entry(kBackground, "not checked");
+    make_room("k_lim");
     svg_.add(R"svg(<path d="M{:.2f},{:.2f}h9" stroke="#000" stroke-width="1.8"/>)svg", x, y - 2.5);
     svg_.text(x + 12, y, "k_lim");
+    return y;
   }
 
   /// Draws all cells of a verdict as one path.

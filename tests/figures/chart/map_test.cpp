@@ -264,6 +264,25 @@ TEST(VerdictMapSvg, NamesEachColourBesideIt) {
   EXPECT_EQ(entries, 4);
 }
 
+// With the fourth colour the legend is wider than 88 mm, 249.4 pt: k_lim stands below, and the frame begins 11 pt
+// lower.
+TEST(VerdictMapSvg, BreaksALegendThatIsTooWide) {
+  VerdictMap map = verdicts();
+  map.columns[0].cell[0] = CellVerdict::kSomeStable;
+  const std::string svg = verdict_map_svg(map);
+  keep("some_stable.svg", svg);
+  EXPECT_THAT(svg, HasSubstr(">some seeds stable<"));
+  const std::regex word(R"re(<text x="([0-9.]+)" y="([0-9.]+)"[^>]*>(stable|not checked|k_lim)<)re");
+  std::vector<double> heights;
+  for (std::sregex_iterator found(svg.begin(), svg.end(), word), none; found != none; ++found) {
+    EXPECT_LT(std::stod((*found)[1]), 249.4) << (*found)[3];
+    heights.push_back(std::stod((*found)[2]));
+  }
+  ASSERT_EQ(heights.size(), 3U);
+  EXPECT_NEAR(heights.back() - heights.front(), 11.0, 0.02);
+  EXPECT_THAT(svg, HasSubstr("<rect x=\"36.00\" y=\"55.00\""));
+}
+
 TEST(VerdictMapSvg, SurvivesNothingAndEscapesAllWords) {
   EXPECT_EQ(flaw_of(verdict_map_svg({})), "");
   VerdictMap map = verdicts();
