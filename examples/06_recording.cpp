@@ -48,11 +48,10 @@ std::filesystem::path record(const std::filesystem::path& folder) {
 int main(int argc, char** argv) try {
   const std::filesystem::path file = record(argc > 1 ? argv[1] : "recordings");
   const RecordingSummary summary = summarise_recording(file);
-  std::printf("%s: %llu steps of the scene %s\n", file.c_str(),
-              static_cast<unsigned long long>(summary.steps), summary.scene.c_str());
+  std::printf("%s: steps of the scene %s\n", file.c_str(), summary.scene.c_str());
   const ReplayResult again = replay(file);
-  std::printf("%llu steps compared, %llu different\n", static_cast<unsigned long long>(again.compared),
-              static_cast<unsigned long long>(again.different));
+  std::printf("%zu steps recorded, %zu compared, %zu different\n", std::size_t{summary.steps},
+              std::size_t{again.compared}, std::size_t{again.different});
   return again.compared > 0 && again.different == 0 ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
