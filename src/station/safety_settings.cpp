@@ -35,8 +35,7 @@ SafetySettings make_safety_settings(const LimitParameters& limits, const std::st
   if (limits.fingertip_force > kForceWithoutClinician && clinician.empty()) {
     throw std::invalid_argument(fmt::format(
         "limits.fingertip_force_n = {}: above {} N a clinician must answer for it; lower it, or name the "
-        "clinician: "
-        "--clinician NAME (up to {} N)",
+        "clinician: --clinician NAME (up to {} N)",
         limits.fingertip_force, kForceWithoutClinician, kForceWithClinician));
   }
   refuse_above(limits.joint_torque, kTorqueNever, "limits.joint_torque_nm", "Nm");

@@ -100,7 +100,7 @@ int simulate_device(const DeviceSimulateOptions& options) {
   const ServedStatistics statistics = served.serve(clock, *transport, options.seconds, asked_to_end);
   report(statistics, controller, *transport);
   if (log) log->finish();
-  if (transport->lost()) throw std::runtime_error("the wire is gone; start it again");
+  if (transport->lost()) throw std::runtime_error("the wire is gone; start the simulated device again");
   return kDone;
 }
 

@@ -15,8 +15,8 @@ namespace {
 struct Look {
   CellVerdict verdict;
   const char* fill;
-  const char* name;
-  const char* shown;
+  const char* name;    // of the class in the SVG
+  const char* legend;  // words of the legend
 };
 /// Dark, pale and hatched, so that they differ without colour, too. Cells that were not checked
 /// show the background.
@@ -88,7 +88,7 @@ class VerdictMapDrawing {
       x += 17 + text_width(name);
     };
     for (const Look& look : kLooks)
-      if (look.verdict != CellVerdict::kSomeStable || has(look.verdict)) entry(look.fill, look.shown);
+      if (look.verdict != CellVerdict::kSomeStable || has(look.verdict)) entry(look.fill, look.legend);
     entry(kBackground, "not checked");
     make_room("k_lim");
     svg_.add(R"svg(<path d="M{:.2f},{:.2f}h9" stroke="#000" stroke-width="1.8"/>)svg", x, y - 2.5);

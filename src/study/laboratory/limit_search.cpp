@@ -108,10 +108,10 @@ class SeedAnswers {
 
   /// @returns true if a seed was unstable at a point and stable at a higher one.
   [[nodiscard]] bool non_monotone() const {
-    const auto falls = [](const auto& lower, const auto& higher) {
+    const auto reverses = [](const auto& lower, const auto& higher) {
       return lower.first.first == higher.first.first && !lower.second && higher.second;
     };
-    return std::adjacent_find(answers_.begin(), answers_.end(), falls) != answers_.end();
+    return std::adjacent_find(answers_.begin(), answers_.end(), reverses) != answers_.end();
   }
 
  private:

@@ -87,11 +87,9 @@ void add_what_is_measured(HtmlPage& page, const Study& study) {
   if (!study.traces())
     page.paragraph(
         "k_eff is the stiffness that is felt: the difference of the forces of a 4 N and a 2 N press over "
-        "that of "
-        "their depths, mean over the seeds for which both are stable.");
+        "that of their depths, mean over the seeds for which both are stable.");
   page.paragraph(
-      "Ghost time is how long a force is sent after the finger has left "
-      "the wall, "
+      "Ghost time is how long a force is sent after the finger has left the wall, "
       "ghost energy the work that this force does on the finger. Swings are from peak to peak in the window. "
       "Peak "
       "penetration and swings are the largest over the seeds.");

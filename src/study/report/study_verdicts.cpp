@@ -97,8 +97,7 @@ void add_not_monotone(HtmlPage& page, const StudyView& view) {
   page.paragraph(
       traces ? "Not monotone: at these points a seed was stable above a stiffness at which it was not."
              : "Not monotone: at these points something stiffer than the limit was stable again. k_lim is "
-               "the limit "
-               "below which everything that was tried is stable.");
+               "the limit below which everything that was tried is stable.");
   if (all > kMost) items.push_back(fmt::format("and {} more", all - kMost));
   page.list(items);
 }
@@ -115,8 +114,7 @@ void add_verdict_maps(HtmlPage& page, const StudyView& view) {
       view.study().traces()
           ? "Each seed was tried where the search for its limit needed it; at k_lim all seeds are "
             "stable. At a pale blue stiffness the seeds that ran are stable, and others did not run."
-          : "Every stiffness was tried with one seed after the other until one of them was not "
-            "stable.");
+          : "Every stiffness was tried with one seed after the other until one of them was not stable.");
   page.paragraph(
       "The thick line stands above k_lim, the largest stiffness below which nothing that was tried was "
       "unstable.");

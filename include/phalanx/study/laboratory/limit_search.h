@@ -51,15 +51,15 @@ struct TracedLimit {
 /// Finds the limit that search_limit() finds, with fewer trials, if each seed's stability is monotone in the
 /// stiffness. A stiffness is stable if all seeds are: the limit is the least of the seeds' own limits. That of
 /// the first seed is bisected over the whole grid. A further seed is tried at the least limit so far; only if
-/// it is unstable there, its lower limit is sought downwards, in steps of 1, 2, 4 .. grid points, and bisected.
-/// Seeds run one after the other. If their limits differ and their order is random, the expected number of
+/// it is unstable there, its lower limit is sought downwards, in steps of 1, 2, 4 .. grid points, and
+/// bisected. Seeds run one after the other. If their limits differ and their order is random, the expected number of
 /// seeds that lower the limit is 1/2 + 1/3 + .. + 1/n: 2.6 of 20.
 /// The result guarantees, also where stability is not monotone:
 ///  - all seeds are stable at `limit`;
 ///  - at limit + 1 a seed is unstable;
 ///  - at each `coarse`-th point below `limit` one seed is stable, seed (point / coarse) % seeds.
-/// Of these points search_limit() tries all seeds, of two points on each side of the limit, too, and the whole
-/// grid above it.
+/// search_limit() tries all seeds at these points, two further points on each side of the limit, and each
+/// `coarse`-th point above it.
 /// @param size    number of grid points > 0
 /// @param seeds   number of seeds > 0
 /// @param stable  verdict on a grid point with a seed, 0 .. seeds - 1; called at most once for each pair

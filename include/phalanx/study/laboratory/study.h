@@ -50,10 +50,10 @@ enum class StiffnessSearch {
 
 /// The grid of wall stiffnesses in which the limit is searched: min, min + step, .. max.
 struct StiffnessGrid {
-  double min_n_per_mm = 0.1;   ///< [N/mm] > 0
-  double max_n_per_mm = 4.0;   ///< [N/mm] >= min
-  double step_n_per_mm = 0.1;  ///< [N/mm] > 0; max - min is a whole number of steps
-  StiffnessSearch search = StiffnessSearch::kScan;
+  double min_n_per_mm = 0.1;                        ///< [N/mm] > 0
+  double max_n_per_mm = 4.0;                        ///< [N/mm] >= min
+  double step_n_per_mm = 0.1;                       ///< [N/mm] > 0; max - min is a whole number of steps
+  StiffnessSearch search = StiffnessSearch::kScan;  ///< `stiffness.search` of the study file
 
   [[nodiscard]] int size() const noexcept;
   /// @returns grid point `index` [N/mm], rounded to 12 digits, so that 0.1 + 2 x 0.1 equals 0.3.
@@ -135,8 +135,8 @@ struct PointResult {
   /// checked (limit_search.h) [N/m]. 0: not even the smallest is stable; the limit is below the grid.
   double k_lim = kNone;
   bool at_least = false;  ///< k_lim is the grid's largest: the limit may be higher
-  /// Scan: a stiffness above the first unstable one was stable, see `checked`. Trace: a seed was stable above a
-  /// stiffness at which it was unstable.
+  /// Scan: a stiffness above the first unstable one was stable, see `checked`. Trace: a seed was stable above
+  /// a stiffness at which it was unstable.
   bool non_monotone = false;
   bool ends_in_invalid =
       false;            ///< the next stiffness above k_lim is invalid, not unstable: the limit may be higher

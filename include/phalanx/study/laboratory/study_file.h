@@ -10,7 +10,8 @@
 namespace phalanx {
 
 /// Reads a study. run_study() checks later whether its keys and values fit the scene.
-/// @throws SceneError naming file and line, key, value and remedy; for an unknown key also the nearest known one.
+/// @throws SceneError naming file and line, key, value and remedy; for an unknown key also the nearest known
+/// one.
 [[nodiscard]] Study load_study(const std::filesystem::path& file);
 
 /// Reads a study from text; `origin` names it in messages.
