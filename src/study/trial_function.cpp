@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "phalanx/mesh/import_cache.h"
+#include "phalanx/scene/resolved_scene.h"
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/scene/scene_trial.h"
 #include "phalanx/simulation/closed_loop/trial.h"
@@ -13,7 +15,8 @@
 namespace phalanx {
 namespace {
 
-/// The last set-ups, by their overrides: a point of a study runs many trials on one set-up.
+/// The last set-ups, by their overrides: a point of a study runs many trials on one set-up, which is constant. The
+/// points share the imported meshes.
 class Setups {
  public:
   explicit Setups(std::string scene) : scene_(std::move(scene)) {}
@@ -24,7 +27,8 @@ class Setups {
       for (const auto& [key, setup] : kept_)
         if (key == overrides) return setup;
     }
-    auto made = make_trial_setup(SceneFile(scene_).scene(overrides));
+    auto made = make_trial_setup(
+        resolve(SceneFile(scene_).scene(overrides), {.device = true, .motion = true, .imports = &imports_}));
     const std::lock_guard lock(mutex_);
     kept_.emplace_back(overrides, made);
     if (kept_.size() > kMost) kept_.pop_front();
@@ -34,6 +38,7 @@ class Setups {
  private:
   static constexpr std::size_t kMost = 32;
   std::string scene_;
+  ImportCache imports_;
   std::mutex mutex_;
   std::deque<std::pair<Overrides, std::shared_ptr<const TrialSetup>>> kept_;
 };
