@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // phalanx study: sweeps over any parameter of a scene, a device or a patient.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,10 @@
 #include "phalanx/study/laboratory/run_study.h"
 #include "phalanx/study/laboratory/scene_inputs.h"
 #include "phalanx/study/laboratory/study_file.h"
+#include "phalanx/study/queue.h"
 #include "phalanx/study/trial_function.h"
 #include "study_progress.h"
+#include "terminal/end_signals.h"
 #include "terminal/error_line.h"
 #include "terminal/progress.h"
 #include "usage.h"
@@ -32,8 +35,18 @@ struct RunChoices {
   std::string file;
   std::string out;
   std::string shard;
+  std::string queue;
+  double lease_s = QueueRunOptions{}.lease_s;
   int jobs = 0;
   bool restart = false;
+  bool retry = false;
+  bool quiet = false;
+};
+
+struct WorkChoices {
+  std::string file;
+  std::string queue;
+  int jobs = 0;
   bool quiet = false;
 };
 
@@ -76,6 +89,114 @@ void announce(const Study& study, const StudyOptions& options) {
   const double seconds = options.jobs > 0 ? std::max(1.0, busy / options.jobs) : on_all_cores(busy);
   print_aside(fmt::format("study: {} points, at most {:.0f} trials, at most about {}\n", point_count(study),
                           trials, duration_text(seconds)));
+}
+
+/// Begins a line of its own where a terminal shows progress in place.
+void print_line(const std::string& sentence) {
+  print_aside(fmt::format("{}phalanx study: {}\n", ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", sentence));
+}
+
+/// The check of a large study takes minutes.
+StudyCheck check_until_asked_to_end(const Study& study) {
+  return [check = scene_check(study)](const Overrides& overrides) {
+    if (asked_to_end != 0)
+      throw std::runtime_error("stopped while the points were checked; nothing was begun");
+    return check(overrides);
+  };
+}
+
+QueueServer server_of(const std::string& url) {
+  return {.url = url, .stopped = [] { return asked_to_end != 0; }, .tell = print_line};
+}
+
+std::filesystem::path log_of_point(const std::string& out, int index) {
+  return std::filesystem::path(out) / fmt::format("point-{}.log", index);
+}
+
+/// Writes the logs of quarantined points to point-INDEX.log, and names the first few.
+void report_quarantined(const std::string& out, const Study& study, const QueuedResults& queued) {
+  constexpr std::size_t kMostLines = 10;
+  for (std::size_t i = 0; i < queued.quarantined.size(); ++i) {
+    const auto& [index, log] = queued.quarantined[i];
+    write_text_file(log_of_point(out, index), log + "\n");
+    if (i < kMostLines)
+      print_line(fmt::format("point {} ({}) failed {} times: {}; see {}", index,
+                             point_text(study, study_point(study, index)), kFailuresToQuarantine,
+                             log.substr(0, log.find('\n')), log_of_point(out, index).string()));
+  }
+  if (queued.quarantined_points > static_cast<int>(kMostLines))
+    print_line(fmt::format("and {} more", queued.quarantined_points - static_cast<int>(kMostLines)));
+}
+
+void remove_logs_of_points(const std::string& out, const std::vector<PointResult>& finished) {
+  for (const PointResult& result : finished) std::filesystem::remove(log_of_point(out, result.index));
+}
+
+int run_in_queue(const RunChoices& choices) {
+  if (choices.jobs != 0 || !choices.shard.empty())
+    throw std::invalid_argument(
+        "study run: --jobs and --shard do not go together with --queue, whose points phalanx study work "
+        "measures");
+  const Study study = load_study(choices.file);
+  end_on_interrupt(true);
+  QueuedResults queued;
+  {
+    StudyProgressLine line(!choices.quiet);
+    QueueRunOptions options{
+        .commit = program_version(),
+        .lease_s = choices.lease_s,
+        .restart = choices.restart,
+        .retry = choices.retry,
+        .progress = [&](const StudyProgress& progress) { line.show(progress); },
+        .page =
+            [&](const std::vector<PointResult>& results, const StudyProgress& progress) {
+              write_text_file(std::filesystem::path(choices.out) / "report.html",
+                              study_report_html(study, results, made_here(), study_progress_text(progress)));
+            }};
+    queued =
+        run_on_queue(study, check_until_asked_to_end(study), choices.out, server_of(choices.queue), options);
+  }
+  remove_logs_of_points(choices.out, queued.results);
+  if (queued.whole) {
+    write_all(choices.out, study, queued.results);
+    if (!choices.quiet) print_results(choices.out, study, queued.results);
+    return kDone;
+  }
+  write_text_file(std::filesystem::path(choices.out) / "report.html",
+                  study_report_html(study, queued.results, made_here()));
+  report_quarantined(choices.out, study, queued);
+  if (static_cast<int>(queued.results.size()) + queued.quarantined_points == point_count(study))
+    throw std::runtime_error(fmt::format(
+        "{} of {} points are quarantined; the others are in {}. When the cause is mended: the same "
+        "command with --retry",
+        queued.quarantined_points, point_count(study), choices.out));
+  throw std::runtime_error(
+      fmt::format("stopped with {} of {} points; workers go on, and the same command goes on collecting",
+                  queued.results.size(), point_count(study)));
+}
+
+/// The number of points that this worker has measured, in place on a terminal.
+void show_finished(int done) {
+  if (::isatty(STDERR_FILENO) == 1) print_aside(fmt::format("\r\033[K{} points measured", done));
+}
+
+int work(const WorkChoices& choices) {
+  const Study study = load_study(choices.file);
+  end_on_interrupt(true);
+  QueueWorkOptions options{.commit = program_version(), .jobs = choices.jobs};
+  if (!choices.quiet) options.finished = show_finished;
+  const QueueServer server = server_of(choices.queue);
+  const QueueWork work = work_on_queue(study, check_until_asked_to_end(study),
+                                       make_trial_function(scene_of(study)), server, options);
+  if (!choices.quiet) {
+    if (::isatty(STDERR_FILENO) == 1) print_aside("\r\033[K");
+    fmt::print("{} points measured, {} failures; {}\n", work.finished, work.failed,
+               work.whole ? "no point is left"
+               : work.given_back
+                   ? "stopped, what was not measured is given back"
+                   : "stopped while the server is away: what was not measured is free when its lease ends");
+  }
+  return kDone;
 }
 
 int run(const RunChoices& choices) {
@@ -129,6 +250,66 @@ int check(const std::string& file) {
   return kDone;
 }
 
+void add_run_options(CLI::App& command, RunChoices& choices) {
+  command.add_option("--out", choices.out, "the folder of its journal and results")->type_name("DIR");
+  command.add_option("--jobs", choices.jobs, "threads [as many as there are cores]")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command.add_option("--shard", choices.shard, "measure only every n-th point, from the i-th on")
+      ->type_name("i/n");
+  command.add_flag("--restart", choices.restart, "throw away what the journal in --out holds");
+  command.add_flag("--quiet", choices.quiet, "print nothing but errors");
+}
+
+void refuse_missing_out(const RunChoices& choices) {
+  if (choices.out.empty())
+    throw std::invalid_argument("study: name the folder for journal and results: --out DIR");
+}
+
+void add_run(CLI::App& study, Job& job) {
+  auto choices = std::make_shared<RunChoices>();
+  CLI::App* command = study.add_subcommand("run", "Measure a study, here or by workers on a queue");
+  command->add_option("FILE", choices->file, "the study file (.toml)")->required()->type_name("");
+  command
+      ->add_option("--queue", choices->queue,
+                   "put the points into a database of PostgreSQL; no password in it")
+      ->type_name("URL");
+  command
+      ->add_option("--lease", choices->lease_s,
+                   "seconds for which a taken point is its worker's unless that renews it")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str()
+      ->type_name("S");
+  command->add_flag("--retry", choices->retry, "try quarantined points again");
+  add_run_options(*command, *choices);
+  command->callback([choices, command, &job] {
+    refuse_empty_values(*command);
+    refuse_missing_out(*choices);
+    if (choices->queue.empty() && (choices->retry || command->count("--lease") > 0))
+      throw std::invalid_argument("study run: --lease and --retry are of a queue; name it: --queue URL");
+    job = [choices] { return choices->queue.empty() ? run(*choices) : run_in_queue(*choices); };
+  });
+}
+
+void add_work(CLI::App& study, Job& job) {
+  auto choices = std::make_shared<WorkChoices>();
+  CLI::App* command = study.add_subcommand("work", "Measure points of a study that is in a queue");
+  command->add_option("FILE", choices->file, "the study file (.toml), as it was given to study run")
+      ->required()
+      ->type_name("");
+  command->add_option("--queue", choices->queue, "the database of PostgreSQL; no password in it")
+      ->required()
+      ->type_name("URL");
+  command->add_option("--jobs", choices->jobs, "processes [as many as there are cores]")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_flag("--quiet", choices->quiet, "print nothing but errors and failed points");
+  command->callback([choices, command, &job] {
+    refuse_empty_values(*command);
+    job = [choices] { return work(*choices); };
+  });
+}
+
 void add_merge(CLI::App& study, Job& job) {
   auto choices = std::make_shared<MergeChoices>();
   CLI::App* command = study.add_subcommand("merge", "Put the shards of a study together");
@@ -162,14 +343,9 @@ void add_study_command(CLI::App& app, Job& job) {
       "Exit codes: 0 done, 1 failed, 2 wrong usage or input.");
   command->require_subcommand(0, 1);
   command->add_option("FILE", choices->file, "the study file (.toml)")->type_name("");
-  command->add_option("--out", choices->out, "the folder of its journal and results")->type_name("DIR");
-  command->add_option("--jobs", choices->jobs, "threads [as many as there are cores]")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_option("--shard", choices->shard, "measure only every n-th point, from the i-th on")
-      ->type_name("i/n");
-  command->add_flag("--restart", choices->restart, "throw away what the journal in --out holds");
-  command->add_flag("--quiet", choices->quiet, "print nothing but errors");
+  add_run_options(*command, *choices);
+  add_run(*command, job);
+  add_work(*command, job);
   add_merge(*command, job);
   add_check(*command, job);
   command->callback([choices, command, &job] {
@@ -177,8 +353,7 @@ void add_study_command(CLI::App& app, Job& job) {
     refuse_empty_values(*command);
     if (choices->file.empty())
       throw std::invalid_argument("study: name a study file, or see phalanx study --help");
-    if (choices->out.empty())
-      throw std::invalid_argument("study: name the folder for journal and results: --out DIR");
+    refuse_missing_out(*choices);
     job = [choices] { return run(*choices); };
   });
 }

@@ -141,12 +141,14 @@ void HtmlPage::made(const Made& made, const std::string& seeds) {
 }
 
 std::string HtmlPage::document() const {
+  const std::string reload =
+      reload_s_ > 0 ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\"/>\n", reload_s_) : "";
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
       "charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{}</title>\n"
-      "<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-      title_, kStyle, body_);
+      "{}<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+      title_, reload, kStyle, body_);
 }
 
 }  // namespace phalanx

@@ -28,12 +28,16 @@ class HtmlPage {
   /// Adds commit, CPU, compiler, build type, date and, unless empty, the seeds.
   void made(const Made& made, const std::string& seeds);
 
+  /// Makes the browser load the page again after so many seconds.
+  void reload_every(int seconds) { reload_s_ = seconds; }
+
   [[nodiscard]] std::string document() const;
 
  private:
   std::string title_;
   std::string body_;
   int figures_ = 0;
+  int reload_s_ = 0;  ///< 0: never
 };
 
 }  // namespace phalanx

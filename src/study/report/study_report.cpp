@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "figures/chart/svg.h"
@@ -149,19 +150,30 @@ void add_all_points(HtmlPage& page, const StudyView& view) {
     header.push_back(quantity.label() + (quantity.largest != nullptr ? " mean (largest)" : ""));
   header.emplace_back("runs");
   header.emplace_back("notes");
+  constexpr int kMostRows = 5000;  // more make a page that browsers open slowly
+  const int shown = std::min(point_count(study), kMostRows);
   std::vector<std::vector<std::string>> rows;
-  for (int i = 0; i < point_count(study); ++i) rows.push_back(row_of(view, quantities, i));
+  for (int i = 0; i < shown; ++i) rows.push_back(row_of(view, quantities, i));
   page.heading("All points");
+  if (shown < point_count(study))
+    page.paragraph(fmt::format("The first {} of {} points; study.csv has all.", shown, point_count(study)));
   page.table(header, rows);
 }
 
 }  // namespace
 
-std::string study_report_html(const Study& study, const std::vector<PointResult>& results, const Made& made) {
+std::string study_report_html(const Study& study, const std::vector<PointResult>& results, const Made& made,
+                              const std::string& running) {
+  constexpr int kReloadSeconds = 10;
   const StudyView view(study, results);
   HtmlPage page(fmt::format("Study: {}", study.name));
   if (!study.title.empty()) page.paragraph(study.title);
-  page.paragraph(fmt::format("{} of {} points are finished.", results.size(), point_count(study)));
+  if (running.empty()) {
+    page.paragraph(fmt::format("{} of {} points are finished.", results.size(), point_count(study)));
+  } else {
+    page.paragraph(fmt::format("It runs: {}.", running));
+    page.reload_every(kReloadSeconds);
+  }
   page.warnings(study_warnings(view));
   add_what_was_swept(page, study);
   add_what_stable_means(page, study);

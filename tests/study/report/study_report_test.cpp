@@ -328,6 +328,15 @@ TEST(StudyReport, WithoutAnyResultIsStillAPage) {
   }
 }
 
+TEST(StudyReport, OfAStudyThatRunsStatesItsProgressAndLoadsItselfAgain) {
+  const Study study = synthetic_study({"a", "b"}, {kFriction});
+  const std::string page = study_report_html(study, {}, kMadeUp, "3/8 points, 2 < 3 workers");
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page, HasSubstr("It runs: 3/8 points, 2 &lt; 3 workers."));
+  EXPECT_THAT(page, HasSubstr("<meta http-equiv=\"refresh\" content=\"10\"/>"));
+  EXPECT_THAT(study_report_html(study, {}, kMadeUp), Not(HasSubstr("http-equiv")));
+}
+
 TEST(StudyReport, EscapesAllWords) {
   Study study = synthetic_study({kNasty, "b"}, {kFriction, words("a.b", {kNasty, "c"})});
   study.name = study.title = study.scene = study.axes[0].label = kNasty;
@@ -347,6 +356,16 @@ TEST(StudyReport, OfTwoThousandPointsStaysSmallAndTheSame) {
     EXPECT_LT(page.size(), 4'000'000U);
     EXPECT_TRUE(page == page_of(study));
   }
+}
+
+TEST(StudyReport, OfManyPointsListsTheFirstFiveThousand) {
+  std::vector<double> many;
+  for (int i = 0; i < 9000; ++i) many.push_back(i);
+  const std::string page = study_report_html(synthetic_study({}, {numbers("a.b", "a.b", many)}), {}, kMadeUp);
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page, HasSubstr("The first 5000 of 9000 points"));
+  EXPECT_THAT(page, HasSubstr("4999</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("5000</td>")));
 }
 
 TEST(StudyReport, RefusesAResultOfNoPoint) {

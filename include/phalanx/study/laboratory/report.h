@@ -9,9 +9,10 @@
 
 namespace phalanx {
 
-/// Writes heat maps and curves of a finished study as one HTML page that needs no other file.
-/// @param results  one for each point, in the order of the points
+/// Writes heat maps and curves of a study as one HTML page that needs no other file.
+/// @param results  of the finished points, by index
+/// @param running  progress in words, of a study that still runs: the page then loads itself again every 10 s
 [[nodiscard]] std::string study_report_html(const Study& study, const std::vector<PointResult>& results,
-                                            const Made& made);
+                                            const Made& made, const std::string& running = "");
 
 }  // namespace phalanx

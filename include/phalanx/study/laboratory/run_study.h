@@ -39,6 +39,11 @@ struct StudyProgress {
   double elapsed_s = 0.0;  ///< since this run began [s]
   /// Estimate from the pace of this run [s]; NaN until it has finished a point.
   double remaining_s = std::numeric_limits<double>::quiet_NaN();
+  bool in_queue = false;  ///< run_on_queue(); the following members are of a queue alone
+  int workers = 0;        ///< workers that were seen within the lease
+  int quarantined = 0;    ///< points that were given up
+  /// Pace of the last minute [1/s]; NaN if no point was finished in it.
+  double points_per_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Options of a run.

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "phalanx/record/output_file.h"
+#include "phalanx/study/laboratory/outputs.h"
+#include "phalanx/study/queue.h"
+#include "study/laboratory/journal.h"
+#include "study/queue/study_queue.h"
+
+namespace phalanx {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Results = std::map<int, PointResult>;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Pace of the finished points over the last minute.
+class Pace {
+ public:
+  void add(int done) {
+    constexpr double kWindow = 60.0;  // [s]
+    seen_.emplace_back(Clock::now(), done);
+    while (seen_.size() > 2 && seconds_since(seen_.front().first) > kWindow) seen_.pop_front();
+  }
+  /// @returns points a second; NaN if none was finished in the window.
+  [[nodiscard]] double per_s() const {
+    const int points = seen_.back().second - seen_.front().second;
+    const double seconds = std::chrono::duration<double>(seen_.back().first - seen_.front().first).count();
+    return points > 0 && seconds > 0.0 ? points / seconds : std::nan("");
+  }
+
+ private:
+  std::deque<std::pair<Clock::time_point, int>> seen_;
+};
+
+std::vector<PointResult> in_order(const Results& results) {
+  std::vector<PointResult> list;
+  for (const auto& [index, result] : results) list.push_back(result);
+  return list;
+}
+
+/// Stores the results of a journal that the queue lacks, in portions that one statement takes.
+void store_missing(StudyQueue& queue, const std::vector<PointResult>& journal, Results& results) {
+  constexpr std::size_t kPortion = 500;
+  std::vector<MeasuredPoint> portion;
+  const auto send = [&] {
+    queue.finish(portion);
+    portion.clear();
+  };
+  for (const PointResult& result : journal) {
+    if (!results.emplace(result.index, result).second) continue;
+    portion.push_back({.index = result.index, .seconds = 0.0, .result = result_line(result)});
+    portion.back().result.pop_back();
+    if (portion.size() == kPortion) send();
+  }
+  send();
+}
+
+/// Watches the queue until nothing is left to measure.
+class Watch {
+ public:
+  Watch(StudyQueue& queue, const Study& study, const QueueServer& server, const QueueRunOptions& options)
+      : queue_(queue), server_(server), options_(options) {
+    progress_.total = point_count(study);
+    progress_.in_queue = true;
+  }
+
+  /// @returns the quarantined points when run() returned.
+  [[nodiscard]] int quarantined() const { return progress_.quarantined; }
+
+  void run(Results& results) {
+    constexpr double kPause = 1.0;   // [s]
+    constexpr double kShare = 20.0;  // a look at the queue takes at most about 1 / kShare of the time
+    progress_.resumed = static_cast<int>(results.size());
+    for (;;) {
+      const auto began = Clock::now();
+      const QueueState state = queue_.state();
+      queue_.collect(results);
+      if (state.unfinished == 0 && static_cast<int>(results.size()) + state.quarantined < progress_.total) {
+        queue_.collect_all();
+        queue_.collect(results);
+      }
+      tell(state, static_cast<int>(results.size()));
+      if (state.unfinished == 0) return;
+      write_page(results);
+      if (pause(std::max(kPause, kShare * seconds_since(began)))) return;
+    }
+  }
+
+ private:
+  /// @returns whether the caller asks to stop
+  [[nodiscard]] bool pause(double seconds) const {
+    constexpr auto kStep = std::chrono::milliseconds(50);
+    const auto begin = Clock::now();
+    while (seconds_since(begin) < seconds) {
+      if (server_.stopped && server_.stopped()) return true;
+      std::this_thread::sleep_for(kStep);
+    }
+    return false;
+  }
+
+  void tell(const QueueState& state, int done) {
+    pace_.add(done);
+    progress_.done = done;
+    progress_.quarantined = state.quarantined;
+    progress_.workers = state.workers;
+    progress_.elapsed_s = seconds_since(begin_);
+    progress_.points_per_s = pace_.per_s();
+    progress_.remaining_s = state.unfinished / progress_.points_per_s;
+    if (options_.progress) options_.progress(progress_);
+  }
+
+  void write_page(const Results& results) {
+    constexpr double kPause = 5.0;  // [s]
+    constexpr double kShare = 20.0;
+    if (!options_.page || progress_.done == done_on_page_ ||
+        seconds_since(last_page_) < std::max(kPause, kShare * page_s_))
+      return;
+    const auto begin = Clock::now();
+    options_.page(in_order(results), progress_);
+    page_s_ = seconds_since(begin);
+    last_page_ = Clock::now();
+    done_on_page_ = progress_.done;
+  }
+
+  StudyQueue& queue_;
+  const QueueServer& server_;
+  const QueueRunOptions& options_;
+  StudyProgress progress_;
+  Pace pace_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_page_;
+  double page_s_ = 0.0;
+  int done_on_page_ = -1;
+};
+
+}  // namespace
+
+QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const std::filesystem::path& out,
+                           const QueueServer& server, const QueueRunOptions& options) {
+  StudyQueue queue(server);  // first: an address that is refused must not change a file
+  const JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
+  prepare_output_folder(out);
+  const auto file = out / journal_name(1, 1);
+  const Journal journal(file, header, options.restart);  // no other process may write the file
+  Results results;
+  for (const PointResult& result : journal.finished()) results.emplace(result.index, result);
+  QueuedResults queued;
+  try {
+    queue.create(header, options.lease_s, options.restart);
+    Results stored;
+    queue.collect(stored);
+    store_missing(queue, journal.finished(), stored);
+    results.merge(stored);
+    if (options.retry) queue.retry_quarantined();
+    remove_study_outputs(out);
+    Watch watch(queue, study, server, options);
+    watch.run(results);
+    queued.quarantined_points = watch.quarantined();
+    queued.quarantined = queue.quarantined();
+  } catch (const QueueStopped&) {  // while the server is away
+  }
+  queued.results = in_order(results);
+  queued.whole = static_cast<int>(results.size()) == point_count(study);
+  replace_journal(file, {.header = header, .points = queued.results});
+  return queued;
+}
+
+}  // namespace phalanx

@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/queue/study_queue.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <soci/postgresql/soci-postgresql.h>
+#include <soci/soci.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
+
+#include "phalanx/record/made.h"
+#include "study/laboratory/fingerprint.h"
+#include "study/laboratory/study_json.h"
+#include "study/queue/queue_address.h"
+
+namespace phalanx {
+namespace {
+
+constexpr int kFormat = 1;
+constexpr double kLongestLease = 86400.0;  // [s]
+
+// A lease that is not over counts. After a start of the server every lease counts for its whole length again: the
+// workers could not renew it while the server was away.
+constexpr const char* kTables[] = {
+    "CREATE SCHEMA IF NOT EXISTS phalanx",
+    "CREATE TABLE IF NOT EXISTS phalanx.format (version integer NOT NULL)",
+    R"(CREATE TABLE IF NOT EXISTS phalanx.studies (
+      id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+      fingerprint text NOT NULL UNIQUE, name text NOT NULL, header text NOT NULL, libm text NOT NULL,
+      lease_s double precision NOT NULL, made timestamptz NOT NULL DEFAULT clock_timestamp()))",
+    R"(CREATE TABLE IF NOT EXISTS phalanx.workers (
+      id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+      study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE,
+      place text NOT NULL, jobs integer NOT NULL,
+      seen timestamptz NOT NULL DEFAULT clock_timestamp(), ended timestamptz))",
+    R"(CREATE TABLE IF NOT EXISTS phalanx.points (
+      study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE, point integer NOT NULL,
+      failures integer NOT NULL DEFAULT 0, worker bigint, lease_end timestamptz,
+      seconds double precision, finished_at timestamptz, result text, log text,
+      PRIMARY KEY (study, point)) WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.01))",
+    R"(CREATE INDEX IF NOT EXISTS points_unfinished ON phalanx.points (study, point) WHERE result IS NULL)",
+    R"(CREATE INDEX IF NOT EXISTS points_finished ON phalanx.points (study, finished_at, point)
+      WHERE result IS NOT NULL)"};
+
+// Materialized: a plan that executed the selection for each row would take more than `most`.
+constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
+    SELECT point FROM phalanx.points
+    WHERE study = :study AND result IS NULL AND failures < :most_failures
+      AND (lease_end IS NULL OR (lease_end < clock_timestamp() AND
+           pg_postmaster_start_time() + make_interval(secs => CAST(:lease AS double precision)) < clock_timestamp()))
+    ORDER BY point LIMIT :most FOR UPDATE SKIP LOCKED)
+  UPDATE phalanx.points
+  SET worker = :worker, lease_end = clock_timestamp() + make_interval(secs => CAST(:lease AS double precision))
+  FROM next WHERE points.study = :study AND points.point = next.point
+  RETURNING points.point)";
+
+// @returns points that had another result.
+constexpr const char* kFinish = R"(WITH sent AS MATERIALIZED (
+    SELECT * FROM json_to_recordset(CAST(:sent AS json)) AS row (point integer, seconds double precision, result text)),
+  stored AS (
+    UPDATE phalanx.points SET result = sent.result, seconds = sent.seconds, worker = :worker, lease_end = NULL,
+      finished_at = clock_timestamp()
+    FROM sent WHERE points.study = :study AND points.point = sent.point AND points.result IS NULL)
+  SELECT points.point FROM phalanx.points, sent
+  WHERE points.study = :study AND points.point = sent.point AND points.result <> sent.result)";
+
+// ORDER BY names the columns, not the text, so that the index points_finished has the order.
+constexpr const char* kCollect =
+    R"(SELECT result, CAST(points.finished_at AS text) AS finished_text, point FROM phalanx.points
+  WHERE study = :study AND result IS NOT NULL
+    AND (points.finished_at, points.point) > (CAST(:after AS timestamptz), :point)
+  ORDER BY points.finished_at, points.point LIMIT :most)";
+
+std::string array_text(const std::vector<int>& points) {
+  return fmt::format("{{{}}}", fmt::join(points, ","));
+}
+
+/// What PostgreSQL takes as text: no control characters but the line's end, no bytes that might be half a letter.
+std::string plain(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c > 126; },
+      '?');
+  return text;
+}
+
+/// The reason in one line. It does not hold the statement.
+std::string reason_of(const soci::soci_error& error) {
+  std::string line;
+  for (const char c : error.get_error_message()) {
+    const bool blank = static_cast<unsigned char>(c) <= ' ';
+    if (!blank || (!line.empty() && line.back() != ' ')) line += blank ? ' ' : c;
+  }
+  while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
+  return line;
+}
+
+std::string libm_here() { return fmt::format("{:016x}", libm_fingerprint()); }
+
+std::string place_of_this_process() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  return plain(fmt::format("{} {}", host.data(), ::getpid()));
+}
+
+std::string header_text_of(const JournalHeader& header) {
+  return journal_text({.header = header, .points = {}});
+}
+
+/// @param studies  number of rows that the study has
+void refuse_removed(int studies) {
+  if (studies == 0)
+    throw std::runtime_error("the study was removed from the queue; begin it again with phalanx study run");
+}
+
+std::string fingerprint_of(const std::string& header) {
+  Fingerprint fingerprint;
+  fingerprint.add(header);
+  return fingerprint.text();
+}
+
+}  // namespace
+
+struct StudyQueue::Session {
+  soci::session sql;
+
+  explicit Session(const std::string& connection) {
+    sql.open(soci::postgresql, connection);
+    PQsetNoticeProcessor(server(), [](void*, const char*) {}, nullptr);  // errors are exceptions as well
+  }
+
+  [[nodiscard]] PGconn* server() {
+    auto* backend = static_cast<soci::postgresql_session_backend*>(sql.get_backend());
+    return backend != nullptr ? backend->conn_ : nullptr;
+  }
+
+  /// The server, or the way to it, is gone, ends, starts or has no room; the statement itself may be right.
+  [[nodiscard]] bool is_lost(const soci::soci_error& error) {
+    if (PQstatus(server()) != CONNECTION_OK) return true;
+    const auto* of_server = dynamic_cast<const soci::postgresql_soci_error*>(&error);
+    if (of_server == nullptr) return false;
+    const std::string state = of_server->sqlstate();
+    const bool from_server = !state.empty() && state.front() != ' ';  // else from libpq: a broken connection
+    return !from_server || std::any_of(std::begin(kPassing), std::end(kPassing),
+                                       [&](std::string_view passing) { return state.starts_with(passing); });
+  }
+
+  // Connection, resources, deadlock, intervention of an operator, a lock that was not free:
+  // postgresql.org/docs/15/errcodes-appendix.html
+  static constexpr std::string_view kPassing[] = {"08", "53", "40", "57P", "55P03"};
+};
+
+StudyQueue::StudyQueue(const QueueServer& server)
+    : server_(server), connection_(queue_connection(server.url)), worker_place_(place_of_this_process()) {
+  try {
+    session_ = std::make_unique<Session>(connection_);
+  } catch (const soci::soci_error& error) {
+    throw std::runtime_error(fmt::format("the queue's server cannot be reached: {}", reason_of(error)));
+  }
+}
+
+StudyQueue::~StudyQueue() = default;
+
+/// Calls `function` with a session until it succeeds.
+template <class Function>
+auto StudyQueue::attempt(const Function& function) {
+  for (int tries = 0;; ++tries) {
+    std::string why;
+    try {
+      if (!session_) session_ = std::make_unique<Session>(connection_);
+      return function(*session_);
+    } catch (const soci::soci_error& error) {
+      why = reason_of(error);
+      if (session_ && !session_->is_lost(error))
+        throw std::runtime_error(fmt::format("the queue's server refuses a statement: {}", why));
+    }
+    session_.reset();
+    wait_for_server(why, tries);
+  }
+}
+
+void StudyQueue::wait_for_server(const std::string& why, int tries) {
+  constexpr int kMostDoublings = 5;
+  constexpr auto kStep = std::chrono::milliseconds(100);
+  if (tries == 1 && server_.tell)
+    server_.tell(fmt::format("the queue's server is away ({}); trying again until it is back", why));
+  for (int step = 0; step < 1 << std::min(tries, kMostDoublings); ++step) {
+    if (tries >= least_tries_ && server_.stopped && server_.stopped()) throw QueueStopped{};
+    std::this_thread::sleep_for(kStep);
+  }
+}
+
+/// Not in the transaction that fills them: these statements lock the tables of all studies.
+void StudyQueue::make_tables() {
+  attempt([](Session& session) {
+    soci::session& sql = session.sql;
+    soci::transaction transaction(sql);
+    int tables = 0;
+    sql << "SELECT count(*) FROM pg_tables WHERE schemaname = 'phalanx' AND tablename = 'points'",
+        soci::into(tables);
+    if (tables > 0) return;
+    long long locked = 0;  // two that create at the same time; the number is of this program alone
+    sql << "SELECT count(pg_advisory_xact_lock(5043161847312905))", soci::into(locked);
+    for (const char* table : kTables) sql << table;
+    sql << "INSERT INTO phalanx.format SELECT :version WHERE NOT EXISTS (SELECT 1 FROM phalanx.format)",
+        soci::use(kFormat, "version");
+    transaction.commit();
+  });
+}
+
+void StudyQueue::create(const JournalHeader& header, double lease_s, bool restart) {
+  if (!(lease_s > 0.0 && lease_s <= kLongestLease))
+    throw std::invalid_argument(fmt::format(
+        "a lease of {} s is out of range; give one above 0 and up to {} s", lease_s, kLongestLease));
+  const std::string text = header_text_of(header);
+  const std::string fingerprint = fingerprint_of(text);
+  const std::string libm = libm_here();
+  const std::string name = plain(header.study.name);
+  const int points = point_count(header.study);
+  make_tables();
+  int version = 0;
+  attempt([&](Session& session) {
+    soci::session& sql = session.sql;
+    soci::transaction transaction(sql);
+    sql << "SELECT max(version) FROM phalanx.format", soci::into(version);
+    if (version != kFormat) return;
+    if (restart) sql << "DELETE FROM phalanx.studies WHERE fingerprint = :key", soci::use(fingerprint, "key");
+    sql << R"(WITH made AS (
+                INSERT INTO phalanx.studies (fingerprint, name, header, libm, lease_s)
+                VALUES (:key, :name, :header, :libm, :lease) ON CONFLICT (fingerprint) DO NOTHING RETURNING id)
+              INSERT INTO phalanx.points (study, point)
+              SELECT id, point FROM made, generate_series(0, CAST(:points AS integer) - 1) AS point)",
+        soci::use(fingerprint, "key"), soci::use(name, "name"), soci::use(text, "header"),
+        soci::use(libm, "libm"), soci::use(lease_s, "lease"), soci::use(points, "points");
+    sql << "UPDATE phalanx.studies SET lease_s = :lease WHERE fingerprint = :key",
+        soci::use(lease_s, "lease"), soci::use(fingerprint, "key");
+    transaction.commit();
+  });
+  if (version != kFormat)
+    throw std::runtime_error(fmt::format(
+        "the queue's tables have format {}, this program knows {}; use the program that made them, or "
+        "another database",
+        version, kFormat));
+  attempt([&](Session& session) { find_study(session, header); });
+  refuse_removed(study_ == 0 ? 0 : 1);
+}
+
+/// Sets study_, or leaves it 0.
+void StudyQueue::find_study(Session& session, const JournalHeader& header) {
+  const std::string fingerprint = fingerprint_of(header_text_of(header));
+  std::string libm;
+  study_ = 0;
+  session.sql << "SELECT id, libm, lease_s FROM phalanx.studies WHERE fingerprint = :key", soci::into(study_),
+      soci::into(libm), soci::into(lease_s_), soci::use(fingerprint, "key");
+  if (!session.sql.got_data()) {
+    study_ = 0;
+  } else if (libm != libm_here()) {
+    throw std::invalid_argument(
+        "this machine's sine, exponential or another mathematical function rounds differently from that of "
+        "the "
+        "machine that began the study, so that results would differ; work on machines with the same "
+        "processor type "
+        "and the same libm");
+  }
+}
+
+void StudyQueue::join(const JournalHeader& header, int jobs) {
+  std::string other;
+  const std::string name = plain(header.study.name);
+  attempt([&](Session& session) {
+    int tables = 0;
+    other.clear();
+    session.sql << "SELECT count(*) FROM pg_tables WHERE schemaname = 'phalanx' AND tablename = 'points'",
+        soci::into(tables);
+    if (tables == 0) return;
+    find_study(session, header);
+    if (study_ != 0) return;
+    session.sql << "SELECT header FROM phalanx.studies WHERE name = :name ORDER BY id DESC LIMIT 1",
+        soci::into(other), soci::use(name, "name");
+    if (!session.sql.got_data()) other.clear();
+  });
+  if (study_ == 0) {
+    std::string why = "it has no study of this name";
+    if (!other.empty()) why = difference(parse_journal(other, "the queue").header, header);
+    throw std::invalid_argument(fmt::format(
+        "the queue does not have this study: {}; begin it with this program and file: phalanx study run "
+        "FILE --queue URL --out DIR",
+        why));
+  }
+  attempt([&](Session& session) {
+    session.sql
+        << "INSERT INTO phalanx.workers (study, place, jobs) VALUES (:study, :place, :jobs) RETURNING id",
+        soci::into(worker_), soci::use(study_, "study"), soci::use(worker_place_, "place"),
+        soci::use(jobs, "jobs");
+  });
+}
+
+void StudyQueue::retry_quarantined() {
+  attempt([&](Session& session) {
+    session.sql
+        << "UPDATE phalanx.points SET failures = 0 WHERE study = :study AND result IS NULL AND failures > 0",
+        soci::use(study_, "study");
+  });
+}
+
+std::vector<int> StudyQueue::take(int most) {
+  return attempt([&](Session& session) {
+    const soci::rowset<int> rows =
+        (session.sql.prepare << kTake, soci::use(worker_, "worker"), soci::use(lease_s_, "lease"),
+         soci::use(study_, "study"), soci::use(kFailuresToQuarantine, "most_failures"),
+         soci::use(most, "most"));
+    std::vector<int> points(rows.begin(), rows.end());
+    std::sort(points.begin(), points.end());
+    return points;
+  });
+}
+
+void StudyQueue::renew(const std::vector<int>& points) {
+  const std::string list = array_text(points);
+  attempt([&](Session& session) {
+    session.sql << R"(WITH alive AS (UPDATE phalanx.workers SET seen = clock_timestamp() WHERE id = :worker)
+                      UPDATE phalanx.points
+                      SET lease_end = clock_timestamp() + make_interval(secs => CAST(:lease AS double precision))
+                      WHERE study = :study AND worker = :worker AND result IS NULL
+                        AND point = ANY (CAST(:list AS integer[])))",
+        soci::use(worker_, "worker"), soci::use(lease_s_, "lease"), soci::use(study_, "study"),
+        soci::use(list, "list");
+  });
+}
+
+void StudyQueue::finish(const std::vector<MeasuredPoint>& measured) {
+  if (measured.empty()) return;
+  OrderedJson json = OrderedJson::array();
+  for (const MeasuredPoint& point : measured)
+    json.push_back({{"point", point.index}, {"seconds", point.seconds}, {"result", point.result}});
+  const std::string sent = json.dump(-1, ' ', true, OrderedJson::error_handler_t::replace);
+  const auto other = attempt([&](Session& session) -> std::optional<int> {
+    const soci::rowset<int> rows = (session.sql.prepare << kFinish, soci::use(sent, "sent"),
+                                    soci::use(worker_, "worker"), soci::use(study_, "study"));
+    const auto first = rows.begin();
+    return first == rows.end() ? std::nullopt : std::optional<int>(*first);
+  });
+  if (other)
+    throw std::runtime_error(
+        fmt::format("point {} has another result in the queue already: this machine and another one compute "
+                    "differently; compare them with phalanx study FILE on each",
+                    *other));
+}
+
+void StudyQueue::fail(int point, const std::string& log) {
+  const std::string text = plain(log);
+  attempt([&](Session& session) {
+    session.sql
+        << R"(UPDATE phalanx.points SET failures = failures + 1, log = :log, worker = NULL, lease_end = NULL
+                      WHERE study = :study AND point = :point AND worker = :worker AND result IS NULL)",
+        soci::use(text, "log"), soci::use(study_, "study"), soci::use(point, "point"),
+        soci::use(worker_, "worker");
+  });
+}
+
+void StudyQueue::leave(const std::vector<int>& points) {
+  const std::string list = array_text(points);
+  attempt([&](Session& session) {
+    session.sql << R"(WITH ended AS (UPDATE phalanx.workers SET ended = clock_timestamp() WHERE id = :worker)
+                      UPDATE phalanx.points SET worker = NULL, lease_end = NULL
+                      WHERE study = :study AND worker = :worker AND result IS NULL
+                        AND point = ANY (CAST(:list AS integer[])))",
+        soci::use(worker_, "worker"), soci::use(study_, "study"), soci::use(list, "list");
+  });
+}
+
+bool StudyQueue::has_unfinished() {
+  int studies = 0;
+  int unfinished = 0;
+  attempt([&](Session& session) {
+    session.sql << R"(SELECT (SELECT count(*) FROM phalanx.studies WHERE id = :study), count(*) FROM (
+                        SELECT 1 FROM phalanx.points
+                        WHERE study = :study AND result IS NULL AND failures < :most LIMIT 1) AS first)",
+        soci::into(studies), soci::into(unfinished), soci::use(study_, "study"),
+        soci::use(kFailuresToQuarantine, "most");
+  });
+  refuse_removed(studies);
+  return unfinished > 0;
+}
+
+QueueState StudyQueue::state() {
+  QueueState state;
+  int studies = 0;
+  attempt([&](Session& session) {
+    session.sql << R"(SELECT (SELECT count(*) FROM phalanx.studies WHERE id = :study),
+                        count(*) FILTER (WHERE failures < :most), count(*) FILTER (WHERE failures >= :most),
+                        (SELECT count(*) FROM phalanx.workers WHERE study = :study AND ended IS NULL
+                         AND seen + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp())
+                      FROM phalanx.points WHERE study = :study AND result IS NULL)",
+        soci::into(studies), soci::into(state.unfinished), soci::into(state.quarantined),
+        soci::into(state.workers), soci::use(kFailuresToQuarantine, "most"), soci::use(study_, "study"),
+        soci::use(lease_s_, "lease");
+  });
+  refuse_removed(studies);
+  return state;
+}
+
+std::vector<QuarantinedPoint> StudyQueue::quarantined() {
+  return attempt([&](Session& session) {
+    std::vector<QuarantinedPoint> points;
+    const soci::rowset<soci::row> rows =
+        (session.sql.prepare << R"(SELECT point, coalesce(log, '') FROM phalanx.points
+                                   WHERE study = :study AND result IS NULL AND failures >= :most ORDER BY point LIMIT :logs)",
+         soci::use(study_, "study"), soci::use(kFailuresToQuarantine, "most"),
+         soci::use(kMostQuarantinedLogs, "logs"));
+    for (const soci::row& row : rows)
+      points.push_back({.index = row.get<int>(0), .log = row.get<std::string>(1)});
+    return points;
+  });
+}
+
+void StudyQueue::collect(std::map<int, PointResult>& results) {
+  constexpr int kPage = 2000;
+  std::string after = collected_until_;
+  int point = -1;
+  for (;;) {
+    const int rows_read = attempt([&](Session& session) {
+      int count = 0;
+      const soci::rowset<soci::row> rows =
+          (session.sql.prepare << kCollect, soci::use(study_, "study"), soci::use(after, "after"),
+           soci::use(point, "point"), soci::use(kPage, "most"));
+      std::string last = after;
+      int last_point = point;
+      for (const soci::row& row : rows) {
+        last = row.get<std::string>(1);
+        last_point = row.get<int>(2);
+        ++count;
+        if (results.contains(last_point)) continue;
+        results.emplace(last_point, result_from_json(parse_json(row.get<std::string>(0))));
+      }
+      after = last;
+      point = last_point;
+      return count;
+    });
+    if (rows_read < kPage) break;
+  }
+  // A result may become visible a little after one with a later time.
+  attempt([&](Session& session) {
+    session.sql << "SELECT CAST(CAST(:after AS timestamptz) - make_interval(secs => 5) AS text)",
+        soci::into(collected_until_), soci::use(after, "after");
+  });
+}
+
+}  // namespace phalanx

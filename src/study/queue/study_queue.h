@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables of the queue. All SQL is here.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "phalanx/study/queue.h"
+#include "study/laboratory/journal.h"
+
+namespace phalanx {
+
+/// A measured point on its way into the queue.
+struct MeasuredPoint {
+  int index = 0;
+  double seconds = 0.0;  ///< time that it took [s]
+  std::string result;    ///< result_line() without its end
+};
+
+/// Counts of a study in the queue.
+struct QueueState {
+  int unfinished = 0;  ///< points that have neither a result nor are quarantined
+  int quarantined = 0;
+  int workers = 0;  ///< seen within the lease
+};
+
+/// One study in a database of PostgreSQL, over one connection. A call that loses the connection is repeated on a
+/// new one: every statement may be executed twice. For one thread. All functions throw std::runtime_error if the
+/// server refuses a statement, and QueueStopped if the connection is away and `stopped`.
+class StudyQueue {
+ public:
+  /// Connects. @throws std::invalid_argument if the address is refused; std::runtime_error with libpq's reason
+  explicit StudyQueue(const QueueServer& server);
+  ~StudyQueue();
+  StudyQueue(const StudyQueue&) = delete;
+  StudyQueue& operator=(const StudyQueue&) = delete;
+
+  /// Makes tables, study and points that are not there.
+  void create(const JournalHeader& header, double lease_s, bool restart);
+  /// Lets quarantined points be tried again.
+  void retry_quarantined();
+  /// Makes this connection a worker's. @throws std::invalid_argument as work_on_queue()
+  void join(const JournalHeader& header, int jobs);
+
+  /// Takes up to `most` points, lowest first, that have no result and no valid lease.
+  [[nodiscard]] std::vector<int> take(int most);
+  /// Renews the leases of these points of this worker.
+  void renew(const std::vector<int>& points);
+  /// Stores results; a point that has one keeps it.
+  /// @throws std::runtime_error if that one differs. Two that are stored at the same moment are not compared.
+  void finish(const std::vector<MeasuredPoint>& measured);
+  /// Counts a failure of a point of this worker, and gives the point back.
+  void fail(int point, const std::string& log);
+  /// Gives these points back, and ends this worker.
+  void leave(const std::vector<int>& points);
+  /// @returns the time between two renewals [s]
+  [[nodiscard]] double renewal_s() const noexcept { return lease_s_ / 3.0; }
+
+  /// @returns whether a point has neither a result nor is quarantined. @throws std::runtime_error if the study was
+  /// removed
+  [[nodiscard]] bool has_unfinished();
+  /// @throws std::runtime_error if the study was removed
+  [[nodiscard]] QueueState state();
+  /// @returns the first kMostQuarantinedLogs.
+  [[nodiscard]] std::vector<QuarantinedPoint> quarantined();
+  /// Lets later calls try for about 3 s, also if `stopped`.
+  void try_though_stopped() noexcept { least_tries_ = 5; }
+  /// Adds the results that were stored since the last call, and some of those before, to `results`.
+  void collect(std::map<int, PointResult>& results);
+  /// Makes the next collect() begin from the first result.
+  void collect_all() { collected_until_ = "-infinity"; }
+
+ private:
+  struct Session;
+  template <class Function>
+  auto attempt(const Function& function);
+  void make_tables();
+  void wait_for_server(const std::string& why, int tries);
+  void find_study(Session& session, const JournalHeader& header);
+
+  QueueServer server_;
+  std::string connection_;
+  std::unique_ptr<Session> session_;
+  std::string worker_place_;
+  long long study_ = 0;
+  long long worker_ = 0;
+  double lease_s_ = 0.0;
+  int least_tries_ = 0;
+  std::string collected_until_ = "-infinity";
+};
+
+/// The caller asked to stop while the server was away.
+struct QueueStopped {};
+
+}  // namespace phalanx
