@@ -111,9 +111,10 @@ class Worker {
         }));
     if (busy == jobs) return true;
     const int wanted = std::max(jobs - busy, time_.points_in(kBatchSeconds * jobs, kMostTaken));
-    const std::vector<int> points = queue_.take(wanted);
-    taken_.assign(points.begin(), points.end());
-    held_.insert(points.begin(), points.end());
+    for (const int point : queue_.take(wanted)) {
+      if (held_.insert(point).second)
+        taken_.push_back(point);  // else its lease had ended while it is measured here
+    }
     if (taken_.empty()) next_take_ = Clock::now() + kIdle;
     return !taken_.empty();
   }
