@@ -21,10 +21,10 @@
 namespace phalanx::testing {
 
 /// A server of PostgreSQL in a folder of its own, on a socket in that folder alone. It runs as an ordinary user: as
-/// `nobody` if the test runs as root, as whom PostgreSQL refuses to run.
+/// user 65534 if the test runs as root, as whom PostgreSQL refuses to run.
 class PostgresServer {
  public:
-  /// @returns the folder of Debian's programs, or of those on the PATH; empty: PostgreSQL is not installed.
+  /// @returns the folder of the programs of PostgreSQL 15; empty: PostgreSQL is not installed.
   static std::filesystem::path programs() {
     for (const char* folder : {"/usr/lib/postgresql/15/bin", "/usr/local/bin", "/usr/bin"}) {
       if (std::filesystem::exists(std::filesystem::path(folder) / "initdb")) return folder;
