@@ -66,7 +66,7 @@ struct QueuedResults {
 /// quarantined, or `stopped`. Points of a journal in `out` enter the queue as finished. At the end the journal
 /// out/points.jsonl holds all results, by index. Not real-time.
 /// @throws SceneError, std::invalid_argument as run_study(); std::invalid_argument also for an address or a lease
-/// that is refused
+/// that is refused, and if journal and queue have different results of a point
 /// @throws std::runtime_error if the server refuses the connection at first or a statement, the study is removed
 /// from the queue, or a file cannot be written
 [[nodiscard]] QueuedResults run_on_queue(const Study& study, const StudyCheck& check,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
 #include <map>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -50,6 +53,8 @@ std::vector<PointResult> in_order(const Results& results) {
 }
 
 /// Stores the results of a journal that the queue lacks, in portions that one statement takes.
+/// @param results  those of the queue, to which these are added
+/// @throws std::invalid_argument if the journal and the queue have different results of a point
 void store_missing(StudyQueue& queue, const std::vector<PointResult>& journal, Results& results) {
   constexpr std::size_t kPortion = 500;
   std::vector<MeasuredPoint> portion;
@@ -58,7 +63,13 @@ void store_missing(StudyQueue& queue, const std::vector<PointResult>& journal, R
     portion.clear();
   };
   for (const PointResult& result : journal) {
-    if (!results.emplace(result.index, result).second) continue;
+    const auto [known, is_new] = results.emplace(result.index, result);
+    if (!is_new && result_line(known->second) != result_line(result))
+      throw std::invalid_argument(fmt::format(
+          "point {} has different results in the journal and in the queue; use another --out folder, "
+          "or measure the study again (--restart)",
+          result.index));
+    if (!is_new) continue;
     portion.push_back({.index = result.index, .seconds = 0.0, .result = result_line(result)});
     portion.back().result.pop_back();
     if (portion.size() == kPortion) send();

@@ -26,8 +26,6 @@ namespace {
 constexpr int kFormat = 1;
 constexpr double kLongestLease = 86400.0;  // [s]
 
-// A lease that is not over counts. After a start of the server every lease counts for its whole length again: the
-// workers could not renew it while the server was away.
 constexpr const char* kTables[] = {
     "CREATE SCHEMA IF NOT EXISTS phalanx",
     "CREATE TABLE IF NOT EXISTS phalanx.format (version integer NOT NULL)",
@@ -49,6 +47,8 @@ constexpr const char* kTables[] = {
     R"(CREATE INDEX IF NOT EXISTS points_finished ON phalanx.points (study, finished_at, point)
       WHERE result IS NOT NULL)"};
 
+// A lease that is not over counts. After a start of the server every lease counts for its whole length again: the
+// workers could not renew it while the server was away.
 // Materialized: a plan that executed the selection for each row would take more than `most`.
 constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
     SELECT point FROM phalanx.points

@@ -117,6 +117,19 @@ TEST_F(StudyQueueTest, PointsOfAJournalEnterAsFinished) {
   expect_the_results_of_one_process(run());
 }
 
+TEST_F(StudyQueueTest, AJournalThatContradictsTheQueueIsRefused) {
+  create();
+  std::string other = result_line(alone()[3]);
+  other.replace(other.find("\"trials\":"), 9, "\"trials\":1");
+  other.pop_back();
+  StudyQueue queue(address());
+  queue.join(header(), 1);
+  queue.finish({{.index = 3, .seconds = 1.0, .result = other}});
+  std::filesystem::copy_file(alone_ / "points.jsonl", folder_ / "points.jsonl");
+  testing::expect_refusal([&] { static_cast<void>(run()); }, {"point 3", "different results"});
+  EXPECT_EQ(read_file(folder_ / "points.jsonl"), read_file(alone_ / "points.jsonl"));
+}
+
 TEST_F(StudyQueueTest, ACrashCostsItsPointAndThreeQuarantineIt) {
   create();
   const auto crashing = [](const Overrides& overrides, double stiffness, double press, std::uint64_t seed) {
