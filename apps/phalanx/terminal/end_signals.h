@@ -32,10 +32,10 @@ inline void end_on_signal() {
 }
 
 /// Makes Ctrl-C and SIGTERM only set asked_to_end, from here on.
-/// @param once  the second signal ends the process at once: for work that loses nothing by it
-inline void end_on_interrupt(bool once = false) {
+/// @param second_ends  true: a second signal ends the process at once; for work that loses nothing by it
+inline void end_on_interrupt(bool second_ends = false) {
   struct sigaction action = {};
-  if (once) action.sa_flags = static_cast<int>(SA_RESETHAND);
+  if (second_ends) action.sa_flags = static_cast<int>(SA_RESETHAND);
   action.sa_handler = [](int) { asked_to_end = 1; };
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
