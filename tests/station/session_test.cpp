@@ -108,6 +108,54 @@ TEST_F(SessionTest, AnotherObjectIsExchangedAtZeroTorqueOrGetsANewStationWithThe
   EXPECT_TRUE(until_running());
 }
 
+/// Share of the steps with a force in which a contact oscillates. NaN: no step has a force.
+double share_oscillating(const std::vector<StepRecord>& records) {
+  int with_force = 0, oscillating = 0;
+  for (const StepRecord& record : records) {
+    if (*std::max_element(record.force.begin(), record.force.end()) <= 0.0) continue;
+    ++with_force;
+    if (has(record.status, Status::kOscillating)) ++oscillating;
+  }
+  return static_cast<double>(oscillating) / with_force;
+}
+
+// S2's effect in the scene that a station shows first (docs/claims.md).
+TEST_F(SessionTest, TheFirstSceneOscillatesAtAStiffWallAndNotWithSmoothing) {
+  for (const char* seed : {"1", "2"}) {
+    const auto share = [&](const char* stiffness, const char* method) {
+      SessionSettings settings = with("simulated");
+      settings.overrides = {{"seed", seed},
+                            {"force.stiffness_n_per_mm", stiffness},
+                            {"stabiliser.method", '"' + std::string(method) + '"'}};
+      start(settings);
+      EXPECT_TRUE(until_running());
+      records.clear();
+      pass(12.0);
+      return share_oscillating(records);
+    };
+    EXPECT_EQ(share("0.5", "none"), 0.0) << seed;
+    EXPECT_GT(share("2.2", "none"), 0.8) << seed;
+    EXPECT_EQ(share("2.2", "smoothing"), 0.0) << seed;
+  }
+}
+
+// The way of the page. The simulated patient planned its press for the softer wall and goes on to press so far: each
+// bump reaches the limit of force, and with smoothing, too, the hand oscillates at the begin of each squeeze.
+TEST_F(SessionTest, TheFirstSceneOscillatesLessOnceSmoothingIsSwitchedOn) {
+  start(with("simulated"));
+  ASSERT_TRUE(until_running());
+  const auto share_with = [&](const char* key, const char* value) {
+    EXPECT_EQ(set({{key, value}}), "");
+    pass(3.0);  // what oscillated before fades
+    records.clear();
+    pass(12.0);
+    return share_oscillating(records);
+  };
+  const double without = share_with("force.stiffness_n_per_mm", "2.2");
+  EXPECT_GT(without, 0.2);
+  EXPECT_LT(share_with("stabiliser.method", "\"smoothing\""), 0.5 * without);
+}
+
 // An exchange would begin a new state, and its ticks with it.
 TEST_F(SessionTest, AnotherMethodThatBoundsTheForcesChangeGoesOverInContact) {
   start(with("sliders"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Waiting for something to become so. Never an assertion on how long it takes: the limit is there against hangs only.
 
-export const kHangMs = 240_000;
+export const kHangMs = 600_000;
 const kBetweenMs = 40;
 
 export const pause = (ms: number) => new Promise<void>((done) => setTimeout(done, ms));
