@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,6 +48,7 @@ struct RunChoices {
 struct WorkChoices {
   std::string file;
   std::string queue;
+  double limit_s = QueueWorkOptions{}.limit_s;
   int jobs = 0;
   bool quiet = false;
 };
@@ -175,16 +178,38 @@ int run_in_queue(const RunChoices& choices) {
                   queued.results.size(), point_count(study)));
 }
 
-/// The number of points that this worker has measured, in place on a terminal.
-void show_finished(int done) {
-  if (::isatty(STDERR_FILENO) == 1) print_aside(fmt::format("\r\033[K{} points measured", done));
-}
+/// Number and pace of the points that this worker has measured: in place on a terminal, otherwise a line each
+/// minute, since it does not know how many there will be.
+class FinishedLine {
+ public:
+  void show(int done) {
+    const auto now = std::chrono::steady_clock::now();
+    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    if (shown_ && !terminal && now - shown_->time < kPause) return;
+    std::string text = fmt::format("{} points measured", done);
+    if (shown_) {
+      const std::chrono::duration<double> gone = now - shown_->time;
+      text += fmt::format(", {:.3g} points/s", (done - shown_->done) / gone.count());
+    }
+    if (!shown_ || now - shown_->time >= kPause) shown_ = Shown{now, done};
+    print_aside(terminal ? "\r\033[K" + text : text + "\n");
+  }
+
+ private:
+  struct Shown {
+    std::chrono::steady_clock::time_point time;
+    int done = 0;
+  };
+  static constexpr auto kPause = std::chrono::minutes(1);
+  std::optional<Shown> shown_;  ///< of the last minute's begin
+};
 
 int work(const WorkChoices& choices) {
   const Study study = load_study(choices.file);
   end_on_interrupt(true);
-  QueueWorkOptions options{.commit = program_version(), .jobs = choices.jobs};
-  if (!choices.quiet) options.finished = show_finished;
+  QueueWorkOptions options{.commit = program_version(), .jobs = choices.jobs, .limit_s = choices.limit_s};
+  FinishedLine line;
+  if (!choices.quiet) options.finished = [&](int done) { line.show(done); };
   const QueueServer server = server_of(choices.queue);
   const QueueWork work = work_on_queue(study, check_until_asked_to_end(study),
                                        make_trial_function(scene_of(study)), server, options);
@@ -303,6 +328,12 @@ void add_work(CLI::App& study, Job& job) {
   command->add_option("--jobs", choices->jobs, "processes [as many as there are cores]")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
+  command
+      ->add_option("--limit", choices->limit_s,
+                   "seconds after which a point that is still measured is ended, and fails")
+      ->check(CLI::Range(1.0, 1e7))
+      ->capture_default_str()
+      ->type_name("S");
   command->add_flag("--quiet", choices->quiet, "print nothing but errors and failed points");
   command->callback([choices, command, &job] {
     refuse_empty_values(*command);

@@ -75,15 +75,17 @@ struct QueuedResults {
 
 /// Options of work_on_queue().
 struct QueueWorkOptions {
-  std::string commit = {};                      ///< as StudyOptions::commit
-  int jobs = 0;                                 ///< processes that measure; 0: as many as there are cores
+  std::string commit = {};  ///< as StudyOptions::commit
+  int jobs = 0;             ///< processes that measure; 0: as many as there are cores
+  /// Longest time that a point may take [s], above 0. Its process is then ended, and the point fails.
+  double limit_s = 3600.0;
   std::function<void(int done)> finished = {};  ///< called after points were stored, with their number so far
 };
 
 /// What one worker did.
 struct QueueWork {
   int finished = 0;         ///< points whose results it stored
-  int failed = 0;           ///< times that a point's process crashed, or its trial threw
+  int failed = 0;           ///< times that a point's process crashed or took too long, or its trial threw
   bool whole = false;       ///< false: `stopped`
   bool given_back = false;  ///< the points that it still had; else their leases end
 };
@@ -93,7 +95,8 @@ struct QueueWork {
 /// processes measure in about 5 s, at most 1,000 and at least one a process. If a process crashes, its point fails
 /// and the others go on. Not real-time; call it in a process without other threads.
 /// @throws std::invalid_argument if the queue does not have the study, or has it of another study file, other
-/// scene files, another program or a machine whose mathematical functions round differently
+/// scene files, another program or a first worker whose mathematical functions round differently; if the limit is
+/// refused
 /// @throws std::runtime_error as run_on_queue(); if a point has another result already; and after 20 failures
 /// without a result between them, since the cause is then more likely this machine than the points
 [[nodiscard]] QueueWork work_on_queue(const Study& study, const StudyCheck& check, const TrialFunction& trial,

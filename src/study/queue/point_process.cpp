@@ -152,6 +152,7 @@ void PointProcess::serve(const Study& study, const TrialFunction& trial, int req
 }
 
 void PointProcess::give(int index) {
+  if (pending_.empty()) began_ = std::chrono::steady_clock::now();
   pending_.push_back(index);
   std::string request(sizeof index, '\0');
   std::memcpy(request.data(), &index, sizeof index);
@@ -170,11 +171,20 @@ std::vector<PointAnswer> PointProcess::read() {
   for (std::size_t end; (end = received_.find('\n', at)) != std::string::npos; at = end + 1) {
     answers.push_back(parsed(received_.substr(at, end - at)));
     pending_.pop_front();
+    began_ = std::chrono::steady_clock::now();
   }
   received_.erase(0, at);
   if (!answers.empty()) log_text_.clear();  // of a point that is done
   read_log();                               // after that: it may hold why the process ended
   return answers;
+}
+
+void PointProcess::end_if_longer_than(double limit_s) {
+  if (pending_.empty() || ended_ || ended_after_s_ > 0.0) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  if (!(seconds > limit_s)) return;
+  ended_after_s_ = limit_s;
+  ::kill(process_, SIGKILL);
 }
 
 std::string PointProcess::how_it_ended() {
@@ -183,6 +193,8 @@ std::string PointProcess::how_it_ended() {
   std::string text = WIFSIGNALED(status_) ? fmt::format("ended by signal {} ({})", WTERMSIG(status_),
                                                         ::strsignal(WTERMSIG(status_)))
                                           : fmt::format("ended with code {}", WEXITSTATUS(status_));
+  if (ended_after_s_ > 0.0)
+    text = fmt::format("was ended, because the point took longer than {} s (--limit)", ended_after_s_);
   if (!log_text_.empty()) text += ", after it wrote:\n" + log_text_;
   return text;
 }

@@ -36,6 +36,9 @@ class PointProcess {
   /// @returns points without an answer, in order; it measures the first one.
   [[nodiscard]] const std::deque<int>& pending() const noexcept { return pending_; }
 
+  /// Ends the process if it measures pending().front() for longer than `limit_s` [s]. read() reports the end.
+  void end_if_longer_than(double limit_s);
+
   /// @returns the answers so far; never waits.
   [[nodiscard]] std::vector<PointAnswer> read();
   /// @returns whether read() has seen the end of the process.
@@ -60,6 +63,8 @@ class PointProcess {
   int status_ = 0;
   bool ended_ = false;
   std::deque<int> pending_;
+  std::chrono::steady_clock::time_point began_;  ///< pending_.front()
+  double ended_after_s_ = 0.0;                   ///< limit at which it was ended [s]; 0: it was not
   std::string received_;
   std::string log_text_;
 };

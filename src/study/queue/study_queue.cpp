@@ -220,7 +220,6 @@ void StudyQueue::create(const JournalHeader& header, double lease_s, bool restar
         "a lease of {} s is out of range; give one above 0 and up to {} s", lease_s, kLongestLease));
   const std::string text = header_text_of(header);
   const std::string fingerprint = fingerprint_of(text);
-  const std::string libm = libm_here();
   const std::string name = plain(header.study.name);
   const int points = point_count(header.study);
   make_tables();
@@ -233,11 +232,11 @@ void StudyQueue::create(const JournalHeader& header, double lease_s, bool restar
     if (restart) sql << "DELETE FROM phalanx.studies WHERE fingerprint = :key", soci::use(fingerprint, "key");
     sql << R"(WITH made AS (
                 INSERT INTO phalanx.studies (fingerprint, name, header, libm, lease_s)
-                VALUES (:key, :name, :header, :libm, :lease) ON CONFLICT (fingerprint) DO NOTHING RETURNING id)
+                VALUES (:key, :name, :header, '', :lease) ON CONFLICT (fingerprint) DO NOTHING RETURNING id)
               INSERT INTO phalanx.points (study, point)
               SELECT id, point FROM made, generate_series(0, CAST(:points AS integer) - 1) AS point)",
         soci::use(fingerprint, "key"), soci::use(name, "name"), soci::use(text, "header"),
-        soci::use(libm, "libm"), soci::use(lease_s, "lease"), soci::use(points, "points");
+        soci::use(lease_s, "lease"), soci::use(points, "points");
     sql << "UPDATE phalanx.studies SET lease_s = :lease WHERE fingerprint = :key",
         soci::use(lease_s, "lease"), soci::use(fingerprint, "key");
     transaction.commit();
@@ -254,20 +253,25 @@ void StudyQueue::create(const JournalHeader& header, double lease_s, bool restar
 /// Sets study_, or leaves it 0.
 void StudyQueue::find_study(Session& session, const JournalHeader& header) {
   const std::string fingerprint = fingerprint_of(header_text_of(header));
-  std::string libm;
   study_ = 0;
-  session.sql << "SELECT id, libm, lease_s FROM phalanx.studies WHERE fingerprint = :key", soci::into(study_),
-      soci::into(libm), soci::into(lease_s_), soci::use(fingerprint, "key");
-  if (!session.sql.got_data()) {
-    study_ = 0;
-  } else if (libm != libm_here()) {
+  session.sql << "SELECT id, lease_s FROM phalanx.studies WHERE fingerprint = :key", soci::into(study_),
+      soci::into(lease_s_), soci::use(fingerprint, "key");
+  if (!session.sql.got_data()) study_ = 0;
+}
+
+/// The first worker's mathematical functions are those of the study.
+void StudyQueue::compare_libm(Session& session) {
+  const std::string here = libm_here();
+  std::string first = here;
+  session.sql << "UPDATE phalanx.studies SET libm = :here WHERE id = :study AND libm = ''",
+      soci::use(here, "here"), soci::use(study_, "study");
+  session.sql << "SELECT libm FROM phalanx.studies WHERE id = :study", soci::into(first),
+      soci::use(study_, "study");
+  if (session.sql.got_data() && first != here)
     throw std::invalid_argument(
         "this machine's sine, exponential or another mathematical function rounds differently from that of "
-        "the "
-        "machine that began the study, so that results would differ; work on machines with the same "
-        "processor type "
-        "and the same libm");
-  }
+        "the study's first worker, so that results would differ; work on machines with the same processor "
+        "type and the same libm");
 }
 
 void StudyQueue::join(const JournalHeader& header, int jobs) {
@@ -293,6 +297,7 @@ void StudyQueue::join(const JournalHeader& header, int jobs) {
         "FILE --queue URL --out DIR",
         why));
   }
+  attempt([&](Session& session) { compare_libm(session); });
   attempt([&](Session& session) {
     session.sql
         << "INSERT INTO phalanx.workers (study, place, jobs) VALUES (:study, :place, :jobs) RETURNING id",

@@ -80,6 +80,7 @@ class StudyQueue {
   void make_tables();
   void wait_for_server(const std::string& why, int tries);
   void find_study(Session& session, const JournalHeader& header);
+  void compare_libm(Session& session);
 
   QueueServer server_;
   std::string connection_;

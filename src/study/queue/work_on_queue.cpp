@@ -142,6 +142,7 @@ class Worker {
     for (Process& process : processes_) {
       if (!process) continue;
       for (PointAnswer& answer : process->read()) take_answer(answer);
+      process->end_if_longer_than(options_.limit_s);
       if (process->ended()) replace(process);
     }
   }
@@ -222,6 +223,9 @@ class Worker {
 
 QueueWork work_on_queue(const Study& study, const StudyCheck& check, const TrialFunction& trial,
                         const QueueServer& server, const QueueWorkOptions& options) {
+  if (!(options.limit_s > 0.0))
+    throw std::invalid_argument(
+        fmt::format("a limit of {} s for a point is out of range; give one above 0", options.limit_s));
   StudyQueue queue(server);
   const int jobs =
       options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

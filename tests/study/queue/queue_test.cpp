@@ -2,6 +2,7 @@
 // The queue on a real server, with trials whose answers are known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -186,6 +187,31 @@ TEST_F(StudyQueueTest, AProcessThatEndsInGoodOrderFailsItsPointToo) {
   EXPECT_THAT(run().quarantined.at(0).log, HasSubstr("ended with code 0"));
 }
 
+// No trial here ends, so that even the shortest limit ends nothing that would.
+TEST_F(StudyQueueTest, APointThatTakesTooLongFails) {
+  create();
+  try {
+    static_cast<void>(work_on_queue(study_, testing::no_inputs,
+                                    [](const Overrides&, double, double, std::uint64_t) -> TrialResult {
+                                      for (;;) ::pause();
+                                    },
+                                    address(), {.commit = "test", .jobs = 2, .limit_s = 1e-3}));
+    ADD_FAILURE() << "20 failures in a row end the worker";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("took longer than 0.001 s"));
+  }
+  EXPECT_EQ(number("SELECT sum(failures) FROM phalanx.points"), 20);
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE log LIKE '%took longer than 0.001 s%'"),
+            number("SELECT count(*) FROM phalanx.points WHERE failures > 0"));
+  for (const double limit : {0.0, -1.0, std::nan("")})
+    testing::expect_refusal(
+        [&] {
+          static_cast<void>(work_on_queue(study_, testing::no_inputs, testing::synthetic_trial, address(),
+                                          {.commit = "test", .limit_s = limit}));
+        },
+        {"limit", "out of range"});
+}
+
 TEST_F(StudyQueueTest, AMachineOnWhichEveryPointFailsQuarantinesOnlyAFew) {
   create();
   EXPECT_THROW(static_cast<void>(work([](const Overrides&, double, double, std::uint64_t) -> TrialResult {
@@ -213,8 +239,17 @@ TEST_F(StudyQueueTest, WorkersOfAnotherStudyProgramOrSceneAreRefused) {
   other = header();
   other.study.seeds = 4;
   testing::expect_refusal([&] { queue.join(other, 1); }, {"the study file has changed since"});
+}
+
+TEST_F(StudyQueueTest, TheFirstWorkersMathematicalFunctionsAreTheStudys) {
+  create();
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.studies WHERE libm = ''"), 1);
+  StudyQueue(address()).join(header(), 1);
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.studies WHERE libm = ''"), 0);
+  StudyQueue(address()).join(header(), 1);
   sql("UPDATE phalanx.studies SET libm = 'other'");
-  testing::expect_refusal([&] { queue.join(header(), 1); }, {"rounds differently"});
+  testing::expect_refusal([&] { StudyQueue(address()).join(header(), 1); }, {"rounds differently"});
+  EXPECT_NO_THROW(create()) << "the machine that collects measures nothing";
 }
 
 TEST_F(StudyQueueTest, ALeaseKeepsAPointUntilItEndsOrIsGivenBack) {
