@@ -11,10 +11,14 @@
 #include <charconv>
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 
 #include "phalanx/core/error_text.h"
 #include "phalanx/record/made.h"
@@ -125,6 +129,34 @@ void measure_points(const std::vector<int>& points, const Study& study, const Tr
   });
 }
 
+/// Calls `function` with 0 .. count - 1, on several threads, which have ended when it returns: a process may fork
+/// after it. @throws what `function` threw first
+void for_each_on_threads(int count, int threads, const std::function<void(int)>& function) {
+  std::atomic<int> next{0};
+  std::exception_ptr first;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (int i; (i = next++) < count;) {
+      try {
+        function(i);
+      } catch (...) {
+        const std::lock_guard<std::mutex> guard(mutex);
+        if (!first) first = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (int i = 1; i < std::min(threads, count); ++i) others.emplace_back(work);
+    } catch (const std::system_error&) {  // the system has no thread left: these and this one do it
+    }
+    work();
+  }
+  if (first) std::rethrow_exception(first);
+}
+
 void refuse_points_of_others(const Journal& journal, const Shard& shard) {
   for (const PointResult& result : journal.finished()) {
     if (result.index % shard.count == shard.index - 1) continue;
@@ -157,18 +189,34 @@ std::string program_version() {
   return fmt::format("{} {}", commit, fingerprint_of_files({"/proc/self/exe"}));
 }
 
-std::string check_study(const Study& study, const StudyCheck& check) {
+std::string check_study(const Study& study, const StudyCheck& check, int jobs) {
+  struct Checked {
+    StudyInputs inputs;
+    std::optional<std::string> refused;
+  };
+  constexpr int kTogether = 4096;  // points whose inputs are in memory
+  const int threads = jobs > 0 ? jobs : static_cast<int>(std::thread::hardware_concurrency());
+  const int points = point_count(study);
   Fingerprint texts;
   std::set<std::filesystem::path> files;
-  for (int index = 0; index < point_count(study); ++index) {
-    const StudyPoint point = study_point(study, index);
-    try {
-      StudyInputs inputs = check(point_overrides(study, point));
-      texts.add(inputs.text);
-      for (auto& file : inputs.files) files.insert(std::move(file));
-    } catch (const std::invalid_argument& error) {
-      throw SceneError(fmt::format("study {}, point {} ({}): {}", study.name, index, point_text(study, point),
-                                   error.what()));
+  std::vector<Checked> checked;
+  for (int begin = 0; begin < points; begin += kTogether) {
+    checked.assign(static_cast<std::size_t>(std::min(kTogether, points - begin)), {});
+    for_each_on_threads(static_cast<int>(checked.size()), threads, [&](int i) {
+      Checked& point = checked[static_cast<std::size_t>(i)];
+      try {
+        point.inputs = check(point_overrides(study, study_point(study, begin + i)));
+      } catch (const std::invalid_argument& error) {
+        point.refused = error.what();
+      }
+    });
+    for (int i = 0; i < static_cast<int>(checked.size()); ++i) {
+      Checked& point = checked[static_cast<std::size_t>(i)];
+      if (point.refused)
+        throw SceneError(fmt::format("study {}, point {} ({}): {}", study.name, begin + i,
+                                     point_text(study, study_point(study, begin + i)), *point.refused));
+      texts.add(point.inputs.text);
+      for (auto& file : point.inputs.files) files.insert(std::move(file));
     }
   }
   return texts.text() + fingerprint_of_files({files.begin(), files.end()});
@@ -176,7 +224,8 @@ std::string check_study(const Study& study, const StudyCheck& check) {
 
 std::vector<PointResult> run_study(const Study& study, const StudyCheck& check, const TrialFunction& trial,
                                    const std::filesystem::path& out, const StudyOptions& options) {
-  const JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
+  const JournalHeader header{
+      .study = study, .inputs = check_study(study, check, options.jobs), .commit = options.commit};
   prepare_output_folder(out);
   Journal journal(out / journal_name(options.shard.index, options.shard.count), header, options.restart);
   refuse_points_of_others(journal, options.shard);

@@ -230,7 +230,7 @@ QueueWork work_on_queue(const Study& study, const StudyCheck& check, const Trial
   const int jobs =
       options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   try {
-    queue.join({.study = study, .inputs = check_study(study, check), .commit = options.commit}, jobs);
+    queue.join({.study = study, .inputs = check_study(study, check, jobs), .commit = options.commit}, jobs);
   } catch (const QueueStopped&) {
     return {};
   }

@@ -201,6 +201,30 @@ TEST(RunStudy, ChecksEveryPointBeforeAnythingRuns) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+TEST(CheckStudy, DoesNotDependOnTheNumberOfThreads) {
+  const Study study = testing::study_of(
+      "scene = \"press_teapot\"\nseeds = 1\n[[axis]]\nkey = \"synthetic.friction\"\nfrom = 1\nto = "
+      "9001\nstep = 1\n");
+  const auto text_of = [](const Overrides& overrides) {
+    return std::to_string(testing::number_of(overrides, "synthetic.friction", 0.0));
+  };
+  const auto check = [&](const Overrides& overrides) {
+    return StudyInputs{.text = text_of(overrides), .files = {}};
+  };
+  const std::string alone = check_study(study, check, 1);
+  for (const int jobs : {0, 2, 7}) EXPECT_EQ(check_study(study, check, jobs), alone) << jobs;
+  const auto refusing = [&](const Overrides& overrides) -> StudyInputs {
+    if (testing::number_of(overrides, "synthetic.friction", 0.0) >= 5000.0) throw SceneError("too rough");
+    return check(overrides);
+  };
+  for (const int jobs : {1, 7})
+    expect_refusal([&] { static_cast<void>(check_study(study, refusing, jobs)); },
+                   {"point 4999", "friction 5000", "too rough"});
+  const auto stopped = [&](const Overrides&) -> StudyInputs { throw std::runtime_error("stopped"); };
+  for (const int jobs : {1, 7})
+    EXPECT_THROW(static_cast<void>(check_study(study, stopped, jobs)), std::runtime_error);
+}
+
 TEST(RunStudy, KnowsWhenWhatThePointsReadHasChanged) {
   const TemporaryFolder folder;
   std::string device = "light";

@@ -19,7 +19,7 @@ struct StudyInputs {
 };
 
 /// Function that checks overrides by loading the scene with them, before anything runs. It throws
-/// std::invalid_argument if they are wrong, and returns the inputs of a run with them.
+/// std::invalid_argument if they are wrong, and returns the inputs of a run with them. Several threads may call it.
 using StudyCheck = std::function<StudyInputs(const Overrides& overrides)>;
 
 /// Part of a study: the points with index % count == index of the shard - 1.
@@ -61,8 +61,10 @@ struct StudyOptions {
 [[nodiscard]] std::string program_version();
 
 /// Checks every point. @returns the fingerprint of all inputs
-/// @throws SceneError naming the point and the reason that `check` gave.
-[[nodiscard]] std::string check_study(const Study& study, const StudyCheck& check);
+/// @param jobs  number of threads that call `check`; 0: as many as there are cores. They have ended when this returns.
+/// @throws SceneError naming the first point that `check` refuses by std::invalid_argument, and the reason; and
+/// everything else that `check` throws
+[[nodiscard]] std::string check_study(const Study& study, const StudyCheck& check, int jobs = 0);
 
 /// Measures the points that the journal in `out` does not have yet ("points.jsonl", or "points.2-of-3.jsonl"
 /// of a shard). A finished point is on the disk before its thread begins the next. If the process is ended,
