@@ -14,7 +14,7 @@ import { until } from "./support/until";
 
 let browser: Browser;
 let site: { readonly server: Server; readonly url: string };
-const places = new Map<string, readonly number[]>(); // of Stop, by size, in the first state; the same in every language
+const places = new Map<string, readonly number[]>(); // of Stop, by size and type, in the first state; the same in every language
 
 beforeAll(async () => {
   site = await serveSite();
@@ -61,7 +61,7 @@ describe.each(runs)("$name, $language.code", ({ name, before, act, language, siz
       expect.soft(await page.evaluate(faultsOfLayout), what).toEqual([]);
       expect.soft(await page.evaluate(overlappingTexts), what).toEqual([]);
       const place = await page.evaluate(placeOfStop);
-      const size = `${width} x ${height}`;
+      const size = `${width} x ${height}${name === "large" ? ", large type" : ""}`;
       if (!places.has(size)) places.set(size, place);
       expect.soft(place, `${what}: Stop moved`).toEqual(places.get(size));
     }

@@ -7,9 +7,9 @@ import { join } from "node:path";
 import { addressOf, dataFolder, Program, programPath, runDevice, runStation, slowMotion } from "./support/program";
 
 const kSeconds = "1800"; // after which a forgotten controller ends by itself
-// The device's own patient squeezes every 6 s, and its hand is open for 1.2 s. While it is calibrated its time passes more slowly: both
-// positions are held for longer than a person needs to read an angle, to enter it, and the second that is measured.
-const kSlower = 5;
+// The device's own patient squeezes every 6 s, and its hand is open for 1.2 s. While it is calibrated its time passes more slowly, so that the
+// open hand is still for longer than the second that is measured. Twice as slow would be the fault sample_rate.
+const kSlower = 1.8;
 const kDegree = Math.PI / 180;
 const store = ["--data", "data", "--keys", "config/keys"];
 

@@ -41,7 +41,7 @@ export function faultsOfLayout(): string[] {
     if (!shown(control) || control.closest("fieldset:disabled") || (question && !control.closest(".dialog, .dock"))) continue;
     control.scrollIntoView({ block: "nearest", inline: "nearest" });
     const box = control.getBoundingClientRect();
-    const around = control.closest(".view-parts-list, .view-frame, .tab-panels, .stop-box, .plots, .toasts, .header, .tabs, .dialog, .role-strip, .openings, .story");
+    const around = control.closest(".view-parts-list, .view-frame, .tab-panels, .stop-box, .plots, .toasts, .header, .tabs, .dialog, .calibration, .role-strip, .openings, .story");
     if (!around || !within(box, around.getBoundingClientRect())) say(`${nameOf(control)} is not inside .${around?.className}`);
     if (!within(box, screen)) say(`${nameOf(control)} is not on the screen`);
     if (!uncovered(control)) say(`${nameOf(control)} is covered`);
