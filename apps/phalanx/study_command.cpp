@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -58,9 +57,15 @@ struct MergeChoices {
   std::string out;
 };
 
-void write_all(const std::filesystem::path& out, const Study& study,
-               const std::vector<PointResult>& results) {
-  const Made made = made_here();
+/// @param processors  those that measured; empty: this machine's
+Made made_on(const std::string& processors) {
+  Made made = made_here();
+  if (!processors.empty()) made.cpu = processors;
+  return made;
+}
+
+void write_all(const std::filesystem::path& out, const Study& study, const std::vector<PointResult>& results,
+               const Made& made = made_here()) {
   write_text_file(out / "report.html", study_report_html(study, results, made));
   write_study_outputs(out, study, results, made);  // summary.json is last: a folder with it is complete
 }
@@ -161,12 +166,12 @@ int run_in_queue(const RunChoices& choices) {
   }
   remove_logs_of_points(choices.out, queued.results);
   if (queued.whole) {
-    write_all(choices.out, study, queued.results);
+    write_all(choices.out, study, queued.results, made_on(queued.processors));
     if (!choices.quiet) print_results(choices.out, study, queued.results);
     return kDone;
   }
   write_text_file(std::filesystem::path(choices.out) / "report.html",
-                  study_report_html(study, queued.results, made_here()));
+                  study_report_html(study, queued.results, made_on(queued.processors)));
   report_quarantined(choices.out, study, queued);
   if (static_cast<int>(queued.results.size()) + queued.quarantined_points == point_count(study))
     throw std::runtime_error(fmt::format(
@@ -178,30 +183,23 @@ int run_in_queue(const RunChoices& choices) {
                   queued.results.size(), point_count(study)));
 }
 
-/// Number and pace of the points that this worker has measured: in place on a terminal, otherwise a line each
-/// minute, since it does not know how many there will be.
+/// Shows number and pace of the points that this worker has measured: in place on a terminal, otherwise in a line each
+/// minute.
 class FinishedLine {
  public:
-  void show(int done) {
+  void show(int done, double points_per_s) {
+    constexpr auto kPause = std::chrono::minutes(1);
     const auto now = std::chrono::steady_clock::now();
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
-    if (shown_ && !terminal && now - shown_->time < kPause) return;
-    std::string text = fmt::format("{} points measured", done);
-    if (shown_) {
-      const std::chrono::duration<double> gone = now - shown_->time;
-      text += fmt::format(", {:.3g} points/s", (done - shown_->done) / gone.count());
-    }
-    if (!shown_ || now - shown_->time >= kPause) shown_ = Shown{now, done};
-    print_aside(terminal ? "\r\033[K" + text : text + "\n");
+    if (!terminal && now < next_) return;
+    next_ = now + kPause;
+    const std::string pace = std::isnan(points_per_s) ? "" : fmt::format(", {:.3g} points/s", points_per_s);
+    print_aside(fmt::format("{}points measured: {}{}{}", terminal ? "\r\033[K" : "", done, pace,
+                            terminal ? "" : "\n"));
   }
 
  private:
-  struct Shown {
-    std::chrono::steady_clock::time_point time;
-    int done = 0;
-  };
-  static constexpr auto kPause = std::chrono::minutes(1);
-  std::optional<Shown> shown_;  ///< of the last minute's begin
+  std::chrono::steady_clock::time_point next_;
 };
 
 int work(const WorkChoices& choices) {
@@ -209,7 +207,8 @@ int work(const WorkChoices& choices) {
   end_on_interrupt(true);
   QueueWorkOptions options{.commit = program_version(), .jobs = choices.jobs, .limit_s = choices.limit_s};
   FinishedLine line;
-  if (!choices.quiet) options.finished = [&](int done) { line.show(done); };
+  if (!choices.quiet)
+    options.finished = [&](int done, double points_per_s) { line.show(done, points_per_s); };
   const QueueServer server = server_of(choices.queue);
   const QueueWork work = work_on_queue(study, check_until_asked_to_end(study),
                                        make_trial_function(scene_of(study)), server, options);
@@ -330,9 +329,8 @@ void add_work(CLI::App& study, Job& job) {
       ->type_name("N");
   command
       ->add_option("--limit", choices->limit_s,
-                   "seconds after which a point that is still measured is ended, and fails")
+                   "longest time of a point in seconds; then it fails [3600, or more if its trials need it]")
       ->check(CLI::Range(1.0, 1e7))
-      ->capture_default_str()
       ->type_name("S");
   command->add_flag("--quiet", choices->quiet, "print nothing but errors and failed points");
   command->callback([choices, command, &job] {

@@ -37,7 +37,7 @@ class ServedController {
   /// Runs until `stop` is not 0, `seconds` have passed, or the transport is lost.
   /// @param stop  set by a signal handler
   ServedStatistics serve(const Clock& clock, const Transport& transport, std::optional<double> seconds,
-                         const volatile std::sig_atomic_t& stop);
+                         const std::atomic<int>& stop);
 
   /// @returns an epoch that differs from start to start, so that commands of an earlier session are refused.
   [[nodiscard]] static std::uint32_t new_epoch();

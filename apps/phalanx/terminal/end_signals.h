@@ -4,13 +4,15 @@
 
 #include <sys/eventfd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 
 namespace phalanx {
 
-/// Flag of a request to end; the command then ends in good order.
-inline volatile std::sig_atomic_t asked_to_end = 0;
+/// Flag of a request to end; the command then ends in good order. Any thread may read it.
+inline std::atomic<int> asked_to_end = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler sets it");
 /// Eventfd that becomes readable with the flag; -1: none was available, or end_on_signal() was not called.
 inline int end_descriptor = -1;
 

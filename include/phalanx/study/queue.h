@@ -59,14 +59,17 @@ struct QueuedResults {
   std::vector<PointResult> results;           ///< by index
   std::vector<QuarantinedPoint> quarantined;  ///< by index, the first kMostQuarantinedLogs
   int quarantined_points = 0;                 ///< all of them
+  std::string processors;                     ///< names of the workers' processors, each once; may be empty
   bool whole = false;                         ///< every point has a result
 };
 
 /// Puts a study into the queue, if it is not there, and collects results until every point is finished or
-/// quarantined, or `stopped`. Points of a journal in `out` enter the queue as finished. At the end the journal
+/// quarantined, or `stopped`. Points of a journal in `out` enter the queue as finished; they must have been measured
+/// on a machine whose mathematical functions round as this one's. At the end the journal
 /// out/points.jsonl holds all results, by index. Not real-time.
 /// @throws SceneError, std::invalid_argument as run_study(); std::invalid_argument also for an address or a lease
-/// that is refused, and if journal and queue have different results of a point
+/// that is refused, and if journal and queue have different results of a point, or of machines whose mathematical
+/// functions round differently
 /// @throws std::runtime_error if the server refuses the connection at first or a statement, the study is removed
 /// from the queue, or a file cannot be written
 [[nodiscard]] QueuedResults run_on_queue(const Study& study, const StudyCheck& check,
@@ -77,26 +80,30 @@ struct QueuedResults {
 struct QueueWorkOptions {
   std::string commit = {};  ///< as StudyOptions::commit
   int jobs = 0;             ///< processes that measure; 0: as many as there are cores
-  /// Longest time that a point may take [s], above 0. Its process is then ended, and the point fails.
-  double limit_s = 3600.0;
-  std::function<void(int done)> finished = {};  ///< called after points were stored, with their number so far
+  /// Longest time of a point [s]. Then its process is ended, and the point fails. 0: usual_point_limit()
+  double limit_s = 0.0;
+  /// Called after points were stored, with their number so far and the pace of the last minute [1/s]; NaN: not known.
+  std::function<void(int done, double points_per_s)> finished = {};
 };
 
 /// What one worker did.
 struct QueueWork {
-  int finished = 0;         ///< points whose results it stored
-  int failed = 0;           ///< times that a point's process crashed or took too long, or its trial threw
-  bool whole = false;       ///< false: `stopped`
+  int finished = 0;    ///< points whose results it stored
+  int failed = 0;      ///< times that a point's process crashed or a point took too long, or its trial threw
+  bool whole = false;  ///< false: `stopped`
   bool given_back = false;  ///< the points that it still had; else their leases end
 };
+
+/// @returns an hour, or twenty times what the most trials of a point take at 0.05 s a trial, if that is longer [s].
+[[nodiscard]] double usual_point_limit(const Study& study);
 
 /// Takes points of the study and measures each in a child process, forked from this one, until no point is left
 /// to any worker, or `stopped`; what was not measured is then given back. It takes as many points at once as its
 /// processes measure in about 5 s, at most 1,000 and at least one a process. If a process crashes, its point fails
 /// and the others go on. Not real-time; call it in a process without other threads.
 /// @throws std::invalid_argument if the queue does not have the study, or has it of another study file, other
-/// scene files, another program or a first worker whose mathematical functions round differently; if the limit is
-/// refused
+/// scene files, another program or a first worker whose mathematical functions round differently; and if the limit
+/// is below 0
 /// @throws std::runtime_error as run_on_queue(); if a point has another result already; and after 20 failures
 /// without a result between them, since the cause is then more likely this machine than the points
 [[nodiscard]] QueueWork work_on_queue(const Study& study, const StudyCheck& check, const TrialFunction& trial,

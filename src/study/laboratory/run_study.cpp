@@ -12,9 +12,9 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -129,20 +129,37 @@ void measure_points(const std::vector<int>& points, const Study& study, const Tr
   });
 }
 
-/// Calls `function` with 0 .. count - 1, on several threads, which have ended when it returns: a process may fork
-/// after it. @throws what `function` threw first
+/// Exception of the smallest index that threw.
+class FirstException {
+ public:
+  [[nodiscard]] bool is_before(int index) const { return index_ < index; }
+  void add_current(int index) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    if (index >= index_) return;
+    index_ = index;
+    exception_ = std::current_exception();
+  }
+  void rethrow_if_any() const {
+    if (exception_) std::rethrow_exception(exception_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<int> index_ = std::numeric_limits<int>::max();
+  std::exception_ptr exception_;
+};
+
+/// Calls `function` with 0 .. count - 1 on several threads, which have ended when it returns, so that a process may
+/// fork after it. @throws as `function` with the smallest index for which it throws
 void for_each_on_threads(int count, int threads, const std::function<void(int)>& function) {
   std::atomic<int> next{0};
-  std::exception_ptr first;
-  std::mutex mutex;
+  FirstException first;
   const auto work = [&] {
-    for (int i; (i = next++) < count;) {
+    for (int i; (i = next++) < count && !first.is_before(i);) {
       try {
         function(i);
       } catch (...) {
-        const std::lock_guard<std::mutex> guard(mutex);
-        if (!first) first = std::current_exception();
-        next = count;
+        first.add_current(i);
       }
     }
   };
@@ -150,11 +167,12 @@ void for_each_on_threads(int count, int threads, const std::function<void(int)>&
     std::vector<std::jthread> others;
     try {
       for (int i = 1; i < std::min(threads, count); ++i) others.emplace_back(work);
-    } catch (const std::system_error&) {  // the system has no thread left: these and this one do it
+    } catch (
+        const std::system_error&) {  // the system has no further thread: those that there are do the work
     }
     work();
   }
-  if (first) std::rethrow_exception(first);
+  first.rethrow_if_any();
 }
 
 void refuse_points_of_others(const Journal& journal, const Shard& shard) {
@@ -190,33 +208,27 @@ std::string program_version() {
 }
 
 std::string check_study(const Study& study, const StudyCheck& check, int jobs) {
-  struct Checked {
-    StudyInputs inputs;
-    std::optional<std::string> refused;
-  };
   constexpr int kTogether = 4096;  // points whose inputs are in memory
-  const int threads = jobs > 0 ? jobs : static_cast<int>(std::thread::hardware_concurrency());
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = jobs > 0 ? std::min(jobs, cores) : cores;
   const int points = point_count(study);
   Fingerprint texts;
   std::set<std::filesystem::path> files;
-  std::vector<Checked> checked;
+  std::vector<StudyInputs> inputs;
   for (int begin = 0; begin < points; begin += kTogether) {
-    checked.assign(static_cast<std::size_t>(std::min(kTogether, points - begin)), {});
-    for_each_on_threads(static_cast<int>(checked.size()), threads, [&](int i) {
-      Checked& point = checked[static_cast<std::size_t>(i)];
+    inputs.assign(static_cast<std::size_t>(std::min(kTogether, points - begin)), {});
+    for_each_on_threads(static_cast<int>(inputs.size()), threads, [&](int i) {
+      const StudyPoint point = study_point(study, begin + i);
       try {
-        point.inputs = check(point_overrides(study, study_point(study, begin + i)));
+        inputs[static_cast<std::size_t>(i)] = check(point_overrides(study, point));
       } catch (const std::invalid_argument& error) {
-        point.refused = error.what();
+        throw SceneError(fmt::format("study {}, point {} ({}): {}", study.name, begin + i,
+                                     point_text(study, point), error.what()));
       }
     });
-    for (int i = 0; i < static_cast<int>(checked.size()); ++i) {
-      Checked& point = checked[static_cast<std::size_t>(i)];
-      if (point.refused)
-        throw SceneError(fmt::format("study {}, point {} ({}): {}", study.name, begin + i,
-                                     point_text(study, study_point(study, begin + i)), *point.refused));
-      texts.add(point.inputs.text);
-      for (auto& file : point.inputs.files) files.insert(std::move(file));
+    for (StudyInputs& input : inputs) {
+      texts.add(input.text);
+      for (auto& file : input.files) files.insert(std::move(file));
     }
   }
   return texts.text() + fingerprint_of_files({files.begin(), files.end()});

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -152,7 +153,6 @@ void PointProcess::serve(const Study& study, const TrialFunction& trial, int req
 }
 
 void PointProcess::give(int index) {
-  if (pending_.empty()) began_ = std::chrono::steady_clock::now();
   pending_.push_back(index);
   std::string request(sizeof index, '\0');
   std::memcpy(request.data(), &index, sizeof index);
@@ -171,7 +171,7 @@ std::vector<PointAnswer> PointProcess::read() {
   for (std::size_t end; (end = received_.find('\n', at)) != std::string::npos; at = end + 1) {
     answers.push_back(parsed(received_.substr(at, end - at)));
     pending_.pop_front();
-    began_ = std::chrono::steady_clock::now();
+    front_s_ = 0.0;
   }
   received_.erase(0, at);
   if (!answers.empty()) log_text_.clear();  // of a point that is done
@@ -179,11 +179,11 @@ std::vector<PointAnswer> PointProcess::read() {
   return answers;
 }
 
-void PointProcess::end_if_longer_than(double limit_s) {
-  if (pending_.empty() || ended_ || ended_after_s_ > 0.0) return;
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-  if (!(seconds > limit_s)) return;
-  ended_after_s_ = limit_s;
+void PointProcess::pass(double passed_s, double limit_s) {
+  if (pending_.empty() || ended_ || too_long_) return;
+  front_s_ += passed_s;
+  if (!(front_s_ > limit_s)) return;
+  too_long_ = pending_.front();
   ::kill(process_, SIGKILL);
 }
 
@@ -193,8 +193,7 @@ std::string PointProcess::how_it_ended() {
   std::string text = WIFSIGNALED(status_) ? fmt::format("ended by signal {} ({})", WTERMSIG(status_),
                                                         ::strsignal(WTERMSIG(status_)))
                                           : fmt::format("ended with code {}", WEXITSTATUS(status_));
-  if (ended_after_s_ > 0.0)
-    text = fmt::format("was ended, because the point took longer than {} s (--limit)", ended_after_s_);
+  if (too_long_) text = fmt::format("was ended: the point took {:.6g} s, longer than its limit", front_s_);
   if (!log_text_.empty()) text += ", after it wrote:\n" + log_text_;
   return text;
 }

@@ -3,8 +3,8 @@
 
 #include <sys/types.h>
 
-#include <chrono>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +36,14 @@ class PointProcess {
   /// @returns points without an answer, in order; it measures the first one.
   [[nodiscard]] const std::deque<int>& pending() const noexcept { return pending_; }
 
-  /// Ends the process if it measures pending().front() for longer than `limit_s` [s]. read() reports the end.
-  void end_if_longer_than(double limit_s);
+  /// Counts `passed_s` [s] as time of pending().front(), and ends the process if that is above `limit_s` [s]. read()
+  /// reports the end.
+  void pass(double passed_s, double limit_s);
+  /// @returns true if pass() ended the process, and the point that took too long has an answer all the same: no
+  /// point failed. @pre ended()
+  [[nodiscard]] bool ended_for_nothing() const noexcept {
+    return too_long_ && (pending_.empty() || pending_.front() != *too_long_);
+  }
 
   /// @returns the answers so far; never waits.
   [[nodiscard]] std::vector<PointAnswer> read();
@@ -63,8 +69,8 @@ class PointProcess {
   int status_ = 0;
   bool ended_ = false;
   std::deque<int> pending_;
-  std::chrono::steady_clock::time_point began_;  ///< pending_.front()
-  double ended_after_s_ = 0.0;                   ///< limit at which it was ended [s]; 0: it was not
+  double front_s_ = 0.0;         ///< time of pending_.front() [s]
+  std::optional<int> too_long_;  ///< point for which pass() ended the process
   std::string received_;
   std::string log_text_;
 };

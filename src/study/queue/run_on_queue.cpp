@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <deque>
 #include <map>
 #include <stdexcept>
 #include <thread>
@@ -15,6 +13,7 @@
 #include "phalanx/study/laboratory/outputs.h"
 #include "phalanx/study/queue.h"
 #include "study/laboratory/journal.h"
+#include "study/queue/pace.h"
 #include "study/queue/study_queue.h"
 
 namespace phalanx {
@@ -27,25 +26,6 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Pace of the finished points over the last minute.
-class Pace {
- public:
-  void add(int done) {
-    constexpr double kWindow = 60.0;  // [s]
-    seen_.emplace_back(Clock::now(), done);
-    while (seen_.size() > 2 && seconds_since(seen_.front().first) > kWindow) seen_.pop_front();
-  }
-  /// @returns points a second; NaN if none was finished in the window.
-  [[nodiscard]] double per_s() const {
-    const int points = seen_.back().second - seen_.front().second;
-    const double seconds = std::chrono::duration<double>(seen_.back().first - seen_.front().first).count();
-    return points > 0 && seconds > 0.0 ? points / seconds : std::nan("");
-  }
-
- private:
-  std::deque<std::pair<Clock::time_point, int>> seen_;
-};
-
 std::vector<PointResult> in_order(const Results& results) {
   std::vector<PointResult> list;
   for (const auto& [index, result] : results) list.push_back(result);
@@ -54,11 +34,14 @@ std::vector<PointResult> in_order(const Results& results) {
 
 /// Stores the results of a journal that the queue lacks, in portions that one statement takes.
 /// @param results  those of the queue, to which these are added
-/// @throws std::invalid_argument if the journal and the queue have different results of a point
+/// @throws std::invalid_argument if the journal and the queue have different results of a point, or points in the
+/// queue were measured with mathematical functions that round differently from this machine's
 void store_missing(StudyQueue& queue, const std::vector<PointResult>& journal, Results& results) {
   constexpr std::size_t kPortion = 500;
   std::vector<MeasuredPoint> portion;
+  bool claimed = false;
   const auto send = [&] {
+    if (!portion.empty() && !std::exchange(claimed, true)) queue.claim_for_journal();
     queue.finish(portion);
     portion.clear();
   };
@@ -121,7 +104,7 @@ class Watch {
   }
 
   void tell(const QueueState& state, int done) {
-    pace_.add(done);
+    pace_.add(Clock::now(), done);
     progress_.done = done;
     progress_.quarantined = state.quarantined;
     progress_.workers = state.workers;
@@ -179,6 +162,7 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
     watch.run(results);
     queued.quarantined_points = watch.quarantined();
     queued.quarantined = queue.quarantined();
+    queued.processors = queue.processors();
   } catch (const QueueStopped&) {  // while the server is away
   }
   queued.results = in_order(results);

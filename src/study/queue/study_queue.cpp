@@ -36,7 +36,7 @@ constexpr const char* kTables[] = {
     R"(CREATE TABLE IF NOT EXISTS phalanx.workers (
       id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
       study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE,
-      place text NOT NULL, jobs integer NOT NULL,
+      place text NOT NULL, cpu text NOT NULL, jobs integer NOT NULL,
       seen timestamptz NOT NULL DEFAULT clock_timestamp(), ended timestamptz))",
     R"(CREATE TABLE IF NOT EXISTS phalanx.points (
       study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE, point integer NOT NULL,
@@ -259,19 +259,36 @@ void StudyQueue::find_study(Session& session, const JournalHeader& header) {
   if (!session.sql.got_data()) study_ = 0;
 }
 
-/// The first worker's mathematical functions are those of the study.
-void StudyQueue::compare_libm(Session& session) {
+/// Compares this machine with the study's libm, which it sets if no result and no living worker depends on it. Keeps
+/// the study's row locked until the transaction ends.
+void StudyQueue::claim_libm(Session& session) {
   const std::string here = libm_here();
-  std::string first = here;
-  session.sql << "UPDATE phalanx.studies SET libm = :here WHERE id = :study AND libm = ''",
-      soci::use(here, "here"), soci::use(study_, "study");
-  session.sql << "SELECT libm FROM phalanx.studies WHERE id = :study", soci::into(first),
+  std::string known = here;
+  int bound = 0;
+  session.sql << "SELECT libm FROM phalanx.studies WHERE id = :study FOR UPDATE", soci::into(known),
       soci::use(study_, "study");
-  if (session.sql.got_data() && first != here)
+  if (!session.sql.got_data() || known == here) return;
+  session.sql << R"(SELECT CAST(
+        EXISTS (SELECT 1 FROM phalanx.points WHERE study = :study AND result IS NOT NULL) OR
+        EXISTS (SELECT 1 FROM phalanx.workers WHERE study = :study AND ended IS NULL
+                AND seen + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()) AS integer))",
+      soci::into(bound), soci::use(study_, "study"), soci::use(lease_s_, "lease");
+  if (bound != 0)
     throw std::invalid_argument(
         "this machine's sine, exponential or another mathematical function rounds differently from that of "
-        "the study's first worker, so that results would differ; work on machines with the same processor "
-        "type and the same libm");
+        "the machines that measured points of the study, so that results would differ; work on machines with "
+        "the same processor type and the same libm, or measure all again on this type (phalanx study run "
+        "--restart)");
+  session.sql << "UPDATE phalanx.studies SET libm = :here WHERE id = :study", soci::use(here, "here"),
+      soci::use(study_, "study");
+}
+
+void StudyQueue::claim_for_journal() {
+  attempt([&](Session& session) {
+    soci::transaction transaction(session.sql);
+    claim_libm(session);
+    transaction.commit();
+  });
 }
 
 void StudyQueue::join(const JournalHeader& header, int jobs) {
@@ -297,12 +314,16 @@ void StudyQueue::join(const JournalHeader& header, int jobs) {
         "FILE --queue URL --out DIR",
         why));
   }
-  attempt([&](Session& session) { compare_libm(session); });
+  const std::string cpu = plain(made_here().cpu);
   attempt([&](Session& session) {
+    soci::transaction transaction(session.sql);
+    claim_libm(session);
     session.sql
-        << "INSERT INTO phalanx.workers (study, place, jobs) VALUES (:study, :place, :jobs) RETURNING id",
+        << R"(INSERT INTO phalanx.workers (study, place, cpu, jobs) VALUES (:study, :place, :cpu, :jobs)
+                      RETURNING id)",
         soci::into(worker_), soci::use(study_, "study"), soci::use(worker_place_, "place"),
-        soci::use(jobs, "jobs");
+        soci::use(cpu, "cpu"), soci::use(jobs, "jobs");
+    transaction.commit();
   });
 }
 
@@ -409,6 +430,16 @@ QueueState StudyQueue::state() {
   });
   refuse_removed(studies);
   return state;
+}
+
+std::string StudyQueue::processors() {
+  std::string names;
+  attempt([&](Session& session) {
+    session.sql
+        << R"(SELECT coalesce(string_agg(DISTINCT cpu, '; '), '') FROM phalanx.workers WHERE study = :study)",
+        soci::into(names), soci::use(study_, "study");
+  });
+  return names;
 }
 
 std::vector<QuarantinedPoint> StudyQueue::quarantined() {

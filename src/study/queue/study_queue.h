@@ -42,6 +42,11 @@ class StudyQueue {
   void create(const JournalHeader& header, double lease_s, bool restart);
   /// Lets quarantined points be tried again.
   void retry_quarantined();
+  /// Makes the study's mathematical functions those of this machine, before points of a journal enter the queue.
+  /// @throws std::invalid_argument if points were measured with others
+  void claim_for_journal();
+  /// @returns the processors of the workers, each once, or an empty text.
+  [[nodiscard]] std::string processors();
   /// Makes this connection a worker's. @throws std::invalid_argument as work_on_queue()
   void join(const JournalHeader& header, int jobs);
 
@@ -80,7 +85,7 @@ class StudyQueue {
   void make_tables();
   void wait_for_server(const std::string& why, int tries);
   void find_study(Session& session, const JournalHeader& header);
-  void compare_libm(Session& session);
+  void claim_libm(Session& session);
 
   QueueServer server_;
   std::string connection_;

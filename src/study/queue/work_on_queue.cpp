@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "phalanx/study/queue.h"
+#include "study/queue/pace.h"
 #include "study/queue/point_process.h"
 #include "study/queue/study_queue.h"
 
@@ -29,6 +30,7 @@ constexpr int kMostTaken = 1000;
 constexpr double kGivenSeconds = 0.1;  ///< of short points that one process has at once [s]
 constexpr int kMostGiven = 64;
 constexpr int kMostFailuresInARow = 20;
+constexpr double kMostPassed = 1.0;              ///< between two looks at the processes [s]
 constexpr auto kIdle = std::chrono::seconds(1);  ///< until the queue is asked again for points of others
 constexpr auto kAwake = std::chrono::milliseconds(200);
 
@@ -58,6 +60,7 @@ class Worker {
         trial_(trial),
         server_(server),
         options_(options),
+        limit_s_(options.limit_s > 0.0 ? options.limit_s : usual_point_limit(study)),
         processes_(static_cast<std::size_t>(jobs)) {}
 
   void run() {
@@ -139,10 +142,14 @@ class Worker {
   }
 
   void read() {
+    const auto now = Clock::now();
+    // A pause of the whole worker, and a wait for the server, are not time of its points.
+    const double passed = std::min(std::chrono::duration<double>(now - last_read_).count(), kMostPassed);
+    last_read_ = now;
     for (Process& process : processes_) {
       if (!process) continue;
       for (PointAnswer& answer : process->read()) take_answer(answer);
-      process->end_if_longer_than(options_.limit_s);
+      process->pass(passed, limit_s_);
       if (process->ended()) replace(process);
     }
   }
@@ -164,12 +171,14 @@ class Worker {
   /// The process has ended: the point that it measured fails, the others are given to the next one.
   void replace(Process& process) {
     const std::deque<int> pending = process->pending();
+    const bool for_nothing = process->ended_for_nothing();
     const std::string how = process->how_it_ended();
     process.reset();
     if (pending.empty()) return;
-    const bool by_request = stopped();  // a signal to all processes of the worker is no failure of a point
-    taken_.insert(taken_.begin(), by_request ? pending.begin() : std::next(pending.begin()), pending.end());
-    if (!by_request) fail(pending.front(), fmt::format("the process that measured it {}", how));
+    // A signal to all processes of the worker is no failure of a point.
+    const bool failed = !for_nothing && !stopped();
+    taken_.insert(taken_.begin(), failed ? std::next(pending.begin()) : pending.begin(), pending.end());
+    if (failed) fail(pending.front(), fmt::format("the process that measured it {}", how));
   }
 
   void fail(int index, const std::string& why) {
@@ -193,7 +202,8 @@ class Worker {
     work_.finished += static_cast<int>(measured_.size());
     for (const MeasuredPoint& point : measured_) held_.erase(point.index);
     measured_.clear();
-    if (options_.finished) options_.finished(work_.finished);
+    pace_.add(Clock::now(), work_.finished);
+    if (options_.finished) options_.finished(work_.finished, pace_.per_s());
   }
 
   void renew() {
@@ -208,11 +218,14 @@ class Worker {
   const TrialFunction& trial_;
   const QueueServer& server_;
   const QueueWorkOptions& options_;
+  double limit_s_;
   std::vector<Process> processes_;
   std::set<int> held_;     ///< taken, neither stored nor failed
   std::deque<int> taken_;  ///< of them, those that no process has
   std::vector<MeasuredPoint> measured_;
   PointTime time_;
+  Pace pace_;
+  Clock::time_point last_read_ = Clock::now();
   Clock::time_point next_take_ = Clock::now();
   Clock::time_point next_renewal_ = Clock::now();
   int failures_in_a_row_ = 0;
@@ -221,11 +234,19 @@ class Worker {
 
 }  // namespace
 
+double usual_point_limit(const Study& study) {
+  constexpr double kLeast = 3600.0;       // [s]
+  constexpr double kTrialSeconds = 0.05;  // stability_press on one core
+  constexpr double kSlower = 20.0;
+  return std::max(kLeast, kSlower * kTrialSeconds * static_cast<double>(most_trials(study).per_point));
+}
+
 QueueWork work_on_queue(const Study& study, const StudyCheck& check, const TrialFunction& trial,
                         const QueueServer& server, const QueueWorkOptions& options) {
-  if (!(options.limit_s > 0.0))
+  if (!(options.limit_s >= 0.0))
     throw std::invalid_argument(
-        fmt::format("a limit of {} s for a point is out of range; give one above 0", options.limit_s));
+        fmt::format("a limit of {} s for a point is out of range; give one above 0, or 0 for the usual one",
+                    options.limit_s));
   StudyQueue queue(server);
   const int jobs =
       options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

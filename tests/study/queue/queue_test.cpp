@@ -2,6 +2,7 @@
 // The queue on a real server, with trials whose answers are known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -12,10 +13,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "phalanx/record/made.h"
 #include "phalanx/study/laboratory/outputs.h"
+#include "phalanx/study/laboratory/study_file.h"
 #include "phalanx/study/queue.h"
 #include "study/laboratory/expect_refusal.h"
 #include "study/laboratory/synthetic.h"
+#include "study/queue/pace.h"
+#include "study/queue/point_process.h"
 #include "study/queue/postgres_server.h"
 #include "study/queue/study_queue.h"
 
@@ -97,7 +102,9 @@ TEST_F(StudyQueueTest, TheResultsAreThoseOfOneProcess) {
   EXPECT_EQ(done.failed, 0);
   EXPECT_TRUE(done.whole);
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.workers WHERE ended IS NOT NULL AND jobs = 2"), 1);
-  expect_the_results_of_one_process(run());
+  const QueuedResults queued = run();
+  expect_the_results_of_one_process(queued);
+  EXPECT_EQ(queued.processors, made_here().cpu);
 }
 
 TEST_F(StudyQueueTest, AFinishedPointIsNotMeasuredAgain) {
@@ -187,7 +194,57 @@ TEST_F(StudyQueueTest, AProcessThatEndsInGoodOrderFailsItsPointToo) {
   EXPECT_THAT(run().quarantined.at(0).log, HasSubstr("ended with code 0"));
 }
 
-// No trial here ends, so that even the shortest limit ends nothing that would.
+// A trial of point 3 never ends; the others take no time.
+TrialResult endless_at_point_3(const Overrides& overrides, double stiffness, double press,
+                               std::uint64_t seed) {
+  while (testing::number_of(overrides, "synthetic.friction", 0.0) == 0.3 &&
+         testing::number_of(overrides, "synthetic.gain", 1.0) == 1.0)
+    ::pause();
+  return testing::synthetic_trial(overrides, stiffness, press, seed);
+}
+
+void wait_for_answer(const PointProcess& process) {
+  pollfd answers{.fd = process.answers(), .events = POLLIN, .revents = 0};
+  ASSERT_EQ(::poll(&answers, 1, -1), 1);
+}
+
+void read_until_the_end(PointProcess& process) {
+  while (!process.ended()) static_cast<void>(process.read());
+}
+
+TEST(PointProcess, TheLimitIsOfEachPoint) {
+  const Study study = testing::study_of(testing::kTwelvePoints);
+  PointProcess process(study, endless_at_point_3);
+  for (const int point : {0, 1, 2}) {
+    process.give(point);
+    process.pass(0.9, 1.0);
+    while (!process.pending().empty()) static_cast<void>(process.read());
+  }
+  process.give(3);
+  process.give(4);
+  process.pass(0.9, 1.0);
+  EXPECT_TRUE(process.read().empty());
+  EXPECT_FALSE(process.ended());
+  process.pass(0.2, 1.0);
+  read_until_the_end(process);
+  EXPECT_FALSE(process.ended_for_nothing());
+  EXPECT_THAT(process.pending(), ElementsAre(3, 4));
+  EXPECT_THAT(process.how_it_ended(), HasSubstr("the point took 1.1 s"));
+}
+
+TEST(PointProcess, APointThatWasMeasuredBeforeTheEndIsNoFailure) {
+  const Study study = testing::study_of(testing::kTwelvePoints);
+  PointProcess process(study, endless_at_point_3);
+  process.give(0);
+  process.give(3);
+  wait_for_answer(process);
+  process.pass(1.1, 1.0);  // it ends for point 0, whose answer was not read yet
+  read_until_the_end(process);
+  EXPECT_TRUE(process.ended_for_nothing());
+  EXPECT_THAT(process.pending(), ElementsAre(3));
+}
+
+// No trial here ends, so that a limit of 1 ms is right on any machine.
 TEST_F(StudyQueueTest, APointThatTakesTooLongFails) {
   create();
   try {
@@ -198,18 +255,25 @@ TEST_F(StudyQueueTest, APointThatTakesTooLongFails) {
                                     address(), {.commit = "test", .jobs = 2, .limit_s = 1e-3}));
     ADD_FAILURE() << "20 failures in a row end the worker";
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("took longer than 0.001 s"));
+    EXPECT_THAT(error.what(), HasSubstr("longer than its limit"));
   }
   EXPECT_EQ(number("SELECT sum(failures) FROM phalanx.points"), 20);
-  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE log LIKE '%took longer than 0.001 s%'"),
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE log LIKE '%longer than its limit%'"),
             number("SELECT count(*) FROM phalanx.points WHERE failures > 0"));
-  for (const double limit : {0.0, -1.0, std::nan("")})
+  for (const double limit : {-1.0, std::nan("")})
     testing::expect_refusal(
         [&] {
           static_cast<void>(work_on_queue(study_, testing::no_inputs, testing::synthetic_trial, address(),
                                           {.commit = "test", .limit_s = limit}));
         },
         {"limit", "out of range"});
+}
+
+TEST_F(StudyQueueTest, TheUsualLimitFollowsTheTrialsOfAPoint) {
+  EXPECT_EQ(usual_point_limit(study_), 3600.0);
+  study_.seeds = 10000;
+  EXPECT_EQ(usual_point_limit(study_), most_trials(study_).per_point);  // 20 times 0.05 s
+  EXPECT_GT(usual_point_limit(study_), 3600.0);
 }
 
 TEST_F(StudyQueueTest, AMachineOnWhichEveryPointFailsQuarantinesOnlyAFew) {
@@ -244,12 +308,32 @@ TEST_F(StudyQueueTest, WorkersOfAnotherStudyProgramOrSceneAreRefused) {
 TEST_F(StudyQueueTest, TheFirstWorkersMathematicalFunctionsAreTheStudys) {
   create();
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.studies WHERE libm = ''"), 1);
-  StudyQueue(address()).join(header(), 1);
+  StudyQueue worker(address());
+  worker.join(header(), 1);
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.studies WHERE libm = ''"), 0);
-  StudyQueue(address()).join(header(), 1);
   sql("UPDATE phalanx.studies SET libm = 'other'");
-  testing::expect_refusal([&] { StudyQueue(address()).join(header(), 1); }, {"rounds differently"});
+  testing::expect_refusal([&] { StudyQueue(address()).join(header(), 1); },
+                          {"rounds differently", "--restart"});
   EXPECT_NO_THROW(create()) << "the machine that collects measures nothing";
+  worker.leave({});
+  EXPECT_NO_THROW(StudyQueue(address()).join(header(), 1)) << "nothing was measured with the other functions";
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.studies WHERE libm = 'other'"), 0);
+  sql("UPDATE phalanx.workers SET ended = now()");
+  sql("UPDATE phalanx.studies SET libm = 'other'");
+  sql("UPDATE phalanx.points SET result = '{}' WHERE point = 5");
+  testing::expect_refusal([&] { StudyQueue(address()).join(header(), 1); }, {"rounds differently"});
+}
+
+TEST_F(StudyQueueTest, AJournalOfAnotherMachineDoesNotEnter) {
+  create();
+  StudyQueue worker(address());
+  worker.join(header(), 1);
+  sql("UPDATE phalanx.studies SET libm = 'other'");
+  static_cast<void>(alone());
+  std::filesystem::copy_file(alone_ / "points.jsonl", folder_ / "points.jsonl");
+  testing::expect_refusal([&] { static_cast<void>(run()); }, {"rounds differently"});
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NOT NULL"), 0);
+  EXPECT_EQ(read_file(folder_ / "points.jsonl"), read_file(alone_ / "points.jsonl"));
 }
 
 TEST_F(StudyQueueTest, ALeaseKeepsAPointUntilItEndsOrIsGivenBack) {
@@ -381,7 +465,7 @@ TEST_F(StudyQueueTest, AWorkerThatIsStoppedGivesItsPointsBack) {
   server.stopped = [&] { return finished > 0; };
   const QueueWork done =
       work_on_queue(study_, testing::no_inputs, testing::synthetic_trial, server,
-                    {.commit = "test", .jobs = 1, .finished = [&](int count) { finished = count; }});
+                    {.commit = "test", .jobs = 1, .finished = [&](int count, double) { finished = count; }});
   EXPECT_FALSE(done.whole);
   EXPECT_GE(done.finished, 1);
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NULL AND worker IS NOT NULL"), 0);
@@ -456,6 +540,23 @@ TEST_F(StudyQueueTest, ALongJournalEntersAndIsCollectedInPortions) {
   std::filesystem::copy_file(alone_ / "points.jsonl", folder_ / "points.jsonl");
   expect_the_results_of_one_process(run());
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NOT NULL"), 4501);
+}
+
+TEST(Pace, IsThatOfTheLastMinute) {
+  using std::chrono::seconds;
+  Pace pace;
+  EXPECT_TRUE(std::isnan(pace.per_s()));
+  const Pace::Time begin{};
+  pace.add(begin, 100);
+  EXPECT_TRUE(std::isnan(pace.per_s()));
+  pace.add(begin + seconds(10), 120);
+  EXPECT_DOUBLE_EQ(pace.per_s(), 2.0);
+  pace.add(begin + seconds(60), 370);
+  EXPECT_DOUBLE_EQ(pace.per_s(), 270.0 / 60.0);
+  pace.add(begin + seconds(65), 395);
+  EXPECT_DOUBLE_EQ(pace.per_s(), 275.0 / 55.0) << "the first is more than a minute ago";
+  pace.add(begin + seconds(200), 395);
+  EXPECT_TRUE(std::isnan(pace.per_s()));
 }
 
 TEST_F(StudyQueueTest, ALeaseOutOfRangeIsRefused) {

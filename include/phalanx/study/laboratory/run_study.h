@@ -61,9 +61,9 @@ struct StudyOptions {
 [[nodiscard]] std::string program_version();
 
 /// Checks every point. @returns the fingerprint of all inputs
-/// @param jobs  number of threads that call `check`; 0: as many as there are cores. They have ended when this returns.
-/// @throws SceneError naming the first point that `check` refuses by std::invalid_argument, and the reason; and
-/// everything else that `check` throws
+/// @param jobs  most threads that call `check`, at most one a core; 0: one a core. They have ended when this returns.
+/// @throws what `check` throws for the first point for which it throws: SceneError naming the point and the reason
+/// for a std::invalid_argument
 [[nodiscard]] std::string check_study(const Study& study, const StudyCheck& check, int jobs = 0);
 
 /// Measures the points that the journal in `out` does not have yet ("points.jsonl", or "points.2-of-3.jsonl"
