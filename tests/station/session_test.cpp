@@ -139,8 +139,8 @@ TEST_F(SessionTest, TheFirstSceneOscillatesAtAStiffWallAndNotWithSmoothing) {
   }
 }
 
-// The way of the page. The simulated patient planned its press for the softer wall and goes on to press so far: each
-// bump reaches the limit of force, and with smoothing, too, the hand oscillates at the begin of each squeeze.
+// The values change as by the page. The simulated patient planned its press for the softer wall and goes on to press so
+// far: each bump reaches the limit of force, and with smoothing, too, the hand oscillates at the start of each squeeze.
 TEST_F(SessionTest, TheFirstSceneOscillatesLessOnceSmoothingIsSwitchedOn) {
   start(with("simulated"));
   ASSERT_TRUE(until_running());

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "phalanx/study/laboratory/study_file.h"
 #include "phalanx/study/queue.h"
 #include "study/queue/pace.h"
 #include "study/queue/point_process.h"

@@ -51,6 +51,11 @@ export class CockpitPage {
     return this.page.evaluate(() => window.phalanx.lost());
   }
 
+  /// The same and the words beside it, of one moment.
+  verdictInWords(): Promise<{ verdict: string | null; words: string }> {
+    return this.page.locator("[data-verdict]").evaluate((light: HTMLElement) => ({ verdict: light.getAttribute("data-verdict"), words: light.innerText }));
+  }
+
   number(): Promise<number> {
     return this.page.evaluate(() => window.phalanx.page());
   }
