@@ -21,8 +21,7 @@ std::uint32_t ServedController::new_epoch() {
 }
 
 ServedStatistics ServedController::serve(const Clock& clock, const Transport& transport,
-                                         std::optional<double> seconds,
-                                         const std::atomic<int>& stop) {
+                                         std::optional<double> seconds, const std::atomic<int>& stop) {
   const double period = controller_.period();
   const double begin = clock.now();
   std::uint64_t next = 1;  // number of the tick on the process's clock

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <csignal>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
