@@ -60,7 +60,8 @@ class Bench {
     DeviceCommand command;
     bool stopping = false;
     const auto gate = [&](double t, const SimulatedExoskeleton& measured, Snapshot& leaving) {
-      ++sample.sequence;
+      // The newest sample of the controller at each step of the host; the others are not looked at.
+      sample.sequence = static_cast<std::uint32_t>(std::llround(measured.time_s() * info_.rate_hz));
       sample.time_us = static_cast<std::uint64_t>(std::llround(1e6 * measured.time_s()));
       sample.received = t;
       sample.state = DeviceState::kActive;
