@@ -80,7 +80,8 @@ struct QueuedResults {
 struct QueueWorkOptions {
   std::string commit = {};  ///< as StudyOptions::commit
   int jobs = 0;             ///< processes that measure; 0: as many as there are cores
-  /// Longest time of a point [s]. Then its process is ended, and the point fails. 0: usual_point_limit()
+  /// Longest time of a point [s], to about 1 s. Then its process is ended, and the point fails. 0:
+  /// usual_point_limit()
   double limit_s = 0.0;
   /// Called after points were stored, with their number so far and the pace of the last minute [1/s]; NaN: not known.
   std::function<void(int done, double points_per_s)> finished = {};

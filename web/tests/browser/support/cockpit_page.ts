@@ -208,8 +208,8 @@ export class CockpitPage {
     if (!state) return "no state has come";
     const contacts = newest?.contact.map((contact) => `${contact.segment}: ${contact.force.toFixed(2)} N`).join(", ") ?? "";
     return (
-      `scene ${state.scene}, ${SafetyState[state.safety]}${state.heldStopped ? ", held" : ""}${state.fault ? `, fault ${state.fault.name}` : ""}` +
-      `${state.fault ? ` (${state.fault.meaning}; tick ${state.fault.tick})` : ""}${state.busy ? `, busy: ${state.busy}` : ""}${state.trouble ? `, trouble: ${state.trouble}` : ""}; tick ${newest?.tick}, contacts [${contacts}]; last notice: ${this.stream.notices.at(-1)?.text ?? "none"}`
+      `scene ${state.scene}, ${SafetyState[state.safety]}${state.heldStopped ? ", held" : ""}${state.fault ? `, fault ${state.fault.name} (${state.fault.meaning}; tick ${state.fault.tick})` : ""}` +
+      `${state.busy ? `, busy: ${state.busy}` : ""}${state.trouble ? `, trouble: ${state.trouble}` : ""}; tick ${newest?.tick}, contacts [${contacts}]; last notice: ${this.stream.notices.at(-1)?.text ?? "none"}`
     );
   }
 }
