@@ -306,6 +306,7 @@ export function chart(
     dispose() {
       plot?.destroy();
       plot = null;
+      overlay = undefined;
     },
   };
 }
