@@ -31,7 +31,7 @@ install(DIRECTORY web/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx/web OPT
 install(FILES src/device/link/phalanx_link.c DESTINATION ${CMAKE_INSTALL_DATADIR}/phalanx/link)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples USE_SOURCE_PERMISSIONS)
-install(FILES README.md CHANGELOG.md LICENSE NOTICE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE NOTICE SECURITY.md THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 foreach(component phalanx import simulation station recording)
   install(EXPORT phalanx_${component} FILE phalanx_${component}Targets.cmake NAMESPACE phalanx:: DESTINATION ${package_dir})
 endforeach()
