@@ -95,7 +95,8 @@ bool read_available(int descriptor, std::string& text) {
 }
 
 [[noreturn]] void throw_system_error() {
-  throw std::system_error(errno, std::generic_category(), "a process for the points of the study");
+  throw std::system_error(errno, std::generic_category(),
+                          "a process for the points of the study cannot be started (--jobs, ulimit -u)");
 }
 
 }  // namespace
@@ -184,6 +185,7 @@ void PointProcess::pass(double passed_s, double limit_s) {
   front_s_ += passed_s;
   if (!(front_s_ > limit_s)) return;
   too_long_ = pending_.front();
+  limit_s_ = limit_s;
   ::kill(process_, SIGKILL);
 }
 
@@ -193,7 +195,11 @@ std::string PointProcess::how_it_ended() {
   std::string text = WIFSIGNALED(status_) ? fmt::format("ended by signal {} ({})", WTERMSIG(status_),
                                                         ::strsignal(WTERMSIG(status_)))
                                           : fmt::format("ended with code {}", WEXITSTATUS(status_));
-  if (too_long_) text = fmt::format("was ended: the point took {:.6g} s, longer than its limit", front_s_);
+  if (too_long_)
+    text = fmt::format(
+        "was ended: the point took {:.6g} s, longer than its limit of {:.6g} s (phalanx study work "
+        "--limit)",
+        front_s_, limit_s_);
   if (!log_text_.empty()) text += ", after it wrote:\n" + log_text_;
   return text;
 }

@@ -71,6 +71,7 @@ class PointProcess {
   std::deque<int> pending_;
   double front_s_ = 0.0;         ///< time of pending_.front() [s]
   std::optional<int> too_long_;  ///< point for which pass() ended the process
+  double limit_s_ = 0.0;         ///< that it exceeded [s]
   std::string received_;
   std::string log_text_;
 };

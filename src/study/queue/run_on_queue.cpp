@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <map>
 #include <stdexcept>
 #include <thread>
@@ -75,6 +76,7 @@ class Watch {
   void run(Results& results) {
     constexpr double kPause = 1.0;   // [s]
     constexpr double kShare = 20.0;  // a look at the queue takes at most about 1 / kShare of the time
+    constexpr double kLongest = 30.0;
     progress_.resumed = static_cast<int>(results.size());
     for (;;) {
       const auto began = Clock::now();
@@ -86,8 +88,9 @@ class Watch {
       }
       tell(state, static_cast<int>(results.size()));
       if (state.unfinished == 0) return;
+      const double pause_s = std::clamp(kShare * seconds_since(began), kPause, kLongest);
       write_page(results);
-      if (pause(std::max(kPause, kShare * seconds_since(began)))) return;
+      if (pause(pause_s)) return;
     }
   }
 
@@ -142,7 +145,8 @@ class Watch {
 
 QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const std::filesystem::path& out,
                            const QueueServer& server, const QueueRunOptions& options) {
-  StudyQueue queue(server);  // first: an address that is refused must not change a file
+  StudyQueue queue(server);  // first: an address, a role or tables that are refused must not change a file
+  queue.prepare(options.lease_s);
   const JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
   prepare_output_folder(out);
   const auto file = out / journal_name(1, 1);
@@ -150,6 +154,7 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
   Results results;
   for (const PointResult& result : journal.finished()) results.emplace(result.index, result);
   QueuedResults queued;
+  std::exception_ptr failure;
   try {
     queue.create(header, options.lease_s, options.restart);
     Results stored;
@@ -164,10 +169,17 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
     queued.quarantined = queue.quarantined();
     queued.processors = queue.processors();
   } catch (const QueueStopped&) {  // while the server is away
+  } catch (...) {
+    failure = std::current_exception();
   }
   queued.results = in_order(results);
   queued.whole = static_cast<int>(results.size()) == point_count(study);
-  replace_journal(file, {.header = header, .points = queued.results});
+  try {
+    replace_journal(file, {.header = header, .points = queued.results});
+  } catch (...) {
+    if (!failure) throw;
+  }
+  if (failure) std::rethrow_exception(failure);  // the journal has what was collected until then
   return queued;
 }
 

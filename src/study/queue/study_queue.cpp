@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string_view>
 #include <thread>
+#include <type_traits>
+#include <utility>
 
 #include "phalanx/record/made.h"
 #include "study/laboratory/fingerprint.h"
@@ -23,8 +25,11 @@
 namespace phalanx {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr double kLongestLease = 86400.0;  // [s]
+constexpr auto kToldAgain = std::chrono::minutes(5);
+
+using Clock = std::chrono::steady_clock;
 
 constexpr const char* kTables[] = {
     "CREATE SCHEMA IF NOT EXISTS phalanx",
@@ -40,7 +45,7 @@ constexpr const char* kTables[] = {
       seen timestamptz NOT NULL DEFAULT clock_timestamp(), ended timestamptz))",
     R"(CREATE TABLE IF NOT EXISTS phalanx.points (
       study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE, point integer NOT NULL,
-      failures integer NOT NULL DEFAULT 0, worker bigint, lease_end timestamptz,
+      failures integer NOT NULL DEFAULT 0, failed_by bigint, worker bigint, lease_end timestamptz,
       seconds double precision, finished_at timestamptz, result text, log text,
       PRIMARY KEY (study, point)) WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.01))",
     R"(CREATE INDEX IF NOT EXISTS points_unfinished ON phalanx.points (study, point) WHERE result IS NULL)",
@@ -49,26 +54,31 @@ constexpr const char* kTables[] = {
 
 // A lease that is not over counts. After a start of the server every lease counts for its whole length again: the
 // workers could not renew it while the server was away.
+// A point that failed is left to other workers while one of them lives: the machine may be the cause.
 // Materialized: a plan that executed the selection for each row would take more than `most`.
 constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
     SELECT point FROM phalanx.points
     WHERE study = :study AND result IS NULL AND failures < :most_failures
       AND (lease_end IS NULL OR (lease_end < clock_timestamp() AND
            pg_postmaster_start_time() + make_interval(secs => CAST(:lease AS double precision)) < clock_timestamp()))
+      AND (failed_by IS DISTINCT FROM :worker OR NOT EXISTS (
+           SELECT 1 FROM phalanx.workers WHERE workers.study = :study AND id <> :worker AND ended IS NULL
+             AND seen + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()))
     ORDER BY point LIMIT :most FOR UPDATE SKIP LOCKED)
   UPDATE phalanx.points
   SET worker = :worker, lease_end = clock_timestamp() + make_interval(secs => CAST(:lease AS double precision))
   FROM next WHERE points.study = :study AND points.point = next.point
   RETURNING points.point)";
 
-// @returns points that had another result.
+// @returns points that had another result, and where it was measured.
 constexpr const char* kFinish = R"(WITH sent AS MATERIALIZED (
     SELECT * FROM json_to_recordset(CAST(:sent AS json)) AS row (point integer, seconds double precision, result text)),
   stored AS (
     UPDATE phalanx.points SET result = sent.result, seconds = sent.seconds, worker = :worker, lease_end = NULL,
       finished_at = clock_timestamp()
     FROM sent WHERE points.study = :study AND points.point = sent.point AND points.result IS NULL)
-  SELECT points.point FROM phalanx.points, sent
+  SELECT points.point, coalesce(workers.place, 'a journal')
+  FROM sent, phalanx.points LEFT JOIN phalanx.workers ON workers.id = points.worker
   WHERE points.study = :study AND points.point = sent.point AND points.result <> sent.result)";
 
 // ORDER BY names the columns, not the text, so that the index points_finished has the order.
@@ -99,6 +109,19 @@ std::string reason_of(const soci::soci_error& error) {
   }
   while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
   return line;
+}
+
+/// @returns what to do about a refusal, or an empty text.
+std::string remedy_of(const std::string& why) {
+  if (why.find("no password supplied") != std::string::npos)
+    return "; write a line HOST:PORT:DATABASE:USER:PASSWORD into ~/.pgpass and make it readable by you alone";
+  if (why.find("root certificate file") != std::string::npos)
+    return "; put the certificate of the server's authority there, or name its file in the address "
+           "(?sslrootcert=FILE)";
+  if (why.find("permission denied") != std::string::npos)
+    return "; connect as the role that owns the tables of the schema phalanx, or let its owner grant the "
+           "role what it needs";
+  return "";
 }
 
 std::string libm_here() { return fmt::format("{:016x}", libm_fingerprint()); }
@@ -161,7 +184,8 @@ StudyQueue::StudyQueue(const QueueServer& server)
   try {
     session_ = std::make_unique<Session>(connection_);
   } catch (const soci::soci_error& error) {
-    throw std::runtime_error(fmt::format("the queue's server cannot be reached: {}", reason_of(error)));
+    const std::string why = reason_of(error);
+    throw std::runtime_error(fmt::format("the queue's server cannot be reached: {}{}", why, remedy_of(why)));
   }
 }
 
@@ -170,26 +194,48 @@ StudyQueue::~StudyQueue() = default;
 /// Calls `function` with a session until it succeeds.
 template <class Function>
 auto StudyQueue::attempt(const Function& function) {
+  std::string told;
+  Clock::time_point next_told;
   for (int tries = 0;; ++tries) {
     std::string why;
     try {
       if (!session_) session_ = std::make_unique<Session>(connection_);
-      return function(*session_);
+      if constexpr (std::is_void_v<decltype(function(*session_))>) {
+        function(*session_);
+        tell_back(told);
+        return;
+      } else {
+        auto result = function(*session_);
+        tell_back(told);
+        return result;
+      }
     } catch (const soci::soci_error& error) {
       why = reason_of(error);
       if (session_ && !session_->is_lost(error))
-        throw std::runtime_error(fmt::format("the queue's server refuses a statement: {}", why));
+        throw std::runtime_error(
+            fmt::format("the queue's server refuses a statement: {}{}", why, remedy_of(why)));
     }
     session_.reset();
-    wait_for_server(why, tries);
+    // Not the first time: a new connection may be all that is needed. Later a password may be wrong by now.
+    if (tries > 0 && (why != told || Clock::now() >= next_told)) {
+      if (server_.tell)
+        server_.tell(fmt::format("the queue's server is away ({}{}); trying again until it is back", why,
+                                 remedy_of(why)));
+      told = why;
+      next_told = Clock::now() + kToldAgain;
+    }
+    wait_for_server(tries);
   }
 }
 
-void StudyQueue::wait_for_server(const std::string& why, int tries) {
+/// @param told  why it was away; empty: that was not told
+void StudyQueue::tell_back(const std::string& told) const {
+  if (!told.empty() && server_.tell) server_.tell("the queue's server is back");
+}
+
+void StudyQueue::wait_for_server(int tries) const {
   constexpr int kMostDoublings = 5;
   constexpr auto kStep = std::chrono::milliseconds(100);
-  if (tries == 1 && server_.tell)
-    server_.tell(fmt::format("the queue's server is away ({}); trying again until it is back", why));
   for (int step = 0; step < 1 << std::min(tries, kMostDoublings); ++step) {
     if (tries >= least_tries_ && server_.stopped && server_.stopped()) throw QueueStopped{};
     std::this_thread::sleep_for(kStep);
@@ -214,22 +260,38 @@ void StudyQueue::make_tables() {
   });
 }
 
-void StudyQueue::create(const JournalHeader& header, double lease_s, bool restart) {
+void StudyQueue::prepare(double lease_s) {
   if (!(lease_s > 0.0 && lease_s <= kLongestLease))
     throw std::invalid_argument(fmt::format(
         "a lease of {} s is out of range; give one above 0 and up to {} s", lease_s, kLongestLease));
+  make_tables();
+  int version = 0;
+  attempt([&](Session& session) {
+    session.sql << "SELECT max(version) FROM phalanx.format", soci::into(version);
+  });
+  if (version != kFormat)
+    throw std::runtime_error(fmt::format(
+        "the queue's tables have format {}, this program knows {}; use the program that made them, or "
+        "another database",
+        version, kFormat));
+}
+
+void StudyQueue::create(const JournalHeader& header, double lease_s, bool restart) {
+  prepare(lease_s);
   const std::string text = header_text_of(header);
   const std::string fingerprint = fingerprint_of(text);
   const std::string name = plain(header.study.name);
   const int points = point_count(header.study);
-  make_tables();
-  int version = 0;
+  long long old = 0;  // the study that a restart removes; what a repetition finds was made by this call
+  if (restart)
+    attempt([&](Session& session) {
+      session.sql << "SELECT coalesce(max(id), 0) FROM phalanx.studies WHERE fingerprint = :key",
+          soci::into(old), soci::use(fingerprint, "key");
+    });
   attempt([&](Session& session) {
     soci::session& sql = session.sql;
     soci::transaction transaction(sql);
-    sql << "SELECT max(version) FROM phalanx.format", soci::into(version);
-    if (version != kFormat) return;
-    if (restart) sql << "DELETE FROM phalanx.studies WHERE fingerprint = :key", soci::use(fingerprint, "key");
+    sql << "DELETE FROM phalanx.studies WHERE id = :old", soci::use(old, "old");
     sql << R"(WITH made AS (
                 INSERT INTO phalanx.studies (fingerprint, name, header, libm, lease_s)
                 VALUES (:key, :name, :header, '', :lease) ON CONFLICT (fingerprint) DO NOTHING RETURNING id)
@@ -241,11 +303,6 @@ void StudyQueue::create(const JournalHeader& header, double lease_s, bool restar
         soci::use(lease_s, "lease"), soci::use(fingerprint, "key");
     transaction.commit();
   });
-  if (version != kFormat)
-    throw std::runtime_error(fmt::format(
-        "the queue's tables have format {}, this program knows {}; use the program that made them, or "
-        "another database",
-        version, kFormat));
   attempt([&](Session& session) { find_study(session, header); });
   refuse_removed(study_ == 0 ? 0 : 1);
 }
@@ -329,8 +386,8 @@ void StudyQueue::join(const JournalHeader& header, int jobs) {
 
 void StudyQueue::retry_quarantined() {
   attempt([&](Session& session) {
-    session.sql
-        << "UPDATE phalanx.points SET failures = 0 WHERE study = :study AND result IS NULL AND failures > 0",
+    session.sql << "UPDATE phalanx.points SET failures = 0, failed_by = NULL, log = NULL WHERE study = "
+                   ":study AND result IS NULL AND failures > 0",
         soci::use(study_, "study");
   });
 }
@@ -366,38 +423,47 @@ void StudyQueue::finish(const std::vector<MeasuredPoint>& measured) {
   for (const MeasuredPoint& point : measured)
     json.push_back({{"point", point.index}, {"seconds", point.seconds}, {"result", point.result}});
   const std::string sent = json.dump(-1, ' ', true, OrderedJson::error_handler_t::replace);
-  const auto other = attempt([&](Session& session) -> std::optional<int> {
-    const soci::rowset<int> rows = (session.sql.prepare << kFinish, soci::use(sent, "sent"),
-                                    soci::use(worker_, "worker"), soci::use(study_, "study"));
+  using Other = std::pair<int, std::string>;
+  const auto other = attempt([&](Session& session) -> std::optional<Other> {
+    const soci::rowset<soci::row> rows = (session.sql.prepare << kFinish, soci::use(sent, "sent"),
+                                          soci::use(worker_, "worker"), soci::use(study_, "study"));
     const auto first = rows.begin();
-    return first == rows.end() ? std::nullopt : std::optional<int>(*first);
+    if (first == rows.end()) return std::nullopt;
+    return Other(first->get<int>(0), first->get<std::string>(1));
   });
   if (other)
-    throw std::runtime_error(
-        fmt::format("point {} has another result in the queue already: this machine and another one compute "
-                    "differently; compare them with phalanx study FILE on each",
-                    *other));
+    throw std::runtime_error(fmt::format(
+        "point {} has another result in the queue already: this machine ({}) and that of the first "
+        "result ({}) compute differently; compare them with phalanx study FILE on each",
+        other->first, worker_place_, other->second));
 }
 
 void StudyQueue::fail(int point, const std::string& log) {
-  const std::string text = plain(log);
+  const std::string text = plain(fmt::format("on {}: {}", worker_place_, log));
   attempt([&](Session& session) {
-    session.sql
-        << R"(UPDATE phalanx.points SET failures = failures + 1, log = :log, worker = NULL, lease_end = NULL
+    session.sql << R"(UPDATE phalanx.points SET failures = failures + 1, failed_by = :worker, worker = NULL,
+                        lease_end = NULL, log = concat_ws(E'\n\n', log, CAST(:log AS text))
                       WHERE study = :study AND point = :point AND worker = :worker AND result IS NULL)",
         soci::use(text, "log"), soci::use(study_, "study"), soci::use(point, "point"),
         soci::use(worker_, "worker");
   });
 }
 
-void StudyQueue::leave(const std::vector<int>& points) {
+void StudyQueue::give_back(const std::vector<int>& points) {
   const std::string list = array_text(points);
   attempt([&](Session& session) {
-    session.sql << R"(WITH ended AS (UPDATE phalanx.workers SET ended = clock_timestamp() WHERE id = :worker)
-                      UPDATE phalanx.points SET worker = NULL, lease_end = NULL
+    session.sql << R"(UPDATE phalanx.points SET worker = NULL, lease_end = NULL
                       WHERE study = :study AND worker = :worker AND result IS NULL
                         AND point = ANY (CAST(:list AS integer[])))",
         soci::use(worker_, "worker"), soci::use(study_, "study"), soci::use(list, "list");
+  });
+}
+
+void StudyQueue::leave(const std::vector<int>& points) {
+  give_back(points);
+  attempt([&](Session& session) {
+    session.sql << "UPDATE phalanx.workers SET ended = clock_timestamp() WHERE id = :worker",
+        soci::use(worker_, "worker");
   });
 }
 

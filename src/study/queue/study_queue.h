@@ -38,7 +38,10 @@ class StudyQueue {
   StudyQueue(const StudyQueue&) = delete;
   StudyQueue& operator=(const StudyQueue&) = delete;
 
-  /// Makes tables, study and points that are not there.
+  /// Makes tables that are not there; changes no study.
+  /// @throws std::invalid_argument if the lease is out of range; std::runtime_error if the tables have another format
+  void prepare(double lease_s);
+  /// Makes tables, study and points that are not there. @param restart  the study and its points are made again
   void create(const JournalHeader& header, double lease_s, bool restart);
   /// Lets quarantined points be tried again.
   void retry_quarantined();
@@ -50,15 +53,19 @@ class StudyQueue {
   /// Makes this connection a worker's. @throws std::invalid_argument as work_on_queue()
   void join(const JournalHeader& header, int jobs);
 
-  /// Takes up to `most` points, lowest first, that have no result and no valid lease.
+  /// Takes up to `most` points, lowest first, that have no result and no valid lease. A point whose last failure was
+  /// this worker's is left to the others while one lives.
   [[nodiscard]] std::vector<int> take(int most);
   /// Renews the leases of these points of this worker.
   void renew(const std::vector<int>& points);
   /// Stores results; a point that has one keeps it.
   /// @throws std::runtime_error if that one differs. Two that are stored at the same moment are not compared.
   void finish(const std::vector<MeasuredPoint>& measured);
-  /// Counts a failure of a point of this worker, and gives the point back.
+  /// Counts a failure of a point of this worker, adds the machine and `log` to the point's log, and gives the point
+  /// back.
   void fail(int point, const std::string& log);
+  /// Gives these points of this worker back.
+  void give_back(const std::vector<int>& points);
   /// Gives these points back, and ends this worker.
   void leave(const std::vector<int>& points);
   /// @returns the time between two renewals [s]
@@ -83,7 +90,8 @@ class StudyQueue {
   template <class Function>
   auto attempt(const Function& function);
   void make_tables();
-  void wait_for_server(const std::string& why, int tries);
+  void tell_back(const std::string& told) const;
+  void wait_for_server(int tries) const;
   void find_study(Session& session, const JournalHeader& header);
   void claim_libm(Session& session);
 

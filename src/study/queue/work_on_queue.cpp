@@ -74,6 +74,7 @@ class Worker {
       }
       wait();
       read();
+      give_back();
       store();
       renew();
     }
@@ -90,9 +91,9 @@ class Worker {
         }
       }
       for (auto& process : processes_) process.reset();
-      store();
+      const bool stored = store_at_end();
       queue_.leave({held_.begin(), held_.end()});
-      work_.given_back = true;
+      work_.given_back = stored;
     } catch (...) {
       work_.given_back = false;
     }
@@ -123,6 +124,17 @@ class Worker {
     return !taken_.empty();
   }
 
+  /// Gives back what was taken when points were quicker, so that idle workers can take it.
+  void give_back() {
+    const double seconds = 2.0 * kBatchSeconds * static_cast<double>(processes_.size());
+    const auto kept = static_cast<std::size_t>(time_.points_in(seconds, kMostTaken));
+    if (taken_.size() <= kept) return;
+    const auto first = taken_.begin() + static_cast<std::ptrdiff_t>(kept);
+    queue_.give_back({first, taken_.end()});
+    for (auto point = first; point != taken_.end(); ++point) held_.erase(*point);
+    taken_.erase(first, taken_.end());
+  }
+
   void give(Process& process) {
     const auto most = static_cast<std::size_t>(time_.points_in(kGivenSeconds, kMostGiven));
     while (!taken_.empty() && (!process || process->pending().size() < most)) {
@@ -149,7 +161,11 @@ class Worker {
     last_read_ = now;
     for (Process& process : processes_) {
       if (!process) continue;
-      for (PointAnswer& answer : process->read()) take_answer(answer);
+      std::vector<PointAnswer> answers = process->read();
+      for (PointAnswer& answer : answers) take_result(answer);
+      for (const PointAnswer& answer : answers) {  // last: this may throw
+        if (answer.failed) fail(answer.index, answer.text);
+      }
       process->pass(passed, limit_s_);
       if (process->ended()) replace(process);
     }
@@ -159,14 +175,11 @@ class Worker {
     return {.index = answer.index, .seconds = answer.seconds, .result = std::move(answer.text)};
   }
 
-  void take_answer(PointAnswer& answer) {
+  void take_result(PointAnswer& answer) {
     time_.add(answer.seconds);
-    if (answer.failed) {
-      fail(answer.index, answer.text);
-    } else {
-      failures_in_a_row_ = 0;
-      measured_.push_back(measured(answer));
-    }
+    if (answer.failed) return;
+    failures_in_a_row_ = 0;
+    measured_.push_back(measured(answer));
   }
 
   /// The process has ended: the point that it measured fails, the others are given to the next one.
@@ -195,6 +208,18 @@ class Worker {
           "{} failures without a result between them, the last of point {}: {}; this worker ends, "
           "see whether its machine has room, memory and the files of the study",
           kMostFailuresInARow, index, line));
+  }
+
+  /// @returns whether the queue has what was measured
+  bool store_at_end() {
+    try {
+      store();
+      return true;
+    } catch (const QueueStopped&) {
+      throw;
+    } catch (...) {  // a result differs: the points can still be given back
+      return false;
+    }
   }
 
   void store() {

@@ -171,7 +171,7 @@ std::string study_report_html(const Study& study, const std::vector<PointResult>
   if (running.empty()) {
     page.paragraph(fmt::format("{} of {} points are finished.", results.size(), point_count(study)));
   } else {
-    page.paragraph(fmt::format("It runs: {}.", running));
+    page.paragraph(fmt::format("It runs: {} (at {}).", running, made.date));
     page.reload_every(kReloadSeconds);
   }
   page.warnings(study_warnings(view));

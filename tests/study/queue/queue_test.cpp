@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,9 +28,11 @@
 namespace phalanx {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
 using testing::PostgresServer;
 using testing::read_file;
 using testing::TemporaryFolder;
@@ -179,7 +182,35 @@ TEST_F(StudyQueueTest, ATrialThatThrowsFailsItsPoint) {
   EXPECT_EQ(done.failed, 3 * kFailuresToQuarantine);
   const QueuedResults queued = run();
   ASSERT_EQ(queued.quarantined.size(), 3U);
-  EXPECT_EQ(queued.quarantined[2].log, "no mesh ?");
+  const std::string& log = queued.quarantined[2].log;
+  EXPECT_THAT(log, MatchesRegex("(on [^:]+: no mesh [?](\n\n)?)+")) << "each failure, with its machine";
+  EXPECT_EQ(std::count(log.begin(), log.end(), '?'), kFailuresToQuarantine) << log;
+}
+
+TEST_F(StudyQueueTest, AFailedPointIsLeftToAnotherWorkerWhileOneLives) {
+  create();
+  StudyQueue one(address());
+  StudyQueue other(address());
+  one.join(header(), 1);
+  other.join(header(), 1);
+  ASSERT_THAT(one.take(1), ElementsAre(0));
+  one.fail(0, "no room in /tmp");
+  EXPECT_THAT(one.take(1), ElementsAre(1));
+  EXPECT_THAT(other.take(1), ElementsAre(0));
+  other.fail(0, "out of memory");
+  EXPECT_THAT(one.take(1), ElementsAre(0)) << "the last failure was the other's";
+  one.give_back({0, 1});
+  EXPECT_THAT(other.take(1), ElementsAre(1)) << "given back";
+  one.leave({});
+  EXPECT_THAT(other.take(1), ElementsAre(0)) << "no other worker lives";
+  other.fail(0, "out of memory");
+  const QueuedResults queued = [&] {
+    other.leave({1});
+    static_cast<void>(work(testing::synthetic_trial));
+    return run();
+  }();
+  ASSERT_EQ(queued.quarantined.size(), 1U);
+  EXPECT_THAT(queued.quarantined[0].log, AllOf(HasSubstr("no room in /tmp"), HasSubstr("out of memory")));
 }
 
 TEST_F(StudyQueueTest, AProcessThatEndsInGoodOrderFailsItsPointToo) {
@@ -458,6 +489,21 @@ TEST_F(StudyQueueTest, AWorkerMayBeStoppedWhileTheServerIsAway) {
   EXPECT_THAT(told[0], HasSubstr("the queue's server is away"));
 }
 
+TEST_F(StudyQueueTest, AWorkerTellsWhyTheServerIsAwayAndThatItIsBack) {
+  create();
+  QueueServer server = address();
+  std::vector<std::string> told;
+  server.tell = [&](const std::string& sentence) {
+    told.push_back(sentence);
+    if (told.size() == 1) server_->start();
+  };
+  StudyQueue queue(server);
+  queue.join(header(), 1);
+  server_->stop();
+  EXPECT_THAT(queue.take(1), ElementsAre(0));
+  EXPECT_THAT(told, ElementsAre(HasSubstr("is away ("), HasSubstr("is back")));
+}
+
 TEST_F(StudyQueueTest, AWorkerThatIsStoppedGivesItsPointsBack) {
   create();
   QueueServer server = address();
@@ -505,11 +551,13 @@ TEST_F(StudyQueueTest, ARestartMeasuresEveryPointAgain) {
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NULL"), 12);
 }
 
-TEST_F(StudyQueueTest, AStudyThatIsRemovedEndsWorkersAndRunAndKeepsTheJournal) {
+TEST_F(StudyQueueTest, AStudyThatIsRemovedEndsWorkersAndRunWhichKeepsItsResults) {
   create();
   StudyQueue queue(address());
   queue.join(header(), 1);
-  static_cast<void>(alone());
+  std::string line = result_line(alone()[3]);
+  line.pop_back();
+  queue.finish({{.index = 3, .seconds = 1.0, .result = line}});
   std::filesystem::copy_file(alone_ / "points.jsonl", folder_ / "points.jsonl");
   const std::string journal = read_file(folder_ / "points.jsonl");
   const std::string first =
@@ -519,7 +567,9 @@ TEST_F(StudyQueueTest, AStudyThatIsRemovedEndsWorkersAndRunAndKeepsTheJournal) {
   options.progress = [](const StudyProgress&) { sql("DELETE FROM phalanx.studies"); };
   EXPECT_THROW(static_cast<void>(run(options)), std::runtime_error);
   EXPECT_THROW(static_cast<void>(queue.has_unfinished()), std::runtime_error);
-  EXPECT_EQ(read_file(folder_ / "points.jsonl"), first);
+  const auto kept = read_journal(folder_ / "points.jsonl").points;
+  ASSERT_EQ(kept.size(), 2U) << "that of the journal, and what was collected";
+  EXPECT_EQ(kept[1].index, 3);
 }
 
 TEST_F(StudyQueueTest, ARestartThatCannotReachTheServerKeepsTheJournal) {
@@ -568,6 +618,11 @@ TEST_F(StudyQueueTest, TablesOfAnotherFormatAreRefused) {
   create();
   sql("UPDATE phalanx.format SET version = 99");
   EXPECT_THROW(create(), std::runtime_error);
+  static_cast<void>(alone());
+  EXPECT_THROW(static_cast<void>(run_on_queue(study_, testing::no_inputs, alone_.path(), address(),
+                                              {.commit = "test", .restart = true})),
+               std::runtime_error);
+  EXPECT_EQ(read_journal(alone_ / "points.jsonl").points.size(), 12U) << "nothing was begun again";
 }
 
 TEST_F(StudyQueueTest, AServerThatIsNotThereIsNamedAtOnce) {
