@@ -127,6 +127,12 @@ class Server:
         return f"postgresql://phalanx@/postgres?host={self.folder}&port={self.port}"
 
 
+def has_points(server: Server) -> bool:
+    if server.sql("SELECT to_regclass('phalanx.points')") == "":
+        return False
+    return server.sql("SELECT count(*) FROM phalanx.points") != "0"
+
+
 class Namespace:
     """A network namespace, held by a process that sleeps in it, and connected with this one by a pair of virtual interfaces.
 
@@ -238,9 +244,9 @@ class Killed(Queue):
 
         running = run()
         end = time.monotonic() + LONGEST
-        while self.server.sql("SELECT to_regclass('phalanx.points')") == "":
+        while not has_points(self.server):
             self.assertIsNone(running.poll(), self.log())
-            self.assertLess(time.monotonic(), end, "no tables")
+            self.assertLess(time.monotonic(), end, "no points")
             time.sleep(0.05)
         # What the queue stores is written down by the server itself.
         self.server.sql("""CREATE TABLE public.stored (point integer);
@@ -361,9 +367,9 @@ class Reached(Queue):
         running = subprocess.Popen([PROGRAM, "study", "run", "study.toml", "--queue", server.url(), "--out", "out", "--quiet"], cwd=self.folder)
         self.addCleanup(lambda: running.poll() is None and (running.kill() or running.wait()))
         end = time.monotonic() + LONGEST
-        while server.sql("SELECT to_regclass('phalanx.points')") == "":
+        while not has_points(server):
             self.assertIsNone(running.poll(), "run has ended")
-            self.assertLess(time.monotonic(), end, "no tables")
+            self.assertLess(time.monotonic(), end, "no points")
             time.sleep(0.05)
         (self.folder / "changed").mkdir()
         (self.folder / "changed" / "study.toml").write_text(SMALL.replace("4]", "5]"))

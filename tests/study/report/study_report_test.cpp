@@ -332,7 +332,7 @@ TEST(StudyReport, OfAStudyThatRunsStatesItsProgressAndLoadsItselfAgain) {
   const Study study = synthetic_study({"a", "b"}, {kFriction});
   const std::string page = study_report_html(study, {}, kMadeUp, "3/8 points, 2 < 3 workers");
   EXPECT_EQ(flaw_of(page), "");
-  EXPECT_THAT(page, HasSubstr("It runs: 3/8 points, 2 &lt; 3 workers."));
+  EXPECT_THAT(page, HasSubstr("It runs: 3/8 points, 2 &lt; 3 workers (at 2000-01-01T00:00:00Z)."));
   EXPECT_THAT(page, HasSubstr("<meta http-equiv=\"refresh\" content=\"10\"/>"));
   EXPECT_THAT(study_report_html(study, {}, kMadeUp), Not(HasSubstr("http-equiv")));
 }
