@@ -6,10 +6,13 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { CockpitPage } from "./support/cockpit_page";
 import { addressOf, runStation, slowMotion } from "./support/program";
+import { until } from "./support/until";
 import { launch } from "./view3d_page/browser";
 
 const kScreen = { width: 1440, height: 900 };
-const kFirm = 1.5; // [N] of a finger
+const kFirm = 1.5; // [N]
+const kCurves = 10; // that the plot shows [s]
+const kSegments = 3; // of a digit
 
 const [out = "cockpit.png"] = process.argv.slice(2);
 const work = mkdtempSync(join(tmpdir(), "phalanx-cockpit-picture-"));
@@ -21,8 +24,12 @@ try {
   const cockpit = new CockpitPage(page);
   await cockpit.go(url);
   await cockpit.untilRunning();
-  await cockpit.untilLater(4); // curves of most of a squeeze
-  await cockpit.untilTouching(kFirm);
+  await cockpit.untilLater(kCurves);
+  const holds = (digit: number) =>
+    cockpit.stream.newest!.contact.some(({ segment, touching, force }) => Math.floor(segment / kSegments) === digit && touching && force > kFirm);
+  // A hold from its beginning: a picture takes a second.
+  await until("an open hand", () => !holds(0) && !holds(1), () => cockpit.brief());
+  await until("a firm thumb and index finger", () => holds(0) && holds(1), () => cockpit.brief());
   await page.screenshot({ path: resolve(out) });
 } finally {
   await browser.close();
